@@ -23,9 +23,9 @@ class Answers {
   void add(double number) { numbers.push_back(number); }
   void add(const PoseState& pose) {
     add(static_cast<double>(pose.time_ns));
-    add(pose.p_WA_m);
-    add(pose.q_WA.coeffs());
-    add(pose.v_WA_m_s);
+    add(pose.position_W_m);
+    add(pose.orientation_W.coeffs());
+    add(pose.velocity_W_m_s);
     add(pose.covariance);
   }
   void add(const SensorHealth& health) {
@@ -35,9 +35,9 @@ class Answers {
     }
   }
   void add(const SaturationLevels& rails) {
-    for (const RailDetector::Channel& channel : rails.axis_aligned_rails.channels) add(channel.rail);
-    for (const RailPlanes* planes : {&rails.planes, &rails.accel_planes}) {
-      for (const std::optional<RailPlane>& plane : planes->element) add(plane ? plane->distance_rad_s : 0.0);
+    for (const SaturationLimitDetector::Channel& channel : rails.axis_limit_state.channels) add(channel.plateau_limit);
+    for (const SaturationPlanes* planes : {&rails.gyro_planes, &rails.accel_saturation_planes}) {
+      for (const std::optional<SaturationPlane>& plane : planes->sensing_axis) add(plane ? plane->saturation_limit_rad_s : 0.0);
     }
   }
 
@@ -48,14 +48,14 @@ inline std::vector<double> answers(TumblingOdometry odometry) {
   Answers out;
   PoseState pose;
   if (odometry.newest(pose).ok()) out.add(pose);
-  for (const std::optional<RateState>& rate : {odometry.newest_rate(), odometry.smoothed_rate()}) {
+  for (const std::optional<AngularRateState>& rate : {odometry.newest_rate(), odometry.smoothed_rate()}) {
     if (!rate) continue;
     out.add(rate->w_WI_I_rad_s);
     out.add(rate->covariance_rad2_s2);
   }
   out.add(odometry.rig().constants.vector());
   out.add(odometry.rig().covariance);
-  out.add(odometry.rails());
+  out.add(odometry.saturation_levels());
   out.add(odometry.health());
   out.add(odometry.estimated_jitter_s().value_or(0.0));
   odometry.finish();
@@ -70,7 +70,7 @@ inline std::vector<double> answers(TumblingOdometry odometry) {
   out.add(odometry.mapper().calibration_covariance());
   for (const std::size_t count :
        {odometry.restart_count(), odometry.rejected_readings(), odometry.rejected_samples(), odometry.dropped_sweeps(),
-        odometry.early_sweeps(), odometry.unused_odometer_readings(), odometry.unused_points()})
+        odometry.sweeps_before_first_imu(), odometry.unused_odometer_readings(), odometry.unused_points()})
     out.add(static_cast<double>(count));
   return out.numbers;
 }
@@ -84,10 +84,10 @@ inline std::vector<double> answers(RollingOdometry odometry) {
     out.add(static_cast<double>(pose.mode));
   };
   if (const std::optional<RollingOdometry::Pose> pose = odometry.newest()) add(*pose);
-  out.add(odometry.calibration().centre_B_m);
+  out.add(odometry.calibration().sphere_centre_B_m);
   out.add(odometry.calibration().radius_m);
   out.add(odometry.health());
-  for (const ImuMergeUnit& unit : odometry.units().units) out.add(unit.x);
+  for (const MergedImuState& unit : odometry.imus().imus) out.add(unit.x);
   odometry.finish();
   while (const std::optional<RollingOdometry::Pose> pose = odometry.take()) add(*pose);
   out.add(static_cast<double>(odometry.restart_count()));

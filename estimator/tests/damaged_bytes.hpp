@@ -52,7 +52,7 @@ void expect_damage_is_refused(const Bytes& saved, Odometry odometry) {
   };
   for (std::size_t length = 0; length < saved.size(); length += length < 200 ? 1 : saved.size() / 61) {
     Bytes cut(saved.begin(), saved.begin() + static_cast<std::ptrdiff_t>(length));
-    EXPECT_EQ(refusal(cut).error_code, ErrorCode::too_few) << length;
+    EXPECT_EQ(refusal(cut).error_code, ErrorCode::insufficient_data) << length;
     reseal(cut);
     refusal(cut);
   }

@@ -65,7 +65,7 @@ Outcome run(const ThrownBody& body, TumblingOdometry& odometry, Points use) {
   const auto take = [&] {
     while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) {
       const PoseState& pose = sweep->report.pose;
-      out.worst_m = std::max(out.worst_m, (pose.p_WA_m - body.T_WI(seconds(pose.time_ns)).translation()).norm());
+      out.worst_m = std::max(out.worst_m, (pose.position_W_m - body.T_WI(seconds(pose.time_ns)).translation()).norm());
       out.sweeps.push_back(sweep->report);
     }
   };

@@ -66,7 +66,7 @@ ThrownWithGap throw_body(const ThrownBody& body, const DataGap& gap, double lag_
   out.finished = odometry.finish().ok();
   take();
   out.restarts = odometry.restart_count();
-  out.error_m = (out.last.p_WA_m - body.T_WI(seconds(out.last.time_ns)).translation()).norm();
+  out.error_m = (out.last.position_W_m - body.T_WI(seconds(out.last.time_ns)).translation()).norm();
   out.sigma_m = std::sqrt(out.last.covariance.topLeftCorner<3, 3>().trace());
   return out;
 }
@@ -148,7 +148,7 @@ RolledWithGap roll_with_gap(double from_s, double to_s, double more_s, double la
   take();
   out.restarts = odometry.restart_count();
   const auto& P = out.last.pose.covariance;
-  out.error_m = (out.last.pose.p_WA_m - Eigen::Vector3d(test::kPathLength_m, 0.0, 0.0)).norm();
+  out.error_m = (out.last.pose.position_W_m - Eigen::Vector3d(test::kPathLength_m, 0.0, 0.0)).norm();
   out.sigma_m = std::sqrt(P.topLeftCorner<2, 2>().trace());
   out.yaw_sigma_rad = std::sqrt(P(5, 5));
   return out;
@@ -185,7 +185,7 @@ TEST(Gaps, TheWholeRecordingOfASphereStartsAtTheGivenPose) {
   ASSERT_TRUE(odometry.finish().ok());
   const std::optional<RollingOdometry::Pose> first = odometry.take();
   ASSERT_TRUE(first);
-  EXPECT_LT((first->pose.p_WA_m - T_WG.translation()).norm(), 0.01);
+  EXPECT_LT((first->pose.position_W_m - T_WG.translation()).norm(), 0.01);
 }
 
 }  // namespace

@@ -41,8 +41,8 @@ TEST(GyroOffset, ALargeOffsetDoesNotMoveTheThrow) {
   ASSERT_TRUE(last);
   const PoseState& pose = last->report.pose;
   const Eigen::Isometry3d T_WI = body.T_WI(seconds(pose.time_ns));
-  EXPECT_LT((pose.p_WA_m - T_WI.translation()).norm(), 0.05);
-  EXPECT_LT(pose.q_WA.angularDistance(Eigen::Quaterniond(T_WI.linear())), 0.02);
+  EXPECT_LT((pose.position_W_m - T_WI.translation()).norm(), 0.05);
+  EXPECT_LT(pose.orientation_W.angularDistance(Eigen::Quaterniond(T_WI.linear())), 0.02);
   EXPECT_LT((odometry.rig().constants.gyro_bias_rad_s - kOffset_rad_s).norm(), 5e-3);
   // a loaded run starts with the offset
   TumblingOdometry loaded(params_of(body));
@@ -52,13 +52,13 @@ TEST(GyroOffset, ALargeOffsetDoesNotMoveTheThrow) {
 
 TEST(GyroOffset, TheBatchRemovesALargeOffset) {
   const ThrownBody body{.rest_s = 2.0, .end_s = 4.2};
-  RateSmoother::Params params;
+  AngularRateSmoother::Params params;
   params.model.nominal.lever_arm_m = body.lever_arm_I_m;
-  std::vector<RateState> rates;
+  std::vector<AngularRateState> rates;
   const std::vector<ImuSample> imu = with_offset(body.imu(), kOffset_rad_s);
-  RateReport report;
-  ASSERT_TRUE(RateSmoother(params).estimate(imu, rates, report).ok());
-  for (const RateState& rate : rates) {
+  AngularRateReport report;
+  ASSERT_TRUE(AngularRateSmoother(params).estimate(imu, rates, report).ok());
+  for (const AngularRateState& rate : rates) {
     if (seconds(rate.time_ns) < 1.8) {
       EXPECT_LT(rate.w_WI_I_rad_s.norm(), 5e-3) << rate.time_ns;
     }

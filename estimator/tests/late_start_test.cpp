@@ -60,13 +60,13 @@ EndError end_error(const ThrownBody& body, const Lived& run) {
   const PoseState& first = run.sweeps.front().report.trajectory.front();
   const PoseState& last = run.sweeps.back().report.pose;
   const auto truth = [&](const PoseState& pose) { return body.T_WI(1e-9 * double(pose.time_ns)); };
-  const Eigen::Isometry3d T = Eigen::Translation3d(first.p_WA_m) * first.q_WA * truth(first).inverse();
+  const Eigen::Isometry3d T = Eigen::Translation3d(first.position_W_m) * first.orientation_W * truth(first).inverse();
   const double yaw_rad = std::atan2(T.linear()(1, 0) - T.linear()(0, 1), T.linear()(0, 0) + T.linear()(1, 1));
   const Eigen::AngleAxisd turn(yaw_rad, Eigen::Vector3d::UnitZ());
-  const Eigen::Vector3d shift_m = first.p_WA_m - turn * truth(first).translation();
+  const Eigen::Vector3d shift_m = first.position_W_m - turn * truth(first).translation();
   Eigen::Matrix<double, 6, 1> error;
-  error << last.p_WA_m - (turn * truth(last).translation() + shift_m),
-      so3::log((last.q_WA * Eigen::Quaterniond((turn * truth(last)).linear()).conjugate()).normalized());
+  error << last.position_W_m - (turn * truth(last).translation() + shift_m),
+      so3::logarithm((last.orientation_W * Eigen::Quaterniond((turn * truth(last)).linear()).conjugate()).normalized());
   return {error.head<3>().norm(), error.tail<3>().norm(), error.dot(last.covariance.ldlt().solve(error)) / 6.0};
 }
 
@@ -88,7 +88,7 @@ std::array<EndError, 2> late_and_together(const ThrownBody& body, double lidar_f
   const SweepReport& first = run.sweeps.front().report;
   EXPECT_EQ(first.verdict, SweepVerdict::first);
   EXPECT_GT(first.map_points_added, 500u);
-  EXPECT_LT(first.trajectory.front().p_WA_m.norm(), 0.1);
+  EXPECT_LT(first.trajectory.front().position_W_m.norm(), 0.1);
   const Eigen::Matrix3d position_m2 = first.pose.covariance.topLeftCorner<3, 3>();
   EXPECT_LT(position_m2.trace(), 0.2 * 0.2);
   EXPECT_LE(rejected(run), rejected(together));
@@ -145,7 +145,7 @@ TEST(LateLidar, SweepsWithoutPointsDoNotStartTheMap) {
       ASSERT_TRUE(odometry.add_sweep(sweeps[next].start_ns, sweeps[next].end_ns, sweeps[next].points).ok());
     while (auto sweep = odometry.take()) {
       without_pose += sweep->report.trajectory.empty();
-      EXPECT_EQ(sweep->status.error_code, sweep->report.trajectory.empty() ? ErrorCode::too_few : ErrorCode::none);
+      EXPECT_EQ(sweep->status.error_code, sweep->report.trajectory.empty() ? ErrorCode::insufficient_data : ErrorCode::none);
       if (sweep->report.verdict == SweepVerdict::first) first = sweep->report;
       last = sweep->report;
     }
@@ -160,8 +160,8 @@ TEST(LateImu, LeavesOutTheSweepsBeforeIt) {
   ThrownBody body = body_that_rests(4.2);
   TumblingOdometry odometry(test::params_of(body));
   const Lived run = live(body, 3.05, 0.0, odometry);
-  EXPECT_GE(odometry.early_sweeps(), 28u);
-  EXPECT_LE(odometry.early_sweeps(), 30u);
+  EXPECT_GE(odometry.sweeps_before_first_imu(), 28u);
+  EXPECT_LE(odometry.sweeps_before_first_imu(), 30u);
   std::size_t placed = 0;
   for (const auto& sweep : run.sweeps) placed += !sweep.report.trajectory.empty();
   EXPECT_GE(placed, 38u);
@@ -201,8 +201,8 @@ TEST(AccelerometerUnit, IsReportedByRollingOdometryWithinTwoSeconds) {
     SCOPED_TRACE(unit_m_s2);
     RollingOdometry::Params params;
     params.radius_m = 0.1;
-    params.units.emplace_back();
-    params.units.front().sheet.rate_hz = 100.0;
+    params.imus.emplace_back();
+    params.imus.front().data_sheet.rate_hz = 100.0;
     RollingOdometry odometry(params);
     for (const ImuSample& sample : at_rest(unit_m_s2, 2.0)) (void)odometry.add_imu(sample);
     const Status status = odometry.health();

@@ -65,7 +65,7 @@ TEST(TumblingOdometry, DoubtsACalibrationThatMovedFurtherThanWasGiven) {
   const Status health = far.health();
   EXPECT_EQ(health.error_code, ErrorCode::out_of_range);
   EXPECT_NE(health.message().find("change of the lidar-IMU calibration"), std::string::npos) << health.message();
-  EXPECT_GT(health.value, StatedCalibration::kDistanceMax_sigmas);
+  EXPECT_GT(health.value, LidarImuCalibrationPrior::kDistanceMax_sigmas);
 }
 
 }  // namespace

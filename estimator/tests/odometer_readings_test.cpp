@@ -66,10 +66,10 @@ void take_course(const ThrownBody& body, TumblingOdometry& odometry, Course& run
   while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) {
     const PoseState& pose = sweep->report.pose;
     const Eigen::Isometry3d T_WI = body.T_WI(seconds(pose.time_ns));
-    run.end_m = (pose.p_WA_m - T_WI.translation()).norm();
+    run.end_m = (pose.position_W_m - T_WI.translation()).norm();
     run.worst_m = std::max(run.worst_m, run.end_m);
     run.sum_m += run.end_m;
-    run.worst_rad = std::max(run.worst_rad, pose.q_WA.angularDistance(Eigen::Quaterniond(T_WI.linear())));
+    run.worst_rad = std::max(run.worst_rad, pose.orientation_W.angularDistance(Eigen::Quaterniond(T_WI.linear())));
     run.sweeps.push_back(std::move(*sweep));
   }
 }
@@ -103,15 +103,15 @@ Course course_of(const ThrownBody& body, const std::vector<ThrownBody::Sweep>& s
 
 TumblingOdometry::Params single_pass(const ThrownBody& body) {
   TumblingOdometry::Params params = params_of(body);
-  params.expert->second_pass.after_s = 0.0;
+  params.expert->second_mapping_pass.after_s = 0.0;
   return params;
 }
 
 void expect_same(const Course& a, const Course& b) {
   ASSERT_EQ(a.sweeps.size(), b.sweeps.size());
   for (std::size_t k = 0; k < a.sweeps.size(); ++k) {
-    EXPECT_EQ(a.sweeps[k].report.pose.p_WA_m, b.sweeps[k].report.pose.p_WA_m) << k;
-    EXPECT_EQ(a.sweeps[k].report.pose.q_WA.coeffs(), b.sweeps[k].report.pose.q_WA.coeffs()) << k;
+    EXPECT_EQ(a.sweeps[k].report.pose.position_W_m, b.sweeps[k].report.pose.position_W_m) << k;
+    EXPECT_EQ(a.sweeps[k].report.pose.orientation_W.coeffs(), b.sweeps[k].report.pose.orientation_W.coeffs()) << k;
     EXPECT_EQ(a.sweeps[k].report.pose.covariance, b.sweeps[k].report.pose.covariance) << k;
   }
 }
@@ -167,7 +167,7 @@ TEST(OdometerReadings, AReadingBelongsToItsSweepWhileItWaits) {
   ThrownBody body;
   body.end_s = 4.2;
   TumblingOdometry::Params params = params_of(body);
-  params.expert->second_pass.after_s = 0.9;
+  params.expert->second_mapping_pass.after_s = 0.9;
   const std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
   TumblingOdometry before(params), after(params), without(params);
   const Course first = course_of(body, sweeps, true_motion, before);
@@ -178,39 +178,39 @@ TEST(OdometerReadings, AReadingBelongsToItsSweepWhileItWaits) {
     if (sweep.end_ns == sweeps.back().end_ns) true_motion(of, sweep, odometry);
   };
   expect_same(first, course_of(body, sweeps, late, after));
-  EXPECT_TRUE(before.second_pass_applied());
+  EXPECT_TRUE(before.second_mapping_pass_applied());
   const Course none = course_of(body, sweeps, nothing, without);
-  EXPECT_NE(first.sweeps.back().report.pose.p_WA_m, none.sweeps.back().report.pose.p_WA_m);
+  EXPECT_NE(first.sweeps.back().report.pose.position_W_m, none.sweeps.back().report.pose.position_W_m);
   EXPECT_EQ(test::answers(before), test::answers(after));
 }
 
 /// Returns the pose after the second pass. Only the second pass has readings, so the pose shows whether it used them.
 Eigen::Vector3d after_second_pass(bool with_readings) {
   const ThrownBody body;
-  RegimeStream::Params rate = TumblingOdometry::Params::Expert::rate_defaults();
+  MotionRegimeStream::Params rate = TumblingOdometry::Params::Expert::default_rate_params();
   rate.rate.model.nominal.lever_arm_m = body.lever_arm_I_m;
   const LidarInertialOdometry::Params mapping = TumblingOdometry::Params::Expert::mapping_defaults();
   OdometryPass first(rate, mapping);
-  SecondPass again(SecondPass::Params{}, rate, mapping);
+  SecondMappingPass again(SecondMappingPass::Params{}, rate, mapping);
   const std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
   std::size_t next = 0;
   for (const ImuSample& sample : body.imu()) {
     EXPECT_TRUE(first.add_imu(sample).ok());
-    again.store(sample);
-    for (; next < sweeps.size() && first.covers(sweeps[next].end_ns); ++next) {
+    again.store_input(sample);
+    for (; next < sweeps.size() && first.has_rates_until(sweeps[next].end_ns); ++next) {
       const ThrownBody::Sweep& sweep = sweeps[next];
       LidarInertialOdometry::SweepReport report;
       (void)first.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, {}, report);
       std::optional<OdometerReading> reading;
       if (with_readings) reading = motion_of(body, sweep.start_ns, sweep.end_ns, 0.002, 0.002);
-      again.store(sweep.start_ns, sweep.end_ns, sweep.points, reading, report.verdict);
+      again.store_input(sweep.start_ns, sweep.end_ns, sweep.points, reading, report.verdict);
     }
   }
-  again.complete(first);
-  EXPECT_TRUE(again.applied());
+  again.complete_second_pass(first);
+  EXPECT_TRUE(again.is_applied());
   PoseState pose;
   EXPECT_TRUE(first.newest(pose, nullptr).ok());
-  return pose.p_WA_m;
+  return pose.position_W_m;
 }
 
 TEST(OdometerReadings, TheSecondPassUsesReadingsAgain) {
@@ -221,7 +221,7 @@ TEST(OdometerReadings, TheSecondPassUsesReadingsAgain) {
 TEST(OdometerReadings, ACopyContinuesWhileAReadingWaits) {
   const ThrownBody body;
   TumblingOdometry::Params params = params_of(body);
-  params.expert->second_pass.after_s = 0.9;
+  params.expert->second_mapping_pass.after_s = 0.9;
   const std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
   TumblingOdometry whole(params);
   const Course run = course_of(body, sweeps, true_motion, whole);

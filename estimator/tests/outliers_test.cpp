@@ -60,7 +60,7 @@ Flight run_tumbling(const ThrownBody& body, const std::vector<ImuSample>& imu) {
   const auto take = [&] {
     while (const std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) {
       const PoseState& pose = sweep->report.pose;
-      run.end_error_m = (pose.p_WA_m - body.T_WI(seconds(pose.time_ns)).translation()).norm();
+      run.end_error_m = (pose.position_W_m - body.T_WI(seconds(pose.time_ns)).translation()).norm();
     }
   };
   for (const ImuSample& sample : imu) {
@@ -140,7 +140,7 @@ TEST(Outliers, TheNewestPoseWaitsForTheNextReading) {
     const std::size_t newest = k == kWild ? k - 1 : k == kWild + 1 ? k - 2 : k;
     EXPECT_EQ(pose.time_ns, imu[newest].time_ns) << k;
     if (k <= kWild + 5) {
-      EXPECT_LT(pose.q_WA.angularDistance(expected.q_WA), 1e-3) << k;
+      EXPECT_LT(pose.orientation_W.angularDistance(expected.orientation_W), 1e-3) << k;
     }
   }
 }
@@ -155,7 +155,7 @@ std::vector<ImuSample> at_rest(std::size_t count) {
   return test::noisy(std::move(out));
 }
 
-std::size_t rejected_of(const std::vector<ImuSample>& samples, const OutlierFilter::Device& params = {}) {
+std::size_t rejected_of(const std::vector<ImuSample>& samples, const OutlierFilter::ImuRanges& params = {}) {
   const std::vector<bool> inliers = find_inliers(OutlierFilter(params), samples);
   return static_cast<std::size_t>(std::count(inliers.begin(), inliers.end(), false));
 }
@@ -269,7 +269,7 @@ double rolling_error_m(const std::vector<std::vector<ImuSample>>& units, std::si
   while (odometry.take()) ++poses;
   rejected = odometry.rejected_readings();
   EXPECT_EQ(poses, units[0].size() - (units.size() == 1 ? rejected : 0));
-  return std::abs(odometry.newest()->pose.p_WA_m.x() - test::kPathLength_m);
+  return std::abs(odometry.newest()->pose.position_W_m.x() - test::kPathLength_m);
 }
 
 TEST(Outliers, OneWildReadingMovesNoSphere) {

@@ -29,8 +29,8 @@ const Eigen::Isometry3d kT_PW =
 PoseState truth(double t_s) {
   PoseState out;
   out.time_ns = static_cast<TimeNs>(std::llround(1e9 * t_s));
-  out.p_WA_m = {10.0 * std::sin(0.1 * t_s), 10.0 - 10.0 * std::cos(0.1 * t_s), 0.2 * std::sin(0.3 * t_s)};
-  out.q_WA = so3::exp({0.5 * std::sin(t_s), 0.3 * std::sin(0.7 * t_s), 0.1 * t_s});
+  out.position_W_m = {10.0 * std::sin(0.1 * t_s), 10.0 - 10.0 * std::cos(0.1 * t_s), 0.2 * std::sin(0.3 * t_s)};
+  out.orientation_W = so3::exp({0.5 * std::sin(t_s), 0.3 * std::sin(0.7 * t_s), 0.1 * t_s});
   return out;
 }
 
@@ -51,9 +51,9 @@ SweepReport report_of(int sweep, const Drift& drift) {
 PositionReading reading_of(int sweep, double sigma_m, std::mt19937& random) {
   std::normal_distribution<double> noise(0.0, 1.0);
   const PoseState pose = truth(1e-9 * double(sweep * kSweep_ns) + 0.05);
-  PositionReading out{.time_ns = pose.time_ns, .p_IA_m = kArm_I_m};
-  out.p_PA_m = kT_PW * (pose.p_WA_m + pose.q_WA * kArm_I_m);
-  for (double& axis : out.p_PA_m) axis += sigma_m * noise(random);
+  PositionReading out{.time_ns = pose.time_ns, .antenna_lever_arm_I_m = kArm_I_m};
+  out.antenna_position_P_m = kT_PW * (pose.position_W_m + pose.orientation_W * kArm_I_m);
+  for (double& axis : out.antenna_position_P_m) axis += sigma_m * noise(random);
   out.covariance_m2 = std::max(sigma_m * sigma_m, 1e-6) * Eigen::Matrix3d::Identity();
   return out;
 }
@@ -68,14 +68,14 @@ TEST(Positions, DetermineTheFrameInClosedForm) {
   PositionAlignment alignment;
   for (int sweep = 0; sweep < 200; ++sweep) {
     ASSERT_TRUE(add(alignment, reading_of(sweep, 0.0, random)).ok());
-    alignment.observe(report_of(sweep, no_drift));
-    EXPECT_TRUE(sweep >= 2 || !alignment.frame()) << "the heading is unknown";
+    alignment.add_sweep(report_of(sweep, no_drift));
+    EXPECT_TRUE(sweep >= 2 || !alignment.position_frame()) << "the heading is unknown";
   }
-  ASSERT_TRUE(alignment.frame());
-  EXPECT_TRUE(alignment.frame()->T_PW.isApprox(kT_PW, 1e-5));  // linear interpolation over 10 ms
-  const PoseState pose = truth(20.0), in_P = alignment.frame()->transform(pose);
-  EXPECT_LT((in_P.p_WA_m - kT_PW * pose.p_WA_m).norm(), 1e-3);
-  EXPECT_LT(in_P.q_WA.angularDistance(Eigen::Quaterniond(kT_PW.linear()) * pose.q_WA), 1e-4);
+  ASSERT_TRUE(alignment.position_frame());
+  EXPECT_TRUE(alignment.position_frame()->T_readings_world.isApprox(kT_PW, 1e-5));  // linear interpolation over 10 ms
+  const PoseState pose = truth(20.0), in_P = alignment.position_frame()->transform(pose);
+  EXPECT_LT((in_P.position_W_m - kT_PW * pose.position_W_m).norm(), 1e-3);
+  EXPECT_LT(in_P.orientation_W.angularDistance(Eigen::Quaterniond(kT_PW.linear()) * pose.orientation_W), 1e-4);
 }
 
 TEST(Positions, UpToAFifthMayBeWrong) {
@@ -84,15 +84,15 @@ TEST(Positions, UpToAFifthMayBeWrong) {
     PositionAlignment alignment;
     for (int sweep = 0; sweep < 200; ++sweep) {
       PositionReading reading = reading_of(sweep, 0.05, random);
-      if (sweep % every == 0) reading.p_PA_m += 10.0 * Eigen::Vector3d(std::sin(sweep), std::cos(sweep), 0.0);
+      if (sweep % every == 0) reading.antenna_position_P_m += 10.0 * Eigen::Vector3d(std::sin(sweep), std::cos(sweep), 0.0);
       ASSERT_TRUE(add(alignment, reading).ok());
-      alignment.observe(report_of(sweep, no_drift));
+      alignment.add_sweep(report_of(sweep, no_drift));
     }
     if (every == 2) {
-      EXPECT_FALSE(alignment.frame()) << "negative control: half of the readings are wrong";
+      EXPECT_FALSE(alignment.position_frame()) << "negative control: half of the readings are wrong";
     } else {
-      ASSERT_TRUE(alignment.frame());
-      EXPECT_LT((alignment.frame()->transform(truth(20.0)).p_WA_m - kT_PW * truth(20.0).p_WA_m).norm(), 0.1);
+      ASSERT_TRUE(alignment.position_frame());
+      EXPECT_LT((alignment.position_frame()->transform(truth(20.0)).position_W_m - kT_PW * truth(20.0).position_W_m).norm(), 0.1);
     }
   }
 }
@@ -107,11 +107,11 @@ TEST(Positions, TheFrameHasItsStatedAccuracy) {
       if (sweep % 10 == 0) {
         ASSERT_TRUE(add(alignment, reading_of(sweep, 0.5, random)).ok());
       }
-      alignment.observe(report_of(sweep, no_drift));
+      alignment.add_sweep(report_of(sweep, no_drift));
     }
-    ASSERT_TRUE(alignment.frame());
-    const PoseState in_P = alignment.frame()->transform(truth(20.0));
-    const Eigen::Vector3d error_m = in_P.p_WA_m - kT_PW * truth(20.0).p_WA_m;
+    ASSERT_TRUE(alignment.position_frame());
+    const PoseState in_P = alignment.position_frame()->transform(truth(20.0));
+    const Eigen::Vector3d error_m = in_P.position_W_m - kT_PW * truth(20.0).position_W_m;
     nees += error_m.dot(in_P.covariance.topLeftCorner<3, 3>().inverse() * error_m) / 3.0 / kRuns;
   }
   EXPECT_NEAR(nees, 1.0, 0.25);  // the mean of 600 squares has a standard deviation of 0.06; the poses have no drift
@@ -123,8 +123,8 @@ TEST(Positions, BoundTheDrift) {
     PoseState out = pose;
     const double t_s = seconds(pose.time_ns);  // equals the path in metres
     const Eigen::Quaterniond turn = so3::exp({0.0, 0.0, 0.0017 * t_s});
-    out.p_WA_m = turn * (1.01 * pose.p_WA_m) + Eigen::Vector3d(0.01 * t_s, 0.0, 0.005 * t_s);
-    out.q_WA = turn * pose.q_WA;
+    out.position_W_m = turn * (1.01 * pose.position_W_m) + Eigen::Vector3d(0.01 * t_s, 0.0, 0.005 * t_s);
+    out.orientation_W = turn * pose.orientation_W;
     return out;
   };
   std::mt19937 random(3);
@@ -137,16 +137,16 @@ TEST(Positions, BoundTheDrift) {
       ASSERT_TRUE(add(alignment, reading_of(sweep, 0.5, random)).ok());
     }
     const SweepReport report = report_of(sweep, drift);
-    alignment.observe(report);
-    if (sweep == 300) first = alignment.frame().value().T_PW;
+    alignment.add_sweep(report);
+    if (sweep == 300) first = alignment.position_frame().value().T_readings_world;
     if (sweep < 300) continue;
-    ASSERT_TRUE(alignment.frame()) << sweep;
-    const Eigen::Vector3d p_PI_m = kT_PW * truth(seconds(report.pose.time_ns)).p_WA_m;
-    const double error_m = (alignment.frame()->transform(report.pose).p_WA_m - p_PI_m).norm();
+    ASSERT_TRUE(alignment.position_frame()) << sweep;
+    const Eigen::Vector3d p_PI_m = kT_PW * truth(seconds(report.pose.time_ns)).position_W_m;
+    const double error_m = (alignment.position_frame()->transform(report.pose).position_W_m - p_PI_m).norm();
     worst_m = std::max(worst_m, error_m);
     sum_m2 += error_m * error_m;
     ++count;
-    drift_m = std::max(drift_m, (first * report.pose.p_WA_m - p_PI_m).norm());
+    drift_m = std::max(drift_m, (first * report.pose.position_W_m - p_PI_m).norm());
   }
   EXPECT_GT(drift_m, 10.0) << "negative control: the frame of the first 30 s, kept";
   EXPECT_LT(worst_m, 1.5);                                     // three standard deviations of one axis of a reading
@@ -182,13 +182,13 @@ TEST(Positions, DoNotChangeThePosesOfAnOdometry) {
     run(with, true, of_with);
     ASSERT_EQ(of_plain.size(), of_with.size());
     for (std::size_t k = 0; k < of_plain.size(); ++k) {
-      EXPECT_EQ(of_plain[k].report.pose.p_WA_m, of_with[k].report.pose.p_WA_m);
+      EXPECT_EQ(of_plain[k].report.pose.position_W_m, of_with[k].report.pose.position_W_m);
       EXPECT_EQ(of_plain[k].report.pose.covariance, of_with[k].report.pose.covariance);
       EXPECT_FALSE(of_plain[k].position_frame);
     }
     ASSERT_TRUE(of_with.back().position_frame) << lag_s;
     const PoseState end = of_with.back().position_frame->transform(of_with.back().report.pose);
-    EXPECT_LT((end.p_WA_m - kT_PW * body.T_WI(seconds(end.time_ns)).translation()).norm(), 0.05) << lag_s;
+    EXPECT_LT((end.position_W_m - kT_PW * body.T_WI(seconds(end.time_ns)).translation()).norm(), 0.05) << lag_s;
     EXPECT_EQ(with.position_frame().has_value(), lag_s < TumblingOdometry::kWholeRecording);
   }
 }
@@ -207,7 +207,7 @@ TEST(Positions, WrongReadingsAreRejected) {
   bad.time_ns += 1'100'000'000;
   EXPECT_EQ(odometry.add_position(bad).error_code, ErrorCode::out_of_range);
   bad = fine;
-  bad.p_PA_m.x() = std::numeric_limits<double>::quiet_NaN();
+  bad.antenna_position_P_m.x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(odometry.add_position(bad).error_code, ErrorCode::non_finite);
   bad = fine;
   bad.covariance_m2(2, 2) = 0.0;

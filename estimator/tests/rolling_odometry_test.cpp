@@ -33,15 +33,15 @@ TEST(RollingOdometry, RollsTwoTurnsWithOneUnitOrThree) {
       while (const std::optional<RollingOdometry::Pose> pose = odometry.take()) poses.push_back(*pose);
     }
     ASSERT_TRUE(odometry.newest());
-    EXPECT_NEAR(odometry.newest()->pose.p_WA_m.x(), kPathLength_m, 0.01 * kPathLength_m) << count;
+    EXPECT_NEAR(odometry.newest()->pose.position_W_m.x(), kPathLength_m, 0.01 * kPathLength_m) << count;
     EXPECT_TRUE(odometry.newest()->at_rest);
     const std::size_t before = poses.size();
     odometry.finish();
     while (const std::optional<RollingOdometry::Pose> pose = odometry.take()) poses.push_back(*pose);
     EXPECT_GT(poses.size(), before);  // finish() adds the poses within the lag
     EXPECT_EQ(poses.size(), units[0].size());
-    EXPECT_NEAR(poses.back().pose.p_WA_m.x(), kPathLength_m, 0.005 * kPathLength_m);
-    EXPECT_LT(poses.back().pose.p_WA_m.tail<2>().norm(), 0.01);
+    EXPECT_NEAR(poses.back().pose.position_W_m.x(), kPathLength_m, 0.005 * kPathLength_m);
+    EXPECT_LT(poses.back().pose.position_W_m.tail<2>().norm(), 0.01);
   }
 }
 
@@ -50,7 +50,7 @@ TEST(RollingOdometry, AnotherRadiusEndsElsewhere) {  // negative control
   params.radius_m = 1.1 * kRadius_m;
   RollingOdometry odometry(params);
   for (const ImuSample& sample : unit_at(kPositions[0])) ASSERT_TRUE(odometry.add_imu(sample).ok());
-  EXPECT_GT(std::abs(odometry.newest()->pose.p_WA_m.x() - kPathLength_m), 0.05 * kPathLength_m);
+  EXPECT_GT(std::abs(odometry.newest()->pose.position_W_m.x() - kPathLength_m), 0.05 * kPathLength_m);
 }
 
 TEST(RollingOdometry, WithoutALagEachLivePoseIsGivenOnce) {
@@ -64,7 +64,7 @@ TEST(RollingOdometry, WithoutALagEachLivePoseIsGivenOnce) {
     while (const std::optional<RollingOdometry::Pose> pose = odometry.take()) {
       ++given;
       EXPECT_EQ(pose->pose.time_ns, sample.time_ns);
-      EXPECT_EQ(pose->pose.p_WA_m, odometry.newest()->pose.p_WA_m);
+      EXPECT_EQ(pose->pose.position_W_m, odometry.newest()->pose.position_W_m);
     }
   }
   EXPECT_EQ(given, samples.size());
@@ -79,8 +79,8 @@ TEST(RollingOdometry, ACopyGoesOnWithTheSameBits) {
   for (std::size_t k = 0; k < split; ++k) ASSERT_TRUE(first.add_imu(samples[k]).ok());
   RollingOdometry second(first);
   for (std::size_t k = split; k < samples.size(); ++k) ASSERT_TRUE(second.add_imu(samples[k]).ok());
-  EXPECT_EQ(second.newest()->pose.p_WA_m, whole.newest()->pose.p_WA_m);
-  EXPECT_EQ(second.newest()->pose.q_WA.coeffs(), whole.newest()->pose.q_WA.coeffs());
+  EXPECT_EQ(second.newest()->pose.position_W_m, whole.newest()->pose.position_W_m);
+  EXPECT_EQ(second.newest()->pose.orientation_W.coeffs(), whole.newest()->pose.orientation_W.coeffs());
 }
 
 struct Ended {
@@ -94,7 +94,7 @@ Ended end_of_clipped(std::size_t count, double stated_rad_s) {
   RollingOdometry::Params params = params_of(positions_m);
   std::vector<std::vector<ImuSample>> units;
   for (std::size_t k = 0; k < count; ++k) {
-    params.units[k].sheet.gyro_range_rad_s = stated_rad_s;
+    params.imus[k].data_sheet.gyro_range_rad_s = stated_rad_s;
     units.push_back(unit_at(positions_m[k]));
     for (ImuSample& sample : units[k])
       sample.angular_velocity_rad_s = sample.angular_velocity_rad_s.cwiseMin(8.0).cwiseMax(-8.0);
@@ -106,7 +106,7 @@ Ended end_of_clipped(std::size_t count, double stated_rad_s) {
     EXPECT_TRUE(odometry.add_imus(now).ok());
   }
   const RollingOdometry::Pose end = *odometry.newest();
-  return {std::abs(end.pose.p_WA_m.x() - kPathLength_m), std::sqrt(end.pose.covariance(0, 0))};
+  return {std::abs(end.pose.position_W_m.x() - kPathLength_m), std::sqrt(end.pose.covariance(0, 0))};
 }
 
 TEST(RollingOdometry, ARailThatNoFlagTellsIsSeenByTheReadings) {
@@ -146,12 +146,12 @@ TEST(RollingOdometry, AUnitOfWhichAnAxisFreezesIsLeftOutAndNamed) {
     ASSERT_TRUE(harmed.add_imus(std::vector<ImuSample>{units[0][k], units[1][k], units[2][k]}).ok());
   ASSERT_FALSE(harmed.health().ok());
   const HealthFinding found = harmed.health().findings.front();
-  EXPECT_EQ(found.kind, HealthFinding::Kind::unit_frozen);
+  EXPECT_EQ(found.kind, HealthFinding::Kind::imu_frozen);
   EXPECT_EQ(found.sensor, "imu_2");
   EXPECT_STREQ(found.axis, "gyro_y");
   EXPECT_FALSE(harmed.health().invalidates_estimate()) << "two IMUs remain";
-  EXPECT_NEAR(sound.newest()->pose.p_WA_m.x(), kPathLength_m, 0.02 * kPathLength_m);
-  EXPECT_NEAR(harmed.newest()->pose.p_WA_m.x(), kPathLength_m, 0.05 * kPathLength_m);
+  EXPECT_NEAR(sound.newest()->pose.position_W_m.x(), kPathLength_m, 0.02 * kPathLength_m);
+  EXPECT_NEAR(harmed.newest()->pose.position_W_m.x(), kPathLength_m, 0.05 * kPathLength_m);
 }
 
 TEST(RollingOdometry, TheOnlyUnitIsRefusedWithTheNameOfItsFrozenAxis) {
@@ -168,7 +168,7 @@ TEST(RollingOdometry, TheOnlyUnitIsRefusedWithTheNameOfItsFrozenAxis) {
 
 TEST(RollingOdometry, TroubleIsAValue) {
   RollingOdometry odometry(params_of(kPositions));
-  EXPECT_EQ(odometry.add_imu(unit_at(kPositions[0])[0]).error_code, ErrorCode::too_few);
+  EXPECT_EQ(odometry.add_imu(unit_at(kPositions[0])[0]).error_code, ErrorCode::insufficient_data);
   RollingOdometry one(params_of({kPositions[0]}));
   const std::vector<ImuSample> samples = unit_at(kPositions[0]);
   ASSERT_TRUE(one.add_imu(samples[5]).ok());
@@ -186,7 +186,7 @@ TEST(RollingOdometry, TroubleIsAValue) {
   RollingOdometry fresh(params_of({kPositions[0]}));
   EXPECT_EQ(fresh.add_imu(weightless).error_code, ErrorCode::degenerate);
   for (const ImuSample& sample : samples) ASSERT_TRUE(fresh.add_imu(sample).ok());
-  EXPECT_NEAR(fresh.newest()->pose.p_WA_m.x(), kPathLength_m, 0.01 * kPathLength_m);
+  EXPECT_NEAR(fresh.newest()->pose.position_W_m.x(), kPathLength_m, 0.01 * kPathLength_m);
 }
 
 TEST(RollingOdometry, RefusesParametersOutOfTheirBounds) {
@@ -199,9 +199,9 @@ TEST(RollingOdometry, RefusesParametersOutOfTheirBounds) {
   params.lag_s = -1.0;
   EXPECT_THROW(RollingOdometry{params}, InvalidParams);
   params = params_of(kPositions);
-  params.units[0].T_BI.translation() = Eigen::Vector3d(0.0, 0.0, 1.01 * params.radius_m);
+  params.imus[0].T_BI.translation() = Eigen::Vector3d(0.0, 0.0, 1.01 * params.radius_m);
   EXPECT_THROW(RollingOdometry{params}, InvalidParams) << "an IMU outside of the sphere";
-  params.units[0].T_BI.translation().z() = 0.99 * params.radius_m;
+  params.imus[0].T_BI.translation().z() = 0.99 * params.radius_m;
   EXPECT_NO_THROW(RollingOdometry{params});
 }
 

@@ -20,7 +20,7 @@ const Eigen::Vector3d kCentre_m(0.004, 0.0, -0.003);  // error of the stated cen
 RollingOdometry::Params params_off_centre(double lag_s) {
   RollingOdometry::Params params = test::params_of(kPositions);
   params.lag_s = lag_s;
-  for (RollingOdometry::Unit& unit : params.units) unit.T_BI.translation() += kCentre_m;
+  for (RollingOdometry::ImuSetup& unit : params.imus) unit.T_BI.translation() += kCentre_m;
   return params;
 }
 
@@ -65,25 +65,25 @@ TEST(SavedRollingOdometry, ContinuesAtTheSavedPoseWithTheCalibration) {
     ASSERT_TRUE(status.ok()) << status.message();
     ASSERT_TRUE(last);
     EXPECT_GT(last->time_ns, 3'500'000'000);
-    EXPECT_NEAR(last->p_WA_m.x(), test::kPathLength_m, 0.02 * test::kPathLength_m);
+    EXPECT_NEAR(last->position_W_m.x(), test::kPathLength_m, 0.02 * test::kPathLength_m);
 
     const std::size_t count = three_imus(false)[0].size();
     feed_units(kAtRest, kAtRest + 10, rebooted);
     feed_units(kAtRest, kAtRest + 10, fresh);
     const RollingOdometry::Pose pose = *rebooted.newest();
-    EXPECT_LT((pose.pose.p_WA_m - last->p_WA_m).norm(), 2e-3);
-    EXPECT_LT(fresh.newest()->pose.p_WA_m.norm(), 2e-3) << "negative control: without load()";
+    EXPECT_LT((pose.pose.position_W_m - last->position_W_m).norm(), 2e-3);
+    EXPECT_LT(fresh.newest()->pose.position_W_m.norm(), 2e-3) << "negative control: without load()";
     EXPECT_TRUE(pose.uncertain);
     EXPECT_GE(pose.pose.covariance(0, 0), last->covariance(0, 0));
     const RollingOdometry::Calibration found = before.calibration(), kept = rebooted.calibration();
-    EXPECT_LT((found.centre_B_m - kCentre_m).norm(), 0.5 * kCentre_m.norm()) << "else the run estimated nothing";
-    EXPECT_LT((kept.centre_B_m - found.centre_B_m).norm(), 0.2 * kCentre_m.norm());
-    EXPECT_LT(fresh.calibration().centre_B_m.norm(), 0.2 * kCentre_m.norm()) << "negative control";
+    EXPECT_LT((found.sphere_centre_B_m - kCentre_m).norm(), 0.5 * kCentre_m.norm()) << "else the run estimated nothing";
+    EXPECT_LT((kept.sphere_centre_B_m - found.sphere_centre_B_m).norm(), 0.2 * kCentre_m.norm());
+    EXPECT_LT(fresh.calibration().sphere_centre_B_m.norm(), 0.2 * kCentre_m.norm()) << "negative control";
     // rolls the same path again
     feed_units(kAtRest + 10, count, rebooted);
     const TimeNs later_ns = three_imus(false)[0].back().time_ns;
     feed_units(0, count, rebooted, false, later_ns);
-    EXPECT_NEAR(rebooted.newest()->pose.p_WA_m.x() - last->p_WA_m.x(), test::kPathLength_m, 0.02 * test::kPathLength_m);
+    EXPECT_NEAR(rebooted.newest()->pose.position_W_m.x() - last->position_W_m.x(), test::kPathLength_m, 0.02 * test::kPathLength_m);
   }
 }
 
@@ -131,10 +131,10 @@ TEST(SavedRollingOdometry, AnotherSphereIsRefused) {
   other.radius_m = 0.15;
   EXPECT_EQ(refusal(other), "radius_m");
   other = params;
-  other.units.pop_back();
+  other.imus.pop_back();
   EXPECT_EQ(refusal(other), "units");
   other = params;
-  other.units[1].T_BI.translation().x() += 1e-3;
+  other.imus[1].T_BI.translation().x() += 1e-3;
   EXPECT_EQ(refusal(other), "lever_arm_m");
   other = params;  // parameters of the estimation may change
   other.lag_s = 0.2;

@@ -45,7 +45,7 @@ std::optional<TumblingOdometry::Sweep> feed_until(const ThrownBody& body, TimeNs
 }
 
 double truth_distance_m(const ThrownBody& body, const PoseState& pose) {
-  return (pose.p_WA_m - body.T_WI(seconds(pose.time_ns)).translation()).norm();
+  return (pose.position_W_m - body.T_WI(seconds(pose.time_ns)).translation()).norm();
 }
 
 /// Returns parameters with an error of the mounting, which the run estimates.
@@ -96,12 +96,12 @@ TEST(SavedTumblingOdometry, KeepsCalibrationAndSaturationLimits) {
   const Eigen::Matrix3d found = saved_run().rig().covariance.topLeftCorner<3, 3>();
   EXPECT_TRUE(kept.isApprox(found, 1e-9));
   EXPECT_GT(rebooted.rig().covariance(3, 3), saved_run().rig().covariance(3, 3)) << "biases change at a switch-on";
-  const SweepCalibration lidar = rebooted.mapper().calibration();
+  const LidarImuCalibration lidar = rebooted.mapper().calibration();
   EXPECT_EQ(lidar.T_IL.matrix(), saved_run().mapper().calibration().T_IL.matrix());
   bool any = false;
   for (std::size_t c = 0; c < 6; ++c) {
-    const double limit = saved_run().rails().axis_aligned_rails.channels[c].rail;
-    EXPECT_EQ(rebooted.rails().axis_aligned_rails.channels[c].rail, limit) << c;
+    const double limit = saved_run().saturation_levels().axis_limit_state.channels[c].plateau_limit;
+    EXPECT_EQ(rebooted.saturation_levels().axis_limit_state.channels[c].plateau_limit, limit) << c;
     any = any || limit > 0.0;
   }
   EXPECT_TRUE(any) << "else the run detected nothing";

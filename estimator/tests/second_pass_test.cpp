@@ -24,7 +24,7 @@ TumblingOdometry::Params measured_badly(const ThrownBody& body, double after_s,
   const Eigen::Vector3d axis = side.cwiseProduct(Eigen::Vector3d(1.0, -2.0, 2.0)).normalized();
   params.T_IL.linear() = Eigen::AngleAxisd(0.015, axis).toRotationMatrix();
   params.T_IL.translation() = Eigen::Vector3d(0.005, -0.005, 0.005);
-  params.expert->second_pass.after_s = after_s;
+  params.expert->second_mapping_pass.after_s = after_s;
   return params;
 }
 
@@ -36,7 +36,7 @@ struct Outcome {
 };
 
 double error_m(const ThrownBody& body, const PoseState& pose) {
-  return (pose.p_WA_m - body.T_WI(seconds(pose.time_ns)).translation()).norm();
+  return (pose.position_W_m - body.T_WI(seconds(pose.time_ns)).translation()).norm();
 }
 
 void take_all(const ThrownBody& body, TumblingOdometry& odometry, Outcome& run) {
@@ -70,7 +70,7 @@ void live(const ThrownBody& body, std::size_t from, std::size_t to, TumblingOdom
     }
     take_all(body, odometry, run);
   }
-  run.taken_live = odometry.second_pass_applied();
+  run.taken_live = odometry.second_mapping_pass_applied();
 }
 
 Outcome outcome_of(const ThrownBody& body, double after_s, const Eigen::Vector3d& side) {
@@ -84,7 +84,7 @@ Outcome outcome_of(const ThrownBody& body, double after_s, const Eigen::Vector3d
 
 // On this body, which turns for little more than a second, it gains little: 1 to 6 cm with either, which of the two is
 // better hangs on the signs. What it gains on tumbles is held by the gate (slam/tumble_lag).
-TEST(SecondPass, IsTakenOverAndEndsNoWorse) {
+TEST(SecondMappingPass, IsTakenOverAndEndsNoWorse) {
   ThrownBody body;
   body.end_s = 4.2;  // it lies long enough for the second pass to catch up
   std::vector<double> twice_m, once_m;
@@ -105,7 +105,7 @@ TEST(SecondPass, IsTakenOverAndEndsNoWorse) {
   EXPECT_LT(twice_m[4], 1.3 * once_m[4]);  // 3.6 and 4.2 cm
 }
 
-TEST(SecondPass, CatchesUpWhereTheClocksDifferByMoreThanWasKnown) {
+TEST(SecondMappingPass, CatchesUpWhereTheClocksDifferByMoreThanWasKnown) {
   // the newest sweep that the first pass has registered may need a sample more by the estimated clock offset
   for (const TimeNs off_ns : {TimeNs{-4'000'000}, TimeNs{4'000'000}}) {
     ThrownBody body;
@@ -131,14 +131,14 @@ TEST(SecondPass, CatchesUpWhereTheClocksDifferByMoreThanWasKnown) {
       }
       while (odometry.take()) continue;
     }
-    EXPECT_TRUE(odometry.second_pass_applied()) << off_ns;
+    EXPECT_TRUE(odometry.second_mapping_pass_applied()) << off_ns;
     EXPECT_EQ(odometry.rejected_samples(), 0u) << off_ns;
     const double learnt_s = odometry.mapper().calibration().time_offset_s;
     EXPECT_NEAR(learnt_s, 1e-9 * double(off_ns), 0.002) << "else this test asks nothing";
   }
 }
 
-TEST(SecondPass, ACopyMadeWhileItIsUnderWayGoesOnWithTheSameBits) {
+TEST(SecondMappingPass, ACopyMadeWhileItIsUnderWayGoesOnWithTheSameBits) {
   const ThrownBody body;
   const std::size_t count = body.imu().size();
   const Outcome run = outcome_of(body, 0.9, Eigen::Vector3d::Ones());
@@ -146,19 +146,19 @@ TEST(SecondPass, ACopyMadeWhileItIsUnderWayGoesOnWithTheSameBits) {
     Outcome parts;
     TumblingOdometry first(measured_badly(body, 0.9));
     live(body, 0, split, first, parts);
-    EXPECT_FALSE(first.second_pass_applied());
+    EXPECT_FALSE(first.second_mapping_pass_applied());
     TumblingOdometry second(first);
     live(body, split, count, second, parts);
     second.finish();
     take_all(body, second, parts);
     EXPECT_EQ(parts.sweeps, run.sweeps);
-    EXPECT_EQ(parts.last.p_WA_m, run.last.p_WA_m);
-    EXPECT_EQ(parts.last.q_WA.coeffs(), run.last.q_WA.coeffs());
+    EXPECT_EQ(parts.last.position_W_m, run.last.position_W_m);
+    EXPECT_EQ(parts.last.orientation_W.coeffs(), run.last.orientation_W.coeffs());
   }
 }
 
 // A lidar that is blind for half a second of the flight: the first pass is lost, and is not waited for.
-TEST(SecondPass, BeginsAtOnceWhereTheFirstIsLost) {
+TEST(SecondMappingPass, BeginsAtOnceWhereTheFirstIsLost) {
   ThrownBody body;
   body.end_s = 4.2;
   const std::size_t count = body.imu().size();
@@ -170,7 +170,7 @@ TEST(SecondPass, BeginsAtOnceWhereTheFirstIsLost) {
   EXPECT_TRUE(found.taken_live);
   EXPECT_LT(found.end_m, 0.2);  // measured 0.11
 
-  params.expert->second_pass.lost_s = 0.0;
+  params.expert->second_mapping_pass.lost_s = 0.0;
   Outcome without;
   TumblingOdometry waits(params);
   live(body, 0, count, waits, without, blind);
@@ -186,12 +186,12 @@ TEST(SecondPass, BeginsAtOnceWhereTheFirstIsLost) {
     TumblingOdometry second = first;
     live(body, split, count, second, parts, blind);
     EXPECT_EQ(parts.sweeps, found.sweeps) << split;
-    EXPECT_EQ(parts.last.p_WA_m, found.last.p_WA_m) << split;
+    EXPECT_EQ(parts.last.position_W_m, found.last.position_W_m) << split;
     EXPECT_EQ(parts.taken_live, found.taken_live) << split;
   }
 }
 
-TEST(SecondPass, AGapOfTheImuEndsIt) {
+TEST(SecondMappingPass, AGapOfTheImuEndsIt) {
   ThrownBody body;
   body.end_s = 5.5;
   std::vector<ImuSample> imu = body.imu();
@@ -200,33 +200,33 @@ TEST(SecondPass, AGapOfTheImuEndsIt) {
   for (const ImuSample& sample : imu) (void)odometry.add_imu(sample);
   odometry.finish();
   EXPECT_EQ(odometry.restart_count(), 1u);
-  EXPECT_FALSE(odometry.second_pass_applied());
+  EXPECT_FALSE(odometry.second_mapping_pass_applied());
 }
 
-TEST(SecondPass, ALagBeyondTheRatesWindowIsThatWindow) {
+TEST(SecondMappingPass, ALagBeyondTheRatesWindowIsThatWindow) {
   ThrownBody body;
   body.imu_hz = 2000.0;
   TumblingOdometry::Params params = measured_badly(body, 0.9);
   params.expert->rate.rate.step_s = 0.05;
-  params.expert->second_pass.lag_s = 3.0;  // 6000 samples
+  params.expert->second_mapping_pass.lag_s = 3.0;  // 6000 samples
   TumblingOdometry odometry(params);
   Outcome run;
   live(body, 0, body.imu().size(), odometry, run);
   odometry.finish();
-  EXPECT_TRUE(odometry.second_pass_applied());
+  EXPECT_TRUE(odometry.second_mapping_pass_applied());
 }
 
-TEST(SecondPass, RefusesParametersOutOfTheirBounds) {
+TEST(SecondMappingPass, RefusesParametersOutOfTheirBounds) {
   TumblingOdometry::Params stated;
   stated.lever_arm_I_m.setZero();
   TumblingOdometry::Params params = stated;
-  params.expert->second_pass.sweeps = 1;  // would never catch up
+  params.expert->second_mapping_pass.sweeps = 1;  // would never catch up
   EXPECT_THROW(TumblingOdometry{params}, InvalidParams);
   params = stated;
-  params.expert->second_pass.inflation = 0.5;
+  params.expert->second_mapping_pass.inflation = 0.5;
   EXPECT_THROW(TumblingOdometry{params}, InvalidParams);
   params = stated;
-  params.expert->second_pass.lost_s = -0.1;
+  params.expert->second_mapping_pass.lost_s = -0.1;
   EXPECT_THROW(TumblingOdometry{params}, InvalidParams);
 }
 

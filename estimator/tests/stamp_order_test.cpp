@@ -115,7 +115,7 @@ TEST(StampOrder, ExtremeStampsOfTheMapperAreRefused) {
   LidarInertialOdometry mapper({});
   ImuSample sample;
   sample.specific_force_m_s2 = {0.0, 0.0, 9.8};
-  RateState rate;
+  AngularRateState rate;
   LidarInertialOdometry::SweepReport report;
   for (const TimeNs time_ns : {std::numeric_limits<TimeNs>::min(), std::numeric_limits<TimeNs>::max()}) {
     sample.time_ns = rate.time_ns = time_ns;
@@ -153,8 +153,8 @@ TEST(StampOrder, TheMapContinuesAtTheNewestPoseAfterAStepBack) {
   ASSERT_GT(out.size(), before + 30);
   const PoseState& last = out.back().report.pose;
   const Eigen::Isometry3d T_WI = body.T_WI(seconds(last.time_ns - kBack_ns));
-  EXPECT_LT((last.p_WA_m - T_WI.translation()).norm(), 0.05);
-  EXPECT_LT(last.q_WA.angularDistance(Eigen::Quaterniond(T_WI.linear())), 0.03);
+  EXPECT_LT((last.position_W_m - T_WI.translation()).norm(), 0.05);
+  EXPECT_LT(last.orientation_W.angularDistance(Eigen::Quaterniond(T_WI.linear())), 0.03);
 }
 
 Eigen::Isometry3d elsewhere() {
@@ -178,15 +178,15 @@ TEST(StampOrder, AResetMapStartsAtTheGivenPose) {
   ASSERT_EQ(second.size(), first.size());
   ASSERT_EQ(third.size(), first.size());
   const PoseState &a = first.back().report.pose, &b = second.back().report.pose, &c = third.back().report.pose;
-  EXPECT_EQ(a.p_WA_m, b.p_WA_m);
-  EXPECT_LT((elsewhere() * a.p_WA_m - c.p_WA_m).norm(), 0.01);
-  EXPECT_LT(c.q_WA.angularDistance(Eigen::Quaterniond(elsewhere().linear()) * a.q_WA), 0.01);
+  EXPECT_EQ(a.position_W_m, b.position_W_m);
+  EXPECT_LT((elsewhere() * a.position_W_m - c.position_W_m).norm(), 0.01);
+  EXPECT_LT(c.orientation_W.angularDistance(Eigen::Quaterniond(elsewhere().linear()) * a.orientation_W), 0.01);
   const auto spread_m2 = [](const PoseState& pose) { return pose.covariance.diagonal().head(3).sum(); };
   EXPECT_NEAR(spread_m2(c), spread_m2(a), 0.1 * spread_m2(a));
 
   std::vector<TumblingOdometry::Sweep> fourth;
   feed(body, 0, 10'000'000'000, 0, copy, fourth);
-  EXPECT_EQ(fourth.back().report.pose.p_WA_m, c.p_WA_m);
+  EXPECT_EQ(fourth.back().report.pose.position_W_m, c.position_W_m);
 }
 
 std::vector<RollingOdometry::Pose> roll(RollingOdometry& odometry, const std::vector<ImuSample>& imu) {
@@ -207,9 +207,9 @@ TEST(StampOrder, AResetSphereStartsAtTheGivenPose) {
   ASSERT_EQ(second.size(), first.size());
   ASSERT_EQ(third.size(), first.size());
   for (std::size_t k = 0; k < first.size(); ++k) {
-    EXPECT_LT((elsewhere() * first[k].pose.p_WA_m - second[k].pose.p_WA_m).norm(), 1e-9);
-    EXPECT_LT((elsewhere().linear() * first[k].pose.v_WA_m_s - second[k].pose.v_WA_m_s).norm(), 1e-9);
-    EXPECT_EQ(second[k].pose.p_WA_m, third[k].pose.p_WA_m);
+    EXPECT_LT((elsewhere() * first[k].pose.position_W_m - second[k].pose.position_W_m).norm(), 1e-9);
+    EXPECT_LT((elsewhere().linear() * first[k].pose.velocity_W_m_s - second[k].pose.velocity_W_m_s).norm(), 1e-9);
+    EXPECT_EQ(second[k].pose.position_W_m, third[k].pose.position_W_m);
   }
 }
 
@@ -226,7 +226,7 @@ TEST(StampOrder, ASphereContinuesAtItsNewestPoseAfterAGap) {
   const std::vector<RollingOdometry::Pose> poses = roll(odometry, imu);
   EXPECT_EQ(odometry.restart_count(), 1u);
   EXPECT_EQ(poses.size(), imu.size() - 1);
-  EXPECT_NEAR(poses.back().pose.p_WA_m.x(), test::kPathLength_m, 0.02 * test::kPathLength_m);
+  EXPECT_NEAR(poses.back().pose.position_W_m.x(), test::kPathLength_m, 0.02 * test::kPathLength_m);
   EXPECT_FALSE(poses.front().uncertain);
   EXPECT_TRUE(poses.back().uncertain);
 }

@@ -31,11 +31,11 @@ std::vector<ImuSample> stamped_by_a_host(std::vector<ImuSample> imu, std::uint32
   return imu;
 }
 
-std::vector<RateState> rates_of(TumblingOdometry& odometry, const std::vector<ImuSample>& imu) {
-  std::vector<RateState> out;
+std::vector<AngularRateState> rates_of(TumblingOdometry& odometry, const std::vector<ImuSample>& imu) {
+  std::vector<AngularRateState> out;
   for (const ImuSample& sample : imu) {
     EXPECT_TRUE(odometry.add_imu(sample).ok());
-    const std::optional<RateState>& rate = odometry.smoothed_rate();
+    const std::optional<AngularRateState>& rate = odometry.smoothed_rate();
     if (rate && (out.empty() || rate->time_ns > out.back().time_ns)) out.push_back(*rate);
   }
   return out;
@@ -48,7 +48,7 @@ TEST(Stamps, ThatJitterMoveNoRate) {
   TumblingParams uncorrected = params_of(body);
   uncorrected.expert->stamps.jitter_max = 0.0;
   TumblingOdometry without(uncorrected);
-  const std::vector<RateState> expected = rates_of(own_clock, exact), found = rates_of(host_clock, stamped),
+  const std::vector<AngularRateState> expected = rates_of(own_clock, exact), found = rates_of(host_clock, stamped),
                                control = rates_of(without, stamped);
   EXPECT_FALSE(own_clock.estimated_jitter_s());
   ASSERT_TRUE(host_clock.estimated_jitter_s());
@@ -99,7 +99,7 @@ Rolled rolled(const std::vector<ImuSample>& samples, double jitter_max) {
     while (const std::optional<RollingOdometry::Pose> pose = odometry.take()) {
       const double x_m = test::kRadius_m * test::angle_rad(seconds(pose->pose.time_ns));
       if (seconds(pose->pose.time_ns) > test::kRest_s)
-        out.worst_m = std::max(out.worst_m, std::abs(pose->pose.p_WA_m.x() - x_m));
+        out.worst_m = std::max(out.worst_m, std::abs(pose->pose.position_W_m.x() - x_m));
     }
   }
   out.estimated_jitter_s = odometry.estimated_jitter_s();

@@ -27,7 +27,7 @@ constexpr TimeNs kSweep_ns = 100'000'000;
 struct Answers {
   std::vector<TumblingOdometry::Sweep> sweeps;
   std::vector<TimeNs> came_ns;  ///< IMU time at which take() returned each sweep
-  std::vector<RateState> rates;
+  std::vector<AngularRateState> rates;
 };
 
 /// Passes the samples `from` to `to` - 1, and each sweep as soon as the sweep has ended.
@@ -45,7 +45,7 @@ void feed_as_they_end(const std::vector<ImuSample>& imu, const std::vector<Throw
       run.sweeps.push_back(std::move(*sweep));
       run.came_ns.push_back(imu[k].time_ns);
     }
-    const std::optional<RateState>& rate = odometry.smoothed_rate();
+    const std::optional<AngularRateState>& rate = odometry.smoothed_rate();
     if (rate && (run.rates.empty() || rate->time_ns > run.rates.back().time_ns)) run.rates.push_back(*rate);
   }
 }
@@ -63,10 +63,10 @@ Answers whole(const ThrownBody& body, TumblingOdometry& odometry) {
 }
 
 double position_error_m(const ThrownBody& body, const PoseState& pose) {
-  return (pose.p_WA_m - body.T_WI(seconds(pose.time_ns)).translation()).norm();
+  return (pose.position_W_m - body.T_WI(seconds(pose.time_ns)).translation()).norm();
 }
 double attitude_error_rad(const ThrownBody& body, const PoseState& pose) {
-  return pose.q_WA.angularDistance(Eigen::Quaterniond(body.T_WI(seconds(pose.time_ns)).linear()));
+  return pose.orientation_W.angularDistance(Eigen::Quaterniond(body.T_WI(seconds(pose.time_ns)).linear()));
 }
 
 TEST(TumblingOdometry, FollowsAThrowBeyondTheRail) {
@@ -95,7 +95,7 @@ TEST(TumblingOdometry, AClippedGyroAloneLosesTheSame) {  // negative control: wi
   LidarInertialOdometry::SweepReport report;
   for (const ThrownBody::Sweep& sweep : body.sweeps()) {
     for (; next < imu.size() && imu[next].time_ns <= sweep.end_ns; ++next) {
-      RateState rate;
+      AngularRateState rate;
       rate.time_ns = imu[next].time_ns;
       rate.w_WI_I_rad_s = imu[next].angular_velocity_rad_s;
       ASSERT_TRUE(mapper.add_imu(imu[next], rate).ok());
@@ -113,7 +113,7 @@ TEST(TumblingOdometry, RecoversTheRateInFlight) {
   // of the gentle catch
   const double from_s = body.rest_s + body.push_s + 0.1, to_s = body.rest_s + body.push_s + body.flight_s - 0.25;
   int clipped = 0;
-  for (const RateState& rate : run.rates) {
+  for (const AngularRateState& rate : run.rates) {
     const double t_s = seconds(rate.time_ns);
     if (t_s < from_s || t_s > to_s) continue;
     clipped += rate.clipped_axes != 0;
@@ -163,7 +163,7 @@ TEST(TumblingOdometry, TheNewestPoseIsCausalAndHonest) {
     if (results.sweeps.empty()) continue;
     ASSERT_TRUE(odometry.newest(pose).ok());
     EXPECT_EQ(pose.time_ns, imu[std::min(k + 10, imu.size()) - 1].time_ns);
-    const Eigen::Vector3d error = pose.p_WA_m - body.T_WI(seconds(pose.time_ns)).translation();
+    const Eigen::Vector3d error = pose.position_W_m - body.T_WI(seconds(pose.time_ns)).translation();
     worst_m = std::max(worst_m, error.norm());
     worst_nees = std::max(worst_nees, error.dot(pose.covariance.topLeftCorner<3, 3>().ldlt().solve(error)));
   }
@@ -186,8 +186,8 @@ TEST(TumblingOdometry, ACopyGoesOnWithTheSameBits) {
     while (std::optional<TumblingOdometry::Sweep> sweep = second.take()) parts.sweeps.push_back(std::move(*sweep));
     ASSERT_EQ(parts.sweeps.size(), run.sweeps.size());
     for (std::size_t k = 0; k < run.sweeps.size(); ++k) {
-      EXPECT_EQ(parts.sweeps[k].report.pose.p_WA_m, run.sweeps[k].report.pose.p_WA_m);
-      EXPECT_EQ(parts.sweeps[k].report.pose.q_WA.coeffs(), run.sweeps[k].report.pose.q_WA.coeffs());
+      EXPECT_EQ(parts.sweeps[k].report.pose.position_W_m, run.sweeps[k].report.pose.position_W_m);
+      EXPECT_EQ(parts.sweeps[k].report.pose.orientation_W.coeffs(), run.sweeps[k].report.pose.orientation_W.coeffs());
       EXPECT_EQ(parts.sweeps[k].report.pose.covariance, run.sweeps[k].report.pose.covariance);
     }
   }
@@ -298,7 +298,7 @@ TEST(TumblingOdometry, TroubleIsAValueAndChangesNothing) {
   feed_as_they_end(imu, body.sweeps(), 1, imu.size(), odometry, a);
   feed_as_they_end(imu, body.sweeps(), 1, imu.size(), untouched, b);
   ASSERT_FALSE(a.sweeps.empty());
-  EXPECT_EQ(a.sweeps.back().report.pose.p_WA_m, b.sweeps.back().report.pose.p_WA_m);
+  EXPECT_EQ(a.sweeps.back().report.pose.position_W_m, b.sweeps.back().report.pose.position_W_m);
   EXPECT_EQ(odometry.add_sweep(0, kSweep_ns, {}).error_code, ErrorCode::time_order);
 }
 
@@ -310,9 +310,9 @@ TEST(TumblingOdometry, SweepsThatWaitAreBounded) {
   const int most = 3 + 4;  // sweeps_max, and the sweeps within a lag of 0.2 s
   // before the first sample, a new sweep replaces the oldest sweep
   for (int k = -most - 2; k < 0; ++k) EXPECT_TRUE(odometry.add_sweep(k * kSweep_ns, (k + 1) * kSweep_ns, {}).ok());
-  EXPECT_EQ(odometry.early_sweeps(), 2u);
+  EXPECT_EQ(odometry.sweeps_before_first_imu(), 2u);
   ASSERT_TRUE(odometry.add_imu(body.imu().front()).ok());
-  EXPECT_EQ(odometry.early_sweeps(), static_cast<std::size_t>(most) + 2);
+  EXPECT_EQ(odometry.sweeps_before_first_imu(), static_cast<std::size_t>(most) + 2);
   for (int k = 0; k < most; ++k) EXPECT_TRUE(odometry.add_sweep(k * kSweep_ns, (k + 1) * kSweep_ns, {}).ok());
   const Status status = odometry.add_sweep(most * kSweep_ns, (most + 1) * kSweep_ns, {});
   EXPECT_EQ(status.error_code, ErrorCode::out_of_range);

@@ -46,7 +46,7 @@ std::vector<TumblingOdometry::Sweep> estimate_recording(const ThrownBody& body, 
 }
 
 double recorded_error_m(const ThrownBody& body, const PoseState& pose) {
-  return (pose.p_WA_m - body.T_WI(seconds(pose.time_ns)).translation()).norm();
+  return (pose.position_W_m - body.T_WI(seconds(pose.time_ns)).translation()).norm();
 }
 
 TEST(TumblingRecording, EstimatesAThrowBeyondTheRail) {
@@ -63,13 +63,13 @@ TEST(TumblingRecording, EstimatesAThrowBeyondTheRail) {
   EXPECT_LT(recorded_error_m(body, sweeps.back().report.pose), 0.02);
   EXPECT_GT(odometry.mapper().map().size(), 1000u);
   EXPECT_TRUE(odometry.health().ok()) << odometry.health().message();
-  const RecordingEstimate* const whole = odometry.recording();
+  const WholeRecordingEstimate* const whole = odometry.recording();
   ASSERT_NE(whole, nullptr);
   ASSERT_EQ(whole->rates.size(), imu.size());
   EXPECT_TRUE(whole->health.ok());
-  EXPECT_TRUE(whole->suspect_rad2_s2.empty());
-  EXPECT_GE(whole->mapped.passes, 2);  // the last pass starts from the calibration of the first pass
-  EXPECT_TRUE(whole->mapped.calibration_converged);
+  EXPECT_TRUE(whole->suspected_error_covariance_rad2_s2.empty());
+  EXPECT_GE(whole->mapped_recording.mapping_pass_count, 2);  // the last pass starts from the calibration of the first pass
+  EXPECT_TRUE(whole->mapped_recording.calibration_converged);
   EXPECT_EQ(odometry.rig().constants, whole->report.rate.calibration.constants);
 }
 
@@ -81,7 +81,7 @@ TEST(TumblingRecording, ClippedRatesAreBetterThanTheReadings) {
   const double to_s = body.rest_s + body.push_s + body.flight_s;
   double of_readings = 0.0, of_rates = 0.0;
   for (std::size_t k = 0; k < imu.size(); ++k) {
-    const RateState& rate = odometry.recording()->rates[k];
+    const AngularRateState& rate = odometry.recording()->rates[k];
     const double t_s = seconds(rate.time_ns);
     if (rate.clipped_axes == 0 || t_s < body.rest_s + body.push_s || t_s > to_s) continue;
     const Eigen::Vector3d truth = body.w_WI_I_rad_s(t_s);
@@ -124,9 +124,9 @@ TEST(TumblingRecording, ALastSweepIsCutAtTheLastSample) {
   };
   TumblingOdometry most(whole_params(body)), little(whole_params(body));
   EXPECT_EQ(estimate_recording(body, until(0.7), most).size(), sweeps.size());
-  EXPECT_EQ(most.recording()->mapped.unfinished_sweeps, 0u);
+  EXPECT_EQ(most.recording()->mapped_recording.unfinished_sweeps, 0u);
   EXPECT_EQ(estimate_recording(body, until(0.3), little).size(), sweeps.size() - 1);
-  EXPECT_EQ(little.recording()->mapped.unfinished_sweeps, 1u);
+  EXPECT_EQ(little.recording()->mapped_recording.unfinished_sweeps, 1u);
 }
 
 TEST(TumblingRecording, OneWrongItemCostsOneItem) {
@@ -150,7 +150,7 @@ TEST(TumblingRecording, OneWrongItemCostsOneItem) {
   EXPECT_EQ(odometry.rejected_readings(), 1u);
   EXPECT_EQ(odometry.recording()->rates.size(), clean.size() - 4);
   const PoseState pose = take_recorded(odometry).back().report.pose;
-  EXPECT_LT((pose.p_WA_m - expected.p_WA_m).norm(), 0.005);
+  EXPECT_LT((pose.position_W_m - expected.position_W_m).norm(), 0.005);
 }
 
 TEST(TumblingRecording, FindsTheOdometerReadingThatALiveRunTakes) {
@@ -166,14 +166,14 @@ TEST(TumblingRecording, FindsTheOdometerReadingThatALiveRunTakes) {
   const WaitingReadings kept = taken;
   int found = 0;
   for (TimeNs from = 0; from < 1000 * kMs; from += 100 * kMs) {
-    const auto expected = taken.take(from, from + 100 * kMs), here = kept.find(from, from + 100 * kMs);
+    const auto expected = taken.take_readings_in(from, from + 100 * kMs), here = kept.find(from, from + 100 * kMs);
     ASSERT_EQ(here.has_value(), expected.has_value()) << from;
     if (!here) continue;
     ++found;
     EXPECT_EQ(reading_start_ns(*here), reading_start_ns(*expected));
   }
   EXPECT_GT(found, 2);
-  EXPECT_GT(taken.spanning_two_sweeps(), 0u);
+  EXPECT_GT(taken.readings_spanning_two_sweeps(), 0u);
 }
 
 TEST(TumblingRecording, SavesItsResults) {
@@ -188,11 +188,11 @@ TEST(TumblingRecording, SavesItsResults) {
   EXPECT_EQ(loaded.mapper().calibration().T_IL.matrix(), odometry.mapper().calibration().T_IL.matrix());
   const auto sweeps = take_recorded(odometry);
   ASSERT_TRUE(last);
-  EXPECT_LT((last->p_WA_m - sweeps.back().report.pose.p_WA_m).norm(), 0.05);
+  EXPECT_LT((last->position_W_m - sweeps.back().report.pose.position_W_m).norm(), 0.05);
   // a later recording starts at the saved pose
   record_all(body.imu(), body.sweeps(), loaded);
   ASSERT_TRUE(loaded.finish().ok());
-  EXPECT_LT((take_recorded(loaded).front().report.pose.p_WA_m - last->p_WA_m).norm(), 0.05);
+  EXPECT_LT((take_recorded(loaded).front().report.pose.position_W_m - last->position_W_m).norm(), 0.05);
 }
 
 TEST(TumblingRecording, ReportsAFrozenAxis) {
@@ -216,7 +216,7 @@ TEST(TumblingRecording, ReportsAFrozenAxis) {
   EXPECT_STREQ(frozen->axis, "gyro_z");
   EXPECT_EQ(frozen->since_ns, imu[131].time_ns);
   EXPECT_FALSE(odometry.health().ok());
-  EXPECT_EQ(odometry.recording()->suspect_rad2_s2.size(), odometry.recording()->rates.size());
+  EXPECT_EQ(odometry.recording()->suspected_error_covariance_rad2_s2.size(), odometry.recording()->rates.size());
 }
 
 TEST(TumblingRecording, RefusesALagBetweenAWindowAndARecording) {

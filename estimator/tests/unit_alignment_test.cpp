@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "odometry/unit_alignment.hpp"
+#include "odometry/imu_time_alignment.hpp"
 
 #include <gtest/gtest.h>
 
@@ -43,11 +43,11 @@ std::vector<std::pair<std::size_t, ImuSample>> in_time_order(const std::vector<s
   return out;
 }
 
-std::vector<UnitAlignment::Readings> aligned(const std::vector<std::vector<ImuSample>>& units, bool ended = true) {
-  const UnitAlignment alignment(units.size());
-  UnitAlignment::State state;
-  UnitAlignment::Readings readings;
-  std::vector<UnitAlignment::Readings> out;
+std::vector<ImuTimeAlignment::Readings> aligned(const std::vector<std::vector<ImuSample>>& units, bool ended = true) {
+  const ImuTimeAlignment alignment(units.size());
+  ImuTimeAlignment::State state;
+  ImuTimeAlignment::Readings readings;
+  std::vector<ImuTimeAlignment::Readings> out;
   for (const auto& [unit, sample] : in_time_order(units)) {
     EXPECT_TRUE(alignment.push(unit, sample, state).ok());
     while (alignment.next(state, readings)) out.push_back(readings);
@@ -56,7 +56,7 @@ std::vector<UnitAlignment::Readings> aligned(const std::vector<std::vector<ImuSa
   return out;
 }
 
-TEST(UnitAlignment, InterpolatesAtTheStampsOfTheFirstUnit) {
+TEST(ImuTimeAlignment, InterpolatesAtTheStampsOfTheFirstUnit) {
   const auto out = aligned({ramp(0, 200), ramp(1'300'000, 200), ramp(-2'700'000, 200)});
   ASSERT_EQ(out.size(), 200U);
   for (std::size_t k = 1; k + 1 < out.size(); ++k) {
@@ -67,14 +67,14 @@ TEST(UnitAlignment, InterpolatesAtTheStampsOfTheFirstUnit) {
   }
 }
 
-TEST(UnitAlignment, EqualStampsAreUnchangedAndComeAtOnce) {
+TEST(ImuTimeAlignment, EqualStampsAreUnchangedAndComeAtOnce) {
   const auto out = aligned({ramp(0, 50), ramp(0, 50)}, false);
   ASSERT_EQ(out.size(), 50U);
   for (std::size_t k = 0; k < out.size(); ++k)
     EXPECT_EQ(out[k][1].angular_velocity_rad_s, ramp(0, 50)[k].angular_velocity_rad_s) << k;
 }
 
-TEST(UnitAlignment, AUnitThatEndsIsAbsentAndDelaysNothingForLong) {
+TEST(ImuTimeAlignment, AUnitThatEndsIsAbsentAndDelaysNothingForLong) {
   const auto out = aligned({ramp(0, 500), ramp(1'000'000, 100)}, false);
   ASSERT_EQ(out.size(), 500U);
   EXPECT_TRUE(is_finite(out[90][1]));
@@ -82,7 +82,7 @@ TEST(UnitAlignment, AUnitThatEndsIsAbsentAndDelaysNothingForLong) {
   EXPECT_TRUE(is_finite(out[110][0]));
 }
 
-TEST(UnitAlignment, TheNextUnitReplacesAReferenceThatEnds) {
+TEST(ImuTimeAlignment, TheNextUnitReplacesAReferenceThatEnds) {
   const auto out = aligned({ramp(0, 100), ramp(0, 300), ramp(1'000'000, 300)});
   ASSERT_EQ(out.size(), 300U);
   EXPECT_FALSE(is_finite(out[200][0]));
@@ -90,7 +90,7 @@ TEST(UnitAlignment, TheNextUnitReplacesAReferenceThatEnds) {
   EXPECT_TRUE(is_finite(out[200][2]));
 }
 
-TEST(UnitAlignment, TheOutputIsCausal) {
+TEST(ImuTimeAlignment, TheOutputIsCausal) {
   const std::vector<std::vector<ImuSample>> units = {ramp(0, 300), ramp(1'300'000, 80), ramp(700'000, 300)};
   const auto whole = aligned(units, false);
   for (const std::size_t cut : {50U, 79U, 120U}) {
@@ -110,9 +110,9 @@ TEST(UnitAlignment, TheOutputIsCausal) {
   }
 }
 
-TEST(UnitAlignment, AStampThatGoesBackIsRejected) {
-  const UnitAlignment alignment(2);
-  UnitAlignment::State state;
+TEST(ImuTimeAlignment, AStampThatGoesBackIsRejected) {
+  const ImuTimeAlignment alignment(2);
+  ImuTimeAlignment::State state;
   const std::vector<ImuSample> samples = ramp(0, 2);
   ASSERT_TRUE(alignment.push(1, samples[1], state).ok());
   EXPECT_EQ(alignment.push(1, samples[0], state).error_code, ErrorCode::time_order);
@@ -151,7 +151,7 @@ TEST(RollingOdometryUnits, SingleReadingsGiveTheBitsOfSimultaneousOnes) {
   for (const RollingOdometry::Pose& pose : poses_of(single, units)) {
     const std::optional<RollingOdometry::Pose> expected = together.take();
     ASSERT_TRUE(expected);
-    EXPECT_EQ(pose.pose.p_WA_m, expected->pose.p_WA_m);
+    EXPECT_EQ(pose.pose.position_W_m, expected->pose.position_W_m);
   }
   EXPECT_FALSE(together.take());
 }
@@ -168,7 +168,7 @@ TEST(RollingOdometryUnits, WithTheWholeRecordingAllPosesComeAtTheEnd) {
   std::vector<RollingOdometry::Pose> poses;
   while (const std::optional<RollingOdometry::Pose> pose = odometry.take()) poses.push_back(*pose);
   ASSERT_EQ(poses.size(), units[0].size());
-  EXPECT_NEAR(poses.back().pose.p_WA_m.x(), kPathLength_m, 0.005 * kPathLength_m);
+  EXPECT_NEAR(poses.back().pose.position_W_m.x(), kPathLength_m, 0.005 * kPathLength_m);
   const auto middle = poses[poses.size() / 2];
   EXPECT_GT(middle.angular_velocity_rad_s.y(), 1.0) << "the sphere turns about +y";
 }
@@ -192,7 +192,7 @@ TEST(RollingOdometryUnits, LiveAndLaggedPosesDoNotDependOnLaterReadings) {
     }
     ASSERT_GT(before.size(), cut / 2) << lag_s;
     for (std::size_t k = 0; k < before.size(); ++k) {
-      EXPECT_EQ(before[k].pose.p_WA_m, all[k].pose.p_WA_m);
+      EXPECT_EQ(before[k].pose.position_W_m, all[k].pose.position_W_m);
       EXPECT_EQ(before[k].pose.covariance, all[k].pose.covariance);
     }
   }

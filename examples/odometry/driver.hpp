@@ -84,8 +84,8 @@ inline bool write_bytes(const std::vector<std::byte>& bytes, const std::string& 
 
 /// Prints a pose as a line "TIME_NS x y z qx qy qz qw sigma_m".
 inline void print(const tumble::PoseState& pose) {
-  const Eigen::Vector3d& p = pose.p_WA_m;
-  const Eigen::Quaterniond& q = pose.q_WA;
+  const Eigen::Vector3d& p = pose.position_W_m;
+  const Eigen::Quaterniond& q = pose.orientation_W;
   std::printf("%lld %.6f %.6f %.6f %.9f %.9f %.9f %.9f %.4f\n", static_cast<long long>(pose.time_ns), p.x(), p.y(),
               p.z(), q.x(), q.y(), q.z(), q.w(), std::sqrt(pose.covariance.topLeftCorner<3, 3>().trace()));
 }

@@ -33,7 +33,7 @@ const char* name(tumble::RollingMode mode) {
       return "bump";
     case tumble::RollingMode::incline:
       return "incline";
-    case tumble::RollingMode::rough:
+    case tumble::RollingMode::uneven:
       return "rough";
   }
   return "?";
@@ -74,7 +74,7 @@ std::string_view Online::pose() {
   const double sigma_m = std::sqrt(s.position_covariance_m2.topLeftCorner<2, 2>().trace());
   const int length =
       std::snprintf(text_, kLineMax, "%lld %.6f %.6f %.6f %.9f %.9f %.9f %.9f %s %.6f%s",
-                    static_cast<long long>(s.last_time_ns), s.p_WG_m.x(), s.p_WG_m.y(), s.p_WG_m.z(), s.q_WI.x(),
+                    static_cast<long long>(s.last_time_ns), s.sphere_centre_W_m.x(), s.sphere_centre_W_m.y(), s.sphere_centre_W_m.z(), s.q_WI.x(),
                     s.q_WI.y(), s.q_WI.z(), s.q_WI.w(), name(s.mode), sigma_m, s.uncertain ? " uncertain" : "");
   return {text_, std::min(static_cast<std::size_t>(std::max(length, 0)), kLineMax - 1)};
 }

@@ -243,7 +243,7 @@ void bind_adapters(nb::module_& m) {
              const std::vector<Numbers>& T_base_imus) {
             ros::RollingAdapterParams params;
             for (const Numbers& T_base_imu : T_base_imus)
-              params.odometry.units.push_back({ros::imu_sheet(imu_sheet), ros::pose_of("T_base_imu", T_base_imu)});
+              params.odometry.imus.push_back({ros::imu_sheet(imu_sheet), ros::pose_of("T_base_imu", T_base_imu)});
             read_numbers(numbers, params);
             new (self) Rolling(publisher, params);
           },

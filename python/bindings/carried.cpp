@@ -28,7 +28,7 @@ namespace {
 /// Carried holds a HandHeldSmoother and the measurement ranges from the IMU's data sheet.
 struct Carried {
   HandHeldSmoother smoother;
-  RailDetector::Params axis_aligned_rails;
+  SaturationLimitDetector::Params axis_aligned_rails;
 };
 
 std::tuple<Rates, Attitudes, HandHeldSmoother::Report> hand_held(const Carried& self, const ArrayLike& time_ns,
@@ -36,16 +36,16 @@ std::tuple<Rates, Attitudes, HandHeldSmoother::Report> hand_held(const Carried& 
                                                                  const ArrayLike& clip_flags) {
   const std::vector<ImuSample> samples = samples_of(time_ns, gyro, accel, clip_flags);
   std::tuple<Rates, Attitudes, HandHeldSmoother::Report> out;
-  std::vector<RateState>& rates = std::get<0>(out).rows;
+  std::vector<AngularRateState>& rates = std::get<0>(out).rows;
   Status status;
   {
     const nb::gil_scoped_release released;
     status = check_recording(samples, 2, 1.0);
     if (status.ok()) {
       ClippingFinder::Params finding;
-      finding.axis_aligned_rails = self.axis_aligned_rails;
-      const ClippedReadings known = to_clipped_readings(samples, ClippingFinder(finding).find(samples));
-      status = self.smoother.estimate(samples, known.clipped(), rates, std::get<1>(out).rows, std::get<2>(out));
+      finding.axis_limit_params = self.axis_aligned_rails;
+      const ClippedReadings known = clipped_readings_of(samples, ClippingFinder(finding).find(samples));
+      status = self.smoother.estimate(samples, known.clipped_element_signs(), rates, std::get<1>(out).rows, std::get<2>(out));
       if (status.ok()) known.mark_partly_saturated(rates);
     }
   }
@@ -60,7 +60,7 @@ void bind_smoother(nb::module_& m) {
       .def_ro("converged", &Report::converged)
       .def_ro("cost", &Report::cost)
       .def_ro(
-          "hand_acceleration_ratio", &Report::hand_acceleration_ratio,
+          "hand_acceleration_ratio", &Report::mean_hand_acceleration_ratio,
           "largest mean acceleration of the hand over 0.25 s, divided by the assumed standard deviation; 2 or more\n"
           "indicates a thrown body or violent hand-held motion")
       .def_ro("revolutions_tested", &Report::revolutions_tested)
@@ -77,7 +77,7 @@ void bind_smoother(nb::module_& m) {
           [](Carried* self, const nb::kwargs& options) {
             Keywords keywords("HandHeldSmoother", options);
             HandHeldSmoother::Params params;
-            RailDetector::Params axis_aligned_rails;
+            SaturationLimitDetector::Params axis_aligned_rails;
             read_ranges(keywords, axis_aligned_rails);
             read_fields(keywords, params);
             keywords.done();
@@ -97,17 +97,17 @@ void bind_stream(nb::module_& m) {
   using Live = Streaming<HandHeldPipeline>;
   using Object = Guarded<Live>;
   nb::class_<Object> bound(
-      m, "HandHeldStream",
+      m, "HandHeldRateStream",
       "The streaming form of HandHeldSmoother: returns each rate when its sample is lag_s old.\n"
       "The stream uses the rails detected in the readings so far.\n\n"
-      "HandHeldStream(gyro_range_rad_s=None, accel_range_m_s2=None, **options): see parameters().");
+      "HandHeldRateStream(gyro_range_rad_s=None, accel_range_m_s2=None, **options): see parameters().");
   bound
       .def(
           "__init__",
           [](Object* self, const nb::kwargs& options) {
-            Keywords keywords("HandHeldStream", options);
+            Keywords keywords("HandHeldRateStream", options);
             HandHeldPipeline::Params params;
-            read_ranges(keywords, params.rails.clipping.axis_aligned_rails);
+            read_ranges(keywords, params.clipping_finder.clipping.axis_limit_params);
             read_fields(keywords, params.stream, kUnusedParameters);
             keywords.done();
             new (self) Object(Live(params));
@@ -117,7 +117,7 @@ void bind_stream(nb::module_& m) {
           "add_imu",
           [](Object& self, const ArrayLike& time_ns, const ArrayLike& gyro, const ArrayLike& accel,
              const ArrayLike& clip_flags) {
-            std::optional<RateState> smoothed;
+            std::optional<AngularRateState> smoothed;
             const auto step = [&smoothed](Live& at, const ImuSample& sample, Rates& out) {
               const Status status = at.filter.push(sample, *at.state, smoothed);
               if (smoothed) out.rows.push_back(*smoothed);
@@ -138,7 +138,7 @@ void bind_stream(nb::module_& m) {
       .def_prop_ro(
           "failures", [](Object& self) { return self.run([](Live& at) { return at.state->stream.failures; }); },
           "number of steps skipped because their equations were not positive definite")
-      .def_static("parameters", [] { return list_fields(HandHeldStream::Params{}, kUnusedParameters); });
+      .def_static("parameters", [] { return list_fields(HandHeldRateStream::Params{}, kUnusedParameters); });
   bind_copy<Object>(bound);
 }
 

@@ -51,14 +51,14 @@ void bind_report(nb::module_& m) {
       .def_ro("consecutive_rejected_sweeps", &Report::consecutive_rejected_sweeps,
               "number of consecutive rejected sweeps, including this one")
       .def_prop_ro("saturation_deficit_rad_s",
-                   [](const Report& r) { return whole<3>(r.saturation_deficit_rad_s.data()); })
+                   [](const Report& r) { return whole<3>(r.mean_saturation_deficit_rad_s.data()); })
       .def_ro("points_used", &Report::points_used)
       .def_ro("isolated_points", &Report::isolated_points)
       .def_ro("points_registered", &Report::points_registered)
       .def_ro("map_points_added", &Report::map_points_added)
       .def_ro("in_prior_map", &Report::in_prior_map, "True if the poses are in the frame of the prior map");
-  using C = SweepCalibration;
-  nb::class_<C>(m, "SweepCalibration", "Estimated calibration of lidar, IMU and gravity.")
+  using C = LidarImuCalibration;
+  nb::class_<C>(m, "LidarImuCalibration", "Estimated calibration of lidar, IMU and gravity.")
       .def_prop_ro(
           "T_IL", [](const C& c) { return matrix(c.T_IL); }, "(4, 4), lidar in IMU axes")
       .def_ro("time_offset_s", &C::time_offset_s, "the IMU's clock minus the lidar's")
@@ -81,8 +81,8 @@ LidarInertialOdometry::Params mapper_params(const nb::kwargs& given) {
 }
 
 /// Returns the given rates, or the gyro's readings if `rates` is None.
-std::vector<RateState> rates_for(const std::vector<ImuSample>& samples, nb::handle rates) {
-  std::vector<RateState> out;
+std::vector<AngularRateState> rates_for(const std::vector<ImuSample>& samples, nb::handle rates) {
+  std::vector<AngularRateState> out;
   if (rates.is_none()) {
     out.resize(samples.size());
     for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -104,7 +104,7 @@ using Object = Guarded<LidarInertialOdometry>;
 void add_imu(Object& self, const ArrayLike& time_ns, const ArrayLike& gyro, const ArrayLike& accel, nb::handle rates,
              const ArrayLike& clip_flags) {
   const std::vector<ImuSample> samples = samples_of(time_ns, gyro, accel, clip_flags);
-  const std::vector<RateState> each = rates_for(samples, rates);
+  const std::vector<AngularRateState> each = rates_for(samples, rates);
   Status status;
   std::size_t k = 0;
   const std::optional<TimeNs> last_ns = self.run_timed([&](LidarInertialOdometry& mapper, LastTimes& last) {

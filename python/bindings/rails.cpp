@@ -18,7 +18,7 @@ namespace tumble::python {
 
 namespace {
 
-using Found = ClippingFinder::Found;
+using Found = ClippingFinder::ClippingSearchResult;
 
 constexpr Field kGyroRange{"gyro_range_rad_s", "rad/s", 1e-9, 1e3, "range that the data sheet states"};
 constexpr Field kAccelRange{"accel_range_m_s2", "m/s^2", 1e-9, 1e5, "range that the data sheet states"};
@@ -35,7 +35,7 @@ Found find_rails(const ArrayLike& time_ns, const ArrayLike& gyro, const ArrayLik
                  const nb::kwargs& given) {
   Keywords keywords("find_rails", given);
   ClippingFinder::Params params;
-  read_ranges(keywords, params.axis_aligned_rails);
+  read_ranges(keywords, params.axis_limit_params);
   read_fields(keywords, params);
   keywords.done();
   const std::vector<ImuSample> samples = samples_of(time_ns, gyro, accel, clip_flags);
@@ -51,45 +51,45 @@ Found find_rails(const ArrayLike& time_ns, const ArrayLike& gyro, const ArrayLik
 }
 
 auto bits(const Found& found, std::uint8_t Clipping::*which) {
-  return column<std::uint8_t>(found.clippings, [which](const Clipping& c) { return &(c.*which); });
+  return column<std::uint8_t>(found.clipping_per_sample, [which](const Clipping& c) { return &(c.*which); });
 }
 
 }  // namespace
 
-void read_ranges(Keywords& keywords, RailDetector::Params& rails) {
-  rails.stated_gyro_rad_s = range_of(keywords, kGyroRange);
-  rails.stated_accel_m_s2 = range_of(keywords, kAccelRange);
+void read_ranges(Keywords& keywords, SaturationLimitDetector::Params& rails) {
+  rails.stated_gyro_range_rad_s = range_of(keywords, kGyroRange);
+  rails.stated_accel_range_m_s2 = range_of(keywords, kAccelRange);
 }
 
-nb::list as_list(const RailPlanes& planes) {
+nb::list as_list(const SaturationPlanes& planes) {
   nb::list out;
-  for (const std::optional<RailPlane>& plane : planes.element) out.append(plane ? nb::cast(*plane) : nb::none());
+  for (const std::optional<SaturationPlane>& plane : planes.sensing_axis) out.append(plane ? nb::cast(*plane) : nb::none());
   return out;
 }
 
 void bind_rails(nb::module_& m) {
-  nb::class_<RailPlane>(
-      m, "RailPlane",
+  nb::class_<SaturationPlane>(
+      m, "SaturationPlane",
       "The rail of one sensing element, estimated from readings: the planes row . y = offset -+ distance.")
       .def_prop_ro(
-          "row", [](const RailPlane& p) { return whole<3>(p.row.data()); },
+          "row", [](const SaturationPlane& p) { return whole<3>(p.row.data()); },
           "(3,): 1 along the element's own axis, and the slopes of the plane along the other two axes")
-      .def_ro("distance", &RailPlane::distance_rad_s, "rad/s for a gyro, m/s^2 for an accelerometer")
-      .def_ro("offset", &RailPlane::offset_rad_s)
-      .def_ro("tolerance", &RailPlane::tolerance_rad_s,
+      .def_ro("distance", &SaturationPlane::saturation_limit_rad_s, "rad/s for a gyro, m/s^2 for an accelerometer")
+      .def_ro("offset", &SaturationPlane::offset_rad_s)
+      .def_ro("tolerance", &SaturationPlane::tolerance_rad_s,
               "a reading is clipped if it is within this distance of the plane, or beyond the plane")
-      .def_ro("samples", &RailPlane::samples, "number of samples on the negative and on the positive plane")
-      .def_ro("log_odds", &RailPlane::log_odds, "log odds of a rail versus a motion that resembles one");
+      .def_ro("samples", &SaturationPlane::samples, "number of samples on the negative and on the positive plane")
+      .def_ro("log_odds", &SaturationPlane::log_odds, "log odds of a rail versus a motion that resembles one");
   nb::class_<Found>(m, "Rails", "The rails of an IMU, and the readings of a recording that are clipped.")
       .def_prop_ro(
-          "gyro", [](const Found& f) { return as_list(f.rails.planes); },
-          nb::for_getter(nb::sig("def gyro(self) -> list[RailPlane | None]")),
-          "planes of the gyro elements x, y, z: a RailPlane each, or None if no rail was detected")
+          "gyro", [](const Found& f) { return as_list(f.saturation_levels.gyro_planes); },
+          nb::for_getter(nb::sig("def gyro(self) -> list[SaturationPlane | None]")),
+          "planes of the gyro elements x, y, z: a SaturationPlane each, or None if no rail was detected")
       .def_prop_ro(
-          "accel", [](const Found& f) { return as_list(f.rails.accel_planes); },
-          nb::for_getter(nb::sig("def accel(self) -> list[RailPlane | None]")))
+          "accel", [](const Found& f) { return as_list(f.saturation_levels.accel_saturation_planes); },
+          nb::for_getter(nb::sig("def accel(self) -> list[SaturationPlane | None]")))
       .def_prop_ro(
-          "upright", [](const Found& f) { return f.rails.gyro_clips_after_compensation; },
+          "upright", [](const Found& f) { return f.saturation_levels.gyro_clips_after_compensation; },
           "True if the device clips its output axes; clipping of one axis then leaves the other axes unaffected")
       .def_prop_ro(
           "clipped_gyro", [](const Found& f) { return bits(f, &Clipping::gyro); },

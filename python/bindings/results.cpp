@@ -79,7 +79,7 @@ void bind_rates_of_results(nb::module_& m) {
             return column<std::uint8_t>(s.rows,
                                         [](auto& r) { return reinterpret_cast<const std::uint8_t*>(&r.source); });
           },
-          "(N,) uint8: 0 measured, 1 recovered in flight, 2 recovered in contact, 3 bounded only (`RateSource`)");
+          "(N,) uint8: 0 measured, 1 recovered in flight, 2 recovered in contact, 3 bounded only (`AngularRateSource`)");
 }
 
 void bind_attitudes_of_results(nb::module_& m) {
@@ -87,7 +87,7 @@ void bind_attitudes_of_results(nb::module_& m) {
       .def_prop_ro("time_ns", &times<Attitudes>, kTimes)
       .def_prop_ro(
           "quaternion",
-          [](const Attitudes& s) { return column<double, 4>(s.rows, [](auto& r) { return r.q_WA.coeffs().data(); }); },
+          [](const Attitudes& s) { return column<double, 4>(s.rows, [](auto& r) { return r.orientation_W.coeffs().data(); }); },
           kQuaternions)
       .def_prop_ro(
           "covariance",
@@ -101,34 +101,34 @@ void bind_poses(nb::module_& m) {
   nb::class_<PoseState>(m, "Pose", "Pose and velocity of a frame in the world at one instant.")
       .def_ro("time_ns", &PoseState::time_ns)
       .def_prop_ro(
-          "position", [](const PoseState& s) { return whole<3>(s.p_WA_m.data()); }, "(3,), m")
+          "position", [](const PoseState& s) { return whole<3>(s.position_W_m.data()); }, "(3,), m")
       .def_prop_ro(
-          "quaternion", [](const PoseState& s) { return whole<4>(s.q_WA.coeffs().data()); }, "(4,), x y z w")
+          "quaternion", [](const PoseState& s) { return whole<4>(s.orientation_W.coeffs().data()); }, "(4,), x y z w")
       .def_prop_ro(
-          "velocity", [](const PoseState& s) { return whole<3>(s.v_WA_m_s.data()); }, "(3,), m/s, W")
+          "velocity", [](const PoseState& s) { return whole<3>(s.velocity_W_m_s.data()); }, "(3,), m/s, W")
       .def_prop_ro(
           "covariance", [](const PoseState& s) { return whole<6, 6>(s.covariance.data()); }, kPoseCovariance)
       .def_prop_ro(
           "matrix",
           [](const PoseState& s) {
             Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-            pose.linear() = s.q_WA.toRotationMatrix();
-            pose.translation() = s.p_WA_m;
+            pose.linear() = s.orientation_W.toRotationMatrix();
+            pose.translation() = s.position_W_m;
             return matrix(pose);
           },
           "(4, 4), transforms coordinates of the frame to W");
   bind_rows<Poses>(m, "Poses", "Poses and velocities of a frame in the world, in order of time.")
       .def_prop_ro("time_ns", &times<Poses>, kTimes)
       .def_prop_ro(
-          "position", [](const Poses& s) { return column<double, 3>(s.rows, [](auto& r) { return r.p_WA_m.data(); }); },
+          "position", [](const Poses& s) { return column<double, 3>(s.rows, [](auto& r) { return r.position_W_m.data(); }); },
           "(N, 3), m")
       .def_prop_ro(
           "quaternion",
-          [](const Poses& s) { return column<double, 4>(s.rows, [](auto& r) { return r.q_WA.coeffs().data(); }); },
+          [](const Poses& s) { return column<double, 4>(s.rows, [](auto& r) { return r.orientation_W.coeffs().data(); }); },
           kQuaternions)
       .def_prop_ro(
           "velocity",
-          [](const Poses& s) { return column<double, 3>(s.rows, [](auto& r) { return r.v_WA_m_s.data(); }); },
+          [](const Poses& s) { return column<double, 3>(s.rows, [](auto& r) { return r.velocity_W_m_s.data(); }); },
           "(N, 3), m/s, W")
       .def_prop_ro(
           "covariance",
@@ -141,14 +141,14 @@ void bind_rolling_of_results(nb::module_& m) {
   bind_rows<R>(m, "RollingPoses", "Poses of the centre of a rolling sphere, with the state of the contact.")
       .def_prop_ro("time_ns", &times<R>, kTimes)
       .def_prop_ro(
-          "position", [](const R& s) { return column<double, 3>(s.rows, [](auto& r) { return r.p_WG_m.data(); }); },
+          "position", [](const R& s) { return column<double, 3>(s.rows, [](auto& r) { return r.sphere_centre_W_m.data(); }); },
           "(N, 3), m")
       .def_prop_ro(
           "quaternion",
           [](const R& s) { return column<double, 4>(s.rows, [](auto& r) { return r.q_WI.coeffs().data(); }); },
           kQuaternions)
       .def_prop_ro(
-          "velocity", [](const R& s) { return column<double, 3>(s.rows, [](auto& r) { return r.v_WG_m_s.data(); }); },
+          "velocity", [](const R& s) { return column<double, 3>(s.rows, [](auto& r) { return r.sphere_velocity_W_m_s.data(); }); },
           "(N, 3), m/s, W")
       .def_prop_ro(
           "covariance",

@@ -14,7 +14,7 @@
 namespace tumble::python {
 
 struct Rates {
-  std::vector<RateState> rows;
+  std::vector<AngularRateState> rows;
 };
 struct Attitudes {
   std::vector<AttitudeState> rows;

@@ -141,16 +141,16 @@ RollingOdometry::Params rolling_params(const nb::kwargs& given) {
   const nb::object units = keywords.need("units");
   keywords.need("radius_m");
   if (!nb::isinstance<nb::iterable>(units))
-    raise_input("type", "units", units.type(), nb::str("pairs (ImuSheet, T_BI)"));
+    raise_input("type", "units", units.type(), nb::str("pairs (ImuDataSheet, T_BI)"));
   for (const nb::handle unit : units) {
     const nb::object pair = nb::borrow(unit);
     if (!nb::isinstance<nb::tuple>(pair) || nb::len(pair) != 2) {
-      raise_input("type", "units", nb::str(pair), nb::str("pairs (ImuSheet, T_BI)"));
+      raise_input("type", "units", nb::str(pair), nb::str("pairs (ImuDataSheet, T_BI)"));
     }
-    ImuSheet sheet;
+    ImuDataSheet sheet;
     if (!nb::try_cast(nb::object(pair[0]), sheet))
-      raise_input("type", "units", nb::str(pair), nb::str("pairs (ImuSheet, T_BI)"));
-    params.units.push_back({sheet, pose_of(pair[1], "units T_BI")});
+      raise_input("type", "units", nb::str(pair), nb::str("pairs (ImuDataSheet, T_BI)"));
+    params.imus.push_back({sheet, pose_of(pair[1], "units T_BI")});
   }
   read_fields(keywords, params, derived_rolling_parameters());
   keywords.done();
@@ -159,9 +159,9 @@ RollingOdometry::Params rolling_params(const nb::kwargs& given) {
 
 RollingEstimate as_estimate(const RollingOdometry::Pose& p) {
   return {p.pose.time_ns,
-          p.pose.p_WA_m,
-          p.pose.q_WA,
-          p.pose.v_WA_m_s,
+          p.pose.position_W_m,
+          p.pose.orientation_W,
+          p.pose.velocity_W_m_s,
           p.angular_velocity_rad_s,
           p.pose.covariance,
           p.velocity_covariance_B_m2_s2,
@@ -201,14 +201,14 @@ struct BoundRollingOdometry {
 };
 
 void bind_unit(nb::module_& m) {
-  using U = ImuMergeUnit;
+  using U = MergedImuState;
   nb::class_<U>(m, "SphereUnit",
                 "State of one IMU of a sphere, from a comparison with the other IMUs. A sphere with a single IMU has "
                 "no such state.")
-      .def_ro("frozen", &U::frozen, "True if its readings are constant while the readings of the other units change")
+      .def_ro("frozen", &U::is_frozen, "True if its readings are constant while the readings of the other units change")
       .def_ro("disagrees", &U::disagrees,
               "True if the unit is excluded, because it has disagreed with the other units for a long time")
-      .def_ro("left_out", &U::excluded_windows, "number of windows in which its specific force was excluded")
+      .def_ro("left_out", &U::excluded_window_count, "number of windows in which its specific force was excluded")
       .def_ro("absent", &U::missing_samples, "number of samples that were not finite")
       .def_prop_ro("time_offset_s", &U::offset_s, "offset of its clock from the mean of all units")
       .def_prop_ro(
@@ -224,7 +224,7 @@ void bind_rolling_odometry(nb::module_& m) {
       "live,\n"
       "smoothed with a lag of lag_s, or smoothed with the whole recording (lag_s=1e9: all poses come after "
       "finish()).\n\n"
-      "RollingOdometry(units=[(ImuSheet, T_BI), ...], radius_m=..., **options): T_BI (4, 4) is the pose of a unit in\n"
+      "RollingOdometry(units=[(ImuDataSheet, T_BI), ...], radius_m=..., **options): T_BI (4, 4) is the pose of a unit in\n"
       "sphere axes, relative to the centre. parameters() lists the options. World: z up, origin at the centre at the "
       "first\n"
       "sample, yaw 0. The sphere must be stationary for the first second.");
@@ -233,7 +233,7 @@ void bind_rolling_odometry(nb::module_& m) {
           "__init__",
           [](Object* self, const nb::kwargs& options) {
             const RollingOdometry::Params params = rolling_params(options);
-            new (self) Object(BoundRollingOdometry{RollingOdometry(params), params.units.size()});
+            new (self) Object(BoundRollingOdometry{RollingOdometry(params), params.imus.size()});
           },
           nb::arg("options"), takes_options())
       .def(
@@ -309,8 +309,8 @@ void bind_rolling_odometry(nb::module_& m) {
           "units",
           [](Object& self) {
             return self.run([](BoundRollingOdometry& rolling) {
-              const auto& all = rolling.odometry.units().units;
-              return std::vector<ImuMergeUnit>(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(rolling.units));
+              const auto& all = rolling.odometry.imus().imus;
+              return std::vector<MergedImuState>(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(rolling.units));
             });
           },
           "state of each unit, from a comparison of the units, in the order of `units`")
@@ -328,7 +328,7 @@ void bind_rolling(nb::module_& m) {
       .value("slip", RollingMode::slip, "the contact point slides along the floor")
       .value("bump", RollingMode::bump, "the contact point also moves up or down")
       .value("incline", RollingMode::incline, "the contact point does not slide, and the floor is a slope")
-      .value("rough", RollingMode::rough, "the contact point does not slide, and the floor is uneven");
+      .value("rough", RollingMode::uneven, "the contact point does not slide, and the floor is uneven");
   bind_filter(m);
   bind_rolling_smoother(m);
   bind_unit(m);

@@ -40,17 +40,17 @@ nb::class_<Sheet> bind_sheet(nb::module_& m, const char* name, const char* doc) 
 }  // namespace
 
 void bind_sheets(nb::module_& m) {
-  bind_sheet<ImuSheet>(
-      m, "ImuSheet",
-      "Data sheet of an IMU: ImuSheet(**numbers). A range of 0 means that the sheet does not state the range.")
-      .def_ro("rate_hz", &ImuSheet::rate_hz)
-      .def_ro("gyro_range_rad_s", &ImuSheet::gyro_range_rad_s)
-      .def_ro("accel_range_m_s2", &ImuSheet::accel_range_m_s2)
-      .def_ro("gyro_noise_rad_s_sqrt_hz", &ImuSheet::gyro_noise_rad_s_sqrt_hz)
-      .def_ro("accel_noise_m_s2_sqrt_hz", &ImuSheet::accel_noise_m_s2_sqrt_hz);
-  bind_sheet<LidarSheet>(m, "LidarSheet", "Data sheet of a lidar. LidarSheet(**numbers).")
-      .def_ro("range_min_m", &LidarSheet::range_min_m)
-      .def_ro("range_max_m", &LidarSheet::range_max_m);
+  bind_sheet<ImuDataSheet>(
+      m, "ImuDataSheet",
+      "Data sheet of an IMU: ImuDataSheet(**numbers). A range of 0 means that the sheet does not state the range.")
+      .def_ro("rate_hz", &ImuDataSheet::rate_hz)
+      .def_ro("gyro_range_rad_s", &ImuDataSheet::gyro_range_rad_s)
+      .def_ro("accel_range_m_s2", &ImuDataSheet::accel_range_m_s2)
+      .def_ro("gyro_noise_rad_s_sqrt_hz", &ImuDataSheet::gyro_noise_rad_s_sqrt_hz)
+      .def_ro("accel_noise_m_s2_sqrt_hz", &ImuDataSheet::accel_noise_m_s2_sqrt_hz);
+  bind_sheet<LidarDataSheet>(m, "LidarDataSheet", "Data sheet of a lidar. LidarDataSheet(**numbers).")
+      .def_ro("range_min_m", &LidarDataSheet::range_min_m)
+      .def_ro("range_max_m", &LidarDataSheet::range_max_m);
   m.def("mti30", &sheets::mti30, "Xsens MTi-30, fifth generation (20 g).");
   m.def("vn100", &sheets::vn100, "VectorNav VN-100.");
   m.def("phidget1044", &sheets::phidget1044, "PhidgetSpatial Precision 3/3/3 1044_0.");

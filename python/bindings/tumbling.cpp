@@ -46,7 +46,7 @@ Sheet sheet_of(nb::handle given, const char* field, const char* type) {
   return sheet;
 }
 
-/// Converts pairs (LidarSheet, T_IL) or triples (LidarSheet, T_IL, own_body_L).
+/// Converts pairs (LidarDataSheet, T_IL) or triples (LidarDataSheet, T_IL, own_body_L).
 std::vector<FurtherLidar> further_lidars_of(const nb::object& given) {
   std::vector<FurtherLidar> out;
   for (const nb::handle each : given) {
@@ -54,9 +54,9 @@ std::vector<FurtherLidar> further_lidars_of(const nb::object& given) {
     const std::size_t count = listed ? nb::len(each) : 0;
     if (count != 2 && count != 3)
       raise_input("type", "further_lidars", each.type(),
-                  nb::str("tuples (LidarSheet, T_IL) or (LidarSheet, T_IL, own_body_L)"));
+                  nb::str("tuples (LidarDataSheet, T_IL) or (LidarDataSheet, T_IL, own_body_L)"));
     FurtherLidar& lidar = out.emplace_back();
-    lidar.sheet = sheet_of<LidarSheet>(each[0], "further_lidars", "a LidarSheet");
+    lidar.data_sheet = sheet_of<LidarDataSheet>(each[0], "further_lidars", "a LidarDataSheet");
     lidar.T_IL = pose_of(each[1], "further_lidars T_IL");
     if (count == 3) lidar.own_body_L = box_of(each[2], "further_lidars own_body_L");
   }
@@ -66,9 +66,9 @@ std::vector<FurtherLidar> further_lidars_of(const nb::object& given) {
 TumblingOdometry::Params tumbling_params(const nb::kwargs& given) {
   Keywords keywords("TumblingOdometry", given);
   TumblingOdometry::Params params;
-  params.imu = sheet_of<ImuSheet>(keywords.need("imu"), "imu", "an ImuSheet");
+  params.imu = sheet_of<ImuDataSheet>(keywords.need("imu"), "imu", "an ImuDataSheet");
   if (const nb::object lidar = keywords.take("lidar"); lidar.is_valid())
-    params.lidar = sheet_of<LidarSheet>(lidar, "lidar", "a LidarSheet");
+    params.lidar = sheet_of<LidarDataSheet>(lidar, "lidar", "a LidarDataSheet");
   params.T_IL = pose_of(keywords.need("T_IL"), "T_IL");
   params.lever_arm_I_m = vector_of(keywords.need("lever_arm_m"), "lever_arm_m");
   if (const nb::object body = keywords.take("own_body_L"); body.is_valid())
@@ -115,14 +115,14 @@ void add_tumbling_sweep(BoundTumblingOdometry& self, const WholeNumber& start_ns
 
 void add_tumbling_position(BoundTumblingOdometry& self, const WholeNumber& time_ns, const ArrayLike& position,
                            const ArrayLike& covariance, nb::handle lever_arm) {
-  PositionReading reading{.time_ns = time_of(time_ns, "time_ns"), .p_PA_m = vector_of(position, "position")};
+  PositionReading reading{.time_ns = time_of(time_ns, "time_ns"), .antenna_position_P_m = vector_of(position, "position")};
   const std::vector<double> numbers = numbers_of(as_array(covariance, "covariance").attr("ravel")(), "covariance", 9);
   reading.covariance_m2 = Eigen::Map<const Eigen::Matrix3d>(numbers.data());
-  if (!lever_arm.is_none()) reading.p_IA_m = vector_of(lever_arm, "lever_arm");
+  if (!lever_arm.is_none()) reading.antenna_lever_arm_I_m = vector_of(lever_arm, "lever_arm");
   require(self.run([&](TumblingOdometry& odometry) { return odometry.add_position(reading); }));
 }
 
-Rates rates_of(const std::optional<RateState>& rate) {
+Rates rates_of(const std::optional<AngularRateState>& rate) {
   Rates out;
   if (rate) out.rows.push_back(*rate);
   return out;
@@ -171,7 +171,7 @@ void bind_accessors(Class& bound) {
           [](BoundTumblingOdometry& self) {
             const auto P =
                 self.run([](TumblingOdometry& odometry) { return odometry.mapper().calibration_covariance(); });
-            constexpr int kErrorCount = SweepCalibration::kErrorCount;
+            constexpr int kErrorCount = LidarImuCalibration::kErrorCount;
             const nb::object all = nb::cast(owned(std::vector<double>(P.data(), P.data() + P.size())));
             return nb::cast<Doubles>(all.attr("reshape")(kErrorCount, kErrorCount).attr("copy")());
           },
@@ -233,7 +233,7 @@ void bind_accessors(Class& bound) {
       .def_prop_ro(
           "second_pass_applied",
           [](BoundTumblingOdometry& self) {
-            return self.run([](TumblingOdometry& odometry) { return odometry.second_pass_applied(); });
+            return self.run([](TumblingOdometry& odometry) { return odometry.second_mapping_pass_applied(); });
           },
           "True if the map and the pose come from the second pass")
       .def_prop_ro(
@@ -261,24 +261,24 @@ void bind_tumbling(nb::module_& m) {
             return s.position_frame ? std::optional(s.position_frame->transform(s.report.pose)) : std::nullopt;
           },
           "pose at the end of the sweep in the frame of the position readings; None until they determine the frame");
-  nb::class_<SweepScale>(m, "SweepScale",
+  nb::class_<LidarScale>(m, "SweepScale",
                          "Ratio of the motion between sweeps measured by the lidar to that measured by the IMU.")
-      .def_ro("scale", &SweepScale::scale)
-      .def_ro("sigma", &SweepScale::sigma, "standard deviation of scale; infinite before the first comparison")
-      .def_ro("changes", &SweepScale::changes, "number of compared changes of velocity")
-      .def_prop_ro("is_inconsistent", &SweepScale::is_inconsistent,
+      .def_ro("scale", &LidarScale::scale)
+      .def_ro("sigma", &LidarScale::sigma, "standard deviation of scale; infinite before the first comparison")
+      .def_ro("changes", &LidarScale::velocity_change_count, "number of compared changes of velocity")
+      .def_prop_ro("is_inconsistent", &LidarScale::is_inconsistent,
                    "True if scale differs from 1 by more than 2 % and by more than five standard deviations");
   nb::class_<BoundTumblingOdometry> bound(
       m, "TumblingOdometry",
       "Estimates pose, velocity and map of a tumbling body, causally and sample by sample. The sensors are one IMU, "
       "whose\n"
       "gyro may clip, and a lidar, whose sweeps are distorted by the motion.\n\n"
-      "TumblingOdometry(imu=ImuSheet, T_IL=..., lever_arm_m=(x, y, z), lidar=LidarSheet(), own_body_L=None,\n"
+      "TumblingOdometry(imu=ImuDataSheet, T_IL=..., lever_arm_m=(x, y, z), lidar=LidarDataSheet(), own_body_L=None,\n"
       "calibration=None, **options): T_IL (4, 4) is the pose of the lidar in IMU axes. lever_arm_m is from the centre "
       "of\n"
       "mass to the IMU, in IMU axes, accurate to 1 cm. own_body_L (2, 3) has the smallest and the largest corner of a "
       "box\n"
-      "in lidar axes; returns within the box belong to the robot. further_lidars: tuples (LidarSheet, T_IL[, "
+      "in lidar axes; returns within the box belong to the robot. further_lidars: tuples (LidarDataSheet, T_IL[, "
       "own_body_L]).\n"
       "calibration is rig() of an earlier run. Options: "
       "see\n"
@@ -316,7 +316,7 @@ void bind_tumbling(nb::module_& m) {
           [](BoundTumblingOdometry& self, const MapPoints& map, nb::handle T_MI, double sigma_m, double sigma_rad,
              bool extend) {
             PriorMap prior{.points = map.rows, .sigma_m = sigma_m, .sigma_rad = sigma_rad, .extend = extend};
-            if (!T_MI.is_none()) prior.T_MI = pose_of(T_MI, "T_MI");
+            if (!T_MI.is_none()) prior.T_prior_map_imu = pose_of(T_MI, "T_MI");
             require(self.run([&](TumblingOdometry& odometry) { return odometry.use_map(std::move(prior)); }));
           },
           nb::arg("map"), nb::arg("T_MI") = nb::none(), nb::arg("sigma_m") = 0.0, nb::arg("sigma_rad") = 0.0,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Compares HandHeldStream with the batch smoother, RegimeStream and the gyro: median and 90 % quantile of the error where the gyro clips, rad/s.
+"""Compares HandHeldRateStream with the batch smoother, MotionRegimeStream and the gyro: median and 90 % quantile of the error where the gyro clips, rad/s.
 
     python carried_stream.py SEED...     SEED: seeds of the scenario `twirl`; the script calls the program
 """
@@ -16,12 +16,12 @@ def errors(seed, folder):
     recording = tumble.read(tumble.record("twirl", folder / f"{seed}.h5", seed=seed))
     imu, truth = recording.imus[0], recording.truth.imu_rate[0]
     stated = {"gravity_m_s2": recording.gravity_m_s2, "gyro_range_rad_s": imu.gyro_range_rad_s, "accel_range_m_s2": imu.accel_range_m_s2}
-    stream = tumble.HandHeldStream(period_s=imu.period_ns * 1e-9, **stated)
+    stream = tumble.HandHeldRateStream(period_s=imu.period_ns * 1e-9, **stated)
     own = tumble.Rates.joined([stream.add_imu(*imu.samples), stream.flush()])
     batch = tumble.HandHeldSmoother(**stated).estimate(*imu.samples)[0]
     clipped = batch.clipped_axes != 0
-    rates = {"gyro": imu.gyro, "HandHeldStream": own.rate, "HandHeldSmoother": batch.rate,
-            "RegimeStream": tumble.rate(imu, recording.gravity_m_s2, live=True).rate}
+    rates = {"gyro": imu.gyro, "HandHeldRateStream": own.rate, "HandHeldSmoother": batch.rate,
+            "MotionRegimeStream": tumble.rate(imu, recording.gravity_m_s2, live=True).rate}
     print(seed, f"{np.count_nonzero(clipped)} clipped, {np.count_nonzero((own.clipped_axes != 0) != clipped)} called otherwise by the stream", end="")
     for name, rate in rates.items():
         error = np.linalg.norm(rate - truth, axis=1)[clipped]

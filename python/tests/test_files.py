@@ -318,7 +318,7 @@ def test_serving_refuses_what_does_not_fit(tmp_path, result):
 def test_serving_a_rate_with_its_covariance(tmp_path):
     recording = small()
     tumble.write(tmp_path / "a.h5", recording)
-    rates = tumble.RegimeStream(lever_arm_m=(0.1, 0, 0))
+    rates = tumble.MotionRegimeStream(lever_arm_m=(0.1, 0, 0))
     expected = rates.add_imu(*recording.imus[0].samples)
     expected = tumble.Rates.joined([expected, rates.flush()])
 

@@ -11,19 +11,19 @@ import tumble
 
 LEVER = (0.05, 0.0, 0.0)
 STREAMS = {
-    "regime": lambda: tumble.RegimeStream(lever_arm_m=LEVER),
-    "rate": lambda: tumble.RateStream(lever_arm_m=LEVER),
+    "regime": lambda: tumble.MotionRegimeStream(lever_arm_m=LEVER),
+    "rate": lambda: tumble.AngularRateStream(lever_arm_m=LEVER),
     "vqf": tumble.Vqf,
     "tumble": tumble.TumbleAttitude,
     "strapdown": tumble.Strapdown,
-    "carried": tumble.HandHeldStream,
+    "carried": tumble.HandHeldRateStream,
     "rolling": lambda: tumble.RollingSmoother(radius_m=0.145, lag_s=0.2),
     "rolling_live": lambda: tumble.RollingFilter(radius_m=0.145),
 }
 BATCHES = {
-    "smoother": lambda *s: tumble.RateSmoother(lever_arm_m=LEVER).estimate(*s),
-    "regimes": lambda *s: tumble.RegimeSmoother(lever_arm_m=LEVER).estimate(*s),
-    "saave": lambda *s: tumble.Saave(lever_arm_m=LEVER, saturation_point_rad_s=10.0).estimate(*s),
+    "smoother": lambda *s: tumble.AngularRateSmoother(lever_arm_m=LEVER).estimate(*s),
+    "regimes": lambda *s: tumble.MotionRegimeSmoother(lever_arm_m=LEVER).estimate(*s),
+    "saave": lambda *s: tumble.SaturationAwareRateEstimator(lever_arm_m=LEVER, saturation_point_rad_s=10.0).estimate(*s),
     "carried_batch": lambda *s: tumble.HandHeldSmoother().estimate(*s),
     "rails": lambda *s: tumble.find_rails(*s),
 }
@@ -130,7 +130,7 @@ def test_refuses_arrays_that_do_not_fit(take, spin, change, trouble, field):
 def test_batches_refuse_nothing_at_all(take):
     with pytest.raises(tumble.TumbleError) as caught:
         take(np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros((0, 3)))
-    assert caught.value.trouble in ("empty", "too_few")
+    assert caught.value.trouble in ("empty", "insufficient_data")
 
 
 def test_layouts_and_types_of_numbers_give_the_same_bits(spin):
@@ -199,7 +199,7 @@ def test_refuses_none(spin):
 
 
 def test_results_are_views_that_stay(spin):
-    rate = tumble.RegimeStream(lever_arm_m=LEVER).add_imu(*spin[:3]).rate
+    rate = tumble.MotionRegimeStream(lever_arm_m=LEVER).add_imu(*spin[:3]).rate
     before = rate.copy()
     junk = [np.ones((500, 3)) for _ in range(50)]
     assert np.array_equal(rate, before) and len(junk) == 50
@@ -231,7 +231,7 @@ def test_rows_are_joined(spin):
 def test_empty_results_are_empty_arrays():
     none = tumble.Rates.joined([])
     assert none.rate.shape == (0, 3) and none.covariance.shape == (0, 3, 3) and none.time_ns.dtype == np.int64
-    assert tumble.RegimeStream(lever_arm_m=LEVER).newest().rate.shape == (0, 3)
+    assert tumble.MotionRegimeStream(lever_arm_m=LEVER).newest().rate.shape == (0, 3)
 
 
 def test_threads_share_an_estimator(spin):
@@ -266,7 +266,7 @@ def test_interpreter_goes_on_in_long_calls():
             counted[0] += 1
 
     thread = threading.Thread(target=count)
-    stream = tumble.RegimeStream(lever_arm_m=LEVER, period_s=0.0025)
+    stream = tumble.MotionRegimeStream(lever_arm_m=LEVER, period_s=0.0025)
     thread.start()
     before = counted[0]
     stream.add_imu(*long[:3])
@@ -277,18 +277,18 @@ def test_interpreter_goes_on_in_long_calls():
 
 
 def test_errors_and_rigs_travel(spin):
-    report = tumble.RateSmoother(lever_arm_m=LEVER).estimate(*spin[:3])[1]
+    report = tumble.AngularRateSmoother(lever_arm_m=LEVER).estimate(*spin[:3])[1]
     rig = pickle.loads(pickle.dumps(report.calibration))
     assert np.array_equal(rig.constants, report.calibration.constants)
     assert np.array_equal(rig.covariance, report.calibration.covariance)
-    stream = tumble.RegimeStream(lever_arm_m=LEVER, calibration=rig)
+    stream = tumble.MotionRegimeStream(lever_arm_m=LEVER, calibration=rig)
     assert np.array_equal(stream.calibration().lever_arm_m, rig.lever_arm_m)
     with pytest.raises(tumble.TumbleError, match="positive definite"):
         tumble.RigCalibration(rig.constants, -rig.covariance)
     with pytest.raises(tumble.TumbleError, match="shape|must be"):
         tumble.RigCalibration(rig.constants[:5], rig.covariance)
     with pytest.raises(tumble.TumbleError) as caught:
-        tumble.RegimeStream(lever_arm_m=LEVER, calibration=3)
+        tumble.MotionRegimeStream(lever_arm_m=LEVER, calibration=3)
     assert caught.value.field == "calibration"
 
 
@@ -363,7 +363,7 @@ def test_mapper_alone(hill):
     with pytest.raises(tumble.TumbleError) as caught:
         mapper.add_imu(*head, rates)
     assert (caught.value.trouble, caught.value.field) == ("shape", "rates")
-    given = tumble.RegimeStream(lever_arm_m=imu.lever_arm_m)
+    given = tumble.MotionRegimeStream(lever_arm_m=imu.lever_arm_m)
     given = tumble.Rates.joined([given.add_imu(*head), given.flush()])
     mapper.add_imu(*head, given)
     believing.add_imu(*head)

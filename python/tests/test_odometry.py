@@ -61,7 +61,7 @@ def test_positions_and_a_second_lidar(hill):
     def true_position(time_ns):
         return hill.truth.position[time_ns // hill.truth.period_ns]
 
-    sheet = tumble.LidarSheet()
+    sheet = tumble.LidarDataSheet()
     first, second, plain = (tumble.TumblingOdometry(**options, further_lidars=[(sheet, hill.T_IL)]),
                             tumble.TumblingOdometry(**options, further_lidars=[(sheet, hill.T_IL, [[-200, -200, -200], [200, 200, 200]])]),
                             tumble.TumblingOdometry(**options))

@@ -44,7 +44,7 @@ def test_stubs_have_what_the_module_has():
     tree = ast.parse(TYPES.read_text(encoding="utf-8"))
     known = {node.name: node for node in tree.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
     assert set(compiled()) <= set(known)
-    stream = {node.name for node in known["RegimeStream"].body if isinstance(node, ast.FunctionDef)}
+    stream = {node.name for node in known["MotionRegimeStream"].body if isinstance(node, ast.FunctionDef)}
     assert {"add_imu", "flush", "newest", "calibration", "__copy__"} <= stream
     assert (TYPES.parent / "py.typed").exists()
     untyped = {argument.arg for node in ast.walk(tree) if isinstance(node, ast.FunctionDef) for argument in node.args.args

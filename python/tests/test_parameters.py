@@ -8,12 +8,12 @@ import pytest
 import tumble
 
 NEEDED = {
-    "RateSmoother": {"lever_arm_m": (0.0, 0.0, 0.0)},
-    "RegimeSmoother": {"lever_arm_m": (0.0, 0.0, 0.0)},
-    "RateStream": {"lever_arm_m": (0.0, 0.0, 0.0)},
-    "RegimeStream": {"lever_arm_m": (0.0, 0.0, 0.0)},
-    "Saave": {"lever_arm_m": (0.0, 0.0, 0.0), "saturation_point_rad_s": 10.0},
-    "HandHeldSmoother": {}, "HandHeldStream": {}, "Vqf": {}, "TumbleAttitude": {}, "Strapdown": {}, "ImuSheet": {}, "LidarSheet": {},
+    "AngularRateSmoother": {"lever_arm_m": (0.0, 0.0, 0.0)},
+    "MotionRegimeSmoother": {"lever_arm_m": (0.0, 0.0, 0.0)},
+    "AngularRateStream": {"lever_arm_m": (0.0, 0.0, 0.0)},
+    "MotionRegimeStream": {"lever_arm_m": (0.0, 0.0, 0.0)},
+    "SaturationAwareRateEstimator": {"lever_arm_m": (0.0, 0.0, 0.0), "saturation_point_rad_s": 10.0},
+    "HandHeldSmoother": {}, "HandHeldRateStream": {}, "Vqf": {}, "TumbleAttitude": {}, "Strapdown": {}, "ImuDataSheet": {}, "LidarDataSheet": {},
     "RollingSmoother": {"radius_m": 0.145},
     "RollingFilter": {"radius_m": 0.145},
     "RollingOdometry": {"units": [(tumble.sheets.phidget1044(), np.eye(4))], "radius_m": 0.145},
@@ -91,13 +91,13 @@ def test_numbers_arrive():
     tau = next(p for p in tumble.Vqf.parameters() if p.name == "tau_s")
     assert np.array_equal(run(), run(tau_s=tau.default))
     assert not np.array_equal(run(), run(tau_s=2 * tau.default))
-    assert tumble.ImuSheet(rate_hz=250).rate_hz == 250.0
+    assert tumble.ImuDataSheet(rate_hz=250).rate_hz == 250.0
 
 
 def test_relations_between_parameters_name_the_field():
     """An error of a library constructor reaches Python with field, value and bound."""
     with pytest.raises(tumble.TumbleError) as caught:
-        tumble.RateStream(lever_arm_m=(0, 0, 0), period_s=1e-4, lag_s=10.0)
+        tumble.AngularRateStream(lever_arm_m=(0, 0, 0), period_s=1e-4, lag_s=10.0)
     assert caught.value.trouble == "out_of_range"
     assert caught.value.field and caught.value.bound and isinstance(caught.value.value, float)
 
@@ -119,7 +119,7 @@ def test_refuses_another_sheet(key):
 @pytest.mark.parametrize("value", [10**400, 10**5000, 1j, np.array([8.0, 9.0]), np.array([]), "8", None.__class__, [8.0]],
                          ids=["beyond_a_double", "beyond_a_text", "complex", "two", "none_at_all", "text", "class", "list"])
 @pytest.mark.parametrize("make", [
-    lambda v: tumble.ImuSheet(gyro_range_rad_s=v), lambda v: tumble.RegimeStream(lever_arm_m=(0, 0, 0), gyro_range_rad_s=v),
+    lambda v: tumble.ImuDataSheet(gyro_range_rad_s=v), lambda v: tumble.MotionRegimeStream(lever_arm_m=(0, 0, 0), gyro_range_rad_s=v),
     lambda v: tumble.RollingFilter(radius_m=v)])
 def test_what_is_no_number_is_refused(make, value):
     """Values that Python cannot convert to a float are rejected."""

@@ -39,7 +39,7 @@ def same_covariance(own, expected):
 
 def test_saave(hill, estimates):
     expected = estimates("rate/saave").rates
-    own = tumble.Saave(lever_arm_m=hill.imus[0].lever_arm_m, saturation_point_rad_s=10.45).estimate(*hill.imus[0].samples)
+    own = tumble.SaturationAwareRateEstimator(lever_arm_m=hill.imus[0].lever_arm_m, saturation_point_rad_s=10.45).estimate(*hill.imus[0].samples)
     assert same(own.rate, expected.rate) and same_covariance(own, expected) and same(own.time_ns, expected.time_ns)
     assert same(own.source, expected.source) and same(own.clipped_axes, expected.clipped_axes)
 
@@ -62,10 +62,10 @@ def test_rate_of_who_carries_what(twirl, estimates):
 
 def test_rate_smoother(hill, estimates):
     expected, imu = estimates("rate/tumble").rates, hill.imus[0]
-    own, report = tumble.RateSmoother(
+    own, report = tumble.AngularRateSmoother(
         lever_arm_m=imu.lever_arm_m, gyro_range_rad_s=imu.gyro_range_rad_s, accel_range_m_s2=imu.accel_range_m_s2,
         gyro_noise_density=imu.gyro_noise_rad_s_sqrt_hz, accel_noise_density=imu.accel_noise_m_s2_sqrt_hz).estimate(*imu.samples)
-    assert estimates("rate/tumble").health["regime_carried_asked"] == 0.0, "a tumble is not hand-held, so the rates are those of RateSmoother"
+    assert estimates("rate/tumble").health["regime_carried_asked"] == 0.0, "a tumble is not hand-held, so the rates are those of AngularRateSmoother"
     assert same(own.rate, expected.rate) and same_covariance(own, expected)
     assert report.samples == len(imu) and report.clipped == np.count_nonzero(own.clipped_axes) > 0
     assert estimates("rate/tumble").health["learnt_lever_arm_x_m"] == report.calibration.lever_arm_m[0]
@@ -149,7 +149,7 @@ def test_carried_stream(twirl):
     assert np.count_nonzero(clipped) > 100
 
     def through(**options):
-        stream = tumble.HandHeldStream(period_s=imu.period_ns * 1e-9, **(stated | options))
+        stream = tumble.HandHeldRateStream(period_s=imu.period_ns * 1e-9, **(stated | options))
         rates = tumble.Rates.joined([stream.add_imu(*samples), stream.flush()])
         assert np.array_equal(rates.time_ns, samples[0]) and stream.failures == 0
         return rates
@@ -173,9 +173,9 @@ def test_carried_stream_hears_flags_and_goes_on_after_a_refusal(twirl):
     samples = [rows[:400] for rows in imu.samples]
     flags = samples[3].copy()
     flags[200:210] = 2
-    expected = tumble.HandHeldStream().add_imu(*samples[:3], flags)
+    expected = tumble.HandHeldRateStream().add_imu(*samples[:3], flags)
     assert ((expected.clipped_axes[200:210] & 2) != 0).all()
-    whole, refused = tumble.HandHeldStream(), tumble.HandHeldStream()
+    whole, refused = tumble.HandHeldRateStream(), tumble.HandHeldRateStream()
     expected = whole.add_imu(*samples)
     first = refused.add_imu(*(rows[:300] for rows in samples))
     for time_ns, gyro, trouble in ((int(samples[0][299]), samples[1][300], "time_order"), (int(samples[0][299]) + 3 * 10**9, samples[1][300], "gap"),
@@ -186,10 +186,10 @@ def test_carried_stream_hears_flags_and_goes_on_after_a_refusal(twirl):
     rest = refused.add_imu(*(rows[300:] for rows in samples))
     assert np.array_equal(tumble.Rates.joined([first, rest]).rate, expected.rate), "a sample that was refused left its mark"
     with pytest.raises(tumble.TumbleError) as caught:
-        tumble.HandHeldStream(lag_s=0.6)
+        tumble.HandHeldRateStream(lag_s=0.6)
     assert (caught.value.trouble, caught.value.field) == ("out_of_range", "window_s")
     with pytest.raises(tumble.TumbleError, match="iterations_max"):
-        tumble.HandHeldStream(iterations_max=3)
+        tumble.HandHeldRateStream(iterations_max=3)
 
 
 def test_rolling_smoother_over_the_run(slip):

@@ -49,8 +49,8 @@ def test_a_loaded_object_starts_at_the_saved_pose(make, samples):
 
 
 def test_streams_and_copies(samples):
-    assert not hasattr(tumble.RateStream(lever_arm_m=LEVER), "save")
-    stream = tumble.RateStream(lever_arm_m=LEVER)
+    assert not hasattr(tumble.AngularRateStream(lever_arm_m=LEVER), "save")
+    stream = tumble.AngularRateStream(lever_arm_m=LEVER)
     stream.add_imu(*cut(samples, 0, 150))
     other = copy.copy(stream)
     assert np.array_equal(stream.add_imu(*cut(samples, 150)).rate, other.add_imu(*cut(samples, 150)).rate)
@@ -67,7 +67,7 @@ def test_damaged_bytes_are_refused_and_change_nothing(make, samples):
     for damaged in (b"", saved[:39], saved[:40], saved[: len(saved) // 2], saved[:-1], saved + b"\0", bytes(len(saved)), *flipped):
         with pytest.raises(tumble.TumbleError) as caught:
             other.load(damaged)
-        assert caught.value.trouble in ("too_few", "out_of_range") and "state" in caught.value.field
+        assert caught.value.trouble in ("insufficient_data", "out_of_range") and "state" in caught.value.field
     for no_bytes in ("text", 5, bytearray(saved), np.frombuffer(saved, np.uint8)):
         with pytest.raises(tumble.TumbleError) as caught:
             other.load(no_bytes)

@@ -37,7 +37,7 @@ def test_who_calls_it(check, tmp_path):
     good, bad = tmp_path / "good.py", tmp_path / "bad.py"
     good.write_text("""import tumble
 
-def speed(stream: tumble.RateStream, odometry: tumble.RollingOdometry, imu: tumble.Imu) -> float:
+def speed(stream: tumble.AngularRateStream, odometry: tumble.RollingOdometry, imu: tumble.Imu) -> float:
     rates = stream.add_imu(*imu.samples)
     state: bytes = odometry.save()
     odometry.load(state)
@@ -46,7 +46,7 @@ def speed(stream: tumble.RateStream, odometry: tumble.RollingOdometry, imu: tumb
     bad.write_text("""import tumble
 
 state: str = tumble.Vqf().add_imu(0, None, None)
-tumble.RateStream(lever_arm_m=(0, 0, 0)).laod(b"")
+tumble.AngularRateStream(lever_arm_m=(0, 0, 0)).laod(b"")
 """)
     said, status = check(str(good))
     assert status == 0, said

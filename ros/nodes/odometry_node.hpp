@@ -111,7 +111,7 @@ void OdometryNode::declare_numbers(Params& params) {
   visit_parameters(params, [&](const std::string& name, auto& value, const Field& field) {
     using Value = std::remove_cvref_t<decltype(value)>;
     rcl_interfaces::msg::ParameterDescriptor described;
-    described.description = std::string(field.meaning) + " [" + field.unit + "]";
+    described.description = std::string(field.description) + " [" + field.unit + "]";
     described.read_only = true;
     if constexpr (std::is_same_v<Value, Eigen::Vector3d>) {
       const auto given = declare_parameter(name, std::vector<double>(value.begin(), value.end()), described);

@@ -20,7 +20,7 @@ class RollingNode : public OdometryNode {
     if (count < 1 || poses.size() % 7 != 0)
       throw InvalidParams("T_base_imu", static_cast<double>(poses.size()), "7 numbers for each IMU: x y z qx qy qz qw");
     for (std::size_t unit = 0; unit < count; ++unit) {
-      params.odometry.units.push_back(
+      params.odometry.imus.push_back(
           {imu_sheet(text("imu_sheet")), pose_of("T_base_imu", std::span(poses).subspan(7 * unit, 7))});
     }
     adapter_.emplace(params, *this);

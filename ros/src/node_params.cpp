@@ -78,12 +78,12 @@ Eigen::Vector3d position_of(const std::string& parameter, std::span<const double
   return {numbers[0], numbers[1], numbers[2]};
 }
 
-ImuSheet imu_sheet(const std::string& name) {
-  return sheet_of<ImuSheet>("imu_sheet", name, sheets::imus());
+ImuDataSheet imu_sheet(const std::string& name) {
+  return sheet_of<ImuDataSheet>("imu_sheet", name, sheets::imus());
 }
 
-LidarSheet lidar_sheet(const std::string& name) {
-  return sheet_of<LidarSheet>("lidar_sheet", name, sheets::lidars());
+LidarDataSheet lidar_sheet(const std::string& name) {
+  return sheet_of<LidarDataSheet>("lidar_sheet", name, sheets::lidars());
 }
 
 }  // namespace tumble::ros

@@ -11,21 +11,21 @@
 
 namespace tumble::ros {
 
-Odometry base_odometry(const PoseState& imu, const Eigen::Matrix3d& velocity_covariance_I_m2_s2, const RateState& rate,
+Odometry base_odometry(const PoseState& imu, const Eigen::Matrix3d& velocity_covariance_I_m2_s2, const AngularRateState& rate,
                        const Eigen::Isometry3d& T_IB) {
   Odometry out;
   out.stamp_ns = imu.time_ns;
-  const Eigen::Matrix3d R_OI = imu.q_WA.toRotationMatrix(), R_BI = T_IB.linear().transpose();
+  const Eigen::Matrix3d R_OI = imu.orientation_W.toRotationMatrix(), R_BI = T_IB.linear().transpose();
   const Eigen::Vector3d arm_I = T_IB.translation(), arm_O = R_OI * arm_I;
   out.T_OB.linear() = R_OI * T_IB.linear();
-  out.T_OB.translation() = imu.p_WA_m + arm_O;
+  out.T_OB.translation() = imu.position_W_m + arm_O;
   // an attitude error phi in O displaces the base by phi x arm
   Matrix6 J = Matrix6::Identity();
   J.topRightCorner<3, 3>() = -so3::hat(arm_O);
   out.pose_covariance = J * imu.covariance * J.transpose();
 
   const Eigen::Vector3d w_I = rate.w_WI_I_rad_s;
-  out.twist_B.head<3>() = R_BI * (R_OI.transpose() * imu.v_WA_m_s + w_I.cross(arm_I));
+  out.twist_B.head<3>() = R_BI * (R_OI.transpose() * imu.velocity_W_m_s + w_I.cross(arm_I));
   out.twist_B.tail<3>() = R_BI * w_I;
   const Eigen::Matrix3d by_rate = R_BI * -so3::hat(arm_I), rate_covariance = rate.covariance_rad2_s2;
   out.twist_covariance.topLeftCorner<3, 3>() =
@@ -55,12 +55,12 @@ std::vector<Segment> segments_of(const std::vector<PoseState>& trajectory) {
   std::vector<Segment> out;
   for (std::size_t i = 0; i + 1 < trajectory.size(); ++i) {
     const PoseState &a = trajectory[i], &b = trajectory[i + 1];
-    out.push_back({a.time_ns, seconds(b.time_ns - a.time_ns), a.q_WA, a.p_WA_m, so3::log(a.q_WA.conjugate() * b.q_WA),
-                   b.p_WA_m - a.p_WA_m});
+    out.push_back({a.time_ns, seconds(b.time_ns - a.time_ns), a.orientation_W, a.position_W_m, so3::logarithm(a.orientation_W.conjugate() * b.orientation_W),
+                   b.position_W_m - a.position_W_m});
   }
   if (out.empty()) {
     const PoseState& only = trajectory.front();
-    out.push_back({only.time_ns, 1.0, only.q_WA, only.p_WA_m, Eigen::Vector3d::Zero(), only.v_WA_m_s});
+    out.push_back({only.time_ns, 1.0, only.orientation_W, only.position_W_m, Eigen::Vector3d::Zero(), only.velocity_W_m_s});
   }
   return out;
 }
@@ -73,7 +73,7 @@ void deskew(const std::vector<PoseState>& trajectory, const Eigen::Isometry3d& T
   if (trajectory.empty()) return;
   const std::vector<Segment> segments = segments_of(trajectory);
   const PoseState& end = trajectory.back();
-  const Eigen::Isometry3d T_LW_end = ((Eigen::Translation3d(end.p_WA_m) * end.q_WA) * T_IL).inverse();
+  const Eigen::Isometry3d T_LW_end = ((Eigen::Translation3d(end.position_W_m) * end.orientation_W) * T_IL).inverse();
   std::size_t k = 0;
   deskewed.reserve(points.size());
   for (const LidarPoint& point : points) {

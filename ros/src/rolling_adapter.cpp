@@ -9,7 +9,7 @@ namespace tumble::ros {
 
 namespace {
 
-double rate_variance(const ImuSheet& sheet) {
+double rate_variance(const ImuDataSheet& sheet) {
   return sheet.gyro_noise_rad_s_sqrt_hz * sheet.gyro_noise_rad_s_sqrt_hz * sheet.rate_hz;
 }
 
@@ -17,17 +17,17 @@ double rate_variance(const ImuSheet& sheet) {
 
 /// Converts a pose of the sphere. The base frame is the sphere.
 Odometry RollingAdapter::odometry_of(const RollingOdometry::Pose& sphere) const {
-  RateState rate;
+  AngularRateState rate;
   rate.w_WI_I_rad_s = sphere.angular_velocity_rad_s;
   rate.covariance_rad2_s2 = rate_variance_rad2_s2_ * Eigen::Matrix3d::Identity();
   return base_odometry(sphere.pose, sphere.velocity_covariance_B_m2_s2, rate, Eigen::Isometry3d::Identity());
 }
 
 RollingAdapter::RollingAdapter(const Params& params, Publisher& publisher)
-    : units_(params.odometry.units.size()),
+    : units_(params.odometry.imus.size()),
       publisher_(publisher),
       odometry_(params.odometry),
-      rate_variance_rad2_s2_(rate_variance(params.odometry.units.front().sheet)),
+      rate_variance_rad2_s2_(rate_variance(params.odometry.imus.front().data_sheet)),
       diagnostics_(params.adapter.diagnostics_period_s) {
   require_valid_fields(params.adapter);
 }

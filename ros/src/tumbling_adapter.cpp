@@ -125,7 +125,7 @@ Status TumblingAdapter::reset(const std::optional<StartPose>& start) {
   }
   PriorMap map{.points = prior_map_, .extend = params_.prior_map_extend};
   if (start) {
-    map.T_MI = start->T_OB * params_.T_BI;
+    map.T_prior_map_imu = start->T_OB * params_.T_BI;
     map.sigma_m = start->sigma_m;
     map.sigma_rad = start->sigma_rad;
   }
@@ -145,7 +145,7 @@ std::string TumblingAdapter::map_file(const std::string& path) const {
 }
 
 void TumblingAdapter::publish_rate() {
-  const std::optional<RateState>& rate = odometry_.smoothed_rate();
+  const std::optional<AngularRateState>& rate = odometry_.smoothed_rate();
   if (!rate || samples_.empty() || (!rates_.empty() && rates_.back().time_ns == rate->time_ns)) return;
   if (!rates_.empty() && rate->time_ns < rates_.back().time_ns) rates_.clear();  // the clock stepped back
   rates_.push_back(*rate);
@@ -176,7 +176,7 @@ void TumblingAdapter::publish_sweeps() {
 }
 
 void TumblingAdapter::publish_points(const SweepReport& report) {
-  const SweepCalibration calibration = odometry_.mapper().calibration();
+  const LidarImuCalibration calibration = odometry_.mapper().calibration();
   const TimeNs offset_ns = std::llround(1e9 * calibration.time_offset_s);
   const TimeNs end_ns = report.pose.time_ns - offset_ns;
   const auto raw = nearest(sweeps_, end_ns, [](const TimedSweep& each) { return each.end_ns; });
@@ -193,11 +193,11 @@ void TumblingAdapter::publish_newest() {
   Eigen::Matrix3d velocity_covariance;
   if (!odometry_.newest(pose, &velocity_covariance).ok()) return;
   publisher_.odometry_imu(
-      base_odometry(pose, velocity_covariance, odometry_.newest_rate().value_or(RateState{}), params_.T_BI.inverse()));
+      base_odometry(pose, velocity_covariance, odometry_.newest_rate().value_or(AngularRateState{}), params_.T_BI.inverse()));
 }
 
-const RateState& TumblingAdapter::rate_at(TimeNs time_ns) const {
-  return *nearest(rates_, time_ns, [](const RateState& each) { return each.time_ns; });
+const AngularRateState& TumblingAdapter::rate_at(TimeNs time_ns) const {
+  return *nearest(rates_, time_ns, [](const AngularRateState& each) { return each.time_ns; });
 }
 
 void TumblingAdapter::publish_diagnostics() {
@@ -212,7 +212,7 @@ void TumblingAdapter::publish_diagnostics() {
   add(out, "restarts after a gap or a step of the clock", odometry_.restart_count());
   add(out, "outliers among the IMU samples", odometry_.rejected_readings());
   add(out, "dropped sweeps", odometry_.dropped_sweeps());
-  add(out, "sweeps before the first IMU sample", odometry_.early_sweeps());
+  add(out, "sweeps before the first IMU sample", odometry_.sweeps_before_first_imu());
   if (last_) {
     add(out, "verdict of the last sweep", to_string(last_->verdict));
     add(out, "inlier ratio of the last sweep", last_->inlier_ratio);

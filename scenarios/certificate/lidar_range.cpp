@@ -61,7 +61,7 @@ RangeErrors against_planes(const sim::Recording& recording, double added_range_m
       const Eigen::Vector3d longer_L_m = p_L_m * (1.0 + added_range_m / p_L_m.norm());
       const PoseState pose = track.pose(time_ns);
       const double off_m = off_plane_m(recording.truth.surfaces[static_cast<std::size_t>(truth.surface_id[i])],
-                                       pose.q_WA * longer_L_m + pose.p_WA_m);
+                                       pose.orientation_W * longer_L_m + pose.position_W_m);
       if (off_m < 0.0) continue;
       ++errors.points;
       errors.largest_m = larger(errors.largest_m, off_m);

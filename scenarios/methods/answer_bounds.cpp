@@ -158,11 +158,11 @@ void AnswerBounds::require_unit(const Estimate& estimate, const char* unit, cons
 
 void AnswerBounds::require_pose(const PoseState& pose, const std::string& where) const {
   require_time(pose.time_ns, where);
-  require_position(pose.p_WA_m, where);
-  require_attitude(pose.q_WA, where);
+  require_position(pose.position_W_m, where);
+  require_attitude(pose.orientation_W, where);
 }
 
-void AnswerBounds::require_rates(const std::vector<RateState>& rates, const Place& place) const {
+void AnswerBounds::require_rates(const std::vector<AngularRateState>& rates, const Place& place) const {
   for (std::size_t k = 0; k < rates.size(); ++k) {
     const Eigen::Vector3d& rate_rad_s = rates[k].w_WI_I_rad_s;
     if (!rate_rad_s.allFinite() || rate_rad_s.cwiseAbs().maxCoeff() > kRateMax_rad_s)
@@ -184,7 +184,7 @@ void AnswerBounds::require_poses(const std::vector<PoseState>& poses, const Plac
 void AnswerBounds::require_attitudes(const std::vector<AttitudeState>& attitudes, const Place& place) const {
   for (std::size_t k = 0; k < attitudes.size(); ++k) {
     require_time(attitudes[k].time_ns, place(k));
-    require_attitude(attitudes[k].q_WA, place(k));
+    require_attitude(attitudes[k].orientation_W, place(k));
     require_covariance(attitudes[k].covariance_rad2, place(k));
   }
 }

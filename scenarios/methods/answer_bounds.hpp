@@ -29,7 +29,7 @@ class AnswerBounds {
   /// must be within 10 s of the recording. Positions of a result [m] must be finite and within 1e7 m of the origin,
   /// which allows Earth-centred coordinates. Quaternions of a result must have norm 1 within 1 %. Rates of a result
   /// [rad/s] must be finite and below 1e6, with finite covariances.
-  void require_rates(const std::vector<RateState>& rates, const Place& place) const;
+  void require_rates(const std::vector<AngularRateState>& rates, const Place& place) const;
   void require_poses(const std::vector<PoseState>& poses, const Place& place) const;
   void require_attitudes(const std::vector<AttitudeState>& attitudes, const Place& place) const;
   /// Throws BadInput if ten or more time stamps differ from the duration of the recording by a factor above 100, which

@@ -31,7 +31,7 @@ Estimate run_sphere(const sim::Sensors& sensors, const sim::Values& parameters) 
   estimate.status = merge_imus(sensors, imus);
   add_findings(imus.merged.faults, imus.names, estimate);
   if (!estimate.status.ok()) return estimate;
-  add_findings(check_merged(checked_imu(sensors), imus.merged), imus.names, estimate);
+  add_findings(check_merged_imus(checked_imu(sensors), imus.merged), imus.names, estimate);
   report_beyond_range(imus.beyond_range, estimate);
   TumbleAttitude::Params params = stated(sensors);
   params.radius_m = sensors.sphere_radius_m;
@@ -55,13 +55,13 @@ Estimate run_rig(const sim::Sensors& sensors, const sim::Values& parameters) {
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
-  const RecoveredRates recovered = recovered_readings(sensors, samples, ReplacedReadings::unreliable, estimate);
+  const RecoveredRates recovered = recovered_readings(sensors, samples, ReadingsToReplace::unreliable_readings, estimate);
   TumbleAttitude::Params params = stated(sensors);
   attitude_tumble_settings().apply(parameters, params);
   const TumbleAttitude filter(params);
   TumbleAttitude::State state;
   estimate.attitudes.reserve(samples.size());
-  std::vector<RateState> turned(samples.size());
+  std::vector<AngularRateState> turned(samples.size());
   for (std::size_t k = 0; k < samples.size(); ++k) {
     estimate.status = filter.step(recovered.samples[k], recovered.covariances_rad2_s2[k], state);
     if (!estimate.status.ok()) return estimate;

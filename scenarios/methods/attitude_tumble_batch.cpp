@@ -35,10 +35,10 @@ const Settings<HandHeldSmoother::Params>& carried_settings() {
 ClippedReadings find_clipped(const sim::ImuRecord& record, std::span<const ImuSample> samples,
                              std::map<std::string, double>& health) {
   ClippingFinder::Params params;
-  params.axis_aligned_rails = stated_rails(record);
-  const ClippingFinder::Found found = ClippingFinder(params).find(samples);
-  report_rails(found.rails, health);
-  return to_clipped_readings(samples, found);
+  params.axis_limit_params = stated_rails(record);
+  const ClippingFinder::ClippingSearchResult found = ClippingFinder(params).find(samples);
+  report_rails(found.saturation_levels, health);
+  return clipped_readings_of(samples, found);
 }
 
 HandHeldSmoother::Params carried_params(const sim::Sensors& sensors, const sim::Values& parameters) {
@@ -48,14 +48,14 @@ HandHeldSmoother::Params carried_params(const sim::Sensors& sensors, const sim::
   return params;
 }
 
-Status run_carried(const sim::Sensors& sensors, const sim::Values& parameters, std::vector<RateState>& rates,
+Status run_carried(const sim::Sensors& sensors, const sim::Values& parameters, std::vector<AngularRateState>& rates,
                    std::vector<AttitudeState>& attitudes, std::map<std::string, double>& health) {
   std::vector<ImuSample> samples;
   if (const Status status = bridge::primary_imu_samples(sensors, samples); !status.ok()) return status;
   const HandHeldSmoother::Params params = carried_params(sensors, parameters);
   const ClippedReadings known = find_clipped(sensors.imus.front(), samples, health);
   HandHeldSmoother::Report report;
-  const Status status = HandHeldSmoother(params).estimate(samples, known.clipped(), rates, attitudes, report);
+  const Status status = HandHeldSmoother(params).estimate(samples, known.clipped_element_signs(), rates, attitudes, report);
   if (!status.ok()) return status;
   known.mark_partly_saturated(rates);
   report_carried(report, health);
@@ -66,13 +66,13 @@ Status run_carried(const sim::Sensors& sensors, const sim::Values& parameters, s
 constexpr double kCarried = 0.5;
 
 Status run_thrown(const sim::Sensors& sensors, const sim::Values& parameters, const std::vector<ImuSample>& samples,
-                  const RecoveredRates& recovered, std::vector<RateState>& rates, Estimate& estimate) {
+                  const RecoveredRates& recovered, std::vector<AngularRateState>& rates, Estimate& estimate) {
   const std::vector<Eigen::Matrix3d>& covariances = recovered.covariances_rad2_s2;
   ClippedReadings known = find_clipped(sensors.imus.front(), samples, estimate.health);
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (!covariances[k].isZero(0.0)) known.signs[k].gyro = {};
+    if (!covariances[k].isZero(0.0)) known.clip_signs[k].gyro = {};
   }
-  ClippedElements clipped = known.clipped();
+  SensingAxisClipSigns clipped = known.clipped_element_signs();
   clipped.recovered_covariance_rad2_s2 = covariances;
   HandHeldSmoother::Report report;
   const Status status = HandHeldSmoother(carried_params(sensors, parameters))
@@ -81,8 +81,8 @@ Status run_thrown(const sim::Sensors& sensors, const sim::Values& parameters, co
   return status;
 }
 
-std::vector<RateState> rates_of(const RecoveredRates& recovered) {
-  std::vector<RateState> out(recovered.sources.size());
+std::vector<AngularRateState> rates_of(const RecoveredRates& recovered) {
+  std::vector<AngularRateState> out(recovered.sources.size());
   for (std::size_t k = 0; k < out.size(); ++k) {
     out[k].time_ns = recovered.samples[k].time_ns;
     out[k].w_WI_I_rad_s = recovered.samples[k].angular_velocity_rad_s;
@@ -100,8 +100,8 @@ Estimate run_attitude_tumble_batch(const sim::Sensors& sensors, const sim::Value
   RecoveredRates recovered;
   recovered.samples = samples;
   if (sensors.sphere_radius_m <= 0.0)
-    recovered = recovered_readings(sensors, samples, ReplacedReadings::clipped, estimate);
-  std::vector<RateState> rates;
+    recovered = recovered_readings(sensors, samples, ReadingsToReplace::clipped, estimate);
+  std::vector<AngularRateState> rates;
   if (recovered.estimated && recovered.report.hand_held_probability_max < kCarried) {
     estimate.status = run_thrown(sensors, parameters, samples, recovered, rates, estimate);
   } else {

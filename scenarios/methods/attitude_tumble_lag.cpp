@@ -15,8 +15,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-Eigen::Matrix3d beyond_noise(const RateState& rate) {
-  const bool as_read = rate.clipped_axes == 0 && rate.source == RateSource::measured;
+Eigen::Matrix3d beyond_noise(const AngularRateState& rate) {
+  const bool as_read = rate.clipped_axes == 0 && rate.source == AngularRateSource::measured;
   return as_read ? Eigen::Matrix3d::Zero() : rate.covariance_rad2_s2;
 }
 
@@ -31,10 +31,10 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
   attitude_tumble_settings().apply(parameters, params);
   const TumbleAttitude filter(params);
   TumbleAttitude::State state;
-  const std::vector<RateState> rates = std::exchange(estimate.rates, {});
+  const std::vector<AngularRateState> rates = std::exchange(estimate.rates, {});
   estimate.attitudes.reserve(rates.size());
   std::size_t k = 0;
-  for (const RateState& rate : rates) {
+  for (const AngularRateState& rate : rates) {
     while (k < samples.size() && samples[k].time_ns < rate.time_ns) ++k;
     if (k == samples.size() || samples[k].time_ns != rate.time_ns) continue;
     ImuSample sample = samples[k];

@@ -104,8 +104,8 @@ Status check_stream(const sim::ImuRecord& record, std::span<const ImuSample> sam
 
 }  // namespace
 
-ImuSheet imu_sheet(const sim::ImuRecord& record) {
-  ImuSheet sheet;
+ImuDataSheet imu_sheet(const sim::ImuRecord& record) {
+  ImuDataSheet sheet;
   if (record.period_ns > 0) sheet.rate_hz = 1.0 / seconds(record.period_ns);
   sheet.gyro_range_rad_s = record.stated_gyro_range_rad_s;
   sheet.accel_range_m_s2 = record.stated_accel_range_m_s2;

@@ -32,11 +32,11 @@ inline constexpr double kGapMaxS = 1.0, kAnyGapS = std::numeric_limits<double>::
 
 /// Real saturation limits exceed the stated range of a device (MTi-30: by a factor of 1.4), and a tilted saturation
 /// limit allows even larger readings.
-inline constexpr double kStatedRangesMax = OutlierFilter::kStatedRangesMax;
+inline constexpr double kStatedRangesMax = OutlierFilter::kMaxReadingToRangeRatio;
 
 inline constexpr double kWildShareMax = 0.01;
 
-ImuSheet imu_sheet(const sim::ImuRecord& record);
+ImuDataSheet imu_sheet(const sim::ImuRecord& record);
 
 Status check_range(const sim::ImuRecord& record, const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& accel_m_s2);
 

@@ -149,8 +149,8 @@ Saturation saturation_of(const sim::ImuRecord& imu) {
   Saturation out;
   if (!bridge::imu_samples(imu, samples).ok() || samples.empty()) return out;
   ClippingFinder::Params params;
-  params.axis_aligned_rails = stated_rails(imu);
-  const std::vector<Clipping> clippings = ClippingFinder(params).find(samples).clippings;
+  params.axis_limit_params = stated_rails(imu);
+  const std::vector<Clipping> clippings = ClippingFinder(params).find(samples).clipping_per_sample;
   std::size_t gyro = 0, accel = 0;
   const auto keep_smallest = [](const Eigen::Vector3d& reading, unsigned axes, double& smallest) {
     for (int j = 0; j < 3; ++j) {

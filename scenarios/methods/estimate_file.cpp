@@ -59,23 +59,23 @@ Eigen::Quaterniond read_quaternion(const Table& table, const Table::Row& row, st
 }
 
 void write_pose(TableWriter& table, const PoseState& pose) {
-  write_vector(table, pose.p_WA_m);
-  write_quaternion(table, pose.q_WA);
-  write_vector(table, pose.v_WA_m_s);
+  write_vector(table, pose.position_W_m);
+  write_quaternion(table, pose.orientation_W);
+  write_vector(table, pose.velocity_W_m_s);
 }
 
 PoseState read_pose(const Table& table, const Table::Row& row, std::size_t time_column, std::size_t first) {
   PoseState pose;
   pose.time_ns = table.integer(row, time_column);
-  pose.p_WA_m = read_vector(table, row, first);
-  pose.q_WA = read_quaternion(table, row, first + 3, false);
-  pose.v_WA_m_s = read_vector(table, row, first + 7);
+  pose.position_W_m = read_vector(table, row, first);
+  pose.orientation_W = read_quaternion(table, row, first + 3, false);
+  pose.velocity_W_m_s = read_vector(table, row, first + 7);
   return pose;
 }
 
-void write_rates(const std::filesystem::path& path, const std::vector<RateState>& rates) {
+void write_rates(const std::filesystem::path& path, const std::vector<AngularRateState>& rates) {
   TableWriter table(path, ',', kRatesHeader);
-  for (const RateState& rate : rates) {
+  for (const AngularRateState& rate : rates) {
     table.integer(rate.time_ns);
     write_vector(table, rate.w_WI_I_rad_s);
     for (int i = 0; i < 3; ++i) {
@@ -88,10 +88,10 @@ void write_rates(const std::filesystem::path& path, const std::vector<RateState>
   table.close();
 }
 
-void read_rates(const std::filesystem::path& path, std::vector<RateState>& rates) {
+void read_rates(const std::filesystem::path& path, std::vector<AngularRateState>& rates) {
   const Table table = Table::read(path, ',', kRatesHeader, 12);
   for (const Table::Row& row : table.rows) {
-    RateState rate;
+    AngularRateState rate;
     rate.time_ns = table.integer(row, 0);
     rate.w_WI_I_rad_s = read_vector(table, row, 1);
     std::size_t column = 4;
@@ -102,10 +102,10 @@ void read_rates(const std::filesystem::path& path, std::vector<RateState>& rates
     }
     rate.clipped_axes = static_cast<std::uint8_t>(table.integer(row, 10));
     const std::int64_t source = table.integer(row, 11);
-    if (source < 0 || source > static_cast<int>(RateSource::bounded_only)) {
+    if (source < 0 || source > static_cast<int>(AngularRateSource::lower_bound_only)) {
       throw BadInput(path.string() + ":" + std::to_string(row.line) + ": unknown source " + std::to_string(source));
     }
-    rate.source = static_cast<RateSource>(source);
+    rate.source = static_cast<AngularRateSource>(source);
     rates.push_back(rate);
   }
 }
@@ -238,9 +238,9 @@ void read_tum(const std::filesystem::path& path, std::vector<PoseState>& poses, 
   for (const Table::Row& row : table.rows) {
     PoseState pose;
     pose.time_ns = table.time_ns(row, 0);
-    pose.p_WA_m = read_vector(table, row, 1);
-    pose.q_WA = read_quaternion(table, row, 4, true);
-    if (all_finite && !(pose.p_WA_m.allFinite() && pose.q_WA.coeffs().allFinite()))
+    pose.position_W_m = read_vector(table, row, 1);
+    pose.orientation_W = read_quaternion(table, row, 4, true);
+    if (all_finite && !(pose.position_W_m.allFinite() && pose.orientation_W.coeffs().allFinite()))
       throw BadInput(fmt::format("{}:{}: the pose is not finite", path.string(), row.line));
     if (!poses.empty() && pose.time_ns <= poses.back().time_ns)
       throw BadInput(fmt::format("{}:{}: time stamps must increase", path.string(), row.line));
@@ -253,7 +253,7 @@ void write_attitudes(const std::filesystem::path& folder, const std::vector<Atti
   for (const AttitudeState& attitude : attitudes) {
     table.time_s(attitude.time_ns);
     write_vector(table, Eigen::Vector3d::Zero());
-    write_quaternion(table, attitude.q_WA);
+    write_quaternion(table, attitude.orientation_W);
     table.end_row();
   }
   table.close();
@@ -266,7 +266,7 @@ void write_attitudes(const std::filesystem::path& folder, const std::vector<Atti
 void read_attitudes(const std::filesystem::path& folder, std::vector<AttitudeState>& attitudes) {
   std::vector<PoseState> poses;
   read_tum(folder / "attitude.tum", poses);
-  for (const PoseState& pose : poses) attitudes.push_back({pose.time_ns, pose.q_WA, Eigen::Matrix3d::Zero()});
+  for (const PoseState& pose : poses) attitudes.push_back({pose.time_ns, pose.orientation_W, Eigen::Matrix3d::Zero()});
   const std::filesystem::path path = folder / "attitude_covariance.csv";
   if (!std::filesystem::exists(path)) return;
   const std::vector<Eigen::Matrix3d> covariances_rad2 = read_covariances(path, stamps_ns(attitudes));
@@ -333,8 +333,8 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
     TableWriter table(folder / "trajectory.tum", ' ', "");
     for (const PoseState& pose : estimate.poses) {
       table.time_s(pose.time_ns);
-      write_vector(table, pose.p_WA_m);
-      write_quaternion(table, pose.q_WA);
+      write_vector(table, pose.position_W_m);
+      write_quaternion(table, pose.orientation_W);
       table.end_row();
     }
     table.close();

@@ -45,7 +45,7 @@ Eigen::Matrix3d covariance(const Table& table, const Table::Row& row) {
   return out;
 }
 
-std::vector<RateState> read_rates(const std::filesystem::path& file, const sim::Sensors& sensors) {
+std::vector<AngularRateState> read_rates(const std::filesystem::path& file, const sim::Sensors& sensors) {
   if (sensors.imus.empty()) throw BadInput("the recording has no IMU; a rate method needs the samples of an IMU");
   const std::vector<std::int64_t>& stamps = sensors.imus.front().time_ns;
   const std::string header = header_line(file);
@@ -58,7 +58,7 @@ std::vector<RateState> read_rates(const std::filesystem::path& file, const sim::
   if (table.rows.size() != stamps.size())
     throw BadInput(fmt::format("{}: the file has {} rows of rates; it must have {} rows, one per sample of the IMU {}",
                                file.filename().string(), table.rows.size(), stamps.size(), sensors.imus.front().name));
-  std::vector<RateState> rates(stamps.size());
+  std::vector<AngularRateState> rates(stamps.size());
   for (std::size_t k = 0; k < rates.size(); ++k) {
     const Table::Row& row = table.rows[k];
     const std::int64_t time_ns = table.integer(row, 0);
@@ -102,7 +102,7 @@ Estimate read_poses(const ExternalDescription& description, const std::filesyste
     for (PoseState& pose : estimate.poses) pose.time_ns -= kExportOrigin_ns;
   if (description.kind != Kind::attitude) return estimate;
   for (const PoseState& pose : std::exchange(estimate.poses, {}))
-    estimate.attitudes.push_back({pose.time_ns, pose.q_WA, Eigen::Matrix3d::Zero()});
+    estimate.attitudes.push_back({pose.time_ns, pose.orientation_W, Eigen::Matrix3d::Zero()});
   return estimate;
 }
 

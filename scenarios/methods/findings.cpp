@@ -23,7 +23,7 @@ bool is_about_readings(const HealthFinding& finding) {
   // A health finding about the gyro scale ends if a later rotation of gravity confirms the scale.
   if (kind == About::gyro_scale) return !finding.ended;
   return kind == About::frozen_axis || kind == About::frozen_sensor || kind == About::force_at_rest ||
-         kind == About::axes_or_signs || kind == About::flight_forces || kind == About::rotation;
+         kind == About::wrong_axes_or_signs || kind == About::inverted_accel_in_flight || kind == About::rotation;
 }
 
 bool is_about_place(const HealthFinding& finding) {
@@ -56,7 +56,7 @@ void add_finding(const HealthFinding& finding, Estimate& estimate) {
 void add_findings(const SensorHealth& health, std::span<const std::string> names, Estimate& estimate) {
   for (HealthFinding finding : health.findings) {
     std::size_t unit = 0;
-    while (unit < names.size() && finding.sensor != unit_name(unit, names.size())) ++unit;
+    while (unit < names.size() && finding.sensor != imu_name(unit, names.size())) ++unit;
     if (unit < names.size()) finding.sensor = names[unit];
     add_finding(finding, estimate);
   }

@@ -5,28 +5,28 @@
 
 namespace tumble::scenarios {
 
-CheckedImu checked_imu(const sim::Sensors& sensors) {
+ImuCheckParams checked_imu(const sim::Sensors& sensors) {
   const sim::ImuRecord& record = sensors.imus.front();
   return {.gyro_range_rad_s = record.stated_gyro_range_rad_s,
           .accel_range_m_s2 = record.stated_accel_range_m_s2,
           .gravity_m_s2 = sensors.gravity_m_s2,
           .lever_arm_I_m = bridge::lever_arm_I_m(record),
-          .merged = sensors.sphere_radius_m > 0.0};
+          .is_merged = sensors.sphere_radius_m > 0.0};
 }
 
 void report_findings(const SensorHealth& health, const sim::Sensors& sensors, Estimate& estimate) {
   add_findings(health, {&sensors.imus.front().name, 1}, estimate);
 }
 
-ImuFindings check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::span<const RateState> rates,
+ImuHealthReport check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::span<const AngularRateState> rates,
                       std::optional<double> carried_share, Estimate& estimate) {
-  ImuFindings out = check_recording(checked_imu(sensors), samples, rates, carried_share);
+  ImuHealthReport out = check_recording(checked_imu(sensors), samples, rates, carried_share);
   report_findings(out.health, sensors, estimate);
   return out;
 }
 
-void inflate_rates(const ImuFindings& findings, std::span<const ImuSample> samples, Estimate& estimate) {
-  estimate.suspect_rad2_s2 = suspect_covariance(findings, samples, estimate.rates);
+void inflate_rates(const ImuHealthReport& findings, std::span<const ImuSample> samples, Estimate& estimate) {
+  estimate.suspect_rad2_s2 = suspected_error_covariance(findings, samples, estimate.rates);
   for (std::size_t k = 0; k < estimate.suspect_rad2_s2.size(); ++k)
     estimate.rates[k].covariance_rad2_s2 += estimate.suspect_rad2_s2[k];
 }

@@ -13,16 +13,16 @@
 
 namespace tumble::scenarios {
 
-CheckedImu checked_imu(const sim::Sensors& sensors);
+ImuCheckParams checked_imu(const sim::Sensors& sensors);
 
 void report_findings(const SensorHealth& health, const sim::Sensors& sensors, Estimate& estimate);
 
-ImuFindings check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::span<const RateState> rates,
+ImuHealthReport check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::span<const AngularRateState> rates,
                       std::optional<double> carried_share, Estimate& estimate);
 
 /// Only methods that process the whole recording may call inflate_rates, because live results must not depend on later
 /// readings.
-void inflate_rates(const ImuFindings& findings, std::span<const ImuSample> samples, Estimate& estimate);
+void inflate_rates(const ImuHealthReport& findings, std::span<const ImuSample> samples, Estimate& estimate);
 
 /// Returns a caution about units, signs or axes of the readings, or an empty text.
 std::string imu_note(const sim::ImuRecord& imu, double gravity_m_s2);

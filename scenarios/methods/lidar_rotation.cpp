@@ -59,7 +59,7 @@ void add_rotations(const Estimate& estimate, std::vector<SeenRotation>& out) {
     const SweepReport &before = estimate.sweeps[k - 1], &after = estimate.sweeps[k];
     if (!registered(before) || !registered(after)) continue;
     SeenRotation seen{before.pose.time_ns, after.pose.time_ns,
-                      so3::log(before.pose.q_WA.conjugate() * after.pose.q_WA)};
+                      so3::logarithm(before.pose.orientation_W.conjugate() * after.pose.orientation_W)};
     const double length_s = seconds(seen.to_ns - seen.from_ns), angle_rad = seen.rotation_L_rad.norm();
     if (angle_rad > kSlowest_rad_s * length_s && angle_rad < kFastest_rad_s * length_s) out.push_back(seen);
   }

@@ -59,7 +59,7 @@ void smooth(const Prepared& prepared, Estimate& estimate) {
     if (!estimate.status.ok()) return;
   }
   const auto take = [&](const RollingEstimate& e) {
-    append_pose({.pose = {e.time_ns, e.p_WG_m, e.q_WI, e.v_WG_m_s, e.covariance},
+    append_pose({.pose = {e.time_ns, e.sphere_centre_W_m, e.q_WI, e.sphere_velocity_W_m_s, e.covariance},
                  .angular_velocity_rad_s = e.w_WI_I_rad_s,
                  .mode = e.mode,
                  .at_rest = e.at_rest,

@@ -56,22 +56,22 @@ const Settings<RollingOdometry::Params>& live_settings() {
 
 /// If rolling speed and travel speed of a sphere differ, a short flight counts as part of a slip.
 bool spins(double radius_m, const RollingOdometry::Pose& pose) {
-  const double rolling_m_s = radius_m * (pose.pose.q_WA * pose.angular_velocity_rad_s).head<2>().norm();
-  const double speed_m_s = pose.pose.v_WA_m_s.norm();
+  const double rolling_m_s = radius_m * (pose.pose.orientation_W * pose.angular_velocity_rad_s).head<2>().norm();
+  const double speed_m_s = pose.pose.velocity_W_m_s.norm();
   return std::abs(rolling_m_s - speed_m_s) > std::max(kSpinsM_s, kSpinsShare * std::max(rolling_m_s, speed_m_s));
 }
 
 sim::ContactLabel contact_label(double radius_m, const RollingOdometry::Pose& pose) {
   if (!may_slip(pose.mode)) return sim::ContactLabel::grip;
   if (pose.mode == RollingMode::bump && !spins(radius_m, pose)) return sim::ContactLabel::air;
-  return slip_or_slide(radius_m, pose.pose.q_WA, pose.angular_velocity_rad_s, pose.pose.v_WA_m_s);
+  return slip_or_slide(radius_m, pose.pose.orientation_W, pose.angular_velocity_rad_s, pose.pose.velocity_W_m_s);
 }
 
-void report_whole(const MergedFindings& whole, Estimate& estimate) {
-  if (whole.merged.lever_arm_agreement) estimate.health["imu_arm_share"] = *whole.merged.lever_arm_agreement;
+void report_whole(const MergedImuRecording& whole, Estimate& estimate) {
+  if (whole.recordings.lever_arm_agreement) estimate.health["imu_arm_share"] = *whole.recordings.lever_arm_agreement;
 }
 
-Status replay(const std::vector<UnitRecording>& recordings, RollingOdometry& odometry, double radius_m,
+Status replay(const std::vector<ImuRecording>& recordings, RollingOdometry& odometry, double radius_m,
               std::span<const std::string> names, Estimate& estimate) {
   TimeNs checked_ns = 0;
   SensorHealth found;
@@ -79,7 +79,7 @@ Status replay(const std::vector<UnitRecording>& recordings, RollingOdometry& odo
     while (const std::optional<RollingOdometry::Pose> pose = odometry.take()) append_pose(*pose, radius_m, estimate);
     if (estimate.poses.empty() || estimate.poses.back().time_ns < checked_ns + kHealthPeriodNs) return;
     checked_ns = estimate.poses.back().time_ns;
-    found.observe(odometry.health());
+    found.merge_current_findings(odometry.health());
   };
   std::vector<std::size_t> next(recordings.size(), 0);
   while (true) {
@@ -98,7 +98,7 @@ Status replay(const std::vector<UnitRecording>& recordings, RollingOdometry& odo
   }
   const Status status = odometry.finish();
   collect();
-  found.observe(odometry.health());
+  found.merge_current_findings(odometry.health());
   add_findings(found, names, estimate);
   return status;
 }
@@ -107,7 +107,7 @@ void report(const RollingOdometry& odometry, const RollingOdometry::Params& para
   if (odometry.restart_count() > 0) estimate.health["gaps"] = static_cast<double>(odometry.restart_count());
   if (odometry.rejected_readings() > 0)
     estimate.health["rejected_readings"] = static_cast<double>(odometry.rejected_readings());
-  if (params.lag_s > 0.0) estimate.centre_B_m = odometry.calibration().centre_B_m;
+  if (params.lag_s > 0.0) estimate.centre_B_m = odometry.calibration().sphere_centre_B_m;
 }
 
 Estimate run(const char* method, const Settings<RollingOdometry::Params>& settings, const sim::Sensors& sensors,
@@ -122,7 +122,7 @@ Estimate run(const char* method, const Settings<RollingOdometry::Params>& settin
   settings.apply(parameters, params);
   RollingOdometry odometry(params);
   estimate.status = replay(units.recordings, odometry, params.radius_m, units.names, estimate);
-  estimate.health["imus"] = static_cast<double>(params.units.size());
+  estimate.health["imus"] = static_cast<double>(params.imus.size());
   if (odometry.recording() != nullptr) report_whole(*odometry.recording(), estimate);
   report_beyond_range(units.beyond_range, estimate);
   report(odometry, params, estimate);
@@ -159,7 +159,7 @@ RollingOdometry::Params stated_params(const sim::Sensors& sensors, const SphereI
                                       RollingOdometry::Params params) {
   params.radius_m = sensors.sphere_radius_m;
   params.gravity_m_s2 = sensors.gravity_m_s2;
-  for (const UnitRecording& unit : units.recordings) params.units.push_back({unit.sheet, unit.T_BI});
+  for (const ImuRecording& unit : units.recordings) params.imus.push_back({unit.data_sheet, unit.T_BI});
   if (sensors.imus.front().device.empty()) params.widen_priors_for_unknown_imus();
   return params;
 }
@@ -175,7 +175,7 @@ void append_pose(const RollingOdometry::Pose& pose, double radius_m, Estimate& e
   count("samples_slip", pose.mode == RollingMode::slip);
   count("samples_bump", pose.mode == RollingMode::bump);
   count("samples_incline", pose.mode == RollingMode::incline);
-  count("samples_rough", pose.mode == RollingMode::rough);
+  count("samples_rough", pose.mode == RollingMode::uneven);
   count("samples_rest", pose.at_rest);
 }
 

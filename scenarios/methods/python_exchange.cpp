@@ -209,7 +209,7 @@ void read_rates(const Answer& answer, const sim::Sensors& sensors, Estimate& est
   std::vector<double> covariances;
   if (answer.has("covariance")) covariances = answer.array<double>("covariance", "<f8", 9, stamps.size());
   for (std::size_t k = 0; k < stamps.size(); ++k) {
-    RateState rate;
+    AngularRateState rate;
     rate.time_ns = stamps[k];
     rate.w_WI_I_rad_s = row_of(rates, k);
     if (!covariances.empty())
@@ -226,12 +226,12 @@ std::vector<PoseState> read_poses(const Answer& answer) {
   std::vector<PoseState> poses(times_ns.size());
   for (std::size_t k = 0; k < poses.size(); ++k) {
     poses[k].time_ns = times_ns[k];
-    poses[k].p_WA_m = row_of(positions, k);
+    poses[k].position_W_m = row_of(positions, k);
     const Eigen::Quaterniond q{Eigen::Map<const Eigen::Vector4d>(&quaternions[4 * k])};
     if (!(std::abs(q.coeffs().stableNorm() - 1.0) <= kQuaternionTolerance) || (k > 0 && times_ns[k] <= times_ns[k - 1]))
       throw BadInput(
           fmt::format("pose {} of the result has a quaternion without norm 1, or a time that does not increase", k));
-    poses[k].q_WA = q.normalized();
+    poses[k].orientation_W = q.normalized();
   }
   return poses;
 }
@@ -278,7 +278,7 @@ Estimate read_answer(const SharedMemory& memory, Kind kind, Frame frame, const s
   bounds.require_poses(estimate.poses, place);
   if (kind == Kind::attitude) {
     for (const PoseState& pose : std::exchange(estimate.poses, {}))
-      estimate.attitudes.push_back({pose.time_ns, pose.q_WA, Eigen::Matrix3d::Zero()});
+      estimate.attitudes.push_back({pose.time_ns, pose.orientation_W, Eigen::Matrix3d::Zero()});
   }
   if (kind == Kind::slam && answer.has("map")) read_map(answer, estimate);
   bounds.require_slam(estimate);

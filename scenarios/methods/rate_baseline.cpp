@@ -5,10 +5,10 @@
 
 namespace tumble::scenarios {
 
-RailDetector::Params stated_rails(const sim::ImuRecord& record) {
-  RailDetector::Params rails;
-  if (record.stated_gyro_range_rad_s > 0.0) rails.stated_gyro_rad_s = record.stated_gyro_range_rad_s;
-  if (record.stated_accel_range_m_s2 > 0.0) rails.stated_accel_m_s2 = record.stated_accel_range_m_s2;
+SaturationLimitDetector::Params stated_rails(const sim::ImuRecord& record) {
+  SaturationLimitDetector::Params rails;
+  if (record.stated_gyro_range_rad_s > 0.0) rails.stated_gyro_range_rad_s = record.stated_gyro_range_rad_s;
+  if (record.stated_accel_range_m_s2 > 0.0) rails.stated_accel_range_m_s2 = record.stated_accel_range_m_s2;
   return rails;
 }
 

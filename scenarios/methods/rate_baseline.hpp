@@ -8,7 +8,7 @@
 namespace tumble::scenarios {
 
 /// The initial saturation limits are the measurement ranges of the IMU's data sheet, where 0 means unknown.
-RailDetector::Params stated_rails(const sim::ImuRecord& record);
+SaturationLimitDetector::Params stated_rails(const sim::ImuRecord& record);
 
 Estimate run_clipped_baseline(const Settings<baselines::ClippedBaseline::Params>& settings, const sim::Sensors& sensors,
                               const sim::Values& parameters);

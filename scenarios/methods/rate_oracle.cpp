@@ -17,7 +17,7 @@ Estimate run_rate_oracle(const sim::Sensors& sensors, const sim::Values&, const 
 
 }  // namespace
 
-Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std::vector<RateState>& out) {
+Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std::vector<AngularRateState>& out) {
   out.clear();
   // If the clipped readings are invalid, every other method fails, so this oracle must fail too.
   std::vector<ImuSample> samples;

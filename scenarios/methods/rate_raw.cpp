@@ -17,7 +17,7 @@ Estimate run_rate_raw(const sim::Sensors& sensors, const sim::Values&, const Ora
 
 }  // namespace
 
-Status raw_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<RateState>& out) {
+Status raw_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<AngularRateState>& out) {
   out.assign(samples.size(), {});
   const double variance = bridge::gyro_variance_rad2_s2(sensors.imus.front());
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -25,7 +25,7 @@ Status raw_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples
     out[k].w_WI_I_rad_s = samples[k].angular_velocity_rad_s;
     out[k].covariance_rad2_s2 = variance * Eigen::Matrix3d::Identity();
     out[k].clipped_axes = samples[k].device_clip_flags & kClipGyro;
-    out[k].source = out[k].clipped_axes ? RateSource::bounded_only : RateSource::measured;
+    out[k].source = out[k].clipped_axes ? AngularRateSource::lower_bound_only : AngularRateSource::measured;
   }
   return {};
 }

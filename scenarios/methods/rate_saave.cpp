@@ -25,30 +25,30 @@ Estimate run_rate_saave(const sim::Sensors& sensors, const sim::Values& paramete
 
 }  // namespace
 
-Saave::Params saave_defaults() {
-  Saave::Params params;
+SaturationAwareRateEstimator::Params saave_defaults() {
+  SaturationAwareRateEstimator::Params params;
   params.lever_arm_m = presets::rig_lever_arm_m();
   params.saturation_point_rad_s = presets::kRigSaturationPoint_rad_s;
   return params;
 }
 
-const Settings<Saave::Params>& saave_settings() {
-  static const Settings<Saave::Params> all(saave_defaults(), {.stated = stated_lever_arm()});
+const Settings<SaturationAwareRateEstimator::Params>& saave_settings() {
+  static const Settings<SaturationAwareRateEstimator::Params> all(saave_defaults(), {.stated = stated_lever_arm()});
   return all;
 }
 
-Settings<Saave::Params> other_saave_settings(std::span<const sim::Parameter> others) {
-  return Settings<Saave::Params>(saave_defaults(), {.stated = stated_lever_arm(), .beside = others, .prefix = "rate_"});
+Settings<SaturationAwareRateEstimator::Params> other_saave_settings(std::span<const sim::Parameter> others) {
+  return Settings<SaturationAwareRateEstimator::Params>(saave_defaults(), {.stated = stated_lever_arm(), .beside = others, .prefix = "rate_"});
 }
 
 Status saave_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples,
-                   const Settings<Saave::Params>& settings, const sim::Values& parameters,
-                   std::vector<RateState>& out) {
-  Saave::Params params = settings.defaults();
+                   const Settings<SaturationAwareRateEstimator::Params>& settings, const sim::Values& parameters,
+                   std::vector<AngularRateState>& out) {
+  SaturationAwareRateEstimator::Params params = settings.defaults();
   params.lever_arm_m = bridge::lever_arm_I_m(sensors.imus.front());
   settings.apply(parameters, params);
   out.clear();
-  return Saave(params).estimate(samples, out);
+  return SaturationAwareRateEstimator(params).estimate(samples, out);
 }
 
 Method rate_saave() {

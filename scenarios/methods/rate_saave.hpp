@@ -13,11 +13,11 @@
 
 namespace tumble::scenarios {
 
-const Settings<Saave::Params>& saave_settings();
-Settings<Saave::Params> other_saave_settings(std::span<const sim::Parameter> others);
+const Settings<SaturationAwareRateEstimator::Params>& saave_settings();
+Settings<SaturationAwareRateEstimator::Params> other_saave_settings(std::span<const sim::Parameter> others);
 
 /// On error, `out` is empty.
 Status saave_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples,
-                   const Settings<Saave::Params>& settings, const sim::Values& parameters, std::vector<RateState>& out);
+                   const Settings<SaturationAwareRateEstimator::Params>& settings, const sim::Values& parameters, std::vector<AngularRateState>& out);
 
 }  // namespace tumble::scenarios

@@ -18,18 +18,18 @@
 namespace tumble::scenarios {
 
 // A range or noise density of 0 means that the data sheet lacks this value; the smoother then uses its default.
-RateSmoother::Params stated_params(const sim::ImuRecord& record, RateSmoother::Params params) {
-  RateModelParams& model = params.model;
+AngularRateSmoother::Params stated_params(const sim::ImuRecord& record, AngularRateSmoother::Params params) {
+  AngularRateModelParams& model = params.model;
   model.nominal.lever_arm_m = bridge::lever_arm_I_m(record);
   if (record.gyro_noise_rad_s_sqrt_hz > 0.0) model.gyro_noise_density = record.gyro_noise_rad_s_sqrt_hz;
   if (record.accel_noise_m_s2_sqrt_hz > 0.0) model.accel_noise_density = record.accel_noise_m_s2_sqrt_hz;
-  params.rails = stated_rails(record);
+  params.saturation_detector = stated_rails(record);
   return params;
 }
 
-RateSmoother::Params smoother_params(const sim::ImuRecord& record, const Settings<RateSmoother::Params>& settings,
+AngularRateSmoother::Params smoother_params(const sim::ImuRecord& record, const Settings<AngularRateSmoother::Params>& settings,
                                      const sim::Values& parameters) {
-  RateSmoother::Params params = stated_params(record, settings.defaults());
+  AngularRateSmoother::Params params = stated_params(record, settings.defaults());
   settings.apply(parameters, params);
   return params;
 }
@@ -42,10 +42,10 @@ Status auxiliary_recordings(const sim::Sensors& sensors, std::vector<AuxiliaryRe
     if (record.name == "imu_reference") continue;  // only for comparisons
     AuxiliaryRecording& added = out.emplace_back();
     if (Status status = bridge::imu_samples(record, added.samples, bridge::kAnyGapS); !status.ok()) return status;
-    added.imu.T_IC = primary.T_BI.inverse(Eigen::Isometry) * record.T_BI;
+    added.imu.T_imu_device = primary.T_BI.inverse(Eigen::Isometry) * record.T_BI;
     if (record.gyro_noise_rad_s_sqrt_hz > 0.0) added.imu.gyro_noise_density = record.gyro_noise_rad_s_sqrt_hz;
     if (record.accel_noise_m_s2_sqrt_hz > 0.0) added.imu.accel_noise_density = record.accel_noise_m_s2_sqrt_hz;
-    added.stated_rails = stated_rails(record);
+    added.stated_saturation_limits = stated_rails(record);
   }
   return {};
 }
@@ -55,13 +55,13 @@ const std::vector<std::string>& stated_densities() {
   return names;
 }
 
-const Settings<RateSmoother::Params>& rate_tumble_settings() {
-  static const Settings<RateSmoother::Params> all(RateSmoother::Params{}, {.stated = stated_densities()});
+const Settings<AngularRateSmoother::Params>& rate_tumble_settings() {
+  static const Settings<AngularRateSmoother::Params> all(AngularRateSmoother::Params{}, {.stated = stated_densities()});
   return all;
 }
 
 const CalibratedRig* RigCalibrationUse::found() const {
-  const bool more = of_batch && of_batch->only_rails && of_stream && !of_stream->only_rails;
+  const bool more = of_batch && of_batch->only_saturation_limits && of_stream && !of_stream->only_saturation_limits;
   if (of_batch && !more) return &*of_batch;
   return of_stream ? &*of_stream : nullptr;
 }
@@ -72,7 +72,7 @@ namespace {
 /// cannot belong to one rig.
 bool may_be_of_this_rig(const CalibratedRig& given, const std::optional<CalibratedRig>& fresh, Estimate& result) {
   constexpr double kDistanceMax = 2.0;  // standard deviations
-  if (!fresh || fresh->only_rails) return true;
+  if (!fresh || fresh->only_saturation_limits) return true;
   const double distance = calibration_distance(given.calibration, fresh->calibration);
   if (distance <= kDistanceMax) return true;
   SensorHealth health;
@@ -120,20 +120,20 @@ Method calibrating_method(const Method& method, RigCalibrationUse& learning) {
   return out;
 }
 
-RegimeSmoother::Params regime_params(const sim::Sensors& sensors, const RateSmoother::Params& rate) {
-  RegimeSmoother::Params out;
+MotionRegimeSmoother::Params regime_params(const sim::Sensors& sensors, const AngularRateSmoother::Params& rate) {
+  MotionRegimeSmoother::Params out;
   out.rate = rate;
-  out.evidence.gravity_m_s2 = out.hand_held.gravity_m_s2 = sensors.gravity_m_s2;
+  out.regime_evidence.gravity_m_s2 = out.hand_held.gravity_m_s2 = sensors.gravity_m_s2;
   return out;
 }
 
 RecoveredRates recovered_readings(const sim::Sensors& sensors, std::span<const ImuSample> samples,
                                   ReplacedReadings replaced, Estimate& estimate) {
-  const RateSmoother::Params rate = stated_params(sensors.imus.front(), rate_tumble_settings().defaults());
+  const AngularRateSmoother::Params rate = stated_params(sensors.imus.front(), rate_tumble_settings().defaults());
   std::vector<AuxiliaryRecording> auxiliary_imus;
   if (!auxiliary_recordings(sensors, auxiliary_imus).ok()) auxiliary_imus.clear();
   const RecoveredRates out = recover_rates(samples, auxiliary_imus, regime_params(sensors, rate), replaced);
-  report_rails(out.rails, estimate.health);
+  report_rails(out.saturation_detector, estimate.health);
   return out;
 }
 
@@ -145,11 +145,11 @@ Estimate rates_of_batch(const sim::Sensors& sensors, const sim::Values& paramete
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples, bridge::kAnyGapS);
   if (estimate.status.ok()) {
-    RateSmoother::Params params = smoother_params(sensors.imus.front(), rate_tumble_settings(), parameters);
+    AngularRateSmoother::Params params = smoother_params(sensors.imus.front(), rate_tumble_settings(), parameters);
     if (given != nullptr) apply_saved_calibration(*given, params);
     std::vector<AuxiliaryRecording> auxiliary_imus;
     estimate.status = auxiliary_recordings(sensors, auxiliary_imus);
-    RegimeSmoother::Report report;
+    MotionRegimeSmoother::Report report;
     if (estimate.status.ok())
       estimate.status = estimate_rates(samples, auxiliary_imus, regime_params(sensors, params), estimate.rates, report);
     estimate.health["imus"] = 1.0 + static_cast<double>(auxiliary_imus.size());
@@ -157,7 +157,7 @@ Estimate rates_of_batch(const sim::Sensors& sensors, const sim::Values& paramete
       report_rates(report, estimate);
       report_gaps(samples, estimate);
       inflate_rates(check_imu(sensors, samples, estimate.rates, carried_share(report), estimate), samples, estimate);
-      if (std::optional<CalibratedRig> rig = learnt(report.rate, given, params.model); rig && found != nullptr)
+      if (std::optional<CalibratedRig> rig = calibrated_rig(report.rate, given, params.model); rig && found != nullptr)
         *found = std::move(rig);
     }
   }

@@ -20,17 +20,17 @@
 
 namespace tumble::scenarios {
 
-const Settings<RateSmoother::Params>& rate_tumble_settings();
+const Settings<AngularRateSmoother::Params>& rate_tumble_settings();
 
 const std::vector<std::string>& stated_densities();
 
-RateSmoother::Params stated_params(const sim::ImuRecord& record, RateSmoother::Params params);
+AngularRateSmoother::Params stated_params(const sim::ImuRecord& record, AngularRateSmoother::Params params);
 
 /// A parameter in `parameters` has priority over the IMU record, which has priority over the defaults of `settings`.
-RateSmoother::Params smoother_params(const sim::ImuRecord& record, const Settings<RateSmoother::Params>& settings,
+AngularRateSmoother::Params smoother_params(const sim::ImuRecord& record, const Settings<AngularRateSmoother::Params>& settings,
                                      const sim::Values& parameters);
 
-RegimeSmoother::Params regime_params(const sim::Sensors& sensors, const RateSmoother::Params& rate);
+MotionRegimeSmoother::Params regime_params(const sim::Sensors& sensors, const AngularRateSmoother::Params& rate);
 
 Status auxiliary_recordings(const sim::Sensors& sensors, std::vector<AuxiliaryRecording>& out);
 

@@ -17,30 +17,30 @@ namespace tumble::scenarios {
 
 namespace {
 
-const Settings<RegimeStream::Params>& rate_tumble_lag_settings() {
-  static const Settings<RegimeStream::Params> all = [] {
+const Settings<MotionRegimeStream::Params>& rate_tumble_lag_settings() {
+  static const Settings<MotionRegimeStream::Params> all = [] {
     std::vector<std::string> stated = stated_densities();
     stated.insert(stated.end(),
                   {"period_s", "evidence_gravity_m_s2", "carried_gravity_m_s2", "hand_held_probability_min"});
     const std::vector<std::string> fixed = {"carried_period_s", "carried_lag_s", "carried_gap_max_s",
                                             "carried_iterations_max"};
-    return Settings<RegimeStream::Params>(RegimeStream::Params{}, {.stated = stated, .fixed = fixed});
+    return Settings<MotionRegimeStream::Params>(MotionRegimeStream::Params{}, {.stated = stated, .fixed = fixed});
   }();
   return all;
 }
 
-RegimeStream::Params stream_params(const sim::Sensors& sensors, const sim::Values& parameters,
+MotionRegimeStream::Params stream_params(const sim::Sensors& sensors, const sim::Values& parameters,
                                    const CalibratedRig* given) {
   const sim::ImuRecord& record = sensors.imus.front();
-  RegimeStream::Params params = rate_tumble_lag_settings().defaults();
-  RateStream::Params& rate = params.rate;
-  RateSmoother::Params batch;
+  MotionRegimeStream::Params params = rate_tumble_lag_settings().defaults();
+  AngularRateStream::Params& rate = params.rate;
+  AngularRateSmoother::Params batch;
   batch.model = rate.model;
   batch = stated_params(record, std::move(batch));
   rate.model = batch.model;
-  rate.rails = batch.rails;
+  rate.saturation_detector = batch.saturation_detector;
   if (record.period_ns > 0) rate.period_s = seconds(record.period_ns);
-  params.evidence.gravity_m_s2 = params.hand_held.body.gravity_m_s2 = sensors.gravity_m_s2;
+  params.regime_evidence.gravity_m_s2 = params.hand_held.body.gravity_m_s2 = sensors.gravity_m_s2;
   rate_tumble_lag_settings().apply(parameters, params);
   rate.lag_s = std::max(rate.lag_s, 2.0 * rate.period_s);
   params.hand_held.body.expert.gap_max_s = rate.gap_max_s;
@@ -50,15 +50,15 @@ RegimeStream::Params stream_params(const sim::Sensors& sensors, const sim::Value
   return params;
 }
 
-void restart_after_gap(RegimeStream::Params& params, RegimeStream& joined, RegimeStream::State& all) {
+void restart_after_gap(MotionRegimeStream::Params& params, MotionRegimeStream& joined, MotionRegimeStream::State& all) {
   const RigCalibration calibration = joined.rate().calibration(all.rate);
   if (check_calibration(calibration).ok()) params.rate.model.calibration = calibration;
-  joined = RegimeStream(params);
-  const FrozenAxes::State frozen = all.rate.frozen;
-  const FlightSignCheck::State sense = all.rate.sense;
+  joined = MotionRegimeStream(params);
+  const FrozenAxes::State frozen = all.rate.frozen_axes;
+  const FlightSignCheck::State sense = all.rate.flight_sign_check;
   all = joined.start();
-  all.rate.frozen = frozen;
-  all.rate.sense = sense;
+  all.rate.frozen_axes = frozen;
+  all.rate.flight_sign_check = sense;
 }
 
 Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& parameters, const CalibratedRig* given,
@@ -67,7 +67,7 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples, bridge::kAnyGapS);
   if (!estimate.status.ok()) return estimate;
-  RegimeStream::Params params = stream_params(sensors, parameters, given);
+  MotionRegimeStream::Params params = stream_params(sensors, parameters, given);
   std::vector<AuxiliaryRecording> recordings;
   estimate.status = auxiliary_recordings(sensors, recordings);
   if (!estimate.status.ok()) return estimate;
@@ -76,11 +76,11 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   if (!estimate.status.ok()) return estimate;
   // If auxiliary IMUs exist, the hand-held smoother is switched off, because it cannot use auxiliary IMUs.
   if (!auxiliary_imus.empty() && !parameters.has("hand_held_probability_min")) params.hand_held_probability_min = 1.0;
-  RegimeStream joined(params);
-  const RateStream& stream = joined.rate();
-  RegimeStream::State all = joined.start();
+  MotionRegimeStream joined(params);
+  const AngularRateStream& stream = joined.rate();
+  MotionRegimeStream::State all = joined.start();
   estimate.rates.reserve(samples.size());
-  std::optional<RateState> out;
+  std::optional<AngularRateState> out;
   std::vector<AuxiliaryReading> beside(auxiliary_imus.size());
   for (std::size_t k = 0; k < samples.size(); ++k) {
     for (std::size_t i = 0; i < beside.size(); ++i) beside[i] = auxiliary_imus[i][k];
@@ -94,14 +94,14 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   }
   joined.flush(all, estimate.rates);
   report_gaps(samples, estimate);
-  const RateStream::State& state = all.rate;
+  const AngularRateStream::State& state = all.rate;
   estimate.health["calibration_at_prior"] = is_at_prior(stream, state) ? 1.0 : 0.0;
   estimate.health["accel_delay_s"] = stream.sensor_errors(state).errors.accel_delay_s;
-  report_rails(state.rails.known, estimate.health);
+  report_rails(state.clipping_state.known_limits, estimate.health);
   const std::optional<double> carried_share =
-      all.reported > 0 ? std::optional(all.sum.hand_held / static_cast<double>(all.reported)) : std::nullopt;
+      all.reported_sample_count > 0 ? std::optional(all.regime_probability_sum.hand_held / static_cast<double>(all.reported_sample_count)) : std::nullopt;
   if (estimate.status.ok() && found != nullptr) {
-    if (std::optional<CalibratedRig> rig = learnt(stream, params.rate, given, state)) *found = std::move(rig);
+    if (std::optional<CalibratedRig> rig = calibrated_rig(stream, params.rate, given, state)) *found = std::move(rig);
   }
   if (estimate.status.ok()) {
     (void)check_imu(sensors, samples, estimate.rates, carried_share, estimate);

@@ -160,8 +160,8 @@ std::vector<MethodPointer> find_methods_within(std::span<const std::string> name
   return found;
 }
 
-void count_sources(std::span<const RateState> rates, std::map<std::string, double>& health) {
-  for (const RateState& rate : rates) health[std::string("samples_") + to_string(rate.source)] += 1.0;
+void count_sources(std::span<const AngularRateState> rates, std::map<std::string, double>& health) {
+  for (const AngularRateState& rate : rates) health[std::string("samples_") + to_string(rate.source)] += 1.0;
 }
 
 }  // namespace tumble::scenarios

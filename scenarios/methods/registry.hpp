@@ -49,10 +49,10 @@ Method slam_poses_autogain_fusion();
 Method slam_poses_tumble();
 Method slam_rolling_prior();
 
-Status raw_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<RateState>& out);
-Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std::vector<RateState>& out);
+Status raw_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<AngularRateState>& out);
+Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std::vector<AngularRateState>& out);
 
-void count_sources(std::span<const RateState> rates, std::map<std::string, double>& health);
+void count_sources(std::span<const AngularRateState> rates, std::map<std::string, double>& health);
 
 struct KnownMotion {
   /// Motion of the IMU between two times, or nothing if the odometer does not cover both times.

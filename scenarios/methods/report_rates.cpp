@@ -17,7 +17,7 @@ void report_level(std::size_t axis, double level_rad_s, std::map<std::string, do
   health[std::string("learnt_gyro_rail_") + kAxes[axis] + "_rad_s"] = level_rad_s;
 }
 
-void report_smoother(const RateReport& report, std::map<std::string, double>& health) {
+void report_smoother(const AngularRateReport& report, std::map<std::string, double>& health) {
   health["iterations"] = report.iterations;
   health["converged"] = report.converged ? 1.0 : 0.0;
   health["calibration_mahalanobis"] = report.calibration_mahalanobis;
@@ -27,8 +27,8 @@ void report_smoother(const RateReport& report, std::map<std::string, double>& he
       std::count(report.contradicts_stated_range.begin(), report.contradicts_stated_range.end(), true));
   health["accel_delay_s"] = report.sensor_errors.errors.accel_delay_s;
   health["device_calibrated"] = report.data_sheet_probability;
-  health["triads_together"] = report.synchronous_probability;
-  health["error_rounds"] = report.error_rounds;
+  health["triads_together"] = report.synchronous_triads_probability;
+  health["error_rounds"] = report.correction_iterations;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     health[std::string("learnt_lever_arm_") + kAxes[axis] + "_m"] =
         report.calibration.constants.lever_arm_m[static_cast<Eigen::Index>(axis)];
@@ -39,7 +39,7 @@ void report_smoother(const RateReport& report, std::map<std::string, double>& he
 }  // namespace
 
 void report_rails(const SaturationLevels& rails, std::map<std::string, double>& health) {
-  const RailPlanes in_use = rails.planes_in_use();
+  const SaturationPlanes in_use = rails.planes_in_use();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double level_rad_s = rails.axis_aligned_rails.channels[axis].rail;
     if (in_use.element[axis]) {
@@ -50,13 +50,13 @@ void report_rails(const SaturationLevels& rails, std::map<std::string, double>& 
   }
 }
 
-std::optional<double> carried_share(const RegimeSmoother::Report& report) {
-  return report.judged ? std::optional(report.probabilities.hand_held) : std::nullopt;
+std::optional<double> carried_share(const MotionRegimeSmoother::Report& report) {
+  return report.regimes_estimated ? std::optional(report.probabilities.hand_held) : std::nullopt;
 }
 
-void report_rates(const RegimeSmoother::Report& report, Estimate& result) {
+void report_rates(const MotionRegimeSmoother::Report& report, Estimate& result) {
   report_smoother(report.rate, result.health);
-  if (!report.judged) return;
+  if (!report.regimes_estimated) return;
   result.health["regime_carried_asked"] = report.hand_held_smoother_ran ? 1.0 : 0.0;
   if (report.hand_held_smoother_ran) result.health["carried_converged"] = report.hand_held.converged ? 1.0 : 0.0;
 }

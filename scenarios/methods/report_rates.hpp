@@ -12,12 +12,12 @@
 
 namespace tumble::scenarios {
 
-void report_rates(const RegimeSmoother::Report& report, Estimate& result);
+void report_rates(const MotionRegimeSmoother::Report& report, Estimate& result);
 
 /// Saturation limits that were copied from another axis or from a data sheet are not reported.
 void report_rails(const SaturationLevels& rails, std::map<std::string, double>& health);
 
-std::optional<double> carried_share(const RegimeSmoother::Report& report);
+std::optional<double> carried_share(const MotionRegimeSmoother::Report& report);
 
 void report_gaps(std::span<const ImuSample> samples, Estimate& estimate);
 

@@ -29,7 +29,7 @@ constexpr const char* kPlanesKey = "gyro_planes_rad_s";
 constexpr const char* kAccelPlanesKey = "accelerometer_planes_m_s2";
 constexpr const char* kAccelElementsKey = "accelerometer_elements";
 constexpr const char *kErrorsKey = "device_errors", *kErrorsCovarianceKey = "device_errors_covariance";
-constexpr int kWithoutElements = RigConstants::kElements;
+constexpr int kWithoutElements = RigConstants::kGyroMisalignment;
 
 template <typename Array>
 json numbers(const Array& values) {
@@ -46,7 +46,7 @@ json pairs(const CalibratedRig::Planes& planes) {
 
 json rails(const CalibratedRig& rig, std::size_t first) {
   json out = json::array();
-  for (std::size_t j = 0; j < 3; ++j) out.push_back(rig.rail[first + j] ? json(*rig.rail[first + j]) : json());
+  for (std::size_t j = 0; j < 3; ++j) out.push_back(rig.saturation_limits[first + j] ? json(*rig.saturation_limits[first + j]) : json());
   return out;
 }
 
@@ -85,7 +85,7 @@ class CalibrationReader {
       if (values[j].is_null()) continue;
       if (!values[j].is_number() || !(values[j].get<double>() > 0.0))
         complain(key, "a saturation limit is not a positive number; it must be a positive number or null");
-      rig.rail[first + j] = values[j].get<double>();
+      rig.saturation_limits[first + j] = values[j].get<double>();
     }
   }
 
@@ -122,16 +122,16 @@ void write_rig_calibration(const std::filesystem::path& path, const CalibratedRi
   object["gyro_bias_rad_s"] = numbers(constants.gyro_bias_rad_s);
   object["accel_bias_m_s2"] = numbers(constants.accel_bias_m_s2);
   object["inertia"] = numbers(constants.inertia);
-  object[kElementsKey] = numbers(constants.elements);
+  object[kElementsKey] = numbers(constants.gyro_misalignment);
   object["covariance"] = numbers(rig.calibration.covariance);
   object["gyro_rail_rad_s"] = rails(rig, 0);
   object["accel_rail_m_s2"] = rails(rig, 3);
-  object[kPlanesKey] = pairs(rig.gyro_planes_rad_s);
-  object[kAccelPlanesKey] = pairs(rig.accelerometer_planes_m_s2);
-  object[kAccelElementsKey] = numbers(rig.accelerometer_elements);
-  if (rig.device_errors) {
-    object[kErrorsKey] = numbers(rig.device_errors->errors.vector());
-    object[kErrorsCovarianceKey] = numbers(rig.device_errors->covariance);
+  object[kPlanesKey] = pairs(rig.gyro_saturation_planes_rad_s);
+  object[kAccelPlanesKey] = pairs(rig.accel_saturation_planes_m_s2);
+  object[kAccelElementsKey] = numbers(rig.accel_misalignment);
+  if (rig.known_sensor_errors) {
+    object[kErrorsKey] = numbers(rig.known_sensor_errors->errors.vector());
+    object[kErrorsCovarianceKey] = numbers(rig.known_sensor_errors->covariance);
   }
   replace_file(path, object.dump(1) + "\n");
 }
@@ -155,7 +155,7 @@ void read_device_errors(const CalibrationReader& reader, const json& object, Cal
       Eigen::LLT<SensorErrors::Matrix>(scaled).info() != Eigen::Success) {
     reader.complain(kErrorsCovarianceKey, "the covariance matrix must be symmetric and positive definite");
   }
-  rig.device_errors = known;
+  rig.known_sensor_errors = known;
 }
 
 }  // namespace
@@ -180,12 +180,12 @@ CalibratedRig read_rig_calibration(const std::filesystem::path& path) {
   reader.read("accel_bias_m_s2", rig.calibration.constants.accel_bias_m_s2);
   reader.read("inertia", rig.calibration.constants.inertia);
   if (object.contains(kElementsKey)) {
-    reader.read(kElementsKey, rig.calibration.constants.elements);
+    reader.read(kElementsKey, rig.calibration.constants.gyro_misalignment);
     reader.read("covariance", rig.calibration.covariance);
   } else {
     Eigen::Matrix<double, kWithoutElements, kWithoutElements> known;
     reader.read("covariance", known);
-    const double sigma = RateModelParams{}.element_sigma;
+    const double sigma = AngularRateModelParams{}.element_sigma;
     rig.calibration.covariance = sigma * sigma * RigConstants::Matrix::Identity();
     rig.calibration.covariance.topLeftCorner<kWithoutElements, kWithoutElements>() = known;
   }
@@ -197,13 +197,13 @@ CalibratedRig read_rig_calibration(const std::filesystem::path& path) {
   }
   reader.read_rails("gyro_rail_rad_s", 0, rig);
   reader.read_rails("accel_rail_m_s2", 3, rig);
-  if (object.contains(kPlanesKey)) reader.read_planes(kPlanesKey, rig.gyro_planes_rad_s);
+  if (object.contains(kPlanesKey)) reader.read_planes(kPlanesKey, rig.gyro_saturation_planes_rad_s);
   if (object.contains(kAccelPlanesKey) != object.contains(kAccelElementsKey)) {
     reader.complain(object.contains(kAccelPlanesKey) ? kAccelElementsKey : kAccelPlanesKey, "missing");
   }
   if (object.contains(kAccelPlanesKey)) {
-    reader.read_planes(kAccelPlanesKey, rig.accelerometer_planes_m_s2);
-    reader.read(kAccelElementsKey, rig.accelerometer_elements);
+    reader.read_planes(kAccelPlanesKey, rig.accel_saturation_planes_m_s2);
+    reader.read(kAccelElementsKey, rig.accel_misalignment);
   }
   read_device_errors(reader, object, rig);
   return rig;

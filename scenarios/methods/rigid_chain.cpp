@@ -19,7 +19,7 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kRestMaxS = 1.0;
-/// The thresholds for a stationary rig at the start of a recording are those of the mapper (`mapper_rest`), without the
+/// The thresholds for a stationary rig at the start of a recording are those of the mapper (`mapping_stationary_params`), without the
 /// gravity test.
 constexpr RestDetector::Params kStart = {.rate_spread_rad_s = 0.05, .force_spread_m_s2 = 0.5, .rest_s = 0.0};
 constexpr double kVelocitySigmaMS = 1e-4;  // registration measures no velocity
@@ -44,16 +44,16 @@ void for_windows(std::span<const ImuSample> samples, TimeNs from_ns, TimeNs to_n
 }  // namespace
 
 Status start_at_rest(std::span<const ImuSample> samples, StartAtRest& out) {
-  if (samples.empty()) return {ErrorCode::too_few, "imu samples", 0.0, 1.0};
+  if (samples.empty()) return {ErrorCode::insufficient_data, "imu samples", 0.0, 1.0};
   const RestDetector detector(kStart);
   RestDetector::State state, rest;
   for (const ImuSample& sample : samples) {
     if (seconds(sample.time_ns - samples.front().time_ns) > kRestMaxS) break;
-    if (!detector.observe(sample, state) || state.first_ns != samples.front().time_ns) break;
+    if (!detector.detect_stationary(sample, state) || state.first_ns != samples.front().time_ns) break;
     rest = state;
   }
   out.gyro_bias_rad_s = rest.mean_rate_rad_s();
-  return level(rest.rests ? rest.mean_force_m_s2() : samples.front().specific_force_m_s2, out.q_WI);
+  return inclination_from_force(rest.is_stationary ? rest.mean_force_m_s2() : samples.front().specific_force_m_s2, out.q_WI);
 }
 
 std::vector<MotionSample> steady_motion(std::span<const ImuSample> samples, const Eigen::Vector3d& rate_I_rad_s,

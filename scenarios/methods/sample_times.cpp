@@ -31,9 +31,9 @@ void keep_readings(const std::vector<bool>& kept, sim::ImuRecord& record) {
   keep_rows(kept, record.clip_flags), keep_rows(kept, record.magnetic_field_t);
 }
 
-void restore_stamps(const sim::ImuRecord& timed, const sim::ImuRecord& stamped, std::vector<RateState>& rates) {
+void restore_stamps(const sim::ImuRecord& timed, const sim::ImuRecord& stamped, std::vector<AngularRateState>& rates) {
   const std::vector<std::int64_t>& times_ns = timed.time_ns;
-  for (RateState& rate : rates) {
+  for (AngularRateState& rate : rates) {
     const auto at = std::lower_bound(times_ns.begin(), times_ns.end(), rate.time_ns);
     if (at == times_ns.end() || *at != rate.time_ns) continue;
     rate.time_ns = stamped.time_ns[static_cast<std::size_t>(at - times_ns.begin())];

@@ -12,7 +12,7 @@
 #include "scenarios/methods/slam_settings.hpp"
 #include "scenarios/methods/sweep_log.hpp"
 #include "tumble/mapping/detail/registration_params.hpp"
-#include "tumble/mapping/detail/sweep_scale.hpp"
+#include "tumble/mapping/detail/lidar_scale.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/odometry/detail/mapping_passes.hpp"
 #include "tumble/odometry/tumbling_expert_params.hpp"
@@ -29,7 +29,7 @@ LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const
   odometry.T_IL = bridge::T_IL(sensors.imus.front(), sensors.lidars.front());
   odometry.expert.gravity_m_s2 = sensors.gravity_m_s2;
   const double accel_range_m_s2 = sensors.imus.front().stated_accel_range_m_s2;
-  if (accel_range_m_s2 > 0.0) odometry.expert.rails.accel_m_s2 = unsaturated_range(accel_range_m_s2);
+  if (accel_range_m_s2 > 0.0) odometry.expert.saturated_imu.accel_m_s2 = range_below_saturation(accel_range_m_s2);
   if (chain.along) {
     odometry.expert.matching.correction_max_m = chain.along->correction_max_m;
     odometry.expert.matching.correction_max_rad = chain.along->correction_max_rad;
@@ -41,7 +41,7 @@ LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const
 bool append_sweeps(std::vector<MappedSweep>& sweeps, Estimate& estimate) {
   for (MappedSweep& sweep : sweeps) {
     SweepReport& report = sweep.report;
-    if (sweep.status.error_code == ErrorCode::too_few && report.trajectory.empty()) {
+    if (sweep.status.error_code == ErrorCode::insufficient_data && report.trajectory.empty()) {
       leave_out_unfinished(estimate);
       continue;
     }
@@ -73,7 +73,7 @@ Estimate begin_with_rates(const sim::Sensors& sensors, std::vector<ImuSample>& s
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (estimate.status.ok()) estimate.status = rates(estimate);
   if (!estimate.status.ok()) return estimate;
-  const ImuFindings frozen = check_frozen(checked_imu(sensors), samples);
+  const ImuHealthReport frozen = check_frozen(checked_imu(sensors), samples);
   report_findings(frozen.health, sensors, estimate);
   inflate_rates(frozen, samples, estimate);
   flag_saturated_forces(stated_rails(sensors.imus.front()), samples);
@@ -128,11 +128,11 @@ bool run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samp
                              return WaitingSweep{sweep.start_ns, sweep.end_ns, std::move(sweep.points)};
                            },
                            chain.along ? chain.along->between : nullptr};
-  MappedRecording mapped = chain.calibration ? map_with_calibration(input, params) : map_once(input, params);
+  MappedRecording mapped = chain.calibration ? map_with_calibration(input, params) : map_in_one_pass(input, params);
   for (std::size_t left = mapped.unfinished_sweeps; left > 0; --left) leave_out_unfinished(estimate);
   estimate.status = mapped.status;
   if (!append_sweeps(mapped.sweeps, estimate) || !estimate.status.ok()) return false;
-  SweepScale scale;
+  LidarScale scale;
   if (chain.calibration) scale = find_sweep_scale(samples, estimate.sweeps, sensors.gravity_m_s2);
   SensorHealth health;
   mapped.add_findings(scale, health);

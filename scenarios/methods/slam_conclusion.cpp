@@ -20,7 +20,7 @@ void report_end(Estimate& estimate) {
 Status any_registered(std::span<const SweepReport> sweeps) {
   const bool any = std::any_of(sweeps.begin(), sweeps.end(),
                                [](const SweepReport& sweep) { return sweep.verdict != SweepVerdict::rejected; });
-  return any ? Status{} : Status{ErrorCode::too_few, "lidar.sweeps_registered", 0.0, 1.0};
+  return any ? Status{} : Status{ErrorCode::insufficient_data, "lidar.sweeps_registered", 0.0, 1.0};
 }
 
 }  // namespace

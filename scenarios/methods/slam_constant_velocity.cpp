@@ -40,7 +40,7 @@ class ConstantVelocity : public TrajectoryModel {
     last_ = odometry.state();
     const double span_s = seconds(last_.time_ns - from_ns_);
     if (!(span_s > 0.0)) return;
-    rate_rad_s_ = so3::log(before.q_WI.conjugate() * last_.q_WI) / span_s;
+    rate_rad_s_ = so3::logarithm(before.q_WI.conjugate() * last_.q_WI) / span_s;
     last_.v_WI_m_s = (last_.p_WI_m - before.p_WI_m) / span_s;
   }
 

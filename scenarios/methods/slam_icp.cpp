@@ -14,8 +14,8 @@ const Settings<SlamParams>& slam_icp_chain_settings() {
   return all;
 }
 
-const Settings<Saave::Params>& slam_icp_rate_settings() {
-  static const Settings<Saave::Params> all = other_saave_settings(slam_icp_chain_settings().rows());
+const Settings<SaturationAwareRateEstimator::Params>& slam_icp_rate_settings() {
+  static const Settings<SaturationAwareRateEstimator::Params> all = other_saave_settings(slam_icp_chain_settings().rows());
   return all;
 }
 

@@ -53,8 +53,8 @@ class Track {
     while (next_ + 1 < poses_.size() && poses_[next_].time_ns < time_ns) ++next_;
     const PoseState &a = poses_[next_ - 1], &b = poses_[next_];
     const double share = seconds(time_ns - a.time_ns) / std::max(seconds(b.time_ns - a.time_ns), 1e-9);
-    const Eigen::Vector3d p = a.p_WA_m + share * (b.p_WA_m - a.p_WA_m);
-    return Eigen::Translation3d(p) * a.q_WA.slerp(share, b.q_WA) * Eigen::Translation3d(-centre_B_m_);
+    const Eigen::Vector3d p = a.position_W_m + share * (b.position_W_m - a.position_W_m);
+    return Eigen::Translation3d(p) * a.orientation_W.slerp(share, b.orientation_W) * Eigen::Translation3d(-centre_B_m_);
   }
 
  private:

@@ -9,8 +9,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-const Settings<Saave::Params>& slam_published_rate_settings() {
-  static const Settings<Saave::Params> all = other_saave_settings(published_settings().rows());
+const Settings<SaturationAwareRateEstimator::Params>& slam_published_rate_settings() {
+  static const Settings<SaturationAwareRateEstimator::Params> all = other_saave_settings(published_settings().rows());
   return all;
 }
 

@@ -96,9 +96,9 @@ std::optional<Radius> radius_by_lidar(const Estimate& rolled, const Estimate& re
       if (rolled.contacts[k] != sim::ContactLabel::grip) open = false;
     }
     if (sweep.verdict != SweepVerdict::registered) continue;  // no independent measurement
-    const Eigen::Vector3d p_rolled = rolled.poses[k].p_WA_m;
+    const Eigen::Vector3d p_rolled = rolled.poses[k].position_W_m;
     const Eigen::Vector3d p_registered =
-        (Eigen::Translation3d(sweep.pose.p_WA_m) * sweep.pose.q_WA * T_IG).translation();
+        (Eigen::Translation3d(sweep.pose.position_W_m) * sweep.pose.orientation_W * T_IG).translation();
     if (open && (p_rolled - from_rolled).norm() < params.segment_m) continue;
     if (open) {
       const Eigen::Vector2d segment((p_rolled - from_rolled).norm(), (p_registered - from_registered).norm());
@@ -147,7 +147,7 @@ class RolledMotion {
     MotionReading motion;
     motion.from_ns = from_ns;
     motion.to_ns = to_ns;
-    motion.T_from_to = pose_of_imu(from_ns).inverse(Eigen::Isometry) * pose_of_imu(to_ns);
+    motion.relative_pose = pose_of_imu(from_ns).inverse(Eigen::Isometry) * pose_of_imu(to_ns);
     const double sigma_m = velocity_sigma_m_s(from_ns, to_ns) * seconds(to_ns - from_ns);
     motion.covariance.diagonal().head<3>().setConstant(sigma_m * sigma_m);
     motion.covariance.diagonal().tail<3>().setConstant(params_.rotation_sigma_rad * params_.rotation_sigma_rad);
@@ -168,14 +168,14 @@ class RolledMotion {
     const double share = after.time_ns > before.time_ns
                              ? seconds(time_ns - before.time_ns) / seconds(after.time_ns - before.time_ns)
                              : 0.0;
-    const Eigen::Vector3d p = (1.0 - share) * before.p_WA_m + share * after.p_WA_m;
-    return Eigen::Translation3d(p) * before.q_WA.slerp(share, after.q_WA) * T_GI_;
+    const Eigen::Vector3d p = (1.0 - share) * before.position_W_m + share * after.position_W_m;
+    return Eigen::Translation3d(p) * before.orientation_W.slerp(share, after.orientation_W) * T_GI_;
   }
 
   double velocity_sigma_m_s(TimeNs from_ns, TimeNs to_ns) const {
     double largest_m_s = 0.0;
     for (std::size_t k = index_at(from_ns); k < rolled_.poses.size() && rolled_.poses[k].time_ns <= to_ns; ++k) {
-      const double speed_m_s = rolled_.poses[k].v_WA_m_s.norm();
+      const double speed_m_s = rolled_.poses[k].velocity_W_m_s.norm();
       const bool loose = loosely_ || rolled_.contacts[k] != sim::ContactLabel::grip;
       double sigma_m_s =
           params_.still_sigma_m_s + (loose ? params_.loose_sigma_share : params_.grip_sigma_ratio) * speed_m_s;

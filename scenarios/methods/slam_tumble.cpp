@@ -90,7 +90,7 @@ class Collector {
       }
       std::vector<PoseState> smoothed = std::move(sweep->report.smoothed);
       const TimeNs end_ns = sweep->report.pose.time_ns;
-      found_.observe(odometry.health());
+      found_.merge_current_findings(odometry.health());
       append_sweep(sweep->status, end_ns, std::move(sweep->report), estimate_);
       apply_next(std::move(smoothed));
     }
@@ -100,7 +100,7 @@ class Collector {
       for (std::vector<PoseState>& open : odometry.mapper().window_trajectories()) apply_next(std::move(open));
     }
     if (output_ == Output::live) replace_by_live();
-    found_.observe(odometry.health());
+    found_.merge_current_findings(odometry.health());
     add_findings(found_, names_, estimate_);
     scenarios::conclude(odometry.mapper(), estimate_);
   }
@@ -173,20 +173,20 @@ Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, b
   return status;
 }
 
-void report_whole(const RecordingEstimate& whole, const sim::Sensors& sensors, Estimate& estimate) {
+void report_whole(const WholeRecordingEstimate& whole, const sim::Sensors& sensors, Estimate& estimate) {
   estimate.rates = whole.rates;
-  estimate.suspect_rad2_s2 = whole.suspect_rad2_s2;
+  estimate.suspect_rad2_s2 = whole.suspected_error_covariance_rad2_s2;
   for (std::size_t k = 0; k < estimate.rates.size(); ++k) estimate.rates[k].time_ns = whole.stamps_ns[k];
   report_rates(whole.report, estimate);
   report_findings(whole.findings.health, sensors, estimate);
   count_sources(estimate.rates, estimate.health);
   if (whole.corrected_jitter_s > 0.0) estimate.health["stamps_mended_s"] = whole.corrected_jitter_s;
-  for (std::size_t left = whole.mapped.unfinished_sweeps; left > 0; --left) leave_out_unfinished(estimate);
+  for (std::size_t left = whole.mapped_recording.unfinished_sweeps; left > 0; --left) leave_out_unfinished(estimate);
 }
 
 void report_stream(const TumblingOdometry& odometry, Estimate& estimate) {
-  report_rails(odometry.rails(), estimate.health);
-  estimate.health["second_pass_applied"] = odometry.second_pass_applied() ? 1.0 : 0.0;
+  report_rails(odometry.saturation_levels(), estimate.health);
+  estimate.health["second_pass_applied"] = odometry.second_mapping_pass_applied() ? 1.0 : 0.0;
 }
 
 void report_prior_map(Estimate& estimate) {
@@ -221,7 +221,7 @@ Estimate run(Output output, const Settings<TumblingOdometry::Params>& settings, 
   const std::size_t left_out = sensors.imus.front().time_ns.size() - samples.size();
   const std::size_t rejected = left_out + odometry.rejected_readings();
   if (output != Output::whole || rejected > 0) estimate.health["rejected_readings"] = static_cast<double>(rejected);
-  if (odometry.early_sweeps() > 0) estimate.health["sweeps_before_imu"] = static_cast<double>(odometry.early_sweeps());
+  if (odometry.sweeps_before_first_imu() > 0) estimate.health["sweeps_before_imu"] = static_cast<double>(odometry.sweeps_before_first_imu());
   if (output != Output::whole || odometry.restart_count() > 0)
     estimate.health["gaps"] = static_cast<double>(odometry.restart_count());
   if (output != Output::whole) report_stream(odometry, estimate);

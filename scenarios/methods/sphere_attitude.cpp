@@ -54,7 +54,7 @@ Status sphere_attitude(const char* method, const sim::Sensors& sensors, double r
   const Rest rest = mean_over_rest(out.samples, rest_s);
   const Strapdown strapdown{Strapdown::Params{}};
   Strapdown::State attitude;
-  if (Status status = level(rest.specific_force_m_s2, attitude.q_WI); !status.ok()) return status;
+  if (Status status = inclination_from_force(rest.specific_force_m_s2, attitude.q_WI); !status.ok()) return status;
   attitude.started = true;
   attitude.last_time_ns = out.samples.front().time_ns;
   out.q_WI.reserve(out.samples.size());
@@ -78,9 +78,9 @@ PoseState centre_pose(const sim::Sensors& sensors, TimeNs time_ns, const Eigen::
                       const Eigen::Vector3d& p_WG_m, const Eigen::Vector3d& v_WG_m_s) {
   PoseState pose;
   pose.time_ns = time_ns;
-  pose.p_WA_m = p_WG_m;
-  pose.q_WA = q_WI * Eigen::Quaterniond(sensors.imus.front().T_BI.linear().transpose());
-  pose.v_WA_m_s = v_WG_m_s;
+  pose.position_W_m = p_WG_m;
+  pose.orientation_W = q_WI * Eigen::Quaterniond(sensors.imus.front().T_BI.linear().transpose());
+  pose.velocity_W_m_s = v_WG_m_s;
   return pose;
 }
 

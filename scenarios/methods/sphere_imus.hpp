@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 
 struct SphereImus {
   std::vector<std::string> names;
-  std::vector<UnitRecording> recordings;
+  std::vector<ImuRecording> recordings;
   int beyond_range = 0;  ///< dropped readings beyond the range
 };
 

@@ -34,7 +34,7 @@ void leave_out_unfinished(Estimate& estimate) {
 }
 
 bool leave_out_before_map(const Status& status, const SweepReport& report, Estimate& estimate) {
-  const bool of_the_sweep = status.error_code == ErrorCode::too_few || status.error_code == ErrorCode::empty ||
+  const bool of_the_sweep = status.error_code == ErrorCode::insufficient_data || status.error_code == ErrorCode::empty ||
                             status.error_code == ErrorCode::non_finite || status.error_code == ErrorCode::degenerate;
   if (!of_the_sweep || !report.trajectory.empty() || !estimate.sweeps.empty()) return false;
   count_trouble(status, estimate);
@@ -59,7 +59,7 @@ bool run_over_sweeps(const sim::LidarRecord& lidar, const SweepMapper& mapper, E
   }
   const bool any = std::any_of(estimate.sweeps.begin(), estimate.sweeps.end(),
                                [](const SweepReport& sweep) { return sweep.verdict != SweepVerdict::rejected; });
-  if (!any) estimate.status = {ErrorCode::too_few, "lidar.sweeps_registered", 0.0, 1.0};
+  if (!any) estimate.status = {ErrorCode::insufficient_data, "lidar.sweeps_registered", 0.0, 1.0};
   return true;
 }
 

@@ -19,9 +19,9 @@ constexpr double kTurnsOnceCorrected = 0.3;
 
 std::vector<TimedAttitude> attitudes_of(const Estimate& estimate) {
   std::vector<TimedAttitude> out;
-  for (const AttitudeState& each : estimate.attitudes) out.push_back({each.time_ns, each.q_WA});
+  for (const AttitudeState& each : estimate.attitudes) out.push_back({each.time_ns, each.orientation_W});
   if (out.empty()) {
-    for (const PoseState& each : estimate.poses) out.push_back({each.time_ns, each.q_WA});
+    for (const PoseState& each : estimate.poses) out.push_back({each.time_ns, each.orientation_W});
   }
   return out;
 }

@@ -24,12 +24,12 @@ std::vector<AttitudeError> attitude_errors(const ScoredEstimate& scored) {
   Eigen::Quaterniond q_align = Eigen::Quaterniond::Identity();
   for (const AttitudeState& attitude : scored.estimate().attitudes) {
     if (!truth.covers_attitude(attitude.time_ns)) continue;
-    const Eigen::Quaterniond q_true = truth.pose(attitude.time_ns).q_WA;
+    const Eigen::Quaterniond q_true = truth.pose(attitude.time_ns).orientation_W;
     if (errors.empty()) {
-      const double heading = twist_about_z_rad(q_true * attitude.q_WA.conjugate());
+      const double heading = twist_about_z_rad(q_true * attitude.orientation_W.conjugate());
       q_align = Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ());
     }
-    const Eigen::Quaterniond e = q_align * attitude.q_WA * q_true.conjugate();
+    const Eigen::Quaterniond e = q_align * attitude.orientation_W * q_true.conjugate();
     errors.push_back({2.0 * std::atan2(std::hypot(e.x(), e.y()), std::hypot(e.w(), e.z())),
                       2.0 * std::atan2(std::abs(e.z()), std::abs(e.w())), rotation_angle_rad(e),
                       truth.at_rest(attitude.time_ns)});
@@ -55,7 +55,7 @@ std::vector<double> normalised_tilt_errors(const ScoredEstimate& scored) {
     const Eigen::Vector2d variance = attitude.covariance_rad2.diagonal().head<2>();
     if (!truth.covers_attitude(attitude.time_ns) || truth.at_rest(attitude.time_ns)) continue;
     if (!(variance.maxCoeff() > 0.0)) continue;
-    const Eigen::Vector2d error = tilt_error_rad(attitude.q_WA, truth.pose(attitude.time_ns).q_WA);
+    const Eigen::Vector2d error = tilt_error_rad(attitude.orientation_W, truth.pose(attitude.time_ns).orientation_W);
     for (int axis = 0; axis < 2; ++axis) normalised.push_back(squared_over(error[axis], variance[axis]));
   }
   return normalised;
@@ -75,7 +75,7 @@ bool step_rest_rms(const ScoredEstimate& scored, double& value) {
   const AttitudeState* previous = nullptr;
   for (const AttitudeState& attitude : scored.estimate().attitudes) {
     const bool rest = truth.covers_attitude(attitude.time_ns) && truth.at_rest(attitude.time_ns);
-    if (rest && previous) steps.push_back(rotation_angle_rad(previous->q_WA.conjugate() * attitude.q_WA));
+    if (rest && previous) steps.push_back(rotation_angle_rad(previous->orientation_W.conjugate() * attitude.orientation_W));
     previous = rest ? &attitude : nullptr;
   }
   if (steps.empty()) return false;

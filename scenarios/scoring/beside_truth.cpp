@@ -21,7 +21,7 @@ std::vector<PairedRate> pair_rates(const ScoredEstimate& scored) {
   const ClippingTruth& truth = clipping_truth(scored);
   std::vector<PairedRate> pairs;
   pairs.reserve(scored.estimate().rates.size());
-  for (const RateState& rate : scored.estimate().rates) {
+  for (const AngularRateState& rate : scored.estimate().rates) {
     pairs.push_back({&rate, truth.at(rate.time_ns), truth.index_at(rate.time_ns).value_or(0)});
   }
   return pairs;

@@ -72,10 +72,10 @@ PoseState moved_by(const Alignment& alignment, const PoseState& pose) {
 
 /// An attitude error phi displaces the body's position by phi x (lever arm in world axes).
 BagTrack::Pose body_pose(const PoseState& moved, const Eigen::Isometry3d& T_AB) {
-  const Eigen::Quaterniond q_WA = moved.q_WA.normalized();
+  const Eigen::Quaterniond q_WA = moved.orientation_W.normalized();
   BagTrack::Pose out;
   out.time_ns = moved.time_ns;
-  out.p_WB_m = moved.p_WA_m + q_WA * T_AB.translation();
+  out.p_WB_m = moved.position_W_m + q_WA * T_AB.translation();
   out.q_WB = (q_WA * Eigen::Quaterniond(T_AB.linear())).normalized();
   Eigen::Matrix<double, 6, 6> J = Eigen::Matrix<double, 6, 6>::Identity();
   J.topRightCorner<3, 3>() = -cross_matrix(q_WA * T_AB.translation());
@@ -164,7 +164,7 @@ BagTrack in_bag(const std::string& name, const Estimate& estimate, const sim::Se
   BagTrack out;
   out.name = name;
   for (const PoseState& pose : estimate.poses) {
-    if (!pose.p_WA_m.allFinite() || !pose.q_WA.coeffs().allFinite()) continue;
+    if (!pose.position_W_m.allFinite() || !pose.orientation_W.coeffs().allFinite()) continue;
     out.poses.push_back(body_pose(moved_by(alignment, pose), T_AB));
   }
   add_clouds(sensors, points, truth, out);

@@ -57,7 +57,7 @@ Errors attitude_errors(const ScoredEstimate& scored) {
   Errors out;
   for (const AttitudeState& attitude : scored.estimate().attitudes) {
     if (!truth.covers_attitude(attitude.time_ns) || truth.at_rest(attitude.time_ns)) continue;
-    const Eigen::Vector2d error = tilt_error_rad(attitude.q_WA, truth.pose(attitude.time_ns).q_WA);
+    const Eigen::Vector2d error = tilt_error_rad(attitude.orientation_W, truth.pose(attitude.time_ns).orientation_W);
     out.deviations.push_back(deviations_of(error, attitude.covariance_rad2.topLeftCorner<2, 2>()));
     out.gross.push_back(error.norm());
   }
@@ -78,7 +78,7 @@ std::optional<bool> pose_is_wrong(const ScoredEstimate& scored, Kind kind) {
   }
   const std::vector<PairedPose>& poses = paired_track(scored).poses;
   if (poses.empty() || scored.estimate().poses.back().covariance.isZero(0.0)) return std::nullopt;
-  const double error_m = (poses.back().estimate.p_WA_m - poses.back().truth.p_WA_m).norm();
+  const double error_m = (poses.back().estimate.position_W_m - poses.back().truth.position_W_m).norm();
   const double sigma_m = std::sqrt(scored.estimate().poses.back().covariance.topLeftCorner<3, 3>().trace());
   return !(error_m <= kWrongDeviations * sigma_m);
 }

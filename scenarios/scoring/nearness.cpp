@@ -53,7 +53,7 @@ bool Nearness::has_neighbour(const Eigen::Vector3f& point_m) const {
     for (std::int64_t y = -1; y <= 1; ++y) {
       for (std::int64_t z = -1; z <= 1; ++z) {
         const std::uint32_t found = cells_.find(key(centre.x() + x, centre.y() + y, centre.z() + z));
-        if (found == SpatialHash::kAbsent) continue;
+        if (found == SpatialHash::kAbsentEntry) continue;
         for (std::uint32_t k = ranges_[found].first; k < ranges_[found].second; ++k) {
           if ((points_m_[k] - point_m).squaredNorm() <= limit2) return true;
         }

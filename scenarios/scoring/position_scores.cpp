@@ -17,7 +17,7 @@ constexpr double kUnmovedM = 0.02;  // scores start after this motion
 bool end_error(const ScoredEstimate& scored, double& value) {
   const std::vector<PairedPose>& poses = paired_track(scored).poses;
   if (poses.empty()) return false;
-  value = (poses.back().estimate.p_WA_m - poses.back().truth.p_WA_m).norm();
+  value = (poses.back().estimate.position_W_m - poses.back().truth.position_W_m).norm();
   return true;
 }
 
@@ -30,7 +30,7 @@ bool end_error_share(const ScoredEstimate& scored, double& value) {
   const TruthTrack centre(scored.truth(), Frame::centre);
   const double path_m = centre.path_m(poses.back().time_ns) - centre.path_m(poses.front().time_ns);
   if (path_m < kPathMinM) return false;
-  value = (poses.back().estimate.p_WA_m - poses.back().truth.p_WA_m).norm() / path_m;
+  value = (poses.back().estimate.position_W_m - poses.back().truth.position_W_m).norm() / path_m;
   return true;
 }
 
@@ -39,7 +39,7 @@ bool height_error_max(const ScoredEstimate& scored, double& value) {
   if (poses.empty()) return false;
   value = 0.0;
   for (const PairedPose& pose : poses) {
-    const double error = std::abs(pose.estimate.p_WA_m.z() - pose.truth.p_WA_m.z());
+    const double error = std::abs(pose.estimate.position_W_m.z() - pose.truth.position_W_m.z());
     // A NaN error also satisfies this condition; std::max would ignore NaN.
     if (!(error <= value)) value = error;
     if (std::isnan(value)) break;
@@ -53,7 +53,7 @@ bool rest_drift(const ScoredEstimate& scored, double& value) {
   Eigen::Vector3d error_at_start;
   bool resting = false;
   for (const PairedPose& pose : paired_track(scored).poses) {
-    const Eigen::Vector3d error = pose.estimate.p_WA_m - pose.truth.p_WA_m;
+    const Eigen::Vector3d error = pose.estimate.position_W_m - pose.truth.position_W_m;
     if (pose.rest && resting) {
       any = true;
       const double drift = (error - error_at_start).norm();
@@ -79,7 +79,7 @@ std::vector<double> normalised_position_errors(const ScoredEstimate& scored) {
     if (own == estimate.poses.size()) break;
     const Eigen::Vector3d variance = estimate.poses[own].covariance.topLeftCorner<3, 3>().diagonal();
     if (!(variance.maxCoeff() > 0.0)) continue;
-    const Eigen::Vector3d error = R_estimate_W * (pose.estimate.p_WA_m - pose.truth.p_WA_m);
+    const Eigen::Vector3d error = R_estimate_W * (pose.estimate.position_W_m - pose.truth.position_W_m);
     for (int axis = 0; axis < 3; ++axis) normalised.push_back(squared_over(error[axis], variance[axis]));
   }
   return normalised;

@@ -96,11 +96,11 @@ bool called_measured(const ScoredEstimate& scored, double& value) {
   if (!clipping_truth(scored).is_reference()) return false;
   double axes = 0.0, missed = 0.0;
   for (const PairedRate& pair : paired_rates(scored)) {
-    const RateState& rate = *pair.estimate;
+    const AngularRateState& rate = *pair.estimate;
     for (unsigned j = 0; j < 3; ++j) {
       if ((pair.clipped_axes() & (1u << j)) == 0) continue;
       axes += 1.0;
-      const bool doubted = rate.clipped_axes == 0 && rate.source != RateSource::measured;
+      const bool doubted = rate.clipped_axes == 0 && rate.source != AngularRateSource::measured;
       missed += (rate.clipped_axes & (1u << j)) == 0 && !doubted ? 1.0 : 0.0;
     }
   }

@@ -65,7 +65,7 @@ bool reaches(const std::vector<State>& states, std::int64_t start_ns, std::int64
 
 bool rates_hold(const ScoredEstimate& scored) {
   const std::vector<PairedRate>& pairs = paired_rates(scored);
-  for (const RateState& rate : scored.estimate().rates) {
+  for (const AngularRateState& rate : scored.estimate().rates) {
     if (!rate.w_WI_I_rad_s.allFinite() || !rate.covariance_rad2_s2.allFinite()) return false;
   }
   const auto answered =
@@ -76,7 +76,7 @@ bool rates_hold(const ScoredEstimate& scored) {
 bool attitudes_hold(const ScoredEstimate& scored) {
   const TruthTrack& truth = truth_track(scored);
   for (const AttitudeState& attitude : scored.estimate().attitudes) {
-    if (!attitude.q_WA.coeffs().allFinite()) return false;
+    if (!attitude.orientation_W.coeffs().allFinite()) return false;
   }
   return reaches(scored.estimate().attitudes, sensors_start_ns(scored.sensors(), Kind::attitude), truth.last_ns());
 }
@@ -85,14 +85,14 @@ constexpr double kFarthest_m = 1e7;
 
 bool poses_hold(const ScoredEstimate& scored) {
   for (const PoseState& pose : scored.estimate().poses) {
-    if (!pose.p_WA_m.allFinite() || !pose.q_WA.coeffs().allFinite()) return false;
-    if (pose.p_WA_m.cwiseAbs().maxCoeff() > kFarthest_m) return false;
+    if (!pose.position_W_m.allFinite() || !pose.orientation_W.coeffs().allFinite()) return false;
+    if (pose.position_W_m.cwiseAbs().maxCoeff() > kFarthest_m) return false;
   }
   const PairedTrack& track = paired_track(scored);
   if (track.poses.empty()) return false;
   const PairedPose& end = track.poses.back();
   const double path_m = end.path_m - track.poses.front().path_m;
-  return (end.estimate.p_WA_m - end.truth.p_WA_m).norm() <= std::max(path_m, kEndErrorFloorM);
+  return (end.estimate.position_W_m - end.truth.position_W_m).norm() <= std::max(path_m, kEndErrorFloorM);
 }
 
 bool poses_reach_and_hold(Kind kind, const ScoredEstimate& scored) {
@@ -103,7 +103,7 @@ bool poses_reach_and_hold(Kind kind, const ScoredEstimate& scored) {
 bool sweeps_hold(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   for (const auto& sweep : estimate.sweeps) {
-    if (!sweep.pose.p_WA_m.allFinite() || !sweep.pose.q_WA.coeffs().allFinite()) return false;
+    if (!sweep.pose.position_W_m.allFinite() || !sweep.pose.orientation_W.coeffs().allFinite()) return false;
   }
   if (estimate.sweeps.empty() || scored.sensors().lidars.empty()) return true;
   const std::size_t given = scored.sensors().lidars.front().sweep_start_ns.size();

@@ -179,7 +179,7 @@ std::vector<Passed> passed_events(const ScoredEstimate& scored) {
     return pose.estimate.covariance(0, 0) + pose.estimate.covariance(1, 1);
   };
   const auto error_m = [](const PairedPose& pose) -> Eigen::Vector2d {
-    return (pose.estimate.p_WA_m - pose.truth.p_WA_m).head<2>();
+    return (pose.estimate.position_W_m - pose.truth.position_W_m).head<2>();
   };
   for (const SlipSpan& span : true_spans(truth)) {
     if (!counts(span, truth)) continue;

@@ -8,7 +8,7 @@ namespace tumble::scenarios {
 namespace {
 
 Eigen::Vector3d mean_rate_rad_s(const PoseState& a, const PoseState& b) {
-  return so3::log(b.q_WA * a.q_WA.conjugate()) / seconds(b.time_ns - a.time_ns);
+  return so3::logarithm(b.orientation_W * a.orientation_W.conjugate()) / seconds(b.time_ns - a.time_ns);
 }
 
 struct Jumps {
@@ -32,14 +32,14 @@ Jumps border_jumps(const ScoredEstimate& scored) {
     for (int j = 0; j < 4; ++j) {
       covered = covered && truth.covers(poses[j].time_ns);
       if (covered) truths[j] = truth.pose(poses[j].time_ns);
-      covered = covered && truths[j].v_WA_m_s.allFinite();  // velocity unknown next to gaps
+      covered = covered && truths[j].velocity_W_m_s.allFinite();  // velocity unknown next to gaps
     }
     if (!covered) continue;
     const Eigen::Isometry3d to_world = alignment.transform();
-    const Eigen::Vector3d dv = to_world.linear() * (poses[2].v_WA_m_s - poses[1].v_WA_m_s);
+    const Eigen::Vector3d dv = to_world.linear() * (poses[2].velocity_W_m_s - poses[1].velocity_W_m_s);
     const Eigen::Vector3d dw =
         to_world.linear() * (mean_rate_rad_s(poses[2], poses[3]) - mean_rate_rad_s(poses[0], poses[1]));
-    jumps.velocity_m_s.push_back((dv - (truths[2].v_WA_m_s - truths[1].v_WA_m_s)).norm());
+    jumps.velocity_m_s.push_back((dv - (truths[2].velocity_W_m_s - truths[1].velocity_W_m_s)).norm());
     jumps.rate_rad_s.push_back(
         (dw - (mean_rate_rad_s(truths[2], truths[3]) - mean_rate_rad_s(truths[0], truths[1]))).norm());
   }

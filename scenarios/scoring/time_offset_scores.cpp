@@ -45,7 +45,7 @@ bool rate_offset(const ScoredEstimate& scored, double& value) {
 }
 
 Eigen::Vector3d lacking_rad(const Eigen::Quaterniond& q_estimate, const Eigen::Quaterniond& q_true) {
-  return so3::log(q_estimate.conjugate() * q_true);
+  return so3::logarithm(q_estimate.conjugate() * q_true);
 }
 
 bool attitude_offset(const ScoredEstimate& scored, double& value) {
@@ -55,13 +55,13 @@ bool attitude_offset(const ScoredEstimate& scored, double& value) {
   bool aligned = false;
   for (const AttitudeState& attitude : scored.estimate().attitudes) {
     if (!truth.covers_attitude(attitude.time_ns)) continue;
-    const Eigen::Quaterniond q_true = truth.pose(attitude.time_ns).q_WA;
+    const Eigen::Quaterniond q_true = truth.pose(attitude.time_ns).orientation_W;
     if (!aligned) {
-      const double heading = twist_about_z_rad(q_true * attitude.q_WA.conjugate());
+      const double heading = twist_about_z_rad(q_true * attitude.orientation_W.conjugate());
       q_align = Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ());
       aligned = true;
     }
-    fit.add(lacking_rad(q_align * attitude.q_WA, q_true), truth.rate_rad_s(attitude.time_ns));
+    fit.add(lacking_rad(q_align * attitude.orientation_W, q_true), truth.rate_rad_s(attitude.time_ns));
   }
   return fit.offset_s(value);
 }
@@ -70,7 +70,7 @@ bool pose_offset(const ScoredEstimate& scored, double& value) {
   const TruthTrack& truth = truth_track(scored);
   OffsetFit fit;
   for (const PairedPose& pair : paired_track(scored).poses)
-    fit.add(lacking_rad(pair.estimate.q_WA, pair.truth.q_WA), truth.rate_rad_s(pair.time_ns));
+    fit.add(lacking_rad(pair.estimate.orientation_W, pair.truth.orientation_W), truth.rate_rad_s(pair.time_ns));
   return fit.offset_s(value);
 }
 

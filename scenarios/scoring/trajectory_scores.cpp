@@ -16,7 +16,7 @@ bool ate(const ScoredEstimate& scored, double& value) {
   const PairedTrack& track = paired_track(scored);
   if (track.poses.empty()) return false;
   std::vector<double> errors;
-  for (const PairedPose& pose : track.poses) errors.push_back((pose.estimate.p_WA_m - pose.truth.p_WA_m).norm());
+  for (const PairedPose& pose : track.poses) errors.push_back((pose.estimate.position_W_m - pose.truth.position_W_m).norm());
   value = rms(errors);
   return true;
 }
@@ -26,7 +26,7 @@ bool ate_rotation(const ScoredEstimate& scored, double& value) {
   if (track.poses.empty()) return false;
   std::vector<double> errors;
   for (const PairedPose& pose : track.poses)
-    errors.push_back(rotation_angle_rad(pose.truth.q_WA.conjugate() * pose.estimate.q_WA));
+    errors.push_back(rotation_angle_rad(pose.truth.orientation_W.conjugate() * pose.estimate.orientation_W));
   value = rms(errors);
   return true;
 }
@@ -37,8 +37,8 @@ struct SegmentErrors {
 };
 
 Eigen::Isometry3d relative(const PoseState& a, const PoseState& b) {
-  const Eigen::Quaterniond q_Wa_inverse = a.q_WA.conjugate();
-  return Eigen::Translation3d(q_Wa_inverse * (b.p_WA_m - a.p_WA_m)) * (q_Wa_inverse * b.q_WA);
+  const Eigen::Quaterniond q_Wa_inverse = a.orientation_W.conjugate();
+  return Eigen::Translation3d(q_Wa_inverse * (b.position_W_m - a.position_W_m)) * (q_Wa_inverse * b.orientation_W);
 }
 
 SegmentErrors segment_errors(const ScoredEstimate& scored) {

@@ -113,9 +113,9 @@ PoseState TruthTrack::pose(std::int64_t time_ns) const {
 
   PoseState pose;
   pose.time_ns = time_ns;
-  pose.p_WA_m = p_WB + q_WB * T_BA_.translation();
-  pose.q_WA = q_WB * Eigen::Quaterniond(T_BA_.linear());
-  pose.v_WA_m_s = v_WB + q_WB * w_B.cross(T_BA_.translation());
+  pose.position_W_m = p_WB + q_WB * T_BA_.translation();
+  pose.orientation_W = q_WB * Eigen::Quaterniond(T_BA_.linear());
+  pose.velocity_W_m_s = v_WB + q_WB * w_B.cross(T_BA_.translation());
   return pose;
 }
 
@@ -143,9 +143,9 @@ double rotation_angle_rad(const Eigen::Quaterniond& q) {
 
 Alignment Alignment::at(const PoseState& estimate, const PoseState& truth) {
   Alignment alignment;
-  alignment.yaw_rad = twist_about_z_rad(truth.q_WA * estimate.q_WA.conjugate());
+  alignment.yaw_rad = twist_about_z_rad(truth.orientation_W * estimate.orientation_W.conjugate());
   const Eigen::AngleAxisd turn(alignment.yaw_rad, Eigen::Vector3d::UnitZ());
-  alignment.translation_m = truth.p_WA_m - turn * estimate.p_WA_m;
+  alignment.translation_m = truth.position_W_m - turn * estimate.position_W_m;
   return alignment;
 }
 
@@ -156,9 +156,9 @@ Eigen::Isometry3d Alignment::transform() const {
 PoseState Alignment::apply(const PoseState& pose) const {
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ()));
   PoseState aligned = pose;
-  aligned.p_WA_m = turn * pose.p_WA_m + translation_m;
-  aligned.q_WA = turn * pose.q_WA;
-  aligned.v_WA_m_s = turn * pose.v_WA_m_s;
+  aligned.position_W_m = turn * pose.position_W_m + translation_m;
+  aligned.orientation_W = turn * pose.orientation_W;
+  aligned.velocity_W_m_s = turn * pose.velocity_W_m_s;
   return aligned;
 }
 

@@ -28,9 +28,9 @@ class NumberHasher : public Hasher {
 
 void add_pose(NumberHasher& hasher, const PoseState& pose) {
   hasher.add(pose.time_ns);
-  hasher.add_matrix(pose.p_WA_m);
-  hasher.add_matrix(pose.q_WA.coeffs());
-  hasher.add_matrix(pose.v_WA_m_s);
+  hasher.add_matrix(pose.position_W_m);
+  hasher.add_matrix(pose.orientation_W.coeffs());
+  hasher.add_matrix(pose.velocity_W_m_s);
   hasher.add_matrix(pose.covariance);
 }
 
@@ -47,7 +47,7 @@ void add_sweep(NumberHasher& hasher, const LidarInertialOdometry::SweepReport& s
   hasher.add(sweep.eigenvalue_ratio);
   hasher.add(static_cast<std::int32_t>(sweep.iterations));
   hasher.add_matrix(sweep.least_constrained_direction);
-  hasher.add_matrix(sweep.saturation_deficit_rad_s);
+  hasher.add_matrix(sweep.mean_saturation_deficit_rad_s);
   for (const std::size_t count : {sweep.points_used, sweep.points_registered, sweep.map_points_added}) {
     hasher.add(static_cast<std::uint64_t>(count));
   }
@@ -61,7 +61,7 @@ std::string digest(const Estimate& estimate) {
   hasher.text(estimate.status.field);
   hasher.add(static_cast<std::int32_t>(estimate.frame));
   hasher.add(static_cast<std::uint64_t>(estimate.rates.size()));
-  for (const RateState& rate : estimate.rates) {
+  for (const AngularRateState& rate : estimate.rates) {
     hasher.add(rate.time_ns);
     hasher.add_matrix(rate.w_WI_I_rad_s);
     hasher.add_matrix(rate.covariance_rad2_s2);
@@ -71,7 +71,7 @@ std::string digest(const Estimate& estimate) {
   hasher.add(static_cast<std::uint64_t>(estimate.attitudes.size()));
   for (const AttitudeState& attitude : estimate.attitudes) {
     hasher.add(attitude.time_ns);
-    hasher.add_matrix(attitude.q_WA.coeffs());
+    hasher.add_matrix(attitude.orientation_W.coeffs());
     hasher.add_matrix(attitude.covariance_rad2);
   }
   add_poses(hasher, estimate.poses);

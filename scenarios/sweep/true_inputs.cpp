@@ -109,8 +109,8 @@ bool exact_stamps(sim::Sensors& sensors, const sim::Truth& truth) {
 Eigen::Isometry3d pose_of(const TruthTrack& track, std::int64_t time_ns) {
   const PoseState pose = track.pose(std::min(time_ns, track.last_ns()));
   Eigen::Isometry3d T_WL = Eigen::Isometry3d::Identity();
-  T_WL.linear() = pose.q_WA.toRotationMatrix();
-  T_WL.translation() = pose.p_WA_m;
+  T_WL.linear() = pose.orientation_W.toRotationMatrix();
+  T_WL.translation() = pose.position_W_m;
   return T_WL;
 }
 

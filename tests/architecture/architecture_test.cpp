@@ -242,7 +242,7 @@ const std::array kLinks = {
         R"(\b(mj_|rtc[A-Z]|H5[A-Z]|pcl::|YAML::|sqlite3_|std::cout|std::cerr|printf\b|fopen\b|exit\b|pthread_create|tumble::(sim|scenarios|tools)\b))",
         "tumble::sim::simulate(tumble::sim::BuiltSituation const&, int)"},
     Links{"sim/libtumble_sim.a", R"(\b(H5[A-Z]|pcl::|YAML::|sqlite3_|std::cout|std::cerr|tumble::(?!sim\b)))",
-          "tumble::RateModel::RateModel()"},
+          "tumble::AngularRateModel::AngularRateModel()"},
     Links{"scenarios/libtumble_scenarios.a", R"(\b(mj_|rtc[A-Z]|OSMesa|tumble::(sim::engine|tools)\b))",
           "OSMesaMakeCurrent"},
     Links{"tools/libtumble_tools.a", R"(\b(mj_|rtc[A-Z]|OSMesa|H5[A-Z]|tumble::sim::engine\b))", "rtcNewScene"},

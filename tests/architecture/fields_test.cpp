@@ -140,7 +140,7 @@ TEST(Fields, OfAPublicParamsAreTenAtMostBesideExpert) {
     for (const std::string& body : offered_in(code_of(header))) {
       EXPECT_LE(own_options(body), 10u) << header;
       ++offered;
-      with_expert += body.find("Indirect<Expert> expert") != std::string::npos ? 1 : 0;
+      with_expert += body.find("HeapValue<Expert> expert") != std::string::npos ? 1 : 0;
     }
   }
   EXPECT_GT(offered, 5u);

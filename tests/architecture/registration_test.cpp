@@ -44,10 +44,10 @@ TEST(Registration, NothingThatIsDeclaredIsLeftOut) {
       {"sim/robot/robot_type.hpp", "const RobotType&", "", "sim/robot/robot_type.cpp", 3},
       {"sim/motion/motion_type.hpp", "const MotionType&", "", "sim/motion/motion_type.cpp", 7},
       {"sim/series/series_sensors.hpp", "const SensorType&", "", "sim/sensor_type.cpp", 1},
-      {"estimator/include/tumble/odometry/sensor_sheets.hpp", "ImuSheet", "", "python/bindings/sheets.cpp", 16},
-      {"estimator/include/tumble/odometry/sensor_sheets.hpp", "ImuSheet", "", "python/src/tumble/sheets.py", 16},
-      {"estimator/include/tumble/odometry/sensor_sheets.hpp", "LidarSheet", "", "python/bindings/sheets.cpp", 12},
-      {"estimator/include/tumble/odometry/sensor_sheets.hpp", "LidarSheet", "", "python/src/tumble/sheets.py", 12},
+      {"estimator/include/tumble/odometry/sensor_sheets.hpp", "ImuDataSheet", "", "python/bindings/sheets.cpp", 16},
+      {"estimator/include/tumble/odometry/sensor_sheets.hpp", "ImuDataSheet", "", "python/src/tumble/sheets.py", 16},
+      {"estimator/include/tumble/odometry/sensor_sheets.hpp", "LidarDataSheet", "", "python/bindings/sheets.cpp", 12},
+      {"estimator/include/tumble/odometry/sensor_sheets.hpp", "LidarDataSheet", "", "python/src/tumble/sheets.py", 12},
       {"tools/tumble/verbs.hpp", "Action", "[^;{]*", "tools/tumble/verbs.cpp", 15},
   };
   for (const Registry& registry : registries) {

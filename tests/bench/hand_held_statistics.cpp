@@ -145,7 +145,7 @@ double attitude(const std::string& number, const std::string& name, const sim::V
   sensors.imus.push_back(std::move(imu));
   const scenarios::Estimate estimate = scenarios::find_methods(name).front()->run(sensors, values, {});
   std::vector<Eigen::Quaterniond> q_WI;
-  for (const tumble::AttitudeState& state : estimate.attitudes) q_WI.push_back(state.q_WA);
+  for (const tumble::AttitudeState& state : estimate.attitudes) q_WI.push_back(state.orientation_W);
   const tumble::testing::BroadError error = tumble::testing::score(trial, q_WI);
   std::printf("%-10s BROAD %s inclination %.3f deg in motion, %.3f at rest |", name.c_str(), number.c_str(),
               error.inclination_motion_deg, error.inclination_rest_deg);

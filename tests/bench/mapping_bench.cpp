@@ -86,7 +86,7 @@ double median(std::vector<double> values) {
 /// Returns the settings of the method: saturation deficits of clipped axes and the calibration are also unknowns.
 LidarInertialOdometry::Params all_unknowns() {
   LidarInertialOdometry::Params params;
-  params.expert.rails.estimate_deficit = true;
+  params.expert.saturated_imu.estimate_deficit = true;
   params.mount_sigma_rad = 0.01;
   params.mount_sigma_m = 0.006;
   params.time_offset_sigma_s = 0.003;
@@ -94,9 +94,9 @@ LidarInertialOdometry::Params all_unknowns() {
   return params;
 }
 
-tumble::RateState on_the_rail(const tumble::ImuSample& sample) {
+tumble::AngularRateState on_the_rail(const tumble::ImuSample& sample) {
   constexpr double kRail_rad_s = 10.5;
-  tumble::RateState rate = tumble::test::believe(sample);
+  tumble::AngularRateState rate = tumble::test::believe(sample);
   for (int axis = 0; axis < 3; ++axis) {
     if (std::abs(rate.w_WI_I_rad_s[axis]) >= kRail_rad_s) rate.clipped_axes |= static_cast<std::uint8_t>(1 << axis);
   }
@@ -212,7 +212,7 @@ void nearest_neighbours_and_plane(benchmark::State& state) {
       map.insert((T * p.position_L_m.cast<double>()).cast<float>(), 0.02f, 0);
     }
   }
-  tumble::Neighbours found;
+  tumble::NearestNeighbours found;
   std::uint32_t index = 0;
   const bool with_plane = state.range(0) != 0;
   for (auto _ : state) {
@@ -220,7 +220,7 @@ void nearest_neighbours_and_plane(benchmark::State& state) {
       index = (index + 7919) % map.index_end();
     } while (!map.exists(index));
     map.nearest(map.position_W_m(index) + Eigen::Vector3f(0.05f, -0.04f, 0.06f), 12, 1.0f, found);
-    if (with_plane) benchmark::DoNotOptimize(tumble::fit_plane(map, found, tumble::PlaneBounds{}));
+    if (with_plane) benchmark::DoNotOptimize(tumble::fit_plane(map, found, tumble::PlaneFitBounds{}));
     benchmark::DoNotOptimize(found);
   }
 }

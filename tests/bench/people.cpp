@@ -51,7 +51,7 @@ void let_people_walk(const sim::Truth& truth, sim::Sensors& sensors) {
         const std::int64_t time_ns = lidar.sweep_start_ns[sweep] + lidar.offset_ns[k];
         if (of_lidar.surface_id[k] < 0 || !track.covers(time_ns)) continue;
         const PoseState pose = track.pose(time_ns);
-        const Eigen::Vector3d from = pose.p_WA_m + pose.q_WA * of_lidar.T_BL.translation();
+        const Eigen::Vector3d from = pose.position_W_m + pose.orientation_W * of_lidar.T_BL.translation();
         const Eigen::Vector3d ray = of_lidar.hit_W_m[k].cast<double>() - from;
         double nearest = 1.0;
         for (const Eigen::Vector2d& centre : people_at(1e-9 * static_cast<double>(time_ns), start_W_m)) {

@@ -46,11 +46,11 @@ void count(const Eigen::Matrix3d& rows, const Eigen::Vector3d& lost, double rang
   }
 }
 
-void print(const char* triad, const Count& c, const RailPlanes& planes, const std::string& file) {
+void print(const char* triad, const Count& c, const SaturationPlanes& planes, const std::string& file) {
   std::printf("%-5s %5zu %5zu  %5zu %5zu  %5zu  planes", triad, c.deep, c.found, c.called, c.right, c.false_alarms);
-  for (const auto& plane : planes.element) {
+  for (const auto& plane : planes.sensing_axis) {
     if (plane) {
-      std::printf(" %.3f(%d+%d)", plane->distance_rad_s, plane->samples[0], plane->samples[1]);
+      std::printf(" %.3f(%d+%d)", plane->saturation_limit_rad_s, plane->samples[0], plane->samples[1]);
     } else {
       std::printf(" -");
     }
@@ -64,31 +64,31 @@ void judge(const std::string& file, bool flags) {
   sim::ImuRecord& imu = sensors.imus.at(0);
   if (!flags) imu.clip_flags.assign(imu.time_ns.size(), 0);
   ClippingFinder::Params params;
-  params.axis_aligned_rails = scenarios::stated_rails(imu);
+  params.axis_limit_params = scenarios::stated_rails(imu);
   const ClippingFinder finder(params);
   std::vector<ImuSample> samples;
   if (!scenarios::bridge::imu_samples(imu, samples).ok()) return;
-  const ClippingFinder::Found found = finder.find(samples);
+  const ClippingFinder::ClippingSearchResult found = finder.find(samples);
   std::vector<ImuSample> free = samples;
   Count gyro, accel;
   const Eigen::Matrix3d gyro_rows = rows_of(truth.gyro_elements), accel_rows = rows_of(truth.accel_elements);
   for (std::size_t k = 0; k < samples.size(); ++k) {
     count(gyro_rows, truth.gyro_unclipped_rad_s[k] - samples[k].angular_velocity_rad_s, imu.stated_gyro_range_rad_s,
-          found.clippings[k].gyro, gyro);
+          found.clipping_per_sample[k].gyro, gyro);
     count(accel_rows, truth.accel_unclipped_m_s2[k] - samples[k].specific_force_m_s2, imu.stated_accel_range_m_s2,
-          found.clippings[k].accel, accel);
+          found.clipping_per_sample[k].accel, accel);
     free[k].device_clip_flags = 0;
     free[k].angular_velocity_rad_s = truth.gyro_unclipped_rad_s[k];
     free[k].specific_force_m_s2 = truth.accel_unclipped_m_s2[k];
   }
-  params.axis_aligned_rails.stated_gyro_rad_s = params.axis_aligned_rails.stated_accel_m_s2 = std::nullopt;
-  const ClippingFinder::Found none = ClippingFinder(params).find(free);
-  for (const Clipping& clipping : none.clippings) {
+  params.axis_limit_params.stated_gyro_range_rad_s = params.axis_limit_params.stated_accel_range_m_s2 = std::nullopt;
+  const ClippingFinder::ClippingSearchResult none = ClippingFinder(params).find(free);
+  for (const Clipping& clipping : none.clipping_per_sample) {
     gyro.false_alarms += clipping.gyro != 0;
     accel.false_alarms += clipping.accel != 0;
   }
-  print("gyro", gyro, found.rails.planes, file);
-  print("accel", accel, found.rails.accel_planes, file);
+  print("gyro", gyro, found.saturation_levels.gyro_planes, file);
+  print("accel", accel, found.saturation_levels.accel_saturation_planes, file);
 }
 
 }  // namespace

@@ -28,9 +28,9 @@ tumble::TumbleRecording recording(int flights) {
 
 void batch(benchmark::State& state) {
   const tumble::TumbleRecording tumbling = recording(static_cast<int>(state.range(0)));
-  const tumble::RateSmoother smoother(tumble::with_lever_arm<tumble::RateSmoother::Params>());
-  std::vector<tumble::RateState> out;
-  tumble::RateReport report;
+  const tumble::AngularRateSmoother smoother(tumble::with_lever_arm<tumble::AngularRateSmoother::Params>());
+  std::vector<tumble::AngularRateState> out;
+  tumble::AngularRateReport report;
   double iterations = 0.0;
   for (auto _ : state) {
     if (!smoother.estimate(tumbling.samples, out, report).ok()) state.SkipWithError("not estimated");
@@ -46,12 +46,12 @@ BENCHMARK(batch)->Arg(8)->Arg(80)->Arg(800)->Unit(benchmark::kMillisecond);
 
 void streaming(benchmark::State& state) {
   const tumble::TumbleRecording tumbling = recording(8);
-  auto params = tumble::with_lever_arm<tumble::RateStream::Params>();
-  params.rails.stated_gyro_rad_s = 10.5;
-  const tumble::RateStream stream(params);
-  std::optional<tumble::RateState> out;
+  auto params = tumble::with_lever_arm<tumble::AngularRateStream::Params>();
+  params.saturation_detector.stated_gyro_range_rad_s = 10.5;
+  const tumble::AngularRateStream stream(params);
+  std::optional<tumble::AngularRateState> out;
   for (auto _ : state) {
-    tumble::RateStream::State hand_held = stream.start();
+    tumble::AngularRateStream::State hand_held = stream.start();
     for (const tumble::ImuSample& sample : tumbling.samples) {
       if (!stream.push(sample, hand_held, out).ok()) state.SkipWithError("not estimated");
     }
@@ -77,11 +77,11 @@ struct Problem {
       arrow::StateMatrix root;
       fill(root);
       block.diagonal = root * root.transpose() + 30.0 * arrow::StateMatrix::Identity();
-      fill(block.coupling);
-      fill(block.border);
+      fill(block.coupling_to_next_state);
+      fill(block.border_coupling);
       fill(block.gradient);
     }
-    blocks.back().coupling.setZero();
+    blocks.back().coupling_to_next_state.setZero();
     corner.matrix = (10.0 * static_cast<double>(count)) * arrow::BorderMatrix::Identity();
     fill(corner.gradient);
   }
@@ -104,8 +104,8 @@ struct Problem {
     for (std::size_t k = 0; k < blocks.size(); ++k) {
       const Eigen::Index at = static_cast<Eigen::Index>(k) * arrow::kBlockSize;
       add(at, at, blocks[k].diagonal);
-      if (k + 1 < blocks.size()) add(at, at + arrow::kBlockSize, blocks[k].coupling);
-      add(at, border, blocks[k].border);
+      if (k + 1 < blocks.size()) add(at, at + arrow::kBlockSize, blocks[k].coupling_to_next_state);
+      add(at, border, blocks[k].border_coupling);
     }
     add(border, border, corner.matrix);
     Eigen::SparseMatrix<double> out(size(), size());
@@ -146,7 +146,7 @@ void solve_arrow(benchmark::State& state) {
     for (std::size_t k = 0; k < blocks.size(); ++k) {
       good = good && arrow::eliminate(blocks[k], k + 1 < blocks.size() ? &blocks[k + 1] : nullptr, corner);
     }
-    good = good && arrow::solve_corner(corner, border, covariance);
+    good = good && arrow::solve_border_block(corner, border, covariance);
     for (std::size_t k = blocks.size(); k-- > 0;) {
       step = arrow::back_substitute(blocks[k], k + 1 < blocks.size() ? &step : nullptr, border);
     }

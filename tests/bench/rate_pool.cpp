@@ -106,7 +106,7 @@ void RatePool::add(std::uint64_t seed, const sim::Recording& recording, const sc
     clipped_.push_back(error.norm());
     run.clipped_mean_rad_s += error.norm();
     ++run.clipped;
-    called_measured_ += answered && estimate.rates[at].source == RateSource::measured;
+    called_measured_ += answered && estimate.rates[at].source == AngularRateSource::measured;
     const bool contact = in_contact(recording, record.time_ns[k]);
     (contact ? contact_ : flight_).push_back(error.norm());
     if (sum.segment.samples++ == 0) sum.segment.seed = seed;

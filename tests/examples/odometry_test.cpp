@@ -196,7 +196,7 @@ TEST(OdometryExamples, TheRebootExampleStartsAtTheSavedPose) {
   poses("beginning.txt", "damaged");
   std::ostringstream errors;
   errors << std::ifstream(folder / "errors.txt").rdbuf();
-  EXPECT_NE(errors.str().find("starts without the saved state: too_few"), std::string::npos);
+  EXPECT_NE(errors.str().find("starts without the saved state: insufficient_data"), std::string::npos);
   EXPECT_NE(errors.str().find("damaged was not changed"), std::string::npos);
   EXPECT_EQ(text_of(folder / "damaged"), "no state");
   EXPECT_FALSE(fs::exists(folder / "parts.new"));

@@ -171,7 +171,7 @@ void write_documents(const path& folder, const path& scratch) {
 
   CalibratedRig rig;
   rig.calibration.covariance = 0.7e-4 * RigConstants::Matrix::Identity();
-  rig.rail = {10.5, std::nullopt, 10.4, std::nullopt, std::nullopt, std::nullopt};
+  rig.saturation_limits = {10.5, std::nullopt, 10.4, std::nullopt, std::nullopt, std::nullopt};
   write_rig_calibration(in(folder, "learnt") / "small", rig);
   const std::vector<MapPoint> map(3, MapPoint{{1, 2, 3}, {0, 0, 1}, 0.1f});
   write_map(in(folder, "map_ply") / "small", map);
@@ -179,7 +179,7 @@ void write_documents(const path& folder, const path& scratch) {
   Estimate estimate;
   estimate.health["rejected_samples"] = 2.0;
   for (int k = 0; k < 3; ++k) {
-    RateState state;
+    AngularRateState state;
     state.time_ns = 10'000'000 * (k + 1);
     state.covariance_rad2_s2 = 1e-4 * Eigen::Matrix3d::Identity();
     estimate.rates.push_back(state);

@@ -19,7 +19,7 @@ namespace tumble::fuzz {
 namespace {
 
 using Bytes = std::vector<std::byte>;
-using odometry::SavedKind;
+using odometry::SavedStateKind;
 
 ImuSample sample_at(int k) {
   ImuSample out;
@@ -55,7 +55,7 @@ RollingOdometry rolling() {
   RollingOdometry::Params params;
   params.radius_m = 0.145;
   params.lag_s = 0.1;
-  params.units.resize(1);
+  params.imus.resize(1);
   return RollingOdometry(params);
 }
 
@@ -74,9 +74,9 @@ void feed(RollingOdometry& odometry) {
   while (odometry.take()) continue;
 }
 
-Bytes sealed(SavedKind kind, std::span<const std::byte> contents) {
-  odometry::SavedWriter out;
-  out.append(contents);
+Bytes sealed(SavedStateKind kind, std::span<const std::byte> contents) {
+  odometry::SavedStateWriter out;
+  out.append_bytes(contents);
   return std::move(out).finish(kind);
 }
 
@@ -112,11 +112,11 @@ void saved_run(const std::filesystem::path& file) {
   std::vector<MapPoint> points;
   switch (text[0]) {
     case 'T':
-      return load_and_continue(sealed(SavedKind::tumbling, contents), tumbling());
+      return load_and_continue(sealed(SavedStateKind::tumbling, contents), tumbling());
     case 'R':
-      return load_and_continue(sealed(SavedKind::rolling, contents), rolling());
+      return load_and_continue(sealed(SavedStateKind::rolling, contents), rolling());
     case 'M':
-      return refuse(load_map(sealed(SavedKind::map, contents), points));
+      return refuse(load_map(sealed(SavedStateKind::map, contents), points));
     default:
       throw scenarios::BadInput("none of T, R and M");
   }

@@ -20,7 +20,7 @@ std::set<std::string> names() {
   Params params;
   ros::visit_parameters(params, [&](const std::string& name, auto&, const Field& field) {
     EXPECT_TRUE(out.insert(name).second) << name << " is declared twice";
-    EXPECT_STRNE(field.meaning, "") << name;
+    EXPECT_STRNE(field.description, "") << name;
   });
   for (const ros::TextParameter& text : ros::text_parameters()) EXPECT_TRUE(out.insert(text.name).second) << text.name;
   return out;
@@ -49,7 +49,7 @@ TEST(NodeParams, ReadsPosesBoxesAndSheets) {
   EXPECT_EQ(ros::box_of("own_body", std::vector<double>{-1, -2, -3, 1, 2, 3}).max(), Eigen::Vector3d(1, 2, 3));
   EXPECT_THROW(ros::box_of("own_body", std::vector<double>(5, 0.0)), InvalidParams);
   EXPECT_EQ(ros::imu_sheet("mti30").gyro_range_rad_s, sheets::mti30().gyro_range_rad_s);
-  EXPECT_EQ(ros::imu_sheet("").rate_hz, ImuSheet{}.rate_hz);
+  EXPECT_EQ(ros::imu_sheet("").rate_hz, ImuDataSheet{}.rate_hz);
   EXPECT_EQ(ros::lidar_sheet("rs16").range_min_m, 0.2);
   try {
     ros::imu_sheet("mti300");

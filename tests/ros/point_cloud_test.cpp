@@ -136,7 +136,7 @@ TEST(PointClouds, LivoxMessagesGiveTheSamePoints) {
       EXPECT_NEAR(sweep.points[i].intensity, points[i].intensity, 1.0 / 255.0);
     }
     for (std::size_t size = 0; size < bytes.size(); ++size)
-      ASSERT_EQ(cloud.parse(std::span(bytes).first(size)).error_code, ErrorCode::too_few) << size;
+      ASSERT_EQ(cloud.parse(std::span(bytes).first(size)).error_code, ErrorCode::insufficient_data) << size;
   }
   std::vector<std::uint8_t> big_endian = test::livox_cdr(kStamp_ns, "l", points);
   big_endian[1] = 0;
@@ -182,7 +182,7 @@ TEST(PointClouds, TheUnitIsThatOfTheFirstWholeSweep) {
   PointCloudReader reader;
   TimedSweep sweep;
   const CloudMessage small = test::ouster_cloud(few), whole = test::ouster_cloud(points);
-  EXPECT_EQ(reader.read(small.view(0), sweep).error_code, ErrorCode::too_few);
+  EXPECT_EQ(reader.read(small.view(0), sweep).error_code, ErrorCode::insufficient_data);
   ASSERT_TRUE(reader.read(whole.view(0), sweep).ok());
   ASSERT_TRUE(reader.read(small.view(0), sweep).ok());
   EXPECT_EQ(sweep.end_ns, 250'000);

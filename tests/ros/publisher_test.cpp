@@ -24,9 +24,9 @@ using ros::Vector6;
 PoseState some_pose() {
   PoseState out;
   out.time_ns = 7;
-  out.p_WA_m = {1.0, -2.0, 3.0};
-  out.q_WA = so3::exp({0.4, -1.1, 2.0});
-  out.v_WA_m_s = {0.5, 1.5, -0.7};
+  out.position_W_m = {1.0, -2.0, 3.0};
+  out.orientation_W = so3::exp({0.4, -1.1, 2.0});
+  out.velocity_W_m_s = {0.5, 1.5, -0.7};
   return out;
 }
 
@@ -44,22 +44,22 @@ Eigen::Matrix<double, N, N> some_covariance(std::mt19937& random) {
 TEST(BaseOdometry, IsThePoseAndTwistOfTheBase) {
   const PoseState imu = some_pose();
   const Eigen::Isometry3d T_IB = some_base();
-  RateState rate;
+  AngularRateState rate;
   rate.w_WI_I_rad_s = {2.0, -1.0, 0.5};
   const ros::Odometry odometry = ros::base_odometry(imu, Eigen::Matrix3d::Zero(), rate, T_IB);
-  const Eigen::Isometry3d T_OI = Eigen::Translation3d(imu.p_WA_m) * imu.q_WA;
+  const Eigen::Isometry3d T_OI = Eigen::Translation3d(imu.position_W_m) * imu.orientation_W;
   EXPECT_TRUE(odometry.T_OB.isApprox(T_OI * T_IB, 1e-12));
   EXPECT_EQ(odometry.stamp_ns, 7);
   // the velocity of the base comes from a difference over 20 us, which is exact to 1e-9; it is then turned into axes of
   // the base
   constexpr double kStep_s = 1e-5;
   const auto moved = [&](double t_s) {
-    return Eigen::Isometry3d(Eigen::Translation3d(imu.p_WA_m + t_s * imu.v_WA_m_s) *
-                             (imu.q_WA * so3::exp(t_s * rate.w_WI_I_rad_s)) * T_IB);
+    return Eigen::Isometry3d(Eigen::Translation3d(imu.position_W_m + t_s * imu.velocity_W_m_s) *
+                             (imu.orientation_W * so3::exp(t_s * rate.w_WI_I_rad_s)) * T_IB);
   };
   const Eigen::Vector3d v_O = (moved(kStep_s).translation() - moved(-kStep_s).translation()) / (2.0 * kStep_s);
   const Eigen::Matrix3d R_BO = odometry.T_OB.linear().transpose();
-  const Eigen::Vector3d w_B = so3::log(Eigen::Quaterniond(R_BO * moved(kStep_s).linear())) / kStep_s;
+  const Eigen::Vector3d w_B = so3::logarithm(Eigen::Quaterniond(R_BO * moved(kStep_s).linear())) / kStep_s;
   EXPECT_TRUE(odometry.twist_B.head<3>().isApprox(R_BO * v_O, 1e-8));
   EXPECT_TRUE(odometry.twist_B.tail<3>().isApprox(w_B, 1e-8));
   EXPECT_FALSE(odometry.twist_B.head<3>().isApprox(v_O, 0.1)) << "negative control: axes of the odometry frame";
@@ -71,7 +71,7 @@ TEST(BaseOdometry, CovariancesAreThoseOfSampledErrors) {
   std::mt19937 random(1);
   PoseState imu = some_pose();
   const Eigen::Isometry3d T_IB = some_base();
-  RateState rate;
+  AngularRateState rate;
   rate.w_WI_I_rad_s = {2.0, -1.0, 0.5};
   imu.covariance = some_covariance<6>(random);
   rate.covariance_rad2_s2 = some_covariance<3>(random);
@@ -88,17 +88,17 @@ TEST(BaseOdometry, CovariancesAreThoseOfSampledErrors) {
   for (int k = 0; k < kDraws; ++k) {
     const Eigen::VectorXd error = draw(imu.covariance);
     PoseState wrong = imu;
-    wrong.p_WA_m += error.head<3>();
-    wrong.q_WA = so3::exp(error.tail<3>()) * imu.q_WA;
+    wrong.position_W_m += error.head<3>();
+    wrong.orientation_W = so3::exp(error.tail<3>()) * imu.orientation_W;
     // the velocity's covariance is stated in IMU axes, so the sampled velocity turns with the attitude
-    const Eigen::Vector3d v_I = imu.q_WA.conjugate() * imu.v_WA_m_s + Eigen::Vector3d(draw(velocity_I));
-    wrong.v_WA_m_s = wrong.q_WA * v_I;
-    RateState wrong_rate = rate;
+    const Eigen::Vector3d v_I = imu.orientation_W.conjugate() * imu.velocity_W_m_s + Eigen::Vector3d(draw(velocity_I));
+    wrong.velocity_W_m_s = wrong.orientation_W * v_I;
+    AngularRateState wrong_rate = rate;
     wrong_rate.w_WI_I_rad_s += draw(rate.covariance_rad2_s2);
     const ros::Odometry drawn = ros::base_odometry(wrong, velocity_I, wrong_rate, T_IB);
     Vector6 off;
     off << drawn.T_OB.translation() - stated.T_OB.translation(),
-        so3::log(Eigen::Quaterniond(drawn.T_OB.linear() * stated.T_OB.linear().transpose()));
+        so3::logarithm(Eigen::Quaterniond(drawn.T_OB.linear() * stated.T_OB.linear().transpose()));
     pose += off * off.transpose() / kDraws;
     const Vector6 twist_off = drawn.twist_B - stated.twist_B;
     twist += twist_off * twist_off.transpose() / kDraws;
@@ -120,8 +120,8 @@ TEST(Deskew, PointsOfASpinningBodyAreThoseOfAStandingOne) {
     const Eigen::Isometry3d T = body.T_WI(1e-9 * double(time_ns));
     PoseState& pose = trajectory.emplace_back();
     pose.time_ns = time_ns;
-    pose.p_WA_m = T.translation();
-    pose.q_WA = Eigen::Quaterniond(T.linear());
+    pose.position_W_m = T.translation();
+    pose.orientation_W = Eigen::Quaterniond(T.linear());
   }
   std::vector<ros::DeskewedPoint> deskewed;
   ros::deskew(trajectory, Eigen::Isometry3d::Identity(), sweep->start_ns, sweep->points, deskewed);

@@ -37,7 +37,7 @@ TEST(RollingAdapter, PublishesTheLibrarysResultsBitForBit) {
     ASSERT_EQ(got.sweeps.size(), poses.size());
     ASSERT_EQ(got.newest.size(), newest.size());
     for (std::size_t k = 0; k < poses.size(); ++k) {
-      EXPECT_EQ(got.sweeps[k].T_OB.translation(), poses[k].pose.p_WA_m);
+      EXPECT_EQ(got.sweeps[k].T_OB.translation(), poses[k].pose.position_W_m);
       EXPECT_EQ(got.sweeps[k].pose_covariance, poses[k].pose.covariance);
     }
     // the sphere rolls without slip, so its speed follows from its rotation

@@ -74,7 +74,7 @@ TEST(TumblingAdapter, PublishesTheLibrarysResultsBitForBit) {
   odometry.reset(Eigen::Isometry3d::Identity());
   std::vector<SweepReport> sweeps;
   std::vector<PoseState> newest;
-  std::vector<RateState> rates;
+  std::vector<AngularRateState> rates;
   const auto take = [&] {
     while (const auto sweep = odometry.take())
       if (!sweep->report.trajectory.empty()) sweeps.push_back(sweep->report);
@@ -103,12 +103,12 @@ TEST(TumblingAdapter, PublishesTheLibrarysResultsBitForBit) {
   ASSERT_EQ(got.sweeps.size(), sweeps.size());
   for (std::size_t k = 0; k < sweeps.size(); ++k) {
     EXPECT_EQ(got.sweeps[k].stamp_ns, sweeps[k].pose.time_ns);
-    EXPECT_TRUE(same_bits(Eigen::Vector3d(got.sweeps[k].T_OB.translation()), sweeps[k].pose.p_WA_m));
+    EXPECT_TRUE(same_bits(Eigen::Vector3d(got.sweeps[k].T_OB.translation()), sweeps[k].pose.position_W_m));
     EXPECT_TRUE(same_bits(got.sweeps[k].pose_covariance, sweeps[k].pose.covariance));
   }
   ASSERT_EQ(got.newest.size(), newest.size());
   for (std::size_t k = 0; k < newest.size(); ++k)
-    EXPECT_TRUE(same_bits(Eigen::Vector3d(got.newest[k].T_OB.translation()), newest[k].p_WA_m));
+    EXPECT_TRUE(same_bits(Eigen::Vector3d(got.newest[k].T_OB.translation()), newest[k].position_W_m));
   ASSERT_EQ(got.rates.size(), rates.size());
   for (std::size_t k = 0; k < rates.size(); ++k) {
     EXPECT_EQ(got.rates[k].rate.time_ns, rates[k].time_ns);

@@ -14,7 +14,7 @@ constexpr double kStep_s = 2e-4;
 }  // namespace
 
 Eigen::Vector3d angular_velocity(const KnownMotion& motion, double t) {
-  return so3::log(motion.q_WI(t - kStep_s).conjugate() * motion.q_WI(t + kStep_s)) / (2.0 * kStep_s);
+  return so3::logarithm(motion.q_WI(t - kStep_s).conjugate() * motion.q_WI(t + kStep_s)) / (2.0 * kStep_s);
 }
 
 Eigen::Vector3d specific_force(const KnownMotion& motion, double t) {

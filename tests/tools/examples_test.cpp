@@ -39,7 +39,7 @@ scenarios::RunResult clipped_run() {
     recording.truth.w_WB_B_rad_s.emplace_back(0, 15, 0);
     recording.sensors.imus[0].time_ns.push_back(10000000 * k);
     recording.truth.imus[0].rate_rad_s.emplace_back(0, 15 + k, 0);
-    RateState rate;
+    AngularRateState rate;
     rate.time_ns = 10000000 * k;
     rate.w_WI_I_rad_s = {0, 10.5, 0};
     rate.clipped_axes = 2;
@@ -78,7 +78,7 @@ TEST(DrawnOf, HasAColourForEachAndBeginsWithTheFirst) {
 
 TEST(RatePlot, IsEmptyWhenNothingClips) {
   scenarios::RunResult run = clipped_run();
-  for (RateState& rate : run.estimates[0].rates) rate.clipped_axes = 0;
+  for (AngularRateState& rate : run.estimates[0].rates) rate.clipped_axes = 0;
   EXPECT_TRUE(rate_plot(run).lines.empty());
 }
 

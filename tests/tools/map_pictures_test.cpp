@@ -50,8 +50,8 @@ scenarios::Estimate estimate_elsewhere(const sim::Truth& truth) {
   for (std::size_t k = 0; k < truth.p_WB_m.size(); ++k) {
     PoseState pose;
     pose.time_ns = static_cast<std::int64_t>(k) * truth.period_ns;
-    pose.p_WA_m = T_VW * truth.p_WB_m[k];
-    pose.q_WA = Eigen::Quaterniond(T_VW.linear()) * truth.q_WB[k];
+    pose.position_W_m = T_VW * truth.p_WB_m[k];
+    pose.orientation_W = Eigen::Quaterniond(T_VW.linear()) * truth.q_WB[k];
     estimate.poses.push_back(pose);
   }
   for (const double height_m : {0.0, 0.0, 0.0, 0.4}) {

@@ -64,8 +64,8 @@ scenarios::Estimate perfect_estimate(const sim::Truth& truth, scenarios::Frame f
     const Isometry3d T_VA = T_VW * T_WB * T_BA;
     PoseState pose;
     pose.time_ns = static_cast<std::int64_t>(k) * kPeriodNs;
-    pose.p_WA_m = T_VA.translation();
-    pose.q_WA = Quaterniond(T_VA.linear());
+    pose.position_W_m = T_VA.translation();
+    pose.orientation_W = Quaterniond(T_VA.linear());
     estimate.poses.push_back(pose);
   }
   return estimate;
@@ -93,7 +93,7 @@ TEST(EstimatedPath, ShowsAnErrorOfTheEstimate) {
   const sim::Truth truth = spiral();
   const sim::Sensors sensors = sensors_of(truth);
   scenarios::Estimate estimate = perfect_estimate(truth, scenarios::Frame::imu);
-  estimate.poses.back().p_WA_m.z() += 0.25;
+  estimate.poses.back().position_W_m.z() += 0.25;
   const Path path = estimated_path(estimate, sensors, truth);
   EXPECT_NEAR((path.points_W_m.back() - true_path(sensors, truth, 10).points_W_m.back()).z(), 0.25, 1e-12);
 }

@@ -90,11 +90,11 @@ inline scenarios::Estimate known_estimate(scenarios::Frame frame, const Eigen::I
     const Eigen::Isometry3d T_VA = T_VW * known_pose(t) * T_BA;
     PoseState pose;
     pose.time_ns = t;
-    pose.p_WA_m = T_VA.translation();
-    pose.q_WA = Eigen::Quaterniond(T_VA.linear());
+    pose.position_W_m = T_VA.translation();
+    pose.orientation_W = Eigen::Quaterniond(T_VA.linear());
     estimate.poses.push_back(pose);
     if (t < 200'000'000) continue;
-    RateState rate;
+    AngularRateState rate;
     rate.time_ns = t;
     rate.w_WI_I_rad_s = {0.0, 0.0, 3.0};
     rate.clipped_axes = t >= 700'000'000 ? 4 : 0;

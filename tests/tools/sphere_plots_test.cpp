@@ -53,14 +53,14 @@ scenarios::RunResult sample_roll() {
     const auto k = static_cast<std::size_t>(time_ns / kPeriod_ns);
     AttitudeState attitude;
     attitude.time_ns = time_ns;
-    attitude.q_WA = Eigen::AngleAxisd(sign * kTremor_rad, Eigen::Vector3d(1.0, 1.0, 0.0).normalized());
+    attitude.orientation_W = Eigen::AngleAxisd(sign * kTremor_rad, Eigen::Vector3d(1.0, 1.0, 0.0).normalized());
     run.estimates[0].attitudes.push_back(attitude);
     sign = -sign;
     PoseState pose;
     pose.time_ns = time_ns;
-    pose.p_WA_m = run.recording.truth.p_WB_m[k];
-    pose.p_WA_m.x() *= 2.0;
-    pose.q_WA = Eigen::Quaterniond::Identity();
+    pose.position_W_m = run.recording.truth.p_WB_m[k];
+    pose.position_W_m.x() *= 2.0;
+    pose.orientation_W = Eigen::Quaterniond::Identity();
     run.estimates[1].poses.push_back(pose);
   }
   return run;

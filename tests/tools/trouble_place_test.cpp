@@ -63,7 +63,7 @@ TEST(TroublePlace, NamesTheSizeOfSweepsWithoutMap) {
   lidar.name = "points";
   lidar.sweep_start_ns = {0, 100, 200};
   lidar.sweep_first = {0, 96, 100, 900};
-  EXPECT_EQ(trouble_place({ErrorCode::too_few, "lidar.sweeps_registered", 0.0, 1.0}, sensors),
+  EXPECT_EQ(trouble_place({ErrorCode::insufficient_data, "lidar.sweeps_registered", 0.0, 1.0}, sensors),
             "the sweeps of points have 96 points (median); a map needs sweeps with at least 100 points");
 }
 

@@ -17,9 +17,9 @@ using scenarios::Kind;
 
 constexpr std::size_t kPathPointsMax = 600;
 
-int most_clipped_axis(const std::vector<RateState>& rates) {
+int most_clipped_axis(const std::vector<AngularRateState>& rates) {
   std::array<int, 3> count = {0, 0, 0};
-  for (const RateState& rate : rates) {
+  for (const AngularRateState& rate : rates) {
     for (int axis = 0; axis < 3; ++axis) count[static_cast<std::size_t>(axis)] += (rate.clipped_axes >> axis) & 1;
   }
   const auto most = std::max_element(count.begin(), count.end());
@@ -48,13 +48,13 @@ PlotLine sampled_rate(const std::string& name, double width, const std::vector<T
   return line;
 }
 
-PlotLine estimated_rate(const scenarios::MethodInfo& info, const std::vector<RateState>& rates, int axis,
+PlotLine estimated_rate(const scenarios::MethodInfo& info, const std::vector<AngularRateState>& rates, int axis,
                         const Span& span) {
   PlotLine line;
   line.name = info.baseline ? info.name + " (gyro reading)" : info.name;
   line.width = 1.6;
   line.dotted = line.hidden = info.needs_truth;
-  for (const RateState& rate : rates) {
+  for (const AngularRateState& rate : rates) {
     if (rate.time_ns < span.begin_ns || rate.time_ns > span.end_ns) continue;
     line.x.push_back(significant(seconds(rate.time_ns)));
     line.y.push_back(significant(rate.w_WI_I_rad_s[axis]));

@@ -118,7 +118,7 @@ void add_tilt(const std::vector<AttitudeState>& attitudes, const Span& span, Plo
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (const AttitudeState& attitude : attitudes) {
     if (attitude.time_ns < span.begin_ns || attitude.time_ns > span.end_ns) continue;
-    up.emplace_back(attitude.time_ns, attitude.q_WA.conjugate() * Eigen::Vector3d::UnitZ());
+    up.emplace_back(attitude.time_ns, attitude.orientation_W.conjugate() * Eigen::Vector3d::UnitZ());
     mean += up.back().second;
   }
   if (up.empty()) return;
@@ -134,7 +134,7 @@ void add_tilt(const std::vector<AttitudeState>& attitudes, const Span& span, Plo
 std::vector<AttitudeState> true_attitudes(const scenarios::TruthTrack& track, const Span& span, std::int64_t step_ns) {
   std::vector<AttitudeState> all;
   for (std::int64_t time_ns = span.begin_ns; time_ns <= span.end_ns; time_ns += step_ns)
-    all.push_back({time_ns, track.pose(time_ns).q_WA, Eigen::Matrix3d::Zero()});
+    all.push_back({time_ns, track.pose(time_ns).orientation_W, Eigen::Matrix3d::Zero()});
   return all;
 }
 

@@ -26,8 +26,8 @@ bool moves(const sim::Truth& truth, std::size_t k) {
 
 Isometry3d pose_of(const PoseState& state) {
   Isometry3d T_WA = Isometry3d::Identity();
-  T_WA.linear() = state.q_WA.normalized().toRotationMatrix();
-  T_WA.translation() = state.p_WA_m;
+  T_WA.linear() = state.orientation_W.normalized().toRotationMatrix();
+  T_WA.translation() = state.position_W_m;
   return T_WA;
 }
 
@@ -77,7 +77,7 @@ Path estimated_path(const scenarios::Estimate& estimate, const sim::Sensors& sen
   const Isometry3d move = scenarios::Alignment::at(*first, track.pose(first->time_ns)).transform();
   const Vector3d point_A = T_BA.inverse() * drawn_point_B(sensors, truth);
   for (const PoseState& state : estimate.poses) {
-    if (!state.p_WA_m.allFinite() || !state.q_WA.coeffs().allFinite()) continue;
+    if (!state.position_W_m.allFinite() || !state.orientation_W.coeffs().allFinite()) continue;
     path.time_ns.push_back(state.time_ns);
     path.points_W_m.push_back(move * (pose_of(state) * point_A));
   }

@@ -74,8 +74,8 @@ double azimuth_across_rad(const sim::Truth& truth) {
 Isometry3d robot_pose(const scenarios::TruthTrack& track, std::int64_t time_ns) {
   const PoseState state = track.pose(time_ns);
   Isometry3d T_WB = Isometry3d::Identity();
-  T_WB.linear() = state.q_WA.toRotationMatrix();
-  T_WB.translation() = state.p_WA_m;
+  T_WB.linear() = state.orientation_W.toRotationMatrix();
+  T_WB.translation() = state.position_W_m;
   return T_WB;
 }
 

@@ -22,13 +22,13 @@ constexpr std::int64_t kGap_ns = 500'000'000;
 PoseState state_of(std::int64_t time_ns, const Isometry3d& T_WA) {
   PoseState state;
   state.time_ns = time_ns;
-  state.p_WA_m = T_WA.translation();
-  state.q_WA = Eigen::Quaterniond(T_WA.linear());
+  state.position_W_m = T_WA.translation();
+  state.orientation_W = Eigen::Quaterniond(T_WA.linear());
   return state;
 }
 
 bool is_finite_pose(const PoseState& state) {
-  return state.p_WA_m.allFinite() && state.q_WA.coeffs().allFinite() && state.q_WA.norm() > 1e-6;
+  return state.position_W_m.allFinite() && state.orientation_W.coeffs().allFinite() && state.orientation_W.norm() > 1e-6;
 }
 
 Isometry3d to_truth(const scenarios::Estimate& estimate, const sim::Truth& truth) {

@@ -35,9 +35,9 @@ bool truth_tells_clipping(const sim::Sensors& sensors, const sim::Truth* truth) 
   return truth->imus.front().rate_rad_s.size() == sensors.imus.front().time_ns.size();
 }
 
-std::size_t nearest(const std::vector<RateState>& rates, std::int64_t time_ns) {
+std::size_t nearest(const std::vector<AngularRateState>& rates, std::int64_t time_ns) {
   const auto after = std::lower_bound(rates.begin(), rates.end(), time_ns,
-                                      [](const RateState& rate, std::int64_t t) { return rate.time_ns < t; });
+                                      [](const AngularRateState& rate, std::int64_t t) { return rate.time_ns < t; });
   const auto at = static_cast<std::size_t>(after - rates.begin());
   if (at == rates.size()) return at - 1;
   return at > 0 && time_ns - rates[at - 1].time_ns < rates[at].time_ns - time_ns ? at - 1 : at;
@@ -61,7 +61,7 @@ void mark_clipping(const sim::Sensors& sensors, const sim::Truth* truth, const s
     return;
   }
   for (const ReplayEstimate& given : estimates) {
-    const std::vector<RateState>& rates = given.estimate->rates;
+    const std::vector<AngularRateState>& rates = given.estimate->rates;
     if (rates.empty()) continue;
     for (std::size_t k = 0; k < kept.size(); ++k)
       strip.clipped_axes[k] = rates[nearest(rates, strip.time_ns[k])].clipped_axes & kGyroFlags;
@@ -129,7 +129,7 @@ std::vector<Vector3f> estimated_rates(const ReplayStrip& strip, const sim::Senso
   if (estimate.rates.empty() || sensors.imus.empty()) return out;
   const std::int64_t period_ns = std::max<std::int64_t>(sensors.imus.front().period_ns, 1);
   for (const std::int64_t time_ns : strip.time_ns) {
-    const RateState& rate = estimate.rates[nearest(estimate.rates, time_ns)];
+    const AngularRateState& rate = estimate.rates[nearest(estimate.rates, time_ns)];
     const bool there = std::abs(rate.time_ns - time_ns) <= period_ns;
     out.push_back(there ? rate.w_WI_I_rad_s.cast<float>()
                         : Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()).eval());

@@ -111,7 +111,7 @@ double run_with_progress(const Session& session, const scenarios::Method& method
 double path_length_m(const Estimate& estimate) {
   double sum_m = 0.0;
   for (std::size_t k = 1; k < estimate.sweeps.size(); ++k)
-    sum_m += (estimate.sweeps[k].pose.p_WA_m - estimate.sweeps[k - 1].pose.p_WA_m).norm();
+    sum_m += (estimate.sweeps[k].pose.position_W_m - estimate.sweeps[k - 1].pose.position_W_m).norm();
   return sum_m;
 }
 

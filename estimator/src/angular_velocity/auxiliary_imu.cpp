@@ -14,18 +14,18 @@ namespace {
 
 using Eigen::Vector3d;
 
-Vector3d nothing() {
+Vector3d empty_reading() {
   return Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
 }
 
-struct Between {
+struct SampleInterval {
   Vector3d value, sigma;
 };
 
-Between between(const Vector3d& value, const Vector3d& change, const ImuNeighbours& near, double noise, double error,
+SampleInterval between(const Vector3d& value, const Vector3d& change, const ImuSamplePair& near, double noise, double error,
                 const AuxiliaryImu& auxiliary_imu) {
   // The standard deviation includes the interpolation error and the clock error of the auxiliary IMU.
-  const double crooked = near.share * (1.0 - near.share) + auxiliary_imu.clock_error_s / near.length_s;
+  const double crooked = near.interpolation_weight * (1.0 - near.interpolation_weight) + auxiliary_imu.clock_error_s / near.length_s;
   const double scaled = auxiliary_imu.scale_error * value.norm();
   return {value, (Vector3d::Constant(noise * noise + error * error + scaled * scaled) + (crooked * change).cwiseAbs2())
                      .cwiseSqrt()};
@@ -34,14 +34,14 @@ Between between(const Vector3d& value, const Vector3d& change, const ImuNeighbou
 }  // namespace
 
 AuxiliaryReading::AuxiliaryReading()
-    : rate_rad_s(nothing()), force_m_s2(nothing()), rate_sigma_rad_s(nothing()), force_sigma_m_s2(nothing()) {}
+    : rate_rad_s(empty_reading()), force_m_s2(empty_reading()), rate_sigma_rad_s(empty_reading()), force_sigma_m_s2(empty_reading()) {}
 
 Status align(const AuxiliaryImu& auxiliary_imu, std::span<const ImuSample> samples, std::span<const Clipping> clippings,
              std::span<const ImuSample> primary, double gap_max_s, std::vector<AuxiliaryReading>& out) {
   const Status status = check_samples(samples, std::numeric_limits<double>::infinity());
   if (!status.ok()) return status;
   if (clippings.size() != samples.size()) {
-    return {ErrorCode::too_few, "clippings", static_cast<double>(clippings.size()),
+    return {ErrorCode::insufficient_data, "clippings", static_cast<double>(clippings.size()),
             static_cast<double>(samples.size())};
   }
   out.assign(primary.size(), {});
@@ -49,24 +49,24 @@ Status align(const AuxiliaryImu& auxiliary_imu, std::span<const ImuSample> sampl
   const double root_rate = 1.0 / std::sqrt(median_period_s(samples));
   ImuInterpolation interpolation(samples);
   for (std::size_t k = 0; k < primary.size(); ++k) {
-    const ImuNeighbours near = interpolation.around(primary[k].time_ns);
-    if (!near.between() || near.length_s > gap_max_s) continue;
+    const ImuSamplePair near = interpolation.samples_around(primary[k].time_ns);
+    if (!near.is_inside_recording() || near.length_s > gap_max_s) continue;
     const ImuSample here = interpolation.at(primary[k].time_ns, near);
-    const ImuSample &a = samples[near.before], &b = samples[near.after];
-    const Between rate =
+    const ImuSample &a = samples[near.index_before], &b = samples[near.index_after];
+    const SampleInterval rate =
         between(here.angular_velocity_rad_s, b.angular_velocity_rad_s - a.angular_velocity_rad_s, near,
                 auxiliary_imu.gyro_noise_density * root_rate, auxiliary_imu.gyro_error_rad_s, auxiliary_imu);
-    const Between force =
+    const SampleInterval force =
         between(here.specific_force_m_s2, b.specific_force_m_s2 - a.specific_force_m_s2, near,
                 auxiliary_imu.accel_noise_density * root_rate, auxiliary_imu.accel_error_m_s2, auxiliary_imu);
-    const Clipping &c = clippings[near.before], &d = clippings[near.after];
-    const bool left = near.share<1.0, right = near.share> 0.0;
+    const Clipping &c = clippings[near.index_before], &d = clippings[near.index_after];
+    const bool left = near.interpolation_weight<1.0, right = near.interpolation_weight> 0.0;
     const unsigned gyro = (left ? c.gyro | c.unusable_gyro : 0u) | (right ? d.gyro | d.unusable_gyro : 0u);
     const unsigned accel = (left ? c.accel : 0u) | (right ? d.accel : 0u);
-    out[k].rate_along_elements = gyro != 0;
-    out[k].force_along_elements = accel != 0;
-    const Vector3d rates = gyro != 0 ? auxiliary_imu.gyro_elements.rows * rate.value : rate.value;
-    const Vector3d forces = accel != 0 ? auxiliary_imu.accel_elements.rows * force.value : force.value;
+    out[k].rate_along_sensing_axes = gyro != 0;
+    out[k].force_along_sensing_axes = accel != 0;
+    const Vector3d rates = gyro != 0 ? auxiliary_imu.gyro_sensing_directions.sensing_directions * rate.value : rate.value;
+    const Vector3d forces = accel != 0 ? auxiliary_imu.accel_sensing_directions.sensing_directions * force.value : force.value;
     for (int j = 0; j < 3; ++j) {
       if ((gyro >> j & 1u) == 0) {
         out[k].rate_rad_s[j] = rates[j];

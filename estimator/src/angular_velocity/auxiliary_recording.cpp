@@ -9,17 +9,17 @@
 namespace tumble {
 
 Status align(std::span<const AuxiliaryRecording> recordings, std::span<const ImuSample> primary, double gap_max_s,
-             RateModelParams& model, std::vector<std::vector<AuxiliaryReading>>& out) {
+             AngularRateModelParams& model, std::vector<std::vector<AuxiliaryReading>>& out) {
   out.clear();
   for (const AuxiliaryRecording& recording : recordings.first(std::min(recordings.size(), kAuxiliaryImusMax))) {
     ClippingFinder::Params clipping;
-    clipping.axis_aligned_rails = recording.stated_rails;
-    const ClippingFinder::Found found = ClippingFinder(clipping).find(recording.samples);
+    clipping.axis_limit_params = recording.stated_saturation_limits;
+    const ClippingFinder::ClippingSearchResult found = ClippingFinder(clipping).find(recording.samples);
     AuxiliaryImu imu = recording.imu;
-    imu.gyro_elements = found.rails.rows(Triad::gyro, model.element_sigma);
-    imu.accel_elements = found.rails.rows(Triad::accelerometer, model.element_sigma);
+    imu.gyro_sensing_directions = found.saturation_levels.rows(Triad::gyro, model.element_sigma);
+    imu.accel_sensing_directions = found.saturation_levels.rows(Triad::accelerometer, model.element_sigma);
     std::vector<AuxiliaryReading> aligned;
-    const Status status = align(imu, recording.samples, found.clippings, primary, gap_max_s, aligned);
+    const Status status = align(imu, recording.samples, found.clipping_per_sample, primary, gap_max_s, aligned);
     if (!status.ok()) return status;
     model.auxiliary_imus.push_back(imu);
     out.push_back(std::move(aligned));

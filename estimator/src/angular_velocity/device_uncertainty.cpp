@@ -15,7 +15,7 @@ using Vector = SensorErrors::Vector;
 
 constexpr double kOddsEvidenceWeight = 0.3;
 
-void set_system(const SensorErrorEvidence& evidence, const Vector& deviation, double share, Matrix& system) {
+void set_normal_equations(const SensorErrorInformation& evidence, const Vector& deviation, double share, Matrix& system) {
   for (int j = 0; j < SensorErrors::kSize; ++j) {
     for (int i = 0; i < SensorErrors::kSize; ++i) {
       const double system_evidence = 0.5 * (evidence.information(i, j) + evidence.information(j, i));
@@ -25,8 +25,8 @@ void set_system(const SensorErrorEvidence& evidence, const Vector& deviation, do
 }
 
 // See rate_stream.md (R102). Returns NaN if the information matrix is indefinite.
-double log_odds(const SensorErrorEvidence& evidence, const Vector& deviation, Matrix& system) {
-  set_system(evidence, deviation, kOddsEvidenceWeight, system);
+double log_odds(const SensorErrorInformation& evidence, const Vector& deviation, Matrix& system) {
+  set_normal_equations(evidence, deviation, kOddsEvidenceWeight, system);
   const Eigen::LLT<Eigen::Ref<Matrix>> factor(system);
   if (factor.info() != Eigen::Success) return std::numeric_limits<double>::quiet_NaN();
   const Vector z = kOddsEvidenceWeight * deviation.cwiseProduct(evidence.gradient);
@@ -34,16 +34,16 @@ double log_odds(const SensorErrorEvidence& evidence, const Vector& deviation, Ma
 }
 
 // Computes the second moment (covariance plus squared mean) of one device's sensor errors: rate_stream.md (R102).
-bool corrected_covariance(const SensorErrorEvidence& evidence, const Vector& deviation, DeviceUncertainty::Work& work) {
+bool corrected_covariance(const SensorErrorInformation& evidence, const Vector& deviation, SensorErrorUncertainty::WorkMatrices& work) {
   constexpr int kRest = SensorErrors::kSize - SensorErrors::kGSensitivity;
-  constexpr double kEvidenceWeight = DeviceUncertainty::kEvidenceWeight;
-  set_system(evidence, deviation, kEvidenceWeight, work.system);
+  constexpr double kSensorErrorEvidenceWeight = SensorErrorUncertainty::kSensorErrorEvidenceWeight;
+  set_normal_equations(evidence, deviation, kSensorErrorEvidenceWeight, work.normal_matrix);
   // The estimated scale and misalignment stay zero, because errors of the free-flight equations have the same effect.
   Vector mean = Vector::Zero();
-  const Eigen::Matrix<double, kRest, kRest> rest = work.system.bottomRightCorner<kRest, kRest>();
-  mean.tail<kRest>() = rest.llt().solve(kEvidenceWeight * deviation.cwiseProduct(evidence.gradient).tail<kRest>());
+  const Eigen::Matrix<double, kRest, kRest> rest = work.normal_matrix.bottomRightCorner<kRest, kRest>();
+  mean.tail<kRest>() = rest.llt().solve(kSensorErrorEvidenceWeight * deviation.cwiseProduct(evidence.gradient).tail<kRest>());
   mean = deviation.cwiseProduct(mean).eval();
-  const Eigen::LLT<Eigen::Ref<Matrix>> factor(work.system);
+  const Eigen::LLT<Eigen::Ref<Matrix>> factor(work.normal_matrix);
   if (factor.info() != Eigen::Success) return false;
   for (int j = 0; j < SensorErrors::kSize;
        ++j) {  // column by column, because a product of all columns would use more stack
@@ -55,19 +55,19 @@ bool corrected_covariance(const SensorErrorEvidence& evidence, const Vector& dev
 
 }  // namespace
 
-DeviceUncertainty::DeviceUncertainty(const SensorErrorPriors& sizes, double uncalibrated)
+SensorErrorUncertainty::SensorErrorUncertainty(const SensorErrorPriors& sizes, double uncalibrated)
     : data_sheet_sigma_(prior_sigmas(sizes, 0.0)),
       uncalibrated_sigma_(prior_sigmas(sizes, 1.0)),
       uncalibrated_prior_(uncalibrated) {}
 
-void DeviceUncertainty::reset(Posterior& posterior) const {
+void SensorErrorUncertainty::reset(Posterior& posterior) const {
   posterior.uncalibrated_probability = uncalibrated_prior_;
   posterior.covariance = ((1.0 - uncalibrated_prior_) * data_sheet_sigma_.cwiseAbs2() +
                           uncalibrated_prior_ * uncalibrated_sigma_.cwiseAbs2())
                              .asDiagonal();
 }
 
-void DeviceUncertainty::update(const SensorErrorEvidence& evidence, Work& work, Posterior& posterior,
+void SensorErrorUncertainty::update(const SensorErrorInformation& evidence, WorkMatrices& work, Posterior& posterior,
                                bool unlike_sheet) const {
   if (unlike_sheet) {
     if (!corrected_covariance(evidence, uncalibrated_sigma_, work))
@@ -77,8 +77,8 @@ void DeviceUncertainty::update(const SensorErrorEvidence& evidence, Work& work, 
     return;
   }
   const double odds = std::log(uncalibrated_prior_ / (1.0 - uncalibrated_prior_)) +
-                      log_odds(evidence, uncalibrated_sigma_, work.system) -
-                      log_odds(evidence, data_sheet_sigma_, work.system);
+                      log_odds(evidence, uncalibrated_sigma_, work.normal_matrix) -
+                      log_odds(evidence, data_sheet_sigma_, work.normal_matrix);
   const double unlike = 1.0 / (1.0 + std::exp(-odds));
   bool known = std::isfinite(unlike) && corrected_covariance(evidence, data_sheet_sigma_, work);
   if (known) posterior.covariance = (1.0 - unlike) * work.corrected_covariance;
@@ -88,7 +88,7 @@ void DeviceUncertainty::update(const SensorErrorEvidence& evidence, Work& work, 
   posterior.uncalibrated_probability = unlike;
 }
 
-double DeviceUncertainty::data_sheet_odds(double delay_s, double sigma_s) const {
+double SensorErrorUncertainty::data_sheet_odds(double delay_s, double sigma_s) const {
   const auto variance = [&](const Vector& deviation) {
     return sigma_s * sigma_s + deviation[SensorErrors::kDelay] * deviation[SensorErrors::kDelay];
   };
@@ -97,7 +97,7 @@ double DeviceUncertainty::data_sheet_odds(double delay_s, double sigma_s) const 
   return (1.0 - uncalibrated_prior_) / uncalibrated_prior_ * std::exp(log_odds);
 }
 
-double DeviceUncertainty::delay_correction_s(const SensorErrorEvidence& evidence, double reach_s) const {
+double SensorErrorUncertainty::delay_correction_s(const SensorErrorInformation& evidence, double reach_s) const {
   constexpr int kFirst = SensorErrors::kGSensitivity, kRest = SensorErrors::kSize - kFirst,
                 kAt = SensorErrors::kDelay - kFirst;
   using Rest = Eigen::Matrix<double, kRest, kRest>;
@@ -105,15 +105,15 @@ double DeviceUncertainty::delay_correction_s(const SensorErrorEvidence& evidence
   deviation[kAt] = reach_s;
   const Rest system_evidence = evidence.information.bottomRightCorner<kRest, kRest>(),
              both = 0.5 * (system_evidence + system_evidence.transpose());
-  const Rest system = Rest::Identity() + deviation.asDiagonal() * (kEvidenceWeight * both) * deviation.asDiagonal();
+  const Rest system = Rest::Identity() + deviation.asDiagonal() * (kSensorErrorEvidenceWeight * both) * deviation.asDiagonal();
   const Eigen::LLT<Rest> factor(system);
   if (factor.info() != Eigen::Success) return 0.0;
-  const Eigen::Matrix<double, kRest, 1> z = kEvidenceWeight * deviation.cwiseProduct(evidence.gradient.tail<kRest>());
+  const Eigen::Matrix<double, kRest, 1> z = kSensorErrorEvidenceWeight * deviation.cwiseProduct(evidence.gradient.tail<kRest>());
   const double out = reach_s * factor.solve(z)[kAt];
   return std::isfinite(out) ? std::clamp(out, -reach_s, reach_s) : 0.0;
 }
 
-double DeviceUncertainty::common_delay_variance_s2(const Posterior& posterior) const {
+double SensorErrorUncertainty::common_delay_variance_s2(const Posterior& posterior) const {
   const double delay_s = uncalibrated_sigma_[SensorErrors::kDelay];
   return delay_s > data_sheet_sigma_[SensorErrors::kDelay]
              ? 0.5 * posterior.uncalibrated_probability * delay_s * delay_s

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "tumble/angular_velocity/detail/rail_ratios.hpp"
-#include "tumble/angular_velocity/detail/subsample_saturation.hpp"
+#include "tumble/angular_velocity/detail/partial_saturation.hpp"
 
 namespace tumble {
 
@@ -18,61 +18,61 @@ constexpr double kUprightSigma = 1e-5, kSlopeSigmaMin = 3e-4;
 // neighbour|.
 constexpr double kEdgeStepRatio = 0.5;
 
-int side(const ImuSample& sample, Triad triad, std::size_t j) {
-  return reading_of(sample, triad)[static_cast<Eigen::Index>(j)] < 0.0 ? -1 : 1;
+int half_range_side(const ImuSample& sample, Triad triad, std::size_t j) {
+  return triad_reading_of(sample, triad)[static_cast<Eigen::Index>(j)] < 0.0 ? -1 : 1;
 }
 
 // A reading counts as saturated if it is at or beyond a plane of `rail`, rails.md (R55), or has the device's clip flag.
-bool at_rail(const ImuSample& sample, Triad triad, const RailPlane& rail, std::size_t j) {
-  const Eigen::Vector3d& reading = reading_of(sample, triad);
-  return (sample.device_clip_flags >> (first_channel(triad) + j) & 1u) != 0 || rail.holds(reading, -1) ||
-         rail.holds(reading, 1);
+bool is_at_saturation_limit(const ImuSample& sample, Triad triad, const SaturationPlane& rail, std::size_t j) {
+  const Eigen::Vector3d& reading = triad_reading_of(sample, triad);
+  return (sample.device_clip_flags >> (first_channel(triad) + j) & 1u) != 0 || rail.is_saturated(reading, -1) ||
+         rail.is_saturated(reading, 1);
 }
 
 // A sample next to a clipped sample may be saturated for a part of its averaging window: rails.md (R54).
-bool meets(const RailPlane& rail, Triad triad, const ImuSample& now, const ImuSample* outside, int sign) {
-  const double depth = rail.margin_rad_s(reading_of(now, triad), sign);
-  if (depth > kNearRailRatio * rail.distance_rad_s) return false;
+bool reaches_limit(const SaturationPlane& rail, Triad triad, const ImuSample& now, const ImuSample* outside, int sign) {
+  const double depth = rail.distance_to_plane_rad_s(triad_reading_of(now, triad), sign);
+  if (depth > kNearRailRatio * rail.saturation_limit_rad_s) return false;
   if (outside == nullptr) return true;
-  const double before = rail.margin_rad_s(reading_of(*outside, triad), sign);
+  const double before = rail.distance_to_plane_rad_s(triad_reading_of(*outside, triad), sign);
   return depth < kEdgeStepRatio * (before - depth);
 }
 
 // The positive and negative saturation levels differ if the device subtracts the offset after clipping.
-bool has_unequal_levels(const RailPlane& rail) {
-  return rail.seen(-1) && rail.seen(1) &&
+bool has_unequal_limits(const SaturationPlane& rail) {
+  return rail.was_reached(-1) && rail.was_reached(1) &&
          std::abs(rail.offset_rad_s) >
-             kUnequalLevelsRatio * rail.distance_rad_s + 4.0 * std::sqrt(rail.covariance(3, 3));
+             kUnequalLevelsRatio * rail.saturation_limit_rad_s + 4.0 * std::sqrt(rail.covariance(3, 3));
 }
 
-std::array<RailPlaneFinder, 2> finders_with_and_without_range(RailPlaneFinder::Params params,
+std::array<SaturationPlaneFinder, 2> plane_finders_by_stated_range(SaturationPlaneFinder::Params params,
                                                               const std::optional<double>& stated) {
-  RailPlaneFinder::Params unstated = params;
-  unstated.stated_rad_s = std::nullopt;
-  if (!params.stated_rad_s) params.stated_rad_s = stated;
-  return {RailPlaneFinder(params), RailPlaneFinder(unstated)};
+  SaturationPlaneFinder::Params unstated = params;
+  unstated.stated_range_rad_s = std::nullopt;
+  if (!params.stated_range_rad_s) params.stated_range_rad_s = stated;
+  return {SaturationPlaneFinder(params), SaturationPlaneFinder(unstated)};
 }
 
 }  // namespace
 
-std::array<std::array<RailPlaneFinder, 2>, 2> plane_finders(const ClippingFinder::Params& params) {
-  return {finders_with_and_without_range(params.planes, params.axis_aligned_rails.stated_gyro_rad_s),
-          finders_with_and_without_range(params.accel_planes, params.axis_aligned_rails.stated_accel_m_s2)};
+std::array<std::array<SaturationPlaneFinder, 2>, 2> make_plane_finders(const ClippingFinder::Params& params) {
+  return {plane_finders_by_stated_range(params.gyro_planes, params.axis_limit_params.stated_gyro_range_rad_s),
+          plane_finders_by_stated_range(params.accel_saturation_planes, params.axis_limit_params.stated_accel_range_m_s2)};
 }
 
-bool stated_range_contradicted(const RailDetector& axis_aligned_rails, const RailDetector::State& state, Triad triad) {
+bool stated_range_contradicted(const SaturationLimitDetector& axis_aligned_rails, const SaturationLimitDetector::State& state, Triad triad) {
   const int first = static_cast<int>(first_channel(triad));
   return axis_aligned_rails.disagrees(state, first) || axis_aligned_rails.disagrees(state, first + 1) ||
          axis_aligned_rails.disagrees(state, first + 2);
 }
 
-bool are_upright(std::span<const Eigen::Vector3d> readings, const RailPlanes& planes, const RailDetector::State& rails,
+bool are_upright(std::span<const Eigen::Vector3d> readings, const SaturationPlanes& planes, const SaturationLimitDetector::State& rails,
                  Triad triad) {
   int nil = 0;
   for (std::size_t j = 0; j < 3; ++j) {
-    const auto& rail = planes.element[j];
-    const double plateau = rails.channels[first_channel(triad) + j].rail;
-    if (rail && has_unequal_levels(*rail)) return false;
+    const auto& rail = planes.sensing_axis[j];
+    const double plateau = rails.channels[first_channel(triad) + j].plateau_limit;
+    if (rail && has_unequal_limits(*rail)) return false;
     if (rail && plateau > 0.0) {
       // On a tilted plane of saturated readings, most clipped samples have unequal readings.
       const auto equal = std::count_if(readings.begin(), readings.end(), [&](const Eigen::Vector3d& y) {
@@ -97,80 +97,80 @@ bool are_upright(std::span<const Eigen::Vector3d> readings, const RailPlanes& pl
   return nil >= 2;
 }
 
-RailPlanes without_plateaus(const RailPlanes& planes, const RailDetector::State& rails, Triad triad) {
-  RailPlanes out = planes;
+SaturationPlanes without_planes_from_plateaus(const SaturationPlanes& planes, const SaturationLimitDetector::State& rails, Triad triad) {
+  SaturationPlanes out = planes;
   for (std::size_t j = 0; j < 3; ++j) {
-    if (rails.channels[first_channel(triad) + j].rail > 0.0) out.element[j].reset();
+    if (rails.channels[first_channel(triad) + j].plateau_limit > 0.0) out.sensing_axis[j].reset();
   }
   return out;
 }
 
-Clipping classify_by_planes(const RailPlanes& planes, Triad triad, const Clipping& by_axis_aligned_rails,
+Clipping clipping_from_planes(const SaturationPlanes& planes, Triad triad, const Clipping& by_axis_aligned_rails,
                             const ImuSample* before, const ImuSample& now, const ImuSample* after) {
   Clipping out = by_axis_aligned_rails;
   std::uint8_t& bits = triad == Triad::gyro ? out.gyro : out.accel;
   const std::uint8_t unreadable = triad == Triad::gyro ? by_axis_aligned_rails.unusable_gyro : 0;
   for (std::size_t j = 0; j < 3; ++j) {
-    const auto& rail = planes.element[j];
+    const auto& rail = planes.sensing_axis[j];
     if (!rail || (unreadable >> j & 1u) != 0) continue;
-    const int sign = side(now, triad, j);
+    const int sign = half_range_side(now, triad, j);
     const auto beside = [&](const ImuSample* sample, const ImuSample* outside) {
-      return sample != nullptr && side(*sample, triad, j) == sign && at_rail(*sample, triad, *rail, j) &&
-             meets(*rail, triad, now, outside, sign);
+      return sample != nullptr && half_range_side(*sample, triad, j) == sign && is_at_saturation_limit(*sample, triad, *rail, j) &&
+             reaches_limit(*rail, triad, now, outside, sign);
     };
-    const bool clipped = at_rail(now, triad, *rail, j) || beside(after, before) || beside(before, after);
+    const bool clipped = is_at_saturation_limit(now, triad, *rail, j) || beside(after, before) || beside(before, after);
     const auto bit = static_cast<std::uint8_t>(1u << j);
     bits = static_cast<std::uint8_t>(clipped ? bits | bit : bits & ~bit);
   }
   return out;
 }
 
-void mark_subsample_saturation(const RailPlanes& planes, const RailDetector& rails, const RailDetector::State& state,
-                               double noise_rad_s, const ImuSample* before, RateObservation& now,
+void mark_partial_saturation(const SaturationPlanes& planes, const SaturationLimitDetector& rails, const SaturationLimitDetector::State& state,
+                               double noise_rad_s, const ImuSample* before, AngularRateObservation& now,
                                const ImuSample* after) {
-  mark_subsample_saturation(rails, state, noise_rad_s, before, now, after);
+  mark_partial_saturation(rails, state, noise_rad_s, before, now, after);
   for (std::size_t j = 0; j < 3; ++j) {
-    const auto& rail = planes.element[j];
+    const auto& rail = planes.sensing_axis[j];
     const bool flagged = (now.sample.device_clip_flags >> j & 1u) != 0 && (now.clipping.unusable_gyro >> j & 1u) == 0;
     if (!rail || !flagged) continue;
     const auto bit = static_cast<std::uint8_t>(1u << j);
-    now.subsample_saturated = static_cast<std::uint8_t>(now.subsample_saturated & ~bit);
-    const int sign = side(now.sample, Triad::gyro, j);
-    const double level = rail->distance_rad_s;
-    const double reading = level - rail->margin_rad_s(now.sample.angular_velocity_rad_s, sign);
+    now.partial_saturation_flags = static_cast<std::uint8_t>(now.partial_saturation_flags & ~bit);
+    const int sign = half_range_side(now.sample, Triad::gyro, j);
+    const double level = rail->saturation_limit_rad_s;
+    const double reading = level - rail->distance_to_plane_rad_s(now.sample.angular_velocity_rad_s, sign);
     const double neighbour =
-        unsaturated_neighbour(reading, level, static_cast<int>(j), before, after,
-                              [&](const Eigen::Vector3d& beside) { return level - rail->margin_rad_s(beside, sign); });
+        unsaturated_neighbour_reading(reading, level, static_cast<int>(j), before, after,
+                              [&](const Eigen::Vector3d& beside) { return level - rail->distance_to_plane_rad_s(beside, sign); });
     if (level - reading <= rail->tolerance_rad_s || neighbour > reading) continue;
-    const SubsampleSaturation loss = subsample_saturation(reading, neighbour, level, noise_rad_s);
+    const PartialSaturation loss = partial_saturation(reading, neighbour, level, noise_rad_s);
     if (!loss.saturated) continue;
-    now.subsample_saturated = static_cast<std::uint8_t>(now.subsample_saturated | bit);
-    now.expected_deficit_rad_s[static_cast<Eigen::Index>(j)] = sign * loss.expected_deficit_rad_s;
-    now.expected_deficit_sigma_rad_s[static_cast<Eigen::Index>(j)] = loss.sigma_rad_s;
+    now.partial_saturation_flags = static_cast<std::uint8_t>(now.partial_saturation_flags | bit);
+    now.expected_saturation_deficit_rad_s[static_cast<Eigen::Index>(j)] = sign * loss.expected_saturation_deficit_rad_s;
+    now.saturation_deficit_sigma_rad_s[static_cast<Eigen::Index>(j)] = loss.sigma_rad_s;
   }
 }
 
 // See rails.md (R59).
-std::optional<EstimatedSlopes> estimated_slopes(const RailPlanes& planes, bool upright, int element,
+std::optional<EstimatedCrossAxisSlopes> estimated_slopes(const SaturationPlanes& planes, bool upright, int element,
                                                 const Eigen::Matrix2d& before) {
   if (upright) {
-    return EstimatedSlopes{Eigen::Vector2d::Zero(), kUprightSigma * kUprightSigma * Eigen::Matrix2d::Identity()};
+    return EstimatedCrossAxisSlopes{Eigen::Vector2d::Zero(), kUprightSigma * kUprightSigma * Eigen::Matrix2d::Identity()};
   }
-  const auto& rail = planes.element[static_cast<std::size_t>(element)];
+  const auto& rail = planes.sensing_axis[static_cast<std::size_t>(element)];
   if (!rail) return std::nullopt;
   const Eigen::Matrix2d estimated =
       rail->covariance.topLeftCorner<2, 2>() + kSlopeSigmaMin * kSlopeSigmaMin * Eigen::Matrix2d::Identity();
   if (estimated.trace() >= before.trace()) return std::nullopt;
-  return EstimatedSlopes{{rail->row[(element + 1) % 3], rail->row[(element + 2) % 3]}, estimated};
+  return EstimatedCrossAxisSlopes{{rail->row[(element + 1) % 3], rail->row[(element + 2) % 3]}, estimated};
 }
 
-RigCalibration prior_with_planes(const RateModel& before, const RailPlanes& planes, bool upright) {
+RigCalibration calibration_prior_from_planes(const AngularRateModel& before, const SaturationPlanes& planes, bool upright) {
   RigCalibration out{before.prior_constants(), before.prior_covariance()};
   for (int j = 0; j < 3; ++j) {
-    const Eigen::Index first = RigConstants::kElements + 2 * j;
+    const Eigen::Index first = RigConstants::kGyroMisalignment + 2 * j;
     const auto estimated = estimated_slopes(planes, upright, j, out.covariance.block<2, 2>(first, first));
     if (!estimated) continue;
-    out.constants.elements.segment<2>(first - RigConstants::kElements) = estimated->slopes;
+    out.constants.gyro_misalignment.segment<2>(first - RigConstants::kGyroMisalignment) = estimated->cross_axis_slopes;
     out.covariance.middleRows<2>(first).setZero();
     out.covariance.middleCols<2>(first).setZero();
     out.covariance.block<2, 2>(first, first) = estimated->covariance;

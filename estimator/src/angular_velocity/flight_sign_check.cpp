@@ -19,19 +19,19 @@ constexpr double kTolerance = 0.25;        // tolerance of the agreement, as a f
 constexpr double kRun_s = 0.02;            // minimum duration of agreement, which excludes chance on the ground
 constexpr double kFlightGapMax_s = 0.1;    // a longer gap resets the current run
 constexpr double kAlternativeMin_s = 0.1, kAlternativeRatioMin = 4.0, kThrownRatioMin = 2.0;
-constexpr double kAcross = 0.05;    // minimum squared component of the lever arm across a saturated axis, as a fraction
+constexpr double kGroupsPerSide = 0.05;    // minimum squared component of the lever arm across a saturated axis, as a fraction
 constexpr double kBelowRail = 0.1;  // fraction of the saturation level by which a recovered rate may be below the level
 
-struct Alternative {
-  std::array<double, 3> sign;
+struct MirroredAxes {
+  std::array<double, 3> mirror_signs;
   const char* name;
 
   Eigen::Vector3d corrected(const Eigen::Vector3d& force) const {
-    return {sign[0] * force[0], sign[1] * force[1], sign[2] * force[2]};
+    return {mirror_signs[0] * force[0], mirror_signs[1] * force[1], mirror_signs[2] * force[2]};
   }
 };
 
-constexpr std::array<Alternative, FlightSignCheck::kAlternatives> kAlternativeSensors = {{
+constexpr std::array<MirroredAxes, FlightSignCheck::kMirroredAlternatives> kAlternativeSensors = {{
     {{1, 1, 1}, "flight time in s"},
     {{-1, -1, -1}, "flight time in s that agrees with an inverted accelerometer"},
     {{-1, 1, 1}, "flight time in s that agrees with an inverted accelerometer axis x"},
@@ -40,35 +40,35 @@ constexpr std::array<Alternative, FlightSignCheck::kAlternatives> kAlternativeSe
 }};
 
 /// See imu_merge.md (I32).
-FlightSignCheck::Reading convert_reading(const FlightSignCheck::Reading& reading, const Alternative& sense,
+FlightSignCheck::AveragedReading convert_reading(const FlightSignCheck::AveragedReading& reading, const MirroredAxes& sense,
                                          const Eigen::Vector3d& t) {
-  FlightSignCheck::Reading out = reading;
+  FlightSignCheck::AveragedReading out = reading;
   out.force_m_s2 = sense.corrected(reading.force_m_s2);
-  if (!reading.known || reading.at_rail.isZero(0.0)) return out;
+  if (!reading.is_unsaturated || reading.saturation_sign.isZero(0.0)) return out;
   int axis = 0;
-  out.at_rail.cwiseAbs().maxCoeff(&axis);
-  const double sign = out.at_rail[axis];
+  out.saturation_sign.cwiseAbs().maxCoeff(&axis);
+  const double sign = out.saturation_sign[axis];
   Eigen::Vector3d others = out.rate_rad_s;
   others[axis] = 0.0;
   const Eigen::Vector3d unit = Eigen::Vector3d::Unit(axis).cross(t), rest = others.cross(t);
   const double a = unit.squaredNorm(), b = unit.dot(rest), c = rest.squaredNorm() + out.force_m_s2.dot(t);
   const double root = b * b - a * c;
-  out.known = reading.at_rail.cwiseAbs().sum() == 1.0 && a >= kAcross * t.squaredNorm() && root >= 0.0;
-  if (!out.known) return out;
+  out.is_unsaturated = reading.saturation_sign.cwiseAbs().sum() == 1.0 && a >= kGroupsPerSide * t.squaredNorm() && root >= 0.0;
+  if (!out.is_unsaturated) return out;
   const double rate = (-b + (sign > 0.0 ? 1.0 : -1.0) * std::sqrt(root)) / a, read = out.rate_rad_s[axis];
-  out.known = rate * read > 0.0 && std::abs(rate) >= (1.0 - kBelowRail) * std::abs(read);
+  out.is_unsaturated = rate * read > 0.0 && std::abs(rate) >= (1.0 - kBelowRail) * std::abs(read);
   out.rate_rad_s[axis] = rate;
   return out;
 }
 
 /// See imu_merge.md (I31).
-bool agrees_with_flight(const Alternative& sense, const std::array<FlightSignCheck::Reading, 3>& readings,
+bool agrees_with_flight(const MirroredAxes& sense, const std::array<FlightSignCheck::AveragedReading, 3>& readings,
                         const FlightSignCheck::Params& params) {
   const Eigen::Vector3d& t = params.lever_arm_m;
-  const FlightSignCheck::Reading first = convert_reading(readings[0], sense, t),
+  const FlightSignCheck::AveragedReading first = convert_reading(readings[0], sense, t),
                                  middle = convert_reading(readings[1], sense, t),
                                  last = convert_reading(readings[2], sense, t);
-  if (!first.known || !middle.known || !last.known) return false;
+  if (!first.is_unsaturated || !middle.is_unsaturated || !last.is_unsaturated) return false;
   const double dt_s = seconds(last.time_ns - first.time_ns);
   const Eigen::Vector3d &w = middle.rate_rad_s, alpha = (last.rate_rad_s - first.rate_rad_s) / dt_s;
   const Eigen::Vector3d expected = alpha.cross(t) + w.cross(w.cross(t));
@@ -77,8 +77,8 @@ bool agrees_with_flight(const Alternative& sense, const std::array<FlightSignChe
 }
 
 /// On a body that may be hand-held, the only tested fault is an accelerometer with three inverted axes.
-bool is_tested(std::size_t sense, FlightSignCheck::Body body) {
-  return body == FlightSignCheck::Body::thrown || sense <= 1;
+bool is_alternative_tested(std::size_t sense, FlightSignCheck::BodyMotionType body) {
+  return body == FlightSignCheck::BodyMotionType::always_thrown || sense <= 1;
 }
 
 }  // namespace
@@ -97,7 +97,7 @@ void FlightSignCheck::step(const ImuSample& sample, State& state) const {
   if (!follows) {
     state.average = {};
     state.readings = 0;
-    state.run_s = {};
+    state.current_flight_duration_s = {};
     return;
   }
   state.average.add(sample, dt_s);
@@ -107,34 +107,34 @@ void FlightSignCheck::step(const ImuSample& sample, State& state) const {
   state.average = {};
 }
 
-FlightSignCheck::Reading FlightSignCheck::reading_of(const ImuSample& mean, double rate_peak_rad_s) const {
-  Reading out{mean.time_ns, mean.angular_velocity_rad_s, mean.specific_force_m_s2, Eigen::Vector3d::Zero(), true};
+FlightSignCheck::AveragedReading FlightSignCheck::reading_of(const ImuSample& mean, double rate_peak_rad_s) const {
+  AveragedReading out{mean.time_ns, mean.angular_velocity_rad_s, mean.specific_force_m_s2, Eigen::Vector3d::Zero(), true};
   const double rail = params_.gyro_range_rad_s == 0.0 ? kUnbounded : (1.0 - kNearRailRatio) * params_.gyro_range_rad_s;
   for (int axis = 0; axis < 3; ++axis) {
     const bool flagged = (mean.device_clip_flags & (kClipGyroX << axis)) != 0;
-    if (flagged || std::abs(out.rate_rad_s[axis]) >= rail) out.at_rail[axis] = out.rate_rad_s[axis] < 0.0 ? -1.0 : 1.0;
+    if (flagged || std::abs(out.rate_rad_s[axis]) >= rail) out.saturation_sign[axis] = out.rate_rad_s[axis] < 0.0 ? -1.0 : 1.0;
   }
-  const bool by_the_force = params_.body == Body::thrown && !out.at_rail.isZero(0.0);
-  out.known = by_the_force || (rate_peak_rad_s < rail && out.at_rail.isZero(0.0));
+  const bool by_the_force = params_.motion_type == BodyMotionType::always_thrown && !out.saturation_sign.isZero(0.0);
+  out.is_unsaturated = by_the_force || (rate_peak_rad_s < rail && out.saturation_sign.isZero(0.0));
   return out;
 }
 
-void FlightSignCheck::process_reading(const Reading& now, State& state) const {
-  const auto [first, middle] = state.before;
-  state.before = {middle, now};
+void FlightSignCheck::process_reading(const AveragedReading& now, State& state) const {
+  const auto [first, middle] = state.last_readings;
+  state.last_readings = {middle, now};
   if (state.readings < 2) {
     ++state.readings;
     return;
   }
   const double dt_s = seconds(now.time_ns - first.time_ns);
-  for (std::size_t sense = 0; sense < kAlternatives; ++sense) {
-    if (!is_tested(sense, params_.body)) continue;
+  for (std::size_t sense = 0; sense < kMirroredAlternatives; ++sense) {
+    if (!is_alternative_tested(sense, params_.motion_type)) continue;
     if (!agrees_with_flight(kAlternativeSensors[sense], {first, middle, now}, params_)) {
-      state.run_s[sense] = 0.0;
+      state.current_flight_duration_s[sense] = 0.0;
       continue;
     }
-    state.run_s[sense] += 0.5 * dt_s;
-    if (state.run_s[sense] < kRun_s) continue;
+    state.current_flight_duration_s[sense] += 0.5 * dt_s;
+    if (state.current_flight_duration_s[sense] < kRun_s) continue;
     state.flight_duration_s[sense] += 0.5 * dt_s;
     if (sense != 0) state.last_flight_end_ns = now.time_ns;
   }
@@ -142,12 +142,12 @@ void FlightSignCheck::process_reading(const Reading& now, State& state) const {
 
 Status FlightSignCheck::current_verdict(const State& state) const {
   const bool old =
-      check_stamp_order(state.last_time_ns, state.last_flight_end_ns, kMemory_s).error_code == ErrorCode::gap;
+      check_stamp_order(state.last_time_ns, state.last_flight_end_ns, kForgettingTime_s).error_code == ErrorCode::gap;
   return old ? Status{} : verdict(state);
 }
 
 Status FlightSignCheck::verdict(const State& state) const {
-  const double ratio = params_.body == Body::thrown ? kThrownRatioMin : kAlternativeRatioMin;
+  const double ratio = params_.motion_type == BodyMotionType::always_thrown ? kThrownRatioMin : kAlternativeRatioMin;
   const double bound_s = std::max(kAlternativeMin_s, ratio * state.flight_duration_s[0]);
   const auto longest = std::max_element(state.flight_duration_s.begin() + 1, state.flight_duration_s.end());
   if (*longest <= bound_s) return {};

@@ -29,7 +29,7 @@ constexpr bool is_gyro(std::size_t channel) {
   return channel < 3;
 }
 
-constexpr std::size_t other(std::size_t channel, std::size_t k) {
+constexpr std::size_t other_axis_of_triad(std::size_t channel, std::size_t k) {
   return channel / 3 * 3 + (channel + 1 + k) % 3;
 }
 
@@ -38,14 +38,14 @@ std::array<double, 6> readings(const ImuSample& sample) {
   return {w.x(), w.y(), w.z(), f.x(), f.y(), f.z()};
 }
 
-void start_repetition(std::size_t channel, const std::array<double, 6>& now, TimeNs time_ns, FrozenAxes::Axis& axis) {
+void start_repeated_reading(std::size_t channel, const std::array<double, 6>& now, TimeNs time_ns, FrozenAxes::Axis& axis) {
   axis.reading = now[channel];
   axis.since_ns = time_ns;
   axis.repeated_s = axis.samples = 0.0;
-  axis.device_flagged = axis.frozen = false;
+  axis.flagged_by_device = axis.is_frozen = false;
   for (std::size_t k = 0; k < 2; ++k) {
-    axis.others_min[k] = axis.others_max[k] = now[other(channel, k)];
-    axis.others_changes[k] = 0.0;
+    axis.other_axes_min[k] = axis.other_axes_max[k] = now[other_axis_of_triad(channel, k)];
+    axis.other_axes_changes[k] = 0.0;
   }
 }
 
@@ -68,55 +68,55 @@ void FrozenAxes::step(const ImuSample& sample, State& state) const {
     if (!state.started || now[c] != axis.reading) {
       if (state.started) {
         const double change = std::abs(now[c] - axis.reading);
-        axis.smallest_change = axis.smallest_change > 0.0 ? std::min(axis.smallest_change, change) : change;
-        if (!axis.frozen && !at_rail(c, axis)) axis.longest_s = std::max(axis.longest_s, axis.repeated_s);
-        axis.changing_duration_s += dt_s;
+        axis.smallest_reading_change = axis.smallest_reading_change > 0.0 ? std::min(axis.smallest_reading_change, change) : change;
+        if (!axis.is_frozen && !is_at_saturation_limit(c, axis)) axis.longest_s = std::max(axis.longest_s, axis.repeated_s);
+        axis.changing_readings_duration_s += dt_s;
       }
-      start_repetition(c, now, sample.time_ns, axis);
+      start_repeated_reading(c, now, sample.time_ns, axis);
     }
-    track_repetition(c, now, dt_s, sample.device_clip_flags, state);
+    track_repeated_reading(c, now, dt_s, sample.device_clip_flags, state);
   }
-  state.before = now;
+  state.previous_readings = now;
   state.last_time_ns = sample.time_ns;
   state.rate_max_so_far_rad_s = std::max(state.rate_max_so_far_rad_s, sample.angular_velocity_rad_s.norm());
   state.started = true;
 }
 
-void FrozenAxes::track_repetition(std::size_t channel, const std::array<double, 6>& now, double dt_s,
+void FrozenAxes::track_repeated_reading(std::size_t channel, const std::array<double, 6>& now, double dt_s,
                                   std::uint8_t flags, State& state) const {
   Axis& axis = state.axes[channel];
   const int first = is_gyro(channel) ? kClipGyroX : kClipAccelX;
-  axis.device_flagged = axis.device_flagged || (flags & first << channel % 3) != 0;
+  axis.flagged_by_device = axis.flagged_by_device || (flags & first << channel % 3) != 0;
   if (state.last_time_ns >= axis.since_ns && state.started) {
     axis.repeated_s += dt_s;
     axis.samples += 1.0;
     for (std::size_t k = 0; k < 2; ++k) {
-      const std::size_t beside = other(channel, k);
-      axis.others_min[k] = std::min(axis.others_min[k], now[beside]);
-      axis.others_max[k] = std::max(axis.others_max[k], now[beside]);
-      if (now[beside] != state.before[beside]) axis.others_changes[k] += 1.0;
+      const std::size_t beside = other_axis_of_triad(channel, k);
+      axis.other_axes_min[k] = std::min(axis.other_axes_min[k], now[beside]);
+      axis.other_axes_max[k] = std::max(axis.other_axes_max[k], now[beside]);
+      if (now[beside] != state.previous_readings[beside]) axis.other_axes_changes[k] += 1.0;
     }
   }
-  const bool froze = !at_rail(channel, axis) && axis.changing_duration_s >= kAxisFrozen_s &&
+  const bool froze = !is_at_saturation_limit(channel, axis) && axis.changing_readings_duration_s >= kAxisFrozen_s &&
                      axis.repeated_s >= std::max(kAxisFrozen_s, kMinRepetitionRatio * axis.longest_s) &&
-                     others_move(channel, axis);
-  axis.frozen = axis.frozen || froze;
+                     other_axes_change(channel, axis);
+  axis.is_frozen = axis.is_frozen || froze;
 }
 
-bool FrozenAxes::at_rail(std::size_t channel, const Axis& axis) const {
+bool FrozenAxes::is_at_saturation_limit(std::size_t channel, const Axis& axis) const {
   const double stated = is_gyro(channel) ? params_.gyro_range_rad_s : params_.accel_range_m_s2;
   const double size = std::abs(axis.reading);
   if (stated > 0.0 && size >= kPossibleRailRatio * stated) return true;
-  if (axis.device_flagged && size >= kExtremeRatio * stated) return true;
+  if (axis.flagged_by_device && size >= kExtremeRatio * stated) return true;
   return size >= kExtremeRatio * stated && (axis.reading == axis.min_reading || axis.reading == axis.max_reading);
 }
 
-bool FrozenAxes::others_move(std::size_t channel, const Axis& axis) {
+bool FrozenAxes::other_axes_change(std::size_t channel, const Axis& axis) {
   const double least =
-      std::max(is_gyro(channel) ? kRotating_rad_s : kMotionForce_m_s2, kMotionQuanta * axis.smallest_change);
+      std::max(is_gyro(channel) ? kRotating_rad_s : kMotionForce_m_s2, kMotionQuanta * axis.smallest_reading_change);
   for (std::size_t k = 0; k < 2; ++k) {
-    const bool changes = axis.others_changes[k] >= kChanging * axis.samples;
-    if (changes && axis.others_max[k] - axis.others_min[k] >= least) return true;
+    const bool changes = axis.other_axes_changes[k] >= kChanging * axis.samples;
+    if (changes && axis.other_axes_max[k] - axis.other_axes_min[k] >= least) return true;
   }
   return false;
 }
@@ -126,14 +126,14 @@ const FrozenAxes::Axis& FrozenAxes::axis(Triad triad, int axis, const State& sta
 }
 
 bool FrozenAxes::any_frozen(const State& state) {
-  return std::any_of(state.axes.begin(), state.axes.end(), [](const Axis& axis) { return axis.frozen; });
+  return std::any_of(state.axes.begin(), state.axes.end(), [](const Axis& axis) { return axis.is_frozen; });
 }
 
 void FrozenAxes::add_findings(HealthFinding::Kind kind, const std::string& sensor, const State& state,
                               SensorHealth& health) const {
   for (std::size_t c = 0; c < kQuantities.size(); ++c) {
     const Axis& axis = state.axes[c];
-    if (!axis.frozen) continue;
+    if (!axis.is_frozen) continue;
     const Status status{ErrorCode::out_of_range, kQuantities[c], axis.repeated_s, kAxisFrozen_s};
     health.add(kind, status, sensor, kNames[c], axis.since_ns);
   }
@@ -151,7 +151,7 @@ Eigen::Vector3d FrozenAxes::rate_variance_rad2_s2(TimeNs time_ns, const State& s
   Eigen::Vector3d out = Eigen::Vector3d::Zero();
   for (std::size_t c = 0; c < 3; ++c) {
     const Axis& axis = state.axes[c];
-    if (axis.frozen && time_ns >= axis.since_ns)
+    if (axis.is_frozen && time_ns >= axis.since_ns)
       out[static_cast<int>(c)] = state.rate_max_so_far_rad_s * state.rate_max_so_far_rad_s;
   }
   return out;
@@ -159,11 +159,11 @@ Eigen::Vector3d FrozenAxes::rate_variance_rad2_s2(TimeNs time_ns, const State& s
 
 namespace {
 
-void extend(const FrozenAxes::State& state, TimeNs time_ns, std::vector<FrozenAxis>& out) {
+void extend_frozen_intervals(const FrozenAxes::State& state, TimeNs time_ns, std::vector<FrozenAxis>& out) {
   for (const Triad triad : {Triad::gyro, Triad::accelerometer}) {
     for (int axis = 0; axis < 3; ++axis) {
       const FrozenAxes::Axis& now = FrozenAxes::axis(triad, axis, state);
-      if (!now.frozen) continue;
+      if (!now.is_frozen) continue;
       const auto known = std::find_if(out.begin(), out.end(), [&](const FrozenAxis& found) {
         return found.triad == triad && found.axis == axis && found.from_ns == now.since_ns;
       });
@@ -183,7 +183,7 @@ std::vector<FrozenAxis> find_frozen_axes(const FrozenAxes& detector, std::span<c
   std::vector<FrozenAxis> out;
   for (const ImuSample& sample : samples) {
     detector.step(sample, state);
-    extend(state, sample.time_ns, out);
+    extend_frozen_intervals(state, sample.time_ns, out);
   }
   std::sort(out.begin(), out.end(), [](const FrozenAxis& a, const FrozenAxis& b) {
     return std::tie(a.triad, a.axis, a.from_ns) < std::tie(b.triad, b.axis, b.from_ns);

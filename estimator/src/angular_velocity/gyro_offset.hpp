@@ -16,18 +16,18 @@ namespace tumble {
 class GyroOffset {
  public:
   static constexpr double kOffsetMin_rad_s = 0.05, kOffsetMax_rad_s = 0.15;
-  static constexpr double kRestEndMax_s = 2.0;  ///< latest end of the initial rest, after the first sample
+  static constexpr double kInitialRestLatestEnd_s = 2.0;  ///< latest end of the initial rest, after the first sample
 
   struct State {
-    RestDetector::State rest;
+    RestDetector::State stationary_state;
     std::optional<TimeNs> first_ns;  ///< time of the first sample
-    bool decided = false;
+    bool offset_decided = false;
   };
 
   GyroOffset();
 
   /// Returns the zero offset of the gyro once, when known. The sample must be finite. Cost: O(1), no allocation.
-  std::optional<Eigen::Vector3d> observe(const ImuSample& sample, State& state) const;
+  std::optional<Eigen::Vector3d> detect_initial_offset(const ImuSample& sample, State& state) const;
   /// Returns the gyro's zero offset in a recording, or zero if the offset is small.
   Eigen::Vector3d find(std::span<const ImuSample> samples) const;
 

@@ -22,7 +22,7 @@ struct TimedReading {
   bool read = false;  ///< all axes are measured
 };
 
-Vector3d slope(const TimedReading& a, const TimedReading& b) {
+Vector3d rate_of_change(const TimedReading& a, const TimedReading& b) {
   return (b.rate_rad_s - a.rate_rad_s) / (b.time_s - a.time_s);
 }
 
@@ -30,9 +30,9 @@ std::optional<InterpolatedRate> between(const TimedReading& z, const TimedReadin
                                         const TimedReading& c, double time_s, double moment_s) {
   const double span_s = b.time_s - a.time_s, u = (time_s - a.time_s) / span_s, v = 1.0 - u;
   if (!a.read || !b.read || !(span_s > 0.0) || u < 0.0 || v < 0.0) return std::nullopt;
-  const Vector3d chord = slope(a, b);
-  const Vector3d slope_a = z.read && z.time_s < a.time_s ? slope(z, b) : chord;
-  const Vector3d slope_b = c.read && c.time_s > b.time_s ? slope(a, c) : chord;
+  const Vector3d chord = rate_of_change(a, b);
+  const Vector3d slope_a = z.read && z.time_s < a.time_s ? rate_of_change(z, b) : chord;
+  const Vector3d slope_b = c.read && c.time_s > b.time_s ? rate_of_change(a, c) : chord;
   InterpolatedRate out;
   out.rate_rad_s = v * v * (1.0 + 2.0 * u) * a.rate_rad_s + u * u * (3.0 - 2.0 * u) * b.rate_rad_s +
                    span_s * u * v * (v * slope_a - u * slope_b);
@@ -42,34 +42,34 @@ std::optional<InterpolatedRate> between(const TimedReading& z, const TimedReadin
   return out;
 }
 
-std::size_t new_reading(std::span<const RateStreamKnot> window, std::size_t i) {
-  while (i < window.size() && window[i].repeats) ++i;
+std::size_t new_reading(std::span<const AngularRateStreamKnot> window, std::size_t i) {
+  while (i < window.size() && window[i].repeats_reading) ++i;
   return i;
 }
 
-bool in_time(const std::optional<RepeatedReadings>& repeated, double sample_s) {
-  return repeated && repeated->steady() && repeated->period_s <= sample_hold::kSlowest * sample_s;
+bool is_within_reading_interval(const std::optional<RepeatedReadings>& repeated, double sample_s) {
+  return repeated && repeated->has_regular_clock() && repeated->period_s <= sample_hold::kSlowest * sample_s;
 }
 
 }  // namespace
 
-std::optional<InterpolatedRate> rate_between_readings(std::span<const RateStreamKnot> window, std::size_t k,
+std::optional<InterpolatedRate> rate_between_readings(std::span<const AngularRateStreamKnot> window, std::size_t k,
                                                       double period_s) {
-  if (!window[k].repeated.is_slower_than_log()) return std::nullopt;
+  if (!window[k].repeated.is_slower_than_samples()) return std::nullopt;
   const auto at = [&](std::size_t i) {
     if (i >= window.size()) return TimedReading{};
-    const RateStreamKnot& knot = window[i];
-    const RateObservation& o = knot.observation;
+    const AngularRateStreamKnot& knot = window[i];
+    const AngularRateObservation& o = knot.observation;
     const double stamp_s = seconds(o.sample.time_ns - window[k].observation.sample.time_ns);
     return TimedReading{
         stamp_s - knot.repeated.delay_samples() * period_s, o.sample.angular_velocity_rad_s,
-        knot.repeated.is_slower_than_log() && !o.is_element_clipped() && o.partly_saturated_axes() == 0};
+        knot.repeated.is_slower_than_samples() && !o.has_clipped_sensing_axis() && o.partly_saturated_axes() == 0};
   };
   std::size_t b = new_reading(window, k + 1);
   while (b < window.size() && at(b).time_s < 0.0) b = new_reading(window, b + 1);
   if (b == window.size() || !at(k).read) return std::nullopt;
   std::size_t z = b - 1;
-  while (z > 0 && window[z].repeats) --z;
+  while (z > 0 && window[z].repeats_reading) --z;
   return between(z > 0 ? at(z - 1) : TimedReading{}, at(b - 1), at(b), at(new_reading(window, b + 1)), 0.0,
                  kReadingTimeSigma_samples * period_s);
 }
@@ -83,10 +83,10 @@ std::vector<std::optional<InterpolatedRate>> rates_between_readings(std::span<co
                                                                     std::span<const std::uint8_t> hidden,
                                                                     const std::optional<RepeatedReadings>& repeated) {
   const double sample_s = median_period_s(samples);
-  if (!in_time(repeated, sample_s)) return {};
+  if (!is_within_reading_interval(repeated, sample_s)) return {};
   std::vector<TimedReading> own;
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (repeated->repeats[k]) continue;
+    if (repeated->repeats_per_sample[k]) continue;
     const double stamp_s = seconds(samples[k].time_ns - samples[0].time_ns);
     own.push_back({stamp_s - repeated->reading_age_s(k), samples[k].angular_velocity_rad_s, hidden[k] == 0});
   }
@@ -103,13 +103,13 @@ std::vector<std::optional<InterpolatedRate>> rates_between_readings(std::span<co
   return out;
 }
 
-std::vector<Vector3d> forces_between_readings(std::span<const ImuSample> samples) {
+std::vector<Vector3d> interpolated_forces(std::span<const ImuSample> samples) {
   const std::optional<RepeatedReadings> repeated = find_repeated(samples, Triad::accelerometer);
-  if (!in_time(repeated, median_period_s(samples))) return {};
+  if (!is_within_reading_interval(repeated, median_period_s(samples))) return {};
   const auto stamp_s = [&](std::size_t k) { return seconds(samples[k].time_ns - samples[0].time_ns); };
   std::vector<std::size_t> own;
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (!repeated->repeats[k]) own.push_back(k);
+    if (!repeated->repeats_per_sample[k]) own.push_back(k);
   }
   std::vector<Vector3d> out(samples.size());
   std::size_t b = 0;

@@ -24,10 +24,10 @@ constexpr double kCertainLogOdds = 10.0;
 // smallest standard deviation of a cross-axis sensitivity: rails.md (R59)
 constexpr double kSlopeSigmaMin = 3e-4;
 
-std::optional<double> lowest_rail(const CalibratedRig& rig, std::size_t first) {
+std::optional<double> lowest_saturation_limit(const CalibratedRig& rig, std::size_t first) {
   std::optional<double> out;
   for (std::size_t j = first; j < first + 3; ++j) {
-    if (rig.rail[j] && (!out || *rig.rail[j] < *out)) out = rig.rail[j];
+    if (rig.saturation_limits[j] && (!out || *rig.saturation_limits[j] < *out)) out = rig.saturation_limits[j];
   }
   return out;
 }
@@ -37,40 +37,40 @@ constexpr double kLevelToleranceRatio = 2e-3;
 
 // If two sensing elements only clip together, the readings determine neither their cross-axis sensitivity nor their
 // saturation level.
-bool is_level_known(const RailPlane& plane, int sign) {
+bool is_level_known(const SaturationPlane& plane, int sign) {
   const Eigen::Vector4d cut(0.0, 0.0, sign, 1.0);
-  const double variance = cut.dot(plane.covariance * cut), most = 0.5 * kLevelToleranceRatio * plane.distance_rad_s;
+  const double variance = cut.dot(plane.covariance * cut), most = 0.5 * kLevelToleranceRatio * plane.saturation_limit_rad_s;
   return variance <= most * most;
 }
 
 }  // namespace
 
-CalibratedRig learnt(const RateReport& report) {
-  CalibratedRig out{report.calibration, report.rail};
-  out.device_errors = report.sensor_errors;
-  if (!report.clips_after_compensation) out.keep(report.planes);
-  out.keep(report.accel_planes, Triad::accelerometer);
+CalibratedRig calibrated_rig(const AngularRateReport& report) {
+  CalibratedRig out{report.calibration, report.saturation_limits};
+  out.known_sensor_errors = report.sensor_errors;
+  if (!report.clips_after_compensation) out.keep_prior_planes(report.gyro_planes);
+  out.keep_prior_planes(report.accel_saturation_planes, Triad::accelerometer);
   return out;
 }
 
-void CalibratedRig::keep(const RailPlanes& planes, Triad triad) {
-  Planes& kept = triad == Triad::gyro ? gyro_planes_rad_s : accelerometer_planes_m_s2;
+void CalibratedRig::keep_prior_planes(const SaturationPlanes& planes, Triad triad) {
+  Planes& kept = triad == Triad::gyro ? gyro_saturation_planes_rad_s : accel_saturation_planes_m_s2;
   for (std::size_t j = 0; j < 3; ++j) {
-    const std::optional<RailPlane>& plane = planes.element[j];
+    const std::optional<SaturationPlane>& plane = planes.sensing_axis[j];
     if (plane && plane->log_odds < kCertainLogOdds) {
-      const double sigma = RateModelParams{}.element_sigma;
-      const Eigen::Index at = RigConstants::kElements + 2 * static_cast<Eigen::Index>(j);
+      const double sigma = AngularRateModelParams{}.element_sigma;
+      const Eigen::Index at = RigConstants::kGyroMisalignment + 2 * static_cast<Eigen::Index>(j);
       if (triad == Triad::gyro) calibration.covariance.diagonal().segment<2>(at).array() += sigma * sigma;
       continue;
     }
     for (const int sign : {-1, 1}) {
-      if (plane && plane->seen(sign) && is_level_known(*plane, sign)) {
-        kept[j][sign > 0 ? 1 : 0] = plane->offset_rad_s + sign * plane->distance_rad_s;
+      if (plane && plane->was_reached(sign) && is_level_known(*plane, sign)) {
+        kept[j][sign > 0 ? 1 : 0] = plane->offset_rad_s + sign * plane->saturation_limit_rad_s;
       }
     }
     if (!plane || triad == Triad::gyro) continue;
     for (std::size_t i = 0; i < 2; ++i) {
-      accelerometer_elements[static_cast<Eigen::Index>(2 * j + i)] =
+      accel_misalignment[static_cast<Eigen::Index>(2 * j + i)] =
           plane->row[static_cast<Eigen::Index>((j + 1 + i) % 3)];
     }
   }
@@ -78,16 +78,16 @@ void CalibratedRig::keep(const RailPlanes& planes, Triad triad) {
 
 namespace {
 
-void store_element(const RailPlane& plane, Triad triad, std::size_t j, CalibratedRig& rig) {
-  const auto first = static_cast<Eigen::Index>(2 * j), at = RigConstants::kElements + first;
+void store_saturation_limit(const SaturationPlane& plane, Triad triad, std::size_t j, CalibratedRig& rig) {
+  const auto first = static_cast<Eigen::Index>(2 * j), at = RigConstants::kGyroMisalignment + first;
   const Eigen::Vector2d slopes(plane.row[static_cast<Eigen::Index>((j + 1) % 3)],
                                plane.row[static_cast<Eigen::Index>((j + 2) % 3)]);
-  rig.rail[triad == Triad::gyro ? j : j + 3] = plane.distance_rad_s;
+  rig.saturation_limits[triad == Triad::gyro ? j : j + 3] = plane.saturation_limit_rad_s;
   if (triad == Triad::accelerometer) {
-    rig.accelerometer_elements.segment<2>(first) = slopes;
+    rig.accel_misalignment.segment<2>(first) = slopes;
     return;
   }
-  rig.calibration.constants.elements.segment<2>(first) = slopes;
+  rig.calibration.constants.gyro_misalignment.segment<2>(first) = slopes;
   RigConstants::Matrix& covariance = rig.calibration.covariance;
   covariance.middleRows<2>(at).setZero();
   covariance.middleCols<2>(at).setZero();
@@ -97,85 +97,85 @@ void store_element(const RailPlane& plane, Triad triad, std::size_t j, Calibrate
 
 }  // namespace
 
-std::optional<CalibratedRig> calibration_with_rails(const CalibratedRig& before, const SaturationLevels& rails) {
+std::optional<CalibratedRig> calibration_with_saturation_limits(const CalibratedRig& before, const SaturationLevels& rails) {
   CalibratedRig found, out = before;
-  if (!rails.gyro_clips_after_compensation) found.keep(rails.planes);
-  if (!rails.accel_clips_after_compensation) found.keep(rails.accel_planes, Triad::accelerometer);
-  out.only_rails = true;
+  if (!rails.gyro_clips_after_compensation) found.keep_prior_planes(rails.gyro_planes);
+  if (!rails.accel_clips_after_compensation) found.keep_prior_planes(rails.accel_saturation_planes, Triad::accelerometer);
+  out.only_saturation_limits = true;
   bool sure = false;
   for (const Triad triad : {Triad::gyro, Triad::accelerometer}) {
     const bool gyro = triad == Triad::gyro;
-    const CalibratedRig::Planes& now = gyro ? found.gyro_planes_rad_s : found.accelerometer_planes_m_s2;
-    CalibratedRig::Planes& kept = gyro ? out.gyro_planes_rad_s : out.accelerometer_planes_m_s2;
+    const CalibratedRig::Planes& now = gyro ? found.gyro_saturation_planes_rad_s : found.accel_saturation_planes_m_s2;
+    CalibratedRig::Planes& kept = gyro ? out.gyro_saturation_planes_rad_s : out.accel_saturation_planes_m_s2;
     for (std::size_t j = 0; j < 3; ++j) {
-      const std::optional<RailPlane>& plane = (gyro ? rails.planes : rails.accel_planes).element[j];
+      const std::optional<SaturationPlane>& plane = (gyro ? rails.gyro_planes : rails.accel_saturation_planes).sensing_axis[j];
       for (std::size_t i = 0; i < 2; ++i) {
         if (now[j][i] || !plane || plane->samples[i] == 0) kept[j][i] = now[j][i];
       }
       if (!now[j][0] && !now[j][1]) continue;
-      store_element(*plane, triad, j, out);
+      store_saturation_limit(*plane, triad, j, out);
       sure = true;
     }
   }
   return sure ? std::optional(out) : std::nullopt;
 }
 
-RailPlanes CalibratedRig::planes(Triad triad) const {
+SaturationPlanes CalibratedRig::saturation_planes(Triad triad) const {
   constexpr double kDistanceShare = 1e-3;
   const bool gyro = triad == Triad::gyro;
-  const RigConstants of_accel{.elements = accelerometer_elements};
-  RailPlanes out;
+  const RigConstants of_accel{.gyro_misalignment = accel_misalignment};
+  SaturationPlanes out;
   for (int j = 0; j < 3; ++j) {
-    const auto& [low, high] = (gyro ? gyro_planes_rad_s : accelerometer_planes_m_s2)[static_cast<std::size_t>(j)];
+    const auto& [low, high] = (gyro ? gyro_saturation_planes_rad_s : accel_saturation_planes_m_s2)[static_cast<std::size_t>(j)];
     if (!low && !high) continue;
-    const Eigen::Index first = RigConstants::kElements + 2 * j;
-    RailPlane plane;
+    const Eigen::Index first = RigConstants::kGyroMisalignment + 2 * j;
+    SaturationPlane plane;
     plane.row = (gyro ? calibration.constants : of_accel).sensing_direction(j);
-    plane.distance_rad_s = low && high ? 0.5 * (*high - *low) : low ? -*low : *high;
+    plane.saturation_limit_rad_s = low && high ? 0.5 * (*high - *low) : low ? -*low : *high;
     plane.offset_rad_s = low && high ? 0.5 * (*high + *low) : 0.0;
-    const double sigma = kDistanceShare * plane.distance_rad_s;
+    const double sigma = kDistanceShare * plane.saturation_limit_rad_s;
     plane.covariance.diagonal() << 0.0, 0.0, sigma * sigma, sigma * sigma;
     plane.covariance.topLeftCorner<2, 2>() =
         gyro ? Eigen::Matrix2d(calibration.covariance.block<2, 2>(first, first))
              : Eigen::Matrix2d(kSlopeDrift * kSlopeDrift * Eigen::Matrix2d::Identity());
     plane.samples = {low ? 1 : 0, high ? 1 : 0};
     plane.log_odds = kCertainLogOdds;
-    plane.tolerance_rad_s = kLevelToleranceRatio * plane.distance_rad_s;
+    plane.tolerance_rad_s = kLevelToleranceRatio * plane.saturation_limit_rad_s;
     plane.deviation_rad_s = 0.25 * plane.tolerance_rad_s;
-    out.element[static_cast<std::size_t>(j)] = plane;
+    out.sensing_axis[static_cast<std::size_t>(j)] = plane;
   }
   return out;
 }
 
-void start_from(const CalibratedRig& rig, double trust, RateSmoother::Params& params) {
+void start_from_calibration(const CalibratedRig& rig, double trust, AngularRateSmoother::Params& params) {
   if (!(trust >= 1.0)) throw std::invalid_argument("trust is " + std::to_string(trust) + "; it must be at least 1");
   params.model.calibration = rig.calibration;
   params.model.calibration->covariance *= trust;
-  params.expert.planes.known = rig.planes();
-  params.expert.accel_planes.known = rig.planes(Triad::accelerometer);
-  for (RailPlanes* const known : {&params.expert.planes.known, &params.expert.accel_planes.known}) {
-    for (std::optional<RailPlane>& plane : known->element) {
+  params.expert.gyro_planes.known_limits = rig.saturation_planes();
+  params.expert.accel_saturation_planes.known_limits = rig.saturation_planes(Triad::accelerometer);
+  for (SaturationPlanes* const known : {&params.expert.gyro_planes.known_limits, &params.expert.accel_saturation_planes.known_limits}) {
+    for (std::optional<SaturationPlane>& plane : known->sensing_axis) {
       if (plane) plane->covariance *= trust;
     }
   }
-  if (rig.device_errors) {
-    params.calibrated_errors = rig.device_errors;
+  if (rig.known_sensor_errors) {
+    params.calibrated_errors = rig.known_sensor_errors;
     params.calibrated_errors->covariance *= trust;
   }
-  if (const auto rail = lowest_rail(rig, 0)) params.rails.stated_gyro_rad_s = rail;
-  if (const auto rail = lowest_rail(rig, 3)) params.rails.stated_accel_m_s2 = rail;
+  if (const auto rail = lowest_saturation_limit(rig, 0)) params.saturation_detector.stated_gyro_range_rad_s = rail;
+  if (const auto rail = lowest_saturation_limit(rig, 3)) params.saturation_detector.stated_accel_range_m_s2 = rail;
 }
 
-void apply_saved_calibration(const CalibratedRig& rig, RateSmoother::Params& params) {
-  const RigConstants::Matrix prior = RateModel(params.model, 0.01).prior_covariance();
-  start_from(rig, kNextRunInflation, params);
+void apply_saved_calibration(const CalibratedRig& rig, AngularRateSmoother::Params& params) {
+  const RigConstants::Matrix prior = AngularRateModel(params.model, 0.01).prior_covariance();
+  start_from_calibration(rig, kNextRunInflation, params);
   // Biases change at every switch-on.
   constexpr int kBias = 3, kBiases = 6;
   RigConstants& constants = params.model.calibration->constants;
   constants.gyro_bias_rad_s = params.model.nominal.gyro_bias_rad_s;
   constants.accel_bias_m_s2 = params.model.nominal.accel_bias_m_s2;
   RigConstants::Matrix& covariance = params.model.calibration->covariance;
-  covariance.diagonal().tail<RigConstants::kSize - RigConstants::kElements>().array() += kElementDrift * kElementDrift;
+  covariance.diagonal().tail<RigConstants::kSize - RigConstants::kGyroMisalignment>().array() += kElementDrift * kElementDrift;
   covariance.middleRows<kBiases>(kBias).setZero();
   covariance.middleCols<kBiases>(kBias).setZero();
   const RigConstants::Matrix floor = (1.0 - 1.0 / kNextRunInflation) * prior.inverse();
@@ -186,77 +186,77 @@ void apply_saved_calibration(const CalibratedRig& rig, RateSmoother::Params& par
   covariance = information.inverse();
 }
 
-CalibratedRig prior_rig_calibration(const CalibratedRig* given, const RateModelParams& model) {
+CalibratedRig prior_rig_calibration(const CalibratedRig* given, const AngularRateModelParams& model) {
   if (given != nullptr) return *given;
-  const RateModel assumed(model, 0.01);
+  const AngularRateModel assumed(model, 0.01);
   return {{assumed.prior_constants(), assumed.prior_covariance()}, {}};
 }
 
-void apply_saved_calibration(const CalibratedRig& rig, RateStream::Params& params) {
-  RateSmoother::Params batch;
+void apply_saved_calibration(const CalibratedRig& rig, AngularRateStream::Params& params) {
+  AngularRateSmoother::Params batch;
   batch.model = params.model;
-  batch.rails = params.rails;
-  batch.expert.planes = params.expert.planes;
-  batch.expert.accel_planes = params.expert.accel_planes;
+  batch.saturation_detector = params.saturation_detector;
+  batch.expert.gyro_planes = params.expert.gyro_planes;
+  batch.expert.accel_saturation_planes = params.expert.accel_saturation_planes;
   apply_saved_calibration(rig, batch);
   params.model = batch.model;
-  params.rails = batch.rails;
-  params.expert.planes = batch.expert.planes;
-  params.expert.accel_planes = batch.expert.accel_planes;
+  params.saturation_detector = batch.saturation_detector;
+  params.expert.gyro_planes = batch.expert.gyro_planes;
+  params.expert.accel_saturation_planes = batch.expert.accel_saturation_planes;
   if (batch.calibrated_errors) params.calibrated_errors = std::make_shared<KnownSensorErrors>(*batch.calibrated_errors);
 }
 
-std::optional<CalibratedRig> learnt(const RateReport& report, const CalibratedRig* given,
-                                    const RateModelParams& model) {
-  if (!report.calibration_at_prior) return learnt(report);
+std::optional<CalibratedRig> calibrated_rig(const AngularRateReport& report, const CalibratedRig* given,
+                                    const AngularRateModelParams& model) {
+  if (!report.calibration_at_prior) return calibrated_rig(report);
   SaturationLevels rails;
-  rails.planes = report.planes;
+  rails.gyro_planes = report.gyro_planes;
   rails.gyro_clips_after_compensation = report.clips_after_compensation;
-  rails.accel_planes = report.accel_planes;
-  return calibration_with_rails(prior_rig_calibration(given, model), rails);
+  rails.accel_saturation_planes = report.accel_saturation_planes;
+  return calibration_with_saturation_limits(prior_rig_calibration(given, model), rails);
 }
 
-bool is_at_prior(const RateStream& stream, const RateStream::State& state) {
+bool is_at_prior(const AngularRateStream& stream, const AngularRateStream::State& state) {
   const RigConstants::Matrix before = stream.start().rig_covariance;
   return !(state.rig_covariance.topLeftCorner<3, 3>().trace() < before.topLeftCorner<3, 3>().trace());
 }
 
 namespace {
 
-CalibratedRig stream_calibration(const RateStream& stream, const RateStream::Params& params,
-                                 const RateStream::State& state) {
+CalibratedRig stream_calibration(const AngularRateStream& stream, const AngularRateStream::Params& params,
+                                 const AngularRateStream::State& state) {
   CalibratedRig rig{stream.calibration(state), {}};
-  const RailDetector axis_aligned_rails(params.rails);
-  const SaturationLevels& known = state.rails.known;
+  const SaturationLimitDetector axis_aligned_rails(params.saturation_detector);
+  const SaturationLevels& known = state.clipping_state.known_limits;
   for (int c = 0; c < 6; ++c) {
-    std::optional<double>& rail = rig.rail[static_cast<std::size_t>(c)];
-    rail = axis_aligned_rails.rail(known.axis_aligned_rails, c);
-    const auto& plane = (c < 3 ? known.planes : known.accel_planes).element[static_cast<std::size_t>(c % 3)];
-    if (plane) rail = plane->distance_rad_s;
+    std::optional<double>& rail = rig.saturation_limits[static_cast<std::size_t>(c)];
+    rail = axis_aligned_rails.saturation_limit(known.axis_limit_state, c);
+    const auto& plane = (c < 3 ? known.gyro_planes : known.accel_saturation_planes).sensing_axis[static_cast<std::size_t>(c % 3)];
+    if (plane) rail = plane->saturation_limit_rad_s;
   }
-  if (!known.gyro_clips_after_compensation) rig.keep(known.planes);
-  if (!known.accel_clips_after_compensation) rig.keep(known.accel_planes, Triad::accelerometer);
+  if (!known.gyro_clips_after_compensation) rig.keep_prior_planes(known.gyro_planes);
+  if (!known.accel_clips_after_compensation) rig.keep_prior_planes(known.accel_saturation_planes, Triad::accelerometer);
   return rig;
 }
 
 }  // namespace
 
-std::optional<CalibratedRig> learnt(const RateStream& stream, const RateStream::Params& params,
-                                    const CalibratedRig* given, const RateStream::State& state) {
-  const bool late = state.device.front().delay.found;
+std::optional<CalibratedRig> calibrated_rig(const AngularRateStream& stream, const AngularRateStream::Params& params,
+                                    const CalibratedRig* given, const AngularRateStream::State& state) {
+  const bool late = state.sensor_errors.front().accel_delay_state.delay_found;
   std::optional<CalibratedRig> rig;
   if (!is_at_prior(stream, state)) {
     rig = stream_calibration(stream, params, state);
-    if (given != nullptr) rig->device_errors = given->device_errors;
+    if (given != nullptr) rig->known_sensor_errors = given->known_sensor_errors;
   } else {
     const CalibratedRig before = prior_rig_calibration(given, params.model);
-    rig = calibration_with_rails(before, state.rails.known);
+    rig = calibration_with_saturation_limits(before, state.clipping_state.known_limits);
     if (!rig && late) {
       rig = before;
-      rig->only_rails = true;
+      rig->only_saturation_limits = true;
     }
   }
-  if (late) rig->device_errors = stream.sensor_errors(state);
+  if (late) rig->known_sensor_errors = stream.sensor_errors(state);
   return rig;
 }
 
@@ -268,7 +268,7 @@ double calibration_distance(const RigCalibration& before, const RigCalibration& 
     const Eigen::Matrix<double, kCount, kCount> block = spread.block<kCount, kCount>(kFirst, kFirst);
     return std::sqrt(part.dot(block.llt().solve(part)) / kCount);
   };
-  constexpr int kInertia = 9, kInertias = RigConstants::kElements - kInertia;
+  constexpr int kInertia = 9, kInertias = RigConstants::kGyroMisalignment - kInertia;
   return std::max(of.operator()<0, 3>(), of.operator()<kInertia, kInertias>());
 }
 

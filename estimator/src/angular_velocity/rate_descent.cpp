@@ -21,9 +21,9 @@ constexpr double kFlightShareExpected = 0.5;
 constexpr double kStepDeviations = 0.1;
 
 // See rate_smoother.md (R16) to (R19).
-void compute_flight_weights(const RateModel& model, std::span<const RateObservation> observations,
+void compute_flight_weights(const AngularRateModel& model, std::span<const AngularRateObservation> observations,
                             const RigConstants& rig, const RigConstants::Matrix& rig_covariance,
-                            double threshold_factor, std::span<RateEstimate> estimates) {
+                            double threshold_factor, std::span<AngularRateEstimate> estimates) {
   double before = std::numeric_limits<double>::max();
   for (std::size_t k = 0; k < estimates.size(); ++k) {
     double after = std::numeric_limits<double>::max();
@@ -39,42 +39,42 @@ void compute_flight_weights(const RateModel& model, std::span<const RateObservat
   }
 }
 
-bool run_gauss_newton(const RateSmoother::Params& params, const RateModel& model,
-                      std::span<const RateObservation> observations, double threshold_factor, RateSolution& solution,
-                      RateReport& health) {
+bool run_gauss_newton(const AngularRateSmoother::Params& params, const AngularRateModel& model,
+                      std::span<const AngularRateObservation> observations, double threshold_factor, RateSolution& solution,
+                      AngularRateReport& health) {
   solution.estimates = first_guess(observations, params.model, model, params.gap_max_s);
   solution.rig = model.prior_constants();
   solution.rig_covariance = model.prior_covariance();
-  std::vector<RateEstimate>& estimates = solution.estimates;
+  std::vector<AngularRateEstimate>& estimates = solution.estimates;
   int soft = 0;
   health.iterations = 0;
   health.converged = false;
-  while (health.iterations < params.expert.descent.iterations_max) {
+  while (health.iterations < params.expert.optimisation.iterations_max) {
     compute_flight_weights(model, observations, solution.rig, solution.rig_covariance, threshold_factor, estimates);
     if (!solution.iteration.factorise(model, estimates, solution.rig)) return false;
     solution.rig_covariance = solution.iteration.rig_covariance();
     health.last_step_rad_s =
-        solution.iteration.apply(model, params.expert.descent.kStepMax_rad_s, estimates, solution.rig);
+        solution.iteration.apply(model, params.expert.optimisation.kStepMax_rad_s, estimates, solution.rig);
     ++health.iterations;
 
     const bool converged =
-        threshold_factor == 1.0 && (health.last_step_rad_s < params.expert.descent.tolerance_rad_s ||
+        threshold_factor == 1.0 && (health.last_step_rad_s < params.expert.optimisation.tolerance_rad_s ||
                                     solution.iteration.newton_decrement() < kStepDeviations * kStepDeviations);
     if (soft > 0) {
-      solution.iteration.for_each_conditional([&](std::size_t k, const arrow::Conditional& conditional) {
+      solution.iteration.for_each_state_given_next([&](std::size_t k, const arrow::Conditional& conditional) {
         model.update_bounds(observations[k], solution.rig, conditional, solution.rig_covariance,
-                            params.expert.descent.kBoundDamping, estimates[k]);
+                            params.expert.optimisation.kBoundDamping, estimates[k]);
       });
     }
     if (soft > 0 || converged ||
-        health.iterations + params.expert.descent.bound_iterations >= params.expert.descent.iterations_max) {
+        health.iterations + params.expert.optimisation.bound_iterations >= params.expert.optimisation.iterations_max) {
       for (std::size_t k = 0; k < estimates.size() && soft == 0; ++k) {
         if (estimates[k].flight_weight >= 0.5) continue;
-        model.search_flight(observations[k], solution.rig, estimates[k]);
-        model.start_bounds(observations[k], solution.rig, estimates[k]);
+        model.search_flight_solutions(observations[k], solution.rig, estimates[k]);
+        model.initialise_rate_bounds(observations[k], solution.rig, estimates[k]);
       }
       health.converged = converged || health.converged;
-      if (soft++ == params.expert.descent.bound_iterations) break;
+      if (soft++ == params.expert.optimisation.bound_iterations) break;
     }
     threshold_factor = std::max(1.0, 0.5 * threshold_factor);
   }
@@ -84,7 +84,7 @@ bool run_gauss_newton(const RateSmoother::Params& params, const RateModel& model
 
 // Returns how well free flight explains the samples: rate_smoother.md (R31). `share` receives the fraction of flight
 // samples among the samples with a clipped axis.
-double explained(std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
+double explained_force_fraction(std::span<const AngularRateObservation> observations, std::span<const AngularRateEstimate> estimates,
                  double& share) {
   double sum = 0.0, unmeasured_axes = 0.0, flight = 0.0;
   for (std::size_t k = 0; k < estimates.size(); ++k) {
@@ -100,89 +100,89 @@ double explained(std::span<const RateObservation> observations, std::span<const 
 }  // namespace
 
 // See rate_smoother.md (R26).
-bool RateIteration::factorise(const RateModel& model, std::span<const RateEstimate> estimates,
+bool GaussNewtonRateStep::factorise(const AngularRateModel& model, std::span<const AngularRateEstimate> estimates,
                               const RigConstants& rig) {
-  corner_ = {};
-  model.add_rig_prior(rig, corner_);
-  blocks_[0] = {};
-  for (std::size_t k = 0; k < blocks_.size(); ++k) {
-    model.add_sample(observations_[k], estimates[k], rig, blocks_[k], corner_);
-    const bool last = k + 1 == blocks_.size();
+  border_block_ = {};
+  model.add_rig_prior(rig, border_block_);
+  state_blocks_[0] = {};
+  for (std::size_t k = 0; k < state_blocks_.size(); ++k) {
+    model.add_sample(observations_[k], estimates[k], rig, state_blocks_[k], border_block_);
+    const bool last = k + 1 == state_blocks_.size();
     if (!last) {
-      blocks_[k + 1] = {};
+      state_blocks_[k + 1] = {};
       const double dt_s = seconds(observations_[k + 1].sample.time_ns - observations_[k].sample.time_ns);
-      model.add_step(estimates[k], estimates[k + 1], dt_s, blocks_[k], blocks_[k + 1]);
+      model.add_motion_model(estimates[k], estimates[k + 1], dt_s, state_blocks_[k], state_blocks_[k + 1]);
     }
-    if (!arrow::eliminate(blocks_[k], last ? nullptr : &blocks_[k + 1], corner_)) return false;
+    if (!arrow::eliminate(state_blocks_[k], last ? nullptr : &state_blocks_[k + 1], border_block_)) return false;
   }
-  return arrow::solve_corner(corner_, rig_step_, rig_covariance_);
+  return arrow::solve_border_block(border_block_, calibration_step_, rig_covariance_);
 }
 
 // See rate_smoother.md (R30).
-double RateIteration::newton_decrement() const {
-  double sum = rig_step_.dot(corner_.gradient);
-  for (const arrow::Block& block : blocks_) sum += block.gradient.squaredNorm();
+double GaussNewtonRateStep::newton_decrement() const {
+  double sum = calibration_step_.dot(border_block_.gradient);
+  for (const arrow::Block& block : state_blocks_) sum += block.gradient.squaredNorm();
   return sum;
 }
 
-double RateIteration::apply(const RateModel& model, double step_max, std::span<RateEstimate> estimates,
+double GaussNewtonRateStep::apply(const AngularRateModel& model, double step_max, std::span<AngularRateEstimate> estimates,
                             RigConstants& rig) const {
   double largest = 0.0;
   arrow::StateVector step;
-  for (std::size_t k = blocks_.size(); k-- > 0;) {
-    const bool last = k + 1 == blocks_.size();
-    step = arrow::back_substitute(blocks_[k], last ? nullptr : &step, rig_step_);
-    const Eigen::Matrix<double, 6, 1> physical = model.unscaled(step);
+  for (std::size_t k = state_blocks_.size(); k-- > 0;) {
+    const bool last = k + 1 == state_blocks_.size();
+    step = arrow::back_substitute(state_blocks_[k], last ? nullptr : &step, calibration_step_);
+    const Eigen::Matrix<double, 6, 1> physical = model.unscaled_step(step);
     const double length = physical.head<3>().norm();
     const double share = length > step_max ? step_max / length : 1.0;
     estimates[k].knot.rate_rad_s += share * physical.head<3>();
     estimates[k].knot.acceleration_rad_s2 += share * physical.tail<3>();
     largest = std::max(largest, length);
   }
-  rig.add(rig_step_);
+  rig.add(calibration_step_);
   return largest;
 }
 
 // See rate_smoother.md (R37), (R38), (R39).
-RateIteration::SensorErrorDerivatives RateIteration::error_derivatives(const RateModel& model,
-                                                                       std::span<const RateEstimate> estimates,
+GaussNewtonRateStep::SensorErrorDerivatives GaussNewtonRateStep::error_derivatives(const AngularRateModel& model,
+                                                                       std::span<const AngularRateEstimate> estimates,
                                                                        const RigConstants& rig) const {
   SensorErrorDerivatives out;
-  out.of_sample.assign(blocks_.size(), arrow::ErrorMatrix::Zero());
+  out.sample_error_jacobian.assign(state_blocks_.size(), arrow::ErrorMatrix::Zero());
   arrow::BorderErrors border = arrow::BorderErrors::Zero();
-  for (std::size_t k = 0; k < blocks_.size(); ++k) {
-    arrow::ErrorMatrix& errors = out.of_sample[k];
-    model.add_errors(observations_[k], estimates[k], rig, errors, border, out.evidence);
-    const bool last = k + 1 == blocks_.size();
-    arrow::eliminate_errors(blocks_[k], errors, last ? nullptr : &out.of_sample[k + 1], border);
-    out.evidence.information.noalias() -= errors.transpose() * errors;
-    out.evidence.gradient.noalias() += errors.transpose() * blocks_[k].gradient;
+  for (std::size_t k = 0; k < state_blocks_.size(); ++k) {
+    arrow::ErrorMatrix& errors = out.sample_error_jacobian[k];
+    model.add_sensor_errors(observations_[k], estimates[k], rig, errors, border, out.sensor_error_evidence);
+    const bool last = k + 1 == state_blocks_.size();
+    arrow::eliminate_sensor_errors(state_blocks_[k], errors, last ? nullptr : &out.sample_error_jacobian[k + 1], border);
+    out.sensor_error_evidence.information.noalias() -= errors.transpose() * errors;
+    out.sensor_error_evidence.gradient.noalias() += errors.transpose() * state_blocks_[k].gradient;
   }
-  out.calibration_by_errors.noalias() = rig_covariance_ * border;
-  out.evidence.information.noalias() -= border.transpose() * out.calibration_by_errors;
-  out.evidence.gradient.noalias() += border.transpose() * rig_step_;
-  for (std::size_t k = blocks_.size(); k-- > 0;) {
-    const arrow::ErrorMatrix* const next = k + 1 == blocks_.size() ? nullptr : &out.of_sample[k + 1];
-    out.of_sample[k] = arrow::back_substitute_errors(blocks_[k], out.of_sample[k], next, out.calibration_by_errors);
+  out.calibration_error_jacobian.noalias() = rig_covariance_ * border;
+  out.sensor_error_evidence.information.noalias() -= border.transpose() * out.calibration_error_jacobian;
+  out.sensor_error_evidence.gradient.noalias() += border.transpose() * calibration_step_;
+  for (std::size_t k = state_blocks_.size(); k-- > 0;) {
+    const arrow::ErrorMatrix* const next = k + 1 == state_blocks_.size() ? nullptr : &out.sample_error_jacobian[k + 1];
+    out.sample_error_jacobian[k] = arrow::back_substitute_errors(state_blocks_[k], out.sample_error_jacobian[k], next, out.calibration_error_jacobian);
   }
-  discount_unobservable(model.independent_reading_ratio(), out.evidence);
+  discount_unobservable(model.independent_sample_fraction(), out.sensor_error_evidence);
   return out;
 }
 
-bool solve(const RateSmoother::Params& params, const RateModel& model, std::span<const RateObservation> observations,
-           RateSolution& solution, RateReport& health) {
-  if (!run_gauss_newton(params, model, observations, params.expert.descent.initial_threshold_factor, solution, health))
+bool solve(const AngularRateSmoother::Params& params, const AngularRateModel& model, std::span<const AngularRateObservation> observations,
+           RateSolution& solution, AngularRateReport& health) {
+  if (!run_gauss_newton(params, model, observations, params.expert.optimisation.initial_threshold_factor, solution, health))
     return false;
   double share = 1.0;
-  double best = explained(observations, solution.estimates, share);
+  double best = explained_force_fraction(observations, solution.estimates, share);
   for (const double factor : kRestartThresholds) {
     if (share >= kFlightShareExpected) break;
-    RateSolution other{{}, {}, {}, RateIteration(observations)};
-    RateReport other_health = health;
-    const double threshold_factor = std::max(1.0, factor * params.expert.descent.initial_threshold_factor);
+    RateSolution other{{}, {}, {}, GaussNewtonRateStep(observations)};
+    AngularRateReport other_health = health;
+    const double threshold_factor = std::max(1.0, factor * params.expert.optimisation.initial_threshold_factor);
     if (!run_gauss_newton(params, model, observations, threshold_factor, other, other_health)) continue;
     double other_share = 0.0;
-    const double found = explained(observations, other.estimates, other_share);
+    const double found = explained_force_fraction(observations, other.estimates, other_share);
     ++health.restarts;
     if (!(found > best)) continue;
     best = found;

@@ -9,35 +9,35 @@
 
 namespace tumble {
 
-class RateIteration {
+class GaussNewtonRateStep {
  public:
-  explicit RateIteration(std::span<const RateObservation> observations)
-      : observations_(observations), blocks_(observations.size()) {}
+  explicit GaussNewtonRateStep(std::span<const AngularRateObservation> observations)
+      : observations_(observations), state_blocks_(observations.size()) {}
 
   /// Returns false if the normal equations are not positive definite.
-  bool factorise(const RateModel& model, std::span<const RateEstimate> estimates, const RigConstants& rig);
+  bool factorise(const AngularRateModel& model, std::span<const AngularRateEstimate> estimates, const RigConstants& rig);
   /// Adds the last step, scaled so that no angular rate changes by more than step_max. Returns the largest change of an
   /// angular rate in the unscaled step.
-  double apply(const RateModel& model, double step_max, std::span<RateEstimate> estimates, RigConstants& rig) const;
+  double apply(const AngularRateModel& model, double step_max, std::span<AngularRateEstimate> estimates, RigConstants& rig) const;
 
   /// Calls use(k, conditional) for each sample k from last to first, with the distribution of its rate and angular
   /// acceleration for known calibration constants.
   template <typename Use>
-  void for_each_conditional(Use use) const {
+  void for_each_state_given_next(Use use) const {
     arrow::Conditional conditional;
-    for (std::size_t k = blocks_.size(); k-- > 0;) {
-      conditional = arrow::back_conditional(blocks_[k], k + 1 == blocks_.size() ? nullptr : &conditional);
+    for (std::size_t k = state_blocks_.size(); k-- > 0;) {
+      conditional = arrow::state_given_next_state(state_blocks_[k], k + 1 == state_blocks_.size() ? nullptr : &conditional);
       use(k, conditional);
     }
   }
 
-  /// `evidence` is the information about the sensor errors after elimination of all other unknowns.
+  /// `sensor_error_evidence` is the information about the sensor errors after elimination of all other unknowns.
   struct SensorErrorDerivatives {
-    std::vector<arrow::ErrorMatrix> of_sample;
-    arrow::BorderErrors calibration_by_errors;
-    SensorErrorEvidence evidence;
+    std::vector<arrow::ErrorMatrix> sample_error_jacobian;
+    arrow::BorderErrors calibration_error_jacobian;
+    SensorErrorInformation sensor_error_evidence;
   };
-  SensorErrorDerivatives error_derivatives(const RateModel& model, std::span<const RateEstimate> estimates,
+  SensorErrorDerivatives error_derivatives(const AngularRateModel& model, std::span<const AngularRateEstimate> estimates,
                                            const RigConstants& rig) const;
 
   const RigConstants::Matrix& rig_covariance() const { return rig_covariance_; }
@@ -45,24 +45,24 @@ class RateIteration {
   double newton_decrement() const;
 
  private:
-  std::span<const RateObservation> observations_;
-  std::vector<arrow::Block> blocks_;
-  arrow::Corner corner_;
-  arrow::BorderVector rig_step_;
+  std::span<const AngularRateObservation> observations_;
+  std::vector<arrow::Block> state_blocks_;
+  arrow::Corner border_block_;
+  arrow::BorderVector calibration_step_;
   RigConstants::Matrix rig_covariance_;
 };
 
 struct RateSolution {
-  std::vector<RateEstimate> estimates;
+  std::vector<AngularRateEstimate> estimates;
   RigConstants rig;
   RigConstants::Matrix rig_covariance;
-  RateIteration iteration;
+  GaussNewtonRateStep iteration;
 };
 
 /// Returns false if the normal equations are not positive definite. If most clipped samples are classified as contact,
 /// solve() repeats the optimisation with other contact thresholds, because a wrong initial lever arm may lead to a
 /// local minimum.
-bool solve(const RateSmoother::Params& params, const RateModel& model, std::span<const RateObservation> observations,
-           RateSolution& solution, RateReport& health);
+bool solve(const AngularRateSmoother::Params& params, const AngularRateModel& model, std::span<const AngularRateObservation> observations,
+           RateSolution& solution, AngularRateReport& health);
 
 }  // namespace tumble

@@ -17,24 +17,24 @@ constexpr double kVarianceUnknown = 100.0;  // variance of a clipped axis at the
 
 }  // namespace
 
-std::vector<RateEstimate> first_guess(std::span<const RateObservation> observations, const RateModelParams& model,
-                                      const RateModel& derived, double gap_max_s) {
+std::vector<AngularRateEstimate> first_guess(std::span<const AngularRateObservation> observations, const AngularRateModelParams& model,
+                                      const AngularRateModel& derived, double gap_max_s) {
   double smallest = model.rate_max_rad_s;
-  for (const RateObservation& o : observations) {
+  for (const AngularRateObservation& o : observations) {
     for (int j = 0; j < 3; ++j) {
       const double reading = std::abs(o.sample.angular_velocity_rad_s[j]);
       if ((o.clipping.gyro >> j & 1u) != 0) smallest = std::min(smallest, std::max(reading, 0.01));
     }
   }
-  const Saave saave({.lever_arm_m = derived.prior_constants().lever_arm_m,
+  const SaturationAwareRateEstimator saave({.lever_arm_m = derived.prior_constants().lever_arm_m,
                      .saturation_point_rad_s = std::max(0.01, 0.9999 * smallest),
                      .gap_max_s = gap_max_s});
-  Saave::State state;
-  Saave::Recovered recovered;
+  SaturationAwareRateEstimator::State state;
+  SaturationAwareRateEstimator::RecoveredRate recovered;
   const double measured = derived.gyro_sigma_rad_s() * derived.gyro_sigma_rad_s();
   std::vector<WnojSmoother::Measurement> readings(observations.size());
   for (std::size_t k = 0; k < observations.size(); ++k) {
-    const RateObservation& o = observations[k];
+    const AngularRateObservation& o = observations[k];
     if (!saave.step(o.sample, state, recovered).ok()) {
       state = {};
       (void)saave.step(o.sample, state, recovered);
@@ -50,7 +50,7 @@ std::vector<RateEstimate> first_guess(std::span<const RateObservation> observati
   }
   std::vector<WnojSmoother::Smoothed> smoothed;
   (void)WnojSmoother({}).smooth(readings, smoothed);
-  std::vector<RateEstimate> out(observations.size());
+  std::vector<AngularRateEstimate> out(observations.size());
   for (std::size_t k = 0; k < out.size(); ++k) {
     out[k].knot = {smoothed[k].rate_rad_s, smoothed[k].acceleration_rad_s2};
   }

@@ -8,9 +8,9 @@
 
 namespace tumble {
 
-/// Computes initial rates with a smoother and the published rate recovery (Saave). Clipped readings are lower bounds of
+/// Computes initial rates with a smoother and the published rate recovery (SaturationAwareRateEstimator). Clipped readings are lower bounds of
 /// the rates. The samples must be valid.
-std::vector<RateEstimate> first_guess(std::span<const RateObservation> observations, const RateModelParams& model,
-                                      const RateModel& derived, double gap_max_s);
+std::vector<AngularRateEstimate> first_guess(std::span<const AngularRateObservation> observations, const AngularRateModelParams& model,
+                                      const AngularRateModel& derived, double gap_max_s);
 
 }  // namespace tumble

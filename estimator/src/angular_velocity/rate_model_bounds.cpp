@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "tumble/angular_velocity/detail/rate_model.hpp"
-#include "tumble/angular_velocity/detail/subsample_saturation.hpp"
+#include "tumble/angular_velocity/detail/partial_saturation.hpp"
 #include "tumble/angular_velocity/detail/truncated_normal.hpp"
 
 namespace tumble {
@@ -23,18 +23,18 @@ constexpr double kFlightSearchStepMax = 3.0, kFlightForceRatioMax = 0.25;
 
 }  // namespace
 
-void RateModel::search_flight(const RateObservation& observation, const RigConstants& rig,
-                              RateEstimate& estimate) const {
+void AngularRateModel::search_flight_solutions(const AngularRateObservation& observation, const RigConstants& rig,
+                              AngularRateEstimate& estimate) const {
   const int unmeasured_axes = observation.unmeasured_axes();
   if (unmeasured_axes == 0 || observation.clipping.accel != 0) return;
   const Vector3d reading = corrected_rate(observation, estimate);
-  RateEstimate flight_estimate = estimate;
+  AngularRateEstimate flight_estimate = estimate;
   const Eigen::Matrix3d J = rig.inertia_matrix();
   // The device compensates misalignment, so the saturation deficit of one element changes all axes: rails.md (R51).
   Eigen::Matrix3d rows;
   for (int j = 0; j < 3; ++j) rows.row(j) = rig.sensing_direction(j);
   const Eigen::Matrix3d deficit_directions = rows.inverse();
-  RateFactor flight;
+  AngularRateFactor flight;
   for (int iteration = 0; iteration <= kFlightSearchSteps; ++iteration) {
     Vector3d& w = flight_estimate.knot.rate_rad_s;
     flight_estimate.knot.acceleration_rad_s2 = -J.llt().solve(w.cross(Vector3d(J * w)));
@@ -65,60 +65,60 @@ void RateModel::search_flight(const RateObservation& observation, const RigConst
   estimate.contact_force_m_s2 = -flight.residual;
 }
 
-void RateModel::start_bounds(const RateObservation& observation, const RigConstants& rig,
-                             RateEstimate& estimate) const {
-  estimate.soft_bounds = true;
-  const RateFactor off =
-      element_factor(knot_at_reading(observation, estimate), rig, corrected_rate(observation, estimate));
+void AngularRateModel::initialise_rate_bounds(const AngularRateObservation& observation, const RigConstants& rig,
+                             AngularRateEstimate& estimate) const {
+  estimate.use_soft_bounds = true;
+  const AngularRateFactor off =
+      sensing_axis_factor(knot_at_reading(observation, estimate), rig, corrected_rate(observation, estimate));
   for (int j = 0; j < 3; ++j) {
     if ((observation.unmeasured_axes() & observation.clipping.gyro & 1u << j) == 0) continue;
     const double guess = off.residual[j];
     const bool negative = observation.sample.angular_velocity_rad_s[j] < 0.0;
-    estimate.bound_precision[j] = kStartPrecision;
-    estimate.bound_shift[j] = kStartPrecision * (negative ? std::min(guess, 0.0) : std::max(guess, 0.0));
+    estimate.lower_bound_precision[j] = kStartPrecision;
+    estimate.lower_bound_information_mean[j] = kStartPrecision * (negative ? std::min(guess, 0.0) : std::max(guess, 0.0));
   }
 }
 
-void RateModel::update_bounds(const RateObservation& observation, const RigConstants& rig,
+void AngularRateModel::update_bounds(const AngularRateObservation& observation, const RigConstants& rig,
                               const arrow::Conditional& conditional, const RigConstants::Matrix& rig_covariance,
-                              double damping, RateEstimate& estimate) const {
+                              double damping, AngularRateEstimate& estimate) const {
   if ((observation.unmeasured_axes() & observation.clipping.gyro) == 0) return;
-  const RateFactor off =
-      element_factor(knot_at_reading(observation, estimate), rig, corrected_rate(observation, estimate));
+  const AngularRateFactor off =
+      sensing_axis_factor(knot_at_reading(observation, estimate), rig, corrected_rate(observation, estimate));
   for (int j = 0; j < 3; ++j) {
     if ((observation.unmeasured_axes() & observation.clipping.gyro & 1u << j) == 0) continue;
     const double sign = observation.sample.angular_velocity_rad_s[j] < 0.0 ? -1.0 : 1.0;
     const Vector3d row = off.jacobian_knot.row(j).head<3>();
     Eigen::Matrix<double, 1, RigConstants::kSize> jacobian_calibration = off.jacobian_calibration.row(j);
-    for (int i = 0; i < 3; ++i) jacobian_calibration += row[i] * conditional.jacobian_border.row(i);
+    for (int i = 0; i < 3; ++i) jacobian_calibration += row[i] * conditional.border_jacobian.row(i);
     const Eigen::Matrix<double, 1, RigConstants::kSize> cross = jacobian_calibration.lazyProduct(rig_covariance);
     const Vector3d by_state = conditional.state.topLeftCorner<3, 3>().lazyProduct(row);
     // See rate_smoother.md (R22), (R35).
-    const NormalMoments marginal{sign * off.residual[j], row.dot(by_state) + cross.dot(jacobian_calibration)};
-    const GaussianSite site = refined_bound(marginal, {estimate.bound_precision[j], sign * estimate.bound_shift[j]},
+    const GaussianMoments marginal{sign * off.residual[j], row.dot(by_state) + cross.dot(jacobian_calibration)};
+    const GaussianLikelihoodApproximation site = refined_bound_approximation(marginal, {estimate.lower_bound_precision[j], sign * estimate.lower_bound_information_mean[j]},
                                             0.0, params_.expert.kRailSigma_rad_s * params_.expert.kRailSigma_rad_s,
                                             params_.rate_max_rad_s * params_.rate_max_rad_s, damping);
-    estimate.bound_precision[j] = site.precision;
-    estimate.bound_shift[j] = sign * site.shift;
+    estimate.lower_bound_precision[j] = site.precision;
+    estimate.lower_bound_information_mean[j] = sign * site.information_mean;
   }
 }
 
-void mark_subsample_saturation(const RailDetector& rails, const RailDetector::State& state, double noise_rad_s,
-                               const ImuSample* before, RateObservation& now, const ImuSample* after) {
-  now.subsample_saturated = 0;
+void mark_partial_saturation(const SaturationLimitDetector& rails, const SaturationLimitDetector::State& state, double noise_rad_s,
+                               const ImuSample* before, AngularRateObservation& now, const ImuSample* after) {
+  now.partial_saturation_flags = 0;
   for (int j = 0; j < 3; ++j) {
     const bool flagged = (now.sample.device_clip_flags >> j & 1u) != 0 && (now.clipping.unusable_gyro >> j & 1u) == 0;
-    const std::optional<double> rail = rails.rail(state, j);
+    const std::optional<double> rail = rails.saturation_limit(state, j);
     if (!flagged || !rail) continue;
     const double reading = now.sample.angular_velocity_rad_s[j], sign = std::copysign(1.0, reading);
-    const double neighbour = unsaturated_neighbour(std::abs(reading), *rail, j, before, after,
+    const double neighbour = unsaturated_neighbour_reading(std::abs(reading), *rail, j, before, after,
                                                    [&](const Vector3d& beside) { return sign * beside[j]; });
     if (neighbour > std::abs(reading)) continue;
-    const SubsampleSaturation loss = subsample_saturation(std::abs(reading), neighbour, *rail, noise_rad_s);
+    const PartialSaturation loss = partial_saturation(std::abs(reading), neighbour, *rail, noise_rad_s);
     if (!loss.saturated) continue;
-    now.subsample_saturated = static_cast<std::uint8_t>(now.subsample_saturated | 1u << j);
-    now.expected_deficit_rad_s[j] = sign * loss.expected_deficit_rad_s;
-    now.expected_deficit_sigma_rad_s[j] = loss.sigma_rad_s;
+    now.partial_saturation_flags = static_cast<std::uint8_t>(now.partial_saturation_flags | 1u << j);
+    now.expected_saturation_deficit_rad_s[j] = sign * loss.expected_saturation_deficit_rad_s;
+    now.saturation_deficit_sigma_rad_s[j] = loss.sigma_rad_s;
   }
 }
 

@@ -12,12 +12,12 @@ constexpr double kRigWeightMin = 0.05;
 
 }  // namespace
 
-bool RateModel::is_uninformative(const RateEstimate& estimate) {
+bool AngularRateModel::has_no_error_information(const AngularRateEstimate& estimate) {
   return estimate.flight_weight < kRigWeightMin;
 }
 
 // A contact force must not change the calibration or the rates of unclipped axes.
-void RateModel::exclude_from_calibration(const RateObservation& o, RateFactor& flight) {
+void AngularRateModel::exclude_from_calibration(const AngularRateObservation& o, AngularRateFactor& flight) {
   flight.jacobian_calibration.setZero();
   for (int j = 0; j < 3; ++j) {
     if ((o.unmeasured_axes() >> j & 1u) == 0) flight.jacobian_knot.col(j).setZero();
@@ -25,44 +25,44 @@ void RateModel::exclude_from_calibration(const RateObservation& o, RateFactor& f
 }
 
 // See rate_smoother.md (R7).
-RateKnot RateModel::knot_at_reading(const RateObservation& observation, const RateEstimate& estimate) const {
-  const RateKnot& knot = estimate.knot;
+AngularRateKnot AngularRateModel::knot_at_reading(const AngularRateObservation& observation, const AngularRateEstimate& estimate) const {
+  const AngularRateKnot& knot = estimate.knot;
   return {knot.rate_rad_s - observation.gyro_age_s * knot.acceleration_rad_s2, knot.acceleration_rad_s2};
 }
 
-Vector3d RateModel::corrected_rate(const RateObservation& observation, const RateEstimate& estimate) const {
+Vector3d AngularRateModel::corrected_rate(const AngularRateObservation& observation, const AngularRateEstimate& estimate) const {
   const Vector3d& reading = observation.sample.angular_velocity_rad_s;
   if (uses_raw_readings_) return reading;
   return reading - params_.errors.gyro * estimate.knot.rate_rad_s -
          params_.errors.g_sensitivity_s_m * observation.sample.specific_force_m_s2;
 }
 
-RateFactor RateModel::flight(const RateObservation& observation, const RateKnot& knot, const RigConstants& rig,
+AngularRateFactor AngularRateModel::flight(const AngularRateObservation& observation, const AngularRateKnot& knot, const RigConstants& rig,
                              Vector3d* jacobian_delay) const {
   const Vector3d& reading = observation.sample.specific_force_m_s2;
   const double delay_s = params_.errors.accel_delay_s + observation.accel_age_s;
-  if (uses_raw_readings_ && delay_s == 0.0 && jacobian_delay == nullptr) return flight_factor(knot, rig, reading);
+  if (uses_raw_readings_ && delay_s == 0.0 && jacobian_delay == nullptr) return flight_force_factor(knot, rig, reading);
   const Vector3d force = reading - params_.errors.accel * reading;
-  RateFactor out = delayed_flight_factor(knot, rig, force, delay_s, jacobian_delay);
+  AngularRateFactor out = delayed_flight_force_factor(knot, rig, force, delay_s, jacobian_delay);
   // Averaging over the accelerometer's window changes the specific force in proportion to the force's second time
   // derivative: rate_smoother.md (R13).
-  out.residual += 0.5 * params_.errors.accel_filter_time_variance_s2 * flight_curvature(knot, rig);
+  out.residual += 0.5 * params_.errors.accel_filter_time_variance_s2 * flight_angular_jerk(knot, rig);
   return out;
 }
 
-RateFactor RateModel::flight_jacobian_calibration(const RateObservation& observation, const RateKnot& knot,
+AngularRateFactor AngularRateModel::flight_force_calibration_jacobian(const AngularRateObservation& observation, const AngularRateKnot& knot,
                                                   const RigConstants& rig) const {
   const Vector3d& reading = observation.sample.specific_force_m_s2;
   const double delay_s = params_.errors.accel_delay_s + observation.accel_age_s;
-  if (uses_raw_readings_ && delay_s == 0.0) return flight_factor(knot, rig, reading);
-  RateFactor out = delayed_flight_jacobian_calibration(knot, rig, reading - params_.errors.accel * reading, delay_s);
-  out.residual += 0.5 * params_.errors.accel_filter_time_variance_s2 * flight_curvature(knot, rig);
+  if (uses_raw_readings_ && delay_s == 0.0) return flight_force_factor(knot, rig, reading);
+  AngularRateFactor out = delayed_flight_calibration_jacobian(knot, rig, reading - params_.errors.accel * reading, delay_s);
+  out.residual += 0.5 * params_.errors.accel_filter_time_variance_s2 * flight_angular_jerk(knot, rig);
   return out;
 }
 
 // See rate_smoother.md (R36), (R38).
-void RateModel::add_errors(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
-                           arrow::ErrorMatrix& block, arrow::BorderErrors& border, SensorErrorEvidence& evidence,
+void AngularRateModel::add_sensor_errors(const AngularRateObservation& observation, const AngularRateEstimate& estimate, const RigConstants& rig,
+                           arrow::ErrorMatrix& block, arrow::BorderErrors& border, SensorErrorInformation& evidence,
                            bool rig_spread) const {
   constexpr int kGyroBias = 3, kAccelBias = 6;
   using Row = Eigen::Matrix<double, 1, SensorErrors::kSize>;
@@ -72,13 +72,13 @@ void RateModel::add_errors(const RateObservation& observation, const RateEstimat
     evidence.gradient.noalias() -= information * residual * by_errors.transpose();
   };
 
-  const bool is_element_clipped = observation.is_element_clipped();
+  const bool is_element_clipped = observation.has_clipped_sensing_axis();
   if (rig_spread && is_element_clipped) return;
   const Vector3d reading = corrected_rate(observation, estimate);
-  const RateFactor gyro = is_element_clipped ? element_factor(knot_at_reading(observation, estimate), rig, reading)
+  const AngularRateFactor gyro = is_element_clipped ? sensing_axis_factor(knot_at_reading(observation, estimate), rig, reading)
                                              : gyro_factor(knot_at_reading(observation, estimate), rig, reading);
   const unsigned lost =
-      observation.clipping.unusable_gyro | (observation.clipping.gyro & ~observation.subsample_saturated);
+      observation.clipping.unusable_gyro | (observation.clipping.gyro & ~observation.partial_saturation_flags);
   for (int j = 0; j < 3; ++j) {
     if ((lost >> j & 1u) != 0) continue;
     const Eigen::RowVector3d sees = gyro.jacobian_knot.row(j).head<3>();
@@ -88,31 +88,31 @@ void RateModel::add_errors(const RateObservation& observation, const RateEstimat
       by_errors.segment<3>(SensorErrors::kGSensitivity + 3 * i) = sees[i] * force.transpose();
     }
     const double information = gyro_information(observation, estimate, j);
-    const double part = (observation.subsample_saturated >> j & 1u) != 0 ? observation.expected_deficit_rad_s[j] : 0.0;
+    const double part = (observation.partial_saturation_flags >> j & 1u) != 0 ? observation.expected_saturation_deficit_rad_s[j] : 0.0;
     const Row pull = information * by_errors;
     block.topRows<3>().noalias() -= sees.transpose() * pull;
     block.bottomRows<3>().noalias() += observation.gyro_age_s / time_scale_s_ * sees.transpose() * pull;
     border.middleRows<3>(kGyroBias).noalias() -= sees.transpose() * pull;
     if (is_element_clipped) {
-      const int first = RigConstants::kElements + 2 * j;
+      const int first = RigConstants::kGyroMisalignment + 2 * j;
       border.middleRows<2>(first).noalias() -= gyro.jacobian_calibration.block<1, 2>(j, first).transpose() * pull;
     }
     add(by_errors, information, gyro.residual[j] - part);
   }
 
-  if (rig_spread || is_uninformative(estimate)) return;
-  if (observation.clipping.accel != 0 && observation.accel_rows.tilted()) return;  // tilted elements mix the axes
+  if (rig_spread || has_no_error_information(estimate)) return;
+  if (observation.clipping.accel != 0 && observation.accel_sensing_directions.has_misaligned_axes()) return;  // tilted elements mix the axes
   auto [flight, information] = force_factor(observation, estimate, rig);
   Vector3d jacobian_delay;
   (void)this->flight(observation, estimate.knot, rig, &jacobian_delay);
-  const Vector3d curvature = flight_curvature(estimate.knot, rig);
+  const Vector3d curvature = flight_angular_jerk(estimate.knot, rig);
   flight.jacobian_knot.rightCols<3>() /= time_scale_s_;
   for (int j = 0; j < 3; ++j) {
     if (flight.jacobian_knot.row(j).isZero()) continue;  // the lower bound of the element is satisfied
     Row by_errors = Row::Zero();
     by_errors.segment<3>(SensorErrors::kAccel + 3 * j) = force.transpose();
     by_errors[SensorErrors::kDelay] = jacobian_delay[j];
-    by_errors[SensorErrors::kFilterTimeVariance] = 0.5 * curvature[j];
+    by_errors[SensorErrors::kAccelFilterTimeVariance] = 0.5 * curvature[j];
     const Row pull = information[j] * by_errors;
     block.noalias() -= flight.jacobian_knot.row(j).transpose() * pull;
     border.topRows<3>().noalias() -= flight.jacobian_calibration.row(j).head<3>().transpose() * pull;
@@ -122,8 +122,8 @@ void RateModel::add_errors(const RateObservation& observation, const RateEstimat
 }
 
 // See rate_smoother.md (R49).
-Eigen::Matrix3d RateModel::reported(const Eigen::Matrix3d& covariance, const RateObservation& observation,
-                                    const RateEstimate& estimate) const {
+Eigen::Matrix3d AngularRateModel::output_covariance(const Eigen::Matrix3d& covariance, const AngularRateObservation& observation,
+                                    const AngularRateEstimate& estimate) const {
   const double factor = 1.0 + (params_.expert.contact.kSigmaFactor - 1.0) * (1.0 - estimate.flight_weight);
   Vector3d wider = Vector3d::Ones();
   for (int j = 0; j < 3; ++j) {
@@ -132,7 +132,7 @@ Eigen::Matrix3d RateModel::reported(const Eigen::Matrix3d& covariance, const Rat
   }
   const Vector3d late = params_.expert.kGyroTimeSigma_s * estimate.knot.acceleration_rad_s2;
   Eigen::Matrix3d timed = covariance + late * late.transpose();
-  if (observation.is_element_clipped()) {
+  if (observation.has_clipped_sensing_axis()) {
     // A contact force also changes the rate of unclipped axes within the averaging window of a sample.
     const double struck =
         params_.expert.kGyroTimeSigma_s * params_.expert.contact.kGain_rad_m * estimate.contact_force_m_s2.norm();

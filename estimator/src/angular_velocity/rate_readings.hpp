@@ -12,18 +12,18 @@
 
 namespace tumble {
 
-/// `known` contains the prior calibration, with cross-axis sensitivities from the planes of saturated readings.
-struct RateReadings {
-  std::vector<RateObservation> observations;  ///< one per sample
-  RateModelParams known;
-  RailPlanes planes;  ///< planes of saturated readings of the gyro that are used
+/// `known_params` contains the prior calibration, with cross-axis sensitivities from the planes of saturated readings.
+struct AngularRateReadings {
+  std::vector<AngularRateObservation> observations;  ///< one per sample
+  AngularRateModelParams known_params;
+  SaturationPlanes gyro_planes;  ///< planes of saturated readings of the gyro that are used
   std::optional<RepeatedReadings> gyro_repeated;
 };
 
 /// Classifies at least two samples. Cost: O(N).
-RateReadings read_samples(const RateSmoother::Params& params, const ClippingFinder& rails,
-                          const ClippingFinder::Found& found, const std::vector<bool>& rest,
+AngularRateReadings read_samples(const AngularRateSmoother::Params& params, const ClippingFinder& rails,
+                          const ClippingFinder::ClippingSearchResult& found, const std::vector<bool>& rest,
                           std::span<const ImuSample> samples,
-                          std::span<const std::vector<AuxiliaryReading>> auxiliary_imus, RateReport& health);
+                          std::span<const std::vector<AuxiliaryReading>> auxiliary_imus, AngularRateReport& health);
 
 }  // namespace tumble

@@ -13,12 +13,12 @@ namespace tumble {
 namespace {
 
 // At the ends of the recording, the last available reading repeats.
-void shift_force(std::span<const ImuSample> samples, std::span<const Clipping> clippings, std::ptrdiff_t shift,
-                 std::span<const double> accel_age_s, std::span<RateObservation> observations) {
+void shift_force_by_delay(std::span<const ImuSample> samples, std::span<const Clipping> clippings, std::ptrdiff_t shift,
+                 std::span<const double> accel_age_s, std::span<AngularRateObservation> observations) {
   const auto last = static_cast<std::ptrdiff_t>(samples.size()) - 1;
   for (std::ptrdiff_t k = 0; k <= last; ++k) {
     const auto from = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(k + shift, 0, last));
-    RateObservation& o = observations[static_cast<std::size_t>(k)];
+    AngularRateObservation& o = observations[static_cast<std::size_t>(k)];
     o.sample.specific_force_m_s2 = samples[from].specific_force_m_s2;
     o.clipping.accel = clippings[from].accel;
     o.accel_age_s = accel_age_s[from];
@@ -58,9 +58,9 @@ bool differ_significantly(const SensorErrors& a, const SensorErrors& b) {
 constexpr double kDeviceMahalanobisMax = 2.33;
 
 // All calibration constants except the gyro's sensing directions are held at their prior.
-RateModelParams fixed_calibration(const RateModelParams& params, const RateModel& model) {
-  constexpr int kFirst = RigConstants::kElements, kCount = RigConstants::kSize - kFirst;
-  RateModelParams out = params;
+AngularRateModelParams fixed_calibration(const AngularRateModelParams& params, const AngularRateModel& model) {
+  constexpr int kFirst = RigConstants::kGyroMisalignment, kCount = RigConstants::kSize - kFirst;
+  AngularRateModelParams out = params;
   out.calibration = RigCalibration{model.prior_constants(), 1e-12 * RigConstants::Matrix::Identity()};
   out.calibration->covariance.block<kCount, kCount>(kFirst, kFirst) =
       model.prior_covariance().block<kCount, kCount>(kFirst, kFirst);
@@ -68,24 +68,24 @@ RateModelParams fixed_calibration(const RateModelParams& params, const RateModel
 }
 
 // See rate_smoother.md (R32).
-double mahalanobis_of(const RateModelParams& known, const RateModel& model, double period_s,
-                      std::span<const RateObservation> observations, const RateSolution& solution) {
-  RateIteration again(observations);
+double mahalanobis_of(const AngularRateModelParams& known, const AngularRateModel& model, double period_s,
+                      std::span<const AngularRateObservation> observations, const RateSolution& solution) {
+  GaussNewtonRateStep again(observations);
   if (!again.factorise(model, solution.estimates, solution.rig)) return model.calibration_mahalanobis(solution.rig);
   const arrow::BorderErrors moved =
-      again.error_derivatives(model, solution.estimates, solution.rig).calibration_by_errors;
-  RateModelParams wider = known;
+      again.error_derivatives(model, solution.estimates, solution.rig).calibration_error_jacobian;
+  AngularRateModelParams wider = known;
   wider.calibration = RigCalibration{model.prior_constants(), model.prior_covariance()};
   wider.calibration->covariance +=
-      moved * fit_sensor_errors({}, known.expert.error_priors).known.covariance * moved.transpose();
-  return RateModel(wider, period_s).calibration_mahalanobis(solution.rig);
+      moved * fit_sensor_errors({}, known.expert.error_priors).fitted_errors.covariance * moved.transpose();
+  return AngularRateModel(wider, period_s).calibration_mahalanobis(solution.rig);
 }
 
 // If the estimated calibration is implausible, a second optimisation holds the calibration at its prior.
-Status optimise_or_fix_prior(const RateSmoother::Params& params, const RateModelParams& known, double period_s,
-                             std::span<const RateObservation> observations, bool struck, RateFit& fit,
-                             RateReport& health) {
-  fit.model = RateModel(known, period_s);
+Status optimise_or_fix_rig_prior(const AngularRateSmoother::Params& params, const AngularRateModelParams& known, double period_s,
+                             std::span<const AngularRateObservation> observations, bool struck, AngularRateFit& fit,
+                             AngularRateReport& health) {
+  fit.model = AngularRateModel(known, period_s);
   if (!solve(params, fit.model, observations, fit.solution, health)) {
     return {ErrorCode::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
   }
@@ -99,13 +99,13 @@ Status optimise_or_fix_prior(const RateSmoother::Params& params, const RateModel
   if (!health.calibration_at_prior) return {};
   const double mahalanobis = health.calibration_mahalanobis;
   health.calibration = {fit.model.prior_constants(), fit.model.prior_covariance()};
-  fit.model = RateModel(fixed_calibration(known, fit.model), period_s);
+  fit.model = AngularRateModel(fixed_calibration(known, fit.model), period_s);
   if (!solve(params, fit.model, observations, fit.solution, health)) {
     return {ErrorCode::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
   }
   health.calibration_mahalanobis = mahalanobis;
   // A fixed calibration is still uncertain, so the covariance of the rates includes the covariance of the calibration.
-  constexpr int kOpen = RigConstants::kElements;
+  constexpr int kOpen = RigConstants::kGyroMisalignment;
   fit.solution.rig_covariance.topLeftCorner<kOpen, kOpen>() =
       health.calibration.covariance.topLeftCorner<kOpen, kOpen>();
   return {};
@@ -114,7 +114,7 @@ Status optimise_or_fix_prior(const RateSmoother::Params& params, const RateModel
 constexpr double kGuessSigmasMax = 2.0;
 
 // See rate_smoother.md (R38). The delay from impacts is independent of the free-flight equations, which use no impacts.
-void add_guess(const TriadDelay& guess, SensorErrorEvidence& evidence) {
+void add_impact_delay(const TriadDelay& guess, SensorErrorInformation& evidence) {
   if (!(guess.sigma_s > 0.0)) return;
   const double information = 1.0 / (guess.sigma_s * guess.sigma_s);
   evidence.information(SensorErrors::kDelay, SensorErrors::kDelay) += information;
@@ -128,7 +128,7 @@ bool contradicts_data_sheet(const SensorErrorFit& device, const SensorErrorPrior
   const SensorErrorFit before = fit_sensor_errors({}, sizes);
   const auto odds = [](double p) { return std::max(p, 1e-12) / std::max(1.0 - p, 1e-12); };
   const double of_scale = odds(device.data_sheet_probability) / odds(before.data_sheet_probability);
-  return triads_asynchronous || of_scale * odds(device.synchronous_probability) < kContradictionOdds;
+  return triads_asynchronous || of_scale * odds(device.synchronous_triads_probability) < kContradictionOdds;
 }
 
 SensorErrorPriors uncalibrated_priors(SensorErrorPriors sizes) {
@@ -139,193 +139,193 @@ SensorErrorPriors uncalibrated_priors(SensorErrorPriors sizes) {
   return sizes;
 }
 
-SensorErrorEvidence calibration_evidence_about(const SensorErrors& given, KnownSensorErrors learnt,
+SensorErrorInformation calibration_evidence_at(const SensorErrors& given, KnownSensorErrors learnt,
                                                const SensorErrorPriors& sizes) {
   learnt.errors = SensorErrors::from(learnt.errors.vector() - given.vector());
-  return calibration_evidence(learnt, sizes);
+  return evidence_from_earlier_runs(learnt, sizes);
 }
 
 // `learnt` is the estimate of an earlier run, relative to the sensor errors `given` by the user.
-SensorErrorFit fit_about(const SensorErrors& given, SensorErrorEvidence evidence, const SensorErrorPriors& sizes,
-                         const SensorErrorEvidence& learnt) {
+SensorErrorFit fit_errors_at(const SensorErrors& given, SensorErrorInformation evidence, const SensorErrorPriors& sizes,
+                         const SensorErrorInformation& learnt) {
   evidence.linearisation_point = SensorErrors::from(evidence.linearisation_point.vector() - given.vector());
   SensorErrorFit out = fit_sensor_errors(evidence, sizes, learnt);
-  out.known.errors = SensorErrors::from(out.known.errors.vector() + given.vector());
+  out.fitted_errors.errors = SensorErrors::from(out.fitted_errors.errors.vector() + given.vector());
   return out;
 }
 
-struct Rounds {
-  const RateSmoother::Params& params;
-  const RateModelParams& known;  ///< parameters with the sensor errors that the user states
+struct CorrectionIterations {
+  const AngularRateSmoother::Params& params;
+  const AngularRateModelParams& params_with_stated_errors;  ///< parameters with the sensor errors that the user states
   std::span<const ImuSample> samples;
-  std::span<const Clipping> clippings;
+  std::span<const Clipping> clipping_per_sample;
   double period_s = 0.0;
   bool estimated = false;
   bool triads_asynchronous = false;  ///< gyro or accelerometer repeats readings
-  TriadDelay guess = {};             ///< delay from impacts; empty if the data sheet states the delay
+  TriadDelay impact_delay = {};             ///< delay from impacts; empty if the data sheet states the delay
   std::vector<double> age_s = {};    ///< age of the accelerometer's readings in the log
-  SensorErrorPriors sizes = {};      ///< standard deviations of the data sheet, enlarged for asynchronous triads
+  SensorErrorPriors error_prior_sigmas = {};      ///< standard deviations of the data sheet, enlarged for asynchronous triads
 
-  const SensorErrorPriors& stated() const { return known.expert.error_priors; }
-  bool is_delay_unknown() const { return estimated && stated().delay_uncalibrated_s > stated().delay_s; }
+  const SensorErrorPriors& stated_error_priors() const { return params_with_stated_errors.expert.error_priors; }
+  bool is_delay_unknown() const { return estimated && stated_error_priors().delay_uncalibrated_s > stated_error_priors().delay_s; }
   /// Returns whether the body has impacts and flight, and is therefore not hand-held.
-  bool struck() const { return guess.sigma_s > 0.0; }
+  bool has_impact_delay() const { return impact_delay.sigma_s > 0.0; }
 };
 
-Rounds make_rounds(const RateSmoother::Params& params, const RateModelParams& known, std::span<const ImuSample> samples,
-                   std::span<const Clipping> clippings, std::span<const RateObservation> observations,
-                   const RateReport& health) {
-  Rounds out{params, known, samples, clippings, median_period_s(samples)};
+CorrectionIterations make_correction_iterations(const AngularRateSmoother::Params& params, const AngularRateModelParams& known, std::span<const ImuSample> samples,
+                   std::span<const Clipping> clippings, std::span<const AngularRateObservation> observations,
+                   const AngularRateReport& health) {
+  CorrectionIterations out{params, known, samples, clippings, median_period_s(samples)};
   out.estimated = params.expert.error_rounds_max > 1;
-  out.triads_asynchronous = health.gyro_update_s > 0.0 || health.accel_update_s > 0.0;
-  out.sizes = out.stated();
-  if (out.triads_asynchronous) out.sizes.delay_s = std::max(out.sizes.delay_s, out.sizes.delay_uncalibrated_s);
+  out.triads_asynchronous = health.gyro_update_interval_s > 0.0 || health.accel_update_interval_s > 0.0;
+  out.error_prior_sigmas = out.stated_error_priors();
+  if (out.triads_asynchronous) out.error_prior_sigmas.delay_s = std::max(out.error_prior_sigmas.delay_s, out.error_prior_sigmas.delay_uncalibrated_s);
   const RigConstants rig = known.calibration ? known.calibration->constants : known.nominal;
-  if (out.is_delay_unknown()) out.guess = guess_triad_delay(samples, clippings, rig.lever_arm_m);
+  if (out.is_delay_unknown()) out.impact_delay = guess_triad_delay(samples, clippings, rig.lever_arm_m);
   out.age_s.resize(samples.size());
   for (std::size_t k = 0; k < out.age_s.size(); ++k) out.age_s[k] = observations[k].accel_age_s;
   return out;
 }
 
 // If the first optimisation finds an implausible calibration, a second optimisation uses the accelerometer delay
-// `other_delay_s`.
-struct Start {
+// `alternative_delay_s`.
+struct InitialErrors {
   SensorErrors errors;
-  double other_delay_s = 0.0;
+  double alternative_delay_s = 0.0;
 };
 
-Start start_from(const SensorErrors& assumed, const Rounds& rounds) {
-  const TriadDelay& guess = rounds.guess;
-  Start out{assumed, assumed.accel_delay_s};
+InitialErrors initial_calibration(const SensorErrors& assumed, const CorrectionIterations& rounds) {
+  const TriadDelay& guess = rounds.impact_delay;
+  InitialErrors out{assumed, assumed.accel_delay_s};
   if (!has_delay(guess)) return out;
   if (std::abs(guess.delay_s - assumed.accel_delay_s) > kGuessSigmasMax * guess.sigma_s)
     out.errors.accel_delay_s = guess.delay_s;
-  out.other_delay_s = out.errors.accel_delay_s == guess.delay_s ? rounds.known.errors.accel_delay_s : guess.delay_s;
+  out.alternative_delay_s = out.errors.accel_delay_s == guess.delay_s ? rounds.params_with_stated_errors.errors.accel_delay_s : guess.delay_s;
   return out;
 }
 
-Status optimise_corrected(const Rounds& rounds, const SensorErrors& errors, std::span<RateObservation> observations,
-                          RateFit& fit, RateReport& health) {
+Status optimise_corrected_readings(const CorrectionIterations& rounds, const SensorErrors& errors, std::span<AngularRateObservation> observations,
+                          AngularRateFit& fit, AngularRateReport& health) {
   const double shift = std::round(errors.accel_delay_s / rounds.period_s);
-  shift_force(rounds.samples, rounds.clippings, static_cast<std::ptrdiff_t>(shift), rounds.age_s, observations);
-  RateModelParams corrected = rounds.known;
+  shift_force_by_delay(rounds.samples, rounds.clipping_per_sample, static_cast<std::ptrdiff_t>(shift), rounds.age_s, observations);
+  AngularRateModelParams corrected = rounds.params_with_stated_errors;
   corrected.errors = errors;
   corrected.errors.accel_delay_s -= shift * rounds.period_s;
-  return optimise_or_fix_prior(rounds.params, corrected, rounds.period_s, observations, rounds.struck(), fit, health);
+  return optimise_or_fix_rig_prior(rounds.params, corrected, rounds.period_s, observations, rounds.has_impact_delay(), fit, health);
 }
 
-Status collect_evidence(const Rounds& rounds, const SensorErrors& errors, RateFit& fit, const RateReport& health) {
+Status collect_error_evidence(const CorrectionIterations& rounds, const SensorErrors& errors, AngularRateFit& fit, const AngularRateReport& health) {
   const RateSolution& solution = fit.solution;
-  fit.moved = solution.iteration.error_derivatives(fit.model, solution.estimates, solution.rig);
+  fit.error_derivatives = solution.iteration.error_derivatives(fit.model, solution.estimates, solution.rig);
   if (rounds.estimated) {
     // Before convergence, the gradient is not evidence of sensor errors.
-    RateIteration again = solution.iteration;
+    GaussNewtonRateStep again = solution.iteration;
     if (!again.factorise(fit.model, solution.estimates, solution.rig)) {
       return {ErrorCode::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
     }
-    fit.moved.evidence = again.error_derivatives(fit.model, solution.estimates, solution.rig).evidence;
+    fit.error_derivatives.sensor_error_evidence = again.error_derivatives(fit.model, solution.estimates, solution.rig).sensor_error_evidence;
   }
-  fit.moved.evidence.linearisation_point = errors;
-  add_guess(rounds.guess, fit.moved.evidence);
+  fit.error_derivatives.sensor_error_evidence.linearisation_point = errors;
+  add_impact_delay(rounds.impact_delay, fit.error_derivatives.sensor_error_evidence);
   return {};
 }
 
-struct RoundsState {
+struct CorrectionIterationState {
   SensorErrors errors;  ///< errors corrected in the last optimisation
-  SensorErrorEvidence learnt;
-  SensorErrorFit found;
+  SensorErrorInformation calibration_evidence;
+  SensorErrorFit sensor_error_fit;
   bool is_plausible = true;  ///< the errors are plausible for a device
 };
 
-Status optimise_rounds(const Rounds& rounds, std::span<RateObservation> observations, RateFit& fit, RateReport& health,
-                       RoundsState& rounds_state) {
-  const SensorErrors& given = rounds.known.errors;
+Status iterate_corrections(const CorrectionIterations& rounds, std::span<AngularRateObservation> observations, AngularRateFit& fit, AngularRateReport& health,
+                       CorrectionIterationState& rounds_state) {
+  const SensorErrors& given = rounds.params_with_stated_errors.errors;
   const std::optional<KnownSensorErrors>& learnt = rounds.params.calibrated_errors;
   bool has_calibration = rounds.estimated && learnt.has_value();
-  if (has_calibration) rounds_state.learnt = calibration_evidence_about(given, *learnt, rounds.stated());
-  Start start = start_from(has_calibration ? learnt->errors : given, rounds);
+  if (has_calibration) rounds_state.calibration_evidence = calibration_evidence_at(given, *learnt, rounds.stated_error_priors());
+  InitialErrors start = initial_calibration(has_calibration ? learnt->errors : given, rounds);
   rounds_state.errors = start.errors;
-  health.error_rounds = 0;
+  health.correction_iterations = 0;
   for (int round = 1;; ++round) {  // counts from the last restart; the report counts all rounds
-    ++health.error_rounds;
-    if (Status status = optimise_corrected(rounds, rounds_state.errors, observations, fit, health); !status.ok())
+    ++health.correction_iterations;
+    if (Status status = optimise_corrected_readings(rounds, rounds_state.errors, observations, fit, health); !status.ok())
       return status;
     if (health.calibration_at_prior && has_calibration) {
       // The loaded calibration may belong to a different device.
       has_calibration = false;
-      rounds_state.learnt = {};
-      start = start_from(given, rounds);
+      rounds_state.calibration_evidence = {};
+      start = initial_calibration(given, rounds);
       rounds_state.errors = start.errors;
       round = 0;
       continue;
     }
     const bool first = round == 1 && rounds.estimated;
-    if (health.calibration_at_prior && first && rounds_state.errors.accel_delay_s != start.other_delay_s) {
-      rounds_state.errors.accel_delay_s = start.other_delay_s;
+    if (health.calibration_at_prior && first && rounds_state.errors.accel_delay_s != start.alternative_delay_s) {
+      rounds_state.errors.accel_delay_s = start.alternative_delay_s;
       round = 0;
       continue;
     }
-    if (Status status = collect_evidence(rounds, rounds_state.errors, fit, health); !status.ok()) return status;
-    rounds_state.found = fit_about(given, fit.moved.evidence, rounds.sizes, rounds_state.learnt);
-    rounds_state.is_plausible = plausible(rounds_state.found.known.errors, given, rounds.stated());
+    if (Status status = collect_error_evidence(rounds, rounds_state.errors, fit, health); !status.ok()) return status;
+    rounds_state.sensor_error_fit = fit_errors_at(given, fit.error_derivatives.sensor_error_evidence, rounds.error_prior_sigmas, rounds_state.calibration_evidence);
+    rounds_state.is_plausible = plausible(rounds_state.sensor_error_fit.fitted_errors.errors, given, rounds.stated_error_priors());
     if (health.calibration_at_prior || !rounds_state.is_plausible || round >= rounds.params.expert.error_rounds_max)
       return {};
-    if (!differ_significantly(rounds_state.found.known.errors, rounds_state.errors)) return {};
-    rounds_state.errors = rounds_state.found.known.errors;
+    if (!differ_significantly(rounds_state.sensor_error_fit.fitted_errors.errors, rounds_state.errors)) return {};
+    rounds_state.errors = rounds_state.sensor_error_fit.fitted_errors.errors;
   }
 }
 
 // If the readings clearly contradict the data sheet, the function returns the priors of an uncalibrated device.
-SensorErrorPriors open_priors(const Rounds& rounds, const RateFit& fit, RoundsState& rounds_state, RateReport& health) {
+SensorErrorPriors widened_error_priors(const CorrectionIterations& rounds, const AngularRateFit& fit, CorrectionIterationState& rounds_state, AngularRateReport& health) {
   const bool open = rounds.is_delay_unknown() &&
-                    (contradicts_data_sheet(rounds_state.found, rounds.stated(), rounds.triads_asynchronous) ||
+                    (contradicts_data_sheet(rounds_state.sensor_error_fit, rounds.stated_error_priors(), rounds.triads_asynchronous) ||
                      health.calibration_mahalanobis > rounds.params.calibration_mahalanobis_max);
-  if (!open) return rounds.sizes;
-  const SensorErrorPriors sizes = uncalibrated_priors(rounds.sizes);
+  if (!open) return rounds.error_prior_sigmas;
+  const SensorErrorPriors sizes = uncalibrated_priors(rounds.error_prior_sigmas);
   health.common_delay_sigma_s = std::sqrt(0.5) * sizes.delay_s;
-  KnownSensorErrors& found = rounds_state.found.known;
+  KnownSensorErrors& found = rounds_state.sensor_error_fit.fitted_errors;
   const KnownSensorErrors unknown =
-      fit_about(rounds.known.errors, fit.moved.evidence, sizes, rounds_state.learnt).known;
+      fit_errors_at(rounds.params_with_stated_errors.errors, fit.error_derivatives.sensor_error_evidence, sizes, rounds_state.calibration_evidence).fitted_errors;
   const SensorErrors::Vector apart = unknown.errors.vector() - found.errors.vector();
   found.covariance = unknown.covariance + apart * apart.transpose();
   return sizes;
 }
 
-void apply_correction(const SensorErrors::Vector& step, RateFit& fit) {
+void apply_correction(const SensorErrors::Vector& step, AngularRateFit& fit) {
   for (std::size_t k = 0; k < fit.solution.estimates.size(); ++k) {
-    const Eigen::Matrix<double, 6, 1> moved = fit.model.unscaled(fit.moved.of_sample[k] * step);
+    const Eigen::Matrix<double, 6, 1> moved = fit.model.unscaled_step(fit.error_derivatives.sample_error_jacobian[k] * step);
     fit.solution.estimates[k].knot.rate_rad_s += moved.head<3>();
     fit.solution.estimates[k].knot.acceleration_rad_s2 += moved.tail<3>();
   }
-  fit.solution.rig.add(fit.moved.calibration_by_errors * step);
+  fit.solution.rig.add(fit.error_derivatives.calibration_error_jacobian * step);
 }
 
 }  // namespace
 
-Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& known, std::span<const ImuSample> samples,
-                  std::span<const Clipping> clippings, std::span<RateObservation> observations, RateFit& fit,
-                  RateReport& health) {
-  const Rounds rounds = make_rounds(params, known, samples, clippings, observations, health);
-  RoundsState rounds_state;
-  if (Status status = optimise_rounds(rounds, observations, fit, health, rounds_state); !status.ok()) return status;
-  health.data_sheet_probability = rounds_state.found.data_sheet_probability;
-  health.synchronous_probability = rounds.triads_asynchronous ? 0.0 : rounds_state.found.synchronous_probability;
-  const SensorErrorPriors sizes = open_priors(rounds, fit, rounds_state, health);
-  const SensorErrorPriors stated = data_sheet_priors(rounds.stated());
+Status fit_rounds(const AngularRateSmoother::Params& params, const AngularRateModelParams& known, std::span<const ImuSample> samples,
+                  std::span<const Clipping> clippings, std::span<AngularRateObservation> observations, AngularRateFit& fit,
+                  AngularRateReport& health) {
+  const CorrectionIterations rounds = make_correction_iterations(params, known, samples, clippings, observations, health);
+  CorrectionIterationState rounds_state;
+  if (Status status = iterate_corrections(rounds, observations, fit, health, rounds_state); !status.ok()) return status;
+  health.data_sheet_probability = rounds_state.sensor_error_fit.data_sheet_probability;
+  health.synchronous_triads_probability = rounds.triads_asynchronous ? 0.0 : rounds_state.sensor_error_fit.synchronous_triads_probability;
+  const SensorErrorPriors sizes = widened_error_priors(rounds, fit, rounds_state, health);
+  const SensorErrorPriors stated = data_sheet_priors(rounds.stated_error_priors());
   if (health.calibration_at_prior || !rounds_state.is_plausible || !rounds.estimated) {
     // If calibration or sensor errors are implausible, the sensor errors keep their prior covariance.
-    rounds_state.found = fit_sensor_errors({}, rounds.estimated ? sizes : stated);
-    rounds_state.found.known.errors = rounds_state.errors;
+    rounds_state.sensor_error_fit = fit_sensor_errors({}, rounds.estimated ? sizes : stated);
+    rounds_state.sensor_error_fit.fitted_errors.errors = rounds_state.errors;
   } else {
-    apply_correction(rounds_state.found.known.errors.vector() - rounds_state.errors.vector(), fit);
+    apply_correction(rounds_state.sensor_error_fit.fitted_errors.errors.vector() - rounds_state.errors.vector(), fit);
   }
-  health.sensor_errors = rounds_state.found.known;
+  health.sensor_errors = rounds_state.sensor_error_fit.fitted_errors;
   if (health.calibration_at_prior) return {};
   health.calibration.constants = fit.solution.rig;
   // The estimated calibration depends on the uncertain sensor errors, so its covariance includes their uncertainty.
-  const SensorErrors::Matrix device_covariance = fit_sensor_errors({}, stated).known.covariance;
+  const SensorErrors::Matrix device_covariance = fit_sensor_errors({}, stated).fitted_errors.covariance;
   health.calibration.covariance +=
-      fit.moved.calibration_by_errors * device_covariance * fit.moved.calibration_by_errors.transpose();
+      fit.error_derivatives.calibration_error_jacobian * device_covariance * fit.error_derivatives.calibration_error_jacobian.transpose();
   return {};
 }
 

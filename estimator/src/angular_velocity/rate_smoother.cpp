@@ -14,23 +14,23 @@ namespace tumble {
 
 namespace {
 
-Status check_auxiliary_imus(const RateModelParams& params,
+Status check_auxiliary_imus(const AngularRateModelParams& params,
                             std::span<const std::vector<AuxiliaryReading>> auxiliary_imus, std::size_t count) {
   const auto needed = static_cast<double>(params.auxiliary_imus.size());
   if (auxiliary_imus.size() != params.auxiliary_imus.size()) {
-    return {ErrorCode::too_few, "auxiliary_imus", static_cast<double>(auxiliary_imus.size()), needed};
+    return {ErrorCode::insufficient_data, "auxiliary_imus", static_cast<double>(auxiliary_imus.size()), needed};
   }
   for (const std::vector<AuxiliaryReading>& readings : auxiliary_imus) {
     if (readings.size() == count) continue;
-    return {ErrorCode::too_few, "readings of an auxiliary_imu", static_cast<double>(readings.size()),
+    return {ErrorCode::insufficient_data, "readings of an auxiliary_imu", static_cast<double>(readings.size()),
             static_cast<double>(count)};
   }
   return {};
 }
 
 /// A large zero offset of the gyro becomes the nominal bias, unless the user states a bias.
-RateSmootherParams with_offset(const RateSmootherParams& params, std::span<const ImuSample> samples) {
-  RateSmootherParams out = params;
+AngularRateSmootherParams with_gyro_offset(const AngularRateSmootherParams& params, std::span<const ImuSample> samples) {
+  AngularRateSmootherParams out = params;
   Eigen::Vector3d& nominal = out.model.nominal.gyro_bias_rad_s;
   if (nominal.isZero(0.0) && !out.model.calibration) nominal = GyroOffset().find(samples);
   return out;
@@ -38,32 +38,32 @@ RateSmootherParams with_offset(const RateSmootherParams& params, std::span<const
 
 }  // namespace
 
-RateSmoother::RateSmoother(const Params& params)
+AngularRateSmoother::AngularRateSmoother(const Params& params)
     : params_(params),
-      rails_({params.rails, params.expert.planes, params.expert.accel_planes}),
-      rest_detector_(params.expert.rests) {
+      clipping_finder_({params.saturation_detector, params.expert.gyro_planes, params.expert.accel_saturation_planes}),
+      rest_detector_(params.expert.rest_detector) {
   require_valid_fields(params);
-  if (params.calibrated_errors) require_known(*params.calibrated_errors);
-  (void)RateModel(params.model, 0.01);  // throws for invalid parameters
+  if (params.calibrated_errors) require_valid_known_errors(*params.calibrated_errors);
+  (void)AngularRateModel(params.model, 0.01);  // throws for invalid parameters
 }
 
-Status RateSmoother::estimate(std::span<const ImuSample> samples,
+Status AngularRateSmoother::estimate(std::span<const ImuSample> samples,
                               std::span<const std::vector<AuxiliaryReading>> auxiliary_imus,
-                              std::vector<RateState>& out, RateReport& report) const {
+                              std::vector<AngularRateState>& out, AngularRateReport& report) const {
   if (Status status = check_recording(samples, 2, std::numeric_limits<double>::infinity()); !status.ok()) return status;
   if (Status status = check_auxiliary_imus(params_.model, auxiliary_imus, samples.size()); !status.ok()) return status;
 
-  RateReport health;
-  const ClippingFinder::Found found = rails_.find(samples);
-  const Params params = with_offset(params_, samples);
+  AngularRateReport health;
+  const ClippingFinder::ClippingSearchResult found = clipping_finder_.find(samples);
+  const Params params = with_gyro_offset(params_, samples);
   const std::vector<bool> rests = rest_detector_.find(samples, params.model.nominal.gyro_bias_rad_s);
-  RateReadings readings = read_samples(params, rails_, found, rests, samples, auxiliary_imus, health);
-  RateFit fit(readings.observations, RateModel(readings.known, median_period_s(samples)));
-  if (Status status = fit_rounds(params, readings.known, samples, found.clippings, readings.observations, fit, health);
+  AngularRateReadings readings = read_samples(params, clipping_finder_, found, rests, samples, auxiliary_imus, health);
+  AngularRateFit fit(readings.observations, AngularRateModel(readings.known_params, median_period_s(samples)));
+  if (Status status = fit_rounds(params, readings.known_params, samples, found.clipping_per_sample, readings.observations, fit, health);
       !status.ok()) {
     return status;
   }
-  out = rate_states(params, samples, readings, fit, health);
+  out = rate_states_of_recording(params, samples, readings, fit, health);
   report = std::move(health);
   return {};
 }

@@ -3,16 +3,16 @@
 
 namespace tumble {
 
-const char* to_string(RateSource source) {
+const char* to_string(AngularRateSource source) {
   switch (source) {
-    case RateSource::measured:
+    case AngularRateSource::measured:
       return "measured";
-    case RateSource::recovered_flight:
-      return "recovered_flight";
-    case RateSource::recovered_contact:
-      return "recovered_contact";
-    case RateSource::bounded_only:
-      return "bounded_only";
+    case AngularRateSource::recovered_in_flight:
+      return "recovered_in_flight";
+    case AngularRateSource::recovered_in_contact:
+      return "recovered_in_contact";
+    case AngularRateSource::lower_bound_only:
+      return "lower_bound_only";
   }
   return "unknown";
 }

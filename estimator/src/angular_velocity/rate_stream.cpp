@@ -15,20 +15,20 @@ namespace {
 
 using Eigen::Vector3d;
 
-int clipped_axes(const RateObservation& o) {
+int clipped_axes(const AngularRateObservation& o) {
   return o.unmeasured_axes();
 }
 
-FrozenAxes::Params frozen_axes_params(const RailDetector::Params& rails) {
-  return {.gyro_range_rad_s = rails.stated_gyro_rad_s.value_or(0.0),
-          .accel_range_m_s2 = rails.stated_accel_m_s2.value_or(0.0)};
+FrozenAxes::Params frozen_axes_params(const SaturationLimitDetector::Params& rails) {
+  return {.gyro_range_rad_s = rails.stated_gyro_range_rad_s.value_or(0.0),
+          .accel_range_m_s2 = rails.stated_accel_range_m_s2.value_or(0.0)};
 }
 
-double seconds_between(const RateStream::Knot& from, const RateStream::Knot& to) {
+double seconds_between(const AngularRateStream::Knot& from, const AngularRateStream::Knot& to) {
   return seconds(to.observation.sample.time_ns - from.observation.sample.time_ns);
 }
 
-void clamp_to_bounds(const RateObservation& o, Vector3d& rate) {
+void clamp_to_bounds(const AngularRateObservation& o, Vector3d& rate) {
   for (int j = 0; j < 3; ++j) {
     if ((o.unmeasured_axes() & o.clipping.gyro & 1u << j) == 0) continue;
     const double reading = o.sample.angular_velocity_rad_s[j];
@@ -37,42 +37,42 @@ void clamp_to_bounds(const RateObservation& o, Vector3d& rate) {
 }
 
 // See rate_stream.md (R91).
-void add_prior(const RateStream::State& state, const RateModel& model, const RateKnot& knot, arrow::Block& block,
+void add_prior(const AngularRateStream::State& state, const AngularRateModel& model, const AngularRateKnot& knot, arrow::Block& block,
                arrow::Corner& corner) {
   Eigen::Matrix<double, 6, 1> moved;
   moved << knot.rate_rad_s - state.prior_knot.rate_rad_s,
       knot.acceleration_rad_s2 - state.prior_knot.acceleration_rad_s2;
-  const arrow::StateVector x = model.scaled(moved);
+  const arrow::StateVector x = model.scaled_difference(moved);
   const arrow::BorderVector c = state.rig.vector() - state.prior_rig.vector();
   block.diagonal += state.prior.diagonal;
-  block.border += state.prior.border;
-  block.gradient += state.prior.gradient - state.prior.diagonal * x - state.prior.border * c;
-  corner.matrix += state.prior_corner.matrix;
-  corner.gradient += state.prior_corner.gradient - state.prior_corner.matrix * c - state.prior.border.transpose() * x;
+  block.border_coupling += state.prior.border_coupling;
+  block.gradient += state.prior.gradient - state.prior.diagonal * x - state.prior.border_coupling * c;
+  corner.matrix += state.prior_border_block.matrix;
+  corner.gradient += state.prior_border_block.gradient - state.prior_border_block.matrix * c - state.prior.border_coupling.transpose() * x;
 }
 
-RateModelParams model_with_corrections(const RateStreamParams& params) {
-  RateModelParams out = params.model;
+AngularRateModelParams model_params_with_corrections(const AngularRateStreamParams& params) {
+  AngularRateModelParams out = params.model;
   if (params.calibrated_errors) out.errors = params.calibrated_errors->errors;
   return out;
 }
 
 }  // namespace
 
-RateStream::RateStream(const Params& params)
+AngularRateStream::AngularRateStream(const Params& params)
     : params_(params),
-      rails_({.clipping = {params.rails, params.expert.planes, params.expert.accel_planes}}),
-      rest_detector_(params.expert.rests),
-      frozen_(frozen_axes_params(params.rails)),
-      flight_sign_check_({.lever_arm_m = params.model.nominal.lever_arm_m,
-                          .gyro_range_rad_s = params.rails.stated_gyro_rad_s.value_or(0.0)}),
-      model_(model_with_corrections(params), params.period_s),
-      device_(params.model.expert.error_priors, params.expert.uncalibrated) {
+      clipping_finder_({.clipping = {params.saturation_detector, params.expert.gyro_planes, params.expert.accel_saturation_planes}}),
+      rest_detector_(params.expert.rest_detector),
+      frozen_axes_(frozen_axes_params(params.saturation_detector)),
+      flight_axis_sign_check_({.lever_arm_m = params.model.nominal.lever_arm_m,
+                          .gyro_range_rad_s = params.saturation_detector.stated_gyro_range_rad_s.value_or(0.0)}),
+      model_(model_params_with_corrections(params), params.period_s),
+      sensor_error_estimator_(params.model.expert.error_priors, params.expert.uncalibrated) {
   require_valid_fields(params);
-  if (params.calibrated_errors) require_known(*params.calibrated_errors);
-  require_within("lag_s", params.lag_s, 2.0 * params.period_s, params.lag_max_s());
+  if (params.calibrated_errors) require_valid_known_errors(*params.calibrated_errors);
+  require_in_interval("lag_s", params.lag_s, 2.0 * params.period_s, params.lag_max_s());
   capacity_ = static_cast<std::size_t>(std::lround(params.lag_s / params.period_s)) + 1;
-  prior_delay_s_ = model_with_corrections(params).errors.accel_delay_s;
+  prior_delay_s_ = model_params_with_corrections(params).errors.accel_delay_s;
   const SensorErrorPriors& sizes = params.model.expert.error_priors;
   delay_is_estimated_ =
       !params.calibrated_errors && sizes.delay_uncalibrated_s > sizes.delay_s && params.expert.uncalibrated > 0.0;
@@ -80,30 +80,30 @@ RateStream::RateStream(const Params& params)
       std::clamp(static_cast<std::size_t>(params.step_s / params.period_s + 1e-6), std::size_t{1}, capacity_);
 }
 
-RateStream::State RateStream::start() const {
+AngularRateStream::State AngularRateStream::start() const {
   State state;
-  state.rails = rails_.start();
+  state.clipping_state = clipping_finder_.start();
   state.window.reserve(capacity_ + samples_per_step_);
-  state.work.resize(capacity_ + samples_per_step_);
-  RateStreamDevice& device = state.device.front();
-  device.moved.resize(capacity_ + samples_per_step_);
-  device_.reset(device.posterior);
-  device.delay.applied_delay_s = device.delay.estimated_s = prior_delay_s_;
+  state.work_blocks.resize(capacity_ + samples_per_step_);
+  AngularRateStreamSensorErrors& device = state.sensor_errors.front();
+  device.sample_jacobian.resize(capacity_ + samples_per_step_);
+  sensor_error_estimator_.reset(device.posterior);
+  device.accel_delay_state.applied_delay_s = device.accel_delay_state.estimated_s = prior_delay_s_;
   if (params_.calibrated_errors) {
     device.posterior.covariance = params_.calibrated_errors->covariance;
     device.posterior.uncalibrated_probability = 0.0;
   }
   state.rig = state.prior_rig = model_.prior_constants();
   state.rig_covariance = model_.prior_covariance();
-  model_.add_rig_prior(state.rig, state.prior_corner);
+  model_.add_rig_prior(state.rig, state.prior_border_block);
   return state;
 }
 
-Status RateStream::push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
-                        std::optional<RateState>& out) const {
+Status AngularRateStream::push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
+                        std::optional<AngularRateState>& out) const {
   out.reset();
   if (!auxiliary_imus.empty() && auxiliary_imus.size() != params_.model.auxiliary_imus.size()) {
-    return {ErrorCode::too_few, "auxiliary_imus", static_cast<double>(auxiliary_imus.size()),
+    return {ErrorCode::insufficient_data, "auxiliary_imus", static_cast<double>(auxiliary_imus.size()),
             static_cast<double>(params_.model.auxiliary_imus.size())};
   }
   if (Status status = check_sample(sample); !status.ok()) return status;
@@ -114,18 +114,18 @@ Status RateStream::push(const ImuSample& sample, std::span<const AuxiliaryReadin
   }
   const bool due = ++state.samples_since_step >= samples_per_step_;
   if (due) marginalise_leaving(state);
-  append(sample, auxiliary_imus, state);
+  append_knot(sample, auxiliary_imus, state);
   if (due) update_delay(state);
   if (!due) {
     predict_covariance(state);
   } else if (compute_flight_weight(state); !step(state)) {
     ++state.failures;
   }
-  if (state.window.size() >= capacity_) out = to_rate_state(state.window.size() - capacity_, state);
+  if (state.window.size() >= capacity_) out = rate_state_of_knot(state.window.size() - capacity_, state);
   return {};
 }
 
-void RateStream::marginalise_leaving(State& state) const {
+void AngularRateStream::marginalise_leaving(State& state) const {
   state.samples_since_step = 0;
   std::size_t count = 0;
   for (; state.window.size() - count >= capacity_; ++count) {
@@ -136,7 +136,7 @@ void RateStream::marginalise_leaving(State& state) const {
 }
 
 // The covariance of clipped axes follows from the possible motion since the previous sample.
-void RateStream::predict_covariance(State& state) const {
+void AngularRateStream::predict_covariance(State& state) const {
   Knot& newest = state.window.back();
   const Knot& before = state.window[state.window.size() - std::min<std::size_t>(2, state.window.size())];
   const double turned = params_.model.acceleration_max_rad_s2 * seconds_between(before, newest);
@@ -147,33 +147,33 @@ void RateStream::predict_covariance(State& state) const {
 }
 
 // See rate_stream.md (R90), (R92).
-void RateStream::marginalise(std::size_t first, State& state) const {
+void AngularRateStream::marginalise(std::size_t first, State& state) const {
   Knot& oldest = state.window[first];
   const Knot& next = state.window[first + 1];
   arrow::Block block, after;
   arrow::Corner corner;
   add_prior(state, model_, oldest.estimate.knot, block, corner);
   const double after_it = model_.jump(oldest.estimate.knot, next.estimate.knot, seconds_between(oldest, next));
-  const double jump = std::min(change_before_window(oldest, state), after_it);
+  const double jump = std::min(rate_change_before_window(oldest, state), after_it);
   model_.compute_flight_weight(oldest.observation, state.rig, RigConstants::Matrix::Zero(), 1.0, jump, oldest.estimate);
   // Short flights do not update the calibration, because 20 free calibration constants can fit any short contact.
-  std::size_t run = state.flight_run;
+  std::size_t run = state.consecutive_flight_samples;
   const auto needed = static_cast<std::size_t>(params_.expert.flight_run_min);
   const auto flies = [](const Knot& knot) { return knot.estimate.flight_weight >= 0.5; };
   for (std::size_t k = first; k < state.window.size() && run < needed && flies(state.window[k]); ++k) ++run;
   const bool short_flight = run < needed;
-  state.flight_run = flies(oldest) ? state.flight_run + 1 : 0;
+  state.consecutive_flight_samples = flies(oldest) ? state.consecutive_flight_samples + 1 : 0;
   if (!short_flight && flies(oldest)) ++state.calibration_samples;
   model_.add_sample(oldest.observation, oldest.estimate, state.rig, block, corner,
                     short_flight ? &state.rig_covariance : nullptr);
-  RateStreamDevice& device = state.device.front();
+  AngularRateStreamSensorErrors& device = state.sensor_errors.front();
   arrow::ErrorMatrix errors = device.prior;
-  model_.add_errors(oldest.observation, oldest.estimate, state.rig, errors, device.corner, device.evidence,
+  model_.add_sensor_errors(oldest.observation, oldest.estimate, state.rig, errors, device.border_errors, device.sensor_error_evidence,
                     short_flight);
-  model_.add_step(oldest.estimate, next.estimate, seconds_between(oldest, next), block, after);
+  model_.add_motion_model(oldest.estimate, next.estimate, seconds_between(oldest, next), block, after);
   if (arrow::eliminate(block, &after, corner)) {
     state.prior = after;
-    state.prior_corner = corner;
+    state.prior_border_block = corner;
     store_errors(block, errors, state);
   } else {
     reset_prior(state);
@@ -186,52 +186,52 @@ void RateStream::marginalise(std::size_t first, State& state) const {
   if (model_.calibration_mahalanobis(state.rig) > params_.calibration_mahalanobis_max) {
     // An implausible calibration means that contact was classified as flight.
     reset_rig(state);
-    ++state.rig_resets;
+    ++state.calibration_reset_count;
   }
 }
 
-double RateStream::change_before_window(const Knot& oldest, const State& state) const {
+double AngularRateStream::rate_change_before_window(const Knot& oldest, const State& state) const {
   if (!state.last_marginalised) return std::numeric_limits<double>::max();
   return model_.jump(*state.last_marginalised, oldest.estimate.knot,
                      seconds(oldest.observation.sample.time_ns - state.last_marginalised_ns));
 }
 
-void RateStream::append(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state) const {
-  frozen_.step(sample, state.frozen);
-  flight_sign_check_.step(sample, state.sense);
-  const bool changed = rails_.observe(sample, state.rails);
+void AngularRateStream::append_knot(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state) const {
+  frozen_axes_.step(sample, state.frozen_axes);
+  flight_axis_sign_check_.step(sample, state.flight_sign_check);
+  const bool changed = clipping_finder_.observe_reading(sample, state.clipping_state);
   Knot knot;
-  knot.by_axis_aligned_rails = rails_.axis_aligned_rails().classify(sample, state.rails.known.axis_aligned_rails);
-  repeat_detector_.observe(sample, (knot.by_axis_aligned_rails.gyro | knot.by_axis_aligned_rails.unusable_gyro) != 0,
-                           state.repeat_state);
-  knot.observation = {sample, knot.by_axis_aligned_rails,
-                      rest_detector_.observe(sample, state.rests, params_.model.nominal.gyro_bias_rad_s)};
-  knot.read = {sample.specific_force_m_s2, static_cast<std::uint8_t>(sample.device_clip_flags & kClipAccel),
-               knot.by_axis_aligned_rails.accel};
+  knot.clipping_at_axis_limits = clipping_finder_.axis_limit_detector().classify_clipping(sample, state.clipping_state.known_limits.axis_limit_state);
+  repeat_detector_.observe_reading(sample, (knot.clipping_at_axis_limits.gyro | knot.clipping_at_axis_limits.unusable_gyro) != 0,
+                           state.repetition_state);
+  knot.observation = {sample, knot.clipping_at_axis_limits,
+                      rest_detector_.detect_stationary(sample, state.stationary_state, params_.model.nominal.gyro_bias_rad_s)};
+  knot.received_force = {sample.specific_force_m_s2, static_cast<std::uint8_t>(sample.device_clip_flags & kClipAccel),
+               knot.clipping_at_axis_limits.accel};
   std::copy(auxiliary_imus.begin(), auxiliary_imus.end(), knot.observation.auxiliary_imus.begin());
-  const RepeatedReading& repeated = state.repeat_state.of(Triad::gyro);
-  knot.repeats = repeated.repeats && !knot.observation.at_rest;
+  const RepeatedReading& repeated = state.repetition_state.for_triad(Triad::gyro);
+  knot.repeats_reading = repeated.repeats_reading && !knot.observation.at_rest;
   if (!knot.observation.at_rest) knot.repeated = repeated;
   knot.estimate.knot.rate_rad_s = sample.angular_velocity_rad_s;
   knot.covariance_rad2_s2 = std::pow(params_.model.rate_max_rad_s, 2) * Eigen::Matrix3d::Identity();
   state.window.push_back(knot);
-  state.window.back().reading_growth_rad_s = reading_growth(state.window);
-  const std::size_t paired = pair_newest(state);
+  state.window.back().plateau_growth_rad_s = plateau_growth_of_readings(state.window);
+  const std::size_t paired = pair_newest_force(state);
   ++state.samples;
-  if (knot.by_axis_aligned_rails.unusable_gyro == 0) state.min_levels.add(sample.angular_velocity_rad_s);
-  if (changed) reclassify_window(state);
-  classify_from(changed ? 0 : paired, state);
+  if (knot.clipping_at_axis_limits.unusable_gyro == 0) state.min_saturation_levels.add(sample.angular_velocity_rad_s);
+  if (changed) reclassify_window_clipping(state);
+  classify_clipping_from(changed ? 0 : paired, state);
   accumulate_impacts(state);
-  state.extremes[0] = state.extremes[0].cwiseMin(sample.angular_velocity_rad_s);
-  state.extremes[1] = state.extremes[1].cwiseMax(sample.angular_velocity_rad_s);
+  state.reading_extremes_rad_s[0] = state.reading_extremes_rad_s[0].cwiseMin(sample.angular_velocity_rad_s);
+  state.reading_extremes_rad_s[1] = state.reading_extremes_rad_s[1].cwiseMax(sample.angular_velocity_rad_s);
   mark_possible_saturation(state);
 }
 
 // The initial rate is the predicted rate or the rate from the centripetal force, whichever gives the larger flight
 // weight.
-void RateStream::guess(Knot& knot, const Knot& previous, const State& state) const {
+void AngularRateStream::predict_new_knot(Knot& knot, const Knot& previous, const State& state) const {
   const double dt_s = seconds_between(previous, knot);
-  const RateKnot& before = previous.estimate.knot;
+  const AngularRateKnot& before = previous.estimate.knot;
   const int clipped = clipped_axes(knot.observation);
   knot.estimate.knot.acceleration_rad_s2 = before.acceleration_rad_s2;
   if (clipped == 0) return;
@@ -263,14 +263,14 @@ void RateStream::guess(Knot& knot, const Knot& previous, const State& state) con
   model_.compute_flight_weight(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, knot.estimate);
   model_.compute_flight_weight(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, centripetal.estimate);
   // After an impact, the body rotates without torque, so the angular acceleration does not continue.
-  model_.search_flight(knot.observation, state.rig, centripetal.estimate);
+  model_.search_flight_solutions(knot.observation, state.rig, centripetal.estimate);
   model_.compute_flight_weight(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, centripetal.estimate);
   if (centripetal.estimate.flight_weight > knot.estimate.flight_weight) knot.estimate = centripetal.estimate;
 }
 
-void RateStream::compute_flight_weight(State& state) const {
+void AngularRateStream::compute_flight_weight(State& state) const {
   constexpr double kNone = std::numeric_limits<double>::max();
-  double before = change_before_window(state.window.front(), state);
+  double before = rate_change_before_window(state.window.front(), state);
   for (std::size_t k = 0; k < state.window.size(); ++k) {
     Knot& knot = state.window[k];
     double after = kNone;
@@ -280,26 +280,26 @@ void RateStream::compute_flight_weight(State& state) const {
     }
     const bool clipped = clipped_axes(knot.observation) != 0;
     const double threshold_factor =
-        clipped ? std::max(1.0, std::ldexp(params_.expert.initial_threshold_factor, -knot.age)) : 1.0;
+        clipped ? std::max(1.0, std::ldexp(params_.expert.initial_threshold_factor, -knot.knot_age_samples)) : 1.0;
     model_.compute_flight_weight(knot.observation, state.rig, state.rig_covariance, threshold_factor,
                                  std::min(before, after), knot.estimate);
-    const bool soften = knot.age >= params_.expert.bound_hard_steps && knot.estimate.flight_weight < 0.5;
-    if (soften && !knot.estimate.soft_bounds) {
-      model_.search_flight(knot.observation, state.rig, knot.estimate);
-      model_.start_bounds(knot.observation, state.rig, knot.estimate);
+    const bool soften = knot.knot_age_samples >= params_.expert.bound_hard_steps && knot.estimate.flight_weight < 0.5;
+    if (soften && !knot.estimate.use_soft_bounds) {
+      model_.search_flight_solutions(knot.observation, state.rig, knot.estimate);
+      model_.initialise_rate_bounds(knot.observation, state.rig, knot.estimate);
     }
     before = after;
   }
 }
 
 // See rate_smoother.md (R26) to (R35).
-bool RateStream::step(State& state) const {
+bool AngularRateStream::step(State& state) const {
   const std::size_t count = state.window.size();
-  std::vector<arrow::Block>& blocks = state.work;
+  std::vector<arrow::Block>& blocks = state.work_blocks;
   arrow::Corner corner;
   blocks[0] = {};
   add_prior(state, model_, state.window[0].estimate.knot, blocks[0], corner);
-  add_rails(state, corner);
+  add_saturation_plane_prior(state, corner);
   for (std::size_t k = 0; k < count; ++k) {
     const Knot& knot = state.window[k];
     model_.add_sample(knot.observation, knot.estimate, state.rig, blocks[k], corner);
@@ -307,42 +307,42 @@ bool RateStream::step(State& state) const {
     if (!last) {
       const Knot& next = state.window[k + 1];
       blocks[k + 1] = {};
-      model_.add_step(knot.estimate, next.estimate, seconds_between(knot, next), blocks[k], blocks[k + 1]);
+      model_.add_motion_model(knot.estimate, next.estimate, seconds_between(knot, next), blocks[k], blocks[k + 1]);
     }
     if (!arrow::eliminate(blocks[k], last ? nullptr : &blocks[k + 1], corner)) return false;
   }
   arrow::BorderVector rig_step;
   arrow::BorderMatrix rig_covariance;
-  if (!arrow::solve_corner(corner, rig_step, rig_covariance)) return false;
+  if (!arrow::solve_border_block(corner, rig_step, rig_covariance)) return false;
   state.rig_covariance = rig_covariance;
   add_sensor_error_covariance(rig_step, state);
   state.rig.add(rig_step);
-  const arrow::BorderMatrix rig_spread = inflated(state);
+  const arrow::BorderMatrix rig_spread = inflated_calibration_covariance(state);
   arrow::StateVector x;
   arrow::Conditional conditional;
   for (std::size_t k = count; k-- > 0;) {
     Knot& knot = state.window[k];
     const bool last = k + 1 == count;
     x = arrow::back_substitute(blocks[k], last ? nullptr : &x, rig_step);
-    conditional = arrow::back_conditional(blocks[k], last ? nullptr : &conditional);
-    const Eigen::Matrix<double, 6, 1> physical = model_.unscaled(x);
+    conditional = arrow::state_given_next_state(blocks[k], last ? nullptr : &conditional);
+    const Eigen::Matrix<double, 6, 1> physical = model_.unscaled_step(x);
     const double share = std::min(1.0, params_.expert.kStepMax_rad_s / std::max(1e-300, physical.head<3>().norm()));
     knot.estimate.knot.rate_rad_s += share * physical.head<3>();
     knot.estimate.knot.acceleration_rad_s2 += share * physical.tail<3>();
-    knot.covariance_rad2_s2 = arrow::rate_covariance(conditional, rig_spread) + device_covariance(k, state);
-    if (knot.estimate.soft_bounds) {
+    knot.covariance_rad2_s2 = arrow::rate_covariance(conditional, rig_spread) + sensor_error_rate_covariance(k, state);
+    if (knot.estimate.use_soft_bounds) {
       model_.update_bounds(knot.observation, state.rig, conditional, rig_covariance, params_.expert.kBoundDamping,
                            knot.estimate);
     }
-    ++knot.age;
+    ++knot.knot_age_samples;
   }
   return true;
 }
 
 // See rate_stream.md (R97).
-RigConstants::Matrix RateStream::inflated(const State& state) const {
+RigConstants::Matrix AngularRateStream::inflated_calibration_covariance(const State& state) const {
   if (params_.model.calibration) return state.rig_covariance;
-  const double samples = static_cast<double>(state.calibration_samples) * model_.independent_reading_ratio() /
+  const double samples = static_cast<double>(state.calibration_samples) * model_.independent_sample_fraction() /
                          params_.expert.inflation.kSamples;
   const double largest = std::sqrt(1.0 + params_.expert.inflation.covariance / (1.0 + samples));
   RigConstants::Vector factor;

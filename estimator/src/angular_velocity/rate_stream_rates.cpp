@@ -7,7 +7,7 @@
 
 namespace tumble {
 
-bool RateStream::in_long_flight(std::size_t at, const State& state) const {
+bool AngularRateStream::in_long_flight(std::size_t at, const State& state) const {
   const std::vector<Knot>& window = state.window;
   const auto needed = static_cast<std::size_t>(params_.expert.flight_run_min);
   const auto flies = [&](std::size_t k) { return window[k].estimate.flight_weight >= 0.5; };
@@ -15,35 +15,35 @@ bool RateStream::in_long_flight(std::size_t at, const State& state) const {
   std::size_t first = at, last = at;
   while (first > 0 && last - first < needed && flies(first - 1)) --first;
   while (last + 1 < window.size() && last - first < needed && flies(last + 1)) ++last;
-  return last - first + 1 + (first > 0 ? 0 : state.flight_run) >= needed;
+  return last - first + 1 + (first > 0 ? 0 : state.consecutive_flight_samples) >= needed;
 }
 
 // See rate_stream.md (R99).
-double RateStream::deficit_from_slopes_rad_s(std::size_t at, int axis, const State& state) const {
+double AngularRateStream::saturation_deficit_from_slopes_rad_s(std::size_t at, int axis, const State& state) const {
   const std::vector<Knot>& window = state.window;
   const auto hidden = [&](std::size_t k) {
-    const RateObservation& o = window[k].observation;
+    const AngularRateObservation& o = window[k].observation;
     return ((o.clipping.gyro | o.partly_saturated_axes()) >> axis & 1) != 0 && !in_long_flight(k, state);
   };
   std::size_t first = at, last = at;
   while (first > 0 && hidden(first - 1)) --first;
   while (last + 1 < window.size() && hidden(last + 1)) ++last;
-  const bool from_flight = state.flight_run >= static_cast<std::size_t>(params_.expert.flight_run_min);
+  const bool from_flight = state.consecutive_flight_samples >= static_cast<std::size_t>(params_.expert.flight_run_min);
   const double before =
-      static_cast<double>(at - first) + 0.5 + (first > 0 || from_flight ? 0.0 : state.entry_samples[axis]);
+      static_cast<double>(at - first) + 0.5 + (first > 0 || from_flight ? 0.0 : state.samples_since_clipping_start[axis]);
   // An unfinished run of clipped readings is assumed to continue for at least as long as it has lasted.
   const double left = static_cast<double>(last - at) + 0.5,
                after = last + 1 < window.size() ? left : std::max(before, left);
-  const double slope = run_slope(axis, first, last, state);
+  const double slope = plateau_slope(axis, first, last, state);
   return slope * before * after / (before + after);
 }
 
 // See rate_stream.md (R98), (R99).
-Eigen::Matrix3d RateStream::suspect_covariance(std::size_t at, const State& state) const {
+Eigen::Matrix3d AngularRateStream::suspected_error_covariance(std::size_t at, const State& state) const {
   const Knot& knot = state.window[at];
   Eigen::Matrix3d out = knot.covariance_rad2_s2;
   if (knot.estimate.flight_weight >= 0.5) return out;
-  const double samples = static_cast<double>(state.calibration_samples) * model_.independent_reading_ratio() /
+  const double samples = static_cast<double>(state.calibration_samples) * model_.independent_sample_fraction() /
                          params_.expert.inflation.kSamples;
   const double share = params_.model.calibration ? 0.0 : params_.expert.inflation.contact / (1.0 + samples);
   for (int j = 0; j < 3; ++j) {
@@ -51,29 +51,29 @@ Eigen::Matrix3d RateStream::suspect_covariance(std::size_t at, const State& stat
     const double read = std::abs(knot.observation.sample.angular_velocity_rad_s[j]);
     const double beyond = std::max(0.0, std::abs(knot.estimate.knot.rate_rad_s[j]) - read);
     const double least =
-        std::max(share * beyond, params_.expert.inflation.slopes * (deficit_from_slopes_rad_s(at, j, state) - beyond));
+        std::max(share * beyond, params_.expert.inflation.slopes * (saturation_deficit_from_slopes_rad_s(at, j, state) - beyond));
     out(j, j) = std::max(out(j, j), least * least);
   }
   return out;
 }
 
 // If the log repeats readings, a rate also depends on the neighbouring readings.
-bool RateStream::may_be_partly_saturated(std::size_t at, const State& state) const {
+bool AngularRateStream::may_be_partly_saturated(std::size_t at, const State& state) const {
   const std::vector<Knot>& window = state.window;
-  if (window[at].near != 0) return true;
-  if (!window[at].repeated.is_slower_than_log()) return false;
+  if (window[at].possibly_clipped_axes != 0) return true;
+  if (!window[at].repeated.is_slower_than_samples()) return false;
   std::size_t next = at + 1;
-  while (next < window.size() && window[next].repeats) ++next;
+  while (next < window.size() && window[next].repeats_reading) ++next;
   if (next == window.size()) return false;
-  const RateObservation& after = window[next].observation;
-  return (window[next].near | after.clipping.gyro | after.possibly_saturated_axes()) != 0;
+  const AngularRateObservation& after = window[next].observation;
+  return (window[next].possibly_clipped_axes | after.clipping.gyro | after.possibly_saturated_axes()) != 0;
 }
 
 // See rate_stream.md (R108). After the newest sample, the angular acceleration is assumed constant.
-void RateStream::extrapolate_estimate(std::size_t at, double late_s, const State& state, RateState& out) const {
+void AngularRateStream::extrapolate_estimate(std::size_t at, double late_s, const State& state, AngularRateState& out) const {
   const auto reported = [&](std::size_t k) {
     const Knot& knot = state.window[k];
-    return model_.reported(suspect_covariance(k, state), knot.observation, knot.estimate);
+    return model_.output_covariance(suspected_error_covariance(k, state), knot.observation, knot.estimate);
   };
   for (; at + 1 < state.window.size(); ++at) {
     const Knot &from = state.window[at], &to = state.window[at + 1];
@@ -82,51 +82,51 @@ void RateStream::extrapolate_estimate(std::size_t at, double late_s, const State
       late_s -= dt_s;
       continue;
     }
-    const RateKnot &a = from.estimate.knot, &b = to.estimate.knot;
+    const AngularRateKnot &a = from.estimate.knot, &b = to.estimate.knot;
     const double u = late_s / dt_s, v = 1.0 - u;
     out.w_WI_I_rad_s = v * v * (1.0 + 2.0 * u) * a.rate_rad_s + u * u * (3.0 - 2.0 * u) * b.rate_rad_s +
                        u * v * dt_s * (v * a.acceleration_rad_s2 - u * b.acceleration_rad_s2);
     out.covariance_rad2_s2 = v * reported(at) + u * reported(at + 1);
     return;
   }
-  const RateKnot& last = state.window[at].estimate.knot;
+  const AngularRateKnot& last = state.window[at].estimate.knot;
   const Eigen::Vector3d moved = late_s * last.acceleration_rad_s2;
   out.w_WI_I_rad_s = last.rate_rad_s + moved;
   out.covariance_rad2_s2 = reported(at) + moved * moved.transpose();
 }
 
-RateState RateStream::to_rate_state(std::size_t at, const State& state) const {
+AngularRateState AngularRateStream::rate_state_of_knot(std::size_t at, const State& state) const {
   const Knot& knot = state.window[at];
-  const Eigen::Matrix3d covariance = suspect_covariance(at, state);
-  RateState out;
+  const Eigen::Matrix3d covariance = suspected_error_covariance(at, state);
+  AngularRateState out;
   out.time_ns = knot.observation.sample.time_ns;
   out.w_WI_I_rad_s = knot.estimate.knot.rate_rad_s;
-  out.covariance_rad2_s2 = model_.reported(covariance, knot.observation, knot.estimate);
-  const double gyro_late_s = -state.device.front().delay.applied_delay_s;
+  out.covariance_rad2_s2 = model_.output_covariance(covariance, knot.observation, knot.estimate);
+  const double gyro_late_s = -state.sensor_errors.front().accel_delay_state.applied_delay_s;
   if (gyro_late_s > 0.0) {
     extrapolate_estimate(at, gyro_late_s, state, out);
-    out.covariance_rad2_s2.diagonal() += knot.repeated.change_since_reading().cwiseAbs2();
+    out.covariance_rad2_s2.diagonal() += knot.repeated.change_since_new_reading().cwiseAbs2();
   } else if (const std::optional<InterpolatedRate> own = rate_between_readings(state.window, at, params_.period_s)) {
     out.w_WI_I_rad_s = own->rate_rad_s - state.rig.gyro_bias_rad_s;
     out.covariance_rad2_s2.diagonal() += own->variance_rad2_s2;
   } else {
-    out.covariance_rad2_s2.diagonal() += knot.repeated.change_since_reading().cwiseAbs2();
+    out.covariance_rad2_s2.diagonal() += knot.repeated.change_since_new_reading().cwiseAbs2();
   }
-  out.covariance_rad2_s2.diagonal() += frozen_.rate_variance_rad2_s2(out.time_ns, state.frozen);
+  out.covariance_rad2_s2.diagonal() += frozen_axes_.rate_variance_rad2_s2(out.time_ns, state.frozen_axes);
   out.clipped_axes = knot.observation.clipping.gyro | knot.observation.clipping.unusable_gyro;
-  out.source = rate_source(knot.observation, knot.estimate, covariance, params_.recovered_sigma_rad_s);
-  if (out.source == RateSource::measured && may_be_partly_saturated(at, state)) out.source = RateSource::bounded_only;
+  out.source = rate_source_of(knot.observation, knot.estimate, covariance, params_.recovered_sigma_rad_s);
+  if (out.source == AngularRateSource::measured && may_be_partly_saturated(at, state)) out.source = AngularRateSource::lower_bound_only;
   return out;
 }
 
-std::optional<RateState> RateStream::newest(const State& state) const {
+std::optional<AngularRateState> AngularRateStream::newest(const State& state) const {
   if (state.window.empty()) return std::nullopt;
-  return to_rate_state(state.window.size() - 1, state);
+  return rate_state_of_knot(state.window.size() - 1, state);
 }
 
-void RateStream::flush(const State& state, std::vector<RateState>& out) const {
+void AngularRateStream::flush(const State& state, std::vector<AngularRateState>& out) const {
   const std::size_t given = state.window.size() + 1 - std::min(capacity_, state.window.size() + 1);
-  for (std::size_t k = given; k < state.window.size(); ++k) out.push_back(to_rate_state(k, state));
+  for (std::size_t k = given; k < state.window.size(); ++k) out.push_back(rate_state_of_knot(k, state));
 }
 
 }  // namespace tumble

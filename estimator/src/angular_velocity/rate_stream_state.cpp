@@ -3,10 +3,10 @@
 
 namespace tumble {
 
-SensorHealth RateStream::health(const State& state) const {
+SensorHealth AngularRateStream::health(const State& state) const {
   SensorHealth out;
-  frozen_.add_findings(HealthFinding::Kind::frozen_axis, "imu", state.frozen, out);
-  out.add(HealthFinding::Kind::flight_forces, flight_sign_check_.current_verdict(state.sense), "imu");
+  frozen_axes_.add_findings(HealthFinding::Kind::frozen_axis, "imu", state.frozen_axes, out);
+  out.add(HealthFinding::Kind::inverted_accel_in_flight, flight_axis_sign_check_.current_verdict(state.flight_sign_check), "imu");
   return out;
 }
 

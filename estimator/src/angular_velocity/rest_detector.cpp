@@ -19,7 +19,7 @@ Eigen::Vector3d RestDetector::State::mean_force_m_s2() const {
   return weight > 0.0 ? Eigen::Vector3d((1.0 / weight) * force_sum_m_s2) : Eigen::Vector3d::Zero();
 }
 
-bool RestDetector::observe(const ImuSample& sample, State& state, const Eigen::Vector3d& bias_rad_s) const {
+bool RestDetector::detect_stationary(const ImuSample& sample, State& state, const Eigen::Vector3d& bias_rad_s) const {
   if (state.pending_samples++ == 0) {
     state.pending_rate_rad_s.setZero();
     state.pending_force_m_s2.setZero();
@@ -31,20 +31,20 @@ bool RestDetector::observe(const ImuSample& sample, State& state, const Eigen::V
   const bool whole = !state.started || seconds(sample.time_ns - state.last_reading_ns) >= params_.reading_s - half_s;
   state.started = true;
   state.last_ns = sample.time_ns;
-  if (!whole) return state.rests;
+  if (!whole) return state.is_stationary;
   const double share = 1.0 / static_cast<double>(state.pending_samples);
   state.pending_samples = 0;
   state.last_reading_ns = sample.time_ns;
-  return observe_mean(share * state.pending_rate_rad_s, share * state.pending_force_m_s2, state.pending_first_ns,
+  return detect_stationary_from_mean(share * state.pending_rate_rad_s, share * state.pending_force_m_s2, state.pending_first_ns,
                       sample.time_ns, bias_rad_s, state);
 }
 
 /// See attitude.md (A15).
-bool RestDetector::observe_mean(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2, TimeNs from_ns,
+bool RestDetector::detect_stationary_from_mean(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2, TimeNs from_ns,
                                 TimeNs to_ns, const Eigen::Vector3d& bias_rad_s, State& state) const {
-  const double step_s = seconds(to_ns - state.last_mean_ns);
-  state.last_mean_ns = to_ns;
-  state.rests = false;
+  const double step_s = seconds(to_ns - state.last_averaged_reading_ns);
+  state.last_averaged_reading_ns = to_ns;
+  state.is_stationary = false;
   if (state.weight > 0.0) {
     const double share = 1.0 / state.weight;
     const double rate_off = (rate_rad_s - share * state.rate_sum_rad_s).cwiseAbs().maxCoeff();
@@ -55,7 +55,7 @@ bool RestDetector::observe_mean(const Eigen::Vector3d& rate_rad_s, const Eigen::
   if ((rate_rad_s - bias_rad_s).cwiseAbs().maxCoeff() > params_.rate_max_rad_s + params_.rate_spread_rad_s ||
       force < params_.force_min_m_s2 || force > params_.force_max_m_s2) {
     state.weight = 0.0;
-    state.within_bias_since_ns = 0;
+    state.small_rate_since_ns = 0;
     return false;
   }
   if (state.weight == 0.0) {
@@ -74,16 +74,16 @@ bool RestDetector::observe_mean(const Eigen::Vector3d& rate_rad_s, const Eigen::
   state.weight += 1.0;
   const bool is_bias =
       (state.rate_sum_rad_s / state.weight - bias_rad_s).cwiseAbs().maxCoeff() <= params_.rate_max_rad_s;
-  state.within_bias_since_ns = is_bias ? to_ns - state.first_ns : 0;
-  state.rests = is_bias && seconds(state.within_bias_since_ns) >= params_.rest_s;
-  return state.rests;
+  state.small_rate_since_ns = is_bias ? to_ns - state.first_ns : 0;
+  state.is_stationary = is_bias && seconds(state.small_rate_since_ns) >= params_.rest_s;
+  return state.is_stationary;
 }
 
 std::vector<bool> RestDetector::find(std::span<const ImuSample> samples, const Eigen::Vector3d& bias_rad_s) const {
   std::vector<bool> rest(samples.size(), false);
   State state;
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (!observe(samples[k], state, bias_rad_s)) continue;
+    if (!detect_stationary(samples[k], state, bias_rad_s)) continue;
     for (std::size_t i = k + 1; i-- > 0 && samples[i].time_ns >= state.first_ns && !rest[i];) rest[i] = true;
   }
   return rest;

@@ -12,7 +12,7 @@ namespace tumble {
 
 namespace {
 
-std::array<Eigen::Matrix3d, 5> make_basis() {
+std::array<Eigen::Matrix3d, 5> make_inertia_basis() {
   std::array<Eigen::Matrix3d, 5> basis;
   for (auto& s : basis) s.setZero();
   const double half = std::sqrt(0.5), sixth = std::sqrt(1.0 / 6.0);
@@ -26,8 +26,8 @@ std::array<Eigen::Matrix3d, 5> make_basis() {
 
 }  // namespace
 
-const Eigen::Matrix3d& RigConstants::inertia_basis(int i) {
-  static const std::array<Eigen::Matrix3d, 5> kBasis = make_basis();
+const Eigen::Matrix3d& RigConstants::inertia_basis_matrix(int i) {
+  static const std::array<Eigen::Matrix3d, 5> kBasis = make_inertia_basis();
   return kBasis[static_cast<std::size_t>(i)];
 }
 
@@ -41,25 +41,25 @@ Eigen::Matrix3d RigConstants::inertia_matrix() const {
   return J;
 }
 
-Eigen::Matrix<double, 5, 1> RigConstants::inertia_coordinates(const Eigen::Matrix3d& inertia) {
+Eigen::Matrix<double, 5, 1> RigConstants::inertia_basis_coordinates(const Eigen::Matrix3d& inertia) {
   const Eigen::Matrix3d J = 3.0 / inertia.trace() * inertia;
   Eigen::Matrix<double, 5, 1> coordinates;
-  for (int i = 0; i < 5; ++i) coordinates[i] = J.cwiseProduct(inertia_basis(i)).sum();
+  for (int i = 0; i < 5; ++i) coordinates[i] = J.cwiseProduct(inertia_basis_matrix(i)).sum();
   return coordinates;
 }
 
 Eigen::Vector3d RigConstants::sensing_direction(int j) const {
   Eigen::Vector3d row;
   row[j] = 1.0;
-  row[(j + 1) % 3] = elements[2 * j];
-  row[(j + 2) % 3] = elements[2 * j + 1];
+  row[(j + 1) % 3] = gyro_misalignment[2 * j];
+  row[(j + 2) % 3] = gyro_misalignment[2 * j + 1];
   return row;
 }
 
 // See rate_smoother.md (R2).
 RigConstants::Vector RigConstants::vector() const {
   Vector v;
-  v << lever_arm_m, gyro_bias_rad_s, accel_bias_m_s2, inertia, elements;
+  v << lever_arm_m, gyro_bias_rad_s, accel_bias_m_s2, inertia, gyro_misalignment;
   return v;
 }
 
@@ -68,17 +68,17 @@ void RigConstants::add(const Vector& step) {
   gyro_bias_rad_s += step.segment<3>(3);
   accel_bias_m_s2 += step.segment<3>(6);
   inertia += step.segment<5>(9);
-  elements += step.segment<6>(kElements);
+  gyro_misalignment += step.segment<6>(kGyroMisalignment);
 }
 
 Status check_rig_constants(const RigConstants& rig) {
-  constexpr double kMagnitudeMax = RigConstants::kMagnitudeMax;
-  const auto beyond = [](double value) { return !(std::abs(value) <= kMagnitudeMax); };
+  constexpr double kMaxConstantMagnitude = RigConstants::kMaxConstantMagnitude;
+  const auto beyond = [](double value) { return !(std::abs(value) <= kMaxConstantMagnitude); };
   const RigConstants::Vector all = rig.vector();
   const auto first = std::find_if(all.begin(), all.end(), beyond);
   if (first == all.end()) return {};
   const char* const name = first - all.begin() < rig.lever_arm_m.size() ? "lever_arm_m" : "rig constants";
-  return {ErrorCode::out_of_range, name, *first, std::copysign(kMagnitudeMax, *first)};
+  return {ErrorCode::out_of_range, name, *first, std::copysign(kMaxConstantMagnitude, *first)};
 }
 
 Status check_calibration(const RigCalibration& calibration) {

@@ -10,7 +10,7 @@ namespace tumble {
 
 namespace {
 
-std::uint8_t axes_beyond(const Eigen::Vector3d& rate, double bound) {
+std::uint8_t axes_above_bound(const Eigen::Vector3d& rate, double bound) {
   std::uint8_t axes = 0;
   for (int j = 0; j < 3; ++j) {
     if (std::abs(rate[j]) > bound) axes |= static_cast<std::uint8_t>(1u << j);
@@ -27,11 +27,11 @@ double squared_rate(const Eigen::Vector3d& lever_arm, const Eigen::Vector3d& axi
 
 }  // namespace
 
-Saave::Saave(const Params& params) : params_(params) {
+SaturationAwareRateEstimator::SaturationAwareRateEstimator(const Params& params) : params_(params) {
   require_valid_fields(params);
 }
 
-Status Saave::step(const ImuSample& sample, State& state, Recovered& out) const {
+Status SaturationAwareRateEstimator::step(const ImuSample& sample, State& state, RecoveredRate& out) const {
   if (Status status = check_sample(sample); !status.ok()) return status;
   if (state.started) {
     Status status = check_stamp_order(sample.time_ns, state.last_time_ns, params_.gap_max_s);
@@ -43,10 +43,10 @@ Status Saave::step(const ImuSample& sample, State& state, Recovered& out) const 
   const Eigen::Vector3d& reading = sample.angular_velocity_rad_s;
   out.rate_rad_s = reading;
   out.variance_rad2_s2.setConstant(params_.kVarianceMeasured_rad2_s2);
-  out.clipped_axes = axes_beyond(reading, params_.saturation_point_rad_s);
+  out.clipped_axes = axes_above_bound(reading, params_.saturation_point_rad_s);
   out.accepted = true;
   if (out.clipped_axes != 0) {
-    // As in the publication, Saave recovers only the first clipped axis in the order x, y, z: saave.md (S3).
+    // As in the publication, SaturationAwareRateEstimator recovers only the first clipped axis in the order x, y, z: saave.md (S3).
     int j = 0;
     while ((out.clipped_axes >> j & 1u) == 0) ++j;
     Eigen::Vector3d unclipped = reading;
@@ -67,10 +67,10 @@ Status Saave::step(const ImuSample& sample, State& state, Recovered& out) const 
   return {};
 }
 
-Status Saave::estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const {
+Status SaturationAwareRateEstimator::estimate(std::span<const ImuSample> samples, std::vector<AngularRateState>& out) const {
   if (samples.empty()) return {ErrorCode::empty, "samples", 0.0, 1.0};
   State state;
-  std::vector<Recovered> recovered(samples.size());
+  std::vector<RecoveredRate> recovered(samples.size());
   std::vector<WnojSmoother::Measurement> measurements(samples.size());
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (Status status = step(samples[k], state, recovered[k]); !status.ok()) return status;
@@ -86,9 +86,9 @@ Status Saave::estimate(std::span<const ImuSample> samples, std::vector<RateState
     out[k].w_WI_I_rad_s = smoothed[k].rate_rad_s;
     out[k].covariance_rad2_s2 = smoothed[k].variance_rad2_s2.asDiagonal();
     out[k].clipped_axes = recovered[k].clipped_axes;
-    out[k].source = recovered[k].clipped_axes == 0 ? RateSource::measured
-                    : recovered[k].accepted        ? RateSource::recovered_flight
-                                                   : RateSource::bounded_only;
+    out[k].source = recovered[k].clipped_axes == 0 ? AngularRateSource::measured
+                    : recovered[k].accepted        ? AngularRateSource::recovered_in_flight
+                                                   : AngularRateSource::lower_bound_only;
   }
   return {};
 }

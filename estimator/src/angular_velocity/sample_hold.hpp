@@ -15,13 +15,13 @@ namespace tumble {
 /// RepeatedReadings describes a gyro or accelerometer that is slower than its log (sample and hold).
 struct RepeatedReadings {
   double period_s = 0.0;      ///< time between two readings
-  double agreement = 0.0;     ///< fraction of samples whose repetitions a regular clock predicts
+  double regular_clock_fraction = 0.0;     ///< fraction of samples whose repetitions a regular clock predicts
   std::vector<double> age_s;  ///< per sample: age of its reading in addition to window_lag_s
-  std::vector<bool> repeats;  ///< per sample: reading equals that of the previous sample
+  std::vector<bool> repeats_per_sample;  ///< per sample: reading equals that of the previous sample
   /// A gyro averages over its period, an accelerometer over an unknown part of its period: carried.md (C11), (C12).
   double window_lag_s = 0.0;
 
-  bool steady() const { return agreement >= sample_hold::kAgreementMin; }
+  bool has_regular_clock() const { return regular_clock_fraction >= sample_hold::kAgreementMin; }
   /// Returns the time from the middle of the sensor's averaging window to the middle of the sample period.
   double reading_age_s(std::size_t sample) const { return age_s[sample] + window_lag_s; }
 };
@@ -32,10 +32,10 @@ struct RepeatedReadings {
 std::optional<RepeatedReadings> find_repeated(std::span<const ImuSample> samples, Triad triad);
 
 struct Neighbours {
-  const ImuSample *before = nullptr, *after = nullptr;
+  const ImuSample *previous_sample = nullptr, *next_sample = nullptr;
 };
 /// Returns for each sample the nearest earlier and later samples with a different reading. All samples of a run of
 /// equal readings (repetition, rest, saturation) have the same neighbours.
-std::vector<Neighbours> other_readings(std::span<const ImuSample> samples, Triad triad);
+std::vector<Neighbours> neighbouring_readings(std::span<const ImuSample> samples, Triad triad);
 
 }  // namespace tumble

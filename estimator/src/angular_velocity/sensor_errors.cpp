@@ -19,13 +19,13 @@ using Matrix = SensorErrors::Matrix;
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 // `share` is 0 for the data sheet's standard deviations and 1 for those of an uncalibrated device.
-struct Size {
-  double share, probability;
+struct ErrorSize {
+  double error_fraction, probability;
 };
-constexpr std::array<Size, 2> kScaleSizes = {{{0.0, 0.7}, {1.0, 0.3}}};
-constexpr std::array<Size, 3> kCrossSizes = {{{0.0, 0.5}, {0.5, 0.2}, {1.0, 0.3}}};
-constexpr std::array<Size, 2> kGSensitivitySizes = {{{0.0, 0.6}, {1.0, 0.4}}};
-constexpr std::array<Size, 2> kDelaySizes = {{{0.0, 0.6}, {1.0, 0.4}}};
+constexpr std::array<ErrorSize, 2> kScaleSizes = {{{0.0, 0.7}, {1.0, 0.3}}};
+constexpr std::array<ErrorSize, 3> kCrossSizes = {{{0.0, 0.5}, {0.5, 0.2}, {1.0, 0.3}}};
+constexpr std::array<ErrorSize, 2> kGSensitivitySizes = {{{0.0, 0.6}, {1.0, 0.4}}};
+constexpr std::array<ErrorSize, 2> kDelaySizes = {{{0.0, 0.6}, {1.0, 0.4}}};
 
 // A positive standard deviation keeps the prior covariance invertible.
 constexpr double kLeast = 1e-9;
@@ -34,21 +34,21 @@ double between(double sheet, double unknown, double share) {
   return std::max(kLeast, unknown <= sheet ? sheet : sheet * std::pow(unknown / std::max(kLeast, sheet), share));
 }
 
-struct Shares {
-  double scale = 1.0, cross = 1.0, g_sensitivity = 1.0, delay = 1.0;
+struct ErrorFractions {
+  double scale_fraction = 1.0, cross_axis_fraction = 1.0, g_sensitivity_fraction = 1.0, delay_fraction = 1.0;
 };
 
-Vector deviations(const SensorErrorPriors& s, const Shares& shares) {
+Vector prior_deviations(const SensorErrorPriors& s, const ErrorFractions& shares) {
   Vector out;
-  const double delay = between(s.delay_s, s.delay_uncalibrated_s, shares.delay);
-  out << Eigen::Matrix<double, 9, 1>::Constant(between(s.gyro, s.gyro_uncalibrated, shares.cross)),
-      Eigen::Matrix<double, 9, 1>::Constant(between(s.accel, s.accel_uncalibrated, shares.cross)),
+  const double delay = between(s.delay_s, s.delay_uncalibrated_s, shares.delay_fraction);
+  out << Eigen::Matrix<double, 9, 1>::Constant(between(s.gyro, s.gyro_uncalibrated, shares.cross_axis_fraction)),
+      Eigen::Matrix<double, 9, 1>::Constant(between(s.accel, s.accel_uncalibrated, shares.cross_axis_fraction)),
       Eigen::Matrix<double, 9, 1>::Constant(
-          between(s.g_sensitivity_s_m, s.g_sensitivity_uncalibrated_s_m, shares.g_sensitivity)),
+          between(s.g_sensitivity_s_m, s.g_sensitivity_uncalibrated_s_m, shares.g_sensitivity_fraction)),
       delay, delay * delay;
   for (int i = 0; i < 3; ++i) {
-    out[4 * i] = between(s.gyro, s.gyro_uncalibrated, shares.scale);
-    out[SensorErrors::kAccel + 4 * i] = between(s.accel, s.accel_uncalibrated, shares.scale);
+    out[4 * i] = between(s.gyro, s.gyro_uncalibrated, shares.scale_fraction);
+    out[SensorErrors::kAccel + 4 * i] = between(s.accel, s.accel_uncalibrated, shares.scale_fraction);
   }
   return out;
 }
@@ -56,10 +56,10 @@ Vector deviations(const SensorErrorPriors& s, const Shares& shares) {
 constexpr double kPlain = 0.05;
 
 // Errors of the free-flight equations last longer than a sample, so the information of the readings is reduced.
-constexpr double kEvidenceWeight = 0.03;
+constexpr double kSensorErrorEvidenceWeight = 0.03;
 
 struct Hypothesis {
-  Shares shares;
+  ErrorFractions error_fractions;
   double log_odds = 0.0;
   Vector mean;
   Matrix covariance;
@@ -71,7 +71,7 @@ Hypothesis posterior(const Matrix& information, const Matrix& earlier_runs, cons
   constexpr int kRest = SensorErrors::kSize - SensorErrors::kGSensitivity;
   const Matrix scaled = deviation.asDiagonal() * (information + earlier_runs) * deviation.asDiagonal();
   const Matrix scaled_weighted =
-      deviation.asDiagonal() * (kEvidenceWeight * information + earlier_runs) * deviation.asDiagonal();
+      deviation.asDiagonal() * (kSensorErrorEvidenceWeight * information + earlier_runs) * deviation.asDiagonal();
   const Vector scaled_h = deviation.cwiseProduct(h);
   Hypothesis out;
   const Matrix sharp = Matrix::Identity() + scaled;
@@ -88,8 +88,8 @@ Hypothesis posterior(const Matrix& information, const Matrix& earlier_runs, cons
   return out;
 }
 
-Matrix evidence_of(const Matrix& information, const SensorErrorPriors& sizes) {
-  const Vector unit = deviations(sizes, {});
+Matrix prior_scaled_evidence(const Matrix& information, const SensorErrorPriors& sizes) {
+  const Vector unit = prior_deviations(sizes, {});
   const Matrix scaled = unit.asDiagonal() * (0.5 * (information + information.transpose())) * unit.asDiagonal();
   Vector values;
   Matrix vectors;
@@ -114,11 +114,11 @@ SensorErrors SensorErrors::from(const Vector& v) {
   out.accel = v.segment<9>(kAccel).reshaped<Eigen::RowMajor>(3, 3);
   out.g_sensitivity_s_m = v.segment<9>(kGSensitivity).reshaped<Eigen::RowMajor>(3, 3);
   out.accel_delay_s = v[kDelay];
-  out.accel_filter_time_variance_s2 = v[kFilterTimeVariance];
+  out.accel_filter_time_variance_s2 = v[kAccelFilterTimeVariance];
   return out;
 }
 
-Status check_known(const KnownSensorErrors& earlier_runs) {
+Status check_known_errors(const KnownSensorErrors& earlier_runs) {
   const auto exceeds = [](double most) { return [most](double value) { return !(std::abs(value) <= most); }; };
   const Vector errors = earlier_runs.errors.vector();
   const auto error = std::find_if(errors.begin(), errors.end(), exceeds(0.2));
@@ -133,16 +133,16 @@ Status check_known(const KnownSensorErrors& earlier_runs) {
           least};
 }
 
-void require_known(const KnownSensorErrors& earlier_runs) {
-  const Status status = check_known(earlier_runs);
+void require_valid_known_errors(const KnownSensorErrors& earlier_runs) {
+  const Status status = check_known_errors(earlier_runs);
   if (!status.ok()) throw InvalidParams(status.field, status.value, "at most " + std::to_string(status.bound));
 }
 
 Vector prior_sigmas(const SensorErrorPriors& sizes, double share) {
-  return deviations(sizes, {share, share, share, share});
+  return prior_deviations(sizes, {share, share, share, share});
 }
 
-void discount_unobservable(double share, SensorErrorEvidence& evidence) {
+void discount_unobservable(double share, SensorErrorInformation& evidence) {
   if (share >= 1.0) return;
   // orthonormal directions in which the readings do not determine the sensor errors
   Eigen::Matrix<double, SensorErrors::kSize, 5> unobservable = Eigen::Matrix<double, SensorErrors::kSize, 5>::Zero();
@@ -153,7 +153,7 @@ void discount_unobservable(double share, SensorErrorEvidence& evidence) {
     unobservable(3 * k + j, 2 + i) = unobservable(SensorErrors::kAccel + 3 * k + j, 2 + i) = -0.5;
   }
   // Reduces the information along the unobservable directions. No full matrix is stored, because the thread of a
-  // RateStream may have a small stack.
+  // AngularRateStream may have a small stack.
   Eigen::Matrix<double, 5, SensorErrors::kSize> said = unobservable.transpose().lazyProduct(evidence.information);
   evidence.information.noalias() -= (1.0 - share) * unobservable.lazyProduct(said);
   said = unobservable.transpose().lazyProduct(evidence.information.transpose());
@@ -162,9 +162,9 @@ void discount_unobservable(double share, SensorErrorEvidence& evidence) {
   evidence.gradient.noalias() -= (1.0 - share) * unobservable.lazyProduct(pulled);
 }
 
-SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const SensorErrorPriors& sizes,
-                                 const SensorErrorEvidence& earlier_runs) {
-  const Matrix information = evidence_of(evidence.information, sizes);
+SensorErrorFit fit_sensor_errors(const SensorErrorInformation& evidence, const SensorErrorPriors& sizes,
+                                 const SensorErrorInformation& earlier_runs) {
+  const Matrix information = prior_scaled_evidence(evidence.information, sizes);
   const Vector h = evidence.gradient + information * evidence.linearisation_point.vector() + earlier_runs.gradient +
                    earlier_runs.information * earlier_runs.linearisation_point.vector();
   const bool one_matrix = sizes.gyro_uncalibrated <= sizes.gyro && sizes.accel_uncalibrated <= sizes.accel;
@@ -175,13 +175,13 @@ SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const Sens
     for (std::size_t m = 0; m < (one_matrix ? 1 : kCrossSizes.size()); ++m) {
       for (std::size_t f = 0; f < (one_g_sensitivity ? 1 : kGSensitivitySizes.size()); ++f) {
         for (std::size_t d = 0; d < (one_delay ? 1 : kDelaySizes.size()); ++d) {
-          const Size scale = kScaleSizes[i], cross = kCrossSizes[m], g_sensitivity = kGSensitivitySizes[f],
+          const ErrorSize scale = kScaleSizes[i], cross = kCrossSizes[m], g_sensitivity = kGSensitivitySizes[f],
                      delay = kDelaySizes[d];
-          const Shares shares{scale.share, cross.share, g_sensitivity.share, delay.share};
+          const ErrorFractions shares{scale.error_fraction, cross.error_fraction, g_sensitivity.error_fraction, delay.error_fraction};
           const double prior = scale.probability * cross.probability * g_sensitivity.probability * delay.probability;
           all.push_back(
-              posterior(information, earlier_runs.information, h, deviations(sizes, shares), std::log(prior)));
-          all.back().shares = shares;
+              posterior(information, earlier_runs.information, h, prior_deviations(sizes, shares), std::log(prior)));
+          all.back().error_fractions = shares;
         }
       }
     }
@@ -192,13 +192,13 @@ SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const Sens
   SensorErrorFit out{{}, 0.0, 0.0};
   for (Hypothesis& one : all) {
     one.log_odds /= sum;
-    if (one.shares.scale == 0.0) out.data_sheet_probability += one.log_odds;
-    if (one.shares.delay == 0.0) out.synchronous_probability += one.log_odds;
+    if (one.error_fractions.scale_fraction == 0.0) out.data_sheet_probability += one.log_odds;
+    if (one.error_fractions.delay_fraction == 0.0) out.synchronous_triads_probability += one.log_odds;
   }
   Vector mean = Vector::Zero();
   double kept = 0.0;
   for (const Hypothesis& one : all) {
-    if (out.synchronous_probability > kPlain && one.shares.delay > 0.0) continue;
+    if (out.synchronous_triads_probability > kPlain && one.error_fractions.delay_fraction > 0.0) continue;
     mean += one.log_odds * one.mean;
     kept += one.log_odds;
   }
@@ -206,15 +206,15 @@ SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const Sens
   // See rate_smoother.md (R42).
   for (const Hypothesis& one : all) {
     const Vector off = one.mean - mean;
-    out.known.covariance += one.log_odds * (one.covariance + off * off.transpose());
+    out.fitted_errors.covariance += one.log_odds * (one.covariance + off * off.transpose());
   }
-  out.known.errors = SensorErrors::from(mean);
+  out.fitted_errors.errors = SensorErrors::from(mean);
   return out;
 }
 
 // See rate_smoother.md (R43).
-SensorErrorEvidence calibration_evidence(const KnownSensorErrors& earlier_runs, const SensorErrorPriors& sizes) {
-  const Vector unit = deviations(sizes, {});
+SensorErrorInformation evidence_from_earlier_runs(const KnownSensorErrors& earlier_runs, const SensorErrorPriors& sizes) {
+  const Vector unit = prior_deviations(sizes, {});
   const Matrix symmetric = 0.5 * (earlier_runs.covariance + earlier_runs.covariance.transpose());
   const Matrix scaled = unit.cwiseInverse().asDiagonal() * symmetric * unit.cwiseInverse().asDiagonal();
   Vector values;
@@ -227,7 +227,7 @@ SensorErrorEvidence calibration_evidence(const KnownSensorErrors& earlier_runs, 
     const Matrix kept = vectors * kept_values.asDiagonal() * vectors.transpose();
     return unit.cwiseInverse().asDiagonal() * kept * unit.cwiseInverse().asDiagonal();
   };
-  SensorErrorEvidence out;
+  SensorErrorInformation out;
   out.information = in_units((precision_ratio.array() - 1.0).cwiseMax(0.0));
   out.gradient = in_units(of_mean) * earlier_runs.errors.vector();
   return out;

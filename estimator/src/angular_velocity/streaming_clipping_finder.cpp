@@ -25,46 +25,46 @@ constexpr std::size_t kSearchGrowthDivisor = 8;
 // minimum reading of gyro and accelerometer near saturation, as a fraction of the smallest possible saturation level
 constexpr double kLowReadingRatios[] = {0.5, 0.9};
 
-std::array<std::optional<double>, 6> rails_of(const RailDetector& axis_aligned_rails,
-                                              const RailDetector::State& state) {
+std::array<std::optional<double>, 6> saturation_limits_of(const SaturationLimitDetector& axis_aligned_rails,
+                                              const SaturationLimitDetector::State& state) {
   std::array<std::optional<double>, 6> out;
-  for (int c = 0; c < 6; ++c) out[static_cast<std::size_t>(c)] = axis_aligned_rails.rail(state, c);
+  for (int c = 0; c < 6; ++c) out[static_cast<std::size_t>(c)] = axis_aligned_rails.saturation_limit(state, c);
   return out;
 }
 
 }  // namespace
 
 StreamingClippingFinder::StreamingClippingFinder(const Params& params)
-    : axis_aligned_rails_(params.clipping.axis_aligned_rails), planes_(plane_finders(params.clipping)) {
+    : axis_limit_detector_(params.clipping.axis_limit_params), plane_finders_(make_plane_finders(params.clipping)) {
   require_valid_fields(params);
   readings_max_ = static_cast<std::size_t>(params.readings_max);
 }
 
 StreamingClippingFinder::State StreamingClippingFinder::start() const {
   State state;
-  for (Memory& memory : state.memory) memory.readings.reserve(readings_max_);
-  state.work.reserve(readings_max_);
-  state.known.axis_aligned_rails = axis_aligned_rails_.start();
-  state.known.planes = planes_[index_of(Triad::gyro)][0].params().known;
-  state.known.accel_planes = planes_[index_of(Triad::accelerometer)][0].params().known;
+  for (DistinctReadingMemory& memory : state.distinct_readings) memory.readings.reserve(readings_max_);
+  state.search_workspace.reserve(readings_max_);
+  state.known_limits.axis_limit_state = axis_limit_detector_.start();
+  state.known_limits.gyro_planes = plane_finders_[index_of(Triad::gyro)][0].params().known_limits;
+  state.known_limits.accel_saturation_planes = plane_finders_[index_of(Triad::accelerometer)][0].params().known_limits;
   return state;
 }
 
-bool StreamingClippingFinder::is_near(const Vector3d& reading, Triad triad, const Memory& memory, double share) const {
+bool StreamingClippingFinder::is_near(const Vector3d& reading, Triad triad, const DistinctReadingMemory& memory, double share) const {
   const std::size_t i = index_of(triad);
   for (int j = 0; j < 3; ++j) {
     const double magnitude = std::abs(reading[j]);
-    const bool high = magnitude >= kLowReadingRatios[i] * planes_[i][0].params().distance_min_rad_s;
+    const bool high = magnitude >= kLowReadingRatios[i] * plane_finders_[i][0].params().distance_min_rad_s;
     if (high && magnitude >= share * memory.peak[j]) return true;
   }
   return false;
 }
 
 // Above readings_max_ readings, those far from the largest readings are dropped first, then the oldest.
-void StreamingClippingFinder::store(const Vector3d& reading, Triad triad, Memory& memory) const {
+void StreamingClippingFinder::store_distinct_reading(const Vector3d& reading, Triad triad, DistinctReadingMemory& memory) const {
   std::vector<Vector3d>& readings = memory.readings;
   if (readings.size() == readings_max_) {
-    memory.pruned = true;
+    memory.readings_pruned = true;
     std::size_t kept = 0, looked = 0, near_until = 0;
     const std::size_t count = readings.size();
     for (std::size_t k = 0; k < count; ++k) {
@@ -85,64 +85,64 @@ void StreamingClippingFinder::store(const Vector3d& reading, Triad triad, Memory
   memory.peak = memory.peak.cwiseMax(reading.cwiseAbs());
 }
 
-RailPlanes StreamingClippingFinder::search(Triad triad, State& state) const {
-  const Memory& memory = state.memory[index_of(triad)];
-  const RailPlanes& known = triad == Triad::gyro ? state.known.planes : state.known.accel_planes;
-  const bool unstated = stated_range_contradicted(axis_aligned_rails_, state.known.axis_aligned_rails, triad);
-  RailPlanes found = planes_[index_of(triad)][unstated ? 1 : 0].find(memory.readings, known, state.work);
-  for (std::size_t j = 0; j < 3 && memory.pruned; ++j) {
-    const auto& before = known.element[j];
-    if (!found.element[j] && before && !before->contradicted_by(memory.readings)) found.element[j] = before;
+SaturationPlanes StreamingClippingFinder::search_saturation_planes(Triad triad, State& state) const {
+  const DistinctReadingMemory& memory = state.distinct_readings[index_of(triad)];
+  const SaturationPlanes& known = triad == Triad::gyro ? state.known_limits.gyro_planes : state.known_limits.accel_saturation_planes;
+  const bool unstated = stated_range_contradicted(axis_limit_detector_, state.known_limits.axis_limit_state, triad);
+  SaturationPlanes found = plane_finders_[index_of(triad)][unstated ? 1 : 0].find(memory.readings, known, state.search_workspace);
+  for (std::size_t j = 0; j < 3 && memory.readings_pruned; ++j) {
+    const auto& before = known.sensing_axis[j];
+    if (!found.sensing_axis[j] && before && !before->is_contradicted_by_readings(memory.readings)) found.sensing_axis[j] = before;
   }
   return found;
 }
 
-bool StreamingClippingFinder::observe(const Vector3d& reading, Triad triad, State& state) const {
-  Memory& memory = state.memory[index_of(triad)];
+bool StreamingClippingFinder::observe_reading(const Vector3d& reading, Triad triad, State& state) const {
+  DistinctReadingMemory& memory = state.distinct_readings[index_of(triad)];
   if (!memory.readings.empty() && memory.readings.back() == reading) return false;
-  store(reading, triad, memory);
+  store_distinct_reading(reading, triad, memory);
   if (is_near(reading, triad, memory, kNearExtremeRatio)) {
-    ++memory.near;
-    ++memory.unsearched_near_extremes;
+    ++memory.near_limit_count;
+    ++memory.near_limit_since_search;
     memory.samples_since_search = 0;
   } else {
     ++memory.samples_since_search;
   }
   const bool ended = memory.samples_since_search == kBeside - 1;
-  if (memory.unsearched_near_extremes == 0) return false;
-  if (!ended && memory.unsearched_near_extremes < std::max<std::size_t>(2, memory.near / kSearchGrowthDivisor))
+  if (memory.near_limit_since_search == 0) return false;
+  if (!ended && memory.near_limit_since_search < std::max<std::size_t>(2, memory.near_limit_count / kSearchGrowthDivisor))
     return false;
-  memory.unsearched_near_extremes = 0;
-  const RailPlanes planes = search(triad, state);
-  const bool upright = are_upright(memory.readings, planes, state.known.axis_aligned_rails, triad);
-  RailPlanes& known = triad == Triad::gyro ? state.known.planes : state.known.accel_planes;
+  memory.near_limit_since_search = 0;
+  const SaturationPlanes planes = search_saturation_planes(triad, state);
+  const bool upright = are_upright(memory.readings, planes, state.known_limits.axis_limit_state, triad);
+  SaturationPlanes& known = triad == Triad::gyro ? state.known_limits.gyro_planes : state.known_limits.accel_saturation_planes;
   bool& known_upright =
-      triad == Triad::gyro ? state.known.gyro_clips_after_compensation : state.known.accel_clips_after_compensation;
+      triad == Triad::gyro ? state.known_limits.gyro_clips_after_compensation : state.known_limits.accel_clips_after_compensation;
   const bool changed = planes != known || upright != known_upright;
   known = planes;
   known_upright = upright;
   return changed;
 }
 
-bool StreamingClippingFinder::observe(const ImuSample& sample, State& state) const {
-  const auto before = rails_of(axis_aligned_rails_, state.known.axis_aligned_rails);
-  axis_aligned_rails_.observe(sample, state.known.axis_aligned_rails);
-  bool changed = before != rails_of(axis_aligned_rails_, state.known.axis_aligned_rails);
+bool StreamingClippingFinder::observe_reading(const ImuSample& sample, State& state) const {
+  const auto before = saturation_limits_of(axis_limit_detector_, state.known_limits.axis_limit_state);
+  axis_limit_detector_.observe_reading(sample, state.known_limits.axis_limit_state);
+  bool changed = before != saturation_limits_of(axis_limit_detector_, state.known_limits.axis_limit_state);
   for (const Triad triad : {Triad::gyro, Triad::accelerometer}) {
-    if (observe(reading_of(sample, triad), triad, state)) changed = true;
+    if (observe_reading(triad_reading_of(sample, triad), triad, state)) changed = true;
   }
   return changed;
 }
 
-Clipping StreamingClippingFinder::classify(const ImuSample* before, const ImuSample& sample, const State& state,
+Clipping StreamingClippingFinder::classify_clipping(const ImuSample* before, const ImuSample& sample, const State& state,
                                            const ImuSample* after) const {
-  RailDetector::State axis_aligned_rails = state.known.axis_aligned_rails;
-  Clipping out = axis_aligned_rails_.classify(sample, axis_aligned_rails);
+  SaturationLimitDetector::State axis_aligned_rails = state.known_limits.axis_limit_state;
+  Clipping out = axis_limit_detector_.classify_clipping(sample, axis_aligned_rails);
   if (after != nullptr)
-    axis_aligned_rails_.add_rising_edge(sample, *after, axis_aligned_rails_.classify(*after, axis_aligned_rails),
+    axis_limit_detector_.add_rising_edge_at_limit(sample, *after, axis_limit_detector_.classify_clipping(*after, axis_aligned_rails),
                                         axis_aligned_rails, out);
   for (const Triad triad : {Triad::gyro, Triad::accelerometer})
-    out = classify_by_planes(state.known.planes_in_use(triad), triad, out, before, sample, after);
+    out = clipping_from_planes(state.known_limits.saturation_planes_in_use(triad), triad, out, before, sample, after);
   return out;
 }
 

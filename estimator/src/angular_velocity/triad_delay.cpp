@@ -21,7 +21,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Unknown = Eigen::Matrix<double, 6, 1>;  // lever arm, accelerometer bias
 
-constexpr int kMaxDelay_samples = ImpactSums::kDelayMax_samples;  // largest tested delay, in samples
+constexpr int kMaxDelay_samples = ImpactDelayCorrelation::kDelayMax_samples;  // largest tested delay, in samples
 constexpr int kDelaysPerSample =
     4;  // delays per sample on the coarse grid, and on the finer grid around the best delay
 constexpr double kRateMin_rad_s = 2.0;
@@ -37,13 +37,13 @@ constexpr double kGainMin = 0.4;
 struct TriadReadings {
   std::vector<double> time_s;
   std::vector<Vector3d> value;
-  std::vector<bool> clipped;
+  std::vector<bool> is_sample_clipped;
 
   std::size_t size() const { return time_s.size(); }
   void add(double at_s, const Vector3d& reading, bool clips) {
     time_s.push_back(at_s);
     value.push_back(reading);
-    clipped.push_back(clips);
+    is_sample_clipped.push_back(clips);
   }
 };
 
@@ -51,7 +51,7 @@ TriadReadings readings_of(std::span<const ImuSample> samples, std::span<const Cl
   const std::optional<RepeatedReadings> repeated = find_repeated(samples, triad);
   TriadReadings out;
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (repeated && repeated->repeats[k]) continue;
+    if (repeated && repeated->repeats_per_sample[k]) continue;
     const double at_s =
         seconds(samples[k].time_ns - samples[0].time_ns) - (repeated ? repeated->reading_age_s(k) : 0.0);
     if (out.size() > 0 && !(at_s > out.time_s.back() + kApart_s)) continue;
@@ -74,7 +74,7 @@ bool force_at(const TriadReadings& force, double time_s, std::size_t& from, Vect
   if (from < 1 || from + 2 >= force.size() || force.time_s[from] > time_s) return false;
   out.setZero();
   for (std::size_t i = from - 1; i < from + 3; ++i) {
-    if (force.clipped[i]) return false;
+    if (force.is_sample_clipped[i]) return false;
     double weight = 1.0;
     for (std::size_t j = from - 1; j < from + 3; ++j) {
       if (j != i) weight *= (time_s - force.time_s[j]) / (force.time_s[i] - force.time_s[j]);
@@ -88,7 +88,7 @@ std::vector<RotationSample> rotation_samples(const TriadReadings& gyro) {
   std::vector<RotationSample> out;
   for (std::size_t k = 1; k + 1 < gyro.size() && out.size() < kSamplesMax; ++k) {
     const Vector3d &before = gyro.value[k - 1], &w = gyro.value[k], &after = gyro.value[k + 1];
-    if (w.norm() < kRateMin_rad_s || gyro.clipped[k - 1] || gyro.clipped[k] || gyro.clipped[k + 1]) continue;
+    if (w.norm() < kRateMin_rad_s || gyro.is_sample_clipped[k - 1] || gyro.is_sample_clipped[k] || gyro.is_sample_clipped[k + 1]) continue;
     const double left = gyro.time_s[k] - gyro.time_s[k - 1], right = gyro.time_s[k + 1] - gyro.time_s[k];
     const Vector3d alpha = (left / right * (after - w) + right / left * (w - before)) / (left + right);
     out.push_back({gyro.time_s[k], so3::hat(alpha) + so3::hat(w) * so3::hat(w)});
@@ -97,7 +97,7 @@ std::vector<RotationSample> rotation_samples(const TriadReadings& gyro) {
 }
 
 // Returns the robust cost of the flight residuals, minimised over lever arm and bias: rate_smoother.md (R10).
-double cost(const TriadReadings& accel, std::span<const RotationSample> instants, const Vector3d& lever_arm_m,
+double alignment_cost(const TriadReadings& accel, std::span<const RotationSample> instants, const Vector3d& lever_arm_m,
             double delay_s) {
   Unknown prior, at, information;
   prior << lever_arm_m, Vector3d::Zero();
@@ -139,7 +139,7 @@ class ForceIntegral {
       if (k > 0) sum_[k] = sum_[k - 1] + 0.5 * (norm_[k] + norm_[k - 1]) * (time_s_[k] - time_s_[k - 1]);
     }
   }
-  double to(double time_s, std::size_t& from) const {
+  double integral_until(double time_s, std::size_t& from) const {
     if (time_s <= time_s_.front()) return norm_.front() * (time_s - time_s_.front());
     if (time_s >= time_s_.back()) return sum_.back() + norm_.back() * (time_s - time_s_.back());
     while (from + 2 < norm_.size() && time_s_[from + 1] <= time_s) ++from;
@@ -154,20 +154,20 @@ class ForceIntegral {
 };
 
 // See rate_smoother.md (R45).
-TriadDelay struck(const TriadReadings& gyro, const TriadReadings& accel, double period_s) {
+TriadDelay delay_from_impacts(const TriadReadings& gyro, const TriadReadings& accel, double period_s) {
   if (accel.size() < 4) return {};
   const ForceIntegral force(accel);
-  const double step_s = period_s / ImpactSums::kDelaysPerSample;
-  std::array<std::size_t, ImpactSums::kDelayCount> begin{}, end{};
-  ImpactSums sums;
+  const double step_s = period_s / ImpactDelayCorrelation::kDelaysPerSample;
+  std::array<std::size_t, ImpactDelayCorrelation::kDelayCount> begin{}, end{};
+  ImpactDelayCorrelation sums;
   for (std::size_t k = 1; k < gyro.size(); ++k) {
-    if (gyro.clipped[k] || gyro.clipped[k - 1] || !ImpactSums::counts(gyro.value[k - 1], gyro.value[k])) continue;
+    if (gyro.is_sample_clipped[k] || gyro.is_sample_clipped[k - 1] || !ImpactDelayCorrelation::counts(gyro.value[k - 1], gyro.value[k])) continue;
     const double begin_s = gyro.time_s[k - 1], end_s = gyro.time_s[k], span_s = end_s - begin_s;
-    ImpactSums::DelayGrid mean;
-    for (int i = 0; i < ImpactSums::kDelayCount; ++i) {
+    ImpactDelayCorrelation::DelayGrid mean;
+    for (int i = 0; i < ImpactDelayCorrelation::kDelayCount; ++i) {
       const auto at = static_cast<std::size_t>(i);
-      const double delay_s = (i - ImpactSums::kDelayMax) * step_s;
-      mean[i] = (force.to(end_s + delay_s, end[at]) - force.to(begin_s + delay_s, begin[at])) / span_s;
+      const double delay_s = (i - ImpactDelayCorrelation::kDelayMax) * step_s;
+      mean[i] = (force.integral_until(end_s + delay_s, end[at]) - force.integral_until(begin_s + delay_s, begin[at])) / span_s;
     }
     sums.add((gyro.value[k] - gyro.value[k - 1]).norm() / span_s, mean);
   }
@@ -182,7 +182,7 @@ double delay_from_flight_s(const TriadReadings& gyro, const TriadReadings& accel
                            double period_s) {
   const std::vector<RotationSample> turning = rotation_samples(gyro);
   if (turning.size() < kSamplesMin) return 0.0;
-  const auto of = [&](double shift) { return cost(accel, turning, lever_arm_m, shift * period_s); };
+  const auto of = [&](double shift) { return alignment_cost(accel, turning, lever_arm_m, shift * period_s); };
   const double none = of(0.0);
   double best = none, shift = 0.0;
   for (int i = -kMaxDelay_samples * kDelaysPerSample; i <= kMaxDelay_samples * kDelaysPerSample; ++i) {
@@ -212,7 +212,7 @@ TriadDelay guess_triad_delay(std::span<const ImuSample> samples, std::span<const
   const TriadReadings gyro = readings_of(samples, clippings, Triad::gyro);
   const TriadReadings accel = readings_of(samples, clippings, Triad::accelerometer);
   const double period_s = median_period_s(samples);
-  const TriadDelay impact_delay = struck(gyro, accel, period_s);
+  const TriadDelay impact_delay = delay_from_impacts(gyro, accel, period_s);
   if (impact_delay.sigma_s > 0.0) return impact_delay;
   return {delay_from_flight_s(gyro, accel, lever_arm_m, period_s), 0.0};
 }

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "tumble/angular_velocity/detail/impact_sums.hpp"
-#include "tumble/angular_velocity/detail/rail_detector.hpp"
+#include "tumble/angular_velocity/detail/saturation_limit_detector.hpp"
 #include "tumble/common/imu.hpp"
 
 namespace tumble {

@@ -19,7 +19,7 @@ double inverse_mills_ratio(double z) {
 }  // namespace
 
 // See rate_smoother.md (R23), (R24).
-NormalMoments truncated_below(const NormalMoments& from, double bound, double bound_variance) {
+GaussianMoments truncated_gaussian_moments(const GaussianMoments& from, double bound, double bound_variance) {
   const double spread2 = from.variance + bound_variance, spread = std::sqrt(spread2);
   const double z = (from.mean - bound) / spread, r = inverse_mills_ratio(z);
   return {from.mean + from.variance * r / spread,
@@ -27,14 +27,14 @@ NormalMoments truncated_below(const NormalMoments& from, double bound, double bo
 }
 
 // See rate_smoother.md (R22), (R25).
-GaussianSite refined_bound(const NormalMoments& marginal, const GaussianSite& now, double bound, double bound_variance,
+GaussianLikelihoodApproximation refined_bound_approximation(const GaussianMoments& marginal, const GaussianLikelihoodApproximation& now, double bound, double bound_variance,
                            double variance_max, double share) {
   const double precision = std::max(1.0 / marginal.variance - now.precision, 1.0 / variance_max);
-  const NormalMoments cavity{(marginal.mean / marginal.variance - now.shift) / precision, 1.0 / precision};
-  const NormalMoments wanted = truncated_below(cavity, bound, bound_variance);
+  const GaussianMoments cavity{(marginal.mean / marginal.variance - now.information_mean) / precision, 1.0 / precision};
+  const GaussianMoments wanted = truncated_gaussian_moments(cavity, bound, bound_variance);
   const double found = std::max(0.0, 1.0 / wanted.variance - precision);
   const double shift = wanted.mean / wanted.variance - precision * cavity.mean;
-  return {now.precision + share * (found - now.precision), now.shift + share * (shift - now.shift)};
+  return {now.precision + share * (found - now.precision), now.information_mean + share * (shift - now.information_mean)};
 }
 
 }  // namespace tumble

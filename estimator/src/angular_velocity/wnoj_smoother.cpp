@@ -14,12 +14,12 @@ constexpr double kVarianceMax = 1e18;
 // Represents the equation R x_k + S x_{k+1} = z (unit noise) of one axis: saave.md (S6). The state x contains the rate,
 // and the angular acceleration times time_scale.
 struct EliminatedKnot {
-  Eigen::Matrix2d R, S;
+  Eigen::Matrix2d residual_factor, innovation_matrix;
   Eigen::Vector2d z;
 };
 
 // Represents the equation R x = z with upper triangular R for the state x of the current sample.
-struct Carried {
+struct ForwardMessage {
   Eigen::Matrix2d R = Eigen::Matrix2d::Zero();
   Eigen::Vector2d z = Eigen::Vector2d::Zero();
 };
@@ -43,7 +43,7 @@ void triangularise(Stack& a) {
   }
 }
 
-EliminatedKnot eliminate(Carried& carried, double rate, double deviation, double dt_s, double psd,
+EliminatedKnot eliminate(ForwardMessage& carried, double rate, double deviation, double dt_s, double psd,
                          double time_scale_s) {
   // See saave.md (S5).
   const double ratio = dt_s / time_scale_s;
@@ -67,7 +67,7 @@ EliminatedKnot eliminate(Carried& carried, double rate, double deviation, double
   return {a.block<2, 2>(0, 0), a.block<2, 2>(0, 2), a.block<2, 1>(0, 4)};
 }
 
-void measure(Carried& carried, double rate, double deviation) {
+void add_measurement(ForwardMessage& carried, double rate, double deviation) {
   Stack a = Stack::Zero();
   a.block<2, 2>(0, 0) = carried.R;
   a.block<2, 1>(0, 4) = carried.z;
@@ -108,13 +108,13 @@ void smooth_axis(std::span<const WnojSmoother::Measurement> measurements, int ax
   const std::size_t count = measurements.size();
   const double time_scale_s =
       seconds(measurements.back().time_ns - measurements.front().time_ns) / static_cast<double>(count - 1);
-  Carried carried;
+  ForwardMessage carried;
   for (std::size_t k = 0; k + 1 < count; ++k) {
     const auto& m = measurements[k];
     rows[k] = eliminate(carried, m.rate_rad_s[axis], std::sqrt(m.variance_rad2_s2[axis]),
                         seconds(measurements[k + 1].time_ns - m.time_ns), psd, time_scale_s);
   }
-  measure(carried, measurements.back().rate_rad_s[axis], std::sqrt(measurements.back().variance_rad2_s2[axis]));
+  add_measurement(carried, measurements.back().rate_rad_s[axis], std::sqrt(measurements.back().variance_rad2_s2[axis]));
 
   // See saave.md (S7).
   Eigen::Matrix2d R_inv = carried.R.triangularView<Eigen::Upper>().solve(Eigen::Matrix2d::Identity());
@@ -123,8 +123,8 @@ void smooth_axis(std::span<const WnojSmoother::Measurement> measurements, int ax
   for (std::size_t k = count; k-- > 0;) {
     if (k + 1 < count) {
       const EliminatedKnot& row = rows[k];
-      R_inv = row.R.triangularView<Eigen::Upper>().solve(Eigen::Matrix2d::Identity());
-      const Eigen::Matrix2d G = R_inv * row.S;
+      R_inv = row.residual_factor.triangularView<Eigen::Upper>().solve(Eigen::Matrix2d::Identity());
+      const Eigen::Matrix2d G = R_inv * row.innovation_matrix;
       x = (R_inv * row.z - G * x).eval();
       P = (R_inv * R_inv.transpose() + G * P * G.transpose()).eval();
     }

@@ -3,6 +3,6 @@
 
 namespace tumble {
 
-template struct ArrowSystem<hand_held::kBlockSize, hand_held::kBorderSize>;
+template struct BlockArrowSystem<hand_held::kBlockSize, hand_held::kBorderSize>;
 
 }  // namespace tumble

@@ -16,24 +16,24 @@ namespace {
 constexpr double kSecondDifference = 11.0 / 20.0, kJerkSpan_periods = 1.5;
 
 bool is_free(const GyroReadings& rates, std::size_t k, Eigen::Index axis) {
-  return rates.signs[k].gyro[static_cast<std::size_t>(axis)] == 0 && !(rates.subsample_sigma_rad_s[k][axis] > 0.0);
+  return rates.clip_signs[k].gyro[static_cast<std::size_t>(axis)] == 0 && !(rates.partial_saturation_sigma_rad_s[k][axis] > 0.0);
 }
 
-struct Reach {
+struct SampleRange {
   std::size_t first = 0, last = 0;
-  Reach(double from_s, double to_s, double node_s, std::size_t nodes)
+  SampleRange(double from_s, double to_s, double node_s, std::size_t nodes)
       : first(static_cast<std::size_t>(std::max(0.0, std::ceil(from_s / node_s)))),
         last(std::min(nodes, static_cast<std::size_t>(std::max(0.0, std::floor(to_s / node_s) + 1.0)))) {}
 };
 
 // See carried.md (C24).
-void add_curvature_densities(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,
+void add_jerk_from_curvature(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,
                              std::vector<double>& densities) {
-  const double period_s = rates.windows.period_s, reach_s = kJerkSpan_periods * std::max(period_s, node_s);
+  const double period_s = rates.averaging_windows.period_s, reach_s = kJerkSpan_periods * std::max(period_s, node_s);
   const double unit = kSecondDifference * period_s * period_s * period_s;
   std::vector<double> counts(densities.size(), 0.0);
   for (std::size_t k = 1; k + 1 < rates.samples.size(); ++k) {
-    if (rates.windows.end_s[k + 1] - rates.windows.end_s[k - 1] > 2.0 * kLongest * period_s) continue;
+    if (rates.averaging_windows.end_s[k + 1] - rates.averaging_windows.end_s[k - 1] > 2.0 * kLongest * period_s) continue;
     const Vector3d bend = rates.samples[k + 1].angular_velocity_rad_s - 2.0 * rates.samples[k].angular_velocity_rad_s +
                           rates.samples[k - 1].angular_velocity_rad_s;
     double sum = 0.0, count = 0.0;
@@ -43,8 +43,8 @@ void add_curvature_densities(const GyroReadings& rates, const Eigen::Matrix3d& r
       sum += along * along - 6.0 * noise_rad_s * noise_rad_s;
       count += 1.0;
     }
-    const double at_s = rates.windows.centre_s[k];
-    const Reach reach(at_s - reach_s, at_s + reach_s, node_s, densities.size());
+    const double at_s = rates.averaging_windows.window_centre_s[k];
+    const SampleRange reach(at_s - reach_s, at_s + reach_s, node_s, densities.size());
     for (std::size_t i = reach.first; i < reach.last; ++i) densities[i] += sum / unit, counts[i] += count;
   }
   for (std::size_t i = 0; i < densities.size(); ++i)
@@ -52,22 +52,22 @@ void add_curvature_densities(const GyroReadings& rates, const Eigen::Matrix3d& r
 }
 
 // Returns false if reading k or k + 1 is saturated, or if a reading is missing between them.
-bool slope_of(const GyroReadings& rates, const Eigen::Matrix3d& rows, std::size_t k, Eigen::Index axis, double& slope,
+bool unclipped_slope_of(const GyroReadings& rates, const Eigen::Matrix3d& rows, std::size_t k, Eigen::Index axis, double& slope,
               double& at_s) {
   if (!is_free(rates, k, axis) || !is_free(rates, k + 1, axis)) return false;
-  const double dt_s = rates.windows.centre_s[k + 1] - rates.windows.centre_s[k];
-  if (!(dt_s > 0.0) || dt_s > kLongest * rates.windows.period_s) return false;
+  const double dt_s = rates.averaging_windows.window_centre_s[k + 1] - rates.averaging_windows.window_centre_s[k];
+  if (!(dt_s > 0.0) || dt_s > kLongest * rates.averaging_windows.period_s) return false;
   slope =
       rows.row(axis).dot(rates.samples[k + 1].angular_velocity_rad_s - rates.samples[k].angular_velocity_rad_s) / dt_s;
-  at_s = 0.5 * (rates.windows.centre_s[k] + rates.windows.centre_s[k + 1]);
+  at_s = 0.5 * (rates.averaging_windows.window_centre_s[k] + rates.averaging_windows.window_centre_s[k + 1]);
   return true;
 }
 
 // See carried.md (C25).
-void add_clipped_slope_densities(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s,
+void add_jerk_from_clipped_slopes(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s,
                                  double node_s, std::vector<double>& densities) {
   const std::size_t count = rates.samples.size();
-  const double noise = 2.0 * noise_rad_s / rates.windows.period_s;  // noise of the difference of two slopes
+  const double noise = 2.0 * noise_rad_s / rates.averaging_windows.period_s;  // noise of the difference of two slopes
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     for (std::size_t begin = 2; begin + 2 < count;) {
       if (is_free(rates, begin, axis)) {
@@ -77,11 +77,11 @@ void add_clipped_slope_densities(const GyroReadings& rates, const Eigen::Matrix3
       std::size_t end = begin;
       while (end < count && !is_free(rates, end, axis)) ++end;
       double in = 0.0, out = 0.0, from_s = 0.0, to_s = 0.0;
-      const bool determined = end + 1 < count && slope_of(rates, rows, begin - 2, axis, in, from_s) &&
-                              slope_of(rates, rows, end, axis, out, to_s);
+      const bool determined = end + 1 < count && unclipped_slope_of(rates, rows, begin - 2, axis, in, from_s) &&
+                              unclipped_slope_of(rates, rows, end, axis, out, to_s);
       if (determined) {
         const double density = ((out - in) * (out - in) - noise * noise) / (to_s - from_s);
-        const Reach reach(from_s, to_s, node_s, densities.size());
+        const SampleRange reach(from_s, to_s, node_s, densities.size());
         for (std::size_t i = reach.first; i < reach.last; ++i) densities[i] = std::max(densities[i], density);
       }
       begin = end;
@@ -94,8 +94,8 @@ void add_clipped_slope_densities(const GyroReadings& rates, const Eigen::Matrix3
 std::vector<double> estimate_jerk(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s,
                                   double node_s, std::size_t nodes) {
   std::vector<double> out(nodes, 0.0);
-  add_curvature_densities(rates, rows, noise_rad_s, node_s, out);
-  add_clipped_slope_densities(rates, rows, noise_rad_s, node_s, out);
+  add_jerk_from_curvature(rates, rows, noise_rad_s, node_s, out);
+  add_jerk_from_clipped_slopes(rates, rows, noise_rad_s, node_s, out);
   for (double& density : out) density = std::sqrt(density);
   return out;
 }

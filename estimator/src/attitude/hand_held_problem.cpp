@@ -32,10 +32,10 @@ Motion::Params motion_params(const HandHeldSmoother::Params& p, double jerk) {
   out.step_s = p.expert.node_s;
   out.jerk_rad_s3_sqrts = jerk * p.jerk_rad_s3_sqrts;
   out.rotation_error_sqrts = p.expert.readings.kRotationError_sqrts;
-  out.hand_sigma_m_s2 = p.hand_sigma_m_s2, out.hand_tau_s = p.expert.hand.kHandTau_s;
-  out.velocity_m_s = p.velocity_m_s, out.velocity_tau_s = p.expert.hand.kVelocityTau_s;
-  out.position_m = p.position_m, out.position_tau_s = p.expert.hand.kPositionTau_s,
-  out.position_leak_s = p.expert.hand.position_leak_s;
+  out.hand_sigma_m_s2 = p.hand_sigma_m_s2, out.hand_tau_s = p.expert.hand_motion.kHandTau_s;
+  out.velocity_m_s = p.velocity_m_s, out.velocity_tau_s = p.expert.hand_motion.kVelocityTau_s;
+  out.position_m = p.position_m, out.position_tau_s = p.expert.hand_motion.kPositionTau_s,
+  out.position_leak_s = p.expert.hand_motion.position_leak_s;
   return out;
 }
 
@@ -44,12 +44,12 @@ ReadingNoise reading_noise(const HandHeldSmoother::Params& p, double period_s) {
   ReadingNoise out;
   out.gyro_rad_s = p.gyro_noise_density * root_rate;
   out.deficit_error_ratio = p.expert.readings.kDeficitErrorRatio;
-  out.rail_rad_s = p.expert.readings.kRailSigma_rad_s;
+  out.saturation_limit_sigma_rad_s = p.expert.readings.kRailSigma_rad_s;
   out.accel_m_s2 = p.accel_noise_density * root_rate;
   out.force_noise_ratio = p.expert.readings.kAccelErrorRatio;
-  out.rest_rad_s = kRestSigma_rad_s;
-  out.rest_m_s = kRestSigma_m_s;
-  out.rest_m_s2 = kRestSigma_m_s2;
+  out.stationary_rate_sigma_rad_s = kRestSigma_rad_s;
+  out.stationary_velocity_sigma_m_s = kRestSigma_m_s;
+  out.stationary_acceleration_sigma_m_s2 = kRestSigma_m_s2;
   return out;
 }
 
@@ -57,7 +57,7 @@ namespace {
 
 // The reported covariance neglects the lower bounds from saturated readings. Mean and middle rate of an averaging
 // window of length P differ with variance q P^3/320 (jerk density q): carried.md (C26).
-ReadingNoise stated_noise(const HandHeldSmoother::Params& params, ReadingNoise noise, double period_s) {
+ReadingNoise noise_from_data_sheet(const HandHeldSmoother::Params& params, ReadingNoise noise, double period_s) {
   noise.bound = 0.0;
   noise.window_rate_sigma_rad_s = params.jerk_rad_s3_sqrts * std::sqrt(period_s * period_s * period_s / 320.0);
   return noise;
@@ -65,34 +65,34 @@ ReadingNoise stated_noise(const HandHeldSmoother::Params& params, ReadingNoise n
 
 }  // namespace
 
-Problem::Problem(const HandHeldSmoother::Params& params, const Eigen::Matrix3d& rows, const NodeData& collected,
+HandHeldProblem::HandHeldProblem(const HandHeldSmoother::Params& params, const Eigen::Matrix3d& rows, const NodeData& collected,
                  std::vector<Node> nodes)
     : params_(params),
-      rows_(rows),
+      sensing_directions_(rows),
       readings_(collected.nodes),
       measured_jerk_(collected.jerk),
       motion_(motion_params(params)),
-      period_s_(collected.rates.windows.period_s),
+      period_s_(collected.rates.averaging_windows.period_s),
       noise_(reading_noise(params, period_s_)),
       g_W_m_s2_(0.0, 0.0, -params.gravity_m_s2),
       nodes_(std::move(nodes)),
       jerk_(nodes_.size(), 1.0),
-      hand_(nodes_.size(), 1.0),
-      hand_power_(nodes_.size() + 1, 0.0),
-      blocks_(nodes_.size()) {}
+      hand_acceleration_factors_(nodes_.size(), 1.0),
+      hand_power_cumulative_(nodes_.size() + 1, 0.0),
+      state_blocks_(nodes_.size()) {}
 
 double add_node(const NodeReadings& readings, const Eigen::Matrix3d& rows, const ReadingNoise& noise,
                 const Vector3d& g_W_m_s2, const Motion& motion, const Node& node, const Constants& constants,
-                System::Block& block, System::Corner& corner) {
+                System::StateBlock& block, System::BorderBlock& corner) {
   double cost = add_gyro(readings, rows, noise, node, constants, block, corner);
   cost += add_force(readings, g_W_m_s2, noise, node, constants, block, corner);
   cost += motion.add_bounds(node, block);
-  if (readings.rest) cost += add_rest(noise, node, block);
+  if (readings.is_stationary) cost += add_rest(noise, node, block);
   return cost;
 }
 
 // See carried.md (C1).
-double add_constants_prior(const HandHeldSmoother::Params& params, const Constants& constants, System::Corner& corner) {
+double add_constants_prior(const HandHeldSmoother::Params& params, const Constants& constants, System::BorderBlock& corner) {
   double cost = 0.0;
   const auto prior = [&](const Vector3d& value, double sigma, int at) {
     const double information = 1.0 / (sigma * sigma);
@@ -106,97 +106,97 @@ double add_constants_prior(const HandHeldSmoother::Params& params, const Constan
   return cost;
 }
 
-double Problem::add_node(std::size_t i, System::Block& block, System::Corner& corner) const {
+double HandHeldProblem::add_node(std::size_t i, System::StateBlock& block, System::BorderBlock& corner) const {
   ReadingNoise noise = noise_;
   noise.window_rate_sigma_rad_s *= jerk_[i];
-  return hand_held::add_node(readings_[i], rows_, noise, g_W_m_s2_, motion_, nodes_[i], constants_, block, corner);
+  return hand_held::add_node(readings_[i], sensing_directions_, noise, g_W_m_s2_, motion_, nodes_[i], constants_, block, corner);
 }
 
-double Problem::linearise() {
-  std::fill(blocks_.begin(), blocks_.end(), System::Block{});
-  corner_ = {};
+double HandHeldProblem::linearise() {
+  std::fill(state_blocks_.begin(), state_blocks_.end(), System::StateBlock{});
+  border_block_ = {};
   double cost =
-      part_ ? part_->before.add(nodes_.front(), blocks_.front()) + part_->after.add(nodes_.back(), blocks_.back())
-            : motion_.add_initial_prior(nodes_[0], blocks_[0]);
+      problem_segment_ ? problem_segment_->message_from_before.add(nodes_.front(), state_blocks_.front()) + problem_segment_->message_from_after.add(nodes_.back(), state_blocks_.back())
+            : motion_.add_initial_prior(nodes_[0], state_blocks_[0]);
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    cost += add_node(i, blocks_[i], corner_);
+    cost += add_node(i, state_blocks_[i], border_block_);
     if (i + 1 < nodes_.size())
-      cost += motion_.add_step(nodes_[i], nodes_[i + 1], hand_[i], blocks_[i], blocks_[i + 1], jerk_[i]);
+      cost += motion_.add_motion_model(nodes_[i], nodes_[i + 1], hand_acceleration_factors_[i], state_blocks_[i], state_blocks_[i + 1], jerk_[i]);
   }
-  if (part_) {
-    corner_ = {};
-    corner_.matrix.setIdentity();
-    for (System::Block& block : blocks_) block.border.setZero();
+  if (problem_segment_) {
+    border_block_ = {};
+    border_block_.matrix.setIdentity();
+    for (System::StateBlock& block : state_blocks_) block.border_coupling.setZero();
     return cost;
   }
-  cost += add_constants_prior(params_, constants_, corner_);
+  cost += add_constants_prior(params_, constants_, border_block_);
   return cost;
 }
 
 // See carried.md (C17), (C18).
-bool Problem::eliminate(System::BorderVector& step) {
-  for (std::size_t i = 0; i < blocks_.size(); ++i) {
-    System::Block* const next = i + 1 < blocks_.size() ? &blocks_[i + 1] : nullptr;
-    if (!System::eliminate(blocks_[i], next, corner_)) return false;
+bool HandHeldProblem::eliminate(System::BorderVector& step) {
+  for (std::size_t i = 0; i < state_blocks_.size(); ++i) {
+    System::StateBlock* const next = i + 1 < state_blocks_.size() ? &state_blocks_[i + 1] : nullptr;
+    if (!System::eliminate(state_blocks_[i], next, border_block_)) return false;
   }
-  return System::solve_corner(corner_, step, constants_covariance_);
+  return System::solve_border_block(border_block_, step, constants_covariance_);
 }
 
 // See carried.md (C19).
-bool Problem::step(double& largest) {
-  if (!eliminate(border_step_)) return false;
-  steps_.resize(blocks_.size());
+bool HandHeldProblem::step(double& largest) {
+  if (!eliminate(border_unknowns_step_)) return false;
+  state_steps_.resize(state_blocks_.size());
   double turn = 0.0;
   largest = 0.0;
-  for (std::size_t i = blocks_.size(); i-- > 0;) {
-    const System::StateVector* const next = i + 1 < blocks_.size() ? &steps_[i + 1] : nullptr;
-    steps_[i] = System::back_substitute(blocks_[i], next, border_step_).eval();
-    const double moved = steps_[i].segment<3>(kPhi).norm();
+  for (std::size_t i = state_blocks_.size(); i-- > 0;) {
+    const System::StateVector* const next = i + 1 < state_blocks_.size() ? &state_steps_[i + 1] : nullptr;
+    state_steps_[i] = System::back_substitute(state_blocks_[i], next, border_unknowns_step_).eval();
+    const double moved = state_steps_[i].segment<3>(kAttitudeError).norm();
     turn = std::max(turn, moved);
-    largest = std::max({largest, moved, 0.1 * steps_[i].segment<3>(kRate).norm()});
+    largest = std::max({largest, moved, 0.1 * state_steps_[i].segment<3>(kRate).norm()});
   }
   if (!std::isfinite(turn)) return false;
   const double share = turn > kRotationMax_rad ? kRotationMax_rad / turn : 1.0;
-  for (System::StateVector& each : steps_) each *= share;
-  border_step_ *= share;
-  go(1.0);
+  for (System::StateVector& each : state_steps_) each *= share;
+  border_unknowns_step_ *= share;
+  apply_state_step(1.0);
   return true;
 }
 
-void Problem::go(double share) {
-  for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_[i].move(share * steps_[i]);
-  constants_.move(share * border_step_);
+void HandHeldProblem::apply_state_step(double share) {
+  for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_[i].move(share * state_steps_[i]);
+  constants_.move(share * border_unknowns_step_);
 }
 
 // See carried.md (C10).
-void Problem::adapt_process_noise() {
+void HandHeldProblem::adapt_process_noise() {
   const std::size_t count = nodes_.size();
   const double assumed = 3.0 * params_.hand_sigma_m_s2 * params_.hand_sigma_m_s2;
   for (std::size_t i = 0; i < count; ++i)
-    hand_power_[i + 1] = hand_power_[i] + nodes_[i].a_W_m_s2.squaredNorm() / assumed;
-  const auto half = static_cast<std::size_t>(0.5 * params_.expert.hand.kHandWindow_s / params_.expert.node_s);
+    hand_power_cumulative_[i + 1] = hand_power_cumulative_[i] + nodes_[i].a_W_m_s2.squaredNorm() / assumed;
+  const auto half = static_cast<std::size_t>(0.5 * params_.expert.hand_motion.kHandWindow_s / params_.expert.node_s);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t a = i > half ? i - half : 0, b = std::min(count, i + half + 1);
-    const double local = (hand_power_[b] - hand_power_[a]) / static_cast<double>(b - a);
-    hand_[i] = std::max(params_.expert.hand.kHandNoiseFloorRatio,
-                        1.0 + params_.expert.hand.hand_noise_adaptation * (local - 1.0));
+    const double local = (hand_power_cumulative_[b] - hand_power_cumulative_[a]) / static_cast<double>(b - a);
+    hand_acceleration_factors_[i] = std::max(params_.expert.hand_motion.kHandNoiseFloorRatio,
+                        1.0 + params_.expert.hand_motion.hand_noise_adaptation * (local - 1.0));
   }
 }
 
-void Problem::restore(Answer answer) {
+void HandHeldProblem::restore(Solution answer) {
   nodes_ = std::move(answer.nodes);
   constants_ = answer.constants;
   constants_covariance_ = answer.constants_covariance;
-  hand_ = std::move(answer.hand);
+  hand_acceleration_factors_ = std::move(answer.hand_acceleration_factors);
   covariances_ = std::move(answer.covariances);
 }
 
 // See carried.md (C19), (C20).
-Status Problem::solve(HandHeldSmoother::Report& report) {
+Status HandHeldProblem::solve(HandHeldSmoother::Report& report) {
   std::optional<Iterate> before;
   report.converged = false;
   for (int k = 0; k < params_.expert.iterations_max; ++k) {
-    if (k >= kFirstAdaptIteration && k <= kLastAdaptIteration && params_.expert.hand.hand_noise_adaptation > 0.0) {
+    if (k >= kFirstAdaptIteration && k <= kLastAdaptIteration && params_.expert.hand_motion.hand_noise_adaptation > 0.0) {
       adapt_process_noise();
       before.reset();  // costs with different process noise are not comparable
     }
@@ -215,16 +215,16 @@ Status Problem::solve(HandHeldSmoother::Report& report) {
     (void)halve_step_until_decrease(*before, report.cost);
   }
   report.constants = constants_;
-  report.hand_acceleration_ratio = hand_acceleration_ratio();
+  report.mean_hand_acceleration_ratio = mean_hand_acceleration_ratio();
   return {};
 }
 
-bool Problem::halve_step_until_decrease(const Iterate& before, double& cost) {
+bool HandHeldProblem::halve_step_until_decrease(const Iterate& before, double& cost) {
   const auto cost_decreases = [&] { return cost < before.cost + kCostRiseMax; };
   for (int k = 0; k < kHalvings && !cost_decreases(); ++k) {
     nodes_ = before.nodes;
     constants_ = before.constants;
-    go(std::ldexp(1.0, -k - 1));
+    apply_state_step(std::ldexp(1.0, -k - 1));
     cost = linearise();
   }
   if (cost_decreases()) return true;
@@ -235,10 +235,10 @@ bool Problem::halve_step_until_decrease(const Iterate& before, double& cost) {
 }
 
 // See carried.md (C21), (C22), (C23).
-Status Problem::covariances(HandHeldSmoother::Report& report) {
+Status HandHeldProblem::covariances(HandHeldSmoother::Report& report) {
   for (std::size_t i = 0; i < jerk_.size(); ++i)
     jerk_[i] = std::max(params_.expert.jerk_inflation, measured_jerk_[i] / params_.jerk_rad_s3_sqrts);
-  const ReadingNoise assumed = std::exchange(noise_, stated_noise(params_, noise_, period_s_));
+  const ReadingNoise assumed = std::exchange(noise_, noise_from_data_sheet(params_, noise_, period_s_));
   (void)linearise();
   noise_ = assumed;
   std::fill(jerk_.begin(), jerk_.end(), 1.0);
@@ -247,10 +247,10 @@ Status Problem::covariances(HandHeldSmoother::Report& report) {
     return {kLost, "cost when the covariance of the smoother for hand-held motion failed", report.cost, 0.0};
   report.constants_covariance = constants_covariance_;
   covariances_.resize(nodes_.size());
-  System::Conditional here, next;
+  System::StateGivenNextState here, next;
   for (std::size_t i = nodes_.size(); i-- > 0;) {
-    here = System::back_conditional(blocks_[i], i + 1 < nodes_.size() ? &next : nullptr);
-    const Eigen::Matrix<double, 9, kBorderSize> rows = here.jacobian_border.topRows<9>();
+    here = System::state_given_next_state(state_blocks_[i], i + 1 < nodes_.size() ? &next : nullptr);
+    const Eigen::Matrix<double, 9, kBorderSize> rows = here.border_jacobian.topRows<9>();
     covariances_[i] = here.state.topLeftCorner<9, 9>();
     covariances_[i].noalias() += rows * constants_covariance_ * rows.transpose();
     next = here;
@@ -260,10 +260,10 @@ Status Problem::covariances(HandHeldSmoother::Report& report) {
 
 // See carried.md (C30). A random process with standard deviation s and correlation time tau has a mean over a window T
 // with the variance s^2 2 tau/T (1 - tau/T (1 - exp(-T/tau))).
-double Problem::hand_acceleration_ratio() const {
+double HandHeldProblem::mean_hand_acceleration_ratio() const {
   const auto window = static_cast<std::size_t>(std::max(1.0, kHandAveraging_s / params_.expert.node_s));
   const double span = static_cast<double>(window) * params_.expert.node_s,
-               ratio = params_.expert.hand.kHandTau_s / span;
+               ratio = params_.expert.hand_motion.kHandTau_s / span;
   const double variance =
       params_.hand_sigma_m_s2 * params_.hand_sigma_m_s2 * 2.0 * ratio * (1.0 - ratio * (1.0 - std::exp(-1.0 / ratio)));
   double largest = 0.0;

@@ -15,65 +15,65 @@ Motion::Params motion_params(const HandHeldSmoother::Params& params, double jerk
 ReadingNoise reading_noise(const HandHeldSmoother::Params& params, double period_s);
 double add_node(const NodeReadings& readings, const Eigen::Matrix3d& rows, const ReadingNoise& noise,
                 const Eigen::Vector3d& g_W_m_s2, const Motion& motion, const Node& node, const Constants& constants,
-                System::Block& block, System::Corner& corner);
-double add_constants_prior(const HandHeldSmoother::Params& params, const Constants& constants, System::Corner& corner);
+                System::StateBlock& block, System::BorderBlock& corner);
+double add_constants_prior(const HandHeldSmoother::Params& params, const Constants& constants, System::BorderBlock& corner);
 /// Returns the difference between the states of two nodes, as a step for Node::move.
-System::StateVector moved(const Node& from, const Node& to);
+System::StateVector node_difference(const Node& from, const Node& to);
 
-/// Message replaces all earlier or all later nodes by a prior on one node, linearised at the state `about`.
-struct Message {
-  Node about;
+/// Message replaces all earlier or all later nodes by a prior on one node, linearised at the state `linearisation_node`.
+struct NodeMessage {
+  Node linearisation_node;
   System::StateMatrix information = System::StateMatrix::Zero();
   System::StateVector gradient = System::StateVector::Zero();
-  double add(const Node& node, System::Block& block) const;
+  double add(const Node& node, System::StateBlock& block) const;
 };
 
 /// Part is the range of nodes [first, last] of a problem, with all other nodes summarised as priors on its ends.
-struct Part {
+struct ProblemSegment {
   std::size_t first = 0, last = 0;
-  Message before = {}, after = {};
+  NodeMessage message_from_before = {}, message_from_after = {};
 };
 
-class Problem {
+class HandHeldProblem {
  public:
-  Problem(const HandHeldSmoother::Params& params, const Eigen::Matrix3d& rows, const NodeData& collected,
+  HandHeldProblem(const HandHeldSmoother::Params& params, const Eigen::Matrix3d& rows, const NodeData& collected,
           std::vector<Node> nodes);
-  /// condense_rest() must have set `part.before` and `part.after`.
-  Problem(const Problem& whole, const Part& part);
+  /// condense_other_nodes() must have set `part.before` and `part.message_from_after`.
+  HandHeldProblem(const HandHeldProblem& whole, const ProblemSegment& part);
 
   /// Returns `diverged` if the normal equations are not positive definite.
   Status solve(HandHeldSmoother::Report& report);
   Status covariances(HandHeldSmoother::Report& report);
-  struct Answer {
+  struct Solution {
     std::vector<Node> nodes;
     Constants constants;
     System::BorderMatrix constants_covariance = System::BorderMatrix::Zero();
-    std::vector<double> hand;
+    std::vector<double> hand_acceleration_factors;
     std::vector<Eigen::Matrix<double, 9, 9>> covariances;
   };
-  Answer answer() const { return {nodes_, constants_, constants_covariance_, hand_, covariances_}; }
-  void restore(Answer answer);
+  Solution solution() const { return {nodes_, constants_, constants_covariance_, hand_acceleration_factors_, covariances_}; }
+  void restore(Solution answer);
   /// Returns false if the normal equations are not positive definite.
-  bool condense_rest(std::span<Part> parts) const;
+  bool condense_other_nodes(std::span<ProblemSegment> parts) const;
   /// Returns the cost at the solution, or infinity without convergence.
-  double converge();
+  double iterate_to_convergence();
 
-  const Eigen::Matrix3d& rows() const { return rows_; }
+  const Eigen::Matrix3d& sensing_directions() const { return sensing_directions_; }
   Eigen::Vector3d gyro_rad_s(std::size_t node) const { return nodes_[node].w_WI_I_rad_s + constants_.gyro_bias_rad_s; }
-  double rail_sigma_rad_s() const { return noise_.rail_rad_s; }
+  double saturation_limit_sigma_rad_s() const { return noise_.saturation_limit_sigma_rad_s; }
   double jerk_rad_s3_sqrts() const { return params_.jerk_rad_s3_sqrts; }
-  double node_s() const { return params_.expert.node_s; }
+  double node_interval_s() const { return params_.expert.node_s; }
   const Eigen::Vector3d& gravity_W_m_s2() const { return g_W_m_s2_; }
   const NodeReadings& readings(std::size_t node) const { return readings_[node]; }
   std::span<const Node> nodes() const { return nodes_; }
-  void place(std::size_t first, std::span<const Node> nodes);
-  void widen(std::size_t node, const Eigen::Matrix<double, 9, 9>& by) { covariances_[node] += by; }
+  void set_nodes(std::size_t first, std::span<const Node> nodes);
+  void add_covariance(std::size_t node, const Eigen::Matrix<double, 9, 9>& by) { covariances_[node] += by; }
   /// joint covariance of attitude error (sensor axes), rate and angular acceleration
   const Eigen::Matrix<double, 9, 9>& covariance(std::size_t node) const { return covariances_[node]; }
 
  private:
   double linearise();
-  double add_node(std::size_t i, System::Block& block, System::Corner& corner) const;
+  double add_node(std::size_t i, System::StateBlock& block, System::BorderBlock& corner) const;
   bool eliminate(System::BorderVector& step);
   bool step(double& largest);
   struct Iterate {
@@ -81,29 +81,29 @@ class Problem {
     Constants constants;
     double cost = 0.0;
   };
-  void go(double share);
+  void apply_state_step(double share);
   bool halve_step_until_decrease(const Iterate& before, double& cost);
   void adapt_process_noise();
-  double hand_acceleration_ratio() const;
+  double mean_hand_acceleration_ratio() const;
 
   HandHeldSmoother::Params params_;
-  Eigen::Matrix3d rows_;
+  Eigen::Matrix3d sensing_directions_;
   std::span<const NodeReadings> readings_;
   std::span<const double> measured_jerk_;  // NodeData::jerk
   Motion motion_;
   double period_s_ = 0.0;  // period of the gyro's readings, without repetitions
   ReadingNoise noise_;
   Eigen::Vector3d g_W_m_s2_;
-  std::optional<Part> part_;  // if set, this problem is a part of another problem, with fixed constants
+  std::optional<ProblemSegment> problem_segment_;  // if set, this problem is a part of another problem, with fixed constants
   std::vector<Node> nodes_;
   Constants constants_;
   std::vector<double> jerk_;        // factor on the root density of the jerk, per node
-  std::vector<double> hand_;        // factor on the density of the hand's acceleration, per step between nodes
-  std::vector<double> hand_power_;  // cumulative sum of the squared multipliers
-  std::vector<System::Block> blocks_;
-  std::vector<System::StateVector> steps_;
-  System::BorderVector border_step_ = System::BorderVector::Zero();
-  System::Corner corner_;
+  std::vector<double> hand_acceleration_factors_;        // factor on the density of the hand's acceleration, per step between nodes
+  std::vector<double> hand_power_cumulative_;  // cumulative sum of the squared multipliers
+  std::vector<System::StateBlock> state_blocks_;
+  std::vector<System::StateVector> state_steps_;
+  System::BorderVector border_unknowns_step_ = System::BorderVector::Zero();
+  System::BorderBlock border_block_;
   System::BorderMatrix constants_covariance_;
   std::vector<Eigen::Matrix<double, 9, 9>> covariances_;
 };

@@ -8,22 +8,22 @@
 
 #include "../angular_velocity/sample_hold.hpp"
 #include "tumble/angular_velocity/detail/clipping_finder.hpp"
-#include "tumble/angular_velocity/detail/subsample_saturation.hpp"
+#include "tumble/angular_velocity/detail/partial_saturation.hpp"
 #include "tumble/attitude/detail/vqf.hpp"
 
 namespace tumble {
 
 ClipSigns clip_signs(const ImuSample& sample, const Clipping& clipping) {
   const auto sign = [&](Triad triad, int axis) -> std::int8_t {
-    switch (element_reading(sample, clipping, triad, axis)) {
-      case ElementReading::measured:
+    switch (sensing_axis_reading(sample, clipping, triad, axis)) {
+      case SensingAxisReading::not_clipped:
         return 0;
-      case ElementReading::clipped_high:
+      case SensingAxisReading::clipped_high:
         return 1;
-      case ElementReading::clipped_low:
+      case SensingAxisReading::clipped_low:
         return -1;
-      case ElementReading::unreadable:
-        return ClipSigns::kMissing;
+      case SensingAxisReading::invalid_reading:
+        return ClipSigns::kMissingSign;
     }
     return 0;
   };
@@ -63,21 +63,21 @@ double median_step_or(std::span<const ImuSample> samples, double otherwise_s) {
   return *middle;
 }
 
-ClipSigns signs_of(const ClippedElements& clipped, std::size_t k) {
-  return clipped.signs.empty() ? ClipSigns{} : clipped.signs[k];
+ClipSigns clip_signs_of(const SensingAxisClipSigns& clipped, std::size_t k) {
+  return clipped.clip_signs.empty() ? ClipSigns{} : clipped.clip_signs[k];
 }
 
-void add_gyro_reading(double z, double t, int sign, ElementSums& e) {
-  if (sign == ClipSigns::kMissing) {
-    e.unusable_count += 1.0;
-    e.unusable_mean += (z - e.unusable_mean) / e.unusable_count;
+void add_gyro_reading(double z, double t, int sign, SensingAxisSums& e) {
+  if (sign == ClipSigns::kMissingSign) {
+    e.unusable_reading_count += 1.0;
+    e.mean_unusable_reading += (z - e.mean_unusable_reading) / e.unusable_reading_count;
     return;
   }
   if (sign != 0) {
-    e.clipped += 1.0;
-    e.clipped_time_s += (t - e.clipped_time_s) / e.clipped;
-    e.rail += (z - e.rail) / e.clipped;
-    e.sign = sign;
+    e.clipped_reading_count += 1.0;
+    e.clipped_time_s += (t - e.clipped_time_s) / e.clipped_reading_count;
+    e.mean_saturation_limit += (z - e.mean_saturation_limit) / e.clipped_reading_count;
+    e.saturated_side = sign;
     return;
   }
   e.count += 1.0;
@@ -88,7 +88,7 @@ void add_gyro_reading(double z, double t, int sign, ElementSums& e) {
 }
 
 /// Replaces a clipped segment of one sensing element by a cubic.
-void fill_segment(std::span<const ImuSample> samples, const std::vector<double>& raw, std::size_t begin,
+void interpolate_segment(std::span<const ImuSample> samples, const std::vector<double>& raw, std::size_t begin,
                   std::size_t end, int sign, std::vector<double>& filled) {
   if (begin < 2 || end + 1 >= raw.size()) return;
   const std::size_t a = begin - 1, b = end;
@@ -104,46 +104,46 @@ void fill_segment(std::span<const ImuSample> samples, const std::vector<double>&
   }
 }
 
-struct HiddenSegment {
-  std::size_t end = 0;
-  int sign = 0;
+struct ClippedSegment {
+  std::size_t clipped_segment_end = 0;
+  int saturated_side = 0;
 };
 
-HiddenSegment hidden_segment(std::span<const ClipSigns> signs, std::size_t element, std::size_t begin,
+ClippedSegment clipped_segment(std::span<const ClipSigns> signs, std::size_t element, std::size_t begin,
                              const std::vector<double>& raw) {
-  HiddenSegment out{begin, 0};
+  ClippedSegment out{begin, 0};
   if (signs[begin].gyro[element] == 0) {
-    while (out.end < signs.size() && signs[out.end].gyro[element] == 0) ++out.end;
+    while (out.clipped_segment_end < signs.size() && signs[out.clipped_segment_end].gyro[element] == 0) ++out.clipped_segment_end;
     return out;
   }
-  for (; out.end < signs.size(); ++out.end) {
-    const int sign = signs[out.end].gyro[element];
-    if (sign == 0 || (sign != ClipSigns::kMissing && out.sign != 0 && sign != out.sign)) break;
-    if (sign != ClipSigns::kMissing) out.sign = sign;
+  for (; out.clipped_segment_end < signs.size(); ++out.clipped_segment_end) {
+    const int sign = signs[out.clipped_segment_end].gyro[element];
+    if (sign == 0 || (sign != ClipSigns::kMissingSign && out.saturated_side != 0 && sign != out.saturated_side)) break;
+    if (sign != ClipSigns::kMissingSign) out.saturated_side = sign;
   }
   // If all readings of a segment are unusable, the rate is assumed to be beyond the saturation level.
-  if (out.sign == 0) out.sign = raw[begin == 0 ? begin : begin - 1] < 0.0 ? -1 : 1;
+  if (out.saturated_side == 0) out.saturated_side = raw[begin == 0 ? begin : begin - 1] < 0.0 ? -1 : 1;
   return out;
 }
 
 // Averaging windows are `period_s` long even after a missing reading.
-Windows windows_of(std::span<const ImuSample> samples, TimeNs origin_ns, double period_s) {
-  Windows out;
+AveragingWindows averaging_windows_of(std::span<const ImuSample> samples, TimeNs origin_ns, double period_s) {
+  AveragingWindows out;
   out.period_s = period_s;
-  out.centre_s.resize(samples.size());
+  out.window_centre_s.resize(samples.size());
   out.end_s.resize(samples.size());
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const double window = k == 0 ? period_s : std::min(since_s(samples, k - 1, k), kLongest * period_s);
     out.end_s[k] = seconds(samples[k].time_ns - origin_ns);
-    out.centre_s[k] = out.end_s[k] - 0.5 * window;
+    out.window_centre_s[k] = out.end_s[k] - 0.5 * window;
   }
   return out;
 }
 
-void place(double node_s, std::size_t nodes, Windows& windows) {
-  windows.node_of.resize(windows.centre_s.size());
+void assign_windows_to_nodes(double node_s, std::size_t nodes, AveragingWindows& windows) {
+  windows.node_of.resize(windows.window_centre_s.size());
   for (std::size_t k = 0; k < windows.node_of.size(); ++k) {
-    const auto node = static_cast<std::size_t>(std::llround(std::max(0.0, windows.centre_s[k]) / node_s));
+    const auto node = static_cast<std::size_t>(std::llround(std::max(0.0, windows.window_centre_s[k]) / node_s));
     windows.node_of[k] = std::min(node, nodes - 1);
   }
 }
@@ -153,9 +153,9 @@ void place(double node_s, std::size_t nodes, Windows& windows) {
 std::vector<double> window_force_sigmas(TimedReadings& forces, double log_period_s) {
   const std::vector<ImuSample>& samples = forces.samples;
   std::vector<double> out(samples.size(), 0.0);
-  if (!(forces.windows.period_s > log_period_s)) return out;
+  if (!(forces.averaging_windows.period_s > log_period_s)) return out;
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    forces.windows.centre_s[k] += 0.25 * forces.windows.period_s;
+    forces.averaging_windows.window_centre_s[k] += 0.25 * forces.averaging_windows.period_s;
     const std::size_t a = k == 0 ? 0 : k - 1, b = std::min(k + 1, samples.size() - 1);
     const Vector3d change = samples[b].specific_force_m_s2 - samples[a].specific_force_m_s2;
     if (b > a) out[k] = kWindowCentreSigmaRatio * change.norm() / static_cast<double>(b - a);
@@ -173,42 +173,42 @@ void correct_partial_saturation(double noise_rad_s, const Eigen::Matrix3d& rows,
   std::vector<Vector3d> lost(count, Vector3d::Zero());
   for (std::size_t k = 1; k + 1 < count; ++k) {
     for (std::size_t j = 0; j < 3; ++j) {
-      const int before = rates.signs[k - 1].gyro[j], after = rates.signs[k + 1].gyro[j];
-      const bool at_edge = rates.signs[k].gyro[j] == 0 && (before == 0) != (after == 0);
+      const int before = rates.clip_signs[k - 1].gyro[j], after = rates.clip_signs[k + 1].gyro[j];
+      const bool at_edge = rates.clip_signs[k].gyro[j] == 0 && (before == 0) != (after == 0);
       const int sign = before + after;
-      if (!at_edge || sign == ClipSigns::kMissing) continue;
+      if (!at_edge || sign == ClipSigns::kMissingSign) continue;
       const std::size_t inside = before != 0 ? k - 1 : k + 1, outside = before != 0 ? k + 1 : k - 1;
       const auto axis = static_cast<Eigen::Index>(j);
-      const SubsampleSaturation loss = subsample_saturation(sign * along(k, axis), sign * along(outside, axis),
+      const PartialSaturation loss = partial_saturation(sign * along(k, axis), sign * along(outside, axis),
                                                             sign * along(inside, axis), noise_rad_s);
-      if (!(loss.expected_deficit_rad_s > noise_rad_s)) continue;
-      lost[k][axis] = sign * loss.expected_deficit_rad_s;
-      rates.subsample_sigma_rad_s[k][axis] = loss.sigma_rad_s;
+      if (!(loss.expected_saturation_deficit_rad_s > noise_rad_s)) continue;
+      lost[k][axis] = sign * loss.expected_saturation_deficit_rad_s;
+      rates.partial_saturation_sigma_rad_s[k][axis] = loss.sigma_rad_s;
     }
   }
   for (std::size_t k = 0; k < count; ++k) rates.samples[k].angular_velocity_rad_s += inverse * lost[k];
 }
 
 // Recovered rates have correlated errors: carried.md (C15).
-void recovered_readings(const HandHeldSmoother::Params& params, const ClippedElements& clipped, GyroReadings& rates) {
+void recovered_readings(const HandHeldSmoother::Params& params, const SensingAxisClipSigns& clipped, GyroReadings& rates) {
   const double nodes = std::sqrt(2.0 * params.expert.readings.kRecoveredTau_s / params.expert.node_s);
   for (std::size_t k = 0; k < clipped.recovered_covariance_rad2_s2.size(); ++k) {
-    const Eigen::Matrix3d along = clipped.rows * clipped.recovered_covariance_rad2_s2[k] * clipped.rows.transpose();
-    Vector3d& subsample_sigma_rad_s = rates.subsample_sigma_rad_s[rates.of_sample[k]];
+    const Eigen::Matrix3d along = clipped.sensing_directions * clipped.recovered_covariance_rad2_s2[k] * clipped.sensing_directions.transpose();
+    Vector3d& subsample_sigma_rad_s = rates.partial_saturation_sigma_rad_s[rates.reading_index_of_sample[k]];
     subsample_sigma_rad_s = subsample_sigma_rad_s.cwiseMax(nodes * along.diagonal().cwiseMax(0.0).cwiseSqrt());
   }
 }
 
-TimedReadings timed_readings(std::span<const ImuSample> samples, const ClippedElements& clipped, Triad triad,
+TimedReadings timed_readings(std::span<const ImuSample> samples, const SensingAxisClipSigns& clipped, Triad triad,
                              TimeNs origin_ns, double period_s) {
   std::optional<RepeatedReadings> repeated = find_repeated(samples, triad);
-  if (repeated && (repeated->agreement < kMinClockAgreement || repeated->period_s > sample_hold::kSlowest * period_s))
+  if (repeated && (repeated->regular_clock_fraction < kMinClockAgreement || repeated->period_s > sample_hold::kSlowest * period_s))
     repeated.reset();
   TimedReadings out;
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    out.of_sample.push_back(out.samples.size());
-    if (repeated && repeated->repeats[k]) {
-      out.of_sample.back() -= 1;
+    out.reading_index_of_sample.push_back(out.samples.size());
+    if (repeated && repeated->repeats_per_sample[k]) {
+      out.reading_index_of_sample.back() -= 1;
       continue;
     }
     ImuSample own = samples[k];
@@ -217,9 +217,9 @@ TimedReadings timed_readings(std::span<const ImuSample> samples, const ClippedEl
     if (repeated && !out.samples.empty())
       own.time_ns = std::max(own.time_ns, out.samples.back().time_ns + nanoseconds(0.5 * period_s));
     out.samples.push_back(own);
-    out.signs.push_back(signs_of(clipped, k));
+    out.clip_signs.push_back(clip_signs_of(clipped, k));
   }
-  out.windows = windows_of(out.samples, origin_ns, repeated ? repeated->period_s : period_s);
+  out.averaging_windows = averaging_windows_of(out.samples, origin_ns, repeated ? repeated->period_s : period_s);
   return out;
 }
 
@@ -227,7 +227,7 @@ TimedReadings timed_readings(std::span<const ImuSample> samples, const ClippedEl
 
 bool clips(const NodeReadings& readings) {
   return std::any_of(readings.gyro.begin(), readings.gyro.end(),
-                     [](const ElementSums& e) { return e.clipped > 0.0 || e.unusable_count > 0.0; });
+                     [](const SensingAxisSums& e) { return e.clipped_reading_count > 0.0 || e.unusable_reading_count > 0.0; });
 }
 
 void add_rate(const ImuSample& sample, const Eigen::Matrix3d& rows, const ClipSigns& signs, double t,
@@ -243,70 +243,70 @@ void add_rate(const ImuSample& sample, const Eigen::Matrix3d& rows, const ClipSi
 void add_force(const ImuSample& sample, const ClipSigns& signs, double t, NodeReadings& node) {
   for (int j = 0; j < 3; ++j) {
     const std::size_t i = static_cast<std::size_t>(j);
-    if (signs.accel[i] != 0) node.force_bound[j] = signs.accel[i];
+    if (signs.accel[i] != 0) node.force_bound_m_s2[j] = signs.accel[i];
   }
-  node.force_count += 1.0;
-  node.force_m_s2 += (sample.specific_force_m_s2 - node.force_m_s2) / node.force_count;
-  node.force_time_s += (t - node.force_time_s) / node.force_count;
+  node.force_reading_count += 1.0;
+  node.force_m_s2 += (sample.specific_force_m_s2 - node.force_m_s2) / node.force_reading_count;
+  node.mean_force_time_s += (t - node.mean_force_time_s) / node.force_reading_count;
 }
 
-NodeData collect(const HandHeldSmoother::Params& params, std::span<const ImuSample> samples,
-                 const ClippedElements& clipped) {
+NodeData collect_node_data(const HandHeldSmoother::Params& params, std::span<const ImuSample> samples,
+                 const SensingAxisClipSigns& clipped) {
   NodeData out;
   const double period_s = median_step_or(samples, params.expert.node_s);
   const TimeNs origin_ns = samples.front().time_ns - nanoseconds(0.5 * period_s);
-  out.samples = windows_of(samples, origin_ns, period_s);
-  out.nodes.resize(static_cast<std::size_t>(std::llround(out.samples.centre_s.back() / params.expert.node_s)) + 1);
-  place(params.expert.node_s, out.nodes.size(), out.samples);
+  out.samples = averaging_windows_of(samples, origin_ns, period_s);
+  out.nodes.resize(static_cast<std::size_t>(std::llround(out.samples.window_centre_s.back() / params.expert.node_s)) + 1);
+  assign_windows_to_nodes(params.expert.node_s, out.nodes.size(), out.samples);
 
   out.rates = {timed_readings(samples, clipped, Triad::gyro, origin_ns, period_s), {}};
-  place(params.expert.node_s, out.nodes.size(), out.rates.windows);
-  out.rates.subsample_sigma_rad_s.assign(out.rates.samples.size(), Vector3d::Zero());
-  const double noise_rad_s = params.gyro_noise_density / std::sqrt(out.rates.windows.period_s);
-  if (out.rates.windows.period_s > kLongWindow * params.expert.node_s)
-    correct_partial_saturation(noise_rad_s, clipped.rows, out.rates);
+  assign_windows_to_nodes(params.expert.node_s, out.nodes.size(), out.rates.averaging_windows);
+  out.rates.partial_saturation_sigma_rad_s.assign(out.rates.samples.size(), Vector3d::Zero());
+  const double noise_rad_s = params.gyro_noise_density / std::sqrt(out.rates.averaging_windows.period_s);
+  if (out.rates.averaging_windows.period_s > kLongWindow * params.expert.node_s)
+    correct_partial_saturation(noise_rad_s, clipped.sensing_directions, out.rates);
   recovered_readings(params, clipped, out.rates);
-  out.jerk = estimate_jerk(out.rates, clipped.rows, noise_rad_s, params.expert.node_s, out.nodes.size());
+  out.jerk = estimate_jerk(out.rates, clipped.sensing_directions, noise_rad_s, params.expert.node_s, out.nodes.size());
   TimedReadings forces = timed_readings(samples, clipped, Triad::accelerometer, origin_ns, period_s);
   const std::vector<double> window_force_sigma_m_s2 = window_force_sigmas(forces, period_s);
-  place(params.expert.node_s, out.nodes.size(), forces.windows);
-  const auto from_node = [&](const Windows& windows, std::size_t k) {
-    return windows.centre_s[k] - static_cast<double>(windows.node_of[k]) * params.expert.node_s;
+  assign_windows_to_nodes(params.expert.node_s, out.nodes.size(), forces.averaging_windows);
+  const auto from_node = [&](const AveragingWindows& windows, std::size_t k) {
+    return windows.window_centre_s[k] - static_cast<double>(windows.node_of[k]) * params.expert.node_s;
   };
   for (std::size_t k = 0; k < out.rates.samples.size(); ++k) {
-    const Windows& windows = out.rates.windows;
-    add_rate(out.rates.samples[k], clipped.rows, out.rates.signs[k], from_node(windows, k),
-             out.rates.subsample_sigma_rad_s[k], out.nodes[windows.node_of[k]]);
+    const AveragingWindows& windows = out.rates.averaging_windows;
+    add_rate(out.rates.samples[k], clipped.sensing_directions, out.rates.clip_signs[k], from_node(windows, k),
+             out.rates.partial_saturation_sigma_rad_s[k], out.nodes[windows.node_of[k]]);
   }
   for (std::size_t k = 0; k < forces.samples.size(); ++k) {
-    NodeReadings& node = out.nodes[forces.windows.node_of[k]];
-    add_force(forces.samples[k], forces.signs[k], from_node(forces.windows, k), node);
+    NodeReadings& node = out.nodes[forces.averaging_windows.node_of[k]];
+    add_force(forces.samples[k], forces.clip_signs[k], from_node(forces.averaging_windows, k), node);
     node.force_timing_sigma_m_s2 = std::max(node.force_timing_sigma_m_s2, window_force_sigma_m_s2[k]);
   }
-  const std::vector<bool> rest = RestDetector(params.expert.rest).find(samples);
+  const std::vector<bool> rest = RestDetector(params.expert.rest_detector).find(samples);
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (rest[k]) out.nodes[out.samples.node_of[k]].rest = true;
+    if (rest[k]) out.nodes[out.samples.node_of[k]].is_stationary = true;
   }
   return out;
 }
 
-std::vector<Vector3d> filled_rates(std::span<const ImuSample> samples, const ClippedElements& clipped) {
+std::vector<Vector3d> filled_rates(std::span<const ImuSample> samples, const SensingAxisClipSigns& clipped) {
   const std::size_t count = samples.size();
   std::vector<Vector3d> rates(count);
-  for (std::size_t k = 0; k < count; ++k) rates[k] = clipped.rows * samples[k].angular_velocity_rad_s;
+  for (std::size_t k = 0; k < count; ++k) rates[k] = clipped.sensing_directions * samples[k].angular_velocity_rad_s;
   std::vector<double> raw(count), filled;
-  for (std::size_t j = 0; j < 3 && !clipped.signs.empty(); ++j) {
+  for (std::size_t j = 0; j < 3 && !clipped.clip_signs.empty(); ++j) {
     const auto axis = static_cast<Eigen::Index>(j);
     for (std::size_t k = 0; k < count; ++k) raw[k] = rates[k][axis];
     filled = raw;
     for (std::size_t begin = 0; begin < count;) {
-      const HiddenSegment segment = hidden_segment(clipped.signs, j, begin, raw);
-      if (segment.sign != 0) fill_segment(samples, raw, begin, segment.end, segment.sign, filled);
-      begin = segment.end;
+      const ClippedSegment segment = clipped_segment(clipped.clip_signs, j, begin, raw);
+      if (segment.saturated_side != 0) interpolate_segment(samples, raw, begin, segment.clipped_segment_end, segment.saturated_side, filled);
+      begin = segment.clipped_segment_end;
     }
     for (std::size_t k = 0; k < count; ++k) rates[k][axis] = filled[k];
   }
-  const Eigen::Matrix3d inverse = clipped.rows.inverse();
+  const Eigen::Matrix3d inverse = clipped.sensing_directions.inverse();
   for (Vector3d& rate : rates) rate = (inverse * rate).eval();
   return rates;
 }
@@ -314,8 +314,8 @@ std::vector<Vector3d> filled_rates(std::span<const ImuSample> samples, const Cli
 Status start_nodes(const HandHeldSmoother::Params& params, const Eigen::Matrix3d& rows, const NodeData& collected,
                    std::vector<Node>& nodes) {
   const std::span<const ImuSample> samples = collected.rates.samples;
-  const Windows& windows = collected.rates.windows;
-  const std::vector<Vector3d> rates = filled_rates(samples, {rows, collected.rates.signs});
+  const AveragingWindows& windows = collected.rates.averaging_windows;
+  const std::vector<Vector3d> rates = filled_rates(samples, {rows, collected.rates.clip_signs});
   const Vqf filter(Vqf::Params{.gap_max_s = params.expert.gap_max_s});
   Vqf::State state;
   const std::size_t count = collected.nodes.size();
@@ -328,7 +328,7 @@ Status start_nodes(const HandHeldSmoother::Params& params, const Eigen::Matrix3d
     const std::size_t i = windows.node_of[k];
     readings[i] += 1.0;
     nodes[i].w_WI_I_rad_s += (rates[k] - nodes[i].w_WI_I_rad_s) / readings[i];
-    const double off = std::abs(windows.centre_s[k] - static_cast<double>(i) * params.expert.node_s);
+    const double off = std::abs(windows.window_centre_s[k] - static_cast<double>(i) * params.expert.node_s);
     if (off < nearest[i]) nearest[i] = off, nodes[i].q_WI = state.q_WI;
   }
   std::size_t before = 0;
@@ -349,7 +349,7 @@ Status start_nodes(const HandHeldSmoother::Params& params, const Eigen::Matrix3d
       nodes[i].angular_acceleration_rad_s2 =
           (nodes[b].w_WI_I_rad_s - nodes[a].w_WI_I_rad_s) / (static_cast<double>(b - a) * params.expert.node_s);
     }
-    if (collected.nodes[i].force_count > 0.0) nodes[i].a_W_m_s2 = nodes[i].q_WI * collected.nodes[i].force_m_s2 + g_W;
+    if (collected.nodes[i].force_reading_count > 0.0) nodes[i].a_W_m_s2 = nodes[i].q_WI * collected.nodes[i].force_m_s2 + g_W;
   }
   return {};
 }

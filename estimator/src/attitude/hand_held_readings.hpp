@@ -14,9 +14,9 @@ inline constexpr double kRowsMin = 0.1;
 inline constexpr double kAge_samples = 0.29;
 
 /// Time zero is the centre of the first averaging window.
-struct Windows {
+struct AveragingWindows {
   double period_s = 0.0;
-  std::vector<double> centre_s;
+  std::vector<double> window_centre_s;
   std::vector<double> end_s;         ///< end of each window, which is its time stamp
   std::vector<std::size_t> node_of;  ///< nearest node to the centre of each window
 };
@@ -24,26 +24,26 @@ struct Windows {
 /// The times of repeated readings are corrected, and each reading is contained once.
 struct TimedReadings {
   std::vector<ImuSample> samples;  ///< stamped at the end of their windows
-  std::vector<ClipSigns> signs;    ///< one per sample
-  Windows windows;
-  std::vector<std::size_t> of_sample;  ///< index of the reading of each IMU sample
+  std::vector<ClipSigns> clip_signs;    ///< one per sample
+  AveragingWindows averaging_windows;
+  std::vector<std::size_t> reading_index_of_sample;  ///< index of the reading of each IMU sample
 };
 
 struct GyroReadings : TimedReadings {
   /// standard deviation of the correction for partial saturation, per sensing element; 0: not corrected
-  std::vector<Eigen::Vector3d> subsample_sigma_rad_s;
+  std::vector<Eigen::Vector3d> partial_saturation_sigma_rad_s;
 };
 
 struct NodeData {
-  Windows samples;
+  AveragingWindows samples;
   GyroReadings rates;
   std::vector<NodeReadings> nodes;  ///< nodes at equal time steps from the first sample's centre
   /// root of the spectral density of angular jerk, per element of `nodes` [rad/s^3 sqrt(s)]; 0: no estimate
   std::vector<double> jerk;
 };
 
-NodeData collect(const HandHeldSmoother::Params& params, std::span<const ImuSample> samples,
-                 const ClippedElements& clipped);
+NodeData collect_node_data(const HandHeldSmoother::Params& params, std::span<const ImuSample> samples,
+                 const SensingAxisClipSigns& clipped);
 
 inline constexpr double kLongest = 1.5;  ///< longest averaging window, in sample periods
 
@@ -55,12 +55,12 @@ std::vector<double> estimate_jerk(const GyroReadings& rates, const Eigen::Matrix
 
 /// Returns the gyro's rates, with clipped readings replaced by a cubic polynomial. The cubic polynomial stays between 1
 /// and kFillRatioMax times the saturation level.
-std::vector<Eigen::Vector3d> filled_rates(std::span<const ImuSample> samples, const ClippedElements& clipped);
+std::vector<Eigen::Vector3d> filled_rates(std::span<const ImuSample> samples, const SensingAxisClipSigns& clipped);
 
 /// heuristic upper limit of the initial rates, as a multiple of the saturation level
 inline constexpr double kFillRatioMax = 2.5;
 
-/// Without saturation, HandHeldStream makes one optimisation step per kFreeNodes nodes (time steps).
+/// Without saturation, HandHeldRateStream makes one optimisation step per kFreeNodes nodes (time steps).
 inline constexpr int kFreeNodes = 5;
 
 bool clips(const NodeReadings& readings);

@@ -19,11 +19,11 @@ using hand_held::Node;
 namespace {
 
 Status check(const HandHeldSmoother::Params& params, std::span<const ImuSample> samples,
-             const ClippedElements& clipped) {
+             const SensingAxisClipSigns& clipped) {
   if (samples.empty()) return {ErrorCode::empty, "samples", 0.0, 1.0};
   const double count = static_cast<double>(samples.size());
-  if (!clipped.signs.empty() && clipped.signs.size() != samples.size())
-    return {ErrorCode::out_of_range, "signs", static_cast<double>(clipped.signs.size()), count};
+  if (!clipped.clip_signs.empty() && clipped.clip_signs.size() != samples.size())
+    return {ErrorCode::out_of_range, "signs", static_cast<double>(clipped.clip_signs.size()), count};
   const auto& recovered = clipped.recovered_covariance_rad2_s2;
   if (!recovered.empty() && recovered.size() != samples.size())
     return {ErrorCode::out_of_range, "recovered rates", static_cast<double>(recovered.size()), count};
@@ -32,34 +32,34 @@ Status check(const HandHeldSmoother::Params& params, std::span<const ImuSample> 
     if (!covariance.allFinite() || least < 0.0)
       return {ErrorCode::out_of_range, "covariance of a recovered rate", least, 0.0};
   }
-  const double determinant = std::abs(clipped.rows.determinant());
+  const double determinant = std::abs(clipped.sensing_directions.determinant());
   if (!(determinant > hand_held::kRowsMin)) return {ErrorCode::degenerate, "rows", determinant, hand_held::kRowsMin};
   return check_samples(samples, params.expert.gap_max_s);
 }
 
 std::uint8_t clipped_axes(const hand_held::GyroReadings& rates, std::size_t k) {
-  const std::size_t reading = rates.of_sample[k];
+  const std::size_t reading = rates.reading_index_of_sample[k];
   std::uint8_t axes = 0;
   for (std::size_t j = 0; j < 3; ++j) {
-    const bool in_part = rates.subsample_sigma_rad_s[reading][static_cast<Eigen::Index>(j)] > 0.0;
-    if (rates.signs[reading].gyro[j] != 0 || in_part) axes = static_cast<std::uint8_t>(axes | (1u << j));
+    const bool in_part = rates.partial_saturation_sigma_rad_s[reading][static_cast<Eigen::Index>(j)] > 0.0;
+    if (rates.clip_signs[reading].gyro[j] != 0 || in_part) axes = static_cast<std::uint8_t>(axes | (1u << j));
   }
   return axes;
 }
 
-RateSource source(const RateState& rate, double recovered_sigma) {
-  if (rate.clipped_axes == 0) return RateSource::measured;
+AngularRateSource source(const AngularRateState& rate, double recovered_sigma) {
+  if (rate.clipped_axes == 0) return AngularRateSource::measured;
   const double variance = rate.covariance_rad2_s2.selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff();
-  return variance < recovered_sigma * recovered_sigma ? RateSource::recovered_contact : RateSource::bounded_only;
+  return variance < recovered_sigma * recovered_sigma ? AngularRateSource::recovered_in_contact : AngularRateSource::lower_bound_only;
 }
 
 /// The gyro's scale error increases the attitude covariance in proportion to the rotation since the last rest:
 /// carried.md (C27).
-void widen_by_rotation(const HandHeldSmoother::Params& params, const hand_held::NodeData& collected,
-                       const std::vector<RateState>& rates, std::vector<AttitudeState>& attitudes) {
+void add_rotation_covariance(const HandHeldSmoother::Params& params, const hand_held::NodeData& collected,
+                       const std::vector<AngularRateState>& rates, std::vector<AttitudeState>& attitudes) {
   const double share = params.expert.readings.recovered_scale_sigma;
   const auto turned_on = [&](std::size_t k, Eigen::Vector3d& turned) {
-    if (collected.nodes[collected.samples.node_of[k]].rest) return turned.setZero(), void();
+    if (collected.nodes[collected.samples.node_of[k]].is_stationary) return turned.setZero(), void();
     turned += seconds(rates[k].time_ns - rates[k - 1].time_ns) * rates[k].w_WI_I_rad_s;
   };
   std::vector<double> until_rad2(attitudes.size(), 0.0);
@@ -79,21 +79,21 @@ void widen_by_rotation(const HandHeldSmoother::Params& params, const hand_held::
 
 HandHeldSmoother::HandHeldSmoother(const Params& params) : params_(params) {
   require_valid_fields(params);
-  RestDetector{params.expert.rest};
+  RestDetector{params.expert.rest_detector};
 }
 
-Status HandHeldSmoother::estimate(std::span<const ImuSample> samples, const ClippedElements& clipped,
-                                  std::vector<RateState>& rates, std::vector<AttitudeState>& attitudes,
+Status HandHeldSmoother::estimate(std::span<const ImuSample> samples, const SensingAxisClipSigns& clipped,
+                                  std::vector<AngularRateState>& rates, std::vector<AttitudeState>& attitudes,
                                   Report& report) const {
   rates.clear();
   attitudes.clear();
   report = {};
   if (const Status status = check(params_, samples, clipped); !status.ok()) return status;
-  const hand_held::NodeData collected = hand_held::collect(params_, samples, clipped);
+  const hand_held::NodeData collected = hand_held::collect_node_data(params_, samples, clipped);
   std::vector<Node> start;
-  Status status = hand_held::start_nodes(params_, clipped.rows, collected, start);
+  Status status = hand_held::start_nodes(params_, clipped.sensing_directions, collected, start);
   if (!status.ok()) return status;
-  hand_held::Problem problem(params_, clipped.rows, collected, std::move(start));
+  hand_held::HandHeldProblem problem(params_, clipped.sensing_directions, collected, std::move(start));
   status = problem.solve(report);
   if (status.ok()) status = problem.covariances(report);
   if (!status.ok()) return status;
@@ -106,7 +106,7 @@ Status HandHeldSmoother::estimate(std::span<const ImuSample> samples, const Clip
     const Node& node = problem.nodes()[i];
     const Eigen::Matrix<double, 9, 9>& covariance = problem.covariance(i);
     const double at = static_cast<double>(i) * params_.expert.node_s;
-    const double centre = collected.samples.centre_s[k] - at, end = collected.samples.end_s[k] - at;
+    const double centre = collected.samples.window_centre_s[k] - at, end = collected.samples.end_s[k] - at;
     rates[k].time_ns = attitudes[k].time_ns = samples[k].time_ns;
     // A reading is the mean rate over its averaging window, and therefore valid at the window's centre. The reported
     // attitude is the attitude at the time stamp of the reading.
@@ -115,11 +115,11 @@ Status HandHeldSmoother::estimate(std::span<const ImuSample> samples, const Clip
     rates[k].clipped_axes = clipped_axes(collected.rates, k);
     rates[k].source = source(rates[k], params_.expert.readings.kRecoveredSigma_rad_s);
     const Eigen::Vector3d turn = end * node.w_WI_I_rad_s + 0.5 * end * end * node.angular_acceleration_rad_s2;
-    attitudes[k].q_WA = node.q_WI * so3::exp(turn);
+    attitudes[k].orientation_W = node.q_WI * so3::exp(turn);
     const Eigen::Matrix3d R = node.q_WI.toRotationMatrix();
     attitudes[k].covariance_rad2 = R * covariance.topLeftCorner<3, 3>() * R.transpose();
   }
-  if (!clipped.recovered_covariance_rad2_s2.empty()) widen_by_rotation(params_, collected, rates, attitudes);
+  if (!clipped.recovered_covariance_rad2_s2.empty()) add_rotation_covariance(params_, collected, rates, attitudes);
   return {};
 }
 

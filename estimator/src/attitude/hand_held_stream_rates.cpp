@@ -28,53 +28,53 @@ std::uint8_t clipped_axes(const ClipSigns& signs) {
 
 }  // namespace
 
-RateState HandHeldStream::compute_report(std::size_t at, bool due, bool factorised, State& state) const {
+AngularRateState HandHeldRateStream::compute_report(std::size_t at, bool due, bool factorised, State& state) const {
   const Reading& reading = state.readings[at];
   if (reading.smoothed) return *reading.smoothed;
   const bool known = state.reported_node >= 0 && reading.node - state.reported_node < hand_held::kFreeNodes;
   if (reading.node == state.reported_node || (known && !due))
-    return to_rate(reading, state, state.reported_covariance_rad2_s2);
-  RateState rate;
+    return rate_state_of_reading(reading, state, state.reported_covariance_rad2_s2);
+  AngularRateState rate;
   report_rates(at, at, factorised, state, {&rate, 1});
   state.reported_node = reading.node;
   state.reported_covariance_rad2_s2 = rate.covariance_rad2_s2;
   return rate;
 }
 
-std::size_t HandHeldStream::first_unreported(const State& state) const {
+std::size_t HandHeldRateStream::first_unreported_reading(const State& state) const {
   return state.readings.size() - std::min(state.readings.size(), delay_ + 1);
 }
 
-// If the sample rate is lower than stated, a node may leave the window of HandHeldStream before its rate is reported.
-void HandHeldStream::store_oldest_rates(State& state) const {
-  const std::size_t first = first_unreported(state);
+// If the sample rate is lower than stated, a node may leave the window of HandHeldRateStream before its rate is reported.
+void HandHeldRateStream::store_oldest_rates(State& state) const {
+  const std::size_t first = first_unreported_reading(state);
   for (std::size_t k = first; k < state.readings.size() && state.readings[k].node <= state.first_node; ++k) {
     if (state.readings[k].smoothed) continue;
-    RateState rate;
+    AngularRateState rate;
     report_rates(k, k, false, state, {&rate, 1});
     state.readings[k].smoothed = rate;
   }
 }
 
-RateState HandHeldStream::to_rate(const Reading& reading, const State& state, const Eigen::Matrix3d& covariance) const {
+AngularRateState HandHeldRateStream::rate_state_of_reading(const Reading& reading, const State& state, const Eigen::Matrix3d& covariance) const {
   const auto at = static_cast<std::size_t>(std::max<std::int64_t>(0, reading.node - state.first_node));
   const Node& node = state.window[at].node;
-  RateState out;
+  AngularRateState out;
   out.time_ns = reading.sample.time_ns;
-  const double t = reading.centre_s - static_cast<double>(reading.node) * params_.body.expert.node_s;
+  const double t = reading.window_centre_s - static_cast<double>(reading.node) * params_.body.expert.node_s;
   out.w_WI_I_rad_s = node.w_WI_I_rad_s + t * node.angular_acceleration_rad_s2;
   out.covariance_rad2_s2 = covariance;
-  out.clipped_axes = clipped_axes(reading.signs);
+  out.clipped_axes = clipped_axes(reading.clip_signs);
   if (out.clipped_axes == 0) return out;
   const double variance = covariance.selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff();
   const double recovered =
       params_.body.expert.readings.kRecoveredSigma_rad_s * params_.body.expert.readings.kRecoveredSigma_rad_s;
-  out.source = variance < recovered ? RateSource::recovered_contact : RateSource::bounded_only;
+  out.source = variance < recovered ? AngularRateSource::recovered_in_contact : AngularRateSource::lower_bound_only;
   return out;
 }
 
 // Counts a clipped segment whose number of revolutions is ambiguous: carried.md (C43).
-void HandHeldStream::count_revolutions(std::size_t at, const RateState& rate, State& state) const {
+void HandHeldRateStream::count_revolutions(std::size_t at, const AngularRateState& rate, State& state) const {
   const Reading& reading = state.readings[at];
   const double since_s = at > 0 ? reading.end_s - state.readings[at - 1].end_s : params_.period_s;
   const auto open = [&](Eigen::Index j) {
@@ -83,11 +83,11 @@ void HandHeldStream::count_revolutions(std::size_t at, const RateState& rate, St
                2.0 * hand_held::kLogOdds;
   };
   for (Eigen::Index j = 0; j < 3; ++j) {
-    if (reading.signs.gyro[static_cast<std::size_t>(j)] == 0) {
+    if (reading.clip_signs.gyro[static_cast<std::size_t>(j)] == 0) {
       state.clipped_duration_s[j] = state.clipped_angle_sigma_rad[j] = 0.0;
       continue;
     }
-    const Eigen::RowVector3d m = state.rows.row(j);
+    const Eigen::RowVector3d m = state.sensing_directions.row(j);
     const bool before = open(j);
     state.clipped_duration_s[j] += since_s;
     state.clipped_angle_sigma_rad[j] +=
@@ -98,8 +98,8 @@ void HandHeldStream::count_revolutions(std::size_t at, const RateState& rate, St
 
 // See carried.md (C23), (C42). `factorised` is true if the equations are already factorised for the assumed jerk
 // density.
-void HandHeldStream::report_rates(std::size_t first, std::size_t last, bool factorised, State& state,
-                                  std::span<RateState> out) const {
+void HandHeldRateStream::report_rates(std::size_t first, std::size_t last, bool factorised, State& state,
+                                  std::span<AngularRateState> out) const {
   const auto of = [&](std::size_t k) {
     return static_cast<std::size_t>(std::max<std::int64_t>(0, state.readings[k].node - state.first_node));
   };
@@ -111,24 +111,24 @@ void HandHeldStream::report_rates(std::size_t first, std::size_t last, bool fact
   System::BorderVector unused;
   hand_held::ReadingNoise noise = adapted_noise(state);
   // See carried.md (C42).
-  if (clipped) noise.bound = noise.force_bound = 0.0;
-  const bool known = (factorised && !clipped) || factorise(clipped ? inflated_ : motion_, noise, state, unused);
-  System::Conditional here, next;
+  if (clipped) noise.bound = noise.force_bound_weight = 0.0;
+  const bool known = (factorised && !clipped) || factorise(clipped ? inflated_motion_ : motion_, noise, state, unused);
+  System::StateGivenNextState here, next;
   Eigen::Matrix3d covariance = kUnknown_rad2_s2 * Eigen::Matrix3d::Identity();
   std::size_t k = last + 1;
   for (std::size_t i = state.window.size(); i-- > of(first);) {
     if (known) {
-      here = System::back_conditional(state.work[i], i + 1 < state.window.size() ? &next : nullptr);
-      const auto rows = here.jacobian_border.middleRows<3>(hand_held::kRate);
+      here = System::state_given_next_state(state.work_blocks[i], i + 1 < state.window.size() ? &next : nullptr);
+      const auto rows = here.border_jacobian.middleRows<3>(hand_held::kRate);
       covariance = here.state.block<3, 3>(hand_held::kRate, hand_held::kRate) +
                    rows * state.constants_covariance * rows.transpose();
     }
-    for (; k > first && of(k - 1) == i; --k) out[k - 1 - first] = to_rate(state.readings[k - 1], state, covariance);
+    for (; k > first && of(k - 1) == i; --k) out[k - 1 - first] = rate_state_of_reading(state.readings[k - 1], state, covariance);
     next = here;
   }
 }
 
-void HandHeldStream::flush(const State& state, std::vector<RateState>& out) const {
+void HandHeldRateStream::flush(const State& state, std::vector<AngularRateState>& out) const {
   const std::size_t left = std::min(delay_, state.readings.size());
   if (left == 0) return;
   std::size_t first = state.readings.size() - left;
@@ -137,7 +137,7 @@ void HandHeldStream::flush(const State& state, std::vector<RateState>& out) cons
   }
   if (first == state.readings.size()) return;
   State last = state;
-  std::vector<RateState> rates(state.readings.size() - first);
+  std::vector<AngularRateState> rates(state.readings.size() - first);
   report_rates(first, state.readings.size() - 1, false, last, rates);
   out.insert(out.end(), rates.begin(), rates.end());
 }

@@ -39,68 +39,68 @@ constexpr double kAccelerationSigmaRatio = 0.3;
 ForceErrors::Params ImuMerge::force_params(const Params& p) {
   ForceErrors::Params out;
   out.count = std::clamp(p.count, 1, kImus);
-  for (std::size_t k = 0; k < static_cast<std::size_t>(out.count); ++k) out.p_C_m[k] = p.T_CI[k].translation();
+  for (std::size_t k = 0; k < static_cast<std::size_t>(out.count); ++k) out.imu_positions_m[k] = p.T_mean_imu[k].translation();
   return out;
 }
 
-RateRecovery::Params ImuMerge::recovery_params(const Params& p) {
-  RateRecovery::Params out;
+AngularRateRecovery::Params ImuMerge::rate_recovery_params(const Params& p) {
+  AngularRateRecovery::Params out;
   out.count = p.count;
   out.gyro_range_rad_s = p.gyro_range_rad_s;
   out.accel_range_m_s2 = p.accel_range_m_s2;
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   const auto count = static_cast<std::size_t>(std::clamp(p.count, 0, kImus));
-  for (std::size_t k = 0; k < count; ++k) mean += p.T_CI[k].translation() / p.count;
+  for (std::size_t k = 0; k < count; ++k) mean += p.T_mean_imu[k].translation() / p.count;
   for (std::size_t k = 0; k < count; ++k) {
-    out.T_CI[k] = p.T_CI[k];
-    out.T_CI[k].translation() -= mean;
-    out.gyro_elements[k] = p.gyro_elements[k];
-    out.accel_elements[k] = p.accel_elements[k];
+    out.T_mean_imu[k] = p.T_mean_imu[k];
+    out.T_mean_imu[k].translation() -= mean;
+    out.gyro_sensing_directions[k] = p.gyro_sensing_directions[k];
+    out.accel_sensing_directions[k] = p.accel_sensing_directions[k];
   }
   return out;
 }
 
-ImuMerge::ImuMerge(const Params& p) : params_(p), forces_(force_params(p)), recovery_(recovery_params(p)) {
+ImuMerge::ImuMerge(const Params& p) : params_(p), forces_(force_params(p)), rate_recovery_(rate_recovery_params(p)) {
   require_valid_fields(p);
   for (int k = 0; k < p.count; ++k) {
-    const Eigen::Isometry3d& T = p.T_CI[static_cast<std::size_t>(k)];
-    require_within("T_CI", T.translation().norm(), 0.0, 1e3);
-    require_within("T_CI", (T.linear() * T.linear().transpose() - Eigen::Matrix3d::Identity()).norm(), 0.0, 1e-6);
-    p_C_m_ += T.translation() / p.count;
+    const Eigen::Isometry3d& T = p.T_mean_imu[static_cast<std::size_t>(k)];
+    require_in_interval("T_CI", T.translation().norm(), 0.0, 1e3);
+    require_in_interval("T_CI", (T.linear() * T.linear().transpose() - Eigen::Matrix3d::Identity()).norm(), 0.0, 1e-6);
+    mean_imu_position_m_ += T.translation() / p.count;
   }
 }
 
 Status ImuMerge::step(std::span<const ImuSample> samples, State& state, std::optional<ImuSample>& merged) const {
   merged.reset();
   if (samples.size() != static_cast<std::size_t>(params_.count)) {
-    return {ErrorCode::too_few, "samples", static_cast<double>(samples.size()), static_cast<double>(params_.count)};
+    return {ErrorCode::insufficient_data, "samples", static_cast<double>(samples.size()), static_cast<double>(params_.count)};
   }
   const bool received =
       std::any_of(samples.begin(), samples.end(), [](const ImuSample& s) { return check_sample(s).ok(); });
   if (!received) return check_sample(samples[0]);
   double dt_s = 0.0;
-  if (state.samples > 0) {
-    const Status bad = elapsed(samples[0].time_ns, state.last_time_ns, params_.gap_max_s, dt_s);
+  if (state.sample_count > 0) {
+    const Status bad = elapsed_time_since_last(samples[0].time_ns, state.last_time_ns, params_.gap_max_s, dt_s);
     if (!bad.ok()) return bad;
   } else {
-    for (Unit& unit : state.units) {
-      unit.P.diagonal().setConstant(kScaleSigma * kScaleSigma);
-      unit.P.diagonal().head<3>().setConstant(kBiasSigma_rad_s * kBiasSigma_rad_s);
-      unit.P(kOffset, kOffset) = params_.offset_sigma_s * params_.offset_sigma_s;
+    for (Unit& unit : state.imus) {
+      unit.covariance.diagonal().setConstant(kScaleSigma * kScaleSigma);
+      unit.covariance.diagonal().head<3>().setConstant(kBiasSigma_rad_s * kBiasSigma_rad_s);
+      unit.covariance(kOffset, kOffset) = params_.offset_sigma_s * params_.offset_sigma_s;
     }
   }
   accumulate_window(samples, dt_s, state);
-  const bool full = state.samples == 0 || state.window_s >= params_.window_s - 0.5 * dt_s;
+  const bool full = state.sample_count == 0 || state.window_s >= params_.window_s - 0.5 * dt_s;
   state.last_time_ns = samples[0].time_ns;
-  ++state.samples;
+  ++state.sample_count;
   if (full) merged = merge(state);
   return {};
 }
 
 void ImuMerge::accumulate_window(std::span<const ImuSample> samples, double dt_s, State& state) const {
-  const double weight_s = state.samples > 0 ? dt_s : params_.window_s;
+  const double weight_s = state.sample_count > 0 ? dt_s : params_.window_s;
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    Unit& unit = state.units[k];
+    Unit& unit = state.imus[k];
     if (!check_sample(samples[k]).ok()) {
       if (unit.missing_samples++ == 0) unit.missing_since_ns = samples[0].time_ns;
       continue;
@@ -122,54 +122,54 @@ ImuSample ImuMerge::merge(State& state) const {
   const double h = state.window_s;
   const TimeNs time_ns = state.last_time_ns;
   Readings readings{};
-  UnitMask finite{}, present{};
+  ImuMask finite{}, present{};
   Vectors raw_rates, raw_forces, rates{}, forces{};
   raw_rates.fill(Eigen::Vector3d::Zero());  // units without readings keep zero
   raw_forces.fill(Eigen::Vector3d::Zero());
   for (std::size_t k = 0; k < count; ++k) {
-    finite[k] = state.units[k].window.readings > 0;
+    finite[k] = state.imus[k].window.readings > 0;
     if (!finite[k]) continue;
-    readings[k] = state.units[k].window.mean;
-    const Eigen::Matrix3d R_CI = params_.T_CI[k].linear();
+    readings[k] = state.imus[k].window.mean;
+    const Eigen::Matrix3d R_CI = params_.T_mean_imu[k].linear();
     raw_rates[k] = R_CI * readings[k].angular_velocity_rad_s;
     raw_forces[k] = R_CI * readings[k].specific_force_m_s2;
   }
   detect_frozen_units(finite, raw_rates, raw_forces, h, time_ns, state);
   const double since_s = 0.5 * (h + state.length_s);  // time between the middles of the last two windows
   for (std::size_t k = 0; k < count; ++k) {
-    const Unit& unit = state.units[k];
+    const Unit& unit = state.imus[k];
     present[k] = finite[k] && !unit.is_excluded();
     rates[k] = raw_rates[k];
     forces[k] = raw_forces[k];
     const double offset_s = unit.offset_s();
-    const bool late = offset_s * offset_s > kCertainDeviations * kCertainDeviations * unit.P(kOffset, kOffset);
-    if (finite[k] && state.windows > 0 && late) {  // delay of the IMU: imu_merge.md (I4)
+    const bool late = offset_s * offset_s > kCertainDeviations * kCertainDeviations * unit.covariance(kOffset, kOffset);
+    if (finite[k] && state.window_count > 0 && late) {  // delay of the IMU: imu_merge.md (I4)
       rates[k] -= offset_s / since_s * (raw_rates[k] - unit.last_rate_rad_s);
       forces[k] -= offset_s / since_s * (raw_forces[k] - unit.last_force_m_s2);
     }
     forces[k] = ForceErrors::corrected(static_cast<int>(k), forces[k], state.forces);
   }
   state.all_frozen = true;
-  for (std::size_t k = 0; k < count; ++k) state.all_frozen = state.all_frozen && (!finite[k] || state.units[k].frozen);
+  for (std::size_t k = 0; k < count; ++k) state.all_frozen = state.all_frozen && (!finite[k] || state.imus[k].is_frozen);
   if (std::none_of(present.begin(), present.end(), [](bool one) { return one; })) present = finite;
 
-  const UnitMask used = select_units(readings, present, rates, forces, h, state);
-  ImuSample merged = mean_of_used(rates, forces, used, h, state);
+  const ImuMask used = select_agreeing_imus(readings, present, rates, forces, h, state);
+  ImuSample merged = mean_of_selected_imus(rates, forces, used, h, state);
   merged.device_clip_flags = combined_flags(readings, used);
   const bool railed = (combined_flags(readings, present) & kClipGyro) != 0;
   const bool silent = !std::all_of(finite.begin(), finite.begin() + params_.count, [](bool one) { return one; });
-  state.unclipped_windows = railed || silent ? 0 : std::min(state.unclipped_windows + 1, kAccelerationWindows);
+  state.unclipped_windows = railed || silent ? 0 : std::min(state.unclipped_windows + 1, kAngularAccelerationWindows);
   merged.time_ns = time_ns;
   const bool all_used = std::count(used.begin(), used.end(), true) == params_.count;
-  close_windows(present, raw_rates, raw_forces, all_used, merged, state);
+  close_comparison_windows(present, raw_rates, raw_forces, all_used, merged, state);
 
   if (std::count(present.begin(), present.end(), true) >= kMinImusForRecovery) {
-    recover(readings, present, h, state, merged);
+    recover_saturated_rate(readings, present, h, state, merged);
   } else {
-    state.recovery.running = false;  // a prediction across a gap in the data is invalid
+    state.rate_recovery.running = false;  // a prediction across a gap in the data is invalid
   }
   const auto suspect = [](const Unit& unit) { return unit.exclusion_left_s > 0.0; };
-  if (2 * std::count_if(state.units.begin(), state.units.begin() + params_.count, suspect) > params_.count) {
+  if (2 * std::count_if(state.imus.begin(), state.imus.begin() + params_.count, suspect) > params_.count) {
     merged.device_clip_flags =
         static_cast<std::uint8_t>(merged.device_clip_flags | kClipAccelX | kClipAccelY | kClipAccelZ);
   }
@@ -177,34 +177,34 @@ ImuSample ImuMerge::merge(State& state) const {
 }
 
 /// Selects unsaturated IMUs that agree with the median of all IMUs: imu_merge.md (I5).
-ImuMerge::UnitMask ImuMerge::select_units(const Readings& readings, const UnitMask& present, const Vectors& rates,
+ImuMerge::ImuMask ImuMerge::select_agreeing_imus(const Readings& readings, const ImuMask& present, const Vectors& rates,
                                           const Vectors& forces, double h, State& state) const {
   const Eigen::Vector3d middle_rate = median(rates, present), middle_force = median(forces, present);
   const auto units = std::count(present.begin(), present.end(), true);
   const double rate_tolerance = params_.expert.outliers.rate_rad_s + kRateToleranceRatio * middle_rate.norm();
-  UnitMask used{};
+  ImuMask used{};
   for (std::size_t i = 0; i < used.size(); ++i) {
     if (!present[i]) continue;
-    const double turned = (params_.T_CI[i].translation() - p_C_m_).norm() * middle_rate.squaredNorm() * 2.0;
+    const double turned = (params_.T_mean_imu[i].translation() - mean_imu_position_m_).norm() * middle_rate.squaredNorm() * 2.0;
     const bool agrees = units < 3 || ((rates[i] - middle_rate).norm() < rate_tolerance &&
                                       (forces[i] - middle_force).norm() < params_.expert.outliers.force_m_s2 + turned);
-    // With three or more IMUs, RateRecovery uses a clipped gyro as a lower bound.
+    // With three or more IMUs, AngularRateRecovery uses a clipped gyro as a lower bound.
     const int clipping = units < kMinImusForRecovery ? kClipAccel | kClipGyro : kClipAccel;
     used[i] = agrees && (readings[i].device_clip_flags & clipping) == 0;
   }
   const auto kept = std::count(used.begin(), used.end(), true);
   // Without a majority, it is unknown which IMUs are right.
   if (units < kMinImusForRecovery ? kept == 0 : 2 * kept <= units && kept < units) used = present;
-  const bool apart = state.windows > 0 && h > 0.0;  // derivatives from the last window exist
+  const bool apart = state.window_count > 0 && h > 0.0;  // derivatives from the last window exist
   if (units >= kMinImusForRecovery && apart && middle_rate.cwiseAbs().maxCoeff() < params_.gyro_range_rad_s) {
-    exclude_subsample_saturated(readings, present, forces, middle_rate, h, state, used);
+    exclude_partly_saturated(readings, present, forces, middle_rate, h, state, used);
   }
-  for (std::size_t i = 0; i < static_cast<std::size_t>(params_.count); ++i) state.units[i].excluded_windows += !used[i];
+  for (std::size_t i = 0; i < static_cast<std::size_t>(params_.count); ++i) state.imus[i].excluded_window_count += !used[i];
   return used;
 }
 
 /// See imu_merge.md (I1), (I2).
-ImuSample ImuMerge::mean_of_used(const Vectors& rates, const Vectors& forces, const UnitMask& used, double h,
+ImuSample ImuMerge::mean_of_selected_imus(const Vectors& rates, const Vectors& forces, const ImuMask& used, double h,
                                  const State& state) const {
   const auto kept = static_cast<int>(std::count(used.begin(), used.end(), true));
   Eigen::Vector3d rate = Eigen::Vector3d::Zero(), force = Eigen::Vector3d::Zero(), position = Eigen::Vector3d::Zero();
@@ -212,13 +212,13 @@ ImuSample ImuMerge::mean_of_used(const Vectors& rates, const Vectors& forces, co
     if (!used[i]) continue;
     rate += rates[i] / kept;
     force += forces[i] / kept;
-    position += params_.T_CI[i].translation() / kept;
+    position += params_.T_mean_imu[i].translation() / kept;
     if (kept < params_.count) position += ForceErrors::position_error_m(static_cast<int>(i), state.forces) / kept;
   }
   if (kept < params_.count) {
-    const Eigen::Vector3d d = p_C_m_ - position;
+    const Eigen::Vector3d d = mean_imu_position_m_ - position;
     const double since_s = 0.5 * (h + state.length_s);
-    if (state.windows > 0 && h > 0.0) force += ((rate - state.rate_rad_s) / since_s).cross(d);
+    if (state.window_count > 0 && h > 0.0) force += ((rate - state.rate_rad_s) / since_s).cross(d);
     force += rate.cross(rate.cross(d));
   }
   ImuSample merged;
@@ -229,28 +229,28 @@ ImuSample ImuMerge::mean_of_used(const Vectors& rates, const Vectors& forces, co
 
 /// Returns the ratio of the measured to the expected force differences between the IMUs: imu_merge.md (I8).
 std::optional<double> ImuMerge::lever_arm_agreement(const State& state) {
-  if (state.lever_arm_effect_m2_s3 < kArmSquareMin_m2_s3) return std::nullopt;
-  return state.lever_arm_correlation / state.lever_arm_effect_m2_s3;
+  if (state.lever_arm_effect_power < kArmSquareMin_m2_s3) return std::nullopt;
+  return state.lever_arm_correlation / state.lever_arm_effect_power;
 }
 
-void ImuMerge::close_windows(const UnitMask& present, const Vectors& rates, const Vectors& forces, bool all_used,
+void ImuMerge::close_comparison_windows(const ImuMask& present, const Vectors& rates, const Vectors& forces, bool all_used,
                              const ImuSample& merged, State& state) const {
-  const double length_s = state.windows > 0 ? state.window_s : params_.window_s;
-  const bool follows = state.windows > 1 && length_s < kWindowMax_s;
+  const double length_s = state.window_count > 0 ? state.window_s : params_.window_s;
+  const bool follows = state.window_count > 1 && length_s < kWindowMax_s;
   // An IMU that repeats its reading may be frozen. If all IMUs repeat their readings, the rate is constant and no IMU
   // is frozen.
-  const auto end = state.units.begin() + params_.count;
+  const auto end = state.imus.begin() + params_.count;
   const auto any_repeats = [&](Repetition Unit::*hold) {
-    const auto holding = std::count_if(state.units.begin(), end,
+    const auto holding = std::count_if(state.imus.begin(), end,
                                        [&](const Unit& unit) { return (unit.*hold).repeated_s >= kRepeated_s; });
     return holding > 0 && holding < params_.count;
   };
-  const bool repeated = any_repeats(&Unit::rate_repeat) || any_repeats(&Unit::force_repeat);
-  const bool free = state.unclipped_windows == kAccelerationWindows;
+  const bool repeated = any_repeats(&Unit::repeated_rate) || any_repeats(&Unit::repeated_force);
+  const bool free = state.unclipped_windows == kAngularAccelerationWindows;
   if (all_used && !repeated && params_.count > 1 && follows && free) calibrate(rates, state);
   detect_disagreeing_units(present, rates, forces, merged.time_ns, state);
   for (std::size_t k = 0; k < static_cast<std::size_t>(params_.count); ++k) {
-    Unit& unit = state.units[k];
+    Unit& unit = state.imus[k];
     if (unit.window.readings > 0) {
       unit.last_rate_rad_s = rates[k];
       unit.last_force_m_s2 = forces[k];
@@ -258,7 +258,7 @@ void ImuMerge::close_windows(const UnitMask& present, const Vectors& rates, cons
       const Eigen::Vector3d& rate = merged.angular_velocity_rad_s;
       unit.last_rate_rad_s = rate;
       unit.last_force_m_s2 =
-          merged.specific_force_m_s2 + rate.cross(rate.cross(params_.T_CI[k].translation() - p_C_m_));
+          merged.specific_force_m_s2 + rate.cross(rate.cross(params_.T_mean_imu[k].translation() - mean_imu_position_m_));
     }
     unit.window = {};
   }
@@ -267,49 +267,49 @@ void ImuMerge::close_windows(const UnitMask& present, const Vectors& rates, cons
   state.previous_length_s = state.length_s;
   state.length_s = length_s;
   state.window_s = 0.0;
-  ++state.windows;
+  ++state.window_count;
 }
 
 /// Excludes accelerometers that an impact may have saturated for a part of the averaging window: imu_merge.md (I6). If
 /// no two IMUs agree, a common angular acceleration within the averaging window is estimated first: imu_merge.md (I7).
-void ImuMerge::exclude_subsample_saturated(const Readings& samples, const UnitMask& present, const Vectors& forces,
-                                           const Eigen::Vector3d& rate, double h, State& state, UnitMask& used) const {
+void ImuMerge::exclude_partly_saturated(const Readings& samples, const ImuMask& present, const Vectors& forces,
+                                           const Eigen::Vector3d& rate, double h, State& state, ImuMask& used) const {
   const double since_s = 0.5 * (h + state.length_s);
   const double window_centre_step_s = 0.5 * (state.length_s + state.previous_length_s);
   const Eigen::Vector3d before = (state.rate_rad_s - state.previous_rate_rad_s) / window_centre_step_s;
-  RigidForces rigid;
-  rigid.present = present;
+  RigidBodyImuForces rigid;
+  rigid.imu_present = present;
   rigid.force_m_s2 = forces;
   rigid.rate_rad_s = rate;
   rigid.acceleration_rad_s2 = (rate - state.rate_rad_s) / since_s;
   rigid.uncertainty_rad_s2 = kAccelerationSigmaRatio * (rigid.acceleration_rad_s2 - before).norm();
-  rigid.small_peak_m_s2 = params_.expert.outliers.subsample_saturation_ratio * params_.accel_range_m_s2;
-  rigid.hidden_force_m_s2 = params_.expert.outliers.hidden_force_m_s2;
+  rigid.unsaturated_peak_max_m_s2 = params_.expert.outliers.subsample_saturation_ratio * params_.accel_range_m_s2;
+  rigid.tolerated_saturation_m_s2 = params_.expert.outliers.hidden_force_m_s2;
   for (std::size_t k = 0; k < present.size(); ++k) {
     if (!present[k]) continue;
     const Eigen::Vector3d& force = samples[k].specific_force_m_s2;
     rigid.position_m[k] =
-        params_.T_CI[k].translation() + ForceErrors::position_error_m(static_cast<int>(k), state.forces);
+        params_.T_mean_imu[k].translation() + ForceErrors::position_error_m(static_cast<int>(k), state.forces);
     rigid.peak_m_s2[k] = force.cwiseAbs().maxCoeff();
-    rigid.change_m_s2[k] = (params_.T_CI[k].linear() * force - state.units[k].last_force_m_s2).norm();
+    rigid.force_change_m_s2[k] = (params_.T_mean_imu[k].linear() * force - state.imus[k].last_force_m_s2).norm();
   }
-  RigidForces::AgreeingForces agreed = rigid.most_agreed();
-  if (agreed.others == 0) {
-    rigid.acceleration_rad_s2 += rigid.common_acceleration();
+  RigidBodyImuForces::AgreeingImuForces agreed = rigid.largest_agreeing_set();
+  if (agreed.agreeing_imu_count == 0) {
+    rigid.acceleration_rad_s2 += rigid.mean_imu_acceleration();
     rigid.uncertainty_rad_s2 = 0.0;
-    agreed = rigid.most_agreed();
+    agreed = rigid.largest_agreeing_set();
   }
   for (std::size_t k = 0; k < present.size(); ++k) {
     if (!present[k]) continue;
-    double& exclusion_left_s = state.units[k].exclusion_left_s;
-    const bool fits = k == agreed.unit || rigid.agree(k, agreed.unit);
+    double& exclusion_left_s = state.imus[k].exclusion_left_s;
+    const bool fits = k == agreed.imu || rigid.forces_agree(k, agreed.imu);
     exclusion_left_s = fits ? std::max(0.0, exclusion_left_s - h) : kSuspect_s;
     used[k] = used[k] && exclusion_left_s == 0.0;
   }
-  if (std::none_of(used.begin(), used.begin() + params_.count, [](bool one) { return one; })) used[agreed.unit] = true;
+  if (std::none_of(used.begin(), used.begin() + params_.count, [](bool one) { return one; })) used[agreed.imu] = true;
 }
 
-void ImuMerge::recover(const Readings& readings, const UnitMask& present, double h, State& state,
+void ImuMerge::recover_saturated_rate(const Readings& readings, const ImuMask& present, double h, State& state,
                        ImuSample& merged) const {
   Readings corrected = readings;
   for (std::size_t k = 0; k < static_cast<std::size_t>(params_.count); ++k) {
@@ -318,12 +318,12 @@ void ImuMerge::recover(const Readings& readings, const UnitMask& present, double
       continue;
     }
     if ((readings[k].device_clip_flags & kClipAccel) != 0) continue;
-    const Eigen::Matrix3d R_CI = params_.T_CI[k].linear();
+    const Eigen::Matrix3d R_CI = params_.T_mean_imu[k].linear();
     const Eigen::Vector3d force = R_CI * readings[k].specific_force_m_s2;
     corrected[k].specific_force_m_s2 =
         R_CI.transpose() * ForceErrors::corrected(static_cast<int>(k), force, state.forces);
   }
-  recovery_.step({corrected.data(), static_cast<std::size_t>(params_.count)}, h, state.recovery, merged);
+  rate_recovery_.step({corrected.data(), static_cast<std::size_t>(params_.count)}, h, state.rate_recovery, merged);
 }
 
 /// See imu_merge.md (I3), (I8).
@@ -332,7 +332,7 @@ void ImuMerge::calibrate(const Vectors& rates, State& state) const {
   Eigen::Vector3d now = Eigen::Vector3d::Zero(), mean = Eigen::Vector3d::Zero();
   for (std::size_t k = 0; k < count; ++k) {
     now += rates[k] / static_cast<double>(count);
-    mean += state.units[k].last_rate_rad_s / static_cast<double>(count);
+    mean += state.imus[k].last_rate_rad_s / static_cast<double>(count);
   }
   const double window_centre_step_s = 0.5 * (state.window_s + state.previous_length_s) + state.length_s;
   const Eigen::Vector3d acceleration = (now - state.previous_rate_rad_s) / window_centre_step_s;
@@ -340,7 +340,7 @@ void ImuMerge::calibrate(const Vectors& rates, State& state) const {
   Eigen::Vector3d mean_force = Eigen::Vector3d::Zero();
   double peak = 0.0;
   for (std::size_t k = 0; k < count; ++k) {
-    forces[k] = state.units[k].last_force_m_s2;
+    forces[k] = state.imus[k].last_force_m_s2;
     mean_force += forces[k] / static_cast<double>(count);
     peak = std::max(peak, forces[k].cwiseAbs().maxCoeff());
   }
@@ -349,25 +349,25 @@ void ImuMerge::calibrate(const Vectors& rates, State& state) const {
   }
   const Eigen::Matrix3d jacobian_position = so3::hat(acceleration) + so3::hat(mean) * so3::hat(mean);
   for (std::size_t k = 0; k < count; ++k) {
-    const Eigen::Vector3d from_mean_m = params_.T_CI[k].translation() - p_C_m_,
+    const Eigen::Vector3d from_mean_m = params_.T_mean_imu[k].translation() - mean_imu_position_m_,
                           by_rotation = jacobian_position * from_mean_m;
-    state.sign_check.add(forces[k] - mean_force, from_mean_m, mean, acceleration, state.length_s);
+    state.imu_sign_check.add(forces[k] - mean_force, from_mean_m, mean, acceleration, state.length_s);
     state.lever_arm_correlation += state.length_s * by_rotation.dot(forces[k]);  // the mean force cancels
-    state.lever_arm_effect_m2_s3 += state.length_s * by_rotation.squaredNorm();
+    state.lever_arm_effect_power += state.length_s * by_rotation.squaredNorm();
   }
   if (acceleration.norm() < kRotating_rad_s2) return;
   const double variance = params_.kRateNoise_rad_s * params_.kRateNoise_rad_s;
   for (std::size_t k = 0; k < count; ++k) {
-    Unit& unit = state.units[k];
+    Unit& unit = state.imus[k];
     const Eigen::Vector3d residual = unit.last_rate_rad_s - mean;
     for (int axis = 0; axis < 3; ++axis) {
       Eigen::Matrix<double, kErrorCount, 1> row = Eigen::Matrix<double, kErrorCount, 1>::Zero();
       row[axis] = 1.0;
       row.segment<3>(3 + 3 * axis) = mean;
       row[kOffset] = acceleration[axis];
-      unit.x += scalar_update(row, residual[axis] - row.dot(unit.x), variance, unit.P);
+      unit.x += scalar_update(row, residual[axis] - row.dot(unit.x), variance, unit.covariance);
     }
-    unit.P = (0.5 * (unit.P + unit.P.transpose())).eval();
+    unit.covariance = (0.5 * (unit.covariance + unit.covariance.transpose())).eval();
   }
 }
 

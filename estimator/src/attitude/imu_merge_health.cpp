@@ -28,18 +28,18 @@ constexpr double kAxisContributionMin =
 
 /// Returns the rotation across a repeated force, which is mostly gravity and should rotate with the body.
 double rotation_across_force_rad(const ImuMerge::Repetition& hold) {
-  return hold.turned_rad.cross(hold.reading.stableNormalized()).norm();
+  return hold.turned_rad.cross(hold.repeated_reading.stableNormalized()).norm();
 }
 
 }  // namespace
 
 /// An axis of the common frame C is flagged if a clipped axis of any selected IMU contributes to it.
-std::uint8_t ImuMerge::combined_flags(const Readings& readings, const UnitMask& which) const {
+std::uint8_t ImuMerge::combined_flags(const Readings& readings, const ImuMask& which) const {
   unsigned out = 0;
   for (std::size_t k = 0; k < which.size(); ++k) {
     const unsigned flags = readings[k].device_clip_flags;
     if (!which[k] || flags == 0) continue;
-    const Eigen::Matrix3d R_CI = params_.T_CI[k].linear();
+    const Eigen::Matrix3d R_CI = params_.T_mean_imu[k].linear();
     for (int axis = 0; axis < 3; ++axis) {
       for (int own = 0; own < 3; ++own) {
         if (std::abs(R_CI(axis, own)) <= kAxisContributionMin) continue;
@@ -51,7 +51,7 @@ std::uint8_t ImuMerge::combined_flags(const Readings& readings, const UnitMask& 
   return static_cast<std::uint8_t>(out);
 }
 
-Eigen::Vector3d ImuMerge::median(const Vectors& values, const UnitMask& which) {
+Eigen::Vector3d ImuMerge::median(const Vectors& values, const ImuMask& which) {
   Eigen::Vector3d out = Eigen::Vector3d::Zero();
   for (int axis = 0; axis < 3; ++axis) {
     std::array<double, kImus> sorted;
@@ -68,41 +68,41 @@ Eigen::Vector3d ImuMerge::median(const Vectors& values, const UnitMask& which) {
 }
 
 /// An accelerometer that repeats one reading while the body rotates is frozen, even if all accelerometers do so.
-void ImuMerge::detect_frozen_units(const UnitMask& present, const Vectors& rates, const Vectors& forces, double dt_s,
+void ImuMerge::detect_frozen_units(const ImuMask& present, const Vectors& rates, const Vectors& forces, double dt_s,
                                    TimeNs time_ns, State& state) const {
-  UnitMask counted = present;
-  for (std::size_t k = 0; k < counted.size(); ++k) counted[k] = counted[k] && !state.units[k].is_excluded();
+  ImuMask counted = present;
+  for (std::size_t k = 0; k < counted.size(); ++k) counted[k] = counted[k] && !state.imus[k].is_excluded();
   const Eigen::Vector3d middle_rate = median(rates, counted), middle_force = median(forces, counted);
   const auto watch = [&](const Eigen::Vector3d& reading, const Eigen::Vector3d& others, Repetition& hold) {
-    const bool same = state.samples > 0 && reading == hold.reading;
+    const bool same = state.sample_count > 0 && reading == hold.repeated_reading;
     hold.repeated_s = same ? hold.repeated_s + dt_s : 0.0;
     hold.turned_rad += dt_s * middle_rate;
     if (!same) {
       hold.turned_rad.setZero();
-      hold.reading = reading;
-      hold.others = others;
+      hold.repeated_reading = reading;
+      hold.other_imus_reading = others;
       hold.since_ns = time_ns;
     }
     return same;
   };
   for (std::size_t k = 0; k < present.size(); ++k) {
     if (!present[k]) continue;
-    Unit& unit = state.units[k];
-    const bool rate_same = watch(rates[k], middle_rate, unit.rate_repeat);
-    const bool force_same = watch(forces[k], middle_force, unit.force_repeat);
+    Unit& unit = state.imus[k];
+    const bool rate_same = watch(rates[k], middle_rate, unit.repeated_rate);
+    const bool force_same = watch(forces[k], middle_force, unit.repeated_force);
     const bool railed = rates[k].cwiseAbs().maxCoeff() >= params_.gyro_range_rad_s ||
                         forces[k].cwiseAbs().maxCoeff() >= params_.accel_range_m_s2;
-    const bool rate_frozen = unit.rate_repeat.repeated_s >= kUnitFrozen_s &&
-                             (middle_rate - unit.rate_repeat.others).norm() > kOthersRate_rad_s;
-    const bool force_frozen = unit.force_repeat.repeated_s >= kUnitFrozen_s &&
-                              ((middle_force - unit.force_repeat.others).norm() > kOthersForce_m_s2 ||
-                               rotation_across_force_rad(unit.force_repeat) > kGravityRotation_rad);
-    unit.changing_readings_s = rate_same || force_same ? 0.0 : unit.changing_readings_s + dt_s;
-    if (unit.frozen) {
-      unit.frozen = unit.changing_readings_s < kUnfreeze_s;
+    const bool rate_frozen = unit.repeated_rate.repeated_s >= kUnitFrozen_s &&
+                             (middle_rate - unit.repeated_rate.other_imus_reading).norm() > kOthersRate_rad_s;
+    const bool force_frozen = unit.repeated_force.repeated_s >= kUnitFrozen_s &&
+                              ((middle_force - unit.repeated_force.other_imus_reading).norm() > kOthersForce_m_s2 ||
+                               rotation_across_force_rad(unit.repeated_force) > kGravityRotation_rad);
+    unit.changing_readings_duration_s = rate_same || force_same ? 0.0 : unit.changing_readings_duration_s + dt_s;
+    if (unit.is_frozen) {
+      unit.is_frozen = unit.changing_readings_duration_s < kUnfreeze_s;
     } else if (!railed && (rate_frozen || force_frozen)) {
-      unit.frozen = true;
-      unit.frozen_since_ns = rate_frozen ? unit.rate_repeat.since_ns : unit.force_repeat.since_ns;
+      unit.is_frozen = true;
+      unit.frozen_since_ns = rate_frozen ? unit.repeated_rate.since_ns : unit.repeated_force.since_ns;
     }
   }
 }
@@ -110,8 +110,8 @@ void ImuMerge::detect_frozen_units(const UnitMask& present, const Vectors& rates
 Status ImuMerge::verdict(const State& state) {
   if (!state.all_frozen) return {};
   double repeated_s = 0.0;
-  for (const Unit& unit : state.units) {
-    if (unit.frozen) repeated_s = std::max({repeated_s, unit.rate_repeat.repeated_s, unit.force_repeat.repeated_s});
+  for (const Unit& unit : state.imus) {
+    if (unit.is_frozen) repeated_s = std::max({repeated_s, unit.repeated_rate.repeated_s, unit.repeated_force.repeated_s});
   }
   return {ErrorCode::out_of_range, "time in s for which every IMU repeats one reading while the body rotates",
           repeated_s, kUnitFrozen_s};
@@ -119,28 +119,28 @@ Status ImuMerge::verdict(const State& state) {
 
 void ImuMerge::add_finding(const Unit& unit, const std::string& name, SensorHealth& health) {
   using Kind = HealthFinding::Kind;
-  const double repeated_s = std::max(unit.rate_repeat.repeated_s, unit.force_repeat.repeated_s);
-  if (unit.frozen)
-    health.add(Kind::unit_frozen,
+  const double repeated_s = std::max(unit.repeated_rate.repeated_s, unit.repeated_force.repeated_s);
+  if (unit.is_frozen)
+    health.add(Kind::imu_frozen,
                {ErrorCode::out_of_range, "time in s for which the IMU repeats one reading while the others change",
                 repeated_s, kUnitFrozen_s},
                name, "", unit.frozen_since_ns);
   if (unit.disagrees)
-    health.add(Kind::unit_disagrees,
+    health.add(Kind::imu_disagrees,
                {ErrorCode::out_of_range, "time in s for which the IMU disagrees with the others", unit.disagreement_s,
                 kDisagrees_s},
                name, "", unit.disagrees_since_ns);
 }
 
-void ImuMerge::add_findings(const std::optional<UnitSignCheck::Detected>& mislabelled_axes,
+void ImuMerge::add_findings(const std::optional<MultiImuSignCheck::DetectedMirroring>& mislabelled_axes,
                             const std::optional<double>& lever_arm_agreement, bool gyro_confirmed,
                             SensorHealth& health) {
   using Kind = HealthFinding::Kind;
   if (mislabelled_axes)
     health.add(
-        Kind::axes_or_signs,
+        Kind::wrong_axes_or_signs,
         {ErrorCode::out_of_range, "share of the force differences between the IMUs that other axes or signs explain",
-         mislabelled_axes->share, UnitSignCheck::kExplainedRatioMin},
+         mislabelled_axes->explained_fraction, MultiImuSignCheck::kMinExplainedFraction},
         "imu");
   if (!lever_arm_agreement) return;
   constexpr const char* kQuantity =
@@ -148,17 +148,17 @@ void ImuMerge::add_findings(const std::optional<UnitSignCheck::Detected>& mislab
   const double share = *lever_arm_agreement;
   const double off = gyro_confirmed ? 1.0 - kArmShareMin : kArmShareOff, bound = 1.0 + std::copysign(off, share - 1.0);
   if (std::abs(share - 1.0) <= off) return;
-  health.add(share < 0.0 ? Kind::axes_or_signs : Kind::gyro_scale, {ErrorCode::out_of_range, kQuantity, share, bound},
+  health.add(share < 0.0 ? Kind::wrong_axes_or_signs : Kind::gyro_scale, {ErrorCode::out_of_range, kQuantity, share, bound},
              "imu");
 }
 
-void ImuMerge::detect_disagreeing_units(const UnitMask& present, const Vectors& rates, const Vectors& forces,
+void ImuMerge::detect_disagreeing_units(const ImuMask& present, const Vectors& rates, const Vectors& forces,
                                         TimeNs time_ns, State& state) const {
   if (std::count(present.begin(), present.end(), true) < kMinImusForFault) return;
-  const double h = state.windows > 0 ? state.window_s : params_.window_s, share = -std::expm1(-h / kMisfitTau_s);
+  const double h = state.window_count > 0 ? state.window_s : params_.window_s, share = -std::expm1(-h / kMisfitTau_s);
   bool railed = false;
   for (std::size_t k = 0; k < present.size(); ++k) {
-    const ImuAverage& window = state.units[k].window;
+    const ImuAverage& window = state.imus[k].window;
     if (!present[k] || window.readings == 0) continue;
     railed |= window.rate_peak_rad_s >= kComparableRateRatio * params_.gyro_range_rad_s ||
               window.force_peak_m_s2 >= params_.expert.outliers.subsample_saturation_ratio * params_.accel_range_m_s2;
@@ -167,14 +167,14 @@ void ImuMerge::detect_disagreeing_units(const UnitMask& present, const Vectors& 
   const Eigen::Vector3d middle_rate = median(rates, present), middle_force = median(forces, present);
   state.rotation_rate_rad_s += share * (middle_rate.norm() - state.rotation_rate_rad_s);
   for (std::size_t k = 0; k < present.size(); ++k) {
-    if (!present[k] || state.units[k].window.readings == 0) continue;
-    Unit& unit = state.units[k];
-    const double turned = (params_.T_CI[k].translation() - p_C_m_).norm() * 2.0 * middle_rate.squaredNorm();
+    if (!present[k] || state.imus[k].window.readings == 0) continue;
+    Unit& unit = state.imus[k];
+    const double turned = (params_.T_mean_imu[k].translation() - mean_imu_position_m_).norm() * 2.0 * middle_rate.squaredNorm();
     const double force = std::max(0.0, (forces[k] - middle_force).norm() - turned);
-    unit.rate_disagreement_rad_s += share * ((rates[k] - middle_rate).norm() - unit.rate_disagreement_rad_s);
+    unit.rate_difference_to_others_rad_s += share * ((rates[k] - middle_rate).norm() - unit.rate_difference_to_others_rad_s);
     unit.force_disagreement_m_s2 += share * (force - unit.force_disagreement_m_s2);
     const double rate_bound = kDisagreeRate_rad_s + kDisagreeRateRatio * state.rotation_rate_rad_s;
-    const bool off = unit.rate_disagreement_rad_s > rate_bound || unit.force_disagreement_m_s2 > kDisagreeForce_m_s2;
+    const bool off = unit.rate_difference_to_others_rad_s > rate_bound || unit.force_disagreement_m_s2 > kDisagreeForce_m_s2;
     if (off && unit.disagreement_s == 0.0) unit.disagreement_since_ns = time_ns;
     unit.disagreement_s = off ? unit.disagreement_s + h : 0.0;
     if (unit.disagreement_s < kDisagrees_s) continue;

@@ -33,24 +33,24 @@ constexpr double kPushedMin_s = 0.2;        // minimum duration of a force that 
 constexpr double kDirectionForceRatioMin = 0.05;  // minimum force with a usable direction, as a fraction of gravity
 
 // See imu_merge.md (I20).
-double rotation_product_rad2(const ImuPlausibility::State& state) {
-  return 0.5 * (state.force_rotation_rad2 + state.gyro_rotation_rad2 - state.unexplained_rad2);
+double force_gyro_rotation_product_rad2(const ImuPlausibility::State& state) {
+  return 0.5 * (state.force_rotation_square_sum_rad2 + state.gyro_rotation_square_sum_rad2 - state.unexplained_force_rotation_rad2);
 }
 
 bool rotated_enough(const ImuPlausibility::State& state) {
-  return state.force_rotation_rad2 >= kRotationMin_rad2 && state.rotated_windows >= kRotatedWindowsMin;
+  return state.force_rotation_square_sum_rad2 >= kRotationMin_rad2 && state.rotated_window_count >= kRotatedWindowsMin;
 }
 
-void hold(const Eigen::Vector3d& reading, double dt_s, ImuPlausibility::Repetition& hold) {
+void add_repeated_reading(const Eigen::Vector3d& reading, double dt_s, ImuPlausibility::RepeatedReadingTime& hold) {
   if (reading != hold.reading) {
     hold.longest_s = std::max(hold.longest_s, hold.repeated_s);
     hold.repeated_s = 0.0;
-    hold.changing_duration_s += dt_s;
+    hold.changing_readings_duration_s += dt_s;
     hold.reading = reading;
     return;
   }
   hold.repeated_s += dt_s;
-  const bool froze = std::min(hold.repeated_s, hold.changing_duration_s) >= kFrozen_s &&
+  const bool froze = std::min(hold.repeated_s, hold.changing_readings_duration_s) >= kFrozen_s &&
                      hold.repeated_s >= kRepetitionRatio * hold.longest_s;
   if (froze) hold.frozen_s = std::max(hold.frozen_s, hold.repeated_s);
 }
@@ -65,11 +65,11 @@ void ImuPlausibility::step(const ImuSample& sample, State& state) const {
   if (!check_sample(sample).ok()) return;
   double dt_s = 0.0;
   if (state.started) {
-    const Status follows = elapsed(sample.time_ns, state.last_time_ns, kWindowGapMax_s, dt_s);
+    const Status follows = elapsed_time_since_last(sample.time_ns, state.last_time_ns, kWindowGapMax_s, dt_s);
     if (follows.error_code == ErrorCode::time_order) return;
     if (follows.ok()) {
-      hold(sample.angular_velocity_rad_s, dt_s, state.gyro);
-      hold(sample.specific_force_m_s2, dt_s, state.accel);
+      add_repeated_reading(sample.angular_velocity_rad_s, dt_s, state.gyro);
+      add_repeated_reading(sample.specific_force_m_s2, dt_s, state.accel);
     }
     if (!follows.ok()) {
       state.window_started = false;
@@ -78,7 +78,7 @@ void ImuPlausibility::step(const ImuSample& sample, State& state) const {
     } else {
       state.in_range = state.in_range && sample.angular_velocity_rad_s.cwiseAbs().maxCoeff() < params_.gyro_range_rad_s;
       state.average.add(sample, dt_s);
-      if (state.average.full(kForceReading_s, dt_s)) process_average(state);
+      if (state.average.full(kForceReading_s, dt_s)) process_averaged_reading(state);
     }
   } else {
     state.gyro.reading = sample.angular_velocity_rad_s;
@@ -89,19 +89,19 @@ void ImuPlausibility::step(const ImuSample& sample, State& state) const {
 }
 
 /// See imu_merge.md (I18), (I19).
-void ImuPlausibility::process_average(State& state) const {
+void ImuPlausibility::process_averaged_reading(State& state) const {
   const Eigen::Vector3d force = state.average.mean.specific_force_m_s2;
   const Eigen::Vector3d turned = state.average.length_s * state.average.mean.angular_velocity_rad_s;
   const double length_s = state.average.length_s;
   state.average = {};
   if (std::abs(force.norm() - params_.gravity_m_s2) > kNonRestForceRatio * params_.gravity_m_s2)
-    state.non_rest_force_s += length_s;
+    state.moving_force_duration_s += length_s;
   if (state.window_started) {
     // The rotation from the middle of the first averaging interval to the middle of the last is approximately the
     // rotation after the first interval.
-    state.gyro_rotation = (state.gyro_rotation * so3::exp(turned)).normalized();
+    state.gyro_rotation_in_window = (state.gyro_rotation_in_window * so3::exp(turned)).normalized();
     state.length_s += length_s;
-    const double start = state.force_start_m_s2.norm();
+    const double start = state.window_start_force_m_s2.norm();
     state.force_is_constant = state.force_is_constant && std::abs(force.norm() - start) <= kChangeMax * start;
     if (state.length_s >= kGravityWindow_s - 0.5 * length_s) {
       if (state.force_is_constant && state.in_range) {
@@ -111,8 +111,8 @@ void ImuPlausibility::process_average(State& state) const {
     }
   }
   if (!state.window_started) {
-    state.force_start_m_s2 = force;
-    state.gyro_rotation.setIdentity();
+    state.window_start_force_m_s2 = force;
+    state.gyro_rotation_in_window.setIdentity();
     state.length_s = 0.0;
     state.window_started = true;
     state.in_range = true;
@@ -125,31 +125,31 @@ void ImuPlausibility::compare_rotations(const Eigen::Vector3d& force_m_s2, State
   const auto near_gravity = [&](const Eigen::Vector3d& force) {
     return std::abs(force.norm() - params_.gravity_m_s2) <= kGravityNear * params_.gravity_m_s2;
   };
-  if (!near_gravity(state.force_start_m_s2) || !near_gravity(force_m_s2)) return;
-  const Eigen::Vector3d from = state.force_start_m_s2.normalized(), to = force_m_s2.normalized();
+  if (!near_gravity(state.window_start_force_m_s2) || !near_gravity(force_m_s2)) return;
+  const Eigen::Vector3d from = state.window_start_force_m_s2.normalized(), to = force_m_s2.normalized();
   const double by_force = (to - from).squaredNorm();
-  const double by_gyro = (state.gyro_rotation.conjugate() * from - from).squaredNorm();
+  const double by_gyro = (state.gyro_rotation_in_window.conjugate() * from - from).squaredNorm();
   if (by_force < kRotationMin_rad * kRotationMin_rad) return;
-  state.force_rotation_rad2 += by_force;
-  state.gyro_rotation_rad2 += by_gyro;
-  state.unexplained_rad2 += (to - state.gyro_rotation.conjugate() * from).squaredNorm();
-  state.rotated_windows += 1.0;
+  state.force_rotation_square_sum_rad2 += by_force;
+  state.gyro_rotation_square_sum_rad2 += by_gyro;
+  state.unexplained_force_rotation_rad2 += (to - state.gyro_rotation_in_window.conjugate() * from).squaredNorm();
+  state.rotated_window_count += 1.0;
 }
 
 void ImuPlausibility::limit_memory(State& state) {
   constexpr double kWindowsMax = 300.0;  // a minute of windows of 0.2 s
-  for (Repetition* hold : {&state.gyro, &state.accel}) {
+  for (RepeatedReadingTime* hold : {&state.gyro, &state.accel}) {
     if (hold->repeated_s == 0.0) hold->frozen_s = 0.0;
   }
-  if (state.rotated_windows <= kWindowsMax) return;
-  const double share = kWindowsMax / state.rotated_windows;
+  if (state.rotated_window_count <= kWindowsMax) return;
+  const double share = kWindowsMax / state.rotated_window_count;
   for (double* sum :
-       {&state.unexplained_rad2, &state.force_rotation_rad2, &state.gyro_rotation_rad2, &state.rotated_windows})
+       {&state.unexplained_force_rotation_rad2, &state.force_rotation_square_sum_rad2, &state.gyro_rotation_square_sum_rad2, &state.rotated_window_count})
     *sum *= share;
 }
 
-double ImuPlausibility::unexplained_rotation_ratio(const State& state) const {
-  return rotated_enough(state) ? state.unexplained_rad2 / std::max(state.force_rotation_rad2, state.gyro_rotation_rad2)
+double ImuPlausibility::unexplained_force_rotation_ratio(const State& state) const {
+  return rotated_enough(state) ? state.unexplained_force_rotation_rad2 / std::max(state.force_rotation_square_sum_rad2, state.gyro_rotation_square_sum_rad2)
                                : 0.0;
 }
 
@@ -157,40 +157,40 @@ double ImuPlausibility::unexplained_rotation_ratio(const State& state) const {
 /// excludes rest, proves that the body moves. An accelerometer that reads zero for longer than a free fall is frozen if
 /// the gyro measures rotation.
 double ImuPlausibility::frozen_s(const State& state) const {
-  const auto never_moved = [&](const Repetition& hold) {
-    return hold.changing_duration_s == 0.0 && hold.repeated_s >= kFrozen_s;
+  const auto never_moved = [&](const RepeatedReadingTime& hold) {
+    return hold.changing_readings_duration_s == 0.0 && hold.repeated_s >= kFrozen_s;
   };
-  const bool rotation_unmeasured = unexplained_rotation_ratio(state) >= kUnmeasuredMin;
-  const bool gyro = never_moved(state.gyro) && (rotation_unmeasured || state.non_rest_force_s >= kPushedMin_s);
+  const bool rotation_unmeasured = unexplained_force_rotation_ratio(state) >= kUnmeasuredMin;
+  const bool gyro = never_moved(state.gyro) && (rotation_unmeasured || state.moving_force_duration_s >= kPushedMin_s);
   const bool accel =
-      never_moved(state.accel) && state.accel.reading.isZero(0.0) && state.gyro.changing_duration_s >= kFrozen_s;
+      never_moved(state.accel) && state.accel.reading.isZero(0.0) && state.gyro.changing_readings_duration_s >= kFrozen_s;
   return std::max({state.gyro.frozen_s, state.accel.frozen_s, gyro ? state.gyro.repeated_s : 0.0,
                    accel ? state.accel.repeated_s : 0.0});
 }
 
 /// See imu_merge.md (I20).
-double ImuPlausibility::rotation_slope(const State& state) const {
+double ImuPlausibility::force_to_gyro_rotation_ratio(const State& state) const {
   if (!rotated_enough(state)) return 1.0;
-  return rotation_product_rad2(state) / std::max(state.gyro_rotation_rad2, kStandstillRad2);
+  return force_gyro_rotation_product_rad2(state) / std::max(state.gyro_rotation_square_sum_rad2, kStandstillRad2);
 }
 
 double ImuPlausibility::rotation_agreement(const State& state) const {
   if (!rotated_enough(state)) return 1.0;
-  return rotation_product_rad2(state) /
-         std::sqrt(state.force_rotation_rad2 * std::max(state.gyro_rotation_rad2, kStandstillRad2));
+  return force_gyro_rotation_product_rad2(state) /
+         std::sqrt(state.force_rotation_square_sum_rad2 * std::max(state.gyro_rotation_square_sum_rad2, kStandstillRad2));
 }
 
 /// See imu_merge.md (I21). Pushes of the body also rotate the measured force, but no gyro scale explains this rotation.
 bool ImuPlausibility::fits_better(const State& state) const {
-  const double slope = rotation_slope(state), agreement = rotation_agreement(state);
-  const double left = state.force_rotation_rad2 * (1.0 - agreement * agreement);
+  const double slope = force_to_gyro_rotation_ratio(state), agreement = rotation_agreement(state);
+  const double left = state.force_rotation_square_sum_rad2 * (1.0 - agreement * agreement);
   // Pushes of the body often reduce the regression slope, but rarely invert it or increase it by half. If the gyro
   // measures slow rotation only, pushes cause any slope.
   const double slow_rad = kSlow_rad_s * kGravityWindow_s;
   const bool pushed =
-      (slope > 0.0 && slope < 1.0) || state.gyro_rotation_rad2 < state.rotated_windows * slow_rad * slow_rad;
+      (slope > 0.0 && slope < 1.0) || state.gyro_rotation_square_sum_rad2 < state.rotated_window_count * slow_rad * slow_rad;
   const double most = pushed ? kReducedResidualMax : kScaledResidualMax;
-  return left < most * state.unexplained_rad2;
+  return left < most * state.unexplained_force_rotation_rad2;
 }
 
 Status ImuPlausibility::verdict(const State& state) const {
@@ -198,7 +198,7 @@ Status ImuPlausibility::verdict(const State& state) const {
     return {ErrorCode::out_of_range, "time in s for which gyro or accelerometer repeats one reading", frozen,
             kFrozen_s};
   }
-  const double slope = rotation_slope(state);
+  const double slope = force_to_gyro_rotation_ratio(state);
   if ((slope > kSlopeMax || slope < kSlopeMin) && fits_better(state))
     return {ErrorCode::out_of_range, "ratio of gravity's rotation (accelerometer) to the rotation measured by the gyro",
             slope, slope < kSlopeMin ? kSlopeMin : kSlopeMax};

@@ -43,8 +43,8 @@ Readings all_readings() {
   for (std::size_t k = 0; k < kAxisLabels; ++k) {
     const AxisLabels& labels = axis_labels()[k];
     Eigen::Matrix3d renaming;
-    for (int axis = 0; axis < 3; ++axis) renaming.col(axis) = labels.relabelled(Eigen::Vector3d::Unit(axis));
-    out[k] = (labels.gyro_flipped ? -1.0 : 1.0) * renaming.determinant() * renaming.transpose();
+    for (int axis = 0; axis < 3; ++axis) renaming.col(axis) = labels.in_corrected_axes(Eigen::Vector3d::Unit(axis));
+    out[k] = (labels.all_rates_inverted ? -1.0 : 1.0) * renaming.determinant() * renaming.transpose();
   }
   out[kHalf] = 0.5 * Eigen::Matrix3d::Identity();
   out[kTwice] = 2.0 * Eigen::Matrix3d::Identity();
@@ -54,8 +54,8 @@ Readings all_readings() {
 }
 
 /// `step` is the Newton step from gyro scale 1, and `weight` is the second derivative of the squared residual.
-struct ScaleVote {
-  double step, weight;
+struct GyroScaleVote {
+  double scale_step, weight;
 };
 
 class Segments {
@@ -68,29 +68,29 @@ class Segments {
     }
     length_s_ += dt_s;
     rotated_rad_ += dt_s * rate_rad_s.norm();
-    if (length_s_ >= kSegment_s) close();
+    if (length_s_ >= kSegment_s) close_segment();
   }
-  void close() {
-    if (length_s_ >= 0.5 * kSegment_s && rotated_rad_ >= kSegmentRotationMin_rad) take();
+  void close_segment() {
+    if (length_s_ >= 0.5 * kSegment_s && rotated_rad_ >= kSegmentRotationMin_rad) process_segment();
     sums_ = {};
     length_s_ = rotated_rad_ = 0.0;
   }
 
-  std::array<double, kCompared> evidence{};
-  std::array<std::size_t, kCompared> counted{}, better{}, worse{};
-  std::vector<ScaleVote> votes;
-  std::size_t explained = 0;  // number of segments that the unchanged rates explain
+  std::array<double, kCompared> log_evidence{};
+  std::array<std::size_t, kCompared> compared_segment_count{}, better_segment_count{}, worse_segment_count{};
+  std::vector<GyroScaleVote> gyro_scale_votes;
+  std::size_t unchanged_explained_count = 0;  // number of segments that the unchanged rates explain
 
  private:
-  void take() {
-    std::array<PivotFit, kReadings> fits;
-    std::transform(sums_.begin(), sums_.end(), fits.begin(), [](const PivotSums& sums) { return sums.fit(); });
-    compare(fits);
-    vote(fits);
+  void process_segment() {
+    std::array<PivotMotionFit, kReadings> fits;
+    std::transform(sums_.begin(), sums_.end(), fits.begin(), [](const PivotMotionSums& sums) { return sums.fit(); });
+    compare_alternatives(fits);
+    vote_on_gyro_scale(fits);
   }
 
   /// See imu_merge.md (I28), (I29).
-  void compare(const std::array<PivotFit, kReadings>& fits) {
+  void compare_alternatives(const std::array<PivotMotionFit, kReadings>& fits) {
     const auto residual = [&](std::size_t k) {
       return std::hypot(fits[k].residual_m_s, length_s_ * (fits[k].gravity_m_s2 - gravity_m_s2_) / std::sqrt(12.0));
     };
@@ -100,41 +100,41 @@ class Segments {
       if (std::min(unchanged_residual, otherwise) > kExplained_m_s) continue;
       const double gained =
           2.0 * std::log(std::max(unchanged_residual, kPivotNoise_m_s) / std::max(otherwise, kPivotNoise_m_s));
-      evidence[k] += gained;
-      ++counted[k];
-      better[k] += gained > kClearLogRatio;
-      worse[k] += gained < -kClearLogRatio;
+      log_evidence[k] += gained;
+      ++compared_segment_count[k];
+      better_segment_count[k] += gained > kClearLogRatio;
+      worse_segment_count[k] += gained < -kClearLogRatio;
     }
   }
 
   /// See imu_merge.md (I30).
-  void vote(const std::array<PivotFit, kReadings>& fits) {
-    const PivotFit& fit = fits[0];
+  void vote_on_gyro_scale(const std::array<PivotMotionFit, kReadings>& fits) {
+    const PivotMotionFit& fit = fits[0];
     if (fit.residual_m_s > kExplained_m_s) return;
-    ++explained;
+    ++unchanged_explained_count;
     if (fit.arm_m > kPivotDistanceMax_m) return;
     const auto square = [&](std::size_t k) { return fits[k].residual_m_s * fits[k].residual_m_s; };
     const double curvature = (square(kLower) + square(kUpper) - 2.0 * square(0)) / (kScaleStep * kScaleStep);
     if (!(curvature > 0.0)) return;
     const double step = -(square(kUpper) - square(kLower)) / (2.0 * kScaleStep) / curvature;
-    votes.push_back({step, curvature / std::max(square(0), kPivotNoise_m_s * kPivotNoise_m_s)});
+    gyro_scale_votes.push_back({step, curvature / std::max(square(0), kPivotNoise_m_s * kPivotNoise_m_s)});
   }
 
   double gravity_m_s2_;
   const Readings& readings_;
-  std::array<PivotSums, kReadings> sums_{};
+  std::array<PivotMotionSums, kReadings> sums_{};
   double length_s_ = 0.0, rotated_rad_ = 0.0;
 };
 
 /// Computes the gyro scale, with a heteroscedasticity-consistent standard deviation (White, 1980): imu_merge.md (I30).
-void conclude_scale(const std::vector<ScaleVote>& votes, PivotCheck& found) {
+void conclude_gyro_scale(const std::vector<GyroScaleVote>& votes, PivotMotionCheck& found) {
   double weight = 0.0, sum = 0.0, spread = 0.0;
-  for (const ScaleVote& vote : votes) weight += vote.weight, sum += vote.weight * vote.step;
-  found.scale_segments = votes.size();
+  for (const GyroScaleVote& vote : votes) weight += vote.weight, sum += vote.weight * vote.scale_step;
+  found.gyro_scale_segments = votes.size();
   if (votes.size() < 2) return;
   const double step = sum / weight;
-  for (const ScaleVote& vote : votes) {
-    const double off = vote.weight * (vote.step - step);
+  for (const GyroScaleVote& vote : votes) {
+    const double off = vote.weight * (vote.scale_step - step);
     spread += off * off;
   }
   found.scale = 1.0 + step;
@@ -143,7 +143,7 @@ void conclude_scale(const std::vector<ScaleVote>& votes, PivotCheck& found) {
 
 }  // namespace
 
-PivotCheck PivotCheck::of(std::span<const ImuSample> samples, double gravity_m_s2, double gyro_range_rad_s,
+PivotMotionCheck PivotMotionCheck::of(std::span<const ImuSample> samples, double gravity_m_s2, double gyro_range_rad_s,
                           double accel_range_m_s2) {
   static const Readings readings = all_readings();
   // The second series is shifted by half a segment, so that an impact between two segments is inside another segment.
@@ -159,7 +159,7 @@ PivotCheck PivotCheck::of(std::span<const ImuSample> samples, double gravity_m_s
     if (dt_s <= 0.0) continue;
     if (dt_s > kSegmentGapMax_s || is_at_rail(rate, gyro_range_rad_s) || is_at_rail(force, accel_range_m_s2) ||
         samples[k].device_clip_flags != 0 || !check_sample(samples[k]).ok()) {
-      for (Segments& segments : series) segments.close();
+      for (Segments& segments : series) segments.close_segment();
       mean_s = since_s = 0.0;
       turned.setZero(), gained.setZero();
       continue;
@@ -174,38 +174,38 @@ PivotCheck PivotCheck::of(std::span<const ImuSample> samples, double gravity_m_s
     mean_s = 0.0;
     turned.setZero(), gained.setZero();
   }
-  for (Segments& segments : series) segments.close();
+  for (Segments& segments : series) segments.close_segment();
 
-  PivotCheck found;
+  PivotMotionCheck found;
   for (std::size_t k = 1; k < kCompared; ++k) {
-    const double evidence = series[0].evidence[k] + series[1].evidence[k];
-    if (found.reading != 0 && evidence <= found.evidence) continue;
+    const double evidence = series[0].log_evidence[k] + series[1].log_evidence[k];
+    if (found.reading != 0 && evidence <= found.log_evidence) continue;
     found.reading = static_cast<int>(k);
-    found.evidence = evidence;
-    found.compared_segments = series[0].counted[k] + series[1].counted[k];
-    found.better_segments = series[0].better[k] + series[1].better[k];
-    found.worse_segments = series[0].worse[k] + series[1].worse[k];
+    found.log_evidence = evidence;
+    found.comparable_segments = series[0].compared_segment_count[k] + series[1].compared_segment_count[k];
+    found.better_explained_segments = series[0].better_segment_count[k] + series[1].better_segment_count[k];
+    found.worse_explained_segments = series[0].worse_segment_count[k] + series[1].worse_segment_count[k];
   }
-  std::vector<ScaleVote> votes = std::move(series[0].votes);
-  votes.insert(votes.end(), series[1].votes.begin(), series[1].votes.end());
-  conclude_scale(votes, found);
-  found.explained_segments = series[0].explained + series[1].explained;
+  std::vector<GyroScaleVote> votes = std::move(series[0].gyro_scale_votes);
+  votes.insert(votes.end(), series[1].gyro_scale_votes.begin(), series[1].gyro_scale_votes.end());
+  conclude_gyro_scale(votes, found);
+  found.segments_explained_unchanged = series[0].unchanged_explained_count + series[1].unchanged_explained_count;
   return found;
 }
 
 /// See imu_merge.md (I29), (I30).
-Status PivotCheck::verdict() const {
-  const double least = std::max(kEvidenceMin, kMeanEvidenceMin * static_cast<double>(compared_segments));
-  const auto better = static_cast<double>(better_segments), worse = static_cast<double>(worse_segments);
-  if (evidence > least && better >= kBetterSegmentsMin && better >= kBetterWorseRatioMin * worse) {
+Status PivotMotionCheck::verdict() const {
+  const double least = std::max(kEvidenceMin, kMeanEvidenceMin * static_cast<double>(comparable_segments));
+  const auto better = static_cast<double>(better_explained_segments), worse = static_cast<double>(worse_explained_segments);
+  if (log_evidence > least && better >= kBetterSegmentsMin && better >= kBetterWorseRatioMin * worse) {
     return {ErrorCode::out_of_range, "evidence from rotation about a pivot for other axes, signs or scale of the gyro",
-            evidence, least};
+            log_evidence, least};
   }
   const double off = std::abs(scale - 1.0);
   const double bound = std::max(kScaleErrorMin, kScaleErrorMinSigmas * scale_sigma);
   const double better_segments_min =
-      std::max(kScaleSegmentsMin, kScaleSegmentFractionMin * static_cast<double>(explained_segments));
-  if (static_cast<double>(scale_segments) >= better_segments_min && off > bound) {
+      std::max(kScaleSegmentsMin, kScaleSegmentFractionMin * static_cast<double>(segments_explained_unchanged));
+  if (static_cast<double>(gyro_scale_segments) >= better_segments_min && off > bound) {
     return {ErrorCode::out_of_range, "scale of the gyro estimated from rotation about a pivot", scale,
             scale < 1.0 ? 1.0 - bound : 1.0 + bound};
   }

@@ -19,75 +19,75 @@ constexpr int kRate = 0, kAcceleration = 3, kForce = 6, kArms = 9;
 constexpr double kStartRateSigma_rad_s = 0.1, kStartAcceleration_rad_s2 = 200.0, kStartForce_m_s2 = 10.0;
 constexpr double kRailSigma_rad_s = 0.1;
 
-using Row = Eigen::Matrix<double, 1, RateRecovery::kStates>;
+using Row = Eigen::Matrix<double, 1, AngularRateRecovery::kStates>;
 
-void update(const Row& row, double innovation, double variance, RateRecovery::State& state) {
-  state.x += scalar_update(row, innovation, variance, state.P);
+void update_rate_state(const Row& row, double innovation, double variance, AngularRateRecovery::State& state) {
+  state.x += scalar_update(row, innovation, variance, state.error_covariance);
 }
 
 // If a sensing element clips, the readings are components along the sensing directions, rails.md (R52).
-struct Seen {
-  Eigen::Matrix3d rows_C;
-  Eigen::Vector3d reading, slope_sigma = Eigen::Vector3d::Zero();
-  std::array<bool, 3> railed{};
+struct SaturatedReading {
+  Eigen::Matrix3d sensing_directions_mean_frame;
+  Eigen::Vector3d reading, cross_axis_slope_sigma = Eigen::Vector3d::Zero();
+  std::array<bool, 3> is_saturated{};
 
-  double hidden(const Eigen::Vector3d& expected) const {
+  double saturation_excess(const Eigen::Vector3d& expected) const {
     double sum2 = 0.0;
     for (int axis = 0; axis < 3; ++axis) {
       const double missing = reading[axis] - expected[axis];
-      if (railed[static_cast<std::size_t>(axis)] && missing * reading[axis] < 0.0) sum2 += missing * missing;
+      if (is_saturated[static_cast<std::size_t>(axis)] && missing * reading[axis] < 0.0) sum2 += missing * missing;
     }
     return std::sqrt(sum2);
   }
 };
 
 template <typename Railed>
-Seen seen_by(const SensingDirections& elements, const Eigen::Matrix3d& R_IC, const Eigen::Vector3d& reading,
+SaturatedReading saturated_reading_of_imu(const SensingDirections& elements, const Eigen::Matrix3d& R_IC, const Eigen::Vector3d& reading,
              const Railed& railed) {
-  Seen out{R_IC, reading};
+  SaturatedReading out{R_IC, reading};
   bool any = false;
-  for (int axis = 0; axis < 3; ++axis) any |= out.railed[static_cast<std::size_t>(axis)] = railed(axis);
+  for (int axis = 0; axis < 3; ++axis) any |= out.is_saturated[static_cast<std::size_t>(axis)] = railed(axis);
   if (!any) return out;
-  out.rows_C = elements.rows * R_IC;
-  out.reading = elements.rows * reading;
+  out.sensing_directions_mean_frame = elements.sensing_directions * R_IC;
+  out.reading = elements.sensing_directions * reading;
   for (int axis = 0; axis < 3; ++axis) {
-    if (!out.railed[static_cast<std::size_t>(axis)]) out.slope_sigma[axis] = elements.slope_sigma[axis];
+    if (!out.is_saturated[static_cast<std::size_t>(axis)]) out.cross_axis_slope_sigma[axis] = elements.cross_axis_slope_sigma[axis];
   }
   return out;
 }
 
 }  // namespace
 
-RateRecovery::RateRecovery(const Params& p) : params_(p) {
-  require_within("count", p.count, 1, kUnits);
+AngularRateRecovery::AngularRateRecovery(const Params& p) : params_(p) {
+  require_in_interval("count", p.count, 1, kImus);
   for (int k = 0; k < p.count; ++k) {
-    const Eigen::Isometry3d& T = p.T_CI[static_cast<std::size_t>(k)];
-    require_within("T_CI", T.translation().norm(), 0.0, 1e3);
-    require_within("T_CI", (T.linear() * T.linear().transpose() - Eigen::Matrix3d::Identity()).norm(), 0.0, 1e-6);
+    const Eigen::Isometry3d& T = p.T_mean_imu[static_cast<std::size_t>(k)];
+    require_in_interval("T_CI", T.translation().norm(), 0.0, 1e3);
+    require_in_interval("T_CI", (T.linear() * T.linear().transpose() - Eigen::Matrix3d::Identity()).norm(), 0.0, 1e-6);
   }
-  require_within("gyro_range_rad_s", p.gyro_range_rad_s, kSmallest, 1e3);
-  require_within("accel_range_m_s2", p.accel_range_m_s2, kSmallest, 1e5);
-  require_within("lever_arm_sigma_m", p.lever_arm_sigma_m, kSmallest, 10.0);
-  require_within("rate_noise_rad_s", p.noise.rate_rad_s, kSmallest, 10.0);
-  require_within("rate_noise_share", p.noise.rate_share, 0.0, 1.0);
-  require_within("force_noise_m_s2", p.noise.force_m_s2, kSmallest, 1e3);
-  require_within("force_noise_share", p.noise.force_share, 0.0, 1.0);
-  require_within("acceleration_walk_rad_s2_sqrts", p.acceleration_walk_rad_s2_sqrts, kSmallest, 1e6);
-  require_within("force_walk_m_s2_sqrts", p.force_walk_m_s2_sqrts, kSmallest, 1e6);
-  require_within("recovered_sigma_rad_s", p.recovered_sigma_rad_s, kSmallest, 1e3);
+  require_in_interval("gyro_range_rad_s", p.gyro_range_rad_s, kSmallest, 1e3);
+  require_in_interval("accel_range_m_s2", p.accel_range_m_s2, kSmallest, 1e5);
+  require_in_interval("lever_arm_sigma_m", p.lever_arm_sigma_m, kSmallest, 10.0);
+  require_in_interval("rate_noise_rad_s", p.noise.rate_rad_s, kSmallest, 10.0);
+  require_in_interval("rate_noise_share", p.noise.rate_share, 0.0, 1.0);
+  require_in_interval("force_noise_m_s2", p.noise.force_m_s2, kSmallest, 1e3);
+  require_in_interval("force_noise_share", p.noise.force_share, 0.0, 1.0);
+  require_in_interval("acceleration_walk_rad_s2_sqrts", p.acceleration_walk_rad_s2_sqrts, kSmallest, 1e6);
+  require_in_interval("force_walk_m_s2_sqrts", p.force_walk_m_s2_sqrts, kSmallest, 1e6);
+  require_in_interval("recovered_sigma_rad_s", p.recovered_sigma_rad_s, kSmallest, 1e3);
 }
 
-bool RateRecovery::is_rate_saturated(const ImuSample& unit, int axis) const {
+bool AngularRateRecovery::is_rate_saturated(const ImuSample& unit, int axis) const {
   return std::abs(unit.angular_velocity_rad_s[axis]) >= params_.gyro_range_rad_s ||
          (unit.device_clip_flags & (kClipGyroX << axis)) != 0;
 }
 
-bool RateRecovery::is_force_saturated(const ImuSample& unit, int axis) const {
+bool AngularRateRecovery::is_force_saturated(const ImuSample& unit, int axis) const {
   return std::abs(unit.specific_force_m_s2[axis]) >= params_.accel_range_m_s2 ||
          (unit.device_clip_flags & (kClipAccelX << axis)) != 0;
 }
 
-RateRecovery::SaturatedSensors RateRecovery::find_saturated_sensors(std::span<const ImuSample> units) const {
+AngularRateRecovery::SaturatedSensors AngularRateRecovery::find_saturated_sensors(std::span<const ImuSample> units) const {
   SaturatedSensors out;
   std::size_t clipped = 0, received = 0;
   for (const ImuSample& unit : units) {
@@ -105,12 +105,12 @@ RateRecovery::SaturatedSensors RateRecovery::find_saturated_sensors(std::span<co
   return out;
 }
 
-void RateRecovery::step(std::span<const ImuSample> units, double dt_s, State& state, ImuSample& merged) const {
+void AngularRateRecovery::step(std::span<const ImuSample> units, double dt_s, State& state, ImuSample& merged) const {
   const SaturatedSensors met = find_saturated_sensors(units);
   // Accelerometers saturate where gravity and centripetal force add up, so the unsaturated accelerometers have a biased
   // mean.
   merged.device_clip_flags = met.force ? kClipAccelX | kClipAccelY | kClipAccelZ : 0;
-  const bool fast = merged.angular_velocity_rad_s.cwiseAbs().maxCoeff() >= kActiveRangeRatio * params_.gyro_range_rad_s;
+  const bool fast = merged.angular_velocity_rad_s.cwiseAbs().maxCoeff() >= kMinSaturatedRangeFraction * params_.gyro_range_rad_s;
   if (!fast && !met.rate) {
     state.running = false;
     return;
@@ -122,9 +122,9 @@ void RateRecovery::step(std::span<const ImuSample> units, double dt_s, State& st
   }
   measure_rates(units, dt_s, state);
   measure_forces(units, dt_s, state);
-  state.P = (0.5 * (state.P + state.P.transpose())).eval();
+  state.error_covariance = (0.5 * (state.error_covariance + state.error_covariance.transpose())).eval();
 
-  if (met.rate && state.P.diagonal().segment<3>(kRate).maxCoeff() < squared(params_.recovered_sigma_rad_s)) {
+  if (met.rate && state.error_covariance.diagonal().segment<3>(kRate).maxCoeff() < squared(params_.recovered_sigma_rad_s)) {
     merged.angular_velocity_rad_s = state.x.segment<3>(kRate);
   } else if (met.rate) {
     merged.device_clip_flags = static_cast<std::uint8_t>(merged.device_clip_flags | kClipGyro);
@@ -132,10 +132,10 @@ void RateRecovery::step(std::span<const ImuSample> units, double dt_s, State& st
   if (met.rate || met.force) merged.specific_force_m_s2 = state.x.segment<3>(kForce);
 }
 
-void RateRecovery::start(const ImuSample& merged, State& state) const {
-  state.P.topRows<kArms>().setZero();
-  state.P.leftCols<kArms>().setZero();
-  auto diagonal = state.P.diagonal();
+void AngularRateRecovery::start(const ImuSample& merged, State& state) const {
+  state.error_covariance.topRows<kArms>().setZero();
+  state.error_covariance.leftCols<kArms>().setZero();
+  auto diagonal = state.error_covariance.diagonal();
   if (!state.started) diagonal.tail<kStates - kArms>().setConstant(squared(params_.lever_arm_sigma_m));
   state.x.head<kArms>() << merged.angular_velocity_rad_s, Eigen::Vector3d::Zero(), merged.specific_force_m_s2;
   diagonal.segment<3>(kRate).setConstant(squared(kStartRateSigma_rad_s));
@@ -145,7 +145,7 @@ void RateRecovery::start(const ImuSample& merged, State& state) const {
 }
 
 /// See imu_merge.md (I14), (I15).
-void RateRecovery::predict(double dt_s, State& state) const {
+void AngularRateRecovery::predict(double dt_s, State& state) const {
   const Eigen::Vector3d rate = state.x.segment<3>(kRate), force = state.x.segment<3>(kForce);
   // A force that is constant in the world rotates in the body axes C.
   const Eigen::Matrix3d turn = so3::exp(-dt_s * rate).toRotationMatrix();
@@ -155,63 +155,63 @@ void RateRecovery::predict(double dt_s, State& state) const {
   F.block<3, 3>(kForce, kRate) = dt_s * so3::hat(turn * force);
   state.x.segment<3>(kRate) += dt_s * state.x.segment<3>(kAcceleration);
   state.x.segment<3>(kForce) = turn * force;
-  state.P.topRows<kArms>() = (F * state.P.topRows<kArms>()).eval();
-  state.P.leftCols<kArms>() = (state.P.leftCols<kArms>() * F.transpose()).eval();
+  state.error_covariance.topRows<kArms>() = (F * state.error_covariance.topRows<kArms>()).eval();
+  state.error_covariance.leftCols<kArms>() = (state.error_covariance.leftCols<kArms>() * F.transpose()).eval();
   const double walk = squared(params_.acceleration_walk_rad_s2_sqrts) * dt_s;
-  auto diagonal = state.P.diagonal();
+  auto diagonal = state.error_covariance.diagonal();
   diagonal.segment<3>(kRate).array() += walk * squared(dt_s) / 3.0;
   diagonal.segment<3>(kAcceleration).array() += walk;
   diagonal.segment<3>(kForce).array() += squared(params_.force_walk_m_s2_sqrts) * dt_s;
 }
 
 /// See imu_merge.md (I16).
-void RateRecovery::measure_rates(std::span<const ImuSample> units, double dt_s, State& state) const {
-  const double shorter = std::max(1.0, kReading_s / dt_s);
+void AngularRateRecovery::measure_rates(std::span<const ImuSample> units, double dt_s, State& state) const {
+  const double shorter = std::max(1.0, kReadingInterval_s / dt_s);
   for (std::size_t k = 0; k < units.size(); ++k) {
     if (!is_finite(units[k])) continue;
-    const Eigen::Matrix3d R_IC = params_.T_CI[k].linear().transpose();
+    const Eigen::Matrix3d R_IC = params_.T_mean_imu[k].linear().transpose();
     const auto railed = [&](int axis) { return is_rate_saturated(units[k], axis); };
-    const Seen seen = seen_by(params_.gyro_elements[k], R_IC, units[k].angular_velocity_rad_s, railed);
-    const double hidden = seen.hidden(seen.rows_C * state.x.segment<3>(kRate));
+    const SaturatedReading seen = saturated_reading_of_imu(params_.gyro_sensing_directions[k], R_IC, units[k].angular_velocity_rad_s, railed);
+    const double hidden = seen.saturation_excess(seen.sensing_directions_mean_frame * state.x.segment<3>(kRate));
     for (int axis = 0; axis < 3; ++axis) {
       const double reading = seen.reading[axis];
-      const double missing = reading - seen.rows_C.row(axis).dot(state.x.segment<3>(kRate));
-      if (seen.railed[static_cast<std::size_t>(axis)] && missing * reading < 0.0)
+      const double missing = reading - seen.sensing_directions_mean_frame.row(axis).dot(state.x.segment<3>(kRate));
+      if (seen.is_saturated[static_cast<std::size_t>(axis)] && missing * reading < 0.0)
         continue;  // the predicted reading is beyond the saturation level, as required
       Row row = Row::Zero();
-      row.segment<3>(kRate) = seen.rows_C.row(axis);
+      row.segment<3>(kRate) = seen.sensing_directions_mean_frame.row(axis);
       const double sigma = params_.noise.rate_rad_s + params_.noise.rate_share * std::abs(reading);
-      const double variance = seen.railed[static_cast<std::size_t>(axis)] ? squared(kRailSigma_rad_s) : squared(sigma);
-      update(row, missing, shorter * variance + squared(seen.slope_sigma[axis] * hidden), state);
+      const double variance = seen.is_saturated[static_cast<std::size_t>(axis)] ? squared(kRailSigma_rad_s) : squared(sigma);
+      update_rate_state(row, missing, shorter * variance + squared(seen.cross_axis_slope_sigma[axis] * hidden), state);
     }
   }
 }
 
 /// See imu_merge.md (I17).
-void RateRecovery::measure_forces(std::span<const ImuSample> units, double dt_s, State& state) const {
-  const double shorter = std::max(1.0, kReading_s / dt_s);
+void AngularRateRecovery::measure_forces(std::span<const ImuSample> units, double dt_s, State& state) const {
+  const double shorter = std::max(1.0, kReadingInterval_s / dt_s);
   for (std::size_t k = 0; k < units.size(); ++k) {
     if (!is_finite(units[k])) continue;
-    const Eigen::Matrix3d R_IC = params_.T_CI[k].linear().transpose();
+    const Eigen::Matrix3d R_IC = params_.T_mean_imu[k].linear().transpose();
     const auto railed = [&](int axis) { return is_force_saturated(units[k], axis); };
-    const Seen seen = seen_by(params_.accel_elements[k], R_IC, units[k].specific_force_m_s2, railed);
+    const SaturatedReading seen = saturated_reading_of_imu(params_.accel_sensing_directions[k], R_IC, units[k].specific_force_m_s2, railed);
     const int arm = kArms + 3 * static_cast<int>(k);
     for (int axis = 0; axis < 3; ++axis) {
       const double reading = seen.reading[axis];
-      if (seen.railed[static_cast<std::size_t>(axis)]) continue;
+      if (seen.is_saturated[static_cast<std::size_t>(axis)]) continue;
       const Eigen::Vector3d rate = state.x.segment<3>(kRate), acceleration = state.x.segment<3>(kAcceleration);
-      const Eigen::Vector3d position = params_.T_CI[k].translation() + state.x.segment<3>(arm);
+      const Eigen::Vector3d position = params_.T_mean_imu[k].translation() + state.x.segment<3>(arm);
       const Eigen::Matrix3d jacobian_position = so3::hat(acceleration) + so3::hat(rate) * so3::hat(rate);
-      const auto axis_C = seen.rows_C.row(axis);
+      const auto axis_C = seen.sensing_directions_mean_frame.row(axis);
       Row row = Row::Zero();
       row.segment<3>(kRate) = -axis_C * (so3::hat(rate.cross(position)) + so3::hat(rate) * so3::hat(position));
       row.segment<3>(kAcceleration) = -axis_C * so3::hat(position);
       row.segment<3>(kForce) = axis_C;
       row.segment<3>(arm) = axis_C * jacobian_position;
       const Eigen::Vector3d force = state.x.segment<3>(kForce) + jacobian_position * position;
-      const double hidden = seen.slope_sigma[axis] > 0.0 ? seen.hidden(seen.rows_C * force) : 0.0;
+      const double hidden = seen.cross_axis_slope_sigma[axis] > 0.0 ? seen.saturation_excess(seen.sensing_directions_mean_frame * force) : 0.0;
       const double sigma = params_.noise.force_m_s2 + params_.noise.force_share * std::abs(reading);
-      update(row, reading - axis_C.dot(force), shorter * squared(sigma) + squared(seen.slope_sigma[axis] * hidden),
+      update_rate_state(row, reading - axis_C.dot(force), shorter * squared(sigma) + squared(seen.cross_axis_slope_sigma[axis] * hidden),
              state);
     }
   }

@@ -12,8 +12,8 @@ namespace tumble {
 
 namespace {
 
-bool is_kept(const RateState& rate, ReplacedReadings replaced) {
-  return rate.clipped_axes == 0 && (replaced == ReplacedReadings::clipped || rate.source == RateSource::measured);
+bool keeps_estimated_rate(const AngularRateState& rate, ReadingsToReplace replaced) {
+  return rate.clipped_axes == 0 && (replaced == ReadingsToReplace::clipped || rate.source == AngularRateSource::measured);
 }
 
 bool any_clips(std::span<const ClipSigns> signs) {
@@ -22,12 +22,12 @@ bool any_clips(std::span<const ClipSigns> signs) {
 }
 
 /// gyro bias: mean of reading minus estimated rate
-Eigen::Vector3d bias_rad_s(std::span<const ImuSample> samples, std::span<const RateState> rates,
-                           ReplacedReadings replaced) {
+Eigen::Vector3d bias_rad_s(std::span<const ImuSample> samples, std::span<const AngularRateState> rates,
+                           ReadingsToReplace replaced) {
   double kept = 0.0;
   Eigen::Vector3d bias = Eigen::Vector3d::Zero();
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (!is_kept(rates[k], replaced)) continue;
+    if (!keeps_estimated_rate(rates[k], replaced)) continue;
     kept += 1.0;
     bias += (samples[k].angular_velocity_rad_s - rates[k].w_WI_I_rad_s - bias) / kept;
   }
@@ -37,26 +37,26 @@ Eigen::Vector3d bias_rad_s(std::span<const ImuSample> samples, std::span<const R
 }  // namespace
 
 Status estimate_rates(std::span<const ImuSample> samples, std::span<const AuxiliaryRecording> auxiliary_imus,
-                      const RegimeSmoother::Params& params, std::vector<RateState>& rates,
-                      RegimeSmoother::Report& report) {
-  RegimeSmoother::Params all = params;
+                      const MotionRegimeSmoother::Params& params, std::vector<AngularRateState>& rates,
+                      MotionRegimeSmoother::Report& report) {
+  MotionRegimeSmoother::Params all = params;
   std::vector<std::vector<AuxiliaryReading>> readings;
   const Status status = align(auxiliary_imus, samples, params.rate.gap_max_s, all.rate.model, readings);
-  return status.ok() ? RegimeSmoother(all).estimate(samples, readings, rates, report) : status;
+  return status.ok() ? MotionRegimeSmoother(all).estimate(samples, readings, rates, report) : status;
 }
 
 RecoveredRates recover_rates(std::span<const ImuSample> samples, std::span<const AuxiliaryRecording> auxiliary_imus,
-                             const RegimeSmoother::Params& params, ReplacedReadings replaced) {
+                             const MotionRegimeSmoother::Params& params, ReadingsToReplace replaced) {
   RecoveredRates out;
   out.samples.assign(samples.begin(), samples.end());
   out.covariances_rad2_s2.assign(samples.size(), Eigen::Matrix3d::Zero());
-  out.sources.assign(samples.size(), RateSource::measured);
+  out.sources.assign(samples.size(), AngularRateSource::measured);
   ClippingFinder::Params clipping;
-  clipping.axis_aligned_rails = params.rate.rails;
-  const ClippingFinder::Found found = ClippingFinder(clipping).find(samples);
-  out.rails = found.rails;
-  std::vector<RateState> rates;
-  out.estimated = any_clips(to_clipped_readings(samples, found).signs) &&
+  clipping.axis_limit_params = params.rate.saturation_detector;
+  const ClippingFinder::ClippingSearchResult found = ClippingFinder(clipping).find(samples);
+  out.saturation_levels = found.saturation_levels;
+  std::vector<AngularRateState> rates;
+  out.estimated = any_clips(clipped_readings_of(samples, found).clip_signs) &&
                   estimate_rates(samples, auxiliary_imus, params, rates, out.report).ok();
   if (!out.estimated) rates.clear();
   const Eigen::Vector3d bias = out.estimated ? bias_rad_s(samples, rates, replaced) : Eigen::Vector3d::Zero();
@@ -67,12 +67,12 @@ RecoveredRates recover_rates(std::span<const ImuSample> samples, std::span<const
   std::vector<std::uint8_t> hidden(samples.size(), 0);
   for (std::size_t k = 0; k < rates.size(); ++k) {
     out.sources[k] = rates[k].source;
-    if (is_kept(rates[k], replaced)) continue;
+    if (keeps_estimated_rate(rates[k], replaced)) continue;
     replace(k);
     hidden[k] = 1;
-    ++out.replaced;
+    ++out.replaced_reading_count;
   }
-  if (replaced == ReplacedReadings::clipped) return out;
+  if (replaced == ReadingsToReplace::clipped) return out;
   const std::vector<std::optional<InterpolatedRate>> interpolated = rates_between_readings(samples, hidden);
   for (std::size_t k = 0; k < interpolated.size(); ++k) {
     if (interpolated[k]) {

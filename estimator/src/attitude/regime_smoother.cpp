@@ -15,20 +15,20 @@ namespace tumble {
 namespace {
 
 /// Partly saturated readings do not count as unusable.
-bool unusable_count(const RateReport& report, const RateState& rate, std::size_t k) {
-  return rate.clipped_axes != 0 || report.suspect_axes[k] != 0;
+bool unusable_axis_count(const AngularRateReport& report, const AngularRateState& rate, std::size_t k) {
+  return rate.clipped_axes != 0 || report.suspected_saturation_axes[k] != 0;
 }
 
 /// See carried.md (C38). The readings of a slow accelerometer are older than the rates.
 std::vector<ImuSample> interpolate_forces(std::span<const ImuSample> samples) {
   std::vector<ImuSample> out(samples.begin(), samples.end());
-  const std::vector<Eigen::Vector3d> forces = forces_between_readings(samples);
+  const std::vector<Eigen::Vector3d> forces = interpolated_forces(samples);
   for (std::size_t k = 0; k < forces.size(); ++k) out[k].specific_force_m_s2 = forces[k];
   return out;
 }
 
 /// Returns the bits of SpinTracker for the saturated axes of the accelerometer.
-std::uint8_t saturated_forces(const ImuSample& sample, const RateReport& report) {
+std::uint8_t saturated_forces(const ImuSample& sample, const AngularRateReport& report) {
   constexpr double kMargin = 0.95;  // the saturation limits differ between the axes
   unsigned out = 0;
   for (int j = 0; j < 3; ++j) {
@@ -40,57 +40,57 @@ std::uint8_t saturated_forces(const ImuSample& sample, const RateReport& report)
 
 }  // namespace
 
-RegimeSmoother::RegimeSmoother(const Params& params)
+MotionRegimeSmoother::MotionRegimeSmoother(const Params& params)
     : params_(params),
       rate_(params.rate),
-      evidence_(params.evidence),
+      regime_evidence_(params.regime_evidence),
       hand_held_(params.hand_held),
       spin_(params.spin) {
   require_valid_fields(params);
 }
 
-Status RegimeSmoother::estimate(std::span<const ImuSample> samples,
+Status MotionRegimeSmoother::estimate(std::span<const ImuSample> samples,
                                 std::span<const std::vector<AuxiliaryReading>> auxiliary_imus,
-                                std::vector<RateState>& rates, Report& report) const {
+                                std::vector<AngularRateState>& rates, Report& report) const {
   rates.clear();
   report = {};
   const Status status = rate_.estimate(samples, auxiliary_imus, rates, report.rate);
   if (!status.ok()) return status;
   if (auxiliary_imus.empty()) {
-    join(samples, rates, report);
+    join_regime_rates(samples, rates, report);
   } else {
-    join_spin(samples, true, rates, report);
+    join_spin_rates(samples, true, rates, report);
   }
   return {};
 }
 
-void RegimeSmoother::join(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const {
-  join_hand_held(samples, rates, report);
-  join_spin(samples, false, rates, report);
+void MotionRegimeSmoother::join_regime_rates(std::span<const ImuSample> samples, std::vector<AngularRateState>& rates, Report& report) const {
+  join_hand_held_rates(samples, rates, report);
+  join_spin_rates(samples, false, rates, report);
 }
 
-void RegimeSmoother::join_spin(std::span<const ImuSample> samples, bool further_imus, std::vector<RateState>& rates,
+void MotionRegimeSmoother::join_spin_rates(std::span<const ImuSample> samples, bool further_imus, std::vector<AngularRateState>& rates,
                                Report& report) const {
   std::vector<std::uint8_t> saturated_axes(samples.size());
   for (std::size_t k = 0; k < samples.size(); ++k)
-    saturated_axes[k] = static_cast<std::uint8_t>(rates[k].clipped_axes | report.rate.suspect_axes[k] |
+    saturated_axes[k] = static_cast<std::uint8_t>(rates[k].clipped_axes | report.rate.suspected_saturation_axes[k] |
                                                   saturated_forces(samples[k], report.rate));
   const std::vector<SpinRate> spins = spin_.smooth(samples, saturated_axes);
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    rates[k] = spin_.combine(rates[k], spins[k], further_imus);
+    rates[k] = spin_.combine_with_spin_rate(rates[k], spins[k], further_imus);
     if (spins[k].saturated && spins[k].probability > 0.5) ++report.spin_samples;
   }
 }
 
-void RegimeSmoother::join_hand_held(std::span<const ImuSample> samples, std::vector<RateState>& rates,
+void MotionRegimeSmoother::join_hand_held_rates(std::span<const ImuSample> samples, std::vector<AngularRateState>& rates,
                                     Report& report) const {
   const RigCalibration& rig = report.rate.calibration;
   const Eigen::Matrix3d lever_covariance = rig.covariance.topLeftCorner<3, 3>();
   std::vector<RegimeProbabilities> probabilities;
-  if (!evidence_.find(interpolate_forces(samples), rates, rig.constants.lever_arm_m, lever_covariance, probabilities)
+  if (!regime_evidence_.find(interpolate_forces(samples), rates, rig.constants.lever_arm_m, lever_covariance, probabilities)
            .ok())
     return;
-  report.judged = true;
+  report.regimes_estimated = true;
   const double each = 1.0 / static_cast<double>(probabilities.size());
   for (const RegimeProbabilities& share : probabilities) {
     report.probabilities.flight += each * share.flight;
@@ -102,35 +102,35 @@ void RegimeSmoother::join_hand_held(std::span<const ImuSample> samples, std::vec
   if (report.hand_held_probability_max < params_.hand_held_probability_min) return;
 
   ClippingFinder::Params finding;
-  finding.axis_aligned_rails = params_.rate.rails;
-  ClippedReadings known = to_clipped_readings(samples, ClippingFinder(finding).find(samples));
-  known.mark_suspect(samples, report.rate.suspect_axes);
-  std::vector<RateState> other = rates;
+  finding.axis_limit_params = params_.rate.saturation_detector;
+  ClippedReadings known = clipped_readings_of(samples, ClippingFinder(finding).find(samples));
+  known.mark_suspected_saturation(samples, report.rate.suspected_saturation_axes);
+  std::vector<AngularRateState> other = rates;
   if (!estimate_hand_held(samples, known, other, report.hand_held)) return;
   known.mark_partly_saturated(other);
   report.hand_held_smoother_ran = true;
   for (std::size_t k = 0; k < rates.size(); ++k) {
     if (by_segment[k] <= params_.hand_held_probability_min) continue;
-    const bool only_suspect = rates[k].clipped_axes == 0 && rates[k].source != RateSource::measured;
+    const bool only_suspect = rates[k].clipped_axes == 0 && rates[k].source != AngularRateSource::measured;
     rates[k] = mix_rate_states(rates[k], other[k], by_segment[k]);
-    if (only_suspect) rates[k].clipped_axes = 0, rates[k].source = RateSource::bounded_only;
+    if (only_suspect) rates[k].clipped_axes = 0, rates[k].source = AngularRateSource::lower_bound_only;
   }
 }
 
 /// Replaces the rates by the rates of HandHeldSmoother, separately between gaps of the recording. `report` describes
 /// the last part between gaps.
-bool RegimeSmoother::estimate_hand_held(std::span<const ImuSample> samples, const ClippedReadings& known,
-                                        std::vector<RateState>& rates, HandHeldSmoother::Report& report) const {
+bool MotionRegimeSmoother::estimate_hand_held(std::span<const ImuSample> samples, const ClippedReadings& known,
+                                        std::vector<AngularRateState>& rates, HandHeldSmoother::Report& report) const {
   bool any = false;
-  std::vector<RateState> part;
+  std::vector<AngularRateState> part;
   std::vector<AttitudeState> attitudes;
   for (std::size_t first = 0, end = 0; first < samples.size(); first = end) {
     const auto follows = [&](std::size_t k) {
       return check_stamp_order(samples[k].time_ns, samples[k - 1].time_ns, params_.hand_held.expert.gap_max_s).ok();
     };
     for (end = first + 1; end < samples.size() && follows(end);) ++end;
-    ClippedElements clipped = known.clipped();
-    clipped.signs = clipped.signs.subspan(first, end - first);
+    SensingAxisClipSigns clipped = known.clipped_element_signs();
+    clipped.clip_signs = clipped.clip_signs.subspan(first, end - first);
     HandHeldSmoother::Report of_part;
     if (!hand_held_.estimate(samples.subspan(first, end - first), clipped, part, attitudes, of_part).ok()) continue;
     std::copy(part.begin(), part.end(), rates.begin() + static_cast<std::ptrdiff_t>(first));
@@ -141,19 +141,19 @@ bool RegimeSmoother::estimate_hand_held(std::span<const ImuSample> samples, cons
 }
 
 /// Returns the probability of hand-held motion near clipped or suspect readings, and 0 elsewhere: carried.md (C40).
-std::vector<double> RegimeSmoother::segment_hand_held_probability(std::span<const RegimeProbabilities> probabilities,
-                                                                  const RateReport& report,
-                                                                  std::span<const RateState> rates) const {
+std::vector<double> MotionRegimeSmoother::segment_hand_held_probability(std::span<const RegimeProbabilities> probabilities,
+                                                                  const AngularRateReport& report,
+                                                                  std::span<const AngularRateState> rates) const {
   std::vector<double> out(rates.size(), 0.0);
   const TimeNs near_ns = static_cast<TimeNs>(1e9 * params_.segment_gap_max_s);
   for (std::size_t k = 0; k < rates.size();) {
-    if (!unusable_count(report, rates[k], k)) {
+    if (!unusable_axis_count(report, rates[k], k)) {
       ++k;
       continue;
     }
     std::size_t first = k, last = k;
     for (; k < rates.size() && rates[k].time_ns <= rates[last].time_ns + near_ns; ++k)
-      if (unusable_count(report, rates[k], k)) last = k;
+      if (unusable_axis_count(report, rates[k], k)) last = k;
     const TimeNs from_ns = rates[first].time_ns - near_ns, to_ns = rates[last].time_ns + near_ns;
     std::size_t i = first, a = first, b = first;  // a to b: samples of the segment within segment_gap_max_s of sample i
     while (i > 0 && rates[i - 1].time_ns >= from_ns) --i;

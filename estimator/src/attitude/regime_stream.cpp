@@ -12,38 +12,38 @@ namespace {
 constexpr double kAccelerationSpan_s = 0.01;  // = kModelError_s of the rate model
 constexpr double kResetFraction = 0.5;
 
-HandHeldStream::Params joined(const RegimeStream::Params& params) {
-  HandHeldStream::Params out = params.hand_held;
+HandHeldRateStream::Params with_common_params(const MotionRegimeStream::Params& params) {
+  HandHeldRateStream::Params out = params.hand_held;
   out.period_s = params.rate.period_s;
   out.lag_s = params.rate.lag_s;
   out.window_s = std::max(out.window_s, out.lag_s + 4.0 * out.body.expert.node_s);
-  // HandHeldStream must report each sample within its window of window_s seconds.
+  // HandHeldRateStream must report each sample within its window of window_s seconds.
   out.body.expert.gap_max_s = std::min(out.body.expert.gap_max_s, out.window_s - out.lag_s);
   return out;
 }
 
-bool clips(const RateStream::Knot& knot) {
+bool clips(const AngularRateStream::Knot& knot) {
   return (knot.observation.unmeasured_axes() | knot.observation.partly_saturated_axes()) != 0;
 }
 
 // Suspect readings count as clipped, because suspect readings are also lower bounds of the rate.
-ClipSigns signs_of(const RateObservation& observation) {
+ClipSigns clip_signs_of(const AngularRateObservation& observation) {
   Clipping clipping = observation.clipping;
   clipping.gyro = static_cast<std::uint8_t>(clipping.gyro | observation.partly_saturated_axes());
   return clip_signs(observation.sample, clipping);
 }
 
-// `share` is the weight of HandHeldStream in the combined rate.
-RateState mixed_rate(const RateState& rate, const RateState& hand_held, double share) {
-  RateState out = mix_rate_states(rate, hand_held, share);
+// `share` is the weight of HandHeldRateStream in the combined rate.
+AngularRateState mixed_rate(const AngularRateState& rate, const AngularRateState& hand_held, double share) {
+  AngularRateState out = mix_rate_states(rate, hand_held, share);
   out.clipped_axes = rate.clipped_axes;
-  if (rate.source == RateSource::bounded_only && out.source == RateSource::measured) out.source = rate.source;
+  if (rate.source == AngularRateSource::lower_bound_only && out.source == AngularRateSource::measured) out.source = rate.source;
   return out;
 }
 
-// The rates give the angular acceleration, because the value from RateStream depends on the specific force under test:
+// The rates give the angular acceleration, because the value from AngularRateStream depends on the specific force under test:
 // carried.md (C44).
-Eigen::Vector3d angular_acceleration(std::span<const RateStream::Knot> window, std::size_t k) {
+Eigen::Vector3d angular_acceleration(std::span<const AngularRateStream::Knot> window, std::size_t k) {
   const auto between_s = [&](std::size_t from, std::size_t to) {
     return seconds(window[to].observation.sample.time_ns - window[from].observation.sample.time_ns);
   };
@@ -57,46 +57,46 @@ Eigen::Vector3d angular_acceleration(std::span<const RateStream::Knot> window, s
 
 }  // namespace
 
-RegimeStream::RegimeStream(const Params& params)
-    : params_(params), rate_(params.rate), evidence_(params.evidence), hand_held_(joined(params)), spin_(params.spin) {
+MotionRegimeStream::MotionRegimeStream(const Params& params)
+    : params_(params), rate_(params.rate), regime_evidence_(params.regime_evidence), hand_held_(with_common_params(params)), spin_(params.spin) {
   require_valid_fields(params);
 }
 
-RegimeStream::State RegimeStream::start() const {
+MotionRegimeStream::State MotionRegimeStream::start() const {
   State state;
   state.rate = rate_.start();
   state.hand_held = hand_held_.start();
-  state.signs.reserve(state.rate.window.capacity());
-  state.near.reserve(static_cast<std::size_t>(std::ceil(params_.segment_gap_max_s / params_.rate.period_s)) + 2);
+  state.clip_signs.reserve(state.rate.window.capacity());
+  state.recent_probabilities.reserve(static_cast<std::size_t>(std::ceil(params_.segment_gap_max_s / params_.rate.period_s)) + 2);
   return state;
 }
 
-Status RegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
-                          std::optional<RateState>& out) const {
+Status MotionRegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
+                          std::optional<AngularRateState>& out) const {
   if (const Status status = rate_.push(sample, auxiliary_imus, state.rate, out); !status.ok()) return status;
   double share = 0.0;
   if (out) {
     update_probabilities(*out, state);
     share = hand_held_weight(*out, state);
   }
-  std::optional<RateState> hand_held;
-  // HandHeldStream rejects an accepted sample of RateStream only if the sensing directions do not span three
+  std::optional<AngularRateState> hand_held;
+  // HandHeldRateStream rejects an accepted sample of AngularRateStream only if the sensing directions do not span three
   // dimensions.
   if (state.probabilities.hand_held >= params_.hand_held_probability_min) {
-    if (!state.hand_held_running) {
+    if (!state.hand_held_stream_running) {
       hand_held_.restart(state.hand_held);
-      state.hand_held_running = true;
-      ++state.starts;
+      state.hand_held_stream_running = true;
+      ++state.hand_held_start_count;
     }
     const bool wanted = share > params_.hand_held_probability_min;
     ImuSample without_offset = sample;
     without_offset.angular_velocity_rad_s -= params_.rate.model.nominal.gyro_bias_rad_s;
-    state.hand_held_running =
+    state.hand_held_stream_running =
         hand_held_
-            .push(without_offset, update_clip_signs(state), state.hand_held, hand_held, wanted, state.rate.repeat_state)
+            .push(without_offset, update_clip_signs(state), state.hand_held, hand_held, wanted, state.rate.repetition_state)
             .ok();
   } else {
-    state.hand_held_running = false;
+    state.hand_held_stream_running = false;
   }
   if (share > params_.hand_held_probability_min && hand_held && hand_held->time_ns == out->time_ns) {
     *out = mixed_rate(*out, *hand_held, share);
@@ -104,77 +104,77 @@ Status RegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryRead
   }
   if (out) {
     const SpinRate spin = track_spin(*out, state);
-    *out = spin_.combine(*out, spin, !params_.rate.model.auxiliary_imus.empty());
+    *out = spin_.combine_with_spin_rate(*out, spin, !params_.rate.model.auxiliary_imus.empty());
     if (spin.saturated && spin.probability > 0.5) ++state.spin_samples;
   }
   return {};
 }
 
-SpinRate RegimeStream::track_spin(const RateState& rate, State& state) const {
-  const RateObservation& observation = state.rate.window[index_of(rate, state)].observation;
+SpinRate MotionRegimeStream::track_spin(const AngularRateState& rate, State& state) const {
+  const AngularRateObservation& observation = state.rate.window[index_of(rate, state)].observation;
   const auto saturated = static_cast<std::uint8_t>(observation.unmeasured_axes() | observation.partly_saturated_axes() |
                                                    observation.clipping.accel << 3);
   return spin_.step(observation.sample, saturated, state.spin);
 }
 
-ClippedElements RegimeStream::update_clip_signs(State& state) const {
-  state.signs.clear();
-  for (const RateStream::Knot& knot : state.rate.window) state.signs.push_back(signs_of(knot.observation));
-  ClippedElements out;
-  out.signs = state.signs;
+SensingAxisClipSigns MotionRegimeStream::update_clip_signs(State& state) const {
+  state.clip_signs.clear();
+  for (const AngularRateStream::Knot& knot : state.rate.window) state.clip_signs.push_back(clip_signs_of(knot.observation));
+  SensingAxisClipSigns out;
+  out.clip_signs = state.clip_signs;
   for (int j = 0; j < 3; ++j) {
-    const std::optional<RailPlane>& plane = state.rate.rails.known.planes.element[static_cast<std::size_t>(j)];
-    if (plane) out.rows.row(j) = plane->row.transpose();
+    const std::optional<SaturationPlane>& plane = state.rate.clipping_state.known_limits.gyro_planes.sensing_axis[static_cast<std::size_t>(j)];
+    if (plane) out.sensing_directions.row(j) = plane->row.transpose();
   }
   return out;
 }
 
-RegimeProbabilities RegimeStream::next(const RegimeProbabilities& before, double dt_s,
-                                       std::span<const RateStream::Knot> window, std::size_t k,
+RegimeProbabilities MotionRegimeStream::next(const RegimeProbabilities& before, double dt_s,
+                                       std::span<const AngularRateStream::Knot> window, std::size_t k,
                                        const RigCalibration& rig, bool unstable) const {
-  const RateStream::Knot& knot = window[k];
+  const AngularRateStream::Knot& knot = window[k];
   // While the calibration is unstable, it was fitted to contact forces, so rate and force agree in any motion.
   if (unstable && knot.observation.unmeasured_axes() != 0) return before;
-  RateState rate;
+  AngularRateState rate;
   rate.w_WI_I_rad_s = knot.estimate.knot.rate_rad_s;
   rate.covariance_rad2_s2 = knot.covariance_rad2_s2;
   rate.clipped_axes = static_cast<std::uint8_t>(knot.observation.unmeasured_axes());
-  return evidence_.next(before, dt_s, knot.observation.sample, rate, angular_acceleration(window, k),
+  return regime_evidence_.next(before, dt_s, knot.observation.sample, rate, angular_acceleration(window, k),
                         rig.constants.lever_arm_m, rig.covariance.topLeftCorner<3, 3>());
 }
 
-std::size_t RegimeStream::index_of(const RateState& rate, const State& state) const {
-  const std::vector<RateStream::Knot>& window = state.rate.window;
+std::size_t MotionRegimeStream::index_of(const AngularRateState& rate, const State& state) const {
+  const std::vector<AngularRateStream::Knot>& window = state.rate.window;
   std::size_t k = 0;
   while (k + 1 < window.size() && window[k].observation.sample.time_ns < rate.time_ns) ++k;
   return k;
 }
 
 // Repeated resets of the calibration indicate motion without flight.
-bool RegimeStream::calibration_is_unstable(const State& state) const {
-  const RateStream::Params& rate = params_.rate;
-  return state.resets > kResetFraction * rate.lag_s / std::max(rate.period_s, rate.step_s);
+bool MotionRegimeStream::calibration_is_unstable(const State& state) const {
+  const AngularRateStream::Params& rate = params_.rate;
+  return state.calibration_reset_rate > kResetFraction * rate.lag_s / std::max(rate.period_s, rate.step_s);
 }
 
 // Updates the probabilities of the motion regimes: forward recursion of carried.md (C38).
-void RegimeStream::update_probabilities(const RateState& rate, State& state) const {
-  const double dt_s = state.reported == 0 ? params_.evidence.memory_s : seconds(rate.time_ns - state.reported_ns);
+void MotionRegimeStream::update_probabilities(const AngularRateState& rate, State& state) const {
+  const double dt_s = state.reported_sample_count == 0 ? params_.regime_evidence.memory_s : seconds(rate.time_ns - state.reported_ns);
   state.probabilities = next(state.probabilities, dt_s, state.rate.window, index_of(rate, state),
                              rate_.calibration(state.rate), calibration_is_unstable(state));
-  const auto dropped = static_cast<double>(state.rate.rig_resets - state.rig_resets);
-  state.rig_resets = state.rate.rig_resets;
-  state.resets = std::exp(-dt_s / params_.rate.lag_s) * state.resets + dropped;
+  const auto dropped = static_cast<double>(state.rate.calibration_reset_count - state.calibration_reset_count);
+  state.calibration_reset_count = state.rate.calibration_reset_count;
+  state.calibration_reset_rate = std::exp(-dt_s / params_.rate.lag_s) * state.calibration_reset_rate + dropped;
   state.reported_ns = rate.time_ns;
-  ++state.reported;
-  state.sum.flight += state.probabilities.flight;
-  state.sum.contact += state.probabilities.contact;
-  state.sum.hand_held += state.probabilities.hand_held;
+  ++state.reported_sample_count;
+  state.regime_probability_sum.flight += state.probabilities.flight;
+  state.regime_probability_sum.contact += state.probabilities.contact;
+  state.regime_probability_sum.hand_held += state.probabilities.hand_held;
 }
 
-// Returns the weight of HandHeldStream in the reported rate: s in carried.md (C40).
-double RegimeStream::hand_held_weight(const RateState& rate, State& state) const {
+// Returns the weight of HandHeldRateStream in the reported rate: s in carried.md (C40).
+double MotionRegimeStream::hand_held_weight(const AngularRateState& rate, State& state) const {
   const auto near_ns = static_cast<TimeNs>(std::llround(1e9 * params_.segment_gap_max_s));
-  const std::vector<RateStream::Knot>& window = state.rate.window;
+  const std::vector<AngularRateStream::Knot>& window = state.rate.window;
   const std::size_t here = index_of(rate, state);
   if (clips(window[here])) state.clipped_ns = rate.time_ns;
   const bool after = state.clipped_ns && rate.time_ns - *state.clipped_ns <= near_ns;
@@ -182,12 +182,12 @@ double RegimeStream::hand_held_weight(const RateState& rate, State& state) const
   const TimeNs next_ns = next_clipped == window.end() ? 0 : next_clipped->observation.sample.time_ns;
   const bool before = next_clipped != window.end() && next_ns - rate.time_ns <= near_ns;
   const bool within = after && before && next_ns - *state.clipped_ns <= near_ns;
-  std::erase_if(state.near, [&](const ReportedProbability& reported) {
+  std::erase_if(state.recent_probabilities, [&](const ReportedRegimeProbability& reported) {
     return reported.time_ns < rate.time_ns - near_ns || (within && reported.hand_held >= state.probabilities.hand_held);
   });
-  if (within) state.near.push_back({rate.time_ns, state.probabilities.hand_held});
+  if (within) state.recent_probabilities.push_back({rate.time_ns, state.probabilities.hand_held});
   if (!after && !before) return 0.0;
-  double out = state.near.empty() ? 1.0 : state.near.front().hand_held;
+  double out = state.recent_probabilities.empty() ? 1.0 : state.recent_probabilities.front().hand_held;
   if (out < params_.hand_held_probability_min || !before) return out;
   // Later samples update only a copy of the probabilities, because the rates of these samples are not final.
   RegimeProbabilities probabilities = state.probabilities;
@@ -203,26 +203,26 @@ double RegimeStream::hand_held_weight(const RateState& rate, State& state) const
   return out;
 }
 
-void RegimeStream::flush(const State& state, std::vector<RateState>& out) const {
+void MotionRegimeStream::flush(const State& state, std::vector<AngularRateState>& out) const {
   const std::size_t first = out.size();
   rate_.flush(state.rate, out);
   State last = state;
-  flush_hand_held(std::span(out).subspan(first), last);
-  for (RateState& rate : std::span(out).subspan(first)) {
+  flush_hand_held_rates(std::span(out).subspan(first), last);
+  for (AngularRateState& rate : std::span(out).subspan(first)) {
     const SpinRate spin = track_spin(rate, last);
-    rate = spin_.combine(rate, spin, !params_.rate.model.auxiliary_imus.empty());
+    rate = spin_.combine_with_spin_rate(rate, spin, !params_.rate.model.auxiliary_imus.empty());
   }
 }
 
-// At the end of the data, combines the rates of RateStream with the rates of HandHeldStream.
-void RegimeStream::flush_hand_held(std::span<RateState> out, State& last) const {
-  if (!last.hand_held_running || !(last.probabilities.hand_held > params_.hand_held_probability_min)) return;
-  std::vector<RateState> hand_held;
+// At the end of the data, combines the rates of AngularRateStream with the rates of HandHeldRateStream.
+void MotionRegimeStream::flush_hand_held_rates(std::span<AngularRateState> out, State& last) const {
+  if (!last.hand_held_stream_running || !(last.probabilities.hand_held > params_.hand_held_probability_min)) return;
+  std::vector<AngularRateState> hand_held;
   hand_held_.flush(last.hand_held, hand_held);
   const std::size_t count = std::min(out.size(), hand_held.size());
   for (std::size_t k = 0; k < count; ++k) {
-    RateState& rate = out[out.size() - count + k];
-    const RateState& other = hand_held[hand_held.size() - count + k];
+    AngularRateState& rate = out[out.size() - count + k];
+    const AngularRateState& other = hand_held[hand_held.size() - count + k];
     const double share = hand_held_weight(rate, last);
     if (share > params_.hand_held_probability_min && rate.time_ns == other.time_ns)
       rate = mixed_rate(rate, other, share);

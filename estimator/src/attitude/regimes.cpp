@@ -24,7 +24,7 @@ double log_gaussian(double squared_norm, double variance) {
 
 // Returns the log density of a measured force of norm n, if the true force has norm g and any direction: carried.md
 // (C35).
-double log_about_gravity(double n, double g, double variance) {
+double log_density_near_gravity(double n, double g, double variance) {
   const double x = n * g / variance;
   const double log_sinh_x = x < 1e-3 ? 0.0 : x - std::log(2.0 * x) + std::log1p(-std::exp(-2.0 * x));
   return log_gaussian(n * n + g * g, variance) + log_sinh_x;
@@ -34,9 +34,9 @@ double log_about_gravity(double n, double g, double variance) {
 // (C33).
 constexpr double kRoughly = 3.0, kRougher = 5.0;
 
-double log_hand_held(double n, double g, double hand_variance, double grip_variance) {
-  const double gentle = log_about_gravity(n, g, hand_variance + grip_variance);
-  const double rough = log_about_gravity(n, g, kRougher * kRougher * hand_variance + grip_variance);
+double log_density_hand_held(double n, double g, double hand_variance, double grip_variance) {
+  const double gentle = log_density_near_gravity(n, g, hand_variance + grip_variance);
+  const double rough = log_density_near_gravity(n, g, kRougher * kRougher * hand_variance + grip_variance);
   const double larger = std::max(gentle, rough);
   return larger + std::log(((kRoughly - 1.0) * std::exp(gentle - larger) + std::exp(rough - larger)) / kRoughly);
 }
@@ -44,13 +44,13 @@ double log_hand_held(double n, double g, double hand_variance, double grip_varia
 // Contact is gentle rolling (prior fraction `kRolls`) or an impact with a force of any size: carried.md (C34).
 constexpr double kRolls = 0.5;
 
-double log_contact(double left, double n, double most, double g, double variance) {
+double log_density_in_contact(double left, double n, double most, double g, double variance) {
   const double within = std::max(left, kContactMin_m_s2);
   const double struck = 1.0 / (within * std::log(most / kContactMin_m_s2) * 2.0 * kTwoPi * within * within);
-  return std::log((1.0 - kRolls) * struck + kRolls * std::exp(log_about_gravity(n, g, variance)));
+  return std::log((1.0 - kRolls) * struck + kRolls * std::exp(log_density_near_gravity(n, g, variance)));
 }
 
-Vector3d angular_acceleration(std::span<const RateState> rates, std::size_t k) {
+Vector3d angular_acceleration(std::span<const AngularRateState> rates, std::size_t k) {
   const std::size_t a = k == 0 ? 0 : k - 1, b = std::min(k + 1, rates.size() - 1);
   const double dt_s = seconds(rates[b].time_ns - rates[a].time_ns);
   if (!(dt_s > 0.0)) return Vector3d::Zero();
@@ -58,7 +58,7 @@ Vector3d angular_acceleration(std::span<const RateState> rates, std::size_t k) {
 }
 
 // See carried.md (C37).
-Matrix3d changes(const RegimeEvidence::Params& p, double dt_s) {
+Matrix3d regime_transition_matrix(const MotionRegimeEvidence::Params& p, double dt_s) {
   const double contacts = 1.0 - std::exp(-p.contacts_hz * dt_s), throws = 0.5 * (1.0 - std::exp(-p.throws_hz * dt_s));
   Matrix3d out;
   out << 1.0 - contacts - throws, contacts, throws,  //
@@ -69,12 +69,12 @@ Matrix3d changes(const RegimeEvidence::Params& p, double dt_s) {
 
 }  // namespace
 
-RegimeEvidence::RegimeEvidence(const Params& params) : params_(params) {
+MotionRegimeEvidence::MotionRegimeEvidence(const Params& params) : params_(params) {
   require_valid_fields(params);
 }
 
 // Returns the likelihoods of flight, contact and hand-held motion: carried.md (C31), (C32), (C33), (C34), (C36).
-Vector3d RegimeEvidence::likelihood(double dt_s, const ImuSample& sample, const RateState& rate, const Vector3d& alpha,
+Vector3d MotionRegimeEvidence::likelihood(double dt_s, const ImuSample& sample, const AngularRateState& rate, const Vector3d& alpha,
                                     const Vector3d& lever_arm_m, double lever_arm_variance_m2) const {
   const Vector3d& w = rate.w_WI_I_rad_s;
   const double arm_m = lever_arm_m.norm();
@@ -88,19 +88,19 @@ Vector3d RegimeEvidence::likelihood(double dt_s, const ImuSample& sample, const 
   const Vector3d& f = sample.specific_force_m_s2;
   const Vector3d left = f - turning;
   Vector3d logs(log_gaussian(left.squaredNorm(), flight_variance),
-                log_contact(left.norm(), f.norm(), params_.contact_force_max_m_s2, params_.gravity_m_s2,
+                log_density_in_contact(left.norm(), f.norm(), params_.contact_force_max_m_s2, params_.gravity_m_s2,
                             hand_variance + grip_variance),
-                log_hand_held(f.norm(), params_.gravity_m_s2, hand_variance, grip_variance));
+                log_density_hand_held(f.norm(), params_.gravity_m_s2, hand_variance, grip_variance));
   if (w.norm() < params_.rest_rate_rad_s) logs.setZero();
   logs *= std::min(1.0, dt_s / params_.memory_s);
   return (logs.array() - logs.maxCoeff()).exp().cwiseMax(1e-300);
 }
 
 // See carried.md (C38).
-RegimeProbabilities RegimeEvidence::next(const RegimeProbabilities& before, double dt_s, const ImuSample& sample,
-                                         const RateState& rate, const Vector3d& alpha, const Vector3d& lever_arm_m,
+RegimeProbabilities MotionRegimeEvidence::next(const RegimeProbabilities& before, double dt_s, const ImuSample& sample,
+                                         const AngularRateState& rate, const Vector3d& alpha, const Vector3d& lever_arm_m,
                                          const Matrix3d& lever_arm_covariance_m2) const {
-  const Vector3d predicted = changes(params_, dt_s) * Vector3d(before.flight, before.contact, before.hand_held);
+  const Vector3d predicted = regime_transition_matrix(params_, dt_s) * Vector3d(before.flight, before.contact, before.hand_held);
   Vector3d after =
       predicted.cwiseProduct(likelihood(dt_s, sample, rate, alpha, lever_arm_m, lever_arm_covariance_m2.trace()));
   after /= after.sum();
@@ -108,7 +108,7 @@ RegimeProbabilities RegimeEvidence::next(const RegimeProbabilities& before, doub
 }
 
 // See carried.md (C38).
-Status RegimeEvidence::find(std::span<const ImuSample> samples, std::span<const RateState> rates,
+Status MotionRegimeEvidence::find(std::span<const ImuSample> samples, std::span<const AngularRateState> rates,
                             const Vector3d& lever_arm_m, const Matrix3d& lever_arm_covariance_m2,
                             std::vector<RegimeProbabilities>& out) const {
   out.clear();
@@ -123,7 +123,7 @@ Status RegimeEvidence::find(std::span<const ImuSample> samples, std::span<const 
     const double dt_s = k == 0 ? params_.memory_s : seconds(samples[k].time_ns - samples[k - 1].time_ns);
     likelihood[k] =
         this->likelihood(dt_s, samples[k], rates[k], angular_acceleration(rates, k), lever_arm_m, arm_variance);
-    const Vector3d before = k == 0 ? Vector3d::Constant(1.0 / 3.0) : Vector3d(changes(params_, dt_s) * forward[k - 1]);
+    const Vector3d before = k == 0 ? Vector3d::Constant(1.0 / 3.0) : Vector3d(regime_transition_matrix(params_, dt_s) * forward[k - 1]);
     forward[k] = before.cwiseProduct(likelihood[k]);
     forward[k] /= forward[k].sum();
   }
@@ -134,7 +134,7 @@ Status RegimeEvidence::find(std::span<const ImuSample> samples, std::span<const 
     both /= both.sum();
     out[k] = {both[0], both[1], both[2]};
     if (k == 0) break;
-    backward = changes(params_, seconds(samples[k].time_ns - samples[k - 1].time_ns)) *
+    backward = regime_transition_matrix(params_, seconds(samples[k].time_ns - samples[k - 1].time_ns)) *
                Vector3d(backward.cwiseProduct(likelihood[k]));  // the transition matrix is symmetric
     backward /= backward.sum();
   }
@@ -142,8 +142,8 @@ Status RegimeEvidence::find(std::span<const ImuSample> samples, std::span<const 
 }
 
 // See carried.md (C39). `share` is the probability of `second`.
-RateState mix_rate_states(const RateState& first, const RateState& second, double share) {
-  RateState out = share > 0.5 ? second : first;
+AngularRateState mix_rate_states(const AngularRateState& first, const AngularRateState& second, double share) {
+  AngularRateState out = share > 0.5 ? second : first;
   const Vector3d apart = second.w_WI_I_rad_s - first.w_WI_I_rad_s;
   out.covariance_rad2_s2 = (1.0 - share) * first.covariance_rad2_s2 + share * second.covariance_rad2_s2 +
                            std::min(share, 1.0 - share) * apart * apart.transpose();

@@ -32,7 +32,7 @@ RestDetector::Params without_force_limits() {
 
 /// In mg, cm/s^2 or counts, forces and their noise have larger numbers than in m/s^2. Readings far above gravity at
 /// rest prove a wrong unit, because no robot stands still at ten times gravity.
-RestDetector::Params scaled_to_larger_units() {
+RestDetector::Params params_for_large_units() {
   constexpr double kLarger = 100.0;
   RestDetector::Params rests = kRests;
   rests.force_min_m_s2 = kLarger;
@@ -52,109 +52,109 @@ RestGravity::RestGravity(const Params& params)
     : params_(params),
       detector_(kRests),
       weightless_(without_force_limits()),
-      above_gravity_(scaled_to_larger_units()) {
+      above_gravity_(params_for_large_units()) {
   require_valid_fields(params);
 }
 
-RestGravity::Step RestGravity::follow(const ImuSample& sample, MagnitudeState& state) const {
+RestGravity::Step RestGravity::detect_stationary_periods(const ImuSample& sample, GravityMagnitudeState& state) const {
   if (!check_sample(sample).ok()) return {};
   double dt_s = 0.0;
-  const Status follows = state.started ? elapsed(sample.time_ns, state.last_time_ns, kRestGapMax_s, dt_s) : Status{};
+  const Status follows = state.started ? elapsed_time_since_last(sample.time_ns, state.last_time_ns, kRestGapMax_s, dt_s) : Status{};
   if (follows.error_code == ErrorCode::time_order) return {};
   state.started = true;
   state.last_time_ns = sample.time_ns;
   if (!follows.ok()) {
-    state.rest = state.weightless = state.above_gravity = {};
-    state.rests = false;
+    state.stationary_state = state.stationary_weightless = state.stationary_above_gravity = {};
+    state.is_stationary = false;
   }
-  if (weightless_.observe(sample, state.weightless)) state.weightless_s += dt_s;
-  const bool above_gravity = above_gravity_.observe(sample, state.above_gravity);
-  state.rests = detector_.observe(sample, state.rest);
-  if (state.rests || above_gravity) {
+  if (weightless_.detect_stationary(sample, state.stationary_weightless)) state.weightless_s += dt_s;
+  const bool above_gravity = above_gravity_.detect_stationary(sample, state.stationary_above_gravity);
+  state.is_stationary = detector_.detect_stationary(sample, state.stationary_state);
+  if (state.is_stationary || above_gravity) {
     state.rest_s += dt_s;
-    state.force_sum_m += dt_s * sample.specific_force_m_s2.norm();
+    state.stationary_force_integral_m_s += dt_s * sample.specific_force_m_s2.norm();
   }
-  return {follows.ok() ? Continuity::directly : Continuity::after_gap, dt_s};
+  return {follows.ok() ? SampleContinuity::consecutive : SampleContinuity::after_gap, dt_s};
 }
 
-void RestGravity::step(const ImuSample& sample, const RateState& rate, State& state) const {
-  const bool before = state.rests;
-  const auto [follows, dt_s] = follow(sample, state);
-  if (follows == Continuity::unrelated) return;
-  if (follows == Continuity::after_gap) state.last_rest_force_m_s2.setZero();
-  const bool rested = before && follows == Continuity::directly;
-  if (!state.rests) {
+void RestGravity::step(const ImuSample& sample, const AngularRateState& rate, State& state) const {
+  const bool before = state.is_stationary;
+  const auto [follows, dt_s] = detect_stationary_periods(sample, state);
+  if (follows == SampleContinuity::not_comparable) return;
+  if (follows == SampleContinuity::after_gap) state.last_rest_force_m_s2.setZero();
+  const bool rested = before && follows == SampleContinuity::consecutive;
+  if (!state.is_stationary) {
     integrate_rotation(sample, rate, dt_s, state);
-    if (rate.source != RateSource::measured) {
-      state.segment_s += dt_s;
-      state.segment_rad2_s += dt_s * rate.covariance_rad2_s2.trace();
+    if (rate.source != AngularRateSource::measured) {
+      state.unmeasured_duration_s += dt_s;
+      state.unmeasured_rotation_variance += dt_s * rate.covariance_rad2_s2.trace();
     } else {
       end_segment(state);
-      state.variance_rad2 += dt_s * kCorrelation_s * rate.covariance_rad2_s2.trace();
+      state.angle_variance_rad2 += dt_s * kCorrelation_s * rate.covariance_rad2_s2.trace();
     }
     return;
   }
-  if (!rested) finish_span(state);
-  state.last_rest_force_m_s2 = state.rest.mean_force_m_s2();
+  if (!rested) finish_rest_pair(state);
+  state.last_rest_force_m_s2 = state.stationary_state.mean_force_m_s2();
   state.rotation.setIdentity();
-  state.velocity_sum_m_s.setZero();
-  state.span_s = state.saturation_deficit_m_s = 0.0;
-  state.span_angle_rad = state.variance_rad2 = state.segment_s = state.segment_rad2_s = 0.0;
+  state.integrated_force_m_s.setZero();
+  state.span_s = state.integrated_saturation_deficit_m_s = 0.0;
+  state.angle_since_last_rest_rad = state.angle_variance_rad2 = state.unmeasured_duration_s = state.unmeasured_rotation_variance = 0.0;
 }
 
 /// See imu_merge.md (I25). A reading is the mean over its averaging window, and is valid at the window's middle.
-void RestGravity::integrate_rotation(const ImuSample& sample, const RateState& rate, double dt_s, State& state) const {
+void RestGravity::integrate_rotation(const ImuSample& sample, const AngularRateState& rate, double dt_s, State& state) const {
   const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * rate.w_WI_I_rad_s);
   const Eigen::Vector3d& force = sample.specific_force_m_s2;
-  state.velocity_sum_m_s += dt_s * ((state.rotation * half) * force);
+  state.integrated_force_m_s += dt_s * ((state.rotation * half) * force);
   state.rotation = (state.rotation * half * half).normalized();
-  state.span_angle_rad += dt_s * rate.w_WI_I_rad_s.norm();
+  state.angle_since_last_rest_rad += dt_s * rate.w_WI_I_rad_s.norm();
   state.span_s += dt_s;
   const double peak = force.cwiseAbs().maxCoeff();
   const bool at_range = params_.accel_range_m_s2 > 0.0 && peak >= (1.0 - kNearRailRatio) * params_.accel_range_m_s2;
-  if (at_range || (sample.device_clip_flags & kClipAccel) != 0) state.saturation_deficit_m_s += dt_s * peak;
+  if (at_range || (sample.device_clip_flags & kClipAccel) != 0) state.integrated_saturation_deficit_m_s += dt_s * peak;
 }
 
 /// Errors within one clipped segment are correlated: imu_merge.md (I23).
 void RestGravity::end_segment(State& state) const {
-  state.variance_rad2 += std::max(kCorrelation_s, state.segment_s) * state.segment_rad2_s;
-  state.segment_s = state.segment_rad2_s = 0.0;
+  state.angle_variance_rad2 += std::max(kCorrelation_s, state.unmeasured_duration_s) * state.unmeasured_rotation_variance;
+  state.unmeasured_duration_s = state.unmeasured_rotation_variance = 0.0;
 }
 
 /// See imu_merge.md (I25), (I26).
-void RestGravity::finish_span(State& state) const {
+void RestGravity::finish_rest_pair(State& state) const {
   end_segment(state);
-  if (state.last_rest_force_m_s2.isZero(0.0) || state.span_angle_rad < kSpanRotationMin_rad ||
+  if (state.last_rest_force_m_s2.isZero(0.0) || state.angle_since_last_rest_rad < kSpanRotationMin_rad ||
       state.span_s > kSpanMax_s)
     return;
-  ++state.spans;
-  const Eigen::Vector3d current_force_m_s2 = state.rest.mean_force_m_s2();
-  const Eigen::Vector3d mean_m_s2 = state.velocity_sum_m_s / state.span_s;
+  ++state.compared_rest_pairs;
+  const Eigen::Vector3d current_force_m_s2 = state.stationary_state.mean_force_m_s2();
+  const Eigen::Vector3d mean_m_s2 = state.integrated_force_m_s / state.span_s;
   const double from_start = (mean_m_s2 - state.last_rest_force_m_s2).norm() / state.last_rest_force_m_s2.norm();
   const double from_end =
       (state.rotation.conjugate() * mean_m_s2 - current_force_m_s2).norm() / current_force_m_s2.norm();
   const double share = from_start + from_end;
-  const double hidden = 2.0 * state.saturation_deficit_m_s / (state.span_s * state.last_rest_force_m_s2.norm());
-  const double allowed = std::hypot(allowed_rad(std::sqrt(state.variance_rad2)), hidden);
-  if (share * state.velocity_error_ratio_max < state.velocity_error_ratio * allowed) return;
-  state.velocity_error_ratio = share;
-  state.velocity_error_ratio_max = allowed;
+  const double hidden = 2.0 * state.integrated_saturation_deficit_m_s / (state.span_s * state.last_rest_force_m_s2.norm());
+  const double allowed = std::hypot(allowed_rad(std::sqrt(state.angle_variance_rad2)), hidden);
+  if (share * state.worst_pair_error_limit < state.worst_velocity_error_ratio * allowed) return;
+  state.worst_velocity_error_ratio = share;
+  state.worst_pair_error_limit = allowed;
 }
 
-double RestGravity::magnitude_error_ratio(const MagnitudeState& state) const {
-  if (state.rest_s >= kRested_s) return state.force_sum_m / state.rest_s / params_.gravity_m_s2;
+double RestGravity::gravity_magnitude_error_ratio(const GravityMagnitudeState& state) const {
+  if (state.rest_s >= kRested_s) return state.stationary_force_integral_m_s / state.rest_s / params_.gravity_m_s2;
   return state.weightless_s >= kRested_s ? 0.0 : 1.0;
 }
 
-void RestGravity::limit_memory(MagnitudeState& state) {
-  constexpr double kMemory_s = 60.0;
-  if (state.rest_s <= kMemory_s) return;
+void RestGravity::limit_memory(GravityMagnitudeState& state) {
+  constexpr double kForgettingTime_s = 60.0;
+  if (state.rest_s <= kForgettingTime_s) return;
   state.rest_s *= 0.5;
-  state.force_sum_m *= 0.5;
+  state.stationary_force_integral_m_s *= 0.5;
 }
 
-Status RestGravity::magnitude_verdict(const MagnitudeState& state, double error_max) const {
-  const double size = magnitude_error_ratio(state);
+Status RestGravity::gravity_magnitude_verdict(const GravityMagnitudeState& state, double error_max) const {
+  const double size = gravity_magnitude_error_ratio(state);
   if (std::abs(size - 1.0) > error_max) {
     const bool unit = size > 0.0 && (size < 1.0 / kWrongUnitRatio || size > kWrongUnitRatio);
     return {ErrorCode::out_of_range,
@@ -166,11 +166,11 @@ Status RestGravity::magnitude_verdict(const MagnitudeState& state, double error_
 }
 
 Status RestGravity::verdict(const State& state) const {
-  if (const Status size = magnitude_verdict(state); !size.ok()) return size;
-  if (state.velocity_error_ratio > state.velocity_error_ratio_max) {
+  if (const Status size = gravity_magnitude_verdict(state); !size.ok()) return size;
+  if (state.worst_velocity_error_ratio > state.worst_pair_error_limit) {
     return {ErrorCode::out_of_range,
             "velocity error after integration from one rest to the next (share of gravity times elapsed time)",
-            state.velocity_error_ratio, state.velocity_error_ratio_max};
+            state.worst_velocity_error_ratio, state.worst_pair_error_limit};
   }
   return {};
 }

@@ -30,7 +30,7 @@ constexpr int kRounds = 3;
 
 /// range of nodes [first, last] in which all readings of a sensing element are clipped or unusable
 struct Segment {
-  std::size_t element = 0, first = 0, last = 0;
+  std::size_t sensing_axis = 0, first = 0, last = 0;
 };
 
 struct Hypothesis {
@@ -38,40 +38,40 @@ struct Hypothesis {
   double cost = 0.0;
 };
 
-struct AlternativeSolutions {
+struct RevolutionAlternatives {
   std::size_t from = 0;
-  std::vector<std::pair<double, std::vector<Node>>> others;
+  std::vector<std::pair<double, std::vector<Node>>> alternative_nodes;
 };
 
 /// Returns the cost of the angular jerk that one additional revolution within `steps` node intervals requires.
-double revolution_cost(const Problem& problem, std::size_t steps) {
-  return hand_held::revolution_cost(static_cast<double>(steps) * problem.node_s(), problem.jerk_rad_s3_sqrts());
+double revolution_cost(const HandHeldProblem& problem, std::size_t steps) {
+  return hand_held::revolution_cost(static_cast<double>(steps) * problem.node_interval_s(), problem.jerk_rad_s3_sqrts());
 }
 
 /// See carried.md (C28).
-std::vector<Segment> suspect_segments(const Problem& problem) {
+std::vector<Segment> possibly_wrong_segments(const HandHeldProblem& problem) {
   std::vector<Segment> out;
   const std::size_t count = problem.nodes().size();
   for (std::size_t j = 0; j < 3; ++j) {
-    const Eigen::RowVector3d m = problem.rows().row(static_cast<Eigen::Index>(j));
+    const Eigen::RowVector3d m = problem.sensing_directions().row(static_cast<Eigen::Index>(j));
     for (std::size_t i = 0; i < count; ++i) {
-      if (!(problem.readings(i).gyro[j].clipped > 0.0)) continue;
+      if (!(problem.readings(i).gyro[j].clipped_reading_count > 0.0)) continue;
       Segment segment{j, i, i};
       double angle_rad = 0.0, beyond_rad_s = 0.0, clipped = 0.0;
       for (; i < count; ++i) {
-        const ElementSums& element = problem.readings(i).gyro[j];
-        if (element.count > 0.0 && !(element.clipped > 0.0)) break;
-        if (element.clipped > 0.0) {
+        const SensingAxisSums& element = problem.readings(i).gyro[j];
+        if (element.count > 0.0 && !(element.clipped_reading_count > 0.0)) break;
+        if (element.clipped_reading_count > 0.0) {
           segment.last = i;
           clipped += 1.0;
-          beyond_rad_s += element.sign * (m.dot(problem.gyro_rad_s(i)) - element.rail);
+          beyond_rad_s += element.saturated_side * (m.dot(problem.gyro_rad_s(i)) - element.mean_saturation_limit);
         }
         const Eigen::Matrix3d covariance = problem.covariance(i).block<3, 3>(kRate, kRate);
-        angle_rad += problem.node_s() * std::sqrt(std::max(0.0, m.dot(covariance * m.transpose())));
+        angle_rad += problem.node_interval_s() * std::sqrt(std::max(0.0, m.dot(covariance * m.transpose())));
       }
       // If the recording starts or ends during a saturation, the number of revolutions is undetermined.
       if (segment.first == 0 || segment.last + 1 >= count) continue;
-      const bool against_rail = beyond_rad_s < kBeyondSigmas * problem.rail_sigma_rad_s() * clipped &&
+      const bool against_rail = beyond_rad_s < kBeyondSigmas * problem.saturation_limit_sigma_rad_s() * clipped &&
                                 revolution_cost(problem, segment.last + 2 - segment.first) < kRevolutionCost;
       if (angle_rad > kAngleShare * kPi || against_rail) out.push_back(segment);
     }
@@ -80,18 +80,18 @@ std::vector<Segment> suspect_segments(const Problem& problem) {
 }
 
 /// Adds `turns` revolutions about `axis` between nodes a and b as a smooth bump of the rate.
-std::vector<Node> with_more_revolutions(const Problem& part, const Vector3d& axis, double turns, std::size_t a,
+std::vector<Node> with_extra_revolutions(const HandHeldProblem& part, const Vector3d& axis, double turns, std::size_t a,
                                         std::size_t b) {
   std::vector<Node> nodes(part.nodes().begin(), part.nodes().end());
-  const double h = part.node_s(), span_s = static_cast<double>(b - a) * h, mean = 2.0 * kPi * turns / span_s;
+  const double h = part.node_interval_s(), span_s = static_cast<double>(b - a) * h, mean = 2.0 * kPi * turns / span_s;
   const auto along = [&](std::size_t i) { return static_cast<double>(i - a) / static_cast<double>(b - a); };
   for (std::size_t i = a; i <= b; ++i) {
     const double phase = 2.0 * kPi * along(i);
     nodes[i].w_WI_I_rad_s += mean * (1.0 - std::cos(phase)) * axis;
     nodes[i].angular_acceleration_rad_s2 += mean * 2.0 * kPi / span_s * std::sin(phase) * axis;
   }
-  for (std::size_t i = a; i < b; ++i) nodes[i + 1].q_WI = nodes[i].q_WI * so3::exp(turned(nodes[i], nodes[i + 1], h));
-  const Vector3d missed = so3::log(nodes[b].q_WI.conjugate() * part.nodes()[b].q_WI);
+  for (std::size_t i = a; i < b; ++i) nodes[i + 1].q_WI = nodes[i].q_WI * so3::exp(rotation_between_nodes(nodes[i], nodes[i + 1], h));
+  const Vector3d missed = so3::logarithm(nodes[b].q_WI.conjugate() * part.nodes()[b].q_WI);
   const Vector3d& g_W = part.gravity_W_m_s2();
   for (std::size_t i = a; i <= b; ++i) {
     nodes[i].q_WI = (nodes[i].q_WI * so3::exp(along(i) * missed)).normalized();
@@ -107,29 +107,29 @@ double angle_between(std::span<const Node> from, std::span<const Node> to, const
   return out;
 }
 
-std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment, const Part& part) {
-  const Eigen::RowVector3d m = whole.rows().row(static_cast<Eigen::Index>(segment.element));
-  const Vector3d axis = whole.rows().inverse().col(static_cast<Eigen::Index>(segment.element)).normalized();
+std::vector<Hypothesis> hypotheses(const HandHeldProblem& whole, const Segment& segment, const ProblemSegment& part) {
+  const Eigen::RowVector3d m = whole.sensing_directions().row(static_cast<Eigen::Index>(segment.sensing_axis));
+  const Vector3d axis = whole.sensing_directions().inverse().col(static_cast<Eigen::Index>(segment.sensing_axis)).normalized();
   const std::size_t a = segment.first - 1 - part.first, b = segment.last + 1 - part.first;
   std::vector<Hypothesis> out;
-  const auto keep = [&](Problem& problem) {
-    Hypothesis found{{}, problem.converge()};
+  const auto keep = [&](HandHeldProblem& problem) {
+    Hypothesis found{{}, problem.iterate_to_convergence()};
     found.nodes.assign(problem.nodes().begin(), problem.nodes().end());
     if (!std::isfinite(found.cost)) return false;
     for (const Hypothesis& other : out)
-      if (std::abs(angle_between(other.nodes, found.nodes, m, whole.node_s())) < kPi) return false;
+      if (std::abs(angle_between(other.nodes, found.nodes, m, whole.node_interval_s())) < kPi) return false;
     const bool likely = out.empty() || found.cost < out.front().cost + 2.0 * kLogOdds;
     if (!likely) return false;
     out.push_back(std::move(found));
     if (out.back().cost < out.front().cost) std::swap(out.back(), out.front());
     return true;
   };
-  Problem as_it_is(whole, part);
+  HandHeldProblem as_it_is(whole, part);
   if (!keep(as_it_is)) return out;
   for (const double sign : {1.0, -1.0}) {
     for (int n = 1; n <= kExtraRevolutionsMax; ++n) {
-      Problem other(whole, part);
-      other.place(0, with_more_revolutions(as_it_is, axis, sign * n, a, b));
+      HandHeldProblem other(whole, part);
+      other.set_nodes(0, with_extra_revolutions(as_it_is, axis, sign * n, a, b));
       if (!keep(other)) break;
     }
   }
@@ -137,49 +137,49 @@ std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment,
   return out;
 }
 
-/// `found` contains solutions with different numbers of revolutions, best first. `held` is the index of the solution
+/// `found` contains solutions with different numbers of revolutions, best first. `accepted_alternative` is the index of the solution
 /// with the present number of revolutions.
-struct TestedSegment {
+struct TestedRevolutionSegment {
   std::size_t from = 0;
-  std::vector<Hypothesis> found;
-  std::optional<std::size_t> held = std::nullopt;
-  bool another = false;
+  std::vector<Hypothesis> revolution_hypotheses;
+  std::optional<std::size_t> accepted_alternative = std::nullopt;
+  bool needs_another_solution = false;
 };
 
 /// See carried.md (C29).
-AlternativeSolutions alternative_probabilities(const TestedSegment& tested, std::optional<std::size_t> standing) {
-  AlternativeSolutions out{tested.from, {}};
-  const double least = tested.found.front().cost;
+RevolutionAlternatives revolution_probabilities(const TestedRevolutionSegment& tested, std::optional<std::size_t> standing) {
+  RevolutionAlternatives out{tested.from, {}};
+  const double least = tested.revolution_hypotheses.front().cost;
   const auto weight = [&](const Hypothesis& each) { return std::exp(-0.5 * (each.cost - least)); };
   double sum = 0.0;
-  for (const Hypothesis& each : tested.found) sum += weight(each);
-  for (std::size_t k = 0; k < tested.found.size(); ++k) {
-    if (k != standing) out.others.emplace_back(weight(tested.found[k]) / sum, tested.found[k].nodes);
+  for (const Hypothesis& each : tested.revolution_hypotheses) sum += weight(each);
+  for (std::size_t k = 0; k < tested.revolution_hypotheses.size(); ++k) {
+    if (k != standing) out.alternative_nodes.emplace_back(weight(tested.revolution_hypotheses[k]) / sum, tested.revolution_hypotheses[k].nodes);
   }
   return out;
 }
 
 /// `taken` is true if each segment now has its most probable number of revolutions.
-std::vector<AlternativeSolutions> remaining_alternatives(const std::vector<TestedSegment>& tested, bool taken) {
-  std::vector<AlternativeSolutions> out;
-  for (const TestedSegment& each : tested) {
-    const std::optional<std::size_t> standing = taken && each.another ? std::optional<std::size_t>(0) : each.held;
-    AlternativeSolutions open = alternative_probabilities(each, standing);
-    if (!open.others.empty()) out.push_back(std::move(open));
+std::vector<RevolutionAlternatives> remaining_revolution_hypotheses(const std::vector<TestedRevolutionSegment>& tested, bool taken) {
+  std::vector<RevolutionAlternatives> out;
+  for (const TestedRevolutionSegment& each : tested) {
+    const std::optional<std::size_t> standing = taken && each.needs_another_solution ? std::optional<std::size_t>(0) : each.accepted_alternative;
+    RevolutionAlternatives open = revolution_probabilities(each, standing);
+    if (!open.alternative_nodes.empty()) out.push_back(std::move(open));
   }
   return out;
 }
 
-Vector9 apart(const Node& from, const Node& to) {
+Vector9 attitude_and_motion_difference(const Node& from, const Node& to) {
   Vector9 out;
-  out << so3::log(from.q_WI.conjugate() * to.q_WI), to.w_WI_I_rad_s - from.w_WI_I_rad_s,
+  out << so3::logarithm(from.q_WI.conjugate() * to.q_WI), to.w_WI_I_rad_s - from.w_WI_I_rad_s,
       to.angular_acceleration_rad_s2 - from.angular_acceleration_rad_s2;
   return out;
 }
 
-std::vector<Part> with_surroundings(const Problem& problem, std::span<const Segment> segments) {
-  const auto around = static_cast<std::size_t>(std::llround(kSurroundings_s / problem.node_s()));
-  std::vector<Part> out;
+std::vector<ProblemSegment> with_neighbouring_nodes(const HandHeldProblem& problem, std::span<const Segment> segments) {
+  const auto around = static_cast<std::size_t>(std::llround(kSurroundings_s / problem.node_interval_s()));
+  std::vector<ProblemSegment> out;
   for (const Segment& segment : segments) {
     const std::size_t from = segment.first > around ? segment.first - 1 - around : 0;
     out.push_back({from, std::min(segment.last + 1 + around, problem.nodes().size() - 1)});
@@ -188,29 +188,29 @@ std::vector<Part> with_surroundings(const Problem& problem, std::span<const Segm
 }
 
 /// `fallen` marks segments whose number of revolutions an earlier round has changed.
-std::vector<TestedSegment> test_segments(const Problem& problem, std::span<const Segment> segments,
-                                         std::span<const Part> parts, std::vector<bool>& fallen) {
-  std::vector<TestedSegment> out;
+std::vector<TestedRevolutionSegment> test_revolution_segments(const HandHeldProblem& problem, std::span<const Segment> segments,
+                                         std::span<const ProblemSegment> parts, std::vector<bool>& fallen) {
+  std::vector<TestedRevolutionSegment> out;
   for (std::size_t k = 0; k < parts.size(); ++k) {
-    const Part& part = parts[k];
-    TestedSegment tested{part.first, hypotheses(problem, segments[k], part)};
-    if (tested.found.empty()) continue;
-    std::sort(tested.found.begin(), tested.found.end(),
+    const ProblemSegment& part = parts[k];
+    TestedRevolutionSegment tested{part.first, hypotheses(problem, segments[k], part)};
+    if (tested.revolution_hypotheses.empty()) continue;
+    std::sort(tested.revolution_hypotheses.begin(), tested.revolution_hypotheses.end(),
               [](const Hypothesis& a, const Hypothesis& b) { return a.cost < b.cost; });
     const std::span<const Node> before = problem.nodes().subspan(part.first, part.last - part.first + 1);
-    const Eigen::RowVector3d m = problem.rows().row(static_cast<Eigen::Index>(segments[k].element));
-    for (std::size_t i = 0; i < tested.found.size() && !tested.held; ++i) {
-      if (std::abs(angle_between(before, tested.found[i].nodes, m, problem.node_s())) <= kPi) tested.held = i;
+    const Eigen::RowVector3d m = problem.sensing_directions().row(static_cast<Eigen::Index>(segments[k].sensing_axis));
+    for (std::size_t i = 0; i < tested.revolution_hypotheses.size() && !tested.accepted_alternative; ++i) {
+      if (std::abs(angle_between(before, tested.revolution_hypotheses[i].nodes, m, problem.node_interval_s())) <= kPi) tested.accepted_alternative = i;
     }
     const double margin = fallen[k] ? 0.0 : 2.0 * kAcceptLogOdds;
-    tested.another = !tested.held || tested.found[*tested.held].cost > tested.found.front().cost + margin;
-    fallen[k] = fallen[k] || tested.another;
+    tested.needs_another_solution = !tested.accepted_alternative || tested.revolution_hypotheses[*tested.accepted_alternative].cost > tested.revolution_hypotheses.front().cost + margin;
+    fallen[k] = fallen[k] || tested.needs_another_solution;
     out.push_back(std::move(tested));
   }
   return out;
 }
 
-Status solve_again(Problem& problem, HandHeldSmoother::Report& report) {
+Status solve_again(HandHeldProblem& problem, HandHeldSmoother::Report& report) {
   const Status status = problem.solve(report);
   return status.ok() ? problem.covariances(report) : status;
 }
@@ -221,47 +221,47 @@ double revolution_cost(double span_s, double jerk) {
   return 720.0 * std::pow(2.0 * kPi / jerk, 2.0) / std::pow(span_s, 5.0);
 }
 
-void test_revolutions(Problem& problem, HandHeldSmoother::Report& report) {
+void test_revolutions(HandHeldProblem& problem, HandHeldSmoother::Report& report) {
   test_revolutions(problem, report, solve_again);
 }
 
-void test_revolutions(Problem& problem, HandHeldSmoother::Report& report, SolveAgain again) {
-  const std::vector<Segment> segments = suspect_segments(problem);
+void test_revolutions(HandHeldProblem& problem, HandHeldSmoother::Report& report, SolveAgain again) {
+  const std::vector<Segment> segments = possibly_wrong_segments(problem);
   report.revolutions_tested = static_cast<int>(segments.size());
   if (segments.empty()) return;
-  std::vector<Part> parts = with_surroundings(problem, segments);
-  std::vector<AlternativeSolutions> open;
+  std::vector<ProblemSegment> parts = with_neighbouring_nodes(problem, segments);
+  std::vector<RevolutionAlternatives> open;
   std::vector<bool> fallen(parts.size(), false);
   // The test of one clipped segment linearises the motion outside the segment. After a change of any number of
   // revolutions, all segments are therefore tested again.
   for (int round = 0; round < kRounds; ++round) {
-    if (!problem.condense_rest(parts)) break;
-    const std::vector<TestedSegment> tested = test_segments(problem, segments, parts, fallen);
+    if (!problem.condense_other_nodes(parts)) break;
+    const std::vector<TestedRevolutionSegment> tested = test_revolution_segments(problem, segments, parts, fallen);
     const auto taken =
-        std::count_if(tested.begin(), tested.end(), [](const TestedSegment& each) { return each.another; });
-    open = remaining_alternatives(tested, true);  // replaces the alternatives of the previous round
+        std::count_if(tested.begin(), tested.end(), [](const TestedRevolutionSegment& each) { return each.needs_another_solution; });
+    open = remaining_revolution_hypotheses(tested, true);  // replaces the alternatives of the previous round
     if (taken == 0) break;
-    const Problem::Answer before = problem.answer();
+    const HandHeldProblem::Solution before = problem.solution();
     const HandHeldSmoother::Report report_before = report;
-    for (const TestedSegment& each : tested) {
-      if (each.another) problem.place(each.from, each.found.front().nodes);
+    for (const TestedRevolutionSegment& each : tested) {
+      if (each.needs_another_solution) problem.set_nodes(each.from, each.revolution_hypotheses.front().nodes);
     }
     if (!again(problem, report).ok()) {
       problem.restore(before);
       report = report_before;
       report.revolutions_failed += static_cast<int>(taken);
-      open = remaining_alternatives(tested, false);
+      open = remaining_revolution_hypotheses(tested, false);
       break;
     }
     report.revolutions_corrected += static_cast<int>(taken);
   }
   report.revolutions_ambiguous = static_cast<int>(open.size());
   // See carried.md (C29).
-  for (const AlternativeSolutions& segment : open) {
-    for (const auto& [share, nodes] : segment.others) {
+  for (const RevolutionAlternatives& segment : open) {
+    for (const auto& [share, nodes] : segment.alternative_nodes) {
       for (std::size_t i = 0; i < nodes.size(); ++i) {
-        const Vector9 d = apart(problem.nodes()[segment.from + i], nodes[i]);
-        problem.widen(segment.from + i, share * d * d.transpose());
+        const Vector9 d = attitude_and_motion_difference(problem.nodes()[segment.from + i], nodes[i]);
+        problem.add_covariance(segment.from + i, share * d * d.transpose());
       }
     }
   }

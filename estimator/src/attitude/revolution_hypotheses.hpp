@@ -24,9 +24,9 @@ double revolution_cost(double span_s, double jerk_rad_s3_sqrts);
 /// The caller must have computed the covariances of `problem`. The hypotheses neglect correlations between the
 /// revolutions of two segments, and the effect of revolutions on the calibration constants. The alternative solutions
 /// differ only by whole revolutions about the clipped element's axis.
-void test_revolutions(Problem& problem, HandHeldSmoother::Report& report);
+void test_revolutions(HandHeldProblem& problem, HandHeldSmoother::Report& report);
 
-using SolveAgain = Status (*)(Problem& problem, HandHeldSmoother::Report& report);
-void test_revolutions(Problem& problem, HandHeldSmoother::Report& report, SolveAgain again);
+using SolveAgain = Status (*)(HandHeldProblem& problem, HandHeldSmoother::Report& report);
+void test_revolutions(HandHeldProblem& problem, HandHeldSmoother::Report& report, SolveAgain again);
 
 }  // namespace tumble::hand_held

@@ -12,23 +12,23 @@
 
 namespace tumble {
 
-/// RigidForces contains the mean specific forces of several IMUs on one rigid body over a window, in body axes:
+/// RigidBodyImuForces contains the mean specific forces of several IMUs on one rigid body over a window, in body axes:
 /// imu_merge.md (I6), (I7).
-struct RigidForces {
-  static constexpr std::size_t kUnits = ImuMergeState::kImus;
+struct RigidBodyImuForces {
+  static constexpr std::size_t kImuCount = ImuMergeState::kImus;
 
-  std::array<bool, kUnits> present{};
-  std::array<Eigen::Vector3d, kUnits> position_m{}, force_m_s2{};
-  std::array<double, kUnits> peak_m_s2{};    ///< largest component of the IMU's readings in the window
-  std::array<double, kUnits> change_m_s2{};  ///< change of the specific force since the last window
+  std::array<bool, kImuCount> imu_present{};
+  std::array<Eigen::Vector3d, kImuCount> position_m{}, force_m_s2{};
+  std::array<double, kImuCount> peak_m_s2{};    ///< largest component of the IMU's readings in the window
+  std::array<double, kImuCount> force_change_m_s2{};  ///< change of the specific force since the last window
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero(), acceleration_rad_s2 = Eigen::Vector3d::Zero();
   double uncertainty_rad_s2 = 0.0;  ///< standard deviation of the angular acceleration
-  double small_peak_m_s2 = 0.0;     ///< two IMUs with smaller readings are unsaturated
-  double hidden_force_m_s2 = 0.0;   ///< tolerated disagreement with all other IMUs
+  double unsaturated_peak_max_m_s2 = 0.0;     ///< two IMUs with smaller readings are unsaturated
+  double tolerated_saturation_m_s2 = 0.0;   ///< tolerated disagreement with all other IMUs
 
-  struct AgreeingForces {
-    std::size_t unit = 0;
-    int others = -1;  ///< number of other IMUs that agree with `unit`
+  struct AgreeingImuForces {
+    std::size_t imu = 0;
+    int agreeing_imu_count = -1;  ///< number of other IMUs that agree with `imu`
   };
 
   Eigen::Vector3d misfit(std::size_t k, std::size_t j) const {
@@ -36,21 +36,21 @@ struct RigidForces {
     return force_m_s2[k] - force_m_s2[j] - acceleration_rad_s2.cross(d) - rate_rad_s.cross(rate_rad_s.cross(d));
   }
 
-  bool agree(std::size_t k, std::size_t j) const {
-    if (std::max(peak_m_s2[k], peak_m_s2[j]) < small_peak_m_s2) return true;
+  bool forces_agree(std::size_t k, std::size_t j) const {
+    if (std::max(peak_m_s2[k], peak_m_s2[j]) < unsaturated_peak_max_m_s2) return true;
     const Eigen::Vector3d d = position_m[k] - position_m[j], e = misfit(k, j);
-    return std::abs(e.dot(d)) <= hidden_force_m_s2 * d.norm() &&
-           e.norm() <= hidden_force_m_s2 + uncertainty_rad_s2 * d.norm();
+    return std::abs(e.dot(d)) <= tolerated_saturation_m_s2 * d.norm() &&
+           e.norm() <= tolerated_saturation_m_s2 + uncertainty_rad_s2 * d.norm();
   }
 
   /// If several IMUs agree with equally many others, the function returns the IMU whose force changed least.
-  AgreeingForces most_agreed() const {
-    AgreeingForces best;
-    for (std::size_t k = 0; k < kUnits; ++k) {
-      if (!present[k]) continue;
+  AgreeingImuForces largest_agreeing_set() const {
+    AgreeingImuForces best;
+    for (std::size_t k = 0; k < kImuCount; ++k) {
+      if (!imu_present[k]) continue;
       int others = 0;
-      for (std::size_t j = 0; j < kUnits; ++j) others += present[j] && j != k && agree(k, j);
-      if (others > best.others || (others == best.others && change_m_s2[k] < change_m_s2[best.unit]))
+      for (std::size_t j = 0; j < kImuCount; ++j) others += imu_present[j] && j != k && forces_agree(k, j);
+      if (others > best.agreeing_imu_count || (others == best.agreeing_imu_count && force_change_m_s2[k] < force_change_m_s2[best.imu]))
         best = {k, others};
     }
     return best;
@@ -58,12 +58,12 @@ struct RigidForces {
 
   /// Returns the change of the angular acceleration that minimises the force differences between the IMUs: imu_merge.md
   /// (I7).
-  Eigen::Vector3d common_acceleration() const {
+  Eigen::Vector3d mean_imu_acceleration() const {
     Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
-    for (std::size_t k = 0; k < kUnits; ++k) {
+    for (std::size_t k = 0; k < kImuCount; ++k) {
       for (std::size_t j = 0; j < k; ++j) {
-        if (!present[k] || !present[j]) continue;
+        if (!imu_present[k] || !imu_present[j]) continue;
         const Eigen::Vector3d d = position_m[k] - position_m[j];
         A += d.squaredNorm() * Eigen::Matrix3d::Identity() - d * d.transpose();
         b += d.cross(misfit(k, j));

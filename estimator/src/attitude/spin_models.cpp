@@ -18,7 +18,7 @@ using Eigen::Vector2d;
 constexpr int kRate = 0, kAcceleration = 1;
 constexpr int kTurning = 2, kFixed = 4;               // of Modulation
 constexpr int kArm = 2, kForce = 4, kWorldForce = 6;  // of Centripetal
-constexpr double kReading_s = 0.01;                   // time within which vibration is correlated
+constexpr double kReadingInterval_s = 0.01;                   // time within which vibration is correlated
 constexpr double kScaleMemory_s = 0.5;                // averaging time of the variance ratio
 constexpr double kVarianceRatioMax = 1e3;             // bounds of the variance ratio
 constexpr double kReadingSigma_rad_s = 0.02;          // of an unsaturated reading
@@ -92,7 +92,7 @@ void turn_part(const SpinFilter<N>& filter, int part, double related, double dt_
 template <int N>
 double update_across(const Eigen::Matrix<double, 2, N>& H, const Vector2d& innovation, double sigma, double dt_s,
                      SpinFilter<N>& filter) {
-  const double variance = filter.variance_ratio * squared(sigma) * std::max(1.0, kReading_s / std::max(dt_s, 1e-6));
+  const double variance = filter.variance_ratio * squared(sigma) * std::max(1.0, kReadingInterval_s / std::max(dt_s, 1e-6));
   const Matrix2d noise = variance * Matrix2d::Identity();
   const Matrix2d S = H * filter.P * H.transpose() + noise;
   const double squared_norm = innovation.dot(S.inverse() * innovation);
@@ -108,10 +108,10 @@ template <int N>
 void update_rate(const SpinReading& reading, bool keeps_variance, SpinFilter<N>& filter) {
   const double innovation = reading.rate_rad_s - filter.x[kRate];
   if (!reading.saturated) {
-    filter.x += component_update<N>(kRate, innovation, squared(kReadingSigma_rad_s), filter.P);
+    filter.x += kalman_update_of_component<N>(kRate, innovation, squared(kReadingSigma_rad_s), filter.P);
   } else if (innovation * reading.rate_rad_s > 0.0 && filter.x[kRate] * reading.rate_rad_s > 0.0) {
     Eigen::Matrix<double, N, N> bounded = filter.P;
-    filter.x += component_update<N>(kRate, innovation, squared(kRailSigma_rad_s), bounded);
+    filter.x += kalman_update_of_component<N>(kRate, innovation, squared(kRailSigma_rad_s), bounded);
     if (!keeps_variance) filter.P = bounded;
   }
   filter.P = (0.5 * (filter.P + filter.P.transpose())).eval();

@@ -24,7 +24,7 @@ constexpr double kProbabilityMax = 1.0 - 1e-12;
 constexpr double kLogRatioMax = 50.0;  // avoids overflow of the likelihood ratio of one sample
 
 // Returns the probability of a change between spin and other motion: carried.md (C49).
-double change(double changes_hz, double dt_s) {
+double probability_of_change(double changes_hz, double dt_s) {
   return 1.0 - std::exp(-changes_hz * dt_s);
 }
 
@@ -34,7 +34,7 @@ struct RecordedSpin {
   SpinPrediction<N> predicted;
   SpinFilter<N> filter;
   double probability = 0.0;  // from earlier samples
-  double likelihood_ratio = 1.0, change = 0.0;
+  double likelihood_ratio = 1.0, spin_change_probability = 0.0;
 };
 
 // Smooths one spin: a backward pass over the states (Rauch, Tung, Striebel, AIAA Journal 3, 1965), and the backward
@@ -43,17 +43,17 @@ template <int N>
 void smooth_spin(std::span<const RecordedSpin<N>> run, std::span<SpinRate> out) {
   if (run.empty()) return;
   Eigen::Matrix<double, N, 1> x = run.back().filter.x;
-  Eigen::Matrix<double, N, N> P = run.back().filter.P;
+  Eigen::Matrix<double, N, N> P = run.back().filter.covariance;
   Eigen::Vector2d backward = Eigen::Vector2d::Ones();  // spin, other motion
   for (std::size_t k = run.size() - 1; k-- > 0;) {
     const RecordedSpin<N>& next = run[k + 1];
     const Eigen::Matrix<double, N, N> gain =
-        next.predicted.P.ldlt().solve(next.predicted.F * run[k].filter.P).transpose();
+        next.predicted.predicted_covariance.ldlt().solve(next.predicted.transition_matrix * run[k].filter.covariance).transpose();
     x = (run[k].filter.x + gain * (x - next.predicted.x)).eval();
-    P = (run[k].filter.P + gain * (P - next.predicted.P) * gain.transpose()).eval();
+    P = (run[k].filter.covariance + gain * (P - next.predicted.predicted_covariance) * gain.transpose()).eval();
     out[k].rate_rad_s = x[kRate];
     out[k].variance_rad2_s2 = std::max(0.0, P(kRate, kRate));
-    const double spins = next.likelihood_ratio * backward[0], other = backward[1], c = next.change;
+    const double spins = next.likelihood_ratio * backward[0], other = backward[1], c = next.spin_change_probability;
     backward = Eigen::Vector2d((1.0 - c) * spins + c * other, c * spins + (1.0 - c) * other);
     backward /= backward.sum();
     const double both = run[k].probability * backward[0];
@@ -76,7 +76,7 @@ SpinTracker::SpinTracker(const Params& params) : params_(params) {
 }
 
 // Selects the gyro axis of the spin. Returns whether a spin starts at this sample.
-bool SpinTracker::select_axis(const ImuSample& sample, State& state) const {
+bool SpinTracker::select_spin_axis(const ImuSample& sample, State& state) const {
   const Eigen::Vector3d size = sample.angular_velocity_rad_s.cwiseAbs();
   Eigen::Index largest = 0;
   size.maxCoeff(&largest);
@@ -90,23 +90,23 @@ bool SpinTracker::select_axis(const ImuSample& sample, State& state) const {
 
 // Continues one model of a spin by one sample. `record` receives what smooth_spin() needs.
 template <class Model, class Recorder>
-SpinRate SpinTracker::advance(const Model& model, const ImuSample& sample, std::uint8_t saturated_axes, double dt_s,
+SpinRate SpinTracker::advance_spin_filter(const Model& model, const ImuSample& sample, std::uint8_t saturated_axes, double dt_s,
                               bool first, int axis, Hypotheses<Model::kStates>& hypotheses,
                               const Recorder& record) const {
   const SpinReading reading = model.reading(sample, saturated_axes, axis, dt_s);
   RecordedSpin<Model::kStates> recorded;
-  recorded.change = change(params_.changes_hz, dt_s);
+  recorded.spin_change_probability = probability_of_change(params_.changes_hz, dt_s);
   if (first) {
-    hypotheses.spin = hypotheses.independent = model.start(reading);
+    hypotheses.spin = hypotheses.independent_filter = model.start(reading);
     hypotheses.probability = hypotheses.measured_probability = kStartProbability;
   } else if (dt_s > 0.0) {
     recorded.predicted = model.predict(hypotheses.spin, 1.0, dt_s);
     const double log_ratio =
         model.update(recorded.predicted, reading, 1.0, hypotheses.spin) -
-        model.update(model.predict(hypotheses.independent, 0.0, dt_s), reading, 0.0, hypotheses.independent);
+        model.update(model.predict(hypotheses.independent_filter, 0.0, dt_s), reading, 0.0, hypotheses.independent_filter);
     double ratio =
         std::exp(std::clamp(std::min(1.0, dt_s / params_.memory_s) * log_ratio, -kLogRatioMax, kLogRatioMax));
-    const double c = recorded.change;
+    const double c = recorded.spin_change_probability;
     const double spins = hypotheses.probability * (1.0 - c) + (1.0 - hypotheses.probability) * c;
     hypotheses.probability = std::min(kProbabilityMax, spins * ratio / (spins * ratio + 1.0 - spins));
     // The rate of a saturated spin is free, so that any modulation agrees with some rate. Saturated samples can
@@ -122,18 +122,18 @@ SpinRate SpinTracker::advance(const Model& model, const ImuSample& sample, std::
   recorded.filter = hypotheses.spin;
   recorded.probability = hypotheses.probability;
   record(recorded);
-  return {axis, hypotheses.spin.x[kRate], hypotheses.spin.P(kRate, kRate), hypotheses.probability, reading.saturated};
+  return {axis, hypotheses.spin.x[kRate], hypotheses.spin.covariance(kRate, kRate), hypotheses.probability, reading.saturated};
 }
 
 SpinRate SpinTracker::step(const ImuSample& sample, std::uint8_t saturated_axes, State& state) const {
-  const bool first = select_axis(sample, state);
+  const bool first = select_spin_axis(sample, state);
   const double dt_s = first ? 0.0 : seconds(sample.time_ns - state.time_ns);
   state.time_ns = sample.time_ns;
   if (state.axis < 0) return {};
   const auto ignore = [](const auto&) {};
   return select_spin(
-      advance(Modulation{params_}, sample, saturated_axes, dt_s, first, state.axis, state.modulation, ignore),
-      advance(Centripetal{params_}, sample, saturated_axes, dt_s, first, state.axis, state.centripetal, ignore));
+      advance_spin_filter(Modulation{params_}, sample, saturated_axes, dt_s, first, state.axis, state.modulation, ignore),
+      advance_spin_filter(Centripetal{params_}, sample, saturated_axes, dt_s, first, state.axis, state.centripetal, ignore));
 }
 
 std::vector<SpinRate> SpinTracker::smooth(std::span<const ImuSample> samples,
@@ -150,14 +150,14 @@ std::vector<SpinRate> SpinTracker::smooth(std::span<const ImuSample> samples,
     centripetal_run.clear();
   };
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    const bool first = select_axis(samples[k], state);
+    const bool first = select_spin_axis(samples[k], state);
     const double dt_s = first ? 0.0 : seconds(samples[k].time_ns - state.time_ns);
     state.time_ns = samples[k].time_ns;
     if (state.axis < 0 || first) smooth_run(k);
     if (state.axis < 0) continue;
-    modulation[k] = advance(Modulation{params_}, samples[k], saturated_axes[k], dt_s, first, state.axis,
+    modulation[k] = advance_spin_filter(Modulation{params_}, samples[k], saturated_axes[k], dt_s, first, state.axis,
                             state.modulation, [&](const auto& recorded) { modulation_run.push_back(recorded); });
-    centripetal[k] = advance(Centripetal{params_}, samples[k], saturated_axes[k], dt_s, first, state.axis,
+    centripetal[k] = advance_spin_filter(Centripetal{params_}, samples[k], saturated_axes[k], dt_s, first, state.axis,
                              state.centripetal, [&](const auto& recorded) { centripetal_run.push_back(recorded); });
   }
   smooth_run(samples.size());
@@ -167,10 +167,10 @@ std::vector<SpinRate> SpinTracker::smooth(std::span<const ImuSample> samples,
   return modulation;
 }
 
-RateState SpinTracker::combine(const RateState& rate, const SpinRate& spin, bool further_imus) const {
+AngularRateState SpinTracker::combine_with_spin_rate(const AngularRateState& rate, const SpinRate& spin, bool further_imus) const {
   if (spin.axis < 0 || !spin.saturated || spin.probability < params_.probability_min) return rate;
   if (further_imus && rate.covariance_rad2_s2(spin.axis, spin.axis) < spin.variance_rad2_s2) return rate;
-  RateState spinning = rate;
+  AngularRateState spinning = rate;
   spinning.w_WI_I_rad_s[spin.axis] = spin.rate_rad_s;
   spinning.covariance_rad2_s2.row(spin.axis).setZero();
   spinning.covariance_rad2_s2.col(spin.axis).setZero();

@@ -21,9 +21,9 @@ Status Strapdown::step(const ImuSample& sample, State& state) const {
   Eigen::Quaterniond q_WI;
   if (state.started) {
     double dt_s = 0.0;
-    if (const Status bad = elapsed(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s); !bad.ok()) return bad;
+    if (const Status bad = elapsed_time_since_last(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s); !bad.ok()) return bad;
     q_WI = (state.q_WI * so3::exp(sample.angular_velocity_rad_s * dt_s)).normalized();
-  } else if (const Status bad = level(sample.specific_force_m_s2, q_WI); !bad.ok()) {
+  } else if (const Status bad = inclination_from_force(sample.specific_force_m_s2, q_WI); !bad.ok()) {
     return bad;
   }
   state = {q_WI, sample.time_ns, true};
@@ -31,7 +31,7 @@ Status Strapdown::step(const ImuSample& sample, State& state) const {
 }
 
 /// See attitude.md (A1).
-Status level(const Eigen::Vector3d& specific_force_m_s2, Eigen::Quaterniond& q_WI) {
+Status inclination_from_force(const Eigen::Vector3d& specific_force_m_s2, Eigen::Quaterniond& q_WI) {
   const Eigen::Vector3d& f = specific_force_m_s2;
   if (!f.allFinite()) return {ErrorCode::non_finite, "specific_force_m_s2", f.sum(), kForceMin_m_s2};
   const double length = f.stableNorm();

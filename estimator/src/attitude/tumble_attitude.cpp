@@ -36,7 +36,7 @@ constexpr int kTilt = 0, kBias = 2, kVelocity = 5, kDisplacement = 7, kHeading =
 void update(int index, double innovation, double variance, TumbleAttitude::State& state) {
   const double heading = state.covariance(kHeading, kHeading);
   const Eigen::Matrix<double, TumbleAttitude::State::kStates, 1> correction =
-      component_update(index, innovation, variance, state.covariance);
+      kalman_update_of_component(index, innovation, variance, state.covariance);
   state.q_WI = (so3::exp({correction[kTilt], correction[kTilt + 1], 0.0}) * state.q_WI).normalized();
   state.bias_rad_s += correction.segment<3>(kBias);
   state.v_W_m_s += correction.segment<2>(kVelocity);
@@ -49,17 +49,17 @@ double tilt_variance_rad2(const TumbleAttitude::State& state) {
 }
 
 /// During a coarse alignment, the reported tilt variance is at least the variance at the start of the alignment.
-double reported_tilt_rad2(const TumbleAttitude::State& state) {
+double reported_tilt_variance_rad2(const TumbleAttitude::State& state) {
   const double filtered = tilt_variance_rad2(state);
   return state.alignment.running ? std::max(filtered, state.alignment.tilt_rad2()) : filtered;
 }
 
 void clear_node(TumbleAttitude::State& state) {
-  state.R_WI_s.setZero();
+  state.integrated_rotation_matrix_s.setZero();
   state.force_integral_W_m_s.setZero();
   state.squared_rate_integral_rad2_s = 0.0;
-  state.recovered_variance_rad2.setZero();
-  state.node_s = 0.0;
+  state.recovered_angle_variance_rad2.setZero();
+  state.time_since_node_s = 0.0;
 }
 
 Status check_covariance(const Eigen::Matrix3d& covariance_rad2_s2) {
@@ -69,9 +69,9 @@ Status check_covariance(const Eigen::Matrix3d& covariance_rad2_s2) {
 
 }  // namespace
 
-TumbleAttitude::TumbleAttitude(const Params& p) : params_(p), rest_detector_(p.expert.rest) {
+TumbleAttitude::TumbleAttitude(const Params& p) : params_(p), rest_detector_(p.expert.rest_detector) {
   require_valid_fields(p);
-  require_within("lever_arm_m", p.lever_arm_m.norm(), 0.0, 10.0);
+  require_in_interval("lever_arm_m", p.lever_arm_m.norm(), 0.0, 10.0);
 }
 
 Status TumbleAttitude::step(const ImuSample& sample, const Eigen::Matrix3d& rate_covariance_rad2_s2,
@@ -79,11 +79,11 @@ Status TumbleAttitude::step(const ImuSample& sample, const Eigen::Matrix3d& rate
   if (const Status bad = check_sample(sample); !bad.ok()) return bad;
   if (const Status bad = check_covariance(rate_covariance_rad2_s2); !bad.ok()) return bad;
   if (!state.started) {
-    if (const Status bad = level(sample.specific_force_m_s2, state.q_WI); !bad.ok()) return bad;
+    if (const Status bad = inclination_from_force(sample.specific_force_m_s2, state.q_WI); !bad.ok()) return bad;
     start(state);
   } else {
     double dt_s = 0.0;
-    if (const Status bad = elapsed(sample.time_ns, state.last_time_ns, params_.expert.gap_max_s, dt_s); !bad.ok())
+    if (const Status bad = elapsed_time_since_last(sample.time_ns, state.last_time_ns, params_.expert.gap_max_s, dt_s); !bad.ok())
       return bad;
     if (dt_s > kGapMin_s) {
       bridge_gap(sample, rate_covariance_rad2_s2, dt_s, state);
@@ -92,15 +92,15 @@ Status TumbleAttitude::step(const ImuSample& sample, const Eigen::Matrix3d& rate
     }
     // While readings are averaged, the attitude is extrapolated from the start of the averaging interval.
     if (state.average.readings == 0) {
-      state.q_processed_WI = state.q_WI;
+      state.last_processed_q_WI = state.q_WI;
     } else {
-      state.q_WI = state.q_processed_WI;
+      state.q_WI = state.last_processed_q_WI;
     }
     state.average.add(sample, dt_s);
     state.recovered_covariance_rad2_s2 +=
         dt_s / state.average.length_s * (rate_covariance_rad2_s2 - state.recovered_covariance_rad2_s2);
     if (state.average.full(params_.expert.reading_s, dt_s)) {
-      process_average(state);
+      process_averaged_reading(state);
     } else {
       const Eigen::Vector3d rate = state.average.mean.angular_velocity_rad_s - state.bias_rad_s;
       if (!state.at_rest) state.q_WI = (state.q_WI * so3::exp(state.average.length_s * rate)).normalized();
@@ -114,27 +114,27 @@ Eigen::Matrix3d TumbleAttitude::attitude_covariance_rad2(const State& state) {
   constexpr std::array kAttitude = {kTilt, kTilt + 1, kHeading};
   Eigen::Matrix3d covariance = state.covariance(kAttitude, kAttitude);
   if (state.alignment.running) {  // an alignment must not depend on the filter's corrections
-    covariance.topLeftCorner<2, 2>() = reported_tilt_rad2(state) * Eigen::Matrix2d::Identity();
+    covariance.topLeftCorner<2, 2>() = reported_tilt_variance_rad2(state) * Eigen::Matrix2d::Identity();
     covariance.topRightCorner<2, 1>().setZero();
     covariance.bottomLeftCorner<1, 2>().setZero();
   }
   return covariance;
 }
 
-void TumbleAttitude::process_average(State& state) const {
+void TumbleAttitude::process_averaged_reading(State& state) const {
   const ImuSample reading = state.average.mean;
   const double length_s = state.average.length_s;
   state.average = {};
-  state.q_processed_WI.setIdentity();
-  state.at_rest = rest_detector_.observe(reading, state.rest, state.bias_rad_s) && rotates_within_bias(state);
+  state.last_processed_q_WI.setIdentity();
+  state.at_rest = rest_detector_.detect_stationary(reading, state.stationary_state, state.bias_rad_s) && rotates_within_gyro_bias(state);
   integrate(reading, length_s, state);
-  add_recovered(length_s, state);
-  if (state.node_s >= params_.expert.node_s - 0.5 * length_s) end_node(state);
+  add_recovered_rate_variance(length_s, state);
+  if (state.time_since_node_s >= params_.expert.node_s - 0.5 * length_s) end_node(state);
 }
 
 /// See attitude.md (A16).
-bool TumbleAttitude::rotates_within_bias(const State& state) const {
-  const Eigen::Array3d off_rad_s = (state.rest.mean_rate_rad_s() - state.bias_rad_s).array();
+bool TumbleAttitude::rotates_within_gyro_bias(const State& state) const {
+  const Eigen::Array3d off_rad_s = (state.stationary_state.mean_rate_rad_s() - state.bias_rad_s).array();
   const Eigen::Array3d variance = state.covariance.diagonal().segment<3>(kBias).array() +
                                   squared(params_.expert.at_rest.kRateSigma_rad_sqrts);  // variance of a mean over 1 s
   return (off_rad_s.square() <= squared(params_.expert.at_rest.rate_sigmas) * variance).all();
@@ -156,18 +156,18 @@ void TumbleAttitude::integrate(const ImuSample& sample, double dt_s, State& stat
   const Eigen::Quaterniond q_mid = state.q_WI * half;
   const Eigen::Matrix3d R_mid = q_mid.toRotationMatrix();
   state.q_WI = (q_mid * half).normalized();
-  state.R_WI_s += dt_s * R_mid;
+  state.integrated_rotation_matrix_s += dt_s * R_mid;
   state.force_integral_W_m_s += dt_s * (R_mid * sample.specific_force_m_s2);
   state.squared_rate_integral_rad2_s += dt_s * rate.squaredNorm();
   state.rate_rad_s = rate;
-  state.node_s += dt_s;
+  state.time_since_node_s += dt_s;
 }
 
 /// See attitude.md (A17), (A18).
 void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& rate_covariance_rad2_s2, double gap_s,
                                 State& state) const {
-  if (state.average.readings > 0) process_average(state);
-  state.at_rest = rest_detector_.observe(after, state.rest, state.bias_rad_s) && rotates_within_bias(state);
+  if (state.average.readings > 0) process_averaged_reading(state);
+  state.at_rest = rest_detector_.detect_stationary(after, state.stationary_state, state.bias_rad_s) && rotates_within_gyro_bias(state);
   const Eigen::Vector3d from = state.rate_rad_s;
   Eigen::Vector3d to = after.angular_velocity_rad_s - state.bias_rad_s;
   if (state.at_rest) to.setZero();
@@ -178,31 +178,31 @@ void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& r
   integrate(straight, gap_s, state);
   state.rate_rad_s = to;
   state.recovered_covariance_rad2_s2 = rate_covariance_rad2_s2;
-  add_recovered(gap_s, state);
+  add_recovered_rate_variance(gap_s, state);
   if (!state.at_rest) {
     const AttitudeGapParams& gap = params_.expert.gap;
     const double turn =
         squared(gap_s) / 12.0 * ((to - from).squaredNorm() / 3.0 + squared(gap.rate_walk_rad_s_sqrts) * gap_s);
-    state.recovered_variance_rad2.array() += turn;
+    state.recovered_angle_variance_rad2.array() += turn;
     state.covariance.diagonal().segment<2>(kVelocity).array() += squared(gap.kVelocityWalk_m_s_sqrts) * gap_s;
   }
   predict_node(state);
   // A sphere that gripped before the gap is assumed to roll without slip after the gap.
   if (params_.radius_m > 0.0 && !state.slipping) state.v_W_m_s = velocity_from_rotation(state);
-  // correct_node() changes the tilt variance, so the tilt variance is computed first.
-  const double tilt = reported_tilt_rad2(state);
+  // correct_with_mean_force() changes the tilt variance, so the tilt variance is computed first.
+  const double tilt = reported_tilt_variance_rad2(state);
   state.alignment = {};
-  correct_node(state);
+  correct_with_mean_force(state);
   clear_node(state);
   if (tilt > squared(params_.expert.gap.lost_tilt_rad))
-    state.alignment.begin(body_velocity_variance_m2_s2(state.velocity_power_m2_s2, state), tilt);
+    state.alignment.start_alignment(body_velocity_variance_m2_s2(state.velocity_variance_m2_s2, state), tilt);
 }
 
 void TumbleAttitude::end_node(State& state) const {
   predict_node(state);
-  if (state.alignment.running) state.alignment.add(state.force_integral_W_m_s, state.node_s);
+  if (state.alignment.running) state.alignment.add(state.force_integral_W_m_s, state.time_since_node_s);
   const Eigen::Quaterniond before = state.q_WI;
-  correct_node(state);
+  correct_with_mean_force(state);
   if (state.alignment.running) align(state.q_WI * before.conjugate(), state);
   clear_node(state);
 }
@@ -217,13 +217,13 @@ double TumbleAttitude::body_velocity_variance_m2_s2(double power_m2_s2, const St
 /// See attitude.md (A19), (A20).
 void TumbleAttitude::align(const Eigen::Quaterniond& corrected, State& state) const {
   CoarseAlignment& alignment = state.alignment;
-  alignment.force_W_m_s = corrected * alignment.force_W_m_s;
+  alignment.integrated_force_W_m_s = corrected * alignment.integrated_force_W_m_s;
   // The velocity variance is assumed, because a wrong tilt after a data gap falsifies the filtered velocity.
-  const double velocity = body_velocity_variance_m2_s2(alignment.velocity_m2_s2, state);
+  const double velocity = body_velocity_variance_m2_s2(alignment.start_velocity_variance_m2_s2, state);
   const double variance = alignment.variance_rad2(velocity, params_.gravity_m_s2);
   if (variance > squared(params_.expert.gap.kAlignedTilt_rad)) {
     // When the body comes to rest, the coarse alignment restarts and uses only later data.
-    if (state.at_rest && alignment.velocity_m2_s2 > velocity) alignment.begin(velocity, alignment.tilt_rad2());
+    if (state.at_rest && alignment.start_velocity_variance_m2_s2 > velocity) alignment.start_alignment(velocity, alignment.tilt_rad2());
     return;
   }
   const double filtered = tilt_variance_rad2(state);
@@ -247,29 +247,29 @@ void TumbleAttitude::restart(const Eigen::Quaterniond& levelling, double tilt_ra
   state.covariance(kHeading, kHeading) = heading;
   state.v_W_m_s = state.at_rest ? Eigen::Vector2d::Zero().eval() : velocity_from_rotation(state);
   state.displacement_W_m.setZero();
-  state.velocity_power_m2_s2 = velocity_m2_s2;
-  state.displacement_power_m2 = 0.0;
+  state.velocity_variance_m2_s2 = velocity_m2_s2;
+  state.displacement_variance_m2 = 0.0;
 }
 
 /// Adds the variance of recovered (formerly clipped) rates to the variance of the attitude: attitude.md (A10).
-void TumbleAttitude::add_recovered(double dt_s, State& state) const {
+void TumbleAttitude::add_recovered_rate_variance(double dt_s, State& state) const {
   if (state.at_rest || state.recovered_covariance_rad2_s2.isZero(0.0)) {
-    state.recovered_sigma_sum_rad.setZero();
+    state.recovered_angle_sigma_sum_rad.setZero();
   } else {
     const Eigen::Matrix3d R = state.q_WI.toRotationMatrix();
     const Eigen::Vector3d variance = (R * state.recovered_covariance_rad2_s2 * R.transpose()).diagonal().cwiseMax(0.0);
     const Eigen::Vector2d step_rad =
         dt_s * Eigen::Vector2d(std::sqrt(variance.head<2>().mean()), std::sqrt(variance.z()));
-    state.recovered_variance_rad2 += step_rad.cwiseProduct(2.0 * state.recovered_sigma_sum_rad + step_rad);
-    state.recovered_sigma_sum_rad =
-        std::exp(-dt_s / params_.expert.recovered_tau_s) * state.recovered_sigma_sum_rad + step_rad;
+    state.recovered_angle_variance_rad2 += step_rad.cwiseProduct(2.0 * state.recovered_angle_sigma_sum_rad + step_rad);
+    state.recovered_angle_sigma_sum_rad =
+        std::exp(-dt_s / params_.expert.recovered_tau_s) * state.recovered_angle_sigma_sum_rad + step_rad;
   }
   state.recovered_covariance_rad2_s2.setZero();
 }
 
 /// Predicts one filter step: attitude.md (A6), (A7), (A8), (A9).
 void TumbleAttitude::predict_node(State& state) const {
-  const double h = state.node_s;
+  const double h = state.time_since_node_s;
   const double keep = std::exp(-h / params_.kDisplacementTau_s);
   const Eigen::Vector2d gained = state.force_integral_W_m_s.head<2>();  // gravity has no horizontal component
   state.displacement_W_m = keep * state.displacement_W_m + h * (state.v_W_m_s + 0.5 * gained);
@@ -277,8 +277,8 @@ void TumbleAttitude::predict_node(State& state) const {
 
   State::Covariance F = State::Covariance::Identity();
   if (!state.at_rest) {
-    F.block<2, 3>(kTilt, kBias) = -state.R_WI_s.topRows<2>();
-    F.block<1, 3>(kHeading, kBias) = -state.R_WI_s.row(2);
+    F.block<2, 3>(kTilt, kBias) = -state.integrated_rotation_matrix_s.topRows<2>();
+    F.block<1, 3>(kHeading, kBias) = -state.integrated_rotation_matrix_s.row(2);
   }
   // The derivative of the velocity with respect to the tilt phi is the horizontal part of phi x f.
   F(kVelocity, kTilt + 1) = state.force_integral_W_m_s.z();
@@ -289,17 +289,17 @@ void TumbleAttitude::predict_node(State& state) const {
 
   const double turn = squared(params_.gyro_noise_rad_sqrts) * h +
                       squared(params_.rate_error_sqrts) * state.squared_rate_integral_rad2_s;
-  state.covariance.diagonal().segment<2>(kTilt).array() += turn + state.recovered_variance_rad2[0];
-  if (state.alignment.running) state.alignment.tilt_variance_growth_rad2 += turn + state.recovered_variance_rad2[0];
-  state.covariance(kHeading, kHeading) += state.at_rest ? 0.0 : turn + state.recovered_variance_rad2[1];
+  state.covariance.diagonal().segment<2>(kTilt).array() += turn + state.recovered_angle_variance_rad2[0];
+  if (state.alignment.running) state.alignment.tilt_variance_growth_rad2 += turn + state.recovered_angle_variance_rad2[0];
+  state.covariance(kHeading, kHeading) += state.at_rest ? 0.0 : turn + state.recovered_angle_variance_rad2[1];
   state.covariance.diagonal().segment<3>(kBias).array() += squared(params_.expert.kBiasWalk_rad_s_sqrts) * h;
   state.covariance.diagonal().segment<2>(kVelocity).array() += squared(kAccelerationNoise_m_s_sqrts) * h;
 }
 
 bool TumbleAttitude::detect_slip(const Eigen::Vector2d& misfit_m_s, State& state) const {
   const double misfit = misfit_m_s.norm();
-  state.slip_duration_s = state.slipping ? state.slip_duration_s + state.node_s : 0.0;
-  state.grip_duration_s = misfit < 0.5 * kSlipVelocity_m_s ? state.grip_duration_s + state.node_s : 0.0;
+  state.slip_duration_s = state.slipping ? state.slip_duration_s + state.time_since_node_s : 0.0;
+  state.grip_duration_s = misfit < 0.5 * kSlipVelocity_m_s ? state.grip_duration_s + state.time_since_node_s : 0.0;
   if (state.slipping) {
     state.slipping = !state.at_rest && state.grip_duration_s <= kSlipQuiet_s;
     if (state.slip_duration_s > kSlipTimeout_s) {
@@ -314,26 +314,26 @@ bool TumbleAttitude::detect_slip(const Eigen::Vector2d& misfit_m_s, State& state
 }
 
 /// See attitude.md (A13).
-double TumbleAttitude::motion_variance(const Eigen::Vector2d& misfit, int index, double sigma_sqrts, double power,
+double TumbleAttitude::body_motion_variance(const Eigen::Vector2d& misfit, int index, double sigma_sqrts, double power,
                                        const State& state) const {
   const double seen = 0.5 * (misfit.squaredNorm() - state.covariance.block<2, 2>(index, index).trace());
-  const double decayed_power = std::exp(-state.node_s / params_.motion_tau_s) * power;
+  const double decayed_power = std::exp(-state.time_since_node_s / params_.motion_tau_s) * power;
   return std::max({squared(sigma_sqrts) / params_.motion_tau_s, seen, decayed_power});
 }
 
 /// See attitude.md (A12), (A14).
-void TumbleAttitude::correct_body(const Eigen::Vector2d& turned_m_s, State& state) const {
-  const double memories = params_.motion_tau_s / state.node_s;
+void TumbleAttitude::correct_body_motion(const Eigen::Vector2d& turned_m_s, State& state) const {
+  const double memories = params_.motion_tau_s / state.time_since_node_s;
   if (!state.at_rest) {
     const Eigen::Vector2d misfit = turned_m_s - state.v_W_m_s;
-    double& power = state.velocity_power_m2_s2;
-    power = motion_variance(misfit, kVelocity, params_.velocity_m_sqrts, power, state);
+    double& power = state.velocity_variance_m2_s2;
+    power = body_motion_variance(misfit, kVelocity, params_.velocity_m_sqrts, power, state);
     for (int axis = 0; axis < 2; ++axis) {
       update(kVelocity + axis, turned_m_s[axis] - state.v_W_m_s[axis], power * memories, state);
     }
   }
-  double& power = state.displacement_power_m2;
-  power = motion_variance(-state.displacement_W_m, kDisplacement, params_.displacement_m_sqrts, power, state);
+  double& power = state.displacement_variance_m2;
+  power = body_motion_variance(-state.displacement_W_m, kDisplacement, params_.displacement_m_sqrts, power, state);
   for (int axis = 0; axis < 2; ++axis) {
     update(kDisplacement + axis, -state.displacement_W_m[axis], power * memories, state);
   }
@@ -347,8 +347,8 @@ Eigen::Vector2d TumbleAttitude::velocity_from_rotation(const State& state) const
 }
 
 /// See attitude.md (A11), (A12).
-void TumbleAttitude::correct_node(State& state) const {
-  const double h = state.node_s;
+void TumbleAttitude::correct_with_mean_force(State& state) const {
+  const double h = state.time_since_node_s;
   const Eigen::Vector2d turned = velocity_from_rotation(state);
   const bool rolls = params_.radius_m > 0.0;
   if (state.at_rest) {
@@ -361,9 +361,9 @@ void TumbleAttitude::correct_node(State& state) const {
       update(kVelocity + axis, turned[axis] - state.v_W_m_s[axis], squared(kRollingVelocitySigma_m_s), state);
     }
   }
-  if (!rolls) correct_body(turned, state);
+  if (!rolls) correct_body_motion(turned, state);
   if (state.at_rest) {
-    const Eigen::Vector3d mean_rate_rad_s = state.rest.mean_rate_rad_s();
+    const Eigen::Vector3d mean_rate_rad_s = state.stationary_state.mean_rate_rad_s();
     for (int axis = 0; axis < 3; ++axis) {
       update(kBias + axis, mean_rate_rad_s[axis] - state.bias_rad_s[axis],
              squared(params_.expert.at_rest.kRateSigma_rad_sqrts) / h, state);

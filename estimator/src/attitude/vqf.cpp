@@ -36,7 +36,7 @@ constexpr double kForgottenSigma_rad_s = 1.7453292519943295e-3;
 
 /// Returns the measurement variance for which a scalar bias filter with random walk `growth` per step converges to
 /// sigma^2.
-double steady_noise(double sigma, double growth) {
+double steady_state_noise(double sigma, double growth) {
   const double variance = sigma * sigma;
   return variance * variance / growth + variance;
 }
@@ -51,21 +51,21 @@ Status Vqf::step(const ImuSample& sample, State& state) const {
   if (const Status bad = check_sample(sample); !bad.ok()) return bad;
   double dt_s = 0.0;
   if (state.started) {
-    if (const Status bad = elapsed(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s); !bad.ok()) return bad;
+    if (const Status bad = elapsed_time_since_last(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s); !bad.ok()) return bad;
   } else {
-    if (const Status bad = level(sample.specific_force_m_s2, state.q_WN); !bad.ok()) return bad;
+    if (const Status bad = inclination_from_force(sample.specific_force_m_s2, state.inclination_correction); !bad.ok()) return bad;
     state.bias_covariance_rad2_s2.diagonal().setConstant(params_.bias_sigma_start_rad_s *
                                                          params_.bias_sigma_start_rad_s);
   }
   if (dt_s > 0.0) {
     detect_rest(sample, dt_s, state);
-    state.q_NI = (state.q_NI * so3::exp((sample.angular_velocity_rad_s - state.bias_rad_s) * dt_s)).normalized();
+    state.attitude_without_correction = (state.attitude_without_correction * so3::exp((sample.angular_velocity_rad_s - state.bias_rad_s) * dt_s)).normalized();
     if (sample.specific_force_m_s2.norm() >= kNoDirection_m_s2) {
       const Eigen::Vector3d up_W = level_inertial_frame(sample.specific_force_m_s2, dt_s, state);
       if (params_.rest_bias_estimation || params_.motion_bias_estimation) estimate_bias(up_W, dt_s, state);
     }
   }
-  state.q_WI = (state.q_WN * state.q_NI).normalized();
+  state.q_WI = (state.inclination_correction * state.attitude_without_correction).normalized();
   state.last_time_ns = sample.time_ns;
   state.started = true;
   return {};
@@ -85,18 +85,18 @@ void Vqf::detect_rest(const ImuSample& sample, double dt_s, State& state) const 
 /// Levels frame W, and returns the unit vector along the specific force (upwards) in the frame before levelling.
 Eigen::Vector3d Vqf::level_inertial_frame(const Eigen::Vector3d& f_I_m_s2, double dt_s, State& state) const {
   // See attitude.md (A3).
-  state.f_N_m_s2.advance(state.q_NI * f_I_m_s2, params_.tau_s, dt_s, low_pass_prewarp(params_.tau_s, dt_s));
-  const double length = state.f_N_m_s2.value.norm();
+  state.filtered_specific_force_m_s2.advance(state.attitude_without_correction * f_I_m_s2, params_.tau_s, dt_s, low_pass_prewarp(params_.tau_s, dt_s));
+  const double length = state.filtered_specific_force_m_s2.value.norm();
   if (length < kNoDirection_m_s2) return Eigen::Vector3d::UnitZ();
-  const Eigen::Vector3d up_W = state.q_WN * (state.f_N_m_s2.value / length);
+  const Eigen::Vector3d up_W = state.inclination_correction * (state.filtered_specific_force_m_s2.value / length);
   // See attitude.md (A2).
-  state.q_WN = (levelling(up_W) * state.q_WN).normalized();
+  state.inclination_correction = (levelling(up_W) * state.inclination_correction).normalized();
   return up_W;
 }
 
 void Vqf::estimate_bias(const Eigen::Vector3d& up_W, double dt_s, State& state) const {
   const double warp = low_pass_prewarp(params_.tau_s, dt_s);
-  Eigen::Matrix3d R = (state.q_WN * state.q_NI).toRotationMatrix();
+  Eigen::Matrix3d R = (state.inclination_correction * state.attitude_without_correction).toRotationMatrix();
   const Eigen::Vector3d& b = state.bias_rad_s;
   state.bias_W_rad_s.advance((R * b).head<2>(), params_.tau_s, dt_s, warp);
   state.R_WI.advance(Eigen::Map<const Eigen::Matrix<double, 9, 1>>(R.data()), params_.tau_s, dt_s, warp);
@@ -112,13 +112,13 @@ void Vqf::estimate_bias(const Eigen::Vector3d& up_W, double dt_s, State& state) 
   Eigen::Vector3d innovation, noise;
   if (state.at_rest && params_.rest_bias_estimation) {
     innovation = state.rest_rate_rad_s.value - b;
-    noise.setConstant(steady_noise(kBiasSigmaRest_rad_s, growth));
+    noise.setConstant(steady_state_noise(kBiasSigmaRest_rad_s, growth));
   } else if (params_.motion_bias_estimation) {
     H = Eigen::Map<const Eigen::Matrix3d>(state.R_WI.value.data());
     // The low-passed bias estimate plus the rate at which levelling corrects the vertical measures the gyro bias.
     const Eigen::Vector2d low_passed = state.bias_W_rad_s.value;
     innovation = Eigen::Vector3d(low_passed.x() - up_W.y() / dt_s, low_passed.y() + up_W.x() / dt_s, 0.0) - H * b;
-    const double motion = steady_noise(kBiasSigmaMotion_rad_s, growth);
+    const double motion = steady_state_noise(kBiasSigmaMotion_rad_s, growth);
     noise = {motion, motion, motion / kVerticalForgetting};
   } else {
     return;

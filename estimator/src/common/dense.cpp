@@ -7,25 +7,25 @@
 
 namespace tumble::dense {
 
-Cholesky::Cholesky(const Symmetric& A) : L_(A) {
-  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(L_);
+Cholesky::Cholesky(const Symmetric& A) : cholesky_factor_(A) {
+  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(cholesky_factor_);
   ok_ = factor.info() == Eigen::Success;
 }
 
 double Cholesky::half_log_determinant() const {
   double sum = 0.0;
-  for (Eigen::Index i = 0; i < L_.rows(); ++i) sum += std::log(L_(i, i));
+  for (Eigen::Index i = 0; i < cholesky_factor_.rows(); ++i) sum += std::log(cholesky_factor_(i, i));
   return sum;
 }
 
 void Cholesky::solve(Eigen::Ref<Eigen::MatrixXd> B) const {
-  L_.triangularView<Eigen::Lower>().solveInPlace(B);
-  L_.adjoint().triangularView<Eigen::Upper>().solveInPlace(B);
+  cholesky_factor_.triangularView<Eigen::Lower>().solveInPlace(B);
+  cholesky_factor_.adjoint().triangularView<Eigen::Upper>().solveInPlace(B);
 }
 
 void Cholesky::solve_vector(Eigen::Ref<Eigen::VectorXd> b) const {
-  L_.triangularView<Eigen::Lower>().solveInPlace(b);
-  L_.adjoint().triangularView<Eigen::Upper>().solveInPlace(b);
+  cholesky_factor_.triangularView<Eigen::Lower>().solveInPlace(b);
+  cholesky_factor_.adjoint().triangularView<Eigen::Upper>().solveInPlace(b);
 }
 
 void solve_semidefinite(const Symmetric& A, Eigen::Ref<Eigen::MatrixXd> B) {

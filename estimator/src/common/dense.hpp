@@ -28,7 +28,7 @@ class Cholesky {
   }
 
  private:
-  Eigen::MatrixXd L_;
+  Eigen::MatrixXd cholesky_factor_;
   bool ok_ = false;
 };
 

@@ -36,28 +36,28 @@ constexpr double kUnknown = std::numeric_limits<double>::infinity();
 struct Triad {
   Vector3d ImuSample::*reading;
   std::uint8_t clip_flags;
-  double range, repeats;
+  double range, min_repeats;
 
   const Vector3d& of(const ImuSample& sample) const { return sample.*reading; }
-  double largest(const ImuSample& sample) const { return of(sample).cwiseAbs().maxCoeff(); }
+  double largest_component(const ImuSample& sample) const { return of(sample).cwiseAbs().maxCoeff(); }
   bool beyond_range(const ImuSample& sample) const {
-    return range > 0.0 && largest(sample) > OutlierFilter::kStatedRangesMax * range;
+    return range > 0.0 && largest_component(sample) > OutlierFilter::kMaxReadingToRangeRatio * range;
   }
   bool may_clip(const ImuSample& from, const ImuSample& to) const {
     if (((from.device_clip_flags | to.device_clip_flags) & clip_flags) != 0) return true;
     for (int axis = 0; axis < 3; ++axis) {
       const double a = of(from)[axis], b = of(to)[axis], size = std::max(std::abs(a), std::abs(b));
-      if ((range > 0.0 && size >= kAtRange * range) || (a == b && size >= repeats)) return true;
+      if ((range > 0.0 && size >= kAtRange * range) || (a == b && size >= min_repeats)) return true;
     }
     return false;
   }
 };
 
-Triad gyro_of(const OutlierFilter::Device& device) {
+Triad gyro_of(const OutlierFilter::ImuRanges& device) {
   return {&ImuSample::angular_velocity_rad_s, kClipGyro, device.gyro_range_rad_s, kRepeats_rad_s};
 }
 
-Triad accel_of(const OutlierFilter::Device& device) {
+Triad accel_of(const OutlierFilter::ImuRanges& device) {
   return {&ImuSample::specific_force_m_s2, kClipAccel, device.accel_range_m_s2, kRepeats_m_s2};
 }
 
@@ -67,7 +67,7 @@ double step_s(const ImuSample& from, const ImuSample& to) {
 }
 
 /// last accepted samples and samples under test, oldest first
-struct Sequence {
+struct RecentTriadReadings {
   std::array<const ImuSample*, 3 + OutlierFilter::kDelayedMax> samples{};
   std::size_t count = 0;
 
@@ -75,23 +75,23 @@ struct Sequence {
   const ImuSample& operator[](std::size_t k) const { return *samples[k]; }
 };
 
-Sequence recent_sequence(const OutlierFilter::State& state) {
-  Sequence out;
+RecentTriadReadings recent_triad_readings(const OutlierFilter::State& state) {
+  RecentTriadReadings out;
   if (state.count >= 2 && step_s(state.recent_inliers[0], state.recent_inliers[1]) <= kNear_s)
     out.add(state.recent_inliers[0]);
   out.add(state.recent_inliers[1]);
   return out;
 }
 
-Sequence sequence_until(const ImuSample& last, std::span<const ImuSample> delayed, const OutlierFilter::State& state) {
-  Sequence out = recent_sequence(state);
+RecentTriadReadings sequence_until(const ImuSample& last, std::span<const ImuSample> delayed, const OutlierFilter::State& state) {
+  RecentTriadReadings out = recent_triad_readings(state);
   for (const ImuSample& sample : delayed) out.add(sample);
   out.add(last);
   return out;
 }
 
 /// See outliers.md (O3). Returns kUnknown if saturation may hide a change of the reading.
-double largest_step(const Sequence& sequence, const Triad& triad) {
+double largest_step(const RecentTriadReadings& sequence, const Triad& triad) {
   double out = 0.0;
   for (std::size_t k = 1; k < sequence.count; ++k) {
     if (triad.may_clip(sequence[k - 1], sequence[k])) return kUnknown;
@@ -101,7 +101,7 @@ double largest_step(const Sequence& sequence, const Triad& triad) {
 }
 
 /// See outliers.md (O4).
-double largest_bend(const Sequence& sequence, const Triad& triad) {
+double largest_second_difference(const RecentTriadReadings& sequence, const Triad& triad) {
   double out = 0.0;
   for (std::size_t k = 1; k < sequence.count; ++k) {
     if (triad.may_clip(sequence[k - 1], sequence[k])) return kUnknown;
@@ -128,28 +128,28 @@ double distance(const ImuSample& sample, const OutlierFilter::State& state, cons
   const ImuSample &first = state.recent_inliers[0], &last = state.recent_inliers[1];
   const Vector3d step = triad.of(sample) - triad.of(last);
   const double apart = step.cwiseAbs().maxCoeff();
-  if (recent_sequence(state).count < 2) return apart;
+  if (recent_triad_readings(state).count < 2) return apart;
   const Vector3d slope = (triad.of(last) - triad.of(first)) / step_s(first, last);
   return std::min(apart, (step - step_s(last, sample) * slope).cwiseAbs().maxCoeff());
 }
 
-double gyro_threshold(const OutlierFilter::Device& device, const Sequence& sequence, const ImuSample& judged,
+double gyro_threshold(const OutlierFilter::ImuRanges& device, const RecentTriadReadings& sequence, const ImuSample& judged,
                       double step) {
   if (gyro_of(device).beyond_range(judged)) return kRateMin_rad_s;
   const double caused = kAccelerationPerForce_rad_m * step * largest_step(sequence, accel_of(device));
   return std::clamp(caused, kRateMin_rad_s, kRateJumpMax_rad_s);
 }
 
-double accel_threshold(const OutlierFilter::Device& device, const Sequence& sequence, const ImuSample& judged,
+double accel_threshold(const OutlierFilter::ImuRanges& device, const RecentTriadReadings& sequence, const ImuSample& judged,
                        double step) {
   if (accel_of(device).beyond_range(judged)) return kForceMin_m_s2;
-  const double caused = kLever_m / step * largest_bend(sequence, gyro_of(device));
+  const double caused = kLever_m / step * largest_second_difference(sequence, gyro_of(device));
   return std::clamp(caused, kForceMin_m_s2, std::max(kForceMin_m_s2, kVelocityJumpMax_m_s / step));
 }
 
 }  // namespace
 
-void OutlierFilter::pass(const ImuSample& sample, State& state) {
+void OutlierFilter::mark_accepted(const ImuSample& sample, State& state) {
   state.recent_inliers[0] = state.recent_inliers[1];
   state.recent_inliers[1] = sample;
   state.count = std::min(state.count + 1, kFirstMax + 1);
@@ -176,39 +176,39 @@ std::span<const ImuSample> OutlierFilter::filter_sample(const ImuSample& next, S
   const Verdict verdict = judge(next, state);
   if (verdict == Verdict::rejected) finish(state);
   if (verdict != Verdict::confirmed) return {};
-  return {state.delayed.data(), std::exchange(state.delayed_count, 0)};
+  return {state.delayed_sample.data(), std::exchange(state.delayed_count, 0)};
 }
 
 bool OutlierFilter::first_is_outlier(const ImuSample& next, const State& state) const {
   return state.count >= 1 && state.count <= kFirstMax && state.delayed_count >= state.count &&
-         jumps(state.delayed.front(), {}, state) && judge(next, state) != Verdict::rejected;
+         jumps(state.delayed_sample.front(), {}, state) && judge(next, state) != Verdict::rejected;
 }
 
 bool OutlierFilter::is_implausible(const ImuSample& sample) const {
-  return gyro_of(device_).largest(sample) > kRateMax_rad_s || accel_of(device_).largest(sample) > kForceMax_m_s2;
+  return gyro_of(imu_ranges_).largest_component(sample) > kRateMax_rad_s || accel_of(imu_ranges_).largest_component(sample) > kForceMax_m_s2;
 }
 
-bool OutlierFilter::must_delay(const ImuSample& sample, State& state) const {
+bool OutlierFilter::must_delay_for_check(const ImuSample& sample, State& state) const {
   if (is_implausible(sample)) {
     ++state.rejected;
     return true;
   }
-  if (!is_suspicious(sample, state)) return false;
-  state.delayed[state.delayed_count++] = sample;
+  if (!is_outlier_candidate(sample, state)) return false;
+  state.delayed_sample[state.delayed_count++] = sample;
   return true;
 }
 
 /// Returns the sample period; infinity if no nominal period is stated.
 double OutlierFilter::period_s(const State& state) const {
-  if (!(device_.period_s > 0.0)) return kUnknown;
-  if (state.count < 2) return device_.period_s;
-  return std::max(device_.period_s, step_s(state.recent_inliers[0], state.recent_inliers[1]));
+  if (!(imu_ranges_.period_s > 0.0)) return kUnknown;
+  if (state.count < 2) return imu_ranges_.period_s;
+  return std::max(imu_ranges_.period_s, step_s(state.recent_inliers[0], state.recent_inliers[1]));
 }
 
-bool OutlierFilter::is_suspicious(const ImuSample& sample, const State& state) const {
+bool OutlierFilter::is_outlier_candidate(const ImuSample& sample, const State& state) const {
   if (state.count == 0) return false;
   const double after_s = step_s(state.recent_inliers[1], sample);
-  if (after_s > device_.gap_max_s) return false;
+  if (after_s > imu_ranges_.gap_max_s) return false;
   return after_s > kStampStepMax_periods * period_s(state) || jumps(sample, state.delayed_samples(), state);
 }
 
@@ -216,24 +216,24 @@ bool OutlierFilter::is_suspicious(const ImuSample& sample, const State& state) c
 bool OutlierFilter::jumps(const ImuSample& sample, std::span<const ImuSample> delayed, const State& state) const {
   if (step_s(state.recent_inliers[1], sample) > kNear_s) return false;
   const ImuSample& before = delayed.empty() ? state.recent_inliers[1] : delayed.back();
-  const double step = std::max(step_s(before, sample), device_.period_s);
-  const Sequence sequence = sequence_until(sample, delayed, state);
-  return distance(sample, state, gyro_of(device_)) > gyro_threshold(device_, sequence, sample, step) ||
-         distance(sample, state, accel_of(device_)) > accel_threshold(device_, sequence, sample, step);
+  const double step = std::max(step_s(before, sample), imu_ranges_.period_s);
+  const RecentTriadReadings sequence = sequence_until(sample, delayed, state);
+  return distance(sample, state, gyro_of(imu_ranges_)) > gyro_threshold(imu_ranges_, sequence, sample, step) ||
+         distance(sample, state, accel_of(imu_ranges_)) > accel_threshold(imu_ranges_, sequence, sample, step);
 }
 
 /// See outliers.md (O6).
 bool OutlierFilter::is_outlier(std::size_t index, const ImuSample& after, const State& state) const {
-  const ImuSample &before = state.recent_inliers[1], &delayed = state.delayed[index];
+  const ImuSample &before = state.recent_inliers[1], &delayed = state.delayed_sample[index];
   if (state.count == 0 || step_s(before, delayed) > kNear_s || step_s(delayed, after) > kNear_s) return false;
-  const double step = std::max(step_s(index == 0 ? before : state.delayed[index - 1], delayed), device_.period_s);
-  const Sequence sequence = sequence_until(after, state.delayed_samples(), state);
+  const double step = std::max(step_s(index == 0 ? before : state.delayed_sample[index - 1], delayed), imu_ranges_.period_s);
+  const RecentTriadReadings sequence = sequence_until(after, state.delayed_samples(), state);
   const auto stands_out = [&](const Triad& triad, double threshold) {
     const double by = distance_from_neighbours(triad.of(before), triad.of(delayed), triad.of(after));
     return by > threshold && by > kOutlierRatio * distance(after, state, triad);
   };
-  return stands_out(gyro_of(device_), gyro_threshold(device_, sequence, delayed, step)) ||
-         stands_out(accel_of(device_), accel_threshold(device_, sequence, delayed, step));
+  return stands_out(gyro_of(imu_ranges_), gyro_threshold(imu_ranges_, sequence, delayed, step)) ||
+         stands_out(accel_of(imu_ranges_), accel_threshold(imu_ranges_, sequence, delayed, step));
 }
 
 std::vector<bool> find_inliers(const OutlierFilter& filter, std::span<const ImuSample> samples) {
@@ -246,13 +246,13 @@ std::vector<bool> find_inliers(const OutlierFilter& filter, std::span<const ImuS
       state.count = 0;
     }
     for (const ImuSample& confirmed : filter.filter_sample(samples[k], state)) {
-      OutlierFilter::pass(confirmed, state);
+      OutlierFilter::mark_accepted(confirmed, state);
       out[delayed.front()] = true;
       delayed.erase(delayed.begin());
     }
     if (state.delayed_count == 0) delayed.clear();
-    if (!filter.must_delay(samples[k], state)) {
-      OutlierFilter::pass(samples[k], state);
+    if (!filter.must_delay_for_check(samples[k], state)) {
+      OutlierFilter::mark_accepted(samples[k], state);
       out[k] = true;
     } else if (state.delayed_count > delayed.size()) {
       delayed.push_back(k);

@@ -4,6 +4,6 @@
 namespace tumble::detail {
 
 template <>
-const char CompiledHere::linked = 0;
+const char CompiledHere::link_time_check = 0;
 
 }  // namespace tumble::detail

@@ -23,57 +23,57 @@ constexpr double kSampleNumberSigmaMax = 0.1;  // maximum uncertainty of the sam
 constexpr double kPeriodMax_ns = 1e11;
 constexpr TimeNs kLast_ns = TimeNs{1} << 62;  // larger stamps remain uncorrected, to avoid overflow
 
-double after_ns(TimeNs later_ns, TimeNs earlier_ns) {
+double difference_ns(TimeNs later_ns, TimeNs earlier_ns) {
   return static_cast<double>(static_cast<std::uint64_t>(later_ns) - static_cast<std::uint64_t>(earlier_ns));
 }
 
-struct Line {
+struct FittedLine {
   double period_ns = 0.0, last_ns = 0.0;
-  double weighted_number_sum = 0.0,
-         weighted_number_squared_sum = 0.0;  ///< sums over the sample numbers, counted from the last stamp
+  double weighted_sample_index_sum = 0.0,
+         weighted_squared_sample_index_sum = 0.0;  ///< sums over the sample numbers, counted from the last stamp
   double mean_square_error_ns2 = 0.0;        ///< variance of the stamps about the line
 };
 
-using Offsets = std::array<double, SampleClock::kFirstFitStamps>;  // times relative to the first stamp [ns]
-using Numbers = std::array<double, SampleClock::kFirstFitStamps>;
+using StateOffsets = std::array<double, SampleClock::kFirstLineFitStampCount>;  // times relative to the first stamp [ns]
+using Numbers = std::array<double, SampleClock::kFirstLineFitStampCount>;
 
-Line fit(const Offsets& x_ns, const Numbers& n) {
-  constexpr auto kCount = static_cast<double>(SampleClock::kFirstFitStamps);
-  Line line;
+FittedLine fit(const StateOffsets& x_ns, const Numbers& n) {
+  constexpr auto kCount = static_cast<double>(SampleClock::kFirstLineFitStampCount);
+  FittedLine line;
   double sum_x = 0.0, sum_nx = 0.0;
-  for (std::size_t k = 0; k < SampleClock::kFirstFitStamps; ++k) {
+  for (std::size_t k = 0; k < SampleClock::kFirstLineFitStampCount; ++k) {
     const double from_last = n[k] - n.back();
-    line.weighted_number_sum += from_last;
-    line.weighted_number_squared_sum += from_last * from_last;
+    line.weighted_sample_index_sum += from_last;
+    line.weighted_squared_sample_index_sum += from_last * from_last;
     sum_x += x_ns[k];
     sum_nx += from_last * x_ns[k];
   }
   const double determinant =
-      kCount * line.weighted_number_squared_sum - line.weighted_number_sum * line.weighted_number_sum;
-  line.last_ns = (line.weighted_number_squared_sum * sum_x - line.weighted_number_sum * sum_nx) / determinant;
-  line.period_ns = (kCount * sum_nx - line.weighted_number_sum * sum_x) / determinant;
-  for (std::size_t k = 0; k < SampleClock::kFirstFitStamps; ++k) {
+      kCount * line.weighted_squared_sample_index_sum - line.weighted_sample_index_sum * line.weighted_sample_index_sum;
+  line.last_ns = (line.weighted_squared_sample_index_sum * sum_x - line.weighted_sample_index_sum * sum_nx) / determinant;
+  line.period_ns = (kCount * sum_nx - line.weighted_sample_index_sum * sum_x) / determinant;
+  for (std::size_t k = 0; k < SampleClock::kFirstLineFitStampCount; ++k) {
     const double residual = x_ns[k] - line.last_ns - (n[k] - n.back()) * line.period_ns;
     line.mean_square_error_ns2 += residual * residual / (kCount - 2.0);
   }
   return line;
 }
 
-double median_step(const Offsets& x_ns) {
-  std::array<double, SampleClock::kFirstFitStamps - 1> steps{};
-  for (std::size_t k = 0; k + 1 < SampleClock::kFirstFitStamps; ++k) steps[k] = x_ns[k + 1] - x_ns[k];
+double median_step(const StateOffsets& x_ns) {
+  std::array<double, SampleClock::kFirstLineFitStampCount - 1> steps{};
+  for (std::size_t k = 0; k + 1 < SampleClock::kFirstLineFitStampCount; ++k) steps[k] = x_ns[k + 1] - x_ns[k];
   std::nth_element(steps.begin(), steps.begin() + steps.size() / 2, steps.end());
   return steps[steps.size() / 2];
 }
 
-Numbers index_from_steps(const Offsets& x_ns, double period_ns) {
+Numbers sample_index_from_steps(const StateOffsets& x_ns, double period_ns) {
   Numbers n{};
   for (std::size_t k = 1; k < n.size(); ++k)
     n[k] = n[k - 1] + std::max(1.0, std::round((x_ns[k] - x_ns[k - 1]) / period_ns));
   return n;
 }
 
-Numbers index_from_fit(const Offsets& x_ns, const Numbers& before, const Line& line) {
+Numbers sample_index_from_fit(const StateOffsets& x_ns, const Numbers& before, const FittedLine& line) {
   Numbers n{};
   for (std::size_t k = 0; k < n.size(); ++k) {
     n[k] = std::round((x_ns[k] - line.last_ns) / line.period_ns + before.back());
@@ -89,26 +89,26 @@ SampleClock::SampleClock(const Params& params) : params_(params) {
 }
 
 bool SampleClock::corrects_stamps(const State& state) const {
-  if (!state.line_fitted) return false;
+  if (!state.line_fit_valid) return false;
   const double jitter = std::sqrt(state.mean_square_error_ns2) / state.period_ns;
   return jitter >= params_.kJitterMin && jitter <= params_.jitter_max &&
-         state.lag_one_error_product_ns2 <= kErrorCorrelationMax * state.mean_square_error_ns2;
+         state.successive_error_product_ns2 <= kErrorCorrelationMax * state.mean_square_error_ns2;
 }
 
 std::optional<double> SampleClock::jitter_s(const State& state) {
-  if (!state.line_fitted) return std::nullopt;
+  if (!state.line_fit_valid) return std::nullopt;
   return 1e-9 * std::sqrt(state.mean_square_error_ns2);
 }
 
 Status SampleClock::push(TimeNs stamp_ns, State& state, TimeNs& time_ns) const {
   if (state.stamp_ns && stamp_ns <= *state.stamp_ns)
     return {ErrorCode::time_order, "time_ns", double(stamp_ns), double(*state.stamp_ns)};
-  const double step_ns = state.stamp_ns ? after_ns(stamp_ns, *state.stamp_ns) : 0.0;
-  if (state.line_fitted) {
+  const double step_ns = state.stamp_ns ? difference_ns(stamp_ns, *state.stamp_ns) : 0.0;
+  if (state.line_fit_valid) {
     update_line(step_ns, stamp_ns, state);
   } else {
     state.start[state.samples++] = stamp_ns;
-    if (state.samples == kFirstFitStamps) begin(state);
+    if (state.samples == kFirstLineFitStampCount) start_line_fit(state);
   }
   time_ns = stamp_ns;
   if (corrects_stamps(state) && std::abs(stamp_ns) < kLast_ns) {
@@ -124,24 +124,24 @@ Status SampleClock::push(TimeNs stamp_ns, State& state, TimeNs& time_ns) const {
   return {};
 }
 
-void SampleClock::begin(State& state) const {
-  Offsets x_ns{};
-  for (std::size_t k = 0; k < kFirstFitStamps; ++k) x_ns[k] = after_ns(state.start[k], state.start.front());
+void SampleClock::start_line_fit(State& state) const {
+  StateOffsets x_ns{};
+  for (std::size_t k = 0; k < kFirstLineFitStampCount; ++k) x_ns[k] = difference_ns(state.start[k], state.start.front());
   state.samples = 0;
-  Numbers numbers = index_from_steps(x_ns, median_step(x_ns));
-  Line line = fit(x_ns, numbers);
-  numbers = index_from_fit(x_ns, numbers, line);
+  Numbers numbers = sample_index_from_steps(x_ns, median_step(x_ns));
+  FittedLine line = fit(x_ns, numbers);
+  numbers = sample_index_from_fit(x_ns, numbers, line);
   line = fit(x_ns, numbers);
   if (!(line.period_ns > 0.0 && line.period_ns < kPeriodMax_ns)) return;
   if (!(std::sqrt(line.mean_square_error_ns2) < kPeriodJitterMax * line.period_ns)) return;
-  state.line_fitted = true;
+  state.line_fit_valid = true;
   state.period_ns = line.period_ns;
   state.fit_residual_ns = line.last_ns - x_ns.back();
-  state.sum = kFirstFitStamps;
-  state.weighted_number_sum = line.weighted_number_sum;
-  state.weighted_number_squared_sum = line.weighted_number_squared_sum;
+  state.sum_of_weights = kFirstLineFitStampCount;
+  state.weighted_sample_index_sum = line.weighted_sample_index_sum;
+  state.weighted_squared_sample_index_sum = line.weighted_squared_sample_index_sum;
   state.mean_square_error_ns2 = line.mean_square_error_ns2;
-  state.lag_one_error_product_ns2 = state.prediction_error_ns = 0.0;
+  state.successive_error_product_ns2 = state.prediction_error_ns = 0.0;
   state.outliers = 0;
 }
 
@@ -152,13 +152,13 @@ void SampleClock::update_line(double step_ns, TimeNs stamp_ns, State& state) con
   const double prediction_error_ns = passed_ns - number * state.period_ns;
   const double jitter_ns = std::max(std::sqrt(state.mean_square_error_ns2), params_.kJitterMin * state.period_ns);
   const double before =
-      state.sum * state.weighted_number_squared_sum - state.weighted_number_sum * state.weighted_number_sum;
-  const double extrapolation_sigma_ns = number * jitter_ns * std::sqrt(state.sum / before);
+      state.sum_of_weights * state.weighted_squared_sample_index_sum - state.weighted_sample_index_sum * state.weighted_sample_index_sum;
+  const double extrapolation_sigma_ns = number * jitter_ns * std::sqrt(state.sum_of_weights / before);
   state.outliers = std::abs(prediction_error_ns) > kStray * state.period_ns ? state.outliers + 1 : 0;
   const bool lost = extrapolation_sigma_ns > kSampleNumberSigmaMax * state.period_ns ||
                     state.outliers > kConsecutiveOutliersMax || jitter_ns > kPeriodJitterMax * state.period_ns;
   if (lost) {
-    state.line_fitted = false;
+    state.line_fit_valid = false;
     state.start.front() = stamp_ns;
     state.samples = 1;
     return;
@@ -166,19 +166,19 @@ void SampleClock::update_line(double step_ns, TimeNs stamp_ns, State& state) con
   const double limited_ns = std::clamp(prediction_error_ns, -kOutlier * jitter_ns, kOutlier * jitter_ns);
   const double forget_fraction = std::min(0.5, 1e-9 * number * state.period_ns / params_.memory_s);
   state.mean_square_error_ns2 += forget_fraction * (limited_ns * limited_ns - state.mean_square_error_ns2);
-  state.lag_one_error_product_ns2 +=
-      forget_fraction * (limited_ns * state.prediction_error_ns - state.lag_one_error_product_ns2);
+  state.successive_error_product_ns2 +=
+      forget_fraction * (limited_ns * state.prediction_error_ns - state.successive_error_product_ns2);
   state.prediction_error_ns = limited_ns;
 
   const double keep = 1.0 - forget_fraction;
-  state.weighted_number_squared_sum = keep * (state.weighted_number_squared_sum -
-                                              2.0 * number * state.weighted_number_sum + number * number * state.sum);
-  state.weighted_number_sum = keep * (state.weighted_number_sum - number * state.sum);
-  state.sum = keep * state.sum + 1.0;
+  state.weighted_squared_sample_index_sum = keep * (state.weighted_squared_sample_index_sum -
+                                              2.0 * number * state.weighted_sample_index_sum + number * number * state.sum_of_weights);
+  state.weighted_sample_index_sum = keep * (state.weighted_sample_index_sum - number * state.sum_of_weights);
+  state.sum_of_weights = keep * state.sum_of_weights + 1.0;
   const double determinant =
-      state.sum * state.weighted_number_squared_sum - state.weighted_number_sum * state.weighted_number_sum;
-  state.fit_residual_ns = state.weighted_number_squared_sum / determinant * limited_ns - prediction_error_ns;
-  state.period_ns -= state.weighted_number_sum / determinant * limited_ns;
+      state.sum_of_weights * state.weighted_squared_sample_index_sum - state.weighted_sample_index_sum * state.weighted_sample_index_sum;
+  state.fit_residual_ns = state.weighted_squared_sample_index_sum / determinant * limited_ns - prediction_error_ns;
+  state.period_ns -= state.weighted_sample_index_sum / determinant * limited_ns;
 }
 
 Status correct_stamps(const SampleClock& clock, std::span<TimeNs> stamps_ns, double& corrected_jitter_s) {

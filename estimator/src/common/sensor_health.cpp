@@ -15,50 +15,50 @@ namespace {
 
 using Kind = HealthFinding::Kind;
 
-struct Meaning {
+struct FaultDescription {
   const char* name;
-  bool invalidates;  ///< see HealthFinding::invalidates_estimate()
+  bool makes_estimate_unusable;  ///< see HealthFinding::invalidates_estimate()
   const char* text;
 };
 
 constexpr std::array kMeanings = {
-    Meaning{"frozen_axis", false, "the axis repeats one reading; check the sensor"},
-    Meaning{"frozen_sensor", true, "the sensor repeats one reading; do not use the estimate"},
-    Meaning{"unit_frozen", false, "the IMU repeats one reading, and its readings are left out; check the sensor"},
-    Meaning{"unit_silent", false, "the IMU delivers no readings"},
-    Meaning{"unit_disagrees", false, "the IMU disagrees with the other IMUs, and its readings are left out"},
-    Meaning{"force_at_rest", true,
+    FaultDescription{"frozen_axis", false, "the axis repeats one reading; check the sensor"},
+    FaultDescription{"frozen_sensor", true, "the sensor repeats one reading; do not use the estimate"},
+    FaultDescription{"imu_frozen", false, "the IMU repeats one reading, and its readings are left out; check the sensor"},
+    FaultDescription{"imu_silent", false, "the IMU delivers no readings"},
+    FaultDescription{"imu_disagrees", false, "the IMU disagrees with the other IMUs, and its readings are left out"},
+    FaultDescription{"force_at_rest", true,
             "the specific force at rest differs from gravity, probably because of a wrong unit or scale of the "
             "accelerometer; do not use the estimate"},
-    Meaning{"axes_or_signs", true, "axes of the IMU seem to be exchanged or inverted; do not use the estimate"},
-    Meaning{
-        "flight_forces", true,
+    FaultDescription{"wrong_axes_or_signs", true, "axes of the IMU seem to be exchanged or inverted; do not use the estimate"},
+    FaultDescription{
+        "inverted_accel_in_flight", true,
         "the specific force in free flight contradicts the rotation; axes of the accelerometer seem to be inverted; do "
         "not use the estimate"},
-    Meaning{
+    FaultDescription{
         "rotation", true,
         "the gyro contradicts the rotation of the body, probably because of wrong axes, signs or units; do not use the "
         "estimate"},
-    Meaning{"gyro_scale", true, "the forces of the IMUs contradict the gyros; do not use the estimate"},
-    Meaning{"lidar_scale", true, "the scale of the lidar's ranges contradicts the motion measured by the IMU"},
-    Meaning{"lidar_calibration", true, "the stated mounting or clock of the lidar seems to be wrong"},
-    Meaning{"rig_calibration", false,
+    FaultDescription{"gyro_scale", true, "the forces of the IMUs contradict the gyros; do not use the estimate"},
+    FaultDescription{"lidar_scale", true, "the scale of the lidar's ranges contradicts the motion measured by the IMU"},
+    FaultDescription{"lidar_calibration", true, "the stated mounting or clock of the lidar seems to be wrong"},
+    FaultDescription{"rig_calibration", false,
             "the stored calibration differs from the estimate of this run, so the file may belong to another rig; "
             "estimated rates beyond saturation depend on the calibration; the program left the file unchanged"},
-    Meaning{"attitude_unknown", true,
+    FaultDescription{"attitude_unknown", true,
             "the direction of gravity is uncertain, for example after a gap of the IMU; the covariance includes this "
             "uncertainty"},
-    Meaning{"vertical_unknown", true, "the vertical of the map is uncertain after a start in motion"},
-    Meaning{"tracking_lost", true, "the position in the map is unknown; do not use the estimate"},
-    Meaning{"not_localised", true, "the robot is not localised in the prior map; the poses are in a local frame"}};
+    FaultDescription{"vertical_unknown", true, "the vertical of the map is uncertain after a start in motion"},
+    FaultDescription{"tracking_lost", true, "the position in the map is unknown; do not use the estimate"},
+    FaultDescription{"not_localised", true, "the robot is not localised in the prior map; the poses are in a local frame"}};
 
 static_assert(kMeanings.size() == static_cast<std::size_t>(HealthFinding::kLast) + 1);
 
-const Meaning& meaning(Kind kind) {
+const FaultDescription& fault_description(Kind kind) {
   return kMeanings.at(static_cast<std::size_t>(kind));
 }
 
-std::string six_digits(double value) {
+std::string text_with_six_digits(double value) {
   std::array<char, 32> text{};
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 6);
   return std::string(text.data(), end.ptr);
@@ -67,7 +67,7 @@ std::string six_digits(double value) {
 }  // namespace
 
 const char* to_string(Kind kind) {
-  return meaning(kind).name;
+  return fault_description(kind).name;
 }
 
 double HealthFinding::confidence() const {
@@ -83,16 +83,16 @@ bool HealthFinding::invalidates_estimate() const {
   // The rotation of gravity later confirms or corrects a suspect gyro scale.
   const bool recovers = kind == Kind::attitude_unknown || kind == Kind::vertical_unknown ||
                         kind == Kind::not_localised || kind == Kind::gyro_scale;
-  return meaning(kind).invalidates && !(ended && recovers);
+  return fault_description(kind).makes_estimate_unusable && !(ended && recovers);
 }
 
 std::string to_text(const HealthFinding& finding) {
   std::string out = finding.sensor;
   if (finding.axis[0] != '\0') out += (out.empty() ? "" : " ") + std::string(finding.axis);
   if (!out.empty()) out += ": ";
-  out += meaning(finding.kind).text;
+  out += fault_description(finding.kind).text;
   if (finding.quantity[0] == '\0') return out;
-  return out + " (" + finding.quantity + " is " + six_digits(finding.value) + ", bound " + six_digits(finding.bound) +
+  return out + " (" + finding.quantity + " is " + text_with_six_digits(finding.value) + ", bound " + text_with_six_digits(finding.bound) +
          ")";
 }
 
@@ -117,7 +117,7 @@ void SensorHealth::add(HealthFinding finding) {
     known->ended = known->ended && finding.ended;
 }
 
-void SensorHealth::observe(const SensorHealth& now) {
+void SensorHealth::merge_current_findings(const SensorHealth& now) {
   for (HealthFinding& known : findings) known.ended = true;
   add(now);
 }

@@ -14,14 +14,14 @@ constexpr double kSmallAngle = 1e-4;
 constexpr double kCancellingAngle = 0.5;
 
 // Returns (1 - cos x) / x^2 by the half-angle formula, which avoids cancellation of digits.
-double cosine_term(double angle, double angle2) {
+double one_minus_cosine_term(double angle, double angle2) {
   if (angle < kSmallAngle) return 0.5 - angle2 / 24.0;
   const double s = std::sin(0.5 * angle);
   return 2.0 * s * s / angle2;
 }
 
 // Returns (x - sin x) / x^3.
-double sine_term(double angle, double angle2) {
+double angle_minus_sine_term(double angle, double angle2) {
   if (angle > kCancellingAngle) return (angle - std::sin(angle)) / (angle2 * angle);
   double term = 1.0 / 6.0, sum = 0.0;
   for (int n = 5; n <= 17; n += 2) {
@@ -47,7 +47,7 @@ Eigen::Quaterniond exp(const Eigen::Vector3d& phi) {
   return {w, half_sinc * phi.x(), half_sinc * phi.y(), half_sinc * phi.z()};
 }
 
-Eigen::Vector3d log(const Eigen::Quaterniond& q) {
+Eigen::Vector3d logarithm(const Eigen::Quaterniond& q) {
   // A half turn has two rotation vectors, v and -v. The first non-zero component of the result is positive, so that q
   // and -q have the same logarithm.
   double sign = q.w() < 0.0 ? -1.0 : 1.0;
@@ -66,7 +66,7 @@ Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& phi) {
   const double angle2 = phi.squaredNorm();
   const double angle = std::sqrt(angle2);
   const Eigen::Matrix3d k = hat(phi);
-  return Eigen::Matrix3d::Identity() + cosine_term(angle, angle2) * k + sine_term(angle, angle2) * k * k;
+  return Eigen::Matrix3d::Identity() + one_minus_cosine_term(angle, angle2) * k + angle_minus_sine_term(angle, angle2) * k * k;
 }
 
 Eigen::Matrix3d left_jacobian_inverse(const Eigen::Vector3d& phi) {

@@ -9,7 +9,7 @@ namespace tumble {
 namespace {
 
 // Returns the shortest decimal text that converts back to exactly `value`, in any locale.
-std::string number(double value) {
+std::string text_of_number(double value) {
   std::array<char, 32> text{};
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value);
   return std::string(text.data(), end.ptr);
@@ -31,8 +31,8 @@ const char* to_string(ErrorCode error_code) {
       return "gap";
     case ErrorCode::out_of_range:
       return "out_of_range";
-    case ErrorCode::too_few:
-      return "too_few";
+    case ErrorCode::insufficient_data:
+      return "insufficient_data";
     case ErrorCode::degenerate:
       return "degenerate";
     case ErrorCode::diverged:
@@ -43,15 +43,15 @@ const char* to_string(ErrorCode error_code) {
 
 std::string Status::message() const {
   if (ok()) return "ok";
-  return std::string(to_string(error_code)) + ": " + field + " is " + number(value) + "; the bound is " + number(bound);
+  return std::string(to_string(error_code)) + ": " + field + " is " + text_of_number(value) + "; the bound is " + text_of_number(bound);
 }
 
 InvalidParams::InvalidParams(const std::string& field, double value, const std::string& bound)
-    : std::invalid_argument(field + " is " + number(value) + "; it must be " + bound) {}
+    : std::invalid_argument(field + " is " + text_of_number(value) + "; it must be " + bound) {}
 
-void require_within(const char* field, double value, double low, double high) {
+void require_in_interval(const char* field, double value, double low, double high) {
   if (value >= low && value <= high) return;
-  throw InvalidParams(field, value, "within [" + number(low) + ", " + number(high) + "]");
+  throw InvalidParams(field, value, "within [" + text_of_number(low) + ", " + text_of_number(high) + "]");
 }
 
 }  // namespace tumble

@@ -17,7 +17,7 @@ constexpr double kCoarseRematch_m = 0.2;    // motion of a point after which its
 constexpr double kCoarseStep_m = 5e-3, kCoarseStep_rad = 2e-3;  // converged if a step is below both
 constexpr double kCoarseInlierRatioMin = 0.2;  // minimum fraction of matches within three standard deviations
 
-Registration::Params full_params(const LidarInertialOdometry::Params& params) {
+Registration::Params full_registration_params(const LidarInertialOdometry::Params& params) {
   Registration::Params out = registration_params(params);
   out.iterations_max = std::min(params.expert.matching.iterations_max, kFullIterations);
   return out;
@@ -48,7 +48,7 @@ void select_evenly(std::span<const SweepPoint> points, std::size_t count, std::v
   for (std::size_t i = 0; i < points.size(); i += every) out.push_back(points[i]);
 }
 
-void align(Registration& registration, const Registration::Prior& prior, const Scene& scene,
+void align(Registration& registration, const Registration::Prior& prior, const RegistrationScene& scene,
            std::span<const SweepPoint> points, SweepTrajectory& trajectory, Registration::Result& found) {
   // add_sweep() ensures that the IMU samples cover the sweep, so align() cannot fail.
   const Status status = registration.align(prior, scene.samples, scene.end_ns, points, scene.map, trajectory, found);
@@ -58,24 +58,24 @@ void align(Registration& registration, const Registration::Prior& prior, const S
 Registration::Prior from(const Registration::Result& found, const Registration::Prior& prior) {
   Registration::Prior out = prior;
   out.start = found.mean.state;
-  out.deficit_start_rad_s = found.mean.deficit_rad_s;
+  out.initial_saturation_deficit_rad_s = found.mean.saturation_deficit_rad_s;
   return out;
 }
 
 }  // namespace
 
-Aligner::Aligner(const LidarInertialOdometry::Params& params)
-    : full_(full_params(params)), subsampled_(registration_params(params)), coarse_(coarse_params(params)) {}
+SweepAligner::SweepAligner(const LidarInertialOdometry::Params& params)
+    : full_registration_(full_registration_params(params)), subsampled_registration_(registration_params(params)), coarse_registration_(coarse_params(params)) {}
 
-void Aligner::align_with_all_points(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
+void SweepAligner::align_with_all_points(const Registration::Prior& prior, const RegistrationScene& scene, SweepTrajectory& trajectory,
                                     Registration::Result& found) {
-  align(full_, prior, scene, scene.points, trajectory, found);
+  align(full_registration_, prior, scene, scene.points, trajectory, found);
 }
 
-void Aligner::align_to_convergence(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
+void SweepAligner::align_to_convergence(const Registration::Prior& prior, const RegistrationScene& scene, SweepTrajectory& trajectory,
                                    Registration::Result& found) {
-  select_evenly(scene.points, kSubsamplePoints, thinned_);
-  align(subsampled_, prior, scene, thinned_, trajectory, found);
+  select_evenly(scene.points, kSubsamplePoints, subsampled_points_);
+  align(subsampled_registration_, prior, scene, subsampled_points_, trajectory, found);
   if (found.verdict != RegistrationVerdict::converged) return;
   const int iterations = found.iterations;
   const std::unique_ptr<const Registration::Prior> here(new Registration::Prior(from(found, prior)));
@@ -83,11 +83,11 @@ void Aligner::align_to_convergence(const Registration::Prior& prior, const Scene
   found.iterations += iterations;
 }
 
-void Aligner::align_coarse_to_fine(const Registration::Prior& start, const Registration::Prior& prior,
-                                   const Scene& scene, SweepTrajectory& trajectory, Registration::Result& found) {
-  select_evenly(scene.points, kCoarsePoints, thinned_);
+void SweepAligner::align_coarse_to_fine(const Registration::Prior& start, const Registration::Prior& prior,
+                                   const RegistrationScene& scene, SweepTrajectory& trajectory, Registration::Result& found) {
+  select_evenly(scene.points, kCoarsePoints, subsampled_points_);
   const auto rough = std::make_unique<Registration::Result>();
-  align(coarse_, start, scene, thinned_, trajectory, *rough);
+  align(coarse_registration_, start, scene, subsampled_points_, trajectory, *rough);
   found.verdict = rough->verdict;
   if (rough->verdict != RegistrationVerdict::converged) return;
   const std::unique_ptr<const Registration::Prior> near(new Registration::Prior(from(*rough, prior)));

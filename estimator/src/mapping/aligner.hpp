@@ -9,7 +9,7 @@
 
 namespace tumble::mapping {
 
-struct Scene {
+struct RegistrationScene {
   std::span<const MotionSample> samples;
   TimeNs end_ns;
   std::span<const SweepPoint> points;  ///< selected points of the sweep
@@ -18,25 +18,25 @@ struct Scene {
 
 /// Aligner registers a sweep to the map in stages, from few points to all points. `trajectory` receives the registered
 /// motion, or the motion of a failed attempt.
-class Aligner {
+class SweepAligner {
  public:
-  explicit Aligner(const LidarInertialOdometry::Params& params);
+  explicit SweepAligner(const LidarInertialOdometry::Params& params);
 
   /// Registers a sweep with all points and few iterations, and continues with fewer points if it does not converge.
-  void align_with_all_points(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
+  void align_with_all_points(const Registration::Prior& prior, const RegistrationScene& scene, SweepTrajectory& trajectory,
                              Registration::Result& found);
   /// Registers a sweep with a subset of its points until convergence, then with all points.
-  void align_to_convergence(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
+  void align_to_convergence(const Registration::Prior& prior, const RegistrationScene& scene, SweepTrajectory& trajectory,
                             Registration::Result& found);
   /// Starts with a coarse stage, because the initial pose may be far from the solution.
-  void align_coarse_to_fine(const Registration::Prior& start, const Registration::Prior& prior, const Scene& scene,
+  void align_coarse_to_fine(const Registration::Prior& start, const Registration::Prior& prior, const RegistrationScene& scene,
                             SweepTrajectory& trajectory, Registration::Result& found);
 
-  const Registration& registration() const { return full_; }
+  const Registration& registration() const { return full_registration_; }
 
  private:
-  Registration full_, subsampled_, coarse_;
-  std::vector<SweepPoint> thinned_;
+  Registration full_registration_, subsampled_registration_, coarse_registration_;
+  std::vector<SweepPoint> subsampled_points_;
 };
 
 Registration::Params registration_params(const LidarInertialOdometry::Params& params);

@@ -20,14 +20,14 @@ constexpr double kSpeed_m_s = 10.0, kSpeedTime_s = 1.0;
 // For a start in motion, the mean force over half a second is assumed to differ from gravity by 1 m/s^2.
 constexpr double kMovingTilt_rad = 0.1, kMovingSpeed_m_s = 2.0;
 
-StateEstimate of_motion(const MotionState& state, const SweepCalibration& calibration, const Motion& weight,
+StateEstimate state_estimate_of_motion(const MotionState& state, const LidarImuCalibration& calibration, const Motion& weight,
                         const Motion& error) {
   StateEstimate out;
   out.mean.state = state;
   out.mean.state.covariance = weight;
   out.mean.calibration = calibration;
-  u::block(out.weight, u::motion) = weight;
-  u::block(out.error, u::motion) = error;
+  u::sub_block(out.prior_weight_covariance, u::motion) = weight;
+  u::sub_block(out.state_error_covariance, u::motion) = error;
   return out;
 }
 
@@ -37,7 +37,7 @@ double yaw_rad(const Eigen::Quaterniond& q) {
 
 /// Returns the matrix that transforms the errors of position, attitude and velocity to a frame with origin at the IMU,
 /// rotated by `turn`.
-Motion frame_jacobian(const Eigen::Matrix3d& turn, const Eigen::Vector3d& v_WI_m_s) {
+Motion world_frame_jacobian(const Eigen::Matrix3d& turn, const Eigen::Vector3d& v_WI_m_s) {
   Motion T = Motion::Zero();
   T.block<2, 3>(3, 3) = turn.topRows<2>();
   T.block<3, 3>(6, 6) = turn;
@@ -49,7 +49,7 @@ Motion frame_jacobian(const Eigen::Matrix3d& turn, const Eigen::Vector3d& v_WI_m
 /// covariance of its actual errors.
 void bound_speed(double sigma_m_s, MotionState& state, Motion& C, Motion& E) {
   const Eigen::Matrix3d R = sigma_m_s * sigma_m_s * Eigen::Matrix3d::Identity();
-  const Eigen::Matrix3d S = u::block(C, u::velocity) + R;
+  const Eigen::Matrix3d S = u::sub_block(C, u::velocity) + R;
   const Eigen::Matrix<double, 9, 3> K = u::columns(C, u::velocity) * S.inverse();
   const Eigen::Matrix<double, 9, 1> moved = -K * state.v_WI_m_s;
   state.q_WI = (so3::exp(u::segment(moved, u::attitude)) * state.q_WI).normalized();
@@ -63,21 +63,21 @@ void bound_speed(double sigma_m_s, MotionState& state, Motion& C, Motion& E) {
 }  // namespace
 
 StateEstimate estimate_before_map(const Params& params, const MotionState& levelled) {
-  SweepCalibration calibration;
+  LidarImuCalibration calibration;
   calibration.T_IL = params.T_IL;
   calibration.gravity_W_m_s2 = Eigen::Vector3d(0.0, 0.0, -params.expert.gravity_m_s2);
   Motion error = levelled.covariance;
-  const double level = params.expert.start.kLevelSigma_rad, world = params.expert.world.tilt_sigma_rad;
+  const double level = params.expert.start.kLevelSigma_rad, world = params.expert.world_covariance.tilt_sigma_rad;
   if (u::variances(error, u::tilt).maxCoeff() <= level * level) u::variances(error, u::tilt).setConstant(world * world);
-  return of_motion(levelled, calibration, levelled.covariance, error);
+  return state_estimate_of_motion(levelled, calibration, levelled.covariance, error);
 }
 
-void widen_for_motion(MotionState& levelled) {
+void add_motion_covariance(MotionState& levelled) {
   u::variances(levelled.covariance, u::tilt).setConstant(kMovingTilt_rad * kMovingTilt_rad);
   u::variances(levelled.covariance, u::velocity).setConstant(kMovingSpeed_m_s * kMovingSpeed_m_s);
 }
 
-MotionState moved_to(const Eigen::Isometry3d& T_WI, const MotionState& motion) {
+MotionState transformed_to_pose(const Eigen::Isometry3d& T_WI, const MotionState& motion) {
   const Eigen::Quaterniond wanted(T_WI.linear());
   const Eigen::Quaterniond turn = so3::exp({0.0, 0.0, yaw_rad(wanted * motion.q_WI.conjugate())});
   const Eigen::Matrix3d R = turn.toRotationMatrix();
@@ -91,15 +91,15 @@ MotionState moved_to(const Eigen::Isometry3d& T_WI, const MotionState& motion) {
   return out;
 }
 
-StateEstimate moved_to(const Eigen::Isometry3d& T_WI, const StateEstimate& estimate) {
+StateEstimate transformed_to_pose(const Eigen::Isometry3d& T_WI, const StateEstimate& estimate) {
   MotionState state = estimate.mean.state, error = estimate.mean.state;
-  state.covariance = u::block(estimate.weight, u::motion);
-  error.covariance = u::block(estimate.error, u::motion);
-  state = moved_to(T_WI, state);
-  return of_motion(state, estimate.mean.calibration, state.covariance, moved_to(T_WI, error).covariance);
+  state.covariance = u::sub_block(estimate.prior_weight_covariance, u::motion);
+  error.covariance = u::sub_block(estimate.state_error_covariance, u::motion);
+  state = transformed_to_pose(T_WI, state);
+  return state_estimate_of_motion(state, estimate.mean.calibration, state.covariance, transformed_to_pose(T_WI, error).covariance);
 }
 
-StateEstimate with_tilt(const LidarInertialOdometry::StartTilt& tilt, const StateEstimate& estimate) {
+StateEstimate with_start_tilt(const LidarInertialOdometry::StartTilt& tilt, const StateEstimate& estimate) {
   const Eigen::Matrix3d R = tilt.rotation.toRotationMatrix();
   MotionState state = estimate.mean.state;
   state.q_WI = (tilt.rotation * state.q_WI).normalized();
@@ -108,23 +108,23 @@ StateEstimate with_tilt(const LidarInertialOdometry::StartTilt& tilt, const Stat
   T.block<2, 9>(3, 0).setZero();
   T.block<3, 3>(6, 6) = R;
   const auto corrected = [&](const Registration::Matrix& P) {
-    Motion out = T * u::block(P, u::motion) * T.transpose();
+    Motion out = T * u::sub_block(P, u::motion) * T.transpose();
     u::variances(out, u::tilt).setConstant(tilt.sigma_rad * tilt.sigma_rad);
     return out;
   };
-  return of_motion(state, estimate.mean.calibration, corrected(estimate.weight), corrected(estimate.error));
+  return state_estimate_of_motion(state, estimate.mean.calibration, corrected(estimate.prior_weight_covariance), corrected(estimate.state_error_covariance));
 }
 
 StateEstimate reset_origin_and_yaw(const StateEstimate& reckoned, double step_s) {
   MotionState state = reckoned.mean.state;
-  Motion C = u::block(reckoned.weight, u::motion), E = u::block(reckoned.error, u::motion);
+  Motion C = u::sub_block(reckoned.prior_weight_covariance, u::motion), E = u::sub_block(reckoned.state_error_covariance, u::motion);
   bound_speed(kSpeed_m_s * std::sqrt(kSpeedTime_s / step_s), state, C, E);
   const Eigen::Quaterniond turn = so3::exp({0.0, 0.0, -yaw_rad(state.q_WI)});
   state.p_WI_m.setZero();
   state.q_WI = (turn * state.q_WI).normalized();
   state.v_WI_m_s = turn * state.v_WI_m_s;
-  const Motion T = frame_jacobian(turn.toRotationMatrix(), state.v_WI_m_s);
-  return of_motion(state, reckoned.mean.calibration, T * C * T.transpose(), T * E * T.transpose());
+  const Motion T = world_frame_jacobian(turn.toRotationMatrix(), state.v_WI_m_s);
+  return state_estimate_of_motion(state, reckoned.mean.calibration, T * C * T.transpose(), T * E * T.transpose());
 }
 
 /// The tilt error φ of the first sweep rotates the map frame. The rotation adds v × φ to the error of velocity v, and g
@@ -141,22 +141,22 @@ StateEstimate estimate_at_first_sweep(const Params& params, const StateEstimate&
   T.block<3, 3>(0, 6).setIdentity();
   const bool free_gravity = params.expert.gravity_sigma_m_s2 > 0.0;
   if (free_gravity) T.block<3, 3>(3, 3) = so3::hat(out.mean.calibration.gravity_W_m_s2);
-  const auto add = [&](const Registration::Matrix& from, Registration::Matrix& to) {
-    const Eigen::Matrix<double, 6, 6> P = T * u::block(from, u::motion) * T.transpose();
-    u::block(to, u::velocity) += P.topLeftCorner<3, 3>();
-    u::block(to, u::velocity, u::gravity) += P.topRightCorner<3, 3>();
-    u::block(to, u::gravity, u::velocity) += P.bottomLeftCorner<3, 3>();
-    u::block(to, u::gravity) += P.bottomRightCorner<3, 3>();
+  const auto add = [&](const Registration::Matrix& from, Registration::Matrix& sub_block) {
+    const Eigen::Matrix<double, 6, 6> P = T * u::sub_block(from, u::motion) * T.transpose();
+    u::sub_block(sub_block, u::velocity) += P.topLeftCorner<3, 3>();
+    u::sub_block(sub_block, u::velocity, u::gravity) += P.topRightCorner<3, 3>();
+    u::sub_block(sub_block, u::gravity, u::velocity) += P.bottomLeftCorner<3, 3>();
+    u::sub_block(sub_block, u::gravity) += P.bottomRightCorner<3, 3>();
   };
-  add(reckoned.weight, out.weight);
-  add(reckoned.error, out.error);
-  out.mean.state.covariance = u::block(out.weight, u::motion);
+  add(reckoned.prior_weight_covariance, out.prior_weight_covariance);
+  add(reckoned.state_error_covariance, out.state_error_covariance);
+  out.mean.state.covariance = u::sub_block(out.prior_weight_covariance, u::motion);
   return out;
 }
 
 WorldCovariance world_at_first_sweep(const Params& params, const StateEstimate& reckoned) {
-  WorldCovarianceParams world = params.expert.world;
-  world.tilt_sigma_rad = std::sqrt(u::variances(reckoned.error, u::tilt).mean());
+  WorldCovarianceParams world = params.expert.world_covariance;
+  world.tilt_sigma_rad = std::sqrt(u::variances(reckoned.state_error_covariance, u::tilt).mean());
   const MotionState& start = reckoned.mean.state;
   return {world, start.q_WI, params.T_IL.translation(), start.p_WI_m};
 }

@@ -11,14 +11,14 @@ namespace tumble::mapping {
 StateEstimate estimate_before_map(const LidarInertialOdometry::Params& params, const MotionState& levelled);
 
 /// The mean force of a moving body differs from gravity, and the velocity of the body is unknown.
-void widen_for_motion(MotionState& levelled);
+void add_motion_covariance(MotionState& levelled);
 
 /// Returns `motion` with the position and heading of `T_WI`, and with unchanged tilt.
-MotionState moved_to(const Eigen::Isometry3d& T_WI, const MotionState& motion);
-StateEstimate moved_to(const Eigen::Isometry3d& T_WI, const StateEstimate& estimate);
+MotionState transformed_to_pose(const Eigen::Isometry3d& T_WI, const MotionState& motion);
+StateEstimate transformed_to_pose(const Eigen::Isometry3d& T_WI, const StateEstimate& estimate);
 
 /// Replaces roll and pitch by `tilt`, whose errors are independent of all other errors.
-StateEstimate with_tilt(const LidarInertialOdometry::StartTilt& tilt, const StateEstimate& estimate);
+StateEstimate with_start_tilt(const LidarInertialOdometry::StartTilt& tilt, const StateEstimate& estimate);
 
 /// Returns the dead-reckoned state in a frame with origin and yaw of the IMU, `step_s` after the last call. A weak
 /// prior on the speed limits the errors of tilt and velocity over minutes of motion.

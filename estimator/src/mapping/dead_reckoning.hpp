@@ -13,10 +13,10 @@ namespace tumble::mapping {
 /// alone. If a later sweep contradicts the relocalisation, odometry and DeadReckoning swap their poses. The rejected
 /// pose remains a starting pose of the search.
 struct DeadReckoning {
-  SweepBoundary boundary;
+  SweepBoundary sweep_boundary;
   LagWindow window;
-  WorldCovariance world;
-  std::uint32_t inserted_from = 0;  ///< first sweep inserted into the map after the relocalisation
+  WorldCovariance world_covariance;
+  std::uint32_t first_inserted_sweep = 0;  ///< first sweep inserted into the map after the relocalisation
 };
 
 }  // namespace tumble::mapping

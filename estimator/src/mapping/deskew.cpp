@@ -7,7 +7,7 @@
 
 namespace tumble {
 
-PointCounts select_points(std::span<const LidarPoint> points, const PointBounds& bounds, const Eigen::Isometry3d& T_IL,
+PointCounts select_points(std::span<const LidarPoint> points, const PointSelectionBounds& bounds, const Eigen::Isometry3d& T_IL,
                           double sweep_start_s, std::vector<SweepPoint>& selected) {
   selected.clear();
   PointCounts counts;
@@ -28,17 +28,17 @@ PointCounts select_points(std::span<const LidarPoint> points, const PointBounds&
                         static_cast<float>(offset_s), std::sqrt(range2), point.ring});
     counts.has_ring_numbers |= point.ring != selected.front().ring;
   }
-  counts.used = selected.size();
+  counts.usable_points = selected.size();
   return counts;
 }
 
-void apply_calibration(const SweepCalibration& calibration, double later_s, std::span<const SweepPoint> points,
+void apply_calibration(const LidarImuCalibration& calibration, double later_s, std::span<const SweepPoint> points,
                        std::vector<SweepPoint>& moved) {
   moved.assign(points.begin(), points.end());
   apply_calibration(calibration, later_s, moved);
 }
 
-void apply_calibration(const SweepCalibration& calibration, double later_s, std::span<SweepPoint> points) {
+void apply_calibration(const LidarImuCalibration& calibration, double later_s, std::span<SweepPoint> points) {
   const Eigen::Matrix3f R = calibration.T_IL.linear().cast<float>();
   const Eigen::Vector3f p = calibration.T_IL.translation().cast<float>();
   for (SweepPoint& point : points) {
@@ -60,22 +60,22 @@ void deskew(const SweepTrajectory& trajectory, std::span<const SweepPoint> point
   compute_lever_arm_vectors(trajectory, points, positions_I_m);
   std::size_t hint = trajectory.intervals();
   const SweepTrajectory::PreintegratedMotion target = trajectory.at(target_s, hint);
-  const Eigen::Vector3d origin = trajectory.common_position_m(target_s) + target.preintegrated_position_m;
+  const Eigen::Vector3d origin = trajectory.gravity_free_position_m(target_s) + target.preintegrated_position_m;
   const Eigen::Quaterniond q_IW = target.q_WI.conjugate();
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Vector3d world = trajectory.common_position_m(points[i].t_s) + positions_I_m[i].cast<double>();
+    const Eigen::Vector3d world = trajectory.gravity_free_position_m(points[i].t_s) + positions_I_m[i].cast<double>();
     positions_I_m[i] = (q_IW * (world - origin)).cast<float>();
   }
 }
 
-void SweepSampler::choose(std::span<const Eigen::Vector3f> positions_W_m, double voxel_m,
+void SweepSampler::choose_points_per_voxel(std::span<const Eigen::Vector3f> positions_W_m, double voxel_m,
                           std::vector<std::uint32_t>& chosen) {
   occupied_voxels_.clear();
   chosen.clear();
   const float cubes_per_m = static_cast<float>(1.0 / voxel_m);
   for (std::uint32_t i = 0; i < positions_W_m.size(); ++i) {
     const Eigen::Vector3f scaled = positions_W_m[i] * cubes_per_m;
-    if (!(scaled.cwiseAbs().maxCoeff() < static_cast<float>(SpatialHash::kLimit - 2))) continue;
+    if (!(scaled.cwiseAbs().maxCoeff() < static_cast<float>(SpatialHash::kCoordinateLimit - 2))) continue;
     if (occupied_voxels_.add(SpatialHash::key(scaled.array().floor().cast<int>()))) chosen.push_back(i);
   }
 }

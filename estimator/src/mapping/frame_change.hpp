@@ -8,10 +8,10 @@ namespace tumble::mapping {
 
 /// FrameChange converts estimates from the local frame W to the frame M of a prior map.
 struct FrameChange {
-  Eigen::Isometry3d T_MW;
-  /// covariance of T_MW in axes of M: displacement and rotation of frame W about the point `sensor_M_m`
+  Eigen::Isometry3d T_prior_map_world;
+  /// covariance of T_MW in axes of M: displacement and rotation of frame W about the point `sensor_in_prior_map_m`
   Eigen::Matrix<double, 6, 6> covariance;
-  Eigen::Vector3d sensor_M_m;
+  Eigen::Vector3d sensor_in_prior_map_m;
 
   void apply(SweepBoundary& boundary) const;
   void apply(LagWindow& window) const;

@@ -24,11 +24,11 @@ Status check(const VelocityReading& reading) {
 }
 
 Status check(const MotionReading& reading) {
-  if (!reading.T_from_to.matrix().allFinite()) return not_finite("T_from_to");
+  if (!reading.relative_pose.matrix().allFinite()) return not_finite("T_from_to");
   if (!reading.covariance.allFinite()) return not_finite("covariance");
   if (reading.to_ns <= reading.from_ns)
     return {ErrorCode::time_order, "to_ns", double(reading.to_ns), double(reading.from_ns)};
-  const Eigen::Matrix3d R = reading.T_from_to.linear();
+  const Eigen::Matrix3d R = reading.relative_pose.linear();
   const double off = (R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (!(off <= kRotation) || !(R.determinant() > 0.0)) return {ErrorCode::out_of_range, "T_from_to", off, kRotation};
   const double least = reading.covariance.diagonal().minCoeff();
@@ -55,14 +55,14 @@ TimeNs reading_end_ns(const OdometerReading& reading) {
 
 PoseState PositionFrame::transform(const PoseState& in_W) const {
   PoseState out = in_W;
-  const Eigen::Matrix3d R = T_PW.linear();
+  const Eigen::Matrix3d R = T_readings_world.linear();
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
-  out.p_WA_m = T_PW * in_W.p_WA_m;
-  out.q_WA = (Eigen::Quaterniond(R) * in_W.q_WA).normalized();
-  out.v_WA_m_s = R * in_W.v_WA_m_s;
+  out.position_W_m = T_readings_world * in_W.position_W_m;
+  out.orientation_W = (Eigen::Quaterniond(R) * in_W.orientation_W).normalized();
+  out.velocity_W_m_s = R * in_W.velocity_W_m_s;
   Eigen::Matrix<double, 6, 4> J = Eigen::Matrix<double, 6, 4>::Zero();
   J.topLeftCorner<3, 3>().setIdentity();
-  J.col(3) << up.cross(R * (in_W.p_WA_m - reference_W_m)), up;
+  J.col(3) << up.cross(R * (in_W.position_W_m - reference_point_W_m)), up;
   out.covariance = J * covariance * J.transpose();
   const Eigen::Matrix3d attitude = R * in_W.covariance.bottomRightCorner<3, 3>() * R.transpose();
   out.covariance.block<2, 2>(3, 3) += attitude.topLeftCorner<2, 2>();

@@ -26,7 +26,7 @@ namespace u = unknowns;
 Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& params,
                                            const SweepTrajectory& trajectory, std::span<const MotionSample> samples,
                                            unsigned deficit_axes) {
-  const double span = trajectory.duration_s() / InertialNoiseParams::kSpan_s;
+  const double span = trajectory.duration_s() / InertialNoiseParams::kSweepInterval_s;
   Eigen::Matrix<double, 9, 9> noise = Eigen::Matrix<double, 9, 9>::Zero();
   u::variances(noise, u::position).setConstant(std::pow(params.expert.prior.sigma_m * span, 2));
   u::variances(noise, u::attitude).setConstant(std::pow(params.expert.prior.sigma_rad * span, 2));
@@ -62,13 +62,13 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
     return sample.at_rest || seconds(sample.from_ns - start_ns) >= trajectory.duration_s();
   };
   if (std::all_of(samples.begin(), samples.end(), rests)) return kRestNoiseRatio * kRestNoiseRatio * noise;
-  u::block(noise, u::attitude) += trajectory.duration_s() * turned;  // mapping.md (R42)
+  u::sub_block(noise, u::attitude) += trajectory.duration_s() * turned;  // mapping.md (R42)
   u::variances(noise, u::attitude).array() += std::pow(params.expert.prior.rotation_noise_ratio * rotated_rad, 2);
   return noise;
 }
 
 /// Computes the covariance of the velocity due to saturated accelerometer readings: mapping.md (R45).
-Eigen::Matrix3d clipped_velocity_variance(const SweepTrajectory& trajectory, std::span<const MotionSample> samples) {
+Eigen::Matrix3d velocity_variance_from_clipping(const SweepTrajectory& trajectory, std::span<const MotionSample> samples) {
   std::size_t hint = 0;
   Eigen::Matrix3d lasted = Eigen::Matrix3d::Zero();  // column j: saturated time of axis j, as a vector in W
   for (const MotionSample& sample : samples) {
@@ -85,11 +85,11 @@ Eigen::Matrix3d clipped_velocity_variance(const SweepTrajectory& trajectory, std
 
 Status start_at_rest(const LidarInertialOdometry::Params& params, std::span<const MotionSample> samples,
                      MotionState& state) {
-  if (samples.empty()) return {ErrorCode::too_few, "imu samples", 0.0, 1.0};
+  if (samples.empty()) return {ErrorCode::insufficient_data, "imu samples", 0.0, 1.0};
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   double count = 0.0;
   for (const MotionSample& sample : samples) {
-    if (seconds(sample.time_ns - samples.front().from_ns) > params.expert.rest.levelling_max_s && count > 0.0) break;
+    if (seconds(sample.time_ns - samples.front().from_ns) > params.expert.stationary_bounds.levelling_max_s && count > 0.0) break;
     force += sample.f_I_m_s2;
     count += 1.0;
   }
@@ -103,19 +103,19 @@ Status level_at_rest(const LidarInertialOdometry::Params& params, const Eigen::V
   const double force_m_s2 = force_I_m_s2.norm();
   if (!(force_m_s2 >= 1.0)) return {ErrorCode::degenerate, "specific_force_m_s2", force_m_s2, 1.0};
   state = MotionState{};
-  if (Status status = level(force_I_m_s2, state.q_WI); !status.ok()) return status;
+  if (Status status = inclination_from_force(force_I_m_s2, state.q_WI); !status.ok()) return status;
   u::variances(state.covariance, u::tilt)
       .setConstant(params.expert.start.kLevelSigma_rad * params.expert.start.kLevelSigma_rad);
   u::variances(state.covariance, u::velocity).setConstant(kStartSpeedSigma_m_s * kStartSpeedSigma_m_s);
   return {};
 }
 
-Eigen::Vector3d assumed_rate_sigma(const LidarInertialOdometry::Params& params, const RateState& rate) {
+Eigen::Vector3d assumed_rate_sigma(const LidarInertialOdometry::Params& params, const AngularRateState& rate) {
   Eigen::Vector3d sigma = rate.covariance_rad2_s2.diagonal().cwiseMax(0.0).cwiseSqrt();
-  const bool recovered = rate.source == RateSource::recovered_flight || rate.source == RateSource::recovered_contact;
+  const bool recovered = rate.source == AngularRateSource::recovered_in_flight || rate.source == AngularRateSource::recovered_in_contact;
   for (int axis = 0; axis < 3; ++axis) {
     if (rate.clipped_axes >> axis & 1 && !recovered)
-      sigma[axis] = std::max(sigma[axis], params.expert.rails.rate_sigma_rad_s);
+      sigma[axis] = std::max(sigma[axis], params.expert.saturated_imu.rate_sigma_rad_s);
   }
   return sigma.cwiseMin(params.expert.prior.rate_sigma_max_rad_s);
 }

@@ -21,7 +21,7 @@ WindowRate rate_of(const MotionSample& sample) {
 std::uint8_t accel_saturated_axes(const Params& params, const ImuSample& sample) {
   std::uint8_t axes = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    const bool railed = std::abs(sample.specific_force_m_s2[axis]) >= params.expert.rails.accel_m_s2 ||
+    const bool railed = std::abs(sample.specific_force_m_s2[axis]) >= params.expert.saturated_imu.accel_m_s2 ||
                         (sample.device_clip_flags & (kClipAccelX << axis)) != 0;
     if (railed) axes |= static_cast<std::uint8_t>(1 << axis);
   }
@@ -30,20 +30,20 @@ std::uint8_t accel_saturated_axes(const Params& params, const ImuSample& sample)
 
 }  // namespace
 
-RestDetector::Params mapper_rest(const LidarInertialOdometry::Params& params) {
+RestDetector::Params mapping_stationary_params(const LidarInertialOdometry::Params& params) {
   // The parameter `rate_rad_s` limits the norm of the rate, but the rest detector limits each axis.
-  return {.rate_max_rad_s = params.expert.rest.rate_rad_s,
-          .rate_spread_rad_s = params.expert.rest.rate_rad_s / std::numbers::sqrt3,
-          .force_min_m_s2 = std::max(params.expert.gravity_m_s2 - params.expert.rest.force_m_s2, 0.0),
-          .force_max_m_s2 = params.expert.gravity_m_s2 + params.expert.rest.force_m_s2,
-          .force_spread_m_s2 = params.expert.rest.force_m_s2,
+  return {.rate_max_rad_s = params.expert.stationary_bounds.rate_rad_s,
+          .rate_spread_rad_s = params.expert.stationary_bounds.rate_rad_s / std::numbers::sqrt3,
+          .force_min_m_s2 = std::max(params.expert.gravity_m_s2 - params.expert.stationary_bounds.force_m_s2, 0.0),
+          .force_max_m_s2 = params.expert.gravity_m_s2 + params.expert.stationary_bounds.force_m_s2,
+          .force_spread_m_s2 = params.expert.stationary_bounds.force_m_s2,
           .rest_s = 0.0};
 }
 
-InertialTrack::InertialTrack(const Params& params) : rest_detector_(mapper_rest(params)) {}
+InertialTrack::InertialTrack(const Params& params) : rest_detector_(mapping_stationary_params(params)) {}
 
 std::optional<TimeNs> InertialTrack::last_ns() const {
-  return samples_.empty() ? boundary_ns_ : samples_.back().time_ns;
+  return samples_.empty() ? sweep_boundary_ns_ : samples_.back().time_ns;
 }
 
 Status InertialTrack::check(const ImuSample& sample) const {
@@ -54,62 +54,62 @@ Status InertialTrack::check(const ImuSample& sample) const {
   return {};
 }
 
-void InertialTrack::take(const Params& params, const ImuSample& sample, const RateState& rate) {
+void InertialTrack::store_sample(const Params& params, const ImuSample& sample, const AngularRateState& rate) {
   const TimeNs from_ns = last_ns().value_or(sample.time_ns);
   // The first sample has no earlier time stamp, so its averaging window is as long as the second window.
-  if (!boundary_ns_ && samples_.size() == 1) samples_[0].from_ns = 2 * from_ns - sample.time_ns;
+  if (!sweep_boundary_ns_ && samples_.size() == 1) samples_[0].from_ns = 2 * from_ns - sample.time_ns;
   MotionSample next;
   next.from_ns = from_ns;
   next.time_ns = sample.time_ns;
   update_rest(params, sample, rate, next);
-  if (!next.at_rest) next.w_WI_I_rad_s = rate.w_WI_I_rad_s - initial_.gyro_bias_rad_s;
+  if (!next.at_rest) next.w_WI_I_rad_s = rate.w_WI_I_rad_s - initial_rest_.gyro_bias_rad_s;
   next.f_I_m_s2 = sample.specific_force_m_s2;
   next.rate_sigma_rad_s = assumed_rate_sigma(params, rate);
   next.clipped_axes = static_cast<std::uint8_t>(rate.clipped_axes & kClipGyro);
   next.accel_saturated_axes = accel_saturated_axes(params, sample);
   const bool after_gap = next.time_ns - next.from_ns > kGap_ns;
   // The first averaging window after a gap is as long as the last window before the gap.
-  if (after_gap && newest_ && !next.at_rest)
-    next.from_ns = std::max(from_ns, next.time_ns - (newest_->time_ns - newest_->from_ns));
+  if (after_gap && newest_rate_ && !next.at_rest)
+    next.from_ns = std::max(from_ns, next.time_ns - (newest_rate_->time_ns - newest_rate_->from_ns));
   next.bridges_gap = after_gap && next.from_ns == from_ns;
   if (next.bridges_gap) next.rate_sigma_rad_s.setConstant(params.expert.prior.rate_sigma_max_rad_s);
-  before_newest_ = newest_;
-  newest_ = rate_of(next);
+  second_newest_rate_ = newest_rate_;
+  newest_rate_ = rate_of(next);
   if (after_gap && !next.bridges_gap) fill_gap(params);
   samples_.push_back(next);
 }
 
 void InertialTrack::fill_gap(const Params& params) {
   const std::size_t first = samples_.size();
-  bridge_gap(params.expert.prior, *before_newest_, *newest_, samples_);
+  bridge_gap(params.expert.prior, *second_newest_rate_, *newest_rate_, samples_);
   if (pending_rates_rad_s_.empty()) return;
   for (const MotionSample& part : std::span(samples_).subspan(first))
     pending_rates_rad_s_.insert(pending_rates_rad_s_.end() - 1, part.w_WI_I_rad_s);
 }
 
-void InertialTrack::update_rest(const Params& params, const ImuSample& sample, const RateState& rate,
+void InertialTrack::update_rest(const Params& params, const ImuSample& sample, const AngularRateState& rate,
                                 MotionSample& next) {
   ImuSample received = sample;
   received.angular_velocity_rad_s = rate.w_WI_I_rad_s;
   const bool clipped = (rate.clipped_axes & kClipGyro) != 0;
-  const Eigen::Vector3d bias = initial_.lasts ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : initial_.gyro_bias_rad_s;
-  if (clipped) rest_ = {};
-  if (!clipped && rest_detector_.observe(received, rest_, bias)) next.rest_start_ns = rest_.first_ns;
-  if (initial_.lasts) {
-    if (!initial_.first_ns) initial_.first_ns = initial_.run_ns = sample.time_ns;
+  const Eigen::Vector3d bias = initial_rest_.still_stationary ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : initial_rest_.gyro_bias_rad_s;
+  if (clipped) stationary_state_ = {};
+  if (!clipped && rest_detector_.detect_stationary(received, stationary_state_, bias)) next.rest_start_ns = stationary_state_.first_ns;
+  if (initial_rest_.still_stationary) {
+    if (!initial_rest_.first_ns) initial_rest_.first_ns = initial_rest_.initial_rest_start_ns = sample.time_ns;
     // The mean reading at the start of a rest is as noisy as single readings, so noise may interrupt the detected rest.
-    if (next.rest_start_ns && seconds(*next.rest_start_ns - *initial_.first_ns) < params.expert.start.bias_rest_s)
-      initial_.run_ns = next.rest_start_ns;
-    initial_.lasts = next.rest_start_ns == initial_.run_ns;
-    if (initial_.lasts && seconds(rest_.within_bias_since_ns) >= params.expert.start.bias_rest_s)
-      initial_.gyro_bias_rad_s = rest_.mean_rate_rad_s();
+    if (next.rest_start_ns && seconds(*next.rest_start_ns - *initial_rest_.first_ns) < params.expert.start.bias_rest_s)
+      initial_rest_.initial_rest_start_ns = next.rest_start_ns;
+    initial_rest_.still_stationary = next.rest_start_ns == initial_rest_.initial_rest_start_ns;
+    if (initial_rest_.still_stationary && seconds(stationary_state_.small_rate_since_ns) >= params.expert.start.bias_rest_s)
+      initial_rest_.gyro_bias_rad_s = stationary_state_.mean_rate_rad_s();
   }
-  next.at_rest = initial_.lasts;
-  if (rest_.pending_samples > 0) {
+  next.at_rest = initial_rest_.still_stationary;
+  if (stationary_state_.pending_samples > 0) {
     pending_rates_rad_s_.push_back(rate.w_WI_I_rad_s);
     return;
   }
-  const bool goes_on = next.rest_start_ns && *next.rest_start_ns < rest_.pending_first_ns;
+  const bool goes_on = next.rest_start_ns && *next.rest_start_ns < stationary_state_.pending_first_ns;
   if (!goes_on) revoke_rest(next.rest_start_ns);
   pending_rates_rad_s_.clear();
 }
@@ -119,9 +119,9 @@ void InertialTrack::revoke_rest(std::optional<TimeNs> rest_start_ns) {
   for (std::size_t back = 1; back <= count; ++back) {
     MotionSample& sample = samples_[samples_.size() - back];
     sample.rest_start_ns = rest_start_ns;
-    if (!sample.at_rest || initial_.lasts) continue;
+    if (!sample.at_rest || initial_rest_.still_stationary) continue;
     sample.at_rest = false;
-    sample.w_WI_I_rad_s = pending_rates_rad_s_[pending_rates_rad_s_.size() - back] - initial_.gyro_bias_rad_s;
+    sample.w_WI_I_rad_s = pending_rates_rad_s_[pending_rates_rad_s_.size() - back] - initial_rest_.gyro_bias_rad_s;
   }
 }
 
@@ -130,29 +130,29 @@ bool InertialTrack::starts_at_rest(double lasted_s) const {
     return sample.at_rest || seconds(sample.from_ns - samples_.front().from_ns) >= lasted_s;
   };
   // A nonzero gyro bias was estimated during a long enough initial rest, whose first samples may be deleted already.
-  return !initial_.gyro_bias_rad_s.isZero(0.0) || std::all_of(samples_.begin(), samples_.end(), rests);
+  return !initial_rest_.gyro_bias_rad_s.isZero(0.0) || std::all_of(samples_.begin(), samples_.end(), rests);
 }
 
-bool InertialTrack::rests_until(TimeNs end_ns) const {
+bool InertialTrack::is_stationary_until(TimeNs end_ns) const {
   const auto rests = [&](const MotionSample& sample) { return sample.from_ns >= end_ns || sample.rest_start_ns; };
   return std::all_of(samples_.begin(), samples_.end(), rests);
 }
 
-bool InertialTrack::rests_between(TimeNs from_ns, TimeNs end_ns) const {
-  const std::span<const MotionSample> samples = samples_from(from_ns);
+bool InertialTrack::is_stationary_between(TimeNs from_ns, TimeNs end_ns) const {
+  const std::span<const MotionSample> samples = motion_samples_from(from_ns);
   const auto after = [&](const MotionSample& sample) { return sample.from_ns >= end_ns; };
   const auto end = std::find_if(samples.begin(), samples.end(), after);
   return std::all_of(samples.begin(), end, [](const MotionSample& sample) { return bool(sample.rest_start_ns); });
 }
 
-std::span<const MotionSample> InertialTrack::samples_from(TimeNs from_ns) const {
+std::span<const MotionSample> InertialTrack::motion_samples_from(TimeNs from_ns) const {
   const auto ended = [&](const MotionSample& sample) { return sample.time_ns <= from_ns; };
   return {std::partition_point(samples_.begin(), samples_.end(), ended), samples_.end()};
 }
 
 std::optional<Eigen::Vector3d> InertialTrack::resting_force(TimeNs time_ns, double lasted_s) const {
-  if (!rest_.rests || seconds(time_ns - rest_.first_ns) < lasted_s) return std::nullopt;
-  return rest_.mean_force_m_s2();
+  if (!stationary_state_.is_stationary || seconds(time_ns - stationary_state_.first_ns) < lasted_s) return std::nullopt;
+  return stationary_state_.mean_force_m_s2();
 }
 
 void InertialTrack::exclude_accelerometer(TimeNs end_ns) {
@@ -166,7 +166,7 @@ void InertialTrack::exclude_accelerometer(TimeNs end_ns) {
 void InertialTrack::prune_until(TimeNs end_ns) {
   const auto after = [&](const MotionSample& sample) { return sample.time_ns > end_ns; };
   samples_.erase(samples_.begin(), std::find_if(samples_.begin(), samples_.end(), after));
-  boundary_ns_ = end_ns;
+  sweep_boundary_ns_ = end_ns;
 }
 
 }  // namespace tumble::mapping

@@ -21,22 +21,22 @@ class InertialTrack {
   /// Returns `ok` if the sample is later than all earlier samples, and `time_order` otherwise.
   Status check(const ImuSample& sample) const;
   /// The method check() must have accepted the sample.
-  void take(const Params& params, const ImuSample& sample, const RateState& rate);
+  void store_sample(const Params& params, const ImuSample& sample, const AngularRateState& rate);
 
   /// The last sweep ended within the averaging window of the first stored sample.
   std::span<const MotionSample> samples() const { return samples_; }
-  std::span<const MotionSample> samples_from(TimeNs from_ns) const;
-  std::optional<TimeNs> border_ns() const { return boundary_ns_; }
+  std::span<const MotionSample> motion_samples_from(TimeNs from_ns) const;
+  std::optional<TimeNs> sweep_boundary_ns() const { return sweep_boundary_ns_; }
   /// Returns the mean specific force of the current rest, if the rest lasted at least `lasted_s` up to `time_ns`.
   std::optional<Eigen::Vector3d> resting_force(TimeNs time_ns, double lasted_s) const;
   /// Returns whether the robot was at rest during the first `lasted_s` seconds, or during all samples of a shorter
   /// recording.
   bool starts_at_rest(double lasted_s) const;
-  bool has_not_moved() const { return initial_.lasts; }
+  bool has_not_moved() const { return initial_rest_.still_stationary; }
   /// Returns the time of the newest sample, or the end of the last sweep if there are no samples.
   std::optional<TimeNs> last_ns() const;
-  bool rests_until(TimeNs end_ns) const;
-  bool rests_between(TimeNs from_ns, TimeNs end_ns) const;
+  bool is_stationary_until(TimeNs end_ns) const;
+  bool is_stationary_between(TimeNs from_ns, TimeNs end_ns) const;
   /// Marks the specific forces before `end_ns` as unknown; the angular rates remain.
   void exclude_accelerometer(TimeNs end_ns);
   void prune_until(TimeNs end_ns);
@@ -44,23 +44,23 @@ class InertialTrack {
  private:
   /// The initial rest ends with the first motion, but its gyro bias remains in use.
   struct InitialRest {
-    bool lasts = true;
+    bool still_stationary = true;
     std::optional<TimeNs> first_ns;  ///< first sample of the recording
-    std::optional<TimeNs> run_ns;    ///< first sample of the current rest
+    std::optional<TimeNs> initial_rest_start_ns;    ///< first sample of the current rest
     Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();
   };
 
-  void update_rest(const Params& params, const ImuSample& sample, const RateState& rate, MotionSample& next);
+  void update_rest(const Params& params, const ImuSample& sample, const AngularRateState& rate, MotionSample& next);
   void revoke_rest(std::optional<TimeNs> rest_start_ns);
   void fill_gap(const Params& params);
 
   std::vector<MotionSample> samples_;
-  std::optional<TimeNs> boundary_ns_;  // end of the last sweep
+  std::optional<TimeNs> sweep_boundary_ns_;  // end of the last sweep
   RestDetector rest_detector_;
-  RestDetector::State rest_;
-  InitialRest initial_;
+  RestDetector::State stationary_state_;
+  InitialRest initial_rest_;
   std::vector<Eigen::Vector3d> pending_rates_rad_s_;  // rates since the last averaged reading
-  std::optional<WindowRate> before_newest_, newest_;
+  std::optional<WindowRate> second_newest_rate_, newest_rate_;
 };
 
 }  // namespace tumble::mapping

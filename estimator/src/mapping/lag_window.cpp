@@ -13,10 +13,10 @@ namespace tumble::mapping {
 
 Status WindowSweep::motion(SweepTrajectory& trajectory) const {
   const Registration::Estimate& now = smoothed.mean;
-  return trajectory.build(now.state, samples, end_ns, now.calibration.gravity_W_m_s2, now.deficit_rad_s);
+  return trajectory.build(now.state, samples, end_ns, now.calibration.gravity_W_m_s2, now.saturation_deficit_rad_s);
 }
 
-WindowSweep& LagWindow::enter() {
+WindowSweep& LagWindow::append_sweep() {
   if (is_full()) sweeps_.pop_front();
   return sweeps_.emplace_back();
 }
@@ -31,24 +31,24 @@ void LagWindow::smooth() {
   for (std::size_t k = sweeps_.size() - 1; k-- > 0;) {
     WindowSweep& sweep = sweeps_[k];
     const WindowSweep& next = sweeps_[k + 1];
-    solved.noalias() = next.jacobian_previous * sweep.filtered.errors;
-    dense::solve_semidefinite(make_invertible(next.predicted.errors), solved);
+    solved.noalias() = next.jacobian_previous * sweep.filtered.error_covariance;
+    dense::solve_semidefinite(make_invertible(next.predicted.error_covariance), solved);
     gain = solved.transpose();
     sweep.smoothed.mean = sweep.filtered.mean;
     sweep.smoothed.mean.add(gain * next.smoothed.mean.minus(next.predicted.mean));
-    solved = next.smoothed.errors - next.predicted.errors;
-    propagate_covariance(gain, solved, sweep.smoothed.errors);
-    sweep.smoothed.errors += sweep.filtered.errors;
-    make_symmetric(sweep.smoothed.errors);
+    solved = next.smoothed.error_covariance - next.predicted.error_covariance;
+    propagate_covariance(gain, solved, sweep.smoothed.error_covariance);
+    sweep.smoothed.error_covariance += sweep.filtered.error_covariance;
+    make_symmetric(sweep.smoothed.error_covariance);
   }
 }
 
-void LagWindow::move_inserted(LocalMap& map) const {
+void LagWindow::move_inserted_sweeps(LocalMap& map) const {
   SweepTrajectory trajectory;
   for (std::size_t k = 0; k + 1 < sweeps_.size(); ++k) {
     const WindowSweep& sweep = sweeps_[k];
     if (sweep.inserted.empty() || !sweep.motion(trajectory).ok()) continue;
-    const SweepCalibration &now = sweep.smoothed.mean.calibration,
+    const LidarImuCalibration &now = sweep.smoothed.mean.calibration,
                            &inserted_calibration = sweep.filtered.mean.calibration;
     map.move(trajectory, now.T_IL, now.time_offset_s - inserted_calibration.time_offset_s, sweep.inserted);
   }

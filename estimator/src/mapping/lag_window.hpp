@@ -9,17 +9,17 @@
 
 namespace tumble::mapping {
 
-struct Estimated {
+struct EstimatedSweep {
   Registration::Estimate mean;
-  Registration::Matrix errors = Registration::Matrix::Zero();
+  Registration::Matrix error_covariance = Registration::Matrix::Zero();
 };
 
 /// The unknowns of a WindowSweep refer to the start of the sweep.
 struct WindowSweep {
-  Estimated predicted;
+  EstimatedSweep predicted;
   /// derivative of the unknowns with respect to the unknowns of the previous sweep
   Registration::Matrix jacobian_previous = Registration::Matrix::Identity();
-  Estimated filtered, smoothed;
+  EstimatedSweep filtered, smoothed;
   std::vector<MotionSample> samples;
   TimeNs end_ns = 0;
   std::vector<InsertedPoint> inserted;
@@ -34,13 +34,13 @@ class LagWindow {
   explicit LagWindow(int sweeps) : length_(static_cast<std::size_t>(sweeps)) {}
 
   /// A full lag window first drops its oldest sweep.
-  WindowSweep& enter();
+  WindowSweep& append_sweep();
   /// The oldest sweep of a full lag window has its final estimate.
   bool is_full() const { return sweeps_.size() == length_; }
   /// Smooths all sweeps except the newest: mapping.md (R63).
   void smooth();
   /// Moves the map points of all sweeps except the newest to their smoothed positions.
-  void move_inserted(LocalMap& map) const;
+  void move_inserted_sweeps(LocalMap& map) const;
   /// The point indices of the map have changed, so smoothing can no longer move the inserted points.
   void clear_inserted();
 

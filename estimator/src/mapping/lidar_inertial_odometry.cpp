@@ -15,7 +15,7 @@ namespace tumble {
 
 namespace {
 
-Status check(const ImuSample& sample, const RateState& rate) {
+Status check(const ImuSample& sample, const AngularRateState& rate) {
   if (const Status status = check_sample(sample); !status.ok()) return status;
   if (const Status status = check_stamp(sample.time_ns, "time_ns"); !status.ok()) return status;
   if (!rate.w_WI_I_rad_s.allFinite() || !rate.covariance_rad2_s2.allFinite()) {
@@ -29,11 +29,11 @@ Status check(const ImuSample& sample, const RateState& rate) {
 
 LidarInertialOdometry::Impl::Impl(const Params& given)
     : params((mapping::require_params(given), given)),
-      track(given),
+      inertial_track(given),
       window(given.expert.window_sweeps),
       map(given),
-      scratch(given) {
-  boundary.state_estimate.mean.calibration.T_IL = given.T_IL;
+      sweep_scratch(given) {
+  sweep_boundary.state_estimate.mean.calibration.T_IL = given.T_IL;
 }
 
 LidarInertialOdometry::LidarInertialOdometry(const Params& params) : impl_(std::make_unique<Impl>(params)) {}
@@ -58,13 +58,13 @@ const std::optional<Eigen::Isometry3d>& LidarInertialOdometry::start() const {
 std::optional<LidarInertialOdometry::StartTilt> LidarInertialOdometry::start_tilt() const {
   constexpr double kBetter = 0.5;  // maximum ratio of the standard deviations of the new tilt and the initial tilt
   namespace u = mapping::unknowns;
-  const Eigen::Vector3d& gravity = impl_->boundary.state_estimate.mean.calibration.gravity_W_m_s2;
-  const double variance = u::variances(impl_->boundary.state_estimate.error, u::gravity).head<2>().maxCoeff();
+  const Eigen::Vector3d& gravity = impl_->sweep_boundary.state_estimate.mean.calibration.gravity_W_m_s2;
+  const double variance = u::variances(impl_->sweep_boundary.state_estimate.state_error_covariance, u::gravity).head<2>().maxCoeff();
   StartTilt out;
   out.sigma_rad = std::sqrt(variance) / std::max(gravity.norm(), 1e-3);
-  const bool in_motion = impl_->start_tilt || impl_->world.tilt_sigma_rad() > impl_->params.expert.world.tilt_sigma_rad;
+  const bool in_motion = impl_->start_tilt || impl_->world_covariance.tilt_sigma_rad() > impl_->params.expert.world_covariance.tilt_sigma_rad;
   if (!mapping::has_started(impl_->tracking) || impl_->localiser.is_localised() || !in_motion) return std::nullopt;
-  if (!(out.sigma_rad <= kBetter * impl_->world.tilt_sigma_rad())) return impl_->start_tilt;
+  if (!(out.sigma_rad <= kBetter * impl_->world_covariance.tilt_sigma_rad())) return impl_->start_tilt;
   out.rotation = Eigen::Quaterniond::FromTwoVectors(gravity, -Eigen::Vector3d::UnitZ());
   if (impl_->start_tilt) out.rotation = (out.rotation * impl_->start_tilt->rotation).normalized();
   return out;
@@ -74,10 +74,10 @@ void LidarInertialOdometry::set_start_tilt(const StartTilt& tilt) {
   impl_->start_tilt = tilt;
 }
 
-Status LidarInertialOdometry::add_imu(const ImuSample& sample, const RateState& rate) {
+Status LidarInertialOdometry::add_imu(const ImuSample& sample, const AngularRateState& rate) {
   if (Status status = check(sample, rate); !status.ok()) return status;
-  if (Status status = impl_->track.check(sample); !status.ok()) return status;
-  impl_->track.take(impl_->params, sample, rate);
+  if (Status status = impl_->inertial_track.check(sample); !status.ok()) return status;
+  impl_->inertial_track.store_sample(impl_->params, sample, rate);
   return {};
 }
 
@@ -86,18 +86,18 @@ Status LidarInertialOdometry::add_velocity(const Eigen::Vector3d& v_WI_I_m_s, do
     return {ErrorCode::non_finite, "velocity", std::numeric_limits<double>::quiet_NaN(), 0.0};
   }
   if (!(sigma_m_s > 0.0)) return {ErrorCode::out_of_range, "sigma_m_s", sigma_m_s, 0.0};
-  impl_->known = mapping::KnownVelocity{v_WI_I_m_s, sigma_m_s};
+  impl_->motion_prior = mapping::KnownVelocity{v_WI_I_m_s, sigma_m_s};
   return {};
 }
 
 Status LidarInertialOdometry::add_reading(const OdometerReading& reading) {
   const Status status = check_reading(reading);
-  if (status.ok()) impl_->known = reading;
+  if (status.ok()) impl_->motion_prior = reading;
   return status;
 }
 
 void LidarInertialOdometry::exclude_accelerometer() {
-  impl_->known = mapping::ConstantVelocity{};
+  impl_->motion_prior = mapping::ConstantVelocity{};
 }
 
 Status LidarInertialOdometry::add_sweep(TimeNs lidar_start_ns, TimeNs lidar_end_ns, std::span<const LidarPoint> points,
@@ -109,67 +109,67 @@ Status LidarInertialOdometry::add_sweep(TimeNs lidar_start_ns, TimeNs lidar_end_
   return impl_->add_sweep(lidar_start_ns + offset_ns, lidar_end_ns + offset_ns, points, report);
 }
 
-Status LidarInertialOdometry::predict(std::span<const ImuSample> samples, std::span<const RateState> rates,
+Status LidarInertialOdometry::predict(std::span<const ImuSample> samples, std::span<const AngularRateState> rates,
                                       PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2) const {
   const Impl& my = *impl_;
   if (!mapping::has_started(my.tracking)) return {ErrorCode::empty, "sweeps", 0.0, 1.0};
   if (samples.size() != rates.size())
-    return {ErrorCode::too_few, "rates", double(rates.size()), double(samples.size())};
-  mapping::InertialTrack track = my.track;
+    return {ErrorCode::insufficient_data, "rates", double(rates.size()), double(samples.size())};
+  mapping::InertialTrack track = my.inertial_track;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (Status status = check(samples[k], rates[k]); !status.ok()) return status;
     if (Status status = track.check(samples[k]); !status.ok()) return status;
-    track.take(my.params, samples[k], rates[k]);
+    track.store_sample(my.params, samples[k], rates[k]);
   }
   const auto report_velocity = [&](const mapping::MotionErrors& errors, const MotionState& state) {
     if (velocity_covariance_I_m2_s2) *velocity_covariance_I_m2_s2 = mapping::velocity_covariance_I(state, errors);
   };
   if (track.samples().empty()) {
-    report_velocity(mapping::unknowns::block(my.boundary.state_estimate.error, mapping::unknowns::motion),
-                    my.boundary.state_estimate.mean.state);
-    return pose_at(my.boundary.time_ns(), pose);
+    report_velocity(mapping::unknowns::sub_block(my.sweep_boundary.state_estimate.state_error_covariance, mapping::unknowns::motion),
+                    my.sweep_boundary.state_estimate.mean.state);
+    return pose_at(my.sweep_boundary.time_ns(), pose);
   }
   const TimeNs end_ns = track.samples().back().time_ns;
-  if (std::holds_alternative<mapping::ConstantVelocity>(my.known)) track.exclude_accelerometer(end_ns);
-  const Registration::Estimate& last = my.boundary.state_estimate.mean;
+  if (std::holds_alternative<mapping::ConstantVelocity>(my.motion_prior)) track.exclude_accelerometer(end_ns);
+  const Registration::Estimate& last = my.sweep_boundary.state_estimate.mean;
   SweepTrajectory trajectory;
   if (Status status = trajectory.build(last.state, track.samples(), end_ns, last.calibration.gravity_W_m_s2);
       !status.ok())
     return status;
-  const int resting_sweeps = my.rests(track, trajectory, end_ns) ? my.resting_sweeps + 1 : 0;
+  const int resting_sweeps = my.is_stationary(track, trajectory, end_ns) ? my.resting_sweeps + 1 : 0;
   const mapping::MotionWindow motion{track.samples(), end_ns, resting_sweeps};
   const std::unique_ptr<const mapping::Prediction> at_start(
-      new mapping::Prediction(mapping::predict(my.params, my.boundary, motion, trajectory, my.known)));
+      new mapping::Prediction(mapping::predict(my.params, my.sweep_boundary, motion, trajectory, my.motion_prior)));
   const Registration::Estimate& mean = at_start->prior.mean;  // already includes an odometer reading
   if (Status status =
-          trajectory.build(mean.state, track.samples(), end_ns, mean.calibration.gravity_W_m_s2, mean.deficit_rad_s);
+          trajectory.build(mean.state, track.samples(), end_ns, mean.calibration.gravity_W_m_s2, mean.saturation_deficit_rad_s);
       !status.ok())
     return status;
-  pose = my.pose_along(trajectory, trajectory.duration_s(), at_start->errors);
+  pose = my.pose_along(trajectory, trajectory.duration_s(), at_start->motion_error_covariance);
   pose.time_ns = end_ns;
-  report_velocity(mapping::motion_errors(mapping::unknowns_at(trajectory, trajectory.duration_s()), at_start->errors),
+  report_velocity(mapping::marginal_motion_errors(mapping::unknowns_at(trajectory, trajectory.duration_s()), at_start->motion_error_covariance),
                   trajectory.state(trajectory.duration_s()));
   return {};
 }
 
-SweepCalibration LidarInertialOdometry::calibration() const {
-  SweepCalibration out = impl_->boundary.state_estimate.mean.calibration;
+LidarImuCalibration LidarInertialOdometry::calibration() const {
+  LidarImuCalibration out = impl_->sweep_boundary.state_estimate.mean.calibration;
   out.time_offset_s += impl_->params.time_offset_s;
   return out;
 }
 
-SweepCalibration::Covariance LidarInertialOdometry::calibration_covariance() const {
-  return mapping::unknowns::block(impl_->boundary.state_estimate.error, mapping::unknowns::calibration);
+LidarImuCalibration::Covariance LidarInertialOdometry::calibration_covariance() const {
+  return mapping::unknowns::sub_block(impl_->sweep_boundary.state_estimate.state_error_covariance, mapping::unknowns::calibration);
 }
 
-SweepCalibration::Covariance LidarInertialOdometry::calibration_weighting_covariance() const {
-  return mapping::unknowns::block(impl_->boundary.state_estimate.weight, mapping::unknowns::calibration);
+LidarImuCalibration::Covariance LidarInertialOdometry::calibration_prior_covariance() const {
+  return mapping::unknowns::sub_block(impl_->sweep_boundary.state_estimate.prior_weight_covariance, mapping::unknowns::calibration);
 }
 
 Status LidarInertialOdometry::check_vertical() const {
   constexpr double kMost_rad = 0.02;
   namespace u = mapping::unknowns;
-  const double variance = u::variances(impl_->boundary.state_estimate.error, u::gravity).head<2>().maxCoeff();
+  const double variance = u::variances(impl_->sweep_boundary.state_estimate.state_error_covariance, u::gravity).head<2>().maxCoeff();
   const double sigma_rad = std::sqrt(variance) / std::max(impl_->params.expert.gravity_m_s2, 1e-3);
   if (!mapping::has_started(impl_->tracking) || !(sigma_rad > kMost_rad)) return {};
   return {ErrorCode::out_of_range, "standard deviation in rad of the map's vertical after a start in motion", sigma_rad,
@@ -186,7 +186,7 @@ Status LidarInertialOdometry::pose_at(TimeNs time_ns, PoseState& pose) const {
   if (sweep == window.end()) return {ErrorCode::out_of_range, "time_ns", double(time_ns), double(window.back().end_ns)};
   SweepTrajectory motion;
   if (Status status = sweep->motion(motion); !status.ok()) return status;
-  pose = impl_->pose_along(motion, seconds(time_ns - motion.start_ns()), sweep->smoothed.errors);
+  pose = impl_->pose_along(motion, seconds(time_ns - motion.start_ns()), sweep->smoothed.error_covariance);
   pose.time_ns = time_ns;
   return {};
 }

@@ -22,15 +22,15 @@ class PoseVariance {
       : duration_s_(std::max(trajectory.duration_s(), 1e-9)) {
     namespace u = unknowns;
     const SweepTrajectory::Transition step = trajectory.transition(trajectory.duration_s());
-    Eigen::Matrix<double, 9, Registration::kCalibrationStart> F;
-    F << step.jacobian_start, step.jacobian_deficit_s;
-    const Eigen::Matrix<double, 9, 9> end = F * u::block(covariance, u::moving) * F.transpose();
+    Eigen::Matrix<double, 9, Registration::kFirstCalibrationUnknown> F;
+    F << step.jacobian_start, step.jacobian_saturation_deficit_s;
+    const Eigen::Matrix<double, 9, 9> end = F * u::sub_block(covariance, u::moving) * F.transpose();
     start_variance_m2_ = u::variances(covariance, u::position).mean();
     start_variance_rad2_ = u::variances(covariance, u::attitude).mean();
     end_variance_m2_ = u::variances(end, u::position).mean();
     end_variance_rad2_ = u::variances(end, u::attitude).mean();
   }
-  double at_m2(const SweepPoint& point) const {
+  double position_variance_at_m2(const SweepPoint& point) const {
     const double share = std::clamp(point.t_s / duration_s_, 0.0, 1.0);
     const double m2 = start_variance_m2_ + share * (end_variance_m2_ - start_variance_m2_);
     const double rad2 = start_variance_rad2_ + share * (end_variance_rad2_ - start_variance_rad2_);
@@ -51,18 +51,18 @@ std::size_t LocalMap::insert(const Params& params, const SweepToInsert& sweep, c
   const PoseVariance pose_variance(sweep.covariance, trajectory);
   const std::uint32_t number = sweeps();
   const MotionState middle = trajectory.state(0.5 * trajectory.duration_s());
-  const std::uint32_t line = scan_lines_.base(middle.q_WI * params.T_IL.linear().col(2), sweep.has_ring_numbers);
+  const std::uint32_t line = scan_lines_.line_number_offset(middle.q_WI * params.T_IL.linear().col(2), sweep.has_ring_numbers);
   const double moved_m =
-      (trajectory.common_position_m(trajectory.duration_s()) - trajectory.common_position_m(0.0)).norm();
+      (trajectory.gravity_free_position_m(trajectory.duration_s()) - trajectory.gravity_free_position_m(0.0)).norm();
   free_space_.start(middle.p_WI_m.cast<float>(), static_cast<float>(0.5 * moved_m));
   const auto add = [&](double sigma_max_m) {
     std::size_t added = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const Eigen::Vector3f position = levers_W_m_[i] + trajectory.common_position_m(points[i].t_s).cast<float>();
+      const Eigen::Vector3f position = levers_W_m_[i] + trajectory.gravity_free_position_m(points[i].t_s).cast<float>();
       free_space_.add(position);
       if (map_.is_occupied(position)) continue;  // most points end here
       // See mapping.md (R64).
-      const double sigma_m = std::sqrt(noise.point_variance_m2(points[i]) + pose_variance.at_m2(points[i]));
+      const double sigma_m = std::sqrt(noise.point_variance_m2(points[i]) + pose_variance.position_variance_at_m2(points[i]));
       if (sigma_m > sigma_max_m) continue;
       const std::uint32_t index =
           map_.add(position, static_cast<float>(sigma_m), number, ScanLines::line(line, points[i].ring));
@@ -75,7 +75,7 @@ std::size_t LocalMap::insert(const Params& params, const SweepToInsert& sweep, c
   std::size_t added = add(kPointSigmaMax_m);
   if (empty()) added = add(std::numeric_limits<double>::infinity());  // an uncertain map is better than none
   seen_from_W_m_.push_back(middle.p_WI_m.cast<float>());
-  if (sweep.pose_certain) check_free_space(free_space_);
+  if (sweep.is_pose_certain) check_free_space(free_space_);
   return added;
 }
 
@@ -83,8 +83,8 @@ void LocalMap::check_free_space(const FreeSpaceGrid& sight) {
   for (std::uint32_t index = 0; index < map_.index_end(); ++index) {
     if (!map_.exists(index)) continue;
     const FreeSpaceGrid::Verdict verdict = sight.verdict(map_.position_W_m(index), map_.sigma_m(index));
-    if (verdict != FreeSpaceGrid::Verdict::unknown)
-      map_.count_observation(index, verdict == FreeSpaceGrid::Verdict::seen_through);
+    if (verdict != FreeSpaceGrid::Verdict::unknown_space)
+      map_.count_observation(index, verdict == FreeSpaceGrid::Verdict::free_space);
   }
 }
 
@@ -94,13 +94,13 @@ void LocalMap::move(const SweepTrajectory& trajectory, const Eigen::Isometry3d& 
   for (const InsertedPoint& inserted_point : inserted) {
     const double t_s = inserted_point.point.t_s + later_s;
     const SweepTrajectory::PreintegratedMotion at = trajectory.at(t_s, hint);
-    const Eigen::Vector3d position = trajectory.common_position_m(t_s) + at.preintegrated_position_m +
+    const Eigen::Vector3d position = trajectory.gravity_free_position_m(t_s) + at.preintegrated_position_m +
                                      at.q_WI * (T_IL * inserted_point.point.point_L_m.cast<double>());
     map_.move(inserted_point.index, position.cast<float>());
   }
 }
 
-void LocalMap::start_from(const Params& params, std::span<const MapPoint> points, const Eigen::Isometry3f* T_MW) {
+void LocalMap::start_from_map_points(const Params& params, std::span<const MapPoint> points, const Eigen::Isometry3f* T_MW) {
   constexpr float kDistant_m = 1e5f;
   const LocalMap before = std::exchange(*this, LocalMap(params));
   for (int axis = 0; axis < 3; ++axis) {
@@ -116,17 +116,17 @@ void LocalMap::start_from(const Params& params, std::span<const MapPoint> points
   const std::uint32_t first = sweeps();
   for (const Eigen::Vector3f& from : before.seen_from_W_m_) seen_from_W_m_.push_back(*T_MW * from);
   for (std::uint32_t index = 0; index < before.map_.index_end(); ++index) {
-    if (!before.map_.exists(index) || before.map_.seen_through(index) > 0) continue;
+    if (!before.map_.exists(index) || before.map_.seen_through_count(index) > 0) continue;
     map_.insert(*T_MW * before.map_.position_W_m(index), before.map_.sigma_m(index), first + before.map_.sweep(index));
   }
 }
 
 bool LocalMap::prune(const Params& params, const Eigen::Vector3d& p_WI_m) {
   const Eigen::Vector3f here = p_WI_m.cast<float>();
-  const float moved = (here - pruned_at_W_m_).norm();
+  const float moved = (here - last_pruning_position_W_m_).norm();
   if (moved < static_cast<float>(LocalMapParams::kPruneRatio * params.expert.map.radius_m)) return false;
-  pruned_at_W_m_ = here;
-  const std::vector<std::uint32_t> kept = map_.remove_beyond(here, static_cast<float>(params.expert.map.radius_m));
+  last_pruning_position_W_m_ = here;
+  const std::vector<std::uint32_t> kept = map_.remove_points_beyond(here, static_cast<float>(params.expert.map.radius_m));
   std::vector<Eigen::Vector3f> from(kept.size());
   for (std::size_t i = 0; i < kept.size(); ++i) from[i] = seen_from_W_m_[kept[i]];
   seen_from_W_m_.swap(from);

@@ -23,7 +23,7 @@ struct SweepToInsert {
   const Registration::Matrix& covariance;
   std::span<const SweepPoint> points;
   bool has_ring_numbers;
-  bool pose_certain;  ///< certain pose: the sweep's free space may contradict map points
+  bool is_pose_certain;  ///< certain pose: the sweep's free space may contradict map points
 };
 
 /// LocalMap contains the points around the sensor, their scan lines, and the sensor positions from which the points
@@ -50,7 +50,7 @@ class LocalMap {
   /// Replaces the map by a prior map. Each prior point gets one of six distant sensor positions on the axes, which
   /// preserves the sign of its normal. If `T_MW` is given, the points of the local map are added, transformed to the
   /// prior map's frame.
-  void start_from(const Params& params, std::span<const MapPoint> points, const Eigen::Isometry3f* T_MW);
+  void start_from_map_points(const Params& params, std::span<const MapPoint> points, const Eigen::Isometry3f* T_MW);
 
   /// Returns the number of sweeps that have added points to the map.
   std::uint32_t sweeps() const { return static_cast<std::uint32_t>(seen_from_W_m_.size()); }
@@ -71,7 +71,7 @@ class LocalMap {
 
   VoxelMap map_;
   std::vector<Eigen::Vector3f> seen_from_W_m_;  // sensor position of each sweep with map points
-  Eigen::Vector3f pruned_at_W_m_ = Eigen::Vector3f::Zero();
+  Eigen::Vector3f last_pruning_position_W_m_ = Eigen::Vector3f::Zero();
   ScanLines scan_lines_;
   std::vector<Eigen::Vector3f> levers_W_m_;
   FreeSpaceGrid free_space_;

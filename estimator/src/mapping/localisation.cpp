@@ -23,7 +23,7 @@ constexpr double kInlierRatioMin = 0.2, kMeanInnovationMax = 0.2;
 constexpr std::size_t kMeanSweepsMin = 20, kMeanSweepsMax = 50;
 
 double innovation_max() {
-  return std::sqrt(kContradictionChi2Min / SweepUnknowns::kMotionSize);
+  return std::sqrt(kContradictionChi2Min / RegistrationUnknowns::kMotionSize);
 }
 
 Status misfit(double inlier_ratio) {
@@ -43,13 +43,13 @@ void Localisation::add(const SweepReport& sweep) {
   observe_fit(sweep);
   sigma_m_ = sweep.map_sigma_m;
   newest_ns_ = sweep.pose.time_ns;
-  if (!(sigma_m_ > matched_m_))
+  if (!(sigma_m_ > distance_when_localised_m_))
     lost_since_ns_.reset();
   else if (!lost_since_ns_)
     lost_since_ns_ = newest_ns_;
   if (!(sweep.innovation > innovation_max())) return;
-  previous_contradicted_ns_ = last_contradicted_ns_;
-  last_contradicted_ns_ = newest_ns_;
+  previous_contradicted_sweep_ns_ = last_contradicted_sweep_ns_;
+  last_contradicted_sweep_ns_ = newest_ns_;
 }
 
 void Localisation::observe_fit(const SweepReport& sweep) {
@@ -67,10 +67,10 @@ Status Localisation::fit_verdict() const {
 }
 
 Status Localisation::current_verdict() const {
-  if (sigma_m_ > matched_m_)
-    return {ErrorCode::out_of_range, "standard deviation in m of the position in the map", sigma_m_, matched_m_};
-  if (!previous_contradicted_ns_ ||
-      check_stamp_order(newest_ns_, *previous_contradicted_ns_, kMemory_s).error_code == ErrorCode::gap)
+  if (sigma_m_ > distance_when_localised_m_)
+    return {ErrorCode::out_of_range, "standard deviation in m of the position in the map", sigma_m_, distance_when_localised_m_};
+  if (!previous_contradicted_sweep_ns_ ||
+      check_stamp_order(newest_ns_, *previous_contradicted_sweep_ns_, kForgettingTime_s).error_code == ErrorCode::gap)
     return fit_verdict();
   return {ErrorCode::out_of_range,
           "second-largest innovation of a sweep (registered minus predicted pose) in standard deviations",
@@ -79,8 +79,8 @@ Status Localisation::current_verdict() const {
 
 /// See mapping.md (R70), (R71).
 Status Localisation::verdict() const {
-  if (largest_sigma_m_ > matched_m_)
-    return {ErrorCode::out_of_range, "standard deviation in m of a sweep's position", largest_sigma_m_, matched_m_};
+  if (largest_sigma_m_ > distance_when_localised_m_)
+    return {ErrorCode::out_of_range, "standard deviation in m of a sweep's position", largest_sigma_m_, distance_when_localised_m_};
   if (second_largest_innovation_ > innovation_max())
     return {ErrorCode::out_of_range,
             "second-largest innovation of a sweep (registered minus predicted pose) in standard deviations",

@@ -22,7 +22,7 @@ constexpr float kDeviations = 3.0f;
 // No neighbour confirms 0.05 % of the returns at rest, 0.3 to 0.7 % in motion, and 1.6 % for a thrown rig.
 constexpr float kClearAirFraction = 0.02f;
 
-float square(float x) {
+float squared(float x) {
   return x * x;
 }
 
@@ -31,23 +31,23 @@ float square(float x) {
 /// Returns the squared sine of the angle between two beams, or 1 for angles of 90 deg or more.
 float LoneReturns::sine2_between(const Beam& a, const Beam& b) {
   if (a.point_L_m.dot(b.point_L_m) <= 0.0f) return 1.0f;
-  return a.point_L_m.cross(b.point_L_m).squaredNorm() / (square(a.range_m) * square(b.range_m));
+  return a.point_L_m.cross(b.point_L_m).squaredNorm() / (squared(a.range_m) * squared(b.range_m));
 }
 
 float LoneReturns::variance_m2(const RangeNoise& noise, const Beam& beam) {
-  return square(std::max(static_cast<float>(noise.sigma_m), static_cast<float>(noise.share) * beam.range_m));
+  return squared(std::max(static_cast<float>(noise.sigma_m), static_cast<float>(noise.range_fraction) * beam.range_m));
 }
 
 /// See mapping.md (R13).
-bool LoneReturns::same_range(const RangeNoise& noise, const Beam& a, const Beam& b) {
-  return square(a.range_m - b.range_m) <= square(kDeviations) * (variance_m2(noise, a) + variance_m2(noise, b));
+bool LoneReturns::have_similar_range(const RangeNoise& noise, const Beam& a, const Beam& b) {
+  return squared(a.range_m - b.range_m) <= squared(kDeviations) * (variance_m2(noise, a) + variance_m2(noise, b));
 }
 
 /// See mapping.md (R14).
 bool LoneReturns::is_steep_surface(float sine, const Beam& a, const Beam& b) {
   const float farther = std::max(a.range_m, b.range_m);
   return a.point_L_m.cross(b.point_L_m).squaredNorm() >=
-         square(sine * farther) * (a.point_L_m - b.point_L_m).squaredNorm();
+         squared(sine * farther) * (a.point_L_m - b.point_L_m).squaredNorm();
 }
 
 /// See mapping.md (R15).
@@ -56,14 +56,14 @@ bool LoneReturns::between(const RangeNoise& noise, const Beam& before, const Bea
   const float to_before = std::sqrt(sine2_between(before, beam)), to_after = std::sqrt(sine2_between(beam, after));
   const float share = to_before / std::max(to_before + to_after, 1e-9f);
   const float expected_m = 1.0f / ((1.0f - share) / before.range_m + share / after.range_m);
-  const float variance = variance_m2(noise, beam) + square(1.0f - share) * variance_m2(noise, before) +
-                         square(share) * variance_m2(noise, after);
+  const float variance = variance_m2(noise, beam) + squared(1.0f - share) * variance_m2(noise, before) +
+                         squared(share) * variance_m2(noise, after);
   const float bend_m = kBend * std::abs(before.range_m - after.range_m);
-  return square(beam.range_m - expected_m) <= std::max(square(kDeviations) * variance, square(bend_m));
+  return squared(beam.range_m - expected_m) <= std::max(squared(kDeviations) * variance, squared(bend_m));
 }
 
 /// neighbours of a return on one side of its ring, nearest first
-struct LoneReturns::Beside {
+struct LoneReturns::NeighbouringBeams {
   std::array<const Beam*, kNeighbours> beam;
   int count = 0;
 
@@ -74,7 +74,7 @@ struct LoneReturns::Beside {
 bool LoneReturns::is_neighbour(std::size_t at, std::size_t other, float reach2) const {
   if (other >= beams_.size() || beams_[other].ring != beams_[at].ring) return false;
   const bool next = other + 1 == at || at + 1 == other;
-  const float sine2 = next ? steps2_[std::max(at, other)] : sine2_between(beams_[at], beams_[other]);
+  const float sine2 = next ? squared_beam_steps_[std::max(at, other)] : sine2_between(beams_[at], beams_[other]);
   return !(sine2 > reach2);
 }
 
@@ -85,7 +85,7 @@ bool LoneReturns::is_confirmed(const RangeNoise& noise, std::size_t at, float re
   const bool has_after = is_neighbour(at, at + 1, reach2);
   if (has_after && is_steep_surface(kMinSurfaceSine, beam, beams_[at + 1])) return true;
   const auto collect = [&](bool has_next, std::size_t direction) {
-    Beside beside;
+    NeighbouringBeams beside;
     std::size_t other = at + direction;
     for (bool goes_on = has_next; goes_on; goes_on = beside.count < kNeighbours && is_neighbour(at, other, reach2)) {
       beside.beam[static_cast<std::size_t>(beside.count++)] = &beams_[other];
@@ -93,8 +93,8 @@ bool LoneReturns::is_confirmed(const RangeNoise& noise, std::size_t at, float re
     }
     return beside;
   };
-  const Beside before = collect(has_before, ~std::size_t{0}), after = collect(has_after, 1);
-  const auto has_equal_range = [&](const Beam* other) { return same_range(noise, beam, *other); };
+  const NeighbouringBeams before = collect(has_before, ~std::size_t{0}), after = collect(has_after, 1);
+  const auto has_equal_range = [&](const Beam* other) { return have_similar_range(noise, beam, *other); };
   if (std::any_of(before.begin(), before.end(), has_equal_range)) return true;
   if (std::any_of(after.begin(), after.end(), has_equal_range)) return true;
   return std::any_of(before.begin(), before.end(), [&](const Beam* one) {
@@ -105,48 +105,48 @@ bool LoneReturns::is_confirmed(const RangeNoise& noise, std::size_t at, float re
 
 /// Sorts the points by lidar ring, and within each ring by firing time.
 void LoneReturns::sort_by_ring(const std::vector<SweepPoint>& points) {
-  ring_next_.assign(1, 0);
+  next_beam_on_ring_.assign(1, 0);
   for (const SweepPoint& point : points) {
-    if (point.ring + 2u > ring_next_.size()) ring_next_.resize(point.ring + 2u, 0);
-    ++ring_next_[point.ring + 1u];
+    if (point.ring + 2u > next_beam_on_ring_.size()) next_beam_on_ring_.resize(point.ring + 2u, 0);
+    ++next_beam_on_ring_[point.ring + 1u];
   }
-  for (std::size_t ring = 1; ring < ring_next_.size(); ++ring) ring_next_[ring] += ring_next_[ring - 1];
-  order_.resize(points.size());
+  for (std::size_t ring = 1; ring < next_beam_on_ring_.size(); ++ring) next_beam_on_ring_[ring] += next_beam_on_ring_[ring - 1];
+  beam_order_.resize(points.size());
   beams_.resize(points.size());
   for (std::uint32_t i = 0; i < points.size(); ++i) {
-    const std::uint32_t at = ring_next_[points[i].ring]++;
-    order_[at] = i;
+    const std::uint32_t at = next_beam_on_ring_[points[i].ring]++;
+    beam_order_[at] = i;
     beams_[at] = {points[i].point_L_m, points[i].range_m, points[i].ring};
   }
 }
 
-void LoneReturns::measure_steps() {
-  steps2_.assign(beams_.size(), 1.0f);
-  sorted_steps2_.clear();
+void LoneReturns::measure_beam_steps() {
+  squared_beam_steps_.assign(beams_.size(), 1.0f);
+  sorted_squared_beam_steps_.clear();
   for (std::size_t at = 1; at < beams_.size(); ++at) {
     if (beams_[at - 1].ring != beams_[at].ring) continue;
-    steps2_[at] = sine2_between(beams_[at - 1], beams_[at]);
-    sorted_steps2_.push_back(steps2_[at]);
+    squared_beam_steps_[at] = sine2_between(beams_[at - 1], beams_[at]);
+    sorted_squared_beam_steps_.push_back(squared_beam_steps_[at]);
   }
 }
 
 /// Returns 1 without successive beams on a ring.
 float LoneReturns::median_step2() {
-  if (sorted_steps2_.empty()) return 1.0f;
-  const auto middle = sorted_steps2_.begin() + static_cast<std::ptrdiff_t>(sorted_steps2_.size() / 2);
-  std::nth_element(sorted_steps2_.begin(), middle, sorted_steps2_.end());
+  if (sorted_squared_beam_steps_.empty()) return 1.0f;
+  const auto middle = sorted_squared_beam_steps_.begin() + static_cast<std::ptrdiff_t>(sorted_squared_beam_steps_.size() / 2);
+  std::nth_element(sorted_squared_beam_steps_.begin(), middle, sorted_squared_beam_steps_.end());
   return *middle;
 }
 
-std::size_t LoneReturns::drop(const RangeNoise& noise, std::vector<SweepPoint>& points) {
+std::size_t LoneReturns::drop_isolated_returns(const RangeNoise& noise, std::vector<SweepPoint>& points) {
   if (points.size() < 3) return 0;
   sort_by_ring(points);
-  measure_steps();
+  measure_beam_steps();
   const float step2 = median_step2();
-  if (step2 > square(kStepMax)) return 0;
-  const float reach2 = square(kReachSteps) * step2;
+  if (step2 > squared(kStepMax)) return 0;
+  const float reach2 = squared(kReachSteps) * step2;
   isolated_.resize(points.size());
-  for (std::size_t at = 0; at < beams_.size(); ++at) isolated_[order_[at]] = !is_confirmed(noise, at, reach2);
+  for (std::size_t at = 0; at < beams_.size(); ++at) isolated_[beam_order_[at]] = !is_confirmed(noise, at, reach2);
   const auto dropped = static_cast<std::size_t>(std::count(isolated_.begin(), isolated_.end(), 1));
   if (static_cast<float>(dropped) <= kClearAirFraction * static_cast<float>(points.size())) return 0;
   std::size_t kept = 0;

@@ -11,7 +11,7 @@ namespace tumble {
 
 /// standard deviation of a range r: max(sigma_m, share * r)
 struct RangeNoise {
-  double sigma_m, share;
+  double sigma_m, range_fraction;
 };
 
 /// LoneReturns detects returns that no neighbouring beam confirms, for example from dust, rain, snow, grass or birds.
@@ -23,7 +23,7 @@ class LoneReturns {
  public:
   /// Removes the lone returns from `points`, and returns their number. Cost: O(points). The order of the remaining
   /// points does not change.
-  std::size_t drop(const RangeNoise& noise, std::vector<SweepPoint>& points);
+  std::size_t drop_isolated_returns(const RangeNoise& noise, std::vector<SweepPoint>& points);
 
  private:
   struct Beam {
@@ -31,22 +31,22 @@ class LoneReturns {
     float range_m;
     std::uint16_t ring;
   };
-  struct Beside;
+  struct NeighbouringBeams;
 
   static float sine2_between(const Beam& a, const Beam& b);
   static float variance_m2(const RangeNoise& noise, const Beam& beam);
-  static bool same_range(const RangeNoise& noise, const Beam& a, const Beam& b);
+  static bool have_similar_range(const RangeNoise& noise, const Beam& a, const Beam& b);
   static bool is_steep_surface(float sine, const Beam& a, const Beam& b);
   static bool between(const RangeNoise& noise, const Beam& before, const Beam& beam, const Beam& after);
   void sort_by_ring(const std::vector<SweepPoint>& points);
-  void measure_steps();
+  void measure_beam_steps();
   float median_step2();
   bool is_neighbour(std::size_t at, std::size_t other, float reach2) const;
   bool is_confirmed(const RangeNoise& noise, std::size_t at, float reach2) const;
 
-  std::vector<std::uint32_t> ring_next_, order_;
+  std::vector<std::uint32_t> next_beam_on_ring_, beam_order_;
   std::vector<Beam> beams_;                    // beams ring by ring, in firing order
-  std::vector<float> steps2_, sorted_steps2_;  // squared sines of the angle between successive beams on a ring
+  std::vector<float> squared_beam_steps_, sorted_squared_beam_steps_;  // squared sines of the angle between successive beams on a ring
   std::vector<std::uint8_t> isolated_;
 };
 

@@ -14,7 +14,7 @@ constexpr std::uint8_t kSeenThrough = 2;
 
 }  // namespace
 
-std::uint32_t ScanLines::base(const Eigen::Vector3d& spin_axis_W, bool has_ring_numbers) {
+std::uint32_t ScanLines::line_number_offset(const Eigen::Vector3d& spin_axis_W, bool has_ring_numbers) {
   if (!has_ring_numbers) return VoxelMap::kUnknownScanLine;
   if (spin_axis_W.dot(axis_W_) < kSameLineCosine) {
     axis_W_ = spin_axis_W;
@@ -27,14 +27,14 @@ std::vector<MapPoint> to_map_points(const VoxelMap& map, std::span<const Eigen::
                                     double match_distance_m) {
   std::vector<MapPoint> out;
   out.reserve(map.size());
-  Neighbours found;
+  NearestNeighbours found;
   for (std::uint32_t index = 0; index < map.index_end(); ++index) {
-    if (!map.exists(index) || map.seen_through(index) >= kSeenThrough) continue;
+    if (!map.exists(index) || map.seen_through_count(index) >= kSeenThrough) continue;
     MapPoint& point = out.emplace_back();
     point.position_W_m = map.position_W_m(index);
     point.sigma_m = map.sigma_m(index);
     map.nearest(point.position_W_m, neighbours, static_cast<float>(match_distance_m), found);
-    const PlaneFit plane = fit_plane(map, found, PlaneBounds{});
+    const PlaneFit plane = fit_plane(map, found, PlaneFitBounds{});
     if (plane.verdict != PlaneVerdict::plane) continue;
     const Eigen::Vector3f towards = seen_from_W_m[map.sweep(index)] - point.position_W_m;
     point.normal_W = plane.normal_W.dot(towards) < 0.0f ? Eigen::Vector3f(-plane.normal_W) : plane.normal_W;

@@ -32,70 +32,70 @@ double relative_entropy(double share, double chance) {
 
 void MapLocaliser::restart(const std::optional<Eigen::Isometry3d>& T_MI) {
   if (!has_map()) return;
-  const bool moved = T_MI && (!map().T_MI || !T_MI->isApprox(*map().T_MI, 0.0));
-  std::shared_ptr<const PriorScene> scene = scene_;
+  const bool moved = T_MI && (!map().T_prior_map_imu || !T_MI->isApprox(*map().T_prior_map_imu, 0.0));
+  std::shared_ptr<const PriorMapScene> scene = prior_scene_;
   if (moved) {
-    PriorMap map = scene_->map();
-    map.T_MI = T_MI;
-    scene = std::make_shared<const PriorScene>(std::move(map));
+    PriorMap map = prior_scene_->map();
+    map.T_prior_map_imu = T_MI;
+    scene = std::make_shared<const PriorMapScene>(std::move(map));
   }
   *this = MapLocaliser();
-  scene_ = std::move(scene);
+  prior_scene_ = std::move(scene);
 }
 
-std::optional<FramePose> MapLocaliser::observe(const VoxelMap& local, const Eigen::Vector3d& p_WI_m) {
+std::optional<FramePose> MapLocaliser::match_local_map(const VoxelMap& local, const Eigen::Vector3d& p_WI_m) {
   if (!has_map() || localised_) return std::nullopt;
   ++sweeps_since_search_;
-  const bool searches = !T_MW_ && (attempts_ == 0 || sweeps_since_search_ >= kSearchSweeps);
-  if (!T_MW_ && !searches) return std::nullopt;
+  const bool searches = !T_prior_map_world_ && (attempts_ == 0 || sweeps_since_search_ >= kSearchSweeps);
+  if (!T_prior_map_world_ && !searches) return std::nullopt;
   const std::vector<SurfacePoint> points = surface_points(local, p_WI_m.cast<float>(), kQueryRadius_m);
   if (points.size() < kMinPoints) return std::nullopt;
-  if (searches) propose(points, p_WI_m);
-  if (!T_MW_) return std::nullopt;
+  if (searches) propose_map_pose(points, p_WI_m);
+  if (!T_prior_map_world_) return std::nullopt;
 
-  const FramePose pose = scene_->refined({.T_MW = *T_MW_}, points, p_WI_m, 0.4f);
-  const bool enough = double(pose.covered) >= kMinCoveredRatio * double(points.size());
-  if (!enough || !passes(pose)) {
-    passed_ = 0;
-    if (++failed_ >= kRejectSweeps) T_MW_.reset();
+  const FramePose pose = prior_scene_->refined_pose({.T_prior_map_world = *T_prior_map_world_}, points, p_WI_m, 0.4f);
+  const bool enough = double(pose.covered_point_count) >= kMinCoveredRatio * double(points.size());
+  if (!enough || !matches_prior_map(pose)) {
+    successive_passed_tests_ = 0;
+    if (++successive_failed_tests_ >= kRejectSweeps) T_prior_map_world_.reset();
     return std::nullopt;
   }
-  T_MW_ = pose.T_MW;
-  failed_ = 0;
-  if (++passed_ < kAcceptSweeps) return std::nullopt;
+  T_prior_map_world_ = pose.T_prior_map_world;
+  successive_failed_tests_ = 0;
+  if (++successive_passed_tests_ < kAcceptSweeps) return std::nullopt;
   localised_ = true;
   return pose;
 }
 
-void MapLocaliser::propose(const std::vector<SurfacePoint>& points, const Eigen::Vector3d& p_WI_m) {
+void MapLocaliser::propose_map_pose(const std::vector<SurfacePoint>& points, const Eigen::Vector3d& p_WI_m) {
   SearchRegion region;
-  if (map().T_MI) {  // the stated pose defines the local frame, so the heading of W in M is about zero
-    region.p_WI_m = region.p_MI_m = map().T_MI->translation();
-    region.reach_m = std::max(kSigmas * map().sigma_m, kMinReach_m);
-    region.reach_rad = std::max(kSigmas * map().sigma_rad, kMinReach_rad);
+  if (map().T_prior_map_imu) {  // the stated pose defines the local frame, so the heading of W in M is about zero
+    region.p_WI_m = region.centre_in_prior_map_m = map().T_prior_map_imu->translation();
+    region.search_radius_m = std::max(kSigmas * map().sigma_m, kMinReach_m);
+    region.search_angle_rad = std::max(kSigmas * map().sigma_rad, kMinReach_rad);
   }
   std::size_t tried = 0;
   const std::vector<FramePose> found =
-      scene_->search(points, p_WI_m, static_cast<std::size_t>(attempts_), map().T_MI ? &region : nullptr, tried);
+      prior_scene_->find_candidate_poses(points, p_WI_m, static_cast<std::size_t>(attempts_), map().T_prior_map_imu ? &region : nullptr, tried);
   ++attempts_;
-  sweeps_since_search_ = passed_ = failed_ = 0;
+  sweeps_since_search_ = successive_passed_tests_ = successive_failed_tests_ = 0;
   if (found.empty()) return;
-  T_MW_ = found.front().T_MW;
-  compared_poses_ = std::max(double(tried), 1.0);
-  const double second = found.size() > 1 ? found[1].ratio() : 0.0;
-  chance_ = std::max(kChanceAgreementMax, second + kChanceMargin * (1.0 - second));
+  T_prior_map_world_ = found.front().T_prior_map_world;
+  compared_pose_count_ = std::max(double(tried), 1.0);
+  const double second = found.size() > 1 ? found[1].agreement_ratio() : 0.0;
+  random_agreement_fraction_ = std::max(kChanceAgreementMax, second + kChanceMargin * (1.0 - second));
 }
 
 /// Returns whether the agreement with the prior map at `pose` is improbable by chance: mapping.md (R74).
-bool MapLocaliser::passes(const FramePose& pose) const {
-  if (pose.ratio() <= chance_ || chance_ >= 1.0) return false;
-  return double(pose.covered) * relative_entropy(pose.ratio(), chance_) >= std::log(compared_poses_ / kFalseAcceptance);
+bool MapLocaliser::matches_prior_map(const FramePose& pose) const {
+  if (pose.agreement_ratio() <= random_agreement_fraction_ || random_agreement_fraction_ >= 1.0) return false;
+  return double(pose.covered_point_count) * relative_entropy(pose.agreement_ratio(), random_agreement_fraction_) >= std::log(compared_pose_count_ / kFalseAcceptance);
 }
 
 Status MapLocaliser::status() const {
   if (!has_map() || localised_) return {};
   return {ErrorCode::degenerate, "number of sweeps that agree with the prior map (too few to localise the run)",
-          double(passed_), double(kAcceptSweeps)};
+          double(successive_passed_tests_), double(kAcceptSweeps)};
 }
 
 }  // namespace tumble::mapping

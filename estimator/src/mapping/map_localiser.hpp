@@ -15,30 +15,30 @@ namespace tumble::mapping {
 class MapLocaliser {
  public:
   MapLocaliser() = default;
-  explicit MapLocaliser(PriorMap map) : scene_(std::make_shared<const PriorScene>(std::move(map))) {}
+  explicit MapLocaliser(PriorMap map) : prior_scene_(std::make_shared<const PriorMapScene>(std::move(map))) {}
 
-  bool has_map() const { return scene_ != nullptr; }
+  bool has_map() const { return prior_scene_ != nullptr; }
   bool is_localised() const { return localised_; }
-  const PriorMap& map() const { return scene_->map(); }
+  const PriorMap& map() const { return prior_scene_->map(); }
   /// The search is limited to the neighbourhood of `T_MI`, if given.
   void restart(const std::optional<Eigen::Isometry3d>& T_MI);
 
   /// Returns the pose of the local frame in the prior map if the sweep confirms the proposed pose. Cost: a few
   /// milliseconds, or about a second for every fifth sweep while no pose is proposed.
-  std::optional<FramePose> observe(const VoxelMap& local, const Eigen::Vector3d& p_WI_m);
+  std::optional<FramePose> match_local_map(const VoxelMap& local, const Eigen::Vector3d& p_WI_m);
   /// Returns `degenerate` if the robot is not localised in the prior map.
   Status status() const;
 
  private:
-  void propose(const std::vector<SurfacePoint>& points, const Eigen::Vector3d& p_WI_m);
-  bool passes(const FramePose& pose) const;
+  void propose_map_pose(const std::vector<SurfacePoint>& points, const Eigen::Vector3d& p_WI_m);
+  bool matches_prior_map(const FramePose& pose) const;
 
-  std::shared_ptr<const PriorScene> scene_;
+  std::shared_ptr<const PriorMapScene> prior_scene_;
   bool localised_ = false;
-  std::optional<Eigen::Isometry3d> T_MW_;  // proposed pose
-  double chance_ = 0.0;                    // fraction of surface points that agree with the prior map at a wrong pose
-  double compared_poses_ = 1.0;            // number of poses that the search compared
-  int passed_ = 0, failed_ = 0;            // successive sweeps that passed or failed the test
+  std::optional<Eigen::Isometry3d> T_prior_map_world_;  // proposed pose
+  double random_agreement_fraction_ = 0.0;                    // fraction of surface points that agree with the prior map at a wrong pose
+  double compared_pose_count_ = 1.0;            // number of poses that the search compared
+  int successive_passed_tests_ = 0, successive_failed_tests_ = 0;            // successive sweeps that passed or failed the test
   int attempts_ = 0, sweeps_since_search_ = 0;
 };
 

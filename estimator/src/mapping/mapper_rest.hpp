@@ -8,6 +8,6 @@ namespace tumble::mapping {
 
 /// At rest, the mean rate is within `rest.rate_rad_s` of the gyro bias on each axis, and the specific force is within
 /// `rest.force_m_s2` of gravity.
-RestDetector::Params mapper_rest(const LidarInertialOdometry::Params& params);
+RestDetector::Params mapping_stationary_params(const LidarInertialOdometry::Params& params);
 
 }  // namespace tumble::mapping

@@ -30,10 +30,10 @@ struct UpdatedSweep {
 
 /// Reused work buffers avoid memory allocation per sweep; their contents are undefined between sweeps.
 struct SweepScratch {
-  explicit SweepScratch(const LidarInertialOdometry::Params& params) : points(params), aligner(params) {}
+  explicit SweepScratch(const LidarInertialOdometry::Params& params) : points(params), sweep_aligner(params) {}
 
   SweepPoints points;
-  Aligner aligner;
+  SweepAligner sweep_aligner;
   SweepTrajectory trajectory;
 };
 
@@ -47,32 +47,32 @@ struct LidarInertialOdometry::Impl {
 
   Status check_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns) const;
   /// Computes the initial state from the IMU at rest, before the first sweep.
-  Status level_at_first();
+  Status initialise_inclination();
   Status level_start(MotionState& levelled) const;
   /// Starts the map if the sweep has enough usable points; otherwise propagates the state inertially to the end of the
   /// sweep.
   Status start_map(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns, SweepReport& report);
   Status dead_reckon(TimeNs end_ns);
-  bool rests(const mapping::InertialTrack& inertial, const SweepTrajectory& motion, TimeNs end_ns) const;
+  bool is_stationary(const mapping::InertialTrack& inertial, const SweepTrajectory& motion, TimeNs end_ns) const;
   /// On entry, `trajectory` is the motion that the IMU predicts. On return, `trajectory` is the registered motion, or
   /// the last motion of a failed registration.
   void register_to_map(const mapping::Prediction& prediction, const mapping::MotionWindow& motion,
                        mapping::SweepPoints& points, SweepTrajectory& trajectory, SweepReport& report,
-                       mapping::Placed& placed);
-  mapping::StateEstimate update(const mapping::MotionWindow& motion, const mapping::Placed& placed,
+                       mapping::SweepRegistration& placed);
+  mapping::StateEstimate update(const mapping::MotionWindow& motion, const mapping::SweepRegistration& placed,
                                 mapping::Prediction& prediction) const;
   std::vector<mapping::InsertedPoint> insert(const mapping::UpdatedSweep& sweep, mapping::SweepPoints& points,
-                                             bool has_ring_numbers, const mapping::Placed& placed, SweepReport& report);
-  void propagate(const mapping::UpdatedSweep& sweep, const mapping::Placed& placed, const mapping::MotionWindow& motion,
+                                             bool has_ring_numbers, const mapping::SweepRegistration& placed, SweepReport& report);
+  void propagate(const mapping::UpdatedSweep& sweep, const mapping::SweepRegistration& placed, const mapping::MotionWindow& motion,
                  std::vector<mapping::InsertedPoint> inserted, SweepReport& report);
-  static mapping::WindowSweep& enter_window(const mapping::UpdatedSweep& sweep, const mapping::MotionWindow& motion,
+  static mapping::WindowSweep& append_to_lag_window(const mapping::UpdatedSweep& sweep, const mapping::MotionWindow& motion,
                                             const mapping::SweepBoundary& from, mapping::LagWindow& into);
   void predict_stationary(const mapping::MotionWindow& motion, const mapping::SweepBoundary& from,
                           mapping::Prediction& prediction) const;
-  void propagate_alternative(const mapping::MotionWindow& motion, bool unconfirmed_before);
+  void propagate_alternative_pose(const mapping::MotionWindow& motion, bool unconfirmed_before);
   Status continue_by_inertia(const mapping::MotionWindow& motion, bool rests, mapping::SweepBoundary& at,
                              mapping::LagWindow* into) const;
-  void revert_to_inertia();
+  void revert_to_inertial_pose();
   /// Returns the state of a relocalisation that later sweeps contradicted, or null. The search after a tracking failure
   /// also starts from this state.
   const MotionState* rejected_relocalisation() const;
@@ -93,16 +93,16 @@ struct LidarInertialOdometry::Impl {
   std::optional<Eigen::Isometry3d> start_pose;  // position and heading of the IMU where the map starts
   std::optional<StartTilt> start_tilt;
   mapping::TrackingState tracking;
-  mapping::InertialTrack track;
-  mapping::SweepBoundary boundary;  // boundary between the last sweep and the next sweep
-  mapping::MotionPrior known;       // additional information about the motion of the next sweep
+  mapping::InertialTrack inertial_track;
+  mapping::SweepBoundary sweep_boundary;  // boundary between the last sweep and the next sweep
+  mapping::MotionPrior motion_prior;       // additional information about the motion of the next sweep
   int resting_sweeps = 0;           // number of consecutive sweeps at rest, detected by the IMU
   mapping::LagWindow window;
   mapping::LocalMap map;
-  mapping::WorldCovariance world;
-  std::optional<mapping::DeadReckoning> other;  // alternative pose, see DeadReckoning
+  mapping::WorldCovariance world_covariance;
+  std::optional<mapping::DeadReckoning> alternative;  // alternative pose, see DeadReckoning
   mapping::MapLocaliser localiser;              // localiser in a prior map, if any
-  mapping::SweepScratch scratch;
+  mapping::SweepScratch sweep_scratch;
 };
 
 }  // namespace tumble

@@ -17,8 +17,8 @@ void visit_corners_in_order(const Eigen::AlignedBox3d& box, Visitor& visit) {
   visit(box.sizes().z(), {"own_body_L maximum z minus minimum z", "m", 0.0, kUnbounded, ""});
 }
 
-detail::OutOfBounds out_of_bounds(const OdometryParams& params) {
-  detail::OutOfBounds found;
+detail::OutOfBoundsParameter out_of_bounds(const OdometryParams& params) {
+  detail::OutOfBoundsParameter found;
   detail::BoundsChecker visit(found);
   OdometryParams::fields(params, visit);
   visit(params.range_max_m, {"range_max_m", "m", params.range_min_m, 1e4, ""});

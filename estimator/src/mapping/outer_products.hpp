@@ -16,14 +16,14 @@ class OuterProducts {
  public:
   using Matrix = Eigen::Matrix<double, Rows, Rows>;
 
-  static std::unique_ptr<OuterProducts> make() { return std::unique_ptr<OuterProducts>(new OuterProducts); }
+  static std::unique_ptr<OuterProducts> make_unique_products() { return std::unique_ptr<OuterProducts>(new OuterProducts); }
   OuterProducts(const OuterProducts&) = delete;  // the blocks contain addresses of this object
   OuterProducts& operator=(const OuterProducts&) = delete;
 
   Eigen::Matrix<double, Rows, Columns> columns;
 
   /// Adds v v^T, for the first `count` columns v, to the lower triangle of `sum`. Only the first `size` rows are used.
-  void add_to(int size, int count, Matrix& sum) {
+  void add_products_to(int size, int count, Matrix& sum) {
     namespace e = Eigen::internal;
     e::general_matrix_matrix_triangular_product<Eigen::Index, double, Eigen::ColMajor, false, double, Eigen::RowMajor,
                                                 false, Eigen::ColMajor, 1, Eigen::Lower>::run(size, count,
@@ -43,23 +43,23 @@ class OuterProducts {
 
 /// The pool of work buffers grows to the number of threads that use it at the same time.
 template <class Work>
-class Spare {
+class WorkspacePool {
  public:
-  std::unique_ptr<Work> take() {
+  std::unique_ptr<Work> acquire() {
     const std::lock_guard lock(mutex_);
-    if (free_.empty()) return Work::make();
-    std::unique_ptr<Work> out = std::move(free_.back());
-    free_.pop_back();
+    if (free_workspaces_.empty()) return Work::make_unique_products();
+    std::unique_ptr<Work> out = std::move(free_workspaces_.back());
+    free_workspaces_.pop_back();
     return out;
   }
-  void give(std::unique_ptr<Work> work) {
+  void release(std::unique_ptr<Work> work) {
     const std::lock_guard lock(mutex_);
-    free_.push_back(std::move(work));
+    free_workspaces_.push_back(std::move(work));
   }
 
  private:
   std::mutex mutex_;
-  std::vector<std::unique_ptr<Work>> free_;
+  std::vector<std::unique_ptr<Work>> free_workspaces_;
 };
 
 }  // namespace tumble::mapping

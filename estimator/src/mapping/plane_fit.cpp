@@ -9,8 +9,8 @@ namespace tumble {
 
 namespace {
 
-int max_points_on_line(const VoxelMap& map, const Neighbours& neighbours) {
-  std::array<std::uint32_t, Neighbours::kMax> line;
+int max_points_on_line(const VoxelMap& map, const NearestNeighbours& neighbours) {
+  std::array<std::uint32_t, NearestNeighbours::kMaxNeighbours> line;
   for (int i = 0; i < neighbours.count; ++i) line[i] = map.line(neighbours.index[i]);
   int most = 1;
   for (int i = 0; i < neighbours.count; ++i) {
@@ -24,7 +24,7 @@ int max_points_on_line(const VoxelMap& map, const Neighbours& neighbours) {
 
 }  // namespace
 
-PlaneFit fit_plane(const VoxelMap& map, const Neighbours& neighbours, const PlaneBounds& bounds) {
+PlaneFit fit_plane(const VoxelMap& map, const NearestNeighbours& neighbours, const PlaneFitBounds& bounds) {
   PlaneFit fit;
   const int n = neighbours.count;
   if (n < bounds.neighbours_min || n < 3) return fit;
@@ -56,7 +56,7 @@ PlaneFit fit_plane(const VoxelMap& map, const Neighbours& neighbours, const Plan
   solver.computeDirect(second - mean * mean.transpose());
   const Eigen::Vector3d l = solver.eigenvalues().cwiseMax(0.0);
 
-  fit.centre_W_m = origin + mean.cast<float>();
+  fit.plane_centre_W_m = origin + mean.cast<float>();
   fit.thickness_variance_m2 = static_cast<float>(l[0]);
   if (!(l[1] >= bounds.collinear_ratio_max * l[2]) || !(l[2] > 0.0)) {
     fit.verdict = PlaneVerdict::collinear;
@@ -69,7 +69,7 @@ PlaneFit fit_plane(const VoxelMap& map, const Neighbours& neighbours, const Plan
         (std::sqrt(noise2 / l[axis + 1]) * solver.eigenvectors().col(axis + 1)).cast<float>();
   }
   fit.normal_W = solver.eigenvectors().col(0).cast<float>().normalized();
-  fit.verdict = l[0] > bounds.rough_share * l[1] ? PlaneVerdict::too_thick : PlaneVerdict::plane;
+  fit.verdict = l[0] > bounds.rough_share * l[1] ? PlaneVerdict::plane_too_thick : PlaneVerdict::plane;
   return fit;
 }
 

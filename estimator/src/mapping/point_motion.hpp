@@ -13,22 +13,22 @@ namespace tumble::mapping {
 
 class PointMotion {
  public:
-  PointMotion(const SweepTrajectory& trajectory, const SweepCalibration& calibration, const SweepPoint& point,
+  PointMotion(const SweepTrajectory& trajectory, const LidarImuCalibration& calibration, const SweepPoint& point,
               std::size_t& hint);
 
   /// Computes the derivative of the lidar point's position along `direction_W` by the 28 unknowns of the registration:
   /// mapping.md (R17).
-  void along(const Eigen::Vector3d& direction_W, SweepUnknowns::Vector& derivative) const;
+  void derivative_along_normal(const Eigen::Vector3d& direction_W, RegistrationUnknowns::Vector& derivative) const;
 
-  /// Returns the lever arm vector u of SweepTrajectory::common_position_m, in W.
-  const Eigen::Vector3d& lever_m() const { return lever_; }
+  /// Returns the lever arm vector u of SweepTrajectory::gravity_free_position_m, in W.
+  const Eigen::Vector3d& lever_m() const { return lever_arm_; }
 
  private:
   double t_s_;
   bool clipped_;
   SweepTrajectory::PreintegratedMotion now_;
-  Eigen::Vector3d turned_, lever_, from_lidar_I_, velocity_m_s_;
-  SweepTrajectory::DeficitDerivative deficit_derivative_;  // used if an axis of the gyro is clipped
+  Eigen::Vector3d rotated_point_, lever_arm_, point_from_lidar_I_, velocity_m_s_;
+  SweepTrajectory::SaturationDeficitJacobian saturation_deficit_jacobian_;  // used if an axis of the gyro is clipped
 };
 
 }  // namespace tumble::mapping

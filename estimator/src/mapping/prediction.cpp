@@ -36,19 +36,19 @@ namespace u = unknowns;
 using Params = LidarInertialOdometry::Params;
 
 /// The missing gyro rate at the end of a sweep continues in the next sweep, and decays exponentially: mapping.md (R48).
-void carry_deficit(const Params& params, const SweepBoundary& boundary, const SweepTrajectory& trajectory,
+void propagate_saturation_deficit(const Params& params, const SweepBoundary& boundary, const SweepTrajectory& trajectory,
                    Prediction& next) {
   constexpr int kLast = SweepTrajectory::kKnots - 1;
-  u::rows(next.jacobian_boundary, u::deficit).setZero();
-  if (!params.expert.rails.estimate_deficit) return;
-  const Eigen::Vector3d boundary_factor = trajectory.deficit_factor_at_start();
-  const double rho = knot_correlation(trajectory);
+  u::row_range(next.boundary_jacobian, u::deficit).setZero();
+  if (!params.expert.saturated_imu.estimate_deficit) return;
+  const Eigen::Vector3d boundary_factor = trajectory.clipped_axes_at_start();
+  const double rho = deficit_knot_correlation(trajectory);
   for (int axis = 0; axis < 3; ++axis) {
-    if (!(boundary_factor[axis] > 0.0 && boundary.deficit_factor[axis] > 0.0)) continue;
-    double remains = std::clamp(boundary.deficit_factor[axis] / boundary_factor[axis], 0.0, kDeficitCarryMax);
+    if (!(boundary_factor[axis] > 0.0 && boundary.clipped_axis_sign[axis] > 0.0)) continue;
+    double remains = std::clamp(boundary.clipped_axis_sign[axis] / boundary_factor[axis], 0.0, kDeficitCarryMax);
     for (int knot = 0; knot <= kLast; ++knot) {
-      next.prior.mean.deficit_rad_s(axis, knot) = remains * boundary.state_estimate.mean.deficit_rad_s(axis, kLast);
-      next.jacobian_boundary(u::deficit_at(axis, knot), u::deficit_at(axis, kLast)) = remains;
+      next.prior.mean.saturation_deficit_rad_s(axis, knot) = remains * boundary.state_estimate.mean.saturation_deficit_rad_s(axis, kLast);
+      next.boundary_jacobian(u::saturation_deficit_index(axis, knot), u::saturation_deficit_index(axis, kLast)) = remains;
       remains *= rho;
     }
   }
@@ -56,7 +56,7 @@ void carry_deficit(const Params& params, const SweepBoundary& boundary, const Sw
 
 /// Returns the largest reported standard deviation of the rate among samples with clipped `axis`, at least
 /// kDeficitSigmaMin_rad_s.
-double deficit_sigma(const MotionWindow& window, const SweepTrajectory& trajectory, int axis) {
+double saturation_deficit_sigma(const MotionWindow& window, const SweepTrajectory& trajectory, int axis) {
   double sigma = kDeficitSigmaMin_rad_s;
   for (const MotionSample& sample : window.samples) {
     if (seconds(sample.from_ns - trajectory.start_ns()) >= trajectory.duration_s()) break;
@@ -67,43 +67,43 @@ double deficit_sigma(const MotionWindow& window, const SweepTrajectory& trajecto
 
 /// The missing gyro rate is a first-order Gauss-Markov process: mapping.md (R46), (R47). If the saturation continues
 /// from the last sweep, mapping.md (R49) gives the covariance.
-void add_deficit_noise(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory,
+void add_saturation_deficit_noise(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory,
                        Prediction& next) {
-  if (!params.expert.rails.estimate_deficit) return;
-  const double rho = knot_correlation(trajectory);
+  if (!params.expert.saturated_imu.estimate_deficit) return;
+  const double rho = deficit_knot_correlation(trajectory);
   for (int axis = 0; axis < 3; ++axis) {
     if (!(trajectory.clipped_axes() >> axis & 1)) continue;
-    const double sigma = deficit_sigma(window, trajectory, axis);
-    const bool carried = next.jacobian_boundary.row(u::deficit_at(axis, 0)).squaredNorm() > 0.0;
+    const double sigma = saturation_deficit_sigma(window, trajectory, axis);
+    const bool carried = next.boundary_jacobian.row(u::saturation_deficit_index(axis, 0)).squaredNorm() > 0.0;
     for (int a = 0; a < SweepTrajectory::kKnots; ++a) {
       for (int b = 0; b < SweepTrajectory::kKnots; ++b) {
         const double known = carried ? std::pow(rho, a + b) : 0.0;
-        next.noise(u::deficit_at(axis, a), u::deficit_at(axis, b)) +=
+        next.noise(u::saturation_deficit_index(axis, a), u::saturation_deficit_index(axis, b)) +=
             sigma * sigma * (std::pow(rho, std::abs(a - b)) - known);
       }
-      next.noise(u::deficit_at(axis, a), u::deficit_at(axis, a)) += kKnotSigmaRatio * kKnotSigmaRatio * sigma * sigma;
+      next.noise(u::saturation_deficit_index(axis, a), u::saturation_deficit_index(axis, a)) += kKnotSigmaRatio * kKnotSigmaRatio * sigma * sigma;
     }
   }
 }
 
 }  // namespace
 
-double knot_correlation(const SweepTrajectory& trajectory) {
+double deficit_knot_correlation(const SweepTrajectory& trajectory) {
   return std::exp(-trajectory.duration_s() / (SweepTrajectory::kKnots - 1) / kDeficitTime_s);
 }
 
 /// See mapping.md (R32).
-void Prediction::compose(const StateEstimate& at_boundary) {
-  propagate_covariance(jacobian_boundary, at_boundary.weight, prior.covariance);
-  propagate_covariance(jacobian_boundary, at_boundary.error, errors);
+void Prediction::compose_with_boundary(const StateEstimate& at_boundary) {
+  propagate_covariance(boundary_jacobian, at_boundary.prior_weight_covariance, prior.covariance);
+  propagate_covariance(boundary_jacobian, at_boundary.state_error_covariance, motion_error_covariance);
   prior.covariance += noise;
-  errors += noise;
+  motion_error_covariance += noise;
 }
 
 void Prediction::zero_velocity_update(double sigma_m_s) {
   prior.mean.state.v_WI_m_s.setZero();
-  u::rows(jacobian_boundary, u::velocity).setZero();
-  u::rows(noise, u::velocity).setZero();
+  u::row_range(boundary_jacobian, u::velocity).setZero();
+  u::row_range(noise, u::velocity).setZero();
   u::columns(noise, u::velocity).setZero();
   u::variances(noise, u::velocity).setConstant(sigma_m_s * sigma_m_s);
 }
@@ -113,8 +113,8 @@ void apply_velocity_prior(const KnownVelocity& known, Prediction& prediction) {
   prediction.zero_velocity_update(known.sigma_m_s);
   const Eigen::Vector3d v_WI_m_s = prediction.prior.mean.state.q_WI * known.v_WI_I_m_s;
   prediction.prior.mean.state.v_WI_m_s = v_WI_m_s;
-  u::rows(prediction.jacobian_boundary, u::velocity) =
-      -so3::hat(v_WI_m_s) * u::rows(prediction.jacobian_boundary, u::attitude);
+  u::row_range(prediction.boundary_jacobian, u::velocity) =
+      -so3::hat(v_WI_m_s) * u::row_range(prediction.boundary_jacobian, u::attitude);
 }
 
 Prediction predict(const Params& params, const SweepBoundary& boundary, const MotionWindow& window,
@@ -122,31 +122,31 @@ Prediction predict(const Params& params, const SweepBoundary& boundary, const Mo
   Prediction next;
   next.prior.mean.state = boundary.state_estimate.mean.state;
   next.prior.mean.calibration = boundary.state_estimate.mean.calibration;
-  carry_deficit(params, boundary, trajectory, next);
+  propagate_saturation_deficit(params, boundary, trajectory, next);
   if (window.samples.front().at_rest) next.zero_velocity_update(kStartSigma_m_s);
   // The speed limit kCreepMax_m_s excludes constant motion, which the IMU cannot distinguish from rest.
   const bool creeps = boundary.state_estimate.mean.state.v_WI_m_s.norm() < Standstill::kCreepMax_m_s;
-  if (window.resting_sweeps >= kRestingSweepsMin && !boundary.constrained && creeps)
+  if (window.resting_sweeps >= kRestingSweepsMin && !boundary.all_directions_constrained && creeps)
     next.zero_velocity_update(Standstill::kSigma_m_s);
   apply_velocity_prior(known, next);
-  const std::uint8_t axes = params.expert.rails.estimate_deficit ? trajectory.clipped_axes() : 0;
+  const std::uint8_t axes = params.expert.saturated_imu.estimate_deficit ? trajectory.clipped_axes() : 0;
   MotionNoise within = inertial_noise(params, trajectory, window.samples, axes);
-  const Eigen::Matrix3d clipped_force_m2_s2 = clipped_velocity_variance(trajectory, window.samples);
-  u::block(next.noise, u::motion) += within;
+  const Eigen::Matrix3d clipped_force_m2_s2 = velocity_variance_from_clipping(trajectory, window.samples);
+  u::sub_block(next.noise, u::motion) += within;
   // Accelerometer saturation late in a sweep hardly affects the registration of this sweep, but changes the velocity in
   // the next sweep.
-  u::block(next.noise, u::velocity) += boundary.clipped_velocity_m2_s2 + clipped_force_m2_s2;
-  u::block(within, u::velocity) += clipped_force_m2_s2;
-  add_deficit_noise(params, window, trajectory, next);
-  weigh(known, boundary, window, within, next);
-  next.prior.deficit_start_rad_s = next.prior.mean.deficit_rad_s;
-  next.compose(boundary.state_estimate);
+  u::sub_block(next.noise, u::velocity) += boundary.clipped_velocity_variance_m2_s2 + clipped_force_m2_s2;
+  u::sub_block(within, u::velocity) += clipped_force_m2_s2;
+  add_saturation_deficit_noise(params, window, trajectory, next);
+  weigh_with_motion_prior(known, boundary, window, within, next);
+  next.prior.initial_saturation_deficit_rad_s = next.prior.mean.saturation_deficit_rad_s;
+  next.compose_with_boundary(boundary.state_estimate);
   return next;
 }
 
-void predict_rest(const SweepBoundary& boundary, Prediction& prediction) {
+void predict_stationary_sweep(const SweepBoundary& boundary, Prediction& prediction) {
   prediction.zero_velocity_update(Standstill::kSigma_m_s);
-  prediction.compose(boundary.state_estimate);
+  prediction.compose_with_boundary(boundary.state_estimate);
 }
 
 bool prior_is_certain(const Params& params, const SweepBoundary& boundary, const MotionWindow& window,
@@ -159,20 +159,20 @@ bool prior_is_certain(const Params& params, const SweepBoundary& boundary, const
 }
 
 StateEstimate posterior(const Prediction& prediction) {
-  StateEstimate start{prediction.prior.mean, prediction.prior.covariance, prediction.errors};
-  start.mean.state.covariance = u::block(start.weight, u::motion);
+  StateEstimate start{prediction.prior.mean, prediction.prior.covariance, prediction.motion_error_covariance};
+  start.mean.state.covariance = u::sub_block(start.prior_weight_covariance, u::motion);
   return start;
 }
 
 namespace {
 
 /// See mapping.md (R52). A separate function keeps large matrices out of the stack frame of posterior().
-[[gnu::noinline]] void prior_error_gain(const Prediction& prediction, const Registration::Result& aligned,
+[[gnu::noinline]] void gain_of_prior_error(const Prediction& prediction, const Registration::Result& aligned,
                                         Registration::Matrix& out) {
   // Noise of the surface normals carries no information about the motion.
   Registration::Matrix kept = Registration::Matrix::Identity();
   dense::solve_semidefinite(make_invertible(prediction.prior.covariance), kept);
-  kept += aligned.normal_noise_information;
+  kept += aligned.surface_normal_noise_information;
   out.noalias() = aligned.covariance * kept;
 }
 
@@ -182,11 +182,11 @@ namespace {
 StateEstimate posterior(const Prediction& prediction, const Registration::Result& aligned) {
   StateEstimate start{aligned.mean, aligned.covariance, Registration::Matrix::Zero()};
   const auto from_prior = std::make_unique<Registration::Matrix>();
-  prior_error_gain(prediction, aligned, *from_prior);
-  propagate_covariance(*from_prior, prediction.errors, start.error);
+  gain_of_prior_error(prediction, aligned, *from_prior);
+  propagate_covariance(*from_prior, prediction.motion_error_covariance, start.state_error_covariance);
   propagate_covariance(aligned.covariance, aligned.score_covariance, *from_prior);
-  start.error += *from_prior;
-  make_symmetric(start.error);
+  start.state_error_covariance += *from_prior;
+  make_symmetric(start.state_error_covariance);
   return start;
 }
 
@@ -194,27 +194,27 @@ double innovation(const Prediction& prediction, const Registration::Estimate& al
   constexpr int kMotionSize = Registration::kMotionSize;
   const Registration::Vector away = aligned.minus(prediction.prior.mean);
   const Eigen::Matrix<double, kMotionSize, 1> moved = u::segment(away, u::motion);
-  Eigen::Matrix<double, kMotionSize, kMotionSize> P = u::block(prediction.errors, u::motion);
+  Eigen::Matrix<double, kMotionSize, kMotionSize> P = u::sub_block(prediction.motion_error_covariance, u::motion);
   P.diagonal().array() += unknowns::kMinVariance;
   return std::sqrt(std::max(0.0, moved.dot(P.ldlt().solve(moved))) / kMotionSize);
 }
 
-bool is_expected(const Params& params, const Prediction& prediction, const Registration::Estimate& aligned,
+bool agrees_with_prediction(const Params& params, const Prediction& prediction, const Registration::Estimate& aligned,
                  double innovation) {
   const Eigen::Vector3d away_m = aligned.state.p_WI_m - prediction.prior.mean.state.p_WI_m;
   return innovation * innovation * Registration::kMotionSize <= unknowns::kAgreementChi2Max &&
          away_m.norm() <= params.expert.matching.distance_m;
 }
 
-void boundary_after(const Params& params, const StateEstimate& start, const MotionWindow& window,
+void sweep_boundary_after(const Params& params, const StateEstimate& start, const MotionWindow& window,
                     const SweepTrajectory& trajectory, const Registration::Result* alignment, SweepBoundary& boundary) {
-  boundary.end_start_jacobian = unknowns_at(trajectory, trajectory.duration_s());
-  at_end(start, trajectory, boundary.end_start_jacobian, window.end_ns, boundary.state_estimate);
-  boundary.clipped_velocity_m2_s2 = clipped_velocity_variance(trajectory, window.samples);
+  boundary.end_by_start_jacobian = unknowns_at(trajectory, trajectory.duration_s());
+  at_end(start, trajectory, boundary.end_by_start_jacobian, window.end_ns, boundary.state_estimate);
+  boundary.clipped_velocity_variance_m2_s2 = velocity_variance_from_clipping(trajectory, window.samples);
   const bool aligned = alignment != nullptr;
-  boundary.deficit_factor = Eigen::Vector3d::Zero();
-  if (aligned) boundary.deficit_factor = trajectory.deficit_factor_at_end();
-  boundary.constrained = aligned && alignment->least_constrained_sigma_m <= params.expert.matching.degenerate_sigma_m;
+  boundary.clipped_axis_sign = Eigen::Vector3d::Zero();
+  if (aligned) boundary.clipped_axis_sign = trajectory.clipped_axes_at_end();
+  boundary.all_directions_constrained = aligned && alignment->least_constrained_sigma_m <= params.expert.matching.degenerate_sigma_m;
 }
 
 }  // namespace tumble::mapping

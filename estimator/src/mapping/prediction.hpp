@@ -11,12 +11,12 @@ namespace tumble::mapping {
 struct SweepBoundary {
   StateEstimate state_estimate;
   /// derivative of the unknowns at the end of the last sweep with respect to the unknowns at its start
-  Registration::Matrix end_start_jacobian = Registration::Matrix::Identity();
+  Registration::Matrix end_by_start_jacobian = Registration::Matrix::Identity();
   /// standard deviation of each rate at the end of the last sweep, relative to the maximum: mapping.md (R8)
-  Eigen::Vector3d deficit_factor = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d clipped_velocity_m2_s2 =
+  Eigen::Vector3d clipped_axis_sign = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d clipped_velocity_variance_m2_s2 =
       Eigen::Matrix3d::Zero();  ///< variance of the velocity due to the accelerometer's saturation, in W
-  bool constrained = false;     ///< surfaces constrained the last sweep in all directions
+  bool all_directions_constrained = false;     ///< surfaces constrained the last sweep in all directions
 
   TimeNs time_ns() const { return state_estimate.mean.state.time_ns; }
 };
@@ -30,13 +30,13 @@ struct MotionWindow {
 struct Prediction {
   Registration::Prior prior;
   /// derivative of the predicted unknowns with respect to the unknowns at the end of the last sweep
-  Registration::Matrix jacobian_boundary = Registration::Matrix::Identity();
+  Registration::Matrix boundary_jacobian = Registration::Matrix::Identity();
   Registration::Matrix noise = Registration::Matrix::Zero();   ///< process noise
-  Registration::Matrix errors = Registration::Matrix::Zero();  ///< covariance of the actual errors of the mean
+  Registration::Matrix motion_error_covariance = Registration::Matrix::Zero();  ///< covariance of the actual errors of the mean
 
-  /// compose() requires that all other members are set.
-  void compose(const StateEstimate& at_boundary);
-  /// Sets the velocity to zero and removes its correlations. Call zero_velocity_update() before compose().
+  /// compose_with_boundary() requires that all other members are set.
+  void compose_with_boundary(const StateEstimate& at_boundary);
+  /// Sets the velocity to zero and removes its correlations. Call zero_velocity_update() before compose_with_boundary().
   void zero_velocity_update(double sigma_m_s);
 };
 
@@ -45,7 +45,7 @@ Prediction predict(const LidarInertialOdometry::Params& params, const SweepBound
                    const MotionWindow& window, const SweepTrajectory& trajectory, const MotionPrior& known);
 
 /// At rest after a tracking failure, a prediction of zero motion stops the drift of the velocity.
-void predict_rest(const SweepBoundary& boundary, Prediction& prediction);
+void predict_stationary_sweep(const SweepBoundary& boundary, Prediction& prediction);
 
 bool prior_is_certain(const LidarInertialOdometry::Params& params, const SweepBoundary& boundary,
                       const MotionWindow& window, const SweepTrajectory& trajectory);
@@ -59,14 +59,14 @@ double innovation(const Prediction& prediction, const Registration::Estimate& al
 
 /// See mapping.md (R67). A registered pose is expected if its difference from the prediction is within the predicted
 /// covariance and the matching distance. Beyond the matching distance, any nearby surface may match by chance.
-bool is_expected(const LidarInertialOdometry::Params& params, const Prediction& prediction,
+bool agrees_with_prediction(const LidarInertialOdometry::Params& params, const Prediction& prediction,
                  const Registration::Estimate& aligned, double innovation);
 
 /// `alignment` is null for a sweep without registration.
-void boundary_after(const LidarInertialOdometry::Params& params, const StateEstimate& start, const MotionWindow& window,
+void sweep_boundary_after(const LidarInertialOdometry::Params& params, const StateEstimate& start, const MotionWindow& window,
                     const SweepTrajectory& trajectory, const Registration::Result* alignment, SweepBoundary& boundary);
 
 /// Returns the correlation of the saturation deficit between adjacent knots of a sweep, see mapping.md (R46).
-double knot_correlation(const SweepTrajectory& trajectory);
+double deficit_knot_correlation(const SweepTrajectory& trajectory);
 
 }  // namespace tumble::mapping

@@ -11,16 +11,16 @@ Status LidarInertialOdometry::use_map(PriorMap map) {
   if (const Status status = check_prior_map(map); !status.ok()) return status;
   if (mapping::has_started(impl_->tracking))
     return {ErrorCode::time_order, "number of sweeps before the prior map", 1.0, 0.0};
-  if (map.T_MI) set_start_pose(*map.T_MI);
+  if (map.T_prior_map_imu) set_start_pose(*map.T_prior_map_imu);
   impl_->localiser = mapping::MapLocaliser(std::move(map));
   return {};
 }
 
-void LidarInertialOdometry::use_map_of(const LidarInertialOdometry& other) {
+void LidarInertialOdometry::use_map_of_pass(const LidarInertialOdometry& other) {
   impl_->localiser = other.impl_->localiser;
   impl_->localiser.restart(impl_->start_pose);
   const PriorMap* const map = prior_map();
-  if (!impl_->start_pose && map != nullptr && map->T_MI) set_start_pose(*map->T_MI);
+  if (!impl_->start_pose && map != nullptr && map->T_prior_map_imu) set_start_pose(*map->T_prior_map_imu);
 }
 
 Status LidarInertialOdometry::localised() const {
@@ -36,19 +36,19 @@ void LidarInertialOdometry::Impl::localise(const SweepReport& report) {
   if (!localiser.has_map() || localiser.is_localised()) return;
   if (report.verdict != SweepVerdict::registered || !std::holds_alternative<mapping::Tracking>(tracking)) return;
   const std::optional<mapping::FramePose> pose =
-      localiser.observe(map.voxels(), boundary.state_estimate.mean.state.p_WI_m);
+      localiser.match_local_map(map.voxels(), sweep_boundary.state_estimate.mean.state.p_WI_m);
   if (pose) enter_prior_map(*pose);
 }
 
 void LidarInertialOdometry::Impl::enter_prior_map(const mapping::FramePose& pose) {
-  const Eigen::Vector3d sensor_M_m = pose.T_MW * boundary.state_estimate.mean.state.p_WI_m;
-  const mapping::FrameChange change{pose.T_MW, pose.covariance, sensor_M_m};
-  change.apply(boundary);
+  const Eigen::Vector3d sensor_M_m = pose.T_prior_map_world * sweep_boundary.state_estimate.mean.state.p_WI_m;
+  const mapping::FrameChange change{pose.T_prior_map_world, pose.covariance, sensor_M_m};
+  change.apply(sweep_boundary);
   change.apply(window);
   window.clear_inserted();  // the indices of the points change
-  const Eigen::Isometry3f T_MW = pose.T_MW.cast<float>();
-  map.start_from(params, localiser.map().points, localiser.map().extend ? &T_MW : nullptr);
-  world = mapping::WorldCovariance::of_prior_map(params.expert.world, sensor_M_m);
+  const Eigen::Isometry3f T_MW = pose.T_prior_map_world.cast<float>();
+  map.start_from_map_points(params, localiser.map().points, localiser.map().extend ? &T_MW : nullptr);
+  world_covariance = mapping::WorldCovariance::covariance_in_prior_map(params.expert.world_covariance, sensor_M_m);
 }
 
 }  // namespace tumble

@@ -21,25 +21,25 @@ struct SurfacePoint {
 std::vector<SurfacePoint> surface_points(const VoxelMap& map, const Eigen::Vector3f& p_WI_m, float radius_m);
 
 struct FramePose {
-  Eigen::Isometry3d T_MW = Eigen::Isometry3d::Identity();
-  std::size_t covered = 0;   ///< surface points near the prior map's surfaces
-  std::size_t agreeing = 0;  ///< covered points on the prior map's surfaces, with similar normals
+  Eigen::Isometry3d T_prior_map_world = Eigen::Isometry3d::Identity();
+  std::size_t covered_point_count = 0;   ///< surface points near the prior map's surfaces
+  std::size_t agreeing_point_count = 0;  ///< covered points on the prior map's surfaces, with similar normals
   /// covariance of the pose in axes of the prior map's frame M: displacement and rotation about the sensor
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 
-  double ratio() const { return covered == 0 ? 0.0 : double(agreeing) / double(covered); }
+  double agreement_ratio() const { return covered_point_count == 0 ? 0.0 : double(agreeing_point_count) / double(covered_point_count); }
 };
 
 /// SearchRegion limits the position of the sensor in frame M and the heading of frame W in frame M.
 struct SearchRegion {
   Eigen::Vector3d p_WI_m = Eigen::Vector3d::Zero();  ///< sensor position to which the limits refer, in W
-  Eigen::Vector3d p_MI_m = Eigen::Vector3d::Zero();  ///< centre of the region
-  double reach_m = 0.0, reach_rad = 0.0;
+  Eigen::Vector3d centre_in_prior_map_m = Eigen::Vector3d::Zero();  ///< centre of the region
+  double search_radius_m = 0.0, search_angle_rad = 0.0;
 };
 
-class PriorScene {
+class PriorMapScene {
  public:
-  explicit PriorScene(PriorMap map);
+  explicit PriorMapScene(PriorMap map);
 
   const PriorMap& map() const { return map_; }
   /// Returns at most two distinct poses of the local frame in the prior map, best first. Cost of a search in the whole
@@ -49,35 +49,35 @@ class PriorScene {
   /// @param attempt     number of the search; determines the surface point that is moved to surfaces of the prior map
   /// @param region      limits of the search; null: the whole map
   /// @param tried       receives the number of poses that the search compared
-  std::vector<FramePose> search(const std::vector<SurfacePoint>& points, const Eigen::Vector3d& sensor_W_m,
+  std::vector<FramePose> find_candidate_poses(const std::vector<SurfacePoint>& points, const Eigen::Vector3d& sensor_W_m,
                                 std::size_t attempt, const SearchRegion* region, std::size_t& tried) const;
   /// Refines a pose by point-to-plane registration, and counts the points that agree with the prior map.
-  FramePose refined(const FramePose& start, const std::vector<SurfacePoint>& points, const Eigen::Vector3d& sensor_W_m,
+  FramePose refined_pose(const FramePose& start, const std::vector<SurfacePoint>& points, const Eigen::Vector3d& sensor_W_m,
                     float first_kernel_m) const;
 
  private:
-  struct Candidate {
-    int score;
-    std::uint32_t cell;
+  struct PoseCandidate {
+    int pose_score;
+    std::uint32_t grid_cell_index;
     std::uint16_t yaw;
   };
   struct SurfaceCell {
-    Eigen::Vector3f position_M_m;
+    Eigen::Vector3f position_prior_map_m;
     float normal_z;
     std::int64_t at;
   };
   void build_grid();
   std::int64_t index_of(const Eigen::Vector3f& position_M_m) const;
-  std::vector<Candidate> best_candidates(const std::vector<SurfacePoint>& points, const SurfacePoint& anchor,
+  std::vector<PoseCandidate> best_candidates(const std::vector<SurfacePoint>& points, const SurfacePoint& anchor,
                                          const SearchRegion* region, std::size_t& tried) const;
-  Eigen::Isometry3d pose_of(const Candidate& candidate, const SurfacePoint& anchor) const;
+  Eigen::Isometry3d pose_of(const PoseCandidate& candidate, const SurfacePoint& anchor) const;
   void count(const std::vector<SurfacePoint>& points, FramePose& pose) const;
 
   PriorMap map_;
   VoxelMap voxels_;
   std::vector<Eigen::Vector3f> normals_;  // by index of voxels_
   float cell_m_ = 0.0f;
-  Eigen::Vector3f low_M_m_ = Eigen::Vector3f::Zero();
+  Eigen::Vector3f lower_corner_prior_map_m_ = Eigen::Vector3f::Zero();
   Eigen::Vector3i size_ = Eigen::Vector3i::Zero();
   std::vector<std::uint8_t> grid_;
   std::vector<SurfaceCell> cells_;

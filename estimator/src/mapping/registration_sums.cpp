@@ -20,7 +20,7 @@ constexpr double kCluster_m = 1.0;
 constexpr int kRigid = Registration::kMotionSize;
 constexpr float kRounding = 1.0001f;
 
-constexpr std::size_t block_count(std::size_t points, std::size_t block) {
+constexpr std::size_t partial_sum_count(std::size_t points, std::size_t block) {
   return (points + block - 1) / block;
 }
 
@@ -29,25 +29,25 @@ constexpr std::size_t block_count(std::size_t points, std::size_t block) {
 Registration::Unknowns::Unknowns(const Matrix& covariance) {
   for (int i = 0; i < kUnknowns; ++i) {
     if (i >= kRigid && covariance(i, i) <= 0.0) continue;
-    free[static_cast<std::size_t>(count++)] = i;
-    deficit = deficit || (i >= kDeficitStart && i < kCalibrationStart);
-    calibration = calibration || i >= kCalibrationStart;
+    free_unknowns[static_cast<std::size_t>(count++)] = i;
+    deficit_free = deficit_free || (i >= kFirstDeficitUnknown && i < kFirstCalibrationUnknown);
+    calibration_free = calibration_free || i >= kFirstCalibrationUnknown;
   }
 }
 
-void Registration::Unknowns::expand(const Sums& sum, Matrix& H, Vector& g) const {
+void Registration::Unknowns::expand_to_all_unknowns(const Sums& sum, Matrix& H, Vector& g) const {
   H.setZero();
   g.setZero();
   for (int a = 0; a < count; ++a) {
-    const int i = free[static_cast<std::size_t>(a)];
-    g[i] = sum.g[a];
-    for (int b = 0; b < count; ++b) H(i, free[static_cast<std::size_t>(b)]) = sum.H(a, b);
+    const int i = free_unknowns[static_cast<std::size_t>(a)];
+    g[i] = sum.gradient[a];
+    for (int b = 0; b < count; ++b) H(i, free_unknowns[static_cast<std::size_t>(b)]) = sum.normal_matrix(a, b);
   }
 }
 
-void Registration::Unknowns::hold(Matrix& H, Vector& g) const {
+void Registration::Unknowns::fix_constrained_unknowns(Matrix& H, Vector& g) const {
   for (int i = 0; i < kUnknowns; ++i) {
-    if (is_free(i)) continue;
+    if (is_free_unknown(i)) continue;
     H.row(i).setZero();
     H.col(i).setZero();
     H(i, i) = 1.0;
@@ -57,7 +57,7 @@ void Registration::Unknowns::hold(Matrix& H, Vector& g) const {
 
 void Registration::Unknowns::clear_fixed_blocks(Matrix& M) const {
   for (int i = 0; i < kUnknowns; ++i) {
-    if (is_free(i)) continue;
+    if (is_free_unknown(i)) continue;
     M.row(i).setZero();
     M.col(i).setZero();
   }
@@ -65,13 +65,13 @@ void Registration::Unknowns::clear_fixed_blocks(Matrix& M) const {
 
 void Registration::Unknowns::clear_fixed(Matrix& covariance) const {
   for (int i = 0; i < kUnknowns; ++i) {
-    if (!is_free(i)) covariance(i, i) = 0.0;
+    if (!is_free_unknown(i)) covariance(i, i) = 0.0;
   }
 }
 
 void Registration::Sums::add(const Sums& other) {
-  H += other.H;
-  g += other.g;
+  normal_matrix += other.normal_matrix;
+  gradient += other.gradient;
   matches += other.matches;
   inliers += other.inliers;
 }
@@ -84,25 +84,25 @@ double Registration::point_variance_m2(const SweepPoint& point) const {
 }
 
 /// See mapping.md (R16), (R17).
-double Registration::residual(const SweepTrajectory& trajectory, const SweepCalibration& calibration,
+double Registration::residual(const SweepTrajectory& trajectory, const LidarImuCalibration& calibration,
                               const SweepPoint& point, const PlaneFit& plane, std::size_t& hint, Vector& derivative) {
   const Eigen::Vector3d n = plane.normal_W.cast<double>();
   const mapping::PointMotion motion(trajectory, calibration, point, hint);
-  motion.along(n, derivative);
-  return n.dot(trajectory.common_position_m(point.t_s) + motion.lever_m() - plane.centre_W_m.cast<double>());
+  motion.derivative_along_normal(n, derivative);
+  return n.dot(trajectory.gravity_free_position_m(point.t_s) + motion.lever_m() - plane.plane_centre_W_m.cast<double>());
 }
 
-void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours& found) {
+void Registration::find_match(const VoxelMap& map, std::size_t point, NearestNeighbours& found) {
   Match& match = matches_[point];
   const float rematch2 = static_cast<float>(params_.expert.rematch_m * params_.expert.rematch_m);
   float radius_m = static_cast<float>(params_.match_distance_m);
-  if (match.searched) {
+  if (match.plane_searched) {
     const float moved2 = (positions_[point] - match.search_position_W_m).squaredNorm();
     if (moved2 <= rematch2) return;
     // The search radius includes all neighbours of the previous search, so the nearest neighbours are found.
     radius_m = std::min(radius_m, kRounding * (match.farthest_neighbour_m + std::sqrt(moved2)));
   }
-  match.searched = true;
+  match.plane_searched = true;
   match.search_position_W_m = positions_[point];
   map.nearest(positions_[point], params_.neighbours, radius_m, found);
   match.farthest_neighbour_m = found.count == params_.neighbours ? std::sqrt(found.distance2_m2[found.count - 1])
@@ -132,17 +132,17 @@ void Registration::match_points(const SweepTrajectory& trajectory, std::span<con
                                 const VoxelMap& map) {
   lever_arm_vectors_.resize(points.size());
   positions_.resize(points.size());
-  distances_.resize(points.size());
-  run_parallel(params_.parallel_for, block_count(points.size(), kBlock), [&](std::size_t block) {
-    Neighbours found;
-    const std::size_t begin = block * kBlock, end = std::min(points.size(), (block + 1) * kBlock);
+  residual_distances_m_.resize(points.size());
+  run_parallel(params_.parallel_for, partial_sum_count(points.size(), kPointsPerPartialSum), [&](std::size_t block) {
+    NearestNeighbours found;
+    const std::size_t begin = block * kPointsPerPartialSum, end = std::min(points.size(), (block + 1) * kPointsPerPartialSum);
     trajectory.lever_arm_vectors(points.subspan(begin, end - begin),
                                  std::span(lever_arm_vectors_).subspan(begin, end - begin));
     for (std::size_t i = begin; i < end; ++i) {
       positions_[i] =
-          (trajectory.common_position_m(points[i].t_s) + lever_arm_vectors_[i].cast<double>()).cast<float>();
+          (trajectory.gravity_free_position_m(points[i].t_s) + lever_arm_vectors_[i].cast<double>()).cast<float>();
       find_match(map, i, found);
-      distances_[i] = matches_[i].plane.normal_W.dot(positions_[i] - matches_[i].plane.centre_W_m);
+      residual_distances_m_[i] = matches_[i].plane.normal_W.dot(positions_[i] - matches_[i].plane.plane_centre_W_m);
     }
   });
 }
@@ -151,7 +151,7 @@ void Registration::match_points(const SweepTrajectory& trajectory, std::span<con
 double Registration::kernel_width_m() {
   sorted_distances_.clear();
   for (std::size_t i = 0; i < matches_.size(); ++i) {
-    if (matches_[i].plane.verdict == PlaneVerdict::plane) sorted_distances_.push_back(std::abs(distances_[i]));
+    if (matches_[i].plane.verdict == PlaneVerdict::plane) sorted_distances_.push_back(std::abs(residual_distances_m_[i]));
   }
   if (sorted_distances_.empty()) return params_.expert.kernel_min_m;
   const auto middle = sorted_distances_.begin() + static_cast<std::ptrdiff_t>(sorted_distances_.size() / 2);
@@ -162,20 +162,20 @@ double Registration::kernel_width_m() {
 
 /// See mapping.md (R23).
 void Registration::accumulate_block(std::span<const SweepPoint> points, std::size_t block,
-                                    const SweepTrajectory& trajectory, const SweepCalibration& calibration,
+                                    const SweepTrajectory& trajectory, const LidarImuCalibration& calibration,
                                     const Unknowns& unknowns, double kernel_m, Products& products, Sums& sum) {
   // Each matched point has one column: its distance and the derivatives, multiplied by the square root of the match's
   // weight.
   auto& rows = products.columns;
-  Eigen::Matrix<double, static_cast<int>(kBlock), 1> weighted;
-  const bool rigid = !unknowns.deficit && !unknowns.calibration;
+  Eigen::Matrix<double, static_cast<int>(kPointsPerPartialSum), 1> weighted;
+  const bool rigid = !unknowns.deficit_free && !unknowns.calibration_free;
   std::size_t hint = 0;
   int count = 0;
-  const std::size_t end = std::min(points.size(), (block + 1) * kBlock);
-  for (std::size_t i = block * kBlock; i < end; ++i) {
+  const std::size_t end = std::min(points.size(), (block + 1) * kPointsPerPartialSum);
+  for (std::size_t i = block * kPointsPerPartialSum; i < end; ++i) {
     const Match& match = matches_[i];
     if (match.plane.verdict != PlaneVerdict::plane) continue;
-    const double r = distances_[i];
+    const double r = residual_distances_m_[i];
     const Weight weight = compute_weight(points[i], match, r, kernel_m);
     const double root = std::sqrt(weight.information);
     const Eigen::Vector3d n = match.plane.normal_W.cast<double>();
@@ -186,9 +186,9 @@ void Registration::accumulate_block(std::span<const SweepPoint> points, std::siz
       rows.col(count).head<kRigid>() = root * j;
     } else {
       Vector full;
-      mapping::PointMotion(trajectory, calibration, points[i], hint).along(n, full);
+      mapping::PointMotion(trajectory, calibration, points[i], hint).derivative_along_normal(n, full);
       for (int k = 0; k < unknowns.count; ++k) {
-        rows(k, count) = root * full[unknowns.free[static_cast<std::size_t>(k)]];
+        rows(k, count) = root * full[unknowns.free_unknowns[static_cast<std::size_t>(k)]];
       }
     }
     weighted[count++] = root * r;
@@ -196,51 +196,51 @@ void Registration::accumulate_block(std::span<const SweepPoint> points, std::siz
     if (r * r <= 9.0 * weight.variance_m2) ++sum.inliers;
   }
   const int n = unknowns.count;
-  products.add_to(n, count, sum.H);
-  sum.g.head(n) = rows.topLeftCorner(n, count) * weighted.head(count);
+  products.add_products_to(n, count, sum.normal_matrix);
+  sum.gradient.head(n) = rows.topLeftCorner(n, count) * weighted.head(count);
 }
 
 void Registration::accumulate(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
-                              const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m,
+                              const LidarImuCalibration& calibration, const Unknowns& unknowns, double kernel_m,
                               Sums& sum) {
-  block_sums_.assign(block_count(points.size(), kBlock), Sums{});
-  mapping::Spare<Products> spare;
-  run_parallel(params_.parallel_for, block_sums_.size(), [&](std::size_t block) {
-    std::unique_ptr<Products> products = spare.take();
-    accumulate_block(points, block, trajectory, calibration, unknowns, kernel_m, *products, block_sums_[block]);
-    spare.give(std::move(products));
+  partial_sums_.assign(partial_sum_count(points.size(), kPointsPerPartialSum), Sums{});
+  mapping::WorkspacePool<Products> spare;
+  run_parallel(params_.parallel_for, partial_sums_.size(), [&](std::size_t block) {
+    std::unique_ptr<Products> products = spare.acquire();
+    accumulate_block(points, block, trajectory, calibration, unknowns, kernel_m, *products, partial_sums_[block]);
+    spare.release(std::move(products));
   });
   sum = Sums{};
-  for (const Sums& part : block_sums_) sum.add(part);
-  const Matrix lower = sum.H;
-  sum.H = lower.selfadjointView<Eigen::Lower>();
+  for (const Sums& part : partial_sums_) sum.add(part);
+  const Matrix lower = sum.normal_matrix;
+  sum.normal_matrix = lower.selfadjointView<Eigen::Lower>();
 }
 
-/// NormalNoise is the part of the normal matrix due to noise of the surface normals: mapping.md (R28), (R29).
-/// NormalNoise covers all free unknowns, because noise would seem to determine combinations that surfaces cannot
+/// SurfaceNormalNoise is the part of the normal matrix due to noise of the surface normals: mapping.md (R28), (R29).
+/// SurfaceNormalNoise covers all free unknowns, because noise would seem to determine combinations that surfaces cannot
 /// determine.
-struct Registration::NormalNoise {
+struct Registration::SurfaceNormalNoise {
   const Unknowns& unknowns;
-  using Products = mapping::OuterProducts<kUnknowns, 2 * static_cast<int>(kBlock)>;
-  std::unique_ptr<Products> products = Products::make();
+  using Products = mapping::OuterProducts<kUnknowns, 2 * static_cast<int>(kPointsPerPartialSum)>;
+  std::unique_ptr<Products> outer_products = Products::make_unique_products();
   int count = 0;
   Matrix lower = Matrix::Zero();
 
-  explicit NormalNoise(const Unknowns& of) : unknowns(of) {}
+  explicit SurfaceNormalNoise(const Unknowns& of) : unknowns(of) {}
 
   void add(const mapping::PointMotion& motion, const PlaneFit& plane, double root) {
     for (int axis = 0; axis < 2; ++axis) {
       Vector derivative;
-      motion.along(plane.normal_sigma_W.col(axis).cast<double>(), derivative);
+      motion.derivative_along_normal(plane.normal_sigma_W.col(axis).cast<double>(), derivative);
       for (int k = 0; k < unknowns.count; ++k)
-        products->columns(k, count) = root * derivative[unknowns.free[static_cast<std::size_t>(k)]];
+        outer_products->columns(k, count) = root * derivative[unknowns.free_unknowns[static_cast<std::size_t>(k)]];
       ++count;
     }
-    if (count == products->columns.cols()) sum_up();
+    if (count == outer_products->columns.cols()) sum_up();
   }
 
   void sum_up() {
-    products->add_to(unknowns.count, count, lower);
+    outer_products->add_products_to(unknowns.count, count, lower);
     count = 0;
   }
 
@@ -249,7 +249,7 @@ struct Registration::NormalNoise {
     Matrix out = Matrix::Zero();
     for (int a = 0; a < unknowns.count; ++a) {
       for (int b = 0; b < unknowns.count; ++b)
-        out(unknowns.free[static_cast<std::size_t>(a)], unknowns.free[static_cast<std::size_t>(b)]) =
+        out(unknowns.free_unknowns[static_cast<std::size_t>(a)], unknowns.free_unknowns[static_cast<std::size_t>(b)]) =
             lower(std::max(a, b), std::min(a, b));
     }
     return out;
@@ -257,26 +257,26 @@ struct Registration::NormalNoise {
 };
 
 /// The gradient sums of all clusters of points determine the covariance of the gradient: mapping.md (R26).
-struct Registration::Pulls {
-  SpatialHash& cluster_of;
-  std::vector<Vector>& pulls;
+struct Registration::ClusterGradients {
+  SpatialHash& cluster_index;
+  std::vector<Vector>& gradients;
   float cubes_per_m;
 
   void add(const mapping::PointMotion& motion, const PlaneFit& plane, const Eigen::Vector3f& position_W_m,
            double weighted_m) {
     const Eigen::Vector3f cube = (position_W_m * cubes_per_m).array().floor();
-    if (!(cube.cwiseAbs().maxCoeff() < static_cast<float>(SpatialHash::kLimit - 2))) return;
+    if (!(cube.cwiseAbs().maxCoeff() < static_cast<float>(SpatialHash::kCoordinateLimit - 2))) return;
     const std::uint32_t cluster =
-        cluster_of.insert(SpatialHash::key(cube.cast<int>()), static_cast<std::uint32_t>(pulls.size()));
-    if (cluster == pulls.size()) pulls.emplace_back(Vector::Zero());
+        cluster_index.insert(SpatialHash::key(cube.cast<int>()), static_cast<std::uint32_t>(gradients.size()));
+    if (cluster == gradients.size()) gradients.emplace_back(Vector::Zero());
     Vector derivative;
-    motion.along(plane.normal_W.cast<double>(), derivative);
-    pulls[cluster] += weighted_m * derivative;
+    motion.derivative_along_normal(plane.normal_W.cast<double>(), derivative);
+    gradients[cluster] += weighted_m * derivative;
   }
 
   Matrix covariance(const Unknowns& unknowns) const {
     Matrix lower = Matrix::Zero();
-    for (const Vector& pull : pulls) lower.selfadjointView<Eigen::Lower>().rankUpdate(pull);
+    for (const Vector& pull : gradients) lower.selfadjointView<Eigen::Lower>().rankUpdate(pull);
     Matrix out = lower.selfadjointView<Eigen::Lower>();
     unknowns.clear_fixed_blocks(out);
     return out;
@@ -284,23 +284,23 @@ struct Registration::Pulls {
 };
 
 void Registration::compute_error_statistics(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
-                                            const SweepCalibration& calibration, const Unknowns& unknowns,
+                                            const LidarImuCalibration& calibration, const Unknowns& unknowns,
                                             double kernel_m, Result& result) {
-  cluster_index_.clear();
-  cluster_gradients_.clear();
-  NormalNoise noise(unknowns);
-  Pulls pulls{cluster_index_, cluster_gradients_, static_cast<float>(1.0 / kCluster_m)};
+  point_cluster_index_.clear();
+  point_cluster_gradients_.clear();
+  SurfaceNormalNoise noise(unknowns);
+  ClusterGradients pulls{point_cluster_index_, point_cluster_gradients_, static_cast<float>(1.0 / kCluster_m)};
   std::size_t hint = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Match& match = matches_[i];
     if (match.plane.verdict != PlaneVerdict::plane) continue;
-    const double r = distances_[i];
+    const double r = residual_distances_m_[i];
     const double information = compute_weight(points[i], match, r, kernel_m).information;
     const mapping::PointMotion motion(trajectory, calibration, points[i], hint);
     noise.add(motion, match.plane, std::sqrt(information));
     pulls.add(motion, match.plane, positions_[i], information * r);
   }
-  result.normal_noise_information = noise.information();
+  result.surface_normal_noise_information = noise.information();
   result.score_covariance = pulls.covariance(unknowns);
 }
 

@@ -9,23 +9,23 @@
 namespace tumble {
 
 struct Registration::Unknowns {
-  std::array<int, kUnknowns> free{};  ///< indices of the free unknowns, ascending
+  std::array<int, kUnknowns> free_unknowns{};  ///< indices of the free unknowns, ascending
   int count = 0;
-  bool deficit = false, calibration = false;
+  bool deficit_free = false, calibration_free = false;
 
   /// The motion is always free; any other unknown is free if its prior variance is above 0.
   explicit Unknowns(const Matrix& covariance);
 
   /// In the normal equations H, g for all unknowns, the rows of fixed unknowns are 0.
-  void expand(const Sums& sum, Matrix& H, Vector& g) const;
+  void expand_to_all_unknowns(const Sums& sum, Matrix& H, Vector& g) const;
   /// The normal equations are changed such that the solution is 0 for the fixed unknowns.
-  void hold(Matrix& H, Vector& g) const;
+  void fix_constrained_unknowns(Matrix& H, Vector& g) const;
   void clear_fixed_blocks(Matrix& M) const;
   void clear_fixed(Matrix& covariance) const;
 
  private:
-  bool is_free(int unknown) const {
-    return std::find(free.begin(), free.begin() + count, unknown) != free.begin() + count;
+  bool is_free_unknown(int unknown) const {
+    return std::find(free_unknowns.begin(), free_unknowns.begin() + count, unknown) != free_unknowns.begin() + count;
   }
 };
 

@@ -40,13 +40,13 @@ bool converged(const Registration::Result& found) {
 }
 
 /// Returns whether enough matched points of a registration are close to their surfaces: mapping.md (R68).
-bool fits(const Registration::Result& found) {
+bool is_sufficient_fit(const Registration::Result& found) {
   return double(found.inliers) >= kConfirmInlierRatio * double(found.matches);
 }
 
 /// If the registration fails and a gyro axis is clipped, the registration is repeated with larger missing gyro rates.
 /// Saturation within one sweep may rotate the initial pose by a radian.
-void track(const Params& params, const Registration::Prior& prior, const Scene& scene, Aligner& aligner,
+void track_sweep(const Params& params, const Registration::Prior& prior, const RegistrationScene& scene, SweepAligner& aligner,
            SweepTrajectory& trajectory, Registration::Result& found) {
   aligner.align_with_all_points(prior, scene, trajectory, found);
   int iterations = found.iterations, tries = 0;
@@ -62,10 +62,10 @@ void track(const Params& params, const Registration::Prior& prior, const Scene& 
     const double more = times * kDeficitTry_rad_s;
     for (int axis = 0; axis < 3; ++axis) {
       if (converged(found) || tries == kDeficitTriesMax) break;
-      const int first = unknowns::deficit_at(axis, 0);
+      const int first = unknowns::saturation_deficit_index(axis, 0);
       if (std::sqrt(prior.covariance(first, first)) < more / kDeficitSigmas) continue;
       const auto start = std::make_unique<Registration::Prior>(prior);
-      start->deficit_start_rad_s.row(axis).array() += more;
+      start->initial_saturation_deficit_rad_s.row(axis).array() += more;
       aligner.align_coarse_to_fine(*start, prior, scene, trajectory, found);
       iterations += found.iterations;
       ++tries;
@@ -76,33 +76,33 @@ void track(const Params& params, const Registration::Prior& prior, const Scene& 
 
 /// If no initial pose fits, the result is the pose with the most inliers. The number of initial poses per sweep is
 /// limited, so an unsuccessful search continues with the next sweep.
-void search(const SearchContext& from, const Scene& scene, Aligner& aligner, SweepTrajectory& trajectory,
+void search_displaced_poses(const RelocalisationContext& from, const RegistrationScene& scene, SweepAligner& aligner, SweepTrajectory& trajectory,
             Registration::Result& found) {
   const Registration::Prior& prior = from.prior;
-  if (from.contradicted != nullptr) {
+  if (from.contradicted_motion != nullptr) {
     const auto start = std::make_unique<Registration::Prior>(prior);
-    start->mean.state = *from.contradicted;
+    start->mean.state = *from.contradicted_motion;
     aligner.align_coarse_to_fine(*start, prior, scene, trajectory, found);
-    if (converged(found) && fits(found)) return;
+    if (converged(found) && is_sufficient_fit(found)) return;
   }
-  struct Best {
-    Registration::Result found;
+  struct BestAlignment {
+    Registration::Result alignment;
     SweepTrajectory trajectory;
   };
-  std::unique_ptr<Best> best;
+  std::unique_ptr<BestAlignment> best;
   aligner.align_coarse_to_fine(prior, prior, scene, trajectory, found);
   const RegistrationVerdict verdict = found.verdict;  // verdict of the sweep if the search fails
   const int moved = kStartsPerSweep - 1;
-  for (int k = 0; k < moved && !(converged(found) && fits(found)); ++k) {
-    if (converged(found) && (!best || found.inliers > best->found.inliers))
-      best = std::make_unique<Best>(Best{found, trajectory});
+  for (int k = 0; k < moved && !(converged(found) && is_sufficient_fit(found)); ++k) {
+    if (converged(found) && (!best || found.inliers > best->alignment.inliers))
+      best = std::make_unique<BestAlignment>(BestAlignment{found, trajectory});
     const int index = 1 + (failed_searches(from.tracking) * moved + k) % (kStartsPerRound * kRounds);
     const auto start = std::make_unique<Registration::Prior>(prior);
-    move_start(index, *start);
+    displace_starting_pose(index, *start);
     aligner.align_coarse_to_fine(*start, prior, scene, trajectory, found);
   }
-  if (best && !(converged(found) && (fits(found) || found.inliers >= best->found.inliers))) {
-    found = best->found;
+  if (best && !(converged(found) && (is_sufficient_fit(found) || found.inliers >= best->alignment.inliers))) {
+    found = best->alignment;
     trajectory = best->trajectory;
   }
   if (!converged(found)) found.verdict = verdict;
@@ -110,7 +110,7 @@ void search(const SearchContext& from, const Scene& scene, Aligner& aligner, Swe
 
 }  // namespace
 
-void move_start(int index, Registration::Prior& prior) {
+void displace_starting_pose(int index, Registration::Prior& prior) {
   if (index == 0) return;
   const int round = 1 + (index - 1) / kStartsPerRound;
   const int axis = (index - 1) / 2 % 6;
@@ -125,38 +125,38 @@ void move_start(int index, Registration::Prior& prior) {
   }
 }
 
-Attempt attempt(const Params& params, const SearchContext& from, const Scene& scene, Aligner& aligner,
+RegistrationAttempt attempt_registration(const Params& params, const RelocalisationContext& from, const RegistrationScene& scene, SweepAligner& aligner,
                 SweepTrajectory& trajectory, std::optional<Registration::Result>& alignment) {
   Registration::Result& found = alignment.emplace();
   found.points = scene.points.size();
   if (is_lost(from.tracking)) {
-    search(from, scene, aligner, trajectory, found);
+    search_displaced_poses(from, scene, aligner, trajectory, found);
   } else {
-    track(params, from.prior, scene, aligner, trajectory, found);
+    track_sweep(params, from.prior, scene, aligner, trajectory, found);
   }
-  Attempt out;
+  RegistrationAttempt out;
   out.iterations = found.iterations;
   out.inlier_ratio = found.points == 0 ? 0.0 : double(found.inliers) / double(found.points);
-  out.too_few_matches = found.verdict == RegistrationVerdict::too_few;
+  out.too_few_matches = found.verdict == RegistrationVerdict::too_few_matches;
   if (!converged(found)) alignment.reset();
   return out;
 }
 
-void judge(const Params& params, const TrackingState& before, std::size_t points, bool prior_certain,
-           const Attempt& attempt, Placed& out) {
+void judge_registration(const Params& params, const TrackingState& before, std::size_t points, bool prior_certain,
+           const RegistrationAttempt& attempt, SweepRegistration& out) {
   if (out.alignment) {
     const bool holds = out.alignment->least_constrained_sigma_m <= params.expert.matching.degenerate_sigma_m;
     out.verdict = holds ? SweepVerdict::registered : SweepVerdict::degenerate;
     const bool fits = double(out.alignment->inliers) >= kConfirmInlierRatio * double(out.alignment->matches);
     const bool relocalisation_unconfirmed =
-        (is_lost(before) && !(out.expected && fits)) || (is_unconfirmed(before) && !fits);
-    out.placement =
-        relocalisation_unconfirmed ? RegistrationOutcome::relocalisation_unconfirmed : RegistrationOutcome::found;
+        (is_lost(before) && !(out.agrees_with_prediction && fits)) || (is_unconfirmed_relocalisation(before) && !fits);
+    out.outcome =
+        relocalisation_unconfirmed ? RegistrationOutcome::relocalisation_unconfirmed : RegistrationOutcome::alignment_found;
     return;
   }
   const bool enough = points >= params.expert.matching.matches_min;
   const bool given_up = failed_searches(before) + 1 >= params.expert.tracking.lost_sweeps_max;
-  out.placement = RegistrationOutcome::failed;
+  out.outcome = RegistrationOutcome::failed;
   out.map_too_sparse = enough && attempt.too_few_matches;
   if (enough && ((attempt.too_few_matches && prior_certain) || given_up)) out.verdict = SweepVerdict::degenerate;
 }

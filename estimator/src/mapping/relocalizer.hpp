@@ -8,39 +8,39 @@
 
 namespace tumble::mapping {
 
-struct Attempt {
+struct RegistrationAttempt {
   bool too_few_matches = false;  ///< an alignment failed because the map has too few points
   int iterations = 0;
   double inlier_ratio = 0.0;  ///< inlier fraction of the last registration
 };
 
-/// SearchContext contains the possible states at the start of a sweep, from which the search chooses initial poses.
-struct SearchContext {
+/// RelocalisationContext contains the possible states at the start of a sweep, from which the search chooses initial poses.
+struct RelocalisationContext {
   const TrackingState& tracking;
   const Registration::Prior& prior;
   /// state of a relocalisation that later sweeps contradicted, as an additional starting pose; or null
-  const MotionState* contradicted = nullptr;
+  const MotionState* contradicted_motion = nullptr;
 };
 
 /// `trajectory` receives the registered motion, or the last motion of a failed registration. `alignment` is empty if no
 /// registration succeeded.
-Attempt attempt(const LidarInertialOdometry::Params& params, const SearchContext& from, const Scene& scene,
-                Aligner& aligner, SweepTrajectory& trajectory, std::optional<Registration::Result>& alignment);
+RegistrationAttempt attempt_registration(const LidarInertialOdometry::Params& params, const RelocalisationContext& from, const RegistrationScene& scene,
+                SweepAligner& aligner, SweepTrajectory& trajectory, std::optional<Registration::Result>& alignment);
 
-struct Placed {
+struct SweepRegistration {
   SweepVerdict verdict = SweepVerdict::rejected;
-  bool expected = true;  ///< the registered pose agrees with the inertial prediction
-  RegistrationOutcome placement = RegistrationOutcome::not_tried;
+  bool agrees_with_prediction = true;  ///< the registered pose agrees with the inertial prediction
+  RegistrationOutcome outcome = RegistrationOutcome::not_attempted;
   bool map_too_sparse = false;                    ///< the sweep has points, but the map has too few nearby points
   std::optional<Registration::Result> alignment;  ///< alignment at the start of the sweep
 };
 
 /// The verdict is `degenerate` if the map has too few points, or after enough failed searches.
-void judge(const LidarInertialOdometry::Params& params, const TrackingState& before, std::size_t points,
-           bool prior_certain, const Attempt& attempt, Placed& placed);
+void judge_registration(const LidarInertialOdometry::Params& params, const TrackingState& before, std::size_t points,
+           bool prior_certain, const RegistrationAttempt& attempt, SweepRegistration& placed);
 
 /// Initial pose number 0 is the predicted pose; all others are shifted or rotated along one axis, closest first:
 /// mapping.md (R66).
-void move_start(int index, Registration::Prior& prior);
+void displace_starting_pose(int index, Registration::Prior& prior);
 
 }  // namespace tumble::mapping

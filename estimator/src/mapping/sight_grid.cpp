@@ -23,7 +23,7 @@ constexpr float kDeviations = 3.0f;
 void FreeSpaceGrid::start(const Eigen::Vector3f& from_W_m, float moved_m) {
   origin_W_m_ = from_W_m;
   range_min_m_ = kMinRangePerMotion * moved_m;
-  nearest_m_.assign(std::size_t{6} * kBins * kBins, std::numeric_limits<float>::infinity());
+  nearest_return_m_.assign(std::size_t{6} * kBins * kBins, std::numeric_limits<float>::infinity());
 }
 
 std::optional<FreeSpaceGrid::Direction> FreeSpaceGrid::direction(const Eigen::Vector3f& lever_m) {
@@ -41,18 +41,18 @@ void FreeSpaceGrid::add(const Eigen::Vector3f& return_W_m) {
   const Eigen::Vector3f lever_m = return_W_m - origin_W_m_;
   const std::optional<Direction> towards = direction(lever_m);
   if (!towards) return;
-  float& nearest_m = nearest_m_[towards->bin()];
+  float& nearest_m = nearest_return_m_[towards->direction_bin_index()];
   nearest_m = std::min(nearest_m, lever_m.norm());
 }
 
 /// Returns the smallest range of the returns around a direction, or 0 if the range is unknown.
-float FreeSpaceGrid::free_range_m(const Direction& towards) const {
+float FreeSpaceGrid::free_space_range_m(const Direction& towards) const {
   float nearest_m = std::numeric_limits<float>::infinity();
   int empty = 0;
-  for (int v = towards.v - 1; v <= towards.v + 1; ++v) {
-    for (int u = towards.u - 1; u <= towards.u + 1; ++u) {
+  for (int v = towards.row - 1; v <= towards.row + 1; ++v) {
+    for (int u = towards.column - 1; u <= towards.column + 1; ++u) {
       if (u < 0 || v < 0 || u >= kBins || v >= kBins) return 0.0f;
-      const float beside_m = nearest_m_[Direction{towards.face, u, v}.bin()];
+      const float beside_m = nearest_return_m_[Direction{towards.cube_face, u, v}.direction_bin_index()];
       if (std::isfinite(beside_m)) {
         nearest_m = std::min(nearest_m, beside_m);
       } else if (++empty > kEmptyBinsMax) {
@@ -67,14 +67,14 @@ float FreeSpaceGrid::free_range_m(const Direction& towards) const {
 FreeSpaceGrid::Verdict FreeSpaceGrid::verdict(const Eigen::Vector3f& point_W_m, float sigma_m) const {
   const Eigen::Vector3f lever_m = point_W_m - origin_W_m_;
   const float range_m = lever_m.norm();
-  if (!(range_m > range_min_m_)) return Verdict::unknown;
+  if (!(range_m > range_min_m_)) return Verdict::unknown_space;
   const std::optional<Direction> towards = direction(lever_m);
-  if (!towards) return Verdict::unknown;
+  if (!towards) return Verdict::unknown_space;
   const float beyond_m = kBeyond_m + kBeyondRatio * range_m + kDeviations * sigma_m;
-  const float there_m = nearest_m_[towards->bin()];
+  const float there_m = nearest_return_m_[towards->direction_bin_index()];
   if (there_m > range_m + beyond_m)  // this test suffices for most points
-    return free_range_m(*towards) > range_m + beyond_m ? Verdict::seen_through : Verdict::unknown;
-  return there_m > range_m - beyond_m ? Verdict::seen : Verdict::unknown;
+    return free_space_range_m(*towards) > range_m + beyond_m ? Verdict::free_space : Verdict::unknown_space;
+  return there_m > range_m - beyond_m ? Verdict::occupied : Verdict::unknown_space;
 }
 
 }  // namespace tumble::mapping

@@ -15,7 +15,7 @@ class FreeSpaceGrid {
   void start(const Eigen::Vector3f& from_W_m, float moved_m);
   void add(const Eigen::Vector3f& return_W_m);
 
-  enum class Verdict { unknown, seen, seen_through };
+  enum class Verdict { unknown_space, occupied, free_space };
   /// Checks whether the sweep saw a map point, or saw through its position. `sigma_m` is the standard deviation of the
   /// map point's position. Cost: O(1).
   Verdict verdict(const Eigen::Vector3f& point_W_m, float sigma_m) const;
@@ -23,15 +23,15 @@ class FreeSpaceGrid {
  private:
   static constexpr int kBins = 60;  // number of bins along an edge: 1 to 2 deg per bin
   struct Direction {
-    int face, u, v;
-    std::size_t bin() const { return static_cast<std::size_t>((face * kBins + v) * kBins + u); }
+    int cube_face, column, row;
+    std::size_t direction_bin_index() const { return static_cast<std::size_t>((cube_face * kBins + row) * kBins + column); }
   };
   static std::optional<Direction> direction(const Eigen::Vector3f& lever_m);
-  float free_range_m(const Direction& towards) const;
+  float free_space_range_m(const Direction& towards) const;
 
   Eigen::Vector3f origin_W_m_ = Eigen::Vector3f::Zero();
   float range_min_m_ = 0.0f;
-  std::vector<float> nearest_m_;  // infinity for a direction without a return
+  std::vector<float> nearest_return_m_;  // infinity for a direction without a return
 };
 
 }  // namespace tumble::mapping

@@ -12,13 +12,13 @@ SpatialHash::SpatialHash(std::size_t expected) {
   keys_.assign(slots, kFree);
   values_.assign(slots, 0);
   mask_ = slots - 1;
-  shift_ = 64 - std::countr_zero(slots);
+  hash_shift_bits_ = 64 - std::countr_zero(slots);
 }
 
 std::uint32_t SpatialHash::insert(std::uint64_t key, std::uint32_t value) {
   // A hash table that is at most half full has short chains of collisions.
-  if (2 * (size_ + 1) > keys_.size()) grow();
-  std::size_t slot = slot_of(key);
+  if (2 * (size_ + 1) > keys_.size()) grow_table();
+  std::size_t slot = table_slot_of(key);
   for (; keys_[slot] != kFree; slot = (slot + 1) & mask_) {
     if (keys_[slot] == key) return values_[slot];
   }
@@ -29,8 +29,8 @@ std::uint32_t SpatialHash::insert(std::uint64_t key, std::uint32_t value) {
 }
 
 bool SpatialHash::add(std::uint64_t key) {
-  if (2 * (size_ + 1) > keys_.size()) grow();
-  std::size_t slot = slot_of(key);
+  if (2 * (size_ + 1) > keys_.size()) grow_table();
+  std::size_t slot = table_slot_of(key);
   for (; keys_[slot] != kFree; slot = (slot + 1) & mask_) {
     if (keys_[slot] == key) return false;
   }
@@ -45,7 +45,7 @@ void SpatialHash::clear() {
   size_ = 0;
 }
 
-void SpatialHash::grow() {
+void SpatialHash::grow_table() {
   SpatialHash larger(keys_.size());
   for (std::size_t slot = 0; slot < keys_.size(); ++slot) {
     if (keys_[slot] != kFree) larger.insert(keys_[slot], values_[slot]);

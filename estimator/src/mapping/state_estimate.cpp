@@ -14,35 +14,35 @@ using Matrix = Registration::Matrix;
 StateEstimate estimate_at_start(const LidarInertialOdometry::Params& params, const MotionState& levelled) {
   namespace u = unknowns;
   StateEstimate state_estimate;
-  SweepCalibration& calibration = state_estimate.mean.calibration;
+  LidarImuCalibration& calibration = state_estimate.mean.calibration;
   calibration.T_IL = params.T_IL;
   calibration.time_offset_s = 0.0;  // the time stamps already include the stated offset
   calibration.gravity_W_m_s2 = Eigen::Vector3d(0.0, 0.0, -params.expert.gravity_m_s2);
-  Matrix& P = state_estimate.weight;
+  Matrix& P = state_estimate.prior_weight_covariance;
   u::variances(P, u::mounting_rotation).setConstant(params.mount_sigma_rad * params.mount_sigma_rad);
   u::variances(P, u::mounting_translation).setConstant(params.mount_sigma_m * params.mount_sigma_m);
   u::variances(P, u::clock).setConstant(params.time_offset_sigma_s * params.time_offset_sigma_s);
 
   Eigen::Matrix<double, 9, 6> by_mounting = Eigen::Matrix<double, 9, 6>::Zero();
   by_mounting.topRows<6>() = pose_mounting_jacobian(levelled.q_WI, params.T_IL.translation());
-  const Eigen::Matrix<double, 6, 6> mounting = u::block(P, u::mounting);
-  u::block(P, u::motion) = levelled.covariance + by_mounting * mounting * by_mounting.transpose();
-  u::block(P, u::motion, u::mounting) = by_mounting * mounting;
+  const Eigen::Matrix<double, 6, 6> mounting = u::sub_block(P, u::mounting);
+  u::sub_block(P, u::motion) = levelled.covariance + by_mounting * mounting * by_mounting.transpose();
+  u::sub_block(P, u::motion, u::mounting) = by_mounting * mounting;
   if (params.expert.gravity_sigma_m_s2 > 0.0) {
     Eigen::Matrix<double, 3, 6> gravity_mounting_jacobian = Eigen::Matrix<double, 3, 6>::Zero();
     gravity_mounting_jacobian.leftCols<3>() = so3::hat(calibration.gravity_W_m_s2) * levelled.q_WI.toRotationMatrix();
-    u::block(P, u::gravity, u::mounting) = gravity_mounting_jacobian * mounting;
-    u::block(P, u::mounting, u::gravity) = u::block(P, u::gravity, u::mounting).transpose();
-    u::block(P, u::gravity) = gravity_mounting_jacobian * mounting * gravity_mounting_jacobian.transpose();
+    u::sub_block(P, u::gravity, u::mounting) = gravity_mounting_jacobian * mounting;
+    u::sub_block(P, u::mounting, u::gravity) = u::sub_block(P, u::gravity, u::mounting).transpose();
+    u::sub_block(P, u::gravity) = gravity_mounting_jacobian * mounting * gravity_mounting_jacobian.transpose();
     const double sigma2 = params.expert.gravity_sigma_m_s2 * params.expert.gravity_sigma_m_s2;
     // The magnitude of gravity is known much better than its direction.
     u::variances(P, u::gravity) += Eigen::Vector3d(sigma2, sigma2, 0.01 * sigma2);
-    u::block(P, u::motion, u::gravity) = by_mounting * mounting * gravity_mounting_jacobian.transpose();
+    u::sub_block(P, u::motion, u::gravity) = by_mounting * mounting * gravity_mounting_jacobian.transpose();
   }
-  u::block(P, u::calibration, u::motion) = u::block(P, u::motion, u::calibration).transpose();
+  u::sub_block(P, u::calibration, u::motion) = u::sub_block(P, u::motion, u::calibration).transpose();
   state_estimate.mean.state = levelled;
-  state_estimate.mean.state.covariance = u::block(P, u::motion);
-  state_estimate.error = P;
+  state_estimate.mean.state.covariance = u::sub_block(P, u::motion);
+  state_estimate.state_error_covariance = P;
   return state_estimate;
 }
 
@@ -51,13 +51,13 @@ Matrix unknowns_at(const SweepTrajectory& trajectory, double t_s) {
   namespace u = unknowns;
   const SweepTrajectory::Transition step = trajectory.transition(t_s);
   Matrix F = Matrix::Identity();
-  u::block(F, u::motion) = step.jacobian_start;
-  u::block(F, u::motion, u::deficit) = step.jacobian_deficit_s;
-  u::block(F, u::motion, u::gravity) = step.jacobian_gravity;
+  u::sub_block(F, u::motion) = step.jacobian_start;
+  u::sub_block(F, u::motion, u::deficit) = step.jacobian_saturation_deficit_s;
+  u::sub_block(F, u::motion, u::gravity) = step.jacobian_gravity;
   return F;
 }
 
-MotionErrors motion_errors(const Matrix& F, const Matrix& errors) {
+MotionErrors marginal_motion_errors(const Matrix& F, const Matrix& errors) {
   const auto rows = F.topRows<Registration::kMotionSize>();
   const Eigen::Matrix<double, Registration::kMotionSize, Registration::kUnknowns> moved = rows * errors;
   return moved * rows.transpose();
@@ -77,8 +77,8 @@ Eigen::Matrix3d velocity_covariance_I(const MotionState& state, const MotionErro
 /// rows of the transition matrix F for mounting and other constants are rows of the identity: mapping.md (R11).
 Matrix propagate_pose_and_mounting(const Matrix& F, const Matrix& errors) {
   constexpr int kSize = 8, kMounting = 16;
-  static_assert(kMounting >= Registration::kMotionSize && kMounting <= Registration::kCalibrationStart &&
-                Registration::kCalibrationStart + 6 <= kMounting + kSize);
+  static_assert(kMounting >= Registration::kMotionSize && kMounting <= Registration::kFirstCalibrationUnknown &&
+                Registration::kFirstCalibrationUnknown + 6 <= kMounting + kSize);
   Matrix out = Matrix::Zero();
   const Eigen::Matrix<double, kSize, Registration::kUnknowns> moved = F.topRows<kSize>() * errors;
   out.topRows<kSize>() = moved * F.transpose();
@@ -91,13 +91,13 @@ Matrix propagate_pose_and_mounting(const Matrix& F, const Matrix& errors) {
 void at_end(const StateEstimate& at_start, const SweepTrajectory& trajectory, const Matrix& end_start_jacobian,
             TimeNs end_ns, StateEstimate& end) {
   end.mean = at_start.mean;
-  propagate_covariance(end_start_jacobian, at_start.weight, end.weight);
-  propagate_covariance(end_start_jacobian, at_start.error, end.error);
-  make_symmetric(end.weight);
-  make_symmetric(end.error);
+  propagate_covariance(end_start_jacobian, at_start.prior_weight_covariance, end.prior_weight_covariance);
+  propagate_covariance(end_start_jacobian, at_start.state_error_covariance, end.state_error_covariance);
+  make_symmetric(end.prior_weight_covariance);
+  make_symmetric(end.state_error_covariance);
   end.mean.state = trajectory.state(trajectory.duration_s());
   end.mean.state.time_ns = end_ns;
-  end.mean.state.covariance = unknowns::block(end.weight, unknowns::motion);
+  end.mean.state.covariance = unknowns::sub_block(end.prior_weight_covariance, unknowns::motion);
 }
 
 [[gnu::noinline]] void propagate_covariance(const Matrix& F, const Matrix& P, Matrix& out) {

@@ -7,13 +7,13 @@
 
 namespace tumble::mapping {
 
-/// The covariances `weight` and `error` are C and E of mapping.md, "Two covariances".
+/// The covariances `prior_weight_covariance` and `state_error_covariance` are C and E of mapping.md, "Two covariances".
 struct StateEstimate {
-  Registration::Estimate mean;  ///< mean; the covariance of its state is the motion block of `weight`
-  /// For robustness, `weight` assigns less information to the points than independent points would have.
-  Registration::Matrix weight = Registration::Matrix::Zero();
+  Registration::Estimate mean;  ///< mean; the covariance of its state is the motion block of `prior_weight_covariance`
+  /// For robustness, `prior_weight_covariance` assigns less information to the points than independent points would have.
+  Registration::Matrix prior_weight_covariance = Registration::Matrix::Zero();
   /// covariance of the errors of `mean`
-  Registration::Matrix error = Registration::Matrix::Zero();
+  Registration::Matrix state_error_covariance = Registration::Matrix::Zero();
 };
 
 /// See mapping.md (R54), (R55).
@@ -35,7 +35,7 @@ Registration::Matrix propagate_pose_and_mounting(const Registration::Matrix& F, 
 using MotionErrors = Eigen::Matrix<double, Registration::kMotionSize, Registration::kMotionSize>;
 
 /// Returns the block of position, attitude and velocity of `errors`, propagated by the transition matrix F.
-MotionErrors motion_errors(const Registration::Matrix& F, const Registration::Matrix& errors);
+MotionErrors marginal_motion_errors(const Registration::Matrix& F, const Registration::Matrix& errors);
 
 /// Returns the covariance of the velocity in IMU axes, R_IW v_WI_W, including the attitude error.
 Eigen::Matrix3d velocity_covariance_I(const MotionState& state, const MotionErrors& errors);

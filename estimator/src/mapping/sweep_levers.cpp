@@ -16,13 +16,13 @@ constexpr int kLanes = 8;
 constexpr double kNoEnd_s = std::numeric_limits<double>::infinity();
 using Lane = double[kLanes];
 
-struct Lanes {
+struct PointLanes {
   int count = 0;
   alignas(16) Lane s{}, x{}, y{}, z{};
   alignas(16) Lane cosine, sinc;
 };
 
-void turn(double rate2_rad2_s2, Lanes& p) {
+void rotate_lever_arms(double rate2_rad2_s2, PointLanes& p) {
   alignas(16) Lane h;
   for (int l = 0; l < kLanes; ++l) {
     h[l] = 0.25 * (p.s[l] * p.s[l] * rate2_rad2_s2);
@@ -48,7 +48,7 @@ void SweepTrajectory::lever_arm_vectors(std::span<const SweepPoint> points,
     const double begin_s = hint == 0 ? from_s : now.start_s;
     const double end_s = hint + 1 < intervals_.size() ? intervals_[hint + 1].start_s : kNoEnd_s;
     const double rate2 = now.rate_I_rad_s.squaredNorm();
-    Lanes p;
+    PointLanes p;
     bool small = true;
     for (; p.count < kLanes && first + p.count < points.size(); ++p.count) {
       const SweepPoint& point = points[first + p.count];
@@ -70,7 +70,7 @@ void SweepTrajectory::lever_arm_vectors(std::span<const SweepPoint> points,
       first += p.count;
       continue;
     }
-    turn(rate2, p);
+    rotate_lever_arms(rate2, p);
     const Eigen::Quaterniond& q = now.q_WI;
     const double ax = q.x(), ay = q.y(), az = q.z(), aw = q.w();
     const Eigen::Vector3d &w = now.rate_I_rad_s, &S = now.preintegrated_position_m, &V = now.preintegrated_velocity_m_s,

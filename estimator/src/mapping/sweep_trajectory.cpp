@@ -13,7 +13,7 @@ namespace tumble {
 namespace {
 
 /// Returns for each axis the largest standard deviation of a clipped rate before `end_ns`.
-Eigen::Vector3d max_rate_sigma(std::span<const MotionSample> samples, TimeNs end_ns) {
+Eigen::Vector3d max_rate_sigma_per_axis(std::span<const MotionSample> samples, TimeNs end_ns) {
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();
   for (const MotionSample& sample : samples) {
     if (sample.from_ns >= end_ns) break;
@@ -26,7 +26,7 @@ Eigen::Vector3d max_rate_sigma(std::span<const MotionSample> samples, TimeNs end
 
 /// Returns the signed factors s_j by which the saturation deficit of each axis changes the rate of a sample: mapping.md
 /// (R8).
-Eigen::Vector3d deficit_factors(const MotionSample& sample, const Eigen::Vector3d& least_known_rad_s) {
+Eigen::Vector3d clipped_axis_signs(const MotionSample& sample, const Eigen::Vector3d& least_known_rad_s) {
   Eigen::Vector3d share = Eigen::Vector3d::Zero();
   for (int axis = 0; axis < 3; ++axis) {
     if (!(sample.clipped_axes >> axis & 1)) continue;
@@ -64,9 +64,9 @@ Eigen::Quaterniond rotated_by(const Eigen::Vector3d& rate_rad_s, double s) {
 PoseState MotionState::pose() const {
   PoseState pose;
   pose.time_ns = time_ns;
-  pose.p_WA_m = p_WI_m;
-  pose.q_WA = q_WI;
-  pose.v_WA_m_s = v_WI_m_s;
+  pose.position_W_m = p_WI_m;
+  pose.orientation_W = q_WI;
+  pose.velocity_W_m_s = v_WI_m_s;
   pose.covariance = covariance.topLeftCorner<6, 6>();
   return pose;
 }
@@ -80,18 +80,18 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
   intervals_.clear();
   if (end_ns < start.time_ns) return {ErrorCode::time_order, "end_ns", double(end_ns), double(start.time_ns)};
   if (samples.empty() || samples.back().time_ns < end_ns) {
-    return {ErrorCode::too_few, "imu time_ns", samples.empty() ? 0.0 : double(samples.back().time_ns), double(end_ns)};
+    return {ErrorCode::insufficient_data, "imu time_ns", samples.empty() ? 0.0 : double(samples.back().time_ns), double(end_ns)};
   }
   if (samples.front().from_ns > start.time_ns) {
     // Each `gap` error reports a duration in seconds.
     return {ErrorCode::gap, "imu window start", seconds(samples.front().from_ns - start.time_ns), 0.0};
   }
 
-  const Eigen::Vector3d sigma = max_rate_sigma(samples, end_ns);
+  const Eigen::Vector3d sigma = max_rate_sigma_per_axis(samples, end_ns);
   Interval next{};
   next.q_WI = start.q_WI;
   next.preintegrated_velocity_m_s = next.preintegrated_position_m = next.rate_I_rad_s = next.specific_force_W_m_s2 =
-      next.deficit_factor = Eigen::Vector3d::Zero();
+      next.clipped_axis_sign = Eigen::Vector3d::Zero();
   next.attitude_jacobian = next.velocity_jacobian = next.position_jacobian = next.acceleration_jacobian =
       DeficitJacobian::Zero();
   for (const MotionSample& sample : samples) {
@@ -100,12 +100,12 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     // A trajectory of zero length gets one interval, so that it can be evaluated.
     if (to < from || (to == from && !(end_ns == start.time_ns && intervals_.empty()))) continue;
     const double dt = seconds(to - from);
-    const Eigen::Vector3d share = deficit_factors(sample, sigma);
+    const Eigen::Vector3d share = clipped_axis_signs(sample, sigma);
     clipped_axes_ |= sample.clipped_axes & 7;
     Interval& now = intervals_.emplace_back(next);
     now.start_s = seconds(from - start.time_ns);
     now.length_s = dt;
-    now.deficit_factor = share;
+    now.clipped_axis_sign = share;
     now.knot_weight = knot_weights(duration_s_ > 0.0 ? (now.start_s + 0.5 * dt) / duration_s_ : 0.0);
     // Integrates one IMU sample: mapping.md (R7), (R5), (R4), (R6).
     now.rate_I_rad_s = sample.w_WI_I_rad_s + share.cwiseProduct(deficit_rad_s * now.knot_weight);
@@ -120,14 +120,14 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
                                     now.specific_force_W_m_s2 * (0.5 * dt * dt);
     if (clipped_axes_ == 0) continue;
     now.acceleration_jacobian = -so3::hat(now.specific_force_W_m_s2) * now.attitude_jacobian;
-    next.attitude_jacobian = now.attitude_jacobian + deficit_jacobian_within(now, dt);
+    next.attitude_jacobian = now.attitude_jacobian + saturation_deficit_jacobian_within(now, dt);
     // The mean attitude error during an IMU sample rotates the specific force: mapping.md (R10).
     const DeficitJacobian turn =
         -so3::hat(now.specific_force_W_m_s2) * (0.5 * (now.attitude_jacobian + next.attitude_jacobian));
     next.velocity_jacobian = now.velocity_jacobian + turn * dt;
     next.position_jacobian = now.position_jacobian + now.velocity_jacobian * dt + turn * (0.5 * dt * dt);
   }
-  if (intervals_.empty()) return {ErrorCode::too_few, "imu samples", 0.0, 1.0};
+  if (intervals_.empty()) return {ErrorCode::insufficient_data, "imu samples", 0.0, 1.0};
   return {};
 }
 
@@ -162,24 +162,24 @@ SweepTrajectory::PreintegratedMotion SweepTrajectory::at(double t_s, const Eigen
 }
 
 /// See mapping.md (R9).
-SweepTrajectory::DeficitJacobian SweepTrajectory::deficit_jacobian_within(const Interval& now, double s) {
-  if (now.deficit_factor.isZero(0.0)) return DeficitJacobian::Zero();
+SweepTrajectory::DeficitJacobian SweepTrajectory::saturation_deficit_jacobian_within(const Interval& now, double s) {
+  if (now.clipped_axis_sign.isZero(0.0)) return DeficitJacobian::Zero();
   const Eigen::Matrix3d gained =
-      now.q_WI.toRotationMatrix() * so3::left_jacobian(now.rate_I_rad_s * s) * now.deficit_factor.asDiagonal() * s;
+      now.q_WI.toRotationMatrix() * so3::left_jacobian(now.rate_I_rad_s * s) * now.clipped_axis_sign.asDiagonal() * s;
   DeficitJacobian out;
   for (int k = 0; k < kKnots; ++k) out.middleCols<3>(3 * k) = now.knot_weight[k] * gained;
   return out;
 }
 
 /// See mapping.md (R9), (R10).
-SweepTrajectory::DeficitDerivative SweepTrajectory::deficit_derivative(double t_s, std::size_t& hint) const {
+SweepTrajectory::SaturationDeficitJacobian SweepTrajectory::saturation_deficit_jacobian(double t_s, std::size_t& hint) const {
   const double t = std::clamp(t_s, 0.0, duration_s_);
   const Interval& now = interval_at(t, hint);
   const double s = t - now.start_s;
-  if (now.deficit_factor.isZero(0.0))
+  if (now.clipped_axis_sign.isZero(0.0))
     return {now.attitude_jacobian,
             now.position_jacobian + s * now.velocity_jacobian + now.acceleration_jacobian * (0.5 * s * s)};
-  const DeficitJacobian gained = deficit_jacobian_within(now, s);
+  const DeficitJacobian gained = saturation_deficit_jacobian_within(now, s);
   const DeficitJacobian turn = -so3::hat(now.specific_force_W_m_s2) * (now.attitude_jacobian + 0.5 * gained);
   return {now.attitude_jacobian + gained, now.position_jacobian + s * now.velocity_jacobian + turn * (0.5 * s * s)};
 }
@@ -192,7 +192,7 @@ MotionState SweepTrajectory::state(double t_s) const {
   MotionState state;
   state.time_ns = start_.time_ns + static_cast<TimeNs>(std::llround(t * 1e9));
   state.q_WI = (now.q_WI * so3::exp(now.rate_I_rad_s * s)).normalized();
-  state.p_WI_m = common_position_m(t) + now.preintegrated_position_m + s * now.preintegrated_velocity_m_s +
+  state.p_WI_m = gravity_free_position_m(t) + now.preintegrated_position_m + s * now.preintegrated_velocity_m_s +
                  (0.5 * s * s) * now.specific_force_W_m_s2;
   state.v_WI_m_s =
       start_.v_WI_m_s + now.preintegrated_velocity_m_s + s * now.specific_force_W_m_s2 + t * gravity_W_m_s2_;
@@ -211,15 +211,15 @@ SweepTrajectory::Transition SweepTrajectory::transition(double t_s) const {
   namespace u = mapping::unknowns;
   Transition out;
   out.jacobian_start.setIdentity();
-  u::block(out.jacobian_start, u::position, u::attitude) = -so3::hat(
+  u::sub_block(out.jacobian_start, u::position, u::attitude) = -so3::hat(
       now.preintegrated_position_m + s * now.preintegrated_velocity_m_s + (0.5 * s * s) * now.specific_force_W_m_s2);
-  u::block(out.jacobian_start, u::position, u::velocity) = t * Eigen::Matrix3d::Identity();
-  u::block(out.jacobian_start, u::velocity, u::attitude) =
+  u::sub_block(out.jacobian_start, u::position, u::velocity) = t * Eigen::Matrix3d::Identity();
+  u::sub_block(out.jacobian_start, u::velocity, u::attitude) =
       -so3::hat(now.preintegrated_velocity_m_s + s * now.specific_force_W_m_s2);
 
-  const DeficitDerivative deficit = deficit_derivative(t, hint);
-  const DeficitJacobian mean_attitude = 0.5 * (now.attitude_jacobian + deficit.attitude_jacobian_s);
-  out.jacobian_deficit_s << deficit.position_jacobian_m_s, deficit.attitude_jacobian_s,
+  const SaturationDeficitJacobian deficit = saturation_deficit_jacobian(t, hint);
+  const DeficitJacobian mean_attitude = 0.5 * (now.attitude_jacobian + deficit.attitude_by_deficit_s);
+  out.jacobian_saturation_deficit_s << deficit.position_jacobian_m_s, deficit.attitude_by_deficit_s,
       now.velocity_jacobian - so3::hat(now.specific_force_W_m_s2) * mean_attitude * s;
   out.jacobian_gravity << 0.5 * t * t * Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Zero(),
       t * Eigen::Matrix3d::Identity();

@@ -8,30 +8,30 @@ namespace {
 constexpr int kAgreeing = 2;  // number of sweeps that confirm a relocalisation; a single sweep may fit by chance
 
 bool is_registered(RegistrationOutcome placement) {
-  return placement == RegistrationOutcome::found || placement == RegistrationOutcome::relocalisation_unconfirmed;
+  return placement == RegistrationOutcome::alignment_found || placement == RegistrationOutcome::relocalisation_unconfirmed;
 }
 
 }  // namespace
 
-TrackingState after_sweep(const TrackingState& before, RegistrationOutcome placement, SweepVerdict verdict) {
+TrackingState tracking_state_after_sweep(const TrackingState& before, RegistrationOutcome placement, SweepVerdict verdict) {
   const int failed =
       is_registered(placement) ? 0 : failed_searches(before) + (placement == RegistrationOutcome::failed);
-  if (verdict == SweepVerdict::rejected) return Lost{consecutive_rejected_sweeps(before) + 1, failed};
+  if (verdict == SweepVerdict::rejected) return TrackingLost{consecutive_rejected_sweeps(before) + 1, failed};
   if (is_lost(before) && placement == RegistrationOutcome::relocalisation_unconfirmed)
     return Relocalised{consecutive_rejected_sweeps(before), failed_searches(before), 0};
-  if (const Relocalised* found = std::get_if<Relocalised>(&before); found != nullptr && found->agreeing + 1 < kAgreeing)
-    return Relocalised{found->after_sweeps, found->failed_searches, found->agreeing + 1};
+  if (const Relocalised* found = std::get_if<Relocalised>(&before); found != nullptr && found->agreeing_sweep_count + 1 < kAgreeing)
+    return Relocalised{found->rejected_sweeps_before, found->failed_searches, found->agreeing_sweep_count + 1};
   return Tracking{failed};
 }
 
-bool contradicts(const TrackingState& before, RegistrationOutcome placement) {
-  return is_unconfirmed(before) && placement != RegistrationOutcome::found;
+bool contradicts_tracking(const TrackingState& before, RegistrationOutcome placement) {
+  return is_unconfirmed_relocalisation(before) && placement != RegistrationOutcome::alignment_found;
 }
 
-Lost after_reverted_relocalisation(const TrackingState& relocalised) {
+TrackingLost after_reverted_relocalisation(const TrackingState& relocalised) {
   const Relocalised* found = std::get_if<Relocalised>(&relocalised);
   if (found == nullptr) return {};
-  return {found->after_sweeps + 1 + found->agreeing, found->failed_searches + 1};
+  return {found->rejected_sweeps_before + 1 + found->agreeing_sweep_count, found->failed_searches + 1};
 }
 
 bool has_started(const TrackingState& state) {
@@ -39,20 +39,20 @@ bool has_started(const TrackingState& state) {
 }
 
 bool is_lost(const TrackingState& state) {
-  return std::holds_alternative<Lost>(state);
+  return std::holds_alternative<TrackingLost>(state);
 }
 
-bool is_unconfirmed(const TrackingState& state) {
+bool is_unconfirmed_relocalisation(const TrackingState& state) {
   return std::holds_alternative<Relocalised>(state);
 }
 
 int consecutive_rejected_sweeps(const TrackingState& state) {
-  const Lost* lost = std::get_if<Lost>(&state);
+  const TrackingLost* lost = std::get_if<TrackingLost>(&state);
   return lost != nullptr ? lost->sweeps : 0;
 }
 
 int failed_searches(const TrackingState& state) {
-  if (const Lost* lost = std::get_if<Lost>(&state)) return lost->failed_searches;
+  if (const TrackingLost* lost = std::get_if<TrackingLost>(&state)) return lost->failed_searches;
   if (const Tracking* tracking = std::get_if<Tracking>(&state)) return tracking->failed_searches;
   return 0;
 }

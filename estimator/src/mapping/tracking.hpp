@@ -14,7 +14,7 @@ struct Tracking {
   int failed_searches = 0;  ///< consecutive sweeps with points but without registration
 };
 
-struct Lost {
+struct TrackingLost {
   int sweeps = 1;  ///< consecutive rejected sweeps
   int failed_searches = 0;
 };
@@ -22,28 +22,28 @@ struct Lost {
 /// Relocalised is the state after an unconfirmed relocalisation: mapping.md (R67), (R68). Inertial prediction continues
 /// in parallel, and replaces a relocalisation that a sweep contradicts.
 struct Relocalised {
-  int after_sweeps = 0;  ///< number of rejected sweeps before the relocalisation
+  int rejected_sweeps_before = 0;  ///< number of rejected sweeps before the relocalisation
   int failed_searches = 0;
-  int agreeing = 0;  ///< number of sweeps that agree with the relocalisation
+  int agreeing_sweep_count = 0;  ///< number of sweeps that agree with the relocalisation
 };
 
-using TrackingState = std::variant<WaitingForStart, Tracking, Lost, Relocalised>;
+using TrackingState = std::variant<WaitingForStart, Tracking, TrackingLost, Relocalised>;
 
 enum class RegistrationOutcome : std::uint8_t {
-  not_tried,  ///< no points, or no map yet
+  not_attempted,  ///< no points, or no map yet
   failed,
   relocalisation_unconfirmed,  ///< found by a search, but not yet confirmed
-  found,
+  alignment_found,
 };
 
-TrackingState after_sweep(const TrackingState& before, RegistrationOutcome placement, SweepVerdict verdict);
+TrackingState tracking_state_after_sweep(const TrackingState& before, RegistrationOutcome placement, SweepVerdict verdict);
 
-bool contradicts(const TrackingState& before, RegistrationOutcome placement);
-Lost after_reverted_relocalisation(const TrackingState& relocalised);
+bool contradicts_tracking(const TrackingState& before, RegistrationOutcome placement);
+TrackingLost after_reverted_relocalisation(const TrackingState& relocalised);
 
 bool has_started(const TrackingState& state);
 bool is_lost(const TrackingState& state);
-bool is_unconfirmed(const TrackingState& state);
+bool is_unconfirmed_relocalisation(const TrackingState& state);
 int consecutive_rejected_sweeps(const TrackingState& state);  ///< number of rejected sweeps; 0 unless tracking failed
 int failed_searches(const TrackingState& state);              ///< number of consecutive failed searches
 

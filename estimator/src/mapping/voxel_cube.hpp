@@ -5,7 +5,7 @@
 
 namespace tumble::mapping {
 
-inline Eigen::Vector3i cube_of(const Eigen::Vector3f& p, float cubes_per_m) {
+inline Eigen::Vector3i voxel_cube_of(const Eigen::Vector3f& p, float cubes_per_m) {
   return (p * cubes_per_m).array().floor().cast<int>();
 }
 

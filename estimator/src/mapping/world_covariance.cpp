@@ -29,32 +29,32 @@ Pose subtract_mounting(const Registration::Matrix& joint, const Pose& by_mountin
 }  // namespace
 
 /// See mapping.md (R56).
-Pose WorldCovariance::start_mounting_jacobian(const Eigen::Vector3d& p_WI_m) const {
-  Pose start = start_mounting_jacobian_;
-  start.topRows<3>() -= so3::hat(p_WI_m - start_W_m_) * start_mounting_jacobian_.bottomRows<3>();
+Pose WorldCovariance::mounting_jacobian_at_start(const Eigen::Vector3d& p_WI_m) const {
+  Pose start = mounting_jacobian_at_start_;
+  start.topRows<3>() -= so3::hat(p_WI_m - first_position_W_m_) * mounting_jacobian_at_start_.bottomRows<3>();
   return start;
 }
 
-WorldCovariance WorldCovariance::of_prior_map(const WorldCovarianceParams& params, const Eigen::Vector3d& p_WI_m) {
+WorldCovariance WorldCovariance::covariance_in_prior_map(const WorldCovarianceParams& params, const Eigen::Vector3d& p_WI_m) {
   WorldCovariance out;
   out.params_ = params;
   out.params_.tilt_sigma_rad = 0.0;
-  out.start_W_m_ = out.map_at_W_m_ = p_WI_m;
+  out.first_position_W_m_ = out.last_map_extension_W_m_ = p_WI_m;
   return out;
 }
 
 double WorldCovariance::sigma_in_map_m(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const {
-  const Pose P = subtract_mounting(joint, start_mounting_jacobian(p_WI_m));
+  const Pose P = subtract_mounting(joint, mounting_jacobian_at_start(p_WI_m));
   return std::sqrt(std::max(P.topLeftCorner<3, 3>().trace(), 0.0));
 }
 
 /// See mapping.md (R58).
-Pose WorldCovariance::in_world(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const {
-  const Eigen::Vector3d from_start_m = p_WI_m - start_W_m_;
+Pose WorldCovariance::in_world_frame(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const {
+  const Eigen::Vector3d from_start_m = p_WI_m - first_position_W_m_;
   Eigen::Matrix<double, 6, 2> by_tilt = Eigen::Matrix<double, 6, 2>::Zero();
   by_tilt.topRows<3>() = -so3::hat(from_start_m).leftCols<2>();
   by_tilt.block<2, 2>(3, 0).setIdentity();
-  Pose P = subtract_mounting(joint, start_mounting_jacobian(p_WI_m));
+  Pose P = subtract_mounting(joint, mounting_jacobian_at_start(p_WI_m));
   P += map_ + (params_.tilt_sigma_rad * params_.tilt_sigma_rad) * by_tilt * by_tilt.transpose();
   P.topLeftCorner<3, 3>() += drift_covariance_m2_ + kScale * kScale * from_start_m * from_start_m.transpose();
   return P;
@@ -69,15 +69,15 @@ void WorldCovariance::add_drift(double least_constrained_sigma_m,
 }
 
 /// See mapping.md (R59), (R60). Mounting errors of the lidar do not change the map.
-void WorldCovariance::add_insertion(double inserted_fraction, const SweepTrajectory& trajectory,
+void WorldCovariance::add_inserted_sweep(double inserted_fraction, const SweepTrajectory& trajectory,
                                     const Registration::Matrix& errors, const Eigen::Vector3d& p_IL_m) {
   const double middle_s = 0.5 * trajectory.duration_s();
   // A rotation of the newest part of the map also displaces the map at the robot's position.
   const Eigen::Vector3d p_WI_m = trajectory.state(middle_s).p_WI_m;
   Pose moved = Pose::Identity();
-  moved.topRightCorner<3, 3>() = -so3::hat(p_WI_m - map_at_W_m_);
+  moved.topRightCorner<3, 3>() = -so3::hat(p_WI_m - last_map_extension_W_m_);
   map_ = (moved * map_ * moved.transpose()).eval();
-  map_at_W_m_ = p_WI_m;
+  last_map_extension_W_m_ = p_WI_m;
   const Registration::Matrix F = unknowns_at(trajectory, middle_s);
   map_ += inserted_fraction * inserted_fraction *
           subtract_mounting(propagate_pose_and_mounting(F, errors),

@@ -16,15 +16,15 @@ class WorldCovariance {
   WorldCovariance(const WorldCovarianceParams& params, const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& p_IL_m,
                   const Eigen::Vector3d& p_WI_m = Eigen::Vector3d::Zero())
       : params_(params),
-        start_W_m_(p_WI_m),
-        map_at_W_m_(p_WI_m),
-        start_mounting_jacobian_(pose_mounting_jacobian(q_WI, p_IL_m)) {}
+        first_position_W_m_(p_WI_m),
+        last_map_extension_W_m_(p_WI_m),
+        mounting_jacobian_at_start_(pose_mounting_jacobian(q_WI, p_IL_m)) {}
 
   /// The prior map is assumed exact.
-  static WorldCovariance of_prior_map(const WorldCovarianceParams& params, const Eigen::Vector3d& p_WI_m);
+  static WorldCovariance covariance_in_prior_map(const WorldCovarianceParams& params, const Eigen::Vector3d& p_WI_m);
 
   /// `joint` is the covariance of the registration's unknowns, relative to the map, at the position `p_WI_m`.
-  Pose in_world(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const;
+  Pose in_world_frame(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const;
 
   /// Returns the standard deviation of the IMU's position relative to the nearby part of the map.
   double sigma_in_map_m(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const;
@@ -34,19 +34,19 @@ class WorldCovariance {
   void add_drift(double least_constrained_sigma_m, const Eigen::Matrix<double, 6, 1>& least_constrained_direction);
   /// `inserted_fraction` is the fraction of the sweep's points that were inserted into the map. `errors` is the
   /// covariance of the registration's unknowns at the start of the sweep.
-  void add_insertion(double inserted_fraction, const SweepTrajectory& trajectory, const Registration::Matrix& errors,
+  void add_inserted_sweep(double inserted_fraction, const SweepTrajectory& trajectory, const Registration::Matrix& errors,
                      const Eigen::Vector3d& p_IL_m);
 
   double tilt_sigma_rad() const { return params_.tilt_sigma_rad; }
 
  private:
-  Pose start_mounting_jacobian(const Eigen::Vector3d& p_WI_m) const;
+  Pose mounting_jacobian_at_start(const Eigen::Vector3d& p_WI_m) const;
 
   WorldCovarianceParams params_;
-  Eigen::Vector3d start_W_m_ = Eigen::Vector3d::Zero();   // position of the first pose of the IMU
-  Eigen::Vector3d map_at_W_m_ = Eigen::Vector3d::Zero();  // position of the sweep that extended the map last
-  Pose start_mounting_jacobian_ = Pose::Zero();
-  Pose map_ = Pose::Zero();  // covariance of the map relative to the world, at map_at_W_m_
+  Eigen::Vector3d first_position_W_m_ = Eigen::Vector3d::Zero();   // position of the first pose of the IMU
+  Eigen::Vector3d last_map_extension_W_m_ = Eigen::Vector3d::Zero();  // position of the sweep that extended the map last
+  Pose mounting_jacobian_at_start_ = Pose::Zero();
+  Pose map_ = Pose::Zero();  // covariance of the map relative to the world, at last_map_extension_W_m_
   Eigen::Matrix3d drift_covariance_m2_ = Eigen::Matrix3d::Zero();  // covariance of the position drift
 };
 

@@ -22,19 +22,19 @@ constexpr double kOffsetMax_s = 1.0;
 
 bool is_return(const FurtherLidar& lidar, const LidarPoint& point) {
   const double range_m = point.position_L_m.cast<double>().norm();
-  return range_m >= lidar.sheet.range_min_m && range_m <= lidar.sheet.range_max_m &&
+  return range_m >= lidar.data_sheet.range_min_m && range_m <= lidar.data_sheet.range_max_m &&
          !lidar.own_body_L.contains(point.position_L_m.cast<double>());
 }
 
 }  // namespace
 
 FurtherLidars::FurtherLidars(std::span<const FurtherLidar> lidars, const Eigen::Isometry3d& T_IL_first)
-    : lidars_(lidars.begin(), lidars.end()), T_LI_first_(T_IL_first.inverse()) {
+    : lidars_(lidars.begin(), lidars.end()), T_first_lidar_imu_(T_IL_first.inverse()) {
   for (const FurtherLidar& lidar : lidars_) {
     OdometryParams checked;
     checked.T_IL = lidar.T_IL;
-    checked.range_min_m = lidar.sheet.range_min_m;
-    checked.range_max_m = lidar.sheet.range_max_m;
+    checked.range_min_m = lidar.data_sheet.range_min_m;
+    checked.range_max_m = lidar.data_sheet.range_max_m;
     checked.own_body_L = lidar.own_body_L;
     if (const Status status = check_odometry_params(checked); !status.ok())
       throw InvalidParams("further_lidars: " + status.message(), status.value, "valid as for the first lidar");
@@ -50,11 +50,11 @@ Status FurtherLidars::add(std::size_t lidar, TimeNs start_ns, TimeNs end_ns, std
   if (end_ns < start_ns) return {ErrorCode::time_order, "end_ns", double(end_ns), double(start_ns)};
   if (const Status status = check_stamp(start_ns, "start_ns"); !status.ok()) return status;
   if (const Status status = check_stamp(end_ns, "end_ns"); !status.ok()) return status;
-  if (const Status status = mapping::check_offsets(end_ns - start_ns, points); !status.ok()) return status;
+  if (const Status status = mapping::check_time_offsets(end_ns - start_ns, points); !status.ok()) return status;
   const TimeNs offset_ns = std::llround(1e9 * from.time_offset_s);
   if (end_ns + offset_ns > latest_ns)
     return {ErrorCode::out_of_range, "end_ns", double(end_ns + offset_ns), double(latest_ns)};
-  const Eigen::Isometry3f T_first = (T_LI_first_ * from.T_IL).cast<float>();
+  const Eigen::Isometry3f T_first = (T_first_lidar_imu_ * from.T_IL).cast<float>();
   WaitingSweep sweep{start_ns + offset_ns, end_ns + offset_ns, {}};
   for (LidarPoint point : points) {
     if (!is_return(from, point)) continue;
@@ -62,16 +62,16 @@ Status FurtherLidars::add(std::size_t lidar, TimeNs start_ns, TimeNs end_ns, std
     if (point.ring < kRingsPerLidar) point.ring = static_cast<std::uint16_t>(point.ring + lidar * kRingsPerLidar);
     sweep.points.push_back(point);
   }
-  if (waiting_.size() >= most) {
-    unused_points_ += waiting_.front().points.size();
-    waiting_.pop_front();
+  if (waiting_sweeps_.size() >= most) {
+    unused_points_ += waiting_sweeps_.front().points.size();
+    waiting_sweeps_.pop_front();
   }
-  waiting_.push_back(std::move(sweep));
+  waiting_sweeps_.push_back(std::move(sweep));
   return {};
 }
 
 void FurtherLidars::merge_into(WaitingSweep& sweep) {
-  for (WaitingSweep& from : waiting_) {
+  for (WaitingSweep& from : waiting_sweeps_) {
     if (from.start_ns > sweep.end_ns) continue;
     std::erase_if(from.points, [&](LidarPoint point) {
       const TimeNs time_ns = from.start_ns + point.offset_ns;
@@ -85,7 +85,7 @@ void FurtherLidars::merge_into(WaitingSweep& sweep) {
       return true;
     });
   }
-  std::erase_if(waiting_, [](const WaitingSweep& from) { return from.points.empty(); });
+  std::erase_if(waiting_sweeps_, [](const WaitingSweep& from) { return from.points.empty(); });
 }
 
 }  // namespace tumble

@@ -35,8 +35,8 @@ class FurtherLidars {
 
  private:
   std::vector<FurtherLidar> lidars_;
-  Eigen::Isometry3d T_LI_first_ = Eigen::Isometry3d::Identity();
-  std::deque<WaitingSweep> waiting_;  ///< points in axes of the first lidar
+  Eigen::Isometry3d T_first_lidar_imu_ = Eigen::Isometry3d::Identity();
+  std::deque<WaitingSweep> waiting_sweeps_;  ///< points in axes of the first lidar
   std::size_t unused_points_ = 0;
 };
 

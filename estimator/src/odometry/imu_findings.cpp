@@ -30,42 +30,42 @@ double rate_max_so_far_rad_s(std::span<const ImuSample> samples) {
   return fastest;
 }
 
-RestGravity rest_gravity(const CheckedImu& imu) {
+RestGravity rest_gravity(const ImuCheckParams& imu) {
   return RestGravity({.gravity_m_s2 = imu.gravity_m_s2, .accel_range_m_s2 = imu.accel_range_m_s2});
 }
 
 /// Returns whether the gyro agrees with the measured rotation of gravity.
-bool check_readings(const CheckedImu& imu, std::span<const ImuSample> samples, SensorHealth& health) {
-  const ImuPlausibility plausibility(plausibility_params(imu.gravity_m_s2, imu.merged ? 0.0 : imu.gyro_range_rad_s));
+bool check_readings(const ImuCheckParams& imu, std::span<const ImuSample> samples, SensorHealth& health) {
+  const ImuPlausibility plausibility(plausibility_params(imu.gravity_m_s2, imu.is_merged ? 0.0 : imu.gyro_range_rad_s));
   ImuPlausibility::State state;
   for (const ImuSample& sample : samples) plausibility.step(sample, state);
   add_findings(plausibility, state, kImu, health);
   health.add(Kind::force_at_rest, check_force_at_rest(imu, samples, RestGravity::kMagnitudeErrorMax), kImu);
-  if (!imu.merged) {  // several IMUs are on a sphere, which does not rotate about a pivot
-    const PivotCheck pivots = PivotCheck::of(samples, imu.gravity_m_s2, imu.gyro_range_rad_s, imu.accel_range_m_s2);
+  if (!imu.is_merged) {  // several IMUs are on a sphere, which does not rotate about a pivot
+    const PivotMotionCheck pivots = PivotMotionCheck::of(samples, imu.gravity_m_s2, imu.gyro_range_rad_s, imu.accel_range_m_s2);
     health.add(Kind::rotation, pivots.verdict(), kImu);
   }
   return confirms_gyro(plausibility, state);
 }
 
-void check_flights(const CheckedImu& imu, std::span<const ImuSample> samples, std::optional<double> carried_share,
+void check_flight_forces(const ImuCheckParams& imu, std::span<const ImuSample> samples, std::optional<double> carried_share,
                    SensorHealth& health) {
   const bool thrown = carried_share && *carried_share < kRepeatedFraction;
-  const FlightSignCheck sense({.body = thrown ? FlightSignCheck::Body::thrown : FlightSignCheck::Body::may_be_hand_held,
+  const FlightSignCheck sense({.motion_type = thrown ? FlightSignCheck::BodyMotionType::always_thrown : FlightSignCheck::BodyMotionType::possibly_hand_held,
                                .lever_arm_m = imu.lever_arm_I_m,
                                .gyro_range_rad_s = imu.gyro_range_rad_s});
   FlightSignCheck::State state;
   for (const ImuSample& sample : samples) sense.step(sample, state);
-  health.add(Kind::flight_forces, sense.verdict(state), kImu);
+  health.add(Kind::inverted_accel_in_flight, sense.verdict(state), kImu);
 }
 
 /// The estimated rates must rotate gravity correctly from each rest to the next rest.
-void check_rests(const CheckedImu& imu, std::span<const ImuSample> samples, std::span<const RateState> rates,
+void check_stationary_gravity(const ImuCheckParams& imu, std::span<const ImuSample> samples, std::span<const AngularRateState> rates,
                  SensorHealth& health) {
   const RestGravity gravity = rest_gravity(imu);
   RestGravity::State state;
   for (std::size_t k = 0; k < std::min(samples.size(), rates.size()); ++k) gravity.step(samples[k], rates[k], state);
-  health.add(gravity.magnitude_verdict(state).ok() ? Kind::rotation : Kind::force_at_rest, gravity.verdict(state),
+  health.add(gravity.gravity_magnitude_verdict(state).ok() ? Kind::rotation : Kind::force_at_rest, gravity.verdict(state),
              kImu);
 }
 
@@ -74,7 +74,7 @@ void check_rests(const CheckedImu& imu, std::span<const ImuSample> samples, std:
 ImuPlausibility::Params plausibility_params(double gravity_m_s2, double gyro_range_rad_s) {
   ImuPlausibility::Params params;
   params.gravity_m_s2 = std::max(gravity_m_s2, 1e-3);
-  if (gyro_range_rad_s > 0.0) params.gyro_range_rad_s = unsaturated_range(gyro_range_rad_s);
+  if (gyro_range_rad_s > 0.0) params.gyro_range_rad_s = range_below_saturation(gyro_range_rad_s);
   return params;
 }
 
@@ -85,51 +85,51 @@ void add_findings(const ImuPlausibility& plausibility, const ImuPlausibility::St
 }
 
 bool confirms_gyro(const ImuPlausibility& plausibility, const ImuPlausibility::State& state) {
-  return std::abs(plausibility.rotation_slope(state) - 1.0) < kSlopeTolerance &&
+  return std::abs(plausibility.force_to_gyro_rotation_ratio(state) - 1.0) < kSlopeTolerance &&
          plausibility.rotation_agreement(state) > kSlopeAgreementMin;
 }
 
-Status check_force_at_rest(const CheckedImu& imu, std::span<const ImuSample> samples, double error_max) {
+Status check_force_at_rest(const ImuCheckParams& imu, std::span<const ImuSample> samples, double error_max) {
   const RestGravity gravity = rest_gravity(imu);
-  RestGravity::MagnitudeState state;
+  RestGravity::GravityMagnitudeState state;
   for (const ImuSample& sample : samples) gravity.step(sample, state);
-  return gravity.magnitude_verdict(state, error_max);
+  return gravity.gravity_magnitude_verdict(state, error_max);
 }
 
-SensorHealth check_readings(const CheckedImu& imu, std::span<const ImuSample> samples) {
+SensorHealth check_readings(const ImuCheckParams& imu, std::span<const ImuSample> samples) {
   SensorHealth out;
   (void)check_readings(imu, samples, out);
   return out;
 }
 
-ImuFindings check_frozen(const CheckedImu& imu, std::span<const ImuSample> samples) {
+ImuHealthReport check_frozen(const ImuCheckParams& imu, std::span<const ImuSample> samples) {
   const FrozenAxes detector({.gyro_range_rad_s = imu.gyro_range_rad_s, .accel_range_m_s2 = imu.accel_range_m_s2});
-  ImuFindings out{{}, find_frozen_axes(detector, samples)};
+  ImuHealthReport out{{}, find_frozen_axes(detector, samples)};
   for (const FrozenAxis& axis : out.frozen_axes) add_finding(Kind::frozen_axis, kImu, axis, out.health);
   return out;
 }
 
-SensorHealth check_merged(const CheckedImu& imu, const MergedRecordings& merged) {
+SensorHealth check_merged_imus(const ImuCheckParams& imu, const MergedRecordings& merged) {
   SensorHealth out = merged.faults;
   const bool gyro_confirmed = check_readings(imu, merged.samples, out);
   ImuMerge::add_findings(merged.mislabelled_axes, merged.lever_arm_agreement, gyro_confirmed, out);
   return out;
 }
 
-ImuFindings check_recording(const CheckedImu& imu, std::span<const ImuSample> samples, std::span<const RateState> rates,
+ImuHealthReport check_recording(const ImuCheckParams& imu, std::span<const ImuSample> samples, std::span<const AngularRateState> rates,
                             std::optional<double> carried_share) {
-  ImuFindings out = check_frozen(imu, samples);
-  check_flights(imu, samples, carried_share, out.health);
+  ImuHealthReport out = check_frozen(imu, samples);
+  check_flight_forces(imu, samples, carried_share, out.health);
   (void)check_readings(imu, samples, out.health);
-  check_rests(imu, samples, rates, out.health);
+  check_stationary_gravity(imu, samples, rates, out.health);
   return out;
 }
 
-std::vector<Eigen::Matrix3d> suspect_covariance(const ImuFindings& findings, std::span<const ImuSample> samples,
-                                                std::span<const RateState> rates) {
+std::vector<Eigen::Matrix3d> suspected_error_covariance(const ImuHealthReport& findings, std::span<const ImuSample> samples,
+                                                std::span<const AngularRateState> rates) {
   std::vector<Eigen::Matrix3d> out;
   if (findings.health.invalidates_estimate()) {
-    for (const RateState& rate : rates) out.emplace_back(rate.w_WI_I_rad_s.squaredNorm() * Eigen::Matrix3d::Identity());
+    for (const AngularRateState& rate : rates) out.emplace_back(rate.w_WI_I_rad_s.squaredNorm() * Eigen::Matrix3d::Identity());
   }
   const double sigma_rad_s = rate_max_so_far_rad_s(samples);
   for (const FrozenAxis& axis : findings.frozen_axes) {

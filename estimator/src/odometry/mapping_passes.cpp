@@ -16,7 +16,7 @@ constexpr std::size_t kSweepsPerRejection = 5;
 
 /// Cuts the last sweep at the end of the IMU data, if at least half of the sweep remains. Without this cut, a small
 /// clock offset between lidar and IMU would make the last sweep unusable.
-bool shorten(TimeNs end_ns, WaitingSweep& sweep) {
+bool shorten_sweep(TimeNs end_ns, WaitingSweep& sweep) {
   if (end_ns >= sweep.end_ns) return true;
   const TimeNs last_marginalised_ns = end_ns - sweep.start_ns, length_ns = sweep.end_ns - sweep.start_ns;
   if (2 * last_marginalised_ns < length_ns) return false;
@@ -27,18 +27,18 @@ bool shorten(TimeNs end_ns, WaitingSweep& sweep) {
   return true;
 }
 
-class Pass {
+class MappingPass {
  public:
-  Pass(const MappingInput& input, const LidarInertialOdometry::Params& params)
+  MappingPass(const MappingInput& input, const LidarInertialOdometry::Params& params)
       : input_(input), offset_ns_(static_cast<TimeNs>(std::llround(params.time_offset_s * 1e9))), out_(params) {
     if (input.start) out_.mapper.set_start_pose(*input.start);
     if (input.start_tilt) out_.mapper.set_start_tilt(*input.start_tilt);
   }
 
-  MappedRecording run() {
+  MappedRecording map_recording() {
     for (std::size_t k = 0; k < input_.sweeps && out_.status.ok(); ++k) add(input_.sweep(k));
-    add_silence(input_.samples.back().time_ns - offset_ns_);
-    for (std::vector<PoseState>& open : out_.mapper.window_trajectories()) apply_next(std::move(open));
+    add_time_without_sweeps(input_.samples.back().time_ns - offset_ns_);
+    for (std::vector<PoseState>& open : out_.mapper.window_trajectories()) apply_smoothed_poses(std::move(open));
     for (const MappedSweep& sweep : out_.sweeps) {
       if (!sweep.report.trajectory.empty()) out_.localisation.add(sweep.report);
     }
@@ -47,11 +47,11 @@ class Pass {
 
  private:
   void add(WaitingSweep sweep) {
-    add_silence(sweep.start_ns);
+    add_time_without_sweeps(sweep.start_ns);
     if (!out_.status.ok()) return;
     add_samples(sweep.end_ns + offset_ns_);
     if (!out_.status.ok()) return;
-    if (!shorten(input_.samples.back().time_ns - offset_ns_, sweep)) {
+    if (!shorten_sweep(input_.samples.back().time_ns - offset_ns_, sweep)) {
       ++out_.unfinished_sweeps;
       return;
     }
@@ -60,7 +60,7 @@ class Pass {
   }
 
   /// While the lidar provides no sweeps, TumblingOdometry adds empty sweeps, also during live operation.
-  void add_silence(TimeNs to_ns) {
+  void add_time_without_sweeps(TimeNs to_ns) {
     while (out_.status.ok() && last_end_ns_) {
       const TimeNs silent_ns = *last_end_ns_ + offset_ns_ + static_cast<TimeNs>(1e9 * kLidarSilent_s);
       if (silent_ns >= to_ns + offset_ns_) return;
@@ -91,10 +91,10 @@ class Pass {
     if (added.report.trajectory.empty()) return;
     last_pose_time_ns_ = added.report.pose.time_ns;
     last_end_ns_ = sweep.end_ns;
-    apply_next(std::exchange(added.report.smoothed, {}));
+    apply_smoothed_poses(std::exchange(added.report.smoothed, {}));
   }
 
-  void apply_next(std::vector<PoseState> smoothed) {
+  void apply_smoothed_poses(std::vector<PoseState> smoothed) {
     if (smoothed.empty()) return;
     while (smoothed_ < out_.sweeps.size() && out_.sweeps[smoothed_].report.trajectory.empty()) ++smoothed_;
     if (smoothed_ == out_.sweeps.size()) return;
@@ -112,9 +112,9 @@ class Pass {
   std::optional<TimeNs> last_end_ns_;  ///< end of the last sweep with a pose, in the lidar's clock
 };
 
-StatedCalibration stated_calibration(const LidarInertialOdometry::Params& started,
+LidarImuCalibrationPrior calibration_prior(const LidarInertialOdometry::Params& started,
                                      const LidarInertialOdometry::Params& given) {
-  StatedCalibration out;
+  LidarImuCalibrationPrior out;
   out.calibration.T_IL = started.T_IL;
   out.calibration.time_offset_s = started.time_offset_s;
   out.mount_sigma_rad = given.mount_sigma_rad;
@@ -124,7 +124,7 @@ StatedCalibration stated_calibration(const LidarInertialOdometry::Params& starte
 }
 
 /// A pass that rejected many sweeps does not determine the calibration.
-bool determines_calibration(const MappedRecording& pass) {
+bool determines_lidar_calibration(const MappedRecording& pass) {
   if (!pass.status.ok()) return false;
   std::size_t rejected = 0, located = 0;
   for (const MappedSweep& sweep : pass.sweeps) {
@@ -135,78 +135,78 @@ bool determines_calibration(const MappedRecording& pass) {
   return kSweepsPerRejection * rejected <= located;
 }
 
-void start_from(const SweepCalibration& learnt, LidarInertialOdometry::Params& params) {
+void start_from_calibration(const LidarImuCalibration& learnt, LidarInertialOdometry::Params& params) {
   params.T_IL = learnt.T_IL;
   params.time_offset_s = learnt.time_offset_s;
 }
 
 }  // namespace
 
-SaturationLevels flag_saturated_forces(const RailDetector::Params& stated, std::span<ImuSample> samples) {
+SaturationLevels flag_saturated_forces(const SaturationLimitDetector::Params& stated, std::span<ImuSample> samples) {
   ClippingFinder::Params params;
-  params.axis_aligned_rails = stated;
-  ClippingFinder::Found found = ClippingFinder(params).find(samples);
+  params.axis_limit_params = stated;
+  ClippingFinder::ClippingSearchResult found = ClippingFinder(params).find(samples);
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    const unsigned forces = clip_flags({.accel = found.clippings[k].accel});
+    const unsigned forces = clip_flags({.accel = found.clipping_per_sample[k].accel});
     samples[k].device_clip_flags = static_cast<std::uint8_t>(samples[k].device_clip_flags | forces);
   }
-  return std::move(found.rails);
+  return std::move(found.saturation_levels);
 }
 
 MappedRecording::MappedRecording(const LidarInertialOdometry::Params& params)
     : mapper(params), localisation(params.expert.matching.distance_m) {}
 
 bool MappedRecording::calibration_is_off() const {
-  return !calibration_converged && calibration_deviations > StatedCalibration::kDistanceMax_sigmas;
+  return !calibration_converged && calibration_deviations > LidarImuCalibrationPrior::kDistanceMax_sigmas;
 }
 
-void MappedRecording::add_findings(const SweepScale& scale, SensorHealth& health) const {
+void MappedRecording::add_findings(const LidarScale& scale, SensorHealth& health) const {
   using Kind = HealthFinding::Kind;
   health.add(Kind::lidar_scale, scale.verdict(), "lidar");
   health.add(Kind::vertical_unknown, mapper.check_vertical(), "");
   health.add(Kind::tracking_lost, localisation.verdict(), "");
-  if (calibration_is_off()) health.add(Kind::lidar_calibration, verdict_on(calibration_deviations), "lidar");
+  if (calibration_is_off()) health.add(Kind::lidar_calibration, distance_verdict(calibration_deviations), "lidar");
 }
 
-MappedRecording map_once(const MappingInput& input, const LidarInertialOdometry::Params& params) {
-  return Pass(input, params).run();
+MappedRecording map_in_one_pass(const MappingInput& input, const LidarInertialOdometry::Params& params) {
+  return MappingPass(input, params).map_recording();
 }
 
 MappedRecording map_with_calibration(const MappingInput& input, const LidarInertialOdometry::Params& params) {
   LidarInertialOdometry::Params started = params;
-  MappedRecording out = map_once(input, started);
+  MappedRecording out = map_in_one_pass(input, started);
   int passes = 1;
   MappingInput levelled = input;  // input with the start tilt that the previous pass estimated
   const auto again = [&] {
     levelled.start_tilt = out.mapper.start_tilt();
-    out = map_once(levelled, started);
+    out = map_in_one_pass(levelled, started);
     ++passes;
   };
   double moved = 0.0;
-  while (determines_calibration(out)) {
-    moved = stated_calibration(started, params).deviations(out.mapper.calibration());
-    if (moved <= StatedCalibration::kDistanceMax_sigmas || passes > kExtraPassesMax) break;
-    start_from(out.mapper.calibration(), started);
+  while (determines_lidar_calibration(out)) {
+    moved = calibration_prior(started, params).distance_in_sigmas(out.mapper.calibration());
+    if (moved <= LidarImuCalibrationPrior::kDistanceMax_sigmas || passes > kExtraPassesMax) break;
+    start_from_calibration(out.mapper.calibration(), started);
     again();
   }
-  const bool converged = determines_calibration(out) && moved <= StatedCalibration::kDistanceMax_sigmas;
+  const bool converged = determines_lidar_calibration(out) && moved <= LidarImuCalibrationPrior::kDistanceMax_sigmas;
   if (converged) {
-    const auto sigma = out.mapper.calibration_weighting_covariance().diagonal().cwiseSqrt().eval();
-    start_from(out.mapper.calibration(), started);
+    const auto sigma = out.mapper.calibration_prior_covariance().diagonal().cwiseSqrt().eval();
+    start_from_calibration(out.mapper.calibration(), started);
     started.mount_sigma_rad = sigma.head<3>().maxCoeff();
     started.mount_sigma_m = sigma.segment<3>(3).maxCoeff();
     started.time_offset_sigma_s = sigma[6];
     again();
-  } else if (determines_calibration(out) && !levelled.start_tilt && out.mapper.start_tilt()) {
+  } else if (determines_lidar_calibration(out) && !levelled.start_tilt && out.mapper.start_tilt()) {
     again();
   }
-  out.passes = passes;
-  out.calibration_deviations = stated_calibration(params, params).deviations(out.mapper.calibration());
+  out.mapping_pass_count = passes;
+  out.calibration_deviations = calibration_prior(params, params).distance_in_sigmas(out.mapper.calibration());
   out.calibration_converged = converged;
   return out;
 }
 
-SweepScale find_sweep_scale(std::span<const ImuSample> samples, const MappedRecording& mapped, double gravity_m_s2) {
+LidarScale find_sweep_scale(std::span<const ImuSample> samples, const MappedRecording& mapped, double gravity_m_s2) {
   std::vector<SweepReport> located;
   for (const MappedSweep& sweep : mapped.sweeps) {
     if (!sweep.report.trajectory.empty()) located.push_back(sweep.report);

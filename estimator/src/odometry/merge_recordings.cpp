@@ -9,7 +9,7 @@
 
 #include "tumble/angular_velocity/detail/clipping_finder.hpp"
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
-#include "unit_alignment.hpp"
+#include "imu_time_alignment.hpp"
 
 namespace tumble {
 
@@ -22,35 +22,35 @@ constexpr double kSilentReported_s = 0.5;  // minimum duration without readings 
 // standard deviation of 0.03 for the cross-axis sensitivity, three clipped IMUs could not determine the rate.
 constexpr double kUnknownSlope = 0.0;
 
-struct Units {
+struct ImuReadingSets {
   std::size_t count = 0;  ///< number of all IMUs
   std::vector<std::size_t> index;
   std::vector<Eigen::Isometry3d> T_BI;
   std::vector<std::vector<ImuSample>> samples;
-  std::vector<SensingDirections> gyro_elements, accel_elements;
-  std::vector<std::vector<FrozenAxis>> frozen;
+  std::vector<SensingDirections> gyro_sensing_directions, accel_sensing_directions;
+  std::vector<std::vector<FrozenAxis>> frozen_axes;
 };
 
-void flag_clipped(const ImuSheet& sheet, std::vector<ImuSample>& samples, SensingDirections& gyro,
+void flag_clipped(const ImuDataSheet& sheet, std::vector<ImuSample>& samples, SensingDirections& gyro,
                   SensingDirections& accel) {
   ClippingFinder::Params params;
-  if (sheet.gyro_range_rad_s > 0.0) params.axis_aligned_rails.stated_gyro_rad_s = sheet.gyro_range_rad_s;
-  if (sheet.accel_range_m_s2 > 0.0) params.axis_aligned_rails.stated_accel_m_s2 = sheet.accel_range_m_s2;
-  const ClippingFinder::Found found = ClippingFinder(params).find(samples);
-  const ConfirmedSaturation certain{.gyro = found.rails.planes_in_use(),
-                                    .accel = found.rails.planes_in_use(Triad::accelerometer),
+  if (sheet.gyro_range_rad_s > 0.0) params.axis_limit_params.stated_gyro_range_rad_s = sheet.gyro_range_rad_s;
+  if (sheet.accel_range_m_s2 > 0.0) params.axis_limit_params.stated_accel_range_m_s2 = sheet.accel_range_m_s2;
+  const ClippingFinder::ClippingSearchResult found = ClippingFinder(params).find(samples);
+  const ConfirmedSaturation certain{.gyro = found.saturation_levels.saturation_planes_in_use(),
+                                    .accel = found.saturation_levels.saturation_planes_in_use(Triad::accelerometer),
                                     .gyro_range_rad_s = sheet.gyro_range_rad_s,
                                     .accel_range_m_s2 = sheet.accel_range_m_s2};
   for (std::size_t k = 0; k < samples.size(); ++k)
-    samples[k].device_clip_flags = certain.flags(samples[k], found.clippings[k]);
-  gyro = found.rails.rows(Triad::gyro, kUnknownSlope);
-  accel = found.rails.rows(Triad::accelerometer, kUnknownSlope);
+    samples[k].device_clip_flags = certain.flags(samples[k], found.clipping_per_sample[k]);
+  gyro = found.saturation_levels.rows(Triad::gyro, kUnknownSlope);
+  accel = found.saturation_levels.rows(Triad::accelerometer, kUnknownSlope);
 }
 
 Status align(std::vector<std::vector<ImuSample>>& samples) {
-  const UnitAlignment alignment(samples.size());
-  UnitAlignment::State state;
-  UnitAlignment::Readings readings;
+  const ImuTimeAlignment alignment(samples.size());
+  ImuTimeAlignment::State state;
+  ImuTimeAlignment::Readings readings;
   std::vector<std::vector<ImuSample>> out(samples.size());
   std::vector<std::size_t> next(samples.size(), 0);
   const auto take = [&](bool ended) {
@@ -73,17 +73,17 @@ Status align(std::vector<std::vector<ImuSample>>& samples) {
   return {};
 }
 
-Status prepare(std::span<const UnitRecording> recordings, Units& units) {
+Status prepare_imu_readings(std::span<const ImuRecording> recordings, ImuReadingSets& units) {
   units.count = recordings.size();
   for (std::size_t k = 0; k < recordings.size() && units.index.size() < ImuMerge::kImus; ++k) {
-    const UnitRecording& recording = recordings[k];
+    const ImuRecording& recording = recordings[k];
     if (recording.samples.empty()) continue;
     std::vector<ImuSample> samples = recording.samples;
-    flag_clipped(recording.sheet, samples, units.gyro_elements.emplace_back(), units.accel_elements.emplace_back());
+    flag_clipped(recording.data_sheet, samples, units.gyro_sensing_directions.emplace_back(), units.accel_sensing_directions.emplace_back());
     units.index.push_back(k);
     units.T_BI.push_back(recording.T_BI);
-    units.frozen.push_back(find_frozen_axes(FrozenAxes({.gyro_range_rad_s = recording.sheet.gyro_range_rad_s,
-                                                        .accel_range_m_s2 = recording.sheet.accel_range_m_s2}),
+    units.frozen_axes.push_back(find_frozen_axes(FrozenAxes({.gyro_range_rad_s = recording.data_sheet.gyro_range_rad_s,
+                                                        .accel_range_m_s2 = recording.data_sheet.accel_range_m_s2}),
                                             samples));
     units.samples.push_back(std::move(samples));
   }
@@ -91,11 +91,11 @@ Status prepare(std::span<const UnitRecording> recordings, Units& units) {
   return align(units.samples);
 }
 
-void set_units(const Units& units, ImuMerge::Params& params) {
+void set_imu_params(const ImuReadingSets& units, ImuMerge::Params& params) {
   params.count = static_cast<int>(units.index.size());
-  std::copy(units.T_BI.begin(), units.T_BI.end(), params.T_CI.begin());
-  std::copy(units.gyro_elements.begin(), units.gyro_elements.end(), params.gyro_elements.begin());
-  std::copy(units.accel_elements.begin(), units.accel_elements.end(), params.accel_elements.begin());
+  std::copy(units.T_BI.begin(), units.T_BI.end(), params.T_mean_imu.begin());
+  std::copy(units.gyro_sensing_directions.begin(), units.gyro_sensing_directions.end(), params.gyro_sensing_directions.begin());
+  std::copy(units.accel_sensing_directions.begin(), units.accel_sensing_directions.end(), params.accel_sensing_directions.begin());
 }
 
 /// TimeWithoutGaps removes gaps from time stamps, so that ImuMerge keeps its calibration.
@@ -107,27 +107,27 @@ class TimeWithoutGaps {
     const bool after_gap = started_ && seconds(time_ns - last_ns_) > gap_max_s_;
     if (after_gap) {
       const TimeNs removed_ns = time_ns - last_ns_ - step_ns_;
-      gaps_.push_back({time_ns - removed_ns - removed(), removed_ns + removed()});
+      gaps_.push_back({time_ns - removed_ns - removed_duration_ns(), removed_ns + removed_duration_ns()});
     } else if (started_) {
       step_ns_ = time_ns - last_ns_;
     }
     started_ = true;
     last_ns_ = time_ns;
-    return {time_ns - removed(), after_gap};
+    return {time_ns - removed_duration_ns(), after_gap};
   }
   TimeNs in_recording(TimeNs time_ns) const {
     TimeNs removed_ns = 0;
     for (const Gap& gap : gaps_) {
-      if (time_ns >= gap.end_ns) removed_ns = gap.removed_ns;
+      if (time_ns >= gap.end_ns) removed_ns = gap.removed_duration_ns;
     }
     return time_ns + removed_ns;
   }
 
  private:
   struct Gap {
-    TimeNs end_ns, removed_ns;  ///< end of a gap, in time without gaps; total duration of all gaps so far
+    TimeNs end_ns, removed_duration_ns;  ///< end of a gap, in time without gaps; total duration of all gaps so far
   };
-  TimeNs removed() const { return gaps_.empty() ? 0 : gaps_.back().removed_ns; }
+  TimeNs removed_duration_ns() const { return gaps_.empty() ? 0 : gaps_.back().removed_duration_ns; }
 
   double gap_max_s_;
   std::vector<Gap> gaps_;
@@ -136,14 +136,14 @@ class TimeWithoutGaps {
 };
 
 /// The calibration of the IMUs remains valid after a gap.
-void delete_motion(ImuMerge::State& state) {
-  for (ImuMerge::Unit& unit : state.units) unit.window = {};
-  state.recovery.running = false;
+void reset_motion_state(ImuMerge::State& state) {
+  for (ImuMerge::Unit& unit : state.imus) unit.window = {};
+  state.rate_recovery.running = false;
   state.window_s = 0.0;
-  state.windows = 0;
+  state.window_count = 0;
 }
 
-Status run(const ImuMerge& merge, double gap_max_s, const Units& units, ImuMerge::State& state,
+Status merge_imu_readings(const ImuMerge& merge, double gap_max_s, const ImuReadingSets& units, ImuMerge::State& state,
            std::vector<ImuSample>& out) {
   std::vector<ImuSample> now(units.samples.size());
   std::optional<ImuSample> merged;
@@ -155,25 +155,25 @@ Status run(const ImuMerge& merge, double gap_max_s, const Units& units, ImuMerge
     if (received) {
       const auto [time_ns, after_gap] = time.next(now[0].time_ns);
       now[0].time_ns = time_ns;
-      if (after_gap) delete_motion(state);
+      if (after_gap) reset_motion_state(state);
     }
     if (Status status = merge.step(now, state, merged); !status.ok()) return status;
     if (Status status = ImuMerge::verdict(state); !status.ok()) return status;
     if (merged) out.push_back(*merged);
   }
   for (ImuSample& sample : out) sample.time_ns = time.in_recording(sample.time_ns);
-  for (ImuMerge::Unit& unit : state.units) {
+  for (ImuMerge::Unit& unit : state.imus) {
     unit.frozen_since_ns = time.in_recording(unit.frozen_since_ns);
     unit.disagrees_since_ns = time.in_recording(unit.disagrees_since_ns);
   }
   return {};
 }
 
-std::string name(const Units& units, std::size_t k) {
-  return unit_name(units.index[k], units.count);
+std::string name(const ImuReadingSets& units, std::size_t k) {
+  return imu_name(units.index[k], units.count);
 }
 
-void exclude(std::vector<ImuSample>& unit, TimeNs from_ns, TimeNs to_ns = std::numeric_limits<TimeNs>::max()) {
+void exclude_samples(std::vector<ImuSample>& unit, TimeNs from_ns, TimeNs to_ns = std::numeric_limits<TimeNs>::max()) {
   for (ImuSample& sample : unit) {
     if (sample.time_ns >= from_ns && sample.time_ns <= to_ns)
       sample.angular_velocity_rad_s.setConstant(std::numeric_limits<double>::quiet_NaN());
@@ -197,10 +197,10 @@ std::optional<Interval> silent_interval(const std::vector<ImuSample>& unit) {
   return std::nullopt;
 }
 
-void report_silent(const Units& units, SensorHealth& faults) {
+void report_silent_imus(const ImuReadingSets& units, SensorHealth& faults) {
   for (std::size_t k = 0; k < units.index.size(); ++k) {
     if (const auto silent = silent_interval(units.samples[k]))
-      faults.add(Kind::unit_silent,
+      faults.add(Kind::imu_silent,
                  {ErrorCode::out_of_range, "time in s without readings", seconds(silent->to_ns - silent->from_ns),
                   kSilentReported_s},
                  name(units, k), "", silent->from_ns);
@@ -208,12 +208,12 @@ void report_silent(const Units& units, SensorHealth& faults) {
 }
 
 /// Returns an error if all IMUs are frozen.
-Status exclude_frozen(Units& units, SensorHealth& faults) {
+Status exclude_frozen(ImuReadingSets& units, SensorHealth& faults) {
   const std::size_t before = faults.findings.size();
   for (std::size_t unit = 0; unit < units.index.size(); ++unit) {
-    for (const FrozenAxis& axis : units.frozen[unit]) {
-      exclude(units.samples[unit], axis.from_ns, axis.to_ns);
-      add_finding(Kind::unit_frozen, name(units, unit), axis, faults);
+    for (const FrozenAxis& axis : units.frozen_axes[unit]) {
+      exclude_samples(units.samples[unit], axis.from_ns, axis.to_ns);
+      add_finding(Kind::imu_frozen, name(units, unit), axis, faults);
     }
   }
   if (faults.findings.size() == before) return {};
@@ -225,69 +225,69 @@ Status exclude_frozen(Units& units, SensorHealth& faults) {
   return {};
 }
 
-void erase_unit(Units& units, std::size_t unit) {
+void erase_imu(ImuReadingSets& units, std::size_t unit) {
   const auto at = static_cast<std::ptrdiff_t>(unit);
   units.index.erase(units.index.begin() + at);
   units.T_BI.erase(units.T_BI.begin() + at);
   units.samples.erase(units.samples.begin() + at);
-  units.gyro_elements.erase(units.gyro_elements.begin() + at);
-  units.accel_elements.erase(units.accel_elements.begin() + at);
+  units.gyro_sensing_directions.erase(units.gyro_sensing_directions.begin() + at);
+  units.accel_sensing_directions.erase(units.accel_sensing_directions.begin() + at);
 }
 
 /// Returns whether ImuMerge found a faulty IMU.
-bool exclude_found(const ImuMerge::State& state, Units& units, SensorHealth& faults) {
+bool exclude_faulty_imus(const ImuMerge::State& state, ImuReadingSets& units, SensorHealth& faults) {
   bool any = false;
   for (std::size_t k = units.index.size(); k-- > 0;) {
-    const ImuMerge::Unit& unit = state.units[k];
-    if (unit.frozen) {
+    const ImuMerge::Unit& unit = state.imus[k];
+    if (unit.is_frozen) {
       any = true;
-      exclude(units.samples[k], unit.frozen_since_ns);
+      exclude_samples(units.samples[k], unit.frozen_since_ns);
       ImuMerge::add_finding(unit, name(units, k), faults);
     } else if (unit.disagrees) {
       any = true;
       ImuMerge::add_finding(unit, name(units, k), faults);
-      erase_unit(units, k);
+      erase_imu(units, k);
     }
   }
   return any;
 }
 
-void report_calibration(const ImuMerge& merge, const ImuMerge::State& state, const Units& units,
+void report_calibration(const ImuMerge& merge, const ImuMerge::State& state, const ImuReadingSets& units,
                         MergedRecordings& out) {
-  out.lever_arm_m = merge.p_C_m();
+  out.lever_arm_m = merge.mean_imu_position_m();
   out.lever_arm_agreement = ImuMerge::lever_arm_agreement(state);
-  out.mislabelled_axes = state.sign_check.detected();
+  out.mislabelled_axes = state.imu_sign_check.detected_mirroring();
   for (std::size_t k = 0; k < units.index.size(); ++k) {
-    const ImuMerge::Unit& unit = state.units[k];
+    const ImuMerge::Unit& unit = state.imus[k];
     constexpr int kOffset = ImuMerge::kErrorCount - 1;
-    out.excluded_readings += static_cast<std::size_t>(unit.excluded_windows);
-    out.units.push_back(
-        {units.index[k], unit.offset_s(), std::sqrt(std::max(0.0, unit.P(kOffset, kOffset))), unit.x.head<3>().norm()});
+    out.excluded_readings += static_cast<std::size_t>(unit.excluded_window_count);
+    out.imus.push_back(
+        {units.index[k], unit.offset_s(), std::sqrt(std::max(0.0, unit.covariance(kOffset, kOffset))), unit.x.head<3>().norm()});
   }
 }
 
 }  // namespace
 
-std::string unit_name(std::size_t unit, std::size_t units) {
+std::string imu_name(std::size_t unit, std::size_t units) {
   return units > 1 ? "imu_" + std::to_string(unit + 1) : "imu";
 }
 
-Status merge_recordings(std::span<const UnitRecording> recordings, ImuMerge::Params params, MergedRecordings& out) {
+Status merge_recordings(std::span<const ImuRecording> recordings, ImuMerge::Params params, MergedRecordings& out) {
   out = {};
-  Units units;
-  if (Status status = prepare(recordings, units); !status.ok()) return status;
-  report_silent(units, out.faults);
+  ImuReadingSets units;
+  if (Status status = prepare_imu_readings(recordings, units); !status.ok()) return status;
+  report_silent_imus(units, out.faults);
   if (Status status = exclude_frozen(units, out.faults); !status.ok()) return status;
-  set_units(units, params);
+  set_imu_params(units, params);
   auto state = std::make_unique<ImuMerge::State>();
   const ImuMerge first(params);
-  if (Status status = run(first, params.gap_max_s, units, *state, out.samples); !status.ok()) return status;
-  const bool faulty = exclude_found(*state, units, out.faults);
-  set_units(units, params);
+  if (Status status = merge_imu_readings(first, params.gap_max_s, units, *state, out.samples); !status.ok()) return status;
+  const bool faulty = exclude_faulty_imus(*state, units, out.faults);
+  set_imu_params(units, params);
   const ImuMerge merge(params);
   if (faulty) {
     *state = {};
-    if (Status status = run(merge, params.gap_max_s, units, *state, out.samples); !status.ok()) return status;
+    if (Status status = merge_imu_readings(merge, params.gap_max_s, units, *state, out.samples); !status.ok()) return status;
   }
   report_calibration(merge, *state, units, out);
   return {};

@@ -12,29 +12,29 @@ namespace {
 constexpr double kMinGravity_m_s2 = 1e-3;
 constexpr double kPreallocated_s = 2.0;  // longer than any gap of a lidar
 
-std::size_t samples_in(double time_s, const RegimeStream::Params& rate) {
+std::size_t sample_count_in_duration(double time_s, const MotionRegimeStream::Params& rate) {
   return static_cast<std::size_t>(std::ceil(time_s / rate.rate.period_s)) + 16;
 }
 
 /// If the rate of a clipped axis is too uncertain, the mapper receives the gyro's reading, which is a lower bound. With
 /// an uncertain calibration, a rate recovered at an impact may be wrong by tens of rad/s.
-RateState limit_rate_sigma(const RateState& rate, const ImuSample& sample, double sigma_max_rad_s) {
-  RateState out = rate;
+AngularRateState limit_rate_covariance(const AngularRateState& rate, const ImuSample& sample, double sigma_max_rad_s) {
+  AngularRateState out = rate;
   for (int axis = 0; axis < 3; ++axis) {
     if ((rate.clipped_axes >> axis & 1) == 0) continue;
     if (rate.covariance_rad2_s2(axis, axis) <= sigma_max_rad_s * sigma_max_rad_s) continue;
     out.w_WI_I_rad_s[axis] = sample.angular_velocity_rad_s[axis];
     out.covariance_rad2_s2.row(axis).setZero();
     out.covariance_rad2_s2.col(axis).setZero();
-    out.source = RateSource::bounded_only;
+    out.source = AngularRateSource::lower_bound_only;
   }
   return out;
 }
 
 /// Successive calls need increasing times.
-class ClassifiedSamples {
+class ClippingClassifiedSamples {
  public:
-  ClassifiedSamples(std::span<const ImuSample> samples, const RateStream::State& state)
+  ClippingClassifiedSamples(std::span<const ImuSample> samples, const AngularRateStream::State& state)
       : samples_(samples), window_(state.window) {}
 
   ImuSample at(TimeNs time_ns) {
@@ -50,13 +50,13 @@ class ClassifiedSamples {
 
  private:
   std::span<const ImuSample> samples_;
-  std::span<const RateStream::Knot> window_;
+  std::span<const AngularRateStream::Knot> window_;
   std::size_t next_ = 0, knot_ = 0;
 };
 
 }  // namespace
 
-void OdometryPass::Queue::push(const ImuSample& sample) {
+void OdometryPass::WaitingInputQueue::push(const ImuSample& sample) {
   if (samples.size() == samples.capacity() && head > 0) {
     samples.erase(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(head));
     head = 0;
@@ -64,29 +64,29 @@ void OdometryPass::Queue::push(const ImuSample& sample) {
   samples.push_back(sample);
 }
 
-void OdometryPass::Queue::drop_until(TimeNs time_ns) {
+void OdometryPass::WaitingInputQueue::drop_until(TimeNs time_ns) {
   while (head < samples.size() && samples[head].time_ns <= time_ns) ++head;
 }
 
-OdometryPass::OdometryPass(const RegimeStream::Params& rate, const LidarInertialOdometry::Params& mapping)
+OdometryPass::OdometryPass(const MotionRegimeStream::Params& rate, const LidarInertialOdometry::Params& mapping)
     : rates_(rate),
-      rate_state_(rates_.start()),
+      rate_stream_state_(rates_.start()),
       mapper_(mapping),
-      scale_(mapping.expert.gravity_m_s2, samples_in(kPreallocated_s, rate)),
+      scale_(mapping.expert.gravity_m_s2, sample_count_in_duration(kPreallocated_s, rate)),
       localisation_(mapping.expert.matching.distance_m),
       rate_sigma_max_rad_s_(mapping.expert.prior.rate_sigma_max_rad_s),
       time_offset_s_(mapping.time_offset_s),
       rest_gravity_({.gravity_m_s2 = std::max(mapping.expert.gravity_m_s2, kMinGravity_m_s2)}) {
-  pending_.samples.reserve(samples_in(std::max(rate.rate.lag_s, kPreallocated_s), rate));
+  pending_.samples.reserve(sample_count_in_duration(std::max(rate.rate.lag_s, kPreallocated_s), rate));
 }
 
 Status OdometryPass::add_imu(const ImuSample& sample) {
-  std::optional<RateState> rate;
-  if (const Status status = rates_.push(sample, rate_state_, rate); !status.ok()) return status;
+  std::optional<AngularRateState> rate;
+  if (const Status status = rates_.push(sample, rate_stream_state_, rate); !status.ok()) return status;
   pending_.push(sample);
   rest_gravity_.step(sample, rest_gravity_state_);
   RestGravity::limit_memory(rest_gravity_state_);
-  if (rate && (!smoothed_ || rate->time_ns > smoothed_->time_ns)) process_rate(*rate);
+  if (rate && (!smoothed_ || rate->time_ns > smoothed_->time_ns)) process_angular_rate(*rate);
   return {};
 }
 
@@ -99,7 +99,7 @@ std::optional<TimeNs> OdometryPass::covered_ns() const {
   return smoothed_->time_ns - oldest_needed_ns(0);
 }
 
-bool OdometryPass::covers(TimeNs end_ns) const {
+bool OdometryPass::has_rates_until(TimeNs end_ns) const {
   return smoothed_ && smoothed_->time_ns >= oldest_needed_ns(end_ns);
 }
 
@@ -124,48 +124,48 @@ Status OdometryPass::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const L
 }
 
 Status OdometryPass::newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2) const {
-  std::vector<RateState> rates;
-  rates_.flush(rate_state_, rates);
+  std::vector<AngularRateState> rates;
+  rates_.flush(rate_stream_state_, rates);
   std::vector<ImuSample> samples;
-  ClassifiedSamples classified(pending_.all(), rate_state_.rate);
-  std::erase_if(rates, [&](const RateState& rate) { return last_mapped_ns_ && rate.time_ns <= *last_mapped_ns_; });
-  for (RateState& rate : rates) {
+  ClippingClassifiedSamples classified(pending_.all(), rate_stream_state_.rate);
+  std::erase_if(rates, [&](const AngularRateState& rate) { return last_mapped_ns_ && rate.time_ns <= *last_mapped_ns_; });
+  for (AngularRateState& rate : rates) {
     samples.push_back(classified.at(rate.time_ns));
-    rate = limit_rate_sigma(rate, samples.back(), rate_sigma_max_rad_s_);
+    rate = limit_rate_covariance(rate, samples.back(), rate_sigma_max_rad_s_);
   }
   return mapper_.predict(samples, rates, pose, velocity_covariance_I_m2_s2);
 }
 
-void OdometryPass::process_rate(const RateState& rate) {
-  const ImuSample sample = ClassifiedSamples(pending_.all(), rate_state_.rate).at(rate.time_ns);
+void OdometryPass::process_angular_rate(const AngularRateState& rate) {
+  const ImuSample sample = ClippingClassifiedSamples(pending_.all(), rate_stream_state_.rate).at(rate.time_ns);
   pending_.drop_until(rate.time_ns);
   smoothed_ = rate;
   if (last_mapped_ns_ && rate.time_ns <= *last_mapped_ns_) return;
   last_mapped_ns_ = rate.time_ns;
   scale_.add(sample);
-  if (!mapper_.add_imu(sample, limit_rate_sigma(rate, sample, rate_sigma_max_rad_s_)).ok()) ++rejected_samples_;
+  if (!mapper_.add_imu(sample, limit_rate_covariance(rate, sample, rate_sigma_max_rad_s_)).ok()) ++rejected_samples_;
 }
 
 void OdometryPass::flush_until(TimeNs time_ns) {
-  std::vector<RateState> rates;
-  rates_.flush(rate_state_, rates);
-  for (const RateState& rate : rates) {
+  std::vector<AngularRateState> rates;
+  rates_.flush(rate_stream_state_, rates);
+  for (const AngularRateState& rate : rates) {
     if (smoothed_ && smoothed_->time_ns >= time_ns) return;
-    if (!smoothed_ || rate.time_ns > smoothed_->time_ns) process_rate(rate);
+    if (!smoothed_ || rate.time_ns > smoothed_->time_ns) process_angular_rate(rate);
   }
 }
 
-void OdometryPass::start_rate_estimation(const RegimeStream::Params& rate) {
-  rates_ = RegimeStream(rate);
-  const FrozenAxes::State frozen = rate_state_.rate.frozen;  // an axis may stay frozen across the restart
-  const FlightSignCheck::State sense = rate_state_.rate.sense;
-  rate_state_ = rates_.start();
-  rate_state_.rate.frozen = frozen;
-  rate_state_.rate.sense = sense;
+void OdometryPass::start_rate_estimation(const MotionRegimeStream::Params& rate) {
+  rates_ = MotionRegimeStream(rate);
+  const FrozenAxes::State frozen = rate_stream_state_.rate.frozen_axes;  // an axis may stay frozen across the restart
+  const FlightSignCheck::State sense = rate_stream_state_.rate.flight_sign_check;
+  rate_stream_state_ = rates_.start();
+  rate_stream_state_.rate.frozen_axes = frozen;
+  rate_stream_state_.rate.flight_sign_check = sense;
 }
 
 void OdometryPass::adopt_map(OdometryPass&& other) {
-  if (mapper_.prior_map() != nullptr) other.mapper_.use_map_of(mapper_);
+  if (mapper_.prior_map() != nullptr) other.mapper_.use_map_of_pass(mapper_);
   mapper_ = std::move(other.mapper_);
   scale_ = std::move(other.scale_);
   localisation_ = other.localisation_;

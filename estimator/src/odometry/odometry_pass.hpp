@@ -10,19 +10,19 @@
 #include "tumble/attitude/detail/regime_stream.hpp"
 #include "tumble/attitude/detail/rest_gravity.hpp"
 #include "tumble/mapping/detail/localisation.hpp"
-#include "tumble/mapping/detail/sweep_scale.hpp"
+#include "tumble/mapping/detail/lidar_scale.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
 namespace tumble {
 
-/// Processes IMU samples and lidar sweeps once, in time order. RegimeStream estimates the rates. LidarInertialOdometry
+/// Processes IMU samples and lidar sweeps once, in time order. MotionRegimeStream estimates the rates. LidarInertialOdometry
 /// processes the samples and sweeps for which rates are available. TumblingOdometry runs one OdometryPass live, and
-/// SecondPass runs a second OdometryPass with the estimated calibration. A copy of an OdometryPass contains the
+/// SecondMappingPass runs a second OdometryPass with the estimated calibration. A copy of an OdometryPass contains the
 /// complete state.
 class OdometryPass {
  public:
   /// first-in, first-out queue of samples that reuses its memory
-  struct Queue {
+  struct WaitingInputQueue {
     std::vector<ImuSample> samples;
     std::size_t head = 0;
     void push(const ImuSample& sample);
@@ -31,7 +31,7 @@ class OdometryPass {
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.
-  OdometryPass(const RegimeStream::Params& rate, const LidarInertialOdometry::Params& mapping);
+  OdometryPass(const MotionRegimeStream::Params& rate, const LidarInertialOdometry::Params& mapping);
 
   /// Passes the newest smoothed rate to the mapper. This rate is lag_s older than `sample`.
   Status add_imu(const ImuSample& sample);
@@ -39,9 +39,9 @@ class OdometryPass {
   void set_start_pose(const Eigen::Isometry3d& T_WI) { mapper_.set_start_pose(T_WI); }
   /// See LidarInertialOdometry::use_map().
   Status use_map(PriorMap map) { return mapper_.use_map(std::move(map)); }
-  void use_map_of(const OdometryPass& other) { mapper_.use_map_of(other.mapper_); }
+  void use_map_of_pass(const OdometryPass& other) { mapper_.use_map_of_pass(other.mapper_); }
   /// Returns true if rates are available up to the time `end_ns` of the lidar's clock.
-  bool covers(TimeNs end_ns) const;
+  bool has_rates_until(TimeNs end_ns) const;
   /// Returns the time, in the lidar's clock, up to which rates are available; empty before the first rate.
   std::optional<TimeNs> covered_ns() const;
   /// Returns the time stamp of the first sample at or after the lidar time `end_ns` whose rate is not yet available.
@@ -57,38 +57,38 @@ class OdometryPass {
   /// Passes all rates up to the first sample at or after `time_ns` to the mapper, without waiting for later samples.
   void flush_until(TimeNs time_ns);
   /// Restarts the rate estimation with other parameters; the mapper continues.
-  void start_rate_estimation(const RegimeStream::Params& rate);
+  void start_rate_estimation(const MotionRegimeStream::Params& rate);
   /// Replaces the mapper by the mapper of `other`. The rate estimation of this pass continues. Do not use `other`
   /// afterwards.
   void adopt_map(OdometryPass&& other);
 
-  const RegimeStream& rates() const { return rates_; }
-  const RegimeStream::State& rate_state() const { return rate_state_; }
+  const MotionRegimeStream& rates() const { return rates_; }
+  const MotionRegimeStream::State& rate_stream_state() const { return rate_stream_state_; }
   const LidarInertialOdometry& mapper() const { return mapper_; }
   /// Returns `out_of_range` if the magnitude of the specific force at rest contradicts gravity.
   Status check_force_at_rest() const {
-    return rest_gravity_.magnitude_verdict(rest_gravity_state_, RestGravity::kMappingErrorMax);
+    return rest_gravity_.gravity_magnitude_verdict(rest_gravity_state_, RestGravity::kMappingErrorMax);
   }
-  const SweepScale& sweep_scale() const { return scale_.scale(); }
+  const LidarScale& sweep_scale() const { return scale_.scale(); }
   const Localisation& localisation() const { return localisation_; }
-  const std::optional<RateState>& smoothed_rate() const { return smoothed_; }
+  const std::optional<AngularRateState>& smoothed_rate() const { return smoothed_; }
   std::size_t rejected_samples() const { return rejected_samples_; }
 
  private:
-  void process_rate(const RateState& rate);
+  void process_angular_rate(const AngularRateState& rate);
 
-  RegimeStream rates_;
-  RegimeStream::State rate_state_;
+  MotionRegimeStream rates_;
+  MotionRegimeStream::State rate_stream_state_;
   LidarInertialOdometry mapper_;
-  SweepScaleEstimator scale_;
+  LidarScaleEstimator scale_;
   Localisation localisation_;
   double rate_sigma_max_rad_s_, time_offset_s_;
-  Queue pending_;  ///< samples whose rates are not yet available
-  std::optional<RateState> smoothed_;
+  WaitingInputQueue pending_;  ///< samples whose rates are not yet available
+  std::optional<AngularRateState> smoothed_;
   std::optional<TimeNs> last_mapped_ns_;  ///< time of the last sample passed to the mapper
   std::size_t rejected_samples_ = 0;
   RestGravity rest_gravity_;
-  RestGravity::MagnitudeState rest_gravity_state_;
+  RestGravity::GravityMagnitudeState rest_gravity_state_;
 };
 
 }  // namespace tumble

@@ -19,9 +19,9 @@ namespace tumble {
 /// up to a fifth of the positions as outliers. PositionAlignment does not change the poses and the map in W.
 class PositionAlignment {
  public:
-  static constexpr std::size_t kReadingsMax = 1024, kPairsMax = 64;
-  struct Pair {
-    Eigen::Vector3d p_WA_m = Eigen::Vector3d::Zero(), p_PA_m = Eigen::Vector3d::Zero();
+  static constexpr std::size_t kReadingsMax = 1024, kMaxPositionPairs = 64;
+  struct PositionPair {
+    Eigen::Vector3d antenna_position_W_m = Eigen::Vector3d::Zero(), antenna_position_P_m = Eigen::Vector3d::Zero();
     double variance_m2 = 0.0, path_m = 0.0, pose_variance_m2 = 0.0;
   };
 
@@ -29,21 +29,21 @@ class PositionAlignment {
   /// TumblingOdometry::add_position().
   Status add(const PositionReading& reading, TimeNs done_ns, TimeNs latest_ns, std::size_t most);
   /// Processes a registered sweep and the readings up to its end. Cost: O(n^2) for n stored positions.
-  void observe(const SweepReport& report);
+  void add_sweep(const SweepReport& report);
   /// Discards the processed readings after a change of the world frame W.
   void restart_fit();
   /// Returns the frame of the position readings relative to W, at the end of the last sweep. The result is empty until
   /// the readings determine the heading within 0.1 rad, and while the readings contradict each other.
-  const std::optional<PositionFrame>& frame() const { return frame_; }
+  const std::optional<PositionFrame>& position_frame() const { return position_frame_; }
 
  private:
-  void add_pair(const PositionReading& reading, const PoseState& pose);
+  void add_position_pair(const PositionReading& reading, const PoseState& pose);
   void fit();
 
-  std::deque<PositionReading> waiting_;  ///< in the order of their times
-  std::deque<Pair> pairs_;
-  std::optional<PositionFrame> frame_;
-  Eigen::Vector3d last_W_m_ = Eigen::Vector3d::Zero();  ///< position of the IMU at the end of the last sweep
+  std::deque<PositionReading> waiting_readings_;  ///< in the order of their times
+  std::deque<PositionPair> position_pairs_;
+  std::optional<PositionFrame> position_frame_;
+  Eigen::Vector3d last_position_W_m_ = Eigen::Vector3d::Zero();  ///< position of the IMU at the end of the last sweep
   double path_m_ = 0.0, pose_variance_m2_ = 0.0;        ///< length of the path; variance of the last pose, all axes
   bool in_prior_map_ = false;
 };

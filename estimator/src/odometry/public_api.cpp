@@ -8,8 +8,8 @@
 
 namespace tumble {
 
-template class Indirect<TumblingExpertParams>;
-template class Indirect<RollingOdometryExpertParams>;
+template class HeapValue<TumblingExpertParams>;
+template class HeapValue<RollingOdometryExpertParams>;
 
 TumblingOdometry::TumblingOdometry(const Params& params) : impl_(std::make_unique<Impl>(params)) {}
 TumblingOdometry::TumblingOdometry(const TumblingOdometry&) = default;
@@ -19,7 +19,7 @@ TumblingOdometry& TumblingOdometry::operator=(TumblingOdometry&&) noexcept = def
 TumblingOdometry::~TumblingOdometry() = default;
 
 Status TumblingOdometry::use_map(PriorMap map) {
-  return impl_->pass_.use_map(std::move(map));
+  return impl_->odometry_pass_.use_map(std::move(map));
 }
 Status TumblingOdometry::add_imu(const ImuSample& sample) {
   return impl_->add_imu(sample);
@@ -58,26 +58,26 @@ Status TumblingOdometry::newest(PoseState& pose, Eigen::Matrix3d* velocity_covar
 SensorHealth TumblingOdometry::health() const {
   return impl_->health();
 }
-const SweepScale& TumblingOdometry::sweep_scale() const {
+const LidarScale& TumblingOdometry::sweep_scale() const {
   return impl_->sweep_scale();
 }
 const std::optional<PositionFrame>& TumblingOdometry::position_frame() const {
-  return impl_->positions_.frame();
+  return impl_->positions_.position_frame();
 }
 std::optional<TimeNs> TumblingOdometry::newest_ns() const {
   return impl_->newest_ns_;
 }
-std::optional<RateState> TumblingOdometry::newest_rate() const {
+std::optional<AngularRateState> TumblingOdometry::newest_rate() const {
   return impl_->newest_rate();
 }
-const std::optional<RateState>& TumblingOdometry::smoothed_rate() const {
-  return impl_->pass_.smoothed_rate();
+const std::optional<AngularRateState>& TumblingOdometry::smoothed_rate() const {
+  return impl_->odometry_pass_.smoothed_rate();
 }
 RigCalibration TumblingOdometry::rig() const {
   return impl_->rig();
 }
-const SaturationLevels& TumblingOdometry::rails() const {
-  return impl_->rails();
+const SaturationLevels& TumblingOdometry::saturation_levels() const {
+  return impl_->saturation_levels();
 }
 std::size_t TumblingOdometry::restart_count() const {
   return impl_->restart_count_;
@@ -85,20 +85,20 @@ std::size_t TumblingOdometry::restart_count() const {
 std::size_t TumblingOdometry::rejected_readings() const {
   return impl_->outlier_filter_state_.rejected;
 }
-bool TumblingOdometry::second_pass_applied() const {
-  return impl_->second_pass_.applied();
+bool TumblingOdometry::second_mapping_pass_applied() const {
+  return impl_->second_mapping_pass_.is_applied();
 }
 std::size_t TumblingOdometry::rejected_samples() const {
-  return impl_->pass_.rejected_samples();
+  return impl_->odometry_pass_.rejected_samples();
 }
 std::size_t TumblingOdometry::dropped_sweeps() const {
   return impl_->dropped_sweeps_;
 }
-std::size_t TumblingOdometry::early_sweeps() const {
-  return impl_->early_sweeps_;
+std::size_t TumblingOdometry::sweeps_before_first_imu() const {
+  return impl_->sweeps_before_first_imu_;
 }
 std::size_t TumblingOdometry::unused_odometer_readings() const {
-  return impl_->readings_.spanning_two_sweeps();
+  return impl_->readings_.readings_spanning_two_sweeps();
 }
 std::size_t TumblingOdometry::unused_points() const {
   return impl_->further_lidars_.unused_points();
@@ -109,8 +109,8 @@ std::optional<double> TumblingOdometry::estimated_jitter_s() const {
 const LidarInertialOdometry& TumblingOdometry::mapper() const {
   return impl_->mapper();
 }
-const RecordingEstimate* TumblingOdometry::recording() const {
-  return impl_->whole_.get();
+const WholeRecordingEstimate* TumblingOdometry::recording() const {
+  return impl_->whole_recording_result_.get();
 }
 std::vector<std::byte> TumblingOdometry::save() const {
   return impl_->save();
@@ -150,22 +150,22 @@ void RollingOdometry::reset(const Eigen::Isometry3d& T_WG) {
 SensorHealth RollingOdometry::health() const {
   return impl_->health();
 }
-const MergedFindings* RollingOdometry::recording() const {
-  return impl_->whole_.get();
+const MergedImuRecording* RollingOdometry::recording() const {
+  return impl_->whole_recording_result_.get();
 }
 RollingOdometry::Calibration RollingOdometry::calibration() const {
   return impl_->calibration();
 }
 std::int64_t RollingOdometry::bridged_gaps() const {
-  return impl_->state_->live.gaps;
+  return impl_->state_->live_filter.gaps;
 }
 double RollingOdometry::longest_gap_s() const {
-  return impl_->state_->live.gap_longest_s;
+  return impl_->state_->live_filter.gap_longest_s;
 }
 bool RollingOdometry::started_in_motion() const {
-  return impl_->state_->live.started_in_motion;
+  return impl_->state_->live_filter.started_in_motion;
 }
-const ImuMergeState& RollingOdometry::units() const {
+const ImuMergeState& RollingOdometry::imus() const {
   return *impl_->imu_merge_state_;
 }
 std::size_t RollingOdometry::rejected_readings() const {

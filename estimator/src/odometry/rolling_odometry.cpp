@@ -10,7 +10,7 @@
 
 namespace tumble {
 
-using odometry::filters_of, odometry::merge_params, odometry::rolling_params, odometry::sheets_of,
+using odometry::outlier_filters_of, odometry::merge_params, odometry::rolling_params, odometry::data_sheets_of,
     odometry::frozen_axis_detectors;
 
 namespace {
@@ -20,7 +20,7 @@ ImuSample at_time(TimeNs time_ns, ImuSample sample) {
   return sample;
 }
 
-void mark_absent(ImuSample& sample) {
+void mark_readings_absent(ImuSample& sample) {
   sample.angular_velocity_rad_s.setConstant(std::numeric_limits<double>::quiet_NaN());
 }
 
@@ -30,7 +30,7 @@ bool any_reading(std::span<const ImuSample> samples) {
 
 RollingOdometry::Pose as_pose(const RollingEstimate& estimate) {
   RollingOdometry::Pose out;
-  out.pose = {estimate.time_ns, estimate.p_WG_m, estimate.q_WI, estimate.v_WG_m_s, estimate.covariance};
+  out.pose = {estimate.time_ns, estimate.sphere_centre_W_m, estimate.q_WI, estimate.sphere_velocity_W_m_s, estimate.covariance};
   out.angular_velocity_rad_s = estimate.w_WI_I_rad_s;
   out.velocity_covariance_B_m2_s2 = estimate.velocity_covariance_I_m2_s2;
   out.mode = estimate.mode;
@@ -48,77 +48,77 @@ RollingOdometry::Impl::Impl(const Params& params, const ImuMerge::Params& merged
       stamp_order_(params.expert->rolling.filter.expert.gap.gap_max_s),
       sample_clock_(params.expert->stamps),
       imu_merge_(merged),
-      smoother_(rolling_params(params, merged, params.units.size(), imu_merge_.p_C_m())),
-      rails_(sheets_of(params)),
-      unit_alignment_(params.units.size()),
-      rails_state_(rails_.start()),
-      outlier_filters_(filters_of(params)),
+      smoother_(rolling_params(params, merged, params.imus.size(), imu_merge_.mean_imu_position_m())),
+      imu_saturation_limits_(data_sheets_of(params)),
+      imu_time_alignment_(params.imus.size()),
+      imu_saturation_limits_state_(imu_saturation_limits_.start()),
+      outlier_filters_(outlier_filters_of(params)),
       frozen_axis_detectors_(frozen_axis_detectors(params)),
-      checks_{RestGravity({.gravity_m_s2 = params.gravity_m_s2}),
+      merged_imu_checks_{RestGravity({.gravity_m_s2 = params.gravity_m_s2}),
               ImuPlausibility(plausibility_params(params.gravity_m_s2, 0.0))},
-      live_(params.lag_s <= 0.0) {}
+      is_live_(params.lag_s <= 0.0) {}
 
 Status RollingOdometry::Impl::add_imus(std::span<const ImuSample> samples) {
   if (finished_) return {ErrorCode::out_of_range, "samples after finish()", 1.0, 0.0};
-  if (samples.size() != params_.units.size())
-    return {ErrorCode::too_few, "samples", double(samples.size()), double(params_.units.size())};
-  if (is_whole()) {
+  if (samples.size() != params_.imus.size())
+    return {ErrorCode::insufficient_data, "samples", double(samples.size()), double(params_.imus.size())};
+  if (uses_whole_recording()) {
     if (!any_reading(samples)) return check_sample(samples.front());
     Status status;
     for (std::size_t k = 0; k < samples.size() && status.ok(); ++k)
-      status = record(k, at_time(samples.front().time_ns, samples[k]));
+      status = record_sample(k, at_time(samples.front().time_ns, samples[k]));
     return status;
   }
   if (!any_reading(samples)) return add_inliers(samples);  // returns the error
   StampOrder::Verdict verdict{};
-  if (const Status status = stamp_order_.classify_stamp(samples.front().time_ns, stamp_order_state_, verdict);
+  if (const Status status = stamp_order_.order_of_stamp(samples.front().time_ns, stamp_order_state_, verdict);
       !status.ok())
     return status;
   if (verdict == StampOrder::Verdict::restarts_after_step_back) restart_at_newest(StampOrder::kStepBack_s);
   if (verdict == StampOrder::Verdict::restarts_after_gap)
     restart_at_newest(seconds(samples.front().time_ns - *stamp_order_state_.newest_ns));
   if (const Status status = add_delayed_samples(samples); !status.ok()) return status;
-  UnitRails::Samples judged;
+  ImuSaturationLimits::Samples judged;
   std::copy(samples.begin(), samples.end(), judged.begin());
-  std::array<bool, ImuMerge::kImus> delayed{};
+  std::array<bool, ImuMerge::kImus> delayed_sample{};
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (!check_sample(samples[k]).ok()) continue;
     OutlierFilter::State& state = outlier_filter_state_[k];
     const std::size_t before = state.delayed_count;
-    if (!outlier_filters_[k].must_delay(at_time(samples.front().time_ns, samples[k]), state)) continue;
-    delayed[k] = state.delayed_count > before;
-    if (!delayed[k]) mark_absent(judged[k]);
+    if (!outlier_filters_[k].must_delay_for_check(at_time(samples.front().time_ns, samples[k]), state)) continue;
+    delayed_sample[k] = state.delayed_count > before;
+    if (!delayed_sample[k]) mark_readings_absent(judged[k]);
   }
   const std::span<const ImuSample> inliers = std::span(judged).first(samples.size());
   if (!any_reading(inliers)) return {};
-  if (delayed_count_ > 0 || std::find(delayed.begin(), delayed.end(), true) != delayed.end()) {
+  if (delayed_count_ > 0 || std::find(delayed_sample.begin(), delayed_sample.end(), true) != delayed_sample.end()) {
     delayed_samples_[delayed_count_++] = judged;
   } else if (const Status status = add_inliers(inliers); !status.ok()) {
     return status;
   }
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (!delayed[k] && check_sample(judged[k]).ok())
-      OutlierFilter::pass(at_time(samples.front().time_ns, judged[k]), outlier_filter_state_[k]);
+    if (!delayed_sample[k] && check_sample(judged[k]).ok())
+      OutlierFilter::mark_accepted(at_time(samples.front().time_ns, judged[k]), outlier_filter_state_[k]);
   }
   return {};
 }
 
 Status RollingOdometry::Impl::add_imu(std::size_t unit, const ImuSample& sample) {
   if (finished_) return {ErrorCode::out_of_range, "samples after finish()", 1.0, 0.0};
-  const std::size_t units = params_.units.size();
+  const std::size_t units = params_.imus.size();
   if (unit >= units) return {ErrorCode::out_of_range, "unit", double(unit), double(units - 1)};
-  if (is_whole()) return record(unit, sample);
-  if (Status status = unit_alignment_.push(unit, sample, unit_alignment_state_); !status.ok()) return status;
-  return add_aligned(false);
+  if (uses_whole_recording()) return record_sample(unit, sample);
+  if (Status status = imu_time_alignment_.push(unit, sample, imu_time_alignment_state_); !status.ok()) return status;
+  return add_time_aligned_readings(false);
 }
 
-/// Processes the readings at all common times that UnitAlignment has completed. `ended` is true if no further readings
+/// Processes the readings at all common times that ImuTimeAlignment has completed. `ended` is true if no further readings
 /// follow.
-Status RollingOdometry::Impl::add_aligned(bool ended) {
+Status RollingOdometry::Impl::add_time_aligned_readings(bool ended) {
   Status first;
-  UnitAlignment::Readings readings;
-  while (unit_alignment_.next(unit_alignment_state_, readings, ended)) {
-    const Status status = add_imus(std::span(readings).first(params_.units.size()));
+  ImuTimeAlignment::Readings readings;
+  while (imu_time_alignment_.next(imu_time_alignment_state_, readings, ended)) {
+    const Status status = add_imus(std::span(readings).first(params_.imus.size()));
     if (first.ok()) first = status;
   }
   return first;
@@ -143,17 +143,17 @@ Status RollingOdometry::Impl::add_delayed_samples(std::span<const ImuSample> nex
 bool RollingOdometry::Impl::is_delayed_after(std::span<const ImuSample> next, std::size_t unit) {
   OutlierFilter::State& state = outlier_filter_state_[unit];
   if (state.delayed_count == 0) return false;
-  const TimeNs first_ns = state.delayed.front().time_ns;
+  const TimeNs first_ns = state.delayed_sample.front().time_ns;
   const bool follows = check_sample(next[unit]).ok(), full = delayed_count_ == delayed_samples_.size();
   std::span<const ImuSample> confirmed;
   if (follows) confirmed = outlier_filters_[unit].filter_sample(at_time(next.front().time_ns, next[unit]), state);
   if (!follows) OutlierFilter::finish(state);
   if (state.delayed_count > 0 && !full) return true;
-  if (state.delayed_count > 0) confirmed = {state.delayed.data(), std::exchange(state.delayed_count, 0)};
-  for (const ImuSample& sample : confirmed) OutlierFilter::pass(sample, state);
+  if (state.delayed_count > 0) confirmed = {state.delayed_sample.data(), std::exchange(state.delayed_count, 0)};
+  for (const ImuSample& sample : confirmed) OutlierFilter::mark_accepted(sample, state);
   if (!confirmed.empty()) return false;
-  for (UnitRails::Samples& samples : std::span(delayed_samples_).first(delayed_count_)) {
-    if (samples.front().time_ns >= first_ns) mark_absent(samples[unit]);
+  for (ImuSaturationLimits::Samples& samples : std::span(delayed_samples_).first(delayed_count_)) {
+    if (samples.front().time_ns >= first_ns) mark_readings_absent(samples[unit]);
   }
   return false;
 }
@@ -163,30 +163,30 @@ Status RollingOdometry::Impl::add_inliers(std::span<const ImuSample> samples) {
   SampleClock::State stamps = sample_clock_state_;
   TimeNs time_ns = 0;
   if (Status status = sample_clock_.push(samples.front().time_ns, stamps, time_ns); !status.ok()) return status;
-  UnitRails::Samples flagged;
-  rails_.flag_clipped(samples, rails_state_, flagged);
+  ImuSaturationLimits::Samples flagged;
+  imu_saturation_limits_.flag_clipped(samples, imu_saturation_limits_state_, flagged);
   flagged.front().time_ns = time_ns;
   *merge_state_buffer_ = *imu_merge_state_;  // either all parts accept the sample or none
-  Frozen frozen = frozen_;
+  Frozen frozen = frozen_imus_;
   for (std::size_t k = 0; k < samples.size(); ++k) frozen_axis_detectors_[k].step(samples[k], frozen[k]);
   const std::span<ImuSample> judged = std::span(flagged).first(samples.size());
   if (Status status = exclude_frozen(frozen, judged); !status.ok()) {
-    frozen_ = frozen;  // needed by health()
+    frozen_imus_ = frozen;  // needed by health()
     return status;
   }
   if (Status status = imu_merge_.step(judged, *merge_state_buffer_, merged); !status.ok()) return status;
   if (Status status = ImuMerge::verdict(*merge_state_buffer_); !status.ok()) return status;
   if (merged) {
-    if (Status status = process_accepted_sample(*merged); !status.ok()) return status;
+    if (Status status = process_ordered_sample(*merged); !status.ok()) return status;
   }
   std::swap(imu_merge_state_, merge_state_buffer_);
   sample_clock_state_ = stamps;
-  frozen_ = frozen;
+  frozen_imus_ = frozen;
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    checks_.rest_gravity.step(samples[k], checks_.rest_gravity_state[k]);
-    RestGravity::limit_memory(checks_.rest_gravity_state[k]);
+    merged_imu_checks_.rest_gravity.step(samples[k], merged_imu_checks_.rest_gravity_state[k]);
+    RestGravity::limit_memory(merged_imu_checks_.rest_gravity_state[k]);
   }
-  rails_.observe(samples, rails_state_);
+  imu_saturation_limits_.observe_readings(samples, imu_saturation_limits_state_);
   StampOrder::accept(samples.front().time_ns, stamp_order_state_);
   return {};
 }
@@ -203,13 +203,13 @@ Status RollingOdometry::Impl::exclude_frozen(const Frozen& states, std::span<Imu
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const bool finite = check_sample(samples[k]).ok();
     const bool frozen = finite && FrozenAxes::any_frozen(states[k]);
-    if (frozen) mark_absent(samples[k]);
+    if (frozen) mark_readings_absent(samples[k]);
     any = any || frozen;
     received = received || (finite && !frozen);
   }
   if (!any || received) return {};
   SensorHealth health;
-  add_frozen(states, health);
+  add_frozen_findings(states, health);
   return health.worst();
 }
 
@@ -218,66 +218,66 @@ std::optional<double> RollingOdometry::Impl::estimated_jitter_s() const {
 }
 
 std::optional<RollingOdometry::Pose> RollingOdometry::Impl::newest() const {
-  if (!state_->live.started) return std::nullopt;
-  return as_pose(transform_to_world(RollingFilter::estimate(state_->live)));
+  if (!state_->live_filter.started) return std::nullopt;
+  return as_pose(transform_to_world(RollingFilter::estimate(state_->live_filter)));
 }
 
 std::optional<RollingOdometry::Pose> RollingOdometry::Impl::take() {
-  if (returned_count_ == results_.size()) return std::nullopt;
-  const Pose out = as_pose(results_[returned_count_++]);
-  if (returned_count_ == results_.size()) {
-    results_.clear();
-    returned_count_ = 0;
+  if (returned_result_count_ == finished_results_.size()) return std::nullopt;
+  const Pose out = as_pose(finished_results_[returned_result_count_++]);
+  if (returned_result_count_ == finished_results_.size()) {
+    finished_results_.clear();
+    returned_result_count_ = 0;
   }
   return out;
 }
 
 RollingOdometry::Calibration RollingOdometry::Impl::calibration() const {
-  const bool newest = live_ || (!finished_ && !state_->committed.started);
-  const RollingNominal& constants = newest ? state_->live.nominal : state_->constants;
+  const bool newest = is_live_ || (!finished_ && !state_->committed_state.started);
+  const RollingNominalState& constants = newest ? state_->live_filter.nominal : state_->constants;
   return {-constants.lever_arm_error_m, params_.radius_m + constants.radius_error_m, state_->radius_sigma_m};
 }
 
 Status RollingOdometry::Impl::finish() {
   if (finished_) return {};
-  const Status status = is_whole() ? finish_whole_recording() : add_aligned(true);
-  end_run();
+  const Status status = uses_whole_recording() ? finish_whole_recording() : add_time_aligned_readings(true);
+  end_continuous_run();
   finished_ = true;
   return status;
 }
 
 /// Ends a run, and smooths the poses of the last `lag_s`.
-void RollingOdometry::Impl::end_run() {
+void RollingOdometry::Impl::end_continuous_run() {
   for (OutlierFilter::State& unit : outlier_filter_state_) OutlierFilter::finish(unit);
   delayed_count_ = 0;
-  const std::size_t before = results_.size();
-  if (!live_ && !finished_) smoother_.finish(*state_, results_);
-  for (std::size_t k = before; k < results_.size(); ++k) results_[k] = transform_to_world(results_[k]);
+  const std::size_t before = finished_results_.size();
+  if (!is_live_ && !finished_) smoother_.finish(*state_, finished_results_);
+  for (std::size_t k = before; k < finished_results_.size(); ++k) finished_results_[k] = transform_to_world(finished_results_[k]);
 }
 
 void RollingOdometry::Impl::reset() {
-  start_run();
-  unit_alignment_state_ = {};
-  recorded_ = {};
+  start_continuous_run();
+  imu_time_alignment_state_ = {};
+  recorded_samples_ = {};
 }
 
-/// Resets all states of a run, except the readings that UnitAlignment has not completed yet.
-void RollingOdometry::Impl::start_run() {
+/// Resets all states of a run, except the readings that ImuTimeAlignment has not completed yet.
+void RollingOdometry::Impl::start_continuous_run() {
   sample_clock_state_ = {};
   imu_merge_state_ = {};
   state_ = {};
-  rails_state_ = rails_.start();
-  frozen_ = {};
+  imu_saturation_limits_state_ = imu_saturation_limits_.start();
+  frozen_imus_ = {};
   for (OutlierFilter::State& unit : outlier_filter_state_) {
     unit.delayed_count = 0;
     unit.count = 0;
   }
   delayed_count_ = 0;
-  checks_.rest_gravity_state = {};
-  checks_.plausibility_state = {};
-  whole_.reset();
+  merged_imu_checks_.rest_gravity_state = {};
+  merged_imu_checks_.plausibility_state = {};
+  whole_recording_result_.reset();
   stamp_order_state_ = {};
-  start_ = T_W_run_ = std::nullopt;
+  start_ = T_world_run_origin_ = std::nullopt;
   restart_.reset();
   finished_ = false;
 }
@@ -287,20 +287,20 @@ void RollingOdometry::Impl::reset(const Eigen::Isometry3d& T_WG) {
   start_ = T_WG;
 }
 
-Status RollingOdometry::Impl::process_accepted_sample(const ImuSample& merged) {
-  const std::size_t before = results_.size();
+Status RollingOdometry::Impl::process_ordered_sample(const ImuSample& merged) {
+  const std::size_t before = finished_results_.size();
   Status status;
-  if (live_) {
-    status = smoother_.filter().step(merged, state_->live);
-    if (status.ok()) results_.push_back(RollingFilter::estimate(state_->live));
+  if (is_live_) {
+    status = smoother_.filter().step(merged, state_->live_filter);
+    if (status.ok()) finished_results_.push_back(RollingFilter::estimate(state_->live_filter));
   } else {
-    status = smoother_.step(merged, *state_, results_);
+    status = smoother_.step(merged, *state_, finished_results_);
   }
   initialise_pose();
-  for (std::size_t k = before; k < results_.size(); ++k) results_[k] = transform_to_world(results_[k]);
+  for (std::size_t k = before; k < finished_results_.size(); ++k) finished_results_[k] = transform_to_world(finished_results_[k]);
   if (!status.ok()) return status;
-  checks_.plausibility.step(merged, checks_.plausibility_state);
-  ImuPlausibility::limit_memory(checks_.plausibility_state);
+  merged_imu_checks_.plausibility.step(merged, merged_imu_checks_.plausibility_state);
+  ImuPlausibility::limit_memory(merged_imu_checks_.plausibility_state);
   return {};
 }
 

@@ -19,8 +19,8 @@
 #include "tumble/odometry/rolling_expert_params.hpp"
 #include "tumble/odometry/rolling_odometry.hpp"
 #include "tumble/rolling/detail/rolling_smoother.hpp"
-#include "unit_alignment.hpp"
-#include "unit_rails.hpp"
+#include "imu_time_alignment.hpp"
+#include "imu_saturation_limits.hpp"
 
 namespace tumble {
 
@@ -46,22 +46,22 @@ struct RollingOdometry::Impl {
   std::vector<std::byte> save() const;
   Status load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose);
 
-  std::vector<std::byte> save_at(const std::optional<PoseState>& pose) const;
+  std::vector<std::byte> save_with_pose(const std::optional<PoseState>& pose) const;
   void restart_at_newest(double gap_s);
-  void end_run();
-  void start_run();
+  void end_continuous_run();
+  void start_continuous_run();
   void initialise_pose();
   RollingEstimate transform_to_world(RollingEstimate estimate) const;
   Status add_delayed_samples(std::span<const ImuSample> next);
   bool is_delayed_after(std::span<const ImuSample> next, std::size_t unit);
   Status add_inliers(std::span<const ImuSample> samples);
-  Status process_accepted_sample(const ImuSample& merged);
-  Status add_aligned(bool ended);
-  Status record(std::size_t unit, ImuSample sample);
+  Status process_ordered_sample(const ImuSample& merged);
+  Status add_time_aligned_readings(bool ended);
+  Status record_sample(std::size_t unit, ImuSample sample);
   Status finish_whole_recording();
-  bool is_whole() const { return params_.lag_s >= kWholeRecording; }
+  bool uses_whole_recording() const { return params_.lag_s >= kWholeRecording; }
   Status exclude_frozen(const Frozen& frozen, std::span<ImuSample> samples) const;
-  void add_frozen(const Frozen& frozen, SensorHealth& health) const;
+  void add_frozen_findings(const Frozen& frozen, SensorHealth& health) const;
 
   Params params_;
   StampOrder stamp_order_;
@@ -70,30 +70,30 @@ struct RollingOdometry::Impl {
   SampleClock::State sample_clock_state_;  ///< clock state after the last accepted sample
   ImuMerge imu_merge_;
   RollingSmoother smoother_;
-  UnitRails rails_;
-  UnitAlignment unit_alignment_;
-  UnitAlignment::State unit_alignment_state_;
-  std::array<std::vector<ImuSample>, ImuMerge::kImus> recorded_;  ///< readings of each IMU, with kWholeRecording
+  ImuSaturationLimits imu_saturation_limits_;
+  ImuTimeAlignment imu_time_alignment_;
+  ImuTimeAlignment::State imu_time_alignment_state_;
+  std::array<std::vector<ImuSample>, ImuMerge::kImus> recorded_samples_;  ///< readings of each IMU, with kWholeRecording
   /// State of ImuMerge, and buffer for its next state.
-  Indirect<ImuMerge::State> imu_merge_state_, merge_state_buffer_;
-  Indirect<RollingSmoother::State> state_;
-  UnitRails::State rails_state_;
+  HeapValue<ImuMerge::State> imu_merge_state_, merge_state_buffer_;
+  HeapValue<RollingSmoother::State> state_;
+  ImuSaturationLimits::State imu_saturation_limits_state_;
   std::vector<OutlierFilter> outlier_filters_;  ///< one filter per IMU
   Outliers outlier_filter_state_{};
-  std::array<UnitRails::Samples, OutlierFilter::kDelayedMax>
+  std::array<ImuSaturationLimits::Samples, OutlierFilter::kDelayedMax>
       delayed_samples_{};                          ///< samples of all IMUs while OutlierFilter delays one IMU
   std::size_t delayed_count_ = 0;                  ///< number of valid elements of `delayed_samples_`
   std::vector<FrozenAxes> frozen_axis_detectors_;  ///< one detector per IMU
-  Frozen frozen_{};
-  MergedChecks checks_;                          ///< checks of the merged IMUs, with their states
-  std::shared_ptr<const MergedFindings> whole_;  ///< set by finish() with kWholeRecording
-  std::vector<RollingEstimate> results_;
-  std::size_t returned_count_ = 0;
+  Frozen frozen_imus_{};
+  MergedImuChecks merged_imu_checks_;                          ///< checks of the merged IMUs, with their states
+  std::shared_ptr<const MergedImuRecording> whole_recording_result_;  ///< set by finish() with kWholeRecording
+  std::vector<RollingEstimate> finished_results_;
+  std::size_t returned_result_count_ = 0;
   std::optional<Eigen::Isometry3d> start_;    ///< pose passed to reset(), until the first sample
-  std::optional<Eigen::Isometry3d> T_W_run_;  ///< pose of the filter's frame in the world; empty: equal frames
+  std::optional<Eigen::Isometry3d> T_world_run_origin_;  ///< pose of the filter's frame in the world; empty: equal frames
   std::size_t restart_count_ = 0;
   std::optional<RollingRestart> restart_;  ///< last restart; poses after a restart are uncertain
-  bool live_ = true, finished_ = false;
+  bool is_live_ = true, finished_ = false;
 };
 
 }  // namespace tumble

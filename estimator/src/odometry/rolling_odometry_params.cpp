@@ -17,7 +17,7 @@ constexpr double kUnknownGyroBias_rad_s = 5e-3, kUnknownAccelBias_m_s2 = 0.4, kU
 constexpr double kLevelInclinePerS = 1e-9;  // rate at which slopes begin, for a floor that is known to be level
 
 // The radius has no default.
-void require_stated(RollingOdometry::Params params) {
+void require_stated_params(RollingOdometry::Params params) {
   params.expert->rolling.filter.radius_m = params.radius_m;
   require_valid_fields(params);
 }
@@ -56,18 +56,18 @@ void RollingOdometry::Params::widen_priors_for_unknown_imus() {
 namespace odometry {
 
 ImuMerge::Params merge_params(const RollingOdometry::Params& params) {
-  require_stated(params);
-  require_within("units", static_cast<double>(params.units.size()), 1.0, ImuMerge::kImus);
+  require_stated_params(params);
+  require_in_interval("units", static_cast<double>(params.imus.size()), 1.0, ImuMerge::kImus);
   ImuMerge::Params out = params.expert->merge;
-  out.count = static_cast<int>(params.units.size());
-  for (std::size_t k = 0; k < params.units.size(); ++k) {
-    const RollingOdometry::Unit& unit = params.units[k];
-    require_valid_fields(unit.sheet);
-    require_within("T_BI translation", unit.T_BI.translation().norm(), 0.0, params.radius_m);
-    out.T_CI[k] = unit.T_BI;
-    const ImuSheet& sheet = unit.sheet;
-    out.gyro_range_rad_s = std::min(out.gyro_range_rad_s, unsaturated_range(sheet.gyro_range_rad_s));
-    out.accel_range_m_s2 = std::min(out.accel_range_m_s2, unsaturated_range(sheet.accel_range_m_s2));
+  out.count = static_cast<int>(params.imus.size());
+  for (std::size_t k = 0; k < params.imus.size(); ++k) {
+    const RollingOdometry::ImuSetup& unit = params.imus[k];
+    require_valid_fields(unit.data_sheet);
+    require_in_interval("T_BI translation", unit.T_BI.translation().norm(), 0.0, params.radius_m);
+    out.T_mean_imu[k] = unit.T_BI;
+    const ImuDataSheet& sheet = unit.data_sheet;
+    out.gyro_range_rad_s = std::min(out.gyro_range_rad_s, range_below_saturation(sheet.gyro_range_rad_s));
+    out.accel_range_m_s2 = std::min(out.accel_range_m_s2, range_below_saturation(sheet.accel_range_m_s2));
   }
   return out;
 }
@@ -81,35 +81,35 @@ RollingSmoother::Params rolling_params(const RollingOdometry::Params& params, co
   out.filter.lever_arm_sigma_m = params.centre_sigma_m;
   out.filter.gyro_range_rad_s = merged.gyro_range_rad_s;
   out.filter.accel_range_m_s2 = merged.accel_range_m_s2;
-  if (units >= kRecoveringUnits) out.filter.expert.rails.recovered_rate_sigma_rad_s = kRecoveredSigma_rad_s;
+  if (units >= kRecoveringUnits) out.filter.expert.saturation.recovered_rate_sigma_rad_s = kRecoveredSigma_rad_s;
   out.lag_s = std::max(params.lag_s, out.filter.expert.node_s);
-  out.rate_max_hz = std::max(out.rate_max_hz, 1.1 * params.units.front().sheet.rate_hz);
+  out.rate_max_hz = std::max(out.rate_max_hz, 1.1 * params.imus.front().data_sheet.rate_hz);
   if (out.known_distance_m > 0.0 && out.filter.radius_sigma_m == 0.0)
     out.filter.radius_sigma_m = kUnknownRadiusSigmaRatio * out.filter.radius_m;
   return out;
 }
 
-std::vector<ImuSheet> sheets_of(const RollingOdometry::Params& params) {
-  std::vector<ImuSheet> out;
-  for (const RollingOdometry::Unit& unit : params.units) out.push_back(unit.sheet);
+std::vector<ImuDataSheet> data_sheets_of(const RollingOdometry::Params& params) {
+  std::vector<ImuDataSheet> out;
+  for (const RollingOdometry::ImuSetup& unit : params.imus) out.push_back(unit.data_sheet);
   return out;
 }
 
 std::vector<FrozenAxes> frozen_axis_detectors(const RollingOdometry::Params& params) {
   std::vector<FrozenAxes> out;
-  for (const RollingOdometry::Unit& unit : params.units) {
-    out.emplace_back(FrozenAxes::Params{.gyro_range_rad_s = unit.sheet.gyro_range_rad_s,
-                                        .accel_range_m_s2 = unit.sheet.accel_range_m_s2});
+  for (const RollingOdometry::ImuSetup& unit : params.imus) {
+    out.emplace_back(FrozenAxes::Params{.gyro_range_rad_s = unit.data_sheet.gyro_range_rad_s,
+                                        .accel_range_m_s2 = unit.data_sheet.accel_range_m_s2});
   }
   return out;
 }
 
-std::vector<OutlierFilter> filters_of(const RollingOdometry::Params& params) {
+std::vector<OutlierFilter> outlier_filters_of(const RollingOdometry::Params& params) {
   std::vector<OutlierFilter> out;
-  for (const RollingOdometry::Unit& unit : params.units) {
-    out.emplace_back(OutlierFilter::Device{.gyro_range_rad_s = unit.sheet.gyro_range_rad_s,
-                                           .accel_range_m_s2 = unit.sheet.accel_range_m_s2,
-                                           .period_s = 1.0 / unit.sheet.rate_hz});
+  for (const RollingOdometry::ImuSetup& unit : params.imus) {
+    out.emplace_back(OutlierFilter::ImuRanges{.gyro_range_rad_s = unit.data_sheet.gyro_range_rad_s,
+                                           .accel_range_m_s2 = unit.data_sheet.accel_range_m_s2,
+                                           .period_s = 1.0 / unit.data_sheet.rate_hz});
   }
   return out;
 }

@@ -17,8 +17,8 @@ ImuMerge::Params merge_params(const RollingOdometry::Params& params);
 RollingSmoother::Params rolling_params(const RollingOdometry::Params& params, const ImuMerge::Params& merged,
                                        std::size_t units, const Eigen::Vector3d& lever_arm_m);
 
-std::vector<ImuSheet> sheets_of(const RollingOdometry::Params& params);
+std::vector<ImuDataSheet> data_sheets_of(const RollingOdometry::Params& params);
 std::vector<FrozenAxes> frozen_axis_detectors(const RollingOdometry::Params& params);
-std::vector<OutlierFilter> filters_of(const RollingOdometry::Params& params);
+std::vector<OutlierFilter> outlier_filters_of(const RollingOdometry::Params& params);
 
 }  // namespace tumble::odometry

@@ -25,26 +25,26 @@ Eigen::Matrix<double, 6, 6> position_and_heading(Eigen::Matrix<double, 6, 6> cov
 
 /// Starts a new run at the newest pose, after `gap_s` seconds without data.
 void RollingOdometry::Impl::restart_at_newest(double gap_s) {
-  const std::size_t before = results_.size();
-  end_run();
+  const std::size_t before = finished_results_.size();
+  end_continuous_run();
   std::optional<PoseState> pose;
   if (const std::optional<Pose> live = newest()) pose = live->pose;
-  if (results_.size() > before) {
-    const RollingEstimate& last = results_.back();
-    pose = {last.time_ns, last.p_WG_m, last.q_WI, last.v_WG_m_s, last.covariance};
+  if (finished_results_.size() > before) {
+    const RollingEstimate& last = finished_results_.back();
+    pose = {last.time_ns, last.sphere_centre_W_m, last.q_WI, last.sphere_velocity_W_m_s, last.covariance};
   }
   Eigen::Isometry3d T_WG = start_.value_or(Eigen::Isometry3d::Identity());
   RollingRestart restart;
   if (pose) {
-    T_WG.linear() = pose->q_WA.toRotationMatrix();
-    T_WG.translation() = pose->p_WA_m;
+    T_WG.linear() = pose->orientation_W.toRotationMatrix();
+    T_WG.translation() = pose->position_W_m;
     restart = RollingRestart{T_WG.translation(), position_and_heading(pose->covariance)};
-    const double moved_m = gap_s * std::hypot(pose->v_WA_m_s.norm(), kGapSpeed_m_s);
+    const double moved_m = gap_s * std::hypot(pose->velocity_W_m_s.norm(), kGapSpeed_m_s);
     const double turned_rad = std::min(gap_s * kGapTurn_rad_s, kUnknownHeading_rad);
     restart.covariance.diagonal().head<2>().array() += moved_m * moved_m;
     restart.covariance(5, 5) += turned_rad * turned_rad;
   }
-  start_run();
+  start_continuous_run();
   start_ = T_WG;
   ++restart_count_;
   restart_ = restart;
@@ -52,30 +52,30 @@ void RollingOdometry::Impl::restart_at_newest(double gap_s) {
 
 /// Computes the pose of the filter's frame in the world from the stated start pose and the filter's first pose.
 void RollingOdometry::Impl::initialise_pose() {
-  if (!start_ || !state_->live.started) return;
-  const RollingEstimate first = RollingFilter::estimate(state_->live);
+  if (!start_ || !state_->live_filter.started) return;
+  const RollingEstimate first = RollingFilter::estimate(state_->live_filter);
   const Eigen::Quaterniond turn = Eigen::Quaterniond(start_->linear()) * first.q_WI.conjugate();
   Eigen::Isometry3d T_WR = Eigen::Isometry3d::Identity();
   T_WR.linear() = so3::exp({0.0, 0.0, 2.0 * std::atan2(turn.z(), turn.w())}).toRotationMatrix();
-  T_WR.translation() = start_->translation() - T_WR.linear() * first.p_WG_m;
-  T_W_run_ = T_WR;
+  T_WR.translation() = start_->translation() - T_WR.linear() * first.sphere_centre_W_m;
+  T_world_run_origin_ = T_WR;
   start_.reset();
 }
 
 /// Converts an estimate of the filter or the smoother from the filter's frame to the world.
 RollingEstimate RollingOdometry::Impl::transform_to_world(RollingEstimate estimate) const {
   estimate.uncertain = estimate.uncertain || restart_.has_value();
-  if (!T_W_run_) return estimate;
-  const Eigen::Matrix3d R = T_W_run_->linear();
+  if (!T_world_run_origin_) return estimate;
+  const Eigen::Matrix3d R = T_world_run_origin_->linear();
   Eigen::Matrix<double, 6, 6> both = Eigen::Matrix<double, 6, 6>::Zero();
   both.topLeftCorner<3, 3>() = both.bottomRightCorner<3, 3>() = R;
-  estimate.p_WG_m = *T_W_run_ * estimate.p_WG_m;
+  estimate.sphere_centre_W_m = *T_world_run_origin_ * estimate.sphere_centre_W_m;
   estimate.q_WI = (Eigen::Quaterniond(R) * estimate.q_WI).normalized();
-  estimate.v_WG_m_s = R * estimate.v_WG_m_s;
+  estimate.sphere_velocity_W_m_s = R * estimate.sphere_velocity_W_m_s;
   estimate.covariance = both * estimate.covariance * both.transpose();
   if (!restart_) return estimate;
   Eigen::Matrix<double, 6, 6> moved = Eigen::Matrix<double, 6, 6>::Identity();
-  moved.topRightCorner<3, 3>() = -so3::hat(estimate.p_WG_m - restart_->p_WG_m);
+  moved.topRightCorner<3, 3>() = -so3::hat(estimate.sphere_centre_W_m - restart_->sphere_centre_W_m);
   estimate.covariance += moved * restart_->covariance * moved.transpose();
   return estimate;
 }

@@ -24,7 +24,7 @@
 /// | --- | --- |
 /// | 0 | "tumblest" |
 /// | 8 | version of the format, 4 bytes |
-/// | 12 | SavedKind, 4 bytes |
+/// | 12 | SavedStateKind, 4 bytes |
 /// | 16 | layout of this kind, 8 bytes |
 /// | 24 | number of bytes from 40 on |
 /// | 32 | checksum of all other bytes |
@@ -33,12 +33,12 @@
 /// If the contents of a kind change, its layout in saved_bytes.cpp must change.
 namespace tumble::odometry {
 
-enum class SavedKind : std::uint32_t { tumbling = 1, rolling = 2, map = 9 };
+enum class SavedStateKind : std::uint32_t { tumbling = 1, rolling = 2, map = 9 };
 inline constexpr std::size_t kSavedHeader = 40;
 inline constexpr double kPositionMax_m = 1e6, kVarianceMax = 1e12;
 
-/// SavedReader reads the numbers in the order in which SavedWriter appended them.
-class SavedWriter {
+/// SavedStateReader reads the numbers in the order in which SavedStateWriter appended them.
+class SavedStateWriter {
  public:
   template <class T>
   void operator()(const char* name, const T& value, double /*low*/ = 0.0, double /*high*/ = 0.0) {
@@ -53,24 +53,24 @@ class SavedWriter {
     }
   }
   template <class T>
-  bool present(const char* name, const std::optional<T>& value) {
+  bool presence_flag(const char* name, const std::optional<T>& value) {
     (*this)(name, value.has_value());
     return value.has_value();
   }
-  void append(std::span<const std::byte> bytes) { bytes_.insert(bytes_.end(), bytes.begin(), bytes.end()); }
+  void append_bytes(std::span<const std::byte> bytes) { bytes_.insert(bytes_.end(), bytes.begin(), bytes.end()); }
   void reserve(std::size_t bytes) { bytes_.reserve(kSavedHeader + bytes); }
-  std::vector<std::byte> finish(SavedKind kind) &&;
+  std::vector<std::byte> finish(SavedStateKind kind) &&;
 
  private:
   std::vector<std::byte> bytes_ = std::vector<std::byte>(kSavedHeader);
 };
 
-/// SavedReader reads numbers from untrusted bytes, without allocating memory. After the first error, SavedReader stops
-/// reading, and the values read so far are invalid. The errors are `too_few` (the bytes end within `field`),
+/// SavedStateReader reads numbers from untrusted bytes, without allocating memory. After the first error, SavedStateReader stops
+/// reading, and the values read so far are invalid. The errors are `insufficient_data` (the bytes end within `field`),
 /// `non_finite` and `out_of_range`.
-class SavedReader {
+class SavedStateReader {
  public:
-  SavedReader(SavedKind kind, std::span<const std::byte> bytes);
+  SavedStateReader(SavedStateKind kind, std::span<const std::byte> bytes);
 
   /// All numbers of a matrix must be between `low` and `high`.
   template <class T>
@@ -85,14 +85,14 @@ class SavedReader {
     }
   }
   template <class T>
-  bool present(const char* name, std::optional<T>& value) {
+  bool presence_flag(const char* name, std::optional<T>& value) {
     value.reset();
     bool there = false;
     (*this)(name, there);
     if (there && status_.ok()) value.emplace();
     return value.has_value();
   }
-  void require(const char* name, bool holds, double value, double bound) {
+  void require_condition(const char* name, bool holds, double value, double bound) {
     if (status_.ok() && !holds) status_ = {ErrorCode::out_of_range, name, value, bound};
   }
   /// Reports an error unless `P` is symmetric and positive semidefinite.
@@ -100,45 +100,45 @@ class SavedReader {
   /// A parameter of the saved run must equal the parameter of the object that loads the run.
   template <class Matrix>
   void require_equal(const char* name, const Matrix& saved, const Matrix& given) {
-    for (Eigen::Index k = 0; k < saved.size(); ++k) require(name, saved(k) == given(k), saved(k), given(k));
+    for (Eigen::Index k = 0; k < saved.size(); ++k) require_condition(name, saved(k) == given(k), saved(k), given(k));
   }
-  std::span<const std::byte> left() const { return left_; }
+  std::span<const std::byte> remaining_bytes() const { return remaining_bytes_; }
   const Status& status() const { return status_; }
 
  private:
   template <class N>
   void read(const char* name, N& value, double low, double high) {
     if (!status_.ok()) return;
-    if (left_.size() < sizeof(N)) {
-      status_ = {ErrorCode::too_few, name, double(left_.size()), double(sizeof(N))};
+    if (remaining_bytes_.size() < sizeof(N)) {
+      status_ = {ErrorCode::insufficient_data, name, double(remaining_bytes_.size()), double(sizeof(N))};
       return;
     }
     std::array<std::byte, sizeof(N)> bytes;
-    std::copy_n(left_.begin(), sizeof(N), bytes.begin());
-    left_ = left_.subspan(sizeof(N));
+    std::copy_n(remaining_bytes_.begin(), sizeof(N), bytes.begin());
+    remaining_bytes_ = remaining_bytes_.subspan(sizeof(N));
     if constexpr (std::endian::native == std::endian::big) std::reverse(bytes.begin(), bytes.end());
     if constexpr (std::same_as<N, bool>) {
-      require(name, bytes[0] <= std::byte{1}, double(std::to_integer<int>(bytes[0])), 1.0);
+      require_condition(name, bytes[0] <= std::byte{1}, double(std::to_integer<int>(bytes[0])), 1.0);
       value = bytes[0] == std::byte{1};
     } else {
       value = std::bit_cast<N>(bytes);
       const auto number = static_cast<double>(value);
       if (!std::isfinite(number)) status_ = {ErrorCode::non_finite, name, number, high};
-      require(name, number >= low && number <= high, number, number > high ? high : low);
+      require_condition(name, number >= low && number <= high, number, number > high ? high : low);
     }
   }
 
-  std::span<const std::byte> left_;
+  std::span<const std::byte> remaining_bytes_;
   Status status_;
 };
 
 template <class Visit, class Pose>
 void visit_pose(Visit& visit, Pose& pose) {
   visit("pose.time_ns", pose.time_ns);
-  visit("pose.p_WA_m", pose.p_WA_m, -kPositionMax_m, kPositionMax_m);
-  visit("pose.q_WA", pose.q_WA.coeffs(), -1.0, 1.0);
+  visit("pose.p_WA_m", pose.position_W_m, -kPositionMax_m, kPositionMax_m);
+  visit("pose.q_WA", pose.orientation_W.coeffs(), -1.0, 1.0);
   visit("pose.covariance", pose.covariance, -kVarianceMax, kVarianceMax);
 }
-void check_pose(SavedReader& in, const PoseState& pose);
+void check_pose(SavedStateReader& in, const PoseState& pose);
 
 }  // namespace tumble::odometry

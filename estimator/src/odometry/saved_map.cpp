@@ -20,19 +20,19 @@ void visit_point(Visit& visit, Point& point) {
 }  // namespace
 
 std::vector<std::byte> save_map(std::span<const MapPoint> points) {
-  odometry::SavedWriter out;
+  odometry::SavedStateWriter out;
   out.reserve(sizeof(std::uint64_t) + kPointBytes * points.size());
   out("map.points", std::uint64_t{points.size()});
   for (const MapPoint& point : points) visit_point(out, point);
-  return std::move(out).finish(odometry::SavedKind::map);
+  return std::move(out).finish(odometry::SavedStateKind::map);
 }
 
 Status load_map(std::span<const std::byte> bytes, std::vector<MapPoint>& points) {
-  odometry::SavedReader in(odometry::SavedKind::map, bytes);
+  odometry::SavedStateReader in(odometry::SavedStateKind::map, bytes);
   std::uint64_t count = 0;
   in("map.points", count);
-  in.require("map.points", in.left().size() % kPointBytes == 0 && count == in.left().size() / kPointBytes,
-             double(count), double(in.left().size()) / kPointBytes);
+  in.require_condition("map.points", in.remaining_bytes().size() % kPointBytes == 0 && count == in.remaining_bytes().size() / kPointBytes,
+             double(count), double(in.remaining_bytes().size()) / kPointBytes);
   if (!in.status().ok()) return in.status();
   std::vector<MapPoint> loaded(count);
   for (MapPoint& point : loaded) visit_point(in, point);

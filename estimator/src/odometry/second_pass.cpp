@@ -22,11 +22,11 @@ constexpr std::size_t kSweepsPerExtraRejection =
 constexpr std::size_t kSweepsPerRejection = 5;
 
 /// `inflation` is a factor on the covariances of the detected planes of saturated readings.
-void start_from_rails(const SaturationLevels& known, double inflation, RateStream::Params& params) {
-  params.expert.planes.known = known.planes;
-  params.expert.accel_planes.known = known.accel_planes;
-  for (RailPlanes* const planes : {&params.expert.planes.known, &params.expert.accel_planes.known}) {
-    for (std::optional<RailPlane>& plane : planes->element) {
+void start_from_saturation_levels(const SaturationLevels& known, double inflation, AngularRateStream::Params& params) {
+  params.expert.gyro_planes.known_limits = known.gyro_planes;
+  params.expert.accel_saturation_planes.known_limits = known.accel_saturation_planes;
+  for (SaturationPlanes* const planes : {&params.expert.gyro_planes.known_limits, &params.expert.accel_saturation_planes.known_limits}) {
+    for (std::optional<SaturationPlane>& plane : planes->sensing_axis) {
       if (plane) plane->covariance *= inflation;
     }
   }
@@ -34,86 +34,86 @@ void start_from_rails(const SaturationLevels& known, double inflation, RateStrea
 
 }  // namespace
 
-SecondPass::SecondPass(const Params& params, const RegimeStream::Params& rate,
+SecondMappingPass::SecondMappingPass(const Params& params, const MotionRegimeStream::Params& rate,
                        const LidarInertialOdometry::Params& mapping)
     : params_(params),
       rate_(rate),
       mapping_(mapping),
       enabled_(params.after_s > 0.0),
-      rest_detector_(mapping::mapper_rest(mapping)) {
+      rest_detector_(mapping::mapping_stationary_params(mapping)) {
   require_valid_fields(params);
   if (!enabled_) return;
   const double most_s = params.rest_s + kBufferLead_s + kAbandonAfter_s;
   samples_.samples.reserve(static_cast<std::size_t>(std::ceil(most_s / rate.rate.period_s)) + 16);
 }
 
-void SecondPass::abandon() {
+void SecondMappingPass::abandon_second_pass() {
   enabled_ = false;
-  pass_.reset();
+  replayed_pass_.reset();
   sweeps_.clear();
   samples_ = {};
   next_sample_ = next_sweep_ = 0;
 }
 
-void SecondPass::store(const ImuSample& sample) {
+void SecondMappingPass::store_input(const ImuSample& sample) {
   if (!enabled_) return;
-  if (!motion_start_ns_ && !rest_detector_.observe(sample, rest_, rate_.rate.model.nominal.gyro_bias_rad_s))
+  if (!motion_start_ns_ && !rest_detector_.detect_stationary(sample, stationary_state_, rate_.rate.model.nominal.gyro_bias_rad_s))
     motion_start_ns_ = sample.time_ns;
   if (!motion_start_ns_) {
     const TimeNs from_ns = sample.time_ns - static_cast<TimeNs>(1e9 * params_.rest_s);
     while (!sweeps_.empty() && sweeps_.front().start_ns < from_ns) sweeps_.pop_front();
     samples_.drop_until(from_ns - static_cast<TimeNs>(1e9 * kBufferLead_s));
   } else if (seconds(sample.time_ns - buffer_start_ns()) > kAbandonAfter_s) {
-    abandon();
+    abandon_second_pass();
     return;
   }
   samples_.push(sample);
 }
 
-void SecondPass::store(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points,
+void SecondMappingPass::store_input(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points,
                        const std::optional<OdometerReading>& reading, SweepVerdict verdict) {
   if (!enabled_) return;
   sweeps_.push_back({start_ns, end_ns, std::move(points), reading, verdict});
-  rejected_by_first_ += verdict == SweepVerdict::rejected;
+  rejected_in_first_pass_ += verdict == SweepVerdict::rejected;
 }
 
-bool SecondPass::first_pass_lost() const {
-  if (early_pass_tried_ || !(params_.lost_s > 0.0)) return false;
+bool SecondMappingPass::tracking_failed_in_first_pass() const {
+  if (early_second_pass_tried_ || !(params_.lost_s > 0.0)) return false;
   const auto rejected = [](const Sweep& sweep) { return sweep.verdict == SweepVerdict::rejected; };
   const auto last = std::find_if_not(sweeps_.rbegin(), sweeps_.rend(), rejected);
   return last != sweeps_.rbegin() && last != sweeps_.rend() &&
          seconds(sweeps_.back().end_ns - last->end_ns) >= params_.lost_s;
 }
 
-TimeNs SecondPass::buffer_start_ns() const {
+TimeNs SecondMappingPass::buffer_start_ns() const {
   return sweeps_.empty() ? *motion_start_ns_ : std::max(*motion_start_ns_, sweeps_.front().start_ns);
 }
 
-bool SecondPass::is_due() const {
+bool SecondMappingPass::is_due() const {
   if (!enabled_ || !motion_start_ns_ || sweeps_.empty()) return false;
-  return seconds(sweeps_.back().end_ns - buffer_start_ns()) >= params_.after_s || first_pass_lost();
+  return seconds(sweeps_.back().end_ns - buffer_start_ns()) >= params_.after_s || tracking_failed_in_first_pass();
 }
 
-RegimeStream::Params SecondPass::delayed_rate_params() const {
-  RegimeStream::Params out = rate_;
+MotionRegimeStream::Params SecondMappingPass::rate_params_with_delay() const {
+  MotionRegimeStream::Params out = rate_;
   out.rate.lag_s = std::min(std::max(params_.lag_s, rate_.rate.lag_s), rate_.rate.lag_max_s());
   return out;
 }
 
-RegimeStream::Params SecondPass::calibrated_rate(const OdometryPass& first) const {
-  RegimeStream::Params out = delayed_rate_params();
-  const RateStream::State& state = first.rate_state().rate;
+MotionRegimeStream::Params SecondMappingPass::calibrated_rate(const OdometryPass& first) const {
+  MotionRegimeStream::Params out = rate_params_with_delay();
+  const AngularRateStream::State& state = first.rate_stream_state().rate;
   out.rate.model.calibration = first.rates().rate().calibration(state);
   out.rate.model.calibration->covariance *= params_.inflation;
-  start_from_rails(state.rails.known, params_.inflation, out.rate);
+  start_from_saturation_levels(state.clipping_state.known_limits, params_.inflation, out.rate);
   return out;
 }
 
-LidarInertialOdometry::Params SecondPass::calibrated_mapping(const OdometryPass& first) const {
+LidarInertialOdometry::Params SecondMappingPass::calibrated_mapping_params(const OdometryPass& first) const {
   LidarInertialOdometry::Params out = mapping_;
-  if (kSweepsPerRejection * rejected_by_first_ > sweeps_.size()) return out;
-  const SweepCalibration learnt = first.mapper().calibration();
-  const auto sigma = first.mapper().calibration_weighting_covariance().diagonal().cwiseSqrt().eval();
+  if (kSweepsPerRejection * rejected_in_first_pass_ > sweeps_.size()) return out;
+  const LidarImuCalibration learnt = first.mapper().calibration();
+  const auto sigma = first.mapper().calibration_prior_covariance().diagonal().cwiseSqrt().eval();
   out.T_IL = learnt.T_IL;
   out.time_offset_s = learnt.time_offset_s;
   out.mount_sigma_rad = sigma.head<3>().maxCoeff();
@@ -122,80 +122,80 @@ LidarInertialOdometry::Params SecondPass::calibrated_mapping(const OdometryPass&
   return out;
 }
 
-bool SecondPass::begin(const OdometryPass& first) {
-  const RegimeStream::Params rate = calibrated_rate(first);
-  const LidarInertialOdometry::Params mapping = calibrated_mapping(first);
+bool SecondMappingPass::start_second_pass(const OdometryPass& first) {
+  const MotionRegimeStream::Params rate = calibrated_rate(first);
+  const LidarInertialOdometry::Params mapping = calibrated_mapping_params(first);
   if (!check_calibration(*rate.rate.model.calibration).ok() || !check_odometry_params(mapping).ok()) {
-    abandon();  // the estimated calibration is out of bounds
+    abandon_second_pass();  // the estimated calibration is out of bounds
     return false;
   }
-  pass_.emplace(rate, mapping);
-  if (first.mapper().start()) pass_->set_start_pose(*first.mapper().start());
-  next_sample_ = next_sweep_ = rejected_ = 0;
+  replayed_pass_.emplace(rate, mapping);
+  if (first.mapper().start()) replayed_pass_->set_start_pose(*first.mapper().start());
+  next_sample_ = next_sweep_ = rejected_in_second_pass_ = 0;
   started_by_tracking_failure_ = seconds(sweeps_.back().end_ns - buffer_start_ns()) < params_.after_s;
   return true;
 }
 
-void SecondPass::advance(OdometryPass& first) {
-  if (!pass_ && (!is_due() || !begin(first))) return;
-  run(first, params_.sweeps);
+void SecondMappingPass::replay_next_input(OdometryPass& first) {
+  if (!replayed_pass_ && (!is_due() || !start_second_pass(first))) return;
+  run_second_pass(first, params_.sweeps);
 }
 
-void SecondPass::complete(OdometryPass& first) {
+void SecondMappingPass::complete_second_pass(OdometryPass& first) {
   constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
-  if (pass_ && started_by_tracking_failure_) run(first, kAll);
-  if (!pass_ && (!enabled_ || !motion_start_ns_ || sweeps_.empty() || !begin(first))) return;
+  if (replayed_pass_ && started_by_tracking_failure_) run_second_pass(first, kAll);
+  if (!replayed_pass_ && (!enabled_ || !motion_start_ns_ || sweeps_.empty() || !start_second_pass(first))) return;
   started_by_tracking_failure_ = false;
-  run(first, kAll);
-  abandon();
+  run_second_pass(first, kAll);
+  abandon_second_pass();
 }
 
-void SecondPass::run(OdometryPass& first, std::size_t sweeps) {
+void SecondMappingPass::run_second_pass(OdometryPass& first, std::size_t sweeps) {
   // At the end of the buffered samples, the second pass reports the last rates without waiting for later samples.
   bool tail = false;
   for (std::size_t taken = 0; tail || taken < sweeps; ++taken) {
     if (next_sweep_ == sweeps_.size()) {
-      replace_first_pass(first);
+      replace_first_pass_results(first);
       return;
     }
     Sweep& sweep = sweeps_[next_sweep_++];
     const std::span<const ImuSample> samples = samples_.all();
-    while (!pass_->covers(sweep.end_ns) && next_sample_ < samples.size()) {
-      if (!pass_->add_imu(samples[next_sample_++]).ok()) return abandon();
+    while (!replayed_pass_->has_rates_until(sweep.end_ns) && next_sample_ < samples.size()) {
+      if (!replayed_pass_->add_imu(samples[next_sample_++]).ok()) return abandon_second_pass();
     }
-    if (!pass_->covers(sweep.end_ns)) {
+    if (!replayed_pass_->has_rates_until(sweep.end_ns)) {
       tail = true;
-      pass_->flush_until(std::max(first.smoothed_rate()->time_ns, pass_->oldest_needed_ns(sweep.end_ns)));
+      replayed_pass_->flush_until(std::max(first.smoothed_rate()->time_ns, replayed_pass_->oldest_needed_ns(sweep.end_ns)));
     }
-    if (!pass_->covers(sweep.end_ns)) {  // the clocks differ by more than assumed: wait for the next sweep
+    if (!replayed_pass_->has_rates_until(sweep.end_ns)) {  // the clocks differ by more than assumed: wait for the next sweep
       --next_sweep_;
       return;
     }
     LidarInertialOdometry::SweepReport report;
-    (void)pass_->add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, sweep.reading, report);
+    (void)replayed_pass_->add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, sweep.reading, report);
     last_sweep_rejected_ = report.verdict == SweepVerdict::rejected;
-    rejected_ += last_sweep_rejected_;
+    rejected_in_second_pass_ += last_sweep_rejected_;
     if (!started_by_tracking_failure_) std::vector<LidarPoint>().swap(sweep.points);
   }
 }
 
-void SecondPass::replace_first_pass(OdometryPass& first) {
-  pass_->flush_until(first.smoothed_rate()->time_ns);
+void SecondMappingPass::replace_first_pass_results(OdometryPass& first) {
+  replayed_pass_->flush_until(first.smoothed_rate()->time_ns);
   SweepVerdict& newest = sweeps_.back().verdict;
   const bool first_lost = newest == SweepVerdict::rejected;
-  if (rejected_ <= rejected_by_first_ + sweeps_.size() / kSweepsPerExtraRejection &&
+  if (rejected_in_second_pass_ <= rejected_in_first_pass_ + sweeps_.size() / kSweepsPerExtraRejection &&
       (!last_sweep_rejected_ || first_lost)) {
-    first.adopt_map(std::move(*pass_));
-    applied_ = true;
+    first.adopt_map(std::move(*replayed_pass_));
+    is_applied_ = true;
     // The second pass later compares its number of rejected sweeps with that of the first pass.
-    rejected_by_first_ = rejected_;
+    rejected_in_first_pass_ = rejected_in_second_pass_;
     if (!last_sweep_rejected_) newest = SweepVerdict::registered;
   }
-  if (!started_by_tracking_failure_) return abandon();
-  pass_.reset();
+  if (!started_by_tracking_failure_) return abandon_second_pass();
+  replayed_pass_.reset();
   next_sample_ = next_sweep_ = 0;
   started_by_tracking_failure_ = false;
-  early_pass_tried_ = true;
+  early_second_pass_tried_ = true;
 }
 
 }  // namespace tumble

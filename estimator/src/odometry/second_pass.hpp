@@ -16,44 +16,44 @@ namespace tumble {
 
 /// Processes the first seconds of motion again with the calibration estimated so far, while the first pass continues.
 ///
-/// The first pass maps the start of a tumble while lever arm, mounting and time offset are still uncertain. SecondPass
+/// The first pass maps the start of a tumble while lever arm, mounting and time offset are still uncertain. SecondMappingPass
 /// buffers samples and sweeps from the end of the initial rest. After `after_s` of motion, the buffer is processed with
 /// the current calibration, and with rates smoothed with a lag of `lag_s`. The second pass processes `sweeps` buffered
 /// sweeps per new sweep. When the second pass ends, its map and pose replace those of the first pass. The result is
 /// discarded if tracking failed in the second pass, or if the second pass rejected clearly more sweeps.
 ///
 /// If tracking of the first pass has failed for `lost_s`, the whole buffer is processed immediately, once. Another
-/// second pass still follows after `after_s` of motion. SecondPass does not change earlier poses: the reported pose
+/// second pass still follows after `after_s` of motion. SecondMappingPass does not change earlier poses: the reported pose
 /// jumps by the error of the first pass.
 ///
-/// SecondPass stores samples and sweeps of `rest_s` at rest and of at most 10 s of motion. The second pass
+/// SecondMappingPass stores samples and sweeps of `rest_s` at rest and of at most 10 s of motion. The second pass
 /// also needs memory for a second map. If a jolt ends the rest long before the tumble, the second pass starts too
 /// early.
-class SecondPass {
+class SecondMappingPass {
  public:
-  using Params = SecondPassParams;
+  using Params = SecondMappingPassParams;
 
   /// `rate` and `mapping` are the parameters of the first pass. Throws InvalidParams if a parameter is out of bounds.
-  SecondPass(const Params& params, const RegimeStream::Params& rate, const LidarInertialOdometry::Params& mapping);
+  SecondMappingPass(const Params& params, const MotionRegimeStream::Params& rate, const LidarInertialOdometry::Params& mapping);
 
   /// Sets the gyro's zero offset, before the first sample.
   void set_gyro_offset(const Eigen::Vector3d& offset_rad_s) { rate_.rate.model.nominal.gyro_bias_rad_s = offset_rad_s; }
 
   /// Buffers a sample that the first pass has processed. No memory is allocated.
-  void store(const ImuSample& sample);
+  void store_input(const ImuSample& sample);
   /// Buffers a sweep that the first pass has processed.
-  void store(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points,
+  void store_input(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points,
              const std::optional<OdometerReading>& reading, SweepVerdict verdict);
 
   /// Continues the second pass after each sweep of the first pass. When the second pass has processed all buffered
   /// sweeps, its map replaces the map of `first`.
-  void advance(OdometryPass& first);
+  void replay_next_input(OdometryPass& first);
   /// Runs a started second pass to its end.
-  void complete(OdometryPass& first);
-  void abandon();
+  void complete_second_pass(OdometryPass& first);
+  void abandon_second_pass();
 
-  bool is_running() const { return pass_.has_value(); }
-  bool applied() const { return applied_; }
+  bool is_running() const { return replayed_pass_.has_value(); }
+  bool is_applied() const { return is_applied_; }
 
  private:
   struct Sweep {
@@ -67,29 +67,29 @@ class SecondPass {
   /// motion must have started.
   TimeNs buffer_start_ns() const;
   bool is_due() const;
-  bool first_pass_lost() const;
-  bool begin(const OdometryPass& first);
-  void run(OdometryPass& first, std::size_t sweeps);
-  void replace_first_pass(OdometryPass& first);
-  RegimeStream::Params delayed_rate_params() const;
-  RegimeStream::Params calibrated_rate(const OdometryPass& first) const;
-  LidarInertialOdometry::Params calibrated_mapping(const OdometryPass& first) const;
+  bool tracking_failed_in_first_pass() const;
+  bool start_second_pass(const OdometryPass& first);
+  void run_second_pass(OdometryPass& first, std::size_t sweeps);
+  void replace_first_pass_results(OdometryPass& first);
+  MotionRegimeStream::Params rate_params_with_delay() const;
+  MotionRegimeStream::Params calibrated_rate(const OdometryPass& first) const;
+  LidarInertialOdometry::Params calibrated_mapping_params(const OdometryPass& first) const;
 
   Params params_;
-  RegimeStream::Params rate_;
+  MotionRegimeStream::Params rate_;
   LidarInertialOdometry::Params mapping_;
-  bool enabled_, applied_ = false;
+  bool enabled_, is_applied_ = false;
   RestDetector rest_detector_;  ///< rest detection with the mapper's parameters
-  RestDetector::State rest_;
+  RestDetector::State stationary_state_;
   std::optional<TimeNs> motion_start_ns_;  ///< end of the initial rest
-  OdometryPass::Queue samples_;
+  OdometryPass::WaitingInputQueue samples_;
   std::deque<Sweep> sweeps_;
-  std::optional<OdometryPass> pass_;
+  std::optional<OdometryPass> replayed_pass_;
   std::size_t next_sample_ = 0, next_sweep_ = 0;
-  std::size_t rejected_by_first_ = 0, rejected_ = 0;
+  std::size_t rejected_in_first_pass_ = 0, rejected_in_second_pass_ = 0;
   bool last_sweep_rejected_ = false;  ///< the second pass rejected its last sweep
   bool started_by_tracking_failure_ = false,
-       early_pass_tried_ = false;  ///< tracking failure started the current pass; such a pass ended before
+       early_second_pass_tried_ = false;  ///< tracking failure started the current pass; such a pass ended before
 };
 
 }  // namespace tumble

@@ -7,13 +7,13 @@
 
 namespace tumble {
 
-double unsaturated_range(double stated_range) {
+double range_below_saturation(double stated_range) {
   return stated_range > 0.0 ? (1.0 - kNearRailRatio) * stated_range : std::numeric_limits<double>::infinity();
 }
 
 namespace sheets {
 
-ImuSheet mti30() {
+ImuDataSheet mti30() {
   return {.rate_hz = 100.0,
           .gyro_range_rad_s = 7.853981634,
           .accel_range_m_s2 = 196.133,
@@ -21,7 +21,7 @@ ImuSheet mti30() {
           .accel_noise_m_s2_sqrt_hz = 5.88399e-4};
 }
 
-ImuSheet vn100() {
+ImuDataSheet vn100() {
   return {.rate_hz = 100.0,
           .gyro_range_rad_s = 34.906585,
           .accel_range_m_s2 = 156.9064,
@@ -29,7 +29,7 @@ ImuSheet vn100() {
           .accel_noise_m_s2_sqrt_hz = 1.372931e-3};
 }
 
-ImuSheet phidget1044() {
+ImuDataSheet phidget1044() {
   return {.rate_hz = 250.0,
           .gyro_range_rad_s = 34.906585,
           .accel_range_m_s2 = 78.4532,
@@ -37,7 +37,7 @@ ImuSheet phidget1044() {
           .accel_noise_m_s2_sqrt_hz = 1.736638e-3};
 }
 
-ImuSheet mpu6050() {
+ImuDataSheet mpu6050() {
   return {.rate_hz = 100.0,
           .gyro_range_rad_s = 8.726646,
           .accel_range_m_s2 = 156.9064,
@@ -45,7 +45,7 @@ ImuSheet mpu6050() {
           .accel_noise_m_s2_sqrt_hz = 0.00392266};
 }
 
-ImuSheet bmi088() {
+ImuDataSheet bmi088() {
   return {.rate_hz = 200.0,
           .gyro_range_rad_s = 34.90658504,
           .accel_range_m_s2 = 235.3596,
@@ -53,7 +53,7 @@ ImuSheet bmi088() {
           .accel_noise_m_s2_sqrt_hz = 0.001716164};
 }
 
-ImuSheet icm20948() {
+ImuDataSheet icm20948() {
   return {.rate_hz = 200.0,
           .gyro_range_rad_s = 34.90658504,
           .accel_range_m_s2 = 156.9064,
@@ -61,7 +61,7 @@ ImuSheet icm20948() {
           .accel_noise_m_s2_sqrt_hz = 0.002255529};
 }
 
-ImuSheet icm42688() {
+ImuDataSheet icm42688() {
   return {.rate_hz = 200.0,
           .gyro_range_rad_s = 34.90658504,
           .accel_range_m_s2 = 156.9064,
@@ -69,7 +69,7 @@ ImuSheet icm42688() {
           .accel_noise_m_s2_sqrt_hz = 0.0006864655};
 }
 
-ImuSheet mti3() {
+ImuDataSheet mti3() {
   return {.rate_hz = 100.0,
           .gyro_range_rad_s = 34.90658504,
           .accel_range_m_s2 = 156.9064,
@@ -77,7 +77,7 @@ ImuSheet mti3() {
           .accel_noise_m_s2_sqrt_hz = 0.001176798};
 }
 
-ImuSheet lsm6dso() {
+ImuDataSheet lsm6dso() {
   return {.rate_hz = 200.0,
           .gyro_range_rad_s = 34.90658504,
           .accel_range_m_s2 = 156.9064,
@@ -85,7 +85,7 @@ ImuSheet lsm6dso() {
           .accel_noise_m_s2_sqrt_hz = 0.001078731};
 }
 
-ImuSheet ouster_imu() {
+ImuDataSheet ouster_imu() {
   return {.rate_hz = 100.0,
           .gyro_range_rad_s = 4.36332313,
           .accel_range_m_s2 = 19.6133,
@@ -93,7 +93,7 @@ ImuSheet ouster_imu() {
           .accel_noise_m_s2_sqrt_hz = 0.002255529};
 }
 
-ImuSheet mid360_imu() {
+ImuDataSheet mid360_imu() {
   return {.rate_hz = 200.0,
           .gyro_range_rad_s = 34.90658504,
           .accel_range_m_s2 = 39.2266,
@@ -101,7 +101,7 @@ ImuSheet mid360_imu() {
           .accel_noise_m_s2_sqrt_hz = 0.000980665};
 }
 
-ImuSheet icm20601() {
+ImuDataSheet icm20601() {
   return {.rate_hz = 100.0,
           .gyro_range_rad_s = 34.90658504,
           .accel_range_m_s2 = 313.8128,
@@ -109,7 +109,7 @@ ImuSheet icm20601() {
           .accel_noise_m_s2_sqrt_hz = 0.002941995};
 }
 
-ImuSheet icm20602() {
+ImuDataSheet icm20602() {
   return {.rate_hz = 200.0,
           .gyro_range_rad_s = 34.90658504,
           .accel_range_m_s2 = 156.9064,
@@ -117,7 +117,7 @@ ImuSheet icm20602() {
           .accel_noise_m_s2_sqrt_hz = 0.000980665};
 }
 
-ImuSheet lsm6dsv320x() {
+ImuDataSheet lsm6dsv320x() {
   return {.rate_hz = 250.0,
           .gyro_range_rad_s = 69.81317008,
           .accel_range_m_s2 = 156.9064,
@@ -125,7 +125,7 @@ ImuSheet lsm6dsv320x() {
           .accel_noise_m_s2_sqrt_hz = 0.000588399};
 }
 
-ImuSheet adis16405() {
+ImuDataSheet adis16405() {
   return {.rate_hz = 500.0,
           .gyro_range_rad_s = 5.235987756,
           .accel_range_m_s2 = 176.5197,
@@ -133,7 +133,7 @@ ImuSheet adis16405() {
           .accel_noise_m_s2_sqrt_hz = 0.003333333};
 }
 
-ImuSheet iim42653() {
+ImuDataSheet iim42653() {
   return {.rate_hz = 200.0,
           .gyro_range_rad_s = 69.81317008,
           .accel_range_m_s2 = 313.8128,
@@ -141,8 +141,8 @@ ImuSheet iim42653() {
           .accel_noise_m_s2_sqrt_hz = 0.0006374322};
 }
 
-std::span<const std::pair<const char*, ImuSheet (*)()>> imus() {
-  static constexpr std::pair<const char*, ImuSheet (*)()> kAll[] = {{"mti30", mti30},
+std::span<const std::pair<const char*, ImuDataSheet (*)()>> imus() {
+  static constexpr std::pair<const char*, ImuDataSheet (*)()> kAll[] = {{"mti30", mti30},
                                                                     {"vn100", vn100},
                                                                     {"phidget1044", phidget1044},
                                                                     {"mpu6050", mpu6050},
@@ -161,56 +161,56 @@ std::span<const std::pair<const char*, ImuSheet (*)()>> imus() {
   return kAll;
 }
 
-LidarSheet rs16() {
+LidarDataSheet rs16() {
   return {.range_min_m = 0.2, .range_max_m = 150.0};
 }
 
-LidarSheet mid40() {
+LidarDataSheet mid40() {
   return {.range_min_m = 1.0, .range_max_m = 260.0};
 }
 
-LidarSheet mid100() {
+LidarDataSheet mid100() {
   return {.range_min_m = 1.0, .range_max_m = 260.0};
 }
 
-LidarSheet vlp16() {
+LidarDataSheet vlp16() {
   return {.range_min_m = 0.4, .range_max_m = 100.0};
 }
 
-LidarSheet xt16() {
+LidarDataSheet xt16() {
   return {.range_min_m = 0.05, .range_max_m = 120.0};
 }
 
-LidarSheet xt32() {
+LidarDataSheet xt32() {
   return {.range_min_m = 0.05, .range_max_m = 120.0};
 }
 
-LidarSheet helios32() {
+LidarDataSheet helios32() {
   return {.range_min_m = 0.2, .range_max_m = 150.0};
 }
 
-LidarSheet os0_64() {
+LidarDataSheet os0_64() {
   return {.range_min_m = 0.3, .range_max_m = 50.0};
 }
 
-LidarSheet os0_128() {
+LidarDataSheet os0_128() {
   return {.range_min_m = 0.3, .range_max_m = 50.0};
 }
 
-LidarSheet os1_64() {
+LidarDataSheet os1_64() {
   return {.range_min_m = 0.3, .range_max_m = 120.0};
 }
 
-LidarSheet os1_128() {
+LidarDataSheet os1_128() {
   return {.range_min_m = 0.3, .range_max_m = 120.0};
 }
 
-LidarSheet mid360() {
+LidarDataSheet mid360() {
   return {.range_min_m = 0.1, .range_max_m = 70.0};
 }
 
-std::span<const std::pair<const char*, LidarSheet (*)()>> lidars() {
-  static constexpr std::pair<const char*, LidarSheet (*)()> kAll[] = {
+std::span<const std::pair<const char*, LidarDataSheet (*)()>> lidars() {
+  static constexpr std::pair<const char*, LidarDataSheet (*)()> kAll[] = {
       {"rs16", rs16},       {"mid40", mid40},   {"mid100", mid100},     {"vlp16", vlp16},
       {"xt16", xt16},       {"xt32", xt32},     {"helios32", helios32}, {"os0_64", os0_64},
       {"os0_128", os0_128}, {"os1_64", os1_64}, {"os1_128", os1_128},   {"mid360", mid360}};

@@ -26,16 +26,16 @@ class StampOrder {
 
   struct State {
     std::optional<TimeNs> newest_ns;  ///< last accepted time stamp
-    bool single = false;              ///< only one sample was accepted
+    bool only_one_sample = false;              ///< only one sample was accepted
     std::optional<RejectedStamps> rejected;
   };
-  enum class Verdict { continues, restarts_after_gap, restarts_after_step_back };
+  enum class Verdict { continues_in_order, restarts_after_gap, restarts_after_step_back };
 
   explicit StampOrder(double gap_max_s) : gap_max_s_(gap_max_s) {}
 
   /// Returns `out_of_range` (beyond kStampMax_ns), `time_order` or `gap` if the sample must not be used. If the status
   /// is `ok`, `verdict` states whether the run must restart with this sample.
-  Status classify_stamp(TimeNs stamp_ns, State& state, Verdict& verdict) const;
+  Status order_of_stamp(TimeNs stamp_ns, State& state, Verdict& verdict) const;
 
   static void accept(TimeNs stamp_ns, State& state);
 

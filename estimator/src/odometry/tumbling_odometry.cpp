@@ -14,12 +14,12 @@ namespace tumble {
 
 using odometry::mapper_params;
 using odometry::outlier_params;
-using odometry::rate_params;
+using odometry::rate_stream_params;
 
 namespace {
 
 /// Returns the lidar points that were fired at `from_ns` or later, with times relative to `from_ns`.
-std::vector<LidarPoint> points_from(TimeNs from_ns, TimeNs start_ns, std::span<const LidarPoint> points) {
+std::vector<LidarPoint> points_after(TimeNs from_ns, TimeNs start_ns, std::span<const LidarPoint> points) {
   std::vector<LidarPoint> out;
   out.reserve(points.size());
   for (LidarPoint point : points) {
@@ -44,52 +44,52 @@ constexpr double kSweepsMax_hz = 20.0;  // maximum sweep rate of a lidar, for th
 
 TumblingOdometry::Impl::Impl(const Params& params)
     : params_(params),
-      stated_(params.stated_calibration()),
+      stated_calibration_(params.calibration_prior()),
       stamp_order_(params.expert->rate.rate.gap_max_s),
       outlier_filter_(outlier_params(params)),
       sample_clock_(params.expert->stamps),
       plausibility_(plausibility_params(params.expert->gravity_m_s2, params.imu.gyro_range_rad_s)),
-      pass_(rate_params(params), mapper_params(params)),
-      second_pass_(params.expert->second_pass, rate_params(params), mapper_params(params)),
+      odometry_pass_(rate_stream_params(params), mapper_params(params)),
+      second_mapping_pass_(params.expert->second_mapping_pass, rate_stream_params(params), mapper_params(params)),
       further_lidars_(params.further_lidars, params.T_IL) {}
 
 Status TumblingOdometry::Impl::add_imu(const ImuSample& sample) {
   if (const Status status = check_sample(sample); !status.ok()) return status;
-  if (is_whole()) return record(sample);
+  if (uses_whole_recording()) return record_sample(sample);
   StampOrder::Verdict verdict{};
-  if (const Status status = stamp_order_.classify_stamp(sample.time_ns, stamp_order_state_, verdict); !status.ok())
+  if (const Status status = stamp_order_.order_of_stamp(sample.time_ns, stamp_order_state_, verdict); !status.ok())
     return status;
-  if (verdict == StampOrder::Verdict::restarts_after_gap) restart_rates();
+  if (verdict == StampOrder::Verdict::restarts_after_gap) restart_rate_estimation();
   if (verdict == StampOrder::Verdict::restarts_after_step_back) restart_at_newest();
   if (outlier_filter_.first_is_outlier(sample, outlier_filter_state_)) restart_without_first_sample();
   for (const ImuSample& confirmed : outlier_filter_.filter_sample(sample, outlier_filter_state_)) {
-    if (const Status status = process_accepted_sample(confirmed); !status.ok()) return status;
+    if (const Status status = process_ordered_sample(confirmed); !status.ok()) return status;
   }
-  if (outlier_filter_.must_delay(sample, outlier_filter_state_)) return {};
-  if (const Status status = process_accepted_sample(sample); !status.ok()) return status;
-  const std::optional<Eigen::Vector3d> offset = gyro_offset_.observe(sample, gyro_offset_state_);
+  if (outlier_filter_.must_delay_for_check(sample, outlier_filter_state_)) return {};
+  if (const Status status = process_ordered_sample(sample); !status.ok()) return status;
+  const std::optional<Eigen::Vector3d> offset = gyro_offset_.detect_initial_offset(sample, gyro_offset_state_);
   if (!offset) return {};
-  restart_with_offset(*offset);
-  return process_accepted_sample(sample);
+  restart_with_gyro_offset(*offset);
+  return process_ordered_sample(sample);
 }
 
-Status TumblingOdometry::Impl::process_accepted_sample(const ImuSample& sample) {
+Status TumblingOdometry::Impl::process_ordered_sample(const ImuSample& sample) {
   SampleClock::State stamps = sample_clock_state_;  // a copy, because a rejected sample must not change the clock
   ImuSample timed = sample;
   if (const Status status = sample_clock_.push(sample.time_ns, stamps, timed.time_ns); !status.ok()) return status;
-  if (const Status status = pass_.add_imu(timed); !status.ok()) return status;
+  if (const Status status = odometry_pass_.add_imu(timed); !status.ok()) return status;
   sample_clock_state_ = stamps;
-  OutlierFilter::pass(sample, outlier_filter_state_);
+  OutlierFilter::mark_accepted(sample, outlier_filter_state_);
   StampOrder::accept(sample.time_ns, stamp_order_state_);
-  second_pass_.store(timed);
+  second_mapping_pass_.store_input(timed);
   plausibility_.step(timed, plausibility_state_);
   ImuPlausibility::limit_memory(plausibility_state_);
   newest_ns_ = timed.time_ns;
   if (!last_registered_ns_) {
     last_registered_ns_ = timed.time_ns;
-    early_sweeps_ += drop_until(timed.time_ns, waiting_);
+    sweeps_before_first_imu_ += drop_until(timed.time_ns, waiting_sweeps_);
   }
-  register_covered_sweeps();
+  register_sweeps_with_rates();
   return {};
 }
 
@@ -104,21 +104,21 @@ Status TumblingOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, std::sp
   const TimeNs latest_ns = newest_ns_.value_or(end_ns) + static_cast<TimeNs>(1e9 * kAhead_s);
   if (end_ns > latest_ns) return {ErrorCode::out_of_range, "end_ns", double(end_ns), double(latest_ns)};
   if (last_registered_ns_ && end_ns <= *last_registered_ns_) {
-    ++early_sweeps_;
+    ++sweeps_before_first_imu_;
     return {};
   }
-  const std::size_t most = most_waiting();
-  if (waiting_.size() >= most && !newest_ns_) early_sweeps_ += drop_until(waiting_.front().end_ns, waiting_);
-  if (waiting_.size() >= most)
-    return {ErrorCode::out_of_range, "sweeps waiting", double(waiting_.size() + 1), double(most)};
-  if (const Status status = mapping::check_offsets(end_ns - start_ns, points); !status.ok()) return status;
+  const std::size_t most = max_waiting_sweeps();
+  if (waiting_sweeps_.size() >= most && !newest_ns_) sweeps_before_first_imu_ += drop_until(waiting_sweeps_.front().end_ns, waiting_sweeps_);
+  if (waiting_sweeps_.size() >= most)
+    return {ErrorCode::out_of_range, "sweeps waiting", double(waiting_sweeps_.size() + 1), double(most)};
+  if (const Status status = mapping::check_time_offsets(end_ns - start_ns, points); !status.ok()) return status;
   sweep_end_ns_ = end_ns;
-  waiting_.push_back({from_ns, end_ns, points_from(from_ns, start_ns, points)});
-  register_covered_sweeps();
+  waiting_sweeps_.push_back({from_ns, end_ns, points_after(from_ns, start_ns, points)});
+  register_sweeps_with_rates();
   return {};
 }
 
-std::size_t TumblingOdometry::Impl::most_waiting() const {
+std::size_t TumblingOdometry::Impl::max_waiting_sweeps() const {
   return params_.expert->sweeps_max + static_cast<std::size_t>(kSweepsMax_hz * params_.lag_s);
 }
 
@@ -128,32 +128,32 @@ Status TumblingOdometry::Impl::add_sweep(std::size_t lidar, TimeNs start_ns, Tim
   if (finished_) return {ErrorCode::out_of_range, "sweeps after finish()", 1.0, 0.0};
   const TimeNs latest_ns = newest_ns_.value_or(end_ns) + static_cast<TimeNs>(1e9 * kAhead_s);
   return further_lidars_.add(lidar, start_ns, end_ns, points, latest_ns,
-                             params_.further_lidars.size() * most_waiting());
+                             params_.further_lidars.size() * max_waiting_sweeps());
 }
 
 Status TumblingOdometry::Impl::add_reading(const OdometerReading& reading) {
   if (!newest_ns_) return {ErrorCode::empty, "imu samples", 0.0, 1.0};
-  const std::size_t most = is_whole() ? std::numeric_limits<std::size_t>::max() : WaitingReadings::kReadingsMax;
+  const std::size_t most = uses_whole_recording() ? std::numeric_limits<std::size_t>::max() : WaitingReadings::kReadingsMax;
   const TimeNs latest_ns = *newest_ns_ + static_cast<TimeNs>(1e9 * kAhead_s);
-  return readings_.add(reading, pass_.oldest_needed_ns(*last_registered_ns_), latest_ns, most);
+  return readings_.add(reading, odometry_pass_.oldest_needed_ns(*last_registered_ns_), latest_ns, most);
 }
 
 Status TumblingOdometry::Impl::add_position(const PositionReading& position) {
   if (!newest_ns_) return {ErrorCode::empty, "imu samples", 0.0, 1.0};
-  const std::size_t most = is_whole() ? std::numeric_limits<std::size_t>::max() : PositionAlignment::kReadingsMax;
+  const std::size_t most = uses_whole_recording() ? std::numeric_limits<std::size_t>::max() : PositionAlignment::kReadingsMax;
   const TimeNs latest_ns = *newest_ns_ + static_cast<TimeNs>(1e9 * kAhead_s);
-  return positions_.add(position, pass_.oldest_needed_ns(*last_registered_ns_), latest_ns, most);
+  return positions_.add(position, odometry_pass_.oldest_needed_ns(*last_registered_ns_), latest_ns, most);
 }
 
 std::optional<TumblingOdometry::Sweep> TumblingOdometry::Impl::take() {
-  if (results_.empty()) return std::nullopt;
-  std::optional<Sweep> out(std::move(results_.front()));
-  results_.pop_front();
+  if (finished_results_.empty()) return std::nullopt;
+  std::optional<Sweep> out(std::move(finished_results_.front()));
+  finished_results_.pop_front();
   return out;
 }
 
 Status TumblingOdometry::Impl::newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2) const {
-  return pass_.newest(pose, velocity_covariance_I_m2_s2);
+  return odometry_pass_.newest(pose, velocity_covariance_I_m2_s2);
 }
 
 std::optional<double> TumblingOdometry::Impl::estimated_jitter_s() const {
@@ -161,93 +161,93 @@ std::optional<double> TumblingOdometry::Impl::estimated_jitter_s() const {
 }
 
 SensorHealth TumblingOdometry::Impl::health() const {
-  if (is_whole()) return whole_ ? whole_->health : SensorHealth{};
+  if (uses_whole_recording()) return whole_recording_result_ ? whole_recording_result_->health : SensorHealth{};
   using Kind = HealthFinding::Kind;
-  SensorHealth out = pass_.rates().rate().health(pass_.rate_state().rate);
-  out.add(Kind::force_at_rest, pass_.check_force_at_rest(), "imu");
+  SensorHealth out = odometry_pass_.rates().rate().health(odometry_pass_.rate_stream_state().rate);
+  out.add(Kind::force_at_rest, odometry_pass_.check_force_at_rest(), "imu");
   add_findings(plausibility_, plausibility_state_, "imu", out);
-  out.add(Kind::lidar_scale, pass_.sweep_scale().verdict(), "lidar");
+  out.add(Kind::lidar_scale, odometry_pass_.sweep_scale().verdict(), "lidar");
   out.add(Kind::vertical_unknown, mapper().check_vertical(), "");
   out.add(Kind::not_localised, mapper().localised(), "");
-  const Localisation& localisation = pass_.localisation();
+  const Localisation& localisation = odometry_pass_.localisation();
   out.add(Kind::tracking_lost, localisation.current_verdict(), "", "", localisation.lost_since_ns());
-  out.add(Kind::lidar_calibration, stated_.verdict(mapper().calibration()), "lidar");
+  out.add(Kind::lidar_calibration, stated_calibration_.verdict(mapper().calibration()), "lidar");
   return out;
 }
 
 Status TumblingOdometry::Impl::finish(const SweepProgress& on_sweep) {
-  if (is_whole()) return finish_whole_recording(on_sweep);
+  if (uses_whole_recording()) return finish_whole_recording(on_sweep);
   OutlierFilter::finish(outlier_filter_state_);
   if (!newest_rate()) return {};  // no rate since the last call
   flush_all();
-  second_pass_.complete(pass_);
+  second_mapping_pass_.complete_second_pass(odometry_pass_);
   start_rate_estimation();
   return {};
 }
 
 void TumblingOdometry::Impl::register_sweep(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points) {
-  if (results_.size() >= params_.expert->sweeps_max) {
-    results_.pop_front();
+  if (finished_results_.size() >= params_.expert->sweeps_max) {
+    finished_results_.pop_front();
     ++dropped_sweeps_;
   }
-  Sweep& out = results_.emplace_back();
+  Sweep& out = finished_results_.emplace_back();
   const std::optional<OdometerReading> reading =
-      readings_.take(pass_.oldest_needed_ns(*last_registered_ns_), pass_.oldest_needed_ns(end_ns));
-  out.status = pass_.add_sweep(start_ns, end_ns, points, reading, out.report);
+      readings_.take_readings_in(odometry_pass_.oldest_needed_ns(*last_registered_ns_), odometry_pass_.oldest_needed_ns(end_ns));
+  out.status = odometry_pass_.add_sweep(start_ns, end_ns, points, reading, out.report);
   last_registered_ns_ = end_ns;
   if (out.report.trajectory.empty()) return;
-  positions_.observe(out.report);
-  out.position_frame = positions_.frame();
-  second_pass_.store(start_ns, end_ns, std::move(points), reading, out.report.verdict);
+  positions_.add_sweep(out.report);
+  out.position_frame = positions_.position_frame();
+  second_mapping_pass_.store_input(start_ns, end_ns, std::move(points), reading, out.report.verdict);
   // The second pass has no prior map, so its frame differs from the localised first pass.
-  if (mapper().prior_map() != nullptr && mapper().localised().ok()) second_pass_.abandon();
-  const bool applied_before = second_pass_.applied();
-  second_pass_.advance(pass_);
-  if (second_pass_.applied() != applied_before) positions_.restart_fit();
+  if (mapper().prior_map() != nullptr && mapper().localised().ok()) second_mapping_pass_.abandon_second_pass();
+  const bool applied_before = second_mapping_pass_.is_applied();
+  second_mapping_pass_.replay_next_input(odometry_pass_);
+  if (second_mapping_pass_.is_applied() != applied_before) positions_.restart_fit();
 }
 
 /// Returns whether a sweep that ends at `end_ns` must be registered now, because its latency would exceed lag_s when
 /// the next sample arrives. After a data gap, a sweep waits until its covering sample is older than lag_s - 1.5 sample
 /// periods.
 bool TumblingOdometry::Impl::is_due(TimeNs end_ns) const {
-  const std::optional<TimeNs> covering_ns = pass_.covering_ns(end_ns);
+  const std::optional<TimeNs> covering_ns = odometry_pass_.covering_ns(end_ns);
   if (!covering_ns) return false;
   const double period_s = 1.0 / params_.imu.rate_hz, lag_s = std::max(params_.lag_s, 2.0 * period_s);
-  return seconds(*newest_ns_ - pass_.oldest_needed_ns(end_ns)) + period_s > lag_s &&
+  return seconds(*newest_ns_ - odometry_pass_.oldest_needed_ns(end_ns)) + period_s > lag_s &&
          seconds(*newest_ns_ - *covering_ns) > lag_s - 1.5 * period_s;
 }
 
-void TumblingOdometry::Impl::register_covered_sweeps() {
-  while (!waiting_.empty()) {
-    const TimeNs end_ns = waiting_.front().end_ns;
+void TumblingOdometry::Impl::register_sweeps_with_rates() {
+  while (!waiting_sweeps_.empty()) {
+    const TimeNs end_ns = waiting_sweeps_.front().end_ns;
     // The sample that covers the end of a sweep may be up to one sample period later than the end. flush_until()
     // reports the rate of this sample before lag_s has passed.
-    if (!pass_.covers(end_ns) && is_due(end_ns)) pass_.flush_until(pass_.oldest_needed_ns(end_ns));
-    if (!pass_.covers(end_ns)) break;
-    WaitingSweep sweep = std::move(waiting_.front());
-    waiting_.pop_front();
+    if (!odometry_pass_.has_rates_until(end_ns) && is_due(end_ns)) odometry_pass_.flush_until(odometry_pass_.oldest_needed_ns(end_ns));
+    if (!odometry_pass_.has_rates_until(end_ns)) break;
+    WaitingSweep sweep = std::move(waiting_sweeps_.front());
+    waiting_sweeps_.pop_front();
     further_lidars_.merge_into(sweep);
     register_sweep(sweep.start_ns, sweep.end_ns, std::move(sweep.points));
   }
-  const std::optional<TimeNs> covered_ns = pass_.covered_ns();
-  if (!waiting_.empty() || !covered_ns) return;
+  const std::optional<TimeNs> covered_ns = odometry_pass_.covered_ns();
+  if (!waiting_sweeps_.empty() || !covered_ns) return;
   if (seconds(*covered_ns - *last_registered_ns_) > kLidarSilent_s) {
     register_sweep(*covered_ns, *covered_ns, {});
-    if (results_.back().report.trajectory.empty()) results_.pop_back();  // no sweep has started the map yet
+    if (finished_results_.back().report.trajectory.empty()) finished_results_.pop_back();  // no sweep has started the map yet
     sweep_end_ns_ = *covered_ns;
   }
 }
 
 void TumblingOdometry::Impl::flush_all() {
-  pass_.flush_until(*newest_ns_);
-  register_covered_sweeps();
+  odometry_pass_.flush_until(*newest_ns_);
+  register_sweeps_with_rates();
 }
 
-void TumblingOdometry::Impl::restart_rates() {
+void TumblingOdometry::Impl::restart_rate_estimation() {
   ++restart_count_;
   OutlierFilter::finish(outlier_filter_state_);
   flush_all();
-  second_pass_.abandon();
+  second_mapping_pass_.abandon_second_pass();
   start_rate_estimation();
 }
 
@@ -261,8 +261,8 @@ void TumblingOdometry::Impl::restart_at_newest() {
   if (newest_rate()) flush_all();
   Eigen::Isometry3d T_WI = mapper().start().value_or(Eigen::Isometry3d::Identity());
   if (located) {
-    T_WI.linear() = pose.q_WA.toRotationMatrix();
-    T_WI.translation() = pose.p_WA_m;
+    T_WI.linear() = pose.orientation_W.toRotationMatrix();
+    T_WI.translation() = pose.position_W_m;
   }
   const Eigen::Vector3d offset_rad_s = gyro_offset_rad_s();
   if (mapper().localised().ok()) {
@@ -276,13 +276,13 @@ void TumblingOdometry::Impl::restart_at_newest() {
 /// Restarts a run whose only samples are outliers.
 void TumblingOdometry::Impl::restart_without_first_sample() {
   const std::optional<Eigen::Isometry3d> start = mapper().start();
-  std::deque<WaitingSweep> waiting = std::move(waiting_);
+  std::deque<WaitingSweep> waiting = std::move(waiting_sweeps_);
   FurtherLidars further = std::move(further_lidars_);
   OutlierFilter::State outliers = outlier_filter_state_;
   const std::optional<TimeNs> sweep_end_ns = sweep_end_ns_;
   reset();
-  if (start) pass_.set_start_pose(*start);
-  waiting_ = std::move(waiting);
+  if (start) odometry_pass_.set_start_pose(*start);
+  waiting_sweeps_ = std::move(waiting);
   further_lidars_ = std::move(further);
   sweep_end_ns_ = sweep_end_ns;
   outliers.rejected += std::exchange(outliers.count, 0);
@@ -290,47 +290,47 @@ void TumblingOdometry::Impl::restart_without_first_sample() {
 }
 
 /// Restarts a run that is still at rest, with the measured zero offset of the gyro as nominal bias.
-void TumblingOdometry::Impl::restart_with_offset(const Eigen::Vector3d& offset_rad_s) {
+void TumblingOdometry::Impl::restart_with_gyro_offset(const Eigen::Vector3d& offset_rad_s) {
   const std::optional<Eigen::Isometry3d> start = mapper().start();
-  early_sweeps_ += waiting_.size();
+  sweeps_before_first_imu_ += waiting_sweeps_.size();
   reset();
-  if (start) pass_.set_start_pose(*start);
+  if (start) odometry_pass_.set_start_pose(*start);
   set_gyro_offset(offset_rad_s);
 }
 
 void TumblingOdometry::Impl::set_gyro_offset(const Eigen::Vector3d& offset_rad_s) {
-  gyro_offset_state_.decided = true;
-  RegimeStream::Params rate = rate_params(params_);
+  gyro_offset_state_.offset_decided = true;
+  MotionRegimeStream::Params rate = rate_stream_params(params_);
   rate.rate.model.nominal.gyro_bias_rad_s = offset_rad_s;
   if (rate.rate.model.calibration) rate.rate.model.calibration->constants.gyro_bias_rad_s = offset_rad_s;
-  pass_.start_rate_estimation(rate);
-  second_pass_.set_gyro_offset(offset_rad_s);
+  odometry_pass_.start_rate_estimation(rate);
+  second_mapping_pass_.set_gyro_offset(offset_rad_s);
 }
 
 void TumblingOdometry::Impl::reset() {
   const auto fresh = std::make_unique<Impl>(params_);
-  fresh->stated_ = stated_;
+  fresh->stated_calibration_ = stated_calibration_;
   fresh->restart_count_ = restart_count_;
   fresh->dropped_sweeps_ = dropped_sweeps_;
-  fresh->early_sweeps_ = early_sweeps_;
+  fresh->sweeps_before_first_imu_ = sweeps_before_first_imu_;
   fresh->outlier_filter_state_.rejected = outlier_filter_state_.rejected;
-  fresh->results_ = std::move(results_);
-  fresh->pass_.use_map_of(pass_);
+  fresh->finished_results_ = std::move(finished_results_);
+  fresh->odometry_pass_.use_map_of_pass(odometry_pass_);
   *this = std::move(*fresh);
 }
 
 void TumblingOdometry::Impl::reset(const Eigen::Isometry3d& T_WI) {
   reset();
-  pass_.set_start_pose(T_WI);
-  pass_.use_map_of(pass_);
+  odometry_pass_.set_start_pose(T_WI);
+  odometry_pass_.use_map_of_pass(odometry_pass_);
 }
 
 void TumblingOdometry::Impl::start_rate_estimation() {
-  RegimeStream::Params params = rate_params(params_);
+  MotionRegimeStream::Params params = rate_stream_params(params_);
   params.rate.model.nominal.gyro_bias_rad_s = gyro_offset_rad_s();
   // An estimated calibration that is out of bounds is discarded.
   if (const RigCalibration learnt = rig(); check_calibration(learnt).ok()) params.rate.model.calibration = learnt;
-  pass_.start_rate_estimation(params);
+  odometry_pass_.start_rate_estimation(params);
 }
 
 }  // namespace tumble

@@ -40,35 +40,35 @@ struct TumblingOdometry::Impl {
   void reset(const Eigen::Isometry3d& T_WI);
   Status newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2 = nullptr) const;
   SensorHealth health() const;
-  const SweepScale& sweep_scale() const;
-  std::optional<RateState> newest_rate() const { return pass_.rates().rate().newest(pass_.rate_state().rate); }
+  const LidarScale& sweep_scale() const;
+  std::optional<AngularRateState> newest_rate() const { return odometry_pass_.rates().rate().newest(odometry_pass_.rate_stream_state().rate); }
   RigCalibration rig() const;
-  const SaturationLevels& rails() const;
+  const SaturationLevels& saturation_levels() const;
   std::optional<double> estimated_jitter_s() const;
   const LidarInertialOdometry& mapper() const;
   std::vector<std::byte> save() const;
   Status load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose);
 
-  std::vector<std::byte> save_at(const std::optional<PoseState>& pose) const;
-  Status process_accepted_sample(const ImuSample& sample);
+  std::vector<std::byte> save_with_pose(const std::optional<PoseState>& pose) const;
+  Status process_ordered_sample(const ImuSample& sample);
   void register_sweep(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points);
   bool is_due(TimeNs end_ns) const;
-  std::size_t most_waiting() const;
-  void register_covered_sweeps();
+  std::size_t max_waiting_sweeps() const;
+  void register_sweeps_with_rates();
   void flush_all();
-  void restart_rates();
+  void restart_rate_estimation();
   void restart_at_newest();
   void restart_without_first_sample();
-  void restart_with_offset(const Eigen::Vector3d& offset_rad_s);
+  void restart_with_gyro_offset(const Eigen::Vector3d& offset_rad_s);
   void set_gyro_offset(const Eigen::Vector3d& offset_rad_s);
-  const Eigen::Vector3d& gyro_offset_rad_s() const { return pass_.rates().params().rate.model.nominal.gyro_bias_rad_s; }
+  const Eigen::Vector3d& gyro_offset_rad_s() const { return odometry_pass_.rates().params().rate.model.nominal.gyro_bias_rad_s; }
   void start_rate_estimation();
-  bool is_whole() const { return params_.lag_s >= kWholeRecording; }
-  Status record(const ImuSample& sample);
+  bool uses_whole_recording() const { return params_.lag_s >= kWholeRecording; }
+  Status record_sample(const ImuSample& sample);
   Status finish_whole_recording(const SweepProgress& on_sweep);
 
   Params params_;             ///< with the calibration of load()
-  StatedCalibration stated_;  ///< calibration that the caller stated
+  LidarImuCalibrationPrior stated_calibration_;  ///< calibration that the caller stated
   StampOrder stamp_order_;
   StampOrder::State stamp_order_state_;
   GyroOffset gyro_offset_;
@@ -79,20 +79,20 @@ struct TumblingOdometry::Impl {
   SampleClock::State sample_clock_state_;  ///< state of the clock from accepted samples
   ImuPlausibility plausibility_;
   ImuPlausibility::State plausibility_state_;
-  OdometryPass pass_;
-  SecondPass second_pass_;
+  OdometryPass odometry_pass_;
+  SecondMappingPass second_mapping_pass_;
   std::optional<TimeNs> newest_ns_;  ///< time of the newest accepted sample
   std::optional<TimeNs>
       last_registered_ns_;  ///< end of the last registered sweep; before the first, time of the first sample
-  std::size_t restart_count_ = 0, dropped_sweeps_ = 0, early_sweeps_ = 0;
-  std::deque<WaitingSweep> waiting_;
+  std::size_t restart_count_ = 0, dropped_sweeps_ = 0, sweeps_before_first_imu_ = 0;
+  std::deque<WaitingSweep> waiting_sweeps_;
   FurtherLidars further_lidars_;
   WaitingReadings readings_;
   PositionAlignment positions_;
-  std::deque<Sweep> results_;
+  std::deque<Sweep> finished_results_;
   std::optional<TimeNs> sweep_end_ns_;              ///< end of the last accepted sweep
-  std::vector<ImuSample> recorded_;                 ///< samples of a whole recording; the sweeps are in `waiting_`
-  std::shared_ptr<const RecordingEstimate> whole_;  ///< set by finish() with kWholeRecording
+  std::vector<ImuSample> recorded_samples_;                 ///< samples of a whole recording; the sweeps are in `waiting_sweeps_`
+  std::shared_ptr<const WholeRecordingEstimate> whole_recording_result_;  ///< set by finish() with kWholeRecording
   bool finished_ = false;
 };
 

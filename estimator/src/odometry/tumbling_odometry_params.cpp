@@ -33,8 +33,8 @@ std::span<const char* const> TumblingExpertParams::derived_fields() {
   return kNames;
 }
 
-RegimeStream::Params TumblingExpertParams::rate_defaults() {
-  RegimeStream::Params out;
+MotionRegimeStream::Params TumblingExpertParams::default_rate_params() {
+  MotionRegimeStream::Params out;
   out.rate.expert.uncalibrated = 0.003;
   return out;
 }
@@ -42,31 +42,31 @@ RegimeStream::Params TumblingExpertParams::rate_defaults() {
 OdometryParams TumblingExpertParams::mapping_defaults() {
   LidarInertialOdometry::Params out;
   out.expert.gravity_sigma_m_s2 = kGravitySigma_m_s2;
-  out.expert.rails.estimate_deficit = true;
+  out.expert.saturated_imu.estimate_deficit = true;
   return out;
 }
 
 namespace odometry {
 
-RegimeStream::Params rate_params(const TumblingOdometry::Params& params) {
+MotionRegimeStream::Params rate_stream_params(const TumblingOdometry::Params& params) {
   require_valid_fields(params);
-  RegimeStream::Params out = params.expert->rate;
-  RateModelParams& model = out.rate.model;
+  MotionRegimeStream::Params out = params.expert->rate;
+  AngularRateModelParams& model = out.rate.model;
   model.nominal.lever_arm_m = params.lever_arm_I_m;
   model.lever_arm_sigma_m = params.lever_arm_sigma_m;
   model.gyro_noise_density = params.imu.gyro_noise_rad_s_sqrt_hz;
   model.accel_noise_density = params.imu.accel_noise_m_s2_sqrt_hz;
-  if (params.imu.gyro_range_rad_s > 0.0) out.rate.rails.stated_gyro_rad_s = params.imu.gyro_range_rad_s;
-  if (params.imu.accel_range_m_s2 > 0.0) out.rate.rails.stated_accel_m_s2 = params.imu.accel_range_m_s2;
+  if (params.imu.gyro_range_rad_s > 0.0) out.rate.saturation_detector.stated_gyro_range_rad_s = params.imu.gyro_range_rad_s;
+  if (params.imu.accel_range_m_s2 > 0.0) out.rate.saturation_detector.stated_accel_range_m_s2 = params.imu.accel_range_m_s2;
   out.rate.period_s = 1.0 / params.imu.rate_hz;
   const bool whole = params.lag_s >= TumblingOdometry::kWholeRecording;  // rates_ is unused for a whole recording
   out.rate.lag_s = std::max(whole ? TumblingParams{}.lag_s : params.lag_s, 2.0 * out.rate.period_s);
-  out.evidence.gravity_m_s2 = out.hand_held.body.gravity_m_s2 = params.expert->gravity_m_s2;
+  out.regime_evidence.gravity_m_s2 = out.hand_held.body.gravity_m_s2 = params.expert->gravity_m_s2;
   out.hand_held.body.expert.gap_max_s = out.rate.gap_max_s;
   return out;
 }
 
-OutlierFilter::Device outlier_params(const TumblingOdometry::Params& params) {
+OutlierFilter::ImuRanges outlier_params(const TumblingOdometry::Params& params) {
   return {.gyro_range_rad_s = params.imu.gyro_range_rad_s,
           .accel_range_m_s2 = params.imu.accel_range_m_s2,
           .period_s = 1.0 / params.imu.rate_hz,
@@ -83,25 +83,25 @@ LidarInertialOdometry::Params mapper_params(const TumblingOdometry::Params& para
   out.range_min_m = params.lidar.range_min_m;
   out.range_max_m = params.lidar.range_max_m;
   out.own_body_L = params.own_body_L;
-  if (params.imu.accel_range_m_s2 > 0.0) out.expert.rails.accel_m_s2 = unsaturated_range(params.imu.accel_range_m_s2);
+  if (params.imu.accel_range_m_s2 > 0.0) out.expert.saturated_imu.accel_m_s2 = range_below_saturation(params.imu.accel_range_m_s2);
   return out;
 }
 
-RegimeSmoother::Params recording_rate_params(const TumblingOdometry::Params& params) {
-  const RegimeStream::Params stream = rate_params(params);
-  const RateModelParams whole;
-  RegimeSmoother::Params out;
+MotionRegimeSmoother::Params recording_rate_params(const TumblingOdometry::Params& params) {
+  const MotionRegimeStream::Params stream = rate_stream_params(params);
+  const AngularRateModelParams whole;
+  MotionRegimeSmoother::Params out;
   out.rate.model = stream.rate.model;
   out.rate.model.accel_bias_sigma_m_s2 = whole.accel_bias_sigma_m_s2;
   out.rate.model.inertia_sigma = whole.inertia_sigma;
-  out.rate.rails = stream.rate.rails;
+  out.rate.saturation_detector = stream.rate.saturation_detector;
   out.rate.recovered_sigma_rad_s = stream.rate.recovered_sigma_rad_s;
   out.rate.calibration_mahalanobis_max = stream.rate.calibration_mahalanobis_max;
   if (stream.rate.calibrated_errors) out.rate.calibrated_errors = *stream.rate.calibrated_errors;
   out.rate.gap_max_s = stream.rate.gap_max_s;
-  out.rate.expert.planes = stream.rate.expert.planes;
-  out.rate.expert.accel_planes = stream.rate.expert.accel_planes;
-  out.rate.expert.rests = stream.rate.expert.rests;
+  out.rate.expert.gyro_planes = stream.rate.expert.gyro_planes;
+  out.rate.expert.accel_saturation_planes = stream.rate.expert.accel_saturation_planes;
+  out.rate.expert.rest_detector = stream.rate.expert.rest_detector;
   static_cast<RegimeParams&>(out) = stream;
   out.hand_held = stream.hand_held.body;
   return out;

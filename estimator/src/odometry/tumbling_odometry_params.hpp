@@ -10,13 +10,13 @@
 namespace tumble::odometry {
 
 /// Throws InvalidParams if a parameter of TumblingOdometry is out of bounds.
-RegimeStream::Params rate_params(const TumblingOdometry::Params& params);
+MotionRegimeStream::Params rate_stream_params(const TumblingOdometry::Params& params);
 
 /// For a whole recording, the prior standard deviations of accelerometer bias and inertia are larger than online (see
-/// RateStreamParams::model).
-RegimeSmoother::Params recording_rate_params(const TumblingOdometry::Params& params);
+/// AngularRateStreamParams::model).
+MotionRegimeSmoother::Params recording_rate_params(const TumblingOdometry::Params& params);
 
-OutlierFilter::Device outlier_params(const TumblingOdometry::Params& params);
+OutlierFilter::ImuRanges outlier_params(const TumblingOdometry::Params& params);
 LidarInertialOdometry::Params mapper_params(const TumblingOdometry::Params& params);
 
 }  // namespace tumble::odometry

@@ -10,7 +10,7 @@ namespace tumble {
 
 namespace {
 
-CheckedImu checked_imu(const TumblingOdometry::Params& params) {
+ImuCheckParams imu_check_params(const TumblingOdometry::Params& params) {
   return {.gyro_range_rad_s = params.imu.gyro_range_rad_s,
           .accel_range_m_s2 = params.imu.accel_range_m_s2,
           .gravity_m_s2 = params.expert->gravity_m_s2,
@@ -19,7 +19,7 @@ CheckedImu checked_imu(const TumblingOdometry::Params& params) {
 
 /// `stamps_ns` receives the uncorrected time stamps of the samples that OutlierFilter accepts.
 Status select_samples(const OutlierFilter& filter, const SampleClock& clock, std::vector<ImuSample>& samples,
-                      OutlierFilter::State& outliers, RecordingEstimate& out) {
+                      OutlierFilter::State& outliers, WholeRecordingEstimate& out) {
   const std::vector<bool> inlier = find_inliers(filter, samples);
   std::size_t next = 0;
   outliers.rejected += std::erase_if(samples, [&](const ImuSample&) { return !inlier[next++]; });
@@ -31,37 +31,37 @@ Status select_samples(const OutlierFilter& filter, const SampleClock& clock, std
 }
 
 Status estimate_rates(const TumblingOdometry::Params& params, std::span<const ImuSample> samples,
-                      RecordingEstimate& out) {
-  const RegimeSmoother smoother(odometry::recording_rate_params(params));
+                      WholeRecordingEstimate& out) {
+  const MotionRegimeSmoother smoother(odometry::recording_rate_params(params));
   if (Status status = smoother.estimate(samples, out.rates, out.report); !status.ok()) return status;
   const std::optional<double> hand_held =
-      out.report.judged ? std::optional(out.report.probabilities.hand_held) : std::nullopt;
-  out.findings = check_recording(checked_imu(params), samples, out.rates, hand_held);
-  out.suspect_rad2_s2 = suspect_covariance(out.findings, samples, out.rates);
-  for (std::size_t k = 0; k < out.suspect_rad2_s2.size(); ++k)
-    out.rates[k].covariance_rad2_s2 += out.suspect_rad2_s2[k];
+      out.report.regimes_estimated ? std::optional(out.report.probabilities.hand_held) : std::nullopt;
+  out.findings = check_recording(imu_check_params(params), samples, out.rates, hand_held);
+  out.suspected_error_covariance_rad2_s2 = suspected_error_covariance(out.findings, samples, out.rates);
+  for (std::size_t k = 0; k < out.suspected_error_covariance_rad2_s2.size(); ++k)
+    out.rates[k].covariance_rad2_s2 += out.suspected_error_covariance_rad2_s2[k];
   return {};
 }
 
 }  // namespace
 
 /// Stores a sample until finish().
-Status TumblingOdometry::Impl::record(const ImuSample& sample) {
+Status TumblingOdometry::Impl::record_sample(const ImuSample& sample) {
   if (finished_) return {ErrorCode::out_of_range, "samples after finish()", 1.0, 0.0};
   StampOrder::Verdict verdict{};
-  if (const Status status = stamp_order_.classify_stamp(sample.time_ns, stamp_order_state_, verdict); !status.ok())
+  if (const Status status = stamp_order_.order_of_stamp(sample.time_ns, stamp_order_state_, verdict); !status.ok())
     return status;
-  const bool first_is_wrong = verdict != StampOrder::Verdict::continues && recorded_.size() <= 1;
+  const bool first_is_wrong = verdict != StampOrder::Verdict::continues_in_order && recorded_samples_.size() <= 1;
   if (verdict == StampOrder::Verdict::restarts_after_step_back && !first_is_wrong)
-    return {ErrorCode::time_order, "time_ns", double(sample.time_ns), double(recorded_.back().time_ns)};
+    return {ErrorCode::time_order, "time_ns", double(sample.time_ns), double(recorded_samples_.back().time_ns)};
   if (verdict == StampOrder::Verdict::restarts_after_gap && !first_is_wrong) ++restart_count_;
   if (first_is_wrong) {
-    recorded_.clear();
+    recorded_samples_.clear();
     stamp_order_state_ = {};
     last_registered_ns_.reset();
   }
   StampOrder::accept(sample.time_ns, stamp_order_state_);
-  recorded_.push_back(sample);
+  recorded_samples_.push_back(sample);
   newest_ns_ = sample.time_ns;
   if (!last_registered_ns_) last_registered_ns_ = sample.time_ns;
   return {};
@@ -70,57 +70,57 @@ Status TumblingOdometry::Impl::record(const ImuSample& sample) {
 Status TumblingOdometry::Impl::finish_whole_recording(const SweepProgress& on_sweep) {
   if (finished_) return {};
   finished_ = true;
-  results_.clear();
+  finished_results_.clear();
   const LidarInertialOdometry::Params mapping = odometry::mapper_params(params_);
-  const auto whole = std::make_shared<RecordingEstimate>(mapping);
-  std::vector<ImuSample> samples = recorded_;
+  const auto whole = std::make_shared<WholeRecordingEstimate>(mapping);
+  std::vector<ImuSample> samples = recorded_samples_;
   if (Status status = select_samples(outlier_filter_, sample_clock_, samples, outlier_filter_state_, *whole);
       !status.ok())
     return status;
   if (Status status = estimate_rates(params_, samples, *whole); !status.ok()) return status;
-  whole->rails = flag_saturated_forces(odometry::recording_rate_params(params_).rate.rails, samples);
-  for (WaitingSweep& sweep : waiting_) further_lidars_.merge_into(sweep);
-  if (!waiting_.empty()) {
+  whole->saturation_levels = flag_saturated_forces(odometry::recording_rate_params(params_).rate.saturation_detector, samples);
+  for (WaitingSweep& sweep : waiting_sweeps_) further_lidars_.merge_into(sweep);
+  if (!waiting_sweeps_.empty()) {
     const MappingInput input{samples,
                              whole->rates,
-                             waiting_.size(),
+                             waiting_sweeps_.size(),
                              [&](std::size_t k) {
-                               if (on_sweep) on_sweep(k, waiting_.size());
-                               return waiting_[k];
+                               if (on_sweep) on_sweep(k, waiting_sweeps_.size());
+                               return waiting_sweeps_[k];
                              },
                              [this](TimeNs from_ns, TimeNs to_ns) { return readings_.find(from_ns, to_ns); },
-                             pass_.mapper().start()};
-    whole->mapped = map_with_calibration(input, mapping);
-    whole->scale = find_sweep_scale(samples, whole->mapped, params_.expert->gravity_m_s2);
+                             odometry_pass_.mapper().start()};
+    whole->mapped_recording = map_with_calibration(input, mapping);
+    whole->scale = find_sweep_scale(samples, whole->mapped_recording, params_.expert->gravity_m_s2);
   }
   PositionAlignment positions = positions_;
-  for (MappedSweep& sweep : whole->mapped.sweeps) {
-    positions.observe(sweep.report);
-    results_.push_back({sweep.status, std::move(sweep.report), positions.frame()});
+  for (MappedSweep& sweep : whole->mapped_recording.sweeps) {
+    positions.add_sweep(sweep.report);
+    finished_results_.push_back({sweep.status, std::move(sweep.report), positions.position_frame()});
   }
-  whole->mapped.sweeps.clear();
+  whole->mapped_recording.sweeps.clear();
   whole->health = whole->findings.health;
   whole->health.add(HealthFinding::Kind::force_at_rest,
-                    check_force_at_rest(checked_imu(params_), samples, RestGravity::kMappingErrorMax), "imu");
-  if (!waiting_.empty()) whole->mapped.add_findings(whole->scale, whole->health);
-  whole_ = whole;
-  return whole->mapped.status;
+                    check_force_at_rest(imu_check_params(params_), samples, RestGravity::kMappingErrorMax), "imu");
+  if (!waiting_sweeps_.empty()) whole->mapped_recording.add_findings(whole->scale, whole->health);
+  whole_recording_result_ = whole;
+  return whole->mapped_recording.status;
 }
 
 const LidarInertialOdometry& TumblingOdometry::Impl::mapper() const {
-  return whole_ ? whole_->mapped.mapper : pass_.mapper();
+  return whole_recording_result_ ? whole_recording_result_->mapped_recording.mapper : odometry_pass_.mapper();
 }
 
-const SweepScale& TumblingOdometry::Impl::sweep_scale() const {
-  return whole_ ? whole_->scale : pass_.sweep_scale();
+const LidarScale& TumblingOdometry::Impl::sweep_scale() const {
+  return whole_recording_result_ ? whole_recording_result_->scale : odometry_pass_.sweep_scale();
 }
 
 RigCalibration TumblingOdometry::Impl::rig() const {
-  return whole_ ? whole_->report.rate.calibration : pass_.rates().rate().calibration(pass_.rate_state().rate);
+  return whole_recording_result_ ? whole_recording_result_->report.rate.calibration : odometry_pass_.rates().rate().calibration(odometry_pass_.rate_stream_state().rate);
 }
 
-const SaturationLevels& TumblingOdometry::Impl::rails() const {
-  return whole_ ? whole_->rails : pass_.rate_state().rate.rails.known;
+const SaturationLevels& TumblingOdometry::Impl::saturation_levels() const {
+  return whole_recording_result_ ? whole_recording_result_->saturation_levels : odometry_pass_.rate_stream_state().rate.clipping_state.known_limits;
 }
 
 }  // namespace tumble

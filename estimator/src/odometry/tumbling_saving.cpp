@@ -3,7 +3,7 @@
 #include <memory>
 #include <utility>
 
-#include "saved_rails.hpp"
+#include "saved_saturation_levels.hpp"
 #include "tumble/angular_velocity/detail/learnt_rig.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
 #include "tumbling_odometry_impl.hpp"
@@ -13,26 +13,26 @@ namespace tumble {
 
 namespace {
 
-/// A saved TumblingOdometry contains a SavedTumbling, followed by the map in the format of save_map().
-struct SavedTumbling {
+/// A saved TumblingOdometry contains a SavedTumblingState, followed by the map in the format of save_map().
+struct SavedTumblingState {
   Eigen::Vector3d lever_arm_I_m = Eigen::Vector3d::Zero();        ///< stated lever arm
   Eigen::Isometry3d stated_T_IL = Eigen::Isometry3d::Identity();  ///< stated mounting of the lidar
   std::optional<RigCalibration> rig;                              ///< empty if the rig constants were not estimated
   std::optional<KnownSensorErrors> sensor_errors;
-  SaturationLevels rails;
-  StatedCalibration lidar;  ///< estimated mounting and time offset, with standard deviations
+  SaturationLevels saturation_levels;
+  LidarImuCalibrationPrior lidar;  ///< estimated mounting and time offset, with standard deviations
   std::optional<PoseState> pose;
   bool extend = true;  ///< PriorMap::extend
 };
 
 template <class Visit, class Rig>
 void visit_rig(Visit& visit, Rig& rig) {
-  constexpr double kMost = RigConstants::kMagnitudeMax;
+  constexpr double kMost = RigConstants::kMaxConstantMagnitude;
   visit("lever_arm_m", rig.constants.lever_arm_m, -kMost, kMost);
   visit("gyro_bias_rad_s", rig.constants.gyro_bias_rad_s, -kMost, kMost);
   visit("accel_bias_m_s2", rig.constants.accel_bias_m_s2, -kMost, kMost);
   visit("inertia", rig.constants.inertia, -kMost, kMost);
-  visit("gyro elements", rig.constants.elements, -kMost, kMost);
+  visit("gyro elements", rig.constants.gyro_misalignment, -kMost, kMost);
   visit("calibration covariance", rig.covariance);
 }
 
@@ -55,31 +55,31 @@ void visit_lidar(Visit& visit, Lidar& lidar) {
   visit("time_offset_sigma_s", lidar.time_offset_sigma_s);
 }
 
-std::vector<std::byte> write(const SavedTumbling& saved, std::span<const MapPoint> map) {
-  odometry::SavedWriter out;
+std::vector<std::byte> write_saved_state(const SavedTumblingState& saved, std::span<const MapPoint> map) {
+  odometry::SavedStateWriter out;
   out("lever_arm_m", saved.lever_arm_I_m);
   out("T_IL", saved.stated_T_IL);
-  if (out.present("calibration", saved.rig)) visit_rig(out, *saved.rig);
-  if (out.present("sensor errors", saved.sensor_errors)) visit_sensor_errors(out, *saved.sensor_errors);
-  odometry::write_rails(saved.rails, out);
+  if (out.presence_flag("calibration", saved.rig)) visit_rig(out, *saved.rig);
+  if (out.presence_flag("sensor errors", saved.sensor_errors)) visit_sensor_errors(out, *saved.sensor_errors);
+  odometry::write_saturation_levels(saved.saturation_levels, out);
   visit_lidar(out, saved.lidar);
-  if (out.present("pose", saved.pose)) odometry::visit_pose(out, *saved.pose);
+  if (out.presence_flag("pose", saved.pose)) odometry::visit_pose(out, *saved.pose);
   out("extend", saved.extend);
-  out.append(save_map(map));
-  return std::move(out).finish(odometry::SavedKind::tumbling);
+  out.append_bytes(save_map(map));
+  return std::move(out).finish(odometry::SavedStateKind::tumbling);
 }
 
 /// The lever arm and lidar mounting that the user stated for the saved run must equal `lever_arm_I_m` and `T_IL`.
 Status read(std::span<const std::byte> bytes, const Eigen::Vector3d& lever_arm_I_m, const Eigen::Isometry3d& T_IL,
-            SavedTumbling& saved, std::vector<MapPoint>& map) {
-  odometry::SavedReader in(odometry::SavedKind::tumbling, bytes);
+            SavedTumblingState& saved, std::vector<MapPoint>& map) {
+  odometry::SavedStateReader in(odometry::SavedStateKind::tumbling, bytes);
   in("lever_arm_m", saved.lever_arm_I_m);
   in("T_IL", saved.stated_T_IL);
-  if (in.present("calibration", saved.rig)) visit_rig(in, *saved.rig);
-  if (in.present("sensor errors", saved.sensor_errors)) visit_sensor_errors(in, *saved.sensor_errors);
-  odometry::read_rails(in, saved.rails);
+  if (in.presence_flag("calibration", saved.rig)) visit_rig(in, *saved.rig);
+  if (in.presence_flag("sensor errors", saved.sensor_errors)) visit_sensor_errors(in, *saved.sensor_errors);
+  odometry::read_saturation_levels(in, saved.saturation_levels);
   visit_lidar(in, saved.lidar);
-  if (in.present("pose", saved.pose)) odometry::visit_pose(in, *saved.pose);
+  if (in.presence_flag("pose", saved.pose)) odometry::visit_pose(in, *saved.pose);
   if (saved.pose) odometry::check_pose(in, *saved.pose);
   in("extend", saved.extend);
   in.require_equal("lever_arm_m", saved.lever_arm_I_m, lever_arm_I_m);
@@ -89,23 +89,23 @@ Status read(std::span<const std::byte> bytes, const Eigen::Vector3d& lever_arm_I
     if (const Status status = check_calibration(*saved.rig); !status.ok()) return status;
   }
   if (saved.sensor_errors) {
-    if (const Status status = check_known(*saved.sensor_errors); !status.ok()) return status;
+    if (const Status status = check_known_errors(*saved.sensor_errors); !status.ok()) return status;
   }
-  return load_map(in.left(), map);
+  return load_map(in.remaining_bytes(), map);
 }
 
 /// The standard deviations of the start pose limit the search in the prior map.
-void set_search(const PoseState& pose, PriorMap& map) {
+void set_prior_pose(const PoseState& pose, PriorMap& map) {
   Eigen::Isometry3d T_MI = Eigen::Isometry3d::Identity();
-  T_MI.linear() = pose.q_WA.toRotationMatrix();
-  T_MI.translation() = pose.p_WA_m;
-  map.T_MI = T_MI;
+  T_MI.linear() = pose.orientation_W.toRotationMatrix();
+  T_MI.translation() = pose.position_W_m;
+  map.T_prior_map_imu = T_MI;
   map.sigma_m = std::sqrt(pose.covariance.diagonal().head<3>().maxCoeff());
   map.sigma_rad = std::sqrt(pose.covariance(5, 5));
 }
 
 /// Returns the pose to save. Without localisation, the covariance includes the uncertainty of the start pose.
-std::optional<PoseState> newest_or_start(const TumblingOdometry::Impl& odometry) {
+std::optional<PoseState> newest_or_start_pose(const TumblingOdometry::Impl& odometry) {
   const LidarInertialOdometry& mapper = odometry.mapper();
   const std::optional<Eigen::Isometry3d>& start = mapper.start();
   const bool in_map = mapper.localised().ok();
@@ -114,8 +114,8 @@ std::optional<PoseState> newest_or_start(const TumblingOdometry::Impl& odometry)
   if (!start && (!moved || !in_map)) return std::nullopt;
   if (!moved) {
     out.time_ns = odometry.newest_ns_.value_or(0);
-    out.p_WA_m = start->translation();
-    out.q_WA = Eigen::Quaterniond(start->linear()).normalized();
+    out.position_W_m = start->translation();
+    out.orientation_W = Eigen::Quaterniond(start->linear()).normalized();
   }
   if (in_map) return out;
   const PriorMap& map = *mapper.prior_map();
@@ -127,41 +127,41 @@ std::optional<PoseState> newest_or_start(const TumblingOdometry::Impl& odometry)
 }  // namespace
 
 std::vector<std::byte> TumblingOdometry::Impl::save() const {
-  return save_at(newest_or_start(*this));  // the pose needs most of the stack, so this function needs little
+  return save_with_pose(newest_or_start_pose(*this));  // the pose needs most of the stack, so this function needs little
 }
 
-std::vector<std::byte> TumblingOdometry::Impl::save_at(const std::optional<PoseState>& pose) const {
-  const auto out = std::make_unique<SavedTumbling>();  // too large for a small stack
+std::vector<std::byte> TumblingOdometry::Impl::save_with_pose(const std::optional<PoseState>& pose) const {
+  const auto out = std::make_unique<SavedTumblingState>();  // too large for a small stack
   out->lever_arm_I_m = params_.lever_arm_I_m;
-  out->stated_T_IL = stated_.calibration.T_IL;
-  const RateStream& stream = pass_.rates().rate();
-  const RateStream::State& state = pass_.rate_state().rate;
-  const RateStreamParams& used = pass_.rates().params().rate;
-  const bool estimated = whole_ ? !whole_->report.rate.calibration_at_prior : !is_at_prior(stream, state);
+  out->stated_T_IL = stated_calibration_.calibration.T_IL;
+  const AngularRateStream& stream = odometry_pass_.rates().rate();
+  const AngularRateStream::State& state = odometry_pass_.rate_stream_state().rate;
+  const AngularRateStreamParams& used = odometry_pass_.rates().params().rate;
+  const bool estimated = whole_recording_result_ ? !whole_recording_result_->report.rate.calibration_at_prior : !is_at_prior(stream, state);
   if (estimated || used.model.calibration) out->rig = rig();
   if (out->rig && !check_calibration(*out->rig).ok()) out->rig.reset();
-  if (whole_ && estimated) out->sensor_errors = whole_->report.rate.sensor_errors;
-  if (!whole_ && (state.device.front().delay.found || used.calibrated_errors))
+  if (whole_recording_result_ && estimated) out->sensor_errors = whole_recording_result_->report.rate.sensor_errors;
+  if (!whole_recording_result_ && (state.sensor_errors.front().accel_delay_state.delay_found || used.calibrated_errors))
     out->sensor_errors = stream.sensor_errors(state);
-  out->rails = rails();
-  const auto sigma = mapper().calibration_weighting_covariance().diagonal().cwiseSqrt().eval();
+  out->saturation_levels = saturation_levels();
+  const auto sigma = mapper().calibration_prior_covariance().diagonal().cwiseSqrt().eval();
   out->lidar = {mapper().calibration(), sigma.head<3>().maxCoeff(), sigma.segment<3>(3).maxCoeff(), sigma[6]};
 
   const PriorMap* const prior = mapper().prior_map();
   out->extend = prior == nullptr || prior->extend;
   out->pose = pose;
-  return write(*out, mapper().localised().ok() ? mapper().map() : prior->points);
+  return write_saved_state(*out, mapper().localised().ok() ? mapper().map() : prior->points);
 }
 
 Status TumblingOdometry::Impl::load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose) {
-  const auto heap = std::make_unique<SavedTumbling>();  // too large for a small stack
-  SavedTumbling& saved = *heap;
+  const auto heap = std::make_unique<SavedTumblingState>();  // too large for a small stack
+  SavedTumblingState& saved = *heap;
   PriorMap map;
-  const Status read_status = read(bytes, params_.lever_arm_I_m, stated_.calibration.T_IL, saved, map.points);
+  const Status read_status = read(bytes, params_.lever_arm_I_m, stated_calibration_.calibration.T_IL, saved, map.points);
   if (!read_status.ok()) return read_status;
   const auto changed = std::make_unique<Params>(params_);
   Params& params = *changed;
-  RateStreamParams& rate = params.expert->rate.rate;
+  AngularRateStreamParams& rate = params.expert->rate.rate;
   if (saved.rig) {
     rate.model.nominal.gyro_bias_rad_s = saved.rig->constants.gyro_bias_rad_s;
     // Biases change at every switch-on.
@@ -171,7 +171,7 @@ Status TumblingOdometry::Impl::load(std::span<const std::byte> bytes, std::optio
     rate.model.calibration = saved.rig;
   }
   if (saved.sensor_errors) rate.calibrated_errors = std::make_shared<KnownSensorErrors>(*saved.sensor_errors);
-  odometry::start_from_rails(saved.rails, rate.rails, rate.expert.planes, rate.expert.accel_planes);
+  odometry::start_from_saturation_levels(saved.saturation_levels, rate.saturation_detector, rate.expert.gyro_planes, rate.expert.accel_saturation_planes);
   // The mounting of further lidars relative to the first lidar is exact.
   for (FurtherLidar& further : params.further_lidars)
     further.T_IL = saved.lidar.calibration.T_IL * params.T_IL.inverse() * further.T_IL;
@@ -183,13 +183,13 @@ Status TumblingOdometry::Impl::load(std::span<const std::byte> bytes, std::optio
   if (const Status status = check_odometry_params(odometry::mapper_params(params)); !status.ok()) return status;
 
   auto fresh = std::make_unique<Impl>(params);
-  fresh->stated_ = stated_;
+  fresh->stated_calibration_ = stated_calibration_;
   map.extend = saved.extend;
   if (saved.pose) {
-    set_search(*saved.pose, map);
-    fresh->pass_.set_start_pose(*map.T_MI);
+    set_prior_pose(*saved.pose, map);
+    fresh->odometry_pass_.set_start_pose(*map.T_prior_map_imu);
   }
-  if (check_prior_map(map).ok()) (void)fresh->pass_.use_map(std::move(map));
+  if (check_prior_map(map).ok()) (void)fresh->odometry_pass_.use_map(std::move(map));
   *this = std::move(*fresh);
   if (last_pose) *last_pose = saved.pose;
   return {};

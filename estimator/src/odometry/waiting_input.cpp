@@ -25,32 +25,32 @@ Status WaitingReadings::add(const OdometerReading& reading, TimeNs done_ns, Time
   if (to_ns > latest_ns) return {ErrorCode::out_of_range, last, double(to_ns), double(latest_ns)};
   const TimeNs middle = middle_ns(reading);
   if (middle <= done_ns) return {ErrorCode::time_order, last, double(to_ns), double(done_ns)};
-  if (waiting_.size() >= most)
-    return {ErrorCode::out_of_range, "readings waiting", double(waiting_.size() + 1), double(most)};
+  if (waiting_readings_.size() >= most)
+    return {ErrorCode::out_of_range, "readings waiting", double(waiting_readings_.size() + 1), double(most)};
   const auto later = [](TimeNs time_ns, const OdometerReading& other) { return time_ns < middle_ns(other); };
-  waiting_.insert(std::upper_bound(waiting_.begin(), waiting_.end(), middle, later), reading);
+  waiting_readings_.insert(std::upper_bound(waiting_readings_.begin(), waiting_readings_.end(), middle, later), reading);
   return {};
 }
 
 std::optional<OdometerReading> WaitingReadings::find(TimeNs from_ns, TimeNs end_ns) const {
   const auto later = [](TimeNs time_ns, const OdometerReading& other) { return time_ns < middle_ns(other); };
-  auto next = std::upper_bound(waiting_.begin(), waiting_.end(), end_ns, later);
-  while (next != waiting_.begin() && middle_ns(*--next) > from_ns - kExtrapolation_ns) {
+  auto next = std::upper_bound(waiting_readings_.begin(), waiting_readings_.end(), end_ns, later);
+  while (next != waiting_readings_.begin() && middle_ns(*--next) > from_ns - kExtrapolation_ns) {
     if (reading_start_ns(*next) >= from_ns - kExtrapolation_ns && reading_end_ns(*next) <= end_ns + kExtrapolation_ns)
       return *next;
   }
   return std::nullopt;
 }
 
-std::optional<OdometerReading> WaitingReadings::take(TimeNs from_ns, TimeNs end_ns) {
+std::optional<OdometerReading> WaitingReadings::take_readings_in(TimeNs from_ns, TimeNs end_ns) {
   std::optional<OdometerReading> out;
-  for (; !waiting_.empty() && middle_ns(waiting_.front()) <= end_ns; waiting_.pop_front()) {
-    const OdometerReading& reading = waiting_.front();
+  for (; !waiting_readings_.empty() && middle_ns(waiting_readings_.front()) <= end_ns; waiting_readings_.pop_front()) {
+    const OdometerReading& reading = waiting_readings_.front();
     if (reading_start_ns(reading) >= from_ns - kExtrapolation_ns &&
         reading_end_ns(reading) <= end_ns + kExtrapolation_ns) {
       out = reading;
     } else {
-      ++spanning_two_sweeps_;
+      ++readings_spanning_two_sweeps_;
     }
   }
   return out;

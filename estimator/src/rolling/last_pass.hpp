@@ -11,47 +11,47 @@
 
 namespace tumble::rolling {
 
-/// LastPass runs a Kalman filter with known contact modes forward, and a smoother backward.
+/// FinalSmoothingPass runs a Kalman filter with known contact modes forward, and a smoother backward.
 ///
-/// The backward pass needs more than 10 KiB per node, so LastPass divides the nodes into segments. LastPass stores only
+/// The backward pass needs more than 10 KiB per node, so FinalSmoothingPass divides the nodes into segments. FinalSmoothingPass stores only
 /// the filter at each segment's start and the adjoint at its end, and recomputes other data bit for bit. A window of
-/// one segment needs one run of the filter, a longer window needs three. A LastPass is too large for the stack (four
+/// one segment needs one run of the filter, a longer window needs three. A FinalSmoothingPass is too large for the stack (four
 /// filters of 13 KiB).
-class LastPass {
+class FinalSmoothingPass {
  public:
-  static constexpr std::size_t kSegment = 128;  ///< number of nodes per segment; the backward pass needs 1.6 MiB
+  static constexpr std::size_t kNodesPerSegment = 128;  ///< number of nodes per segment; the backward pass needs 1.6 MiB
 
   struct Checkpoint {
-    PathFilter filter;
-    Readings::Cursor reading;
+    ModePathFilter filter;
+    RollingReadings::Cursor reading;
   };
   struct Distance {
     double distance_m = 0.0, sigma_m = 0.0;
   };
   struct Smoothed {
-    const SamplePoint& point;
-    const RollingNominal& nominal;
-    Reported error;          ///< smoothed error of the nominal trajectory at the sample
-    const NodeRecord* node;  ///< node with the covariance of the sample; null if the window has no node
+    const SampleMotion& point;
+    const RollingNominalState& nominal;
+    Reported smoothed_error;          ///< smoothed error of the nominal trajectory at the sample
+    const FilterNodeRecord* node;  ///< node with the covariance of the sample; null if the window has no node
     std::size_t index;
   };
 
   /// All arguments must outlive the pass. A known `distance` from the start acts as a measurement after the last
   /// sample. `segment` is the number of nodes whose records are stored at a time.
-  LastPass(const RollingParams& params, std::span<const ImuSample> samples, std::span<const PathNode> path,
-           std::optional<Distance> distance, std::size_t segment = kSegment);
+  FinalSmoothingPass(const RollingParams& params, std::span<const ImuSample> samples, std::span<const ModePathNode> path,
+           std::optional<Distance> distance, std::size_t segment = kNodesPerSegment);
 
   /// After run(), cut() returns the filter after the first `cut` nodes.
-  void run(const Checkpoint& start, std::size_t cut);
+  void run_to_cut(const Checkpoint& start, std::size_t cut);
 
   std::size_t nodes() const { return horizontal_variance_m2_.size(); }
   /// smoothed variance of the IMU's horizontal position, per node
   std::span<const double> horizontal_variance_m2() const { return horizontal_variance_m2_; }
-  const Checkpoint& cut() const { return cut_; }
-  const PathFilter& end() const { return end_.filter; }
+  const Checkpoint& cut_checkpoint() const { return cut_checkpoint_; }
+  const ModePathFilter& end_filter() const { return end_checkpoint_.filter; }
 
   /// Calls `take` with the smoothed estimate of each sample before the node `until`, in time order.
-  void give(std::size_t until, const std::function<void(const Smoothed&)>& take);
+  void report_smoothed(std::size_t until, const std::function<void(const Smoothed&)>& take);
 
  private:
   struct SegmentEnds {
@@ -59,31 +59,31 @@ class LastPass {
     Adjoint end;
   };
 
-  std::size_t first_of(std::size_t segment) const { return segment * length_; }
-  void forward(std::size_t segment, Checkpoint& at);
-  void recompute_segment(std::size_t segment);
+  std::size_t first_node_of(std::size_t segment) const { return segment * length_; }
+  void filter_forward(std::size_t segment, Checkpoint& at);
+  void recompute_segment_filter(std::size_t segment);
   void load(std::size_t segment);
-  void store(TimeNs time_ns, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s, std::size_t node);
-  void report_segment(std::size_t segment, std::size_t until, const std::function<void(const Smoothed&)>& take) const;
+  void store_sample_point(TimeNs time_ns, const RollingNominalState& nominal, const Eigen::Vector3d& rate_I_rad_s, std::size_t node);
+  void report_smoothed_segment(std::size_t segment, std::size_t until, const std::function<void(const Smoothed&)>& take) const;
 
   const RollingParams& params_;
   std::span<const ImuSample> samples_;
-  std::span<const PathNode> path_;
+  std::span<const ModePathNode> mode_path_;
   std::optional<Distance> distance_;
   std::size_t length_;
-  std::vector<SegmentEnds> kept_;
+  std::vector<SegmentEnds> segment_ends_;
   std::vector<double> horizontal_variance_m2_;
-  std::size_t cut_after_ = 0;
-  Checkpoint cut_, end_;
-  Checkpoint again_;  ///< filter for a segment that is recomputed
+  std::size_t cut_node_ = 0;
+  Checkpoint cut_checkpoint_, end_checkpoint_;
+  Checkpoint recomputation_checkpoint_;  ///< filter for a segment that is recomputed
   Adjoint adjoint_;   ///< state of the backward pass
-  // index of the segment (`length_` successive nodes) whose filter records are in `records_`
+  // index of the segment (`length_` successive nodes) whose filter records are in `node_records_`
   std::size_t loaded_ = 0;
-  std::vector<NodeRecord> records_;
-  std::vector<SamplePoint> points_;
-  Reported smoothed_start_ = Reported::Zero();
+  std::vector<FilterNodeRecord> node_records_;
+  std::vector<SampleMotion> points_;
+  Reported smoothed_start_error_ = Reported::Zero();
   /// correction of the nominal trajectory due to the known distance from the start
-  Reported distance_correction_ = Reported::Zero();
+  Reported known_distance_correction_ = Reported::Zero();
 };
 
 }  // namespace tumble::rolling

@@ -18,12 +18,12 @@ inline bool heading_lost(const Covariance& P) {
 }
 
 /// If the whole run is rotated, a contact point at rest stays at rest: rolling.md (R35).
-inline void remove_heading_effect(Contact& c) {
-  c.H.col(kAttitude + 2) -= Eigen::Vector3d::UnitZ().cross(c.contact_velocity_W_m_s);
+inline void remove_heading_component(Contact& c) {
+  c.measurement_jacobian.col(kAttitude + 2) -= Eigen::Vector3d::UnitZ().cross(c.contact_velocity_W_m_s);
 }
 
 /// See rolling.md (R36).
-inline Vector heading_effect(const Vector& x) {
+inline Vector heading_component(const Vector& x) {
   const auto turned = [](const auto& v) { return Eigen::Vector2d(-v.y(), v.x()); };
   Vector out = Vector::Zero();
   out.segment<2>(kVelocity) = turned(x.segment<2>(kVelocity));
@@ -33,13 +33,13 @@ inline Vector heading_effect(const Vector& x) {
 }
 
 /// Transforms the covariance P to the corrected nominal trajectory, P <- T P T^T: rolling.md (R36).
-inline void move_errors(const Vector& turned, Covariance& P) {
+inline void remove_heading_covariance(const Vector& turned, Covariance& P) {
   P += (turned * P.row(kAttitude + 2)).eval();
   P += (P.col(kAttitude + 2) * turned.transpose()).eval();
 }
 
 /// Transforms one error vector x from the old to the corrected nominal trajectory.
-inline void move_error(const Vector& turned, Vector& x) {
+inline void remove_heading_error(const Vector& turned, Vector& x) {
   x += x[kAttitude + 2] * turned;
 }
 

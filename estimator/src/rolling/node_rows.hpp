@@ -12,27 +12,27 @@ namespace tumble::rolling {
 /// The contact point is at rest, or moves along the floor during slip: rolling.md (R17), (R20). An unknown velocity of
 /// the sphere is assumed to be small.
 template <class EstimateCallback>
-void contact_rows(const RollingParams& params, const Contact& c, RollingMode mode, double node_s,
+void contact_measurement_rows(const RollingParams& params, const Contact& c, RollingMode mode, double node_s,
                   const Eigen::Vector3d& v_WI_m_s, const Vector& x, const Covariance& P, EstimateCallback&& take) {
   // The part of the contact velocity that is not linear in the error state is subtracted from the measurement.
-  const Eigen::Vector3d u = c.velocity(x) - c.H * x, variance = contact_variance(params, c, mode);
+  const Eigen::Vector3d u = c.velocity(x) - c.measurement_jacobian * x, variance = contact_variance(params, c, mode);
   if (!may_slip(mode)) {
-    for (int axis = 0; axis < 2; ++axis) take(Row(c.H.row(axis)), -u[axis], variance[axis]);
+    for (int axis = 0; axis < 2; ++axis) take(Row(c.measurement_jacobian.row(axis)), -u[axis], variance[axis]);
   }
-  if (mode != RollingMode::bump) take(Row(c.H.row(2)), -u.z(), variance.z());
-  if (const auto lost = lost_velocity_variance(node_s, P)) {
+  if (mode != RollingMode::bump) take(Row(c.measurement_jacobian.row(2)), -u.z(), variance.z());
+  if (const auto lost = velocity_variance_if_lost(node_s, P)) {
     for (int axis = 0; axis < 2; ++axis) take(kVelocity + axis, -v_WI_m_s[axis], *lost);
   }
 }
 
 /// See rolling.md (R28).
 template <class EstimateCallback>
-void rest_rows(const RollingParams& params, const RollingIntegrals& sums, const RollingNominal& nominal,
+void stationary_measurement_rows(const RollingParams& params, const RollingNodeIntegrals& sums, const RollingNominalState& nominal,
                bool spins_in_place, EstimateCallback&& take) {
   for (int axis = 0; axis < 3; ++axis) {
     take(kVelocity + axis, -nominal.v_WI_m_s[axis], squared(params.expert.contact.kRestVelocitySigma_m_s));
     if (spins_in_place) continue;
-    const double bias_rad_s = sums.rate_integral_I_rad[axis] / sums.node_s;
+    const double bias_rad_s = sums.rate_integral_I_rad[axis] / sums.node_interval_s;
     take(kGyroBias + axis, bias_rad_s, squared(params.expert.contact.kRestRateSigma_rad_s));
   }
 }

@@ -23,26 +23,26 @@ static_assert(RollingFilter::kStates == rolling::kStates);
 
 }  // namespace
 
-RollingFilter::RollingFilter(const Params& p) : params_(p), rest_detector_(p.expert.rest) {
+RollingFilter::RollingFilter(const Params& p) : params_(p), rest_detector_(p.expert.rest_detector) {
   require_valid(p);
 }
 
-Status RollingFilter::step_with(const ImuSample& sample, State& state, Listener listener) const {
+Status RollingFilter::step_with_listener(const ImuSample& sample, State& state, Listener listener) const {
   if (const Status bad = check_sample(sample); !bad.ok()) return bad;
   if (state.started) {
     double dt_s = 0.0;
-    if (const Status bad = elapsed(sample.time_ns, state.last_time_ns, params_.expert.gap.gap_max_s, dt_s); !bad.ok())
+    if (const Status bad = elapsed_time_since_last(sample.time_ns, state.last_time_ns, params_.expert.gap.gap_max_s, dt_s); !bad.ok())
       return bad;
     if (dt_s > params_.expert.gap.kGapMinDuration_s) {
-      bridge(sample, dt_s, state, listener);
+      bridge_gap(sample, dt_s, state, listener);
     } else {
       state.average.add(sample, dt_s);
-      if (state.average.full(params_.expert.reading_s, dt_s)) process_average(state, listener);
+      if (state.average.full(params_.expert.reading_s, dt_s)) process_averaged_reading(state, listener);
     }
   } else {
     Eigen::Quaterniond q_WI = params_.q_WI_start.value_or(Eigen::Quaterniond::Identity());
     if (!params_.q_WI_start) {
-      if (const Status bad = level(sample.specific_force_m_s2, q_WI); !bad.ok()) return bad;
+      if (const Status bad = inclination_from_force(sample.specific_force_m_s2, q_WI); !bad.ok()) return bad;
     }
     start(sample, q_WI, state);
   }
@@ -54,91 +54,91 @@ Status RollingFilter::step_with(const ImuSample& sample, State& state, Listener 
 void RollingFilter::start(const ImuSample& sample, const Eigen::Quaterniond& q_WI, State& state) const {
   const Eigen::Vector3d& rate = sample.angular_velocity_rad_s;
   state.nominal = rolling::start_nominal(params_, q_WI, rate);
-  rolling::set_prior(params_, rate, state.hypotheses[0].P);
+  rolling::set_prior(params_, rate, state.hypotheses[0].covariance);
   state.started_in_motion = rolling::starts_in_motion(rate);
   state.last_rate_rad_s = rate;
-  state.count = 1;
+  state.hypothesis_count = 1;
   state.started = true;
 }
 
-void RollingFilter::process_average(State& state, Listener listener) const {
+void RollingFilter::process_averaged_reading(State& state, Listener listener) const {
   const ImuAverage reading = state.average;
   state.average = {};
   // The rate at a node's end is interpolated between two readings, so the next reading completes the node.
-  if (state.sums.node_s >= params_.expert.node_s - 0.5 * reading.length_s) {
-    complete_node(reading.mean.angular_velocity_rad_s, state);
-    listener.call(listener.to, state);
+  if (state.node_integrals.node_interval_s >= params_.expert.node_s - 0.5 * reading.length_s) {
+    complete_filter_node(reading.mean.angular_velocity_rad_s, state);
+    listener.function(listener.target, state);
   }
-  rolling::integrate(params_, reading, state.nominal, state.sums);
+  rolling::integrate(params_, reading, state.nominal, state.node_integrals);
   state.last_rate_rad_s = reading.mean.angular_velocity_rad_s;
 }
 
-void RollingFilter::bridge(const ImuSample& sample, double gap_s, State& state, Listener listener) const {
-  if (state.average.readings > 0) process_average(state, listener);
+void RollingFilter::bridge_gap(const ImuSample& sample, double gap_s, State& state, Listener listener) const {
+  if (state.average.readings > 0) process_averaged_reading(state, listener);
   ImuSample before;
   before.angular_velocity_rad_s = state.last_rate_rad_s;
-  const int pieces = rolling::gap_pieces(params_, gap_s);
+  const int pieces = rolling::gap_step_count(params_, gap_s);
   for (int k = 0; k < pieces; ++k) {
     rolling::GapUncertainty uncertainty;
-    const ImuAverage piece = rolling::gap_step(params_, before, sample, gap_s, k, uncertainty);
+    const ImuAverage piece = rolling::gap_step_average(params_, before, sample, gap_s, k, uncertainty);
     const Eigen::Vector3d& rate = piece.mean.angular_velocity_rad_s;
-    if (state.sums.node_s >= params_.expert.node_s - 0.5 * piece.length_s) {
-      complete_node(rate, state);
-      listener.call(listener.to, state);
+    if (state.node_integrals.node_interval_s >= params_.expert.node_s - 0.5 * piece.length_s) {
+      complete_filter_node(rate, state);
+      listener.function(listener.target, state);
     }
-    rolling::integrate_gap(params_, piece, uncertainty, state.nominal, state.sums);
+    rolling::integrate_gap(params_, piece, uncertainty, state.nominal, state.node_integrals);
     state.last_rate_rad_s = rate;
   }
   ++state.gaps;
   state.gap_longest_s = std::max(state.gap_longest_s, gap_s);
 }
 
-void RollingFilter::complete_node(const Eigen::Vector3d& next_rate_rad_s, State& state) const {
-  const rolling::Moving B = rolling::transition(state.sums);
-  for (int k = 0; k < state.count; ++k) {
+void RollingFilter::complete_filter_node(const Eigen::Vector3d& next_rate_rad_s, State& state) const {
+  const rolling::Moving B = rolling::transition(state.node_integrals);
+  for (int k = 0; k < state.hypothesis_count; ++k) {
     Hypothesis& h = state.hypotheses[static_cast<std::size_t>(k)];
-    rolling::predict(params_, state.sums, B, h.x, h.P);
+    rolling::predict(params_, state.node_integrals, B, h.x, h.covariance);
   }
-  state.pruned_position_spread_m2.setZero();
+  state.pruned_position_covariance_m2.setZero();
   detect_rest(state);
   Hypothesis& best = state.hypotheses[0];
-  if (rolling::reset_tilt(params_, state.sums, state.at_rest, state.nominal, best.P)) {
+  if (rolling::reset_tilt(params_, state.node_integrals, state.at_rest, state.nominal, best.covariance)) {
     best.x.setZero();
-    keep_most_probable(1, state);
+    keep_most_probable_hypotheses(1, state);
   }
-  const bool heading_lost = rolling::heading_lost(best.P);
+  const bool heading_lost = rolling::heading_lost(best.covariance);
   if (state.at_rest) {
     correct_at_rest(state);
   } else {
     choose_modes(0.5 * (state.last_rate_rad_s + next_rate_rad_s), heading_lost, state);
   }
   state.position_covariance_m2 =
-      state.hypotheses[0].P.block<3, 3>(rolling::kPosition, rolling::kPosition) + spread(state, rolling::kPosition);
+      state.hypotheses[0].covariance.block<3, 3>(rolling::kPosition, rolling::kPosition) + hypothesis_position_covariance(state, rolling::kPosition);
   // The differences between the hypotheses about past motion increase the covariance of the current position.
-  if (state.at_rest && state.count == 1) {
-    state.hypotheses[0].P.block<3, 3>(rolling::kPosition, rolling::kPosition) += state.pruned_position_spread_m2;
-    state.position_covariance_m2 += state.pruned_position_spread_m2;
+  if (state.at_rest && state.hypothesis_count == 1) {
+    state.hypotheses[0].covariance.block<3, 3>(rolling::kPosition, rolling::kPosition) += state.pruned_position_covariance_m2;
+    state.position_covariance_m2 += state.pruned_position_covariance_m2;
   }
   flag_uncertain(state);
   weigh_modes(state);
   move_linearisation_point(heading_lost, state);
   constrain_position(state);
-  state.sums = {};
-  ++state.node;
+  state.node_integrals = {};
+  ++state.node_index;
 }
 
 void RollingFilter::detect_rest(State& state) const {
-  const double h = state.sums.node_s;
-  if (state.sums.gap_s > 0.0) {  // two readings do not show rest in the gap between them
-    state.rest = {};
+  const double h = state.node_integrals.node_interval_s;
+  if (state.node_integrals.gap_s > 0.0) {  // two readings do not show rest in the gap between them
+    state.stationary_state = {};
     state.at_rest = state.spins_in_place = false;
     return;
   }
-  const Eigen::Vector3d w_mean = state.sums.rate_integral_I_rad / h + state.nominal.gyro_bias_rad_s;
-  const TimeNs from_ns = state.rest.last_mean_ns;  // the last node ended where this node starts
+  const Eigen::Vector3d w_mean = state.node_integrals.rate_integral_I_rad / h + state.nominal.gyro_bias_rad_s;
+  const TimeNs from_ns = state.stationary_state.last_averaged_reading_ns;  // the last node ended where this node starts
   state.at_rest =
-      rest_detector_.observe_mean(w_mean, state.sums.force_integral_I_m_s / h, from_ns, from_ns + std::llround(1e9 * h),
-                                  state.nominal.gyro_bias_rad_s, state.rest);
+      rest_detector_.detect_stationary_from_mean(w_mean, state.node_integrals.force_integral_I_m_s / h, from_ns, from_ns + std::llround(1e9 * h),
+                                  state.nominal.gyro_bias_rad_s, state.stationary_state);
   state.low_passed_rate_rad_s += -std::expm1(-h / kSlowRateTau_s) * (w_mean - state.low_passed_rate_rad_s);
   state.spins_in_place = state.at_rest && spins_in_place(state);
 }
@@ -147,7 +147,7 @@ void RollingFilter::detect_rest(State& state) const {
 bool RollingFilter::spins_in_place(const State& state) const {
   const double averaged = params_.expert.node_s / (2.0 * kSlowRateTau_s);
   const Hypothesis& best = state.hypotheses[0];
-  const Eigen::Array3d variance = best.P.diagonal().segment<3>(rolling::kGyroBias).array() +
+  const Eigen::Array3d variance = best.covariance.diagonal().segment<3>(rolling::kGyroBias).array() +
                                   squared(params_.expert.contact.kRestRateSigma_rad_s) * averaged;
   const Eigen::Array3d off =
       (state.low_passed_rate_rad_s - state.nominal.gyro_bias_rad_s - best.x.segment<3>(rolling::kGyroBias)).array();
@@ -155,11 +155,11 @@ bool RollingFilter::spins_in_place(const State& state) const {
 }
 
 /// See rolling.md (R27).
-Eigen::Matrix3d RollingFilter::spread(const State& state, int first) {
+Eigen::Matrix3d RollingFilter::hypothesis_position_covariance(const State& state, int first) {
   const Eigen::Vector3d best = state.hypotheses[0].x.segment<3>(first);
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   double total = 0.0;
-  for (int k = 0; k < state.count; ++k) {
+  for (int k = 0; k < state.hypothesis_count; ++k) {
     const Hypothesis& h = state.hypotheses[static_cast<std::size_t>(k)];
     const double weight = std::exp(h.log_weight - state.hypotheses[0].log_weight);
     const Eigen::Vector3d d = h.x.segment<3>(first) - best;
@@ -172,14 +172,14 @@ Eigen::Matrix3d RollingFilter::spread(const State& state, int first) {
 void RollingFilter::flag_uncertain(State& state) const {
   const double variance_m2 = state.position_covariance_m2(0, 0) + state.position_covariance_m2(1, 1);
   const bool event = may_slip(state.hypotheses[0].mode);
-  if (!event) state.variance_before_event_m2 = variance_m2;
+  if (!event) state.variance_before_slip_m2 = variance_m2;
   state.uncertain =
-      event && variance_m2 - state.variance_before_event_m2 > squared(params_.expert.modes.event_sigma_growth_m);
+      event && variance_m2 - state.variance_before_slip_m2 > squared(params_.expert.modes.event_sigma_growth_m);
 }
 
 void RollingFilter::weigh_modes(State& state) {
   double slipping = 0.0, hopping = 0.0, total = 0.0;
-  for (int k = 0; k < state.count; ++k) {
+  for (int k = 0; k < state.hypothesis_count; ++k) {
     const Hypothesis& h = state.hypotheses[static_cast<std::size_t>(k)];
     const double weight = std::exp(h.log_weight - state.hypotheses[0].log_weight);
     total += weight;
@@ -193,10 +193,10 @@ void RollingFilter::weigh_modes(State& state) {
 /// While the sphere is at rest, the reported position remains constant.
 void RollingFilter::constrain_position(State& state) const {
   const bool quiet =
-      seconds(state.rest.within_bias_since_ns) >= std::min(rolling::kConstrainAfter_s, params_.expert.rest.rest_s) &&
+      seconds(state.stationary_state.small_rate_since_ns) >= std::min(rolling::kConstrainAfter_s, params_.expert.rest_detector.rest_s) &&
       !may_slip(state.hypotheses[0].mode);
   const bool revised = state.hypotheses[0].parent != 0;
-  const bool stands = quiet && !revised && state.v_WG_m_s.norm() < rolling::kConstrainSpeed_m_s;
+  const bool stands = quiet && !revised && state.sphere_velocity_W_m_s.norm() < rolling::kConstrainSpeed_m_s;
   if (!stands || !state.position_constrained) {
     state.position_constrained = false;
     report(state);
@@ -206,14 +206,14 @@ void RollingFilter::constrain_position(State& state) const {
 
 /// After the correction, the states of all hypotheses are relative to the best hypothesis.
 void RollingFilter::move_linearisation_point(bool heading_lost, State& state) const {
-  const Vector x = state.hypotheses[0].x, turned = rolling::heading_effect(x);
+  const Vector x = state.hypotheses[0].x, turned = rolling::heading_component(x);
   rolling::move_linearisation_point(x, state.nominal);
-  for (int k = 0; k < state.count; ++k) {
+  for (int k = 0; k < state.hypothesis_count; ++k) {
     Hypothesis& h = state.hypotheses[static_cast<std::size_t>(k)];
     h.x -= x;
     if (!heading_lost) continue;
-    rolling::move_error(turned, h.x);
-    rolling::move_errors(turned, h.P);
+    rolling::remove_heading_error(turned, h.x);
+    rolling::remove_heading_covariance(turned, h.covariance);
   }
 }
 
@@ -222,13 +222,13 @@ const Eigen::Vector3d& RollingFilter::newest_rate_rad_s(const State& state) {
 }
 
 void RollingFilter::report(State& state) const {
-  const RollingNominal nominal = rolling::extrapolate_nominal(params_, state.average, state.nominal);
+  const RollingNominalState nominal = rolling::extrapolate_nominal(params_, state.average, state.nominal);
   const Eigen::Vector3d& rate = newest_rate_rad_s(state);
   const Eigen::Vector3d arm_W = nominal.q_WI * (params_.lever_arm_m + nominal.lever_arm_error_m);
   const Eigen::Vector3d w_W = nominal.q_WI * (rate - nominal.gyro_bias_rad_s);
   state.q_WI = nominal.q_WI;
-  if (!state.position_constrained) state.p_WG_m = nominal.p_WI_m - arm_W;
-  state.v_WG_m_s = nominal.v_WI_m_s - w_W.cross(arm_W);
+  if (!state.position_constrained) state.sphere_centre_W_m = nominal.p_WI_m - arm_W;
+  state.sphere_velocity_W_m_s = nominal.v_WI_m_s - w_W.cross(arm_W);
   state.mode = state.hypotheses[0].mode;
   state.contact_velocity_m_s = state.hypotheses[0].contact_velocity_W_m_s;
 }
@@ -244,7 +244,7 @@ RollingMode RollingFilter::most_probable_mode(const State& state) {
 RollingCalibration RollingFilter::calibration(const State& state) {
   RollingCalibration out{
       rolling::constants_of(state.nominal),
-      state.hypotheses[0].P.bottomRightCorner<RollingCalibration::kSize, RollingCalibration::kSize>()};
+      state.hypotheses[0].covariance.bottomRightCorner<RollingCalibration::kSize, RollingCalibration::kSize>()};
   constexpr int kSlope = rolling::kSlope - rolling::kGyroBias;  // the slope belongs to the floor
   out.constants.segment<2>(kSlope).setZero();
   out.covariance.middleRows<2>(kSlope).setZero();
@@ -255,18 +255,18 @@ RollingCalibration RollingFilter::calibration(const State& state) {
 RollingEstimate RollingFilter::estimate(const State& state) {
   RollingEstimate out;
   out.time_ns = state.last_time_ns;
-  out.p_WG_m = state.p_WG_m;
+  out.sphere_centre_W_m = state.sphere_centre_W_m;
   out.q_WI = state.q_WI;
-  out.v_WG_m_s = state.v_WG_m_s;
+  out.sphere_velocity_W_m_s = state.sphere_velocity_W_m_s;
   out.w_WI_I_rad_s = newest_rate_rad_s(state) - state.nominal.gyro_bias_rad_s;
   out.covariance.topLeftCorner<3, 3>() = state.position_covariance_m2;
-  if (state.count > 0) {
+  if (state.hypothesis_count > 0) {
     const Eigen::Matrix3d R_IW = state.nominal.q_WI.toRotationMatrix().transpose();
     out.velocity_covariance_I_m2_s2 =
         rolling::velocity_covariance_I(
             state.nominal, out.w_WI_I_rad_s,
-            rolling::reported_covariance(rolling::output_covariance_rows(state.hypotheses[0].P))) +
-        R_IW * spread(state, rolling::kVelocity) * R_IW.transpose();
+            rolling::reported_covariance(rolling::output_covariance_rows(state.hypotheses[0].covariance))) +
+        R_IW * hypothesis_position_covariance(state, rolling::kVelocity) * R_IW.transpose();
   }
   out.mode = most_probable_mode(state);
   out.at_rest = state.at_rest;

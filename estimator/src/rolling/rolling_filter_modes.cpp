@@ -41,15 +41,15 @@ constexpr double kRoughCost = 0.2;
 // The foot of a ramp is a bump, so a slope is more probable after a bump.
 constexpr double kInclineAfterBump = 4.0;
 constexpr RollingMode kModes[] = {RollingMode::grip, RollingMode::slip, RollingMode::bump, RollingMode::incline,
-                                  RollingMode::rough};
+                                  RollingMode::uneven};
 static_assert(std::size(kModes) == kRollingModes);
 
-double log_normal(double value, double variance) {
+double gaussian_log_density(double value, double variance) {
   return -0.5 * (value * value / variance + std::log(2.0 * std::numbers::pi * variance));
 }
 
 /// See m1 of rolling.md (R25).
-double log_rise(double change) {
+double log_floor_rise(double change) {
   const auto density = [&](double sigma) {
     return std::exp(-0.5 * change * change / (sigma * sigma)) / (sigma * std::sqrt(2.0 * std::numbers::pi));
   };
@@ -58,7 +58,7 @@ double log_rise(double change) {
 }
 
 /// See m2 of rolling.md (R24).
-double log_change(double square) {
+double log_normalised_square(double square) {
   double density = 0.0;
   for (const auto& [share, sigma] : {std::pair(kPlateauFraction, kPlateau_m_s), std::pair(kSteadyFraction, kSteady_m_s),
                                      std::pair(1.0 - kPlateauFraction - kSteadyFraction, kJump_m_s)}) {
@@ -68,18 +68,18 @@ double log_change(double square) {
 }
 
 /// See rolling.md (R23).
-double log_stationary(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode,
+double log_likelihood_stationary(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode,
                       const RollingParams& params) {
   RollingFilter::Vector x = h.x;
-  Eigen::Matrix<double, 3, rolling::kStates> H = c.H;
-  const bool slope_reset = rolling::resets_slope(h.mode, mode);
+  Eigen::Matrix<double, 3, rolling::kStates> H = c.measurement_jacobian;
+  const bool slope_reset = rolling::resets_floor_slope(h.mode, mode);
   if (slope_reset) {
-    x.segment<2>(rolling::kSlope) = -c.slope;
+    x.segment<2>(rolling::kSlope) = -c.floor_slope;
     H.middleCols<2>(rolling::kSlope).setZero();
   }
-  Eigen::Matrix3d S = H * h.P * H.transpose();
+  Eigen::Matrix3d S = H * h.covariance * H.transpose();
   if (slope_reset && mode == RollingMode::incline) {
-    const Eigen::Matrix<double, 3, 2> by_slope = c.H.middleCols<2>(rolling::kSlope);
+    const Eigen::Matrix<double, 3, 2> by_slope = c.measurement_jacobian.middleCols<2>(rolling::kSlope);
     S += squared(params.expert.contact.kSlopeSigma) * by_slope * by_slope.transpose();
   }
   const auto log_det_with = [&](const Eigen::Vector3d& variance, Eigen::LLT<Eigen::Matrix3d>& factor) {
@@ -88,26 +88,26 @@ double log_stationary(const rolling::Contact& c, const RollingFilter::Hypothesis
   };
   Eigen::LLT<Eigen::Matrix3d> factor;
   double log_det = 0.0, cost = 0.0;
-  if (mode == RollingMode::rough) {
+  if (mode == RollingMode::uneven) {
     // The likelihood is normalised with the smaller variance of grip, so that a rough floor has no penalty per node.
     log_det = log_det_with(rolling::contact_variance(params, c, RollingMode::grip), factor);
     cost = kRoughCost;
   }
   const double own = log_det_with(rolling::contact_variance(params, c, mode), factor);
-  if (mode != RollingMode::rough) log_det = own;
+  if (mode != RollingMode::uneven) log_det = own;
   const double square = factor.matrixL().solve(c.velocity(x)).squaredNorm();
   return -cost - 0.5 * (square + log_det + 3.0 * std::log(2.0 * std::numbers::pi));
 }
 
 /// See rolling.md (R24), (R25).
-double log_moving(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode,
+double log_likelihood_moving(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode,
                   const Eigen::Vector3d& u, const RollingParams& params) {
   const Eigen::Vector3d change = u - h.contact_velocity_W_m_s;
-  const double horizontal = log_change(change.head<2>().squaredNorm());
-  if (mode == RollingMode::bump) return horizontal + log_rise(change.z());
+  const double horizontal = log_normalised_square(change.head<2>().squaredNorm());
+  if (mode == RollingMode::bump) return horizontal + log_floor_rise(change.z());
   const double check_vertical =
-      c.H.row(2) * h.P * c.H.row(2).transpose() + squared(params.expert.contact.kVerticalSigma_m_s);
-  return horizontal + log_normal(u.z(), check_vertical);
+      c.measurement_jacobian.row(2) * h.covariance * c.measurement_jacobian.row(2).transpose() + squared(params.expert.contact.kVerticalSigma_m_s);
+  return horizontal + gaussian_log_density(u.z(), check_vertical);
 }
 
 /// See rolling.md (R22).
@@ -117,11 +117,11 @@ double log_transition(const RollingParams& params, RollingMode from, RollingMode
     if (b == RollingMode::incline) {
       return modes.incline_begins_per_s * (a == RollingMode::bump ? kInclineAfterBump : 1.0);
     }
-    if (b == RollingMode::rough) return kRoughBeginsPerS;
+    if (b == RollingMode::uneven) return kRoughBeginsPerS;
     if (b == RollingMode::slip) return a == RollingMode::bump ? kSlipBumpPerS : modes.slip_begins_per_s;
     if (b == RollingMode::bump) return a == RollingMode::slip ? kSlipBumpPerS : modes.bump_begins_per_s;
     if (a == RollingMode::incline) return kInclineEndsPerS;
-    if (a == RollingMode::rough) return kRoughEndsPerS;
+    if (a == RollingMode::uneven) return kRoughEndsPerS;
     return a == RollingMode::slip ? modes.kSlipEndsPerS : modes.kBumpEndsPerS;
   };
   if (from != to) return std::log(rate(from, to) * h_s);
@@ -130,39 +130,39 @@ double log_transition(const RollingParams& params, RollingMode from, RollingMode
   return -leaving * h_s;
 }
 
-struct Candidate {
+struct ModeCandidate {
   double log_weight = 0.0;
   int parent = 0;
   RollingMode mode = RollingMode::grip;
-  std::int64_t mode_start_node = 0;
+  std::int64_t first_node_of_mode = 0;
 };
-using Candidates = std::array<Candidate, kRollingModes * RollingFilter::kHypotheses>;
+using Candidates = std::array<ModeCandidate, kRollingModes * RollingFilter::kHypotheses>;
 
 /// Returns all pairs of a hypothesis and a next contact mode, most probable first.
-std::span<const Candidate> propose(const RollingParams& params, const rolling::Contact& c,
+std::span<const ModeCandidate> propose_mode_changes(const RollingParams& params, const rolling::Contact& c,
                                    const RollingFilter::State& state, Candidates& out) {
-  const double node_s = state.sums.node_s;
-  const bool in_gap = state.sums.gap_s > 0.0;
+  const double node_s = state.node_integrals.node_interval_s;
+  const bool in_gap = state.node_integrals.gap_s > 0.0;
   const bool too_fast = c.rolling_speed_m_s > params.speed_max_m_s;
   const auto shortest = static_cast<std::int64_t>(std::ceil(params.expert.modes.kEventShortest_s / node_s - 1e-9));
   std::size_t total = 0;
-  for (int parent = 0; parent < state.count; ++parent) {
+  for (int parent = 0; parent < state.hypothesis_count; ++parent) {
     const RollingFilter::Hypothesis& h = state.hypotheses[static_cast<std::size_t>(parent)];
     const Eigen::Vector3d u = c.velocity(h.x);
     for (const RollingMode mode : kModes) {
-      const bool bound = may_slip(h.mode) && state.node - h.mode_start_node < shortest;
+      const bool bound = may_slip(h.mode) && state.node_index - h.first_node_of_mode < shortest;
       if (mode != h.mode && bound) continue;
       if (too_fast && !may_slip(mode)) continue;
       double likelihood = 0.0;  // a gap is no evidence of a mode
-      if (!in_gap) likelihood = may_slip(mode) ? log_moving(c, h, mode, u, params) : log_stationary(c, h, mode, params);
+      if (!in_gap) likelihood = may_slip(mode) ? log_likelihood_moving(c, h, mode, u, params) : log_likelihood_stationary(c, h, mode, params);
       const double impact =
-          mode == RollingMode::bump ? 0.0 : state.sums.unexplained_impact_m_s / kUnexplainedImpact_m_s;
+          mode == RollingMode::bump ? 0.0 : state.node_integrals.unexplained_impact_m_s / kUnexplainedImpact_m_s;
       out[total++] = {h.log_weight + log_transition(params, h.mode, mode, node_s) + likelihood - impact, parent, mode,
-                      mode == h.mode ? h.mode_start_node : state.node};
+                      mode == h.mode ? h.first_node_of_mode : state.node_index};
     }
   }
   // std::stable_sort would allocate memory, so candidates of equal weight are sorted by hypothesis and mode.
-  std::sort(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(total), [](const Candidate& a, const Candidate& b) {
+  std::sort(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(total), [](const ModeCandidate& a, const ModeCandidate& b) {
     return std::tuple(-a.log_weight, a.parent, a.mode) < std::tuple(-b.log_weight, b.parent, b.mode);
   });
   return {out.data(), total};
@@ -170,7 +170,7 @@ std::span<const Candidate> propose(const RollingParams& params, const rolling::C
 
 /// Rounds the first node of a contact mode, more coarsely with age, so that hypotheses with similar starts count as
 /// equal.
-std::int64_t beginning(std::int64_t mode_start_node, std::int64_t node, double node_s) {
+std::int64_t mode_beginning_node(std::int64_t mode_start_node, std::int64_t node, double node_s) {
   const auto mode_age_max_nodes = static_cast<std::int64_t>(kModeAgeMax_s / node_s);
   const std::int64_t age = std::min(node - mode_start_node, mode_age_max_nodes);
   std::int64_t width = 1;
@@ -178,23 +178,23 @@ std::int64_t beginning(std::int64_t mode_start_node, std::int64_t node, double n
   return mode_start_node >= node - mode_age_max_nodes ? mode_start_node / width * width : node - mode_age_max_nodes;
 }
 
-struct Kept {
-  std::array<Candidate, RollingFilter::kHypotheses> of;
+struct KeptHypotheses {
+  std::array<ModeCandidate, RollingFilter::kHypotheses> candidates;
   std::size_t count = 0;
 };
 
-Kept keep(std::span<const Candidate> candidates, std::int64_t node, double node_s) {
-  Kept kept;
-  for (const Candidate& candidate : candidates) {
-    if (kept.count == kept.of.size() || candidate.log_weight < candidates[0].log_weight + kPruneLogWeight) break;
-    const bool has_earlier_mode = candidate.mode_start_node < candidates[0].mode_start_node;
-    if (kept.count + kMinDissentingHypotheses >= kept.of.size() && !has_earlier_mode) continue;
-    const std::int64_t since = beginning(candidate.mode_start_node, node, node_s);
-    const auto same = [&](const Candidate& other) {
-      return other.mode == candidate.mode && beginning(other.mode_start_node, node, node_s) == since;
+KeptHypotheses keep_probable_candidates(std::span<const ModeCandidate> candidates, std::int64_t node, double node_s) {
+  KeptHypotheses kept;
+  for (const ModeCandidate& candidate : candidates) {
+    if (kept.count == kept.candidates.size() || candidate.log_weight < candidates[0].log_weight + kPruneLogWeight) break;
+    const bool has_earlier_mode = candidate.first_node_of_mode < candidates[0].first_node_of_mode;
+    if (kept.count + kMinDissentingHypotheses >= kept.candidates.size() && !has_earlier_mode) continue;
+    const std::int64_t since = mode_beginning_node(candidate.first_node_of_mode, node, node_s);
+    const auto same = [&](const ModeCandidate& other) {
+      return other.mode == candidate.mode && mode_beginning_node(other.first_node_of_mode, node, node_s) == since;
     };
-    if (std::any_of(kept.of.begin(), kept.of.begin() + static_cast<std::ptrdiff_t>(kept.count), same)) continue;
-    kept.of[kept.count++] = candidate;
+    if (std::any_of(kept.candidates.begin(), kept.candidates.begin() + static_cast<std::ptrdiff_t>(kept.count), same)) continue;
+    kept.candidates[kept.count++] = candidate;
   }
   return kept;
 }
@@ -202,7 +202,7 @@ Kept keep(std::span<const Candidate> candidates, std::int64_t node, double node_
 using Origins = std::array<std::size_t, RollingFilter::kHypotheses>;
 
 /// Replaces hypothesis k by a copy of hypothesis from[k] in place, because a second array would need 420 KiB of stack.
-void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::Hypothesis> all) {
+void rearrange_hypotheses(const Origins& from, std::size_t count, std::span<RollingFilter::Hypothesis> all) {
   std::array<int, RollingFilter::kHypotheses> readers{};  // number of pending copies that read from each slot
   std::array<bool, RollingFilter::kHypotheses> waits{};
   for (std::size_t k = 0; k < count; ++k) {
@@ -235,68 +235,68 @@ void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::
 
 /// See rolling.md (R26).
 void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, bool heading_lost, State& state) const {
-  rolling::Contact c = rolling::contact(params_, state.nominal, rate_I_rad_s, state.sums);
-  if (heading_lost) rolling::remove_heading_effect(c);
-  const double node_s = state.sums.node_s;
+  rolling::Contact c = rolling::contact(params_, state.nominal, rate_I_rad_s, state.node_integrals);
+  if (heading_lost) rolling::remove_heading_component(c);
+  const double node_s = state.node_integrals.node_interval_s;
   Candidates candidates;
-  const std::span<const Candidate> ordered = propose(params_, c, state, candidates);
-  const Kept kept = keep(ordered, state.node, node_s);
+  const std::span<const ModeCandidate> ordered = propose_mode_changes(params_, c, state, candidates);
+  const KeptHypotheses kept = keep_probable_candidates(ordered, state.node_index, node_s);
   Origins parents{};
-  for (std::size_t k = 0; k < kept.count; ++k) parents[k] = static_cast<std::size_t>(kept.of[k].parent);
-  rearrange(parents, kept.count, state.hypotheses);
+  for (std::size_t k = 0; k < kept.count; ++k) parents[k] = static_cast<std::size_t>(kept.candidates[k].parent);
+  rearrange_hypotheses(parents, kept.count, state.hypotheses);
   for (std::size_t k = 0; k < kept.count; ++k) {
-    const Candidate& candidate = kept.of[k];
+    const ModeCandidate& candidate = kept.candidates[k];
     Hypothesis& h = state.hypotheses[k];
-    rolling::update_slope_for_mode(params_, h.mode, candidate.mode, node_s, state.nominal, h.x, h.P);
-    rolling::contact_rows(
-        params_, c, candidate.mode, node_s, state.nominal.v_WI_m_s, h.x, h.P,
-        [&](const auto& row, double measured, double variance) { rolling::update(row, measured, variance, h.x, h.P); });
+    rolling::update_slope_for_mode(params_, h.mode, candidate.mode, node_s, state.nominal, h.x, h.covariance);
+    rolling::contact_measurement_rows(
+        params_, c, candidate.mode, node_s, state.nominal.v_WI_m_s, h.x, h.covariance,
+        [&](const auto& row, double measured, double variance) { rolling::update(row, measured, variance, h.x, h.covariance); });
     h.contact_velocity_W_m_s = c.velocity(h.x);
     h.log_weight = candidate.log_weight - ordered[0].log_weight;
     h.mode = candidate.mode;
-    h.mode_start_node = candidate.mode_start_node;
+    h.first_node_of_mode = candidate.first_node_of_mode;
     h.parent = candidate.parent;
   }
-  keep_most_probable(kept.count, state);
+  keep_most_probable_hypotheses(kept.count, state);
 }
 
 /// Unused hypotheses are cleared, so that equal estimates have equal states.
-void RollingFilter::keep_most_probable(std::size_t count, State& state) {
+void RollingFilter::keep_most_probable_hypotheses(std::size_t count, State& state) {
   const auto begin = state.hypotheses.begin();
   const auto first = begin + static_cast<std::ptrdiff_t>(count);
-  if (first < begin + state.count) std::fill(first, begin + state.count, Hypothesis{});
-  state.count = static_cast<int>(count);
+  if (first < begin + state.hypothesis_count) std::fill(first, begin + state.hypothesis_count, Hypothesis{});
+  state.hypothesis_count = static_cast<int>(count);
 }
 
 /// See rolling.md (R28).
 void RollingFilter::correct_at_rest(State& state) const {
-  for (int k = 0; k < state.count; ++k) {
+  for (int k = 0; k < state.hypothesis_count; ++k) {
     Hypothesis& h = state.hypotheses[static_cast<std::size_t>(k)];
     double likelihood = 0.0;
-    rolling::rest_rows(params_, state.sums, state.nominal, state.spins_in_place,
+    rolling::stationary_measurement_rows(params_, state.node_integrals, state.nominal, state.spins_in_place,
                        [&](int index, double measured, double variance) {
                          if (index < rolling::kPosition)  // a velocity is evidence of a mode, a bias is not
-                           likelihood += log_normal(measured - h.x[index], h.P(index, index) + variance);
-                         rolling::update(index, measured, variance, h.x, h.P);
+                           likelihood += gaussian_log_density(measured - h.x[index], h.covariance(index, index) + variance);
+                         rolling::update(index, measured, variance, h.x, h.covariance);
                        });
     h.log_weight += std::max(likelihood, kRestLogLikelihoodMin);
     h.parent = k;
     if (may_slip(h.mode)) {
-      h.mode_start_node = state.node;
+      h.first_node_of_mode = state.node_index;
       h.mode = RollingMode::grip;
     }
     h.contact_velocity_W_m_s.setZero();
   }
-  const auto count = static_cast<std::size_t>(state.count);
+  const auto count = static_cast<std::size_t>(state.hypothesis_count);
   Origins order{};
-  std::iota(order.begin(), order.begin() + state.count, std::size_t{0});
-  std::sort(order.begin(), order.begin() + state.count, [&](std::size_t a, std::size_t b) {
+  std::iota(order.begin(), order.begin() + state.hypothesis_count, std::size_t{0});
+  std::sort(order.begin(), order.begin() + state.hypothesis_count, [&](std::size_t a, std::size_t b) {
     return std::tuple(-state.hypotheses[a].log_weight, a) < std::tuple(-state.hypotheses[b].log_weight, b);
   });
-  rearrange(order, count, state.hypotheses);
+  rearrange_hypotheses(order, count, state.hypotheses);
   // After some time at rest, all hypotheses agree about the present state.
-  const bool rested = seconds(state.rest.within_bias_since_ns) > kModeAgeMax_s;
-  if (rested && state.count > 1) state.pruned_position_spread_m2 = spread(state, rolling::kPosition);
+  const bool rested = seconds(state.stationary_state.small_rate_since_ns) > kModeAgeMax_s;
+  if (rested && state.hypothesis_count > 1) state.pruned_position_covariance_m2 = hypothesis_position_covariance(state, rolling::kPosition);
   const double best = state.hypotheses[0].log_weight;
   std::size_t kept = 0;
   for (std::size_t k = 0; k < count; ++k) {
@@ -304,7 +304,7 @@ void RollingFilter::correct_at_rest(State& state) const {
     h.log_weight -= best;
     if (k == 0 || (!rested && h.log_weight > kPruneLogWeight)) kept = k + 1;
   }
-  keep_most_probable(kept, state);
+  keep_most_probable_hypotheses(kept, state);
 }
 
 }  // namespace tumble

@@ -20,12 +20,12 @@ constexpr double kClippedRateSigma_rad_s = 5.0, kClippedForceSigma_m_s2 = 4.0;  
 constexpr double kSteepest = 0.95;  // maximum sine of a slope, so that the normal points up
 constexpr double kLevelSlopeSigma = 1e-3, kStartRate_rad_s = 0.1;  // rate of the first sample at a start in motion
 
-double upward(const Eigen::Vector2d& slope) {
+double vertical_component(const Eigen::Vector2d& slope) {
   return std::sqrt(1.0 - std::min(slope.squaredNorm(), squared(kSteepest)));
 }
 
-Eigen::Vector3d normal(const Eigen::Vector2d& slope) {
-  return {slope.x(), slope.y(), upward(slope)};
+Eigen::Vector3d floor_normal(const Eigen::Vector2d& slope) {
+  return {slope.x(), slope.y(), vertical_component(slope)};
 }
 
 constexpr double kNoImpactForce_m_s2 = 3.0;  // maximum difference of specific force and gravity without an impact
@@ -54,24 +54,24 @@ constexpr double kGapTimeSigmaRatio = 0.15;  // uncertain time of a rate change 
 /// See rolling.md (R18), (R19).
 Eigen::Vector3d contact_variance(const RollingParams& params, const Contact& c, RollingMode mode) {
   const double rough =
-      mode == RollingMode::rough ? squared(params.expert.contact.kRoughShare * c.rolling_speed_m_s) : 0.0;
-  return {c.grip_variance, c.grip_variance, squared(params.expert.contact.kVerticalSigma_m_s) + rough + c.gap_variance};
+      mode == RollingMode::uneven ? squared(params.expert.contact.kRoughShare * c.rolling_speed_m_s) : 0.0;
+  return {c.grip_variance, c.grip_variance, squared(params.expert.contact.kVerticalSigma_m_s) + rough + c.gap_extra_variance};
 }
 
 /// See rolling.md (R17).
 Eigen::Vector3d Contact::velocity(const Vector& x) const {
   const Eigen::Vector2d change = x.segment<2>(kSlope);
-  const double curved = upward(slope + change) - upward(slope) + slope.dot(change) / upward(slope);
-  return contact_velocity_W_m_s + H * x + curved * lift_W;
+  const double curved = vertical_component(floor_slope + change) - vertical_component(floor_slope) + floor_slope.dot(change) / vertical_component(floor_slope);
+  return contact_velocity_W_m_s + measurement_jacobian * x + curved * normal_height_derivative_W;
 }
 
 bool starts_in_motion(const Eigen::Vector3d& rate_I_rad_s) {
   return rate_I_rad_s.norm() > kStartRate_rad_s;
 }
 
-RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaterniond& q_WI,
+RollingNominalState start_nominal(const RollingParams& params, const Eigen::Quaterniond& q_WI,
                              const Eigen::Vector3d& rate_I_rad_s) {
-  RollingNominal nominal;
+  RollingNominalState nominal;
   if (params.calibration) {
     Vector x = Vector::Zero();
     x.tail<RollingCalibration::kSize>() = params.calibration->constants;
@@ -115,25 +115,25 @@ void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s,
 
 namespace {
 
-struct RailedForce {
+struct SaturatedForce {
   Eigen::Vector3d force_m_s2 = Eigen::Vector3d::Zero();
-  Eigen::Vector3d least_m_s2 = Eigen::Vector3d::Zero();  ///< components for which the reading is a lower bound
+  Eigen::Vector3d lower_bound_m_s2 = Eigen::Vector3d::Zero();  ///< components for which the reading is a lower bound
 };
 
 /// For a saturated reading, the assumed force is the reading or the force that keeps the velocity of the centre
 /// constant, whichever is larger: rolling.md (R8).
-RailedForce railed_force(const ImuSample& sample, const Eigen::Vector3d& read_m_s2, const Eigen::Vector3d& kept_m_s2) {
+SaturatedForce saturated_force(const ImuSample& sample, const Eigen::Vector3d& read_m_s2, const Eigen::Vector3d& kept_m_s2) {
   int largest = 0;
   sample.specific_force_m_s2.cwiseAbs().maxCoeff(&largest);
   const int flags = sample.device_clip_flags & kClipAccel;
-  RailedForce out{.force_m_s2 = read_m_s2};
+  SaturatedForce out{.force_m_s2 = read_m_s2};
   for (int axis = 0; axis < 3; ++axis) {
     const bool railed = flags != 0 ? (flags & (kClipAccelX << axis)) != 0 : axis == largest;
     if (!railed) continue;
     if (std::copysign(1.0, read_m_s2[axis]) * (kept_m_s2[axis] - read_m_s2[axis]) > 0.0) {
       out.force_m_s2[axis] = kept_m_s2[axis];
     } else {
-      out.least_m_s2[axis] = read_m_s2[axis];
+      out.lower_bound_m_s2[axis] = read_m_s2[axis];
     }
   }
   return out;
@@ -142,7 +142,7 @@ RailedForce railed_force(const ImuSample& sample, const Eigen::Vector3d& read_m_
 }  // namespace
 
 /// See rolling.md (R2) to (R9).
-void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominal& nominal, RollingIntegrals& sums,
+void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominalState& nominal, RollingNodeIntegrals& sums,
                Force known) {
   const ImuSample& sample = reading.mean;
   const double dt_s = reading.length_s;
@@ -161,8 +161,8 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   const double gravity = params.gravity_m_s2;
   const bool beyond = reading.rate_peak_rad_s >= params.gyro_range_rad_s;
   const bool lost = (sample.device_clip_flags & kClipGyro) != 0 ||
-                    (beyond && !(params.expert.rails.recovered_rate_sigma_rad_s > 0.0));
-  const bool has_unknown_rate = lost || beyond || known == Force::unknown;
+                    (beyond && !(params.expert.saturation.recovered_rate_sigma_rad_s > 0.0));
+  const bool has_unknown_rate = lost || beyond || known == Force::force_unknown;
   const bool railed =
       (sample.device_clip_flags & kClipAccel) != 0 || reading.force_peak_m_s2 >= params.accel_range_m_s2;
   const Eigen::Vector3d arm = params.lever_arm_m + nominal.lever_arm_error_m;
@@ -174,20 +174,20 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   const Eigen::Vector3d fallen = dt_s * gravity * Eigen::Vector3d::UnitZ();
   Eigen::Vector3d least = Eigen::Vector3d::Zero();
   if (railed && !has_unknown_rate) {
-    const RailedForce force =
-        railed_force(sample, f, q_mid.conjugate() * ((centre_velocity_change_m_s + fallen) / dt_s));
+    const SaturatedForce force =
+        saturated_force(sample, f, q_mid.conjugate() * ((centre_velocity_change_m_s + fallen) / dt_s));
     f = force.force_m_s2;
-    least = force.least_m_s2;
+    least = force.lower_bound_m_s2;
   }
   const Eigen::Vector3d gained = has_unknown_rate ? centre_velocity_change_m_s : Eigen::Vector3d(R_T * f - fallen);
   nominal.p_WI_m += dt_s * (nominal.v_WI_m_s + 0.5 * gained);
   nominal.v_WI_m_s += gained;
-  sums.rotation_integral_s += R_T;
+  sums.integrated_rotation_s += R_T;
   for (int axis = 0; axis < 3; ++axis) sums.rotation_rate_integral.middleCols<3>(3 * axis) += w_raw[axis] * R_T;
   if (!has_unknown_rate) {  // with an unknown rate, errors of force and attitude do not affect the velocity
-    sums.rotation_integral_used_force_s += R_T;
+    sums.integrated_rotation_with_force_s += R_T;
     sums.force_integral_W_m_s += R_T * f;
-    for (int axis = 0; axis < 3; ++axis) sums.rotation_force_integral.middleCols<3>(3 * axis) += f_raw[axis] * R_T;
+    for (int axis = 0; axis < 3; ++axis) sums.rotation_by_force_integral.middleCols<3>(3 * axis) += f_raw[axis] * R_T;
     sums.rate_cross_force_integral_W += R_T * w.cross(f_raw);
   }
   sums.rate_integral_I_rad += dt_s * w;
@@ -198,34 +198,34 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   sums.unexplained_impact_m_s += dt_s * std::max(0.0, force_minus_gravity_m_s2 - kImuOffset_m * w.squaredNorm());
   const double peak = f_raw.cwiseAbs().maxCoeff() / params.accel_range_m_s2;
   const double hidden = std::clamp((peak - kPartialRangeMin) / (kPartialRangeMax - kPartialRangeMin), 0.0, 1.0);
-  const double share = params.expert.rails.subsample_saturation_ratio;
+  const double share = params.expert.saturation.subsample_saturation_ratio;
   if (railed) {
-    sums.subsample_saturation_W_m_s += share * (R_T * least);
+    sums.partial_saturation_W_m_s += share * (R_T * least);
   } else if (!has_unknown_rate && hidden > 0.0) {
-    sums.subsample_saturation_W_m_s += share * hidden * (R_T * f);
+    sums.partial_saturation_W_m_s += share * hidden * (R_T * f);
   }
   if (railed || has_unknown_rate) sums.force_clipped_s += dt_s;
   if (lost) sums.rate_clipped_s += dt_s;
   if (beyond && !lost) sums.recovered_rate_s += dt_s;
-  sums.node_s += dt_s;
+  sums.node_interval_s += dt_s;
 }
 
-RollingNominal extrapolate_nominal(const RollingParams& params, const ImuAverage& reading,
-                                   const RollingNominal& nominal) {
-  RollingNominal out = nominal;
+RollingNominalState extrapolate_nominal(const RollingParams& params, const ImuAverage& reading,
+                                   const RollingNominalState& nominal) {
+  RollingNominalState out = nominal;
   if (reading.readings == 0) return out;
-  RollingIntegrals unused;
+  RollingNodeIntegrals unused;
   integrate(params, reading, out, unused);
   return out;
 }
 
-int gap_pieces(const RollingParams& params, double gap_s) {
+int gap_step_count(const RollingParams& params, double gap_s) {
   return std::max(1, static_cast<int>(std::lround(gap_s / params.expert.node_s)));
 }
 
-ImuAverage gap_step(const RollingParams& params, const ImuSample& before, const ImuSample& after, double gap_s, int k,
+ImuAverage gap_step_average(const RollingParams& params, const ImuSample& before, const ImuSample& after, double gap_s, int k,
                     GapUncertainty& uncertainty) {
-  const int pieces = gap_pieces(params, gap_s);
+  const int pieces = gap_step_count(params, gap_s);
   const double share = (k + 0.5) / pieces;
   const Eigen::Vector3d change = after.angular_velocity_rad_s - before.angular_velocity_rad_s;
   ImuSample sample = after;
@@ -236,7 +236,7 @@ ImuAverage gap_step(const RollingParams& params, const ImuSample& before, const 
   // A parabolic rate deviation with second derivative a over a data gap T is the rotation a T^3 / 12: rolling.md (R31).
   const double mean_force_tilt_rad =
       acceleration * gap_s * gap_s * gap_s / 12.0 + kGapTimeSigmaRatio * change.norm() * gap_s;
-  uncertainty.rad2 = mean_force_tilt_rad * mean_force_tilt_rad / pieces;
+  uncertainty.rotation_variance_rad2 = mean_force_tilt_rad * mean_force_tilt_rad / pieces;
   uncertainty.rate_variance_rad2_s =
       squared(mean_force_tilt_rad / gap_s) * gap_s;  // rolling.md (R32); common to all pieces, hence a factor gap_s
   uncertainty.speed_variance_m2_s2 =
@@ -247,31 +247,31 @@ ImuAverage gap_step(const RollingParams& params, const ImuSample& before, const 
 }
 
 void integrate_gap(const RollingParams& params, const ImuAverage& piece, const GapUncertainty& uncertainty,
-                   RollingNominal& nominal, RollingIntegrals& sums) {
-  integrate(params, piece, nominal, sums, Force::unknown);
+                   RollingNominalState& nominal, RollingNodeIntegrals& sums) {
+  integrate(params, piece, nominal, sums, Force::force_unknown);
   sums.gap_s += piece.length_s;
-  sums.gap_angle_variance_rad2 += uncertainty.rad2;
+  sums.gap_angle_variance_rad2 += uncertainty.rotation_variance_rad2;
   sums.gap_rate_variance_rad2_s += uncertainty.rate_variance_rad2_s;
   sums.gap_speed_variance_m2_s2 += uncertainty.speed_variance_m2_s2;
 }
 
 /// See rolling.md (R10).
-Moving transition(const RollingIntegrals& sums) {
+Moving transition(const RollingNodeIntegrals& sums) {
   Moving B = Moving::Zero();
-  B.block<3, 3>(kAttitude, kGyroBias) = -sums.rotation_integral_s;
+  B.block<3, 3>(kAttitude, kGyroBias) = -sums.integrated_rotation_s;
   B.block<3, 9>(kAttitude, kGyroScale) = -sums.rotation_rate_integral;
   B.block<3, 3>(kVelocity, kAttitude) = -so3::hat(sums.force_integral_W_m_s);
-  B.block<3, 3>(kVelocity, kAccelBias) = -sums.rotation_integral_used_force_s;
-  B.block<3, 9>(kVelocity, kAccelScale) = -sums.rotation_force_integral;
+  B.block<3, 3>(kVelocity, kAccelBias) = -sums.integrated_rotation_with_force_s;
+  B.block<3, 9>(kVelocity, kAccelScale) = -sums.rotation_by_force_integral;
   B.block<3, 1>(kVelocity, kDelay) = -sums.rate_cross_force_integral_W;
-  B.middleRows<3>(kPosition) = 0.5 * sums.node_s * B.middleRows<3>(kVelocity);
-  B.block<3, 3>(kPosition, kVelocity) += sums.node_s * Eigen::Matrix3d::Identity();
+  B.middleRows<3>(kPosition) = 0.5 * sums.node_interval_s * B.middleRows<3>(kVelocity);
+  B.block<3, 3>(kPosition, kVelocity) += sums.node_interval_s * Eigen::Matrix3d::Identity();
   return B;
 }
 
 /// See rolling.md (R11) to (R14).
-void predict(const RollingParams& params, const RollingIntegrals& sums, const Moving& B, Vector& x, Covariance& P) {
-  const double h = sums.node_s;
+void predict(const RollingParams& params, const RollingNodeIntegrals& sums, const Moving& B, Vector& x, Covariance& P) {
+  const double h = sums.node_interval_s;
   x.head<9>() += (B * x).eval();
   P.topRows<9>() += (B * P).eval();
   P.leftCols<9>() += (P * B.transpose()).eval();
@@ -280,12 +280,12 @@ void predict(const RollingParams& params, const RollingIntegrals& sums, const Mo
       squared(params.expert.noise.attitude_walk_rad_sqrts) * h +
       squared(params.expert.noise.rate_error_sqrts) * sums.squared_rate_integral_rad2_s + sums.gap_angle_variance_rad2 +
       squared(kClippedRateSigma_rad_s * sums.rate_clipped_s) +
-      squared(params.expert.rails.recovered_rate_sigma_rad_s) * 2.0 * kRecoveredTau_s * sums.recovered_rate_s;
+      squared(params.expert.saturation.recovered_rate_sigma_rad_s) * 2.0 * kRecoveredTau_s * sums.recovered_rate_s;
   const double velocity = squared(params.expert.noise.velocity_walk_m_s_sqrts) * h +
                           squared(kImpactSigmaRatio * sums.impact_m_s) +
                           squared(kVelocityWalkPerRate2_sqrts * sums.squared_rate_integral_rad2_s) / h +
                           sums.gap_speed_variance_m2_s2 + squared(kClippedForceSigma_m_s2 * sums.force_clipped_s);
-  P.block<3, 3>(kVelocity, kVelocity) += sums.subsample_saturation_W_m_s * sums.subsample_saturation_W_m_s.transpose();
+  P.block<3, 3>(kVelocity, kVelocity) += sums.partial_saturation_W_m_s * sums.partial_saturation_W_m_s.transpose();
   auto diagonal = P.diagonal();
   diagonal.segment<3>(kAttitude).array() += attitude;
   diagonal.segment<3>(kVelocity).array() += velocity;
@@ -295,81 +295,81 @@ void predict(const RollingParams& params, const RollingIntegrals& sums, const Mo
 }
 
 /// See rolling.md (R15), (R16), (R18).
-Contact contact(const RollingParams& params, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s,
-                const RollingIntegrals& sums) {
+Contact contact(const RollingParams& params, const RollingNominalState& nominal, const Eigen::Vector3d& rate_I_rad_s,
+                const RollingNodeIntegrals& sums) {
   const Eigen::Matrix3d R = nominal.q_WI.toRotationMatrix();
   const Eigen::Vector3d w_W = R * (rate_I_rad_s - nominal.gyro_bias_rad_s - nominal.gyro_scale * rate_I_rad_s);
   const Eigen::Vector3d arm_W = R * (params.lever_arm_m + nominal.lever_arm_error_m);
-  const Eigen::Vector3d n = normal(nominal.slope);
+  const Eigen::Vector3d n = floor_normal(nominal.floor_slope);
   const double r = params.radius_m + nominal.radius_error_m;
   const Eigen::Matrix3d reach = so3::hat(arm_W + r * n);
   Contact out;
   out.contact_velocity_W_m_s = nominal.v_WI_m_s + reach * w_W;
-  out.H.setZero();
-  out.H.middleCols<3>(kVelocity).setIdentity();
+  out.measurement_jacobian.setZero();
+  out.measurement_jacobian.middleCols<3>(kVelocity).setIdentity();
   // An attitude error rotates the rate w and the lever arm, but not the normal of the floor.
-  out.H.middleCols<3>(kAttitude) = so3::hat(w_W.cross(arm_W)) - r * so3::hat(n) * so3::hat(w_W);
-  out.H.middleCols<3>(kGyroBias) = -reach * R;
+  out.measurement_jacobian.middleCols<3>(kAttitude) = so3::hat(w_W.cross(arm_W)) - r * so3::hat(n) * so3::hat(w_W);
+  out.measurement_jacobian.middleCols<3>(kGyroBias) = -reach * R;
   for (int axis = 0; axis < 3; ++axis) {
-    out.H.middleCols<3>(kGyroScale + 3 * axis) = -rate_I_rad_s[axis] * reach * R;
+    out.measurement_jacobian.middleCols<3>(kGyroScale + 3 * axis) = -rate_I_rad_s[axis] * reach * R;
   }
-  out.H.middleCols<3>(kLeverArm) = -so3::hat(w_W) * R;
+  out.measurement_jacobian.middleCols<3>(kLeverArm) = -so3::hat(w_W) * R;
   const Eigen::Matrix3d by_normal = -r * so3::hat(w_W);
-  out.lift_W = by_normal.col(2);
-  out.slope = nominal.slope;
-  out.H.middleCols<2>(kSlope) = by_normal.leftCols<2>() - out.lift_W * nominal.slope.transpose() / n.z();
-  out.H.col(kRadius) = -w_W.cross(n);
+  out.normal_height_derivative_W = by_normal.col(2);
+  out.floor_slope = nominal.floor_slope;
+  out.measurement_jacobian.middleCols<2>(kSlope) = by_normal.leftCols<2>() - out.normal_height_derivative_W * nominal.floor_slope.transpose() / n.z();
+  out.measurement_jacobian.col(kRadius) = -w_W.cross(n);
   out.rolling_speed_m_s = r * w_W.cross(n).norm();
   out.grip_variance =
       squared(params.expert.contact.grip_sigma_m_s) + squared(params.expert.contact.grip_sigma_ratio * r * w_W.norm());
   // A clip flag indicates saturation even if the rate is below the stated range.
   const bool beyond = rate_I_rad_s.cwiseAbs().maxCoeff() >= params.gyro_range_rad_s || sums.recovered_rate_s > 0.0;
-  const bool recovered = params.expert.rails.recovered_rate_sigma_rad_s > 0.0;
+  const bool recovered = params.expert.saturation.recovered_rate_sigma_rad_s > 0.0;
   if (sums.rate_clipped_s > 0.0 || (beyond && !recovered)) {
     out.grip_variance += squared(r * kClippedRateSigma_rad_s);
   } else if (beyond) {
-    out.grip_variance += squared(r * params.expert.rails.recovered_rate_sigma_rad_s);
+    out.grip_variance += squared(r * params.expert.saturation.recovered_rate_sigma_rad_s);
   }
   if (sums.gap_s > 0.0) {
-    out.gap_variance = squared(r) * sums.gap_rate_variance_rad2_s / sums.node_s;  // rolling.md (R32)
-    out.grip_variance += out.gap_variance;
+    out.gap_extra_variance = squared(r) * sums.gap_rate_variance_rad2_s / sums.node_interval_s;  // rolling.md (R32)
+    out.grip_variance += out.gap_extra_variance;
   }
   return out;
 }
 
 /// Returns the variance of a pseudo-measurement of zero velocity, or nothing if the velocity is certain enough:
 /// rolling.md (R20).
-std::optional<double> lost_velocity_variance(double node_s, const Covariance& P) {
+std::optional<double> velocity_variance_if_lost(double node_s, const Covariance& P) {
   if (P(kVelocity, kVelocity) + P(kVelocity + 1, kVelocity + 1) < squared(kUnsureSpeed_m_s)) return std::nullopt;
   return squared(kSpeedSigma_m_s) * kSpeedWindow_s / node_s;
 }
 
-bool resets_slope(RollingMode from, RollingMode to) {
+bool resets_floor_slope(RollingMode from, RollingMode to) {
   return from != to && !may_slip(to);
 }
 
 /// See rolling.md (R21).
 void update_slope_for_mode(const RollingParams& params, RollingMode from, RollingMode to, double h_s,
-                           const RollingNominal& nominal, Vector& x, Covariance& P) {
+                           const RollingNominalState& nominal, Vector& x, Covariance& P) {
   if (from == RollingMode::incline && to == from) {
     P.diagonal().segment<2>(kSlope).array() += squared(kSlopeWalk_sqrts) * h_s;
   }
   // On a rough floor, the path is shorter than radius times rotation, by an unknown amount.
-  if (to == RollingMode::rough) P(kRadius, kRadius) += squared(kRoughRadiusWalk_m_sqrts) * h_s;
-  if (!resets_slope(from, to)) return;
+  if (to == RollingMode::uneven) P(kRadius, kRadius) += squared(kRoughRadiusWalk_m_sqrts) * h_s;
+  if (!resets_floor_slope(from, to)) return;
   P.middleRows<2>(kSlope).setZero();
   P.middleCols<2>(kSlope).setZero();
   const double sigma = to == RollingMode::incline ? params.expert.contact.kSlopeSigma : kLevelSlopeSigma;
   P.diagonal().segment<2>(kSlope).setConstant(squared(sigma));
-  x.segment<2>(kSlope) = -nominal.slope;
+  x.segment<2>(kSlope) = -nominal.floor_slope;
 }
 
 /// See rolling.md (R30).
-bool reset_tilt(const RollingParams& params, const RollingIntegrals& sums, bool at_rest, RollingNominal& nominal,
+bool reset_tilt(const RollingParams& params, const RollingNodeIntegrals& sums, bool at_rest, RollingNominalState& nominal,
                 Covariance& P) {
-  if (sums.force_clipped_s >= sums.node_s) return false;
-  if (sums.squared_rate_integral_rad2_s > squared(kFastRate_rad_s) * sums.node_s) return false;
-  const Eigen::Vector3d f_I_m_s2 = sums.force_integral_I_m_s / sums.node_s;
+  if (sums.force_clipped_s >= sums.node_interval_s) return false;
+  if (sums.squared_rate_integral_rad2_s > squared(kFastRate_rad_s) * sums.node_interval_s) return false;
+  const Eigen::Vector3d f_I_m_s2 = sums.force_integral_I_m_s / sums.node_interval_s;
   const double tilt_variance = std::max(P(kAttitude, kAttitude), P(kAttitude + 1, kAttitude + 1));
   if (tilt_variance < squared(at_rest ? kUncertainTilt_rad : kLostTilt_rad)) return false;
   const double force = f_I_m_s2.norm();
@@ -393,7 +393,7 @@ void update(const Row& row, double measured, double variance, Vector& x, Covaria
 }
 
 void update(int index, double measured, double variance, Vector& x, Covariance& P) {
-  x += component_update(index, measured - x[index], variance, P);
+  x += kalman_update_of_component(index, measured - x[index], variance, P);
 }
 
 }  // namespace tumble::rolling

@@ -29,12 +29,12 @@ inline constexpr double kConstrainAfter_s = 0.1, kConstrainSpeed_m_s = 0.02;
 /// error state.
 struct Contact {
   Eigen::Vector3d contact_velocity_W_m_s;
-  Eigen::Matrix<double, 3, kStates> H;
+  Eigen::Matrix<double, 3, kStates> measurement_jacobian;
   double grip_variance = 0.0;
-  double gap_variance = 0.0;       ///< additional variance due to a gap, in every direction
+  double gap_extra_variance = 0.0;       ///< additional variance due to a gap, in every direction
   double rolling_speed_m_s = 0.0;  ///< speed of the centre if the sphere rolls without slip
-  Eigen::Vector3d lift_W;          ///< derivative of u with respect to the normal's third component
-  Eigen::Vector2d slope;           ///< slope of the floor on the nominal trajectory
+  Eigen::Vector3d normal_height_derivative_W;          ///< derivative of u with respect to the normal's third component
+  Eigen::Vector2d floor_slope;           ///< slope of the floor on the nominal trajectory
 
   /// The contact velocity is linear in the error state `x`, except for the unit length of the normal.
   Eigen::Vector3d velocity(const Vector& x) const;
@@ -46,52 +46,52 @@ Eigen::Vector3d contact_variance(const RollingParams& params, const Contact& c, 
 bool starts_in_motion(const Eigen::Vector3d& rate_I_rad_s);
 
 /// The initial state has a levelled or stated attitude, the centre at the origin, and zero or rolling velocity.
-RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaterniond& q_WI,
+RollingNominalState start_nominal(const RollingParams& params, const Eigen::Quaterniond& q_WI,
                              const Eigen::Vector3d& rate_I_rad_s);
 void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s, Covariance& P);
 
-enum class Force { read, unknown };
+enum class Force { force_measured, force_unknown };
 
-void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominal& nominal, RollingIntegrals& sums,
-               Force known = Force::read);
+void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominalState& nominal, RollingNodeIntegrals& sums,
+               Force known = Force::force_measured);
 
 /// Extrapolates the nominal trajectory by the mean of the unprocessed readings.
-RollingNominal extrapolate_nominal(const RollingParams& params, const ImuAverage& reading,
-                                   const RollingNominal& nominal);
+RollingNominalState extrapolate_nominal(const RollingParams& params, const ImuAverage& reading,
+                                   const RollingNominalState& nominal);
 
-int gap_pieces(const RollingParams& params, double gap_s);
+int gap_step_count(const RollingParams& params, double gap_s);
 
 struct GapUncertainty {
-  double rad2 = 0.0, rate_variance_rad2_s = 0.0, speed_variance_m2_s2 = 0.0;
+  double rotation_variance_rad2 = 0.0, rate_variance_rad2_s = 0.0, speed_variance_m2_s2 = 0.0;
 };
-ImuAverage gap_step(const RollingParams& params, const ImuSample& before, const ImuSample& after, double gap_s, int k,
+ImuAverage gap_step_average(const RollingParams& params, const ImuSample& before, const ImuSample& after, double gap_s, int k,
                     GapUncertainty& uncertainty);
 
 void integrate_gap(const RollingParams& params, const ImuAverage& piece, const GapUncertainty& uncertainty,
-                   RollingNominal& nominal, RollingIntegrals& sums);
+                   RollingNominalState& nominal, RollingNodeIntegrals& sums);
 
 /// Returns the matrix B: over a node, errors of attitude, velocity and position increase by B times the error state.
-Moving transition(const RollingIntegrals& sums);
-void predict(const RollingParams& params, const RollingIntegrals& sums, const Moving& B, Vector& x, Covariance& P);
+Moving transition(const RollingNodeIntegrals& sums);
+void predict(const RollingParams& params, const RollingNodeIntegrals& sums, const Moving& B, Vector& x, Covariance& P);
 
 /// `rate_I_rad_s` is the gyro reading at the node, without correction. A gap in the node increases the variance of the
 /// contact velocity.
-Contact contact(const RollingParams& params, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s,
-                const RollingIntegrals& sums);
+Contact contact(const RollingParams& params, const RollingNominalState& nominal, const Eigen::Vector3d& rate_I_rad_s,
+                const RollingNodeIntegrals& sums);
 
 /// In the mode `incline`, the slope of the floor is a random walk. A change to a mode with resting contact point resets
 /// the slope.
 void update_slope_for_mode(const RollingParams& params, RollingMode from, RollingMode to, double h_s,
-                           const RollingNominal& nominal, Vector& x, Covariance& P);
+                           const RollingNominalState& nominal, Vector& x, Covariance& P);
 
 /// Returns the variance of a pseudo-measurement of zero velocity, or nothing if the velocity is certain enough.
-std::optional<double> lost_velocity_variance(double node_s, const Covariance& P);
+std::optional<double> velocity_variance_if_lost(double node_s, const Covariance& P);
 
-bool resets_slope(RollingMode from, RollingMode to);
+bool resets_floor_slope(RollingMode from, RollingMode to);
 
 /// Aligns an uncertain tilt with the mean specific force of the node, and resets the velocity. Returns false without a
 /// reset if the tilt is certain enough, or if the specific force is unusable.
-bool reset_tilt(const RollingParams& params, const RollingIntegrals& sums, bool at_rest, RollingNominal& nominal,
+bool reset_tilt(const RollingParams& params, const RollingNodeIntegrals& sums, bool at_rest, RollingNominalState& nominal,
                 Covariance& P);
 
 /// Applies a Kalman update with the scalar measurement `measured` = row x + noise.
@@ -100,9 +100,9 @@ void update(const Row& row, double measured, double variance, Vector& x, Covaria
 void update(int index, double measured, double variance, Vector& x, Covariance& P);
 
 /// Returns the calibration constants of a nominal state, in the order of rolling.md (R1).
-Eigen::Matrix<double, RollingCalibration::kSize, 1> constants_of(const RollingNominal& nominal);
+Eigen::Matrix<double, RollingCalibration::kSize, 1> constants_of(const RollingNominalState& nominal);
 
 /// Adds the estimated error `x` to the nominal trajectory and constants.
-void move_linearisation_point(const Vector& x, RollingNominal& nominal);
+void move_linearisation_point(const Vector& x, RollingNominalState& nominal);
 
 }  // namespace tumble::rolling

@@ -4,16 +4,16 @@
 
 namespace tumble::rolling {
 
-Eigen::Matrix<double, RollingCalibration::kSize, 1> constants_of(const RollingNominal& nominal) {
+Eigen::Matrix<double, RollingCalibration::kSize, 1> constants_of(const RollingNominalState& nominal) {
   Eigen::Matrix<double, RollingCalibration::kSize, 1> out;
   out << nominal.gyro_bias_rad_s, nominal.accel_bias_m_s2, nominal.accel_scale.reshaped(),
-      nominal.gyro_scale.reshaped(), nominal.accel_delay_s, nominal.lever_arm_error_m, nominal.slope,
+      nominal.gyro_scale.reshaped(), nominal.accel_delay_s, nominal.lever_arm_error_m, nominal.floor_slope,
       nominal.radius_error_m;
   return out;
 }
 
 /// See rolling.md (R1).
-void move_linearisation_point(const Vector& x, RollingNominal& nominal) {
+void move_linearisation_point(const Vector& x, RollingNominalState& nominal) {
   nominal.q_WI = (so3::exp(x.segment<3>(kAttitude)) * nominal.q_WI).normalized();
   nominal.v_WI_m_s += x.segment<3>(kVelocity);
   nominal.p_WI_m += x.segment<3>(kPosition);
@@ -23,7 +23,7 @@ void move_linearisation_point(const Vector& x, RollingNominal& nominal) {
   nominal.gyro_scale += Eigen::Map<const Eigen::Matrix3d>(x.data() + kGyroScale);
   nominal.accel_delay_s += x[kDelay];
   nominal.lever_arm_error_m += x.segment<3>(kLeverArm);
-  nominal.slope += x.segment<2>(kSlope);
+  nominal.floor_slope += x.segment<2>(kSlope);
   nominal.radius_error_m += x[kRadius];
 }
 

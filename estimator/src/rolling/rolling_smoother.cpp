@@ -24,7 +24,7 @@ RollingParams scale_noise(RollingParams params, double share) {
   return params;
 }
 
-RollingMode less_constrained(RollingMode a, RollingMode b) {
+RollingMode less_constrained_mode(RollingMode a, RollingMode b) {
   const auto rank = [](RollingMode mode) {
     if (may_slip(mode)) return mode == RollingMode::bump ? 3 : 2;
     return mode == RollingMode::grip ? 0 : 1;
@@ -38,12 +38,12 @@ bool equal(const ImuSample& a, const ImuSample& b) {
 }
 
 /// Returns the factor from the variance of the final pass, which uses reduced noise, to the reported variance.
-double stated(const RollingSmoother::Params& params) {
+double stated_distance_sigma(const RollingSmoother::Params& params) {
   return 1.0 / (params.kFinalPassNoiseRatio * params.kFinalPassNoiseRatio);
 }
 
-rolling::Readings::Cursor start_cursor(const ImuSample& sample) {
-  rolling::Readings::Cursor cursor;
+rolling::RollingReadings::Cursor start_cursor(const ImuSample& sample) {
+  rolling::RollingReadings::Cursor cursor;
   cursor.time_ns = sample.time_ns;
   cursor.last_rate_rad_s = sample.angular_velocity_rad_s;
   cursor.next = 1;
@@ -51,73 +51,73 @@ rolling::Readings::Cursor start_cursor(const ImuSample& sample) {
 }
 
 /// See rolling.md (R40).
-Eigen::Matrix<double, 6, 6> pose_covariance(const rolling::NodeRecord& node, const Eigen::Vector3d& arm_W) {
+Eigen::Matrix<double, 6, 6> pose_covariance(const rolling::FilterNodeRecord& node, const Eigen::Vector3d& arm_W) {
   Eigen::Matrix<double, 6, rolling::kReported> J = Eigen::Matrix<double, 6, rolling::kReported>::Zero();
   J.block<3, 3>(0, 0) = so3::hat(arm_W);
   J.block<3, 3>(0, 6).setIdentity();
   J.block<3, 3>(0, 9) = -node.nominal.q_WI.toRotationMatrix();
   J.block<3, 3>(3, 0).setIdentity();
-  return J * node.smoothed_P * J.transpose();
+  return J * node.smoothed_covariance * J.transpose();
 }
 
 /// While the sphere is at rest, the reported position remains constant.
-void constrain_position(const rolling::PathNode& node, RollingSmoother::FinalPassState& committed,
+void constrain_position(const rolling::ModePathNode& node, RollingSmoother::FinalSmoothingState& committed,
                         RollingEstimate& estimate) {
-  const bool stands = node.stands && !may_slip(node.mode) && estimate.v_WG_m_s.norm() < rolling::kConstrainSpeed_m_s;
-  if (stands && !committed.position_constrained) committed.constrained_p_WG_m = estimate.p_WG_m;
-  if (stands) estimate.p_WG_m = committed.constrained_p_WG_m;
+  const bool stands = node.holds_constant_position && !may_slip(node.mode) && estimate.sphere_velocity_W_m_s.norm() < rolling::kConstrainSpeed_m_s;
+  if (stands && !committed.position_constrained) committed.constrained_sphere_centre_W_m = estimate.sphere_centre_W_m;
+  if (stands) estimate.sphere_centre_W_m = committed.constrained_sphere_centre_W_m;
   committed.position_constrained = stands;
 }
 
-RollingSmoother::EstimateCallback appending(std::vector<RollingEstimate>& out) {
+RollingSmoother::EstimateCallback append_estimates_to(std::vector<RollingEstimate>& out) {
   return [&out](const RollingEstimate& estimate) { out.push_back(estimate); };
 }
 
 /// The final pass starts at the last node whose estimates were reported, or at the first sample.
 void start_window(const RollingParams& filter, const RollingParams& path, const RollingSmoother::State& state,
-                  rolling::LastPass::Checkpoint& start) {
-  const RollingSmoother::FinalPassState& last = state.committed;
+                  rolling::FinalSmoothingPass::Checkpoint& start) {
+  const RollingSmoother::FinalSmoothingState& last = state.committed_state;
   start.filter.mode = last.mode;
   if (last.started) {
     start.filter.nominal = last.nominal;
-    start.filter.P = last.P;
-    start.reading = {last.last_time_ns, last.last_rate_rad_s, 0, last.gap_rate_rad_s, last.gap_start_ns, last.gap_step};
+    start.filter.covariance = last.covariance;
+    start.reading = {last.last_time_ns, last.last_rate_rad_s, 0, last.rate_before_gap_rad_s, last.gap_start_ns, last.gap_step_index};
     return;
   }
   const ImuSample& sample = state.samples[0];
   Eigen::Quaterniond q_WI = filter.q_WI_start.value_or(Eigen::Quaterniond::Identity());
-  // The filter has already levelled with the force of this sample, so level() cannot fail.
-  if (!filter.q_WI_start) (void)level(sample.specific_force_m_s2, q_WI);
+  // The filter has already levelled with the force of this sample, so inclination_from_force() cannot fail.
+  if (!filter.q_WI_start) (void)inclination_from_force(sample.specific_force_m_s2, q_WI);
   start.filter.nominal = rolling::start_nominal(path, q_WI, sample.angular_velocity_rad_s);
-  rolling::set_prior(path, sample.angular_velocity_rad_s, start.filter.P);
+  rolling::set_prior(path, sample.angular_velocity_rad_s, start.filter.covariance);
   start.reading = start_cursor(sample);
 }
 
-struct Events {
+struct SlipAndBumpEvents {
   std::vector<bool> uncertain;
-  double committed_variance_m2 = 0.0;  ///< event_start_variance_m2 (see FinalPassState) after the node `emitted`
+  double committed_position_variance_m2 = 0.0;  ///< slip_start_variance_m2 (see FinalSmoothingState) after the node `emitted`
 };
 
-Events find_events(const RollingSmoother::Params& params, std::span<const rolling::PathNode> path,
+SlipAndBumpEvents find_slip_and_bump_events(const RollingSmoother::Params& params, std::span<const rolling::ModePathNode> path,
                    std::span<const double> horizontal_variance_m2, std::size_t emitted,
-                   const RollingSmoother::FinalPassState& committed) {
+                   const RollingSmoother::FinalSmoothingState& committed) {
   const std::size_t count = horizontal_variance_m2.size();
-  Events out;
+  SlipAndBumpEvents out;
   out.uncertain.resize(count, false);
-  double before_m2 = committed.event_start_variance_m2;
+  double before_m2 = committed.slip_start_variance_m2;
   for (std::size_t a = 0; a < count;) {
     if (!may_slip(path[a].mode)) {
-      before_m2 = stated(params) * horizontal_variance_m2[a];
-      if (a + 1 == emitted) out.committed_variance_m2 = before_m2;
+      before_m2 = stated_distance_sigma(params) * horizontal_variance_m2[a];
+      if (a + 1 == emitted) out.committed_position_variance_m2 = before_m2;
       ++a;
       continue;
     }
     std::size_t b = a;
     while (b < count && may_slip(path[b].mode)) {
-      if (b + 1 == emitted) out.committed_variance_m2 = before_m2;
+      if (b + 1 == emitted) out.committed_position_variance_m2 = before_m2;
       ++b;
     }
-    const double after_m2 = stated(params) * horizontal_variance_m2[std::min(b, count - 1)];
+    const double after_m2 = stated_distance_sigma(params) * horizontal_variance_m2[std::min(b, count - 1)];
     const bool grew = after_m2 - before_m2 >
                       params.filter.expert.modes.event_sigma_growth_m * params.filter.expert.modes.event_sigma_growth_m;
     for (std::size_t n = a; n < b; ++n) out.uncertain[n] = grew;
@@ -126,44 +126,44 @@ Events find_events(const RollingSmoother::Params& params, std::span<const rollin
   return out;
 }
 
-RollingEstimate estimate_at(const RollingSmoother::Params& params, const rolling::LastPass::Smoothed& at) {
-  const rolling::SamplePoint& point = at.point;
+RollingEstimate estimate_at(const RollingSmoother::Params& params, const rolling::FinalSmoothingPass::Smoothed& at) {
+  const rolling::SampleMotion& point = at.point;
   RollingEstimate estimate;
   estimate.time_ns = point.time_ns;
-  estimate.q_WI = (so3::exp(at.error.head<3>()) * point.q_WI).normalized();
+  estimate.q_WI = (so3::exp(at.smoothed_error.head<3>()) * point.q_WI).normalized();
   const Eigen::Vector3d arm_W =
-      estimate.q_WI * (params.filter.lever_arm_m + at.nominal.lever_arm_error_m + at.error.tail<3>());
+      estimate.q_WI * (params.filter.lever_arm_m + at.nominal.lever_arm_error_m + at.smoothed_error.tail<3>());
   estimate.w_WI_I_rad_s = point.rate_I_rad_s - at.nominal.gyro_bias_rad_s;
   const Eigen::Vector3d w_W = estimate.q_WI * estimate.w_WI_I_rad_s;
-  estimate.p_WG_m = point.p_WI_m + at.error.segment<3>(6) - arm_W;
-  estimate.v_WG_m_s = point.v_WI_m_s + at.error.segment<3>(3) - w_W.cross(arm_W);
+  estimate.sphere_centre_W_m = point.p_WI_m + at.smoothed_error.segment<3>(6) - arm_W;
+  estimate.sphere_velocity_W_m_s = point.v_WI_m_s + at.smoothed_error.segment<3>(3) - w_W.cross(arm_W);
   if (at.node == nullptr) return estimate;
-  estimate.covariance = stated(params) * pose_covariance(*at.node, arm_W);
+  estimate.covariance = stated_distance_sigma(params) * pose_covariance(*at.node, arm_W);
   estimate.velocity_covariance_I_m2_s2 =
-      stated(params) * rolling::velocity_covariance_I(at.node->nominal, estimate.w_WI_I_rad_s, at.node->smoothed_P);
-  estimate.mode = at.node->path.mode;
-  estimate.at_rest = at.node->path.at_rest;
+      stated_distance_sigma(params) * rolling::velocity_covariance_I(at.node->nominal, estimate.w_WI_I_rad_s, at.node->smoothed_covariance);
+  estimate.mode = at.node->mode_path_node.mode;
+  estimate.at_rest = at.node->mode_path_node.at_rest;
   return estimate;
 }
 
 }  // namespace
 
-struct RollingSmoother::Path {
-  std::vector<rolling::PathNode> nodes;
+struct RollingSmoother::MostProbableModePath {
+  std::vector<rolling::ModePathNode> nodes;
 };
 
 bool RollingSmoother::State::operator==(const State& other) const {
-  return live == other.live && committed == other.committed && steps == other.steps && constants == other.constants &&
+  return live_filter == other.live_filter && committed_state == other.committed_state && node_modes == other.node_modes && constants == other.constants &&
          radius_sigma_m == other.radius_sigma_m &&
          std::equal(samples.begin(), samples.end(), other.samples.begin(), other.samples.end(), equal);
 }
 
 RollingSmoother::RollingSmoother(const Params& p) : params_(p), filter_(p.filter) {
   require_valid_fields(p);
-  require_within("lag_s", p.lag_s, p.filter.expert.node_s, kWholeRun);
-  final_pass_params_ = scale_noise(p.filter, p.kFinalPassNoiseRatio);
+  require_in_interval("lag_s", p.lag_s, p.filter.expert.node_s, kWholeRecordingLag);
+  final_smoothing_params_ = scale_noise(p.filter, p.kFinalPassNoiseRatio);
   lag_nodes_ = static_cast<std::size_t>(std::ceil(p.lag_s / p.filter.expert.node_s - 1e-9));
-  block_nodes_ = static_cast<std::size_t>(std::ceil(p.kBlock_s / p.filter.expert.node_s - 1e-9));
+  nodes_per_block_ = static_cast<std::size_t>(std::ceil(p.kBlock_s / p.filter.expert.node_s - 1e-9));
 }
 
 std::size_t RollingSmoother::preallocated_samples() const {
@@ -171,75 +171,75 @@ std::size_t RollingSmoother::preallocated_samples() const {
 }
 
 Status RollingSmoother::step(const ImuSample& sample, State& state, std::vector<RollingEstimate>& out) const {
-  if (!state.live.started && params_.lag_s < kWholeRun) {
-    state.steps.reserve(std::min(lag_nodes_ + block_nodes_ + 1, kPreallocatedMax));
+  if (!state.live_filter.started && params_.lag_s < kWholeRecordingLag) {
+    state.node_modes.reserve(std::min(lag_nodes_ + nodes_per_block_ + 1, kPreallocatedMax));
     state.samples.reserve(std::min(preallocated_samples(), kPreallocatedMax));
   }
-  const auto closed = [&steps = state.steps](const RollingFilter::State& live) {
+  const auto closed = [&steps = state.node_modes](const RollingFilter::State& live) {
     NodeModes step;
     for (std::size_t k = 0; k < RollingFilter::kHypotheses; ++k) {
       step.parent[k] = static_cast<std::uint8_t>(live.hypotheses[k].parent);
       step.mode[k] = live.hypotheses[k].mode;
     }
-    step.position_spread_m2 = live.pruned_position_spread_m2;
-    step.rest_s = seconds(live.rest.within_bias_since_ns);
+    step.position_spread_m2 = live.pruned_position_covariance_m2;
+    step.rest_s = seconds(live.stationary_state.small_rate_since_ns);
     step.at_rest = live.at_rest;
     step.spins_in_place = live.spins_in_place;
     steps.push_back(step);
   };
-  const std::size_t nodes = state.steps.size();
-  if (const Status bad = filter_.step(sample, state.live, closed); !bad.ok()) return bad;
+  const std::size_t nodes = state.node_modes.size();
+  if (const Status bad = filter_.step(sample, state.live_filter, closed); !bad.ok()) return bad;
   state.samples.push_back(sample);
-  const EstimateCallback append = appending(out);
-  while (state.steps.size() > nodes && state.steps.size() >= lag_nodes_ + block_nodes_) {
-    const std::size_t before = state.steps.size();
-    smooth_window(most_probable_path(state), block_nodes_, state, append);
-    if (state.steps.size() == before) break;
+  const EstimateCallback append = append_estimates_to(out);
+  while (state.node_modes.size() > nodes && state.node_modes.size() >= lag_nodes_ + nodes_per_block_) {
+    const std::size_t before = state.node_modes.size();
+    smooth_window(most_probable_path(state), nodes_per_block_, state, append);
+    if (state.node_modes.size() == before) break;
   }
   return {};
 }
 
 void RollingSmoother::finish(State& state, const EstimateCallback& take) const {
-  smooth_window(most_probable_path(state), state.steps.size() + 1, state, take);
+  smooth_window(most_probable_path(state), state.node_modes.size() + 1, state, take);
 }
 
 void RollingSmoother::finish(State& state, std::vector<RollingEstimate>& out) const {
-  finish(state, appending(out));
+  finish(state, append_estimates_to(out));
 }
 
 void RollingSmoother::finish(std::span<const RollingMode> known, State& state, const EstimateCallback& take) const {
-  Path path = most_probable_path(state);
+  MostProbableModePath path = most_probable_path(state);
   if (state.samples.empty()) return;
   std::size_t n = 0;
   double node_s = 0.0;
   RollingMode mode = RollingMode::grip;
-  rolling::Readings readings(params_.filter, state.samples, start_cursor(state.samples.front()));
-  rolling::Reading reading;
-  while (readings.next(reading) && reading.whole && n < path.nodes.size()) {
+  rolling::RollingReadings readings(params_.filter, state.samples, start_cursor(state.samples.front()));
+  rolling::RollingReading reading;
+  while (readings.next(reading) && reading.is_whole && n < path.nodes.size()) {
     if (node_s >= params_.filter.expert.node_s - 0.5 * reading.average.length_s) {
-      path.nodes[n++].mode = less_constrained(mode, known[std::min(reading.first, known.size() - 1)]);
+      path.nodes[n++].mode = less_constrained_mode(mode, known[std::min(reading.first, known.size() - 1)]);
       mode = RollingMode::grip;
       node_s = 0.0;
     }
     for (std::size_t k = reading.first; k < std::min(reading.end, known.size()); ++k)
-      mode = less_constrained(mode, known[k]);
+      mode = less_constrained_mode(mode, known[k]);
     node_s += reading.average.length_s;
   }
   smooth_window(path, path.nodes.size() + 1, state, take);
 }
 
 /// Returns the contact modes of the most probable hypothesis, back to the last node whose estimates were reported.
-RollingSmoother::Path RollingSmoother::most_probable_path(const State& state) const {
-  Path path;
-  path.nodes.resize(state.steps.size());
-  const double constrain_after_s = std::min(rolling::kConstrainAfter_s, params_.filter.expert.rest.rest_s);
+RollingSmoother::MostProbableModePath RollingSmoother::most_probable_path(const State& state) const {
+  MostProbableModePath path;
+  path.nodes.resize(state.node_modes.size());
+  const double constrain_after_s = std::min(rolling::kConstrainAfter_s, params_.filter.expert.rest_detector.rest_s);
   std::size_t which = 0;
   double lasts_s = 0.0;  // duration of the rest that contains the node
   for (std::size_t n = path.nodes.size(); n-- > 0;) {
-    const NodeModes& step = state.steps[n];
-    rolling::PathNode& node = path.nodes[n];
+    const NodeModes& step = state.node_modes[n];
+    rolling::ModePathNode& node = path.nodes[n];
     lasts_s = step.rest_s > 0.0 ? std::max(lasts_s, step.rest_s) : 0.0;
-    node.stands = lasts_s > 0.0 && lasts_s >= constrain_after_s;
+    node.holds_constant_position = lasts_s > 0.0 && lasts_s >= constrain_after_s;
     node.mode = step.mode[which];
     node.at_rest = step.at_rest;
     node.spins_in_place = step.spins_in_place;
@@ -249,50 +249,50 @@ RollingSmoother::Path RollingSmoother::most_probable_path(const State& state) co
   return path;
 }
 
-void RollingSmoother::smooth_window(const Path& path, std::size_t emitted, State& state,
+void RollingSmoother::smooth_window(const MostProbableModePath& path, std::size_t emitted, State& state,
                                     const EstimateCallback& take) const {
   if (state.samples.empty()) return;
-  std::optional<rolling::LastPass::Distance> distance;
+  std::optional<rolling::FinalSmoothingPass::Distance> distance;
   if (emitted > path.nodes.size() && params_.known_distance_m > 0.0) {
     distance = {params_.known_distance_m, params_.known_distance_sigma_m};
   }
-  const auto owned_pass = std::make_unique<rolling::LastPass>(final_pass_params_, state.samples, path.nodes, distance);
-  rolling::LastPass& pass = *owned_pass;
-  const auto start = std::make_unique<rolling::LastPass::Checkpoint>();
-  start_window(params_.filter, final_pass_params_, state, *start);
-  pass.run(*start, emitted);
-  state.constants = pass.end().nominal;
-  state.radius_sigma_m = std::sqrt(std::max(0.0, pass.end().P(rolling::kRadius, rolling::kRadius)));
+  const auto owned_pass = std::make_unique<rolling::FinalSmoothingPass>(final_smoothing_params_, state.samples, path.nodes, distance);
+  rolling::FinalSmoothingPass& pass = *owned_pass;
+  const auto start = std::make_unique<rolling::FinalSmoothingPass::Checkpoint>();
+  start_window(params_.filter, final_smoothing_params_, state, *start);
+  pass.run_to_cut(*start, emitted);
+  state.constants = pass.end_filter().nominal;
+  state.radius_sigma_m = std::sqrt(std::max(0.0, pass.end_filter().covariance(rolling::kRadius, rolling::kRadius)));
 
-  const Events events = find_events(params_, path.nodes, pass.horizontal_variance_m2(), emitted, state.committed);
-  pass.give(emitted, [&](const rolling::LastPass::Smoothed& at) {
+  const SlipAndBumpEvents events = find_slip_and_bump_events(params_, path.nodes, pass.horizontal_variance_m2(), emitted, state.committed_state);
+  pass.report_smoothed(emitted, [&](const rolling::FinalSmoothingPass::Smoothed& at) {
     RollingEstimate estimate = estimate_at(params_, at);
     if (at.node != nullptr) {
       estimate.uncertain = events.uncertain[at.index];
-      if (params_.lag_s < kWholeRun) constrain_position(at.node->path, state.committed, estimate);
+      if (params_.lag_s < kWholeRecordingLag) constrain_position(at.node->mode_path_node, state.committed_state, estimate);
     }
     take(estimate);
   });
 
   if (emitted <= pass.nodes()) {
-    const auto& [filter, cursor] = pass.cut();
-    FinalPassState& last = state.committed;  // the constant position of the last reported node remains
+    const auto& [filter, cursor] = pass.cut_checkpoint();
+    FinalSmoothingState& last = state.committed_state;  // the constant position of the last reported node remains
     last.nominal = filter.nominal;
-    last.P = filter.P;
+    last.covariance = filter.covariance;
     last.mode = filter.mode;
-    last.event_start_variance_m2 = events.committed_variance_m2;
+    last.slip_start_variance_m2 = events.committed_position_variance_m2;
     last.last_time_ns = cursor.time_ns;
     last.last_rate_rad_s = cursor.last_rate_rad_s;
-    last.gap_rate_rad_s = cursor.gap_rate_rad_s;
+    last.rate_before_gap_rad_s = cursor.rate_before_gap_rad_s;
     last.gap_start_ns = cursor.gap_start_ns;
-    last.gap_step = cursor.gap_step;
+    last.gap_step_index = cursor.gap_step_index;
     last.started = true;
     state.samples.erase(state.samples.begin(), state.samples.begin() + static_cast<std::ptrdiff_t>(cursor.next));
-    state.steps.erase(state.steps.begin(), state.steps.begin() + static_cast<std::ptrdiff_t>(emitted));
+    state.node_modes.erase(state.node_modes.begin(), state.node_modes.begin() + static_cast<std::ptrdiff_t>(emitted));
   } else {
-    state.committed.gap_step = 0;  // the gap has ended
+    state.committed_state.gap_step_index = 0;  // the gap has ended
     state.samples.clear();
-    state.steps.clear();
+    state.node_modes.clear();
   }
 }
 

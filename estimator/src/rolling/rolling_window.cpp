@@ -17,10 +17,10 @@ constexpr double kNoDirection_m = 0.05;  // minimum distance of two positions wh
 
 /// A residual beyond kMaxSigmas standard deviations has less weight, because a large linear correction would distort
 /// the whole run: rolling.md (R37).
-void measure(const Row& H, double measured, double variance, NodeRecord& record, Vector& x, Covariance& P) {
-  const auto k = static_cast<std::size_t>(record.rows++);
+void update_with_measurement(const Row& H, double measured, double variance, FilterNodeRecord& record, Vector& x, Covariance& P) {
+  const auto k = static_cast<std::size_t>(record.measurement_count++);
   const Vector PHt = P * H.transpose();
-  record.H[k] = H;
+  record.measurement_rows[k] = H;
   record.innovation[k] = measured - H.dot(x);
   record.variance[k] = std::max(H.dot(PHt) + variance, squared(record.innovation[k] / kMaxSigmas));
   record.gain[k] = PHt / record.variance[k];
@@ -28,11 +28,11 @@ void measure(const Row& H, double measured, double variance, NodeRecord& record,
   P.noalias() -= PHt * record.gain[k].transpose();
 }
 
-void measure(int index, double measured, double variance, NodeRecord& record, Vector& x, Covariance& P) {
-  measure(Row(Vector::Unit(index).transpose()), measured, variance, record, x, P);
+void update_with_measurement(int index, double measured, double variance, FilterNodeRecord& record, Vector& x, Covariance& P) {
+  update_with_measurement(Row(Vector::Unit(index).transpose()), measured, variance, record, x, P);
 }
 
-Reported reported(const Vector& x) {
+Reported reported_errors(const Vector& x) {
   Reported out;
   out << x.head<9>(), x.segment<3>(kLeverArm);
   return out;
@@ -41,26 +41,26 @@ Reported reported(const Vector& x) {
 /// See rolling.md (R36).
 void transform_adjoint(const Vector& turned, Adjoint& adjoint) {
   constexpr int kHeading = kAttitude + 2;
-  adjoint.lambda[kHeading] += turned.dot(adjoint.lambda);
-  adjoint.Lambda.row(kHeading) += (turned.transpose() * adjoint.Lambda).eval();
-  adjoint.Lambda.col(kHeading) += (adjoint.Lambda * turned).eval();
+  adjoint.adjoint_vector[kHeading] += turned.dot(adjoint.adjoint_vector);
+  adjoint.adjoint_matrix.row(kHeading) += (turned.transpose() * adjoint.adjoint_matrix).eval();
+  adjoint.adjoint_matrix.col(kHeading) += (adjoint.adjoint_matrix * turned).eval();
 }
 
 }  // namespace
 
-bool Readings::next_piece(double gap_s, Reading& out) {
+bool RollingReadings::next_gap_step(double gap_s, RollingReading& out) {
   const ImuSample& after = samples_[cursor_.next];
   ImuSample before;
-  before.angular_velocity_rad_s = cursor_.gap_rate_rad_s;
-  const int pieces = gap_pieces(params_, gap_s);
-  out.average = gap_step(params_, before, after, gap_s, cursor_.gap_step, out.uncertainty);
+  before.angular_velocity_rad_s = cursor_.rate_before_gap_rad_s;
+  const int pieces = gap_step_count(params_, gap_s);
+  out.average = gap_step_average(params_, before, after, gap_s, cursor_.gap_step_index, out.uncertainty);
   out.in_gap = true;
-  ++cursor_.gap_step;
-  const bool last = cursor_.gap_step == pieces;
-  const double share = static_cast<double>(cursor_.gap_step) / pieces;
+  ++cursor_.gap_step_index;
+  const bool last = cursor_.gap_step_index == pieces;
+  const double share = static_cast<double>(cursor_.gap_step_index) / pieces;
   out.end_ns = last ? after.time_ns : cursor_.gap_start_ns + static_cast<TimeNs>(share * gap_s * 1e9);
   if (last) {
-    cursor_.gap_step = 0;
+    cursor_.gap_step_index = 0;
     out.end = ++cursor_.next;
   }
   cursor_.time_ns = out.end_ns;
@@ -68,24 +68,24 @@ bool Readings::next_piece(double gap_s, Reading& out) {
   return true;
 }
 
-bool Readings::next(Reading& out) {
+bool RollingReadings::next(RollingReading& out) {
   out = {};
   out.first = out.end = cursor_.next;
   if (cursor_.next >= samples_.size()) return false;
-  if (cursor_.gap_step > 0) return next_piece(seconds(samples_[cursor_.next].time_ns - cursor_.gap_start_ns), out);
+  if (cursor_.gap_step_index > 0) return next_gap_step(seconds(samples_[cursor_.next].time_ns - cursor_.gap_start_ns), out);
   TimeNs last_ns = cursor_.time_ns;
   for (; out.end < samples_.size(); ++out.end) {
     const ImuSample& sample = samples_[out.end];
     const double dt_s = seconds(sample.time_ns - last_ns);
     if (dt_s > params_.expert.gap.kGapMinDuration_s) {
       if (out.average.readings > 0) break;
-      cursor_.gap_rate_rad_s = cursor_.last_rate_rad_s;
+      cursor_.rate_before_gap_rad_s = cursor_.last_rate_rad_s;
       cursor_.gap_start_ns = last_ns;
-      return next_piece(dt_s, out);
+      return next_gap_step(dt_s, out);
     }
     out.average.add(sample, dt_s);
     last_ns = sample.time_ns;
-    out.whole = out.average.full(params_.expert.reading_s, dt_s) || out.end + 1 < samples_.size();
+    out.is_whole = out.average.full(params_.expert.reading_s, dt_s) || out.end + 1 < samples_.size();
     if (out.average.full(params_.expert.reading_s, dt_s)) {
       ++out.end;
       break;
@@ -109,7 +109,7 @@ Eigen::Matrix<double, kReported, kReported> reported_covariance(const Eigen::Mat
   return out;
 }
 
-Eigen::Matrix3d velocity_covariance_I(const RollingNominal& nominal, const Eigen::Vector3d& w_WI_I_rad_s,
+Eigen::Matrix3d velocity_covariance_I(const RollingNominalState& nominal, const Eigen::Vector3d& w_WI_I_rad_s,
                                       const Eigen::Matrix<double, kReported, kReported>& reported) {
   const Eigen::Matrix3d R_IW = nominal.q_WI.toRotationMatrix().transpose();
   Eigen::Matrix<double, 3, kReported> J;
@@ -117,48 +117,48 @@ Eigen::Matrix3d velocity_covariance_I(const RollingNominal& nominal, const Eigen
   return J * reported * J.transpose();
 }
 
-void complete_node(const RollingParams& params, const RollingIntegrals& sums, const Eigen::Vector3d& rate_I_rad_s,
-                   const PathNode& path, PathFilter& filter, NodeRecord& record) {
-  record.path = path;
-  record.B = transition(sums);
+void complete_filter_node(const RollingParams& params, const RollingNodeIntegrals& sums, const Eigen::Vector3d& rate_I_rad_s,
+                   const ModePathNode& path, ModePathFilter& filter, FilterNodeRecord& record) {
+  record.mode_path_node = path;
+  record.moving_jacobian = transition(sums);
   Vector x = Vector::Zero();
-  predict(params, sums, record.B, x, filter.P);
-  record.tilt_reset = reset_tilt(params, sums, path.at_rest, filter.nominal, filter.P);
-  record.resets_slope = resets_slope(filter.mode, path.mode);
-  update_slope_for_mode(params, filter.mode, path.mode, sums.node_s, filter.nominal, x, filter.P);
-  record.heading_lost = heading_lost(filter.P);
+  predict(params, sums, record.moving_jacobian, x, filter.covariance);
+  record.tilt_reset = reset_tilt(params, sums, path.at_rest, filter.nominal, filter.covariance);
+  record.resets_floor_slope = resets_floor_slope(filter.mode, path.mode);
+  update_slope_for_mode(params, filter.mode, path.mode, sums.node_interval_s, filter.nominal, x, filter.covariance);
+  record.heading_lost = heading_lost(filter.covariance);
   const auto take = [&](const auto& row, double measured, double variance) {
-    measure(row, measured, variance, record, x, filter.P);
+    update_with_measurement(row, measured, variance, record, x, filter.covariance);
   };
   if (path.at_rest) {
-    rest_rows(params, sums, filter.nominal, path.spins_in_place, take);
+    stationary_measurement_rows(params, sums, filter.nominal, path.spins_in_place, take);
   } else {
     Contact c = contact(params, filter.nominal, rate_I_rad_s, sums);
-    if (record.heading_lost) remove_heading_effect(c);
-    contact_rows(params, c, path.mode, sums.node_s, filter.nominal.v_WI_m_s, x, filter.P, take);
+    if (record.heading_lost) remove_heading_component(c);
+    contact_measurement_rows(params, c, path.mode, sums.node_interval_s, filter.nominal.v_WI_m_s, x, filter.covariance, take);
   }
-  make_symmetric(filter.P);
-  filter.P.block<3, 3>(kPosition, kPosition) += path.position_spread_m2;
+  make_symmetric(filter.covariance);
+  filter.covariance.block<3, 3>(kPosition, kPosition) += path.position_spread_m2;
   move_linearisation_point(x, filter.nominal);
   if (record.heading_lost) {
-    record.turned = heading_effect(x);
-    move_errors(record.turned, filter.P);
+    record.heading_correction = heading_component(x);
+    remove_heading_covariance(record.heading_correction, filter.covariance);
   }
   filter.mode = path.mode;
-  record.correction = reported(x);
-  record.P_rows = output_covariance_rows(filter.P);
+  record.correction = reported_errors(x);
+  record.covariance_rows = output_covariance_rows(filter.covariance);
   record.nominal = filter.nominal;
 }
 
-Reported error_before_update(const NodeRecord& node) {
+Reported error_before_update(const FilterNodeRecord& node) {
   const Reported error = node.smoothed + node.correction;
-  return node.heading_lost ? Reported(error - node.smoothed[kAttitude + 2] * reported(node.turned)) : error;
+  return node.heading_lost ? Reported(error - node.smoothed[kAttitude + 2] * reported_errors(node.heading_correction)) : error;
 }
 
 /// See rolling.md (R41).
-Reported measure_distance(const RollingParams& params, double distance_m, double sigma_m, NodeRecord& last,
-                          PathFilter& filter) {
-  const RollingNominal& nominal = filter.nominal;
+Reported measure_distance(const RollingParams& params, double distance_m, double sigma_m, FilterNodeRecord& last,
+                          ModePathFilter& filter) {
+  const RollingNominalState& nominal = filter.nominal;
   const Eigen::Matrix3d R = nominal.q_WI.toRotationMatrix();
   const Eigen::Vector3d arm_W = R * (params.lever_arm_m + nominal.lever_arm_error_m);
   Eigen::Vector3d from_start = nominal.p_WI_m - arm_W;
@@ -171,45 +171,45 @@ Reported measure_distance(const RollingParams& params, double distance_m, double
   H.segment<3>(kPosition) = along;
   H.segment<3>(kLeverArm) = -along * R;
   Vector x = Vector::Zero();
-  measure(H, distance_m - length_m, sigma_m * sigma_m, last, x, filter.P);
-  make_symmetric(filter.P);
+  update_with_measurement(H, distance_m - length_m, sigma_m * sigma_m, last, x, filter.covariance);
+  make_symmetric(filter.covariance);
   move_linearisation_point(x, filter.nominal);
-  last.correction += reported(x);
-  last.P_rows = output_covariance_rows(filter.P);
+  last.correction += reported_errors(x);
+  last.covariance_rows = output_covariance_rows(filter.covariance);
   last.nominal = filter.nominal;
-  return reported(x);
+  return reported_errors(x);
 }
 
 /// See rolling.md (R38), (R39).
-void backward_pass(Adjoint& adjoint, std::span<NodeRecord> nodes) {
-  auto& [lambda, Lambda] = adjoint;
+void backward_pass(Adjoint& adjoint, std::span<FilterNodeRecord> nodes) {
+  auto& [adjoint_vector, adjoint_matrix] = adjoint;
   for (std::size_t n = nodes.size(); n-- > 0;) {
-    NodeRecord& node = nodes[n];
-    node.smoothed = -node.P_rows * lambda;
-    node.smoothed_P = reported_covariance(node.P_rows) - node.P_rows * Lambda * node.P_rows.transpose();
-    if (node.heading_lost) transform_adjoint(node.turned, adjoint);
-    for (std::size_t k = static_cast<std::size_t>(node.rows); k-- > 0;) {
-      const Row& H = node.H[k];
+    FilterNodeRecord& node = nodes[n];
+    node.smoothed = -node.covariance_rows * adjoint_vector;
+    node.smoothed_covariance = reported_covariance(node.covariance_rows) - node.covariance_rows * adjoint_matrix * node.covariance_rows.transpose();
+    if (node.heading_lost) transform_adjoint(node.heading_correction, adjoint);
+    for (std::size_t k = static_cast<std::size_t>(node.measurement_count); k-- > 0;) {
+      const Row& H = node.measurement_rows[k];
       const Vector& K = node.gain[k];
-      const Vector through = Lambda * K;
-      lambda -= H.transpose() * (K.dot(lambda) + node.innovation[k] / node.variance[k]);
+      const Vector through = adjoint_matrix * K;
+      adjoint_vector -= H.transpose() * (K.dot(adjoint_vector) + node.innovation[k] / node.variance[k]);
       const Row seen = H * (K.dot(through) + 1.0 / node.variance[k]);
-      Lambda += H.transpose().lazyProduct(seen) - H.transpose().lazyProduct(through.transpose()) -
+      adjoint_matrix += H.transpose().lazyProduct(seen) - H.transpose().lazyProduct(through.transpose()) -
                 through.lazyProduct(H);  // avoids a temporary matrix of 13 KiB per measurement
     }
-    if (node.resets_slope) {
-      lambda.segment<2>(kSlope).setZero();
-      Lambda.middleRows<2>(kSlope).setZero();
-      Lambda.middleCols<2>(kSlope).setZero();
+    if (node.resets_floor_slope) {
+      adjoint_vector.segment<2>(kSlope).setZero();
+      adjoint_matrix.middleRows<2>(kSlope).setZero();
+      adjoint_matrix.middleCols<2>(kSlope).setZero();
     }
     if (node.tilt_reset) {
-      lambda.head<6>().setZero();
-      Lambda.topRows<6>().setZero();
-      Lambda.leftCols<6>().setZero();
+      adjoint_vector.head<6>().setZero();
+      adjoint_matrix.topRows<6>().setZero();
+      adjoint_matrix.leftCols<6>().setZero();
     }
-    lambda += (node.B.transpose() * lambda.head<9>()).eval();
-    Lambda += (node.B.transpose() * Lambda.topRows<9>()).eval();
-    Lambda += (Lambda.leftCols<9>() * node.B).eval();
+    adjoint_vector += (node.moving_jacobian.transpose() * adjoint_vector.head<9>()).eval();
+    adjoint_matrix += (node.moving_jacobian.transpose() * adjoint_matrix.topRows<9>()).eval();
+    adjoint_matrix += (adjoint_matrix.leftCols<9>() * node.moving_jacobian).eval();
   }
 }
 

@@ -10,11 +10,11 @@
 
 namespace tumble::rolling {
 
-struct PathNode {
+struct ModePathNode {
   RollingMode mode = RollingMode::grip;
   bool at_rest = false;
   bool spins_in_place = false;  ///< the sphere is at rest, but rotates about the contact point
-  bool stands = false;          ///< the sphere has rested long enough for a constant reported position
+  bool holds_constant_position = false;          ///< the sphere has rested long enough for a constant reported position
   Eigen::Matrix3d position_spread_m2 = Eigen::Matrix3d::Zero();
 };
 
@@ -22,66 +22,66 @@ struct PathNode {
 inline constexpr int kReported = 12;
 using Reported = Eigen::Matrix<double, kReported, 1>;
 
-struct NodeRecord {
-  static constexpr int kRowsMax = 7;  ///< maximum number of measurements, for a node at rest with a known distance
-  Moving B;
-  std::array<Row, kRowsMax> H;
-  std::array<Vector, kRowsMax> gain;
-  std::array<double, kRowsMax> innovation{}, variance{};
-  int rows = 0;
-  bool resets_slope = false;
+struct FilterNodeRecord {
+  static constexpr int kMaxMeasurements = 7;  ///< maximum number of measurements, for a node at rest with a known distance
+  Moving moving_jacobian;
+  std::array<Row, kMaxMeasurements> measurement_rows;
+  std::array<Vector, kMaxMeasurements> gain;
+  std::array<double, kMaxMeasurements> innovation{}, variance{};
+  int measurement_count = 0;
+  bool resets_floor_slope = false;
   bool tilt_reset = false;
   bool heading_lost = false;
-  Eigen::Matrix<double, kReported, kStates> P_rows;  ///< rows of P after the update, for the reported states
+  Eigen::Matrix<double, kReported, kStates> covariance_rows;  ///< rows of P after the update, for the reported states
   Reported correction;                               ///< correction of the nominal state by the update
-  Vector turned;                                     ///< heading_effect() of the correction, if the heading is lost
-  RollingNominal nominal;                            ///< nominal state after the update
-  PathNode path;
+  Vector heading_correction;                                     ///< heading_component() of the correction, if the heading is lost
+  RollingNominalState nominal;                            ///< nominal state after the update
+  ModePathNode mode_path_node;
   TimeNs time_ns = 0;
   Reported smoothed;
-  Eigen::Matrix<double, kReported, kReported> smoothed_P;
+  Eigen::Matrix<double, kReported, kReported> smoothed_covariance;
 };
 
 /// Reading is one input of the live filter: an average of IMU readings, or a piece of a gap.
-struct Reading {
+struct RollingReading {
   ImuAverage average;
   GapUncertainty uncertainty;
   bool in_gap = false;
-  bool whole = true;               ///< false: last reading of the run, too short to be processed
+  bool is_whole = true;               ///< false: last reading of the run, too short to be processed
   std::size_t first = 0, end = 0;  ///< index range of the reading's samples; in a gap, only the last piece has a sample
   TimeNs end_ns = 0;
 };
 
 /// Readings iterates over stored samples, and returns the inputs that the live filter received. next() costs O(1)
 /// without allocation.
-class Readings {
+class RollingReadings {
  public:
   /// Cursor is the position in the stored samples from which next() continues.
   struct Cursor {
     TimeNs time_ns = 0;  ///< end of the last reading
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
     std::size_t next = 0;
-    Eigen::Vector3d gap_rate_rad_s = Eigen::Vector3d::Zero();  ///< rate before the gap
+    Eigen::Vector3d rate_before_gap_rad_s = Eigen::Vector3d::Zero();  ///< rate before the gap
     TimeNs gap_start_ns = 0;
-    int gap_step = 0;
+    int gap_step_index = 0;
     bool operator==(const Cursor&) const = default;
   };
 
-  Readings(const RollingParams& params, std::span<const ImuSample> samples, const Cursor& from)
+  RollingReadings(const RollingParams& params, std::span<const ImuSample> samples, const Cursor& from)
       : params_(params), samples_(samples), cursor_(from) {}
 
   const Cursor& cursor() const { return cursor_; }
-  bool next(Reading& out);
+  bool next(RollingReading& out);
 
  private:
-  bool next_piece(double gap_s, Reading& out);
+  bool next_gap_step(double gap_s, RollingReading& out);
 
   const RollingParams& params_;
   std::span<const ImuSample> samples_;
   Cursor cursor_;
 };
 
-struct SamplePoint {
+struct SampleMotion {
   TimeNs time_ns = 0;
   Eigen::Quaterniond q_WI;
   Eigen::Vector3d v_WI_m_s, p_WI_m;
@@ -89,9 +89,9 @@ struct SamplePoint {
   std::size_t node = 0;  ///< index of the first node that is completed after the sample
 };
 
-struct PathFilter {
-  RollingNominal nominal;
-  Covariance P = Covariance::Zero();
+struct ModePathFilter {
+  RollingNominalState nominal;
+  Covariance covariance = Covariance::Zero();
   RollingMode mode = RollingMode::grip;
 };
 
@@ -99,28 +99,28 @@ Eigen::Matrix<double, kReported, kStates> output_covariance_rows(const Covarianc
 Eigen::Matrix<double, kReported, kReported> reported_covariance(const Eigen::Matrix<double, kReported, kStates>& rows);
 /// Returns the covariance of the centre's velocity in IMU axes. The product of angular velocity error and lever arm is
 /// neglected.
-Eigen::Matrix3d velocity_covariance_I(const RollingNominal& nominal, const Eigen::Vector3d& w_WI_I_rad_s,
+Eigen::Matrix3d velocity_covariance_I(const RollingNominalState& nominal, const Eigen::Vector3d& w_WI_I_rad_s,
                                       const Eigen::Matrix<double, kReported, kReported>& reported);
 
-void complete_node(const RollingParams& params, const RollingIntegrals& sums, const Eigen::Vector3d& rate_I_rad_s,
-                   const PathNode& path, PathFilter& filter, NodeRecord& record);
+void complete_filter_node(const RollingParams& params, const RollingNodeIntegrals& sums, const Eigen::Vector3d& rate_I_rad_s,
+                   const ModePathNode& path, ModePathFilter& filter, FilterNodeRecord& record);
 
 /// Returns the smoothed error at a node, relative to the nominal trajectory before the node's update.
-Reported error_before_update(const NodeRecord& node);
+Reported error_before_update(const FilterNodeRecord& node);
 
 /// Applies the known horizontal distance of the sphere's centre from the start. Returns the correction of the nominal
 /// trajectory, or zero if the first and last positions are too close to define a direction.
-Reported measure_distance(const RollingParams& params, double distance_m, double sigma_m, NodeRecord& last,
-                          PathFilter& filter);
+Reported measure_distance(const RollingParams& params, double distance_m, double sigma_m, FilterNodeRecord& last,
+                          ModePathFilter& filter);
 
 /// Adjoint contains the information that later measurements provide about the error at a node.
 struct Adjoint {
-  Vector lambda = Vector::Zero();
-  Covariance Lambda = Covariance::Zero();
+  Vector adjoint_vector = Vector::Zero();
+  Covariance adjoint_matrix = Covariance::Zero();
 };
 
 /// Smooths the states of consecutive nodes by the modified Bryson-Frazier smoother. On entry, `adjoint` contains the
 /// information of all measurements after the last node; on return, also of the measurements at these nodes.
-void backward_pass(Adjoint& adjoint, std::span<NodeRecord> nodes);
+void backward_pass(Adjoint& adjoint, std::span<FilterNodeRecord> nodes);
 
 }  // namespace tumble::rolling

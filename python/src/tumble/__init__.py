@@ -6,7 +6,7 @@ x y z w, and rotate sensor or body axes to the world (z up). Invalid input raise
 `parameters()` of a class lists its keywords.
 
 Odometry        TumblingOdometry (an IMU that may clip and a lidar), RollingOdometry (IMUs in a sphere), sheets: data sheets of sensors
-Rates           RegimeSmoother, RateSmoother, HandHeldSmoother, Saave (whole recordings), RegimeStream, RateStream, HandHeldStream (live), find_rails
+Rates           MotionRegimeSmoother, AngularRateSmoother, HandHeldSmoother, SaturationAwareRateEstimator (whole recordings), MotionRegimeStream, AngularRateStream, HandHeldRateStream (live), find_rails
 Attitude        TumbleAttitude, Vqf, Strapdown
 Sphere          RollingSmoother, RollingFilter (live)
 Mapper          LidarInertialOdometry
@@ -22,36 +22,36 @@ from ._tumble import (
     Attitudes,
     HandHeldReport,
     HandHeldSmoother,
-    HandHeldStream,
+    HandHeldRateStream,
     HealthFinding,
-    ImuSheet,
+    ImuDataSheet,
     LidarInertialOdometry,
-    LidarSheet,
+    LidarDataSheet,
     MapPoints,
     Parameter,
     Pose,
     Poses,
-    RailPlane,
+    SaturationPlane,
     Rails,
     Rates,
-    RateReport,
-    RateSmoother,
-    RateSource,
-    RateStream,
+    AngularRateReport,
+    AngularRateSmoother,
+    AngularRateSource,
+    AngularRateStream,
     RegimeReport,
-    RegimeSmoother,
-    RegimeStream,
+    MotionRegimeSmoother,
+    MotionRegimeStream,
     RigCalibration,
     RollingFilter,
     RollingMode,
     RollingOdometry,
     RollingPoses,
     RollingSmoother,
-    Saave,
+    SaturationAwareRateEstimator,
     SphereUnit,
     Strapdown,
     Sweep,
-    SweepCalibration,
+    LidarImuCalibration,
     SweepReport,
     SweepScale,
     SweepVerdict,
@@ -74,10 +74,10 @@ from .truth import Contacts, ImuTruth, LidarTruth, SeriesTruth, Truth
 
 __version__ = importlib.metadata.version("tumble")
 __all__ = [
-    "Attitudes", "HandHeldReport", "HandHeldSmoother", "HandHeldStream", "Contacts", "Estimate", "HealthFinding", "Imu", "ImuSheet", "ImuTruth", "Lidar",
-    "LidarInertialOdometry", "LidarSheet", "LidarTruth", "MapPoints", "Parameter", "Pose", "Poses", "ProgramError", "RailPlane", "Rails", "RateReport", "RateSmoother", "RateSource",
-    "RateStream", "RateTable", "Rates", "Recording", "RegimeReport", "RegimeSmoother", "RegimeStream", "RigCalibration", "RollingFilter", "RollingMode", "RollingOdometry",
-    "RollingPoses", "RollingSmoother", "Saave", "Series", "SeriesTruth", "SphereUnit", "Strapdown", "Sweep", "SweepCalibration", "SweepReport", "SweepScale", "SweepVerdict", "Trajectory",
+    "Attitudes", "HandHeldReport", "HandHeldSmoother", "HandHeldRateStream", "Contacts", "Estimate", "HealthFinding", "Imu", "ImuDataSheet", "ImuTruth", "Lidar",
+    "LidarInertialOdometry", "LidarDataSheet", "LidarTruth", "MapPoints", "Parameter", "Pose", "Poses", "ProgramError", "SaturationPlane", "Rails", "AngularRateReport", "AngularRateSmoother", "AngularRateSource",
+    "AngularRateStream", "RateTable", "Rates", "Recording", "RegimeReport", "MotionRegimeSmoother", "MotionRegimeStream", "RigCalibration", "RollingFilter", "RollingMode", "RollingOdometry",
+    "RollingPoses", "RollingSmoother", "SaturationAwareRateEstimator", "Series", "SeriesTruth", "SphereUnit", "Strapdown", "Sweep", "LidarImuCalibration", "SweepReport", "SweepScale", "SweepVerdict", "Trajectory",
     "Truth", "Tumble", "TumbleAttitude", "TumbleError", "TumblingOdometry", "Vqf", "call", "describe_method", "estimate",
     "find_rails", "odometry", "plot", "point_errors", "program", "rails_parameters", "rate", "read", "read_airbrakes", "read_broad", "read_estimate", "read_repoimu", "read_tum", "record", "results", "rolling", "run",
     "score", "score_rows", "serve", "sheet_of", "sheets", "sweep", "tumbling", "tumbling_options", "write", "write_tum",

@@ -8,7 +8,7 @@ from typing import Any
 class TumbleError(ValueError):
     """Invalid input: the field, the value found and the violated bound.
 
-    trouble   "empty", "non_finite", "time_order", "gap", "out_of_range", "too_few", "degenerate" or "diverged", from the library's
+    trouble   "empty", "non_finite", "time_order", "gap", "out_of_range", "insufficient_data", "degenerate" or "diverged", from the library's
               `Status`; "type", "shape" or "unknown" for an argument; "file" for a file; "program" for the program
     field     input or parameter; for a file, its path and the place within the file
     value     value found, in the unit of the field; a time is an int in nanoseconds

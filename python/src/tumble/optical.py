@@ -205,12 +205,12 @@ def aligned(time_ns: Array, q: Array, imu: Imu) -> tuple[Array, Array]:
     Only samples whose gyro readings are below 0.9 of the extreme reading of each axis are used. The first delay has the largest correlation
     of |w| within +-0.1 s; robust least squares refine it. The rotation solves Wahba's problem (Markley and Crassidis, Fundamentals of
     Spacecraft Attitude Determination and Control, 2014, section 5.3) for rates and gravity. The vertical is the mean specific force, which
-    assumes that the body ends with about its initial position and speed. Raises TumbleError `too_few` for fewer than 200 samples.
+    assumes that the body ends with about its initial position and speed. Raises TumbleError `insufficient_data` for fewer than 200 samples.
     """
     speed = np.linalg.norm(imu.gyro, axis=1)
     free = (speed >= 0.5) & (np.abs(imu.gyro) <= 0.9 * np.abs(imu.gyro).max(axis=0)).all(axis=1)
     if min(len(time_ns), free.sum()) < 200:
-        raise TumbleError("the reference cannot be aligned; it must have 200 samples with rotation below saturation", "too_few", "samples",
+        raise TumbleError("the reference cannot be aligned; it must have 200 samples with rotation below saturation", "insufficient_data", "samples",
                           int(free.sum()), 200)
     delay_s = _delay(time_ns, q, imu.time_ns[free], speed[free])
     shift = nearest(delay_s * 1e9)

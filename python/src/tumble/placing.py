@@ -30,7 +30,7 @@ def poses_at(time_ns: Array, poses: Any) -> tuple[Array, Array]:
     """
     known = np.asarray(poses.time_ns)
     if len(known) < 2:
-        raise TumbleError(f"the argument poses has {len(known)} poses; it must have at least 2", "too_few", "poses", len(known), 2)
+        raise TumbleError(f"the argument poses has {len(known)} poses; it must have at least 2", "insufficient_data", "poses", len(known), 2)
     k = np.clip(np.searchsorted(known, time_ns, side="right") - 1, 0, len(known) - 2)
     share = ((time_ns - known[k]) / (known[k + 1] - known[k]))[:, None]
     share[(time_ns < known[0]) | (time_ns > known[-1])] = np.nan

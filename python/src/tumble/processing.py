@@ -22,7 +22,7 @@ def _require_imu(imu: Any) -> None:
     having("imu", imu, "an Imu such as recording.imus[0]", "samples", "lever_arm_m", "period_ns", "gyro_range_rad_s", "accel_range_m_s2")
 
 
-def sheet_of(imu: Imu) -> _tumble.ImuSheet:
+def sheet_of(imu: Imu) -> _tumble.ImuDataSheet:
     """Returns the data sheet of an IMU from the recording. If the recording does not state a noise density, the library's default is used."""
     _require_imu(imu)
     numbers = {"gyro_range_rad_s": imu.gyro_range_rad_s, "accel_range_m_s2": imu.accel_range_m_s2}
@@ -32,15 +32,15 @@ def sheet_of(imu: Imu) -> _tumble.ImuSheet:
     for name in ("gyro_noise_rad_s_sqrt_hz", "accel_noise_m_s2_sqrt_hz"):
         if getattr(imu, name) > 0.0:
             numbers[name] = getattr(imu, name)
-    return _tumble.ImuSheet(**numbers)
+    return _tumble.ImuDataSheet(**numbers)
 
 
 def rate(imu: Imu, gravity_m_s2: float = 9.80665, live: bool = False, **options: Any) -> _tumble.Rates:
     """Estimates angular velocity through gyro saturation, one per sample, with the IMU's lever arm, ranges and noise from the recording.
 
-    Uses RegimeSmoother. The result equals the program's `rate/tumble` for a recording with one IMU.
+    Uses MotionRegimeSmoother. The result equals the program's `rate/tumble` for a recording with one IMU.
 
-    live      uses RegimeStream, which needs only the next 0.2 s of data (lag_s), as the program's `rate/tumble_lag`
+    live      uses MotionRegimeStream, which needs only the next 0.2 s of data (lag_s), as the program's `rate/tumble_lag`
     options   keywords of these classes; they override the values of the recording
     """
     _require_imu(imu)
@@ -52,13 +52,13 @@ def rate(imu: Imu, gravity_m_s2: float = 9.80665, live: bool = False, **options:
     if imu.accel_noise_m_s2_sqrt_hz > 0.0:
         stated["accel_noise_density"] = imu.accel_noise_m_s2_sqrt_hz
     if not live:
-        return _tumble.RegimeSmoother(**(stated | options)).estimate(*imu.samples)[0]
+        return _tumble.MotionRegimeSmoother(**(stated | options)).estimate(*imu.samples)[0]
     if imu.period_ns > 0:
         stated["period_s"] = imu.period_ns * 1e-9
     stated |= options
     if "lag_s" not in options and stated.get("period_s", 0.0) > 0.1:
         stated["lag_s"] = 2.0 * stated["period_s"]
-    stream = _tumble.RegimeStream(**stated)
+    stream = _tumble.MotionRegimeStream(**stated)
     return _tumble.Rates.joined([stream.add_imu(*imu.samples), stream.flush()])
 
 

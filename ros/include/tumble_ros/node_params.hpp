@@ -24,7 +24,7 @@ struct AdapterParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.diagnostics_period_s,
           {"diagnostics_period_s", "s", 0.1, 1e6,
-           "time between two publications of the diagnostics, by the stamps of the IMU", FieldRank::basic});
+           "time between two publications of the diagnostics, by the stamps of the IMU", ParameterRank::common_use});
   }
 };
 
@@ -43,10 +43,10 @@ struct TumblingAdapterParams {
   static void fields(Self& p, Visitor& visit) {
     visit.group("", p.odometry);
     visit(p.map_period_s, {"map_period_s", "s", 0.1, 1e6,
-                           "time between two publications of the map, by the stamps of the IMU", FieldRank::basic});
+                           "time between two publications of the map, by the stamps of the IMU", ParameterRank::common_use});
     visit(p.prior_map_extend,
           {"prior_map_extend", "1", 0, 1, "true: sweeps extend the prior map; false: the prior map stays unchanged",
-           FieldRank::basic});
+           ParameterRank::common_use});
     visit.group("", p.adapter);
   }
   static std::span<const char* const> derived_fields() { return TumblingParams::Expert::derived_fields(); }
@@ -101,7 +101,7 @@ Eigen::Vector3d position_of(const std::string& parameter, std::span<const double
 
 /// Returns the data sheet with this name, or the default sheet for an empty name. Throws InvalidParams for an unknown
 /// name, with a list of all known names.
-ImuSheet imu_sheet(const std::string& name);
-LidarSheet lidar_sheet(const std::string& name);
+ImuDataSheet imu_sheet(const std::string& name);
+LidarDataSheet lidar_sheet(const std::string& name);
 
 }  // namespace tumble::ros

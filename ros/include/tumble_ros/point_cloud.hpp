@@ -45,7 +45,7 @@ class PointCloudReader {
   /// Converts a point cloud to a sweep. The function drops points that are not finite or at the origin, because these
   /// points stand for laser pulses without a return. If intensities exceed 1, the function divides all intensities of
   /// the sweep by the larger of 255 and the largest intensity. On error, `sweep` is unspecified. The errors are `empty`
-  /// (a field is missing, or no point), `too_few` (the unit is unknown, and there are fewer than 100 points),
+  /// (a field is missing, or no point), `insufficient_data` (the unit is unknown, and there are fewer than 100 points),
   /// `degenerate` (all times are equal, so deskewing is impossible), and `out_of_range` (big-endian, a layout that does
   /// not fit the data, two possible time fields, or a time span above 1 s). Cost: O(points). The function reuses the
   /// memory of `sweep`.

@@ -74,7 +74,7 @@ struct TimeFieldChoice {
 struct LivoxCloud {
   static bool is_type(std::string_view type) { return type.ends_with("/CustomMsg"); }
 
-  /// Parses a message. Returns `ok`, `too_few` if the bytes end early, or an error of check_layout().
+  /// Parses a message. Returns `ok`, `insufficient_data` if the bytes end early, or an error of check_layout().
   Status parse(std::span<const std::uint8_t> cdr);
   PointCloudView view() const;
 

@@ -29,7 +29,7 @@ struct Odometry {
 /// RecoveredImu has the contents of sensor_msgs/Imu: an IMU sample whose angular velocity is estimated through
 /// saturation. The axes of RecoveredImu are the axes of the IMU.
 struct RecoveredImu {
-  RateState rate;
+  AngularRateState rate;
   Eigen::Vector3d specific_force_m_s2 = Eigen::Vector3d::Zero();
   double force_variance_m2_s4 = 0.0;  ///< per axis, from the data sheet's noise density
 };
@@ -74,7 +74,7 @@ class Publisher {
 /// covariance. The velocity includes the rotation of the lever arm from the IMU to the base.
 /// @param velocity_covariance_I_m2_s2  covariance of the velocity in IMU axes (SweepReport)
 /// @param T_IB                         pose of the base in IMU axes
-Odometry base_odometry(const PoseState& imu, const Eigen::Matrix3d& velocity_covariance_I_m2_s2, const RateState& rate,
+Odometry base_odometry(const PoseState& imu, const Eigen::Matrix3d& velocity_covariance_I_m2_s2, const AngularRateState& rate,
                        const Eigen::Isometry3d& T_IB);
 
 /// Transforms the points of a sweep to lidar axes at the end of the sweep.

@@ -83,7 +83,7 @@ class TumblingAdapter {
   void publish_points(const SweepReport& report);
   void publish_newest();
   void publish_diagnostics();
-  const RateState& rate_at(TimeNs time_ns) const;
+  const AngularRateState& rate_at(TimeNs time_ns) const;
 
   Params params_;
   Publisher& publisher_;
@@ -91,7 +91,7 @@ class TumblingAdapter {
   std::vector<MapPoint> prior_map_;
   PointCloudReader reader_;
   std::deque<ImuSample> samples_;    ///< accepted samples whose rate is not smoothed yet
-  std::deque<RateState> rates_;      ///< smoothed rates of the last seconds
+  std::deque<AngularRateState> rates_;      ///< smoothed rates of the last seconds
   std::deque<TimedSweep> early_;     ///< sweeps that wait for IMU samples
   std::deque<TimedSweep> sweeps_;    ///< sweeps that wait for their poses
   std::optional<SweepReport> last_;  ///< newest registered sweep, without its trajectory

@@ -70,14 +70,14 @@ std::vector<Value> interpolate(const Axis& axis) {
 }  // namespace
 
 ClippedBaseline::ClippedBaseline(const Params& params)
-    : params_(params), rails_({.axis_aligned_rails = params.rails, .tilted = params.tilted_rails}) {
+    : params_(params), rails_({.axis_limit_params = params.rails, .tilted = params.tilted_rails}) {
   require_valid_fields(params);
 }
 
-Status ClippedBaseline::estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const {
+Status ClippedBaseline::estimate(std::span<const ImuSample> samples, std::vector<AngularRateState>& out) const {
   if (Status status = check_recording(samples, 2, params_.gap_max_s); !status.ok()) return status;
   const std::size_t count = samples.size();
-  const std::vector<Clipping> clippings = rails_.find(samples).clippings;
+  const std::vector<Clipping> clippings = rails_.find(samples).clipping_per_sample;
 
   out.assign(count, {});
   Axis axis{samples, std::vector<bool>(count), std::vector<bool>(count), 0,
@@ -104,7 +104,7 @@ Status ClippedBaseline::estimate(std::span<const ImuSample> samples, std::vector
   for (std::size_t k = 0; k < count; ++k) {
     out[k].time_ns = samples[k].time_ns;
     out[k].clipped_axes = clippings[k].gyro | clippings[k].unusable_gyro;
-    out[k].source = out[k].clipped_axes == 0 ? RateSource::measured : RateSource::bounded_only;
+    out[k].source = out[k].clipped_axes == 0 ? AngularRateSource::measured : AngularRateSource::lower_bound_only;
   }
   return {};
 }

@@ -17,8 +17,8 @@ namespace tumble::baselines {
 class ClippedBaseline {
  public:
   struct Params {
-    RailDetector::Params rails = {};
-    bool tilted_rails = false;  ///< tilted saturation limits too, unlike Saave
+    SaturationLimitDetector::Params rails = {};
+    bool tilted_rails = false;  ///< tilted saturation limits too, unlike SaturationAwareRateEstimator
     /// Noise density of the gyro [rad/s/sqrt(Hz)]
     double gyro_noise_density = 5.236e-4;
     double rate_max_rad_s = 50.0;  ///< largest rate about one axis in a gap
@@ -27,9 +27,9 @@ class ClippedBaseline {
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.tilted_rails,
-            switch_field("tilted_rails",
+            boolean_field("tilted_rails",
                          "1: also search for tilted saturation limits; 0: treat each axis separately, as published",
-                         FieldRank::basic));
+                         ParameterRank::common_use));
       visit(p.gyro_noise_density, {"gyro_noise_density", "rad/s/sqrt(Hz)", 1e-9, 1.0, "noise density of the gyro"});
       visit(p.rate_max_rad_s, {"rate_max_rad_s", "rad/s", 1.0, 1e4, "largest estimated rate"});
       visit(p.gap_max_s,
@@ -39,8 +39,8 @@ class ClippedBaseline {
 
   explicit ClippedBaseline(const Params& params);
 
-  /// Possible errors are `empty`, `too_few` (fewer than two samples), `non_finite`, `time_order` and `gap`.
-  Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const;
+  /// Possible errors are `empty`, `insufficient_data` (fewer than two samples), `non_finite`, `time_order` and `gap`.
+  Status estimate(std::span<const ImuSample> samples, std::vector<AngularRateState>& out) const;
 
  private:
   Params params_;

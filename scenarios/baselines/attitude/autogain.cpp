@@ -39,14 +39,14 @@ Eigen::Quaterniond towards_roll_and_pitch(const Eigen::Quaterniond& q, const Eig
   const double pitch = std::atan2(-f.x(), std::hypot(f.y(), f.z()));
   const Eigen::Quaterniond target =
       so3::exp({0.0, 0.0, current_yaw(q)}) * so3::exp({0.0, pitch, 0.0}) * so3::exp({roll, 0.0, 0.0});
-  return q * so3::exp(share * so3::log(q.conjugate() * target));
+  return q * so3::exp(share * so3::logarithm(q.conjugate() * target));
 }
 
 }  // namespace
 
 Autogain::Autogain(const Params& p) : params_(p) {
   require_valid_fields(p);
-  require_within("upper_rad_s", p.upper_rad_s, p.lower_rad_s + 1e-9, 100.0);
+  require_in_interval("upper_rad_s", p.upper_rad_s, p.lower_rad_s + 1e-9, 100.0);
 }
 
 AutogainGains Autogain::gains(const Eigen::Vector3d& w_I_rad_s, double dt_s) const {
@@ -79,7 +79,7 @@ Status Autogain::step(const ImuSample& sample, State& state) const {
   Eigen::Quaterniond q;
   if (state.started) {
     double dt_s = 0.0;
-    if (const Status bad = elapsed(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s); !bad.ok()) return bad;
+    if (const Status bad = elapsed_time_since_last(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s); !bad.ok()) return bad;
     const Eigen::Vector3d& f = sample.specific_force_m_s2;
     const AutogainGains gain = gains(sample.angular_velocity_rad_s, dt_s);
     q = madgwick_step(state.q_WI, sample.angular_velocity_rad_s, f, gain.madgwick_rad_s, dt_s);
@@ -89,7 +89,7 @@ Status Autogain::step(const ImuSample& sample, State& state) const {
                     : towards_roll_and_pitch(q, f, gain.slerp_share, params_.roll_error_2021);
     }
     q.normalize();
-  } else if (const Status bad = level(sample.specific_force_m_s2, q); !bad.ok()) {
+  } else if (const Status bad = inclination_from_force(sample.specific_force_m_s2, q); !bad.ok()) {
     return bad;
   }
   state = {q, sample.time_ns, true};

@@ -108,9 +108,9 @@ std::vector<TrimmedIcp::Point> deskewed(const Sweep& sweep, TimeNs at_ns, const 
 PoseState pose_state(const Eigen::Isometry3d& T, const Eigen::Vector3d& v_m_s, TimeNs time_ns) {
   PoseState pose;
   pose.time_ns = time_ns;
-  pose.p_WA_m = T.translation();
-  pose.q_WA = Eigen::Quaterniond(T.linear()).normalized();
-  pose.v_WA_m_s = v_m_s;
+  pose.position_W_m = T.translation();
+  pose.orientation_W = Eigen::Quaterniond(T.linear()).normalized();
+  pose.velocity_W_m_s = v_m_s;
   return pose;
 }
 
@@ -120,14 +120,14 @@ Status trouble_of(const Sweep& sweep, std::size_t in_range) {
   if (std::none_of(sweep.points.begin(), sweep.points.end(), differs)) {
     return {ErrorCode::degenerate, "spread of offset_ns", 0.0, 1.0};
   }
-  if (in_range == 0) return {ErrorCode::too_few, "points in range", 0.0, 1.0};
+  if (in_range == 0) return {ErrorCode::insufficient_data, "points in range", 0.0, 1.0};
   return {};
 }
 
 }  // namespace
 
 PublishedChain::PublishedChain(const Params& params, std::span<const ImuSample> samples,
-                               std::span<const RateState> rates)
+                               std::span<const AngularRateState> rates)
     : params_(params), samples_(samples), odometry_(params.madgwick_gain_rad_s, samples, rates), icp_(params.icp) {
   require_valid_fields(params);
 }
@@ -184,7 +184,7 @@ void PublishedChain::extend(std::span<const TrimmedIcp::Point> points, const Eig
   const Eigen::Isometry3f move = T_WL.cast<float>();
   const auto spacing_m = static_cast<float>(params_.map_spacing_m);
   std::vector<std::uint32_t> fresh;
-  Neighbours found;
+  NearestNeighbours found;
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     map_.nearest(move * points[i].position_m, 1, spacing_m, found);
     if (found.count == 0) fresh.push_back(i);

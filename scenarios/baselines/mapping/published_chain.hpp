@@ -38,22 +38,22 @@ class PublishedChain {
       visit(p.skew_sigma_m_s,
             {"skew_sigma_m_s", "m/s", 0.0, 100.0,
              "growth of a point's standard deviation with the time since the start of the sweep; 0: no growth",
-             FieldRank::basic});
+             ParameterRank::common_use});
       visit(p.late_velocity,
-            switch_field("late_velocity",
+            boolean_field("late_velocity",
                          "1: take the mean velocity since the last sweep as the velocity at the end of the sweep, as "
                          "in the launch files; 0: take it as the velocity in the middle between both sweeps",
-                         FieldRank::basic));
+                         ParameterRank::common_use));
       visit(p.voxel_averages_time,
-            switch_field("voxel_averages_time",
+            boolean_field("voxel_averages_time",
                          "1: average the times of the points in a voxel, as in the launch files; 0: average the "
                          "variances that follow from these times",
-                         FieldRank::basic));
+                         ParameterRank::common_use));
       visit(p.abort_ends_mapping,
-            switch_field("abort_ends_mapping",
+            boolean_field("abort_ends_mapping",
                          "1: a failed registration ends mapping, as in the launch files; 0: the pose of the sweep "
                          "comes from odometry only",
-                         FieldRank::basic));
+                         ParameterRank::common_use));
       visit.group("", p.icp);
       visit(p.own_body_L.min(),
             {"own_body_min_m", "m", -kUnbounded, kUnbounded,
@@ -84,11 +84,11 @@ class PublishedChain {
 
   /// `rates` contains one angular rate per IMU sample, which replaces the gyro reading of the sample. The data of
   /// `samples` must outlive the PublishedChain.
-  PublishedChain(const Params& params, std::span<const ImuSample> samples, std::span<const RateState> rates);
+  PublishedChain(const Params& params, std::span<const ImuSample> samples, std::span<const AngularRateState> rates);
 
   bool covers(const Sweep& sweep) const;
   /// `covers(sweep)` must be true, and each sweep must be later than all earlier sweeps. Returns `empty`, `degenerate`
-  /// (all points have one time) or `too_few` (points in range) if the sweep cannot be registered.
+  /// (all points have one time) or `insufficient_data` (points in range) if the sweep cannot be registered.
   Status add(const Sweep& sweep, SweepReport& report);
   std::vector<MapPoint> map() const;
 

@@ -8,7 +8,7 @@
 namespace tumble::baselines {
 
 PublishedImuOdometry::PublishedImuOdometry(double madgwick_gain_rad_s, std::span<const ImuSample> samples,
-                                           std::span<const RateState> rates)
+                                           std::span<const AngularRateState> rates)
     : samples_(samples) {
   Madgwick::Params params;
   params.gain_rad_s = madgwick_gain_rad_s;

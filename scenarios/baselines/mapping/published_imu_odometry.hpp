@@ -15,7 +15,7 @@ class PublishedImuOdometry {
  public:
   /// The caller must keep the data of `samples` alive as long as the PublishedImuOdometry.
   PublishedImuOdometry(double madgwick_gain_rad_s, std::span<const ImuSample> samples,
-                       std::span<const RateState> rates);
+                       std::span<const AngularRateState> rates);
 
   void advance(TimeNs to_ns);
   /// Sets the velocity at `time_ns` to the velocity from lidar registration, and integrates the later accelerometer

@@ -24,7 +24,7 @@ Eigen::Isometry3d pose_of(const MotionState& state) {
 RigidOdometry::RigidOdometry(const Params& params)
     : params_(params), map_({params.map_voxel_m, params.map_spacing_m}), registration_(params.registration) {
   require_valid_fields(params);
-  require_within("range_max_m", params.range_max_m, params.range_min_m, 1e4);
+  require_in_interval("range_max_m", params.range_max_m, params.range_min_m, 1e4);
 }
 
 Status RigidOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
@@ -34,7 +34,7 @@ Status RigidOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const 
   if (motion.start.time_ns > start_ns) {
     return {ErrorCode::time_order, "motion.start", double(motion.start.time_ns), double(start_ns)};
   }
-  if (Status status = mapping::check_offsets(end_ns - start_ns, points); !status.ok()) return status;
+  if (Status status = mapping::check_time_offsets(end_ns - start_ns, points); !status.ok()) return status;
   SweepTrajectory trajectory;
   if (Status status = trajectory.build(motion.start, motion.samples, end_ns, motion.gravity_m_s2); !status.ok()) {
     return status;
@@ -44,11 +44,11 @@ Status RigidOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const 
   predicted_.covariance = motion.end_covariance;
   state_ = predicted_;
 
-  const PointBounds bounds{params_.range_min_m, params_.range_max_m, params_.own_body_L};
+  const PointSelectionBounds bounds{params_.range_min_m, params_.range_max_m, params_.own_body_L};
   const PointCounts counts =
       select_points(points, bounds, params_.T_IL, seconds(start_ns - motion.start.time_ns), points_);
-  report.points_used = counts.used;
-  const Status status = mapping::check_selection(end_ns - start_ns, points, counts);
+  report.points_used = counts.usable_points;
+  const Status status = mapping::check_point_selection(end_ns - start_ns, points, counts);
   if (status.ok()) {
     deskew(trajectory, points_, trajectory.duration_s(), positions_m_);
     for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -56,7 +56,7 @@ Status RigidOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const 
       points_[i].t_s = 0.0f;
     }
     const bool first = map_.size() == 0;
-    if (first && counts.used >= params_.registration.matches_min) report.verdict = SweepVerdict::first;
+    if (first && counts.usable_points >= params_.registration.matches_min) report.verdict = SweepVerdict::first;
     if (!first) register_points(report);
     if (first || params_.extend_always || report.verdict != SweepVerdict::rejected) {
       extend_map(counts.has_ring_numbers, report);
@@ -74,7 +74,7 @@ void RigidOdometry::place(const Eigen::Isometry3d& T_WI) {
 
 void RigidOdometry::register_points(SweepReport& report) {
   place(pose_of(predicted_));
-  sampler_.choose(positions_m_, params_.sweep_voxel_m, chosen_index_);
+  sampler_.choose_points_per_voxel(positions_m_, params_.sweep_voxel_m, chosen_index_);
   chosen_.clear();
   for (const std::uint32_t index : chosen_index_) chosen_.push_back(points_[index]);
   report.points_registered = chosen_.size();
@@ -90,7 +90,7 @@ void RigidOdometry::register_points(SweepReport& report) {
   report.iterations = result.iterations;
   report.inlier_ratio = result.points == 0 ? 0.0 : double(result.inliers) / double(result.points);
   if (!status.ok()) return;
-  if (result.verdict == RegistrationVerdict::too_few && chosen_.size() >= params_.registration.matches_min) {
+  if (result.verdict == RegistrationVerdict::too_few_matches && chosen_.size() >= params_.registration.matches_min) {
     report.verdict = SweepVerdict::degenerate;  // no constraints: keep the motion model
   }
   if (result.verdict != RegistrationVerdict::converged) return;
@@ -105,7 +105,7 @@ void RigidOdometry::register_points(SweepReport& report) {
 void RigidOdometry::extend_map(bool has_ring_numbers, SweepReport& report) {
   const Eigen::Isometry3d T_WI = pose_of(state_);
   place(T_WI);
-  const std::uint32_t base = scan_lines_.base((T_WI.linear() * params_.T_IL.linear()).col(2), has_ring_numbers);
+  const std::uint32_t base = scan_lines_.line_number_offset((T_WI.linear() * params_.T_IL.linear()).col(2), has_ring_numbers);
   const auto sweep = static_cast<std::uint32_t>(seen_from_W_m_.size());
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const auto sigma = static_cast<float>(std::sqrt(registration_.point_variance_m2(points_[i])));
@@ -121,9 +121,9 @@ void RigidOdometry::describe(const SweepTrajectory& trajectory, SweepReport& rep
   const Eigen::Vector3d faster = state_.v_WI_m_s - turned * predicted_.v_WI_m_s;
   for (std::size_t i = 0; i < trajectory.intervals(); ++i) {
     PoseState pose = trajectory.state(trajectory.interval_end_s(i)).pose();
-    pose.p_WA_m = correction * pose.p_WA_m;
-    pose.q_WA = (turned * pose.q_WA).normalized();
-    pose.v_WA_m_s = turned * pose.v_WA_m_s + faster;
+    pose.position_W_m = correction * pose.position_W_m;
+    pose.orientation_W = (turned * pose.orientation_W).normalized();
+    pose.velocity_W_m_s = turned * pose.velocity_W_m_s + faster;
     pose.covariance = state_.covariance.topLeftCorner<6, 6>();
     report.trajectory.push_back(pose);
   }

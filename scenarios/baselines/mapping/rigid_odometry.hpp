@@ -47,15 +47,15 @@ class RigidOdometry {
       visit(p.sweep_voxel_m, {"sweep_voxel_m", "m", 0.01, 10.0,
                               "edge length of the voxels; one point per voxel and sweep is registered, so a larger "
                               "value is faster and coarser",
-                              FieldRank::basic});
+                              ParameterRank::common_use});
       visit(p.map_voxel_m,
-            {"map_voxel_m", "m", 0.01, 100.0, "edge length of a voxel of the map's hash table", FieldRank::basic});
+            {"map_voxel_m", "m", 0.01, 100.0, "edge length of a voxel of the map's hash table", ParameterRank::common_use});
       visit(p.map_spacing_m, {"map_spacing_m", "m", 0.0, 100.0,
                               "edge length of the cube that stores at most one map point; a larger value makes the map "
                               "smaller and coarser",
-                              FieldRank::basic});
+                              ParameterRank::common_use});
       visit(p.extend_always,
-            switch_field("extend_always", "1: extend the map with sweeps that could not be registered"));
+            boolean_field("extend_always", "1: extend the map with sweeps that could not be registered"));
       visit(p.degenerate_sigma_m,
             {"degenerate_sigma_m", "m", 1e-6, 1e3,
              "a sweep counts as degenerate if the surfaces alone determine its pose with a standard deviation above "

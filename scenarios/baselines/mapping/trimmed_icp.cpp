@@ -26,7 +26,7 @@ Vector6 solve(const Matrix6& H, const Vector6& g) {
 
 TrimmedIcp::TrimmedIcp(const Params& params) : params_(params) {
   require_valid_fields(params);
-  require_within("trim_min", params.trim_min, 1e-3, params.trim_max);
+  require_in_interval("trim_min", params.trim_min, 1e-3, params.trim_max);
 }
 
 std::size_t TrimmedIcp::trim(std::span<const float> sorted_d2, std::size_t slots, const Params& params) {
@@ -56,9 +56,9 @@ const TrimmedIcp::Normal& TrimmedIcp::normal(const VoxelMap& map, std::uint32_t 
   Normal& entry = normals_[index];
   if (entry.known) return entry;
   entry.known = true;
-  Neighbours found;
+  NearestNeighbours found;
   map.nearest(map.position_W_m(index), params_.normal_neighbours, static_cast<float>(params_.match_distance_m), found);
-  PlaneBounds any;
+  PlaneFitBounds any;
   any.neighbours_min = 3;
   any.collinear_ratio_max = 0.0;
   any.rough_share = 1.0;
@@ -71,7 +71,7 @@ const TrimmedIcp::Normal& TrimmedIcp::normal(const VoxelMap& map, std::uint32_t 
 
 void TrimmedIcp::match(std::span<const Point> points, const Eigen::Isometry3f& T, const VoxelMap& map) {
   matches_.clear();
-  Neighbours found;
+  NearestNeighbours found;
   for (std::size_t i = 0; i < points.size(); ++i) {
     map.nearest(T * points[i].position_m, params_.neighbours, static_cast<float>(params_.match_distance_m), found);
     for (int k = 0; k < found.count; ++k) {

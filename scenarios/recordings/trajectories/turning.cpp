@@ -183,13 +183,13 @@ class TurningComparison {
   /// The best mounting of the IMU solves Wahba's problem (1965), by singular values.
   MountingFit mounting() const {
     Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-    for (const Measured& said : measured_) sum += seen_A(said.pair) * so3::log(said.turn).transpose();
+    for (const Measured& said : measured_) sum += seen_A(said.pair) * so3::logarithm(said.turn).transpose();
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
     const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
     const Eigen::Matrix3d R_AI =
         svd.matrixU() * Eigen::Vector3d(1.0, 1.0, sign).asDiagonal() * svd.matrixV().transpose();
     return {Eigen::Quaterniond(R_AI), delay_s_,
-            share([&](const Measured& said) { return (seen_A(said.pair) - R_AI * so3::log(said.turn)).norm(); })};
+            share([&](const Measured& said) { return (seen_A(said.pair) - R_AI * so3::logarithm(said.turn)).norm(); })};
   }
 
  private:
@@ -218,7 +218,7 @@ class TurningComparison {
   }
 
   Eigen::Vector3d seen_A(std::size_t pair) const {
-    return so3::log(pairs_[pair].before->q_WA.conjugate() * pairs_[pair].after->q_WA);
+    return so3::logarithm(pairs_[pair].before->q_WA.conjugate() * pairs_[pair].after->q_WA);
   }
 
   template <class Error>

@@ -85,7 +85,7 @@ int main(int argc, char** argv) {
     for (const SweepPoint& point : all) positions.push_back(point.x_I_m);
     tumble::SweepSampler sampler;
     std::vector<std::uint32_t> chosen;
-    sampler.choose(positions, kVoxel_m, chosen);
+    sampler.choose_points_per_voxel(positions, kVoxel_m, chosen);
     for (const std::uint32_t index : chosen) points.push_back(all[index]);
 
     tumble::MotionState believed;
@@ -108,7 +108,7 @@ int main(int argc, char** argv) {
     times.push_back(time_ms(registration, prior, points, map, found));
     errors_m.push_back((found.mean.state.p_WI_m - truth.translation()).norm());
     errors_rad.push_back(
-        tumble::so3::log(found.mean.state.q_WI * Eigen::Quaterniond(truth.linear()).conjugate()).norm());
+        tumble::so3::logarithm(found.mean.state.q_WI * Eigen::Quaterniond(truth.linear()).conjugate()).norm());
   }
   std::sort(times.begin(), times.end());
   std::sort(errors_m.begin(), errors_m.end());

@@ -36,12 +36,12 @@ System random_system(std::size_t count, std::uint64_t seed) {
     fill(next);
     fill(border);
     s.blocks[k].diagonal += here.transpose() * here + 0.1 * StateMatrix::Identity();
-    s.blocks[k].border += here.transpose() * border;
+    s.blocks[k].border_coupling += here.transpose() * border;
     s.corner.matrix += border.transpose() * border;
     if (k + 1 < count) {
-      s.blocks[k].coupling += here.transpose() * next;
+      s.blocks[k].coupling_to_next_state += here.transpose() * next;
       s.blocks[k + 1].diagonal += next.transpose() * next;
-      s.blocks[k + 1].border += next.transpose() * border;
+      s.blocks[k + 1].border_coupling += next.transpose() * border;
     }
     fill(s.blocks[k].gradient);
   }
@@ -56,11 +56,11 @@ MatrixXd dense_matrix(const System& s) {
   for (std::size_t k = 0; k < s.blocks.size(); ++k) {
     const Index i = static_cast<Index>(k) * kBlockSize;
     H.block(i, i, kBlockSize, kBlockSize) = s.blocks[k].diagonal;
-    H.block(i, n, kBlockSize, kBorderSize) = s.blocks[k].border;
-    H.block(n, i, kBorderSize, kBlockSize) = s.blocks[k].border.transpose();
+    H.block(i, n, kBlockSize, kBorderSize) = s.blocks[k].border_coupling;
+    H.block(n, i, kBorderSize, kBlockSize) = s.blocks[k].border_coupling.transpose();
     if (k + 1 == s.blocks.size()) continue;
-    H.block(i, i + kBlockSize, kBlockSize, kBlockSize) = s.blocks[k].coupling;
-    H.block(i + kBlockSize, i, kBlockSize, kBlockSize) = s.blocks[k].coupling.transpose();
+    H.block(i, i + kBlockSize, kBlockSize, kBlockSize) = s.blocks[k].coupling_to_next_state;
+    H.block(i + kBlockSize, i, kBlockSize, kBlockSize) = s.blocks[k].coupling_to_next_state.transpose();
   }
   H.bottomRightCorner(kBorderSize, kBorderSize) = s.corner.matrix;
   return H;
@@ -88,7 +88,7 @@ TEST(ArrowSolver, SolutionAndCovarianceAreThoseOfTheDenseSystem) {
     }
     BorderVector border;
     BorderMatrix border_covariance;
-    ASSERT_TRUE(solve_corner(s.corner, border, border_covariance));
+    ASSERT_TRUE(solve_border_block(s.corner, border, border_covariance));
     // condition numbers are below 1e5: rounding is at most 1e-11, measured 1e-13
     EXPECT_LE((border - want.tail(kBorderSize)).norm(), 1e-9 * want.norm());
     EXPECT_LE((border_covariance - covariance.bottomRightCorner(kBorderSize, kBorderSize)).norm(),
@@ -100,11 +100,11 @@ TEST(ArrowSolver, SolutionAndCovarianceAreThoseOfTheDenseSystem) {
       const Index i = static_cast<Index>(k) * kBlockSize;
       const bool last = k + 1 == count;
       step = back_substitute(s.blocks[k], last ? nullptr : &step, border);
-      conditional = back_conditional(s.blocks[k], last ? nullptr : &conditional);
+      conditional = state_given_next_state(s.blocks[k], last ? nullptr : &conditional);
       const Marginal found = marginal(conditional, border_covariance);
       EXPECT_LE((step - want.segment(i, kBlockSize)).norm(), 1e-9 * want.norm()) << k;
       EXPECT_LE((found.state - covariance.block(i, i, kBlockSize, kBlockSize)).norm(), 1e-9 * covariance.norm()) << k;
-      EXPECT_LE((found.cross - covariance.block(i, n, kBlockSize, kBorderSize)).norm(), 1e-9 * covariance.norm()) << k;
+      EXPECT_LE((found.cross_covariance - covariance.block(i, n, kBlockSize, kBorderSize)).norm(), 1e-9 * covariance.norm()) << k;
       EXPECT_LE((rate_covariance(conditional, border_covariance) - found.state.topLeftCorner<3, 3>()).norm(),
                 1e-12 * covariance.norm())
           << k;
@@ -128,11 +128,11 @@ TEST(ArrowSolver, ErrorsMoveTheSolutionAsInTheDenseSystem) {
     for (std::size_t k = 0; k < count; ++k) {
       const bool last = k + 1 == count;
       ASSERT_TRUE(eliminate(s.blocks[k], last ? nullptr : &s.blocks[k + 1], s.corner));
-      eliminate_errors(s.blocks[k], errors[k], last ? nullptr : &errors[k + 1], border);
+      eliminate_sensor_errors(s.blocks[k], errors[k], last ? nullptr : &errors[k + 1], border);
     }
     BorderVector step;
     BorderMatrix border_covariance;
-    ASSERT_TRUE(solve_corner(s.corner, step, border_covariance));
+    ASSERT_TRUE(solve_border_block(s.corner, step, border_covariance));
     const BorderErrors border_moved = border_covariance * border;
     EXPECT_LE((border_moved - want.bottomRows(kBorderSize)).norm(), 1e-9 * want.norm());
     ErrorMatrix moved;
@@ -163,7 +163,7 @@ TEST(ArrowSolver, RefusesWhatIsNotPositiveDefinite) {
   Corner corner;
   BorderVector step;
   BorderMatrix covariance;
-  EXPECT_FALSE(solve_corner(corner, step, covariance));
+  EXPECT_FALSE(solve_border_block(corner, step, covariance));
 }
 
 }  // namespace

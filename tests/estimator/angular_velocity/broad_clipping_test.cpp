@@ -73,16 +73,16 @@ TEST_P(BroadClipping, IsNeverWorseThanTheClippedGyro) {
   const Clipped trial = clip_at_a_third(recorded.samples);
   ASSERT_GT(std::count(trial.clipped.begin(), trial.clipped.end(), true), 20);
 
-  RateSmoother::Params params;
+  AngularRateSmoother::Params params;
   params.model.nominal = {};  // the centre of mass of a hand-held sensor is unknown
-  std::vector<RateState> ours, theirs;
-  RateReport report;
-  ASSERT_TRUE(RateSmoother(params).estimate(trial.samples, ours, report).ok());
+  std::vector<AngularRateState> ours, theirs;
+  AngularRateReport report;
+  ASSERT_TRUE(AngularRateSmoother(params).estimate(trial.samples, ours, report).ok());
   ASSERT_EQ(ours.size(), trial.samples.size());
-  Saave::Params published;
+  SaturationAwareRateEstimator::Params published;
   published.lever_arm_m = {-0.022, -0.085, 0.055};  // lever arm of the published rig
   published.saturation_point_rad_s = 0.999 * trial.rail_rad_s;
-  ASSERT_TRUE(Saave(published).estimate(trial.samples, theirs).ok());
+  ASSERT_TRUE(SaturationAwareRateEstimator(published).estimate(trial.samples, theirs).ok());
 
   const auto raw = [&](std::size_t k) { return trial.samples[k].angular_velocity_rad_s; };
   const auto tumble = [&](std::size_t k) { return ours[k].w_WI_I_rad_s; };
@@ -99,12 +99,12 @@ TEST_P(BroadClipping, IsNeverWorseThanTheClippedGyro) {
   // the saturation level is found without a stated range, down to a third of the slowest peak, and no level where
   // nothing clips
   double found = 0.0;
-  for (int j = 0; j < 3; ++j) found = std::max(found, report.rail[static_cast<std::size_t>(j)].value_or(0.0));
+  for (int j = 0; j < 3; ++j) found = std::max(found, report.saturation_limits[static_cast<std::size_t>(j)].value_or(0.0));
   EXPECT_NEAR(found, trial.rail_rad_s, 1e-9);
-  const RailDetector rails(params.rails);
-  RailDetector::State whole;
-  for (const ImuSample& sample : recorded.samples) rails.observe(sample, whole);
-  for (int c = 0; c < 6; ++c) EXPECT_FALSE(rails.rail(whole, c).has_value()) << c;
+  const SaturationLimitDetector rails(params.saturation_detector);
+  SaturationLimitDetector::State whole;
+  for (const ImuSample& sample : recorded.samples) rails.observe_reading(sample, whole);
+  for (int c = 0; c < 6; ++c) EXPECT_FALSE(rails.saturation_limit(whole, c).has_value()) << c;
 
   // the noise of this gyro on three axes, which a worse result must exceed
   const double noise = params.model.gyro_noise_density * std::sqrt(3.0 * 285.714);

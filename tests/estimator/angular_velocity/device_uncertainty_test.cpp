@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tests how a stream treats uncertain device errors: the mixture against closed forms, and a RateStream of a device
+// Tests how a stream treats uncertain device errors: the mixture against closed forms, and an AngularRateStream of a device
 // whose errors are not corrected.
 #include "tumble/angular_velocity/detail/device_uncertainty.hpp"
 
@@ -19,23 +19,23 @@ namespace {
 
 constexpr int kDelay = SensorErrors::kDelay;
 
-SensorErrorEvidence delay_of(double delay_s, double sigma_s) {
-  SensorErrorEvidence out;
+SensorErrorInformation delay_of(double delay_s, double sigma_s) {
+  SensorErrorInformation out;
   out.information(kDelay, kDelay) = 1.0 / (sigma_s * sigma_s);
   out.gradient[kDelay] = delay_s / (sigma_s * sigma_s);
   return out;
 }
 
-DeviceUncertainty::Posterior posterior_by(const DeviceUncertainty& device, const SensorErrorEvidence& evidence) {
-  DeviceUncertainty::Work work;
-  DeviceUncertainty::Posterior out;
+SensorErrorUncertainty::Posterior posterior_by(const SensorErrorUncertainty& device, const SensorErrorInformation& evidence) {
+  SensorErrorUncertainty::WorkMatrices work;
+  SensorErrorUncertainty::Posterior out;
   device.update(evidence, work, out);
   return out;
 }
 
-TEST(DeviceUncertainty, WithoutEvidenceIsTheMixtureAssumed) {
+TEST(SensorErrorUncertainty, WithoutEvidenceIsTheMixtureAssumed) {
   const SensorErrorPriors sizes;
-  const DeviceUncertainty::Posterior posterior = posterior_by(DeviceUncertainty(sizes, 0.3), {});
+  const SensorErrorUncertainty::Posterior posterior = posterior_by(SensorErrorUncertainty(sizes, 0.3), {});
   EXPECT_NEAR(posterior.uncalibrated_probability, 0.3, 1e-12);
   const SensorErrors::Vector sheet = prior_sigmas(sizes, 0.0), unknown = prior_sigmas(sizes, 1.0);
   const SensorErrors::Vector expected = 0.7 * sheet.cwiseAbs2() + 0.3 * unknown.cwiseAbs2();
@@ -45,11 +45,11 @@ TEST(DeviceUncertainty, WithoutEvidenceIsTheMixtureAssumed) {
 
 // With one unknown, odds, mean and variance follow by hand. The information of samples has weight 0.3 for the odds, and
 // 0.03 for the errors.
-TEST(DeviceUncertainty, IsBayesOverTwoDevices) {
+TEST(SensorErrorUncertainty, IsBayesOverTwoDevices) {
   const SensorErrorPriors sizes;
   const double delay_s = 1.5e-4, sigma_s = 1e-4;
-  const DeviceUncertainty::Posterior posterior =
-      posterior_by(DeviceUncertainty(sizes, 0.3), delay_of(delay_s, sigma_s));
+  const SensorErrorUncertainty::Posterior posterior =
+      posterior_by(SensorErrorUncertainty(sizes, 0.3), delay_of(delay_s, sigma_s));
   const double of_odds_s = sigma_s / std::sqrt(0.3), believed_s = sigma_s / std::sqrt(0.03);
   const auto density = [&](double size) {
     const double variance = size * size + of_odds_s * of_odds_s;
@@ -66,9 +66,9 @@ TEST(DeviceUncertainty, IsBayesOverTwoDevices) {
   EXPECT_NEAR(posterior.covariance(kDelay, kDelay), expected, 1e-9 * expected);
 }
 
-TEST(DeviceUncertainty, APlainDelayLeavesAllOpenAndNoneTakesTheSheetsWord) {
-  const DeviceUncertainty device({}, 0.3);
-  const DeviceUncertainty::Posterior late = posterior_by(device, delay_of(8e-3, 1e-4)),
+TEST(SensorErrorUncertainty, APlainDelayLeavesAllOpenAndNoneTakesTheSheetsWord) {
+  const SensorErrorUncertainty device({}, 0.3);
+  const SensorErrorUncertainty::Posterior late = posterior_by(device, delay_of(8e-3, 1e-4)),
                                      in_time = posterior_by(device, delay_of(0.0, 1e-5));
   EXPECT_GT(late.uncalibrated_probability, 0.999);
   EXPECT_GT(late.covariance(kDelay, kDelay), 8e-3 * 8e-3 * 0.9);
@@ -77,18 +77,18 @@ TEST(DeviceUncertainty, APlainDelayLeavesAllOpenAndNoneTakesTheSheetsWord) {
   EXPECT_GT(device.common_delay_variance_s2(late), 10.0 * device.common_delay_variance_s2(in_time));
 }
 
-TEST(DeviceUncertainty, OfNoneThatIsUncalibratedTheSheetIsBelieved) {
+TEST(SensorErrorUncertainty, OfNoneThatIsUncalibratedTheSheetIsBelieved) {
   const SensorErrorPriors sizes;
-  const DeviceUncertainty::Posterior posterior = posterior_by(DeviceUncertainty(sizes, 0.0), delay_of(8e-3, 1e-4));
+  const SensorErrorUncertainty::Posterior posterior = posterior_by(SensorErrorUncertainty(sizes, 0.0), delay_of(8e-3, 1e-4));
   EXPECT_EQ(posterior.uncalibrated_probability, 0.0);
   EXPECT_LE(posterior.covariance(0, 0), 1.001 * prior_sigmas(sizes, 0.0)[0] * prior_sigmas(sizes, 0.0)[0]);
 }
 
-TEST(DeviceUncertainty, EvidenceThatIsNoNumberLeavesWhatWasOpen) {
-  const DeviceUncertainty device({}, 0.3);
-  SensorErrorEvidence bad = delay_of(8e-3, 5e-4);
+TEST(SensorErrorUncertainty, EvidenceThatIsNoNumberLeavesWhatWasOpen) {
+  const SensorErrorUncertainty device({}, 0.3);
+  SensorErrorInformation bad = delay_of(8e-3, 5e-4);
   bad.gradient[0] = std::numeric_limits<double>::quiet_NaN();
-  DeviceUncertainty::Posterior before;
+  SensorErrorUncertainty::Posterior before;
   device.reset(before);
   EXPECT_EQ(posterior_by(device, bad).covariance, before.covariance);
   EXPECT_EQ(posterior_by(device, bad).uncalibrated_probability, before.uncalibrated_probability);
@@ -99,11 +99,11 @@ struct Held {
   double share() const { return static_cast<double>(inside) / static_cast<double>(all); }
 };
 
-void add(const TumbleRecording& recording, const RateStream::Params& params, Held& held) {
-  const RateStream method(params);
-  RateStream::State state = method.start();
-  std::vector<RateState> out;
-  std::optional<RateState> one;
+void add(const TumbleRecording& recording, const AngularRateStream::Params& params, Held& held) {
+  const AngularRateStream method(params);
+  AngularRateStream::State state = method.start();
+  std::vector<AngularRateState> out;
+  std::optional<AngularRateState> one;
   for (const ImuSample& sample : recording.samples) {
     ASSERT_TRUE(method.push(sample, state, one).ok());
     if (one) out.push_back(*one);
@@ -127,7 +127,7 @@ TEST(RateStreamDevices, OneThatNobodyCalibratedIsNotSilent) {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     TumbleOptions options;
     options.seed = options.mounting_seed = seed;
-    const auto params = with_lever_arm<RateStream::Params>();
+    const auto params = with_lever_arm<AngularRateStream::Params>();
     add(make_tumble(options), params, as_stated);
     options.gyro_error.diagonal() = Eigen::Vector3d(0.01, -0.01, 0.01);
     options.accel_error.diagonal() = Eigen::Vector3d(-0.01, 0.01, 0.01);
@@ -146,14 +146,14 @@ TEST(RateStreamDevices, OneThatNobodyCalibratedIsNotSilent) {
 }
 
 TEST(RateStreamDevices, WhatIsNoCovarianceIsRefused) {
-  auto params = with_lever_arm<RateStream::Params>();
+  auto params = with_lever_arm<AngularRateStream::Params>();
   const auto learnt = std::make_shared<KnownSensorErrors>();
   params.calibrated_errors = learnt;
-  EXPECT_NO_THROW(RateStream{params});
+  EXPECT_NO_THROW(AngularRateStream{params});
   learnt->covariance(0, 0) = -0.01;
-  EXPECT_THROW(RateStream{params}, InvalidParams);
+  EXPECT_THROW(AngularRateStream{params}, InvalidParams);
   learnt->covariance(0, 0) = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(RateStream{params}, InvalidParams);
+  EXPECT_THROW(AngularRateStream{params}, InvalidParams);
 }
 
 }  // namespace

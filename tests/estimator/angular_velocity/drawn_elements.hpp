@@ -38,7 +38,7 @@ struct Pool {
   std::vector<double> raw, ours, free_axes;
   int within = 0, axes = 0, deep = 0, found = 0, called = 0, right = 0;
 
-  void add(const TumbleRecording& tumble, const std::vector<RateState>& states) {
+  void add(const TumbleRecording& tumble, const std::vector<AngularRateState>& states) {
     ASSERT_EQ(states.size(), tumble.samples.size());
     for (std::size_t k = 0; k < states.size(); ++k) {
       for (int j = 0; j < 3; ++j) {

@@ -66,15 +66,15 @@ std::vector<ImuSample> swung(const Eigen::Vector3d& arm_m) {
   return out;
 }
 
-FlightSignCheck::Params flight_params(FlightSignCheck::Body body, double range_rad_s) {
+FlightSignCheck::Params flight_params(FlightSignCheck::BodyMotionType body, double range_rad_s) {
   FlightSignCheck::Params params;
-  params.body = body;
+  params.motion_type = body;
   params.lever_arm_m = kFlightArm_m;
   params.gyro_range_rad_s = range_rad_s;
   return params;
 }
 
-std::string sense_told(std::vector<ImuSample> samples, FlightSignCheck::Body body, double range_rad_s,
+std::string sense_told(std::vector<ImuSample> samples, FlightSignCheck::BodyMotionType body, double range_rad_s,
                        const std::function<void(ImuSample&)>& harm) {
   const FlightSignCheck sense(flight_params(body, range_rad_s));
   FlightSignCheck::State state;
@@ -96,9 +96,9 @@ const std::vector<std::pair<std::string, std::function<void(ImuSample&)>>>& othe
 }
 
 TEST(FlightSignCheck, EachOtherSensorIsToldByItsName) {
-  EXPECT_EQ(sense_told(thrown_flight(), FlightSignCheck::Body::thrown, 100.0, [](ImuSample&) {}), "");
+  EXPECT_EQ(sense_told(thrown_flight(), FlightSignCheck::BodyMotionType::always_thrown, 100.0, [](ImuSample&) {}), "");
   for (const auto& [name, harm] : other_senses())
-    EXPECT_EQ(sense_told(thrown_flight(), FlightSignCheck::Body::thrown, 100.0, harm), name);
+    EXPECT_EQ(sense_told(thrown_flight(), FlightSignCheck::BodyMotionType::always_thrown, 100.0, harm), name);
 }
 
 // The force determines the rate of the clipped axis, and the remaining force determines the sign.
@@ -108,9 +108,9 @@ TEST(FlightSignCheck, AFlightInWhichAnAxisClipsTellsAsMuch) {
   for (const ImuSample& sample : thrown_flight())
     clipped += (sample.angular_velocity_rad_s.array().abs() > kRange_rad_s).count() == 1 ? 1 : 0;
   ASSERT_GT(clipped, 30U) << "nothing clips";
-  EXPECT_EQ(sense_told(thrown_flight(), FlightSignCheck::Body::thrown, kRange_rad_s, [](ImuSample&) {}), "");
+  EXPECT_EQ(sense_told(thrown_flight(), FlightSignCheck::BodyMotionType::always_thrown, kRange_rad_s, [](ImuSample&) {}), "");
   for (const auto& [name, harm] : other_senses())
-    EXPECT_EQ(sense_told(thrown_flight(), FlightSignCheck::Body::thrown, kRange_rad_s, harm), name);
+    EXPECT_EQ(sense_told(thrown_flight(), FlightSignCheck::BodyMotionType::always_thrown, kRange_rad_s, harm), name);
 }
 
 // A body that is swung about a point on the other side of the mass centre feels what a mirrored sensor would feel in
@@ -119,20 +119,20 @@ TEST(FlightSignCheck, OfABodyThatIsPerhapsHeldOnlyTheClearestIsTold) {
   const auto nothing = [](ImuSample&) {};
   const Eigen::Vector3d mirrored = kFlightArm_m.cwiseProduct(Eigen::Vector3d(-1.0, 1.0, 1.0));
   const auto x_flipped = [](ImuSample& s) { s.specific_force_m_s2.x() *= -1.0; };
-  EXPECT_EQ(sense_told(thrown_flight(), FlightSignCheck::Body::may_be_hand_held, 100.0, x_flipped), "");
-  EXPECT_EQ(sense_told(thrown_flight(), FlightSignCheck::Body::may_be_hand_held, 100.0, other_senses()[0].second),
+  EXPECT_EQ(sense_told(thrown_flight(), FlightSignCheck::BodyMotionType::possibly_hand_held, 100.0, x_flipped), "");
+  EXPECT_EQ(sense_told(thrown_flight(), FlightSignCheck::BodyMotionType::possibly_hand_held, 100.0, other_senses()[0].second),
             other_senses()[0].first);
-  EXPECT_EQ(sense_told(swung(mirrored), FlightSignCheck::Body::may_be_hand_held, 100.0, nothing), "");
-  EXPECT_EQ(sense_told(swung(kFlightArm_m), FlightSignCheck::Body::thrown, 100.0, nothing), "");
-  EXPECT_NE(sense_told(swung(-kFlightArm_m), FlightSignCheck::Body::thrown, 100.0, nothing), "")
+  EXPECT_EQ(sense_told(swung(mirrored), FlightSignCheck::BodyMotionType::possibly_hand_held, 100.0, nothing), "");
+  EXPECT_EQ(sense_told(swung(kFlightArm_m), FlightSignCheck::BodyMotionType::always_thrown, 100.0, nothing), "");
+  EXPECT_NE(sense_told(swung(-kFlightArm_m), FlightSignCheck::BodyMotionType::always_thrown, 100.0, nothing), "")
       << "the lever arm's own sense";
 }
 
 TEST(FlightSignCheck, OfABodyAtRestOrWithoutALeverArmNothingIsSaid) {
   std::vector<ImuSample> rest;
   for (int k = 0; k < 500; ++k) rest.push_back(flight_sample(k, {0.001, 0.0, 0.0}, {0.0, 0.0, -9.81}));
-  EXPECT_EQ(sense_told(rest, FlightSignCheck::Body::thrown, 100.0, [](ImuSample&) {}), "");
-  FlightSignCheck::Params params = flight_params(FlightSignCheck::Body::thrown, 100.0);
+  EXPECT_EQ(sense_told(rest, FlightSignCheck::BodyMotionType::always_thrown, 100.0, [](ImuSample&) {}), "");
+  FlightSignCheck::Params params = flight_params(FlightSignCheck::BodyMotionType::always_thrown, 100.0);
   params.lever_arm_m.setZero();
   const FlightSignCheck sense(params);
   FlightSignCheck::State state;

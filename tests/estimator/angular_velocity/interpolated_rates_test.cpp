@@ -29,17 +29,17 @@ struct Bent {
   double mean(double end_s, double window_s) const {
     return rate(end_s - 0.5 * window_s) + jerk_rad_s3 * window_s * window_s / 24.0;
   }
-  std::vector<RateStreamKnot> window(std::size_t count, std::size_t period) const {
-    std::vector<RateStreamKnot> out(count);
+  std::vector<AngularRateStreamKnot> window(std::size_t count, std::size_t period) const {
+    std::vector<AngularRateStreamKnot> out(count);
     for (std::size_t k = 0; k < count; ++k) {
       const std::size_t said = k % period;
       ImuSample& sample = out[k].observation.sample;
       sample.time_ns = static_cast<TimeNs>(k) * 10'000'000;
       const double taken_s = kPeriod_s * (static_cast<double>(k - said) - 0.5);
       sample.angular_velocity_rad_s.x() = mean(taken_s, kPeriod_s * static_cast<double>(period));
-      out[k].repeats = out[k].repeated.repeats = said > 0;
+      out[k].repeats_reading = out[k].repeated.repeats_reading = said > 0;
       out[k].repeated.age_samples = static_cast<double>(said) + 0.5;
-      out[k].repeated.period_samples = static_cast<double>(period);
+      out[k].repeated.reading_period_samples = static_cast<double>(period);
     }
     return out;
   }
@@ -50,7 +50,7 @@ struct Bent {
 TEST(HeldRates, AParabolaComesBackAtItsOwnTime) {
   const Bent motion;
   for (const std::size_t period : {2u, 3u, 4u}) {
-    const std::vector<RateStreamKnot> window = motion.window(24, period);
+    const std::vector<AngularRateStreamKnot> window = motion.window(24, period);
     const double window_s = kPeriod_s * static_cast<double>(period);
     const double hidden = motion.jerk_rad_s3 * (window_s * window_s - kPeriod_s * kPeriod_s) / 24.0;
     for (std::size_t k = 8; k < 14; ++k) {
@@ -67,13 +67,13 @@ TEST(HeldRates, AParabolaComesBackAtItsOwnTime) {
 
 TEST(HeldRates, NothingIsSaidWithoutBothReadings) {
   const Bent motion;
-  std::vector<RateStreamKnot> window = motion.window(24, 3);
+  std::vector<AngularRateStreamKnot> window = motion.window(24, 3);
   EXPECT_FALSE(rate_between_readings(window, 23, kPeriod_s).has_value());  // the next reading is missing
   EXPECT_TRUE(rate_between_readings(window, 10, kPeriod_s).has_value());
   for (std::size_t k = 12; k < 15; ++k) window[k].observation.clipping.gyro = 2;
   // sample 12 is the first at or after this time
   EXPECT_FALSE(rate_between_readings(window, 10, kPeriod_s).has_value());
-  for (RateStreamKnot& knot : window) knot.repeats = false, knot.repeated = {};
+  for (AngularRateStreamKnot& knot : window) knot.repeats_reading = false, knot.repeated = {};
   EXPECT_FALSE(rate_between_readings(window, 6, kPeriod_s).has_value());  // each sample has a reading
 }
 
@@ -88,14 +88,14 @@ TEST(HeldRates, ForcesOnALineComeBackAtTheirOwnTime) {
     samples[k].angular_velocity_rad_s = Vector3d(1.0 + 1e-3 * static_cast<double>(k), 0.0, 0.0);
     samples[k].specific_force_m_s2 = Vector3d(kSlope_m_s3 * kPeriod_s * (static_cast<double>(k) - 0.5), 0.0, 1.0);
   }
-  EXPECT_TRUE(forces_between_readings(samples).empty());  // each sample has a reading
+  EXPECT_TRUE(interpolated_forces(samples).empty());  // each sample has a reading
   all = samples;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     // taken half a sample before it is logged, at the middle of a window of half the period
     const double taken = static_cast<double>(k - k % kEach) - 0.5, middle = taken - 0.25 * kEach;
     samples[k].specific_force_m_s2.x() = kSlope_m_s3 * kPeriod_s * middle;
   }
-  const std::vector<Vector3d> found = forces_between_readings(samples);
+  const std::vector<Vector3d> found = interpolated_forces(samples);
   ASSERT_EQ(found.size(), samples.size());
   for (std::size_t k = 2 * kEach; k + 2 * kEach < samples.size(); ++k) {
     const double truth = all[k].specific_force_m_s2.x();
@@ -133,10 +133,10 @@ TumbleRecording slow_gyro(std::uint64_t seed, std::size_t window) {
 }
 
 /// Returns how late the rates of samples without a clipped axis are: least squares over the true acceleration.
-double late_s(const TumbleRecording& recording, const std::vector<RateState>& rates) {
+double late_s(const TumbleRecording& recording, const std::vector<AngularRateState>& rates) {
   double product = 0.0, square = 0.0;
   for (std::size_t k = 1; k + 1 < rates.size(); ++k) {
-    if (rates[k].source != RateSource::measured) continue;
+    if (rates[k].source != AngularRateSource::measured) continue;
     const Vector3d change = (recording.truth[k + 1] - recording.truth[k - 1]) / (2.0 * kPeriod_s);
     product += change.dot(recording.truth[k] - rates[k].w_WI_I_rad_s);
     square += change.squaredNorm();
@@ -152,15 +152,15 @@ TEST(HeldRates, BatchAndStreamAreInTime) {
   constexpr double kTumbles = 8.0;
   for (std::uint64_t seed = 2; seed < 10; ++seed) {
     const TumbleRecording recording = slow_gyro(seed, 18);
-    std::vector<RateState> rates;
-    RateReport report;
-    ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(recording.samples, rates, report).ok());
-    EXPECT_NEAR(report.gyro_update_s, 0.018, 2e-4);
+    std::vector<AngularRateState> rates;
+    AngularRateReport report;
+    ASSERT_TRUE(AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(recording.samples, rates, report).ok());
+    EXPECT_NEAR(report.gyro_update_interval_s, 0.018, 2e-4);
     batch += late_s(recording, rates) / kTumbles;
 
-    const RateStream method(with_lever_arm<RateStream::Params>());
-    RateStream::State state = method.start();
-    std::optional<RateState> one;
+    const AngularRateStream method(with_lever_arm<AngularRateStream::Params>());
+    AngularRateStream::State state = method.start();
+    std::optional<AngularRateState> one;
     rates.clear();
     for (const ImuSample& sample : recording.samples) {
       ASSERT_TRUE(method.push(sample, state, one).ok());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests readings that are unsaturated, but whose windows may have been partly saturated.
-#include "estimator/src/angular_velocity/near_rails.hpp"
+#include "estimator/src/angular_velocity/near_saturation_limits.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,14 +16,14 @@ using Eigen::Vector3d;
 constexpr double kRail_rad_s = 7.3, kWindow_s = 0.01, kTolerance_rad_s = 0.01;
 
 // Returns the saturation plane of element x, observed on both sides, with a tilt towards z.
-RailPlanes planes(double slope = -0.02) {
-  RailPlane plane;
+SaturationPlanes planes(double slope = -0.02) {
+  SaturationPlane plane;
   plane.row = Vector3d(1.0, 0.0, slope);
-  plane.distance_rad_s = kRail_rad_s;
+  plane.saturation_limit_rad_s = kRail_rad_s;
   plane.samples = {20, 20};
   plane.tolerance_rad_s = kTolerance_rad_s;
-  RailPlanes out;
-  out.element[0] = plane;
+  SaturationPlanes out;
+  out.sensing_axis[0] = plane;
   return out;
 }
 
@@ -60,12 +60,12 @@ TEST(NearRails, EachWindowThatMetTheRailInAPartIsTold) {
   for (const double hz : {0.7, 1.3, 2.9, 5.3}) {
     for (const int times : {1, 2}) {
       const Twirl motion = twirl(9.0, hz, times);
-      const RailPlanes known = planes();
+      const SaturationPlanes known = planes();
       const std::vector<std::uint8_t> near = possible_partial_saturation(motion.samples, known);
       std::size_t in_part = 0, told = 0, besides = 0;
       for (std::size_t k = 0; k < near.size(); ++k) {
         const Vector3d& reading = motion.samples[k].angular_velocity_rad_s;
-        if (known.element[0]->holds(reading, reading.x() < 0.0 ? -1 : 1)) continue;
+        if (known.sensing_axis[0]->is_saturated(reading, reading.x() < 0.0 ? -1 : 1)) continue;
         const bool lost = motion.expected_deficit_rad_s[k] > 1e-6;
         in_part += lost ? 1 : 0;
         told += lost && near[k] == 1 ? 1 : 0;
@@ -93,8 +93,8 @@ TEST(NearRails, WhatStaysBelowTheRailIsMeasured) {
 TEST(NearRails, ARailThatWasNotSeenIsNotMet) {
   const Twirl motion = twirl(9.0, 2.9);
   for (const std::uint8_t bits : possible_partial_saturation(motion.samples, {})) EXPECT_EQ(bits, 0);
-  RailPlanes one_sided = planes();
-  one_sided.element[0]->samples = {0, 20};
+  SaturationPlanes one_sided = planes();
+  one_sided.sensing_axis[0]->samples = {0, 20};
   const std::vector<std::uint8_t> near = possible_partial_saturation(motion.samples, one_sided);
   int positive = 0;
   for (std::size_t k = 0; k < near.size(); ++k) {

@@ -67,22 +67,22 @@ TEST(RailJudgement, FindsTheTiltedRailsOfAnAccelerometer) {
   Share all, seen;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     const Tumble tumble = railed_tumble(seed, 0.02);
-    const ClippingFinder::Found found = ClippingFinder({}).find(tumble.recording.samples);
-    EXPECT_TRUE(found.rails.accel_planes.any()) << seed;
-    for (std::size_t k = 0; k < found.clippings.size(); ++k) {
-      all.add(tumble.hidden_m_s2[k], found.clippings[k].accel);
+    const ClippingFinder::ClippingSearchResult found = ClippingFinder({}).find(tumble.recording.samples);
+    EXPECT_TRUE(found.saturation_levels.accel_saturation_planes.any_plane_found()) << seed;
+    for (std::size_t k = 0; k < found.clipping_per_sample.size(); ++k) {
+      all.add(tumble.hidden_m_s2[k], found.clipping_per_sample[k].accel);
       Vector3d of_seen = tumble.hidden_m_s2[k];
       for (int j = 0; j < 3; ++j) {
-        const auto& plane = found.rails.accel_planes.element[static_cast<std::size_t>(j)];
-        if (!plane || !plane->seen(of_seen[j] < 0.0 ? -1 : 1)) of_seen[j] = 0.0;
+        const auto& plane = found.saturation_levels.accel_saturation_planes.sensing_axis[static_cast<std::size_t>(j)];
+        if (!plane || !plane->was_reached(of_seen[j] < 0.0 ? -1 : 1)) of_seen[j] = 0.0;
       }
-      seen.add(of_seen, found.clippings[k].accel);
+      seen.add(of_seen, found.clipping_per_sample[k].accel);
     }
     for (int j = 0; j < 3; ++j) {
-      const auto& plane = found.rails.accel_planes.element[static_cast<std::size_t>(j)];
+      const auto& plane = found.saturation_levels.accel_saturation_planes.sensing_axis[static_cast<std::size_t>(j)];
       if (!plane) continue;
       const Eigen::Vector4d sigma = plane->covariance.diagonal().cwiseSqrt();
-      EXPECT_NEAR(plane->distance_rad_s, kRail_m_s2, 0.05 + 4.0 * sigma[2]) << seed;
+      EXPECT_NEAR(plane->saturation_limit_rad_s, kRail_m_s2, 0.05 + 4.0 * sigma[2]) << seed;
       const double of_slopes = sigma.head<2>().norm();
       EXPECT_LT((plane->row.transpose() - tumble.rows.row(j)).norm(), 0.005 + 4.0 * of_slopes) << seed;
     }
@@ -100,9 +100,9 @@ TEST(RailJudgement, FindsTheTiltedRailsOfAnAccelerometer) {
 TEST(RailJudgement, AnAccelerometerThatDoesNotClipHasNoRail) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     const Tumble tumble = railed_tumble(seed, 0.02, 1e4);
-    const ClippingFinder::Found found = ClippingFinder({}).find(tumble.recording.samples);
-    EXPECT_FALSE(found.rails.accel_planes.any()) << seed;
-    for (const Clipping& clipping : found.clippings) EXPECT_EQ(clipping.accel, 0) << seed;
+    const ClippingFinder::ClippingSearchResult found = ClippingFinder({}).find(tumble.recording.samples);
+    EXPECT_FALSE(found.saturation_levels.accel_saturation_planes.any_plane_found()) << seed;
+    for (const Clipping& clipping : found.clipping_per_sample) EXPECT_EQ(clipping.accel, 0) << seed;
   }
 }
 
@@ -130,12 +130,12 @@ TEST(RailJudgement, RailsOfTwoSignsThatDifferAreNoDevicesOwn) {
   for (const double offset_rad_s : {0.0, 0.05, -0.05, 0.005}) {
     std::vector<bool> lost;
     const std::vector<ImuSample> samples = swung_wand(offset_rad_s, lost);
-    const ClippingFinder::Found found = ClippingFinder({}).find(samples);
-    EXPECT_EQ(found.rails.gyro_clips_after_compensation, offset_rad_s == 0.0) << offset_rad_s;
+    const ClippingFinder::ClippingSearchResult found = ClippingFinder({}).find(samples);
+    EXPECT_EQ(found.saturation_levels.gyro_clips_after_compensation, offset_rad_s == 0.0) << offset_rad_s;
     int of_all = 0, missed = 0;
     for (std::size_t k = 0; k < samples.size(); ++k) {
       of_all += lost[k];
-      missed += lost[k] && (found.clippings[k].gyro & 1u) == 0;
+      missed += lost[k] && (found.clipping_per_sample[k].gyro & 1u) == 0;
     }
     ASSERT_GT(of_all, 200) << offset_rad_s;
     EXPECT_EQ(missed, 0) << offset_rad_s << " of " << of_all;
@@ -145,7 +145,7 @@ TEST(RailJudgement, RailsOfTwoSignsThatDifferAreNoDevicesOwn) {
 struct ErrorsAtRails {
   std::vector<double> all;
   int within = 0, axes = 0;
-  void add(const Tumble& tumble, const std::vector<RateState>& states) {
+  void add(const Tumble& tumble, const std::vector<AngularRateState>& states) {
     ASSERT_EQ(states.size(), tumble.recording.truth.size());
     for (std::size_t k = 0; k < states.size(); ++k) {
       if (states[k].clipped_axes == 0) continue;
@@ -167,17 +167,17 @@ struct ErrorsAtRails {
 
 template <typename Params>
 ErrorsAtRails errors_with(Params params, double distance_min) {
-  params.expert.accel_planes.distance_min_rad_s = distance_min;
+  params.expert.accel_saturation_planes.distance_min_rad_s = distance_min;
   ErrorsAtRails out;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const Tumble tumble = railed_tumble(seed, 0.03);
-    std::vector<RateState> states;
-    if constexpr (std::is_same_v<Params, RateSmoother::Params>) {
-      RateReport report;
-      EXPECT_TRUE(RateSmoother(params).estimate(tumble.recording.samples, states, report).ok());
+    std::vector<AngularRateState> states;
+    if constexpr (std::is_same_v<Params, AngularRateSmoother::Params>) {
+      AngularRateReport report;
+      EXPECT_TRUE(AngularRateSmoother(params).estimate(tumble.recording.samples, states, report).ok());
     } else {
-      const RateStream stream(params);
-      RateStream::State state = stream.start();
+      const AngularRateStream stream(params);
+      AngularRateStream::State state = stream.start();
       states = streamed_rates(stream, tumble.recording.samples, state);
     }
     out.add(tumble, states);
@@ -186,9 +186,9 @@ ErrorsAtRails errors_with(Params params, double distance_min) {
 }
 
 TEST(RailJudgement, ASaturatedForceIsABoundAlongItsElement) {
-  ErrorsAtRails ours = errors_with(with_lever_arm<RateSmoother::Params>(), 15.0);
+  ErrorsAtRails ours = errors_with(with_lever_arm<AngularRateSmoother::Params>(), 15.0);
   // negative control: the same smoother without planes uses wrong forces
-  ErrorsAtRails blind = errors_with(with_lever_arm<RateSmoother::Params>(), 1000.0);
+  ErrorsAtRails blind = errors_with(with_lever_arm<AngularRateSmoother::Params>(), 1000.0);
   ASSERT_GT(ours.all.size(), 200u);
   // measured: mean 0.095 and 0.236 rad/s, 90 % 0.13 and 0.81, share within three deviations 0.990 and 0.938
   EXPECT_LT(ours.mean(), 0.6 * blind.mean());
@@ -198,8 +198,8 @@ TEST(RailJudgement, ASaturatedForceIsABoundAlongItsElement) {
 }
 
 TEST(RailJudgement, TheStreamReadsItAlike) {
-  ErrorsAtRails ours = errors_with(with_lever_arm<RateStream::Params>(), 15.0),
-                blind = errors_with(with_lever_arm<RateStream::Params>(), 1000.0);
+  ErrorsAtRails ours = errors_with(with_lever_arm<AngularRateStream::Params>(), 15.0),
+                blind = errors_with(with_lever_arm<AngularRateStream::Params>(), 1000.0);
   ASSERT_GT(ours.all.size(), 200u);
   EXPECT_LT(ours.median(), 0.7 * blind.median());
   EXPECT_GT(ours.within, 0.95 * ours.axes);
@@ -214,19 +214,19 @@ TumbleRecording tilted_gyro() {
 // An auxiliary IMU with tilted elements is correct along its free elements while another clips, but not axis by axis.
 TEST(RailJudgement, AnAuxiliaryImuIsReadAlongItsElements) {
   const TumbleRecording tumble = tilted_gyro();
-  const ClippingFinder::Found found = ClippingFinder({}).find(tumble.samples);
+  const ClippingFinder::ClippingSearchResult found = ClippingFinder({}).find(tumble.samples);
   AuxiliaryImu auxiliary_imu;
-  auxiliary_imu.gyro_elements = found.rails.rows(Triad::gyro, 0.03);
+  auxiliary_imu.gyro_sensing_directions = found.saturation_levels.rows(Triad::gyro, 0.03);
   std::vector<AuxiliaryReading> readings;
-  ASSERT_TRUE(align(auxiliary_imu, tumble.samples, found.clippings, tumble.samples, 1.0, readings).ok());
-  const Matrix3d& rows = auxiliary_imu.gyro_elements.rows;
+  ASSERT_TRUE(align(auxiliary_imu, tumble.samples, found.clipping_per_sample, tumble.samples, 1.0, readings).ok());
+  const Matrix3d& rows = auxiliary_imu.gyro_sensing_directions.sensing_directions;
   double along = 0.0, by_axis = 0.0;
   int count = 0;
   for (std::size_t k = 0; k < readings.size(); ++k) {
-    EXPECT_EQ(readings[k].rate_along_elements, found.clippings[k].gyro != 0) << k;
-    if (!readings[k].rate_along_elements || tumble.hidden[k].norm() < 2.0) continue;
+    EXPECT_EQ(readings[k].rate_along_sensing_axes, found.clipping_per_sample[k].gyro != 0) << k;
+    if (!readings[k].rate_along_sensing_axes || tumble.hidden[k].norm() < 2.0) continue;
     for (int j = 0; j < 3; ++j) {
-      if (!std::isfinite(readings[k].rate_rad_s[j]) || auxiliary_imu.gyro_elements.slope_sigma[j] > 0.01) continue;
+      if (!std::isfinite(readings[k].rate_rad_s[j]) || auxiliary_imu.gyro_sensing_directions.cross_axis_slope_sigma[j] > 0.01) continue;
       along += std::abs(readings[k].rate_rad_s[j] - rows.row(j).dot(tumble.truth[k]));
       by_axis += std::abs(tumble.samples[k].angular_velocity_rad_s[j] - tumble.truth[k][j]);
       ++count;
@@ -235,13 +235,13 @@ TEST(RailJudgement, AnAuxiliaryImuIsReadAlongItsElements) {
   ASSERT_GT(count, 50);
   EXPECT_LT(along, 0.3 * by_axis);
   std::vector<Clipping> few(3);
-  EXPECT_EQ(align(auxiliary_imu, tumble.samples, few, tumble.samples, 1.0, readings).error_code, ErrorCode::too_few);
+  EXPECT_EQ(align(auxiliary_imu, tumble.samples, few, tumble.samples, 1.0, readings).error_code, ErrorCode::insufficient_data);
 }
 
 // Published methods use the axis-aligned level of each axis, and planes only on request.
 TEST(RailJudgement, PublishedFamiliesKeepUprightRailsUnlessAsked) {
   const TumbleRecording tumble = tilted_gyro();
-  std::vector<RateState> upright, planes;
+  std::vector<AngularRateState> upright, planes;
   ASSERT_TRUE(baselines::ClippedBaseline({}).estimate(tumble.samples, upright).ok());
   ASSERT_TRUE(baselines::ClippedBaseline({.tilted_rails = true}).estimate(tumble.samples, planes).ok());
   Share by_rails, by_planes;
@@ -268,10 +268,10 @@ TEST(RailJudgement, TheWatchKeepsTheFirstReadingsAndTheLatest) {
       ImuSample sample;
       sample.time_ns = 10'000'000 * static_cast<TimeNs>(k);
       sample.angular_velocity_rad_s = reading(k);
-      watch.observe(sample, state);
+      watch.observe_reading(sample, state);
     }
-    const std::vector<Vector3d>& kept = state.memory[0].readings;
-    ASSERT_TRUE(state.memory[0].pruned);
+    const std::vector<Vector3d>& kept = state.distinct_readings[0].readings;
+    ASSERT_TRUE(state.distinct_readings[0].readings_pruned);
     ASSERT_LE(kept.size(), static_cast<std::size_t>(readings_max));
     const int first = readings_max == 64 ? 12 : 48;
     for (int k = 0; k < first; ++k) EXPECT_EQ(kept[static_cast<std::size_t>(k)], reading(k)) << k;
@@ -285,17 +285,17 @@ TEST(RailJudgement, TheWatchKeepsTheFirstReadingsAndTheLatest) {
 // levels, the stream judges like the batch.
 TEST(RailJudgement, TheWatchJudgesByWhatComesAfterToo) {
   const TumbleRecording tumble = tilted_gyro();
-  const ClippingFinder::Found batch = ClippingFinder({}).find(tumble.samples);
+  const ClippingFinder::ClippingSearchResult batch = ClippingFinder({}).find(tumble.samples);
   const StreamingClippingFinder watch({});
   StreamingClippingFinder::State state = watch.start();
-  for (const ImuSample& sample : tumble.samples) watch.observe(sample, state);
+  for (const ImuSample& sample : tumble.samples) watch.observe_reading(sample, state);
   int clipped = 0, apart = 0, apart_by_before = 0;
   for (std::size_t k = 1; k + 1 < tumble.samples.size(); ++k) {
     const ImuSample *const before = &tumble.samples[k - 1], &now = tumble.samples[k], *const after = before + 2;
-    clipped += batch.clippings[k].gyro != 0;
-    apart += watch.classify(before, now, state, after).gyro != batch.clippings[k].gyro;
-    apart_by_before += watch.classify(before, now, state).gyro != batch.clippings[k].gyro;
-    watch.axis_aligned_rails().classify(now, state.known.axis_aligned_rails);
+    clipped += batch.clipping_per_sample[k].gyro != 0;
+    apart += watch.classify_clipping(before, now, state, after).gyro != batch.clipping_per_sample[k].gyro;
+    apart_by_before += watch.classify_clipping(before, now, state).gyro != batch.clipping_per_sample[k].gyro;
+    watch.axis_limit_detector().classify_clipping(now, state.known_limits.axis_limit_state);
   }
   std::printf("%d clipped, apart %d, without the sample after %d\n", clipped, apart, apart_by_before);
   ASSERT_GT(clipped, 50);
@@ -311,11 +311,11 @@ TEST(RailJudgement, TellsWhatAReadingIsWorth) {
   clipping.gyro = 3;
   clipping.unusable_gyro = 4;
   clipping.accel = 2;
-  EXPECT_EQ(element_reading(sample, clipping, Triad::gyro, 0), ElementReading::clipped_high);
-  EXPECT_EQ(element_reading(sample, clipping, Triad::gyro, 1), ElementReading::clipped_low);
-  EXPECT_EQ(element_reading(sample, clipping, Triad::gyro, 2), ElementReading::unreadable);
-  EXPECT_EQ(element_reading(sample, clipping, Triad::accelerometer, 0), ElementReading::measured);
-  EXPECT_EQ(element_reading(sample, clipping, Triad::accelerometer, 1), ElementReading::clipped_low);
+  EXPECT_EQ(sensing_axis_reading(sample, clipping, Triad::gyro, 0), SensingAxisReading::clipped_high);
+  EXPECT_EQ(sensing_axis_reading(sample, clipping, Triad::gyro, 1), SensingAxisReading::clipped_low);
+  EXPECT_EQ(sensing_axis_reading(sample, clipping, Triad::gyro, 2), SensingAxisReading::invalid_reading);
+  EXPECT_EQ(sensing_axis_reading(sample, clipping, Triad::accelerometer, 0), SensingAxisReading::not_clipped);
+  EXPECT_EQ(sensing_axis_reading(sample, clipping, Triad::accelerometer, 1), SensingAxisReading::clipped_low);
   EXPECT_EQ(clip_flags(clipping), kClipGyroX | kClipGyroY | kClipGyroZ | kClipAccelY);
 }
 

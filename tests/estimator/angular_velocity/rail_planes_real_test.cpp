@@ -12,7 +12,7 @@
 
 #include "stand_ins/broad_trial.hpp"
 #include "stand_ins/stand_ins.hpp"
-#include "tumble/angular_velocity/detail/rail_planes.hpp"
+#include "tumble/angular_velocity/detail/saturation_plane_finder.hpp"
 
 namespace tumble {
 namespace {
@@ -55,19 +55,19 @@ class RealRails : public ::testing::TestWithParam<Known> {};
 TEST_P(RealRails, AreFoundWithoutAnybodyStatingThem) {
   const std::vector<ImuSample> samples = read_repoimu(test::written(GetParam().folder) / GetParam().file);
   ASSERT_GT(samples.size(), 1000u);
-  const RailPlanes planes = RailPlaneFinder({}).find(samples);
+  const SaturationPlanes planes = SaturationPlaneFinder({}).find(samples);
   const auto axis = static_cast<std::size_t>(GetParam().axis);
-  for (std::size_t j = 0; j < 3; ++j) EXPECT_EQ(planes.element[j].has_value(), j == axis) << j;
-  ASSERT_TRUE(planes.element[axis].has_value());
-  const RailPlane& rail = *planes.element[axis];
+  for (std::size_t j = 0; j < 3; ++j) EXPECT_EQ(planes.sensing_axis[j].has_value(), j == axis) << j;
+  ASSERT_TRUE(planes.sensing_axis[axis].has_value());
+  const SaturationPlane& rail = *planes.sensing_axis[axis];
   // 0.3 % lower: fits by hand treated partly saturated windows as clipped
-  EXPECT_NEAR(rail.distance_rad_s, GetParam().distance, 0.003 * GetParam().distance);
+  EXPECT_NEAR(rail.saturation_limit_rad_s, GetParam().distance, 0.003 * GetParam().distance);
   EXPECT_NEAR(rail.offset_rad_s, GetParam().offset, 0.01);
   // the tolerance is the difference of such fits between recordings of one device
   EXPECT_NEAR(rail.row[(GetParam().axis + 1) % 3], GetParam().first_slope, 0.008);
   EXPECT_NEAR(rail.row[(GetParam().axis + 2) % 3], GetParam().second_slope, 0.008);
   int clipped = 0;
-  for (const ImuSample& sample : samples) clipped += classify(sample, planes).any() ? 1 : 0;
+  for (const ImuSample& sample : samples) clipped += classify_clipping(sample, planes).any_axis_saturated() ? 1 : 0;
   EXPECT_NEAR(clipped, GetParam().samples, 0.06 * GetParam().samples);
 }
 
@@ -92,9 +92,9 @@ class NoRails : public ::testing::TestWithParam<std::string> {};
 TEST_P(NoRails, AreFoundInARealGyroThatDoesNotClip) {
   const std::vector<ImuSample> samples = testing::read_broad_trial(GetParam()).samples;
   ASSERT_GT(samples.size(), 10000u);
-  EXPECT_FALSE(RailPlaneFinder({}).find(samples).any());
-  const RailPlaneFinder forces(RailPlaneFinder::Params::for_accelerometer());
-  EXPECT_FALSE(forces.find(samples, Triad::accelerometer).any());
+  EXPECT_FALSE(SaturationPlaneFinder({}).find(samples).any_plane_found());
+  const SaturationPlaneFinder forces(SaturationPlaneFinder::Params::defaults_for_accelerometer());
+  EXPECT_FALSE(forces.find(samples, Triad::accelerometer).any_plane_found());
 }
 
 INSTANTIATE_TEST_SUITE_P(Broad, NoRails, ::testing::ValuesIn(testing::broad_trials()));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/detail/rail_planes.hpp"
+#include "tumble/angular_velocity/detail/saturation_plane_finder.hpp"
 
 #include <gtest/gtest.h>
 
@@ -50,19 +50,19 @@ std::vector<Vector3d> waved(double scale, double seconds, double noise_rad_s, st
   return rates;
 }
 
-RailPlanes find(const std::vector<Vector3d>& rates) {
-  return RailPlaneFinder({}).find(samples_of(rates));
+SaturationPlanes find(const std::vector<Vector3d>& rates) {
+  return SaturationPlaneFinder({}).find(samples_of(rates));
 }
 
 // Score counts the found saturated samples, all saturated samples, and false detections.
 struct Score {
   int deep = 0, found = 0, wrong = 0;
   void add(const std::vector<ImuSample>& samples, const std::vector<Vector3d>& hidden) {
-    const RailPlanes planes = RailPlaneFinder({}).find(samples);
+    const SaturationPlanes planes = SaturationPlaneFinder({}).find(samples);
     for (std::size_t k = 0; k < samples.size(); ++k) {
-      const ElementClipping now = classify(samples[k], planes);
+      const SensingAxisClipping now = classify_clipping(samples[k], planes);
       for (int j = 0; j < 3; ++j) {
-        const bool called = now.sign[static_cast<std::size_t>(j)] != 0;
+        const bool called = now.saturated_side[static_cast<std::size_t>(j)] != 0;
         deep += std::abs(hidden[k][j]) > 0.1;
         found += std::abs(hidden[k][j]) > 0.1 && called;
         wrong += called && hidden[k][j] == 0.0;
@@ -71,24 +71,24 @@ struct Score {
   }
 };
 
-TEST(RailPlanes, ThePlaneOfAKnownDeviceComesBack) {
+TEST(SaturationPlanes, ThePlaneOfAKnownDeviceComesBack) {
   Eigen::Matrix3d rows;
   rows << 1.0, 0.006, -0.018, -0.04, 1.0, 0.02, 0.05, 0.01, 1.0;
   const Vector3d offset(-0.05, 0.13, 0.0);
-  const RailPlanes planes = find(clipped_along(waved(12.0, 30.0, 0.004, 1), rows, offset, 7.3));
+  const SaturationPlanes planes = find(clipped_along(waved(12.0, 30.0, 0.004, 1), rows, offset, 7.3));
   for (int j = 0; j < 3; ++j) {
-    ASSERT_TRUE(planes.element[static_cast<std::size_t>(j)].has_value()) << j;
-    const RailPlane& rail = *planes.element[static_cast<std::size_t>(j)];
+    ASSERT_TRUE(planes.sensing_axis[static_cast<std::size_t>(j)].has_value()) << j;
+    const SaturationPlane& rail = *planes.sensing_axis[static_cast<std::size_t>(j)];
     // the element's offset is subtracted after clipping, so the planes are at +-7.3 minus the offset
     EXPECT_NEAR((rail.row - rows.row(j).transpose()).norm(), 0.0, 1e-3) << j;
-    EXPECT_NEAR(rail.distance_rad_s, 7.3, 2e-3) << j;
+    EXPECT_NEAR(rail.saturation_limit_rad_s, 7.3, 2e-3) << j;
     EXPECT_NEAR(rail.offset_rad_s, -offset[j], 2e-3) << j;
-    EXPECT_TRUE(rail.seen(-1) && rail.seen(1));
+    EXPECT_TRUE(rail.was_reached(-1) && rail.was_reached(1));
     EXPECT_LT(rail.deviation_rad_s, 1e-3);
   }
 }
 
-TEST(RailPlanes, DrawnDevicesAreFoundOnTumbles) {
+TEST(SaturationPlanes, DrawnDevicesAreFoundOnTumbles) {
   Score score;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     TumbleOptions options;
@@ -102,19 +102,19 @@ TEST(RailPlanes, DrawnDevicesAreFoundOnTumbles) {
   EXPECT_LE(score.wrong, 0.005 * score.found);
 }
 
-TEST(RailPlanes, NothingIsFoundWhereNothingClips) {
+TEST(SaturationPlanes, NothingIsFoundWhereNothingClips) {
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     TumbleOptions options;
     options.seed = seed;
     options.gyro_rail_rad_s = 1e3;
-    EXPECT_FALSE(RailPlaneFinder({}).find(make_tumble(options).samples).any()) << seed;
-    EXPECT_FALSE(find(waved(8.0, 20.0, 0.004, seed)).any()) << seed;
+    EXPECT_FALSE(SaturationPlaneFinder({}).find(make_tumble(options).samples).any_plane_found()) << seed;
+    EXPECT_FALSE(find(waved(8.0, 20.0, 0.004, seed)).any_plane_found()) << seed;
   }
 }
 
 // These motions misled early detectors. A spin is a constant rate that begins and ends with an impact; a top turns
 // around slowly.
-TEST(RailPlanes, SpinsTopsRestAndCreepingAreNoRails) {
+TEST(SaturationPlanes, SpinsTopsRestAndCreepingAreNoRails) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     oracles::Gaussian noise(seed);
     std::vector<Vector3d> spin, top, rest, creep;
@@ -130,14 +130,14 @@ TEST(RailPlanes, SpinsTopsRestAndCreepingAreNoRails) {
       rest.push_back(error);
       creep.push_back(Vector3d(0.0, 0.0, k < 300 || k > 700 ? 0.0 : 1.4) + error);
     }
-    EXPECT_FALSE(find(spin).any()) << seed;
-    EXPECT_FALSE(find(top).any()) << seed;
-    EXPECT_FALSE(find(rest).any()) << seed;
-    EXPECT_FALSE(find(creep).any()) << seed;
+    EXPECT_FALSE(find(spin).any_plane_found()) << seed;
+    EXPECT_FALSE(find(top).any_plane_found()) << seed;
+    EXPECT_FALSE(find(rest).any_plane_found()) << seed;
+    EXPECT_FALSE(find(creep).any_plane_found()) << seed;
   }
 }
 
-TEST(RailPlanes, ReadingsThatRepeatOrAreCoarseDoNotHideARail) {
+TEST(SaturationPlanes, ReadingsThatRepeatOrAreCoarseDoNotHideARail) {
   const Eigen::Matrix3d rows = drawn_rows(3, 0.03);
   const std::vector<Vector3d> exact = clipped_along(waved(18.0, 20.0, 0.004, 5), rows, Vector3d::Zero(), 10.3);
   std::vector<Vector3d> held;
@@ -145,10 +145,10 @@ TEST(RailPlanes, ReadingsThatRepeatOrAreCoarseDoNotHideARail) {
     const Vector3d& latest = exact[k - k % 3];
     held.push_back((latest / 5e-4).array().round().matrix() * 5e-4);
   }
-  const RailPlanes planes = find(held);
+  const SaturationPlanes planes = find(held);
   for (int j = 0; j < 3; ++j) {
-    ASSERT_TRUE(planes.element[static_cast<std::size_t>(j)].has_value()) << j;
-    EXPECT_NEAR((planes.element[static_cast<std::size_t>(j)]->row - rows.row(j).transpose()).norm(), 0.0, 3e-3) << j;
+    ASSERT_TRUE(planes.sensing_axis[static_cast<std::size_t>(j)].has_value()) << j;
+    EXPECT_NEAR((planes.sensing_axis[static_cast<std::size_t>(j)]->row - rows.row(j).transpose()).norm(), 0.0, 3e-3) << j;
   }
   // negative control: the same motion, never clipped
   std::vector<Vector3d> free;
@@ -156,29 +156,29 @@ TEST(RailPlanes, ReadingsThatRepeatOrAreCoarseDoNotHideARail) {
   for (std::size_t k = 0; k < smooth.size(); ++k) {
     free.push_back((smooth[k - k % 3] / 5e-4).array().round().matrix() * 5e-4);
   }
-  EXPECT_FALSE(find(free).any());
+  EXPECT_FALSE(find(free).any_plane_found());
 }
 
 // A stated range speaks against a level far below it, but many segments outweigh it, because the range may have been
 // set differently.
-TEST(RailPlanes, AStatedRangeCountsAsMuchAsItIsWorth) {
+TEST(SaturationPlanes, AStatedRangeCountsAsMuchAsItIsWorth) {
   const Eigen::Matrix3d rows = drawn_rows(1, 0.03);
   const std::vector<ImuSample> many =
       samples_of(clipped_along(waved(12.0, 20.0, 0.004, 1), rows, Vector3d::Zero(), 7.3));
   const std::vector<ImuSample> few = samples_of(clipped_along(waved(7.6, 2.5, 0.004, 1), rows, Vector3d::Zero(), 7.3));
-  ASSERT_TRUE(RailPlaneFinder({.stated_rad_s = 7.0}).find(few).any());
-  EXPECT_FALSE(RailPlaneFinder({.stated_rad_s = 17.0}).find(few).any());
-  EXPECT_TRUE(RailPlaneFinder({.stated_rad_s = 17.0}).find(many).any());
+  ASSERT_TRUE(SaturationPlaneFinder({.stated_range_rad_s = 7.0}).find(few).any_plane_found());
+  EXPECT_FALSE(SaturationPlaneFinder({.stated_range_rad_s = 17.0}).find(few).any_plane_found());
+  EXPECT_TRUE(SaturationPlaneFinder({.stated_range_rad_s = 17.0}).find(many).any_plane_found());
 }
 
-TEST(RailPlanes, ShortAndEmptyRecordingsHaveNone) {
-  EXPECT_FALSE(find({}).any());
-  EXPECT_FALSE(find({Vector3d::Ones(), Vector3d::Zero(), Vector3d::Ones()}).any());
+TEST(SaturationPlanes, ShortAndEmptyRecordingsHaveNone) {
+  EXPECT_FALSE(find({}).any_plane_found());
+  EXPECT_FALSE(find({Vector3d::Ones(), Vector3d::Zero(), Vector3d::Ones()}).any_plane_found());
 }
 
-TEST(RailPlanes, ParametersOutsideOfTheirBoundThrow) {
-  EXPECT_THROW(RailPlaneFinder({.samples_min = 1}), InvalidParams);
-  EXPECT_THROW(RailPlaneFinder({.stated_rad_s = -1.0}), InvalidParams);
+TEST(SaturationPlanes, ParametersOutsideOfTheirBoundThrow) {
+  EXPECT_THROW(SaturationPlaneFinder({.samples_min = 1}), InvalidParams);
+  EXPECT_THROW(SaturationPlaneFinder({.stated_range_rad_s = -1.0}), InvalidParams);
 }
 
 }  // namespace

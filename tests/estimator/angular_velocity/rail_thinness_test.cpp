@@ -6,7 +6,7 @@
 
 #include "estimator/src/angular_velocity/sample_hold.hpp"
 #include "oracles/gaussian.hpp"
-#include "tumble/angular_velocity/detail/rail_planes.hpp"
+#include "tumble/angular_velocity/detail/saturation_plane_finder.hpp"
 
 namespace tumble {
 namespace {
@@ -31,14 +31,14 @@ std::vector<ImuSample> one_segment(double scatter) {
 
 // A rate has noise: a single segment without noise is a saturation level, but with noise it may be a spin.
 TEST(RailThinness, OneSegmentIsEnoughWhereItHasNoNoise) {
-  const RailPlaneFinder finder{{}};
-  const RailPlanes rail = finder.find(one_segment(1e-4)), spin = finder.find(one_segment(kNoise));
-  ASSERT_TRUE(rail.element[1].has_value());
-  EXPECT_NEAR(rail.element[1]->distance_rad_s, kLevel, 0.03);
-  EXPECT_FALSE(rail.element[0].has_value() || rail.element[2].has_value());
-  EXPECT_GT(rail.element[1]->log_odds, 10.0);
-  const double of_spin = spin.element[1] ? spin.element[1]->log_odds : 0.0;
-  EXPECT_LT(of_spin, rail.element[1]->log_odds - 10.0);
+  const SaturationPlaneFinder finder{{}};
+  const SaturationPlanes rail = finder.find(one_segment(1e-4)), spin = finder.find(one_segment(kNoise));
+  ASSERT_TRUE(rail.sensing_axis[1].has_value());
+  EXPECT_NEAR(rail.sensing_axis[1]->saturation_limit_rad_s, kLevel, 0.03);
+  EXPECT_FALSE(rail.sensing_axis[0].has_value() || rail.sensing_axis[2].has_value());
+  EXPECT_GT(rail.sensing_axis[1]->log_odds, 10.0);
+  const double of_spin = spin.sensing_axis[1] ? spin.sensing_axis[1]->log_odds : 0.0;
+  EXPECT_LT(of_spin, rail.sensing_axis[1]->log_odds - 10.0);
 }
 
 // A repeated reading has the neighbours of its first occurrence.
@@ -46,17 +46,17 @@ TEST(OtherReadings, StepOverRepeats) {
   std::vector<ImuSample> samples(5);
   const double rates[] = {1.0, 2.0, 2.0, 3.0, 3.0};
   for (std::size_t k = 0; k < samples.size(); ++k) samples[k].angular_velocity_rad_s.x() = rates[k];
-  const std::vector<Neighbours> beside = other_readings(samples, Triad::gyro);
+  const std::vector<Neighbours> beside = neighbouring_readings(samples, Triad::gyro);
   ASSERT_EQ(beside.size(), 5u);
-  EXPECT_EQ(beside[0].before, nullptr);
-  EXPECT_EQ(beside[0].after, &samples[1]);
+  EXPECT_EQ(beside[0].previous_sample, nullptr);
+  EXPECT_EQ(beside[0].next_sample, &samples[1]);
   for (const std::size_t k : {1u, 2u}) {
-    EXPECT_EQ(beside[k].before, &samples[0]);
-    EXPECT_EQ(beside[k].after, &samples[3]);
+    EXPECT_EQ(beside[k].previous_sample, &samples[0]);
+    EXPECT_EQ(beside[k].next_sample, &samples[3]);
   }
   for (const std::size_t k : {3u, 4u}) {
-    EXPECT_EQ(beside[k].before, &samples[2]);
-    EXPECT_EQ(beside[k].after, nullptr);
+    EXPECT_EQ(beside[k].previous_sample, &samples[2]);
+    EXPECT_EQ(beside[k].next_sample, nullptr);
   }
 }
 

@@ -20,14 +20,14 @@ namespace {
 using Eigen::Vector3d;
 using testing::quantile;
 
-Pool smoothed(double tilt, const RateSmoother::Params& params = with_lever_arm<RateSmoother::Params>(),
+Pool smoothed(double tilt, const AngularRateSmoother::Params& params = with_lever_arm<AngularRateSmoother::Params>(),
               std::uint64_t devices = 10) {
   Pool pool;
   for (std::uint64_t seed = 1; seed <= devices; ++seed) {
     const TumbleRecording tumble = tilted_tumble(seed, tilt);
-    std::vector<RateState> states;
-    RateReport report;
-    EXPECT_TRUE(RateSmoother(params).estimate(tumble.samples, states, report).ok());
+    std::vector<AngularRateState> states;
+    AngularRateReport report;
+    EXPECT_TRUE(AngularRateSmoother(params).estimate(tumble.samples, states, report).ok());
     pool.add(tumble, states);
   }
   return pool;
@@ -55,8 +55,8 @@ TEST(RateElements, TheCovarianceHoldsTheErrorAndIsNotTooWide) {
 
 // Negative control: without planes and certain of axis-aligned levels, the same smoother accepts the wrong readings.
 TEST(RateElements, WithoutPlanesItWouldBeSilentlyWrong) {
-  auto params = with_lever_arm<RateSmoother::Params>();
-  params.expert.planes.distance_min_rad_s = 1000.0;
+  auto params = with_lever_arm<AngularRateSmoother::Params>();
+  params.expert.gyro_planes.distance_min_rad_s = 1000.0;
   params.model.element_sigma = 1e-6;
   const Pool pool = smoothed(0.02, params, 3);
   EXPECT_GT(quantile(pool.ours, 0.5), 0.5 * quantile(pool.raw, 0.5));
@@ -67,16 +67,16 @@ TEST(RateElements, WhatIsLearntOfTheElementsIsNearTheTruth) {
   TumbleOptions options;
   options.gyro_rows = drawn_rows(4, 0.04);
   const TumbleRecording tumble = make_tumble(options);
-  std::vector<RateState> states;
-  RateReport report;
-  ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(tumble.samples, states, report).ok());
+  std::vector<AngularRateState> states;
+  AngularRateReport report;
+  ASSERT_TRUE(AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(tumble.samples, states, report).ok());
   EXPECT_FALSE(report.clips_after_compensation);
-  ASSERT_TRUE(report.planes.any());
+  ASSERT_TRUE(report.gyro_planes.any_plane_found());
   double known = 0.0;
   for (int i = 0; i < 6; ++i) {
-    const int j = i / 2, k = (j + 1 + i % 2) % 3, at = RigConstants::kElements + i;
+    const int j = i / 2, k = (j + 1 + i % 2) % 3, at = RigConstants::kGyroMisalignment + i;
     const double sigma = std::sqrt(report.calibration.covariance(at, at));
-    EXPECT_LT(std::abs(report.calibration.constants.elements[i] - options.gyro_rows(j, k)), 4.0 * sigma + 1e-3) << i;
+    EXPECT_LT(std::abs(report.calibration.constants.gyro_misalignment[i] - options.gyro_rows(j, k)), 4.0 * sigma + 1e-3) << i;
     known += sigma < 0.005 ? 1.0 : 0.0;
   }
   EXPECT_GE(known, 3.0);
@@ -84,15 +84,15 @@ TEST(RateElements, WhatIsLearntOfTheElementsIsNearTheTruth) {
 
 TEST(RateElements, AnUprightDeviceIsTakenForOne) {
   const TumbleRecording tumble = make_tumble({});
-  std::vector<RateState> states;
-  RateReport report;
-  ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(tumble.samples, states, report).ok());
+  std::vector<AngularRateState> states;
+  AngularRateReport report;
+  ASSERT_TRUE(AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(tumble.samples, states, report).ok());
   EXPECT_TRUE(report.clips_after_compensation);
 }
 
 // Returns a rate about y that rises and falls linearly and is cut at a level; the level of another element is known.
-std::vector<RateObservation> cut_tops(double level_rad_s, double up_rad_s, double down_rad_s, int sign) {
-  std::vector<RateObservation> out(60);
+std::vector<AngularRateObservation> cut_tops(double level_rad_s, double up_rad_s, double down_rad_s, int sign) {
+  std::vector<AngularRateObservation> out(60);
   for (std::size_t k = 0; k < out.size(); ++k) {
     const double x = static_cast<double>(k) - 30.0;
     const double rate = level_rad_s + 2.0 + (x < 0.0 ? up_rad_s * x : -down_rad_s * x);
@@ -102,12 +102,12 @@ std::vector<RateObservation> cut_tops(double level_rad_s, double up_rad_s, doubl
   return out;
 }
 
-RailPlanes plane_of_x(double distance_rad_s) {
-  RailPlanes out;
-  out.element[0] = RailPlane{};
-  out.element[0]->row = Vector3d::UnitX();
-  out.element[0]->distance_rad_s = distance_rad_s;
-  out.element[0]->samples = {5, 5};
+SaturationPlanes plane_of_x(double distance_rad_s) {
+  SaturationPlanes out;
+  out.sensing_axis[0] = SaturationPlane{};
+  out.sensing_axis[0]->row = Vector3d::UnitX();
+  out.sensing_axis[0]->saturation_limit_rad_s = distance_rad_s;
+  out.sensing_axis[0]->samples = {5, 5};
   return out;
 }
 
@@ -115,32 +115,32 @@ RailPlanes plane_of_x(double distance_rad_s) {
 TEST(UnseenRails, APlateauOfTheMotionNearTheOthersMayHideWhereItsSlopesMeet) {
   for (const int sign : {-1, 1}) {
     for (const double down : {0.25, 0.5}) {
-      std::vector<RateObservation> tops = cut_tops(8.5, 0.4, down, sign);
-      inflate_motion_plateaus(plane_of_x(8.7), {}, 0.02, 0.005, tops);
-      EXPECT_NEAR(2.0 * tops[30].expected_deficit_sigma_rad_s.y(), 2.0, 0.5 * (0.4 + down)) << down;
-      EXPECT_EQ(tops[30].suspect, 2u);
-      EXPECT_EQ(tops[5].suspect, 0u);
-      EXPECT_EQ(tops[30].expected_deficit_sigma_rad_s.x(), 0.0);
+      std::vector<AngularRateObservation> tops = cut_tops(8.5, 0.4, down, sign);
+      inflate_covariance_at_plateaus(plane_of_x(8.7), {}, 0.02, 0.005, tops);
+      EXPECT_NEAR(2.0 * tops[30].saturation_deficit_sigma_rad_s.y(), 2.0, 0.5 * (0.4 + down)) << down;
+      EXPECT_EQ(tops[30].suspected_saturation, 2u);
+      EXPECT_EQ(tops[5].suspected_saturation, 0u);
+      EXPECT_EQ(tops[30].saturation_deficit_sigma_rad_s.x(), 0.0);
       // neither clipped nor measured, as in the stream
-      EXPECT_EQ(rate_source(tops[30], {}, Eigen::Matrix3d::Identity(), 0.5), RateSource::bounded_only);
-      EXPECT_EQ(rate_source(tops[5], {}, Eigen::Matrix3d::Identity(), 0.5), RateSource::measured);
+      EXPECT_EQ(rate_source_of(tops[30], {}, Eigen::Matrix3d::Identity(), 0.5), AngularRateSource::lower_bound_only);
+      EXPECT_EQ(rate_source_of(tops[5], {}, Eigen::Matrix3d::Identity(), 0.5), AngularRateSource::measured);
     }
   }
 }
 
 TEST(UnseenRails, NothingIsDoubtedThatIsKnownOrFarFromTheRails) {
-  const auto suspect = [](const RailPlanes& planes, std::vector<RateObservation> tops) {
-    inflate_motion_plateaus(planes, {}, 0.02, 0.005, tops);
-    return std::any_of(tops.begin(), tops.end(), [](const RateObservation& o) { return o.suspect != 0; });
+  const auto suspect = [](const SaturationPlanes& planes, std::vector<AngularRateObservation> tops) {
+    inflate_covariance_at_plateaus(planes, {}, 0.02, 0.005, tops);
+    return std::any_of(tops.begin(), tops.end(), [](const AngularRateObservation& o) { return o.suspected_saturation != 0; });
   };
-  const std::vector<RateObservation> top = cut_tops(8.5, 0.4, 0.4, 1);
+  const std::vector<AngularRateObservation> top = cut_tops(8.5, 0.4, 0.4, 1);
   EXPECT_TRUE(suspect(plane_of_x(8.7), top));
   EXPECT_FALSE(suspect({}, top));
   EXPECT_FALSE(suspect(plane_of_x(9.2), top));  // a saturation limit that differs by 6 % belongs to another element
-  RailPlanes own = plane_of_x(8.7);
-  own.element[1] = own.element[0];
+  SaturationPlanes own = plane_of_x(8.7);
+  own.sensing_axis[1] = own.sensing_axis[0];
   EXPECT_FALSE(suspect(own, top));
-  std::vector<RateObservation> flagged = top;
+  std::vector<AngularRateObservation> flagged = top;
   flagged[3].sample.device_clip_flags = 1;
   EXPECT_FALSE(suspect(plane_of_x(8.7), flagged));
 }
@@ -150,21 +150,21 @@ TEST(UnseenRails, NothingIsDoubtedThatIsKnownOrFarFromTheRails) {
 TEST(UnseenRails, WhatWasReadFarBeyondRefutesThem) {
   MinSaturationLevels least;
   least.add({2.0, 9.5, 0.0});
-  EXPECT_TRUE(least.is_below_min_level({0.5, 8.5, 0.0}, 1));
-  EXPECT_FALSE(least.is_below_min_level({0.5, 9.4, 0.0}, 1));
-  EXPECT_FALSE(least.is_below_min_level({13.0, 8.5, 0.0}, 1));  // a tilt makes more of so much motion beside
-  EXPECT_FALSE(least.is_below_min_level({0.5, -8.5, 0.0}, 1));  // nothing was read on that side
-  EXPECT_FALSE(least.is_below_min_level({8.5, 0.5, 0.0}, 0));   // nor of that element
+  EXPECT_TRUE(least.is_below_min_saturation_level({0.5, 8.5, 0.0}, 1));
+  EXPECT_FALSE(least.is_below_min_saturation_level({0.5, 9.4, 0.0}, 1));
+  EXPECT_FALSE(least.is_below_min_saturation_level({13.0, 8.5, 0.0}, 1));  // a tilt makes more of so much motion beside
+  EXPECT_FALSE(least.is_below_min_saturation_level({0.5, -8.5, 0.0}, 1));  // nothing was read on that side
+  EXPECT_FALSE(least.is_below_min_saturation_level({8.5, 0.5, 0.0}, 0));   // nor of that element
 
   for (const bool beyond : {false, true}) {
-    std::vector<RateObservation> top = cut_tops(8.5, 0.4, 0.4, 1);
+    std::vector<AngularRateObservation> top = cut_tops(8.5, 0.4, 0.4, 1);
     const MinSaturationLevels known = beyond ? least : MinSaturationLevels{};
-    inflate_motion_plateaus(plane_of_x(8.7), known, 0.02, 0.005, top);
-    EXPECT_EQ(top[30].suspect != 0, !beyond);
-    RateObservation single = top[30];
-    single.suspect = 0;
-    inflate_possible_saturation(plane_of_x(8.5), known, 0.005, &top[20].sample, single, &top[40].sample);
-    EXPECT_EQ(single.isolated_high_axes != 0, !beyond);
+    inflate_covariance_at_plateaus(plane_of_x(8.7), known, 0.02, 0.005, top);
+    EXPECT_EQ(top[30].suspected_saturation != 0, !beyond);
+    AngularRateObservation single = top[30];
+    single.suspected_saturation = 0;
+    inflate_covariance_near_limits(plane_of_x(8.5), known, 0.005, &top[20].sample, single, &top[40].sample);
+    EXPECT_EQ(single.rarely_high_axes != 0, !beyond);
   }
 }
 

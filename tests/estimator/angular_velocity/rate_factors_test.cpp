@@ -15,10 +15,10 @@ namespace {
 
 using Eigen::Vector3d;
 using Derivative = Eigen::Matrix<double, 3, 6 + RigConstants::kSize>;
-using Factor = std::function<RateFactor(const RateKnot&, const RigConstants&)>;
+using Factor = std::function<AngularRateFactor(const AngularRateKnot&, const RigConstants&)>;
 
 struct Point {
-  RateKnot knot;
+  AngularRateKnot knot;
   RigConstants rig;
 };
 
@@ -32,7 +32,7 @@ Point random_point(oracles::Gaussian& noise) {
 }
 
 Derivative analytic(const Factor& factor, const Point& p) {
-  const RateFactor f = factor(p.knot, p.rig);
+  const AngularRateFactor f = factor(p.knot, p.rig);
   Derivative d;
   d << f.jacobian_knot, f.jacobian_calibration;
   return d;
@@ -62,10 +62,10 @@ double disagreement(const Derivative& a, const Derivative& b) {
 const Vector3d kReading = {3.0, -40.0, 7.0};
 
 std::vector<Factor> factors() {
-  return {[](const RateKnot& k, const RigConstants& r) { return gyro_factor(k, r, kReading); },
-          [](const RateKnot& k, const RigConstants& r) { return element_factor(k, r, kReading); },
-          [](const RateKnot& k, const RigConstants& r) { return flight_factor(k, r, kReading); },
-          [](const RateKnot& k, const RigConstants& r) { return euler_factor(k, r); }};
+  return {[](const AngularRateKnot& k, const RigConstants& r) { return gyro_factor(k, r, kReading); },
+          [](const AngularRateKnot& k, const RigConstants& r) { return sensing_axis_factor(k, r, kReading); },
+          [](const AngularRateKnot& k, const RigConstants& r) { return flight_force_factor(k, r, kReading); },
+          [](const AngularRateKnot& k, const RigConstants& r) { return euler_equation_factor(k, r); }};
 }
 
 TEST(RateFactors, DerivativesAreThoseOfTheResiduals) {
@@ -105,16 +105,16 @@ TEST(RateFactors, VanishOnATorqueFreeBody) {
   rig.lever_arm_m = {-0.022, -0.085, 0.055};
   rig.gyro_bias_rad_s = {0.1, 0.2, 0.3};
   rig.accel_bias_m_s2 = {0.5, -0.4, 0.3};
-  rig.inertia = RigConstants::inertia_coordinates(R_IB * moments.asDiagonal() * R_IB.transpose());
+  rig.inertia = RigConstants::inertia_basis_coordinates(R_IB * moments.asDiagonal() * R_IB.transpose());
   const Vector3d lever_B = R_IB.transpose() * rig.lever_arm_m;
   for (double t : {0.0, 0.3, 1.7}) {
-    const RateKnot knot{R_IB * body.rate(t), R_IB * body.acceleration(t)};
+    const AngularRateKnot knot{R_IB * body.rate(t), R_IB * body.acceleration(t)};
     const Vector3d gyro = knot.rate_rad_s + rig.gyro_bias_rad_s;
     const Vector3d accel = R_IB * body.specific_force(t, lever_B) + rig.accel_bias_m_s2;
     EXPECT_LT(gyro_factor(knot, rig, gyro).residual.norm(), 1e-12);
-    EXPECT_LT(flight_factor(knot, rig, accel).residual.norm(), 1e-12);
-    EXPECT_LT(euler_factor(knot, rig).residual.norm(), 1e-10);
-    EXPECT_GT(euler_factor(knot, RigConstants{}).residual.norm(), 1.0);  // a sphere would rotate differently
+    EXPECT_LT(flight_force_factor(knot, rig, accel).residual.norm(), 1e-12);
+    EXPECT_LT(euler_equation_factor(knot, rig).residual.norm(), 1e-10);
+    EXPECT_GT(euler_equation_factor(knot, RigConstants{}).residual.norm(), 1.0);  // a sphere would rotate differently
   }
 }
 
@@ -125,23 +125,23 @@ TEST(RateFactors, AScaleOfTheGyroShowsByTheAccelerationAlone) {
   const Vector3d moments(2.0, 2.4, 3.0);
   RigConstants rig, other;
   rig.lever_arm_m = {-0.022, -0.085, 0.055};
-  rig.inertia = RigConstants::inertia_coordinates(moments.asDiagonal());
+  rig.inertia = RigConstants::inertia_basis_coordinates(moments.asDiagonal());
   other.lever_arm_m = rig.lever_arm_m / ((1.0 + k) * (1.0 + k));
   other.inertia = rig.inertia / (1.0 + k);
   for (const Vector3d& start : {Vector3d(3.0, 12.0, -5.0), Vector3d(0.0, 0.0, 14.0)}) {
     const oracles::TorqueFreeRotation body(moments, start);
     for (const double t : {0.0, 0.3, 1.7}) {
       const Vector3d a = body.acceleration(t);
-      const RateKnot scaled{(1.0 + k) * body.rate(t), (1.0 + k) * a};
-      const Vector3d force_status = flight_factor(scaled, other, body.specific_force(t, rig.lever_arm_m)).residual;
+      const AngularRateKnot scaled{(1.0 + k) * body.rate(t), (1.0 + k) * a};
+      const Vector3d force_status = flight_force_factor(scaled, other, body.specific_force(t, rig.lever_arm_m)).residual;
       EXPECT_LT((force_status + k * a.cross(rig.lever_arm_m)).norm(), 1e-9 + 1.1 * k * k * a.norm() * 0.11);
-      const Vector3d of_torque = euler_factor(scaled, other).residual;
+      const Vector3d of_torque = euler_equation_factor(scaled, other).residual;
       EXPECT_LT((of_torque + k * (rig.inertia_matrix() - Eigen::Matrix3d::Identity()) * a).norm(), 1e-9);
       if (start.x() == 0.0) {
         EXPECT_LT(force_status.norm() + of_torque.norm(), 1e-9);
       } else {
         // without changes of lever arm and inertia, the scale error would be clearly visible
-        EXPECT_GT(flight_factor(scaled, rig, body.specific_force(t, rig.lever_arm_m)).residual.norm(),
+        EXPECT_GT(flight_force_factor(scaled, rig, body.specific_force(t, rig.lever_arm_m)).residual.norm(),
                   3.0 * force_status.norm());
       }
     }
@@ -152,14 +152,14 @@ TEST(RigConstants, InertiaIsFreeOfScaleAndItsCoordinatesComeBack) {
   Eigen::Matrix3d J;
   J << 3.0, 0.1, -0.2, 0.1, 2.5, 0.3, -0.2, 0.3, 2.0;
   RigConstants rig;
-  rig.inertia = RigConstants::inertia_coordinates(J);
+  rig.inertia = RigConstants::inertia_basis_coordinates(J);
   EXPECT_LT((rig.inertia_matrix() - 3.0 / J.trace() * J).norm(), 1e-14);
-  EXPECT_LT((RigConstants::inertia_coordinates(7.0 * J) - rig.inertia).norm(), 1e-14);
+  EXPECT_LT((RigConstants::inertia_basis_coordinates(7.0 * J) - rig.inertia).norm(), 1e-14);
   EXPECT_EQ(RigConstants{}.inertia_matrix(), Eigen::Matrix3d::Identity());
 }
 
 // Returns the rotation without torque after some time, at fourth order in small steps.
-RateKnot turned(RateKnot knot, const RigConstants& rig, double time_s) {
+AngularRateKnot turned(AngularRateKnot knot, const RigConstants& rig, double time_s) {
   const Eigen::Matrix3d J = rig.inertia_matrix();
   const auto slope = [&](const Vector3d& w) -> Vector3d { return -J.inverse() * w.cross(Vector3d(J * w)); };
   constexpr int kSteps = 20;
@@ -183,16 +183,16 @@ TEST(LateFlight, DerivativesAreThoseOfTheResidual) {
   for (int i = 0; i < 20; ++i) {
     const Point p = flying_point(noise);
     const double delay_s = 0.005 * noise();
-    const Factor factor = [&](const RateKnot& k, const RigConstants& r) {
-      return delayed_flight_factor(k, r, kReading, delay_s, nullptr);
+    const Factor factor = [&](const AngularRateKnot& k, const RigConstants& r) {
+      return delayed_flight_force_factor(k, r, kReading, delay_s, nullptr);
     };
     // a polynomial of low degree in all unknowns except the inertia: differences have an error of the squared step
     EXPECT_LT(disagreement(analytic(factor, p), numeric(factor, p)), 1e-5);
     Vector3d jacobian_delay;
-    (void)delayed_flight_factor(p.knot, p.rig, kReading, delay_s, &jacobian_delay);
+    (void)delayed_flight_force_factor(p.knot, p.rig, kReading, delay_s, &jacobian_delay);
     constexpr double kStep_s = 1e-6;
-    const Vector3d moved = delayed_flight_factor(p.knot, p.rig, kReading, delay_s + kStep_s, nullptr).residual -
-                           delayed_flight_factor(p.knot, p.rig, kReading, delay_s - kStep_s, nullptr).residual;
+    const Vector3d moved = delayed_flight_force_factor(p.knot, p.rig, kReading, delay_s + kStep_s, nullptr).residual -
+                           delayed_flight_force_factor(p.knot, p.rig, kReading, delay_s - kStep_s, nullptr).residual;
     EXPECT_LT((moved / (2.0 * kStep_s) - jacobian_delay).norm(), 1e-5 * (1.0 + jacobian_delay.norm()));
   }
 }
@@ -201,16 +201,16 @@ TEST(LateFlight, IsTheFlightOfTheEarlierInstant) {
   oracles::Gaussian noise(13);
   for (int i = 0; i < 20; ++i) {
     const Point p = flying_point(noise);
-    EXPECT_EQ(delayed_flight_factor(p.knot, p.rig, kReading, 0.0, nullptr).residual,
-              flight_factor(p.knot, p.rig, kReading).residual);
+    EXPECT_EQ(delayed_flight_force_factor(p.knot, p.rig, kReading, 0.0, nullptr).residual,
+              flight_force_factor(p.knot, p.rig, kReading).residual);
     const auto off = [&](double delay_s) {
-      const RateKnot earlier = turned(p.knot, p.rig, -delay_s);
-      return (delayed_flight_factor(p.knot, p.rig, kReading, delay_s, nullptr).residual -
-              flight_factor(earlier, p.rig, kReading).residual)
+      const AngularRateKnot earlier = turned(p.knot, p.rig, -delay_s);
+      return (delayed_flight_force_factor(p.knot, p.rig, kReading, delay_s, nullptr).residual -
+              flight_force_factor(earlier, p.rig, kReading).residual)
           .norm();
     };
-    const double now = (flight_factor(turned(p.knot, p.rig, -0.002), p.rig, kReading).residual -
-                        flight_factor(p.knot, p.rig, kReading).residual)
+    const double now = (flight_force_factor(turned(p.knot, p.rig, -0.002), p.rig, kReading).residual -
+                        flight_force_factor(p.knot, p.rig, kReading).residual)
                            .norm();
     EXPECT_LT(off(0.002), 0.1 * now);
     // the remaining error is of second order: the change of the angular jerk
@@ -223,8 +223,8 @@ TEST(LateFlight, ByTheRigAloneIsTheSameToTheBit) {
   oracles::Gaussian noise(13);
   for (const double delay_s : {0.0, 5e-4, 3e-3}) {
     const Point p = random_point(noise);
-    const RateFactor whole = delayed_flight_factor(p.knot, p.rig, kReading, delay_s, nullptr),
-                     part = delayed_flight_jacobian_calibration(p.knot, p.rig, kReading, delay_s);
+    const AngularRateFactor whole = delayed_flight_force_factor(p.knot, p.rig, kReading, delay_s, nullptr),
+                     part = delayed_flight_calibration_jacobian(p.knot, p.rig, kReading, delay_s);
     EXPECT_EQ(part.residual, whole.residual);
     EXPECT_EQ(part.jacobian_calibration.leftCols<9>(), whole.jacobian_calibration.leftCols<9>());
     EXPECT_TRUE(part.jacobian_knot.isZero(0.0));
@@ -239,10 +239,10 @@ TEST(LateFlight, CurvatureIsTheSecondDerivativeOfTheForce) {
     const Point p = flying_point(noise);
     constexpr double kStep_s = 1e-3;
     const auto force = [&](double time_s) -> Vector3d {
-      return flight_factor(turned(p.knot, p.rig, time_s), p.rig, Vector3d::Zero()).residual;
+      return flight_force_factor(turned(p.knot, p.rig, time_s), p.rig, Vector3d::Zero()).residual;
     };
     const Vector3d want = (force(kStep_s) - 2.0 * force(0.0) + force(-kStep_s)) / (kStep_s * kStep_s);
-    EXPECT_LT((flight_curvature(p.knot, p.rig) - want).norm(), 1e-2 * want.norm());
+    EXPECT_LT((flight_angular_jerk(p.knot, p.rig) - want).norm(), 1e-2 * want.norm());
   }
 }
 

@@ -21,12 +21,12 @@ TumbleRecording short_tumble() {
   return make_tumble(options);
 }
 
-std::vector<RateState> sound_rates(const std::vector<ImuSample>& samples, RateReport& report) {
-  std::vector<RateState> out;
-  const Status status = RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(samples, out, report);
+std::vector<AngularRateState> sound_rates(const std::vector<ImuSample>& samples, AngularRateReport& report) {
+  std::vector<AngularRateState> out;
+  const Status status = AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(samples, out, report);
   EXPECT_TRUE(status.ok()) << status.message();
   EXPECT_EQ(out.size(), samples.size());
-  for (const RateState& state : out) {
+  for (const AngularRateState& state : out) {
     EXPECT_TRUE(state.w_WI_I_rad_s.allFinite());
     EXPECT_LT(state.w_WI_I_rad_s.norm(), 100.0);
     EXPECT_TRUE(state.covariance_rad2_s2.allFinite());
@@ -37,9 +37,9 @@ std::vector<RateState> sound_rates(const std::vector<ImuSample>& samples, RateRe
 }
 
 TEST(RateSmootherInput, TroubleNamesFieldValueAndBoundAndWritesNothing) {
-  const RateSmoother smoother(with_lever_arm<RateSmoother::Params>());
-  std::vector<RateState> out(2);
-  RateReport report;
+  const AngularRateSmoother smoother(with_lever_arm<AngularRateSmoother::Params>());
+  std::vector<AngularRateState> out(2);
+  AngularRateReport report;
   report.iterations = 77;
   const auto expect = [&](const std::vector<ImuSample>& samples, ErrorCode error_code, const std::string& field) {
     const Status status = smoother.estimate(samples, out, report);
@@ -51,7 +51,7 @@ TEST(RateSmootherInput, TroubleNamesFieldValueAndBoundAndWritesNothing) {
   };
   const std::vector<ImuSample> good = short_tumble().samples;
   expect({}, ErrorCode::empty, "samples");
-  EXPECT_EQ(expect({good[0]}, ErrorCode::too_few, "samples").bound, 2.0);
+  EXPECT_EQ(expect({good[0]}, ErrorCode::insufficient_data, "samples").bound, 2.0);
   std::vector<ImuSample> bad = good;
   bad[50].angular_velocity_rad_s.y() = std::nan("");
   EXPECT_TRUE(std::isnan(expect(bad, ErrorCode::non_finite, "angular_velocity_rad_s").value));
@@ -68,10 +68,10 @@ TEST(RateSmootherInput, TroubleNamesFieldValueAndBoundAndWritesNothing) {
 
 TEST(RateSmootherInput, LongGapsSeparateTheRatesAndNotTheCalibration) {
   TumbleRecording tumble = short_tumble();
-  RateReport report;
-  const std::vector<RateState> expected = sound_rates(tumble.samples, report);
+  AngularRateReport report;
+  const std::vector<AngularRateState> expected = sound_rates(tumble.samples, report);
   for (std::size_t k = 50; k < tumble.samples.size(); ++k) tumble.samples[k].time_ns += 20'000'000'000;
-  const std::vector<RateState> found = sound_rates(tumble.samples, report);
+  const std::vector<AngularRateState> found = sound_rates(tumble.samples, report);
   for (std::size_t k = 0; k < found.size(); ++k) {
     if (k >= 40 && k <= 60) continue;
     EXPECT_LT((found[k].w_WI_I_rad_s - expected[k].w_WI_I_rad_s).norm(), 0.1) << k;
@@ -81,7 +81,7 @@ TEST(RateSmootherInput, LongGapsSeparateTheRatesAndNotTheCalibration) {
 TEST(RateSmootherInput, ShortGapsAreBridged) {
   TumbleRecording tumble = short_tumble();
   tumble.samples.erase(tumble.samples.begin() + 100, tumble.samples.begin() + 107);
-  RateReport report;
+  AngularRateReport report;
   sound_rates(tumble.samples, report);
 }
 
@@ -93,10 +93,10 @@ TEST(RateSmootherInput, AllAxesClippedForSecondsWithoutFlight) {
     samples[k].angular_velocity_rad_s = clipped ? Vector3d(10.5, -10.5, 10.5) : Vector3d(1.0, -1.0, 1.0);
     samples[k].specific_force_m_s2 = {3.0, -40.0, 60.0};  // the force points outwards, which no rotation causes
   }
-  RateReport report;
-  const std::vector<RateState> out = sound_rates(samples, report);
-  EXPECT_EQ(report.clipped, 400u);
-  EXPECT_GT(report.bounded_only, 300u);
+  AngularRateReport report;
+  const std::vector<AngularRateState> out = sound_rates(samples, report);
+  EXPECT_EQ(report.clipped_sample_count, 400u);
+  EXPECT_GT(report.lower_bound_only, 300u);
   EXPECT_GT(out[300].w_WI_I_rad_s.x(), 10.3);
   EXPECT_LT(out[300].w_WI_I_rad_s.y(), -10.3);
   EXPECT_GT(out[300].covariance_rad2_s2(0, 0), 0.1);  // far larger than the variance of the bound's noise
@@ -105,7 +105,7 @@ TEST(RateSmootherInput, AllAxesClippedForSecondsWithoutFlight) {
 TEST(RateSmootherInput, ADeadAxis) {
   TumbleRecording tumble = short_tumble();
   for (ImuSample& sample : tumble.samples) sample.angular_velocity_rad_s.z() = 0.0;
-  RateReport report;
+  AngularRateReport report;
   sound_rates(tumble.samples, report);
 }
 
@@ -129,8 +129,8 @@ TEST(RateSmootherInput, OverflowsAreNotBelieved) {
     }
   }
   ASSERT_GT(flips, 5u);
-  RateReport report;
-  const std::vector<RateState> out = sound_rates(tumble.samples, report);
+  AngularRateReport report;
+  const std::vector<AngularRateState> out = sound_rates(tumble.samples, report);
   EXPECT_GE(report.missing_readings, flips / 2);
   EXPECT_LT(clipped_errors(tumble, rates_of(out), 10.49).median, 0.05);
 }
@@ -139,31 +139,31 @@ TEST(RateSmootherInput, TellsWhenTheStatedRangeIsWrong) {
   TumbleOptions options;
   options.seed = 13;
   TumbleRecording tumble = make_tumble(options);
-  auto params = with_lever_arm<RateSmoother::Params>();
-  params.rails.stated_gyro_rad_s = 7.854;  // stated range of a device that clips at 10.5
-  std::vector<RateState> out;
-  RateReport report;
-  ASSERT_TRUE(RateSmoother(params).estimate(tumble.samples, out, report).ok());
+  auto params = with_lever_arm<AngularRateSmoother::Params>();
+  params.saturation_detector.stated_gyro_range_rad_s = 7.854;  // stated range of a device that clips at 10.5
+  std::vector<AngularRateState> out;
+  AngularRateReport report;
+  ASSERT_TRUE(AngularRateSmoother(params).estimate(tumble.samples, out, report).ok());
   EXPECT_TRUE(report.contradicts_stated_range[0] || report.contradicts_stated_range[1] ||
               report.contradicts_stated_range[2]);
-  EXPECT_EQ(report.rail[0].value_or(0.0), 10.5);
+  EXPECT_EQ(report.saturation_limits[0].value_or(0.0), 10.5);
 }
 
 TEST(RateSmootherInput, RefusesParametersOutsideOfTheirBounds) {
   const auto refused = [](auto change) {
-    auto params = with_lever_arm<RateSmoother::Params>();
+    auto params = with_lever_arm<AngularRateSmoother::Params>();
     change(params);
-    EXPECT_THROW(RateSmoother{params}, InvalidParams);
+    EXPECT_THROW(AngularRateSmoother{params}, InvalidParams);
   };
-  EXPECT_THROW(RateSmoother{{}}, InvalidParams) << "the lever arm has no default";
-  refused([](RateSmoother::Params& p) { p.expert.descent.iterations_max = 0; });
-  refused([](RateSmoother::Params& p) { p.expert.descent.tolerance_rad_s = 0.0; });
-  refused([](RateSmoother::Params& p) { p.expert.descent.initial_threshold_factor = 0.5; });
-  refused([](RateSmoother::Params& p) { p.gap_max_s = -1.0; });
-  refused([](RateSmoother::Params& p) { p.model.nominal.lever_arm_m.x() = std::nan(""); });
-  refused([](RateSmoother::Params& p) { p.model.lever_arm_sigma_m = 0.0; });
-  refused([](RateSmoother::Params& p) { p.rails.stated_gyro_rad_s = -1.0; });
-  refused([](RateSmoother::Params& p) { p.model.calibration = RigCalibration{{}, -RigConstants::Matrix::Identity()}; });
+  EXPECT_THROW(AngularRateSmoother{{}}, InvalidParams) << "the lever arm has no default";
+  refused([](AngularRateSmoother::Params& p) { p.expert.optimisation.iterations_max = 0; });
+  refused([](AngularRateSmoother::Params& p) { p.expert.optimisation.tolerance_rad_s = 0.0; });
+  refused([](AngularRateSmoother::Params& p) { p.expert.optimisation.initial_threshold_factor = 0.5; });
+  refused([](AngularRateSmoother::Params& p) { p.gap_max_s = -1.0; });
+  refused([](AngularRateSmoother::Params& p) { p.model.nominal.lever_arm_m.x() = std::nan(""); });
+  refused([](AngularRateSmoother::Params& p) { p.model.lever_arm_sigma_m = 0.0; });
+  refused([](AngularRateSmoother::Params& p) { p.saturation_detector.stated_gyro_range_rad_s = -1.0; });
+  refused([](AngularRateSmoother::Params& p) { p.model.calibration = RigCalibration{{}, -RigConstants::Matrix::Identity()}; });
 }
 
 }  // namespace

@@ -23,26 +23,26 @@ constexpr double kAtRail = 10.49;
 
 struct Outcome {
   TumbleRecording recording;
-  std::vector<RateState> states;
-  RateReport report;
+  std::vector<AngularRateState> states;
+  AngularRateReport report;
 };
 
-Outcome estimate(const TumbleOptions& options, const RateSmoother::Params& params) {
+Outcome estimate(const TumbleOptions& options, const AngularRateSmoother::Params& params) {
   Outcome run{make_tumble(options), {}, {}};
-  const Status status = RateSmoother(params).estimate(run.recording.samples, run.states, run.report);
+  const Status status = AngularRateSmoother(params).estimate(run.recording.samples, run.states, run.report);
   EXPECT_TRUE(status.ok()) << status.message();
   EXPECT_EQ(run.states.size(), run.recording.samples.size());
   return run;
 }
 
-TEST(RateSmoother, RecoversTumblesWithTheLeverArmOffByTwentyMillimetres) {
+TEST(AngularRateSmoother, RecoversTumblesWithTheLeverArmOffByTwentyMillimetres) {
   std::vector<double> medians;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     TumbleOptions options;
     options.seed = seed;
     options.mounting_seed = seed;
     options.roll = false;
-    const Outcome run = estimate(options, with_wrong_lever_arm<RateSmoother::Params>(0.02, seed));
+    const Outcome run = estimate(options, with_wrong_lever_arm<AngularRateSmoother::Params>(0.02, seed));
     const ClippedErrors ours = clipped_errors(run.recording, rates_of(run.states), kAtRail);
     const ClippedErrors raw = clipped_errors(run.recording, readings_of(run.recording.samples), kAtRail);
     ASSERT_GT(ours.count, 50u);
@@ -55,18 +55,18 @@ TEST(RateSmoother, RecoversTumblesWithTheLeverArmOffByTwentyMillimetres) {
     const Eigen::Matrix3d inertia = run.report.calibration.constants.inertia_matrix();
     const Vector3d moments = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia).eigenvalues();
     EXPECT_LT((moments - 3.0 / options.moments.sum() * options.moments).norm(), 0.02) << seed;
-    EXPECT_EQ(run.report.rail[0].value_or(0.0), 10.5);
+    EXPECT_EQ(run.report.saturation_limits[0].value_or(0.0), 10.5);
   }
 }
 
-TEST(RateSmoother, HandlesAllAxesClippedAtOnce) {
+TEST(AngularRateSmoother, HandlesAllAxesClippedAtOnce) {
   TumbleOptions options;
   options.seed = 4;
   options.speed_low_rad_s = 20.0;
   options.speed_high_rad_s = 24.0;
   options.gyro_rail_rad_s = 7.0;
   options.roll = false;
-  const Outcome run = estimate(options, with_wrong_lever_arm<RateSmoother::Params>(0.02, 4));
+  const Outcome run = estimate(options, with_wrong_lever_arm<AngularRateSmoother::Params>(0.02, 4));
   std::vector<double> errors;
   for (std::size_t k = 0; k < run.states.size(); ++k) {
     if (run.states[k].clipped_axes != 7 || run.recording.phase[k] != Phase::flight) continue;
@@ -77,7 +77,7 @@ TEST(RateSmoother, HandlesAllAxesClippedAtOnce) {
   EXPECT_LT(errors[errors.size() / 2], 0.05);
 }
 
-TEST(RateSmoother, CoverageInFlight) {
+TEST(AngularRateSmoother, CoverageInFlight) {
   std::size_t inside = 0, outside = 0, inside_impact = 0, outside_impact = 0;
   double normalised = 0.0;
   for (std::uint64_t seed = 21; seed <= 35; ++seed) {
@@ -85,7 +85,7 @@ TEST(RateSmoother, CoverageInFlight) {
     options.seed = seed;
     options.mounting_seed = seed;
     options.roll = false;
-    RateSmoother::Params params = with_wrong_lever_arm<RateSmoother::Params>(0.02, seed);
+    AngularRateSmoother::Params params = with_wrong_lever_arm<AngularRateSmoother::Params>(0.02, seed);
     params.model.expert.error_priors.gyro = params.model.expert.error_priors.accel = 0.0;  // nor has the sensor any
     const Outcome run = estimate(options, params);
     for (std::size_t k = 0; k < run.states.size(); ++k) {
@@ -129,7 +129,7 @@ Consistency consistency_with_matrices(double sigma, double stated) {
     options.flights = 2;  // many flights calibrate the gyro
     for (double& entry : options.gyro_error.reshaped()) entry = sigma * noise();
     for (double& entry : options.accel_error.reshaped()) entry = sigma * noise();
-    RateSmoother::Params params = with_wrong_lever_arm<RateSmoother::Params>(0.01, seed);
+    AngularRateSmoother::Params params = with_wrong_lever_arm<AngularRateSmoother::Params>(0.01, seed);
     params.expert.error_rounds_max = 1;
     params.model.expert.error_priors.gyro = params.model.expert.error_priors.accel = stated;
     const Outcome run = estimate(options, params);
@@ -149,7 +149,7 @@ Consistency consistency_with_matrices(double sigma, double stated) {
   return {static_cast<double>(inside) / static_cast<double>(all), normalised / static_cast<double>(all)};
 }
 
-TEST(RateSmoother, ScaleAndMisalignmentAreInTheCovariance) {
+TEST(AngularRateSmoother, ScaleAndMisalignmentAreInTheCovariance) {
   constexpr double kSigma = 3e-3;
   const Consistency honest = consistency_with_matrices(kSigma, kSigma);
   EXPECT_GT(honest.coverage, 0.99);
@@ -164,23 +164,23 @@ TEST(RateSmoother, ScaleAndMisalignmentAreInTheCovariance) {
   EXPECT_LT(rough.normalised, 0.4);
 }
 
-TEST(RateSmoother, ARunWithoutClippingReturnsTheGyro) {
+TEST(AngularRateSmoother, ARunWithoutClippingReturnsTheGyro) {
   TumbleOptions options;
   options.gyro_rail_rad_s = 1000.0;
-  const Outcome run = estimate(options, with_lever_arm<RateSmoother::Params>());
+  const Outcome run = estimate(options, with_lever_arm<AngularRateSmoother::Params>());
   double gyro = 0.0, ours = 0.0;
   for (std::size_t k = 0; k < run.states.size(); ++k) {
     const Vector3d reading = run.recording.samples[k].angular_velocity_rad_s;
     gyro += (reading - run.recording.truth[k]).squaredNorm();
     ours += (run.states[k].w_WI_I_rad_s - run.recording.truth[k]).squaredNorm();
     EXPECT_LT((run.states[k].w_WI_I_rad_s - reading).norm(), 8.0 * options.gyro_sigma_rad_s) << k;
-    EXPECT_EQ(run.states[k].source, RateSource::measured);
+    EXPECT_EQ(run.states[k].source, AngularRateSource::measured);
   }
-  EXPECT_EQ(run.report.clipped, 0u);
+  EXPECT_EQ(run.report.clipped_sample_count, 0u);
   EXPECT_LT(ours, 1.02 * gyro);  // at least as good as the gyro
 }
 
-TEST(RateSmoother, IsEquivariantToARotatedMounting) {
+TEST(AngularRateSmoother, IsEquivariantToARotatedMounting) {
   // saturation limits remain on the axes
   const Eigen::Matrix3d R = Eigen::AngleAxisd(0.5 * M_PI, Vector3d::UnitZ()).toRotationMatrix();
   TumbleOptions options;
@@ -190,14 +190,14 @@ TEST(RateSmoother, IsEquivariantToARotatedMounting) {
     sample.angular_velocity_rad_s = R * sample.angular_velocity_rad_s;
     sample.specific_force_m_s2 = R * sample.specific_force_m_s2;
   }
-  auto params = with_lever_arm<RateSmoother::Params>();
-  params.expert.descent.tolerance_rad_s = 1e-8;
-  params.expert.descent.iterations_max = 60;
+  auto params = with_lever_arm<AngularRateSmoother::Params>();
+  params.expert.optimisation.tolerance_rad_s = 1e-8;
+  params.expert.optimisation.iterations_max = 60;
   const Outcome run = estimate(options, params);
   params.model.nominal.lever_arm_m = R * params.model.nominal.lever_arm_m;
-  std::vector<RateState> states;
-  RateReport report;
-  ASSERT_TRUE(RateSmoother(params).estimate(turned.samples, states, report).ok());
+  std::vector<AngularRateState> states;
+  AngularRateReport report;
+  ASSERT_TRUE(AngularRateSmoother(params).estimate(turned.samples, states, report).ok());
   std::size_t same = 0;
   for (std::size_t k = 0; k < states.size(); ++k) {
     // the initial values come from the published method, which treats the axes in order, so only its solution is
@@ -207,7 +207,7 @@ TEST(RateSmoother, IsEquivariantToARotatedMounting) {
   EXPECT_GT(static_cast<double>(same), 0.97 * static_cast<double>(states.size()));
 }
 
-TEST(RateSmoother, WhatARunLearnsHelpsTheNext) {
+TEST(AngularRateSmoother, WhatARunLearnsHelpsTheNext) {
   TumbleOptions hard, mild;
   hard.seed = 6;
   mild.seed = 7;
@@ -215,7 +215,7 @@ TEST(RateSmoother, WhatARunLearnsHelpsTheNext) {
   mild.speed_high_rad_s = 12.0;
   mild.flights = 3;
   mild.roll = false;
-  RateSmoother::Params params = with_wrong_lever_arm<RateSmoother::Params>(0.02, 5);
+  AngularRateSmoother::Params params = with_wrong_lever_arm<AngularRateSmoother::Params>(0.02, 5);
   const Outcome first = estimate(hard, params), fresh = estimate(mild, params);
   params.model.calibration = first.report.calibration;
   const Outcome second = estimate(mild, params);
@@ -226,11 +226,11 @@ TEST(RateSmoother, WhatARunLearnsHelpsTheNext) {
   EXPECT_LT(second.report.calibration.covariance(0, 0), fresh.report.calibration.covariance(0, 0));
 }
 
-TEST(RateSmoother, SameInputSameBits) {
+TEST(AngularRateSmoother, SameInputSameBits) {
   TumbleOptions options;
   options.seed = 9;
-  const Outcome a = estimate(options, with_wrong_lever_arm<RateSmoother::Params>(0.01, 9)),
-                b = estimate(options, with_wrong_lever_arm<RateSmoother::Params>(0.01, 9));
+  const Outcome a = estimate(options, with_wrong_lever_arm<AngularRateSmoother::Params>(0.01, 9)),
+                b = estimate(options, with_wrong_lever_arm<AngularRateSmoother::Params>(0.01, 9));
   for (std::size_t k = 0; k < a.states.size(); ++k) {
     ASSERT_EQ(a.states[k].w_WI_I_rad_s, b.states[k].w_WI_I_rad_s);
     ASSERT_EQ(a.states[k].covariance_rad2_s2, b.states[k].covariance_rad2_s2);

@@ -6,12 +6,12 @@
 namespace tumble {
 namespace {
 
-TEST(RateSource, NamesAreThoseOfTheTables) {
-  EXPECT_STREQ(to_string(RateSource::measured), "measured");
-  EXPECT_STREQ(to_string(RateSource::recovered_flight), "recovered_flight");
-  EXPECT_STREQ(to_string(RateSource::recovered_contact), "recovered_contact");
-  EXPECT_STREQ(to_string(RateSource::bounded_only), "bounded_only");
-  EXPECT_STREQ(to_string(static_cast<RateSource>(200)), "unknown");
+TEST(AngularRateSource, NamesAreThoseOfTheTables) {
+  EXPECT_STREQ(to_string(AngularRateSource::measured), "measured");
+  EXPECT_STREQ(to_string(AngularRateSource::recovered_in_flight), "recovered_in_flight");
+  EXPECT_STREQ(to_string(AngularRateSource::recovered_in_contact), "recovered_in_contact");
+  EXPECT_STREQ(to_string(AngularRateSource::lower_bound_only), "lower_bound_only");
+  EXPECT_STREQ(to_string(static_cast<AngularRateSource>(200)), "unknown");
 }
 
 }  // namespace

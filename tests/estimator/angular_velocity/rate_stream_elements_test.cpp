@@ -24,12 +24,12 @@ namespace {
 using Eigen::Vector3d;
 using testing::quantile;
 
-Pool streamed(double tilt, const RateStream::Params& params = with_lever_arm<RateStream::Params>()) {
+Pool streamed(double tilt, const AngularRateStream::Params& params = with_lever_arm<AngularRateStream::Params>()) {
   Pool pool;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     const TumbleRecording tumble = tilted_tumble(seed, tilt);
-    const RateStream method(params);
-    RateStream::State state = method.start();
+    const AngularRateStream method(params);
+    AngularRateStream::State state = method.start();
     pool.add(tumble, streamed_rates(method, tumble.samples, state));
     EXPECT_EQ(state.failures, 0u);
   }
@@ -51,8 +51,8 @@ TEST(RateStreamElements, ATiltedRailIsReadAsAnUprightOne) {
 
 // Negative control: a stream that does not search planes accepts the wrong readings.
 TEST(RateStreamElements, WithoutPlanesItWouldBeSilentlyWrong) {
-  auto params = with_lever_arm<RateStream::Params>();
-  params.expert.planes.distance_min_rad_s = 1000.0;
+  auto params = with_lever_arm<AngularRateStream::Params>();
+  params.expert.gyro_planes.distance_min_rad_s = 1000.0;
   const Pool pool = streamed(0.02, params);
   EXPECT_GT(quantile(pool.ours, 0.5), 0.3 * quantile(pool.raw, 0.5));
   EXPECT_LT(pool.share_within(), 0.8);
@@ -62,19 +62,19 @@ TEST(RateStreamElements, WithALongLagItIsTheBatch) {
   for (const double tilt : {0.0, 0.03}) {
     for (std::uint64_t seed = 3; seed <= 4; ++seed) {
       const TumbleRecording tumble = tilted_tumble(seed, tilt);
-      auto params = with_lever_arm<RateStream::Params>();
+      auto params = with_lever_arm<AngularRateStream::Params>();
       params.lag_s = 9.0;  // so that all samples remain in the window
       params.expert.inflation.covariance = 0.0;
-      const RateStream method(params);
-      RateStream::State state = method.start();
-      const std::vector<RateState> live = streamed_rates(method, tumble.samples, state);
-      auto batch_params = with_lever_arm<RateSmoother::Params>();
+      const AngularRateStream method(params);
+      AngularRateStream::State state = method.start();
+      const std::vector<AngularRateState> live = streamed_rates(method, tumble.samples, state);
+      auto batch_params = with_lever_arm<AngularRateSmoother::Params>();
       batch_params.model = params.model;
-      std::vector<RateState> batch;
-      RateReport report;
-      ASSERT_TRUE(RateSmoother(batch_params).estimate(tumble.samples, batch, report).ok());
+      std::vector<AngularRateState> batch;
+      AngularRateReport report;
+      ASSERT_TRUE(AngularRateSmoother(batch_params).estimate(tumble.samples, batch, report).ok());
       ASSERT_EQ(live.size(), batch.size());
-      EXPECT_EQ(state.rails.known.gyro_clips_after_compensation, report.clips_after_compensation);
+      EXPECT_EQ(state.clipping_state.known_limits.gyro_clips_after_compensation, report.clips_after_compensation);
       std::vector<double> apart;
       int judged_apart = 0;
       for (std::size_t k = 0; k < batch.size(); ++k) {
@@ -94,17 +94,17 @@ TEST(RateStreamElements, WithALongLagItIsTheBatch) {
 
 TEST(RateStreamElements, SplittingAnywhereChangesNothing) {
   const std::vector<ImuSample> samples = tilted_tumble(5, 0.03).samples;
-  const RateStream method(with_lever_arm<RateStream::Params>());
-  RateStream::State whole = method.start();
-  const std::vector<RateState> want = streamed_rates(method, samples, whole);
-  ASSERT_TRUE(whole.rails.known.planes.any());
+  const AngularRateStream method(with_lever_arm<AngularRateStream::Params>());
+  AngularRateStream::State whole = method.start();
+  const std::vector<AngularRateState> want = streamed_rates(method, samples, whole);
+  ASSERT_TRUE(whole.clipping_state.known_limits.gyro_planes.any_plane_found());
   for (const std::size_t split : {std::size_t{90}, samples.size() / 3, samples.size() / 2}) {
-    RateStream::State state = method.start();
-    std::vector<RateState> got;
-    std::optional<RateState> one;
+    AngularRateStream::State state = method.start();
+    std::vector<AngularRateState> got;
+    std::optional<AngularRateState> one;
     for (std::size_t k = 0; k < samples.size(); ++k) {
-      if (k == split) state = RateStream::State(state);
-      const RateStream second(with_lever_arm<RateStream::Params>());
+      if (k == split) state = AngularRateStream::State(state);
+      const AngularRateStream second(with_lever_arm<AngularRateStream::Params>());
       ASSERT_TRUE((k < split ? method : second).push(samples[k], state, one).ok());
       if (one) got.push_back(*one);
     }
@@ -120,9 +120,9 @@ TEST(RateStreamElements, NothingIsCalledClippedWhereNothingClips) {
     options.seed = seed;
     options.gyro_rail_rad_s = 1e3;
     const TumbleRecording tumble = make_tumble(options);
-    const RateStream method(with_lever_arm<RateStream::Params>());
-    RateStream::State state = method.start();
-    for (const RateState& rate : streamed_rates(method, tumble.samples, state)) EXPECT_EQ(rate.clipped_axes, 0) << seed;
+    const AngularRateStream method(with_lever_arm<AngularRateStream::Params>());
+    AngularRateStream::State state = method.start();
+    for (const AngularRateState& rate : streamed_rates(method, tumble.samples, state)) EXPECT_EQ(rate.clipped_axes, 0) << seed;
   }
 }
 
@@ -153,23 +153,23 @@ struct Believed {
   int clipped = 0, within = 0, measured = 0;
 };
 
-Believed believed(const RateStream::Params& params) {
+Believed believed(const AngularRateStream::Params& params) {
   Believed out;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const Swing swing(seed);
-    const RateStream method(params);
-    RateStream::State state = method.start();
-    std::optional<RateState> rate;
+    const AngularRateStream method(params);
+    AngularRateStream::State state = method.start();
+    std::optional<AngularRateState> rate;
     std::size_t k = 0;
     for (const ImuSample& sample : swing.samples) {
       EXPECT_TRUE(method.push(sample, state, rate).ok());
       if (!rate) continue;
       const double truth = swing.truth[k].x(), reading = swing.samples[k].angular_velocity_rad_s.x();
       ++k;
-      if (std::abs(reading - truth) < 0.05 || state.rails.known.planes.any()) continue;
+      if (std::abs(reading - truth) < 0.05 || state.clipping_state.known_limits.gyro_planes.any_plane_found()) continue;
       ++out.clipped;
       out.within += std::abs(rate->w_WI_I_rad_s.x() - truth) < 3.0 * std::sqrt(rate->covariance_rad2_s2(0, 0));
-      out.measured += rate->source == RateSource::measured;
+      out.measured += rate->source == AngularRateSource::measured;
     }
   }
   return out;
@@ -177,13 +177,13 @@ Believed believed(const RateStream::Params& params) {
 
 // A level is detected some samples after it was first reached, when the lag is over; until then, readings are suspect.
 TEST(RateStreamElements, NothingAtARailGoesOutAsMeasuredBeforeTheRailIsKnown) {
-  auto params = with_lever_arm<RateStream::Params>();
+  auto params = with_lever_arm<AngularRateStream::Params>();
   params.lag_s = 0.06;
   params.calibrated_errors =
       std::make_shared<KnownSensorErrors>();  // a device that agrees with its data sheet: only the limit is uncertain
   const Believed suspect = believed(params);
   // negative control: axes with slower rates are accepted
-  params.expert.planes.distance_min_rad_s = 1000.0;
+  params.expert.gyro_planes.distance_min_rad_s = 1000.0;
   const Believed trusted = believed(params);
   std::printf("of %d within %d, measured %d; believed: within %d, measured %d\n", suspect.clipped, suspect.within,
               suspect.measured, trusted.within, trusted.measured);
@@ -196,13 +196,13 @@ TEST(RateStreamElements, NothingAtARailGoesOutAsMeasuredBeforeTheRailIsKnown) {
 }
 
 /// Returns the number of samples at the known level, and of those within three deviations.
-std::pair<int, int> within_at_known_rail(const RateStream::Params& params) {
+std::pair<int, int> within_at_known_rail(const AngularRateStream::Params& params) {
   int clipped = 0, within = 0;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const Swing swing(seed);
-    const RateStream method(params);
-    RateStream::State state = method.start();
-    const std::vector<RateState> rates = streamed_rates(method, swing.samples, state);
+    const AngularRateStream method(params);
+    AngularRateStream::State state = method.start();
+    const std::vector<AngularRateState> rates = streamed_rates(method, swing.samples, state);
     for (std::size_t k = 0; k < rates.size(); ++k) {
       if ((rates[k].clipped_axes & 1u) == 0) continue;
       ++clipped;
@@ -215,7 +215,7 @@ std::pair<int, int> within_at_known_rail(const RateStream::Params& params) {
 
 // A swing is neither flight nor a push, so the uncertainty follows from the slopes of the run.
 TEST(RateStreamElements, ARunOfClippedReadingsIsAsOpenAsItsSlopes) {
-  auto params = with_lever_arm<RateStream::Params>();
+  auto params = with_lever_arm<AngularRateStream::Params>();
   const auto [clipped, within] = within_at_known_rail(params);
   params.expert.inflation.slopes = 0.0;
   const auto [same, believed] = within_at_known_rail(params);
@@ -236,25 +236,25 @@ TEST(RateStreamElements, ADoubtThatALargerReadingRefutesIsTakenBack) {
       // equal readings would be a plateau
       samples[kTop - 4 + i].angular_velocity_rad_s.y() = steps[i] + 0.002 * std::sin(37.0 * static_cast<double>(i));
     }
-    auto params = with_lever_arm<RateStream::Params>();
+    auto params = with_lever_arm<AngularRateStream::Params>();
     params.calibrated_errors =
         std::make_shared<KnownSensorErrors>();  // as above; 200 rad/s^2 would reveal that the gyro may be 1 ms late
-    const RateStream method(params);
-    RateStream::State state = method.start();
-    std::optional<RateState> rate;
-    std::vector<RateState> out;
+    const AngularRateStream method(params);
+    AngularRateStream::State state = method.start();
+    std::optional<AngularRateState> rate;
+    std::vector<AngularRateState> out;
     int suspect = 0;
     for (std::size_t k = 0; k < samples.size(); ++k) {
       ASSERT_TRUE(method.push(samples[k], state, rate).ok());
       if (rate) out.push_back(*rate);
       if (k != kTop + 3) continue;
-      ASSERT_TRUE(state.rails.known.planes.element[0]);
-      for (const RateStream::Knot& knot : state.window)
+      ASSERT_TRUE(state.clipping_state.known_limits.gyro_planes.sensing_axis[0]);
+      for (const AngularRateStream::Knot& knot : state.window)
         suspect += (knot.observation.possibly_saturated_axes() >> 1 & 1) != 0;
     }
     EXPECT_GE(suspect, 3) << seed;
     for (std::size_t k = kTop; k < kTop + 4; ++k) {
-      EXPECT_EQ(out[k].source, RateSource::measured) << seed << " " << k;
+      EXPECT_EQ(out[k].source, AngularRateSource::measured) << seed << " " << k;
       EXPECT_LT(out[k].covariance_rad2_s2(1, 1), 0.01) << seed << " " << k;
     }
   }
@@ -270,13 +270,13 @@ TEST(RateStreamElements, ADoubtStaysUntilItIsGivenOut) {
       samples[kTop - 4 + i].angular_velocity_rad_s.y() = steps[i] + 0.002 * std::sin(37.0 * static_cast<double>(i));
     }
     samples.resize(402);
-    const RateStream method(with_lever_arm<RateStream::Params>());
-    RateStream::State state = method.start();
-    const std::vector<RateState> out = streamed_rates(method, samples, state);
+    const AngularRateStream method(with_lever_arm<AngularRateStream::Params>());
+    AngularRateStream::State state = method.start();
+    const std::vector<AngularRateState> out = streamed_rates(method, samples, state);
     for (std::size_t k = kTop; k < kTop + 3; ++k) {
-      EXPECT_EQ(out[k].source, RateSource::bounded_only) << seed << " " << k;
+      EXPECT_EQ(out[k].source, AngularRateSource::lower_bound_only) << seed << " " << k;
     }
-    EXPECT_EQ(out[kTop - 3].source, RateSource::measured) << seed;
+    EXPECT_EQ(out[kTop - 3].source, AngularRateSource::measured) << seed;
   }
 }
 
@@ -300,12 +300,12 @@ TEST(RateStreamElements, SpinsAndTopsAreNoRails) {
         sample.specific_force_m_s2 = Vector3d(0.0, 0.0, 9.81) + 0.01 * noise.vector();
         samples.push_back(sample);
       }
-      const RateStream method(with_lever_arm<RateStream::Params>());
-      RateStream::State state = method.start();
+      const AngularRateStream method(with_lever_arm<AngularRateStream::Params>());
+      AngularRateStream::State state = method.start();
       int called = 0;
-      for (const RateState& out : streamed_rates(method, samples, state)) called += out.clipped_axes != 0;
+      for (const AngularRateState& out : streamed_rates(method, samples, state)) called += out.clipped_axes != 0;
       EXPECT_EQ(called, 0) << seed << " " << kind;
-      EXPECT_FALSE(state.rails.known.planes.any()) << seed << " " << kind;
+      EXPECT_FALSE(state.clipping_state.known_limits.gyro_planes.any_plane_found()) << seed << " " << kind;
     }
   }
 }

@@ -45,33 +45,33 @@ TumbleOptions options_of(std::uint64_t seed) {
   return options;
 }
 
-RateStream::Params wrong_lever(std::uint64_t seed) {
-  auto params = with_wrong_lever_arm<RateStream::Params>(0.02, seed);
-  params.rails.stated_gyro_rad_s = 10.5;
+AngularRateStream::Params wrong_lever(std::uint64_t seed) {
+  auto params = with_wrong_lever_arm<AngularRateStream::Params>(0.02, seed);
+  params.saturation_detector.stated_gyro_range_rad_s = 10.5;
   return params;
 }
 
 /// Returns rates and covariances of the samples in the window, and of the newest sample.
-std::vector<double> numbers_in_window(const RateStream& method, const RateStream::State& state) {
-  std::vector<RateState> rates;
+std::vector<double> numbers_in_window(const AngularRateStream& method, const AngularRateStream::State& state) {
+  std::vector<AngularRateState> rates;
   method.flush(state, rates);
-  if (const std::optional<RateState> newest = method.newest(state)) rates.push_back(*newest);
+  if (const std::optional<AngularRateState> newest = method.newest(state)) rates.push_back(*newest);
   std::vector<double> out;
-  for (const RateState& rate : rates) {
+  for (const AngularRateState& rate : rates) {
     out.insert(out.end(), rate.w_WI_I_rad_s.begin(), rate.w_WI_I_rad_s.end());
     out.insert(out.end(), rate.covariance_rad2_s2.reshaped().begin(), rate.covariance_rad2_s2.reshaped().end());
   }
   return out;
 }
 
-TEST(RateStream, RecoversTumblesNearlyAsWellAsTheBatch) {
+TEST(AngularRateStream, RecoversTumblesNearlyAsWellAsTheBatch) {
   std::vector<double> of_batch;
   int close = 0;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     const TumbleRecording recording = make_tumble(options_of(seed));
-    const RateStream method(wrong_lever(seed));
-    RateStream::State state = method.start();
-    const std::vector<RateState> out = streamed_rates(method, recording.samples, state);
+    const AngularRateStream method(wrong_lever(seed));
+    AngularRateStream::State state = method.start();
+    const std::vector<AngularRateState> out = streamed_rates(method, recording.samples, state);
     ASSERT_EQ(out.size(), recording.samples.size());
     const ClippedErrors errors = clipped_errors(recording, rates_of(out), 10.49);
     const ClippedErrors raw = clipped_errors(recording, readings_of(recording.samples), 10.49);
@@ -80,11 +80,11 @@ TEST(RateStream, RecoversTumblesNearlyAsWellAsTheBatch) {
     EXPECT_EQ(state.failures, 0u);
     for (std::size_t k = 0; k < out.size(); ++k) ASSERT_EQ(out[k].time_ns, recording.samples[k].time_ns);
 
-    auto batch_params = with_lever_arm<RateSmoother::Params>();
+    auto batch_params = with_lever_arm<AngularRateSmoother::Params>();
     batch_params.model = wrong_lever(seed).model;
-    std::vector<RateState> batch;
-    RateReport report;
-    ASSERT_TRUE(RateSmoother(batch_params).estimate(recording.samples, batch, report).ok());
+    std::vector<AngularRateState> batch;
+    AngularRateReport report;
+    ASSERT_TRUE(AngularRateSmoother(batch_params).estimate(recording.samples, batch, report).ok());
     of_batch.push_back(clipped_errors(recording, rates_of(batch), 10.49).median);
     close += errors.median < 0.05 && errors.median < 0.02 * raw.median;
   }
@@ -94,21 +94,21 @@ TEST(RateStream, RecoversTumblesNearlyAsWellAsTheBatch) {
   EXPECT_LT(*std::max_element(of_batch.begin(), of_batch.end()), 0.05);
 }
 
-TEST(RateStream, WithACalibratedRigItComesCloseToTheBatch) {
+TEST(AngularRateStream, WithACalibratedRigItComesCloseToTheBatch) {
   double batch_sum = 0.0, stream_sum = 0.0;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     const TumbleRecording recording = make_tumble(options_of(seed));
-    auto batch_params = with_lever_arm<RateSmoother::Params>();
+    auto batch_params = with_lever_arm<AngularRateSmoother::Params>();
     batch_params.model = wrong_lever(seed).model;
-    std::vector<RateState> batch;
-    RateReport report;
-    ASSERT_TRUE(RateSmoother(batch_params).estimate(recording.samples, batch, report).ok());
-    RateStream::Params params = wrong_lever(seed);
+    std::vector<AngularRateState> batch;
+    AngularRateReport report;
+    ASSERT_TRUE(AngularRateSmoother(batch_params).estimate(recording.samples, batch, report).ok());
+    AngularRateStream::Params params = wrong_lever(seed);
     params.model.calibration = report.calibration;
     params.model.calibration->covariance *= 4.0;
-    const RateStream method(params);
-    RateStream::State state = method.start();
-    const std::vector<RateState> out = streamed_rates(method, recording.samples, state);
+    const AngularRateStream method(params);
+    AngularRateStream::State state = method.start();
+    const std::vector<AngularRateState> out = streamed_rates(method, recording.samples, state);
     batch_sum += clipped_errors(recording, rates_of(batch), 10.49).median;
     stream_sum += clipped_errors(recording, rates_of(out), 10.49).median;
   }
@@ -116,12 +116,12 @@ TEST(RateStream, WithACalibratedRigItComesCloseToTheBatch) {
   EXPECT_LT(stream_sum, 1.8 * batch_sum);  // measured 1.58
 }
 
-TEST(RateStream, TheShapeOfABoxIsExpectedAndThatOfARodIsNot) {
-  const auto params = with_lever_arm<RateStream::Params>();
-  const RateModel model(params.model, params.period_s);
+TEST(AngularRateStream, TheShapeOfABoxIsExpectedAndThatOfARodIsNot) {
+  const auto params = with_lever_arm<AngularRateStream::Params>();
+  const AngularRateModel model(params.model, params.period_s);
   const auto mahalanobis = [&](const Vector3d& moments) {
     RigConstants rig = model.prior_constants();
-    rig.inertia = RigConstants::inertia_coordinates(moments.asDiagonal());
+    rig.inertia = RigConstants::inertia_basis_coordinates(moments.asDiagonal());
     return model.calibration_mahalanobis(rig);
   };
   EXPECT_NEAR(mahalanobis({8.0, 13.0, 13.0}), 1.07, 0.01);  // ratio of sides 3 : 2 : 2
@@ -129,18 +129,18 @@ TEST(RateStream, TheShapeOfABoxIsExpectedAndThatOfARodIsNot) {
   EXPECT_NEAR(mahalanobis({0.0, 1.0, 1.0}), 3.65, 0.01);
 }
 
-TEST(RateStream, SplittingAnywhereChangesNothing) {
+TEST(AngularRateStream, SplittingAnywhereChangesNothing) {
   const std::vector<ImuSample> samples = make_tumble(options_of(3)).samples;
-  const RateStream method(wrong_lever(3));
-  RateStream::State whole = method.start();
-  const std::vector<RateState> want = streamed_rates(method, samples, whole);
-  std::optional<RateState> one;
+  const AngularRateStream method(wrong_lever(3));
+  AngularRateStream::State whole = method.start();
+  const std::vector<AngularRateState> want = streamed_rates(method, samples, whole);
+  std::optional<AngularRateState> one;
   for (std::size_t split : {std::size_t{0}, std::size_t{1}, std::size_t{7}, std::size_t{21}, samples.size() / 2}) {
-    RateStream::State state = method.start();
-    std::vector<RateState> got;
+    AngularRateStream::State state = method.start();
+    std::vector<AngularRateState> got;
     for (std::size_t k = 0; k < samples.size(); ++k) {
-      if (k == split) state = RateStream::State(state);  // continues with a copy in another object
-      const RateStream second(wrong_lever(3));
+      if (k == split) state = AngularRateStream::State(state);  // continues with a copy in another object
+      const AngularRateStream second(wrong_lever(3));
       ASSERT_TRUE((k < split ? method : second).push(samples[k], state, one).ok());
       if (one) got.push_back(*one);
     }
@@ -154,34 +154,34 @@ TEST(RateStream, SplittingAnywhereChangesNothing) {
 }
 
 /// After a failed step, the newest sample's deviation is that of any rate, not zero.
-TEST(RateStream, AFailedStepStatesNoCertainty) {
+TEST(AngularRateStream, AFailedStepStatesNoCertainty) {
   const std::vector<ImuSample> samples = make_tumble(options_of(3)).samples;
-  const RateStream method(wrong_lever(3));
-  RateStream::State state = method.start();
-  std::optional<RateState> one;
+  const AngularRateStream method(wrong_lever(3));
+  AngularRateStream::State state = method.start();
+  std::optional<AngularRateState> one;
   for (std::size_t k = 0; k < 30; ++k) ASSERT_TRUE(method.push(samples[k], state, one).ok());
   ASSERT_EQ(state.failures, 0u);
-  state.prior_corner.matrix.diagonal().array() -= 1e30;
+  state.prior_border_block.matrix.diagonal().array() -= 1e30;
   ASSERT_TRUE(method.push(samples[30], state, one).ok());
   ASSERT_GT(state.failures, 0u);
-  const std::optional<RateState> newest = method.newest(state);
+  const std::optional<AngularRateState> newest = method.newest(state);
   ASSERT_TRUE(newest);
   EXPECT_EQ(newest->time_ns, samples[30].time_ns);
   EXPECT_GT(newest->covariance_rad2_s2.diagonal().minCoeff(), 100.0);
 }
 
 // If samples are faster than steps, all samples are reported, once and in order, as accurately as with a step each.
-TEST(RateStream, StepsAreMadeByTimeAndNotBySample) {
+TEST(AngularRateStream, StepsAreMadeByTimeAndNotBySample) {
   TumbleOptions options = options_of(2);
   options.rate_hz = 1000;
   const TumbleRecording recording = make_tumble(options);
-  RateStream::Params params = wrong_lever(2);
+  AngularRateStream::Params params = wrong_lever(2);
   params.period_s = 0.001;
   params.lag_s = 0.05;  // a short lag, because the time of a step per sample grows with its square
-  const auto median_of = [&](const RateStream::Params& with) {
-    const RateStream method(with);
-    RateStream::State state = method.start();
-    const std::vector<RateState> out = streamed_rates(method, recording.samples, state);
+  const auto median_of = [&](const AngularRateStream::Params& with) {
+    const AngularRateStream method(with);
+    AngularRateStream::State state = method.start();
+    const std::vector<AngularRateState> out = streamed_rates(method, recording.samples, state);
     EXPECT_EQ(out.size(), recording.samples.size());
     for (std::size_t k = 0; k < out.size(); ++k) {
       EXPECT_EQ(out[k].time_ns, recording.samples[k].time_ns);
@@ -195,22 +195,22 @@ TEST(RateStream, StepsAreMadeByTimeAndNotBySample) {
 
   // the stream can also be split between two steps
   params.step_s = 0.005;
-  const RateStream method(params);
-  RateStream::State whole = method.start(), split = method.start();
-  std::optional<RateState> one;
+  const AngularRateStream method(params);
+  AngularRateStream::State whole = method.start(), split = method.start();
+  std::optional<AngularRateState> one;
   for (std::size_t k = 0; k < 1503; ++k) {
     ASSERT_TRUE(method.push(recording.samples[k], whole, one).ok());
     ASSERT_TRUE(method.push(recording.samples[k], split, one).ok());
-    if (k % 97 == 0) split = RateStream::State(split);
+    if (k % 97 == 0) split = AngularRateStream::State(split);
   }
   EXPECT_EQ(numbers_in_window(method, whole), numbers_in_window(method, split));
 }
 
 /// Returns the fraction of recovered rates whose clipped axes are within three stated deviations.
-double share_within(const TumbleRecording& recording, const std::vector<RateState>& rates) {
+double share_within(const TumbleRecording& recording, const std::vector<AngularRateState>& rates) {
   double within = 0.0, recovered = 0.0;
   for (std::size_t k = 0; k < rates.size(); ++k) {
-    if (rates[k].clipped_axes == 0 || rates[k].source == RateSource::bounded_only) continue;
+    if (rates[k].clipped_axes == 0 || rates[k].source == AngularRateSource::lower_bound_only) continue;
     const Vector3d error = rates[k].w_WI_I_rad_s - recording.truth[k];
     const Vector3d sigma = rates[k].covariance_rad2_s2.diagonal().cwiseSqrt();
     recovered += 1.0;
@@ -222,52 +222,52 @@ double share_within(const TumbleRecording& recording, const std::vector<RateStat
 
 // the remaining uncertainty of the rig decreases with time: twenty times as many samples of a flight contain no more
 // information
-TEST(RateStream, AFasterGyroIsNotSurerOfTheRig) {
+TEST(AngularRateStream, AFasterGyroIsNotSurerOfTheRig) {
   TumbleOptions options = options_of(4);
   options.rate_hz = 2000;
   options.flights = 3;
   options.gyro_sigma_rad_s *= std::sqrt(20.0);
   options.accel_sigma_m_s2 *= std::sqrt(20.0);
   const TumbleRecording recording = make_tumble(options);
-  RateStream::Params params = wrong_lever(4);
+  AngularRateStream::Params params = wrong_lever(4);
   params.period_s = 0.0005;
   params.lag_s = 0.1;
-  const RateStream method(params);
-  RateStream::State state = method.start();
+  const AngularRateStream method(params);
+  AngularRateStream::State state = method.start();
   // measured 0.990, and 0.145 if samples are counted; at 100 Hz 1.000
   EXPECT_GT(share_within(recording, streamed_rates(method, recording.samples, state)), 0.95);
 }
 
-TEST(RateStream, AllocatesNothingPerSample) {
+TEST(AngularRateStream, AllocatesNothingPerSample) {
   const std::vector<ImuSample> samples = make_tumble(options_of(4)).samples;
-  const RateStream method(wrong_lever(4));
-  RateStream::State state = method.start();
-  std::optional<RateState> one;
+  const AngularRateStream method(wrong_lever(4));
+  AngularRateStream::State state = method.start();
+  std::optional<AngularRateState> one;
   const std::size_t before = allocations;
   for (const ImuSample& sample : samples) ASSERT_TRUE(method.push(sample, state, one).ok());
   EXPECT_EQ(allocations, before);
   TumbleOptions tilted = options_of(4);
   tilted.gyro_rows << 1.0, 0.03, -0.02, 0.01, 1.0, 0.04, -0.03, 0.02, 1.0;
   const std::vector<ImuSample> of_planes = make_tumble(tilted).samples;
-  RateStream::State other = method.start();
+  AngularRateStream::State other = method.start();
   const std::size_t between = allocations;
   for (const ImuSample& sample : of_planes) ASSERT_TRUE(method.push(sample, other, one).ok());
   EXPECT_EQ(allocations, between);
-  EXPECT_TRUE(other.rails.known.planes.any());
+  EXPECT_TRUE(other.clipping_state.known_limits.gyro_planes.any_plane_found());
   ::operator delete(::operator new(3));  // the counter works; a compiler may remove an unused `new`
   EXPECT_EQ(allocations, between + 1);
 }
 
-TEST(RateStream, ARunWithoutClippingReturnsTheGyro) {
+TEST(AngularRateStream, ARunWithoutClippingReturnsTheGyro) {
   TumbleOptions options = options_of(5);
   options.gyro_rail_rad_s = 1000.0;
   options.roll = true;
   const TumbleRecording recording = make_tumble(options);
-  RateStream::Params params = wrong_lever(5);
-  params.rails.stated_gyro_rad_s = 1000.0;
-  const RateStream method(params);
-  RateStream::State state = method.start();
-  const std::vector<RateState> out = streamed_rates(method, recording.samples, state);
+  AngularRateStream::Params params = wrong_lever(5);
+  params.saturation_detector.stated_gyro_range_rad_s = 1000.0;
+  const AngularRateStream method(params);
+  AngularRateStream::State state = method.start();
+  const std::vector<AngularRateState> out = streamed_rates(method, recording.samples, state);
   double gyro = 0.0, ours = 0.0;
   for (std::size_t k = 0; k < out.size(); ++k) {
     gyro += (recording.samples[k].angular_velocity_rad_s - recording.truth[k]).squaredNorm();
@@ -276,13 +276,13 @@ TEST(RateStream, ARunWithoutClippingReturnsTheGyro) {
   EXPECT_LT(ours, 1.05 * gyro);
 }
 
-TEST(RateStream, BadSamplesGiveAStatusAndLeaveTheStateAlone) {
+TEST(AngularRateStream, BadSamplesGiveAStatusAndLeaveTheStateAlone) {
   const std::vector<ImuSample> samples = make_tumble(options_of(6)).samples;
-  const RateStream method(wrong_lever(6));
-  RateStream::State state = method.start();
-  std::optional<RateState> one;
+  const AngularRateStream method(wrong_lever(6));
+  AngularRateStream::State state = method.start();
+  std::optional<AngularRateState> one;
   for (std::size_t k = 0; k < 120; ++k) ASSERT_TRUE(method.push(samples[k], state, one).ok());
-  const RateStream::State before = state;
+  const AngularRateStream::State before = state;
   const auto expect = [&](ImuSample sample, ErrorCode error_code) {
     const Status status = method.push(sample, state, one);
     EXPECT_EQ(status.error_code, error_code) << status.message();
@@ -303,10 +303,10 @@ TEST(RateStream, BadSamplesGiveAStatusAndLeaveTheStateAlone) {
   EXPECT_TRUE(method.push(samples[120], state, one).ok());
 }
 
-TEST(RateStream, AllAxesClippedForSecondsStaysBounded) {
-  const RateStream method(wrong_lever(1));
-  RateStream::State state = method.start();
-  std::optional<RateState> one;
+TEST(AngularRateStream, AllAxesClippedForSecondsStaysBounded) {
+  const AngularRateStream method(wrong_lever(1));
+  AngularRateStream::State state = method.start();
+  std::optional<AngularRateState> one;
   for (std::size_t k = 0; k < 600; ++k) {
     ImuSample sample;
     sample.time_ns = static_cast<TimeNs>(k) * 10'000'000;
@@ -322,32 +322,32 @@ TEST(RateStream, AllAxesClippedForSecondsStaysBounded) {
   }
 }
 
-TEST(RateStream, RefusesParametersOutsideOfTheirBounds) {
+TEST(AngularRateStream, RefusesParametersOutsideOfTheirBounds) {
   const auto refused = [](auto change) {
-    auto params = with_lever_arm<RateStream::Params>();
+    auto params = with_lever_arm<AngularRateStream::Params>();
     change(params);
-    EXPECT_THROW(RateStream{params}, InvalidParams);
+    EXPECT_THROW(AngularRateStream{params}, InvalidParams);
   };
-  EXPECT_THROW(RateStream{{}}, InvalidParams) << "the lever arm has no default";
-  refused([](RateStream::Params& p) { p.period_s = 0.0; });
-  refused([](RateStream::Params& p) { p.lag_s = 0.01; });
-  refused([](RateStream::Params& p) { p.lag_s = 11.0; });
-  refused([](RateStream::Params& p) { p.expert.initial_threshold_factor = 0.0; });
-  refused([](RateStream::Params& p) { p.gap_max_s = std::nan(""); });
-  refused([](RateStream::Params& p) { p.model.rate_max_rad_s = 0.0; });
+  EXPECT_THROW(AngularRateStream{{}}, InvalidParams) << "the lever arm has no default";
+  refused([](AngularRateStream::Params& p) { p.period_s = 0.0; });
+  refused([](AngularRateStream::Params& p) { p.lag_s = 0.01; });
+  refused([](AngularRateStream::Params& p) { p.lag_s = 11.0; });
+  refused([](AngularRateStream::Params& p) { p.expert.initial_threshold_factor = 0.0; });
+  refused([](AngularRateStream::Params& p) { p.gap_max_s = std::nan(""); });
+  refused([](AngularRateStream::Params& p) { p.model.rate_max_rad_s = 0.0; });
 }
 
-TEST(RateStream, WhatNoCalibrationCanBeIsToldAsAValueToo) {
+TEST(AngularRateStream, WhatNoCalibrationCanBeIsToldAsAValueToo) {
   const auto told = [](auto change) {
     RigCalibration rig;
     change(rig);
-    auto params = with_lever_arm<RateStream::Params>();
+    auto params = with_lever_arm<AngularRateStream::Params>();
     params.model.calibration = rig;
     const Status status = check_calibration(rig);
     if (status.ok()) {
-      EXPECT_NO_THROW(RateStream{params});
+      EXPECT_NO_THROW(AngularRateStream{params});
     } else {
-      EXPECT_THROW(RateStream{params}, InvalidParams) << status.field;
+      EXPECT_THROW(AngularRateStream{params}, InvalidParams) << status.field;
     }
     return status;
   };
@@ -356,7 +356,7 @@ TEST(RateStream, WhatNoCalibrationCanBeIsToldAsAValueToo) {
   EXPECT_STREQ(far.field, "lever_arm_m");
   EXPECT_EQ(far.value, -11.0);
   EXPECT_EQ(far.bound, -10.0);
-  EXPECT_STREQ(told([](RigCalibration& rig) { rig.constants.elements[5] = std::nan(""); }).field, "rig constants");
+  EXPECT_STREQ(told([](RigCalibration& rig) { rig.constants.gyro_misalignment[5] = std::nan(""); }).field, "rig constants");
   EXPECT_EQ(told([](RigCalibration& rig) { rig.covariance(3, 3) = 0.0; }).error_code, ErrorCode::degenerate);
   EXPECT_EQ(told([](RigCalibration& rig) { rig.covariance(0, 1) = std::nan(""); }).error_code, ErrorCode::degenerate);
 }

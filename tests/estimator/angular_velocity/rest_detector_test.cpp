@@ -98,11 +98,11 @@ TEST(RestDetector, AKnownBiasIsNoTurn) {
   const RestDetector detector({});
   RestDetector::State known, unknown;
   for (const ImuSample& sample : samples) {
-    detector.observe(sample, known, bias_rad_s);
-    detector.observe(sample, unknown);
+    detector.detect_stationary(sample, known, bias_rad_s);
+    detector.detect_stationary(sample, unknown);
   }
-  EXPECT_TRUE(known.rests);
-  EXPECT_FALSE(unknown.rests);
+  EXPECT_TRUE(known.is_stationary);
+  EXPECT_FALSE(unknown.is_stationary);
   // noise of a mean over a hundred readings, 0.0052 each: five deviations
   EXPECT_LT((known.mean_rate_rad_s() - bias_rad_s - Eigen::Vector3d(-0.01, 0.0, 0.01)).cwiseAbs().maxCoeff(), 0.0026);
 }
@@ -118,7 +118,7 @@ TEST(RestDetector, AMeanThatForgetsFollowsABiasThatDrifts) {
     std::vector<ImuSample> samples = standing(kCount, 6);
     for (ImuSample& sample : samples) {
       sample.angular_velocity_rad_s.y() += -0.03 + kDrift_rad_s2 * seconds(sample.time_ns);
-      detector.observe(sample, state);
+      detector.detect_stationary(sample, state);
     }
     return state;
   };
@@ -134,16 +134,16 @@ TEST(RestDetector, TakesMeans) {
   const RestDetector detector({.rest_s = 0.4, .reading_s = 1.0});
   RestDetector::State state;
   const auto take = [&](double rate_rad_s, int k) {
-    return detector.observe_mean({rate_rad_s, 0.0, 0.0}, {0.0, 0.0, 9.8}, k * kNode_ns, (k + 1) * kNode_ns,
+    return detector.detect_stationary_from_mean({rate_rad_s, 0.0, 0.0}, {0.0, 0.0, 9.8}, k * kNode_ns, (k + 1) * kNode_ns,
                                  Eigen::Vector3d::Zero(), state);
   };
   for (int k = 0; k < 19; ++k) EXPECT_FALSE(take(0.01, k)) << k;
   EXPECT_TRUE(take(0.01, 19)) << "0.4 s";
-  EXPECT_EQ(state.within_bias_since_ns, 400'000'000);
+  EXPECT_EQ(state.small_rate_since_ns, 400'000'000);
   EXPECT_FALSE(take(0.045, 20)) << "beyond the spread, below the largest";
-  EXPECT_EQ(state.within_bias_since_ns, kNode_ns) << "a run of its own";
+  EXPECT_EQ(state.small_rate_since_ns, kNode_ns) << "a run of its own";
   EXPECT_FALSE(take(0.5, 21));
-  EXPECT_EQ(state.within_bias_since_ns, 0);
+  EXPECT_EQ(state.small_rate_since_ns, 0);
 }
 
 TEST(RestDetector, ForceBeyondGravityIsNoRest) {
@@ -166,10 +166,10 @@ TEST(RestDetector, RefusesParametersOutOfBounds) {
   EXPECT_THROW((RestDetector(params)), InvalidParams);
 }
 
-TEST(RateSmoother, StandstillTellsTheBias) {
-  std::vector<RateState> out;
-  RateReport report;
-  ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(standing(300, 5), out, report).ok());
+TEST(AngularRateSmoother, StandstillTellsTheBias) {
+  std::vector<AngularRateState> out;
+  AngularRateReport report;
+  ASSERT_TRUE(AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(standing(300, 5), out, report).ok());
   // 300 samples of noise 0.0052 and tremor 0.01: a deviation of 0.0007, and 0.4 % of the way to the prior
   for (int j = 0; j < 3; ++j) EXPECT_NEAR(report.calibration.constants.gyro_bias_rad_s[j], 0.01 * (j - 1), 0.002) << j;
 }

@@ -15,8 +15,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-Saave::Params stated_device() {
-  Saave::Params params;
+SaturationAwareRateEstimator::Params stated_device() {
+  SaturationAwareRateEstimator::Params params;
   params.lever_arm_m = {-0.022, -0.085, 0.055};
   params.saturation_point_rad_s = 10.5;
   return params;
@@ -35,10 +35,10 @@ std::vector<ImuSample> tumbling_run(std::size_t count) {
 }
 
 TEST(SaaveInput, SplittingTheRecursionAnywhereChangesNothing) {
-  const Saave saave(stated_device());
+  const SaturationAwareRateEstimator saave(stated_device());
   const std::vector<ImuSample> run = tumbling_run(120);
-  std::vector<Saave::Recovered> whole(run.size());
-  Saave::State state;
+  std::vector<SaturationAwareRateEstimator::RecoveredRate> whole(run.size());
+  SaturationAwareRateEstimator::State state;
   std::size_t clipped = 0;
   for (std::size_t k = 0; k < run.size(); ++k) {
     ASSERT_TRUE(saave.step(run[k], state, whole[k]).ok());
@@ -46,10 +46,10 @@ TEST(SaaveInput, SplittingTheRecursionAnywhereChangesNothing) {
   }
   ASSERT_GT(clipped, 20u);
   for (std::size_t split = 0; split <= run.size(); split += 7) {
-    Saave::State carried;
-    Saave::Recovered got;
+    SaturationAwareRateEstimator::State carried;
+    SaturationAwareRateEstimator::RecoveredRate got;
     for (std::size_t k = 0; k < split; ++k) ASSERT_TRUE(saave.step(run[k], carried, got).ok());
-    const Saave second(stated_device());
+    const SaturationAwareRateEstimator second(stated_device());
     for (std::size_t k = split; k < run.size(); ++k) {
       ASSERT_TRUE(second.step(run[k], carried, got).ok());
       ASSERT_EQ(got.rate_rad_s, whole[k].rate_rad_s);  // identical bits
@@ -60,8 +60,8 @@ TEST(SaaveInput, SplittingTheRecursionAnywhereChangesNothing) {
 }
 
 TEST(SaaveInput, TroubleNamesFieldValueAndBoundAndWritesNothing) {
-  const Saave saave(stated_device());
-  std::vector<RateState> out(2);
+  const SaturationAwareRateEstimator saave(stated_device());
+  std::vector<AngularRateState> out(2);
   out[1].clipped_axes = 5;
   const auto expect = [&](const std::vector<ImuSample>& run, ErrorCode error_code, const std::string& field) {
     const Status status = saave.estimate(run, out);
@@ -99,14 +99,14 @@ TEST(SaaveInput, TroubleNamesFieldValueAndBoundAndWritesNothing) {
 }
 
 TEST(SaaveInput, AFailedStepLeavesTheStateUsable) {
-  const Saave saave(stated_device());
+  const SaturationAwareRateEstimator saave(stated_device());
   const std::vector<ImuSample> run = tumbling_run(60);
-  Saave::State state, clean;
-  Saave::Recovered got, want;
+  SaturationAwareRateEstimator::State state, clean;
+  SaturationAwareRateEstimator::RecoveredRate got, want;
   for (const ImuSample& sample : run) {
     ImuSample broken = sample;
     broken.angular_velocity_rad_s.x() = std::nan("");
-    const Saave::State before = state;
+    const SaturationAwareRateEstimator::State before = state;
     EXPECT_EQ(saave.step(broken, state, got).error_code, ErrorCode::non_finite);
     EXPECT_EQ(state, before);
     ASSERT_TRUE(saave.step(sample, state, got).ok());
@@ -116,26 +116,26 @@ TEST(SaaveInput, AFailedStepLeavesTheStateUsable) {
 }
 
 TEST(SaaveInput, ASingleSampleIsReturnedAsItIs) {
-  std::vector<RateState> out;
-  ASSERT_TRUE(Saave(stated_device()).estimate(std::vector<ImuSample>(1), out).ok());
+  std::vector<AngularRateState> out;
+  ASSERT_TRUE(SaturationAwareRateEstimator(stated_device()).estimate(std::vector<ImuSample>(1), out).ok());
   ASSERT_EQ(out.size(), 1u);
   EXPECT_EQ(out[0].w_WI_I_rad_s, Vector3d::Zero());
 }
 
 TEST(SaaveInput, RefusesParametersOutsideOfTheirBounds) {
   const auto refused = [](auto change) {
-    Saave::Params params = stated_device();
+    SaturationAwareRateEstimator::Params params = stated_device();
     change(params);
-    EXPECT_THROW(Saave{params}, InvalidParams);
+    EXPECT_THROW(SaturationAwareRateEstimator{params}, InvalidParams);
   };
-  EXPECT_NO_THROW(Saave{stated_device()});
-  refused([](Saave::Params& p) { p.lever_arm_m = Saave::Params{}.lever_arm_m; });  // neither has a default
-  refused([](Saave::Params& p) { p.saturation_point_rad_s = Saave::Params{}.saturation_point_rad_s; });
-  refused([](Saave::Params& p) { p.lever_arm_m.y() = std::nan(""); });
-  refused([](Saave::Params& p) { p.lever_arm_m.x() = 11.0; });
-  refused([](Saave::Params& p) { p.saturation_point_rad_s = 0.0; });
-  refused([](Saave::Params& p) { p.jerk_psd_rad2_s5 = 0.0; });
-  refused([](Saave::Params& p) { p.gap_max_s = 0.0; });
+  EXPECT_NO_THROW(SaturationAwareRateEstimator{stated_device()});
+  refused([](SaturationAwareRateEstimator::Params& p) { p.lever_arm_m = SaturationAwareRateEstimator::Params{}.lever_arm_m; });  // neither has a default
+  refused([](SaturationAwareRateEstimator::Params& p) { p.saturation_point_rad_s = SaturationAwareRateEstimator::Params{}.saturation_point_rad_s; });
+  refused([](SaturationAwareRateEstimator::Params& p) { p.lever_arm_m.y() = std::nan(""); });
+  refused([](SaturationAwareRateEstimator::Params& p) { p.lever_arm_m.x() = 11.0; });
+  refused([](SaturationAwareRateEstimator::Params& p) { p.saturation_point_rad_s = 0.0; });
+  refused([](SaturationAwareRateEstimator::Params& p) { p.jerk_psd_rad2_s5 = 0.0; });
+  refused([](SaturationAwareRateEstimator::Params& p) { p.gap_max_s = 0.0; });
 }
 
 }  // namespace

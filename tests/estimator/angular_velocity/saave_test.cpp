@@ -21,8 +21,8 @@ constexpr double kRail = 10.5;
 const Vector3d kLever = {-0.022, -0.085, 0.055};
 
 // the plateau of the published device, slightly above the threshold of the method
-Saave::Params params_below_rail() {
-  Saave::Params params;
+SaturationAwareRateEstimator::Params params_below_rail() {
+  SaturationAwareRateEstimator::Params params;
   params.lever_arm_m = kLever;
   params.saturation_point_rad_s = 0.999 * kRail;
   return params;
@@ -37,21 +37,21 @@ ImuSample sample_at(std::size_t k, const Vector3d& rate, const Vector3d& force) 
 }
 
 // Returns the estimate for `second`, after one accepted unclipped sample that sets the axis.
-Saave::Recovered after_axis(const Vector3d& first_rate, const ImuSample& second, const Saave::Params& params) {
-  const Saave saave(params);
-  Saave::State state;
-  Saave::Recovered out;
+SaturationAwareRateEstimator::RecoveredRate after_axis(const Vector3d& first_rate, const ImuSample& second, const SaturationAwareRateEstimator::Params& params) {
+  const SaturationAwareRateEstimator saave(params);
+  SaturationAwareRateEstimator::State state;
+  SaturationAwareRateEstimator::RecoveredRate out;
   EXPECT_TRUE(saave.step(sample_at(0, first_rate, Vector3d::Zero()), state, out).ok());
   EXPECT_TRUE(saave.step(second, state, out).ok());
   return out;
 }
 
-TEST(Saave, LeverArmPerAxis) {
+TEST(SaturationAwareRateEstimator, LeverArmPerAxis) {
   const double want[] = {0.1012, 0.0592, 0.0878};
   for (int j = 0; j < 3; ++j) {
     const Vector3d axis = Vector3d::Unit(j), to_axis = kLever[j] * axis - kLever;
     const double force = 40.0;
-    const Saave::Recovered out =
+    const SaturationAwareRateEstimator::RecoveredRate out =
         after_axis(5.0 * axis, sample_at(1, kRail * axis, force * to_axis.normalized()), params_below_rail());
     // |w|^2 = force / r
     EXPECT_NEAR(force / (out.rate_rad_s[j] * out.rate_rad_s[j]), want[j], 5e-5) << j;
@@ -62,27 +62,27 @@ TEST(Saave, LeverArmPerAxis) {
   }
 }
 
-TEST(Saave, TakesTheSignOfTheReadingAndSubtractsTheOtherAxes) {
+TEST(SaturationAwareRateEstimator, TakesTheSignOfTheReadingAndSubtractsTheOtherAxes) {
   const Vector3d w(2.0, -15.0, 1.0);
   // with an exactly known axis and a constant rate, the estimate is exact
-  const Saave::Recovered out =
+  const SaturationAwareRateEstimator::RecoveredRate out =
       after_axis(w / 3.0, sample_at(1, clipped_rate(w), w.cross(w.cross(kLever))), params_below_rail());
   EXPECT_LE((out.rate_rad_s - w).norm(), 1e-12);
 }
 
-TEST(Saave, NeverGoesBelowTheReading) {
+TEST(SaturationAwareRateEstimator, NeverGoesBelowTheReading) {
   const Vector3d slow = 8.0 * Vector3d::UnitX();
-  const Saave::Recovered out =
+  const SaturationAwareRateEstimator::RecoveredRate out =
       after_axis(5.0 * Vector3d::UnitX(), sample_at(1, kRail * Vector3d::UnitX(), slow.cross(slow.cross(kLever))),
                  params_below_rail());
   EXPECT_TRUE(out.accepted);
   EXPECT_EQ(out.rate_rad_s.x(), kRail);
 }
 
-TEST(Saave, RejectsWhenTheForcePointsAwayAndFreezesTheAxis) {
-  const Saave saave(params_below_rail());
-  Saave::State state;
-  Saave::Recovered out;
+TEST(SaturationAwareRateEstimator, RejectsWhenTheForcePointsAwayAndFreezesTheAxis) {
+  const SaturationAwareRateEstimator saave(params_below_rail());
+  SaturationAwareRateEstimator::State state;
+  SaturationAwareRateEstimator::RecoveredRate out;
   ASSERT_TRUE(saave.step(sample_at(0, 5.0 * Vector3d::UnitX(), Vector3d::Zero()), state, out).ok());
   ASSERT_TRUE(saave.step(sample_at(1, {kRail, 3.0, 0.0}, Vector3d(0.0, -30.0, 20.0)), state, out).ok());
   EXPECT_FALSE(out.accepted);
@@ -91,14 +91,14 @@ TEST(Saave, RejectsWhenTheForcePointsAwayAndFreezesTheAxis) {
   EXPECT_EQ(state.axis, Vector3d::UnitX());
 }
 
-TEST(Saave, ZeroRadicandIsRejectedToo) {
-  const Saave::Recovered out = after_axis(
+TEST(SaturationAwareRateEstimator, ZeroRadicandIsRejectedToo) {
+  const SaturationAwareRateEstimator::RecoveredRate out = after_axis(
       5.0 * Vector3d::UnitX(), sample_at(1, kRail * Vector3d::UnitX(), Vector3d::Zero()), params_below_rail());
   EXPECT_FALSE(out.accepted);
 }
 
-TEST(Saave, TheThresholdIsStrictSoARailExactlyOnItIsNeverSeen) {
-  Saave::Params params = params_below_rail();
+TEST(SaturationAwareRateEstimator, TheThresholdIsStrictSoARailExactlyOnItIsNeverSeen) {
+  SaturationAwareRateEstimator::Params params = params_below_rail();
   params.saturation_point_rad_s = kRail;
   const Vector3d w = 15.0 * Vector3d::UnitX();
   const ImuSample at_rail = sample_at(1, kRail * Vector3d::UnitX(), w.cross(w.cross(kLever)));
@@ -110,10 +110,10 @@ TEST(Saave, TheThresholdIsStrictSoARailExactlyOnItIsNeverSeen) {
 // These edge cases of the published code are kept.
 
 TEST(SaaveEdge, TheIMUOnTheAxisIsRejectedAndNearItUnguarded) {
-  Saave::Params params = params_below_rail();
+  SaturationAwareRateEstimator::Params params = params_below_rail();
   params.lever_arm_m = {0.1, 0.0, 0.0};
   const ImuSample sample = sample_at(1, kRail * Vector3d::UnitX(), Vector3d(0.0, -1.0, 0.0));
-  const Saave::Recovered on_axis = after_axis(5.0 * Vector3d::UnitX(), sample, params);
+  const SaturationAwareRateEstimator::RecoveredRate on_axis = after_axis(5.0 * Vector3d::UnitX(), sample, params);
   EXPECT_FALSE(on_axis.accepted);
   EXPECT_TRUE(on_axis.rate_rad_s.allFinite());
   params.lever_arm_m = {0.1, 1e-6, 0.0};
@@ -122,7 +122,7 @@ TEST(SaaveEdge, TheIMUOnTheAxisIsRejectedAndNearItUnguarded) {
 
 TEST(SaaveEdge, OnlyTheFirstOfSeveralClippedAxesIsTreated) {
   const Vector3d w(14.0, 13.0, 12.0);
-  const Saave::Recovered out =
+  const SaturationAwareRateEstimator::RecoveredRate out =
       after_axis(w / 2.0, sample_at(1, clipped_rate(w), w.cross(w.cross(kLever))), params_below_rail());
   EXPECT_EQ(out.clipped_axes, 7);
   EXPECT_EQ(out.rate_rad_s.y(), kRail);
@@ -136,7 +136,7 @@ TEST(SaaveEdge, ClippedAccelerometersAreBelieved) {
   const Vector3d w = 15.0 * Vector3d::UnitX();
   ImuSample sample = sample_at(1, clipped_rate(w), w.cross(w.cross(kLever)).cwiseMin(10.0).cwiseMax(-10.0));
   sample.device_clip_flags = kClipAccelX | kClipAccelY | kClipAccelZ;
-  const Saave::Recovered out = after_axis(w / 2.0, sample, params_below_rail());
+  const SaturationAwareRateEstimator::RecoveredRate out = after_axis(w / 2.0, sample, params_below_rail());
   EXPECT_TRUE(out.accepted);
   EXPECT_LT(out.rate_rad_s.x(), 13.0);
 }
@@ -145,14 +145,14 @@ TEST(SaaveEdge, ContactIsBelieved) {
   // resting contact: 1 g along the lever arm adds g / (2 r w), 3.2 rad/s
   const Vector3d w = 15.0 * Vector3d::UnitX(), to_axis = Vector3d(-0.022, 0, 0) - kLever;
   const Vector3d force = w.cross(w.cross(kLever)) + 9.81 * to_axis.normalized();
-  const Saave::Recovered out = after_axis(w / 2.0, sample_at(1, clipped_rate(w), force), params_below_rail());
+  const SaturationAwareRateEstimator::RecoveredRate out = after_axis(w / 2.0, sample_at(1, clipped_rate(w), force), params_below_rail());
   EXPECT_NEAR(out.rate_rad_s.x() - 15.0, 3.2, 0.35);  // first-order value; the exact value is 2.94
 }
 
 TEST(SaaveEdge, DeviceFlagsAreNotUsed) {
   ImuSample sample = sample_at(1, {9.0, 0.0, 0.0}, Vector3d(0.0, 40.0, -30.0));
   sample.device_clip_flags = kClipGyroX;
-  const Saave::Recovered out = after_axis(5.0 * Vector3d::UnitX(), sample, params_below_rail());
+  const SaturationAwareRateEstimator::RecoveredRate out = after_axis(5.0 * Vector3d::UnitX(), sample, params_below_rail());
   EXPECT_EQ(out.clipped_axes, 0);
   EXPECT_EQ(out.rate_rad_s.x(), 9.0);
 }
@@ -166,7 +166,7 @@ TEST(SaaveEdge, AFlippedReadingFlipsTheEstimate) {
 TEST(SaaveEdge, TheVarianceOfAnEstimateDependsOnNothing) {
   for (double speed : {11.0, 30.0}) {
     const Vector3d w = speed * Vector3d::UnitY();
-    const Saave::Recovered out =
+    const SaturationAwareRateEstimator::RecoveredRate out =
         after_axis(w / 4.0, sample_at(1, clipped_rate(w), w.cross(w.cross(kLever))), params_below_rail());
     EXPECT_EQ(out.variance_rad2_s2.y(), 0.2741);
   }
@@ -179,16 +179,16 @@ TEST(SaaveEdge, SmoothedRatesMayFallBelowTheRail) {
     const bool clip = k >= 25 && k < 35;
     run.push_back(sample_at(k, (clip ? kRail : 9.0) * Vector3d::UnitX(), Vector3d::Zero()));
   }
-  std::vector<RateState> out;
-  ASSERT_TRUE(Saave(params_below_rail()).estimate(run, out).ok());
-  EXPECT_EQ(out[30].source, RateSource::bounded_only);
+  std::vector<AngularRateState> out;
+  ASSERT_TRUE(SaturationAwareRateEstimator(params_below_rail()).estimate(run, out).ok());
+  EXPECT_EQ(out[30].source, AngularRateSource::lower_bound_only);
   EXPECT_LT(out[30].w_WI_I_rad_s.x(), kRail);
 }
 
 TEST(SaaveEdge, StandstillDoesNotPoisonTheAxis) {
-  const Saave saave(params_below_rail());
-  Saave::State state;
-  Saave::Recovered out;
+  const SaturationAwareRateEstimator saave(params_below_rail());
+  SaturationAwareRateEstimator::State state;
+  SaturationAwareRateEstimator::RecoveredRate out;
   ASSERT_TRUE(saave.step(sample_at(0, Vector3d::Zero(), Vector3d::UnitZ()), state, out).ok());
   EXPECT_EQ(state.axis, Vector3d::UnitZ());
 }
@@ -200,7 +200,7 @@ struct TumbleErrors {
   std::size_t clipped, several;
 };
 
-TumbleErrors tumble_errors(const Vector3d& moments, const Vector3d& w0, const Saave::Params& params,
+TumbleErrors tumble_errors(const Vector3d& moments, const Vector3d& w0, const SaturationAwareRateEstimator::Params& params,
                            bool noisy = true) {
   const oracles::TorqueFreeRotation motion(moments, w0);
   oracles::Gaussian noise(7);
@@ -215,8 +215,8 @@ TumbleErrors tumble_errors(const Vector3d& moments, const Vector3d& w0, const Sa
     const Vector3d force = ramp * ramp * motion.specific_force(t, kLever) + (noisy ? 5.9e-3 : 0.0) * accel_noise;
     run.push_back(sample_at(k, clipped_rate(w + (noisy ? 5.236e-3 : 0.0) * gyro_noise), force));
   }
-  std::vector<RateState> out;
-  EXPECT_TRUE(Saave(params).estimate(run, out).ok());
+  std::vector<AngularRateState> out;
+  EXPECT_TRUE(SaturationAwareRateEstimator(params).estimate(run, out).ok());
   std::vector<double> errors, raw;
   TumbleErrors result{};
   for (std::size_t k = 60; k < run.size(); ++k) {
@@ -278,7 +278,7 @@ TEST(SaaveAccuracy, ASecondClippedAxisCostsRadiansPerSecond) {
 }
 
 TEST(SaaveAccuracy, ACentimetreOfLeverArmErrorAlongTheLever) {
-  Saave::Params params = params_below_rail();
+  SaturationAwareRateEstimator::Params params = params_below_rail();
   params.lever_arm_m = kLever * (1.0 + 0.01 / kLever.norm());
   const TumbleErrors e = tumble_errors({1.0, 1.1, 1.3}, 15.0 * Vector3d::UnitX(), params, false);
   ASSERT_GT(e.clipped, 400u);
@@ -294,11 +294,11 @@ TEST(SaaveAccuracy, UnclippedRunsComeBackUnchanged) {
     const double t = static_cast<double>(k) * seconds(kPeriod);
     run.push_back(sample_at(k, motion.rate(t), motion.specific_force(t, kLever)));
   }
-  std::vector<RateState> out;
-  ASSERT_TRUE(Saave(params_below_rail()).estimate(run, out).ok());
+  std::vector<AngularRateState> out;
+  ASSERT_TRUE(SaturationAwareRateEstimator(params_below_rail()).estimate(run, out).ok());
   for (std::size_t k = 0; k < run.size(); ++k) {
     EXPECT_LE((out[k].w_WI_I_rad_s - run[k].angular_velocity_rad_s).norm(), 1e-4) << k;
-    EXPECT_EQ(out[k].source, RateSource::measured);
+    EXPECT_EQ(out[k].source, AngularRateSource::measured);
     EXPECT_EQ(out[k].clipped_axes, 0);
     EXPECT_EQ(out[k].time_ns, run[k].time_ns);
   }

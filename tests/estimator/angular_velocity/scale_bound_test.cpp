@@ -29,25 +29,25 @@ ScaleInformation scale_information(std::uint64_t seed, const Vector3d& moments) 
   options.moments = moments;
   options.gyro_rail_rad_s = options.accel_rail_m_s2 = 1e4;
   const TumbleRecording recording = make_tumble(options);
-  auto params = with_lever_arm<RateSmoother::Params>();
+  auto params = with_lever_arm<AngularRateSmoother::Params>();
   params.model.lever_arm_sigma_m = 1.0;
   params.model.inertia_sigma = 3.0;
-  const RateModel model(params.model, 0.01);
-  std::vector<RateObservation> observations(recording.samples.size());
+  const AngularRateModel model(params.model, 0.01);
+  std::vector<AngularRateObservation> observations(recording.samples.size());
   for (std::size_t k = 0; k < observations.size(); ++k) observations[k].sample = recording.samples[k];
-  RateSolution solution{{}, {}, {}, RateIteration(observations)};
-  RateReport report;
+  RateSolution solution{{}, {}, {}, GaussNewtonRateStep(observations)};
+  AngularRateReport report;
   EXPECT_TRUE(solve(params, model, observations, solution, report));
   EXPECT_TRUE(solution.iteration.factorise(model, solution.estimates, solution.rig));
   const auto moved = solution.iteration.error_derivatives(model, solution.estimates, solution.rig);
   SensorErrors scale;
   scale.gyro.setIdentity();
-  ScaleInformation out{scale.vector().dot(moved.evidence.information * scale.vector()), 0.0};
+  ScaleInformation out{scale.vector().dot(moved.sensor_error_evidence.information * scale.vector()), 0.0};
   const Matrix3d J = solution.rig.inertia_matrix();
-  const RateModelParams& p = params.model;
-  const std::vector<RateEstimate>& estimates = solution.estimates;
+  const AngularRateModelParams& p = params.model;
+  const std::vector<AngularRateEstimate>& estimates = solution.estimates;
   for (std::size_t k = 0; k < estimates.size(); ++k) {
-    const RateKnot& knot = estimates[k].knot;
+    const AngularRateKnot& knot = estimates[k].knot;
     const Vector3d& a = knot.acceleration_rad_s2;
     const double noise = p.accel_noise_density * 10.0, force = estimates[k].contact_force_m_s2.norm();
     const double share = p.expert.kAccelScaleError * recording.samples[k].specific_force_m_s2.norm();
@@ -93,14 +93,14 @@ TEST(ScaleBound, TheErrorIsThatOfTheBound) {
       options.gyro_error = scale * Vector3d(1.0, -0.8, 1.2).asDiagonal();
       options.accel_error = scale * Vector3d(-1.1, 0.9, 1.0).asDiagonal();
       const TumbleRecording recording = make_tumble(options);
-      auto params = with_lever_arm<RateSmoother::Params>();
+      auto params = with_lever_arm<AngularRateSmoother::Params>();
       params.model.expert.error_priors.gyro = params.model.expert.error_priors.gyro_uncalibrated =
           std::max(5e-4, scale);
       params.model.expert.error_priors.accel = params.model.expert.error_priors.accel_uncalibrated =
           std::max(5e-4, scale);
-      std::vector<RateState> states;
-      RateReport report;
-      ASSERT_TRUE(RateSmoother(params).estimate(recording.samples, states, report).ok());
+      std::vector<AngularRateState> states;
+      AngularRateReport report;
+      ASSERT_TRUE(AngularRateSmoother(params).estimate(recording.samples, states, report).ok());
       for (std::size_t k = 0; k < states.size(); ++k) {
         if (states[k].clipped_axes == 0 || recording.phase[k] != Phase::flight) continue;
         const double error2 = (states[k].w_WI_I_rad_s - recording.truth[k]).squaredNorm();

@@ -37,7 +37,7 @@ struct Coverage {
   double share() const { return static_cast<double>(inside) / static_cast<double>(all); }
 };
 
-void count(const TumbleRecording& recording, const std::vector<RateState>& states, Coverage& coverage) {
+void count(const TumbleRecording& recording, const std::vector<AngularRateState>& states, Coverage& coverage) {
   for (std::size_t k = 0; k < states.size(); ++k) {
     for (int j = 0; j < 3; ++j) {
       if ((states[k].clipped_axes >> j & 1) == 0) continue;
@@ -64,7 +64,7 @@ TEST(SensorErrors, WhatNoMotionTellsIsDiscounted) {
   oracles::Gaussian noise(2);
   SensorErrors::Matrix root;
   for (double& x : root.reshaped()) x = noise();
-  SensorErrorEvidence evidence;
+  SensorErrorInformation evidence;
   evidence.information = root * root.transpose();
   for (double& x : evidence.gradient) x = noise();
   SensorErrors both_rotated;
@@ -76,12 +76,12 @@ TEST(SensorErrors, WhatNoMotionTellsIsDiscounted) {
   SensorErrors late;
   late.accel_delay_s = 1.0;
 
-  SensorErrorEvidence same = evidence, tenth = evidence;
+  SensorErrorInformation same = evidence, tenth = evidence;
   discount_unobservable(1.0, same);
   EXPECT_EQ(same.information, evidence.information);
   EXPECT_EQ(same.gradient, evidence.gradient);
   discount_unobservable(0.1, tenth);
-  const auto along = [](const SensorErrors& error, const SensorErrorEvidence& of) {
+  const auto along = [](const SensorErrors& error, const SensorErrorInformation& of) {
     const SensorErrors::Vector v = error.vector();
     return std::pair(v.dot(of.gradient), v.dot(of.information * v));
   };
@@ -100,57 +100,57 @@ TEST(SensorErrors, WithoutReadingsTheyAreWhatIsAssumed) {
   sheet.gyro_uncalibrated = sheet.accel_uncalibrated = sheet.g_sensitivity_uncalibrated_s_m =
       sheet.delay_uncalibrated_s = 0.0;
   const SensorErrorFit believed = fit_sensor_errors({}, sheet), open = fit_sensor_errors({}, {});
-  EXPECT_EQ(believed.known.errors, SensorErrors{});
-  EXPECT_DOUBLE_EQ(std::sqrt(believed.known.covariance(1, 1)), sheet.gyro);
+  EXPECT_EQ(believed.fitted_errors.errors, SensorErrors{});
+  EXPECT_DOUBLE_EQ(std::sqrt(believed.fitted_errors.covariance(1, 1)), sheet.gyro);
   EXPECT_DOUBLE_EQ(believed.data_sheet_probability, 1.0);
   EXPECT_LT(open.data_sheet_probability, 1.0);
-  EXPECT_GT(open.known.covariance(0, 0), 20.0 * believed.known.covariance(0, 0));
+  EXPECT_GT(open.fitted_errors.covariance(0, 0), 20.0 * believed.fitted_errors.covariance(0, 0));
 }
 
 TEST(SensorErrors, ADelayThatIsPlainIsFoundAndAnotherIsNotMadeUp) {
-  SensorErrorEvidence evidence;
+  SensorErrorInformation evidence;
   constexpr int i = SensorErrors::kDelay;
   evidence.information(i, i) = 1.0 / (1e-4 * 1e-4);
   evidence.gradient[i] = evidence.information(i, i) * 4e-3;
   const SensorErrorFit late = fit_sensor_errors(evidence, {});
-  EXPECT_NEAR(late.known.errors.accel_delay_s, 4e-3, 1e-4);
-  EXPECT_LT(late.synchronous_probability, 1e-6);
+  EXPECT_NEAR(late.fitted_errors.errors.accel_delay_s, 4e-3, 1e-4);
+  EXPECT_LT(late.synchronous_triads_probability, 1e-6);
   evidence.gradient[i] = evidence.information(i, i) * 5e-5;
   const SensorErrorFit alike = fit_sensor_errors(evidence, {});
-  EXPECT_GT(alike.synchronous_probability, 0.9);
-  EXPECT_LT(std::abs(alike.known.errors.accel_delay_s), 5e-5);
+  EXPECT_GT(alike.synchronous_triads_probability, 0.9);
+  EXPECT_LT(std::abs(alike.fitted_errors.errors.accel_delay_s), 5e-5);
 }
 
-// Compares the derivatives of add_errors() with the gradient of a model that contains the error.
+// Compares the derivatives of add_sensor_errors() with the gradient of a model that contains the error.
 TEST(SensorErrors, MoveTheGradientAsTheModelHasIt) {
   oracles::Gaussian noise(3);
-  RateObservation o;
-  RateEstimate estimate;
+  AngularRateObservation o;
+  AngularRateEstimate estimate;
   RigConstants rig;
   rig.lever_arm_m = {-0.022, -0.085, 0.055};
   rig.inertia << 0.05, -0.03, 0.02, 0.01, -0.02;
   estimate.knot = {{4.0, -6.0, 3.0}, {10.0, 20.0, -15.0}};
   estimate.flight_weight = 1.0;
   o.sample.angular_velocity_rad_s = estimate.knot.rate_rad_s;
-  o.sample.specific_force_m_s2 = flight_factor(estimate.knot, rig, Vector3d::Zero()).residual;
+  o.sample.specific_force_m_s2 = flight_force_factor(estimate.knot, rig, Vector3d::Zero()).residual;
   for (const double age_s : {0.0, 0.004}) {
     o.gyro_age_s = age_s;
     o.sample.angular_velocity_rad_s = estimate.knot.rate_rad_s - age_s * estimate.knot.acceleration_rad_s2;
-    const RateModel model({.nominal = rig}, 0.01);
+    const AngularRateModel model({.nominal = rig}, 0.01);
     arrow::ErrorMatrix block = arrow::ErrorMatrix::Zero();
     arrow::BorderErrors border = arrow::BorderErrors::Zero();
-    SensorErrorEvidence evidence;
-    model.add_errors(o, estimate, rig, block, border, evidence);
+    SensorErrorInformation evidence;
+    model.add_sensor_errors(o, estimate, rig, block, border, evidence);
     EXPECT_LT(evidence.gradient.cwiseAbs().maxCoeff(), 1e-6 * evidence.information.cwiseAbs().maxCoeff());
     for (int i = 0; i < SensorErrors::kSize; ++i) {
       constexpr double kStep = 1e-6;
       arrow::Block blocks[2];
       arrow::Corner corners[2];
       for (int side = 0; side < 2; ++side) {
-        RateModelParams params;
+        AngularRateModelParams params;
         params.nominal = rig;
         params.errors = SensorErrors::from((side == 0 ? kStep : -kStep) * SensorErrors::Vector::Unit(i));
-        RateModel(params, 0.01).add_sample(o, estimate, rig, blocks[side], corners[side]);
+        AngularRateModel(params, 0.01).add_sample(o, estimate, rig, blocks[side], corners[side]);
       }
       const arrow::StateVector want = (blocks[0].gradient - blocks[1].gradient) / (2.0 * kStep);
       EXPECT_LT((block.col(i) - want).norm(), 1e-3 * (1.0 + want.norm())) << i;
@@ -168,7 +168,7 @@ TEST(SensorErrors, WhatWasLearntComesBack) {
   open.gyro = open.accel = open.gyro_uncalibrated;
   open.g_sensitivity_s_m = open.g_sensitivity_uncalibrated_s_m;
   open.delay_s = open.delay_uncalibrated_s;
-  KnownSensorErrors learnt = fit_sensor_errors({}, open).known;
+  KnownSensorErrors learnt = fit_sensor_errors({}, open).fitted_errors;
   constexpr int i = SensorErrors::kDelay, j = SensorErrors::kGSensitivity;
   learnt.covariance(i, i) *= 0.01;
   learnt.covariance(j, j) *= 0.25;
@@ -176,17 +176,17 @@ TEST(SensorErrors, WhatWasLearntComesBack) {
       0.3 * std::sqrt(learnt.covariance(i, i) * learnt.covariance(j, j));
   learnt.errors.accel_delay_s = 4e-3;
   learnt.errors.g_sensitivity_s_m(0, 0) = 1e-4;
-  const SensorErrorFit back = fit_sensor_errors({}, open, calibration_evidence(learnt, open));
-  EXPECT_NEAR(back.known.errors.accel_delay_s, 4e-3, 1e-9);
-  EXPECT_NEAR(back.known.errors.g_sensitivity_s_m(0, 0), 1e-4, 1e-10);
+  const SensorErrorFit back = fit_sensor_errors({}, open, evidence_from_earlier_runs(learnt, open));
+  EXPECT_NEAR(back.fitted_errors.errors.accel_delay_s, 4e-3, 1e-9);
+  EXPECT_NEAR(back.fitted_errors.errors.g_sensitivity_s_m(0, 0), 1e-4, 1e-10);
   const SensorErrors::Vector deviation = learnt.covariance.diagonal().cwiseSqrt();
   const SensorErrors::Matrix apart = deviation.cwiseInverse().asDiagonal() *
-                                     (back.known.covariance - learnt.covariance) *
+                                     (back.fitted_errors.covariance - learnt.covariance) *
                                      deviation.cwiseInverse().asDiagonal();
   EXPECT_LT(apart.cwiseAbs().maxCoeff(), 1e-6);
   // a result that is as uncertain as the prior contains no information
-  const KnownSensorErrors nothing = fit_sensor_errors({}, open).known;
-  EXPECT_LT(calibration_evidence(nothing, open).information.cwiseAbs().maxCoeff() * open.delay_s * open.delay_s, 1e-6);
+  const KnownSensorErrors nothing = fit_sensor_errors({}, open).fitted_errors;
+  EXPECT_LT(evidence_from_earlier_runs(nothing, open).information.cwiseAbs().maxCoeff() * open.delay_s * open.delay_s, 1e-6);
 }
 
 TEST(TriadDelay, IsGuessedWhereThereIsOne) {
@@ -224,21 +224,21 @@ TEST(RateSmootherDevices, ALateAccelerometerIsFound) {
   double late_sum = 0.0, clean_sum = 0.0, taken_sum = 0.0;
   for (const std::uint64_t seed : {2u, 3u, 5u, 6u, 7u}) {  // seeds 1, 4 and 8 are classified as contact, see below
     const TumbleRecording late = late_tumble(seed, 1), clean = late_tumble(seed, 0);
-    std::vector<RateState> states;
-    RateReport report;
-    ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(late.samples, states, report).ok());
+    std::vector<AngularRateState> states;
+    AngularRateReport report;
+    ASSERT_TRUE(AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(late.samples, states, report).ok());
     EXPECT_NEAR(report.sensor_errors.errors.accel_delay_s, 0.01, 1e-3);
-    EXPECT_LT(report.synchronous_probability, 0.05);
+    EXPECT_LT(report.synchronous_triads_probability, 0.05);
     late_sum += clipped_errors(late, rates_of(states), 10.49).median;
     count(late, states, found);
-    ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(clean.samples, states, report).ok());
-    EXPECT_GT(report.synchronous_probability, 0.05);
+    ASSERT_TRUE(AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(clean.samples, states, report).ok());
+    EXPECT_GT(report.synchronous_triads_probability, 0.05);
     EXPECT_LT(std::abs(report.sensor_errors.errors.accel_delay_s), 2e-4);
     count(clean, states, in_time);
     clean_sum += clipped_errors(clean, rates_of(states), 10.49).median;
-    auto believing = with_lever_arm<RateSmoother::Params>();
+    auto believing = with_lever_arm<AngularRateSmoother::Params>();
     believing.expert.error_rounds_max = 1;
-    ASSERT_TRUE(RateSmoother(believing).estimate(late.samples, states, report).ok());
+    ASSERT_TRUE(AngularRateSmoother(believing).estimate(late.samples, states, report).ok());
     taken_sum += clipped_errors(late, rates_of(states), 10.49).median;
     count(late, states, taken);
   }
@@ -256,9 +256,9 @@ TEST(RateSmootherDevices, ALateAccelerometerIsFound) {
 TEST(RateSmootherDevices, ADelayThatIsNotFoundIsNotSilent) {
   for (const std::uint64_t seed : {1u, 4u, 8u}) {
     const TumbleRecording late = late_tumble(seed, 1);
-    std::vector<RateState> states;
-    RateReport report;
-    ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(late.samples, states, report).ok());
+    std::vector<AngularRateState> states;
+    AngularRateReport report;
+    ASSERT_TRUE(AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(late.samples, states, report).ok());
     EXPECT_TRUE(report.calibration_at_prior || std::abs(report.sensor_errors.errors.accel_delay_s - 0.01) < 1e-3)
         << seed;
     EXPECT_GT(report.calibration_mahalanobis, 1.0) << seed;
@@ -268,7 +268,7 @@ TEST(RateSmootherDevices, ADelayThatIsNotFoundIsNotSilent) {
 // Known errors that the caller states are corrected, and not estimated away.
 TEST(RateSmootherDevices, GivenErrorsAreKept) {
   TumbleRecording recording = late_tumble(3, 0);
-  auto params = with_lever_arm<RateSmoother::Params>();
+  auto params = with_lever_arm<AngularRateSmoother::Params>();
   params.model.errors.gyro = Eigen::Vector3d(0.01, -0.008, 0.006).asDiagonal();
   for (ImuSample& sample : recording.samples) {
     const Vector3d more = params.model.errors.gyro * sample.angular_velocity_rad_s;
@@ -276,11 +276,11 @@ TEST(RateSmootherDevices, GivenErrorsAreKept) {
       if (std::abs(sample.angular_velocity_rad_s[j]) < 10.49) sample.angular_velocity_rad_s[j] += more[j];
     }
   }
-  std::vector<RateState> states, without;
-  RateReport report;
-  ASSERT_TRUE(RateSmoother(params).estimate(recording.samples, states, report).ok());
+  std::vector<AngularRateState> states, without;
+  AngularRateReport report;
+  ASSERT_TRUE(AngularRateSmoother(params).estimate(recording.samples, states, report).ok());
   EXPECT_LT((report.sensor_errors.errors.gyro - params.model.errors.gyro).cwiseAbs().maxCoeff(), 1e-12);
-  ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(recording.samples, without, report).ok());
+  ASSERT_TRUE(AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(recording.samples, without, report).ok());
   double given_sum = 0.0, without_sum = 0.0;
   for (std::size_t k = 0; k < states.size(); ++k) {
     if (states[k].clipped_axes != 0) continue;
@@ -294,49 +294,49 @@ TEST(RateSmootherDevices, GivenErrorsAreKept) {
 // A stated delay is the centre of the search: 30 ms are accepted although devices without a statement have less.
 TEST(RateSmootherDevices, AStatedDelayFarFromZeroIsBelieved) {
   const TumbleRecording late = late_tumble(3, 3);
-  auto params = with_lever_arm<RateSmoother::Params>();
+  auto params = with_lever_arm<AngularRateSmoother::Params>();
   params.model.errors.accel_delay_s = 0.03;
   params.model.expert.error_priors.delay_s = 2e-4;
   params.model.expert.error_priors.delay_uncalibrated_s = 4e-3;
-  std::vector<RateState> states;
-  RateReport report;
-  ASSERT_TRUE(RateSmoother(params).estimate(late.samples, states, report).ok());
+  std::vector<AngularRateState> states;
+  AngularRateReport report;
+  ASSERT_TRUE(AngularRateSmoother(params).estimate(late.samples, states, report).ok());
   EXPECT_NEAR(report.sensor_errors.errors.accel_delay_s, 0.03, 5e-4);
   constexpr int i = SensorErrors::kDelay;
   EXPECT_LT(std::sqrt(report.sensor_errors.covariance(i, i)),
             0.5 * params.model.expert.error_priors.delay_uncalibrated_s);
-  EXPECT_GT(report.synchronous_probability, 0.5);
+  EXPECT_GT(report.synchronous_triads_probability, 0.5);
 }
 
 // A run that starts from the calibration of a late accelerometer finds in its first optimisation what a new run finds
 // in its second or third, and more accurately.
 TEST(RateSmootherDevices, WhatARunLearnsOfTheDeviceHelpsTheNext) {
   const TumbleRecording first = late_tumble(3, 1), second = late_tumble(5, 1);
-  std::vector<RateState> states;
-  RateReport of_first, fresh, informed;
-  ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(first.samples, states, of_first).ok());
-  ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(second.samples, states, fresh).ok());
-  auto params = with_lever_arm<RateSmoother::Params>();
+  std::vector<AngularRateState> states;
+  AngularRateReport of_first, fresh, informed;
+  ASSERT_TRUE(AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(first.samples, states, of_first).ok());
+  ASSERT_TRUE(AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(second.samples, states, fresh).ok());
+  auto params = with_lever_arm<AngularRateSmoother::Params>();
   params.calibrated_errors = of_first.sensor_errors;
-  ASSERT_TRUE(RateSmoother(params).estimate(second.samples, states, informed).ok());
+  ASSERT_TRUE(AngularRateSmoother(params).estimate(second.samples, states, informed).ok());
   EXPECT_NEAR(informed.sensor_errors.errors.accel_delay_s, 0.01, 5e-4);
-  EXPECT_LE(informed.error_rounds, fresh.error_rounds);
+  EXPECT_LE(informed.correction_iterations, fresh.correction_iterations);
   constexpr int i = SensorErrors::kDelay;
   EXPECT_LT(informed.sensor_errors.covariance(i, i), fresh.sensor_errors.covariance(i, i));
   // the device still differs from its data sheet
-  EXPECT_LT(informed.synchronous_probability, 0.05);
+  EXPECT_LT(informed.synchronous_triads_probability, 0.05);
   EXPECT_GT(informed.common_delay_sigma_s, 0.0);
 }
 
 // Negative control: the calibration of a late device does not make another device late.
 TEST(RateSmootherDevices, WhatWasLearntOfAnotherDeviceGivesWayToTheReadings) {
   const TumbleRecording first = late_tumble(3, 1), second = late_tumble(5, 0);
-  std::vector<RateState> states;
-  RateReport report;
-  ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(first.samples, states, report).ok());
-  auto params = with_lever_arm<RateSmoother::Params>();
+  std::vector<AngularRateState> states;
+  AngularRateReport report;
+  ASSERT_TRUE(AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(first.samples, states, report).ok());
+  auto params = with_lever_arm<AngularRateSmoother::Params>();
   params.calibrated_errors = report.sensor_errors;
-  ASSERT_TRUE(RateSmoother(params).estimate(second.samples, states, report).ok());
+  ASSERT_TRUE(AngularRateSmoother(params).estimate(second.samples, states, report).ok());
   EXPECT_LT(std::abs(report.sensor_errors.errors.accel_delay_s), 5e-4);
   Coverage coverage;
   count(second, states, coverage);
@@ -370,7 +370,7 @@ TEST(SampleHold, FindsPeriodAndAges) {
     ASSERT_TRUE(held.has_value());
     EXPECT_FALSE(find_repeated(recording.samples, Triad::accelerometer).has_value());
     EXPECT_NEAR(held->period_s, period_s, 1e-4);
-    EXPECT_GT(held->agreement, 0.97);
+    EXPECT_GT(held->regular_clock_fraction, 0.97);
     double sum = 0.0;
     for (std::size_t k = 200; k < 500; ++k) sum += std::abs(held->age_s[k] - ages[k]) / 300.0;
     EXPECT_LT(sum, 2e-3);

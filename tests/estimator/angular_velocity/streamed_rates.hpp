@@ -11,10 +11,10 @@
 namespace tumble {
 
 /// Returns all rates that the stream reports for the samples, including those at its end.
-inline std::vector<RateState> streamed_rates(const RateStream& method, const std::vector<ImuSample>& samples,
-                                             RateStream::State& state) {
-  std::vector<RateState> out;
-  std::optional<RateState> one;
+inline std::vector<AngularRateState> streamed_rates(const AngularRateStream& method, const std::vector<ImuSample>& samples,
+                                             AngularRateStream::State& state) {
+  std::vector<AngularRateState> out;
+  std::optional<AngularRateState> one;
   for (const ImuSample& sample : samples) {
     const Status status = method.push(sample, state, one);
     EXPECT_TRUE(status.ok()) << status.message();

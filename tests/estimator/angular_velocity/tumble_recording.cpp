@@ -170,9 +170,9 @@ ClippedErrors clipped_errors(const TumbleRecording& recording, const std::vector
   return {errors.size(), quantile(0.5), quantile(0.99), errors.back()};
 }
 
-std::vector<Vector3d> rates_of(const std::vector<RateState>& states) {
+std::vector<Vector3d> rates_of(const std::vector<AngularRateState>& states) {
   std::vector<Vector3d> rates;
-  for (const RateState& state : states) rates.push_back(state.w_WI_I_rad_s);
+  for (const AngularRateState& state : states) rates.push_back(state.w_WI_I_rad_s);
   return rates;
 }
 

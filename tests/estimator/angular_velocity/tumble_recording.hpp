@@ -51,7 +51,7 @@ struct TumbleRecording {
 /// averaging.
 TumbleRecording make_tumble(const TumbleOptions& options);
 
-/// Returns parameters of a RateSmoother or a RateStream with the lever arm, which has no default.
+/// Returns parameters of an AngularRateSmoother or an AngularRateStream with the lever arm, which has no default.
 template <class Params>
 Params with_lever_arm(const Eigen::Vector3d& lever_arm_m = TumbleOptions{}.lever_arm_m) {
   Params out;
@@ -75,7 +75,7 @@ struct ClippedErrors {
   double median = 0.0, p99 = 0.0, maximum = 0.0;
 };
 ClippedErrors clipped_errors(const TumbleRecording& recording, const std::vector<Eigen::Vector3d>& rates, double rail);
-std::vector<Eigen::Vector3d> rates_of(const std::vector<RateState>& states);
+std::vector<Eigen::Vector3d> rates_of(const std::vector<AngularRateState>& states);
 std::vector<Eigen::Vector3d> readings_of(const std::vector<ImuSample>& samples);
 
 }  // namespace tumble

@@ -199,7 +199,7 @@ double jitter_at_rest_deg(const Filter& filter, const BroadTrial& trial) {
     EXPECT_TRUE(filter.step(trial.samples[k], state).ok());
     still = trial.moving[k] ? 0 : still + 1;
     if (still < 858) continue;
-    sum += so3::log(before.conjugate() * state.q_WI).squaredNorm();
+    sum += so3::logarithm(before.conjugate() * state.q_WI).squaredNorm();
     ++count;
   }
   EXPECT_GT(count, 1000);

@@ -57,9 +57,9 @@ struct SpinReadings {
       signs.push_back(sign);
     }
   }
-  ClippedElements clipped() const {
-    ClippedElements out;
-    out.signs = signs;
+  SensingAxisClipSigns clipped() const {
+    SensingAxisClipSigns out;
+    out.clip_signs = signs;
     return out;
   }
 };

@@ -23,7 +23,7 @@ double tilted_rad(const Eigen::Quaterniond& q) {
 TEST(CoarseAlignment, FindsUpFromUpsideDownToWithinTheChangeOfTheVelocity) {
   const Eigen::Quaterniond wrong = so3::exp({3.0, 0.4, 0.0});
   CoarseAlignment alignment;
-  alignment.begin(0.25, 4.0);
+  alignment.start_alignment(0.25, 4.0);
   for (int node = 0; node < 50; ++node) alignment.add(wrong * Eigen::Vector3d(0.012, -0.008, 0.04 * kUp_m_s2), 0.04);
   alignment.tilt_variance_growth_rad2 += 0.01;
   EXPECT_NEAR(alignment.time_s, 2.0, 1e-9);
@@ -32,7 +32,7 @@ TEST(CoarseAlignment, FindsUpFromUpsideDownToWithinTheChangeOfTheVelocity) {
   EXPECT_NEAR(alignment.variance_rad2(0.75, kUp_m_s2), 1.0 / std::pow(2.0 * kUp_m_s2, 2) + 0.01, 1e-12);
   EXPECT_NEAR(alignment.tilt_rad2(), 4.01, 1e-12);
   CoarseAlignment none;
-  none.begin(0.25, 4.0);
+  none.start_alignment(0.25, 4.0);
   EXPECT_GT(none.variance_rad2(0.25, kUp_m_s2), 1e6) << "nothing has been read";
 }
 

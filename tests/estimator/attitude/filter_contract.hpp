@@ -125,7 +125,7 @@ void expect_sign_of_q_is_free(const Filter& filter) {
   state = run(filter, samples, 250, 500, state);
   opposite = run(filter, samples, 250, 500, opposite);
   // measured: 0, because every operation is odd or even in q
-  EXPECT_NEAR(so3::log(state.q_WI.conjugate() * opposite.q_WI).norm(), 0.0, 1e-14);
+  EXPECT_NEAR(so3::logarithm(state.q_WI.conjugate() * opposite.q_WI).norm(), 0.0, 1e-14);
 }
 
 }  // namespace tumble::testing

@@ -43,17 +43,17 @@ Point random_point(std::uint64_t seed, double step_s) {
   Point point;
   point.here = random_node(noise);
   point.next = random_node(noise);
-  point.next.q_WI = point.here.q_WI * so3::exp(turned(point.here, point.next, step_s) + draw(noise, 0.05));
+  point.next.q_WI = point.here.q_WI * so3::exp(rotation_between_nodes(point.here, point.next, step_s) + draw(noise, 0.05));
   point.constants = {draw(noise, 0.1), draw(noise, 0.3), draw(noise, 0.2)};
   return point;
 }
 
-using Factor = std::function<double(const Point&, System::Block&, System::Block&, System::Corner&)>;
+using Factor = std::function<double(const Point&, System::StateBlock&, System::StateBlock&, System::BorderBlock&)>;
 
 /// The gradient of a factor is half the negative derivative of its cost, for every unknown.
 void expect_gradient(const Factor& factor, const Point& at) {
-  System::Block here, next;
-  System::Corner corner;
+  System::StateBlock here, next;
+  System::BorderBlock corner;
   const double cost = factor(at, here, next, corner);
   EXPECT_GT(cost, 0.0);
   Eigen::VectorXd gradient(2 * kBlockSize + kBorderSize);
@@ -68,8 +68,8 @@ void expect_gradient(const Factor& factor, const Point& at) {
       moved.here.move(move.head<kBlockSize>());
       moved.next.move(move.segment<kBlockSize>(kBlockSize));
       moved.constants.move(move.tail<kBorderSize>());
-      System::Block unused, unused_next;
-      System::Corner unused_corner;
+      System::StateBlock unused, unused_next;
+      System::BorderBlock unused_corner;
       sides[side] = factor(moved, unused, unused_next, unused_corner);
     }
     const double numerical = -(sides[1] - sides[0]) / (4.0 * kStep);
@@ -81,7 +81,7 @@ void expect_gradient(const Factor& factor, const Point& at) {
 NodeReadings random_readings(std::uint64_t seed) {
   oracles::Gaussian noise(seed);
   NodeReadings readings;
-  for (ElementSums& e : readings.gyro) {
+  for (SensingAxisSums& e : readings.gyro) {
     for (double t : {-0.004, 0.0, 0.003}) {
       const double z = 5.0 * noise();
       e.count += 1.0, e.time_sum_s += t, e.time_squared_sum_s2 += t * t, e.reading_sum += z,
@@ -89,8 +89,8 @@ NodeReadings random_readings(std::uint64_t seed) {
     }
   }
   readings.force_m_s2 = draw(noise, 8.0);
-  readings.force_count = 3.0;
-  readings.force_time_s = 0.002;
+  readings.force_reading_count = 3.0;
+  readings.mean_force_time_s = 0.002;
   return readings;
 }
 
@@ -98,9 +98,9 @@ NodeReadings random_readings(std::uint64_t seed) {
 ReadingNoise plain_noise() {
   ReadingNoise noise;
   noise.gyro_rad_s = 0.5;
-  noise.rail_rad_s = 0.2;
+  noise.saturation_limit_sigma_rad_s = 0.2;
   noise.accel_m_s2 = 0.7;
-  noise.rest_rad_s = 0.1, noise.rest_m_s = 0.2, noise.rest_m_s2 = 0.3;
+  noise.stationary_rate_sigma_rad_s = 0.1, noise.stationary_velocity_sigma_m_s = 0.2, noise.stationary_acceleration_sigma_m_s2 = 0.3;
   return noise;
 }
 
@@ -108,12 +108,12 @@ TEST(HandHeldModel, GyroHasItsGradient) {
   for (std::uint64_t seed : {1u, 2u, 3u}) {
     NodeReadings readings = random_readings(seed);
     readings.gyro[1] = {};
-    readings.gyro[1].clipped = 2.0, readings.gyro[1].clipped_time_s = 0.001;
-    readings.gyro[1].rail = 1.0, readings.gyro[1].sign = seed == 2 ? -1.0 : 1.0;
+    readings.gyro[1].clipped_reading_count = 2.0, readings.gyro[1].clipped_time_s = 0.001;
+    readings.gyro[1].mean_saturation_limit = 1.0, readings.gyro[1].saturated_side = seed == 2 ? -1.0 : 1.0;
     Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
     rows(0, 1) = 0.03, rows(1, 2) = -0.05, rows(2, 0) = 0.02;
     expect_gradient(
-        [&](const Point& p, System::Block& here, System::Block&, System::Corner& corner) {
+        [&](const Point& p, System::StateBlock& here, System::StateBlock&, System::BorderBlock& corner) {
           return add_gyro(readings, rows, plain_noise(), p.here, p.constants, here, corner);
         },
         random_point(seed, 0.01));
@@ -123,11 +123,11 @@ TEST(HandHeldModel, GyroHasItsGradient) {
 TEST(HandHeldModel, ForceHasItsGradient) {
   for (std::uint64_t seed : {1u, 2u, 3u}) {
     NodeReadings readings = random_readings(seed);
-    if (seed == 2) readings.force_bound.y() = 1.0;
+    if (seed == 2) readings.force_bound_m_s2.y() = 1.0;
     // the rotation from the node to the mean time of the readings is of first order in the rate's error
-    readings.force_time_s = 1e-6;
+    readings.mean_force_time_s = 1e-6;
     expect_gradient(
-        [&](const Point& p, System::Block& here, System::Block&, System::Corner& corner) {
+        [&](const Point& p, System::StateBlock& here, System::StateBlock&, System::BorderBlock& corner) {
           return add_force(readings, {0.0, 0.0, -9.81}, plain_noise(), p.here, p.constants, here, corner);
         },
         random_point(seed, 0.01));
@@ -135,8 +135,8 @@ TEST(HandHeldModel, ForceHasItsGradient) {
 }
 
 TEST(HandHeldModel, RestHasItsGradient) {
-  expect_gradient([&](const Point& p, System::Block& here, System::Block&,
-                      System::Corner&) { return add_rest(plain_noise(), p.here, here); },
+  expect_gradient([&](const Point& p, System::StateBlock& here, System::StateBlock&,
+                      System::BorderBlock&) { return add_rest(plain_noise(), p.here, here); },
                   random_point(4, 0.01));
 }
 
@@ -150,11 +150,11 @@ TEST(HandHeldModel, MotionHasItsGradient) {
   const Motion motion(params);
   for (std::uint64_t seed : {1u, 2u, 3u}) {
     const Point at = random_point(seed, params.step_s);
-    expect_gradient([&](const Point& p, System::Block& here, System::Block& next,
-                        System::Corner&) { return motion.add_step(p.here, p.next, 0.5, here, next); },
+    expect_gradient([&](const Point& p, System::StateBlock& here, System::StateBlock& next,
+                        System::BorderBlock&) { return motion.add_motion_model(p.here, p.next, 0.5, here, next); },
                     at);
-    expect_gradient([&](const Point& p, System::Block& here, System::Block&,
-                        System::Corner&) { return motion.add_bounds(p.here, here); },
+    expect_gradient([&](const Point& p, System::StateBlock& here, System::StateBlock&,
+                        System::BorderBlock&) { return motion.add_bounds(p.here, here); },
                     at);
   }
 }

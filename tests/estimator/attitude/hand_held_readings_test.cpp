@@ -69,11 +69,11 @@ struct HeldErrors {
 };
 
 HeldErrors errors_of_held(const Held& recording) {
-  std::vector<RateState> rates;
+  std::vector<AngularRateState> rates;
   std::vector<AttitudeState> attitudes;
   HandHeldSmoother::Report report;
-  ClippedElements clipped;
-  clipped.signs = recording.signs;
+  SensingAxisClipSigns clipped;
+  clipped.clip_signs = recording.signs;
   EXPECT_TRUE(HandHeldSmoother({}).estimate(recording.samples, clipped, rates, attitudes, report).ok());
   HeldErrors out;
   std::vector<double> errors;
@@ -82,7 +82,7 @@ HeldErrors errors_of_held(const Held& recording) {
     const double error = std::abs(rates[k].w_WI_I_rad_s.x() - recording.rate_rad_s[k].x());
     errors.push_back(error);
     out.within += error < 3.0 * std::sqrt(rates[k].covariance_rad2_s2(0, 0)) ? 1.0 : 0.0;
-    out.called_measured += rates[k].source == RateSource::measured ? 1.0 : 0.0;
+    out.called_measured += rates[k].source == AngularRateSource::measured ? 1.0 : 0.0;
   }
   EXPECT_GT(errors.size(), 200u);
   if (errors.empty()) return out;
@@ -133,7 +133,7 @@ TEST(HandHeldReadings, TheJerkThatReadingsShowIsThatOfTheMotion) {
     samples.push_back(sample);
     apart += (sum / kParts - centre).squaredNorm() / (3.0 * kSamples);
   }
-  const hand_held::NodeData collected = hand_held::collect({}, samples, {});
+  const hand_held::NodeData collected = hand_held::collect_node_data({}, samples, {});
   double power = 0.0;
   for (const double jerk : collected.jerk) power += jerk * jerk / static_cast<double>(collected.jerk.size());
   const double expected = kJerk * kJerk * std::pow(kPeriod_s, 3.0) / 320.0;
@@ -164,11 +164,11 @@ TEST(HandHeldReadings, TheJerkOfAHiddenSegmentIsThatOfTheSlopesAtItsEnds) {
     if (std::abs(x) > kRail_rad_s) sign.gyro[0] = x > 0.0 ? 1 : -1;
     signs.push_back(sign);
   }
-  ClippedElements clipped;
-  clipped.signs = signs;
+  SensingAxisClipSigns clipped;
+  clipped.clip_signs = signs;
   const HandHeldSmoother::Params params;
-  const hand_held::NodeData collected = hand_held::collect(params, samples, clipped);
-  const std::vector<double> free = hand_held::collect(params, samples, {}).jerk;
+  const hand_held::NodeData collected = hand_held::collect_node_data(params, samples, clipped);
+  const std::vector<double> free = hand_held::collect_node_data(params, samples, {}).jerk;
   const double phase = std::asin(kRail_rad_s / kAmplitude_rad_s);
   const double change = 2.0 * kAmplitude_rad_s * kTurn_rad_s * std::cos(phase);
   const double clipped_duration_s = (3.141592653589793 - 2.0 * phase) / kTurn_rad_s;

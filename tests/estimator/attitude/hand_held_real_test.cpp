@@ -65,11 +65,11 @@ TEST_P(HandHeldBroad, TakesOffWhatTheRailHid) {
     }
     signs.push_back(sign);
   }
-  std::vector<RateState> rates;
+  std::vector<AngularRateState> rates;
   std::vector<AttitudeState> attitudes;
   HandHeldSmoother::Report report;
-  ClippedElements clipped;
-  clipped.signs = signs;
+  SensingAxisClipSigns clipped;
+  clipped.clip_signs = signs;
   ASSERT_TRUE(HandHeldSmoother({}).estimate(samples, clipped, rates, attitudes, report).ok());
   std::vector<double> raw, ours;
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -120,22 +120,22 @@ TEST_P(HandHeldWand, RecoversTheTwirl) {
   const Wand wand = read_wand(test::written(GetParam()) / (real ? "TStick_Test05_Trial1.csv" : test::kStandInWand));
   ASSERT_GT(wand.samples.size(), 8000u);
   // the plane of the clipped element's readings: x = +-7.2987 - 0.046 + 0.006 y - 0.018 z
-  ClippedElements clipped;
-  clipped.rows.row(0) << 1.0, -0.006, 0.018;
+  SensingAxisClipSigns clipped;
+  clipped.sensing_directions.row(0) << 1.0, -0.006, 0.018;
   std::vector<ClipSigns> signs(wand.samples.size());
   for (std::size_t k = 0; k < signs.size(); ++k) {
-    const double x = clipped.rows.row(0).dot(wand.samples[k].angular_velocity_rad_s) + 0.046;
+    const double x = clipped.sensing_directions.row(0).dot(wand.samples[k].angular_velocity_rad_s) + 0.046;
     if (std::abs(x) > 7.2687) signs[k].gyro[0] = x > 0.0 ? 1 : -1;
   }
-  clipped.signs = signs;
-  std::vector<RateState> rates;
+  clipped.clip_signs = signs;
+  std::vector<AngularRateState> rates;
   std::vector<AttitudeState> attitudes;
   HandHeldSmoother::Report report;
   ASSERT_TRUE(HandHeldSmoother({}).estimate(wand.samples, clipped, rates, attitudes, report).ok());
 
   std::vector<double> raw, ours, optical(rates.size(), 0.0);
   for (std::size_t k = 1; k + 1 < rates.size(); ++k)
-    optical[k] = so3::log(wand.q_ref[k - 1].conjugate() * wand.q_ref[k + 1]).norm() / 0.02;
+    optical[k] = so3::logarithm(wand.q_ref[k - 1].conjugate() * wand.q_ref[k + 1]).norm() / 0.02;
   std::size_t within = 0;
   for (std::size_t k = 1; k + 1 < rates.size(); ++k) {
     // a sample is no glitch of the reference if its second difference is small, like that of the motion
@@ -165,13 +165,13 @@ class HandHeldBroadAttitude : public ::testing::TestWithParam<test::DataFolder> 
 TEST_P(HandHeldBroadAttitude, IsBetterThanTheFilterOnATrial) {
   const std::string number = GetParam().real ? "11" : test::kStandInTrial;
   const testing::BroadTrial trial = testing::read_broad_trial(number);
-  std::vector<RateState> rates;
+  std::vector<AngularRateState> rates;
   std::vector<AttitudeState> attitudes;
   HandHeldSmoother::Report report;
   const HandHeldSmoother smoother({.expert = {.node_s = 0.02}});  // half of the time
   ASSERT_TRUE(smoother.estimate(trial.samples, {}, rates, attitudes, report).ok());
   std::vector<Eigen::Quaterniond> q_WI;
-  for (const AttitudeState& attitude : attitudes) q_WI.push_back(attitude.q_WA);
+  for (const AttitudeState& attitude : attitudes) q_WI.push_back(attitude.orientation_W);
   const testing::BroadError error = testing::score(trial, q_WI);
   std::printf("trial %s: inclination %.3f deg in motion, %.3f at rest\n", number.c_str(), error.inclination_motion_deg,
               error.inclination_rest_deg);

@@ -21,8 +21,8 @@ using testing::ClippedSpin;
 using testing::SpinReadings;
 
 /// Returns parameters of the stream with a calm hand and the given lag.
-HandHeldStream::Params calm_hand(double lag_s) {
-  HandHeldStream::Params out;
+HandHeldRateStream::Params calm_hand(double lag_s) {
+  HandHeldRateStream::Params out;
   out.lag_s = lag_s;
   out.window_s = lag_s + 0.5;
   out.body.hand_sigma_m_s2 = 1.0;
@@ -39,20 +39,20 @@ struct LiveSpin {
   std::vector<HiddenRate> hidden;
   std::size_t revolutions_ambiguous = 0;
 
-  LiveSpin(const ClippedSpin& spin, const HandHeldStream::Params& params) {
+  LiveSpin(const ClippedSpin& spin, const HandHeldRateStream::Params& params) {
     const SpinReadings readings(spin);
-    const HandHeldStream stream(params);
-    HandHeldStream::State state = stream.start();
-    std::vector<RateState> rates;
-    std::optional<RateState> rate;
+    const HandHeldRateStream stream(params);
+    HandHeldRateStream::State state = stream.start();
+    std::vector<AngularRateState> rates;
+    std::optional<AngularRateState> rate;
     for (std::size_t k = 0; k < readings.samples.size(); ++k) {
-      const ClippedElements known{Eigen::Matrix3d::Identity(), std::span(readings.signs).subspan(k, 1)};
+      const SensingAxisClipSigns known{Eigen::Matrix3d::Identity(), std::span(readings.signs).subspan(k, 1)};
       EXPECT_TRUE(stream.push(readings.samples[k], known, state, rate).ok());
       if (rate) rates.push_back(*rate);
     }
     EXPECT_EQ(state.failures, 0u);
     revolutions_ambiguous = state.revolutions_ambiguous;
-    for (const RateState& each : rates) {
+    for (const AngularRateState& each : rates) {
       const double t = seconds(each.time_ns) - 0.5 / SpinReadings::kHz;
       if (!spin.within(t)) continue;
       hidden.push_back({std::abs(each.w_WI_I_rad_s.x() - spin.rate(t)), std::sqrt(each.covariance_rad2_s2(0, 0)),
@@ -80,7 +80,7 @@ double once_more(double lasts_s) {
 
 /// Returns the deviation in the middle of a segment with known rate, angular acceleration and angle at its ends:
 /// carried.md (C42).
-double closed_form_sigma(const HandHeldStream::Params& params, double lasts_s) {
+double closed_form_sigma(const HandHeldRateStream::Params& params, double lasts_s) {
   const double q = std::pow(params.body.expert.jerk_inflation * params.body.jerk_rad_s3_sqrts, 2.0);
   return std::sqrt(q * std::pow(lasts_s + 1.0 / SpinReadings::kHz, 3.0) * (1.0 / 192.0 - 720.0 / (384.0 * 384.0)));
 }
@@ -111,7 +111,7 @@ TEST(HandHeldRevolutions, ATurnThatNothingTellsIsStated) {
 /// If the whole segment is in the window, the deviation is that of the jerk between known ends, at the saturation level
 /// and far beyond it.
 TEST(HandHeldRevolutions, ABoundSaysNothingOfHowFar) {
-  const HandHeldStream::Params params = calm_hand(0.6);
+  const HandHeldRateStream::Params params = calm_hand(0.6);
   for (const double lasts_s : {0.3, 0.5}) {
     for (const double more_rad_s : {1.0, 10.0}) {
       const LiveSpin live({.more_rad_s = more_rad_s, .from_s = 2.0, .lasts_s = lasts_s, .duration_s = 4.5}, params);

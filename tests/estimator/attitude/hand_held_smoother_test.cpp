@@ -22,15 +22,15 @@ using testing::HandHeldRecording;
 using testing::quantile;
 
 struct HandHeldEstimate {
-  std::vector<RateState> rates;
+  std::vector<AngularRateState> rates;
   std::vector<AttitudeState> attitudes;
   HandHeldSmoother::Report report;
 };
 
 HandHeldEstimate smoothed_carriage(const HandHeldRecording& recording, const HandHeldSmoother::Params& params = {}) {
   HandHeldEstimate out;
-  ClippedElements clipped;
-  clipped.signs = recording.signs;
+  SensingAxisClipSigns clipped;
+  clipped.clip_signs = recording.signs;
   const Status status =
       HandHeldSmoother(params).estimate(recording.samples, clipped, out.rates, out.attitudes, out.report);
   EXPECT_TRUE(status.ok()) << status.message();
@@ -54,7 +54,7 @@ RateErrors rate_errors(const HandHeldRecording& recording, const HandHeldEstimat
       continue;
     }
     EXPECT_EQ(result.rates[k].clipped_axes, 1) << k;
-    EXPECT_NE(result.rates[k].source, RateSource::measured) << k;
+    EXPECT_NE(result.rates[k].source, AngularRateSource::measured) << k;
     out.clipped.push_back(error);
     out.raw.push_back((recording.samples[k].angular_velocity_rad_s - recording.rate_rad_s[k]).norm());
   }
@@ -65,7 +65,7 @@ double inclination_rms_rad(const HandHeldRecording& recording, const HandHeldEst
   double sum = 0.0;
   for (std::size_t k = 0; k < recording.samples.size(); ++k) {
     const Eigen::Vector3d up(0.0, 0.0, 1.0);
-    const Eigen::Vector3d truth = recording.q_WI[k].conjugate() * up, ours = result.attitudes[k].q_WA.conjugate() * up;
+    const Eigen::Vector3d truth = recording.q_WI[k].conjugate() * up, ours = result.attitudes[k].orientation_W.conjugate() * up;
     sum += truth.cross(ours).squaredNorm();
   }
   return std::sqrt(sum / static_cast<double>(recording.samples.size()));
@@ -74,7 +74,7 @@ double inclination_rms_rad(const HandHeldRecording& recording, const HandHeldEst
 /// A wrapped reading is neither a measurement nor a bound.
 TEST(HandHeldSmoother, ReadingsThatWrapSayNothing) {
   const HandHeldRecording clipped = testing::record({}, 100.0, 12.0, 7.3);
-  const HandHeldRecording wrapped = testing::with_wraps(clipped, ClipSigns::kMissing);
+  const HandHeldRecording wrapped = testing::with_wraps(clipped, ClipSigns::kMissingSign);
   const auto median = [](const HandHeldRecording& recording) {
     const HandHeldEstimate result = smoothed_carriage(recording);
     std::vector<double> errors;
@@ -101,8 +101,8 @@ TEST(HandHeldSmoother, ARecoveredRateIsBelievedAsFarAsItIsTold) {
   }
   const auto error = [&](const std::vector<Eigen::Matrix3d>& covariances) {
     HandHeldEstimate out;
-    ClippedElements clipped;
-    clipped.signs = recording.signs;
+    SensingAxisClipSigns clipped;
+    clipped.clip_signs = recording.signs;
     clipped.recovered_covariance_rad2_s2 = covariances;
     const Status status =
         HandHeldSmoother({}).estimate(recording.samples, clipped, out.rates, out.attitudes, out.report);
@@ -129,7 +129,7 @@ TEST(HandHeldSmoother, BesideRecoveredRatesAScaleGathersOverTheTurning) {
   const auto run = [&](double share, bool recovered) {
     HandHeldSmoother::Params params;
     params.expert.readings.recovered_scale_sigma = share;
-    ClippedElements clipped;
+    SensingAxisClipSigns clipped;
     const std::vector<Eigen::Matrix3d> none(samples.size(), Eigen::Matrix3d::Zero());
     if (recovered) clipped.recovered_covariance_rad2_s2 = none;
     HandHeldEstimate out;
@@ -146,7 +146,7 @@ TEST(HandHeldSmoother, BesideRecoveredRatesAScaleGathersOverTheTurning) {
         3.0 * std::max(0.0, std::min(0.01 * static_cast<double>(k) - 2.0, 5.0 - 0.01 * static_cast<double>(k)));
     // the rests are detected to a tenth of a second
     EXPECT_NEAR(std::sqrt(added(with, k).maxCoeff()), 0.01 * half_rad, 0.01 * 0.4) << k;
-    EXPECT_EQ(with[k].q_WA.coeffs(), without[k].q_WA.coeffs()) << k;
+    EXPECT_EQ(with[k].orientation_W.coeffs(), without[k].orientation_W.coeffs()) << k;
     EXPECT_EQ(added(held, k), Eigen::Vector3d::Zero()) << k;
   }
 }
@@ -156,7 +156,7 @@ TEST(HandHeldSmoother, RefusesRecoveredRatesThatAreNone) {
   std::vector<Eigen::Matrix3d> covariances(recording.samples.size() - 1, Eigen::Matrix3d::Zero());
   HandHeldEstimate out;
   const auto error_code = [&] {
-    ClippedElements clipped;
+    SensingAxisClipSigns clipped;
     clipped.recovered_covariance_rad2_s2 = covariances;
     return HandHeldSmoother({}).estimate(recording.samples, clipped, out.rates, out.attitudes, out.report).error_code;
   };
@@ -178,7 +178,7 @@ TEST(HandHeldSmoother, AJudgedSampleHasASignForEachElement) {
   clipping.unusable_gyro = 0b100;
   clipping.accel = 0b110;
   const ClipSigns signs = clip_signs(sample, clipping);
-  EXPECT_EQ(signs.gyro, (std::array<std::int8_t, 3>{1, -1, ClipSigns::kMissing}));
+  EXPECT_EQ(signs.gyro, (std::array<std::int8_t, 3>{1, -1, ClipSigns::kMissingSign}));
   EXPECT_EQ(signs.accel, (std::array<std::int8_t, 3>{0, -1, 1}));
 }
 
@@ -250,9 +250,9 @@ TEST(HandHeldSmoother, DeviationsHoldTheErrors) {
 /// Negative control: a body that is thrown (specific force near zero for half a second) while it is assumed hand-held.
 TEST(HandHeldSmoother, AThrownBodyShows) {
   HandHeldRecording recording = testing::record({}, 100.0, 6.0, 0.0);
-  const double hand_held = smoothed_carriage(recording).report.hand_acceleration_ratio;
+  const double hand_held = smoothed_carriage(recording).report.mean_hand_acceleration_ratio;
   for (std::size_t k = 300; k < 350; ++k) recording.samples[k].specific_force_m_s2.setConstant(0.01);
-  const double thrown = smoothed_carriage(recording).report.hand_acceleration_ratio;
+  const double thrown = smoothed_carriage(recording).report.mean_hand_acceleration_ratio;
   std::printf("mahalanobis: carried %.2f, thrown %.2f\n", hand_held, thrown);
   EXPECT_LT(hand_held, 1.0);
   EXPECT_GT(thrown, 2.0);
@@ -260,10 +260,10 @@ TEST(HandHeldSmoother, AThrownBodyShows) {
 
 TEST(HandHeldSmoother, RefusesBadInput) {
   const HandHeldRecording good = testing::record({}, 100.0, 1.0, 0.0);
-  std::vector<RateState> rates;
+  std::vector<AngularRateState> rates;
   std::vector<AttitudeState> attitudes;
   HandHeldSmoother::Report report;
-  const auto error_code = [&](const HandHeldRecording& recording, ClippedElements clipped = {}) {
+  const auto error_code = [&](const HandHeldRecording& recording, SensingAxisClipSigns clipped = {}) {
     const Status status = HandHeldSmoother({}).estimate(recording.samples, clipped, rates, attitudes, report);
     EXPECT_TRUE(status.ok() || (rates.empty() && attitudes.empty()));
     return status.error_code;
@@ -279,11 +279,11 @@ TEST(HandHeldSmoother, RefusesBadInput) {
   bad = good;
   for (std::size_t k = 50; k < bad.samples.size(); ++k) bad.samples[k].time_ns += 3'000'000'000;
   EXPECT_EQ(error_code(bad), ErrorCode::gap);
-  ClippedElements clipped;
-  clipped.signs = std::span(good.signs).first(5);
+  SensingAxisClipSigns clipped;
+  clipped.clip_signs = std::span(good.signs).first(5);
   EXPECT_EQ(error_code(good, clipped), ErrorCode::out_of_range);
   clipped = {};
-  clipped.rows.setZero();
+  clipped.sensing_directions.setZero();
   EXPECT_EQ(error_code(good, clipped), ErrorCode::degenerate);
   EXPECT_THROW(HandHeldSmoother({.expert = {.node_s = 0.0}}), InvalidParams);
   EXPECT_THROW(HandHeldSmoother({.hand_sigma_m_s2 = std::numeric_limits<double>::quiet_NaN()}), InvalidParams);

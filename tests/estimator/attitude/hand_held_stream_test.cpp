@@ -21,17 +21,17 @@ using testing::HandHeldMotion;
 using testing::HandHeldRecording;
 using testing::quantile;
 
-std::vector<RateState> stream(const HandHeldRecording& recording, const HandHeldStream::Params& params,
+std::vector<AngularRateState> stream(const HandHeldRecording& recording, const HandHeldRateStream::Params& params,
                               std::size_t split = 0) {
-  const HandHeldStream stream(params);
-  HandHeldStream::State state = stream.start();
-  std::vector<RateState> out;
-  std::optional<RateState> rate;
+  const HandHeldRateStream stream(params);
+  HandHeldRateStream::State state = stream.start();
+  std::vector<AngularRateState> out;
+  std::optional<AngularRateState> rate;
   for (std::size_t k = 0; k < recording.samples.size(); ++k) {
-    ClippedElements known;
-    known.signs = std::span(recording.signs).subspan(k, 1);
+    SensingAxisClipSigns known;
+    known.clip_signs = std::span(recording.signs).subspan(k, 1);
     if (k == split && k > 0) {
-      const HandHeldStream::State carried_over = state;
+      const HandHeldRateStream::State carried_over = state;
       state = stream.start();
       state = carried_over;
     }
@@ -46,18 +46,18 @@ std::vector<RateState> stream(const HandHeldRecording& recording, const HandHeld
 }
 
 /// With 1.5 s of lag, the stream is nearly as accurate as the batch, once it has found attitude and constants.
-TEST(HandHeldStream, IsTheBatchOnALongLag) {
+TEST(HandHeldRateStream, IsTheBatchOnALongLag) {
   const HandHeldRecording recording = testing::record({}, 100.0, 9.0, 7.3);
-  HandHeldStream::Params params;
+  HandHeldRateStream::Params params;
   params.lag_s = 1.5;
   params.window_s = 1.8;
-  params.body.expert.hand.hand_noise_adaptation = 0.0;  // stream and batch differ in this adaptation by design
-  const std::vector<RateState> live = stream(recording, params);
-  std::vector<RateState> batch;
+  params.body.expert.hand_motion.hand_noise_adaptation = 0.0;  // stream and batch differ in this adaptation by design
+  const std::vector<AngularRateState> live = stream(recording, params);
+  std::vector<AngularRateState> batch;
   std::vector<AttitudeState> attitudes;
   HandHeldSmoother::Report report;
-  ClippedElements clipped;
-  clipped.signs = recording.signs;
+  SensingAxisClipSigns clipped;
+  clipped.clip_signs = recording.signs;
   ASSERT_TRUE(HandHeldSmoother(params.body).estimate(recording.samples, clipped, batch, attitudes, report).ok());
   std::vector<double> apart, widths;
   for (std::size_t k = 0; k < live.size(); ++k) {
@@ -77,14 +77,14 @@ const HandHeldRecording& twirl() {
   static const HandHeldRecording recording = testing::record({}, 100.0, 20.0, 7.3);
   return recording;
 }
-const std::vector<RateState>& live_twirl() {
-  static const std::vector<RateState> live = stream(twirl(), {});
+const std::vector<AngularRateState>& live_twirl() {
+  static const std::vector<AngularRateState> live = stream(twirl(), {});
   return live;
 }
 
-TEST(HandHeldStream, RecoversATwirlAtItsLag) {
+TEST(HandHeldRateStream, RecoversATwirlAtItsLag) {
   const HandHeldRecording& recording = twirl();
-  const std::vector<RateState>& live = live_twirl();
+  const std::vector<AngularRateState>& live = live_twirl();
   std::vector<double> raw;
   std::size_t within = 0;
   for (std::size_t k = 0; k < live.size(); ++k) {
@@ -92,7 +92,7 @@ TEST(HandHeldStream, RecoversATwirlAtItsLag) {
     raw.push_back((recording.samples[k].angular_velocity_rad_s - recording.rate_rad_s[k]).norm());
     const double error = std::abs(live[k].w_WI_I_rad_s.x() - recording.rate_rad_s[k].x());
     within += error < 3.0 * std::sqrt(live[k].covariance_rad2_s2(0, 0)) ? 1u : 0u;
-    EXPECT_NE(live[k].source, RateSource::measured);
+    EXPECT_NE(live[k].source, AngularRateSource::measured);
   }
   const std::vector<double> errors = clipped_errors(recording, live, 0.0);
   const double share = static_cast<double>(within) / static_cast<double>(errors.size());
@@ -105,12 +105,12 @@ TEST(HandHeldStream, RecoversATwirlAtItsLag) {
 
 /// The lag is counted in samples of the stated period; if samples are sparser, nodes leave the window too early, but no
 /// rate may be lost.
-TEST(HandHeldStream, GivesEachRateWhereSamplesComeSparserThanIsSaid) {
+TEST(HandHeldRateStream, GivesEachRateWhereSamplesComeSparserThanIsSaid) {
   for (const double hz : {30.0, 20.0, 12.0}) {
     const HandHeldRecording recording = testing::record({.spin_hz = 0.45}, hz, 12.0, 5.0);
-    const HandHeldStream::Params params;
+    const HandHeldRateStream::Params params;
     ASSERT_GT(params.lag_s / params.period_s, hz * params.window_s);  // the lag is longer than the window
-    const std::vector<RateState> live = stream(recording, params);    // one result per sample
+    const std::vector<AngularRateState> live = stream(recording, params);    // one result per sample
     std::vector<double> raw;
     for (std::size_t k = 0; k < live.size(); ++k) {
       EXPECT_GT(live[k].covariance_rad2_s2.diagonal().minCoeff(), 0.0) << hz << " Hz, " << k;
@@ -120,17 +120,17 @@ TEST(HandHeldStream, GivesEachRateWhereSamplesComeSparserThanIsSaid) {
     const std::vector<double> errors = clipped_errors(recording, live, 0.0);
     std::printf("%.0f Hz: raw %.3f, live %.3f\n", hz, quantile(raw, 0.5), quantile(errors, 0.5));
     EXPECT_LT(quantile(errors, 0.5), 0.5 * quantile(raw, 0.5)) << hz;
-    const std::vector<RateState> parts = stream(recording, params, 101);
+    const std::vector<AngularRateState> parts = stream(recording, params, 101);
     for (std::size_t k = 0; k < live.size(); ++k) ASSERT_EQ(live[k].w_WI_I_rad_s, parts[k].w_WI_I_rad_s) << k;
   }
 }
 
 /// Wrapped readings contain no information; treated as unsaturated, they would have the wrong sign.
-TEST(HandHeldStream, ReadingsThatWrapSayNothing) {
+TEST(HandHeldRateStream, ReadingsThatWrapSayNothing) {
   const HandHeldRecording clipped = testing::record({}, 100.0, 12.0, 7.3);
-  const HandHeldRecording wrapped = testing::with_wraps(clipped, ClipSigns::kMissing);
+  const HandHeldRecording wrapped = testing::with_wraps(clipped, ClipSigns::kMissingSign);
   const HandHeldRecording believed = testing::with_wraps(clipped, 0);
-  const auto median = [](const HandHeldRecording& recording, const std::vector<RateState>& rates) {
+  const auto median = [](const HandHeldRecording& recording, const std::vector<AngularRateState>& rates) {
     std::vector<double> errors;
     for (std::size_t k = 0; k < rates.size(); ++k) {
       if (std::abs(recording.rate_rad_s[k].x()) <= 7.3) continue;
@@ -138,14 +138,14 @@ TEST(HandHeldStream, ReadingsThatWrapSayNothing) {
     }
     return quantile(errors, 0.5);
   };
-  const std::vector<RateState> live = stream(wrapped, {});
+  const std::vector<AngularRateState> live = stream(wrapped, {});
   for (std::size_t k = 0; k < live.size(); ++k) {
     if (wrapped.signs[k].gyro[0] == 0) continue;
-    EXPECT_NE(live[k].source, RateSource::measured) << k;
+    EXPECT_NE(live[k].source, AngularRateSource::measured) << k;
     EXPECT_EQ(live[k].clipped_axes, 1) << k;
   }
   // only the first twelve seconds
-  const std::vector<RateState> all_live(live_twirl().begin(), live_twirl().begin() + 1200);
+  const std::vector<AngularRateState> all_live(live_twirl().begin(), live_twirl().begin() + 1200);
   const double all = median(clipped, all_live), without = median(wrapped, live);
   const double free = median(believed, stream(believed, {}));
   std::printf("clipped %.3f, a third of them wrapped %.3f, believed %.3f\n", all, without, free);
@@ -153,14 +153,14 @@ TEST(HandHeldStream, ReadingsThatWrapSayNothing) {
   EXPECT_GT(free, 5.0 * all);
 }
 
-TEST(HandHeldStream, SplitsAnywhereToTheBit) {
+TEST(HandHeldRateStream, SplitsAnywhereToTheBit) {
   for (const double hz : {100.0, 500.0}) {
     const HandHeldRecording recording = testing::record({}, hz, 2.0, 7.3);
-    HandHeldStream::Params params;
+    HandHeldRateStream::Params params;
     params.period_s = 1.0 / hz;
-    const std::vector<RateState> whole = stream(recording, params);
+    const std::vector<AngularRateState> whole = stream(recording, params);
     for (const std::size_t split : {1u, 77u, 161u}) {
-      const std::vector<RateState> parts = stream(recording, params, split);
+      const std::vector<AngularRateState> parts = stream(recording, params, split);
       for (std::size_t k = 0; k < whole.size(); ++k) {
         ASSERT_EQ(whole[k].w_WI_I_rad_s, parts[k].w_WI_I_rad_s) << hz << " Hz, " << k;
         ASSERT_EQ(whole[k].covariance_rad2_s2, parts[k].covariance_rad2_s2) << hz << " Hz, " << k;
@@ -169,28 +169,28 @@ TEST(HandHeldStream, SplitsAnywhereToTheBit) {
   }
 }
 
-TEST(HandHeldStream, StatesACovarianceWithEachRate) {
+TEST(HandHeldRateStream, StatesACovarianceWithEachRate) {
   for (const double hz : {100.0, 200.0, 500.0}) {
-    HandHeldStream::Params params;
+    HandHeldRateStream::Params params;
     params.period_s = 1.0 / hz;
-    const std::vector<RateState> rates = stream(testing::record({}, hz, 2.0, 7.3), params);
+    const std::vector<AngularRateState> rates = stream(testing::record({}, hz, 2.0, 7.3), params);
     ASSERT_FALSE(rates.empty());
     for (std::size_t k = 0; k < rates.size(); ++k)
       ASSERT_GT(rates[k].covariance_rad2_s2.diagonal().minCoeff(), 0.0) << hz << " Hz, " << k;
   }
 }
 
-TEST(HandHeldStream, RefusesBadInputAndKeepsItsState) {
+TEST(HandHeldRateStream, RefusesBadInputAndKeepsItsState) {
   const HandHeldRecording recording = testing::record({}, 100.0, 1.0, 7.3);
-  const HandHeldStream stream({});
-  HandHeldStream::State state = stream.start();
-  std::optional<RateState> rate;
-  ClippedElements known;
+  const HandHeldRateStream stream({});
+  HandHeldRateStream::State state = stream.start();
+  std::optional<AngularRateState> rate;
+  SensingAxisClipSigns known;
   for (std::size_t k = 0; k < 50; ++k) {
-    known.signs = std::span(recording.signs).subspan(k, 1);
+    known.clip_signs = std::span(recording.signs).subspan(k, 1);
     ASSERT_TRUE(stream.push(recording.samples[k], known, state, rate).ok());
   }
-  const auto error_code = [&](ImuSample sample, const ClippedElements& with) {
+  const auto error_code = [&](ImuSample sample, const SensingAxisClipSigns& with) {
     const std::size_t before = state.samples;
     const Status status = stream.push(sample, with, state, rate);
     EXPECT_EQ(state.samples, before + (status.ok() ? 1u : 0u));
@@ -205,23 +205,23 @@ TEST(HandHeldStream, RefusesBadInputAndKeepsItsState) {
   bad.time_ns += 3'000'000'000;
   EXPECT_EQ(error_code(bad, known), ErrorCode::gap);
   EXPECT_EQ(error_code(recording.samples[50], {}), ErrorCode::out_of_range);
-  ClippedElements flat = known;
-  flat.rows.setZero();
+  SensingAxisClipSigns flat = known;
+  flat.sensing_directions.setZero();
   EXPECT_EQ(error_code(recording.samples[50], flat), ErrorCode::degenerate);
   EXPECT_EQ(error_code(recording.samples[50], known), ErrorCode::none);
   // a drop-out longer than the window, and further samples
   bad = recording.samples[60];
   bad.time_ns += 800'000'000;
   EXPECT_EQ(error_code(bad, known), ErrorCode::none);
-  HandHeldStream::Params params;
+  HandHeldRateStream::Params params;
   params.window_s = params.lag_s;
-  EXPECT_THROW(HandHeldStream{params}, InvalidParams);
+  EXPECT_THROW(HandHeldRateStream{params}, InvalidParams);
   params = {};
   params.period_s = 0.0;
-  EXPECT_THROW(HandHeldStream{params}, InvalidParams);
+  EXPECT_THROW(HandHeldRateStream{params}, InvalidParams);
   params = {};
   params.body.expert.node_s = 0.0;
-  EXPECT_THROW(HandHeldStream{params}, InvalidParams);
+  EXPECT_THROW(HandHeldRateStream{params}, InvalidParams);
 }
 
 }  // namespace

@@ -27,8 +27,8 @@ ImuMerge::Params unit_params() {
   ImuMerge::Params out;
   out.count = kCount;
   for (std::size_t k = 0; k < kCount; ++k) {
-    out.T_CI[k] = Eigen::Isometry3d::Identity();
-    out.T_CI[k].translation() = kPositions[k];
+    out.T_mean_imu[k] = Eigen::Isometry3d::Identity();
+    out.T_mean_imu[k].translation() = kPositions[k];
   }
   out.gyro_range_rad_s = 34.0;
   out.accel_range_m_s2 = 76.0;
@@ -89,8 +89,8 @@ void nothing(double, UnitReadings&) {}
 
 void expect_only(const HarmedMerge& out, std::size_t frozen, std::size_t disagrees) {
   for (std::size_t k = 0; k < kCount; ++k) {
-    EXPECT_EQ(out.state.units[k].frozen, k == frozen) << k;
-    EXPECT_EQ(out.state.units[k].disagrees, k == disagrees) << k;
+    EXPECT_EQ(out.state.imus[k].is_frozen, k == frozen) << k;
+    EXPECT_EQ(out.state.imus[k].disagrees, k == disagrees) << k;
   }
 }
 
@@ -136,7 +136,7 @@ TEST(ImuMergeHealth, AUnitThatRepeatsItselfWhileTheOthersMoveIsFrozen) {
       now[unit].specific_force_m_s2 = last.specific_force_m_s2;
     });
     expect_only(out, unit, kCount);
-    EXPECT_NEAR(seconds(out.state.units[unit].frozen_since_ns), 1.996, 0.01);
+    EXPECT_NEAR(seconds(out.state.imus[unit].frozen_since_ns), 1.996, 0.01);
     // from two instead of three IMUs, after 0.03 s of calibration from wrong differences
     EXPECT_LT(out.worst_rate_rad_s, 4.0 * good.worst_rate_rad_s);
     EXPECT_LT(out.worst_force_m_s2, 4.0 * good.worst_force_m_s2);  // and an acceleration from the gyro noise
@@ -150,8 +150,8 @@ TEST(ImuMergeHealth, ForcesThatAllRepeatThemselvesWhileTheBodyTurnsAreFrozen) {
     for (std::size_t unit = 0; unit < kCount; ++unit) now[unit].specific_force_m_s2 = last[unit].specific_force_m_s2;
   });
   for (std::size_t k = 0; k < kCount; ++k) {
-    EXPECT_TRUE(out.state.units[k].frozen) << k;
-    EXPECT_NEAR(seconds(out.state.units[k].frozen_since_ns), 1.996, 0.01) << k;
+    EXPECT_TRUE(out.state.imus[k].is_frozen) << k;
+    EXPECT_NEAR(seconds(out.state.imus[k].frozen_since_ns), 1.996, 0.01) << k;
   }
   const Status status = ImuMerge(unit_params()).verdict(out.state);
   EXPECT_EQ(status.error_code, ErrorCode::out_of_range);
@@ -173,7 +173,7 @@ TEST(ImuMergeHealth, ForcesThatStayBecauseTheBodyTurnsAboutThemAreNot) {
     }
     ASSERT_TRUE(merge.step(now, state, merged).ok());
   }
-  EXPECT_FALSE(state.units[0].frozen);
+  EXPECT_FALSE(state.imus[0].is_frozen);
   EXPECT_TRUE(ImuMerge::verdict(state).ok());
 }
 
@@ -186,15 +186,15 @@ TEST(ImuMergeHealth, AFrozenUnitThatMovesAgainIsBack) {
     now[0].specific_force_m_s2 = last.specific_force_m_s2;
   });
   expect_only(out, kCount, kCount);
-  EXPECT_GT(out.state.units[0].excluded_windows, 400);
+  EXPECT_GT(out.state.imus[0].excluded_window_count, 400);
 }
 
 TEST(ImuMergeHealth, AUnitThatDiedIsAbsent) {
   const HarmedMerge out = merge_harmed(250, 5.0, 1.0, [](double t, UnitReadings& now) {
     if (t > 2.0) now[2].specific_force_m_s2.y() = std::numeric_limits<double>::quiet_NaN();
   });
-  EXPECT_GT(out.state.units[2].missing_samples, 900);
-  EXPECT_NEAR(seconds(out.state.units[2].missing_since_ns), 2.004, 0.005);
+  EXPECT_GT(out.state.imus[2].missing_samples, 900);
+  EXPECT_NEAR(seconds(out.state.imus[2].missing_since_ns), 2.004, 0.005);
   EXPECT_LT(out.worst_rate_rad_s, 0.02);
   EXPECT_LT(out.worst_force_m_s2, 0.5);
 }
@@ -209,7 +209,7 @@ TEST(ImuMergeHealth, AUnitThatComesBackIsNotComparedWithWhatItReadBefore) {
     EXPECT_LT(out.worst_rate_rad_s, 0.02) << back_s;
     EXPECT_LT(out.worst_force_m_s2, 0.5) << back_s;
     for (std::size_t k = 0; k < kCount; ++k) {
-      EXPECT_LT((out.state.units[k].x - undisturbed.state.units[k].x).lpNorm<Eigen::Infinity>(), 1e-3) << back_s;
+      EXPECT_LT((out.state.imus[k].x - undisturbed.state.imus[k].x).lpNorm<Eigen::Infinity>(), 1e-3) << back_s;
     }
     EXPECT_LT((out.state.forces.x - undisturbed.state.forces.x).lpNorm<Eigen::Infinity>(), 0.01) << back_s;
   }
@@ -239,14 +239,14 @@ TEST(ImuMergeHealth, AUnitThatDisagreesForLongIsLeftOutForGood) {
 }
 
 TEST(ImuMergeHealth, TheArmsTellAFlippedAxisOfAllGyros) {
-  EXPECT_FALSE(merge_harmed(250, 5.0, 1.0, nothing).state.sign_check.detected().has_value());
+  EXPECT_FALSE(merge_harmed(250, 5.0, 1.0, nothing).state.imu_sign_check.detected_mirroring().has_value());
   const HarmedMerge flipped = merge_harmed(250, 5.0, 1.0, [](double, UnitReadings& now) {
     for (ImuSample& sample : now) sample.angular_velocity_rad_s.x() *= -1.0;
   });
-  const auto told = flipped.state.sign_check.detected();
+  const auto told = flipped.state.imu_sign_check.detected_mirroring();
   ASSERT_TRUE(told.has_value());
-  EXPECT_EQ(told->sense, 0U);
-  EXPECT_NEAR(told->share, 1.0, 0.1);
+  EXPECT_EQ(told->mirroring, 0U);
+  EXPECT_NEAR(told->explained_fraction, 1.0, 0.1);
 }
 
 TEST(ImuMergeHealth, TheArmsTellTheSignOfTheAccelerometers) {

@@ -55,9 +55,9 @@ ImuMerge::Params tilted_params(const TiltedSpin& spin, int count) {
   ImuMerge::Params out;
   out.count = count;
   for (std::size_t k = 0; k < 3; ++k) {
-    out.T_CI[k] = Eigen::Isometry3d::Identity();
-    out.T_CI[k].translation() = spin.position_m[k];
-    out.gyro_elements[k].rows = spin.rows[k];
+    out.T_mean_imu[k] = Eigen::Isometry3d::Identity();
+    out.T_mean_imu[k].translation() = spin.position_m[k];
+    out.gyro_sensing_directions[k].sensing_directions = spin.rows[k];
   }
   out.gyro_range_rad_s = 0.98 * kStated_rad_s;
   return out;
@@ -115,7 +115,7 @@ TEST(ImuMergeRails, ReadsTiltedElementsAlongTheirRows) {
   EXPECT_LT(ours.error_rad_s, 0.5);
   // negative control: axis by axis, the free axes would be used although they are wrong
   ImuMerge::Params upright = tilted_params(spin, 3);
-  upright.gyro_elements = {};
+  upright.gyro_sensing_directions = {};
   EXPECT_GT(merge_tilted(spin, upright).error_rad_s, 1.5 * ours.error_rad_s);  // measured: 0.275 and 0.139 rad/s
 }
 
@@ -142,7 +142,7 @@ TEST(ImuMergeRails, OneUnitOrTwoKeepTheirFlags) {
 TEST(ImuMergeRails, FlagsTurnWithTheMounting) {
   const TiltedSpin spin{16.0, 12.0};
   ImuMerge::Params p = tilted_params(spin, 1);
-  p.T_CI[0].linear() = so3::exp(0.5 * 3.14159265358979 * Vector3d::UnitZ()).toRotationMatrix();
+  p.T_mean_imu[0].linear() = so3::exp(0.5 * 3.14159265358979 * Vector3d::UnitZ()).toRotationMatrix();
   const ImuMerge merge(p);
   ImuMerge::State state;
   std::optional<ImuSample> merged;
@@ -169,7 +169,7 @@ TEST(ImuMergeRails, OfTwoTheOneThatIsFreeIsBelieved) {
   }
   EXPECT_LT(error, 1e-6);
   // the deficit of the clipped IMU must not count as an error of its scale or bias
-  EXPECT_LT(state.units[0].x.head<12>().norm(), 1e-3);
+  EXPECT_LT(state.imus[0].x.head<12>().norm(), 1e-3);
 }
 
 }  // namespace

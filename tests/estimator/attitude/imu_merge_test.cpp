@@ -45,10 +45,10 @@ ImuMerge::Params spin_params(const Spin& spin, const Eigen::Vector3d& first_arm_
   ImuMerge::Params out;
   out.count = 3;
   for (std::size_t k = 0; k < 3; ++k) {
-    out.T_CI[k] = Eigen::Isometry3d::Identity();
-    out.T_CI[k].translation() = spin.position_m[k];
+    out.T_mean_imu[k] = Eigen::Isometry3d::Identity();
+    out.T_mean_imu[k].translation() = spin.position_m[k];
   }
-  out.T_CI[0].translation() += first_arm_error_m;
+  out.T_mean_imu[0].translation() += first_arm_error_m;
   out.gyro_range_rad_s = 0.98 * kGyroRange;
   out.accel_range_m_s2 = 0.98 * kAccelRange;
   return out;
@@ -127,8 +127,8 @@ TEST(ImuMerge, LeavesOutTheOneThatDisagrees) {
     EXPECT_LT(merged->angular_velocity_rad_s.norm(), 1e-9) << k;
     EXPECT_NEAR(merged->specific_force_m_s2.norm(), kGravity_m_s2, 1e-9) << k;
   }
-  EXPECT_EQ(state.units[1].excluded_windows, 25);
-  EXPECT_EQ(state.units[0].excluded_windows, 0);
+  EXPECT_EQ(state.imus[1].excluded_window_count, 25);
+  EXPECT_EQ(state.imus[0].excluded_window_count, 0);
 }
 
 /// Returns what the mean of all IMUs should read at their mean position.
@@ -185,8 +185,8 @@ TEST(ImuMerge, LeavesOutARailThatAnImpactHides) {
     EXPECT_NEAR(merged->specific_force_m_s2.x(), impact ? 50.0 : 0.0, 1e-6) << k;
     EXPECT_EQ(merged->device_clip_flags, 0) << k;
   }
-  EXPECT_EQ(state.units[1].excluded_windows, 10);  // for 40 ms, because impacts follow each other
-  EXPECT_EQ(state.units[0].excluded_windows, 0);
+  EXPECT_EQ(state.imus[1].excluded_window_count, 10);  // for 40 ms, because impacts follow each other
+  EXPECT_EQ(state.imus[0].excluded_window_count, 0);
 }
 
 TEST(ImuMerge, RefusesBadInput) {
@@ -201,8 +201,8 @@ TEST(ImuMerge, RefusesBadInput) {
   ImuMerge::State state;
   std::optional<ImuSample> merged;
   const std::array<ImuSample, 2> two{};
-  EXPECT_EQ(merge.step(two, state, merged).error_code, ErrorCode::too_few);
-  EXPECT_EQ(state.samples, 0);
+  EXPECT_EQ(merge.step(two, state, merged).error_code, ErrorCode::insufficient_data);
+  EXPECT_EQ(state.sample_count, 0);
 }
 
 }  // namespace

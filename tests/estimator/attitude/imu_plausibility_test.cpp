@@ -96,7 +96,7 @@ TEST(ImuPlausibility, OfABodyThatFliesAndSpinsTheTurningIsNotAsked) {
   const ImuPlausibility plausibility({});
   const Status thrown = plausibility.verdict(of_a_throw(12.0, 0.1));  // 14 m/s^2
   EXPECT_TRUE(thrown.ok()) << thrown.message();
-  EXPECT_EQ(plausibility.unexplained_rotation_ratio(of_a_throw(12.0, 0.1)), 0.0);
+  EXPECT_EQ(plausibility.unexplained_force_rotation_ratio(of_a_throw(12.0, 0.1)), 0.0);
 }
 
 /// Returns the verdict on a body that never rotates. Quick pushes tilt the measured force by 0.3 rad about x (12 times)
@@ -157,11 +157,11 @@ TEST(ImuPlausibility, APendulumIsHeldToItsLiftNotToItsSwing) {
   const ImuPlausibility plausibility({});
   const ImuPlausibility::State good = of_a_pendulum(1.0);
   EXPECT_TRUE(plausibility.verdict(good).ok()) << plausibility.verdict(good).message();
-  EXPECT_NEAR(plausibility.rotation_slope(good), 1.0, 0.1);
+  EXPECT_NEAR(plausibility.force_to_gyro_rotation_ratio(good), 1.0, 0.1);
   for (const double scale : {-1.0, 0.5, 2.0}) {
     const ImuPlausibility::State wrong = of_a_pendulum(scale);
     EXPECT_FALSE(plausibility.verdict(wrong).ok()) << scale;
-    EXPECT_NEAR(plausibility.rotation_slope(wrong), 1.0 / scale, 0.1) << scale;
+    EXPECT_NEAR(plausibility.force_to_gyro_rotation_ratio(wrong), 1.0 / scale, 0.1) << scale;
   }
 }
 
@@ -172,10 +172,10 @@ TEST(ImuPlausibility, ASlopeIsToldWhereItExplainsWhatTheGyroLeaves) {
   const auto verdict_at = [&](double force_rotation_rad2, double correlation) {
     ImuPlausibility::State state;
     constexpr double kRotated_rad2 = 10.0;  // rotation angle by the gyro, far more than the excluded part
-    state.force_rotation_rad2 = kRotated_rad2 * force_rotation_rad2;
-    state.gyro_rotation_rad2 = kRotated_rad2;
-    state.rotated_windows = 100.0;
-    state.unexplained_rad2 =
+    state.force_rotation_square_sum_rad2 = kRotated_rad2 * force_rotation_rad2;
+    state.gyro_rotation_square_sum_rad2 = kRotated_rad2;
+    state.rotated_window_count = 100.0;
+    state.unexplained_force_rotation_rad2 =
         kRotated_rad2 * (force_rotation_rad2 + 1.0 - 2.0 * correlation * std::sqrt(force_rotation_rad2));
     EXPECT_NEAR(plausibility.rotation_agreement(state), correlation, 1e-9);
     return plausibility.verdict(state).ok();

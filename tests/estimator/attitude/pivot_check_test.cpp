@@ -65,8 +65,8 @@ PivotReadings about_a_pivot(const PivotMotion& motion, const std::function<void(
   return run;
 }
 
-PivotCheck evidence_in(const PivotReadings& run) {
-  return PivotCheck::of(run, 9.80665, 0.0, 0.0);
+PivotMotionCheck evidence_in(const PivotReadings& run) {
+  return PivotMotionCheck::of(run, 9.80665, 0.0, 0.0);
 }
 
 std::string says(const PivotReadings& run) {
@@ -74,17 +74,17 @@ std::string says(const PivotReadings& run) {
   return verdict.ok() ? "" : verdict.field;
 }
 
-TEST(PivotCheck, RatesExplainATurningAboutAPoint) {
+TEST(PivotMotionCheck, RatesExplainATurningAboutAPoint) {
   const PivotReadings run = about_a_pivot({});
-  const PivotCheck found = evidence_in(run);
+  const PivotMotionCheck found = evidence_in(run);
   EXPECT_TRUE(found.verdict().ok()) << found.verdict().message();
-  EXPECT_EQ(found.compared_segments, 20u) << "two series of segments of 2 s over 20 s, half a segment apart";
-  EXPECT_EQ(found.better_segments, 0u);
-  EXPECT_LT(found.evidence, 0.0);
+  EXPECT_EQ(found.comparable_segments, 20u) << "two series of segments of 2 s over 20 s, half a segment apart";
+  EXPECT_EQ(found.better_explained_segments, 0u);
+  EXPECT_LT(found.log_evidence, 0.0);
   EXPECT_NEAR(found.scale, 1.0, 0.002);
 }
 
-TEST(PivotCheck, AGyroNamedOrScaledOtherwiseIsTold) {
+TEST(PivotMotionCheck, AGyroNamedOrScaledOtherwiseIsTold) {
   const auto told = [](const std::function<void(Eigen::Vector3d&)>& harm) {
     return says(about_a_pivot({}, [&](ImuSample& sample) { harm(sample.angular_velocity_rad_s); }));
   };
@@ -95,7 +95,7 @@ TEST(PivotCheck, AGyroNamedOrScaledOtherwiseIsTold) {
   EXPECT_EQ(told([](Eigen::Vector3d& w) { w *= 2.0; }), kEvidence);
 }
 
-TEST(PivotCheck, ANearPivotTellsTheScale) {
+TEST(PivotMotionCheck, ANearPivotTellsTheScale) {
   const auto scaled = [](const PivotMotion& motion) {
     return about_a_pivot(motion, [](ImuSample& sample) { sample.angular_velocity_rad_s *= 1.05; });
   };
@@ -103,26 +103,26 @@ TEST(PivotCheck, ANearPivotTellsTheScale) {
   EXPECT_EQ(says(run), kScale);
   EXPECT_NEAR(evidence_in(run).scale, 1.0 / 1.05, 0.01);
   const PivotReadings far = scaled({.arm_m = {0.1, 0.2, 0.6}});
-  EXPECT_EQ(evidence_in(far).scale_segments, 0u) << "a rod is no point: what it gives is larger";
+  EXPECT_EQ(evidence_in(far).gyro_scale_segments, 0u) << "a rod is no point: what it gives is larger";
 }
 
-TEST(PivotCheck, ClippedReadingsDoNotCount) {
+TEST(PivotMotionCheck, ClippedReadingsDoNotCount) {
   const PivotReadings run = about_a_pivot({}, [](ImuSample& sample) {
     sample.angular_velocity_rad_s.z() *= -1.0;
     if (sample.time_ns % 900'000'000 == 0) sample.device_clip_flags = kClipGyroX;
   });
-  EXPECT_EQ(evidence_in(run).compared_segments, 0u) << "no segment of a second is left";
+  EXPECT_EQ(evidence_in(run).comparable_segments, 0u) << "no segment of a second is left";
   EXPECT_EQ(says(run), "");
 }
 
-TEST(PivotCheck, ABodyThatIsThrownAboutIsExplainedByNothing) {
+TEST(PivotMotionCheck, ABodyThatIsThrownAboutIsExplainedByNothing) {
   const PivotReadings run =
       about_a_pivot({.shaken_m_s2 = 40.0}, [](ImuSample& sample) { sample.angular_velocity_rad_s.z() *= -1.0; });
-  EXPECT_EQ(evidence_in(run).compared_segments, 0u);
+  EXPECT_EQ(evidence_in(run).comparable_segments, 0u);
   EXPECT_EQ(says(run), "");
 }
 
-TEST(PivotCheck, AFewSegmentsAreNoEvidence) {
+TEST(PivotMotionCheck, AFewSegmentsAreNoEvidence) {
   EXPECT_EQ(says(about_a_pivot({.samples = 500}, [](ImuSample& sample) { sample.angular_velocity_rad_s.z() *= -1.0; })),
             "");
 }

@@ -18,14 +18,14 @@ using testing::HandHeldRecording;
 
 constexpr double kGyroRail_rad_s = 7.0;
 
-RegimeSmoother::Params params_of(const HandHeldMotion& motion) {
-  RegimeSmoother::Params params;
+MotionRegimeSmoother::Params params_of(const HandHeldMotion& motion) {
+  MotionRegimeSmoother::Params params;
   params.rate.model.nominal.lever_arm_m = motion.lever_arm_m;
   return params;
 }
 
 /// Returns the median error where the gyro clips.
-double clipped_error(const HandHeldRecording& recording, const std::vector<RateState>& rates) {
+double clipped_error(const HandHeldRecording& recording, const std::vector<AngularRateState>& rates) {
   std::vector<double> errors;
   for (std::size_t k = 0; k < rates.size(); ++k) {
     if (recording.signs[k].gyro[0] == 0) continue;
@@ -36,16 +36,16 @@ double clipped_error(const HandHeldRecording& recording, const std::vector<RateS
   return errors[errors.size() / 2];
 }
 
-TEST(RegimeSmoother, ATwirlIsTheHands) {
+TEST(MotionRegimeSmoother, ATwirlIsTheHands) {
   const HandHeldMotion motion;
   const HandHeldRecording recording = record(motion, 100.0, 10.0, kGyroRail_rad_s);
-  std::vector<RateState> alone, joined;
-  RateReport of_flight;
-  RegimeSmoother::Report report;
-  ASSERT_TRUE(RateSmoother(params_of(motion).rate).estimate(recording.samples, alone, of_flight).ok());
-  ASSERT_TRUE(RegimeSmoother(params_of(motion)).estimate(recording.samples, joined, report).ok());
+  std::vector<AngularRateState> alone, joined;
+  AngularRateReport of_flight;
+  MotionRegimeSmoother::Report report;
+  ASSERT_TRUE(AngularRateSmoother(params_of(motion).rate).estimate(recording.samples, alone, of_flight).ok());
+  ASSERT_TRUE(MotionRegimeSmoother(params_of(motion)).estimate(recording.samples, joined, report).ok());
   ASSERT_EQ(joined.size(), recording.samples.size());
-  EXPECT_TRUE(report.judged && report.hand_held_smoother_ran);
+  EXPECT_TRUE(report.regimes_estimated && report.hand_held_smoother_ran);
   EXPECT_GT(report.hand_held_probability_max, 0.9);
   EXPECT_NEAR(report.probabilities.flight + report.probabilities.contact + report.probabilities.hand_held, 1.0, 1e-9);
   EXPECT_LT(clipped_error(recording, joined), 0.5 * clipped_error(recording, alone));
@@ -53,7 +53,7 @@ TEST(RegimeSmoother, ATwirlIsTheHands) {
 
 // Each force is logged four times; assigned to each sample's own time, the hidden segments would look like flight, with
 // errors of 11 rad/s.
-TEST(RegimeSmoother, AForceThatIsHeldIsComparedInItsOwnTime) {
+TEST(MotionRegimeSmoother, AForceThatIsHeldIsComparedInItsOwnTime) {
   HandHeldMotion motion;
   motion.spin_rad = 4.0;
   motion.spin_hz = motion.hand_hz = 1.0;
@@ -64,30 +64,30 @@ TEST(RegimeSmoother, AForceThatIsHeldIsComparedInItsOwnTime) {
     const double taken_s = 0.01 * static_cast<double>(k - k % kPeriod);
     recording.samples[k].specific_force_m_s2 = motion.specific_force(taken_s);
   }
-  std::vector<RateState> joined;
-  RegimeSmoother::Report report;
-  ASSERT_TRUE(RegimeSmoother(params_of(motion)).estimate(recording.samples, joined, report).ok());
+  std::vector<AngularRateState> joined;
+  MotionRegimeSmoother::Report report;
+  ASSERT_TRUE(MotionRegimeSmoother(params_of(motion)).estimate(recording.samples, joined, report).ok());
   EXPECT_GT(report.hand_held_probability_max, 0.7);
   EXPECT_LT(clipped_error(recording, joined), 1.0);
 }
 
 // The motion reverses ten times with few readings in between, so it is one segment; an unknown motion type in the first
 // tenth of a second must not affect the rest, which would be wrong by 10 rad/s.
-TEST(RegimeSmoother, WhoHeldItAtFirstSaysNothingOfTheRest) {
+TEST(MotionRegimeSmoother, WhoHeldItAtFirstSaysNothingOfTheRest) {
   HandHeldMotion motion;
   motion.spin_rad = 4.0;
   motion.spin_hz = motion.hand_hz = 1.0;
   const HandHeldRecording recording = record(motion, 100.0, 10.0, kGyroRail_rad_s);
-  std::vector<RateState> alone, joined;
-  RateReport of_flight;
-  RegimeSmoother::Report report;
-  ASSERT_TRUE(RateSmoother(params_of(motion).rate).estimate(recording.samples, alone, of_flight).ok());
-  ASSERT_TRUE(RegimeSmoother(params_of(motion)).estimate(recording.samples, joined, report).ok());
+  std::vector<AngularRateState> alone, joined;
+  AngularRateReport of_flight;
+  MotionRegimeSmoother::Report report;
+  ASSERT_TRUE(AngularRateSmoother(params_of(motion).rate).estimate(recording.samples, alone, of_flight).ok());
+  ASSERT_TRUE(MotionRegimeSmoother(params_of(motion)).estimate(recording.samples, joined, report).ok());
   EXPECT_GT(clipped_error(recording, alone), 5.0);
   EXPECT_LT(clipped_error(recording, joined), 1.0);
 }
 
-TEST(RegimeSmoother, ASpinInFlightIsNot) {
+TEST(MotionRegimeSmoother, ASpinInFlightIsNot) {
   const HandHeldMotion motion;
   HandHeldRecording recording = record(motion, 100.0, 10.0, kGyroRail_rad_s);
   for (std::size_t k = 0; k < recording.samples.size(); ++k) {  // the same rotation without a hand
@@ -96,12 +96,12 @@ TEST(RegimeSmoother, ASpinInFlightIsNot) {
     recording.samples[k].specific_force_m_s2 =
         motion.angular_acceleration(t).cross(motion.lever_arm_m) + w.cross(w.cross(motion.lever_arm_m));
   }
-  std::vector<RateState> alone, joined;
-  RateReport of_flight;
-  RegimeSmoother::Report report;
-  ASSERT_TRUE(RateSmoother(params_of(motion).rate).estimate(recording.samples, alone, of_flight).ok());
-  ASSERT_TRUE(RegimeSmoother(params_of(motion)).estimate(recording.samples, joined, report).ok());
-  EXPECT_TRUE(report.judged);
+  std::vector<AngularRateState> alone, joined;
+  AngularRateReport of_flight;
+  MotionRegimeSmoother::Report report;
+  ASSERT_TRUE(AngularRateSmoother(params_of(motion).rate).estimate(recording.samples, alone, of_flight).ok());
+  ASSERT_TRUE(MotionRegimeSmoother(params_of(motion)).estimate(recording.samples, joined, report).ok());
+  EXPECT_TRUE(report.regimes_estimated);
   EXPECT_FALSE(report.hand_held_smoother_ran);
   ASSERT_EQ(joined.size(), alone.size());
   for (std::size_t k = 0; k < joined.size(); ++k) {
@@ -110,16 +110,16 @@ TEST(RegimeSmoother, ASpinInFlightIsNot) {
   }
 }
 
-TEST(RegimeSmoother, RefusesWhatItsPartsRefuse) {
-  RegimeSmoother::Params params = params_of({});
+TEST(MotionRegimeSmoother, RefusesWhatItsPartsRefuse) {
+  MotionRegimeSmoother::Params params = params_of({});
   params.hand_held_probability_min = 1.5;
-  EXPECT_THROW(RegimeSmoother{params}, InvalidParams);
+  EXPECT_THROW(MotionRegimeSmoother{params}, InvalidParams);
   params = params_of({});
   params.hand_held.expert.node_s = 0.0;
-  EXPECT_THROW(RegimeSmoother{params}, InvalidParams);
-  std::vector<RateState> rates(3);
-  RegimeSmoother::Report report;
-  EXPECT_EQ(RegimeSmoother(params_of({})).estimate({}, rates, report).error_code, ErrorCode::empty);
+  EXPECT_THROW(MotionRegimeSmoother{params}, InvalidParams);
+  std::vector<AngularRateState> rates(3);
+  MotionRegimeSmoother::Report report;
+  EXPECT_EQ(MotionRegimeSmoother(params_of({})).estimate({}, rates, report).error_code, ErrorCode::empty);
   EXPECT_TRUE(rates.empty());
 }
 

@@ -22,31 +22,31 @@ using testing::HandHeldRecording;
 using testing::quantile;
 
 struct Joined {
-  std::vector<RateState> rates;
+  std::vector<AngularRateState> rates;
   std::vector<double> hand_held;  ///< hand-held share after each reported sample
-  RegimeStream::State state;
+  MotionRegimeStream::State state;
 };
 
 /// Middle is the state of a stream in the middle, and the number of rates reported so far.
 struct Middle {
   std::size_t samples = 0;
-  RegimeStream::State state;
+  MotionRegimeStream::State state;
   std::size_t reported = 0;
 };
 
-RegimeStream::Params at_its_hand() {
-  RegimeStream::Params params;
+MotionRegimeStream::Params at_its_hand() {
+  MotionRegimeStream::Params params;
   params.rate.model.nominal.lever_arm_m = HandHeldMotion().lever_arm_m;
   return params;
 }
 
 /// Continues from `from`; stores in `middle` the state before sample number `middle`.
-Joined go_on(const std::vector<ImuSample>& samples, const RegimeStream::Params& params, const Middle& from,
+Joined go_on(const std::vector<ImuSample>& samples, const MotionRegimeStream::Params& params, const Middle& from,
              Middle* middle = nullptr) {
-  const RegimeStream stream(params);
+  const MotionRegimeStream stream(params);
   Joined out;
   out.state = from.state;
-  std::optional<RateState> rate;
+  std::optional<AngularRateState> rate;
   for (std::size_t k = from.samples; k < samples.size(); ++k) {
     if (middle != nullptr && k == middle->samples) {
       middle->state = out.state;
@@ -62,8 +62,8 @@ Joined go_on(const std::vector<ImuSample>& samples, const RegimeStream::Params& 
   return out;
 }
 
-Joined joined(const std::vector<ImuSample>& samples, const RegimeStream::Params& params, Middle* middle = nullptr) {
-  return go_on(samples, params, {0, RegimeStream(params).start(), 0}, middle);
+Joined joined(const std::vector<ImuSample>& samples, const MotionRegimeStream::Params& params, Middle* middle = nullptr) {
+  return go_on(samples, params, {0, MotionRegimeStream(params).start(), 0}, middle);
 }
 
 /// SlowlyBegun is the twirl of HandHeldMotion with a slow start: its own time runs at 0.3 for four seconds, then faster
@@ -105,13 +105,13 @@ struct SlowlyBegun {
   }
 };
 
-TEST(RegimeStream, AHandIsKnownAndBelieved) {
+TEST(MotionRegimeStream, AHandIsKnownAndBelieved) {
   const HandHeldRecording recording = SlowlyBegun().record(100.0, 16.0, 7.3);
   const std::vector<ImuSample>& samples = recording.samples;
   Middle middle;
   middle.samples = 733;
   const Joined whole = joined(samples, at_its_hand(), &middle);
-  EXPECT_GT(whole.state.sum.hand_held / static_cast<double>(whole.state.reported), 0.9);
+  EXPECT_GT(whole.state.regime_probability_sum.hand_held / static_cast<double>(whole.state.reported_sample_count), 0.9);
   EXPECT_GT(whole.state.combined_samples, 300u);
   const std::vector<double> errors = clipped_errors(recording, whole.rates, 2.0);
   std::printf("joined: %.3f / %.3f rad/s\n", quantile(errors, 0.5), quantile(errors, 0.9));
@@ -120,7 +120,7 @@ TEST(RegimeStream, AHandIsKnownAndBelieved) {
   const Joined rest = go_on(samples, at_its_hand(), middle);
   ASSERT_GT(rest.rates.size(), 800u);
   for (std::size_t k = 0; k < rest.rates.size(); ++k) {
-    const RateState& expected = whole.rates[middle.reported + k];
+    const AngularRateState& expected = whole.rates[middle.reported + k];
     ASSERT_EQ(expected.w_WI_I_rad_s, rest.rates[k].w_WI_I_rad_s) << k;
     ASSERT_EQ(expected.covariance_rad2_s2, rest.rates[k].covariance_rad2_s2) << k;
   }
@@ -128,7 +128,7 @@ TEST(RegimeStream, AHandIsKnownAndBelieved) {
 
 /// The samples are as far apart as the time over which rates are differentiated; seconds since the clock's start would
 /// be rounded differently for each start.
-TEST(RegimeStream, WhenTheClockStartedIsNothingToTheRates) {
+TEST(MotionRegimeStream, WhenTheClockStartedIsNothingToTheRates) {
   std::vector<ImuSample> samples = SlowlyBegun().record(100.0, 10.0, 7.3).samples;
   const Joined at_zero = joined(samples, at_its_hand());
   constexpr TimeNs kLater_ns = 1'000'000'000'000;
@@ -145,9 +145,9 @@ TEST(RegimeStream, WhenTheClockStartedIsNothingToTheRates) {
 /// The stated IMU is 10 cm from the centre of mass; the lever arm's force could look like gravity if the angular
 /// acceleration followed the force. The gyro reads this acceleration between the spins, so hand-held motion is
 /// detected.
-TEST(RegimeStream, AHandIsKnownByAnImuFarFromTheCentreOfMass) {
+TEST(MotionRegimeStream, AHandIsKnownByAnImuFarFromTheCentreOfMass) {
   const HandHeldRecording recording = SlowlyBegun().record(100.0, 16.0, 7.3);
-  RegimeStream::Params params;
+  MotionRegimeStream::Params params;
   params.rate.model.nominal.lever_arm_m = {-0.022, -0.085, 0.055};
   const Joined found = joined(recording.samples, params);
   double least = 1.0, within = 0.0, clipped = 0.0;
@@ -181,10 +181,10 @@ HandHeldRecording said_again(const HandHeldRecording& own, const SlowlyBegun& mo
 
 /// If repetitions are unknown, the stream has a median error of 0.37 rad/s, and 56 % of the errors are within three
 /// deviations.
-TEST(RegimeStream, ReadingsThatTheLogSaysAgainCountOnce) {
+TEST(MotionRegimeStream, ReadingsThatTheLogSaysAgainCountOnce) {
   const SlowlyBegun motion;
   const HandHeldRecording recording = said_again(motion.record(100.0, 16.0, 7.3), motion);
-  RegimeStream::Params params = at_its_hand();
+  MotionRegimeStream::Params params = at_its_hand();
   params.rate.period_s = 1.0 / 240.0;
   const Joined found = joined(recording.samples, params);
   const std::vector<double> errors = clipped_errors(recording, found.rates, 2.0);
@@ -204,7 +204,7 @@ TEST(RegimeStream, ReadingsThatTheLogSaysAgainCountOnce) {
 
 /// The motion reverses once a second with few readings in between, so it is one clipped segment; an unknown motion type
 /// at first must not affect the rest. The flight model would be wrong by 10 rad/s.
-TEST(RegimeStream, WhoHeldItAtFirstSaysNothingOfTheRest) {
+TEST(MotionRegimeStream, WhoHeldItAtFirstSaysNothingOfTheRest) {
   HandHeldMotion motion;
   motion.spin_rad = 4.0;
   motion.spin_hz = motion.hand_hz = 1.0;
@@ -217,16 +217,16 @@ TEST(RegimeStream, WhoHeldItAtFirstSaysNothingOfTheRest) {
 
 /// The body is thrown while it is assumed hand-held, and caught again: the probabilities follow within the lag, in both
 /// directions.
-TEST(RegimeStream, ThrownAndCaughtAreSeen) {
+TEST(MotionRegimeStream, ThrownAndCaughtAreSeen) {
   const SlowlyBegun motion;
   std::vector<ImuSample> samples = motion.record(100.0, 16.0, 7.3).samples;
   for (std::size_t k = 1000; k < 1080; ++k)  // only the force of the lever arm
     samples[k].specific_force_m_s2 = motion.turning(0.01 * (static_cast<double>(k) + 0.5), motion.motion.lever_arm_m);
-  RegimeStream::Params params;
+  MotionRegimeStream::Params params;
   params.rate.model.nominal.lever_arm_m = HandHeldMotion().lever_arm_m;
-  const RegimeStream stream(params);
-  RegimeStream::State state = stream.start();
-  std::optional<RateState> rate;
+  const MotionRegimeStream stream(params);
+  MotionRegimeStream::State state = stream.start();
+  std::optional<AngularRateState> rate;
   std::vector<double> hand_held;
   for (const ImuSample& sample : samples) {
     ASSERT_TRUE(stream.push(sample, state, rate).ok());
@@ -246,15 +246,15 @@ double share_in_flight(std::uint64_t seed, double dropped) {
   options.gyro_rail_rad_s = 7.0;
   const TumbleRecording tumble = make_tumble(options);
   const auto begin = std::find(tumble.phase.begin(), tumble.phase.end(), Phase::flight) - tumble.phase.begin();
-  RegimeStream::Params params;
+  MotionRegimeStream::Params params;
   params.rate.model.nominal.lever_arm_m = options.lever_arm_m;
-  const RegimeStream stream(params);
-  RegimeStream::State state = stream.start();
-  std::optional<RateState> rate;
+  const MotionRegimeStream stream(params);
+  MotionRegimeStream::State state = stream.start();
+  std::optional<AngularRateState> rate;
   for (const ImuSample& sample : tumble.samples) {
     EXPECT_TRUE(stream.push(sample, state, rate).ok());
-    if (state.reported == static_cast<std::size_t>(begin) && rate) state.resets += dropped;
-    if (state.reported == static_cast<std::size_t>(begin) + 30) break;
+    if (state.reported_sample_count == static_cast<std::size_t>(begin) && rate) state.calibration_reset_rate += dropped;
+    if (state.reported_sample_count == static_cast<std::size_t>(begin) + 30) break;
   }
   return state.probabilities.hand_held;
 }
@@ -262,7 +262,7 @@ double share_in_flight(std::uint64_t seed, double dropped) {
 /// A throwing hand gives the rig a wrong calibration, which is reset step after step: at most 20 times in a lag. The
 /// resets must not affect the following flight: the uncertainty is gone before the lag is over. The control is an
 /// uncertainty that lasts.
-TEST(RegimeStream, AFlightIsSeenThoughThePushBeforeItBentTheRig) {
+TEST(MotionRegimeStream, AFlightIsSeenThoughThePushBeforeItBentTheRig) {
   for (const std::uint64_t seed : {5, 7}) {
     EXPECT_LT(share_in_flight(seed, 20.0), 0.02) << seed;
     EXPECT_GT(share_in_flight(seed, 1e6), 0.3) << seed;

@@ -25,7 +25,7 @@ enum class Regime { flight, contact, hand_held };
 
 struct RegimeRecording {
   std::vector<ImuSample> samples;
-  std::vector<RateState> rates;
+  std::vector<AngularRateState> rates;
 
   /// Adds more of this regime at 100 Hz: gravity rotating in the sensor, a hand or the ground pushing by `push_m_s2`,
   /// or neither.
@@ -45,7 +45,7 @@ struct RegimeRecording {
       if (regime == Regime::hand_held) sample.specific_force_m_s2 = kG * up.normalized() + push_m_s2 * random;
       if (regime == Regime::flight) sample.specific_force_m_s2 = turning + 0.05 * random;
       if (regime == Regime::contact) sample.specific_force_m_s2 = turning + push_m_s2 * random;
-      RateState rate;
+      AngularRateState rate;
       rate.time_ns = sample.time_ns;
       rate.w_WI_I_rad_s = w;
       rate.covariance_rad2_s2 = 1e-4 * Matrix3d::Identity();
@@ -58,7 +58,7 @@ struct RegimeRecording {
 
   std::vector<RegimeProbabilities> found() const {
     std::vector<RegimeProbabilities> out;
-    EXPECT_TRUE(RegimeEvidence({}).find(samples, rates, kLever_m, kLeverCovariance_m2, out).ok());
+    EXPECT_TRUE(MotionRegimeEvidence({}).find(samples, rates, kLever_m, kLeverCovariance_m2, out).ok());
     return out;
   }
 
@@ -144,24 +144,24 @@ TEST(Regimes, ARoughHandIsAHand) {
 TEST(Regimes, ABodyThatDoesNotTurnSaysNothingOfWhoHoldsIt) {
   RegimeRecording motion;
   motion.go_on(Regime::hand_held, 2.0, 0.0);
-  for (RateState& rate : motion.rates) rate.w_WI_I_rad_s *= 0.01;
+  for (AngularRateState& rate : motion.rates) rate.w_WI_I_rad_s *= 0.01;
   double most = 0.0;
   for (const RegimeProbabilities& probabilities : motion.found()) most = std::max(most, probabilities.hand_held);
   EXPECT_NEAR(most, 1.0 / 3.0, 0.01);
 }
 
 TEST(Regimes, EitherHoldsBothAnswers) {
-  RateState first, second;
+  AngularRateState first, second;
   first.covariance_rad2_s2 = 0.01 * Matrix3d::Identity();
   second.covariance_rad2_s2 = 0.04 * Matrix3d::Identity();
   second.w_WI_I_rad_s = Vector3d(3.0, 0.0, 0.0);
-  second.source = RateSource::bounded_only;
-  const RateState sure = mix_rate_states(first, second, 0.0);
+  second.source = AngularRateSource::lower_bound_only;
+  const AngularRateState sure = mix_rate_states(first, second, 0.0);
   EXPECT_EQ(sure.w_WI_I_rad_s, first.w_WI_I_rad_s);
   EXPECT_EQ(sure.covariance_rad2_s2, first.covariance_rad2_s2);
-  const RateState open = mix_rate_states(first, second, 0.6);
+  const AngularRateState open = mix_rate_states(first, second, 0.6);
   EXPECT_EQ(open.w_WI_I_rad_s, second.w_WI_I_rad_s);
-  EXPECT_EQ(open.source, RateSource::bounded_only);
+  EXPECT_EQ(open.source, AngularRateSource::lower_bound_only);
   // 0.4 * 0.01 + 0.6 * 0.04 + 0.4 * 3^2, about the reported rate
   EXPECT_NEAR(open.covariance_rad2_s2(0, 0), 3.628, 1e-12);
   EXPECT_NEAR(open.covariance_rad2_s2(1, 1), 0.028, 1e-12);
@@ -171,13 +171,13 @@ TEST(Regimes, RefusesWhatDoesNotBelongTogether) {
   RegimeRecording motion;
   motion.go_on(Regime::flight, 0.1);
   std::vector<RegimeProbabilities> out(3);
-  const RegimeEvidence evidence({});
+  const MotionRegimeEvidence evidence({});
   EXPECT_EQ(evidence.find({}, {}, kLever_m, kLeverCovariance_m2, out).error_code, ErrorCode::empty);
   motion.rates.pop_back();
   EXPECT_EQ(evidence.find(motion.samples, motion.rates, kLever_m, kLeverCovariance_m2, out).error_code,
             ErrorCode::out_of_range);
   EXPECT_TRUE(out.empty());
-  EXPECT_THROW(RegimeEvidence({.throws_hz = 0.0}), InvalidParams);
+  EXPECT_THROW(MotionRegimeEvidence({.throws_hz = 0.0}), InvalidParams);
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ using Harm = std::function<void(ImuSample&)>;
 struct Span {
   Eigen::Vector3d rate_rad_s = {1.5, 2.0, -0.7};
   double turns_s = 3.0, rate_sigma_rad_s = 0.01;
-  RateSource source = RateSource::measured;
+  AngularRateSource source = AngularRateSource::measured;
   bool shaken = true;
 };
 
@@ -51,7 +51,7 @@ RestGravity::State after(const Span& span, const Harm& harm, double scale_of_est
     sample.specific_force_m_s2 = so3::exp(turned_s * span.rate_rad_s).conjugate() * force;
     for (int j = 0; j < 3; ++j) sample.specific_force_m_s2[j] += 0.01 * noise();
     harm(sample);
-    RateState rate;
+    AngularRateState rate;
     rate.time_ns = sample.time_ns;
     rate.w_WI_I_rad_s = scale_of_estimate * sample.angular_velocity_rad_s;
     if (turns) rate.source = span.source;
@@ -67,9 +67,9 @@ TEST(RestGravity, RatesCarryGravityFromOneRestToTheNext) {
   const RestGravity gravity({});
   const RestGravity::State good = after({}, kNone);
   EXPECT_TRUE(gravity.verdict(good).ok()) << gravity.verdict(good).message();
-  EXPECT_EQ(good.spans, 1u);
-  EXPECT_LT(good.velocity_error_ratio, 0.04);
-  EXPECT_NEAR(gravity.magnitude_error_ratio(good), 1.0, 1e-3);
+  EXPECT_EQ(good.compared_rest_pairs, 1u);
+  EXPECT_LT(good.worst_velocity_error_ratio, 0.04);
+  EXPECT_NEAR(gravity.gravity_magnitude_error_ratio(good), 1.0, 1e-3);
 }
 
 TEST(RestGravity, AGyroOfAnotherSenseNamingOrScaleMisses) {
@@ -132,7 +132,7 @@ TEST(RestGravity, ErrorsOfAClippedSegmentLastAsLongAsIt) {
   const RestGravity gravity({});
   EXPECT_FALSE(gravity.verdict(after({.rate_sigma_rad_s = 0.025}, kNone, 1.05)).ok());
   const Status status =
-      gravity.verdict(after({.rate_sigma_rad_s = 0.025, .source = RateSource::bounded_only}, kNone, 1.05));
+      gravity.verdict(after({.rate_sigma_rad_s = 0.025, .source = AngularRateSource::lower_bound_only}, kNone, 1.05));
   EXPECT_TRUE(status.ok()) << status.message();
 }
 
@@ -149,7 +149,7 @@ TEST(RestGravity, RatesThatMeetGravityByChanceLeaveAVelocity) {
     // gravity may be anywhere according to these rates; 3.0 s of the span are rotation, and 0.4 s are rest
     const Span unsure = {.rate_rad_s = whole.rate_rad_s, .rate_sigma_rad_s = 0.5, .shaken = false};
     const RestGravity::State wrong = after(unsure, kNone, scale);
-    EXPECT_NEAR(wrong.velocity_error_ratio, 2.0 * across * 3.0 / 3.4, 0.05) << scale;
+    EXPECT_NEAR(wrong.worst_velocity_error_ratio, 2.0 * across * 3.0 / 3.4, 0.05) << scale;
     EXPECT_STREQ(gravity.verdict(wrong).field,
                  "velocity error after integration from one rest to the next (share of gravity times elapsed time)");
   }
@@ -166,12 +166,12 @@ TEST(RestGravity, OneErrorOfTheTurnLeavesNoMoreVelocityThanItMisses) {
       const bool turns = k >= 200 && k < 500;
       if (turns) sample.angular_velocity_rad_s = {0.0, 0.0, 1.0};
       sample.specific_force_m_s2 = {0.0, 0.0, 9.80665};
-      RateState rate;
+      AngularRateState rate;
       rate.w_WI_I_rad_s = sample.angular_velocity_rad_s;
       if (k == at) rate.w_WI_I_rad_s.x() = 25.0;
       gravity.step(sample, rate, state);
     }
-    EXPECT_NEAR(state.velocity_error_ratio, 2.0 * std::sin(0.125), 3e-3) << at;
+    EXPECT_NEAR(state.worst_velocity_error_ratio, 2.0 * std::sin(0.125), 3e-3) << at;
     EXPECT_TRUE(gravity.verdict(state).ok()) << gravity.verdict(state).message();
   }
 }
@@ -189,7 +189,7 @@ TEST(RestGravity, WhatTheAccelerometersRailHidIsAllowed) {
       const double force_m_s2 = 9.80665 + (impact ? 50.0 : halt ? -5.0 : 0.0);
       sample.specific_force_m_s2 = {0.0, 0.0, std::min(force_m_s2, kRange_m_s2)};
       if (impact && told) sample.device_clip_flags = kClipAccelZ;
-      RateState rate;
+      AngularRateState rate;
       rate.w_WI_I_rad_s = sample.angular_velocity_rad_s;
       gravity.step(sample, rate, state);
     }
@@ -209,14 +209,14 @@ TEST(RestGravity, OfASpanWithAGapNothingIsSaid) {
         sample.specific_force_m_s2.x() = std::numeric_limits<double>::quiet_NaN();  // the sample is skipped
     });
   };
-  EXPECT_EQ(after({}, silent_for(300'000'000)).spans, 0u);
-  EXPECT_EQ(after({}, silent_for(80'000'000)).spans, 1u);
+  EXPECT_EQ(after({}, silent_for(300'000'000)).compared_rest_pairs, 0u);
+  EXPECT_EQ(after({}, silent_for(80'000'000)).compared_rest_pairs, 1u);
 }
 
 TEST(RestGravity, OfOneRestOrATurnAboutTheVerticalNothingIsSaid) {
   const RestGravity gravity({});
   EXPECT_TRUE(gravity.verdict({}).ok());
-  EXPECT_EQ(after({.turns_s = 10.0}, kNone, -1.0).spans, 0u);
+  EXPECT_EQ(after({.turns_s = 10.0}, kNone, -1.0).compared_rest_pairs, 0u);
   const Eigen::Vector3d about_up = 2.0 * Eigen::Vector3d(0.3, -0.2, 1.0).normalized();
   EXPECT_TRUE(gravity.verdict(after({.rate_rad_s = about_up}, kNone, -1.0)).ok());
   EXPECT_THROW(RestGravity({.gravity_m_s2 = 0.0}), InvalidParams);
@@ -239,7 +239,7 @@ TEST(RestGravity, ReadingsThatAreNoneAndStampsOutOfOrderArePassedOver) {
     none.time_ns = 0;
     gravity.step(none, {}, state);
   }
-  EXPECT_NEAR(gravity.magnitude_error_ratio(state), 1.0, 1e-9);
+  EXPECT_NEAR(gravity.gravity_magnitude_error_ratio(state), 1.0, 1e-9);
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ using testing::SpinReadings;
 constexpr double kHz = SpinReadings::kHz, kPi = std::numbers::pi;
 
 struct SpinEstimate {
-  std::vector<RateState> rates;
+  std::vector<AngularRateState> rates;
   HandHeldSmoother::Report report;
 };
 
@@ -52,7 +52,7 @@ SpinEstimate estimated_spin(const ClippedSpin& spin) {
   return out;
 }
 
-RateState middle(const ClippedSpin& spin, const SpinEstimate& result) {
+AngularRateState middle(const ClippedSpin& spin, const SpinEstimate& result) {
   return result.rates[static_cast<std::size_t>(kHz * (spin.from_s + 0.5 * spin.lasts_s))];
 }
 
@@ -90,7 +90,7 @@ TEST(RevolutionHypotheses, WhatFollowsDecides) {
   ClippedSpin spin;
   spin.more_rad_s = 7.5;
   const SpinEstimate result = estimated_spin(spin);
-  const RateState state = middle(spin, result);
+  const AngularRateState state = middle(spin, result);
   const double error = std::abs(state.w_WI_I_rad_s.x() - spin.rate(spin.from_s + 0.5 * spin.lasts_s));
   EXPECT_GE(result.report.revolutions_corrected, 1);
   EXPECT_EQ(result.report.revolutions_ambiguous, 1);
@@ -115,12 +115,12 @@ TEST(RevolutionHypotheses, ASegmentThatIsKnownIsNotAsked) {
 struct Solved {
   SpinReadings readings;
   hand_held::NodeData collected;
-  hand_held::Problem problem;
+  hand_held::HandHeldProblem problem;
   HandHeldSmoother::Report report;
 
   Solved(const ClippedSpin& spin, const HandHeldSmoother::Params& params)
       : readings(spin),
-        collected(hand_held::collect(params, readings.samples, readings.clipped())),
+        collected(hand_held::collect_node_data(params, readings.samples, readings.clipped())),
         problem(params, Eigen::Matrix3d::Identity(), collected, started(params)) {
     EXPECT_TRUE(problem.solve(report).ok());
     EXPECT_TRUE(problem.covariances(report).ok());
@@ -142,7 +142,7 @@ TEST(RevolutionHypotheses, WhereTheWholeCannotBeSolvedAgainTheAnswerBeforeStands
   Solved solved(spin, smoother_params());
   const std::vector<hand_held::Node> before(solved.problem.nodes().begin(), solved.problem.nodes().end());
   const HandHeldSmoother::Report report = solved.report;
-  const auto fails = [](hand_held::Problem& problem, HandHeldSmoother::Report& changed) {
+  const auto fails = [](hand_held::HandHeldProblem& problem, HandHeldSmoother::Report& changed) {
     EXPECT_TRUE(problem.solve(changed).ok());
     return Status{ErrorCode::diverged, "iteration in which the smoother for hand-held motion failed", 1.0, 0.0};
   };
@@ -157,7 +157,7 @@ TEST(RevolutionHypotheses, WhereTheWholeCannotBeSolvedAgainTheAnswerBeforeStands
   for (std::size_t i = 0; i < before.size(); ++i) {
     EXPECT_EQ(solved.problem.nodes()[i].w_WI_I_rad_s, before[i].w_WI_I_rad_s) << i;
   }
-  const auto middle = static_cast<std::size_t>((spin.from_s + 0.5 * spin.lasts_s) / solved.problem.node_s());
+  const auto middle = static_cast<std::size_t>((spin.from_s + 0.5 * spin.lasts_s) / solved.problem.node_interval_s());
   const double error = before[middle].w_WI_I_rad_s.x() - spin.rate(spin.from_s + 0.5 * spin.lasts_s);
   EXPECT_GT(std::abs(error), 3.0);
   EXPECT_LT(std::abs(error), 3.0 * std::sqrt(solved.problem.covariance(middle)(hand_held::kRate, hand_held::kRate)));

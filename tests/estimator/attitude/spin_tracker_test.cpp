@@ -176,11 +176,11 @@ TEST(SpinTracker, ChangesOnlySaturatedRates) {
   const SpinRecording recording = record_spin({});
   const std::vector<SpinRate> spins = track_spin(recording);
   const SpinTracker tracker({});
-  RateState rate;
+  AngularRateState rate;
   rate.w_WI_I_rad_s = Eigen::Vector3d(kSpinRail_rad_s, 1.0, 2.0);
   rate.covariance_rad2_s2 = Eigen::Vector3d(9.0, 0.25, 0.25).asDiagonal();
   for (std::size_t k = 0; k < spins.size(); ++k) {
-    const RateState combined = tracker.combine(rate, spins[k]);
+    const AngularRateState combined = tracker.combine_with_spin_rate(rate, spins[k]);
     if (recording.saturated_axes[k] == 0) {
       EXPECT_EQ(combined.w_WI_I_rad_s, rate.w_WI_I_rad_s);
       EXPECT_EQ(combined.covariance_rad2_s2, rate.covariance_rad2_s2);
@@ -191,10 +191,10 @@ TEST(SpinTracker, ChangesOnlySaturatedRates) {
   }
   SpinRate improbable = spins.back();
   improbable.probability = 0.05;
-  EXPECT_EQ(tracker.combine(rate, improbable).w_WI_I_rad_s, rate.w_WI_I_rad_s);
-  EXPECT_EQ(tracker.combine(rate, spins.back(), true).w_WI_I_rad_s.x(), spins.back().rate_rad_s);
+  EXPECT_EQ(tracker.combine_with_spin_rate(rate, improbable).w_WI_I_rad_s, rate.w_WI_I_rad_s);
+  EXPECT_EQ(tracker.combine_with_spin_rate(rate, spins.back(), true).w_WI_I_rad_s.x(), spins.back().rate_rad_s);
   rate.covariance_rad2_s2(0, 0) = 0.5 * spins.back().variance_rad2_s2;
-  EXPECT_EQ(tracker.combine(rate, spins.back(), true).w_WI_I_rad_s, rate.w_WI_I_rad_s);
+  EXPECT_EQ(tracker.combine_with_spin_rate(rate, spins.back(), true).w_WI_I_rad_s, rate.w_WI_I_rad_s);
 }
 
 TEST(SpinTracker, ContinuesFromACopyOfTheState) {

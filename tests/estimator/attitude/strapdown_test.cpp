@@ -27,7 +27,7 @@ TEST(Level, PointsUpAlongTheForceWithYawZero) {
        {Eigen::Vector3d(0, 0, 9.8), Eigen::Vector3d(1, -2, 9), Eigen::Vector3d(-3, 4, -8), Eigen::Vector3d(0, -9.8, 0),
         Eigen::Vector3d(0, 0, -9.8), Eigen::Vector3d(5, 5, 1e-9)}) {
     Eigen::Quaterniond q;
-    ASSERT_TRUE(level(f, q).ok());
+    ASSERT_TRUE(inclination_from_force(f, q).ok());
     EXPECT_LT((up_in_body(q) - f.normalized()).norm(), 1e-15) << f.transpose();  // measured 3.3e-16
     EXPECT_NEAR(yaw(q), 0.0, 1e-15) << f.transpose();
   }
@@ -36,17 +36,17 @@ TEST(Level, PointsUpAlongTheForceWithYawZero) {
 TEST(Level, NoseStraightUpOrDownIsFinite) {
   for (const double x : {9.8, -9.8}) {
     Eigen::Quaterniond q;
-    ASSERT_TRUE(level({x, 0.0, 0.0}, q).ok());
+    ASSERT_TRUE(inclination_from_force({x, 0.0, 0.0}, q).ok());
     EXPECT_LT((up_in_body(q) - Eigen::Vector3d(x / 9.8, 0, 0)).norm(), 1e-15);
   }
 }
 
 TEST(Level, RefusesNoForceAndNaN) {
   Eigen::Quaterniond q(0.5, 0.5, 0.5, 0.5);
-  EXPECT_EQ(level(Eigen::Vector3d(0, 9e-7, 0), q).error_code, ErrorCode::degenerate);
-  EXPECT_EQ(level(Eigen::Vector3d(0, std::numeric_limits<double>::quiet_NaN(), 9.8), q).error_code,
+  EXPECT_EQ(inclination_from_force(Eigen::Vector3d(0, 9e-7, 0), q).error_code, ErrorCode::degenerate);
+  EXPECT_EQ(inclination_from_force(Eigen::Vector3d(0, std::numeric_limits<double>::quiet_NaN(), 9.8), q).error_code,
             ErrorCode::non_finite);
-  EXPECT_EQ(level(Eigen::Vector3d(std::numeric_limits<double>::infinity(), 0, 9.8), q).error_code,
+  EXPECT_EQ(inclination_from_force(Eigen::Vector3d(std::numeric_limits<double>::infinity(), 0, 9.8), q).error_code,
             ErrorCode::non_finite);
   EXPECT_EQ(q.w(), 0.5) << "untouched on trouble";
 }
@@ -60,7 +60,7 @@ TEST(Strapdown, ConstantRateIsExactForAnyStep) {
       ASSERT_TRUE(filter.step({t, rate, {0, 0, kGravity_m_s2}, 0}, state).ok());
     }
     // measured 1.6e-14 rad over 1000 steps
-    EXPECT_NEAR(so3::log(so3::exp(rate * 1.0).conjugate() * state.q_WI).norm(), 0.0, 1e-13);
+    EXPECT_NEAR(so3::logarithm(so3::exp(rate * 1.0).conjugate() * state.q_WI).norm(), 0.0, 1e-13);
     EXPECT_NEAR(state.q_WI.norm(), 1.0, 1e-15);
   }
 }
@@ -85,7 +85,7 @@ TEST(Strapdown, ConingDriftsByWhatOneRatePerSampleCannotKnow) {
     const Eigen::Vector3d w = coning_rate(k * h, h, kHalfCone, kConing_rad_s);
     ASSERT_TRUE(filter.step({k * testing::kPeriod_ns, w, {0, 0, kGravity_m_s2}, 0}, state).ok());
   }
-  const Eigen::Vector3d error = so3::log(state.q_WI * so3::exp({kHalfCone, 0.0, 0.0}).conjugate());
+  const Eigen::Vector3d error = so3::logarithm(state.q_WI * so3::exp({kHalfCone, 0.0, 0.0}).conjugate());
   // half the integral of (angle so far) x (rate) over one sample, about the cone's axis, which the mean rate omits
   const double per_step = 0.5 * std::pow(std::sin(kHalfCone), 2) * (kConing_rad_s * h - std::sin(kConing_rad_s * h));
   // 1 %: the second-order drift is along the body's z axis, within 0.05 rad of the cone's axis; measured 0.1 %

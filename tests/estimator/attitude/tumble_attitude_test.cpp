@@ -51,7 +51,7 @@ TEST(TumbleAttitude, AtRestTheBiasIsFoundAndTheAttitudeHeld) {
   EXPECT_TRUE(after_2s.at_rest);
   EXPECT_NEAR((state.bias_rad_s - bias).norm(), 0.0, 1e-4);  // measured 3e-6
   // with a gyro alone, a vertical bias of 0.34 deg/s gives a heading error of 20 deg per minute
-  EXPECT_NEAR(so3::log(after_2s.q_WI.conjugate() * state.q_WI).z(), 0.0, 1e-9);
+  EXPECT_NEAR(so3::logarithm(after_2s.q_WI.conjugate() * state.q_WI).z(), 0.0, 1e-9);
   EXPECT_NEAR(tilt(state.q_WI), 0.0, 1e-4);
 }
 
@@ -65,7 +65,7 @@ TEST(TumbleAttitude, SlowTurnAfterTheBiasIsKnownIsNotRest) {
   }
   EXPECT_FALSE(state.at_rest);
   // 15 s; the rotation before its detection is part of a sample's low-pass: measured 3 mrad
-  EXPECT_NEAR(so3::log(state.q_WI).z(), turn * 15.0, 0.01);
+  EXPECT_NEAR(so3::logarithm(state.q_WI).z(), turn * 15.0, 0.01);
 }
 
 // A sphere that has rolled keeps turning about its contact, too slowly for the detector alone: attitude.md (A16)
@@ -275,7 +275,7 @@ BehindGap behind_gap(const Struck& struck, double gap_s) {
   q = q * so3::exp(struck.share * gap_s * struck.before_rad_s) *
       so3::exp((1.0 - struck.share) * gap_s * struck.after_rad_s);
   step(struck.after_rad_s);
-  const Eigen::Vector3d off = so3::log(q * state.q_WI.conjugate());
+  const Eigen::Vector3d off = so3::logarithm(q * state.q_WI.conjugate());
   return {off.head<2>(), TumbleAttitude::attitude_covariance_rad2(state).diagonal().head<2>().mean(), state.at_rest};
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/attitude/detail/unit_sign_check.hpp"
+#include "tumble/attitude/detail/multi_imu_sign_check.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,8 +16,8 @@ using TurnedReading = std::function<void(Eigen::Vector3d& rate, Eigen::Vector3d&
 
 /// Returns the result for ten seconds of a body that turns about all axes, `size` times as fast, with noise and bias of
 /// a cheap accelerometer.
-UnitSignCheck senses_of(double size, const TurnedReading& misread) {
-  UnitSignCheck out;
+MultiImuSignCheck senses_of(double size, const TurnedReading& misread) {
+  MultiImuSignCheck out;
   std::mt19937_64 random(3);
   std::normal_distribution<double> noise(0.0, 0.03);
   for (int k = 0; k < 2500; ++k) {
@@ -37,18 +37,18 @@ UnitSignCheck senses_of(double size, const TurnedReading& misread) {
   return out;
 }
 
-TEST(UnitSignCheck, WhatIsReadAsItIsIsNotTold) {
+TEST(MultiImuSignCheck, WhatIsReadAsItIsIsNotTold) {
   const auto as_it_is = [](auto&, auto&, auto&) {};
-  const UnitSignCheck out = senses_of(1.0, as_it_is);
-  EXPECT_FALSE(out.detected().has_value());
-  for (std::size_t k = 0; k < UnitSignCheck::kAlternatives; ++k) {
-    ASSERT_GT(out.effect_m2_s3[k], UnitSignCheck::kEffectMin_m2_s3) << k;
-    EXPECT_NEAR(out.explained_m2_s3[k] / out.effect_m2_s3[k], -1.0, 0.5) << k;
+  const MultiImuSignCheck out = senses_of(1.0, as_it_is);
+  EXPECT_FALSE(out.detected_mirroring().has_value());
+  for (std::size_t k = 0; k < MultiImuSignCheck::kMirroredAlternatives; ++k) {
+    ASSERT_GT(out.effect_per_alternative[k], MultiImuSignCheck::kMinEffectOnForces) << k;
+    EXPECT_NEAR(out.explained_effect_per_alternative[k] / out.effect_per_alternative[k], -1.0, 0.5) << k;
   }
-  EXPECT_FALSE(UnitSignCheck{}.detected().has_value());
+  EXPECT_FALSE(MultiImuSignCheck{}.detected_mirroring().has_value());
 }
 
-TEST(UnitSignCheck, EachIsToldByItsPlace) {
+TEST(MultiImuSignCheck, EachIsToldByItsPlace) {
   for (int axis = 0; axis < 3; ++axis) {
     const int next = (axis + 1) % 3;
     const auto gyro_flipped = [=](auto& w, auto& a, auto&) { w[axis] = -w[axis], a[axis] = -a[axis]; };
@@ -59,16 +59,16 @@ TEST(UnitSignCheck, EachIsToldByItsPlace) {
     const auto accel_swapped = [=](auto&, auto&, auto& f) { std::swap(f[axis], f[next]); };
     const std::array<TurnedReading, 4> all = {gyro_flipped, gyro_swapped, accel_flipped, accel_swapped};
     for (std::size_t k = 0; k < all.size(); ++k) {
-      const auto told = senses_of(1.0, all[k]).detected();
+      const auto told = senses_of(1.0, all[k]).detected_mirroring();
       ASSERT_TRUE(told.has_value()) << axis << " " << k;
-      EXPECT_EQ(told->sense, 3 * k + static_cast<std::size_t>(axis));
-      EXPECT_NEAR(told->share, 1.0, 0.5);
+      EXPECT_EQ(told->mirroring, 3 * k + static_cast<std::size_t>(axis));
+      EXPECT_NEAR(told->explained_fraction, 1.0, 0.5);
     }
   }
 }
 
-TEST(UnitSignCheck, ABodyThatHardlyTurnsTellsNothing) {
-  EXPECT_FALSE(senses_of(0.05, [](auto& w, auto& a, auto&) { w.x() = -w.x(), a.x() = -a.x(); }).detected().has_value());
+TEST(MultiImuSignCheck, ABodyThatHardlyTurnsTellsNothing) {
+  EXPECT_FALSE(senses_of(0.05, [](auto& w, auto& a, auto&) { w.x() = -w.x(), a.x() = -a.x(); }).detected_mirroring().has_value());
 }
 
 }  // namespace

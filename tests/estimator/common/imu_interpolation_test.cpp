@@ -27,9 +27,9 @@ TEST(ImuInterpolation, FollowsALineBetweenReadingsAndBeyondThem) {
   const std::vector<ImuSample> samples = every_four_ms(6);
   ImuInterpolation imu(samples);
   for (const TimeNs time_ns : {-2'000'000, 0, 1'000'000, 3'000'000, 4'000'000, 11'000'000, 20'000'000, 21'000'000}) {
-    const ImuNeighbours near = imu.around(time_ns);
-    EXPECT_EQ(near.between(), time_ns >= 0 && time_ns <= 20'000'000) << time_ns;
-    EXPECT_EQ(near.after, near.before + 1);
+    const ImuSamplePair near = imu.samples_around(time_ns);
+    EXPECT_EQ(near.is_inside_recording(), time_ns >= 0 && time_ns <= 20'000'000) << time_ns;
+    EXPECT_EQ(near.index_after, near.index_before + 1);
     EXPECT_NEAR(near.length_s, 4e-3, 1e-18);
     const ImuSample found = imu.at(time_ns, near), expected = on_the_line(time_ns);
     EXPECT_EQ(found.time_ns, time_ns);
@@ -45,7 +45,7 @@ TEST(ImuInterpolation, TheNextReadingsAreNotASecondAnswer) {
   samples[3].angular_velocity_rad_s *= 2.0;
   ImuInterpolation imu(samples);
   const TimeNs bent_ns = 10'000'000;
-  const ImuSample found = imu.at(bent_ns, imu.around(bent_ns));
+  const ImuSample found = imu.at(bent_ns, imu.samples_around(bent_ns));
   EXPECT_GT((found.angular_velocity_rad_s - on_the_line(bent_ns).angular_velocity_rad_s).norm(), 10.0);
 }
 
@@ -55,7 +55,7 @@ TEST(ImuInterpolation, AReadingAtTheTimeComesBackBitByBit) {
   samples[1].device_clip_flags = kClipGyroX;
   ImuInterpolation imu(samples);
   for (const ImuSample& sample : samples) {
-    const ImuSample found = imu.at(sample.time_ns, imu.around(sample.time_ns));
+    const ImuSample found = imu.at(sample.time_ns, imu.samples_around(sample.time_ns));
     EXPECT_EQ(found.angular_velocity_rad_s, sample.angular_velocity_rad_s);
     EXPECT_EQ(found.specific_force_m_s2, sample.specific_force_m_s2);
     EXPECT_EQ(found.device_clip_flags, sample.device_clip_flags);
@@ -67,8 +67,8 @@ TEST(ImuInterpolation, WhatLiesBesideAClippedReadingIsClipped) {
   samples[0].device_clip_flags = kClipGyroX;
   samples[1].device_clip_flags = kClipAccelZ;
   ImuInterpolation imu(samples);
-  EXPECT_EQ(imu.at(1'000'000, imu.around(1'000'000)).device_clip_flags, kClipGyroX | kClipAccelZ);
-  EXPECT_EQ(imu.at(5'000'000, imu.around(5'000'000)).device_clip_flags, kClipAccelZ);
+  EXPECT_EQ(imu.at(1'000'000, imu.samples_around(1'000'000)).device_clip_flags, kClipGyroX | kClipAccelZ);
+  EXPECT_EQ(imu.at(5'000'000, imu.samples_around(5'000'000)).device_clip_flags, kClipAccelZ);
 }
 
 }  // namespace

@@ -13,13 +13,13 @@ namespace {
 struct Later;
 /// Holder is a public struct, which is complete although `Later` is not.
 struct Holder {
-  Indirect<Later> value;
+  HeapValue<Later> value;
 };
 struct Later {
   int number = 3;
 };
 
-TEST(Indirect, CopiesTheValue) {
+TEST(HeapValue, CopiesTheValue) {
   Holder first;
   EXPECT_EQ(first.value->number, 3);
   Holder copy = first;
@@ -32,8 +32,8 @@ TEST(Indirect, CopiesTheValue) {
   EXPECT_EQ(moved.value->number, 4);
   first = moved;
   EXPECT_EQ(first.value->number, 4) << "assignment to a moved-from object";
-  EXPECT_EQ(Indirect<Later>(std::make_unique<Later>(Later{6}))->number, 6);
-  static_assert(std::is_same_v<decltype(*moved.value), const Later&>, "a constant Indirect has a constant value");
+  EXPECT_EQ(HeapValue<Later>(std::make_unique<Later>(Later{6}))->number, 6);
+  static_assert(std::is_same_v<decltype(*moved.value), const Later&>, "a constant HeapValue has a constant value");
 }
 
 }  // namespace

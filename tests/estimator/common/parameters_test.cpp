@@ -37,9 +37,9 @@ struct Outer {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.tau_s, {"tau_s", "s", 1e-3, 10.0, "a time", FieldRank::basic});
+    visit(p.tau_s, {"tau_s", "s", 1e-3, 10.0, "a time", ParameterRank::common_use});
     visit(p.least, {"least", "1", 0, 1e9, "a number of things"});
-    visit(p.on, switch_field("on", "a switch"));
+    visit(p.on, boolean_field("on", "a switch"));
     visit(p.kind, {"kind", "1", 0, 1, "a choice"});
     visit(p.arm_m, {"arm_m", "m", -1.0, 1.0, "an arm"});
     visit.group("left_", p.left);

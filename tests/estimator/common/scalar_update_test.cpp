@@ -42,14 +42,14 @@ TEST(ScalarUpdate, IsBayesRuleForADirection) {
 TEST(ScalarUpdate, IsBayesRuleForAComponent) {
   for (int index = 0; index < 4; ++index) {
     Matrix4 P = kPrior;
-    const Vector4 correction = component_update(index, -0.4, 0.2, P);
+    const Vector4 correction = kalman_update_of_component(index, -0.4, 0.2, P);
     expect_bayes(Vector4::Unit(index), -0.4, 0.2, correction, P);
   }
 }
 
 TEST(ScalarUpdate, CheckTellsAnotherVariance) {
   Matrix4 P = kPrior;
-  component_update(1, 0.0, 0.2, P);
+  kalman_update_of_component(1, 0.0, 0.2, P);
   EXPECT_GT((P - (kPrior.inverse() + Matrix4(Vector4::Unit(1) * Vector4::Unit(1).transpose() / 0.3)).inverse()).norm(),
             1e-3);
 }

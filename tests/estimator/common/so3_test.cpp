@@ -69,14 +69,14 @@ TEST(So3, LogInvertsExpUpToPi) {
     for (double angle : angles()) {
       if (angle >= kPi) continue;
       const Vector3d phi = angle * axis;
-      EXPECT_LE((log(exp(phi)) - phi).norm(), 2e-15 * angle) << angle;
+      EXPECT_LE((logarithm(exp(phi)) - phi).norm(), 2e-15 * angle) << angle;
     }
   }
 }
 
 TEST(So3, LogReturnsTheShortestVector) {
   const Vector3d axis = Vector3d(1, 2, 3).normalized();
-  EXPECT_LE((log(exp(4.0 * axis)) - (4.0 - 2.0 * kPi) * axis).norm(), 2e-15);
+  EXPECT_LE((logarithm(exp(4.0 * axis)) - (4.0 - 2.0 * kPi) * axis).norm(), 2e-15);
 }
 
 TEST(So3, LogOfBothSignsIsTheSameHalfTurnsIncluded) {
@@ -84,10 +84,10 @@ TEST(So3, LogOfBothSignsIsTheSameHalfTurnsIncluded) {
                                         {-0.0, 0.6, 0.0, 0.8}, {1.0, 0.0, 0.0, 0.0},  {0.5, 0.5, -0.5, 0.5}};
   for (const Quaterniond& q : rotations) {
     const Quaterniond opposite(-q.w(), -q.x(), -q.y(), -q.z());
-    EXPECT_EQ(log(q), log(opposite)) << q.coeffs().transpose();
-    EXPECT_LE(log(q).norm(), kPi);
+    EXPECT_EQ(logarithm(q), logarithm(opposite)) << q.coeffs().transpose();
+    EXPECT_LE(logarithm(q).norm(), kPi);
   }
-  EXPECT_DOUBLE_EQ(log(rotations[1]).y(), kPi);
+  EXPECT_DOUBLE_EQ(logarithm(rotations[1]).y(), kPi);
 }
 
 TEST(So3, LeftJacobianAgreesWithItsSeries) {
@@ -101,7 +101,7 @@ TEST(So3, LeftJacobianAgreesWithItsSeries) {
 
 TEST(So3, LeftJacobianIsTheDerivativeOfExp) {
   const Vector3d phi(0.4, -1.1, 0.7), d(1e-6, -2e-6, 1.5e-6);
-  const Vector3d measured = log(exp(phi + d) * exp(phi).conjugate());
+  const Vector3d measured = logarithm(exp(phi + d) * exp(phi).conjugate());
   EXPECT_LE((measured - left_jacobian(phi) * d).norm(), 1e-11);             // second order: |d|^2 = 7e-12
   EXPECT_GT((measured - left_jacobian(phi).transpose() * d).norm(), 1e-7);  // the right Jacobian differs
 }
@@ -125,7 +125,7 @@ TEST(So3, ShortestArcTakesOneVectorToTheOther) {
     const Quaterniond q = shortest_arc(from, to);
     EXPECT_NEAR(q.norm(), 1.0, 1e-15) << angle;
     EXPECT_LE((q * from - to).norm(), 2e-15) << angle;
-    EXPECT_NEAR(log(q).norm(), angle, 2e-15) << angle;
+    EXPECT_NEAR(logarithm(q).norm(), angle, 2e-15) << angle;
   }
 }
 

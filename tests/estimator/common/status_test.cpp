@@ -41,12 +41,12 @@ TEST(Status, EveryTroubleHasItsOwnName) {
 }
 
 TEST(RequireWithin, AcceptsTheBoundsAndNamesWhatIsOutside) {
-  EXPECT_NO_THROW(require_within("gain", 0.0, 0.0, 1.0));
-  EXPECT_NO_THROW(require_within("gain", 1.0, 0.0, 1.0));
-  EXPECT_THROW(require_within("gain", std::nan(""), 0.0, 1.0), InvalidParams);
-  EXPECT_THROW(require_within("gain", -1e-300, 0.0, 1.0), InvalidParams);
+  EXPECT_NO_THROW(require_in_interval("gain", 0.0, 0.0, 1.0));
+  EXPECT_NO_THROW(require_in_interval("gain", 1.0, 0.0, 1.0));
+  EXPECT_THROW(require_in_interval("gain", std::nan(""), 0.0, 1.0), InvalidParams);
+  EXPECT_THROW(require_in_interval("gain", -1e-300, 0.0, 1.0), InvalidParams);
   try {
-    require_within("gain", 1.5, 0.0, 1.0);
+    require_in_interval("gain", 1.5, 0.0, 1.0);
     FAIL() << "1.5 was accepted";
   } catch (const InvalidParams& error) {
     EXPECT_STREQ(error.what(), "gain is 1.5; it must be within [0, 1]");

@@ -9,39 +9,39 @@
 namespace tumble {
 namespace {
 
-const StatedCalibration kGiven{{}, 0.01, 0.002, 0.003};
+const LidarImuCalibrationPrior kGiven{{}, 0.01, 0.002, 0.003};
 
-SweepCalibration turned(double by_rad) {
-  SweepCalibration out;
+LidarImuCalibration turned(double by_rad) {
+  LidarImuCalibration out;
   out.T_IL.linear() = Eigen::AngleAxisd(by_rad, Eigen::Vector3d(1.0, 2.0, -2.0) / 3.0).toRotationMatrix();
   return out;
 }
 
-TEST(StatedCalibration, CountsTheLargestOfTurnShiftAndDelayInItsDeviations) {
-  EXPECT_EQ(kGiven.deviations(SweepCalibration{}), 0.0);
-  SweepCalibration learnt = turned(0.03);
-  EXPECT_NEAR(kGiven.deviations(learnt), 3.0, 1e-9);
+TEST(LidarImuCalibrationPrior, CountsTheLargestOfTurnShiftAndDelayInItsDeviations) {
+  EXPECT_EQ(kGiven.distance_in_sigmas(LidarImuCalibration{}), 0.0);
+  LidarImuCalibration learnt = turned(0.03);
+  EXPECT_NEAR(kGiven.distance_in_sigmas(learnt), 3.0, 1e-9);
   learnt.T_IL.translation() = Eigen::Vector3d(0.0, -0.006, 0.008);
-  EXPECT_NEAR(kGiven.deviations(learnt), 5.0, 1e-9);
+  EXPECT_NEAR(kGiven.distance_in_sigmas(learnt), 5.0, 1e-9);
   learnt.time_offset_s = -0.018;
-  EXPECT_NEAR(kGiven.deviations(learnt), 6.0, 1e-9);
+  EXPECT_NEAR(kGiven.distance_in_sigmas(learnt), 6.0, 1e-9);
   learnt = {};
   learnt.gravity_W_m_s2 = Eigen::Vector3d(1.0, 0.0, -9.7);  // differs in each run
-  EXPECT_EQ(kGiven.deviations(learnt), 0.0);
+  EXPECT_EQ(kGiven.distance_in_sigmas(learnt), 0.0);
 }
 
-TEST(StatedCalibration, SaysWhereItWasGivenWrong) {
+TEST(LidarImuCalibrationPrior, SaysWhereItWasGivenWrong) {
   EXPECT_TRUE(kGiven.verdict(turned(0.049)).ok());
   const Status wrong = kGiven.verdict(turned(0.051));
   EXPECT_EQ(wrong.error_code, ErrorCode::out_of_range);
   EXPECT_NEAR(wrong.value, 5.1, 1e-9);
-  EXPECT_EQ(wrong.bound, StatedCalibration::kDistanceMax_sigmas);
+  EXPECT_EQ(wrong.bound, LidarImuCalibrationPrior::kDistanceMax_sigmas);
 }
 
-TEST(StatedCalibration, WhatIsExactMayNotMove) {
-  const StatedCalibration exact;
-  EXPECT_EQ(exact.deviations(SweepCalibration{}), 0.0);
-  EXPECT_TRUE(std::isinf(exact.deviations(turned(1e-6))));
+TEST(LidarImuCalibrationPrior, WhatIsExactMayNotMove) {
+  const LidarImuCalibrationPrior exact;
+  EXPECT_EQ(exact.distance_in_sigmas(LidarImuCalibration{}), 0.0);
+  EXPECT_TRUE(std::isinf(exact.distance_in_sigmas(turned(1e-6))));
 }
 
 }  // namespace

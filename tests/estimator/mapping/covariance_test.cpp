@@ -29,7 +29,7 @@ class BelievedImu {
 
   /// Returns the constant bias of the run, which tilts the start by as much as the prior assumes.
   Eigen::Vector3d accel_bias_m_s2() {
-    return params_.expert.gravity_m_s2 * params_.expert.world.tilt_sigma_rad * noise_.vector();
+    return params_.expert.gravity_m_s2 * params_.expert.world_covariance.tilt_sigma_rad * noise_.vector();
   }
 
   /// Adds the errors of a sweep to its samples.
@@ -87,7 +87,7 @@ double nees_of_run(int run) {
   }
   const double end_s = 0.1 * kSweepsOfRun;
   Eigen::Matrix<double, 6, 1> error;
-  error << motion.p_m(end_s) - report.pose.p_WA_m, so3::log(motion.q(end_s) * report.pose.q_WA.conjugate());
+  error << motion.p_m(end_s) - report.pose.position_W_m, so3::logarithm(motion.q(end_s) * report.pose.orientation_W.conjugate());
   return error.dot(report.pose.covariance.llt().solve(error)) / 6.0;
 }
 
@@ -129,8 +129,8 @@ double deviations_after_a_knock(std::uint8_t flags, double noise_m) {
         test::make_sweep(test::Room::corridor(), still, Eigen::Isometry3d::Identity(), k, noise_m, kColumns);
     EXPECT_TRUE(odometry.add_sweep(k * test::kSweep_ns, (k + 1) * test::kSweep_ns, points, report).ok());
   }
-  EXPECT_GT(std::abs(report.pose.p_WA_m.x()), 0.1);  // no measurement stops the sensor
-  return report.pose.p_WA_m.x() / std::sqrt(report.pose.covariance(0, 0));
+  EXPECT_GT(std::abs(report.pose.position_W_m.x()), 0.1);  // no measurement stops the sensor
+  return report.pose.position_W_m.x() / std::sqrt(report.pose.covariance(0, 0));
 }
 
 TEST(Covariance, CountsWhatTheAccelerometersRailHides) {

@@ -43,7 +43,7 @@ TEST(SweepTrajectory, FollowsTheTrueMotionAtAnyInstant) {
     const MotionState state = trajectory.state(t);
     const double at = 1.0003 + t;
     // 200 ms at 15 rad/s and 1 kHz. The rate rotates within a sample; measured 1e-5 rad, 2e-5 m, 2e-4 m/s
-    EXPECT_LT(so3::log(state.q_WI * motion.q(at).conjugate()).norm(), 5e-5) << "t " << t;
+    EXPECT_LT(so3::logarithm(state.q_WI * motion.q(at).conjugate()).norm(), 5e-5) << "t " << t;
     EXPECT_LT((state.p_WI_m - motion.p_m(at)).norm(), 1e-4) << "t " << t;
     EXPECT_LT((state.v_WI_m_s - motion.v_m_s(at)).norm(), 1e-3) << "t " << t;
   }
@@ -116,17 +116,17 @@ TEST(SweepTrajectory, WhatWaitsChangesNothing) {
   const std::vector<MotionSample> samples = {clipped, waiting};
   SweepTrajectory trajectory;
   ASSERT_TRUE(trajectory.build(MotionState{}, samples, 10'000'000, {0.0, 0.0, -9.8}).ok());
-  EXPECT_EQ(trajectory.deficit_factor_at_end().x(), 1.0);
+  EXPECT_EQ(trajectory.clipped_axes_at_end().x(), 1.0);
   ASSERT_TRUE(trajectory.build(MotionState{}, samples, 20'000'000, {0.0, 0.0, -9.8}).ok());
-  EXPECT_EQ(trajectory.deficit_factor_at_start().x(), 0.01) << "one of the segment does";
+  EXPECT_EQ(trajectory.clipped_axes_at_start().x(), 0.01) << "one of the segment does";
 }
 
 TEST(SweepTrajectory, SaysWhatItLacks) {
   const std::vector<MotionSample> samples = test::motion_samples(test::make_imu(test::Motion{}, 0.2));
   SweepTrajectory trajectory;
   MotionState start;
-  EXPECT_EQ(trajectory.build(start, {}, 100, test::kRoomGravity_m_s2).error_code, ErrorCode::too_few);
-  EXPECT_EQ(trajectory.build(start, samples, 200'000'001, test::kRoomGravity_m_s2).error_code, ErrorCode::too_few);
+  EXPECT_EQ(trajectory.build(start, {}, 100, test::kRoomGravity_m_s2).error_code, ErrorCode::insufficient_data);
+  EXPECT_EQ(trajectory.build(start, samples, 200'000'001, test::kRoomGravity_m_s2).error_code, ErrorCode::insufficient_data);
   EXPECT_EQ(trajectory.build(start, samples, -1, test::kRoomGravity_m_s2).error_code, ErrorCode::time_order);
   start.time_ns = -1;
   EXPECT_EQ(trajectory.build(start, samples, 100'000'000, test::kRoomGravity_m_s2).error_code, ErrorCode::gap);
@@ -156,7 +156,7 @@ TEST(SweepTrajectory, CovarianceMatchesDifferences) {
     moved.v_WI_m_s += d.tail<3>();
     ASSERT_TRUE(trajectory.build(moved, samples, 1'100'000'000, test::kRoomGravity_m_s2).ok());
     const MotionState end = trajectory.state(0.1);
-    F.col(i) << (end.p_WI_m - nominal.p_WI_m) / h, so3::log(end.q_WI * nominal.q_WI.conjugate()) / h,
+    F.col(i) << (end.p_WI_m - nominal.p_WI_m) / h, so3::logarithm(end.q_WI * nominal.q_WI.conjugate()) / h,
         (end.v_WI_m_s - nominal.v_WI_m_s) / h;
   }
   // forward differences of order h; measured 2e-6
@@ -179,7 +179,7 @@ class DeskewedSweep : public testing::Test {
         trajectory.build(true_state(motion, 1'100'000'000), samples, 1'200'000'000, test::kRoomGravity_m_s2).ok());
     std::vector<SweepPoint> selected;
     const PointCounts counts = select_points(points, {0.0, 100.0, Eigen::AlignedBox3d()}, mounting(), 0.0, selected);
-    EXPECT_EQ(counts.used, points.size());
+    EXPECT_EQ(counts.usable_points, points.size());
     std::vector<Eigen::Vector3f> at_end;
     deskew(trajectory, selected, trajectory.duration_s(), at_end);
     const MotionState end = trajectory.state(trajectory.duration_s());
@@ -225,7 +225,7 @@ TEST(SweepSampler, TakesTheFirstPointOfEachCube) {
   std::vector<std::uint32_t> chosen;
   const std::vector<Eigen::Vector3f> points = {{0.1f, 0, 0}, {0.2f, 0, 0}, {0.3f, 0, 0}, {-0.1f, 0, 0}};
   for (int run = 0; run < 2; ++run) {  // the second run must not depend on the first
-    sampler.choose(points, 0.25, chosen);
+    sampler.choose_points_per_voxel(points, 0.25, chosen);
     EXPECT_EQ(chosen, (std::vector<std::uint32_t>{0, 2, 3}));
   }
 }

@@ -36,23 +36,23 @@ TEST(FreeSpaceGrid, TellsFreeSpaceFromWhatIsThere) {
   const auto verdict = [&](float x, float y, float z, float sigma_m = 0.01f) {
     return sight.verdict(kFrom + Eigen::Vector3f(x, y, z), sigma_m);
   };
-  EXPECT_EQ(verdict(4.0f, -0.8f, 0.3f), FreeSpaceGrid::Verdict::seen_through);
-  EXPECT_EQ(verdict(kWall_m, -1.6f, 0.3f), FreeSpaceGrid::Verdict::seen);
-  EXPECT_EQ(verdict(4.0f, 0.5f, 0.3f), FreeSpaceGrid::Verdict::seen);           // the post
-  EXPECT_EQ(verdict(2.0f, 0.25f, 0.1f), FreeSpaceGrid::Verdict::seen_through);  // before the post
-  EXPECT_EQ(verdict(7.0f, 0.875f, 0.3f), FreeSpaceGrid::Verdict::unknown);      // behind it
-  EXPECT_EQ(verdict(kWall_m + 3.0f, -1.6f, 0.3f), FreeSpaceGrid::Verdict::unknown);
-  EXPECT_EQ(verdict(4.4f, 0.75f, 0.3f), FreeSpaceGrid::Verdict::unknown);  // by the post's edge
-  EXPECT_EQ(verdict(-4.0f, 0.0f, 0.3f), FreeSpaceGrid::Verdict::unknown);  // nothing returned from there
-  EXPECT_EQ(verdict(0.0f, 0.0f, 0.0f), FreeSpaceGrid::Verdict::unknown);
-  EXPECT_EQ(verdict(7.0f, -1.4f, 0.3f), FreeSpaceGrid::Verdict::seen_through);
-  EXPECT_EQ(verdict(7.0f, -1.4f, 0.3f, 0.3f), FreeSpaceGrid::Verdict::seen);  // who knows where it is
+  EXPECT_EQ(verdict(4.0f, -0.8f, 0.3f), FreeSpaceGrid::Verdict::free_space);
+  EXPECT_EQ(verdict(kWall_m, -1.6f, 0.3f), FreeSpaceGrid::Verdict::occupied);
+  EXPECT_EQ(verdict(4.0f, 0.5f, 0.3f), FreeSpaceGrid::Verdict::occupied);           // the post
+  EXPECT_EQ(verdict(2.0f, 0.25f, 0.1f), FreeSpaceGrid::Verdict::free_space);  // before the post
+  EXPECT_EQ(verdict(7.0f, 0.875f, 0.3f), FreeSpaceGrid::Verdict::unknown_space);      // behind it
+  EXPECT_EQ(verdict(kWall_m + 3.0f, -1.6f, 0.3f), FreeSpaceGrid::Verdict::unknown_space);
+  EXPECT_EQ(verdict(4.4f, 0.75f, 0.3f), FreeSpaceGrid::Verdict::unknown_space);  // by the post's edge
+  EXPECT_EQ(verdict(-4.0f, 0.0f, 0.3f), FreeSpaceGrid::Verdict::unknown_space);  // nothing returned from there
+  EXPECT_EQ(verdict(0.0f, 0.0f, 0.0f), FreeSpaceGrid::Verdict::unknown_space);
+  EXPECT_EQ(verdict(7.0f, -1.4f, 0.3f), FreeSpaceGrid::Verdict::free_space);
+  EXPECT_EQ(verdict(7.0f, -1.4f, 0.3f, 0.3f), FreeSpaceGrid::Verdict::occupied);  // who knows where it is
 }
 
 TEST(FreeSpaceGrid, SaysNothingOfWhatTheSensorPassed) {
   const FreeSpaceGrid sight = before_a_wall(0.5f);
-  EXPECT_EQ(sight.verdict(kFrom + Eigen::Vector3f(4.0f, -0.8f, 0.3f), 0.01f), FreeSpaceGrid::Verdict::unknown);
-  EXPECT_EQ(sight.verdict(kFrom + Eigen::Vector3f(6.0f, -1.2f, 0.3f), 0.01f), FreeSpaceGrid::Verdict::seen_through);
+  EXPECT_EQ(sight.verdict(kFrom + Eigen::Vector3f(4.0f, -0.8f, 0.3f), 0.01f), FreeSpaceGrid::Verdict::unknown_space);
+  EXPECT_EQ(sight.verdict(kFrom + Eigen::Vector3f(6.0f, -1.2f, 0.3f), 0.01f), FreeSpaceGrid::Verdict::free_space);
 }
 
 constexpr int kLeaves = 8, kEnd = 32;  // sweeps

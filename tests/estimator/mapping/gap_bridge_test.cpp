@@ -91,7 +91,7 @@ struct Followed {
 /// Runs the tumble through a room without the 10 ms samples from `first` to `first` + `missing` - 1. Sweeps wait until
 /// the IMU data cover them.
 Followed over_a_gap(LidarInertialOdometry::Params params, int first, int missing) {
-  params.expert.rails.estimate_deficit = true;
+  params.expert.saturated_imu.estimate_deficit = true;
   LidarInertialOdometry odometry(params);
   const test::RoomTumble& room = test::room_tumble();
   Followed out;
@@ -106,7 +106,7 @@ Followed over_a_gap(LidarInertialOdometry::Params params, int first, int missing
       if ((next + 1) * test::kSamplesPerSweep <= first) continue;
       const double t_s = 1e-9 * static_cast<double>(report.pose.time_ns);
       Eigen::Matrix<double, 6, 1> off;
-      off << report.pose.p_WA_m - room.motion.p_m(t_s), so3::log(report.pose.q_WA * room.motion.q(t_s).conjugate());
+      off << report.pose.position_W_m - room.motion.p_m(t_s), so3::logarithm(report.pose.orientation_W * room.motion.q(t_s).conjugate());
       const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> weight(report.pose.covariance);
       out.end_m = off.head<3>().norm();
       out.worst_rad = std::max(out.worst_rad, off.tail<3>().norm());

@@ -29,11 +29,11 @@ struct Listener {
       sample.time_ns = now_ns;
       sample.angular_velocity_rad_s = rate_rad_s;
       sample.specific_force_m_s2 = force_m_s2;
-      RateState rate;
+      AngularRateState rate;
       rate.time_ns = now_ns;
       rate.w_WI_I_rad_s = rate_rad_s;
       rate.clipped_axes = clipped_axes;
-      track.take(params, sample, rate);
+      track.store_sample(params, sample, rate);
     }
   }
   std::ptrdiff_t resting() const {
@@ -104,8 +104,8 @@ TEST(InertialTrack, ASweepRestsWhileTheImuSaysNothingButGravity) {
     listener.hear(5, Eigen::Vector3d::Zero(), {0.0, 0.0, 9.5});
     const TimeNs before_ns = listener.now_ns;
     listener.hear(5, {later_rate_rad_s, 0.0, 0.0}, {0.0, 0.0, later_force_m_s2}, clipped_axes);
-    EXPECT_TRUE(listener.track.rests_until(before_ns));
-    return listener.track.rests_until(listener.now_ns);
+    EXPECT_TRUE(listener.track.is_stationary_until(before_ns));
+    return listener.track.is_stationary_until(listener.now_ns);
   };
   EXPECT_TRUE(rests(9.6, 0.0, 0));
   EXPECT_FALSE(rests(11.0, 0.0, 0));

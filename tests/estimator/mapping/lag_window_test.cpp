@@ -41,15 +41,15 @@ Matrix in_unknowns(const Dense& free) {
   return out;
 }
 
-Estimated estimated(const Dense& mean, const Dense& errors) {
+EstimatedSweep estimated(const Dense& mean, const Dense& errors) {
   Vector error = Vector::Zero();
   error(kLinear) = mean;
-  Estimated out{{}, in_unknowns(errors)};
+  EstimatedSweep out{{}, in_unknowns(errors)};
   out.mean.add(error);
   return out;
 }
 
-Dense mean_of(const Estimated& estimate) {
+Dense mean_of(const EstimatedSweep& estimate) {
   return estimate.mean.minus({})(kLinear);
 }
 
@@ -94,18 +94,18 @@ struct System {
       P = Dense(0.5 * (P + P.transpose()));
       sweep.filtered = sweep.smoothed = estimated(x, P);
       EXPECT_FALSE(window.is_full());
-      window.enter() = std::move(sweep);
+      window.append_sweep() = std::move(sweep);
     }
     window.smooth();
   }
 
   /// Returns the largest difference from the batch, over means and covariances of all sweeps.
-  double difference(Estimated WindowSweep::*which) const {
+  double difference(EstimatedSweep WindowSweep::*which) const {
     const Dense covariance = inverse(information), mean = covariance * pull;
     double largest = 0.0;
     for (int k = 0; k < kSweeps; ++k) {
-      const Estimated& estimate = window.sweeps()[static_cast<std::size_t>(k)].*which;
-      const Dense errors = estimate.errors(kLinear, kLinear);
+      const EstimatedSweep& estimate = window.sweeps()[static_cast<std::size_t>(k)].*which;
+      const Dense errors = estimate.error_covariance(kLinear, kLinear);
       largest = std::max({largest, (mean_of(estimate) - mean.middleRows(k * kFree, kFree)).cwiseAbs().maxCoeff(),
                           (errors - covariance.block(k * kFree, k * kFree, kFree, kFree)).cwiseAbs().maxCoeff()});
     }
@@ -131,12 +131,12 @@ TEST(LagWindow, TheOldestLeavesOnceItIsFull) {
     return sweep;
   };
   window.smooth();
-  window.enter() = ending_at(1);
+  window.append_sweep() = ending_at(1);
   EXPECT_FALSE(window.is_full());
-  window.enter() = ending_at(2);
+  window.append_sweep() = ending_at(2);
   EXPECT_TRUE(window.is_full());
   EXPECT_EQ(window.sweeps().front().end_ns, 1);
-  window.enter() = ending_at(3);
+  window.append_sweep() = ending_at(3);
   EXPECT_EQ(window.sweeps().size(), 2u);
   EXPECT_EQ(window.sweeps().front().end_ns, 2);
 }

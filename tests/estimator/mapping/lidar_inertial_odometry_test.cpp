@@ -70,13 +70,13 @@ TEST(LidarInertialOdometry, IsLostWithAClippedRate) {
 
 TEST(LidarInertialOdometry, FindsTheDeficitOfClippedAxesByItself) {
   Odometry::Params params = rig_params();
-  params.expert.rails.estimate_deficit = true;
+  params.expert.saturated_imu.estimate_deficit = true;
   Odometry odometry(params);
   const auto reports = run(odometry, 0, 26, 8.0);
   const test::PoseError end = error_of(reports.back().pose);
   EXPECT_LT(end.m, 0.15);
   EXPECT_LT(end.rad, 0.02);
-  EXPECT_GT(reports.back().saturation_deficit_rad_s.maxCoeff(), 1.0);
+  EXPECT_GT(reports.back().mean_saturation_deficit_rad_s.maxCoeff(), 1.0);
 }
 
 TEST(LidarInertialOdometry, RestartsBitByBitFromACopy) {
@@ -165,7 +165,7 @@ TEST(LidarInertialOdometry, AnExactlyDegenerateAlignmentCounts) {
   EXPECT_EQ(report.verdict, SweepVerdict::degenerate);
   EXPECT_EQ(report.eigenvalue_ratio, 0.0);
   EXPECT_GT(report.iterations, 0);
-  EXPECT_NEAR(report.pose.p_WA_m.z(), -0.005, 0.002);
+  EXPECT_NEAR(report.pose.position_W_m.z(), -0.005, 0.002);
   EXPECT_GT(report.innovation, 0.0);
 }
 
@@ -239,8 +239,8 @@ TEST(LidarInertialOdometry, LevelsAtRest) {
   }
   Odometry::SweepReport report;
   ASSERT_TRUE(add_sweep(odometry, 0, test::room_tumble().sweeps[0], report).ok());
-  EXPECT_LT(so3::log(report.pose.q_WA * q_true.conjugate()).norm(), 1e-12);
-  EXPECT_LT(report.pose.p_WA_m.norm(), 1e-12);
+  EXPECT_LT(so3::logarithm(report.pose.orientation_W * q_true.conjugate()).norm(), 1e-12);
+  EXPECT_LT(report.pose.position_W_m.norm(), 1e-12);
 }
 
 }  // namespace

@@ -66,12 +66,12 @@ TEST(Localisation, TwoSweepsThatContradictTheirPriorsAreNotForgotten) {
 /// times the reported standard deviations.
 int reported_runs(double scale) {
   std::mt19937_64 random(1);
-  std::chi_squared_distribution<double> squared_error(SweepUnknowns::kMotionSize);
+  std::chi_squared_distribution<double> squared_error(RegistrationUnknowns::kMotionSize);
   int reported = 0;
   for (int run = 0; run < 200; ++run) {
     Localisation localisation(1.0);
     for (int k = 0; k < 1000; ++k)
-      localisation.add(sweep(0.1, scale * std::sqrt(squared_error(random) / SweepUnknowns::kMotionSize)));
+      localisation.add(sweep(0.1, scale * std::sqrt(squared_error(random) / RegistrationUnknowns::kMotionSize)));
     reported += localisation.verdict().ok() ? 0 : 1;
   }
   return reported;
@@ -102,7 +102,7 @@ TEST(Localisation, APresentFindingEnds) {
   EXPECT_TRUE(localisation.current_verdict().ok());
   add(0.1, 3.0);
   EXPECT_FALSE(localisation.current_verdict().ok());
-  for (int k = 0; k < int(10.0 * Localisation::kMemory_s) + 2; ++k) add(0.1, 0.3);
+  for (int k = 0; k < int(10.0 * Localisation::kForgettingTime_s) + 2; ++k) add(0.1, 0.3);
   EXPECT_TRUE(localisation.current_verdict().ok());
 }
 

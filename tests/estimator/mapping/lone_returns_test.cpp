@@ -19,7 +19,7 @@ constexpr float kNoticeable_m = 0.6f;
 
 std::vector<SweepPoint> selected(const std::vector<LidarPoint>& given) {
   std::vector<SweepPoint> points;
-  PointBounds bounds;
+  PointSelectionBounds bounds;
   bounds.own_body_L.setEmpty();
   select_points(given, bounds, Eigen::Isometry3d::Identity(), 0.0, points);
   return points;
@@ -62,7 +62,7 @@ TEST(LoneReturns, GoAndTheirNeighboursStay) {
   std::vector<float> wall(40, 8.0f);
   wall[20] = 5.0f;
   std::vector<SweepPoint> points = ring(wall, 0.004);
-  EXPECT_EQ(lone.drop(kNoise, points), 1u);
+  EXPECT_EQ(lone.drop_isolated_returns(kNoise, points), 1u);
   ASSERT_EQ(points.size(), 39u);
   for (const SweepPoint& point : points) EXPECT_NEAR(point.range_m, 8.0f, 1e-3f);
 }
@@ -74,7 +74,7 @@ TEST(LoneReturns, ThinThingsAndEdgesStay) {
   scene[20] = scene[21] = 5.0f;
   for (std::size_t k = 30; k < 40; ++k) scene[k] = 20.0f;
   std::vector<SweepPoint> points = ring(scene, 0.004);
-  EXPECT_EQ(lone.drop(kNoise, points), 0u);
+  EXPECT_EQ(lone.drop_isolated_returns(kNoise, points), 0u);
   EXPECT_EQ(points.size(), 40u);
 }
 
@@ -86,10 +86,10 @@ TEST(LoneReturns, GroundAtAGrazingAngleStays) {
   for (int k = 0; k < 11; ++k) scene.push_back(static_cast<float>(0.5 / std::sin(0.08 - 0.003 * k)));
   std::vector<SweepPoint> points = ring(scene, 0.003);
   // the ends of the row have neighbours on one side only
-  EXPECT_LE(lone.drop(kNoise, points), 2u);
+  EXPECT_LE(lone.drop_isolated_returns(kNoise, points), 2u);
   scene[5] -= 1.5f;
   points = ring(scene, 0.003);
-  lone.drop(kNoise, points);
+  lone.drop_isolated_returns(kNoise, points);
   const std::vector<float> left = ranges(points);
   EXPECT_EQ(std::count(left.begin(), left.end(), std::round(1e3f * scene[5]) / 1e3f), 0);
 }
@@ -100,7 +100,7 @@ TEST(LoneReturns, AReturnAmidMissesGoes) {
   for (std::size_t k = 0; k < 20; ++k) sky[k] = 8.0f;
   sky[40] = 8.0f;
   std::vector<SweepPoint> points = ring(sky, 0.004);
-  EXPECT_EQ(lone.drop(kNoise, points), 1u);
+  EXPECT_EQ(lone.drop_isolated_returns(kNoise, points), 1u);
 }
 
 /// If successive returns are 45 degrees apart, they cannot confirm each other.
@@ -109,7 +109,7 @@ TEST(LoneReturns, ASweepWithoutNeighboursKeepsAll) {
   std::vector<float> scattered;
   for (int k = 0; k < 40; ++k) scattered.push_back(static_cast<float>(1.0 + 20.0 * test::uniform(k)));
   std::vector<SweepPoint> points = ring(scattered, 0.8);
-  EXPECT_EQ(lone.drop(kNoise, points), 0u);
+  EXPECT_EQ(lone.drop_isolated_returns(kNoise, points), 0u);
   EXPECT_EQ(points.size(), 40u);
 }
 
@@ -120,7 +120,7 @@ TEST(LoneReturns, OfATumbleInDustFewStayAndFewGoTooMany) {
     std::vector<float> moved_m;
     const std::vector<LidarPoint> given = dusty(test::room_tumble().sweeps[sweep], sweep, &moved_m);
     std::vector<SweepPoint> points = selected(given);
-    lone.drop(kNoise, points);
+    lone.drop_isolated_returns(kNoise, points);
     std::set<std::pair<std::uint16_t, float>> left;
     for (const SweepPoint& point : points) left.insert({point.ring, point.sweep_time_s});
     for (std::size_t k = 0; k < given.size(); ++k) {

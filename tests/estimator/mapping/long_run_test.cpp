@@ -33,13 +33,13 @@ TEST(LocalMapSoak, StaysFlatOverTenMinutes) {
   }
   EXPECT_GT(corridor.x_m(), 590.0);
   EXPECT_EQ(lost, 0u);
-  EXPECT_NEAR(report.pose.p_WA_m.x(), corridor.x_m(), 0.02 * corridor.x_m());
+  EXPECT_NEAR(report.pose.position_W_m.x(), corridor.x_m(), 0.02 * corridor.x_m());
   ASSERT_GT(points_early, 500u);
   // the size varies by the points added between two prunings
   EXPECT_LT(static_cast<double>(odometry.map().size()), 1.3 * static_cast<double>(points_early));
   EXPECT_LT(static_cast<double>(bytes_late), 2.1 * static_cast<double>(bytes_early));
   for (const MapPoint& point : odometry.map()) {
-    ASSERT_LT((point.position_W_m.cast<double>() - report.pose.p_WA_m).norm(), 1.2 * params.expert.map.radius_m);
+    ASSERT_LT((point.position_W_m.cast<double>() - report.pose.position_W_m).norm(), 1.2 * params.expert.map.radius_m);
   }
 }
 

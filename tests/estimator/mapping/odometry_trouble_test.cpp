@@ -28,7 +28,7 @@ TEST(LidarInertialOdometry, ReportsItsTroublesAndGoesOn) {
   const std::vector<LidarPoint>& points = test::room_tumble().sweeps[3];
 
   // the IMU samples end too early; the state is unchanged
-  EXPECT_EQ(add_sweep(odometry, 3, points, report).error_code, ErrorCode::too_few);
+  EXPECT_EQ(add_sweep(odometry, 3, points, report).error_code, ErrorCode::insufficient_data);
   feed_imu(odometry, 3);
   // invalid times
   EXPECT_EQ(odometry.add_sweep(2 * test::kSweep_ns, 3 * test::kSweep_ns, points, report).error_code,
@@ -41,7 +41,7 @@ TEST(LidarInertialOdometry, ReportsItsTroublesAndGoesOn) {
   const ImuSample& old = test::room_tumble().imu[5];
   EXPECT_EQ(odometry.add_imu(old, test::believe(old)).error_code, ErrorCode::time_order);
   ImuSample next = test::room_tumble().imu[40];
-  RateState other = test::believe(next);
+  AngularRateState other = test::believe(next);
   other.time_ns += 1;
   EXPECT_EQ(odometry.add_imu(next, other).error_code, ErrorCode::out_of_range);
   other = test::believe(next);
@@ -81,7 +81,7 @@ TEST_P(UselessSweep, KeepsTheInertialPriorAndSaysSo) {
     EXPECT_EQ(report.map_points_added, 0u);
     EXPECT_EQ(report.pose.time_ns, (i + 1) * test::kSweep_ns);
     ASSERT_EQ(report.trajectory.size(), static_cast<std::size_t>(kSamplesPerSweep));
-    EXPECT_TRUE(report.pose.p_WA_m.allFinite());
+    EXPECT_TRUE(report.pose.position_W_m.allFinite());
     EXPECT_LT(error_of(report.pose).m, 0.3) << "dead reckoning over 0.3 s";
     EXPECT_GT(std::sqrt(report.pose.covariance(0, 0)), i == 8 ? 0.01 : 0.02);
   }
@@ -115,7 +115,7 @@ INSTANTIATE_TEST_SUITE_P(Sweeps, UselessSweep,
                          testing::Values(BadSweep{"empty", ErrorCode::empty, nothing},
                                          BadSweep{"nan", ErrorCode::non_finite, all_nan},
                                          BadSweep{"equal_offsets", ErrorCode::degenerate, equal_offsets},
-                                         BadSweep{"covered", ErrorCode::too_few, covered},
+                                         BadSweep{"covered", ErrorCode::insufficient_data, covered},
                                          BadSweep{"a_handful", ErrorCode::none, a_handful}),
                          [](const auto& test) { return std::string(test.param.name); });
 
@@ -145,7 +145,7 @@ TEST(LidarInertialOdometry, RefusesAVelocityThatSaysNothing) {
 TEST(LidarInertialOdometry, MissingImuIsATroubleNotAGuess) {
   Odometry odometry(rig_params());
   Odometry::SweepReport report;
-  EXPECT_EQ(add_sweep(odometry, 0, test::room_tumble().sweeps[0], report).error_code, ErrorCode::too_few);
+  EXPECT_EQ(add_sweep(odometry, 0, test::room_tumble().sweeps[0], report).error_code, ErrorCode::insufficient_data);
   EXPECT_EQ(report.verdict, SweepVerdict::rejected);
   EXPECT_TRUE(odometry.map().empty());
 }

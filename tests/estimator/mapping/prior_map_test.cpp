@@ -55,7 +55,7 @@ test::Motion second_motion() {
 
 double error_in_map_m(const RoomRig& rig) {
   const double t = 1e-9 * static_cast<double>(rig.report.pose.time_ns);
-  return (rig.report.pose.p_WA_m - T_MW() * rig.motion.p_m(t)).norm();
+  return (rig.report.pose.position_W_m - T_MW() * rig.motion.p_m(t)).norm();
 }
 
 /// Runs until the run is localised, at most to sweep `last`, and returns the number of sweeps.
@@ -85,7 +85,7 @@ TEST(PriorMap, ARunIsLocalisedWithoutAPose) {
     // 16.8 is the 99.9 % quantile of chi-square with three degrees of freedom, doubled because the covariance omits map
     // errors that both runs share
     const double t = 1e-9 * static_cast<double>(rig.report.pose.time_ns);
-    const Eigen::Vector3d error = rig.report.pose.p_WA_m - T_MW() * rig.motion.p_m(t);
+    const Eigen::Vector3d error = rig.report.pose.position_W_m - T_MW() * rig.motion.p_m(t);
     const Eigen::Matrix3d covariance = rig.report.pose.covariance.topLeftCorner<3, 3>();
     EXPECT_LT(error.dot(covariance.inverse() * error), 2.0 * 16.8) << "sweep " << k;
   }
@@ -94,8 +94,8 @@ TEST(PriorMap, ARunIsLocalisedWithoutAPose) {
 TEST(PriorMap, AnApproximateOrAGivenPoseLimitsTheSearch) {
   for (const double error_m : {0.0, 1.5}) {
     RoomRig rig(true_params(), second_motion());
-    PriorMap map{.points = map_of_pillars(), .T_MI = T_MW() * rig.motion.pose(0.0)};
-    map.T_MI->translation() += error_m * Eigen::Vector3d(0.6, -0.8, 0.0);
+    PriorMap map{.points = map_of_pillars(), .T_prior_map_imu = T_MW() * rig.motion.pose(0.0)};
+    map.T_prior_map_imu->translation() += error_m * Eigen::Vector3d(0.6, -0.8, 0.0);
     map.sigma_m = error_m;
     map.sigma_rad = 0.1 * error_m;
     ASSERT_TRUE(rig.odometry.use_map(map).ok());
@@ -109,8 +109,8 @@ TEST(PriorMap, AnApproximateOrAGivenPoseLimitsTheSearch) {
 
 TEST(PriorMap, AWrongGivenPoseIsNotAccepted) {
   RoomRig rig(true_params(), second_motion());
-  PriorMap map{.points = map_of_pillars(), .T_MI = T_MW() * rig.motion.pose(0.0)};
-  map.T_MI->translation() += Eigen::Vector3d(6.0, 0.0, 0.0);
+  PriorMap map{.points = map_of_pillars(), .T_prior_map_imu = T_MW() * rig.motion.pose(0.0)};
+  map.T_prior_map_imu->translation() += Eigen::Vector3d(6.0, 0.0, 0.0);
   ASSERT_TRUE(rig.odometry.use_map(map).ok());
   run_until_localised(rig);
   EXPECT_EQ(rig.odometry.localised().error_code, ErrorCode::degenerate);
@@ -169,7 +169,7 @@ TEST(PriorMap, LaterSweepsDoNotChangeEarlierReportsAndACopyContinues) {
   for (int k = 8; k < kLocalised + 2; ++k) {
     rig.run(k, k + 1);
     other.run(k, k + 1);
-    ASSERT_EQ(rig.report.pose.p_WA_m, other.report.pose.p_WA_m) << "sweep " << k;
+    ASSERT_EQ(rig.report.pose.position_W_m, other.report.pose.position_W_m) << "sweep " << k;
     ASSERT_EQ(rig.report.in_prior_map, other.report.in_prior_map) << "sweep " << k;
   }
   EXPECT_TRUE(rig.report.in_prior_map);
@@ -189,7 +189,7 @@ TEST(PriorMap, PointsWithoutNormalsSuffice) {
 
 TEST(PriorMap, UnusableMapsAreRefused) {
   RoomRig rig(true_params());
-  EXPECT_EQ(rig.odometry.use_map({}).error_code, ErrorCode::too_few);
+  EXPECT_EQ(rig.odometry.use_map({}).error_code, ErrorCode::insufficient_data);
   PriorMap map{.points = map_of_pillars()};
   map.points[5].normal_W *= 2.0f;
   EXPECT_EQ(rig.odometry.use_map(map).error_code, ErrorCode::out_of_range);

@@ -60,10 +60,10 @@ struct Case {
     state.q_WI = so3::exp({0.3, -0.8, 1.1});
     state.v_WI_m_s = {1.5, 0.7, -2.0};
     prediction.prior.mean.calibration.gravity_W_m_s2 = {0.1, -0.2, -9.8};
-    boundary.state_estimate.weight = spread(scale, 0.3);
-    boundary.state_estimate.error = spread(0.5 * scale, 1.9);
+    boundary.state_estimate.prior_weight_covariance = spread(scale, 0.3);
+    boundary.state_estimate.state_error_covariance = spread(0.5 * scale, 1.9);
     within = spread(scale, 4.0).topLeftCorner<kMotionSize, kMotionSize>();
-    prediction.jacobian_boundary += 0.2 * spread(1.0, 2.2);
+    prediction.boundary_jacobian += 0.2 * spread(1.0, 2.2);
     prediction.noise = spread(scale, 5.1);
     prediction.noise.topLeftCorner<kMotionSize, kMotionSize>() += within;
   }
@@ -81,7 +81,7 @@ MotionState moved(const Case& c, TimeNs time_ns, const Registration::Vector& sta
   Registration::Estimate at = c.prediction.prior.mean;
   at.add(off);
   SweepTrajectory trajectory;
-  EXPECT_TRUE(trajectory.build(at.state, c.samples, kEnd_ns, at.calibration.gravity_W_m_s2, at.deficit_rad_s).ok());
+  EXPECT_TRUE(trajectory.build(at.state, c.samples, kEnd_ns, at.calibration.gravity_W_m_s2, at.saturation_deficit_rad_s).ok());
   return trajectory.state(seconds(time_ns - kStart_ns));
 }
 
@@ -118,11 +118,11 @@ Joint update_jointly(const Case& c, const Read& off, const Eigen::MatrixXd& R) {
   prior.block(kUnknowns, kUnknowns, kUnknowns, kUnknowns) = before;
   prior.bottomRightCorner(kMotionSize, kMotionSize) = c.within;
   errors = prior;
-  prior.topLeftCorner(kUnknowns, kUnknowns) = c.boundary.state_estimate.weight;
-  errors.topLeftCorner(kUnknowns, kUnknowns) = c.boundary.state_estimate.error;
+  prior.topLeftCorner(kUnknowns, kUnknowns) = c.boundary.state_estimate.prior_weight_covariance;
+  errors.topLeftCorner(kUnknowns, kUnknowns) = c.boundary.state_estimate.state_error_covariance;
   const auto read = [&](const Eigen::VectorXd& joint) {
     const Registration::Vector start =
-        c.prediction.jacobian_boundary * joint.head(kUnknowns) + joint.segment(kUnknowns, kUnknowns);
+        c.prediction.boundary_jacobian * joint.head(kUnknowns) + joint.segment(kUnknowns, kUnknowns);
     return off(start, joint.tail(kMotionSize));
   };
   const Eigen::VectorXd at = Eigen::VectorXd::Zero(all);
@@ -141,7 +141,7 @@ Joint update_jointly(const Case& c, const Read& off, const Eigen::MatrixXd& R) {
   out.errors = left * errors * left.transpose() + K * R * K.transpose();
   out.mean = K * residual;
   out.of_x = Eigen::MatrixXd::Zero(kUnknowns, all);
-  out.of_x.leftCols(kUnknowns) = c.prediction.jacobian_boundary;
+  out.of_x.leftCols(kUnknowns) = c.prediction.boundary_jacobian;
   out.of_x.middleCols(kUnknowns, kUnknowns).setIdentity();
   out.of_x.topRightCorner(kMotionSize, kMotionSize).setIdentity();
   return out;
@@ -151,17 +151,17 @@ Joint update_jointly(const Case& c, const Read& off, const Eigen::MatrixXd& R) {
 void expect_joint(Case& c, const OdometerReading& reading, const Read& off, const Eigen::MatrixXd& R, double scale) {
   const Joint joint = update_jointly(c, off, R);
   const Registration::Estimate before = c.prediction.prior.mean;
-  const Matrix last = c.boundary.state_estimate.weight;
+  const Matrix last = c.boundary.state_estimate.prior_weight_covariance;
   fuse_reading(reading, c.boundary, c.window, c.within, c.prediction);
-  c.prediction.compose(c.boundary.state_estimate);
+  c.prediction.compose_with_boundary(c.boundary.state_estimate);
   const double far = scale * scale;
   const Eigen::MatrixXd expected = joint.of_x * joint.covariance * joint.of_x.transpose();
   EXPECT_LT((c.prediction.prior.covariance - expected).cwiseAbs().maxCoeff(), 1e-4 * far);
   const Eigen::MatrixXd errors = joint.of_x * joint.errors * joint.of_x.transpose();
-  EXPECT_LT((c.prediction.errors - errors).cwiseAbs().maxCoeff(), 1e-4 * far);
+  EXPECT_LT((c.prediction.motion_error_covariance - errors).cwiseAbs().maxCoeff(), 1e-4 * far);
   // with the state at the boundary, which the window smooths by
   const Eigen::MatrixXd with_last = joint.of_x * joint.covariance.leftCols(kUnknowns);
-  EXPECT_LT((c.prediction.jacobian_boundary * last - with_last).cwiseAbs().maxCoeff(), 1e-4 * far);
+  EXPECT_LT((c.prediction.boundary_jacobian * last - with_last).cwiseAbs().maxCoeff(), 1e-4 * far);
   const Registration::Vector step = c.prediction.prior.mean.minus(before);
   EXPECT_LT((step - joint.of_x * joint.mean).cwiseAbs().maxCoeff(), 1e-3 * scale);
   EXPECT_GT(step.norm(), 0.1 * scale) << "else this asks nothing";
@@ -191,17 +191,17 @@ TEST(OdometerReading, OfAMotionIsTheJointUpdateByDifferences) {
     MotionReading reading;
     reading.from_ns = from_ns;
     reading.to_ns = to_ns;
-    reading.T_from_to = read_motion(c, from_ns, to_ns, Registration::Vector::Zero(), Eigen::VectorXd::Zero(9));
-    reading.T_from_to.linear() =
-        so3::exp(kScale * Eigen::Vector3d(1.0, 0.5, -1.5)).toRotationMatrix() * reading.T_from_to.linear();
-    reading.T_from_to.translation() += kScale * Eigen::Vector3d(-1.0, 0.3, 0.8);
+    reading.relative_pose = read_motion(c, from_ns, to_ns, Registration::Vector::Zero(), Eigen::VectorXd::Zero(9));
+    reading.relative_pose.linear() =
+        so3::exp(kScale * Eigen::Vector3d(1.0, 0.5, -1.5)).toRotationMatrix() * reading.relative_pose.linear();
+    reading.relative_pose.translation() += kScale * Eigen::Vector3d(-1.0, 0.3, 0.8);
     reading.covariance = spread(0.6 * kScale, 0.9).topLeftCorner<6, 6>();
     const Read off = [&](const Registration::Vector& start, const Eigen::VectorXd& noise) {
       const Eigen::Isometry3d expected = read_motion(c, from_ns, to_ns, start, noise);
       Eigen::VectorXd out(6);
-      out.head<3>() = expected.translation() - reading.T_from_to.translation();
+      out.head<3>() = expected.translation() - reading.relative_pose.translation();
       out.tail<3>() =
-          so3::log(Eigen::Quaterniond(Eigen::Matrix3d(expected.linear() * reading.T_from_to.linear().transpose())));
+          so3::logarithm(Eigen::Quaterniond(Eigen::Matrix3d(expected.linear() * reading.relative_pose.linear().transpose())));
       return out;
     };
     expect_joint(c, reading, off, reading.covariance, kScale);
@@ -215,16 +215,16 @@ TEST(OdometerReading, OfAVelocityAtTheStartIsTheMeanByTheVariances) {
   c.prediction = Prediction();
   c.prediction.prior.mean.state.time_ns = kStart_ns;
   c.boundary.state_estimate = StateEstimate();
-  u::variances(c.boundary.state_estimate.weight, u::velocity).setConstant(0.09);
-  u::variances(c.boundary.state_estimate.error, u::velocity).setConstant(0.04);
+  u::variances(c.boundary.state_estimate.prior_weight_covariance, u::velocity).setConstant(0.09);
+  u::variances(c.boundary.state_estimate.state_error_covariance, u::velocity).setConstant(0.04);
   c.within.setZero();
   fuse_reading(VelocityReading{kStart_ns, {1.0, 0.0, -2.0}, 0.1}, c.boundary, c.window, c.within, c.prediction);
-  c.prediction.compose(c.boundary.state_estimate);
+  c.prediction.compose_with_boundary(c.boundary.state_estimate);
   const double gain = 0.09 / (0.09 + 0.01);
   EXPECT_LT((c.prediction.prior.mean.state.v_WI_m_s - gain * Eigen::Vector3d(1.0, 0.0, -2.0)).norm(), 1e-12);
   const Eigen::Vector3d weight(u::variances(c.prediction.prior.covariance, u::velocity));
   EXPECT_LT((weight - Eigen::Vector3d::Constant(0.09 * 0.01 / 0.1)).norm(), 1e-12);
-  const Eigen::Vector3d error(u::variances(c.prediction.errors, u::velocity));
+  const Eigen::Vector3d error(u::variances(c.prediction.motion_error_covariance, u::velocity));
   EXPECT_LT((error - Eigen::Vector3d::Constant(0.01 * 0.04 + 0.81 * 0.01)).norm(), 1e-12);
   EXPECT_EQ(u::variances(c.prediction.prior.covariance, u::position).maxCoeff(), 0.0) << "as sure as it was";
 }
@@ -241,7 +241,7 @@ TEST(OdometerReading, ThatKnowsNothingOrIsOfAnotherTimeChangesNothing) {
                  other.prediction);
     EXPECT_EQ(other.prediction.prior.mean.state.v_WI_m_s, same.prediction.prior.mean.state.v_WI_m_s);
     EXPECT_EQ(other.prediction.noise, same.prediction.noise);
-    EXPECT_EQ(other.prediction.jacobian_boundary, same.prediction.jacobian_boundary);
+    EXPECT_EQ(other.prediction.boundary_jacobian, same.prediction.boundary_jacobian);
   }
   fuse_reading(VelocityReading{kEnd_ns + 19'000'000, {5.0, 5.0, 5.0}, 0.1}, c.boundary, c.window, c.within,
                c.prediction);
@@ -253,21 +253,21 @@ TEST(OdometerReading, ThatKnowsNothingOrIsOfAnotherTimeChangesNothing) {
 TEST(OdometerReading, OfAMotionFindsWhatARailHid) {
   Case c(1e-3);
   for (MotionSample& sample : c.samples) sample.clipped_axes = 1;
-  u::variances(c.boundary.state_estimate.weight, u::deficit).setConstant(25.0);
-  c.prediction.jacobian_boundary.setIdentity();
+  u::variances(c.boundary.state_estimate.prior_weight_covariance, u::deficit).setConstant(25.0);
+  c.prediction.boundary_jacobian.setIdentity();
   MotionReading reading;
   reading.from_ns = kStart_ns;
   reading.to_ns = kEnd_ns;
   Registration::Vector hidden = Registration::Vector::Zero();
-  for (int knot = 0; knot < SweepTrajectory::kKnots; ++knot) hidden[u::deficit_at(0, knot)] = 5.0;
-  reading.T_from_to = read_motion(c, kStart_ns, kEnd_ns, hidden, Eigen::VectorXd::Zero(9));
+  for (int knot = 0; knot < SweepTrajectory::kKnots; ++knot) hidden[u::saturation_deficit_index(0, knot)] = 5.0;
+  reading.relative_pose = read_motion(c, kStart_ns, kEnd_ns, hidden, Eigen::VectorXd::Zero(9));
   reading.covariance.diagonal().setConstant(1e-6);
   fuse_reading(reading, c.boundary, c.window, c.within, c.prediction);
   const Registration::Vector none = Registration::Vector::Zero();
   const Eigen::Isometry3d found = read_motion(c, kStart_ns, kEnd_ns, none, Eigen::VectorXd::Zero(9));
-  const Eigen::Isometry3d off = found.inverse() * reading.T_from_to;
+  const Eigen::Isometry3d off = found.inverse() * reading.relative_pose;
   EXPECT_LT(Eigen::AngleAxisd(off.linear()).angle(), 0.01);
-  EXPECT_GT(c.prediction.prior.mean.deficit_rad_s.row(0).mean(), 4.0);
+  EXPECT_GT(c.prediction.prior.mean.saturation_deficit_rad_s.row(0).mean(), 4.0);
 }
 
 TEST(OdometerReading, IsCheckedByItself) {
@@ -284,10 +284,10 @@ TEST(OdometerReading, IsCheckedByItself) {
     return check_reading(reading);
   };
   EXPECT_EQ(refusal([](MotionReading& r) { r.to_ns = 0; }).error_code, ErrorCode::time_order);
-  EXPECT_EQ(refusal([&](MotionReading& r) { r.T_from_to.translation().y() = nan; }).error_code, ErrorCode::non_finite);
+  EXPECT_EQ(refusal([&](MotionReading& r) { r.relative_pose.translation().y() = nan; }).error_code, ErrorCode::non_finite);
   EXPECT_EQ(refusal([&](MotionReading& r) { r.covariance(0, 4) = nan; }).error_code, ErrorCode::non_finite);
-  EXPECT_STREQ(refusal([](MotionReading& r) { r.T_from_to.linear() *= 1.001; }).field, "T_from_to");
-  EXPECT_STREQ(refusal([](MotionReading& r) { r.T_from_to.linear() *= -1.0; }).field, "T_from_to");
+  EXPECT_STREQ(refusal([](MotionReading& r) { r.relative_pose.linear() *= 1.001; }).field, "T_from_to");
+  EXPECT_STREQ(refusal([](MotionReading& r) { r.relative_pose.linear() *= -1.0; }).field, "T_from_to");
   EXPECT_STREQ(refusal([](MotionReading& r) { r.covariance(2, 2) = 0.0; }).field, "covariance");
   EXPECT_STREQ(refusal([](MotionReading& r) { r.covariance(1, 0) = r.covariance(0, 1) = 1.5; }).field, "covariance");
 }

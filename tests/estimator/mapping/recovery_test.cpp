@@ -68,7 +68,7 @@ TEST(Calibration, FindsMountingAndClock) {
   Odometry odometry(params);
   run_miscalibrated(odometry, turning(), 40);
   // the first map was built with the wrong calibration; its calibration result starts a second map
-  const auto learnt_sigma = odometry.calibration_weighting_covariance().diagonal().cwiseSqrt().eval();
+  const auto learnt_sigma = odometry.calibration_prior_covariance().diagonal().cwiseSqrt().eval();
   params.T_IL = odometry.calibration().T_IL;
   params.time_offset_s = odometry.calibration().time_offset_s;
   params.mount_sigma_rad = learnt_sigma.head<3>().maxCoeff();
@@ -76,7 +76,7 @@ TEST(Calibration, FindsMountingAndClock) {
   params.time_offset_sigma_s = learnt_sigma[6];
   odometry = Odometry(params);
   run_miscalibrated(odometry, turning(), 40);
-  SweepCalibration truth;
+  LidarImuCalibration truth;
   truth.T_IL = true_params().T_IL;
   truth.time_offset_s = 0.004;
   const auto error = odometry.calibration().minus(truth);
@@ -90,7 +90,7 @@ TEST(Calibration, FindsMountingAndClock) {
 
 TEST(Calibration, IsLeftAloneWhereItIsExact) {
   Odometry odometry(true_params());
-  const SweepCalibration before = odometry.calibration();
+  const LidarImuCalibration before = odometry.calibration();
   run_miscalibrated(odometry, slower(), 6);
   EXPECT_EQ(odometry.calibration().minus(before).head<7>().norm(), 0.0);
   EXPECT_EQ(odometry.calibration_covariance().norm(), 0.0);
@@ -166,11 +166,11 @@ TEST(Equivariance, ToARotatedMounting) {
     ASSERT_TRUE(b.add_sweep(k * test::kSweep_ns, (k + 1) * test::kSweep_ns, points, rb).ok());
   }
   // yaw is zero at the start in both runs: the heading of the world differs by the effect of levelling on the mounting
-  const Eigen::Quaterniond world = rb.pose.q_WA * Eigen::Quaterniond(turn) * ra.pose.q_WA.conjugate();
+  const Eigen::Quaterniond world = rb.pose.orientation_W * Eigen::Quaterniond(turn) * ra.pose.orientation_W.conjugate();
   EXPECT_LT(std::abs(world.x()) + std::abs(world.y()), 2e-3);
   // the selection of points per voxel depends on the heading: registration noise
-  EXPECT_LT((world * ra.pose.p_WA_m - rb.pose.p_WA_m).norm(), 0.03);
-  EXPECT_GT((ra.pose.p_WA_m).norm(), 0.3);  // the sensor moved
+  EXPECT_LT((world * ra.pose.position_W_m - rb.pose.position_W_m).norm(), 0.03);
+  EXPECT_GT((ra.pose.position_W_m).norm(), 0.3);  // the sensor moved
 }
 
 /// Returns the lidar points on one side of the room only, by their true positions.
@@ -222,7 +222,7 @@ TEST(Recovery, SaysAndSurvivesAGapOfASecondInTheImuAlone) {
   rig.run(0, 20);
   const double sigma_before = std::sqrt(rig.report.pose.covariance(0, 0));
   for (int k = 20; k < 30; ++k) {
-    EXPECT_EQ(rig.sweep(k, rig.points(k)).error_code, ErrorCode::too_few);
+    EXPECT_EQ(rig.sweep(k, rig.points(k)).error_code, ErrorCode::insufficient_data);
     EXPECT_EQ(rig.report.verdict, SweepVerdict::rejected);
     EXPECT_TRUE(rig.report.trajectory.empty());  // no pose is reported
   }

@@ -42,7 +42,7 @@ class MovingSweep : public testing::Test {
     // one deficit over the sweep: its knots are correlated
     for (int a = 0; a < SweepTrajectory::kKnots; ++a) {
       for (int b = 0; b < SweepTrajectory::kKnots; ++b) {
-        prior.covariance.block<3, 3>(Registration::kDeficitStart + 3 * a, Registration::kDeficitStart + 3 * b) =
+        prior.covariance.block<3, 3>(Registration::kFirstDeficitUnknown + 3 * a, Registration::kFirstDeficitUnknown + 3 * b) =
             deficit_sigma * deficit_sigma * std::pow(0.9, std::abs(a - b)) * Eigen::Matrix3d::Identity();
       }
     }
@@ -54,7 +54,7 @@ class MovingSweep : public testing::Test {
     ASSERT_TRUE(registration.align(prior, samples, 1'100'000'000, points, map_of(room), trajectory_, result_).ok());
     const MotionState end = trajectory_.state(0.1);
     end_error_m_ = (end.p_WI_m - motion.p_m(1.1)).norm();
-    end_error_rad_ = so3::log(end.q_WI * motion.q(1.1).conjugate()).norm();
+    end_error_rad_ = so3::logarithm(end.q_WI * motion.q(1.1).conjugate()).norm();
     velocity_error_m_s_ = (result_.mean.state.v_WI_m_s - motion.v_m_s(1.0)).norm();
   }
   SweepTrajectory trajectory_;
@@ -77,7 +77,7 @@ TEST_F(MovingSweep, FindsTheDeficitOfClippedAxes) {
   ASSERT_EQ(result_.verdict, RegistrationVerdict::converged);
   ASSERT_GT(deficit_, 1.0);         // one axis is 2 to 4 rad/s above the limit
   EXPECT_LT(end_error_rad_, 0.02);  // measured 0.011; the test below is without the deficit
-  const SweepUnknowns::Deficit& deficit = result_.mean.deficit_rad_s;
+  const RegistrationUnknowns::Deficit& deficit = result_.mean.saturation_deficit_rad_s;
   EXPECT_NEAR(deficit.sum() / SweepTrajectory::kKnots, deficit_, 0.2);
   // the surfaces determine the total deficit of the sweep, whatever the single knots are
   const int axis = deficit.rowwise().sum().cwiseAbs().maxCoeff() == std::abs(deficit.row(0).sum()) ? 0 : 2;
@@ -85,7 +85,7 @@ TEST_F(MovingSweep, FindsTheDeficitOfClippedAxes) {
   for (int a = 0; a < SweepTrajectory::kKnots; ++a) {
     for (int b = 0; b < SweepTrajectory::kKnots; ++b) {
       variance +=
-          result_.covariance(Registration::kDeficitStart + 3 * a + axis, Registration::kDeficitStart + 3 * b + axis) /
+          result_.covariance(Registration::kFirstDeficitUnknown + 3 * a + axis, Registration::kFirstDeficitUnknown + 3 * b + axis) /
           9.0;
     }
   }

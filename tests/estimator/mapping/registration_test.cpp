@@ -57,12 +57,12 @@ TEST(Registration, DerivativesMatchDifferences) {
   start.time_ns = 1'000'000'000;
   start.q_WI = so3::exp({0.3, -0.2, 0.9});
   start.v_WI_m_s = Eigen::Vector3d(2, -1, 0.5);
-  SweepUnknowns::Deficit deficit;
+  RegistrationUnknowns::Deficit deficit;
   deficit << 0.4, 0.9, -0.3, 0.0, 0.0, 0.0, -0.2, 0.1, 0.5;
   SweepPoint measured;
   measured.point_L_m = Eigen::Vector3f(7.0f, -3.0f, 2.0f);
   measured.t_s = 0.073f;
-  SweepCalibration nominal;
+  LidarImuCalibration nominal;
   nominal.T_IL.linear() = so3::exp({0.2, -0.1, -1.4}).toRotationMatrix();
   nominal.T_IL.translation() = Eigen::Vector3d(0.02, 0.09, 0.04);
   PlaneFit plane;
@@ -73,13 +73,13 @@ TEST(Registration, DerivativesMatchDifferences) {
     moved.p_WI_m += d.segment<3>(0);
     moved.q_WI = so3::exp(d.segment<3>(3)) * moved.q_WI;
     moved.v_WI_m_s += d.segment<3>(6);
-    SweepCalibration calibration = nominal;
-    calibration.add(d.tail<SweepCalibration::kErrorCount>());
+    LidarImuCalibration calibration = nominal;
+    calibration.add(d.tail<LidarImuCalibration::kErrorCount>());
     // in doubles, because the floats of a SweepPoint would hide steps this small
     const Eigen::Vector3d x_I = calibration.T_IL * measured.point_L_m.cast<double>();
     SweepTrajectory trajectory;
-    const SweepUnknowns::Deficit moved_deficit =
-        deficit + d.segment<9>(Registration::kDeficitStart).reshaped(3, SweepTrajectory::kKnots);
+    const RegistrationUnknowns::Deficit moved_deficit =
+        deficit + d.segment<9>(Registration::kFirstDeficitUnknown).reshaped(3, SweepTrajectory::kKnots);
     EXPECT_TRUE(trajectory.build(moved, samples, 1'100'000'000, calibration.gravity_W_m_s2, moved_deficit).ok());
     std::size_t hint = 0;
     const double t = static_cast<double>(measured.t_s) + calibration.time_offset_s;
@@ -87,7 +87,7 @@ TEST(Registration, DerivativesMatchDifferences) {
     SweepPoint point = measured;
     point.x_I_m = x_I.cast<float>();
     Registration::residual(trajectory, calibration, point, plane, hint, derivative);
-    return plane.normal_W.cast<double>().dot(trajectory.common_position_m(t) + now.preintegrated_position_m +
+    return plane.normal_W.cast<double>().dot(trajectory.gravity_free_position_m(t) + now.preintegrated_position_m +
                                              now.q_WI * x_I);
   };
   Registration::Vector analytic, unused;
@@ -99,7 +99,7 @@ TEST(Registration, DerivativesMatchDifferences) {
     const double numeric = (residual(step, unused) - residual(-step, unused)) / (2.0 * h);
     // floats of the point and the plane over the lever: 1e-6 of it. Deficit: its effect within a sample is of first
     // order, 1 %
-    const bool of_deficit = i >= Registration::kDeficitStart && i < Registration::kCalibrationStart;
+    const bool of_deficit = i >= Registration::kFirstDeficitUnknown && i < Registration::kFirstCalibrationUnknown;
     const double tolerance = (of_deficit ? 0.01 : 1e-5) * std::abs(numeric) + 1e-5;
     EXPECT_NEAR(analytic[i], numeric, tolerance) << "unknown " << i;
     // negative control: the same comparison rejects a derivative that is wrong by a twentieth
@@ -119,7 +119,7 @@ TEST(Registration, FindsAKnownPoseInARoom) {
   ASSERT_EQ(result.verdict, RegistrationVerdict::converged);
   // surfaces without noise; planes on pillars are curved within a neighbourhood; measured 0.6 mm, 5e-5 rad
   EXPECT_LT(result.mean.state.p_WI_m.norm(), 0.004);
-  EXPECT_LT(so3::log(result.mean.state.q_WI).norm(), 5e-4);
+  EXPECT_LT(so3::logarithm(result.mean.state.q_WI).norm(), 5e-4);
   EXPECT_GT(static_cast<double>(result.inliers) / static_cast<double>(result.points), 0.8);
   EXPECT_GT(result.eigenvalues[0] / result.eigenvalues[5], 0.02);
 }
@@ -134,7 +134,7 @@ TEST(Registration, NamesTheFreeDirectionsOfAFloor) {
   EXPECT_NEAR(result.mean.state.p_WI_m.z(), 0.0, 0.005);
   EXPECT_NEAR(result.mean.state.p_WI_m.x(), 0.08, 0.01);
   EXPECT_NEAR(result.mean.state.p_WI_m.y(), -0.06, 0.01);
-  const Eigen::Vector3d turned = so3::log(result.mean.state.q_WI);
+  const Eigen::Vector3d turned = so3::logarithm(result.mean.state.q_WI);
   EXPECT_NEAR(turned.x(), 0.0, 1e-3);
   EXPECT_NEAR(turned.y(), 0.0, 1e-3);
   EXPECT_NEAR(turned.z(), 0.03, 2e-3);
@@ -188,12 +188,12 @@ TEST(Registration, TakesNoNoiseOfNormalsForInformation) {
   // 3.3 cm
   const double along = 1.0 / corridor.covariance(0, 0) - 1.0 / (0.5 * 0.5);
   EXPECT_GT(along, 500.0);
-  EXPECT_NEAR(corridor.normal_noise_information(0, 0) / along, 1.0, 0.2);
+  EXPECT_NEAR(corridor.surface_normal_noise_information(0, 0) / along, 1.0, 0.2);
   EXPECT_GT(corridor.least_constrained_sigma_m, 0.1);
   const Registration::Result corner = align(test::Room::corner(), prior, {}, kNoise_m);
   ASSERT_EQ(corner.verdict, RegistrationVerdict::converged);
   // and where surfaces constrain all six directions, nearly none: 610 of 33 800
-  EXPECT_LT(corner.normal_noise_information(0, 0) * corner.covariance(0, 0), 0.05);
+  EXPECT_LT(corner.surface_normal_noise_information(0, 0) * corner.covariance(0, 0), 0.05);
   EXPECT_LT(corner.least_constrained_sigma_m, 0.05);
 }
 
@@ -203,13 +203,13 @@ TEST(Registration, TakesNoNoiseOfNormalsForInformation) {
 TEST(Registration, TakesNoNoiseOfNormalsForInformationOfAMounting) {
   constexpr double kNoise_m = 0.02;
   Registration::Prior prior = loose_prior(0.5, 0.05);
-  prior.covariance.bottomRightCorner<SweepCalibration::kErrorCount, SweepCalibration::kErrorCount>()
+  prior.covariance.bottomRightCorner<LidarImuCalibration::kErrorCount, LidarImuCalibration::kErrorCount>()
       .topLeftCorner<6, 6>()
       .setIdentity();
-  prior.covariance.bottomRightCorner<SweepCalibration::kErrorCount, SweepCalibration::kErrorCount>() *= 0.01 * 0.01;
+  prior.covariance.bottomRightCorner<LidarImuCalibration::kErrorCount, LidarImuCalibration::kErrorCount>() *= 0.01 * 0.01;
   const Registration::Result corridor = align(test::Room::corridor(), prior, {}, kNoise_m);
   ASSERT_EQ(corridor.verdict, RegistrationVerdict::converged);
-  const Registration::Matrix& B = corridor.normal_noise_information;
+  const Registration::Matrix& B = corridor.surface_normal_noise_information;
   const Eigen::Matrix3d R = corridor.mean.state.q_WI.toRotationMatrix();
   const Eigen::Vector3d lever_m = corridor.mean.calibration.T_IL.translation();
   for (int axis = 0; axis < 3; ++axis) {
@@ -218,7 +218,7 @@ TEST(Registration, TakesNoNoiseOfNormalsForInformationOfAMounting) {
     unseen.segment<3>(0) = R * turned.cross(lever_m);
     unseen.segment<3>(3) = -(R * turned);
     const double of_motion = unseen.dot(B * unseen);
-    unseen.segment<3>(Registration::kCalibrationStart) = turned;
+    unseen.segment<3>(Registration::kFirstCalibrationUnknown) = turned;
     EXPECT_GT(of_motion, 100.0) << axis;
     // the attitude in a sweep at rest varies in the last digits
     EXPECT_LT(std::abs(unseen.dot(B * unseen)), 1e-3 * of_motion) << axis;
@@ -232,7 +232,7 @@ TEST(Registration, FindsAllSixInACorner) {
   const Registration::Result result = align(test::Room::corner(), prior);
   ASSERT_EQ(result.verdict, RegistrationVerdict::converged);
   EXPECT_LT(result.mean.state.p_WI_m.norm(), 0.004);
-  EXPECT_LT(so3::log(result.mean.state.q_WI).norm(), 5e-4);
+  EXPECT_LT(so3::logarithm(result.mean.state.q_WI).norm(), 5e-4);
 }
 
 TEST(Registration, NeverTakesNoMatchesForSuccess) {
@@ -244,7 +244,7 @@ TEST(Registration, NeverTakesNoMatchesForSuccess) {
   // an empty map, then a map out of reach
   VoxelMap map({0.5, 0.1});
   ASSERT_TRUE(registration.align(prior, still_samples(), test::kSweep_ns, points, map, trajectory, result).ok());
-  EXPECT_EQ(result.verdict, RegistrationVerdict::too_few);
+  EXPECT_EQ(result.verdict, RegistrationVerdict::too_few_matches);
   EXPECT_EQ(result.matches, 0u);
   EXPECT_EQ(result.mean.state.p_WI_m, prior.mean.state.p_WI_m);
   for (int i = 0; i < 1000; ++i) {
@@ -252,9 +252,9 @@ TEST(Registration, NeverTakesNoMatchesForSuccess) {
     map.insert({500.0f + 0.1f * column, 0.1f * row, 0.0f}, 0.02f, 0);
   }
   ASSERT_TRUE(registration.align(prior, still_samples(), test::kSweep_ns, points, map, trajectory, result).ok());
-  EXPECT_EQ(result.verdict, RegistrationVerdict::too_few);
+  EXPECT_EQ(result.verdict, RegistrationVerdict::too_few_matches);
   ASSERT_TRUE(registration.align(prior, still_samples(), test::kSweep_ns, {}, map, trajectory, result).ok());
-  EXPECT_EQ(result.verdict, RegistrationVerdict::too_few);
+  EXPECT_EQ(result.verdict, RegistrationVerdict::too_few_matches);
 }
 
 /// Tests a sweep that overlaps little with the map: some sixty points.
@@ -283,16 +283,16 @@ TEST(Registration, BelievesFewMatchesWhereThePriorExpectsThem) {
   ASSERT_EQ(result.verdict, RegistrationVerdict::converged);
   EXPECT_LT(result.mean.state.p_WI_m.norm(), 0.3 * prior.mean.state.p_WI_m.norm());
   // fewer than enough with the default number
-  EXPECT_EQ(align_few(prior, 1000).verdict, RegistrationVerdict::too_few);
+  EXPECT_EQ(align_few(prior, 1000).verdict, RegistrationVerdict::too_few_matches);
   EXPECT_EQ(align_few(prior, Registration::Params{}.expert.agreeing_matches_needed).verdict,
-            RegistrationVerdict::too_few);
+            RegistrationVerdict::too_few_matches);
 }
 
 TEST(Registration, BelievesNoFewMatchesWhereThePriorExpectsNone) {
   Registration::Prior prior = loose_prior(0.05, 0.03);  // with an error of seven standard deviations
   prior.mean.state.p_WI_m = Eigen::Vector3d(0.25, -0.2, 0.15);
   const Registration::Result result = align_few(prior, 30);
-  EXPECT_EQ(result.verdict, RegistrationVerdict::too_few);
+  EXPECT_EQ(result.verdict, RegistrationVerdict::too_few_matches);
   EXPECT_EQ(result.mean.state.p_WI_m, prior.mean.state.p_WI_m);
 }
 

@@ -114,7 +114,7 @@ TEST(Relocalised, ACopyContinuesWithTheSameBits) {
     ASSERT_TRUE(one->sweep(kSeesAgain + 1, of_no_room(*one, kSeesAgain + 1)).ok());
     EXPECT_EQ(one->report.verdict, SweepVerdict::rejected);
   }
-  EXPECT_EQ(rig.report.pose.p_WA_m, again.report.pose.p_WA_m);
+  EXPECT_EQ(rig.report.pose.position_W_m, again.report.pose.position_W_m);
   EXPECT_EQ(rig.report.pose.covariance, again.report.pose.covariance);
   EXPECT_EQ(rig.odometry.map().size(), again.odometry.map().size());
 }
@@ -132,8 +132,8 @@ TEST(Relocalised, ADoubtedPlaceWithoutASecondOpinionIsBorneOutOrLost) {
   RoomRig rig(true_params());
   find_again(rig, kElsewhere_m);
   ASSERT_TRUE(rig.report.relocalisation_unconfirmed);
-  ASSERT_TRUE(impl_of(rig.odometry).other.has_value());
-  impl_of(rig.odometry).other.reset();
+  ASSERT_TRUE(impl_of(rig.odometry).alternative.has_value());
+  impl_of(rig.odometry).alternative.reset();
   RoomRig agrees(true_params());
   agrees.odometry = rig.odometry;
   for (const bool relocalisation_unconfirmed : {true, false}) {
@@ -168,7 +168,7 @@ TEST(Relocalised, PruningWaitsUntilTheRelocalisationIsConfirmed) {
   find_again(rig, kElsewhere_m);
   ASSERT_TRUE(rig.report.relocalisation_unconfirmed);
   const std::size_t with_it = rig.odometry.map().size();
-  const std::uint32_t inserted_from = impl_of(rig.odometry).other->inserted_from;
+  const std::uint32_t inserted_from = impl_of(rig.odometry).alternative->first_inserted_sweep;
 
   // nothing is pruned during an unconfirmed relocalisation, because its points may be removed
   impl_of(rig.odometry).params = keeps_little();
@@ -190,7 +190,7 @@ TEST(Relocalised, PruningWaitsUntilTheRelocalisationIsConfirmed) {
     ASSERT_EQ(contradicts.sweep(k, {}).error_code, ErrorCode::empty);
   }
   const LidarInertialOdometry::Impl& last = impl_of(contradicts.odometry);
-  EXPECT_TRUE(last.other.has_value());
+  EXPECT_TRUE(last.alternative.has_value());
   EXPECT_LT(last.map.sweeps(), inserted_from);
 }
 

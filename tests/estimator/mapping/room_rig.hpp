@@ -34,7 +34,7 @@ struct RoomRig {
 
   void feed_imu(int sweep, const Eigen::Vector3d& rate_error = Eigen::Vector3d::Zero()) {
     for (int k = sweep * kSamplesPerSweep; k < (sweep + 1) * kSamplesPerSweep; ++k) {
-      RateState rate = believe(imu[static_cast<std::size_t>(k)]);
+      AngularRateState rate = believe(imu[static_cast<std::size_t>(k)]);
       rate.w_WI_I_rad_s += rate_error;
       ASSERT_TRUE(odometry.add_imu(imu[static_cast<std::size_t>(k)], rate).ok());
     }
@@ -52,7 +52,7 @@ struct RoomRig {
     }
   }
   double error_m() const {
-    return (report.pose.p_WA_m - motion.p_m(1e-9 * static_cast<double>(report.pose.time_ns))).norm();
+    return (report.pose.position_W_m - motion.p_m(1e-9 * static_cast<double>(report.pose.time_ns))).norm();
   }
 
   LidarInertialOdometry odometry;

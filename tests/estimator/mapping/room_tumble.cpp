@@ -31,8 +31,8 @@ const RoomTumble& room_tumble() {
   return data;
 }
 
-RateState clipped_rate(const ImuSample& sample, double rail_rad_s) {
-  RateState rate = believe(sample);
+AngularRateState clipped_rate(const ImuSample& sample, double rail_rad_s) {
+  AngularRateState rate = believe(sample);
   for (int axis = 0; axis < 3; ++axis) {
     double& w = rate.w_WI_I_rad_s[axis];
     if (std::abs(w) < rail_rad_s) continue;
@@ -56,8 +56,8 @@ Status add_sweep(Odometry& odometry, int sweep, std::span<const LidarPoint> poin
 PoseError error_of(const PoseState& pose) {
   const double t = 1e-9 * static_cast<double>(pose.time_ns);
   const Motion& motion = room_tumble().motion;
-  return {(pose.p_WA_m - motion.p_m(t)).norm(), so3::log(pose.q_WA * motion.q(t).conjugate()).norm(),
-          (pose.v_WA_m_s - motion.v_m_s(t)).norm()};
+  return {(pose.position_W_m - motion.p_m(t)).norm(), so3::logarithm(pose.orientation_W * motion.q(t).conjugate()).norm(),
+          (pose.velocity_W_m_s - motion.v_m_s(t)).norm()};
 }
 
 std::vector<Odometry::SweepReport> run(Odometry& odometry, int from, int to, double rail_rad_s) {
@@ -76,8 +76,8 @@ bool same(const Odometry::SweepReport& a, const Odometry::SweepReport& b) {
     return false;
   for (std::size_t i = 0; i < a.trajectory.size(); ++i) {
     const PoseState &p = a.trajectory[i], &q = b.trajectory[i];
-    if (p.time_ns != q.time_ns || p.p_WA_m != q.p_WA_m || p.q_WA.coeffs() != q.q_WA.coeffs() ||
-        p.v_WA_m_s != q.v_WA_m_s || p.covariance != q.covariance) {
+    if (p.time_ns != q.time_ns || p.position_W_m != q.position_W_m || p.orientation_W.coeffs() != q.orientation_W.coeffs() ||
+        p.velocity_W_m_s != q.velocity_W_m_s || p.covariance != q.covariance) {
       return false;
     }
   }

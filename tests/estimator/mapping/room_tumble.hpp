@@ -21,7 +21,7 @@ struct RoomTumble {
 const RoomTumble& room_tumble();
 
 /// Returns the rate of a method that accepts the readings of a saturated gyro.
-RateState clipped_rate(const ImuSample& sample, double rail_rad_s);
+AngularRateState clipped_rate(const ImuSample& sample, double rail_rad_s);
 
 /// Adds the IMU samples of one sweep.
 void feed_imu(LidarInertialOdometry& odometry, int sweep, double rail_rad_s = 1e9);

@@ -36,18 +36,18 @@ std::vector<MotionSample> pushed() {
 SweepTrajectory along(const StateEstimate& state_estimate, const std::vector<MotionSample>& samples, TimeNs end_ns) {
   SweepTrajectory trajectory;
   const Registration::Estimate& mean = state_estimate.mean;
-  EXPECT_TRUE(trajectory.build(mean.state, samples, end_ns, mean.calibration.gravity_W_m_s2, mean.deficit_rad_s).ok());
+  EXPECT_TRUE(trajectory.build(mean.state, samples, end_ns, mean.calibration.gravity_W_m_s2, mean.saturation_deficit_rad_s).ok());
   return trajectory;
 }
 
 StateEstimate uncertain() {
   StateEstimate state_estimate;
   state_estimate.mean.state.v_WI_m_s = {1.0, 2.0, 3.0};
-  u::variances(state_estimate.weight, u::position).setConstant(0.01);
-  u::variances(state_estimate.weight, u::attitude).setConstant(0.04);
-  u::variances(state_estimate.weight, u::velocity).setConstant(0.09);
-  u::variances(state_estimate.weight, u::gravity).setConstant(0.16);
-  state_estimate.error = 4.0 * state_estimate.weight;
+  u::variances(state_estimate.prior_weight_covariance, u::position).setConstant(0.01);
+  u::variances(state_estimate.prior_weight_covariance, u::attitude).setConstant(0.04);
+  u::variances(state_estimate.prior_weight_covariance, u::velocity).setConstant(0.09);
+  u::variances(state_estimate.prior_weight_covariance, u::gravity).setConstant(0.16);
+  state_estimate.state_error_covariance = 4.0 * state_estimate.prior_weight_covariance;
   return state_estimate;
 }
 
@@ -67,11 +67,11 @@ TEST(Unknowns, PoseAndMountingAreThoseOfTheWholeProduct) {
   Matrix errors = root * root.transpose();
   make_symmetric(errors);
   const Matrix whole = F * errors * F.transpose(), part = propagate_pose_and_mounting(F, errors);
-  EXPECT_EQ(u::block(part, u::pose), u::block(whole, u::pose));
-  EXPECT_EQ(u::block(part, u::pose, u::mounting), u::block(whole, u::pose, u::mounting));
-  EXPECT_EQ(u::block(part, u::mounting, u::pose), u::block(whole, u::mounting, u::pose));
-  EXPECT_EQ(u::block(part, u::mounting), u::block(whole, u::mounting));
-  EXPECT_NE(u::block(part, u::pose), u::block(errors, u::pose));  // F changed the state
+  EXPECT_EQ(u::sub_block(part, u::pose), u::sub_block(whole, u::pose));
+  EXPECT_EQ(u::sub_block(part, u::pose, u::mounting), u::sub_block(whole, u::pose, u::mounting));
+  EXPECT_EQ(u::sub_block(part, u::mounting, u::pose), u::sub_block(whole, u::mounting, u::pose));
+  EXPECT_EQ(u::sub_block(part, u::mounting), u::sub_block(whole, u::mounting));
+  EXPECT_NE(u::sub_block(part, u::pose), u::sub_block(errors, u::pose));  // F changed the state
 }
 
 TEST(Unknowns, BlocksCoverEachUnknownOnce) {
@@ -86,10 +86,10 @@ TEST(Unknowns, BlocksCoverEachUnknownOnce) {
   u::variances(count, u::gravity).array() += 1.0;
   EXPECT_EQ(count.diagonal(), Registration::Vector::Ones());
   Registration::Vector error = Registration::Vector::Zero();
-  error[u::deficit_at(1, 2)] = 0.5;
+  error[u::saturation_deficit_index(1, 2)] = 0.5;
   Registration::Estimate estimate;
   estimate.add(error);
-  EXPECT_EQ(estimate.deficit_rad_s(1, 2), 0.5);
+  EXPECT_EQ(estimate.saturation_deficit_rad_s(1, 2), 0.5);
 }
 
 TEST(StateEstimate, AtTheEndOfAPushIsTheClosedForm) {
@@ -103,14 +103,14 @@ TEST(StateEstimate, AtTheEndOfAPushIsTheClosedForm) {
   const double turned_m = 0.5 * kForce_m_s2 * t * t, turned_m_s = kForce_m_s2 * t;
   const double along_m2 = 0.01 + t * t * 0.09 + 0.25 * t * t * t * t * 0.16;
   const double across_m2 = along_m2 + turned_m * turned_m * 0.04;
-  const Eigen::Vector3d position(u::variances(end.weight, u::position));
+  const Eigen::Vector3d position(u::variances(end.prior_weight_covariance, u::position));
   EXPECT_LT((position - Eigen::Vector3d(along_m2, across_m2, across_m2)).norm(), 1e-12);
-  const Eigen::Vector3d velocity(u::variances(end.weight, u::velocity));
+  const Eigen::Vector3d velocity(u::variances(end.prior_weight_covariance, u::velocity));
   const double gained = 0.09 + t * t * 0.16, tilted = gained + turned_m_s * turned_m_s * 0.04;
   EXPECT_LT((velocity - Eigen::Vector3d(gained, tilted, tilted)).norm(), 1e-12);
-  EXPECT_LT((end.error - 4.0 * end.weight).norm(), 1e-12);
-  EXPECT_EQ(end.mean.state.covariance, (u::block(end.weight, u::motion)));
-  EXPECT_GT((end.weight - start.weight).norm(), 0.01);
+  EXPECT_LT((end.state_error_covariance - 4.0 * end.prior_weight_covariance).norm(), 1e-12);
+  EXPECT_EQ(end.mean.state.covariance, (u::sub_block(end.prior_weight_covariance, u::motion)));
+  EXPECT_GT((end.prior_weight_covariance - start.prior_weight_covariance).norm(), 0.01);
 }
 
 TEST(StateEstimate, OverTwoHalvesIsThatOverTheWhole) {
@@ -120,9 +120,9 @@ TEST(StateEstimate, OverTwoHalvesIsThatOverTheWhole) {
   const StateEstimate half = carried(start, samples, 200'000'000);
   const std::vector<MotionSample> rest(samples.begin() + 20, samples.end());
   const StateEstimate both = carried(half, rest, 500'000'000);
-  EXPECT_LT((both.weight - whole.weight).norm(), 1e-12);
+  EXPECT_LT((both.prior_weight_covariance - whole.prior_weight_covariance).norm(), 1e-12);
   EXPECT_LT(both.mean.minus(whole.mean).norm(), 1e-12);
-  EXPECT_GT((half.weight - whole.weight).norm(), 1e-3);
+  EXPECT_GT((half.prior_weight_covariance - whole.prior_weight_covariance).norm(), 1e-3);
 }
 
 /// Returns the pose error of the IMU, and that of gravity in the map, for a mounting error `m` and a fixed lidar pose,
@@ -136,7 +136,7 @@ Eigen::Matrix<double, 9, 1> displaced(const Eigen::Isometry3d& T_WI, const Eigen
   const Eigen::Matrix3d turned = moved.linear() * T_WI.linear().transpose();
   const Eigen::Vector3d g(0.0, 0.0, -9.80665);
   Eigen::Matrix<double, 9, 1> out;
-  out << moved.translation() - T_WI.translation(), so3::log(Eigen::Quaterniond(turned)), turned * g - g;
+  out << moved.translation() - T_WI.translation(), so3::logarithm(Eigen::Quaterniond(turned)), turned * g - g;
   return out;
 }
 
@@ -164,7 +164,7 @@ TEST(StateEstimate, AtTheStartHangsOnTheLidar) {
         (displaced(T_WI, params.T_IL, step) - displaced(T_WI, params.T_IL, -step)) / (2.0 * kStep);
     by_mounting.col(k).head<6>() = by.head<6>();
     by_mounting.col(k).tail<3>() = by.tail<3>();
-    by_mounting(Registration::kCalibrationStart + k, k) = 1.0;
+    by_mounting(Registration::kFirstCalibrationUnknown + k, k) = 1.0;
   }
   Eigen::Matrix<double, 6, 1> variance;
   variance << Eigen::Vector3d::Constant(4e-4), Eigen::Vector3d::Constant(1e-4);
@@ -172,29 +172,29 @@ TEST(StateEstimate, AtTheStartHangsOnTheLidar) {
   u::variances(expected, u::motion).array() += 0.001;
   u::variances(expected, u::clock).array() += 9e-6;
   u::variances(expected, u::gravity) += Eigen::Vector3d(0.0025, 0.0025, 0.000025);
-  EXPECT_LT((state_estimate.weight - expected).cwiseAbs().maxCoeff(), 1e-9);
-  EXPECT_EQ(state_estimate.weight, state_estimate.error);
+  EXPECT_LT((state_estimate.prior_weight_covariance - expected).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_EQ(state_estimate.prior_weight_covariance, state_estimate.state_error_covariance);
 
   params.T_IL.translation().x() += 0.1;  // another lever arm gives another covariance
-  EXPECT_GT((estimate_at_start(params, levelled).weight - expected).cwiseAbs().maxCoeff(), 1e-5);
+  EXPECT_GT((estimate_at_start(params, levelled).prior_weight_covariance - expected).cwiseAbs().maxCoeff(), 1e-5);
 }
 
 TEST(Prediction, AKnownVelocityTurnsWithTheAttitude) {
   Prediction prediction;
   prediction.prior.mean.state.q_WI = so3::exp({0.1, 0.7, -0.3});
   apply_velocity_prior(KnownVelocity{{1.0, -2.0, 0.5}, 0.1}, prediction);
-  prediction.compose(uncertain());
+  prediction.compose_with_boundary(uncertain());
   const Registration::Estimate& mean = prediction.prior.mean;
   EXPECT_LT((mean.state.v_WI_m_s - mean.state.q_WI * Eigen::Vector3d(1.0, -2.0, 0.5)).norm(), 1e-15);
   const Eigen::Matrix3d hat = so3::hat(mean.state.v_WI_m_s);
   const Eigen::Matrix3d expected = 0.04 * hat * hat.transpose() + 0.01 * Eigen::Matrix3d::Identity();
-  EXPECT_LT((u::block(prediction.prior.covariance, u::velocity) - expected).norm(), 1e-12);
-  EXPECT_LT((u::block(prediction.prior.covariance, u::velocity, u::attitude) + 0.04 * hat).norm(), 1e-12);
+  EXPECT_LT((u::sub_block(prediction.prior.covariance, u::velocity) - expected).norm(), 1e-12);
+  EXPECT_LT((u::sub_block(prediction.prior.covariance, u::velocity, u::attitude) + 0.04 * hat).norm(), 1e-12);
 
   Prediction inertial;
   apply_velocity_prior(InertialPrior{}, inertial);
-  inertial.compose(uncertain());
-  EXPECT_EQ(inertial.prior.covariance, uncertain().weight);
+  inertial.compose_with_boundary(uncertain());
+  EXPECT_EQ(inertial.prior.covariance, uncertain().prior_weight_covariance);
 }
 
 }  // namespace

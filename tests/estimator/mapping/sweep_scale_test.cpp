@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/mapping/detail/sweep_scale.hpp"
+#include "tumble/mapping/detail/lidar_scale.hpp"
 
 #include <gtest/gtest.h>
 
@@ -34,9 +34,9 @@ Flight hops(double scale, double noise_m) {
     out.samples.push_back(sample);
     PoseState pose;
     pose.time_ns = sample.time_ns;
-    pose.q_WA = Eigen::AngleAxisd(kSpin_rad_s * t_s, Eigen::Vector3d::UnitZ());
-    pose.p_WA_m = {1.5 * t_s, 0.0, kUp_m_s * in_hop_s - 0.5 * kGravity * in_hop_s * in_hop_s};
-    for (int j = 0; j < 3; ++j) pose.p_WA_m[j] = scale * pose.p_WA_m[j] + noise_m * noise();
+    pose.orientation_W = Eigen::AngleAxisd(kSpin_rad_s * t_s, Eigen::Vector3d::UnitZ());
+    pose.position_W_m = {1.5 * t_s, 0.0, kUp_m_s * in_hop_s - 0.5 * kGravity * in_hop_s * in_hop_s};
+    for (int j = 0; j < 3; ++j) pose.position_W_m[j] = scale * pose.position_W_m[j] + noise_m * noise();
     sweep.trajectory.push_back(pose);
     if (k == 0 || k % 10 != 0) continue;
     sweep.pose = pose;
@@ -47,11 +47,11 @@ Flight hops(double scale, double noise_m) {
   return out;
 }
 
-TEST(SweepScale, IsThatOfTheRanges) {
+TEST(LidarScale, IsThatOfTheRanges) {
   for (const double scale : {0.9, 1.0, 1.1}) {
     const Flight flight = hops(scale, 0.005);
-    const SweepScale found = find_sweep_scale(flight.samples, flight.sweeps, kGravity);
-    EXPECT_GT(found.changes, 20u);
+    const LidarScale found = find_sweep_scale(flight.samples, flight.sweeps, kGravity);
+    EXPECT_GT(found.velocity_change_count, 20u);
     EXPECT_NEAR(found.scale, scale, 5.0 * found.sigma + 0.01) << scale;
     EXPECT_LT(found.sigma, 0.01);
     EXPECT_EQ(found.is_inconsistent(), scale != 1.0) << found.scale << " +- " << found.sigma;
@@ -59,10 +59,10 @@ TEST(SweepScale, IsThatOfTheRanges) {
 }
 
 // Sweep by sweep, the slope is the same, and later sweeps do not change earlier results.
-TEST(SweepScale, IsToldWhileSweepsCome) {
+TEST(LidarScale, IsToldWhileSweepsCome) {
   for (const double scale : {0.9, 1.0, 1.1}) {
     const Flight flight = hops(scale, 0.005);
-    SweepScaleEstimator watch(kGravity, 200);
+    LidarScaleEstimator watch(kGravity, 200);
     std::size_t next = 0;
     for (const SweepReport& sweep : flight.sweeps) {
       for (; next < flight.samples.size() && flight.samples[next].time_ns <= sweep.pose.time_ns; ++next)
@@ -70,67 +70,67 @@ TEST(SweepScale, IsToldWhileSweepsCome) {
       watch.add(sweep);
       EXPECT_TRUE(scale != 1.0 || watch.scale().verdict().ok()) << watch.scale().verdict().message();
     }
-    const SweepScale whole = find_sweep_scale(flight.samples, flight.sweeps, kGravity);
-    EXPECT_EQ(watch.scale().changes, whole.changes);
+    const LidarScale whole = find_sweep_scale(flight.samples, flight.sweeps, kGravity);
+    EXPECT_EQ(watch.scale().velocity_change_count, whole.velocity_change_count);
     EXPECT_NEAR(watch.scale().scale, whole.scale, 1e-6);
     EXPECT_EQ(watch.scale().verdict().ok(), scale == 1.0);
   }
 }
 
-TEST(SweepScale, ALidarThatIsSilentForTooLongIsNotCompared) {
+TEST(LidarScale, ALidarThatIsSilentForTooLongIsNotCompared) {
   const Flight flight = hops(1.1, 0.005);
-  SweepScaleEstimator watch(kGravity, 50);
+  LidarScaleEstimator watch(kGravity, 50);
   std::size_t next = 0;
   for (const SweepReport& sweep : flight.sweeps) {
     for (; next < flight.samples.size() && flight.samples[next].time_ns <= sweep.pose.time_ns; ++next)
       watch.add(flight.samples[next]);
     watch.add(sweep);
   }
-  EXPECT_EQ(watch.scale().changes, 0u);
+  EXPECT_EQ(watch.scale().velocity_change_count, 0u);
 }
 
 // The force inside a gap of the IMU data is unknown, for example the impact of the second hop.
-TEST(SweepScale, NothingIsComparedOverAGapOfTheImu) {
+TEST(LidarScale, NothingIsComparedOverAGapOfTheImu) {
   Flight flight = hops(1.0, 0.005);
-  const std::size_t all = find_sweep_scale(flight.samples, flight.sweeps, kGravity).changes;
+  const std::size_t all = find_sweep_scale(flight.samples, flight.sweeps, kGravity).velocity_change_count;
   const auto lost = [](const ImuSample& sample) {
     return (sample.time_ns > 750'000'000 && sample.time_ns < 850'000'000) ||
            (sample.time_ns > 2'350'000'000 && sample.time_ns < 2'450'000'000);
   };
   std::erase_if(flight.samples, lost);
-  const SweepScale found = find_sweep_scale(flight.samples, flight.sweeps, kGravity);
-  EXPECT_GT(found.changes, 5u);
-  EXPECT_LT(found.changes, all - 10);
+  const LidarScale found = find_sweep_scale(flight.samples, flight.sweeps, kGravity);
+  EXPECT_GT(found.velocity_change_count, 5u);
+  EXPECT_LT(found.velocity_change_count, all - 10);
   EXPECT_FALSE(found.is_inconsistent()) << found.scale << " +- " << found.sigma;
 }
 
-TEST(SweepScale, NothingIsSaidWhereNothingTells) {
+TEST(LidarScale, NothingIsSaidWhereNothingTells) {
   const Flight flight = hops(1.1, 0.005);
   EXPECT_FALSE(find_sweep_scale({}, {}, kGravity).is_inconsistent());
   EXPECT_FALSE(find_sweep_scale(flight.samples, {}, kGravity).is_inconsistent());
   EXPECT_FALSE(find_sweep_scale({}, flight.sweeps, kGravity).is_inconsistent());
   Flight lost = flight;
   for (auto& sweep : lost.sweeps) sweep.verdict = SweepVerdict::rejected;
-  EXPECT_EQ(find_sweep_scale(lost.samples, lost.sweeps, kGravity).changes, 0u);
+  EXPECT_EQ(find_sweep_scale(lost.samples, lost.sweeps, kGravity).velocity_change_count, 0u);
   Flight railed = flight;
   for (ImuSample& sample : railed.samples) sample.device_clip_flags = kClipAccelZ;
-  EXPECT_EQ(find_sweep_scale(railed.samples, railed.sweeps, kGravity).changes, 0u);
+  EXPECT_EQ(find_sweep_scale(railed.samples, railed.sweeps, kGravity).velocity_change_count, 0u);
   // at rest, the result is independent of the map's size: gravity and the ground's force cancel
   Flight rest = flight;
   for (ImuSample& sample : rest.samples) sample.specific_force_m_s2 = {0.0, 0.0, kGravity};
-  EXPECT_EQ(find_sweep_scale(rest.samples, rest.sweeps, kGravity).changes, 0u);
+  EXPECT_EQ(find_sweep_scale(rest.samples, rest.sweeps, kGravity).velocity_change_count, 0u);
 }
 
-TEST(SweepScale, PlacesAsUncertainAsTheScaleAreNotTakenForOne) {
+TEST(LidarScale, PlacesAsUncertainAsTheScaleAreNotTakenForOne) {
   const Flight flight = hops(1.03, 0.2);
-  const SweepScale found = find_sweep_scale(flight.samples, flight.sweeps, kGravity);
+  const LidarScale found = find_sweep_scale(flight.samples, flight.sweeps, kGravity);
   EXPECT_GT(found.sigma, 0.01);
   EXPECT_FALSE(found.is_inconsistent()) << found.scale << " +- " << found.sigma;
 }
 
-TEST(SweepScale, AFindingEndsAMinuteAfterItsCause) {
+TEST(LidarScale, AFindingEndsAMinuteAfterItsCause) {
   const Flight flight = hops(1.1, 0.005);
-  SweepScaleEstimator watch(kGravity, 200);
+  LidarScaleEstimator watch(kGravity, 200);
   std::size_t next = 0;
   for (const SweepReport& sweep : flight.sweeps) {
     for (; next < flight.samples.size() && flight.samples[next].time_ns <= sweep.pose.time_ns; ++next)

@@ -125,7 +125,7 @@ std::vector<ImuSample> make_imu(const Motion& motion, double duration_s, double 
     const double t0 = 1e-9 * static_cast<double>(k * period_ns);
     ImuSample& sample = samples[static_cast<std::size_t>(k)];
     sample.time_ns = (k + 1) * period_ns;
-    sample.angular_velocity_rad_s = so3::log(motion.q(t0).conjugate() * motion.q(t0 + dt)) / dt;
+    sample.angular_velocity_rad_s = so3::logarithm(motion.q(t0).conjugate() * motion.q(t0 + dt)) / dt;
     Eigen::Vector3d force = Eigen::Vector3d::Zero();
     for (int i = 0; i <= kParts; ++i) {
       // slightly inside the window, where the jump of acceleration at the end of rest belongs to one side
@@ -150,8 +150,8 @@ std::vector<MotionSample> motion_samples(const std::vector<ImuSample>& imu) {
   return samples;
 }
 
-RateState believe(const ImuSample& sample) {
-  RateState rate;
+AngularRateState believe(const ImuSample& sample) {
+  AngularRateState rate;
   rate.time_ns = sample.time_ns;
   rate.w_WI_I_rad_s = sample.angular_velocity_rad_s;
   return rate;

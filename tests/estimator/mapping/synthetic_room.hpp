@@ -67,7 +67,7 @@ struct Motion {
 std::vector<ImuSample> make_imu(const Motion& motion, double duration_s, double rate_hz = 100.0);
 std::vector<MotionSample> motion_samples(const std::vector<ImuSample>& imu);
 /// Returns the rate of a method that accepts the gyro's reading.
-RateState believe(const ImuSample& sample);
+AngularRateState believe(const ImuSample& sample);
 
 /// Returns sixteen rings by `columns` in 0.1 s, each ray from the pose at its own time, with uniform range noise of
 /// standard deviation `noise_m`, drawn from (sweep, point) alone.

@@ -18,12 +18,12 @@ std::string text(const TrackingState& state) {
   struct Name {
     std::string operator()(const WaitingForStart&) const { return "waiting"; }
     std::string operator()(const Tracking& s) const { return "tracking " + std::to_string(s.failed_searches); }
-    std::string operator()(const Lost& s) const {
+    std::string operator()(const TrackingLost& s) const {
       return "lost " + std::to_string(s.sweeps) + " " + std::to_string(s.failed_searches);
     }
     std::string operator()(const Relocalised& s) const {
-      return "found after " + std::to_string(s.after_sweeps) + " " + std::to_string(s.failed_searches) + ", agree " +
-             std::to_string(s.agreeing);
+      return "found after " + std::to_string(s.rejected_sweeps_before) + " " + std::to_string(s.failed_searches) + ", agree " +
+             std::to_string(s.agreeing_sweep_count);
     }
   };
   return std::visit(Name{}, state);
@@ -37,56 +37,56 @@ TEST(Tracking, GoesFromStateToStateAsTheTableSays) {
     const char* after;
   };
   const Row rows[] = {
-      {WaitingForStart{}, not_tried, first, "tracking 0"},
-      {WaitingForStart{}, not_tried, rejected, "lost 1 0"},  // too few points to start a map
-      {Tracking{}, found, registered, "tracking 0"},
-      {Tracking{}, found, degenerate, "tracking 0"},
-      {Tracking{2}, found, registered, "tracking 0"},
+      {WaitingForStart{}, not_attempted, first, "tracking 0"},
+      {WaitingForStart{}, not_attempted, rejected, "lost 1 0"},  // too few points to start a map
+      {Tracking{}, alignment_found, registered, "tracking 0"},
+      {Tracking{}, alignment_found, degenerate, "tracking 0"},
+      {Tracking{2}, alignment_found, registered, "tracking 0"},
       {Tracking{}, failed, degenerate, "tracking 1"},  // with a certain prior
       {Tracking{1}, failed, rejected, "lost 1 2"},
-      {Tracking{1}, not_tried, rejected, "lost 1 1"},  // without points, there is no search
-      {Lost{1, 1}, failed, rejected, "lost 2 2"},
-      {Lost{1, 1}, not_tried, rejected, "lost 2 1"},
-      {Lost{5, 29}, failed, degenerate, "tracking 30"},  // the state is given up
-      {Lost{2, 0}, not_tried, first, "tracking 0"},
-      {Lost{3, 2}, found, registered, "tracking 0"},
-      {Lost{3, 2}, relocalisation_unconfirmed, registered, "found after 3 2, agree 0"},
-      {Lost{3, 2}, relocalisation_unconfirmed, degenerate, "found after 3 2, agree 0"},
+      {Tracking{1}, not_attempted, rejected, "lost 1 1"},  // without points, there is no search
+      {TrackingLost{1, 1}, failed, rejected, "lost 2 2"},
+      {TrackingLost{1, 1}, not_attempted, rejected, "lost 2 1"},
+      {TrackingLost{5, 29}, failed, degenerate, "tracking 30"},  // the state is given up
+      {TrackingLost{2, 0}, not_attempted, first, "tracking 0"},
+      {TrackingLost{3, 2}, alignment_found, registered, "tracking 0"},
+      {TrackingLost{3, 2}, relocalisation_unconfirmed, registered, "found after 3 2, agree 0"},
+      {TrackingLost{3, 2}, relocalisation_unconfirmed, degenerate, "found after 3 2, agree 0"},
       {Tracking{1}, relocalisation_unconfirmed, registered, "tracking 0"},
-      {Relocalised{3, 2, 0}, found, degenerate, "found after 3 2, agree 1"},
-      {Relocalised{3, 2, 1}, found, registered, "tracking 0"},
+      {Relocalised{3, 2, 0}, alignment_found, degenerate, "found after 3 2, agree 1"},
+      {Relocalised{3, 2, 1}, alignment_found, registered, "tracking 0"},
   };
   for (const Row& row : rows) {
-    EXPECT_EQ(text(after_sweep(row.before, row.placement, row.verdict)), row.after) << "from " << text(row.before);
+    EXPECT_EQ(text(tracking_state_after_sweep(row.before, row.placement, row.verdict)), row.after) << "from " << text(row.before);
   }
 }
 
 TEST(Tracking, APlaceFoundAgainIsContradictedByAllButOneThatFits) {
-  for (const RegistrationOutcome placement : {not_tried, failed, relocalisation_unconfirmed}) {
-    EXPECT_TRUE(contradicts(Relocalised{3, 2, 1}, placement));
-    EXPECT_FALSE(contradicts(Tracking{}, placement));
-    EXPECT_FALSE(contradicts(Lost{}, placement));
+  for (const RegistrationOutcome placement : {not_attempted, failed, relocalisation_unconfirmed}) {
+    EXPECT_TRUE(contradicts_tracking(Relocalised{3, 2, 1}, placement));
+    EXPECT_FALSE(contradicts_tracking(Tracking{}, placement));
+    EXPECT_FALSE(contradicts_tracking(TrackingLost{}, placement));
   }
-  EXPECT_FALSE(contradicts(Relocalised{3, 2, 1}, found));
+  EXPECT_FALSE(contradicts_tracking(Relocalised{3, 2, 1}, alignment_found));
   EXPECT_EQ(text(after_reverted_relocalisation(Relocalised{3, 2, 1})), "lost 5 3");
 }
 
 TEST(Tracking, AnswersOfItsStates) {
   EXPECT_FALSE(has_started(WaitingForStart{}));
-  EXPECT_TRUE(has_started(Lost{}));
-  EXPECT_TRUE(is_lost(Lost{}));
+  EXPECT_TRUE(has_started(TrackingLost{}));
+  EXPECT_TRUE(is_lost(TrackingLost{}));
   EXPECT_FALSE(is_lost(Relocalised{4}));
-  EXPECT_TRUE(is_unconfirmed(Relocalised{4}));
-  EXPECT_FALSE(is_unconfirmed(Lost{4}));
-  EXPECT_EQ(consecutive_rejected_sweeps(Lost{4, 2}), 4);
+  EXPECT_TRUE(is_unconfirmed_relocalisation(Relocalised{4}));
+  EXPECT_FALSE(is_unconfirmed_relocalisation(TrackingLost{4}));
+  EXPECT_EQ(consecutive_rejected_sweeps(TrackingLost{4, 2}), 4);
   EXPECT_EQ(consecutive_rejected_sweeps(Relocalised{4}), 0);
-  EXPECT_EQ(failed_searches(Lost{4, 2}), 2);
+  EXPECT_EQ(failed_searches(TrackingLost{4, 2}), 2);
   EXPECT_EQ(failed_searches(Relocalised{4}), 0);
 }
 
 struct DelayGrid {
-  Attempt attempt;
-  Placed placed;
+  RegistrationAttempt attempt;
+  SweepRegistration placed;
 };
 
 DelayGrid aligned(double least_constrained_sigma_m) {
@@ -101,9 +101,9 @@ DelayGrid failed_with(bool too_few) {
   return out;
 }
 
-Placed judged(const LidarInertialOdometry::Params& params, const TrackingState& before, std::size_t points,
+SweepRegistration judged(const LidarInertialOdometry::Params& params, const TrackingState& before, std::size_t points,
               bool trusted, DelayGrid tried) {
-  judge(params, before, points, trusted, tried.attempt, tried.placed);
+  judge_registration(params, before, points, trusted, tried.attempt, tried.placed);
   return tried.placed;
 }
 
@@ -121,14 +121,14 @@ TEST(Tracking, VerdictsAreWhatTheAttemptAndThePriorAllow) {
   EXPECT_EQ(verdict(Tracking{}, 500, false, failed_with(true)), rejected);
   EXPECT_EQ(verdict(Tracking{}, 99, true, failed_with(true)), rejected);
   EXPECT_EQ(verdict(Tracking{}, 500, true, failed_with(false)), rejected);
-  EXPECT_EQ(verdict(Lost{28, 28}, 500, false, failed_with(false)), rejected);
-  EXPECT_EQ(verdict(Lost{29, 29}, 500, false, failed_with(false)), degenerate);
-  EXPECT_EQ(verdict(Lost{29, 29}, 99, false, failed_with(false)), rejected);
+  EXPECT_EQ(verdict(TrackingLost{28, 28}, 500, false, failed_with(false)), rejected);
+  EXPECT_EQ(verdict(TrackingLost{29, 29}, 500, false, failed_with(false)), degenerate);
+  EXPECT_EQ(verdict(TrackingLost{29, 29}, 99, false, failed_with(false)), rejected);
   EXPECT_TRUE(judged(params, Tracking{}, 500, false, failed_with(true)).map_too_sparse);
   EXPECT_FALSE(judged(params, Tracking{}, 500, false, failed_with(false)).map_too_sparse);
   EXPECT_FALSE(judged(params, Tracking{}, 99, false, failed_with(true)).map_too_sparse);
-  EXPECT_EQ(judged(params, Tracking{}, 500, false, aligned(0.1)).placement, found);
-  EXPECT_EQ(judged(params, Tracking{}, 500, true, failed_with(true)).placement, failed);
+  EXPECT_EQ(judged(params, Tracking{}, 500, false, aligned(0.1)).outcome, alignment_found);
+  EXPECT_EQ(judged(params, Tracking{}, 500, true, failed_with(true)).outcome, failed);
 }
 
 /// Returns a relocalisation with `inliers` inliers among a hundred matches.
@@ -136,22 +136,22 @@ DelayGrid aligned_of(std::size_t inliers, bool expected) {
   DelayGrid out = aligned(0.1);
   out.placed.alignment->matches = 100;
   out.placed.alignment->inliers = inliers;
-  out.placed.expected = expected;
+  out.placed.agrees_with_prediction = expected;
   return out;
 }
 
 TEST(Tracking, APlaceIsDoubtedWhereInertiaHasItNotOrItsSurfacesDoNotFit) {
   const LidarInertialOdometry::Params params;
   const auto placement = [&](const TrackingState& before, std::size_t inliers, bool expected) {
-    return judged(params, before, 500, false, aligned_of(inliers, expected)).placement;
+    return judged(params, before, 500, false, aligned_of(inliers, expected)).outcome;
   };
-  EXPECT_EQ(placement(Lost{}, 90, true), found);
-  EXPECT_EQ(placement(Lost{}, 89, true), relocalisation_unconfirmed);
-  EXPECT_EQ(placement(Lost{}, 100, false), relocalisation_unconfirmed);
+  EXPECT_EQ(placement(TrackingLost{}, 90, true), alignment_found);
+  EXPECT_EQ(placement(TrackingLost{}, 89, true), relocalisation_unconfirmed);
+  EXPECT_EQ(placement(TrackingLost{}, 100, false), relocalisation_unconfirmed);
   EXPECT_EQ(placement(Relocalised{}, 90, false),
-            found);  // the effect of a velocity error lasts for some sweeps
+            alignment_found);  // the effect of a velocity error lasts for some sweeps
   EXPECT_EQ(placement(Relocalised{}, 89, true), relocalisation_unconfirmed);
-  EXPECT_EQ(placement(Tracking{}, 50, false), found);
+  EXPECT_EQ(placement(Tracking{}, 50, false), alignment_found);
 }
 
 }  // namespace

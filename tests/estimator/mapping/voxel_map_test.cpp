@@ -52,7 +52,7 @@ TEST_P(NeighbourSearch, AgreesWithBruteForce) {
     ASSERT_TRUE(map.insert(points.back(), 0.02f, 7));
   }
   ASSERT_EQ(map.size(), points.size());
-  Neighbours found;
+  NearestNeighbours found;
   std::size_t seen = 0;
   for (std::uint64_t q = 0; q < 200; ++q) {
     const Eigen::Vector3f query = random_point(1'000'000 + q, 1.2f * d.edge_m);
@@ -80,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(Densities, NeighbourSearch,
 TEST(VoxelMap, FindsTheSameWithinANarrowerRadiusThatHoldsThem) {
   VoxelMap map({0.5, 0.0});
   for (std::uint64_t i = 0; i < 4000; ++i) ASSERT_TRUE(map.insert(random_point(i, 5.0f), 0.02f, 0));
-  Neighbours before, wide, narrow;
+  NearestNeighbours before, wide, narrow;
   for (std::uint64_t q = 0; q < 500; ++q) {
     const Eigen::Vector3f from = random_point(2'000'000 + q, 4.0f);
     const Eigen::Vector3f to = from + random_point(3'000'000 + q, 0.4f);
@@ -107,7 +107,7 @@ TEST(SpatialHash, HoldsWhatAMapHolds) {
   ASSERT_EQ(hash.size(), expected.size());
   EXPECT_LT(expected.size(), 20'000u);
   for (const auto& [key, value] : expected) ASSERT_EQ(hash.find(key), value);
-  EXPECT_EQ(hash.find(SpatialHash::key({500, 0, 0})), SpatialHash::kAbsent);
+  EXPECT_EQ(hash.find(SpatialHash::key({500, 0, 0})), SpatialHash::kAbsentEntry);
 }
 
 TEST(VoxelMap, KeepsOnePointPerCubeOfTheSpacing) {
@@ -125,7 +125,7 @@ TEST(VoxelMap, RefusesWhatIsNotAPosition) {
   EXPECT_FALSE(map.insert({0, std::numeric_limits<float>::infinity(), 0}, 0.1f, 0));
   EXPECT_FALSE(map.insert({0, 0, 1e9f}, 0.1f, 0));
   EXPECT_EQ(map.size(), 0u);
-  Neighbours found;
+  NearestNeighbours found;
   map.nearest({std::numeric_limits<float>::quiet_NaN(), 0, 0}, 8, 1.0f, found);
   EXPECT_EQ(found.count, 0);
 }
@@ -144,9 +144,9 @@ TEST(VoxelMap, ThrowsOnBadParams) {
   EXPECT_THROW(VoxelMap({0.5, 0.6}), InvalidParams);
 }
 
-Neighbours all_of(const VoxelMap& map, const Eigen::Vector3f& at) {
-  Neighbours found;
-  map.nearest(at, Neighbours::kMax, 2.0f, found);
+NearestNeighbours all_of(const VoxelMap& map, const Eigen::Vector3f& at) {
+  NearestNeighbours found;
+  map.nearest(at, NearestNeighbours::kMaxNeighbours, 2.0f, found);
   return found;
 }
 
@@ -158,10 +158,10 @@ TEST(PlaneFit, FindsATiltedPlane) {
     const Eigen::Vector3f r = random_point(i, 0.6f);
     ASSERT_TRUE(map.insert(p + r.x() * u + r.y() * v, 0.02f, 0));
   }
-  const PlaneFit fit = fit_plane(map, all_of(map, p), PlaneBounds{});
+  const PlaneFit fit = fit_plane(map, all_of(map, p), PlaneFitBounds{});
   ASSERT_EQ(fit.verdict, PlaneVerdict::plane);
   EXPECT_NEAR(std::abs(fit.normal_W.dot(n)), 1.0f, 1e-5f);  // single precision of the input; measured 1e-7
-  EXPECT_NEAR(n.dot(fit.centre_W_m - p), 0.0f, 1e-5f);
+  EXPECT_NEAR(n.dot(fit.plane_centre_W_m - p), 0.0f, 1e-5f);
 }
 
 TEST(PlaneFit, RefusesALineABlobAndAHandful) {
@@ -172,15 +172,15 @@ TEST(PlaneFit, RefusesALineABlobAndAHandful) {
     blob.insert(r, 0.02f, 0);
     if (i < 4) few.insert({r.x(), r.y(), 0.0f}, 0.02f, 0);
   }
-  EXPECT_EQ(fit_plane(line, all_of(line, {0, 0, 0}), PlaneBounds{}).verdict, PlaneVerdict::collinear);
-  EXPECT_EQ(fit_plane(blob, all_of(blob, {0, 0, 0}), PlaneBounds{}).verdict, PlaneVerdict::too_thick);
-  EXPECT_EQ(fit_plane(few, all_of(few, {0, 0, 0}), PlaneBounds{}).verdict, PlaneVerdict::too_few);
+  EXPECT_EQ(fit_plane(line, all_of(line, {0, 0, 0}), PlaneFitBounds{}).verdict, PlaneVerdict::collinear);
+  EXPECT_EQ(fit_plane(blob, all_of(blob, {0, 0, 0}), PlaneFitBounds{}).verdict, PlaneVerdict::plane_too_thick);
+  EXPECT_EQ(fit_plane(few, all_of(few, {0, 0, 0}), PlaneFitBounds{}).verdict, PlaneVerdict::too_few_points);
 }
 
 TEST(PlaneFit, RefusesPointsThatCoincide) {
   VoxelMap map({0.5, 0.0});
   for (int i = 0; i < 8; ++i) map.insert({1.0f, 1.0f, 1.0f}, 0.02f, 0);
-  EXPECT_EQ(fit_plane(map, all_of(map, {1, 1, 1}), PlaneBounds{}).verdict, PlaneVerdict::collinear);
+  EXPECT_EQ(fit_plane(map, all_of(map, {1, 1, 1}), PlaneFitBounds{}).verdict, PlaneVerdict::collinear);
 }
 
 TEST(VoxelMap, TakesBackTheNewestSweepsAndKeepsTheOthersAsTheyWere) {
@@ -195,7 +195,7 @@ TEST(VoxelMap, TakesBackTheNewestSweepsAndKeepsTheOthersAsTheyWere) {
   ASSERT_GT(all.size(), older.size());
   all.remove_sweeps_from(3);
   EXPECT_EQ(all.size(), older.size());
-  Neighbours of_all, of_older;
+  NearestNeighbours of_all, of_older;
   for (std::uint64_t q = 0; q < 100; ++q) {
     const Eigen::Vector3f query = random_point(1'000'000 + q, 6.0f);
     all.nearest(query, 8, 1.0f, of_all);
@@ -219,19 +219,19 @@ TEST(VoxelMap, CountsWhatIsSeenThroughAndKeepsTheCount) {
   const Eigen::Vector3f marked = map.position_W_m(marked_at), other = map.position_W_m(0);
   ASSERT_TRUE(map.exists(marked_at) && map.sweep(marked_at) == 0);
   map.count_observation(marked_at, false);
-  EXPECT_EQ(map.seen_through(marked_at), 0);
+  EXPECT_EQ(map.seen_through_count(marked_at), 0);
   for (int k = 0; k < 300; ++k) map.count_observation(marked_at, true);
-  EXPECT_EQ(map.seen_through(marked_at), 255);
+  EXPECT_EQ(map.seen_through_count(marked_at), 255);
   map.count_observation(marked_at, false);
 
   const auto count_at = [](const VoxelMap& given, const Eigen::Vector3f& place) {
-    Neighbours found;
+    NearestNeighbours found;
     given.nearest(place, 1, 1e-4f, found);
-    return found.count == 1 ? int{given.seen_through(found.index[0])} : -1;
+    return found.count == 1 ? int{given.seen_through_count(found.index[0])} : -1;
   };
   VoxelMap older = map, near = map;
   older.remove_sweeps_from(1);
-  near.remove_beyond(marked, 3.0f);
+  near.remove_points_beyond(marked, 3.0f);
   for (const VoxelMap* one : {&map, &older, &near}) EXPECT_EQ(count_at(*one, marked), 254);
   EXPECT_EQ(count_at(map, other), 0);
 }

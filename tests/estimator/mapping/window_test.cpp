@@ -22,19 +22,19 @@ Odometry::Params given() {
   Odometry::Params params;
   params.T_IL.translation() = Eigen::Vector3d(0.02, 0.087, 0.04);
   params.T_IL.linear() = so3::exp({0.0, 0.0, -1.5707963267948966}).toRotationMatrix();
-  params.expert.rails.estimate_deficit = true;
+  params.expert.saturated_imu.estimate_deficit = true;
   return params;
 }
 
 /// Returns a saturated gyro reading with an unknown rate.
-RateState railed(const ImuSample& sample) {
-  RateState rate = test::believe(sample);
+AngularRateState railed(const ImuSample& sample) {
+  AngularRateState rate = test::believe(sample);
   for (int axis = 0; axis < 3; ++axis) {
     double& w = rate.w_WI_I_rad_s[axis];
     if (std::abs(w) < kRail_rad_s) continue;
     w = std::copysign(kRail_rad_s, w);
     rate.clipped_axes |= static_cast<std::uint8_t>(1 << axis);
-    rate.source = RateSource::bounded_only;
+    rate.source = AngularRateSource::lower_bound_only;
   }
   return rate;
 }
@@ -61,11 +61,11 @@ struct Drive {
     }
   }
   double error_m(const PoseState& pose) const {
-    return (pose.p_WA_m - motion.p_m(1e-9 * static_cast<double>(pose.time_ns))).norm();
+    return (pose.position_W_m - motion.p_m(1e-9 * static_cast<double>(pose.time_ns))).norm();
   }
 
   double error_rad(const PoseState& pose) const {
-    return so3::log(pose.q_WA * motion.q(1e-9 * static_cast<double>(pose.time_ns)).conjugate()).norm();
+    return so3::logarithm(pose.orientation_W * motion.q(1e-9 * static_cast<double>(pose.time_ns)).conjugate()).norm();
   }
 
   Odometry odometry;
@@ -101,7 +101,7 @@ TEST(Window, OfOneLeavesASweepAsItWas) {
     ASSERT_EQ(smoothed.size(), before.size());
     for (std::size_t i = 0; i < smoothed.size(); ++i) {
       EXPECT_EQ(smoothed[i].time_ns, before[i].time_ns);
-      EXPECT_EQ(smoothed[i].p_WA_m, before[i].p_WA_m);
+      EXPECT_EQ(smoothed[i].position_W_m, before[i].position_W_m);
     }
   }
 }
@@ -122,7 +122,7 @@ TEST(Window, SettledAndOpenSweepsAreTheWholeTrajectory) {
   ASSERT_EQ(all.size(), 120u);
   for (std::size_t i = 1; i < all.size(); ++i) EXPECT_EQ(all[i].time_ns - all[i - 1].time_ns, 10'000'000) << i;
   // the newest state is that of the filter
-  EXPECT_EQ(open.back().back().p_WA_m, run.report.trajectory.back().p_WA_m);
+  EXPECT_EQ(open.back().back().position_W_m, run.report.trajectory.back().position_W_m);
 }
 
 TEST(Window, APoseAheadIsTheInertialPriorAndChangesNothing) {
@@ -131,11 +131,11 @@ TEST(Window, APoseAheadIsTheInertialPriorAndChangesNothing) {
   EXPECT_EQ(run.odometry.predict({}, {}, pose).error_code, ErrorCode::empty);
   run.sweeps(0, 12);
   std::vector<ImuSample> ahead;
-  std::vector<RateState> rates;
+  std::vector<AngularRateState> rates;
   for (const ImuSample& sample : run.imu) {
     if (sample.time_ns <= 12 * test::kSweep_ns || sample.time_ns > 14 * test::kSweep_ns) continue;
     ahead.push_back(sample);
-    RateState& rate = rates.emplace_back();
+    AngularRateState& rate = rates.emplace_back();
     rate.time_ns = sample.time_ns;
     rate.w_WI_I_rad_s = sample.angular_velocity_rad_s;
   }
@@ -150,7 +150,7 @@ TEST(Window, APoseAheadIsTheInertialPriorAndChangesNothing) {
   ASSERT_TRUE(told.add_velocity(v_I_m_s, 0.01).ok());
   PoseState led;
   ASSERT_TRUE(told.predict(ahead, rates, led).ok());
-  EXPECT_GT((led.p_WA_m - pose.p_WA_m).norm(), 0.1);
+  EXPECT_GT((led.position_W_m - pose.position_W_m).norm(), 0.1);
   // a repeated reading is rejected, and the odometry ignores the whole list
   std::swap(ahead[0], ahead[1]);
   std::swap(rates[0], rates[1]);
@@ -158,7 +158,7 @@ TEST(Window, APoseAheadIsTheInertialPriorAndChangesNothing) {
   run.sweeps(12, 13);
   Drive other(given());
   other.sweeps(0, 13);
-  EXPECT_EQ(run.report.pose.p_WA_m, other.report.pose.p_WA_m);
+  EXPECT_EQ(run.report.pose.position_W_m, other.report.pose.position_W_m);
 }
 
 TEST(Window, PosesCanBeAskedAtAnyTimeWithin) {
@@ -173,7 +173,7 @@ TEST(Window, PosesCanBeAskedAtAnyTimeWithin) {
   const auto open = run.odometry.window_trajectories();
   for (const auto& sweep : open) {
     ASSERT_TRUE(run.odometry.pose_at(sweep[4].time_ns, pose).ok());
-    EXPECT_LT((pose.p_WA_m - sweep[4].p_WA_m).norm(), 1e-9);
+    EXPECT_LT((pose.position_W_m - sweep[4].position_W_m).norm(), 1e-9);
     EXPECT_LT((pose.covariance - sweep[4].covariance).norm(), 1e-9);
   }
   for (TimeNs t = 9 * test::kSweep_ns + 3'456'789; t < 12 * test::kSweep_ns; t += 7'654'321) {
@@ -181,7 +181,7 @@ TEST(Window, PosesCanBeAskedAtAnyTimeWithin) {
     EXPECT_EQ(pose.time_ns, t);
     // also between IMU samples; at 15 rad/s and metres per second. Measured: 12 mm
     EXPECT_LT(run.error_m(pose), 0.03);
-    EXPECT_LT(so3::log(pose.q_WA * run.motion.q(1e-9 * static_cast<double>(t)).conjugate()).norm(), 0.02);
+    EXPECT_LT(so3::logarithm(pose.orientation_W * run.motion.q(1e-9 * static_cast<double>(t)).conjugate()).norm(), 0.02);
     EXPECT_GT(pose.covariance.diagonal().minCoeff(), 0.0);
   }
 }
@@ -210,8 +210,8 @@ TEST(ExecutorThreads, BitsDoNotDependOnTheThreadsThatTheCallerGives) {
     Drive run(params);
     run.sweeps(0, 8);
     EXPECT_GT(calls, 20u);  // the callback was called
-    EXPECT_EQ(run.report.pose.p_WA_m, alone.report.pose.p_WA_m);
-    EXPECT_EQ(run.report.pose.q_WA.coeffs(), alone.report.pose.q_WA.coeffs());
+    EXPECT_EQ(run.report.pose.position_W_m, alone.report.pose.position_W_m);
+    EXPECT_EQ(run.report.pose.orientation_W.coeffs(), alone.report.pose.orientation_W.coeffs());
     EXPECT_EQ(run.report.pose.covariance, alone.report.pose.covariance);
     const std::vector<MapPoint> map = run.odometry.map();
     ASSERT_EQ(map.size(), expected.size());
@@ -228,7 +228,7 @@ TEST(ExecutorThreads, OrderDoesNotMatterEither) {
   };
   Drive run(params);
   run.sweeps(0, 8);
-  EXPECT_EQ(run.report.pose.p_WA_m, alone.report.pose.p_WA_m);
+  EXPECT_EQ(run.report.pose.position_W_m, alone.report.pose.position_W_m);
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ WorldCovarianceParams without_tilt() {
 
 /// Returns the covariance without the map's scale, which the last test checks.
 Pose in_world(const WorldCovariance& covariance, const Matrix& joint = Matrix::Zero()) {
-  Pose P = covariance.in_world(joint, kPlace_W_m);
+  Pose P = covariance.in_world_frame(joint, kPlace_W_m);
   P.topLeftCorner<3, 3>() -= 0.003 * 0.003 * kPlace_W_m * kPlace_W_m.transpose();
   return P;
 }
@@ -52,13 +52,13 @@ TEST(WorldCovariance, ATiltOfTheStartTurnsThePathAboutIt) {
 TEST(WorldCovariance, AnErrorOfTheMountingIsNoneOfTheStart) {
   const WorldCovariance covariance(without_tilt(), kStart, kLever_m);
   Matrix joint = Matrix::Zero();
-  u::block(joint, u::mounting) = Eigen::Matrix<double, 6, 1>(1e-4, 2e-4, 3e-4, 1e-6, 2e-6, 3e-6).asDiagonal();
+  u::sub_block(joint, u::mounting) = Eigen::Matrix<double, 6, 1>(1e-4, 2e-4, 3e-4, 1e-6, 2e-6, 3e-6).asDiagonal();
   const Pose K = pose_mounting_jacobian(kStart, kLever_m);
-  const Pose by_mounting = K * u::block(joint, u::mounting);
-  u::block(joint, u::pose) = by_mounting * K.transpose();
-  u::block(joint, u::pose, u::mounting) = by_mounting;
-  u::block(joint, u::mounting, u::pose) = by_mounting.transpose();
-  EXPECT_LT(covariance.in_world(joint, Eigen::Vector3d::Zero()).cwiseAbs().maxCoeff(), 1e-18);
+  const Pose by_mounting = K * u::sub_block(joint, u::mounting);
+  u::sub_block(joint, u::pose) = by_mounting * K.transpose();
+  u::sub_block(joint, u::pose, u::mounting) = by_mounting;
+  u::sub_block(joint, u::mounting, u::pose) = by_mounting.transpose();
+  EXPECT_LT(covariance.in_world_frame(joint, Eigen::Vector3d::Zero()).cwiseAbs().maxCoeff(), 1e-18);
   EXPECT_GT((in_world(covariance, joint).topLeftCorner<3, 3>().trace()), 1e-3);
 }
 
@@ -90,14 +90,14 @@ TEST(WorldCovariance, WhatIsInsertedMovesTheMapByItsShare) {
   }
   SweepTrajectory trajectory;
   const Registration::Estimate rest;
-  ASSERT_TRUE(trajectory.build(rest.state, samples, 100'000'000, {0.0, 0.0, -9.8}, rest.deficit_rad_s).ok());
+  ASSERT_TRUE(trajectory.build(rest.state, samples, 100'000'000, {0.0, 0.0, -9.8}, rest.saturation_deficit_rad_s).ok());
   Matrix errors = Matrix::Zero();
   u::variances(errors, u::position).setConstant(0.01);
   u::variances(errors, u::attitude).setConstant(0.0004);
   u::variances(errors, u::velocity).setConstant(0.25);
   WorldCovariance covariance(without_tilt(), kStart, kLever_m);
-  covariance.add_insertion(0.2, trajectory, errors, kLever_m);
-  covariance.add_insertion(0.1, trajectory, errors, kLever_m);
+  covariance.add_inserted_sweep(0.2, trajectory, errors, kLever_m);
+  covariance.add_inserted_sweep(0.1, trajectory, errors, kLever_m);
   const Pose P = in_world(covariance);
   const double d2 = 0.2 * 0.2 + 0.1 * 0.1;
   // in the middle of the sweep, 50 ms after the errors: the velocity's part, and the effect of a tilt on the force by
@@ -113,7 +113,7 @@ TEST(WorldCovariance, TheScaleOfTheMapMovesDistantPositions) {
   const WorldCovariance covariance(without_tilt(), kStart, kLever_m, kPlace_W_m);
   const auto sigma_m = [&](double x_m) {
     const Eigen::Vector3d p_WI_m = kPlace_W_m + Eigen::Vector3d(x_m, 0.0, 0.0);
-    return std::sqrt(covariance.in_world(Matrix::Zero(), p_WI_m)(0, 0));
+    return std::sqrt(covariance.in_world_frame(Matrix::Zero(), p_WI_m)(0, 0));
   };
   EXPECT_EQ(sigma_m(0.0), 0.0);
   EXPECT_NEAR(sigma_m(1000.0), 3.0, 1e-9);
@@ -132,12 +132,12 @@ TEST(WorldCovariance, TheMapsRotationMovesLaterPositions) {
     SweepTrajectory trajectory;
     EXPECT_TRUE(trajectory.build(start, {&sample, 1}, sample.time_ns, {0.0, 0.0, -9.8}).ok());
     errors(5, 5) = yaw_sigma_rad * yaw_sigma_rad;
-    covariance.add_insertion(1.0, trajectory, errors, Eigen::Vector3d::Zero());
+    covariance.add_inserted_sweep(1.0, trajectory, errors, Eigen::Vector3d::Zero());
   };
   extend(0.0, 0.01);
-  EXPECT_LT(covariance.in_world(Matrix::Zero(), Eigen::Vector3d::Zero())(1, 1), 1e-12);
+  EXPECT_LT(covariance.in_world_frame(Matrix::Zero(), Eigen::Vector3d::Zero())(1, 1), 1e-12);
   extend(100.0, 0.0);
-  const Pose P = covariance.in_world(Matrix::Zero(), {100.0, 0.0, 0.0});
+  const Pose P = covariance.in_world_frame(Matrix::Zero(), {100.0, 0.0, 0.0});
   EXPECT_NEAR(std::sqrt(P(1, 1)), 1.0, 0.01);
   EXPECT_NEAR(std::sqrt(P(5, 5)), 0.01, 1e-4);
   EXPECT_EQ(covariance.sigma_in_map_m(Matrix::Zero(), {100.0, 0.0, 0.0}), 0.0);

@@ -53,7 +53,7 @@ struct RoomRun {
     }
   }
   double error_in_room_m(const Eigen::Isometry3d& T_MR = Eigen::Isometry3d::Identity()) const {
-    return (newest.pose.p_WA_m - T_MR * moves.p_m(1e-9 * static_cast<double>(newest.pose.time_ns))).norm();
+    return (newest.pose.position_W_m - T_MR * moves.p_m(1e-9 * static_cast<double>(newest.pose.time_ns))).norm();
   }
 
   test::Motion moves;
@@ -82,7 +82,7 @@ TEST(PriorMapRun, HealthReportsThatARunIsNotLocalisedUntilItIs) {
   EXPECT_TRUE(run.odometry.health().ok()) << run.odometry.health().message();
   EXPECT_TRUE(run.newest.in_prior_map);
   EXPECT_LT(run.error_in_room_m(), 0.1);
-  EXPECT_FALSE(run.odometry.second_pass_applied());
+  EXPECT_FALSE(run.odometry.second_mapping_pass_applied());
 }
 
 TEST(PriorMapRun, ResetKeepsTheMapAndLocalisesAgain) {
@@ -121,7 +121,7 @@ TEST(SavedRun, ANewObjectLocalisesInTheSavedMapAtTheSavedPose) {
   const Status loaded = after.odometry.load(before.odometry.save(), &last);
   ASSERT_TRUE(loaded.ok()) << loaded.message();
   ASSERT_TRUE(last);
-  EXPECT_LT((last->p_WA_m - elsewhere().translation()).norm(), 0.05);
+  EXPECT_LT((last->position_W_m - elsewhere().translation()).norm(), 0.05);
   EXPECT_FALSE(after.odometry.mapper().localised().ok());
   after.feed(0, 30);
   EXPECT_TRUE(after.newest.in_prior_map);
@@ -135,7 +135,7 @@ TEST(SavedRun, ARunSavedInMotionKeepsItsMap) {
   std::optional<PoseState> last;
   ASSERT_TRUE(after.odometry.load(before.odometry.save(), &last).ok());
   ASSERT_TRUE(last);
-  EXPECT_LT((last->p_WA_m - elsewhere() * before.moves.p_m(1e-9 * static_cast<double>(last->time_ns))).norm(), 0.1);
+  EXPECT_LT((last->position_W_m - elsewhere() * before.moves.p_m(1e-9 * static_cast<double>(last->time_ns))).norm(), 0.1);
   EXPECT_EQ(after.odometry.mapper().prior_map()->points.size(), before.odometry.mapper().map().size());
   after.odometry.reset(elsewhere());  // the robot was carried back
   after.feed(0, 5);

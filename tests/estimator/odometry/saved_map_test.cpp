@@ -52,7 +52,7 @@ TEST(SavedMap, EveryTruncationIsRefused) {
   const std::vector<std::byte> bytes = save_map(some_points());
   for (std::size_t length = 0; length < bytes.size(); ++length) {
     std::vector<MapPoint> points = some_points();
-    ASSERT_EQ(load_map(std::span(bytes).first(length), points).error_code, ErrorCode::too_few) << length;
+    ASSERT_EQ(load_map(std::span(bytes).first(length), points).error_code, ErrorCode::insufficient_data) << length;
     ASSERT_TRUE(same(points, some_points())) << length;
   }
 }

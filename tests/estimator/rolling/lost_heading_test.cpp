@@ -47,7 +47,7 @@ End end_of(double gap_s, double before_s, double lag_s) {
     EXPECT_TRUE(status.ok()) << status.message();
   }
   smoother.finish(*state, out);
-  const Eigen::Vector2d error = (out.back().p_WG_m - truth.p_WG_m.back()).head<2>();
+  const Eigen::Vector2d error = (out.back().sphere_centre_W_m - truth.p_WG_m.back()).head<2>();
   const Eigen::Matrix2d P = out.back().covariance.topLeftCorner<2, 2>();
   return {error.norm(), std::sqrt(error.dot(P.llt().solve(error)))};
 }
@@ -55,7 +55,7 @@ End end_of(double gap_s, double before_s, double lag_s) {
 // without the correction, heading and velocity were estimated as if both had continued: up to 7.1 deviations
 TEST(LostHeading, ABounceInAGapIsToldByTheCovariance) {
   double worst_m = 0.0;
-  for (const double lag_s : {RollingSmoother::kWholeRun, 1.0}) {
+  for (const double lag_s : {RollingSmoother::kWholeRecordingLag, 1.0}) {
     for (const double before_s : {0.03, 0.1, 0.15, 0.25}) {
       const End end = end_of(0.3, before_s, lag_s);
       EXPECT_LT(end.deviations, 3.0) << before_s << " " << lag_s << " " << end.error_m;
@@ -63,40 +63,40 @@ TEST(LostHeading, ABounceInAGapIsToldByTheCovariance) {
     }
   }
   EXPECT_GT(worst_m, 0.1);  // the test needs a difficult case
-  EXPECT_LT(end_of(0.0, 0.0, RollingSmoother::kWholeRun).error_m, 0.03);
+  EXPECT_LT(end_of(0.0, 0.0, RollingSmoother::kWholeRecordingLag).error_m, 0.03);
 }
 
 TEST(LostHeading, TheContactTellsNothingOfATurnOfTheWholeRun) {
   RollingParams params = testing::lagged_params(0.0).filter;
-  RollingNominal nominal;
+  RollingNominalState nominal;
   nominal.q_WI = so3::exp({0.3, -0.7, 1.1});
   nominal.v_WI_m_s = {0.7, -0.3, 0.02};
-  nominal.slope = {0.1, -0.05};
-  RollingIntegrals sums;
-  sums.node_s = 0.02;
+  nominal.floor_slope = {0.1, -0.05};
+  RollingNodeIntegrals sums;
+  sums.node_interval_s = 0.02;
   rolling::Contact c = rolling::contact(params, nominal, {2.0, -4.0, 1.0}, sums);
   const auto turned = [](const auto& v) { return Eigen::Vector2d(-v.y(), v.x()); };
   rolling::Vector turn = rolling::Vector::Zero();
   turn[rolling::kAttitude + 2] = 1.0;
   turn.segment<2>(rolling::kVelocity) = turned(nominal.v_WI_m_s);
-  turn.segment<2>(rolling::kSlope) = turned(nominal.slope);
-  const Eigen::Vector3d with_all = c.H * turn, of_turn = Eigen::Vector3d::UnitZ().cross(c.contact_velocity_W_m_s);
+  turn.segment<2>(rolling::kSlope) = turned(nominal.floor_slope);
+  const Eigen::Vector3d with_all = c.measurement_jacobian * turn, of_turn = Eigen::Vector3d::UnitZ().cross(c.contact_velocity_W_m_s);
   EXPECT_GT(of_turn.norm(), 0.1);
   EXPECT_LT((with_all - of_turn).norm(), 1e-9);
-  rolling::remove_heading_effect(c);
-  EXPECT_LT((c.H * turn).norm(), 1e-9);
+  rolling::remove_heading_component(c);
+  EXPECT_LT((c.measurement_jacobian * turn).norm(), 1e-9);
 }
 
 TEST(LostHeading, ErrorsMoveWithTheNominal) {
   rolling::Vector x = rolling::Vector::LinSpaced(rolling::kStates, -0.5, 0.7), error = x.reverse();
-  const rolling::Vector turned = rolling::heading_effect(x);
+  const rolling::Vector turned = rolling::heading_component(x);
   rolling::Covariance T = rolling::Covariance::Identity(), P = error * error.transpose();
   T.col(rolling::kAttitude + 2) += turned;
   const rolling::Covariance moved = T * P * T.transpose();
-  rolling::move_errors(turned, P);
+  rolling::remove_heading_covariance(turned, P);
   EXPECT_LT((P - moved).norm(), 1e-12);
   rolling::Vector one = error;
-  rolling::move_error(turned, one);
+  rolling::remove_heading_error(turned, one);
   EXPECT_LT((one - T * error).norm(), 1e-12);
   EXPECT_GT((one - error).norm(), 0.1);
 }

@@ -107,7 +107,7 @@ Result filtered(const RollingTruth& truth, const Contact& contact, const Rolling
   }
   if (hit + missed > 0) result.recall = static_cast<double>(hit) / (hit + missed);
   if (hit + wrong > 0) result.precision = static_cast<double>(hit) / (hit + wrong);
-  result.end_error_m = (state->p_WG_m - truth.p_WG_m.back()).norm();
+  result.end_error_m = (state->sphere_centre_W_m - truth.p_WG_m.back()).norm();
   result.end_sigma_m = std::sqrt(state->position_covariance_m2.trace());
   return result;
 }
@@ -160,8 +160,8 @@ TEST(RollingFilter, StandsStillWhereTheSphereDoes) {
     ASSERT_TRUE(filter.step(truth.samples[k], *state).ok());
     const double time_s = seconds(truth.samples[k].time_ns);
     if (time_s < 8.3) continue;  // the roll ends at 8.0 s
-    if (still++ == 0) first = state->p_WG_m;
-    drift_m = std::max(drift_m, (state->p_WG_m - first).norm());
+    if (still++ == 0) first = state->sphere_centre_W_m;
+    drift_m = std::max(drift_m, (state->sphere_centre_W_m - first).norm());
   }
   EXPECT_EQ(still, 426);
   EXPECT_EQ(drift_m, 0.0);
@@ -292,11 +292,11 @@ TEST(RollingFilter, StandsStill) {
   Eigen::Vector3d early = Eigen::Vector3d::Zero();
   for (std::size_t k = 0; k < truth.samples.size(); ++k) {
     ASSERT_TRUE(filter.step(truth.samples[k], *state).ok());
-    if (k == 500) early = state->p_WG_m;
+    if (k == 500) early = state->sphere_centre_W_m;
   }
   EXPECT_TRUE(state->at_rest);
-  EXPECT_LT((state->p_WG_m - early).norm(), 1e-3);
-  EXPECT_EQ(state->count, 1) << "hypotheses about a past that no longer matters";
+  EXPECT_LT((state->sphere_centre_W_m - early).norm(), 1e-3);
+  EXPECT_EQ(state->hypothesis_count, 1) << "hypotheses about a past that no longer matters";
 }
 
 TEST(RollingFilter, SplitRunsEqual) {

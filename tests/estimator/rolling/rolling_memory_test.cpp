@@ -62,7 +62,7 @@ Held held_by(double duration_s) {
   const auto state = std::make_unique<RollingSmoother::State>();
   for (const ImuSample& sample : truth.samples) EXPECT_TRUE(smoother.step(sample, *state, none).ok());
   Held out;
-  out.nodes = static_cast<double>(state->steps.size());
+  out.nodes = static_cast<double>(state->node_modes.size());
   out.state = static_cast<double>(position_constrained - before);
   held_most = position_constrained;
   const std::size_t with_state = position_constrained;
@@ -82,7 +82,7 @@ TEST(RollingMemory, AWholeRunHoldsLittleForEachNode) {
   EXPECT_LT((two.state - one.state) / nodes, 2.0 * (5 * sizeof(ImuSample) + sizeof(RollingSmoother::NodeModes)) + 16.0);
   // two filters in each segment, and a mode and a variance for each node; measured 288
   EXPECT_LT((two.at_the_end - one.at_the_end) / nodes, 320.0);
-  EXPECT_GT(sizeof(rolling::NodeRecord), 10'000u) << "the bound says nothing any more";
+  EXPECT_GT(sizeof(rolling::FilterNodeRecord), 10'000u) << "the bound says nothing any more";
   EXPECT_LT(two.at_the_end, 5e6);
 }
 
@@ -91,7 +91,7 @@ TEST(RollingMemory, ALagBeyondAllRunsTakesNoMoreThanARun) {
   RollingSmoother::Params params;
   params.filter.radius_m = testing::kRadius_m;
   params.filter.lever_arm_m = kLeverArm;
-  params.lag_s = 0.1 * RollingSmoother::kWholeRun;
+  params.lag_s = 0.1 * RollingSmoother::kWholeRecordingLag;
   const RollingSmoother smoother(params);
   const testing::RollingTruth truth = path(2.0);
   std::vector<RollingEstimate> out;
@@ -104,29 +104,29 @@ TEST(RollingMemory, ALagBeyondAllRunsTakesNoMoreThanARun) {
 }
 
 /// Returns all results of the last pass for a path, in one row.
-std::vector<double> told(std::span<const ImuSample> samples, std::span<const rolling::PathNode> path,
-                         std::optional<rolling::LastPass::Distance> distance, std::size_t segment) {
+std::vector<double> told(std::span<const ImuSample> samples, std::span<const rolling::ModePathNode> path,
+                         std::optional<rolling::FinalSmoothingPass::Distance> distance, std::size_t segment) {
   RollingParams params;
   params.radius_m = testing::kRadius_m;
   params.lever_arm_m = kLeverArm;
   params.radius_sigma_m = 1e-3;
-  rolling::LastPass pass(params, samples, path, distance, segment);
-  rolling::LastPass::Checkpoint start;
+  rolling::FinalSmoothingPass pass(params, samples, path, distance, segment);
+  rolling::FinalSmoothingPass::Checkpoint start;
   start.filter.nominal = rolling::start_nominal(params, Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero());
-  rolling::set_prior(params, Eigen::Vector3d::Zero(), start.filter.P);
+  rolling::set_prior(params, Eigen::Vector3d::Zero(), start.filter.covariance);
   start.reading.next = 1;
-  pass.run(start, 200);
+  pass.run_to_cut(start, 200);
   EXPECT_EQ(pass.nodes(), path.size());
   std::vector<double> out(pass.horizontal_variance_m2().begin(), pass.horizontal_variance_m2().end());
   const auto add = [&out](const auto& matrix) {
     for (const double entry : matrix.reshaped()) out.push_back(entry);
   };
-  add(pass.cut().filter.P);
-  add(pass.end().P);
-  pass.give(path.size() + 1, [&](const rolling::LastPass::Smoothed& at) {
+  add(pass.cut_checkpoint().filter.covariance);
+  add(pass.end_filter().covariance);
+  pass.report_smoothed(path.size() + 1, [&](const rolling::FinalSmoothingPass::Smoothed& at) {
     out.push_back(static_cast<double>(at.index));
-    add(at.error);
-    add(at.node->smoothed_P);
+    add(at.smoothed_error);
+    add(at.node->smoothed_covariance);
     add(at.nominal.p_WI_m);
     add(at.point.p_WI_m);
   });
@@ -136,10 +136,10 @@ std::vector<double> told(std::span<const ImuSample> samples, std::span<const rol
 TEST(RollingMemory, HowMuchIsHeldAtATimeChangesNoBit) {
   const testing::RollingTruth truth = path(10.0);
   constexpr std::size_t kNodes = 499;
-  std::vector<rolling::PathNode> path(kNodes);
+  std::vector<rolling::ModePathNode> path(kNodes);
   for (std::size_t n = 150; n < 170; ++n) path[n].mode = RollingMode::slip;
   for (std::size_t n = 300; n < kNodes; ++n) path[n].mode = RollingMode::incline;
-  for (const auto distance : {std::optional<rolling::LastPass::Distance>(), {{1.4, 5e-3}}}) {
+  for (const auto distance : {std::optional<rolling::FinalSmoothingPass::Distance>(), {{1.4, 5e-3}}}) {
     const std::vector<double> at_once = told(truth.samples, path, distance, 1000);
     ASSERT_GT(at_once.size(), 100'000u);
     for (const std::size_t segment : {1, 7, 128, 498, 499}) {

@@ -17,19 +17,19 @@ struct Gained {
 
 /// Returns the result of one reading of a sphere at rest in W, at a constant rate.
 Gained gained(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2, std::uint8_t flags,
-              Force known = Force::read) {
+              Force known = Force::force_measured) {
   RollingParams params;
   params.accel_range_m_s2 = kRail_m_s2;
   params.lever_arm_m = {0.1, 0.0, 0.0};
-  params.expert.rails.recovered_rate_sigma_rad_s = 0.1;
-  RollingNominal nominal;
+  params.expert.saturation.recovered_rate_sigma_rad_s = 0.1;
+  RollingNominalState nominal;
   nominal.last_rate_I_rad_s = rate_rad_s;
-  RollingIntegrals sums;
+  RollingNodeIntegrals sums;
   ImuAverage reading;
   reading.add({0, rate_rad_s, force_m_s2, flags}, kRepeated_s);
   integrate(params, reading, nominal, sums, known);
-  EXPECT_DOUBLE_EQ(sums.force_clipped_s, flags != 0 || known == Force::unknown ? kRepeated_s : 0.0);
-  return {nominal.v_WI_m_s, sums.subsample_saturation_W_m_s};
+  EXPECT_DOUBLE_EQ(sums.force_clipped_s, flags != 0 || known == Force::force_unknown ? kRepeated_s : 0.0);
+  return {nominal.v_WI_m_s, sums.partial_saturation_W_m_s};
 }
 
 // An impact that saturates a part of the window is at least the reading, as without the flag; without the correction,
@@ -40,11 +40,11 @@ TEST(RollingRails, AnImpactIsAtLeastWhatWasRead) {
   const Eigen::Vector3d expected = kRepeated_s * (read - gravity * Eigen::Vector3d::UnitZ());
   const Gained railed = gained(Eigen::Vector3d::Zero(), read, kClipAccel);
   EXPECT_LT((railed.velocity_m_s - expected).norm(), 1e-12);
-  const double share = RollingParams{}.expert.rails.subsample_saturation_ratio;
+  const double share = RollingParams{}.expert.saturation.subsample_saturation_ratio;
   EXPECT_NEAR(railed.hidden_m_s.z(), share * kRepeated_s * 57.0, 1e-12) << "and how much more is not known";
   EXPECT_LT((gained(Eigen::Vector3d::Zero(), read, 0).velocity_m_s - expected).norm(), 1e-12);
   // negative control: a missing force contributes nothing
-  EXPECT_LT(gained(Eigen::Vector3d::Zero(), read, kClipAccel, Force::unknown).velocity_m_s.norm(), 1e-12);
+  EXPECT_LT(gained(Eigen::Vector3d::Zero(), read, kClipAccel, Force::force_unknown).velocity_m_s.norm(), 1e-12);
 }
 
 // A fast rotation about z saturates x: 160 m/s^2 keep the centre where it is, without an impact. The other axes keep
@@ -66,8 +66,8 @@ TEST(RollingRails, AFastTurnIsWhatItTakesToKeepTheCentre) {
 TEST(RollingRails, AnIgnoredForceHasNoBias) {
   const Eigen::Vector3d rate(0.0, 0.0, 5.0), force(0.0, 0.0, 9.8);
   const auto by_bias = [&](std::uint8_t flags) {
-    RollingNominal nominal;
-    RollingIntegrals sums;
+    RollingNominalState nominal;
+    RollingNodeIntegrals sums;
     ImuAverage reading;
     reading.add({0, rate, force, flags}, kRepeated_s);
     integrate(RollingParams{}, reading, nominal, sums);

@@ -58,7 +58,7 @@ Smoothed smoothed_samples(const std::vector<ImuSample>& samples, const RollingSm
 }
 
 double end_error_m(const std::vector<ImuSample>& samples, const Eigen::Vector3d& end_m, double lag_s) {
-  return (smoothed_samples(samples, testing::lagged_params(lag_s)).out.back().p_WG_m - end_m).norm();
+  return (smoothed_samples(samples, testing::lagged_params(lag_s)).out.back().sphere_centre_W_m - end_m).norm();
 }
 
 // 50 Hz to 8 kHz, and rates that are no divisors
@@ -68,27 +68,27 @@ constexpr TimeNs kPeriods_ns[] = {20'000'000, 8'000'000, 3'000'000, 1'000'000, 7
 TEST(RollingRates, TheSameAnswerFrom50HzTo8kHz) {
   for (const TimeNs period_ns : kPeriods_ns) {
     const testing::RollingTruth truth = slipping_sampled(period_ns);
-    const Smoothed own = smoothed_samples(truth.samples, testing::lagged_params(RollingSmoother::kWholeRun));
+    const Smoothed own = smoothed_samples(truth.samples, testing::lagged_params(RollingSmoother::kWholeRecordingLag));
     const Eigen::Vector3d& end_m = truth.p_WG_m.back();
-    EXPECT_LT((own.out.back().p_WG_m - end_m).norm(), 0.02) << period_ns;
-    EXPECT_LT((own.state->live.p_WG_m - end_m).norm(), 0.02) << period_ns;
+    EXPECT_LT((own.out.back().sphere_centre_W_m - end_m).norm(), 0.02) << period_ns;
+    EXPECT_LT((own.state->live_filter.sphere_centre_W_m - end_m).norm(), 0.02) << period_ns;
   }
 }
 
 TEST(RollingRates, ReadingsAsLongAsTheWindowAreTakenAsTheyAre) {
   const testing::RollingTruth truth = slipping_sampled(4'000'000);
-  RollingSmoother::Params one_by_one = testing::lagged_params(RollingSmoother::kWholeRun);
+  RollingSmoother::Params one_by_one = testing::lagged_params(RollingSmoother::kWholeRecordingLag);
   one_by_one.filter.expert.reading_s = 0.0;
-  const Smoothed averaged = smoothed_samples(truth.samples, testing::lagged_params(RollingSmoother::kWholeRun)),
+  const Smoothed averaged = smoothed_samples(truth.samples, testing::lagged_params(RollingSmoother::kWholeRecordingLag)),
                  plain = smoothed_samples(truth.samples, one_by_one);
-  EXPECT_TRUE(averaged.out.back().p_WG_m == plain.out.back().p_WG_m);
+  EXPECT_TRUE(averaged.out.back().sphere_centre_W_m == plain.out.back().sphere_centre_W_m);
   EXPECT_TRUE(averaged.out.back().covariance == plain.out.back().covariance);
 }
 
 TEST(RollingRates, JitterOfTheStampsAndReadingsThatRepeatAreBorne) {
   const testing::RollingTruth truth = slipping_sampled(1'000'000);
   const Eigen::Vector3d& end_m = truth.p_WG_m.back();
-  const double exact = end_error_m(truth.samples, end_m, RollingSmoother::kWholeRun);
+  const double exact = end_error_m(truth.samples, end_m, RollingSmoother::kWholeRecordingLag);
   std::vector<ImuSample> position_constrained = truth.samples, jittered = slipping_sampled(4'000'000).samples;
   // a device with 200 Hz that is read at 1 kHz
   for (std::size_t k = 0; k < position_constrained.size(); ++k) {
@@ -98,8 +98,8 @@ TEST(RollingRates, JitterOfTheStampsAndReadingsThatRepeatAreBorne) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> off(-1.5e6, 1.5e6);
   for (ImuSample& sample : jittered) sample.time_ns += static_cast<TimeNs>(off(random));
-  const double of_held = end_error_m(position_constrained, end_m, RollingSmoother::kWholeRun),
-               of_jittered = end_error_m(jittered, end_m, RollingSmoother::kWholeRun);
+  const double of_held = end_error_m(position_constrained, end_m, RollingSmoother::kWholeRecordingLag),
+               of_jittered = end_error_m(jittered, end_m, RollingSmoother::kWholeRecordingLag);
   EXPECT_LT(exact, 0.02);
   EXPECT_LT(of_held, 0.02);
   EXPECT_LT(of_jittered, 0.02);
@@ -120,7 +120,7 @@ TEST(RollingRates, SplitRunsEqualWithAveragesAndGaps) {
       smoother.finish(*carried, split.out);
       ASSERT_EQ(split.out.size(), whole.out.size());
       EXPECT_TRUE(*carried == *whole.state) << cut;
-      EXPECT_TRUE(split.out.back().p_WG_m == whole.out.back().p_WG_m) << cut;
+      EXPECT_TRUE(split.out.back().sphere_centre_W_m == whole.out.back().sphere_centre_W_m) << cut;
     }
   }
 }
@@ -138,22 +138,22 @@ TEST(RollingRates, AGapCostsWhatItMustAndIsTold) {
   const auto sigma = [](const Smoothed& of) {
     return std::sqrt(of.out.back().covariance.topLeftCorner<3, 3>().trace());
   };
-  const double whole = RollingSmoother::kWholeRun;
+  const double whole = RollingSmoother::kWholeRecordingLag;
   const Smoothed none = smoothed_samples(truth.samples, testing::lagged_params(whole));
-  EXPECT_EQ(none.state->live.gaps, 0);
+  EXPECT_EQ(none.state->live_filter.gaps, 0);
   for (const double length_s : {0.2, 0.95}) {
     for (const double lag_s : {whole, 0.5}) {
       const Smoothed moving = smoothed_samples(without(6.3, length_s), testing::lagged_params(lag_s));
-      const double error = (moving.out.back().p_WG_m - end_m).norm();
-      EXPECT_EQ(moving.state->live.gaps, 1);
-      EXPECT_NEAR(moving.state->live.gap_longest_s, length_s, 9e-3);
+      const double error = (moving.out.back().sphere_centre_W_m - end_m).norm();
+      EXPECT_EQ(moving.state->live_filter.gaps, 1);
+      EXPECT_NEAR(moving.state->live_filter.gap_longest_s, length_s, 9e-3);
       EXPECT_LT(error, 3.0 * sigma(moving)) << length_s;
       EXPECT_LT(error, 0.3) << length_s;
       EXPECT_GT(sigma(moving), sigma(none)) << length_s;
     }
   }
   const Smoothed resting = smoothed_samples(without(0.8, 0.5), testing::lagged_params(whole));
-  EXPECT_LT((resting.out.back().p_WG_m - end_m).norm(), 0.03);
+  EXPECT_LT((resting.out.back().sphere_centre_W_m - end_m).norm(), 0.03);
 
   const RollingFilter filter(testing::lagged_params(1.0).filter);
   const auto state = std::make_unique<RollingFilter::State>();
@@ -176,18 +176,18 @@ TEST(RollingRates, AStartInMotionIsToldAndBelievedLess) {
       if (samples.empty()) first = k;
       samples.push_back(truth.samples[k]);
     }
-    const Smoothed moving = smoothed_samples(samples, testing::lagged_params(RollingSmoother::kWholeRun));
-    EXPECT_TRUE(moving.state->live.started_in_motion);
+    const Smoothed moving = smoothed_samples(samples, testing::lagged_params(RollingSmoother::kWholeRecordingLag));
+    EXPECT_TRUE(moving.state->live_filter.started_in_motion);
     // heading and position of the start are those of the world: about its own heading, the path has equal length
     const Eigen::Quaterniond q = truth.q_WI[first] * moving.out.front().q_WI.conjugate();
     const Eigen::Quaterniond yaw = Eigen::Quaterniond(q.w(), 0.0, 0.0, q.z()).normalized();
     const Eigen::Vector3d path = truth.p_WG_m.back() - truth.p_WG_m[first];
-    const Eigen::Vector3d error = yaw * moving.out.back().p_WG_m - path;
+    const Eigen::Vector3d error = yaw * moving.out.back().sphere_centre_W_m - path;
     const double sigma = std::sqrt(moving.out.back().covariance.topLeftCorner<3, 3>().trace());
     EXPECT_LT(error.norm(), 3.0 * sigma) << from_s;
   }
-  EXPECT_FALSE(smoothed_samples(truth.samples, testing::lagged_params(RollingSmoother::kWholeRun))
-                   .state->live.started_in_motion);
+  EXPECT_FALSE(smoothed_samples(truth.samples, testing::lagged_params(RollingSmoother::kWholeRecordingLag))
+                   .state->live_filter.started_in_motion);
 }
 
 }  // namespace

@@ -50,18 +50,18 @@ std::vector<RollingEstimate> smoothed_truth(const testing::RollingTruth& truth, 
 
 TEST(RollingSmoother, OneEstimateForEachSampleWithWholeRunAndWithLag) {
   const testing::RollingTruth truth = slipping();
-  for (const double lag_s : {RollingSmoother::kWholeRun, 2.0, 0.5}) {
+  for (const double lag_s : {RollingSmoother::kWholeRecordingLag, 2.0, 0.5}) {
     const std::vector<RollingEstimate> out = smoothed_truth(truth, lag_s);
     ASSERT_EQ(out.size(), truth.samples.size()) << lag_s;
     for (std::size_t k = 0; k < out.size(); ++k) ASSERT_EQ(out[k].time_ns, truth.samples[k].time_ns) << lag_s;
     // 1 % of the path; measured 0.6 %: the scale error alone is 0.2 %
-    EXPECT_LT((out.back().p_WG_m - truth.p_WG_m.back()).norm(), 0.02) << lag_s;
+    EXPECT_LT((out.back().sphere_centre_W_m - truth.p_WG_m.back()).norm(), 0.02) << lag_s;
   }
 }
 
 TEST(RollingSmoother, MendsThePathInsideAnEvent) {
   const testing::RollingTruth truth = slipping();
-  const std::vector<RollingEstimate> whole = smoothed_truth(truth, RollingSmoother::kWholeRun);
+  const std::vector<RollingEstimate> whole = smoothed_truth(truth, RollingSmoother::kWholeRecordingLag);
   const RollingFilter filter(testing::lagged_params(1.0).filter);
   const auto state = std::make_unique<RollingFilter::State>();
   double live = 0.0, smoothed = 0.0, in_event = 0.0;
@@ -69,8 +69,8 @@ TEST(RollingSmoother, MendsThePathInsideAnEvent) {
   for (std::size_t k = 0; k < truth.samples.size(); ++k) {
     ASSERT_TRUE(filter.step(truth.samples[k], *state).ok());
     if (truth.gripping[k]) continue;
-    live = std::max(live, (state->p_WG_m - truth.p_WG_m[k]).norm());
-    smoothed = std::max(smoothed, (whole[k].p_WG_m - truth.p_WG_m[k]).norm());
+    live = std::max(live, (state->sphere_centre_W_m - truth.p_WG_m[k]).norm());
+    smoothed = std::max(smoothed, (whole[k].sphere_centre_W_m - truth.p_WG_m[k]).norm());
     in_event += may_slip(whole[k].mode);
   }
   EXPECT_LT(smoothed, live);
@@ -111,7 +111,7 @@ Normalised normalised_errors(double lag_s) {
     const testing::RollingTruth truth = drawn_path(seed, testing::lagged_params(1.0).filter);
     const std::vector<RollingEstimate> out = smoothed_truth(truth, lag_s);
     const auto add = [&](std::size_t k, double& sum) {
-      const Eigen::Vector3d error = out[k].p_WG_m - truth.p_WG_m[k];
+      const Eigen::Vector3d error = out[k].sphere_centre_W_m - truth.p_WG_m[k];
       const Eigen::Matrix3d covariance = out[k].covariance.topLeftCorner<3, 3>();
       sum += error.dot(covariance.llt().solve(error)) / (3.0 * kDraws);
     };
@@ -122,7 +122,7 @@ Normalised normalised_errors(double lag_s) {
 }
 
 TEST(RollingSmoother, ItsCovarianceIsNeitherTooSmallNorTooLarge) {
-  for (const double lag_s : {RollingSmoother::kWholeRun, 1.0}) {
+  for (const double lag_s : {RollingSmoother::kWholeRecordingLag, 1.0}) {
     const Normalised mean = normalised_errors(lag_s);
     // 48 unknowns: a correct covariance gives 0.46 to 1.81 in 99.9 % of cases
     for (const double each : {mean.within, mean.end}) {
@@ -134,11 +134,11 @@ TEST(RollingSmoother, ItsCovarianceIsNeitherTooSmallNorTooLarge) {
 
 TEST(RollingSmoother, ErrorsLieWithinItsCovariance) {
   const testing::RollingTruth truth = slipping();
-  for (const double lag_s : {RollingSmoother::kWholeRun, 1.0}) {
+  for (const double lag_s : {RollingSmoother::kWholeRecordingLag, 1.0}) {
     const std::vector<RollingEstimate> out = smoothed_truth(truth, lag_s);
     int inside = 0, total = 0;
     for (std::size_t k = 600; k < out.size(); ++k) {
-      const Eigen::Vector3d error = out[k].p_WG_m - truth.p_WG_m[k];
+      const Eigen::Vector3d error = out[k].sphere_centre_W_m - truth.p_WG_m[k];
       for (int axis = 0; axis < 3; ++axis)
         inside += std::abs(error[axis]) <= 3.0 * std::sqrt(out[k].covariance(axis, axis));
       total += 3;
@@ -156,10 +156,10 @@ TEST(RollingSmoother, WithALagAStandstillHasNoDrift) {
     ASSERT_EQ(out.size(), truth.samples.size());
     for (const auto& [from_s, to_s] : {std::pair(0.5, 1.9), std::pair(4.6, 5.4), std::pair(8.1, 10.0)}) {
       const auto first = static_cast<std::size_t>(from_s / 0.004), end = static_cast<std::size_t>(to_s / 0.004);
-      for (std::size_t k = first; k < end; ++k) ASSERT_EQ(out[k].p_WG_m, out[first].p_WG_m) << lag_s << " " << k;
+      for (std::size_t k = first; k < end; ++k) ASSERT_EQ(out[k].sphere_centre_W_m, out[first].sphere_centre_W_m) << lag_s << " " << k;
     }
     // and the position changes again when the motion continues
-    for (std::size_t k = 0; k < out.size(); ++k) ASSERT_LT((out[k].p_WG_m - truth.p_WG_m[k]).norm(), 0.03) << k;
+    for (std::size_t k = 0; k < out.size(); ++k) ASSERT_LT((out[k].sphere_centre_W_m - truth.p_WG_m[k]).norm(), 0.03) << k;
   }
 }
 
@@ -172,12 +172,12 @@ TEST(RollingSmoother, ASlowTurnAtTheEndIsNoBias) {
     if (seconds(turning.samples[k].time_ns) < 8.2) continue;  // the roll ends at 8.0 s
     turning.samples[k].angular_velocity_rad_s += turning.q_WI[k].conjugate() * Eigen::Vector3d(0.0, 0.0, 0.014);
   }
-  const std::vector<RollingEstimate> without = smoothed_truth(still, RollingSmoother::kWholeRun);
-  const std::vector<RollingEstimate> with = smoothed_truth(turning, RollingSmoother::kWholeRun);
+  const std::vector<RollingEstimate> without = smoothed_truth(still, RollingSmoother::kWholeRecordingLag);
+  const std::vector<RollingEstimate> with = smoothed_truth(turning, RollingSmoother::kWholeRecordingLag);
   ASSERT_EQ(with.size(), without.size());
   EXPECT_TRUE(with.back().at_rest) << "the turn was not taken for rest at all";
-  EXPECT_LT((with.back().p_WG_m - without.back().p_WG_m).norm(), 0.002);
-  EXPECT_LT((with.back().p_WG_m - turning.p_WG_m.back()).norm(), 0.02);
+  EXPECT_LT((with.back().sphere_centre_W_m - without.back().sphere_centre_W_m).norm(), 0.002);
+  EXPECT_LT((with.back().sphere_centre_W_m - turning.p_WG_m.back()).norm(), 0.02);
 }
 
 /// The sphere is 2 % larger than assumed, on a path with known ends: the radius and the path are estimated.
@@ -185,7 +185,7 @@ TEST(RollingSmoother, AKnownDistanceTellsTheRadius) {
   constexpr double kBelieved_m = 0.148, kTrue_m = 0.145;
   const testing::RollingTruth truth = slipping();
   const Eigen::Vector3d end = truth.p_WG_m.back() - truth.p_WG_m.front();
-  RollingSmoother::Params given = testing::lagged_params(RollingSmoother::kWholeRun);
+  RollingSmoother::Params given = testing::lagged_params(RollingSmoother::kWholeRecordingLag);
   given.filter.radius_m = kBelieved_m;
   const auto end_error = [&](double radius_sigma_m, double distance_m, RollingSmoother::State& state) {
     RollingSmoother::Params p = given;
@@ -197,7 +197,7 @@ TEST(RollingSmoother, AKnownDistanceTellsTheRadius) {
     for (const ImuSample& sample : truth.samples) EXPECT_TRUE(smoother.step(sample, state, out).ok());
     smoother.finish(state, out);
     EXPECT_EQ(out.size(), truth.samples.size());
-    return (out.back().p_WG_m - truth.p_WG_m.back()).norm();
+    return (out.back().sphere_centre_W_m - truth.p_WG_m.back()).norm();
   };
   const auto sure = std::make_unique<RollingSmoother::State>(), without = std::make_unique<RollingSmoother::State>(),
              with = std::make_unique<RollingSmoother::State>();
@@ -229,7 +229,7 @@ TEST(RollingSmoother, SplitRunsEqual) {
   EXPECT_TRUE(*second == *whole);
   ASSERT_EQ(out_split.size(), out_whole.size());
   ASSERT_FALSE(out_whole.empty());
-  for (std::size_t k = 0; k < out_whole.size(); ++k) ASSERT_EQ(out_split[k].p_WG_m, out_whole[k].p_WG_m) << k;
+  for (std::size_t k = 0; k < out_whole.size(); ++k) ASSERT_EQ(out_split[k].sphere_centre_W_m, out_whole[k].sphere_centre_W_m) << k;
 }
 
 TEST(RollingSmoother, RefusesBadParamsAndBadSamples) {

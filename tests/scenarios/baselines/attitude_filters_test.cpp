@@ -45,7 +45,7 @@ TYPED_TEST(Baseline, FollowsAPerfectTurnExactly) {
     const Eigen::Quaterniond truth = so3::exp(rate * (k * seconds(kPeriod_ns)));
     const Eigen::Vector3d f_I = truth.conjugate() * Eigen::Vector3d(0, 0, kGravity_m_s2);
     ASSERT_TRUE(filter.step({k * kPeriod_ns, rate, f_I, 0}, state).ok());
-    error_max_rad = std::max(error_max_rad, so3::log(truth.conjugate() * state.q_WI).norm());
+    error_max_rad = std::max(error_max_rad, so3::logarithm(truth.conjugate() * state.q_WI).norm());
   }
   EXPECT_LT(error_max_rad, 1e-10);  // only rounding: measured 1e-12
 }
@@ -90,7 +90,7 @@ TEST(Complementary, CorrectionTurnsNoHeadingIn) {
   const Eigen::Quaterniond start = state.q_WI;
   for (int k = 1; k <= 1000; ++k)
     ASSERT_TRUE(filter.step({k * kPeriod_ns, {0, 0, 0}, {0, 0, kGravity_m_s2}, 0}, state).ok());
-  const Eigen::Vector3d turned = so3::log(state.q_WI * start.conjugate());
+  const Eigen::Vector3d turned = so3::logarithm(state.q_WI * start.conjugate());
   EXPECT_NEAR(turned.z(), 0.0, 1e-12);
   EXPECT_GT(turned.norm(), 1.0);
 }
@@ -143,7 +143,7 @@ TEST(LowPass, IsTheButterworthBiquad) {
   LowPass<1> filter;
   int k = 0;
   double mean = 0.0;
-  for (; filter.averaged_s < tau; ++k) {
+  for (; filter.averaged_duration_s < tau; ++k) {
     filter.advance(Eigen::Matrix<double, 1, 1>(input(k)), tau, dt, warp);
     mean += (input(k) - mean) / (k + 1);
     ASSERT_NEAR(filter.value[0], mean, 1e-12);

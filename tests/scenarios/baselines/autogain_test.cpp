@@ -96,7 +96,7 @@ TEST(Autogain, PassesPitchOfNinetyDegrees) {
       // Madgwick's step compares the force with the attitude before the turn and pulls back by 2 gamma dt each time;
       // the complementary step removes 2 % of that: up to 2 gamma dt / 0.02 with gamma = 0.2 * 0.06 (smooth) at this
       // rate
-      ASSERT_NEAR(so3::log(truth.conjugate() * state.q_WI).norm(), 0.0, 2.0 * 0.2 * 0.06 * 0.008 / 0.02) << k;
+      ASSERT_NEAR(so3::logarithm(truth.conjugate() * state.q_WI).norm(), 0.0, 2.0 * 0.2 * 0.06 * 0.008 / 0.02) << k;
     }
   }
 }
@@ -126,7 +126,7 @@ double replay_median_arcsec(const testing::SphereLog& log, const Autogain::Param
   for (std::size_t k = 1; k < log.samples.size(); ++k) {
     Autogain::State state{log.q_WI[k - 1], log.samples[k - 1].time_ns, true};
     EXPECT_TRUE(filter.step(log.samples[k], state).ok()) << k;
-    residuals.push_back(so3::log(state.q_WI.conjugate() * log.q_WI[k]).norm() * 180.0 / std::numbers::pi * 3600.0);
+    residuals.push_back(so3::logarithm(state.q_WI.conjugate() * log.q_WI[k]).norm() * 180.0 / std::numbers::pi * 3600.0);
   }
   EXPECT_EQ(residuals.size() + 1, log.samples.size());
   std::nth_element(residuals.begin(), residuals.begin() + residuals.size() / 2, residuals.end());

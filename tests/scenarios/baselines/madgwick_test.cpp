@@ -102,7 +102,7 @@ TEST(Madgwick, ChattersByTwiceGainTimesStepOnPerfectData) {
     const Eigen::Quaterniond before = state.q_WI;
     ASSERT_TRUE(filter.step({k * kPeriod_ns, {0, 0, 0}, {0, 0, kGravity_m_s2}, 0}, state).ok());
     // the filter makes steps of fixed size to and fro about the truth: the sign alternates and the size never shrinks
-    const double moved = so3::log(before.conjugate() * state.q_WI).x();
+    const double moved = so3::logarithm(before.conjugate() * state.q_WI).x();
     EXPECT_NEAR(std::abs(moved), step, 1e-6 * step);
     if (k > 1) {
       EXPECT_LT(moved * previous, 0.0) << "step " << k;

@@ -28,7 +28,7 @@ std::vector<ImuSample> accelerated(int count) {
 
 TEST(PublishedImuOdometry, StaysUntilAVelocityIsFedBackAndIntegratesTheForceFromThere) {
   const std::vector<ImuSample> samples = accelerated(30);
-  const std::vector<RateState> rates(samples.size());
+  const std::vector<AngularRateState> rates(samples.size());
   PublishedImuOdometry odometry(0.0, samples, rates);
   odometry.advance(10 * kStep_ns);
   EXPECT_EQ(odometry.pose(10 * kStep_ns).translation(), Eigen::Vector3d::Zero());
@@ -51,7 +51,7 @@ TEST(PublishedImuOdometry, StaysUntilAVelocityIsFedBackAndIntegratesTheForceFrom
 struct InARoom {
   test::Motion motion;
   std::vector<ImuSample> samples;
-  std::vector<RateState> rates;
+  std::vector<AngularRateState> rates;
   std::vector<std::vector<LidarPoint>> sweeps;
 };
 
@@ -81,7 +81,7 @@ TEST(PublishedChain, FollowsAGentleMotionAndDrawsItsMap) {
     EXPECT_EQ(reports.back().verdict, k == 0 ? SweepVerdict::first : SweepVerdict::registered) << k;
   }
   const auto pose = [](const PoseState& state) {
-    return Eigen::Isometry3d(Eigen::Translation3d(state.p_WA_m) * state.q_WA);
+    return Eigen::Isometry3d(Eigen::Translation3d(state.position_W_m) * state.orientation_W);
   };
   const Eigen::Isometry3d moved = pose(reports.front().pose).inverse() * pose(reports.back().pose);
   const Eigen::Isometry3d truly = room.motion.pose(0.1).inverse() * room.motion.pose(0.1 * 15);
@@ -101,7 +101,7 @@ TEST(PublishedChain, TellsASweepThatHoldsNothingToRegister) {
   EXPECT_EQ(chain.add({test::kSweep_ns, 2 * test::kSweep_ns, points}, report).error_code, ErrorCode::degenerate);
   points = room.sweeps[2];
   for (LidarPoint& point : points) point.position_L_m *= 0.001f;
-  EXPECT_EQ(chain.add({2 * test::kSweep_ns, 3 * test::kSweep_ns, points}, report).error_code, ErrorCode::too_few);
+  EXPECT_EQ(chain.add({2 * test::kSweep_ns, 3 * test::kSweep_ns, points}, report).error_code, ErrorCode::insufficient_data);
   points.front().offset_ns = static_cast<std::uint32_t>(test::kSweep_ns + 1);
   EXPECT_EQ(chain.add({2 * test::kSweep_ns, 3 * test::kSweep_ns, points}, report).error_code, ErrorCode::out_of_range);
   EXPECT_FALSE(chain.covers({3 * test::kSweep_ns, 9 * test::kSweep_ns, {}}));
@@ -113,7 +113,7 @@ TEST(PublishedChain, LeavesOutTheRobotItself) {
   params.own_body_L = {Eigen::Vector3d::Constant(-100.0), Eigen::Vector3d::Constant(100.0)};
   PublishedChain chain(params, room.samples, room.rates);
   PublishedChain::SweepReport report;
-  EXPECT_EQ(chain.add({0, test::kSweep_ns, room.sweeps[0]}, report).error_code, ErrorCode::too_few);
+  EXPECT_EQ(chain.add({0, test::kSweep_ns, room.sweeps[0]}, report).error_code, ErrorCode::insufficient_data);
   params.sweep_voxel_m = 0.0;
   EXPECT_THROW(PublishedChain(params, room.samples, room.rates), InvalidParams);
 }

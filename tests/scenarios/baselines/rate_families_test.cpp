@@ -12,7 +12,7 @@
 
 #include "scenarios/baselines/angular_velocity/clipped_baseline.hpp"
 #include "tumble/angular_velocity/detail/rate_observation.hpp"
-#include "tumble/angular_velocity/detail/subsample_saturation.hpp"
+#include "tumble/angular_velocity/detail/partial_saturation.hpp"
 
 namespace tumble::baselines {
 namespace {
@@ -66,13 +66,13 @@ struct Swing {
   }
 };
 
-RailDetector::Params rails() {
-  return {.stated_gyro_rad_s = kRail};
+SaturationLimitDetector::Params rails() {
+  return {.stated_gyro_range_rad_s = kRail};
 }
 
 template <typename Run>
 double worst_of(const Swing& swing, Run run) {
-  std::vector<RateState> states;
+  std::vector<AngularRateState> states;
   const Status status = run(states);
   EXPECT_TRUE(status.ok()) << status.message();
   if (states.size() != swing.count()) return std::numeric_limits<double>::infinity();
@@ -86,7 +86,7 @@ double worst_of(const Swing& swing, Run run) {
 double worst_baseline(const Swing& swing) {
   const std::vector<ImuSample> samples = swing.samples();
   return worst_of(
-      swing, [&](std::vector<RateState>& out) { return ClippedBaseline({.rails = rails()}).estimate(samples, out); });
+      swing, [&](std::vector<AngularRateState>& out) { return ClippedBaseline({.rails = rails()}).estimate(samples, out); });
 }
 
 double raw(const Swing& swing) {
@@ -105,7 +105,7 @@ TEST(ClippedBaseline, RefusesBadInput) {
   std::vector<ImuSample> spoilt = swing.samples(), falling = spoilt;
   spoilt[50].angular_velocity_rad_s.x() = std::numeric_limits<double>::quiet_NaN();
   std::swap(falling[50].time_ns, falling[51].time_ns);
-  std::vector<RateState> out(3);
+  std::vector<AngularRateState> out(3);
   const auto refuses = [&](auto estimate) {
     EXPECT_EQ(estimate(std::span<const ImuSample>{}).error_code, ErrorCode::empty);
     EXPECT_EQ(estimate(std::span<const ImuSample>(spoilt)).error_code, ErrorCode::non_finite);
@@ -118,32 +118,32 @@ TEST(ClippedBaseline, RefusesBadInput) {
 
 // The test uses a rate that crosses the saturation level with constant slope, for which loss and reading have a closed
 // form.
-TEST(SubsampleSaturation, IsExactForAConstantSlope) {
+TEST(PartialSaturation, IsExactForAConstantSlope) {
   for (const double slope : {0.5, 2.0, 5.0}) {    // slope per window
     for (const double share : {0.2, 0.5, 0.8}) {  // clipped share of the window
       const double free = 1.0 - share, reading = kRail - 0.5 * free * free * slope;
       const double unclipped = reading + 0.5 * share * share * slope, neighbour = unclipped - slope;
-      const SubsampleSaturation loss = subsample_saturation(reading, neighbour, kRail, 1e-6);
+      const PartialSaturation loss = partial_saturation(reading, neighbour, kRail, 1e-6);
       ASSERT_TRUE(loss.saturated) << slope << " " << share;
-      EXPECT_NEAR(loss.expected_deficit_rad_s, 0.5 * share * share * slope, 1e-9) << slope << " " << share;
+      EXPECT_NEAR(loss.expected_saturation_deficit_rad_s, 0.5 * share * share * slope, 1e-9) << slope << " " << share;
       EXPECT_GT(loss.sigma_rad_s, 0.0);
     }
   }
-  EXPECT_FALSE(subsample_saturation(kRail, 9.0, kRail, 1e-3).saturated);         // hidden all along
-  EXPECT_FALSE(subsample_saturation(kRail - 1e-3, 0.0, kRail, 1e-6).saturated);  // but for a hundredth
+  EXPECT_FALSE(partial_saturation(kRail, 9.0, kRail, 1e-3).saturated);         // hidden all along
+  EXPECT_FALSE(partial_saturation(kRail - 1e-3, 0.0, kRail, 1e-6).saturated);  // but for a hundredth
   // a plateau sinks, as at a saturation level tilted by a thousandth: the samples are flagged throughout, and there is
   // no step to a neighbouring sample
-  EXPECT_FALSE(subsample_saturation(kRail - 2e-3, kRail - 2.1e-3, kRail, 5e-3).saturated);
-  EXPECT_TRUE(subsample_saturation(kRail - 0.05, kRail - 0.3, kRail, 5e-3).saturated);
+  EXPECT_FALSE(partial_saturation(kRail - 2e-3, kRail - 2.1e-3, kRail, 5e-3).saturated);
+  EXPECT_TRUE(partial_saturation(kRail - 0.05, kRail - 0.3, kRail, 5e-3).saturated);
 }
 
 // All readings sink from sample to sample along a tilted saturation level, and all are flagged: none of them was
 // saturated for only a part of its window, except the one that follows an unsaturated reading.
-TEST(SubsampleSaturation, OfAFlaggedNeighbourNothingIsTold) {
-  RailDetector::State state;
-  state.channels[0].rail = kRail;
-  const RailDetector rails({});
-  ASSERT_TRUE(rails.rail(state, 0).has_value());
+TEST(PartialSaturation, OfAFlaggedNeighbourNothingIsTold) {
+  SaturationLimitDetector::State state;
+  state.channels[0].plateau_limit = kRail;
+  const SaturationLimitDetector rails({});
+  ASSERT_TRUE(rails.saturation_limit(state, 0).has_value());
   std::vector<ImuSample> samples(6);
   for (std::size_t k = 0; k < samples.size(); ++k) {
     samples[k].angular_velocity_rad_s.x() = kRail - 0.1 - 0.02 * static_cast<double>(samples.size() - k);
@@ -152,16 +152,16 @@ TEST(SubsampleSaturation, OfAFlaggedNeighbourNothingIsTold) {
   samples[0].angular_velocity_rad_s.x() = kRail - 2.0;
   samples[0].device_clip_flags = 0;
   for (std::size_t k = 1; k + 1 < samples.size(); ++k) {
-    RateObservation now;
+    AngularRateObservation now;
     now.sample = samples[k];
     now.clipping.gyro = 1;
-    mark_subsample_saturation(rails, state, 5e-3, &samples[k - 1], now, &samples[k + 1]);
-    EXPECT_EQ(now.subsample_saturated, k == 1 ? 1 : 0) << k;
+    mark_partial_saturation(rails, state, 5e-3, &samples[k - 1], now, &samples[k + 1]);
+    EXPECT_EQ(now.partial_saturation_flags, k == 1 ? 1 : 0) << k;
     // negative control: the sample before is treated as unsaturated
     ImuSample before = samples[k - 1];
     before.device_clip_flags = 0;
-    mark_subsample_saturation(rails, state, 5e-3, &before, now, &samples[k + 1]);
-    EXPECT_EQ(now.subsample_saturated, 1) << k;
+    mark_partial_saturation(rails, state, 5e-3, &before, now, &samples[k + 1]);
+    EXPECT_EQ(now.partial_saturation_flags, 1) << k;
   }
 }
 

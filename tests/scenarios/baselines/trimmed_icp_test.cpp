@@ -56,9 +56,9 @@ TEST(TrimmedIcp, NoMatchesAndFarCorrectionsAreNoSuccess) {
   TrimmedIcp icp(TrimmedIcp::Params{});
   const auto points = sweep_of(test::Room::box());
   EXPECT_EQ(icp.align(points, Eigen::Isometry3d::Identity(), VoxelMap({0.5, 0.1})).verdict,
-            RegistrationVerdict::too_few);
+            RegistrationVerdict::too_few_matches);
   EXPECT_EQ(icp.align({}, Eigen::Isometry3d::Identity(), map_of(test::Room::box())).verdict,
-            RegistrationVerdict::too_few);
+            RegistrationVerdict::too_few_matches);
   TrimmedIcp::Params strict;
   strict.correction_max_m = 0.05;
   Eigen::Isometry3d prior = Eigen::Isometry3d::Identity();

@@ -67,7 +67,7 @@ TEST(LibrarySheets, HaveEveryImuAndLidarOfTheModels) {
 
 // negative control
 TEST(LibrarySheets, AnotherNumberIsTold) {
-  ImuSheet sheet = sheets::mti30();
+  ImuDataSheet sheet = sheets::mti30();
   sheet.accel_range_m_s2 = 147.1;
   EXPECT_EQ(compare(sheet, "mti30").different(), 1);
 }

@@ -24,7 +24,7 @@ void flip_lever_arms(sim::Sensors& sensors) {
 /// Adds the lidar's position in the body where it must be subtracted.
 void flip_lever_arm_of_poses(const sim::Recording& recording, Estimate& estimate) {
   const Eigen::Vector3d arm = recording.sensors.lidars.front().T_BL.translation();
-  const auto flip = [&](PoseState& pose) { pose.p_WA_m += 2.0 * (pose.q_WA * arm); };
+  const auto flip = [&](PoseState& pose) { pose.position_W_m += 2.0 * (pose.orientation_W * arm); };
   for (PoseState& pose : estimate.poses) flip(pose);
   for (auto& sweep : estimate.sweeps) {
     flip(sweep.pose);
@@ -33,7 +33,7 @@ void flip_lever_arm_of_poses(const sim::Recording& recording, Estimate& estimate
 }
 
 void scale_covariances(double by, Estimate& estimate) {
-  for (RateState& rate : estimate.rates) rate.covariance_rad2_s2 *= by;
+  for (AngularRateState& rate : estimate.rates) rate.covariance_rad2_s2 *= by;
   for (AttitudeState& attitude : estimate.attitudes) attitude.covariance_rad2 *= by;
   for (PoseState& pose : estimate.poses) pose.covariance *= by;
   for (auto& sweep : estimate.sweeps) sweep.pose.covariance *= by;
@@ -66,9 +66,9 @@ void lose_a_bump(const sim::Recording& recording, Estimate& estimate) {
   const auto [begin_ns, end_ns] = first_bump_ns(recording.truth);
   Eigen::Vector3d met = Eigen::Vector3d::Zero(), lost = Eigen::Vector3d::Zero();
   for (PoseState& pose : estimate.poses) {
-    if (pose.time_ns <= begin_ns) met = pose.p_WA_m;
-    if (pose.time_ns > begin_ns && pose.time_ns <= end_ns) lost = pose.p_WA_m - met;
-    if (pose.time_ns > begin_ns) pose.p_WA_m -= pose.time_ns <= end_ns ? Eigen::Vector3d(pose.p_WA_m - met) : lost;
+    if (pose.time_ns <= begin_ns) met = pose.position_W_m;
+    if (pose.time_ns > begin_ns && pose.time_ns <= end_ns) lost = pose.position_W_m - met;
+    if (pose.time_ns > begin_ns) pose.position_W_m -= pose.time_ns <= end_ns ? Eigen::Vector3d(pose.position_W_m - met) : lost;
   }
 }
 
@@ -105,7 +105,7 @@ void lose_half_the_map(const sim::Recording&, Estimate& estimate) {
 /// Changes the velocity of every second sweep a little, so that it jumps between sweeps.
 void break_sweep_borders(const sim::Recording&, Estimate& estimate) {
   for (std::size_t k = 0; k < estimate.sweeps.size(); k += 2) {
-    for (PoseState& pose : estimate.sweeps[k].trajectory) pose.v_WA_m_s.x() += kBorder_m_s;
+    for (PoseState& pose : estimate.sweeps[k].trajectory) pose.velocity_W_m_s.x() += kBorder_m_s;
   }
 }
 
@@ -115,7 +115,7 @@ void turn_the_end(const sim::Recording&, Estimate& estimate) {
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(kMapRotation_rad, Eigen::Vector3d::UnitZ()));
   for (std::size_t k = 0; k < std::min(kLast, estimate.sweeps.size()); ++k) {
     PoseState& pose = estimate.sweeps[estimate.sweeps.size() - 1 - k].pose;
-    pose.q_WA = turn * pose.q_WA;
+    pose.orientation_W = turn * pose.orientation_W;
   }
 }
 
@@ -126,21 +126,21 @@ void move_the_map(const sim::Recording&, Estimate& estimate) {
 
 void tilt_attitudes(const sim::Recording&, Estimate& estimate) {
   const Eigen::Quaterniond tilt(Eigen::AngleAxisd(kTilt_rad, Eigen::Vector3d::UnitX()));
-  for (AttitudeState& attitude : estimate.attitudes) attitude.q_WA = tilt * attitude.q_WA;
+  for (AttitudeState& attitude : estimate.attitudes) attitude.orientation_W = tilt * attitude.orientation_W;
 }
 
 /// Turns the attitudes about the vertical by an angle that grows with time.
 void turn_attitudes(const sim::Recording&, Estimate& estimate) {
   for (AttitudeState& attitude : estimate.attitudes) {
     const double since_s = 1e-9 * static_cast<double>(attitude.time_ns - estimate.attitudes.front().time_ns);
-    attitude.q_WA = Eigen::AngleAxisd(kTurn_rad_s * since_s, Eigen::Vector3d::UnitZ()) * attitude.q_WA;
+    attitude.orientation_W = Eigen::AngleAxisd(kTurn_rad_s * since_s, Eigen::Vector3d::UnitZ()) * attitude.orientation_W;
   }
 }
 
 /// Moves the poses below the ground by a distance that grows with time.
 void sink_poses(const sim::Recording&, Estimate& estimate) {
   for (PoseState& pose : estimate.poses) {
-    pose.p_WA_m.z() -= kSink_m_s * 1e-9 * static_cast<double>(pose.time_ns - estimate.poses.front().time_ns);
+    pose.position_W_m.z() -= kSink_m_s * 1e-9 * static_cast<double>(pose.time_ns - estimate.poses.front().time_ns);
   }
 }
 
@@ -153,8 +153,8 @@ double share_of_shift(const State& before, const State& now) {
 void shift_poses(std::vector<PoseState>& poses) {
   for (std::size_t k = poses.size(); k-- > 1;) {
     const double share = share_of_shift(poses[k - 1], poses[k]);
-    poses[k].p_WA_m += share * (poses[k - 1].p_WA_m - poses[k].p_WA_m);
-    poses[k].q_WA = poses[k].q_WA.slerp(share, poses[k - 1].q_WA);
+    poses[k].position_W_m += share * (poses[k - 1].position_W_m - poses[k].position_W_m);
+    poses[k].orientation_W = poses[k].orientation_W.slerp(share, poses[k - 1].orientation_W);
   }
 }
 
@@ -162,19 +162,19 @@ void shift_poses(std::vector<PoseState>& poses) {
 /// states.
 void shift_by_1_ms(const sim::Recording&, Estimate& estimate) {
   for (std::size_t k = estimate.rates.size(); k-- > 1;) {
-    RateState &now = estimate.rates[k], &before = estimate.rates[k - 1];
+    AngularRateState &now = estimate.rates[k], &before = estimate.rates[k - 1];
     now.w_WI_I_rad_s += share_of_shift(before, now) * (before.w_WI_I_rad_s - now.w_WI_I_rad_s);
   }
   for (std::size_t k = estimate.attitudes.size(); k-- > 1;) {
     AttitudeState &now = estimate.attitudes[k], &before = estimate.attitudes[k - 1];
-    now.q_WA = now.q_WA.slerp(share_of_shift(before, now), before.q_WA);
+    now.orientation_W = now.orientation_W.slerp(share_of_shift(before, now), before.orientation_W);
   }
   shift_poses(estimate.poses);
   for (auto& sweep : estimate.sweeps) {
     if (sweep.trajectory.size() < 2) continue;
     shift_poses(sweep.trajectory);
-    sweep.pose.p_WA_m = sweep.trajectory.back().p_WA_m;
-    sweep.pose.q_WA = sweep.trajectory.back().q_WA;
+    sweep.pose.position_W_m = sweep.trajectory.back().position_W_m;
+    sweep.pose.orientation_W = sweep.trajectory.back().orientation_W;
   }
 }
 
@@ -187,7 +187,7 @@ void draw_map_twice(const sim::Recording&, Estimate& estimate) {
 /// Adds every map point a second time, from a pose that is wrong by a degree.
 void draw_map_twice_turned(const sim::Recording&, Estimate& estimate) {
   if (estimate.poses.empty()) return;
-  const Eigen::Vector3d centre = estimate.poses.front().p_WA_m;
+  const Eigen::Vector3d centre = estimate.poses.front().position_W_m;
   const Eigen::AngleAxisd turn(kMapRotation_rad, Eigen::Vector3d::UnitZ());
   const std::vector<MapPoint> once = estimate.map;
   for (MapPoint point : once) {

@@ -121,8 +121,8 @@ TEST_F(EstimateFile, ReadsATumFileOfSomebodyElse) {
   EXPECT_EQ(estimate.frame, Frame::lidar);
   ASSERT_EQ(estimate.poses.size(), 2u);
   EXPECT_EQ(estimate.poses[0].time_ns, 1689175049435000123);
-  EXPECT_EQ(estimate.poses[1].p_WA_m, Eigen::Vector3d(1.5, 2, 3));
-  EXPECT_NEAR(estimate.poses[1].q_WA.norm(), 1.0, 1e-15);
+  EXPECT_EQ(estimate.poses[1].position_W_m, Eigen::Vector3d(1.5, 2, 3));
+  EXPECT_NEAR(estimate.poses[1].orientation_W.norm(), 1.0, 1e-15);
 }
 
 TEST_F(EstimateFile, ComplaintsNameFileAndLine) {

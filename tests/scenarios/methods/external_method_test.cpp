@@ -53,7 +53,7 @@ TEST_F(ExternalMethod, PosesAndAttitudesComeAsTum) {
   ASSERT_EQ(poses.poses.size(), 2u);
   EXPECT_EQ(poses.frame, Frame::lidar);
   EXPECT_EQ(poses.poses[1].time_ns, 200'000'000);
-  EXPECT_EQ(poses.poses[1].p_WA_m, Eigen::Vector3d(1, 2, 4));
+  EXPECT_EQ(poses.poses[1].position_W_m, Eigen::Vector3d(1, 2, 4));
   const Estimate attitudes = run(describe("attitude", two));
   EXPECT_EQ(attitudes.attitudes.size(), 2u);
   EXPECT_TRUE(attitudes.poses.empty());

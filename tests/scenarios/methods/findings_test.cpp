@@ -30,7 +30,7 @@ Estimate estimate_with(const HealthFinding& finding) {
 TEST(Findings, HaveEntriesInTheHealth) {
   using Rows = std::map<std::string, double>;
   EXPECT_EQ(estimate_with(finding(About::frozen_axis, "imu", "gyro_z")).health, (Rows{{"imu_implausible", 1.0}}));
-  EXPECT_EQ(estimate_with(finding(About::unit_frozen, "imu_2", "gyro_z")).health, Rows{});
+  EXPECT_EQ(estimate_with(finding(About::imu_frozen, "imu_2", "gyro_z")).health, Rows{});
   Estimate lost = estimate_with(finding(About::tracking_lost)), fine;
   EXPECT_FALSE(report_localised(lost));
   EXPECT_EQ(lost.health, (Rows{{"localised", 0.0}}));
@@ -40,17 +40,17 @@ TEST(Findings, HaveEntriesInTheHealth) {
 
 TEST(Findings, AreAddedOnceWithTheNamesOfTheRecording) {
   SensorHealth health;
-  health.add(finding(About::unit_frozen, "imu_1"));
-  health.add(finding(About::unit_frozen, "imu_2"));
-  health.add(finding(About::unit_frozen, "imu_2"));
+  health.add(finding(About::imu_frozen, "imu_1"));
+  health.add(finding(About::imu_frozen, "imu_2"));
+  health.add(finding(About::imu_frozen, "imu_2"));
   Estimate estimate;
   add_findings(health, std::vector<std::string>{"left", "right"}, estimate);
   add_findings(health, std::vector<std::string>{"left", "right"}, estimate);
   ASSERT_EQ(estimate.faults.findings.size(), 2u);
-  EXPECT_TRUE(has_finding(About::unit_frozen, estimate, "left"));
-  EXPECT_TRUE(has_finding(About::unit_frozen, estimate, "right"));
-  EXPECT_FALSE(has_finding(About::unit_frozen, estimate, "imu_2"));
-  EXPECT_FALSE(has_finding(About::unit_silent, estimate));
+  EXPECT_TRUE(has_finding(About::imu_frozen, estimate, "left"));
+  EXPECT_TRUE(has_finding(About::imu_frozen, estimate, "right"));
+  EXPECT_FALSE(has_finding(About::imu_frozen, estimate, "imu_2"));
+  EXPECT_FALSE(has_finding(About::imu_silent, estimate));
   EXPECT_FALSE(estimate.faults.invalidates_estimate()) << "the other IMUs are used";
 }
 
@@ -94,9 +94,9 @@ TEST(SensorHealthOfALiveRun, AGyroScaleThatGravityConfirmsLaterIsNoFault) {
   SensorHealth run, now;
   now.add(finding(About::gyro_scale));
   now.add(finding(About::rotation));
-  run.observe(now);
+  run.merge_current_findings(now);
   EXPECT_TRUE(run.findings[0].invalidates_estimate());
-  run.observe({});
+  run.merge_current_findings({});
   EXPECT_FALSE(run.findings[0].invalidates_estimate());
   EXPECT_TRUE(run.findings[1].invalidates_estimate()) << "control: a contradiction that ended still counts";
   Estimate estimate;

@@ -30,7 +30,7 @@ void PrintTo(const Live& live, std::ostream* out) {
   *out << live.method;
 }
 
-constexpr double kRateLagS = 0.2;   // RateStream::Params::lag_s
+constexpr double kRateLagS = 0.2;   // AngularRateStream::Params::lag_s
 constexpr double kSweepLagS = 0.4;  // the poses since the sweep's start are final 0.3 s after the sweep's end
 constexpr double kRollLagS = 1.22;  // sum of lag_s (1 s), a block (0.2 s) and a node (0.02 s)
 
@@ -74,7 +74,7 @@ const std::map<std::string, Fault>& faults() {
        [](std::size_t from, sim::ImuRecord& imu) {
          for (std::size_t k = from; k < imu.time_ns.size(); ++k) imu.gyro_rad_s[k].z() = imu.gyro_rad_s[from].z();
        }},
-      {"unit_frozen",
+      {"imu_frozen",
        [](std::size_t from, sim::ImuRecord& imu) {
          for (std::size_t k = from; k < imu.time_ns.size(); ++k) {
            imu.gyro_rad_s[k] = imu.gyro_rad_s[from];
@@ -129,18 +129,18 @@ void apply(const Fault& fault, std::int64_t after_ns, sim::Sensors& sensors) {
   fault(static_cast<std::size_t>(from - imu.time_ns.begin()), imu);
 }
 
-bool same(const RateState& a, const RateState& b) {
+bool same(const AngularRateState& a, const AngularRateState& b) {
   return a.time_ns == b.time_ns && a.w_WI_I_rad_s == b.w_WI_I_rad_s && a.covariance_rad2_s2 == b.covariance_rad2_s2 &&
          a.clipped_axes == b.clipped_axes && a.source == b.source;
 }
 
 bool same(const AttitudeState& a, const AttitudeState& b) {
-  return a.time_ns == b.time_ns && a.q_WA.coeffs() == b.q_WA.coeffs() && a.covariance_rad2 == b.covariance_rad2;
+  return a.time_ns == b.time_ns && a.orientation_W.coeffs() == b.orientation_W.coeffs() && a.covariance_rad2 == b.covariance_rad2;
 }
 
 bool same(const PoseState& a, const PoseState& b) {
-  return a.time_ns == b.time_ns && a.p_WA_m == b.p_WA_m && a.q_WA.coeffs() == b.q_WA.coeffs() &&
-         a.v_WA_m_s == b.v_WA_m_s && a.covariance == b.covariance;
+  return a.time_ns == b.time_ns && a.position_W_m == b.position_W_m && a.orientation_W.coeffs() == b.orientation_W.coeffs() &&
+         a.velocity_W_m_s == b.velocity_W_m_s && a.covariance == b.covariance;
 }
 
 /// A Comparison contains the number of compared states, and the time of the first different state.
@@ -246,7 +246,7 @@ TEST_P(LiveMeansLive, AnswersDoNotDependOnLaterReadings) {
     const std::int64_t until_ns = cut_ns - static_cast<std::int64_t>(1e9 * GetParam().lag_s);
     for (const auto& [name, fault] : faults()) {
       // a SLAM method takes seconds per run, so it runs only with these faults
-      if (method.info.kind == Kind::slam && name != "none" && name != "unit_frozen" && name != "gyro_flipped") continue;
+      if (method.info.kind == Kind::slam && name != "none" && name != "imu_frozen" && name != "gyro_flipped") continue;
       sim::Sensors later = run.sensors;
       apply(fault, cut_ns, later);
       const Estimate whole = method.run(later, {}, {});

@@ -48,7 +48,7 @@ TEST(MethodAccuracy, OracleRateIsExactAndRawMissesWhatTheRailTook) {
 TEST(MethodAccuracy, ARateWithoutCovarianceHasNoConsistencyScores) {
   const sim::Recording recording = testing::synthetic_rig();
   Estimate estimate = find_methods("raw").at(0)->run(recording.sensors, {}, {});
-  for (RateState& rate : estimate.rates) rate.covariance_rad2_s2.setZero();
+  for (AngularRateState& rate : estimate.rates) rate.covariance_rad2_s2.setZero();
   std::set<std::string> scored;
   for (const Score& score : score(Kind::rate, estimate, {&recording.sensors, &recording.truth, nullptr}))
     scored.insert(score.metric);
@@ -261,8 +261,8 @@ TEST(MethodAccuracy, AnAttitudeIsNotTurnedByReadingsThatAreDoubted) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "swing"), 91201, 1, Lidars::left_out);
   const auto rates = find_methods("rate/tumble").at(0)->run(draw.recording.sensors, {}, {}).rates;
-  const auto doubted = std::count_if(rates.begin(), rates.end(), [](const RateState& rate) {
-    return rate.clipped_axes == 0 && rate.source != RateSource::measured;
+  const auto doubted = std::count_if(rates.begin(), rates.end(), [](const AngularRateState& rate) {
+    return rate.clipped_axes == 0 && rate.source != AngularRateSource::measured;
   });
   ASSERT_GT(doubted, 20);
   EXPECT_LT(scores_of("attitude/tumble", draw.recording).at("inclination_rmse_rad"), 0.05);  // 0.027

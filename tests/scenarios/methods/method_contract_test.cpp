@@ -227,7 +227,7 @@ TEST_P(SlamContract, TakesAPointThatIsNotANumberForAMissAndCountsSweepsWithoutPo
   empty_sweep(lidar, 43);  // in the middle of the rest at the end
   const Estimate estimate = run(spoilt);
   ASSERT_TRUE(estimate.status.ok()) << estimate.status.message();
-  for (const PoseState& pose : estimate.poses) ASSERT_TRUE(pose.p_WA_m.allFinite());
+  for (const PoseState& pose : estimate.poses) ASSERT_TRUE(pose.position_W_m.allFinite());
   for (const MapPoint& point : estimate.map) ASSERT_TRUE(point.position_W_m.allFinite());
   EXPECT_EQ(estimate.health.at("sweeps_empty"), 1.0);
   ASSERT_EQ(estimate.sweeps.size(), 48u);

@@ -69,14 +69,14 @@ double apart(Kind kind, const Estimate& found, const Estimate& expected) {
   switch (kind) {
     case Kind::rate:
       return farthest(found.rates, expected.rates,
-                      [](const RateState& a, const RateState& b) { return (a.w_WI_I_rad_s - b.w_WI_I_rad_s).norm(); });
+                      [](const AngularRateState& a, const AngularRateState& b) { return (a.w_WI_I_rad_s - b.w_WI_I_rad_s).norm(); });
     case Kind::attitude:
       return farthest(found.attitudes, expected.attitudes,
-                      [](const auto& a, const auto& b) { return a.q_WA.angularDistance(b.q_WA); });
+                      [](const auto& a, const auto& b) { return a.orientation_W.angularDistance(b.orientation_W); });
     case Kind::position:
-      return (found.poses.back().p_WA_m - expected.poses.back().p_WA_m).norm();
+      return (found.poses.back().position_W_m - expected.poses.back().position_W_m).norm();
     case Kind::slam:
-      return (found.sweeps.back().pose.p_WA_m - expected.sweeps.back().pose.p_WA_m).norm();
+      return (found.sweeps.back().pose.position_W_m - expected.sweeps.back().pose.position_W_m).norm();
   }
   return 0.0;
 }

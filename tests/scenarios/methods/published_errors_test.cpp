@@ -38,7 +38,7 @@ double velocity_error_m_s(double late_velocity) {
     const double t = 1e-9 * static_cast<double>(sweep.pose.time_ns);
     if (t < motion.start_s + 0.5 || t > motion.end_s - 0.5) continue;
     // only the speed is compared, because the estimate's world is turned against the true one
-    errors.push_back(std::abs(sweep.pose.v_WA_m_s.norm() - motion.velocity_m_s(t).norm()));
+    errors.push_back(std::abs(sweep.pose.velocity_W_m_s.norm() - motion.velocity_m_s(t).norm()));
   }
   EXPECT_GT(errors.size(), 10u);
   if (errors.empty()) return 0.0;

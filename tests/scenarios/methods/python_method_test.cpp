@@ -88,10 +88,10 @@ TEST_F(PythonMethod, PosesAttitudesAndMaps) {
   const Estimate attitudes = run(function("attitude", two + "return t, q"));
   ASSERT_EQ(attitudes.attitudes.size(), 2u);
   EXPECT_TRUE(attitudes.poses.empty());
-  EXPECT_NEAR(attitudes.attitudes[1].q_WA.z(), 0.6, 1e-15);
+  EXPECT_NEAR(attitudes.attitudes[1].orientation_W.z(), 0.6, 1e-15);
   const Estimate poses = run(function("position", two + "return t, np.array([[1, 2, 3], [4, 5, 6]]), q"));
   ASSERT_EQ(poses.poses.size(), 2u);
-  EXPECT_EQ(poses.poses[1].p_WA_m, Eigen::Vector3d(4, 5, 6));
+  EXPECT_EQ(poses.poses[1].position_W_m, Eigen::Vector3d(4, 5, 6));
   const Estimate map =
       run(function("slam", two + "return t, np.zeros((2, 3)), q, recording.lidars[0][3].position", "frame: lidar\n"));
   EXPECT_EQ(map.frame, Frame::lidar);

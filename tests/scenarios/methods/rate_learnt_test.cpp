@@ -143,8 +143,8 @@ TEST(RateLearnt, AnotherRigsInertiaIsDoubtedAndNotPassedOn) {
   }
 }
 
-RateModelParams assumed_model() {
-  RateModelParams model;
+AngularRateModelParams assumed_model() {
+  AngularRateModelParams model;
   model.nominal.lever_arm_m.setZero();
   return model;
 }
@@ -166,28 +166,28 @@ sim::Sensors wand(double from_s, double to_s) {
 }
 
 TEST(RateLearnt, RailsThatReadingsContradictGoAndOthersStay) {
-  RailPlane plane;
+  SaturationPlane plane;
   plane.row = {1.0, 0.01, 0.02};
-  plane.distance_rad_s = 7.3;
+  plane.saturation_limit_rad_s = 7.3;
   plane.samples = {40, 40};
   plane.log_odds = 100.0;
   plane.covariance.diagonal() << 1e-6, 1e-6, 1e-7, 1e-7;
   CalibratedRig before = prior_rig_calibration(nullptr, assumed_model());
-  before.gyro_planes_rad_s[1] = {-7.2, 7.4};
-  before.gyro_planes_rad_s[2] = {-7.1, 7.5};
+  before.gyro_saturation_planes_rad_s[1] = {-7.2, 7.4};
+  before.gyro_saturation_planes_rad_s[2] = {-7.1, 7.5};
   SaturationLevels rails;
-  EXPECT_FALSE(calibration_with_rails(before, rails).has_value());
-  rails.planes.element[0] = plane;
-  rails.planes.element[1] = before.planes().element[1];  // as returned by a run that did not reach this plane
-  const std::optional<CalibratedRig> after = calibration_with_rails(before, rails);
+  EXPECT_FALSE(calibration_with_saturation_limits(before, rails).has_value());
+  rails.gyro_planes.sensing_axis[0] = plane;
+  rails.gyro_planes.sensing_axis[1] = before.saturation_planes().sensing_axis[1];  // as returned by a run that did not reach this plane
+  const std::optional<CalibratedRig> after = calibration_with_saturation_limits(before, rails);
   ASSERT_TRUE(after);
-  EXPECT_EQ(after->gyro_planes_rad_s[0][1], 7.3);
-  EXPECT_EQ(after->rail[0], 7.3);
-  EXPECT_EQ(after->calibration.constants.elements[0], 0.01);
-  EXPECT_EQ(after->gyro_planes_rad_s[1], before.gyro_planes_rad_s[1]);
-  EXPECT_FALSE(after->gyro_planes_rad_s[2][0] || after->gyro_planes_rad_s[2][1]) << "the finder has dropped it";
-  rails.planes.element[0]->log_odds = 5.0;
-  EXPECT_FALSE(calibration_with_rails(before, rails).has_value()) << "not sure";
+  EXPECT_EQ(after->gyro_saturation_planes_rad_s[0][1], 7.3);
+  EXPECT_EQ(after->saturation_limits[0], 7.3);
+  EXPECT_EQ(after->calibration.constants.gyro_misalignment[0], 0.01);
+  EXPECT_EQ(after->gyro_saturation_planes_rad_s[1], before.gyro_saturation_planes_rad_s[1]);
+  EXPECT_FALSE(after->gyro_saturation_planes_rad_s[2][0] || after->gyro_saturation_planes_rad_s[2][1]) << "the finder has dropped it";
+  rails.gyro_planes.sensing_axis[0]->log_odds = 5.0;
+  EXPECT_FALSE(calibration_with_saturation_limits(before, rails).has_value()) << "not sure";
 }
 
 // The live method estimates an accelerometer delay of 10 ms in the first tumble of a device. The next run starts with
@@ -203,9 +203,9 @@ TEST(RateLearnt, TheStreamLeavesALateAccelerometerToTheNextRun) {
     const Method& stream = *find_methods("rate/tumble_lag").front();
     ASSERT_TRUE(calibrating_method(stream, first).run(recording.sensors, {}, {}).status.ok());
     const bool late = delay_s > 0.0;
-    ASSERT_EQ(first.of_stream && first.of_stream->device_errors.has_value(), late);
+    ASSERT_EQ(first.of_stream && first.of_stream->known_sensor_errors.has_value(), late);
     if (!late) continue;
-    const KnownSensorErrors& errors = *first.of_stream->device_errors;
+    const KnownSensorErrors& errors = *first.of_stream->known_sensor_errors;
     const double sigma_s = std::sqrt(errors.covariance(SensorErrors::kDelay, SensorErrors::kDelay));
     EXPECT_NEAR(errors.errors.accel_delay_s, delay_s, 3.0 * sigma_s);
     EXPECT_LT(sigma_s, 2e-3);
@@ -229,7 +229,7 @@ TEST(RateLearnt, RailsOfACarriedBodyGoOnToTheNextRun) {
     EXPECT_EQ(whole.health.at("calibration_at_prior"), 1.0) << name;
     ASSERT_NE(learning.found(), nullptr) << name;
     rig = *learning.found();
-    EXPECT_TRUE(rig->only_rails) << name;
+    EXPECT_TRUE(rig->only_saturation_limits) << name;
   }
 
   sim::ImuRecord& imu = recording.sensors.imus.front();

@@ -71,7 +71,7 @@ TEST(SphereImus, UnitsWithStampsOfTheirOwnAreReadAtThePrimaryOnes) {
   const sim::Sensors sensors = three(unit("imu_2", 1'300'000, 0.0), unit("imu_3", -2'700'000, 0.0));
   MergedImus merged;
   ASSERT_TRUE(merge_imus(sensors, merged).ok());
-  EXPECT_EQ(merged.merged.units.size(), 3U);
+  EXPECT_EQ(merged.merged.imus.size(), 3U);
   ASSERT_EQ(merged.merged.samples.size(), static_cast<std::size_t>(kSamples));
   // between two samples, linear interpolation has an error of w'' T^2 / 8 = 30 rad/s^3 * 2e-6 s^2; the mean of three
   // units has a third of this error
@@ -86,13 +86,13 @@ TEST(SphereImus, ATimeOffsetOfOneUnitIsLearntAndTold) {
   const sim::Sensors sensors = three(unit("imu_2", 0, 0.0), unit("imu_3", 0, kLate_s));
   MergedImus merged;
   ASSERT_TRUE(merge_imus(sensors, merged).ok());
-  ASSERT_EQ(merged.merged.units.size(), 3U);
-  EXPECT_EQ(merged.merged.units[2].unit, 2U);
+  ASSERT_EQ(merged.merged.imus.size(), 3U);
+  EXPECT_EQ(merged.merged.imus[2].imu_index, 2U);
   // the offset is relative to the mean of the three units, and the mean is late by a third of the delay
-  EXPECT_NEAR(merged.merged.units[2].time_offset_s, -2.0 / 3.0 * kLate_s, 1e-4);
-  EXPECT_NEAR(merged.merged.units[0].time_offset_s, 1.0 / 3.0 * kLate_s, 1e-4);
-  EXPECT_GT(merged.merged.units[2].time_offset_sigma_s, 0.0);
-  EXPECT_LT(merged.merged.units[2].time_offset_sigma_s, 1e-4);
+  EXPECT_NEAR(merged.merged.imus[2].time_offset_s, -2.0 / 3.0 * kLate_s, 1e-4);
+  EXPECT_NEAR(merged.merged.imus[0].time_offset_s, 1.0 / 3.0 * kLate_s, 1e-4);
+  EXPECT_GT(merged.merged.imus[2].time_offset_sigma_s, 0.0);
+  EXPECT_LT(merged.merged.imus[2].time_offset_sigma_s, 1e-4);
 }
 
 TEST(SphereImus, AUnitThatEndsEarlyIsLeftOutFromThereOnAndNamed) {
@@ -104,9 +104,9 @@ TEST(SphereImus, AUnitThatEndsEarlyIsLeftOutFromThereOnAndNamed) {
   nan.gyro_rad_s[7].x() = std::nan("");  // a single missing reading is interpolated
   MergedImus merged;
   ASSERT_TRUE(merge_imus(three(ends, nan), merged).ok());
-  EXPECT_EQ(merged.merged.units.size(), 3U);
+  EXPECT_EQ(merged.merged.imus.size(), 3U);
   ASSERT_EQ(merged.merged.faults.findings.size(), 1U);
-  EXPECT_EQ(fault_of(merged), "unit_silent imu_2 ");
+  EXPECT_EQ(fault_of(merged), "imu_silent imu_2 ");
   EXPECT_NEAR(since_s(merged), 5.0, 0.06);
   EXPECT_LT(worst_rate_error(merged), 1e-3);
 }
@@ -118,7 +118,7 @@ TEST(SphereImus, ThePrimaryUnitMayDieToo) {
   ASSERT_TRUE(merge_imus(sensors, merged).ok());
   ASSERT_EQ(merged.merged.samples.size(), static_cast<std::size_t>(kSamples));
   ASSERT_EQ(merged.merged.faults.findings.size(), 1U);
-  EXPECT_EQ(fault_of(merged), "unit_silent imu ");
+  EXPECT_EQ(fault_of(merged), "imu_silent imu ");
   EXPECT_LT(worst_rate_error(merged), 1e-6);
 }
 
@@ -134,7 +134,7 @@ TEST(SphereImus, ThePrimaryUnitMayBeSilent) {
     ASSERT_TRUE(merge_imus(sensors, merged).ok());
     ASSERT_EQ(merged.merged.samples.size(), static_cast<std::size_t>(kSamples));
     ASSERT_EQ(merged.merged.faults.findings.size(), 1U);
-    EXPECT_EQ(fault_of(merged), "unit_silent imu ");
+    EXPECT_EQ(fault_of(merged), "imu_silent imu ");
     EXPECT_LT(worst_rate_error(merged), 1e-4);
   }
 }
@@ -152,7 +152,7 @@ TEST(SphereImus, AFrozenUnitIsLeftOutFromTheBeginningOfItAndNamed) {
     }
     ASSERT_TRUE(merge_imus(sensors, merged).ok());
     ASSERT_EQ(merged.merged.faults.findings.size(), 1U) << frozen;
-    EXPECT_EQ(fault_of(merged), "unit_frozen " + record.name + " ");
+    EXPECT_EQ(fault_of(merged), "imu_frozen " + record.name + " ");
     EXPECT_NEAR(since_s(merged), 1e-9 * static_cast<double>(record.time_ns[kSamples / 3]), 1e-9);
     EXPECT_LT(worst_rate_error(merged), 1e-6) << frozen;  // the calibration ignored the frozen IMU
   }
@@ -164,8 +164,8 @@ TEST(SphereImus, AUnitOfOtherUnitsIsLeftOutAndNamed) {
   MergedImus merged;
   ASSERT_TRUE(merge_imus(sensors, merged).ok());
   ASSERT_EQ(merged.merged.faults.findings.size(), 1U);
-  EXPECT_EQ(fault_of(merged), "unit_disagrees imu_2 ");
-  EXPECT_EQ(merged.merged.units.size(), 2U);
+  EXPECT_EQ(fault_of(merged), "imu_disagrees imu_2 ");
+  EXPECT_EQ(merged.merged.imus.size(), 2U);
   EXPECT_NEAR(merged.merged.samples[100].specific_force_m_s2.z(), 9.80665, 1e-9);
 }
 
@@ -181,7 +181,7 @@ TEST(SphereImus, AUnitOfWhichOneAxisFreezesIsLeftOutAndTheAxisNamed) {
   MergedImus merged;
   ASSERT_TRUE(merge_imus(sensors, merged).ok());
   ASSERT_EQ(merged.merged.faults.findings.size(), 1U);
-  EXPECT_EQ(fault_of(merged), "unit_frozen imu_2 gyro_z");
+  EXPECT_EQ(fault_of(merged), "imu_frozen imu_2 gyro_z");
   EXPECT_NEAR(since_s(merged), 1e-9 * static_cast<double>(sensors.imus[0].time_ns[kSamples / 3]), 1e-9);
   EXPECT_LT(worst_rate_error(merged), 1e-6);
 }

@@ -43,7 +43,7 @@ class SphereLog : public ::testing::TestWithParam<test::DataFolder> {
 INSTANTIATE_TEST_SUITE_P(Logs, SphereLog, ::testing::ValuesIn(test::data_folders("sphere_log")), test::FolderName());
 
 double net_m(const Estimate& estimate) {
-  return (estimate.poses.back().p_WA_m - estimate.poses.front().p_WA_m).head<2>().norm();
+  return (estimate.poses.back().position_W_m - estimate.poses.front().position_W_m).head<2>().norm();
 }
 
 TEST_P(SphereLog, PureRollingLandsOnItsAnchor) {
@@ -60,10 +60,10 @@ TEST_P(SphereLog, AllThreeFormsGoTheWayOfRollingWithoutSeeingSlipEverywhere) {
     ASSERT_EQ(estimate.poses.size(), count()) << method;
     double moving = 0.0, highest_m = 0.0, path_m = 0.0;
     for (std::size_t k = 0; k < estimate.poses.size(); ++k) {
-      ASSERT_TRUE(estimate.poses[k].p_WA_m.allFinite()) << method << " " << k;
+      ASSERT_TRUE(estimate.poses[k].position_W_m.allFinite()) << method << " " << k;
       moving += estimate.contacts[k] == sim::ContactLabel::slip || estimate.contacts[k] == sim::ContactLabel::slide;
-      highest_m = std::max(highest_m, std::abs(estimate.poses[k].p_WA_m.z()));
-      if (k > 0) path_m += (estimate.poses[k].p_WA_m - estimate.poses[k - 1].p_WA_m).head<2>().norm();
+      highest_m = std::max(highest_m, std::abs(estimate.poses[k].position_W_m.z()));
+      if (k > 0) path_m += (estimate.poses[k].position_W_m - estimate.poses[k - 1].position_W_m).head<2>().norm();
     }
     std::printf("%s: net %.3f m, path %.3f m, slip share %.4f, height %.3f m\n", method, net_m(estimate), path_m,
                 moving / static_cast<double>(count()), highest_m);
@@ -119,8 +119,8 @@ TEST_P(SphereLog, EveryFormOfTheFileGivesTheSamePath) {
   ASSERT_EQ(by_column.poses.size(), by_name.poses.size());
   ASSERT_EQ(si.poses.size(), by_name.poses.size());
   ASSERT_FALSE(by_name.poses.empty());
-  EXPECT_EQ(by_column.poses.back().p_WA_m, by_name.poses.back().p_WA_m);
-  EXPECT_LT((si.poses.back().p_WA_m - by_name.poses.back().p_WA_m).norm(), 1e-6);  // rounding of the text
+  EXPECT_EQ(by_column.poses.back().position_W_m, by_name.poses.back().position_W_m);
+  EXPECT_LT((si.poses.back().position_W_m - by_name.poses.back().position_W_m).norm(), 1e-6);  // rounding of the text
 }
 
 }  // namespace

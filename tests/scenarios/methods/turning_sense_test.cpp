@@ -110,7 +110,7 @@ TEST(TurningSense, PosesAreHeldToItToo) {
   for (const AttitudeState& each : attitudes(rig.imus.front().T_BI.linear(), Frame::imu, with_w_first).attitudes) {
     PoseState pose;
     pose.time_ns = each.time_ns;
-    pose.q_WA = each.q_WA;
+    pose.orientation_W = each.orientation_W;
     estimate.poses.push_back(pose);
   }
   EXPECT_THAT(turning_complaint(estimate, rig), HasSubstr("w first"));

@@ -111,7 +111,7 @@ TEST(Verdicts, PositionTellsAFlippedAxisAndRefusesForcesThatAllFroze) {
   EXPECT_TRUE(good.faults.ok()) << good.faults.message();
   const Estimate flipped = run_wrong(draw, "position/tumble", "gyro_x_flipped");
   EXPECT_TRUE(has_implausible_readings(flipped));
-  ASSERT_TRUE(has_finding(HealthFinding::Kind::axes_or_signs, flipped));
+  ASSERT_TRUE(has_finding(HealthFinding::Kind::wrong_axes_or_signs, flipped));
   EXPECT_EQ(run_wrong(draw, "position/tumble", "all_accels_frozen").status.error_code, ErrorCode::out_of_range);
 }
 
@@ -177,9 +177,9 @@ struct SaidOfRates {
 SaidOfRates rates_of(const SimulatedDraw& draw, const std::string& wrong) {
   const Estimate estimate = run_wrong(draw, "rate/tumble", wrong);
   SaidOfRates out{estimate.health.contains("imu_implausible"), has_finding(HealthFinding::Kind::frozen_axis, estimate),
-                  has_finding(HealthFinding::Kind::flight_forces, estimate)};
+                  has_finding(HealthFinding::Kind::inverted_accel_in_flight, estimate)};
   double samples = 0.0;
-  for (const RateState& rate : estimate.rates) {
+  for (const AngularRateState& rate : estimate.rates) {
     if (rate.w_WI_I_rad_s.norm() < 2.0) continue;
     out.turned_sigma_rad_s += std::sqrt(rate.covariance_rad2_s2.trace());
     samples += 1.0;
@@ -230,7 +230,7 @@ TEST(Verdicts, AttitudesSayThatAGapLeavesThemWithoutUp) {
   const TruthTrack truth(draw.recording.truth, estimate.frame);
   double beyond = 0.0;
   for (const AttitudeState& attitude : estimate.attitudes) {
-    const Eigen::Vector2d off = tilt_error_rad(attitude.q_WA, truth.pose(attitude.time_ns).q_WA);
+    const Eigen::Vector2d off = tilt_error_rad(attitude.orientation_W, truth.pose(attitude.time_ns).orientation_W);
     beyond += off.norm() > 3.0 * std::sqrt(attitude.covariance_rad2.topLeftCorner<2, 2>().trace()) ? 1.0 : 0.0;
   }
   // without a bridged gap, nine of ten moving samples exceed the bound
@@ -263,18 +263,18 @@ TEST(Verdicts, AttitudesTellAWandWhoseGyroIsNamedOtherwise) {
 TEST(Verdicts, CovariancesBeforeADoubtComeBack) {
   const DataRoot data{test::source_dir()};
   SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 62001, 1, Lidars::left_out);
-  const auto trace = [](const std::vector<RateState>& rates) {
+  const auto trace = [](const std::vector<AngularRateState>& rates) {
     double sum = 0.0;
-    for (const RateState& rate : rates) sum += rate.covariance_rad2_s2.trace();
+    for (const AngularRateState& rate : rates) sum += rate.covariance_rad2_s2.trace();
     return sum;
   };
   const auto of = [&](const std::string& wrong) {
     const Estimate estimate = run_wrong(draw, "rate/tumble", wrong);
-    const std::vector<RateState> before = testing::rates_before_doubt(estimate);
+    const std::vector<AngularRateState> before = testing::rates_before_doubt(estimate);
     EXPECT_EQ(before.size(), estimate.rates.size());
     double squares = 0.0, least = 1.0;
-    for (const RateState& rate : estimate.rates) squares += 3.0 * rate.w_WI_I_rad_s.squaredNorm();
-    for (const RateState& rate : before) least = std::min(least, rate.covariance_rad2_s2.diagonal().minCoeff());
+    for (const AngularRateState& rate : estimate.rates) squares += 3.0 * rate.w_WI_I_rad_s.squaredNorm();
+    for (const AngularRateState& rate : before) least = std::min(least, rate.covariance_rad2_s2.diagonal().minCoeff());
     EXPECT_GT(least, 0.0);
     return std::pair((trace(estimate.rates) - trace(before)) / squares, estimate.faults.invalidates_estimate());
   };

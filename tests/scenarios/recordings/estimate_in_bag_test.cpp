@@ -44,8 +44,8 @@ class InBag : public fixture::Folder {
       const Eigen::Isometry3d T = T_VW_ * pose_of_lidar(time);
       PoseState pose;
       pose.time_ns = time;
-      pose.p_WA_m = T.translation();
-      pose.q_WA = Eigen::Quaterniond(T.linear());
+      pose.position_W_m = T.translation();
+      pose.orientation_W = Eigen::Quaterniond(T.linear());
       pose.covariance.diagonal() << 1, 2, 3, 0.01, 0.01, 0.04;
       estimate_.poses.push_back(pose);
     }
@@ -116,7 +116,7 @@ TEST_F(InBag, TheTruthAsAnEstimateHasNoError) {
 // a later error must show with its size
 TEST_F(InBag, AnErrorShowsWhereItIs) {
   for (PoseState& pose : estimate_.poses) {
-    if (pose.time_ns >= 100'000'000) pose.p_WA_m += T_VW_.linear() * Eigen::Vector3d(0.3, 0, 0.4);
+    if (pose.time_ns >= 100'000'000) pose.position_W_m += T_VW_.linear() * Eigen::Vector3d(0.3, 0, 0.4);
   }
   const InBagWhole found = placed(true);
   EXPECT_LT(found.clouds[0].error_m[5], 1e-4f);

@@ -93,7 +93,7 @@ std::vector<SeenRotation> exact_rotations(int pairs) {
   for (std::size_t k = 0; k < static_cast<std::size_t>(pairs); ++k) {
     const auto at_ns = static_cast<std::int64_t>(k) * kSweep_ns;
     out.push_back(
-        {at_ns, at_ns + kSweep_ns, so3::log(Eigen::Quaterniond(q_WL[100 * k].conjugate() * q_WL[100 * (k + 1)]))});
+        {at_ns, at_ns + kSweep_ns, so3::logarithm(Eigen::Quaterniond(q_WL[100 * k].conjugate() * q_WL[100 * (k + 1)]))});
   }
   return out;
 }

@@ -63,7 +63,7 @@ sim::Sensors sensors_of(Motion motion) {
   for (int k = 1; k * step_s <= kEnd_s; ++k) {
     const Eigen::Quaterniond before = motion((k - 1) * step_s) * q_BI, after = motion(k * step_s) * q_BI;
     imu.time_ns.push_back(k * kStep_ns);
-    imu.gyro_rad_s.push_back(so3::log(before.conjugate() * after) / step_s);
+    imu.gyro_rad_s.push_back(so3::logarithm(before.conjugate() * after) / step_s);
     imu.accel_m_s2.push_back(after.conjugate() * Eigen::Vector3d(0.0, 0.0, kUp_m_s2));
     imu.clip_flags.push_back(0);
   }

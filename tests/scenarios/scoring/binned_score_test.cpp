@@ -99,7 +99,7 @@ TEST(ClippedAxes, CrossAxisErrorsHaveTheirOwnCoverage) {
   readings = imu.gyro_unclipped_rad_s;
   for (std::size_t k = 600; k < 700; ++k) readings[k] -= elements.inverse() * Eigen::Vector3d(0.0, 3.0, 0.0);
   Estimate estimate = perfect_estimate(recording);
-  for (RateState& rate : estimate.rates) {
+  for (AngularRateState& rate : estimate.rates) {
     rate.covariance_rad2_s2 = 0.01 * Eigen::Matrix3d::Identity();
     rate.w_WI_I_rad_s += Eigen::Vector3d(0.5, 0.1, 9.0);  // z is neither clipped nor affected
   }

@@ -21,7 +21,7 @@ HealthFinding finding(HealthFinding::Kind kind) {
 /// Returns rates that are too large by the fraction `share`.
 Estimate fast_rates(double share) {
   Estimate estimate = perfect_estimate(rig());
-  for (RateState& rate : estimate.rates) rate.w_WI_I_rad_s *= 1.0 + share;
+  for (AngularRateState& rate : estimate.rates) rate.w_WI_I_rad_s *= 1.0 + share;
   return estimate;
 }
 
@@ -31,16 +31,16 @@ TEST(HealthScores, AWrongRateIsWrongWhateverItsHealthAddsToTheCovariance) {
   EXPECT_EQ(scores(Kind::rate, wrong, rig()).at("health_wrong"), 1.0);
   EXPECT_EQ(scores(Kind::rate, wrong, rig()).at("health_silently_wrong"), 1.0);
   wrong.suspect_rad2_s2.assign(wrong.rates.size(), 100.0 * Eigen::Matrix3d::Identity());
-  for (RateState& rate : wrong.rates) rate.covariance_rad2_s2 += 100.0 * Eigen::Matrix3d::Identity();
+  for (AngularRateState& rate : wrong.rates) rate.covariance_rad2_s2 += 100.0 * Eigen::Matrix3d::Identity();
   EXPECT_EQ(scores(Kind::rate, wrong, rig()).at("health_wrong"), 1.0);
   Estimate gross = fast_rates(0.3);  // the estimate is wrong for any covariance
-  for (RateState& rate : gross.rates) rate.covariance_rad2_s2 = 100.0 * Eigen::Matrix3d::Identity();
+  for (AngularRateState& rate : gross.rates) rate.covariance_rad2_s2 = 100.0 * Eigen::Matrix3d::Identity();
   EXPECT_EQ(scores(Kind::rate, gross, rig()).at("health_wrong"), 1.0);
 }
 
 TEST(HealthScores, AFindingReportsAWrongEstimateUnlessItConcernsAnUnusedImu) {
   Estimate wrong = fast_rates(0.1);
-  add_finding(finding(HealthFinding::Kind::unit_silent), wrong);
+  add_finding(finding(HealthFinding::Kind::imu_silent), wrong);
   EXPECT_EQ(scores(Kind::rate, wrong, rig()).at("health_reported"), 0.0);
   add_finding(finding(HealthFinding::Kind::rotation), wrong);
   const auto values = scores(Kind::rate, wrong, rig());

@@ -19,13 +19,13 @@ inline Estimate perfect_estimate(const sim::Recording& recording, Frame frame = 
   const TruthTrack truth(recording.truth, frame);
   const sim::ImuRecord& imu = recording.sensors.imus.front();
   for (std::size_t k = 0; k < imu.time_ns.size(); ++k) {
-    RateState rate;
+    AngularRateState rate;
     rate.time_ns = imu.time_ns[k];
     rate.w_WI_I_rad_s = recording.truth.imus.front().rate_rad_s[k];
     rate.covariance_rad2_s2 = 1e-6 * Eigen::Matrix3d::Identity();
     estimate.rates.push_back(rate);
     const PoseState pose = truth.pose(imu.time_ns[k]);
-    estimate.attitudes.push_back({pose.time_ns, pose.q_WA, Eigen::Matrix3d::Zero()});
+    estimate.attitudes.push_back({pose.time_ns, pose.orientation_W, Eigen::Matrix3d::Zero()});
     estimate.poses.push_back(pose);
   }
   if (recording.sensors.lidars.empty()) return estimate;
@@ -53,11 +53,11 @@ inline Estimate perfect_estimate(const sim::Recording& recording, Frame frame = 
 inline void move_world(const Eigen::Isometry3d& T, Estimate& estimate) {
   const Eigen::Quaterniond q(T.linear());
   const auto move = [&](PoseState& pose) {
-    pose.p_WA_m = T * pose.p_WA_m;
-    pose.q_WA = q * pose.q_WA;
-    pose.v_WA_m_s = q * pose.v_WA_m_s;
+    pose.position_W_m = T * pose.position_W_m;
+    pose.orientation_W = q * pose.orientation_W;
+    pose.velocity_W_m_s = q * pose.velocity_W_m_s;
   };
-  for (AttitudeState& attitude : estimate.attitudes) attitude.q_WA = q * attitude.q_WA;
+  for (AttitudeState& attitude : estimate.attitudes) attitude.orientation_W = q * attitude.orientation_W;
   for (PoseState& pose : estimate.poses) move(pose);
   for (auto& sweep : estimate.sweeps) {
     move(sweep.pose);

@@ -108,7 +108,7 @@ sim::Recording recorded(const Made& made) {
 Estimate estimate_of(const std::vector<Eigen::Vector3d>& rates, double sigma_rad_s, std::uint8_t clipped_axes) {
   Estimate estimate;
   for (std::size_t k = 0; k < rates.size(); ++k) {
-    RateState state;
+    AngularRateState state;
     state.time_ns = static_cast<std::int64_t>(k) * 10'000'000;
     state.w_WI_I_rad_s = rates[k];
     state.covariance_rad2_s2 = sigma_rad_s * sigma_rad_s * Eigen::Matrix3d::Identity();
@@ -149,8 +149,8 @@ TEST(ReferenceRateScores, OfTheTruthAndOfTheReadings) {
   EXPECT_LT(raw.at("rate_reference_coverage_3sigma"), 0.5);
   EXPECT_EQ(raw.at("rate_clipped_called_measured"), 1.0);
   Estimate doubting = estimate_of(made_.reading, 0.01, 0), of_another_axis = estimate_of(made_.reading, 0.01, 2);
-  for (RateState& rate : doubting.rates) rate.source = RateSource::bounded_only;
-  for (RateState& rate : of_another_axis.rates) rate.source = RateSource::bounded_only;
+  for (AngularRateState& rate : doubting.rates) rate.source = AngularRateSource::lower_bound_only;
+  for (AngularRateState& rate : of_another_axis.rates) rate.source = AngularRateSource::lower_bound_only;
   EXPECT_EQ(scores_of(doubting, recording).at("rate_clipped_called_measured"), 0.0);
   EXPECT_EQ(scores_of(of_another_axis, recording).at("rate_clipped_called_measured"), 1.0);
   EXPECT_EQ(raw.at("rate_reference_error_median_rad_s"), truth.at("rate_reference_error_median_rad_s"))

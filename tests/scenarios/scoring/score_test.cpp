@@ -95,7 +95,7 @@ TEST(RateScores, CoverageAndNormalisedErrorApartForFlightAndContact) {
   for (std::size_t k = half; k < recording.truth.label.size(); ++k) recording.truth.label[k] = sim::ContactLabel::grip;
   const std::int64_t border_ns = static_cast<std::int64_t>(half) * recording.truth.period_ns;
   Estimate estimate = perfect_estimate(recording);
-  for (RateState& rate : estimate.rates) {
+  for (AngularRateState& rate : estimate.rates) {
     rate.covariance_rad2_s2 = 0.01 * Eigen::Matrix3d::Identity();
     rate.w_WI_I_rad_s += Eigen::Vector3d::Constant(rate.time_ns < border_ns ? 0.1 : 0.4);
   }
@@ -136,7 +136,7 @@ TEST(EndPose, EveryMethodEndsAtTheLastSweepThatTheImuCovers) {
   Estimate shortened = perfect_estimate(rig());
   PoseState& last = shortened.sweeps.back().pose;
   last.time_ns = end_ns;
-  last.p_WA_m.x() += 1.0;
+  last.position_W_m.x() += 1.0;
   Estimate dropped = perfect_estimate(rig());
   dropped.sweeps.pop_back();
   for (const Estimate& estimate : {shortened, dropped})
@@ -166,8 +166,8 @@ TEST(AttitudeScores, SplitTheErrorAsBroadDoes) {
   const double yaw = 0.3;
   Estimate estimate = perfect_estimate(rig());
   for (std::size_t k = 1; k < estimate.attitudes.size(); ++k) {
-    estimate.attitudes[k].q_WA = Eigen::AngleAxisd(tilt, Eigen::Vector3d::UnitX()) *
-                                 Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) * estimate.attitudes[k].q_WA;
+    estimate.attitudes[k].orientation_W = Eigen::AngleAxisd(tilt, Eigen::Vector3d::UnitX()) *
+                                 Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) * estimate.attitudes[k].orientation_W;
   }
   const auto values = scores(Kind::attitude, estimate, rig());
   EXPECT_NEAR(values.at("inclination_rmse_rad"), tilt, 1e-9);
@@ -189,7 +189,7 @@ TEST(AttitudeScores, JitterIsTheStepAtStandstillAlone) {
   Estimate estimate = perfect_estimate(rig());
   const double step = 1e-3;
   for (std::size_t k = 0; k < estimate.attitudes.size(); k += 2) {
-    estimate.attitudes[k].q_WA = estimate.attitudes[k].q_WA * so3::exp(Eigen::Vector3d(0, step, 0));
+    estimate.attitudes[k].orientation_W = estimate.attitudes[k].orientation_W * so3::exp(Eigen::Vector3d(0, step, 0));
   }
   EXPECT_NEAR(scores(Kind::attitude, estimate, rig()).at("attitude_step_rest_rms_rad"), step, 1e-8);
 }
@@ -197,8 +197,8 @@ TEST(AttitudeScores, JitterIsTheStepAtStandstillAlone) {
 TEST(PositionScores, AGrowingOffsetGivesKnownErrors) {
   // the estimate moves 10 % too far along the body's straight path, and rises by 3 cm
   Estimate estimate = perfect_estimate(rig(), Frame::body);
-  const Eigen::Vector3d start = estimate.poses.front().p_WA_m;
-  for (PoseState& pose : estimate.poses) pose.p_WA_m = start + 1.1 * (pose.p_WA_m - start);
+  const Eigen::Vector3d start = estimate.poses.front().position_W_m;
+  for (PoseState& pose : estimate.poses) pose.position_W_m = start + 1.1 * (pose.position_W_m - start);
   const testing::SyntheticMotion motion;
   const double length = motion.displacement_m.norm();
   const auto values = scores(Kind::position, estimate, rig());
@@ -213,7 +213,7 @@ TEST(PositionScores, TheShareIsOfTheSamePathInEveryFrame) {
   // the offset is 5 cm at the end, both for a point that rotates about the centre of mass and for the centre
   const auto share_in = [](Frame frame) {
     Estimate estimate = perfect_estimate(rig(), frame);
-    estimate.poses.back().p_WA_m.x() += 0.05;
+    estimate.poses.back().position_W_m.x() += 0.05;
     return scores(Kind::position, estimate, rig()).at("position_end_error_share");
   };
   EXPECT_NEAR(share_in(Frame::body), 0.05 / testing::SyntheticMotion().displacement_m.norm(), 1e-6);
@@ -226,12 +226,12 @@ TEST(PositionScores, CoverageCountsErrorsWithinThreeSigmas) {
   const std::size_t half = estimate.poses.size() / 2;
   for (std::size_t k = 0; k < estimate.poses.size(); ++k) {
     estimate.poses[k].covariance.diagonal().head<3>().setConstant(0.01 * 0.01);
-    if (k > 0) estimate.poses[k].p_WA_m.x() += 0.029;  // the first pose aligns both trajectories
+    if (k > 0) estimate.poses[k].position_W_m.x() += 0.029;  // the first pose aligns both trajectories
   }
   EXPECT_EQ(scores(Kind::position, estimate, rig()).at("position_coverage_3sigma"), 1.0);
-  for (std::size_t k = 1; k < estimate.poses.size(); ++k) estimate.poses[k].p_WA_m.x() += 0.002;
+  for (std::size_t k = 1; k < estimate.poses.size(); ++k) estimate.poses[k].position_W_m.x() += 0.002;
   EXPECT_NEAR(scores(Kind::position, estimate, rig()).at("position_coverage_3sigma"), 2.0 / 3.0, 1e-12);
-  for (std::size_t k = half; k < estimate.poses.size(); ++k) estimate.poses[k].p_WA_m.y() += 1.0;
+  for (std::size_t k = half; k < estimate.poses.size(); ++k) estimate.poses[k].position_W_m.y() += 1.0;
   EXPECT_LT(scores(Kind::position, estimate, rig()).at("position_coverage_3sigma"), 0.66);
 }
 
@@ -239,7 +239,7 @@ TEST(PositionScores, CoverageCountsErrorsWithinThreeSigmas) {
 TEST(PositionScores, TheNormalisedErrorSeesACovarianceThatIsHalved) {
   Estimate estimate = perfect_estimate(rig(), Frame::body);
   EXPECT_FALSE(scores(Kind::position, estimate, rig()).contains("position_nees_median")) << "nothing is stated";
-  for (std::size_t k = 1; k < estimate.poses.size(); ++k) estimate.poses[k].p_WA_m.array() += 0.01;
+  for (std::size_t k = 1; k < estimate.poses.size(); ++k) estimate.poses[k].position_W_m.array() += 0.01;
   for (const double variance_m2 : {4e-4, 2e-4}) {
     for (PoseState& pose : estimate.poses) pose.covariance.diagonal().head<3>().setConstant(variance_m2);
     // the median square of a standard normal variable is 0.4549
@@ -255,7 +255,7 @@ TEST(AttitudeScores, TheTiltIsHeldToItsCovarianceWhateverTheHeading) {
   for (AttitudeState& attitude : estimate.attitudes) {
     // q_true = Exp(phi) q, with phi about x and y of the estimate's world frame, which is rotated about the vertical
     const Eigen::Quaterniond tilt(Eigen::AngleAxisd(kTilt, Eigen::Vector3d(1.0, 1.0, 0.0).normalized()));
-    attitude.q_WA = tilt.conjugate() * Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitZ()) * attitude.q_WA;
+    attitude.orientation_W = tilt.conjugate() * Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitZ()) * attitude.orientation_W;
   }
   const double square = kTilt * kTilt / 2.0;
   for (const double variance : {4.0 * square, 2.0 * square, square / 8.0, square / 10.0}) {
@@ -271,15 +271,15 @@ TEST(PositionScores, DriftAtStandstillIsWithinOneSpell) {
   for (PoseState& pose : estimate.poses) {
     const double t = 1e-9 * static_cast<double>(pose.time_ns);
     // a jump during motion does not count as drift, but 2 cm/s during the rest at the end does
-    if (t > 3.0) pose.p_WA_m.x() += 0.5;
-    if (t > 5.0) pose.p_WA_m.y() += 0.02 * (t - 5.0);
+    if (t > 3.0) pose.position_W_m.x() += 0.5;
+    if (t > 5.0) pose.position_W_m.y() += 0.02 * (t - 5.0);
   }
   EXPECT_NEAR(scores(Kind::position, estimate, rig()).at("position_rest_drift_m"), 0.02, 1e-9);
 }
 
 TEST(TrajectoryScores, AteIsTheRmsOfAConstantShift) {
   Estimate estimate = perfect_estimate(rig());
-  for (std::size_t k = 1; k < estimate.poses.size(); ++k) estimate.poses[k].p_WA_m += Eigen::Vector3d(0.3, 0.4, 0.0);
+  for (std::size_t k = 1; k < estimate.poses.size(); ++k) estimate.poses[k].position_W_m += Eigen::Vector3d(0.3, 0.4, 0.0);
   const double n = static_cast<double>(estimate.poses.size());
   EXPECT_NEAR(scores(Kind::slam, estimate, rig()).at("ate_m"), 0.5 * std::sqrt((n - 1.0) / n), 1e-9);
 }
@@ -287,7 +287,7 @@ TEST(TrajectoryScores, AteIsTheRmsOfAConstantShift) {
 TEST(TrajectoryScores, AteOfTheRotationIsTheRmsOfAConstantTurn) {
   Estimate estimate = perfect_estimate(rig());
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.2, Eigen::Vector3d(1, 2, 2) / 3.0));
-  for (std::size_t k = 1; k < estimate.poses.size(); ++k) estimate.poses[k].q_WA = estimate.poses[k].q_WA * turn;
+  for (std::size_t k = 1; k < estimate.poses.size(); ++k) estimate.poses[k].orientation_W = estimate.poses[k].orientation_W * turn;
   const double n = static_cast<double>(estimate.poses.size());
   const auto values = scores(Kind::slam, estimate, rig());
   EXPECT_NEAR(values.at("ate_rad"), 0.2 * std::sqrt((n - 1.0) / n), 1e-9);
@@ -306,16 +306,16 @@ TEST(TrajectoryScores, ATiltedStartIsAnError) {
 TEST(EndPoseScores, CountFromTheSixthRegisteredSweep) {
   Estimate estimate = perfect_estimate(rig());
   // the sweeps are wrong until the fifth and right from the sixth on, so the error is zero
-  for (std::size_t k = 0; k < 5; ++k) estimate.sweeps[k].pose.p_WA_m += Eigen::Vector3d(1, 1, 1);
+  for (std::size_t k = 0; k < 5; ++k) estimate.sweeps[k].pose.position_W_m += Eigen::Vector3d(1, 1, 1);
   EXPECT_NEAR(scores(Kind::slam, estimate, rig()).at("translation_error_end_m"), 0.0, 1e-9);
   // with one rejected sweep, the sixth registered sweep is the seventh of all sweeps
   estimate.sweeps[2].verdict = SweepVerdict::rejected;
-  estimate.sweeps[5].pose.p_WA_m += Eigen::Vector3d(1, 1, 1);
+  estimate.sweeps[5].pose.position_W_m += Eigen::Vector3d(1, 1, 1);
   EXPECT_NEAR(scores(Kind::slam, estimate, rig()).at("translation_error_end_m"), 0.0, 1e-9);
   estimate.sweeps.back().verdict = SweepVerdict::rejected;  // the last sweep counts even if it is rejected
-  estimate.sweeps.back().pose.p_WA_m += Eigen::Vector3d(0.0, 0.0, 0.25);
-  estimate.sweeps.back().pose.q_WA =
-      Eigen::AngleAxisd(2.8, Eigen::Vector3d::UnitY()) * estimate.sweeps.back().pose.q_WA;
+  estimate.sweeps.back().pose.position_W_m += Eigen::Vector3d(0.0, 0.0, 0.25);
+  estimate.sweeps.back().pose.orientation_W =
+      Eigen::AngleAxisd(2.8, Eigen::Vector3d::UnitY()) * estimate.sweeps.back().pose.orientation_W;
   const auto values = scores(Kind::slam, estimate, rig());
   EXPECT_NEAR(values.at("translation_error_end_m"), 0.25, 1e-9);
   EXPECT_NEAR(values.at("rotation_error_end_rad"), 2.8, 1e-9);  // a clamped arccos would give at most 90 degrees
@@ -332,9 +332,9 @@ TEST(SweepBorderScores, AJumpAtEveryBorderIsFound) {
   Estimate estimate = perfect_estimate(rig());
   for (std::size_t k = 1; k < estimate.sweeps.size(); k += 2) {
     for (PoseState& pose : estimate.sweeps[k].trajectory) {
-      pose.v_WA_m_s += Eigen::Vector3d(0.0, 0.3, 0.4);
+      pose.velocity_W_m_s += Eigen::Vector3d(0.0, 0.3, 0.4);
       const double t = 1e-9 * static_cast<double>(pose.time_ns);
-      pose.q_WA = so3::exp(0.2 * t * testing::SyntheticMotion().axis_W) * pose.q_WA;  // axis of motion: rates add
+      pose.orientation_W = so3::exp(0.2 * t * testing::SyntheticMotion().axis_W) * pose.orientation_W;  // axis of motion: rates add
     }
   }
   const auto values = scores(Kind::slam, estimate, rig());
@@ -346,9 +346,9 @@ TEST(Verdict, AnEndFartherThanThePathIsADivergence) {
   for (const Kind kind : {Kind::position, Kind::slam}) {
     Estimate estimate = perfect_estimate(rig(), Frame::body);
     const double length = testing::SyntheticMotion().displacement_m.norm();
-    estimate.poses.back().p_WA_m.x() += 0.9 * length;
+    estimate.poses.back().position_W_m.x() += 0.9 * length;
     EXPECT_EQ(verdict_of(kind, estimate, rig()), OutcomeStatus::ok);
-    estimate.poses.back().p_WA_m.x() += 0.2 * length;
+    estimate.poses.back().position_W_m.x() += 0.2 * length;
     EXPECT_EQ(verdict_of(kind, estimate, rig()), OutcomeStatus::diverged);
   }
 }
@@ -356,10 +356,10 @@ TEST(Verdict, AnEndFartherThanThePathIsADivergence) {
 TEST(Verdict, NumbersThatAreNotFiniteAreADivergence) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Estimate attitude = perfect_estimate(rig());
-  attitude.attitudes[100].q_WA.x() = nan;
+  attitude.attitudes[100].orientation_W.x() = nan;
   EXPECT_EQ(verdict_of(Kind::attitude, attitude, rig()), OutcomeStatus::diverged);
   Estimate position = perfect_estimate(rig());
-  position.poses[100].p_WA_m.z() = nan;
+  position.poses[100].position_W_m.z() = nan;
   EXPECT_EQ(verdict_of(Kind::position, position, rig()), OutcomeStatus::diverged);
 }
 
@@ -372,7 +372,7 @@ TEST(Verdict, AnEstimateThatStopsOrAnswersHalfIsADivergence) {
   // the estimate contains only the rates of unclipped samples
   Estimate picked = perfect_estimate(rig());
   const ClippingTruth truth(rig().sensors, rig().truth);
-  std::erase_if(picked.rates, [&](const RateState& rate) { return truth.at(rate.time_ns)->clipped_axes != 0; });
+  std::erase_if(picked.rates, [&](const AngularRateState& rate) { return truth.at(rate.time_ns)->clipped_axes != 0; });
   EXPECT_EQ(verdict_of(Kind::rate, picked, rig()), OutcomeStatus::diverged);
   EXPECT_EQ(verdict_of(Kind::rate, Estimate{}, rig()), OutcomeStatus::diverged);
 }

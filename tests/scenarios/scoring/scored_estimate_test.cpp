@@ -72,7 +72,7 @@ TEST(ScoredEstimate, ScoresAreThoseOfAnEstimateThatNobodyAskedBefore) {
 TEST(PairedRates, StandBesideTheRatesAndLeaveOutWhatTheTruthDoesNotKnow) {
   Estimate estimate = testing::perfect_estimate(rig());
   const Eigen::Vector3d error(0.1, -0.2, 0.3);
-  for (RateState& rate : estimate.rates) rate.w_WI_I_rad_s += error;
+  for (AngularRateState& rate : estimate.rates) rate.w_WI_I_rad_s += error;
   estimate.rates.back().time_ns = rig().sensors.imus.front().time_ns.back() + 1;
   const ScoredEstimate scored(estimate, input());
   const std::vector<PairedRate>& pairs = paired_rates(scored);

@@ -164,7 +164,7 @@ Estimate astray(const sim::Recording& recording, double lost_m, double sigma_fro
   Estimate estimate = claims_within(recording, {{2.0, 3.0}, {5.0, 5.4}});
   for (PoseState& pose : estimate.poses) {
     const double time_s = 1e-9 * static_cast<double>(pose.time_ns);
-    pose.p_WA_m.y() += lost_m * std::clamp(time_s - 2.0, 0.0, 1.0);
+    pose.position_W_m.y() += lost_m * std::clamp(time_s - 2.0, 0.0, 1.0);
     const double sigma_m = time_s < sigma_from_s ? 1e-3 : 0.05;
     pose.covariance.topLeftCorner<3, 3>() = sigma_m * sigma_m * Eigen::Matrix3d::Identity();
   }

@@ -32,11 +32,11 @@ const sim::Recording& moving_rig() {
 Estimate late_estimate(double late_s) {
   Estimate estimate = perfect_estimate(moving_rig(), Frame::body);
   for (AttitudeState& attitude : estimate.attitudes)
-    attitude.q_WA = motion().attitude(1e-9 * static_cast<double>(attitude.time_ns) - late_s);
+    attitude.orientation_W = motion().attitude(1e-9 * static_cast<double>(attitude.time_ns) - late_s);
   for (PoseState& pose : estimate.poses) {
     const double time_s = 1e-9 * static_cast<double>(pose.time_ns) - late_s;
-    pose.p_WA_m = motion().position_m(time_s);
-    pose.q_WA = motion().attitude(time_s);
+    pose.position_W_m = motion().position_m(time_s);
+    pose.orientation_W = motion().attitude(time_s);
   }
   return estimate;
 }
@@ -82,7 +82,7 @@ TEST(TimeOffset, OfRatesIsWhatTheyAreLateBy) {
   const sim::Recording recording = steadily_faster(acceleration_rad_s2);
   for (const double late_s : {kLate_s, -kLate_s, 1e-3}) {
     Estimate estimate = perfect_estimate(recording);
-    for (RateState& rate : estimate.rates) rate.w_WI_I_rad_s -= late_s * acceleration_rad_s2;
+    for (AngularRateState& rate : estimate.rates) rate.w_WI_I_rad_s -= late_s * acceleration_rad_s2;
     EXPECT_NEAR(scores(Kind::rate, estimate, recording).at("rate_time_offset_s"), late_s, 1e-13);
   }
 }
@@ -110,13 +110,13 @@ TEST(TimeOffset, OfRatesIsToldByWhatIsNotClipped) {
 TEST(TimeOffset, OfAnErrorThatIsNoneOfTimeIsZero) {
   Estimate estimate = late_estimate(0.0);
   const Eigen::Vector3d across_W = Eigen::Vector3d::UnitZ().cross(motion().axis_W).normalized();
-  for (AttitudeState& attitude : estimate.attitudes) attitude.q_WA = so3::exp(0.02 * across_W) * attitude.q_WA;
+  for (AttitudeState& attitude : estimate.attitudes) attitude.orientation_W = so3::exp(0.02 * across_W) * attitude.orientation_W;
   for (std::size_t k = 1; k < estimate.poses.size(); k += 2) {
     PoseState& pose = estimate.poses[k];
-    pose.q_WA = so3::exp((k % 4 == 1 ? 0.02 : -0.02) * motion().axis_W) * pose.q_WA;
-    pose.p_WA_m.x() += 0.5;
+    pose.orientation_W = so3::exp((k % 4 == 1 ? 0.02 : -0.02) * motion().axis_W) * pose.orientation_W;
+    pose.position_W_m.x() += 0.5;
   }
-  for (RateState& rate : estimate.rates) rate.w_WI_I_rad_s += Eigen::Vector3d(0.3, -0.2, 0.1);
+  for (AngularRateState& rate : estimate.rates) rate.w_WI_I_rad_s += Eigen::Vector3d(0.3, -0.2, 0.1);
   EXPECT_NEAR(scores(Kind::attitude, estimate, moving_rig()).at("attitude_rmse_rad"), 0.02, 1e-6);
   EXPECT_NEAR(scores(Kind::slam, estimate, moving_rig()).at("ate_rad"), 0.02 / std::sqrt(2.0), 1e-4);
   EXPECT_NEAR(scores(Kind::attitude, estimate, moving_rig()).at("attitude_time_offset_s"), 0.0, 1e-9);

@@ -29,13 +29,13 @@ TEST(TruthTrack, InterpolatesBetweenPhysicsSamples) {
     const Eigen::Vector3d p = motion.position_m(t) + motion.attitude(t) * T_BI.translation();
     const PoseState pose = track.pose(time_ns);
     // linear interpolation between samples errs by acceleration dt^2 / 8 = 21 m/s^2 x 3.1e-8 s^2
-    EXPECT_NEAR((pose.p_WA_m - p).norm(), 0.0, 1e-6);
-    EXPECT_NEAR(rotation_angle_rad((motion.attitude(t) * Eigen::Quaterniond(T_BI.linear())).conjugate() * pose.q_WA),
+    EXPECT_NEAR((pose.position_W_m - p).norm(), 0.0, 1e-6);
+    EXPECT_NEAR(rotation_angle_rad((motion.attitude(t) * Eigen::Quaterniond(T_BI.linear())).conjugate() * pose.orientation_W),
                 0.0, 1e-6);
     // the velocity errs by jerk dt^2 / 8 of the IMU on its lever arm of 0.1 m: 14^3 x 0.1 x 3.1e-8
     const Eigen::Vector3d v =
         motion.velocity_m_s(t) + motion.attitude(t) * motion.rate_B_rad_s(t).cross(T_BI.translation());
-    EXPECT_NEAR((pose.v_WA_m_s - v).norm(), 0.0, 2e-5);
+    EXPECT_NEAR((pose.velocity_W_m_s - v).norm(), 0.0, 2e-5);
   }
   EXPECT_FALSE(track.covers(-1));
   EXPECT_FALSE(track.covers(6000000001));
@@ -77,8 +77,8 @@ TEST(TruthTrack, DoesNotCoverWhatAReferenceDidNotSee) {
   EXPECT_FALSE(track.covers(4000 * period_ns + 1));
   ASSERT_TRUE(track.covers(3999 * period_ns));
   EXPECT_TRUE(track.covers(4001 * period_ns));
-  EXPECT_EQ(track.pose(3999 * period_ns).p_WA_m, before.p_WA_m) << "the unknown neighbour has no part in it";
-  EXPECT_EQ(track.pose(3999 * period_ns).q_WA.coeffs(), before.q_WA.coeffs());
+  EXPECT_EQ(track.pose(3999 * period_ns).position_W_m, before.position_W_m) << "the unknown neighbour has no part in it";
+  EXPECT_EQ(track.pose(3999 * period_ns).orientation_W.coeffs(), before.orientation_W.coeffs());
   // the path lacks two steps of at most 1 m/s
   EXPECT_NEAR(track.path_m(track.last_ns()), path_m, 1e-3);
 }
@@ -95,18 +95,18 @@ TEST(TruthTrack, RefusesTruthThatDoesNotFit) {
 
 TEST(Alignment, RemovesYawAndPositionAndLeavesTilt) {
   PoseState truth;
-  truth.p_WA_m = {1, 2, 3};
-  truth.q_WA = Eigen::AngleAxisd(0.8, Eigen::Vector3d(1, -1, 0.5).normalized());
+  truth.position_W_m = {1, 2, 3};
+  truth.orientation_W = Eigen::AngleAxisd(0.8, Eigen::Vector3d(1, -1, 0.5).normalized());
   for (const double yaw : {-3.0, -0.1, 0.0, 1.0, 3.1}) {
     for (const double tilt : {0.0, 0.02}) {
       PoseState estimate;
-      estimate.p_WA_m = {-5, 0, 0};
-      estimate.q_WA = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
-                      Eigen::AngleAxisd(tilt, Eigen::Vector3d::UnitX()) * truth.q_WA;
+      estimate.position_W_m = {-5, 0, 0};
+      estimate.orientation_W = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
+                      Eigen::AngleAxisd(tilt, Eigen::Vector3d::UnitX()) * truth.orientation_W;
       const PoseState aligned = Alignment::at(estimate, truth).apply(estimate);
-      EXPECT_NEAR((aligned.p_WA_m - truth.p_WA_m).norm(), 0.0, 1e-14);
-      EXPECT_NEAR(rotation_angle_rad(aligned.q_WA * truth.q_WA.conjugate()), tilt, 1e-12);
-      EXPECT_NEAR(twist_about_z_rad(aligned.q_WA * truth.q_WA.conjugate()), 0.0, 1e-12);
+      EXPECT_NEAR((aligned.position_W_m - truth.position_W_m).norm(), 0.0, 1e-14);
+      EXPECT_NEAR(rotation_angle_rad(aligned.orientation_W * truth.orientation_W.conjugate()), tilt, 1e-12);
+      EXPECT_NEAR(twist_about_z_rad(aligned.orientation_W * truth.orientation_W.conjugate()), 0.0, 1e-12);
     }
   }
 }

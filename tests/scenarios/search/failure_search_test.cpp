@@ -74,7 +74,7 @@ Method planted(double lost_beyond = std::numeric_limits<double>::infinity()) {
     Estimate estimate = oracle.run(sensors, values, input);
     const Eigen::Vector3d error = sensors.imus.front().T_BI.translation() - exact;
     const double v = (error.x() + error.y()) / (kSigma_m * std::sqrt(2.0));
-    for (RateState& state : estimate.rates) state.w_WI_I_rad_s.x() += std::exp(v);
+    for (AngularRateState& state : estimate.rates) state.w_WI_I_rad_s.x() += std::exp(v);
     if (v > lost_beyond) estimate.status = {ErrorCode::empty, "planted", v, lost_beyond};
     return estimate;
   };

@@ -80,8 +80,8 @@ TEST(JudgeWithoutTruth, AFaultThatInvalidatesOurEstimateIsADivergence) {
   EXPECT_THAT(status_of(ours, estimate),
               ::testing::AllOf(HasSubstr("diverged: health: imu: "), HasSubstr("wrong unit or scale")));
   EXPECT_EQ(status_of(baseline, estimate), "ok") << "baselines do not report their health";
-  estimate.status = {ErrorCode::too_few, "lidar.sweeps_registered", 0.0, 1.0};
-  EXPECT_THAT(status_of(ours, estimate), HasSubstr("failed: too_few"));
+  estimate.status = {ErrorCode::insufficient_data, "lidar.sweeps_registered", 0.0, 1.0};
+  EXPECT_THAT(status_of(ours, estimate), HasSubstr("failed: insufficient_data"));
 }
 
 }  // namespace

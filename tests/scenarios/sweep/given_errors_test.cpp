@@ -125,7 +125,7 @@ TEST(GivenErrors, OfTheStatedRailReachMethodsThatAreToldIt) {
     const Estimate estimate = method.run(free, {}, {});
     EXPECT_TRUE(estimate.status.ok()) << estimate.status.message();
     return std::count_if(estimate.rates.begin(), estimate.rates.end(),
-                         [](const RateState& rate) { return rate.clipped_axes != 0; });
+                         [](const AngularRateState& rate) { return rate.clipped_axes != 0; });
   };
   EXPECT_GT(estimated(with_setting(saave, setting)), estimated(saave));
 }

@@ -72,7 +72,7 @@ double largest_miss_m(const sim::Sensors& sensors, const sim::Truth& truth, std:
       const std::int64_t time_ns = lidar.sweep_start_ns[sweep] + lidar.offset_ns[i];
       if (!track.covers(time_ns)) continue;
       const PoseState pose = track.pose(time_ns);
-      const Eigen::Vector3d p_W_m = pose.q_WA * lidar.position_L_m[i].cast<double>() + pose.p_WA_m;
+      const Eigen::Vector3d p_W_m = pose.orientation_W * lidar.position_L_m[i].cast<double>() + pose.position_W_m;
       largest = std::max(largest, (p_W_m - truth.lidars[0].hit_W_m[i].cast<double>()).norm());
     }
   }

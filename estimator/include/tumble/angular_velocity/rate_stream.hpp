@@ -23,49 +23,49 @@
 
 namespace tumble {
 
-/// Estimates angular velocity through gyro saturation, sample by sample, with a fixed lag. RateStream uses the
-/// measurement models of RateSmoother over a sliding window of fixed length, with one Gauss-Newton step per sample or
+/// Estimates angular velocity through gyro saturation, sample by sample, with a fixed lag. AngularRateStream uses the
+/// measurement models of AngularRateSmoother over a sliding window of fixed length, with one Gauss-Newton step per sample or
 /// per 5 ms. The equations are in docs/maths/rate_stream.md.
 ///
-/// RateStream detects saturation limits from the readings, and classifies the samples in the window again after each
-/// detection. The rate error is 1.1 times the error of RateSmoother with the calibration of an earlier run, and 1.6
-/// times without. The limitations of RateSmoother also apply to RateStream.
+/// AngularRateStream detects saturation limits from the readings, and classifies the samples in the window again after each
+/// detection. The rate error is 1.1 times the error of AngularRateSmoother with the calibration of an earlier run, and 1.6
+/// times without. The limitations of AngularRateSmoother also apply to AngularRateStream.
 ///
-/// Cost: O(window) per step. RateStream allocates memory only in start().
-class RateStream {
+/// Cost: O(window) per step. AngularRateStream allocates memory only in start().
+class AngularRateStream {
  public:
-  using Params = RateStreamParams;
-  using Knot = RateStreamKnot;
-  using State = RateStreamState;
+  using Params = AngularRateStreamParams;
+  using Knot = AngularRateStreamKnot;
+  using State = AngularRateStreamState;
 
   /// Throws InvalidParams if a parameter is out of bounds.
-  explicit RateStream(const Params& params);
+  explicit AngularRateStream(const Params& params);
 
   State start() const;
 
   /// `out` is the estimate of the sample that is `lag_s` old, and is empty while the window fills. On error
   /// (`non_finite`, `time_order`, `gap`), the state is unchanged and `out` is empty.
-  Status push(const ImuSample& sample, State& state, std::optional<RateState>& out) const {
+  Status push(const ImuSample& sample, State& state, std::optional<AngularRateState>& out) const {
     return push(sample, {}, state, out);
   }
   /// `auxiliary_imus` must be empty or contain one reading, at the time of the sample, per entry of
-  /// RateModelParams::auxiliary_imus; otherwise push() returns `too_few`.
+  /// AngularRateModelParams::auxiliary_imus; otherwise push() returns `insufficient_data`.
   Status push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
-              std::optional<RateState>& out) const;
+              std::optional<AngularRateState>& out) const;
 
   /// Returns the provisional estimate of the newest sample, or an empty result before the first sample.
-  std::optional<RateState> newest(const State& state) const;
+  std::optional<AngularRateState> newest(const State& state) const;
 
   /// Appends the estimates of the samples in the window to `out`, oldest first, for the end of a run.
-  void flush(const State& state, std::vector<RateState>& out) const;
+  void flush(const State& state, std::vector<AngularRateState>& out) const;
 
   /// Reports current faults of the IMU: frozen axes (FrozenAxes), and forces in flight that fit an inverted
   /// accelerometer (FlightSignCheck).
   SensorHealth health(const State& state) const;
 
-  RigCalibration calibration(const State& state) const { return {state.rig, inflated(state)}; }
+  RigCalibration calibration(const State& state) const { return {state.rig, inflated_calibration_covariance(state)}; }
 
-  /// Returns the sensor errors that RateStream currently corrects, with their covariance.
+  /// Returns the sensor errors that AngularRateStream currently corrects, with their covariance.
   KnownSensorErrors sensor_errors(const State& state) const;
 
  private:
@@ -74,51 +74,51 @@ class RateStream {
   void store_errors(const arrow::Block& block, arrow::ErrorMatrix& errors, State& state) const;
   void reset_prior(State& state) const;
   void reset_rig(State& state) const;
-  double delay_reach_s() const { return ImpactSums::kDelayMax_samples * params_.period_s; }
-  std::ptrdiff_t force_shift(const State& state) const;
-  void pair_force(std::size_t k, State& state) const;
-  std::size_t pair_newest(State& state) const;
+  double max_accel_delay_s() const { return ImpactDelayCorrelation::kDelayMax_samples * params_.period_s; }
+  std::ptrdiff_t force_delay_samples(const State& state) const;
+  void pair_force_with_rate(std::size_t k, State& state) const;
+  std::size_t pair_newest_force(State& state) const;
   void accumulate_impacts(State& state) const;
   TriadDelay guessed_delay(const State& state) const;
   void update_delay(State& state) const;
   void apply_delay(double delay_s, bool found, State& state) const;
   void refine_delay(State& state) const;
   void add_sensor_error_covariance(const arrow::BorderVector& rig_step, State& state) const;
-  Eigen::Matrix3d device_covariance(std::size_t k, const State& state) const;
+  Eigen::Matrix3d sensor_error_rate_covariance(std::size_t k, const State& state) const;
   void predict_covariance(State& state) const;
-  double change_before_window(const Knot& oldest, const State& state) const;
-  void append(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state) const;
-  void reclassify_window(State& state) const;
-  void classify_samples(bool all, State& state) const { classify_from(all ? 0 : state.window.size() - 1, state); }
-  void classify_from(std::size_t changed, State& state) const;
+  double rate_change_before_window(const Knot& oldest, const State& state) const;
+  void append_knot(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state) const;
+  void reclassify_window_clipping(State& state) const;
+  void classify_window_clipping(bool all, State& state) const { classify_clipping_from(all ? 0 : state.window.size() - 1, state); }
+  void classify_clipping_from(std::size_t changed, State& state) const;
   void mark_undetected_clipping(std::size_t k, State& state) const;
-  void clear_suspects(State& state) const;
+  void clear_suspected_saturation(State& state) const;
   void mark_possible_saturation(State& state) const;
   bool may_clip(const ImuSample& sample, int axis, int sign, const State& state) const;
-  static double run_slope(int axis, std::size_t first, std::size_t last, const State& state);
-  void mark_suspect_run(int axis, std::size_t first, std::size_t last, State& state) const;
-  static Eigen::Vector3d reading_growth(const std::vector<Knot>& window);
+  static double plateau_slope(int axis, std::size_t first, std::size_t last, const State& state);
+  void mark_suspected_plateau(int axis, std::size_t first, std::size_t last, State& state) const;
+  static Eigen::Vector3d plateau_growth_of_readings(const std::vector<Knot>& window);
   static void store_slope_before_clipping(const Knot& leaving, const Knot& next, State& state);
-  void add_rails(const State& state, arrow::Corner& corner) const;
-  void guess(Knot& knot, const Knot& previous, const State& state) const;
+  void add_saturation_plane_prior(const State& state, arrow::Corner& corner) const;
+  void predict_new_knot(Knot& knot, const Knot& previous, const State& state) const;
   void compute_flight_weight(State& state) const;
   bool step(State& state) const;
-  RigConstants::Matrix inflated(const State& state) const;
+  RigConstants::Matrix inflated_calibration_covariance(const State& state) const;
   bool may_be_partly_saturated(std::size_t at, const State& state) const;
   bool in_long_flight(std::size_t at, const State& state) const;
-  double deficit_from_slopes_rad_s(std::size_t at, int axis, const State& state) const;
-  Eigen::Matrix3d suspect_covariance(std::size_t at, const State& state) const;
-  void extrapolate_estimate(std::size_t at, double late_s, const State& state, RateState& out) const;
-  RateState to_rate_state(std::size_t at, const State& state) const;
+  double saturation_deficit_from_slopes_rad_s(std::size_t at, int axis, const State& state) const;
+  Eigen::Matrix3d suspected_error_covariance(std::size_t at, const State& state) const;
+  void extrapolate_estimate(std::size_t at, double late_s, const State& state, AngularRateState& out) const;
+  AngularRateState rate_state_of_knot(std::size_t at, const State& state) const;
 
   Params params_;
-  StreamingClippingFinder rails_;
+  StreamingClippingFinder clipping_finder_;
   RestDetector rest_detector_;
   RepeatDetector repeat_detector_;
-  FrozenAxes frozen_;
-  FlightSignCheck flight_sign_check_;
-  RateModel model_;
-  DeviceUncertainty device_;
+  FrozenAxes frozen_axes_;
+  FlightSignCheck flight_axis_sign_check_;
+  AngularRateModel model_;
+  SensorErrorUncertainty sensor_error_estimator_;
   std::size_t capacity_;
   std::size_t samples_per_step_;  ///< number of samples between steps
   double prior_delay_s_;          ///< prior delay of the accelerometer

@@ -7,10 +7,10 @@
 
 namespace tumble {
 
-/// The 20 constants of body and IMU that RateSmoother and RateStream estimate together with the rates.
+/// The 20 constants of body and IMU that AngularRateSmoother and AngularRateStream estimate together with the rates.
 struct RigConstants {
-  static constexpr int kSize = 20, kElements = 14;
-  static constexpr double kMagnitudeMax = 10.0;  ///< maximum magnitude of each constant, in its unit
+  static constexpr int kSize = 20, kGyroMisalignment = 14;
+  static constexpr double kMaxConstantMagnitude = 10.0;  ///< maximum magnitude of each constant, in its unit
   using Vector = Eigen::Matrix<double, kSize, 1>;
   using Matrix = Eigen::Matrix<double, kSize, kSize>;
 
@@ -23,14 +23,14 @@ struct RigConstants {
   /// Cross-axis sensitivities of the gyro's sensing elements, before the device's compensation. The sensing direction
   /// of element j is 1 on axis j, elements[2j] on axis (j+1) % 3 and elements[2j+1] on axis (j+2) % 3. The cross-axis
   /// sensitivities are observable only while a sensing element clips.
-  Eigen::Matrix<double, 6, 1> elements = Eigen::Matrix<double, 6, 1>::Zero();
+  Eigen::Matrix<double, 6, 1> gyro_misalignment = Eigen::Matrix<double, 6, 1>::Zero();
 
   Eigen::Vector3d sensing_direction(int j) const;
   /// Returns the inertia matrix, scaled to trace 3.
   Eigen::Matrix3d inertia_matrix() const;
   /// Converts a symmetric inertia matrix of any positive scale to the ratios `inertia`.
-  static Eigen::Matrix<double, 5, 1> inertia_coordinates(const Eigen::Matrix3d& inertia);
-  static const Eigen::Matrix3d& inertia_basis(int i);
+  static Eigen::Matrix<double, 5, 1> inertia_basis_coordinates(const Eigen::Matrix3d& inertia);
+  static const Eigen::Matrix3d& inertia_basis_matrix(int i);
 
   Vector vector() const;
   void add(const Vector& step);
@@ -43,7 +43,7 @@ struct RigCalibration {
   RigConstants::Matrix covariance = RigConstants::Matrix::Identity();
 };
 
-/// Returns `out_of_range` if a rig constant exceeds RigConstants::kMagnitudeMax.
+/// Returns `out_of_range` if a rig constant exceeds RigConstants::kMaxConstantMagnitude.
 Status check_rig_constants(const RigConstants& rig);
 /// Returns `out_of_range` for an implausible rig constant, and `degenerate` for a covariance that is not positive
 /// definite.

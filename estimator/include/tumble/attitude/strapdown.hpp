@@ -45,6 +45,6 @@ class Strapdown {
 
 /// Computes the attitude with yaw 0 from the specific force at rest, given in sensor axes [m/s^2]. Returns `degenerate`
 /// if the specific force is below 1e-6 m/s^2.
-Status level(const Eigen::Vector3d& specific_force_m_s2, Eigen::Quaterniond& q_WI);
+Status inclination_from_force(const Eigen::Vector3d& specific_force_m_s2, Eigen::Quaterniond& q_WI);
 
 }  // namespace tumble

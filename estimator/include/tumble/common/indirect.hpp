@@ -6,21 +6,21 @@
 
 namespace tumble {
 
-/// Indirect stores a value on the heap. A copy of an Indirect copies the value, and a constant Indirect gives access to
-/// a constant value, like std::indirect of C++26. T may be an incomplete type where an Indirect is a member. The source
+/// HeapValue stores a value on the heap. A copy of an HeapValue copies the value, and a constant HeapValue gives access to
+/// a constant value, like std::indirect of C++26. T may be an incomplete type where an HeapValue is a member. The source
 /// file that uses the following functions, or instantiates them explicitly, needs the complete type. A moved-from
-/// Indirect has no value until it is assigned.
+/// HeapValue has no value until it is assigned.
 template <class T>
-class Indirect {
+class HeapValue {
  public:
   /// Constructs the value without arguments.
-  Indirect();
-  explicit Indirect(std::unique_ptr<T> value);
-  Indirect(const Indirect& other);
-  Indirect(Indirect&& other) noexcept;
-  Indirect& operator=(const Indirect& other);
-  Indirect& operator=(Indirect&& other) noexcept;
-  ~Indirect();
+  HeapValue();
+  explicit HeapValue(std::unique_ptr<T> value);
+  HeapValue(const HeapValue& other);
+  HeapValue(HeapValue&& other) noexcept;
+  HeapValue& operator=(const HeapValue& other);
+  HeapValue& operator=(HeapValue&& other) noexcept;
+  ~HeapValue();
 
   T& operator*() { return *value_; }
   const T& operator*() const { return *value_; }
@@ -33,23 +33,23 @@ class Indirect {
 
 // not inline, so that an `extern template` suppresses the instantiation with an incomplete type
 template <class T>
-Indirect<T>::Indirect() : value_(std::make_unique<T>()) {}
+HeapValue<T>::HeapValue() : value_(std::make_unique<T>()) {}
 template <class T>
-Indirect<T>::Indirect(std::unique_ptr<T> value) : value_(std::move(value)) {}
+HeapValue<T>::HeapValue(std::unique_ptr<T> value) : value_(std::move(value)) {}
 template <class T>
-Indirect<T>::Indirect(const Indirect& other) : value_(std::make_unique<T>(*other.value_)) {}
+HeapValue<T>::HeapValue(const HeapValue& other) : value_(std::make_unique<T>(*other.value_)) {}
 template <class T>
-Indirect<T>::Indirect(Indirect&& other) noexcept : value_(std::move(other.value_)) {}
+HeapValue<T>::HeapValue(HeapValue&& other) noexcept : value_(std::move(other.value_)) {}
 template <class T>
-Indirect<T>& Indirect<T>::operator=(const Indirect& other) {
-  return *this = Indirect(other);
+HeapValue<T>& HeapValue<T>::operator=(const HeapValue& other) {
+  return *this = HeapValue(other);
 }
 template <class T>
-Indirect<T>& Indirect<T>::operator=(Indirect&& other) noexcept {
+HeapValue<T>& HeapValue<T>::operator=(HeapValue&& other) noexcept {
   value_ = std::move(other.value_);
   return *this;
 }
 template <class T>
-Indirect<T>::~Indirect() = default;
+HeapValue<T>::~HeapValue() = default;
 
 }  // namespace tumble

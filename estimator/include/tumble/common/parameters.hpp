@@ -19,19 +19,19 @@
 /// are not visited, because users do not enter them as plain numbers.
 namespace tumble {
 
-/// Most users adapt only the parameters of rank `basic`.
-enum class FieldRank : std::uint8_t { basic, advanced };
+/// Most users adapt only the parameters of rank `common_use`.
+enum class ParameterRank : std::uint8_t { common_use, expert_use };
 
 /// All strings in a Field must have static lifetime.
 struct Field {
   const char* name;     ///< name with its unit as suffix, used in tables and messages
   const char* unit;     ///< unit; "1" if dimensionless
   double low, high;     ///< inclusive bounds; for a vector, of each coordinate
-  const char* meaning;  ///< one sentence that states the parameter's effect and source
-  FieldRank rank = FieldRank::advanced;
+  const char* description;  ///< one sentence that states the parameter's effect and source
+  ParameterRank audience = ParameterRank::expert_use;
 };
 
-inline Field switch_field(const char* name, const char* meaning, FieldRank rank = FieldRank::advanced) {
+inline Field boolean_field(const char* name, const char* meaning, ParameterRank rank = ParameterRank::expert_use) {
   return {name, "1", 0.0, 1.0, meaning, rank};
 }
 
@@ -45,9 +45,9 @@ concept Number = std::is_arithmetic_v<std::remove_cvref_t<T>> || std::is_enum_v<
 namespace detail {
 
 /// `names` contains the prefixes of the invalid parameter's groups, followed by its name.
-struct OutOfBounds {
+struct OutOfBoundsParameter {
   std::array<const char*, 8> names{};
-  std::size_t depth = 0;
+  std::size_t prefix_count = 0;
   double low = 0.0, high = 0.0;  ///< violated bounds
   Status status;
 };
@@ -55,7 +55,7 @@ struct OutOfBounds {
 /// Finds the first parameter whose value is out of bounds or NaN, without allocating memory.
 class BoundsChecker {
  public:
-  explicit BoundsChecker(OutOfBounds& out) : out_(out) {}
+  explicit BoundsChecker(OutOfBoundsParameter& out) : out_(out) {}
 
   template <Number T>
   void operator()(const T& value, const Field& field) {
@@ -67,18 +67,18 @@ class BoundsChecker {
   template <class Params>
   void group(const char* prefix, const Params& params) {
     if (!out_.status.ok()) return;
-    out_.names.at(out_.depth++) = prefix;
+    out_.names.at(out_.prefix_count++) = prefix;
     Params::fields(params, *this);
-    if (out_.status.ok()) --out_.depth;
+    if (out_.status.ok()) --out_.prefix_count;
   }
 
  private:
   void check(double value, const Field& field);
 
-  OutOfBounds& out_;
+  OutOfBoundsParameter& out_;
 };
 
-void throw_if_out_of_bounds(const OutOfBounds& found);
+void throw_if_out_of_bounds(const OutOfBoundsParameter& found);
 
 }  // namespace detail
 
@@ -86,7 +86,7 @@ void throw_if_out_of_bounds(const OutOfBounds& found);
 /// returned name of a nested parameter lacks the prefix of its group. No memory is allocated.
 template <class Params>
 Status check_fields(const Params& params) {
-  detail::OutOfBounds found;
+  detail::OutOfBoundsParameter found;
   detail::BoundsChecker visitor(found);
   Params::fields(params, visitor);
   return found.status;
@@ -94,7 +94,7 @@ Status check_fields(const Params& params) {
 
 template <class Params>
 void require_valid_fields(const Params& params) {
-  detail::OutOfBounds found;
+  detail::OutOfBoundsParameter found;
   detail::BoundsChecker visitor(found);
   Params::fields(params, visitor);
   detail::throw_if_out_of_bounds(found);

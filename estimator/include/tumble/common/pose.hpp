@@ -11,7 +11,7 @@ namespace tumble {
 /// attitude of a sensor or body A in the world frame W at one time
 struct AttitudeState {
   TimeNs time_ns = 0;
-  Eigen::Quaterniond q_WA = Eigen::Quaterniond::Identity();
+  Eigen::Quaterniond orientation_W = Eigen::Quaterniond::Identity();
   /// covariance of the attitude error phi in world axes, with q_true = Exp(phi) * q_WA; zero if not estimated
   Eigen::Matrix3d covariance_rad2 = Eigen::Matrix3d::Zero();
 };
@@ -19,9 +19,9 @@ struct AttitudeState {
 /// pose and velocity of a frame A in the world frame W at one time
 struct PoseState {
   TimeNs time_ns = 0;
-  Eigen::Vector3d p_WA_m = Eigen::Vector3d::Zero();
-  Eigen::Quaterniond q_WA = Eigen::Quaterniond::Identity();
-  Eigen::Vector3d v_WA_m_s = Eigen::Vector3d::Zero();
+  Eigen::Vector3d position_W_m = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond orientation_W = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d velocity_W_m_s = Eigen::Vector3d::Zero();
   /// Covariance of the position error [m] and the attitude error phi [rad], both in world axes; zero if not estimated.
   /// The attitude error is defined by q_true = Exp(phi) * q_WA.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();

@@ -40,20 +40,20 @@ class SampleClock {
     }
   };
 
-  static constexpr std::size_t kFirstFitStamps = 32;  ///< number of time stamps used for the first line fit
+  static constexpr std::size_t kFirstLineFitStampCount = 32;  ///< number of time stamps used for the first line fit
 
   struct State {
     std::size_t samples = 0;                      ///< number of valid entries of `start`, before the first fit
-    std::array<TimeNs, kFirstFitStamps> start{};  ///< time stamps collected for the first fit
+    std::array<TimeNs, kFirstLineFitStampCount> start{};  ///< time stamps collected for the first fit
     std::optional<TimeNs> stamp_ns;               ///< last time stamp
     TimeNs time_ns = 0;                           ///< last estimated sample time
-    bool line_fitted = false;                     ///< the line and its sums below are valid
+    bool line_fit_valid = false;                     ///< the line and its sums below are valid
     double period_ns = 0.0;                       ///< slope of the line: estimated sample period
     double fit_residual_ns = 0.0;                 ///< value of the line at the last sample minus the time stamp
-    double sum = 0.0, weighted_number_sum = 0.0,
-           weighted_number_squared_sum = 0.0;  ///< weighted sums over sample numbers relative to the last sample
+    double sum_of_weights = 0.0, weighted_sample_index_sum = 0.0,
+           weighted_squared_sample_index_sum = 0.0;  ///< weighted sums over sample numbers relative to the last sample
     double mean_square_error_ns2 = 0.0,
-           lag_one_error_product_ns2 = 0.0;  ///< mean square prediction error; mean product of successive errors
+           successive_error_product_ns2 = 0.0;  ///< mean square prediction error; mean product of successive errors
     double prediction_error_ns = 0.0;        ///< last prediction error
     std::size_t outliers = 0;                ///< number of consecutive prediction errors close to half a period
   };
@@ -71,7 +71,7 @@ class SampleClock {
   bool corrects_stamps(const State& state) const;
 
  private:
-  void begin(State& state) const;
+  void start_line_fit(State& state) const;
   void update_line(double step_ns, TimeNs stamp_ns, State& state) const;
 
   Params params_;

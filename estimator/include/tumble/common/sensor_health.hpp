@@ -16,12 +16,12 @@ struct HealthFinding {
   enum class Kind : std::uint8_t {
     frozen_axis,        ///< one axis of a gyro or an accelerometer repeats one reading
     frozen_sensor,      ///< all axes of a gyro or an accelerometer, or all IMUs, repeat one reading
-    unit_frozen,        ///< one of several IMUs repeats one reading, on `axis` or on all axes
-    unit_silent,        ///< one of several IMUs delivers no readings
-    unit_disagrees,     ///< one of several IMUs differs from the other IMUs
+    imu_frozen,        ///< one of several IMUs repeats one reading, on `axis` or on all axes
+    imu_silent,        ///< one of several IMUs delivers no readings
+    imu_disagrees,     ///< one of several IMUs differs from the other IMUs
     force_at_rest,      ///< the specific force at rest has another magnitude than gravity, or another unit
-    axes_or_signs,      ///< axes are exchanged or inverted
-    flight_forces,      ///< forces in free flight fit inverted axes of the accelerometer
+    wrong_axes_or_signs,      ///< axes are exchanged or inverted
+    inverted_accel_in_flight,      ///< forces in free flight fit inverted axes of the accelerometer
     rotation,           ///< the direction of gravity, or a body on a pivot, does not rotate as the gyro measures
     gyro_scale,         ///< the forces of several IMUs contradict the scale of the gyros
     lidar_scale,        ///< the lidar's ranges have another scale than the motion
@@ -72,7 +72,7 @@ struct SensorHealth {
   void add(HealthFinding finding);
   void add(const SensorHealth& other);
   /// Adds the faults in `now`, the newest result of health(), and marks all other faults as ended.
-  void observe(const SensorHealth& now);
+  void merge_current_findings(const SensorHealth& now);
 };
 
 }  // namespace tumble

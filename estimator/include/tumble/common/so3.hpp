@@ -16,7 +16,7 @@ Eigen::Quaterniond exp(const Eigen::Vector3d& phi);
 
 /// Returns the shortest rotation vector (length at most pi) of a unit quaternion. For a half turn, the first non-zero
 /// component of the rotation vector is positive.
-Eigen::Vector3d log(const Eigen::Quaterniond& q);
+Eigen::Vector3d logarithm(const Eigen::Quaterniond& q);
 
 /// Returns the left Jacobian J_l(phi) of SO(3), defined by Exp(phi + d) = Exp(J_l d) Exp(phi) to first order in d.
 Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& phi);

@@ -16,7 +16,7 @@ enum class ErrorCode : std::uint8_t {
   time_order,    ///< a time stamp is not later than the previous time stamp
   gap,           ///< a time stamp is too long after the previous time stamp
   out_of_range,  ///< a value is outside its stated bounds
-  too_few,       ///< fewer samples, points or matches than the computation needs
+  insufficient_data,       ///< fewer samples, points or matches than the computation needs
   degenerate,    ///< the data do not determine the result in every direction
   diverged,      ///< an iteration left its trust region
 };
@@ -42,6 +42,6 @@ class InvalidParams : public std::invalid_argument {
 };
 
 /// Throws InvalidParams if `value` is NaN or outside of [low, high].
-void require_within(const char* field, double value, double low, double high);
+void require_in_interval(const char* field, double value, double low, double high);
 
 }  // namespace tumble

@@ -12,7 +12,7 @@ namespace tumble {
 /// Calibration between lidar, IMU and world, which the registration refines during the motion. The error vector
 /// contains rotation of T_IL, translation of T_IL, time offset and gravity, in this order. The rotation error phi is a
 /// left perturbation in IMU axes: R_true = Exp(phi) R.
-struct SweepCalibration {
+struct LidarImuCalibration {
   static constexpr int kErrorCount = 10;
   using Covariance = Eigen::Matrix<double, kErrorCount, kErrorCount>;
 
@@ -22,27 +22,27 @@ struct SweepCalibration {
 
   void add(const Eigen::Matrix<double, kErrorCount, 1>& error);
   /// Returns the error vector that transforms `other` to this calibration, to first order in the rotation difference.
-  Eigen::Matrix<double, kErrorCount, 1> minus(const SweepCalibration& other) const;
+  Eigen::Matrix<double, kErrorCount, 1> minus(const LidarImuCalibration& other) const;
 };
 
-/// `deviations` is the result of StatedCalibration::deviations(). Returns `out_of_range` above kDistanceMax_sigmas.
-Status verdict_on(double deviations);
+/// `deviations` is the result of LidarImuCalibrationPrior::deviations(). Returns `out_of_range` above kDistanceMax_sigmas.
+Status distance_verdict(double deviations);
 
 /// Calibration that the caller states, with one standard deviation per axis for rotation, translation and time offset.
 /// A standard deviation of 0 marks an exact part of the calibration.
-struct StatedCalibration {
+struct LidarImuCalibrationPrior {
   static constexpr double kDistanceMax_sigmas = 5.0;  ///< largest plausible result of deviations()
 
-  SweepCalibration calibration;
+  LidarImuCalibration calibration;
   double mount_sigma_rad = 0.0, mount_sigma_m = 0.0, time_offset_sigma_s = 0.0;
 
   /// Returns the distance between an estimated calibration and the stated calibration in standard deviations:
   /// mapping.md (R69). The result is the maximum over rotation, translation and time offset, or infinite if `estimated`
   /// changes an exact value.
-  double deviations(const SweepCalibration& estimated) const;
+  double distance_in_sigmas(const LidarImuCalibration& estimated) const;
   /// Returns `out_of_range` if deviations() is above kDistanceMax_sigmas, because the stated calibration is probably
   /// wrong.
-  Status verdict(const SweepCalibration& estimated) const;
+  Status verdict(const LidarImuCalibration& estimated) const;
 };
 
 }  // namespace tumble
@@ -56,20 +56,20 @@ inline constexpr Field kMountSigma_rad{
     0.0,
     1.0,
     "prior standard deviation of the lidar's orientation relative to the IMU; 0: exact, no estimate",
-    FieldRank::basic};
+    ParameterRank::common_use};
 inline constexpr Field kMountSigma_m{
     "mount_sigma_m",
     "m",
     0.0,
     1.0,
     "prior standard deviation of the lidar's position relative to the IMU; 0: exact, no estimate",
-    FieldRank::basic};
+    ParameterRank::common_use};
 inline constexpr Field kTimeOffsetSigma_s{
     "time_offset_sigma_s",
     "s",
     0.0,
     0.02,
     "prior standard deviation of the time offset between lidar and IMU; 0: no offset, no estimate",
-    FieldRank::basic};
+    ParameterRank::common_use};
 
 }  // namespace tumble::calibration_fields

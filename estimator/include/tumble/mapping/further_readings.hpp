@@ -26,7 +26,7 @@ struct VelocityReading {
 struct MotionReading {
   TimeNs from_ns = 0;
   TimeNs to_ns = 0;
-  Eigen::Isometry3d T_from_to = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d relative_pose = Eigen::Isometry3d::Identity();
   /// Covariance of the position error [m] and the attitude error phi [rad], both in IMU axes at `from_ns`, with R_true
   /// = Exp(phi) R. Set a large variance for components that the odometer does not measure.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
@@ -46,17 +46,17 @@ TimeNs reading_end_ns(const OdometerReading& reading);
 /// independent. If the errors are correlated over time, state a larger covariance.
 struct PositionReading {
   TimeNs time_ns = 0;  ///< in the IMU's clock
-  Eigen::Vector3d p_PA_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d antenna_position_P_m = Eigen::Vector3d::Zero();
   Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< in the frame P; the mean variance of the axes is used
-  Eigen::Vector3d p_IA_m = Eigen::Vector3d::Zero();         ///< position of the antenna or tag A in IMU axes
+  Eigen::Vector3d antenna_lever_arm_I_m = Eigen::Vector3d::Zero();         ///< position of the antenna or tag A in IMU axes
 };
 
 /// PositionFrame is the estimated transform from the odometry frame W of the poses to the position frame P of the
 /// position readings. The transform includes the drift of the odometry, so poses in the position frame do not drift.
 struct PositionFrame {
-  Eigen::Isometry3d T_PW = Eigen::Isometry3d::Identity();  ///< the rotation is about the vertical
-  Eigen::Vector3d reference_W_m = Eigen::Vector3d::Zero();
-  /// Covariance of the error of T_PW, in axes of the position frame P: translation at `reference_W_m` [m], and rotation
+  Eigen::Isometry3d T_readings_world = Eigen::Isometry3d::Identity();  ///< the rotation is about the vertical
+  Eigen::Vector3d reference_point_W_m = Eigen::Vector3d::Zero();
+  /// Covariance of the error of T_PW, in axes of the position frame P: translation at `reference_point_W_m` [m], and rotation
   /// about the vertical through this point [rad].
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
 

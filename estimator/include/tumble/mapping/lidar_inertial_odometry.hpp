@@ -77,7 +77,7 @@ class LidarInertialOdometry {
   Status use_map(PriorMap map);
   /// Copies the prior map, if any, and its parameters from another object. The localisation restarts from the pose of
   /// set_start_pose(), or else from the pose in the prior map.
-  void use_map_of(const LidarInertialOdometry& other);
+  void use_map_of_pass(const LidarInertialOdometry& other);
   /// Returns `degenerate` if a prior map is set but the robot is not yet localised.
   Status localised() const;
   /// null without a prior map
@@ -85,7 +85,7 @@ class LidarInertialOdometry {
 
   /// `rate` is the estimated angular velocity of the sample. Returns `non_finite`, `time_order`, or `out_of_range` if
   /// `rate` has another time stamp; on error, the state is unchanged.
-  Status add_imu(const ImuSample& sample, const RateState& rate);
+  Status add_imu(const ImuSample& sample, const AngularRateState& rate);
 
   /// Sets the velocity that an odometer measured at the start of the next sweep, in IMU axes, with one standard
   /// deviation for all axes. The odometer's velocity replaces the estimated velocity in the prediction of the next
@@ -103,10 +103,10 @@ class LidarInertialOdometry {
   /// Registers a sweep of points fired in [start_ns, end_ns]. Consecutive sweeps must not overlap. A point with NaN
   /// coordinates is a laser pulse without a return.
   ///
-  /// Returns `time_order` if the sweep ends before its start or overlaps the last sweep. Returns `too_few` if the IMU
+  /// Returns `time_order` if the sweep ends before its start or overlaps the last sweep. Returns `insufficient_data` if the IMU
   /// samples do not cover the sweep, and `out_of_range` if a point fired outside the sweep. If the points are unusable,
   /// the pose is the inertial prediction and the verdict is `rejected`. The status of unusable points is `empty` (no
-  /// points), `non_finite` (no finite point), `too_few` (no point in range) or `degenerate` (one time stamp). Before
+  /// points), `non_finite` (no finite point), `insufficient_data` (no point in range) or `degenerate` (one time stamp). Before
   /// the map starts, a sweep with too few usable points has no pose, and `report.trajectory` is empty.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, SweepReport& report);
 
@@ -114,15 +114,15 @@ class LidarInertialOdometry {
   /// last sweep. If no sample is later than the last sweep, the result is the pose at the end of the last sweep.
   /// Returns `ok`, an error of add_imu(), or `empty` before the first sweep. `velocity_covariance_I_m2_s2` (optional)
   /// is defined as in SweepReport. Cost: O(samples since the last sweep).
-  Status predict(std::span<const ImuSample> samples, std::span<const RateState> rates, PoseState& pose,
+  Status predict(std::span<const ImuSample> samples, std::span<const AngularRateState> rates, PoseState& pose,
                  Eigen::Matrix3d* velocity_covariance_I_m2_s2 = nullptr) const;
 
   /// Returns the current calibration. Calibration values that are not estimated have covariance 0.
-  SweepCalibration calibration() const;
-  SweepCalibration::Covariance calibration_covariance() const;
+  LidarImuCalibration calibration() const;
+  LidarImuCalibration::Covariance calibration_covariance() const;
   /// Returns the calibration's prior covariance for the next registration, with which a second run over the recording
   /// should start.
-  SweepCalibration::Covariance calibration_weighting_covariance() const;
+  LidarImuCalibration::Covariance calibration_prior_covariance() const;
 
   /// Returns `out_of_range` while the standard deviation of gravity's direction exceeds 0.02 rad, for example after a
   /// start in motion.

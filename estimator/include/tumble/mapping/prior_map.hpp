@@ -16,7 +16,7 @@ struct PriorMap {
   std::vector<MapPoint> points = {};  ///< points with normals, in the map frame M; to_map_points() computes normals
   /// Start pose of the IMU in the map frame M, if known; only position and heading are used. If the start pose is
   /// unknown, the run may start anywhere in the map.
-  std::optional<Eigen::Isometry3d> T_MI = std::nullopt;
+  std::optional<Eigen::Isometry3d> T_prior_map_imu = std::nullopt;
   double sigma_m = 0.0;    ///< standard deviation of the position of T_MI per axis; 0: exact
   double sigma_rad = 0.0;  ///< standard deviation of the heading of T_MI; 0: exact
   bool extend =
@@ -26,7 +26,7 @@ struct PriorMap {
 /// Returns `non_finite`, or `out_of_range` for a negative standard deviation, a normal that is neither zero nor a unit
 /// vector, or a position beyond 50 km.
 Status check_map_points(std::span<const MapPoint> points);
-/// Returns `ok`, an error of check_map_points(), or `too_few` if fewer than 100 points have a normal.
+/// Returns `ok`, an error of check_map_points(), or `insufficient_data` if fewer than 100 points have a normal.
 Status check_prior_map(const PriorMap& map);
 
 /// Converts positions, for example of a PCD or PLY file, to map points with normals. At most one point per cube of 0.1

@@ -20,12 +20,12 @@
 namespace tumble {
 
 struct ImuMergeState;
-struct MergedFindings;
+struct MergedImuRecording;
 struct RollingOdometryExpertParams;
-extern template class Indirect<RollingOdometryExpertParams>;
+extern template class HeapValue<RollingOdometryExpertParams>;
 
 /// Estimates the pose of a rolling sphere from one to four IMUs, through grip, slip, bumps and slopes. The reported
-/// poses are live, smoothed with the data of the following `lag_s`, or smoothed with the whole recording. UnitRails
+/// poses are live, smoothed with the data of the following `lag_s`, or smoothed with the whole recording. ImuSaturationLimits
 /// flags readings that a device clips without reporting saturation, ImuMerge fuses the IMUs, and RollingSmoother (with
 /// its RollingFilter) estimates the motion. With kWholeRecording, merge_recordings() flags and fuses the readings.
 ///
@@ -41,14 +41,14 @@ class RollingOdometry {
  public:
   static constexpr double kWholeRecording = 1e9;  ///< value of Params::lag_s
 
-  struct Unit {
-    ImuSheet sheet;
+  struct ImuSetup {
+    ImuDataSheet data_sheet;
     /// pose of the IMU relative to the sphere's centre: x_B = T_BI x_I
     Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
   };
   struct Params {
     double radius_m = 0.0;    ///< required; has no default
-    std::vector<Unit> units;  ///< 1 to 4 IMUs; required
+    std::vector<ImuSetup> imus;  ///< 1 to 4 IMUs; required
     /// Standard deviation of the sphere's true centre relative to the stated centre, from which the poses T_BI of the
     /// IMUs are measured. RollingOdometry estimates the true centre.
     double centre_sigma_m = 6e-3;
@@ -58,7 +58,7 @@ class RollingOdometry {
     double lag_s = 0.0;
 
     using Expert = RollingOdometryExpertParams;
-    Indirect<Expert> expert;  ///< rarely changed parameters, odometry/rolling_expert_params.hpp
+    HeapValue<Expert> expert;  ///< rarely changed parameters, odometry/rolling_expert_params.hpp
 
     /// Names of parameters that are computed from other parameters and from data sheets; user values are ignored.
     static std::span<const char* const> derived_fields();
@@ -71,22 +71,22 @@ class RollingOdometry {
     /// odometry/rolling_expert_params.hpp.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
-      visit(p.radius_m, {"radius_m", "m", 1e-3, 100.0, "radius of the sphere", FieldRank::basic});
+      visit(p.radius_m, {"radius_m", "m", 1e-3, 100.0, "radius of the sphere", ParameterRank::common_use});
       visit(
           p.centre_sigma_m,
           {"centre_sigma_m", "m", 0.0, 10.0,
            "standard deviation of the position of the stated centre, which is the reference point of the IMU positions",
-           FieldRank::basic});
-      visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.1, 100.0, "strength of gravity", FieldRank::basic});
+           ParameterRank::common_use});
+      visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.1, 100.0, "strength of gravity", ParameterRank::common_use});
       visit(p.lag_s, {"lag_s", "s", 0.0, kWholeRecording,
                       "delay after which a smoothed pose is reported; a longer delay makes poses more accurate; 0: "
                       "live; 1e9: the whole recording",
-                      FieldRank::basic});
+                      ParameterRank::common_use});
       visit.group("", *p.expert);
     }
   };
   struct Calibration {
-    Eigen::Vector3d centre_B_m = Eigen::Vector3d::Zero();  ///< true centre of the sphere, relative to the stated centre
+    Eigen::Vector3d sphere_centre_B_m = Eigen::Vector3d::Zero();  ///< true centre of the sphere, relative to the stated centre
     /// radius and its standard deviation; 0: the radius is fixed (expert.rolling.filter.radius_sigma_m)
     double radius_m = 0.0, radius_sigma_m = 0.0;
   };
@@ -114,7 +114,7 @@ class RollingOdometry {
   /// Processes simultaneous readings of all IMUs, with the time stamp of the first IMU. SampleClock corrects time
   /// stamps with jitter. Pass NaN for an IMU without a reading. OutlierFilter rejects outliers of each IMU, and may
   /// delay the samples of all IMUs by one to five. newest() is then older. On error, the state is unchanged. The
-  /// errors are `too_few` (wrong number of IMUs, or no reading), `time_order`, `degenerate` (no gravity in the first
+  /// errors are `insufficient_data` (wrong number of IMUs, or no reading), `time_order`, `degenerate` (no gravity in the first
   /// sample), `gap` and `out_of_range`. `out_of_range` means that the run has finished, the time stamp exceeds
   /// kStampMax_ns, or the only IMU with readings has a frozen axis.
   ///
@@ -159,7 +159,7 @@ class RollingOdometry {
 
   /// Returns the merged IMUs of a whole recording with their findings (detail/imu_findings.hpp). Returns null before
   /// finish() and without kWholeRecording.
-  const MergedFindings* recording() const;
+  const MergedImuRecording* recording() const;
 
   /// If `lag_s` is above 0, centre and radius are the estimates at the newest smoothed pose.
   Calibration calibration() const;
@@ -172,7 +172,7 @@ class RollingOdometry {
 
   /// Returns the state of ImuMerge (attitude/detail/imu_merge.hpp), which contains the frozen, disagreeing and delayed
   /// IMUs.
-  const ImuMergeState& units() const;
+  const ImuMergeState& imus() const;
 
   /// Returns the number of readings of all IMUs that OutlierFilter rejected.
   std::size_t rejected_readings() const;
@@ -193,7 +193,7 @@ class RollingOdometry {
   /// All poses of the new run have the flag `uncertain`. If the sphere may have moved, call reset(pose) after load().
   ///
   /// `last_pose` receives the saved pose with its time in the clock of the saved run, or is empty. On error, the object
-  /// is unchanged, and the returned status names the field, the saved value and the bound. The error is `too_few`
+  /// is unchanged, and the returned status names the field, the saved value and the bound. The error is `insufficient_data`
   /// (truncated bytes), `non_finite` or `out_of_range`. load() rejects damaged bytes, and bytes that another version or
   /// a TumblingOdometry saved. load() also rejects a saved run with another radius or other IMUs.
   Status load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose = nullptr);
@@ -201,7 +201,7 @@ class RollingOdometry {
   struct Impl;  ///< private implementation
 
  private:
-  Indirect<Impl> impl_;
+  HeapValue<Impl> impl_;
 };
 
 }  // namespace tumble

@@ -11,7 +11,7 @@ namespace tumble {
 /// A range of 0 means that the range is unknown. The estimators detect saturation limits from the readings, with or
 /// without a stated range. Data sheets state the range of a gyro in degrees per second, between 250 and 4000. A gyro
 /// range above 100 rad/s (5730 deg/s) is rejected, because the range is probably in degrees per second.
-struct ImuSheet {
+struct ImuDataSheet {
   double rate_hz = 100.0;
   double gyro_range_rad_s = 0.0;
   double accel_range_m_s2 = 0.0;
@@ -20,25 +20,25 @@ struct ImuSheet {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.rate_hz, {"rate_hz", "Hz", 1.0, 1e5, "samples per second", FieldRank::basic});
+    visit(p.rate_hz, {"rate_hz", "Hz", 1.0, 1e5, "samples per second", ParameterRank::common_use});
     visit(p.gyro_range_rad_s,
-          {"gyro_range_rad_s", "rad/s", 0.0, 100.0, "stated range of the gyro; 0: not stated", FieldRank::basic});
+          {"gyro_range_rad_s", "rad/s", 0.0, 100.0, "stated range of the gyro; 0: not stated", ParameterRank::common_use});
     visit(p.accel_range_m_s2, {"accel_range_m_s2", "m/s^2", 0.0, 1e5,
-                               "stated range of the accelerometer; 0: not stated", FieldRank::basic});
+                               "stated range of the accelerometer; 0: not stated", ParameterRank::common_use});
     visit(p.gyro_noise_rad_s_sqrt_hz,
-          {"gyro_noise_rad_s_sqrt_hz", "rad/s/sqrt(Hz)", 1e-9, 1.0, "noise density of the gyro", FieldRank::basic});
+          {"gyro_noise_rad_s_sqrt_hz", "rad/s/sqrt(Hz)", 1e-9, 1.0, "noise density of the gyro", ParameterRank::common_use});
     visit(p.accel_noise_m_s2_sqrt_hz, {"accel_noise_m_s2_sqrt_hz", "m/s^2/sqrt(Hz)", 1e-9, 100.0,
-                                       "noise density of the accelerometer", FieldRank::basic});
+                                       "noise density of the accelerometer", ParameterRank::common_use});
   }
 };
 
 /// Returns the largest reading that is certainly unsaturated, for a range from a data sheet. Returns infinity if the
 /// range is unknown (0). The margin of 2 % covers the scale correction that a device's calibration applies to its
 /// saturation limit.
-double unsaturated_range(double stated_range);
+double range_below_saturation(double stated_range);
 
-/// LidarSheet contains the data sheet of a lidar. The estimators drop lidar returns outside of the stated range.
-struct LidarSheet {
+/// LidarDataSheet contains the data sheet of a lidar. The estimators drop lidar returns outside of the stated range.
+struct LidarDataSheet {
   double range_min_m = 0.3;
   double range_max_m = 100.0;
 
@@ -46,9 +46,9 @@ struct LidarSheet {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.range_min_m,
-          {"range_min_m", "m", 0.0, 10.0, "minimum range; nearer returns are dropped", FieldRank::basic});
+          {"range_min_m", "m", 0.0, 10.0, "minimum range; nearer returns are dropped", ParameterRank::common_use});
     visit(p.range_max_m,
-          {"range_max_m", "m", 0.0, 1e4, "maximum range; farther returns are dropped", FieldRank::basic});
+          {"range_max_m", "m", 0.0, 1e4, "maximum range; farther returns are dropped", ParameterRank::common_use});
   }
 };
 
@@ -56,68 +56,68 @@ struct LidarSheet {
 namespace sheets {
 
 /// Xsens MTi-30, fifth generation (20 g); stated gyro range 450 deg/s.
-ImuSheet mti30();
+ImuDataSheet mti30();
 /// VectorNav VN-100.
-ImuSheet vn100();
+ImuDataSheet vn100();
 /// PhidgetSpatial Precision 3/3/3 1044_0.
-ImuSheet phidget1044();
+ImuDataSheet phidget1044();
 /// InvenSense MPU-6050 at 500 deg/s and 16 g.
-ImuSheet mpu6050();
+ImuDataSheet mpu6050();
 /// Bosch BMI088 at 2000 deg/s and 24 g.
-ImuSheet bmi088();
+ImuDataSheet bmi088();
 /// InvenSense ICM-20948 at 2000 deg/s and 16 g.
-ImuSheet icm20948();
+ImuDataSheet icm20948();
 /// InvenSense ICM-42688-P at 2000 deg/s and 16 g.
-ImuSheet icm42688();
+ImuDataSheet icm42688();
 /// Xsens MTi-3.
-ImuSheet mti3();
+ImuDataSheet mti3();
 /// STMicroelectronics LSM6DSO at 2000 deg/s and 16 g.
-ImuSheet lsm6dso();
+ImuDataSheet lsm6dso();
 /// IMU inside an Ouster OS0 or OS1, in the default setting of 250 deg/s and 2 g.
-ImuSheet ouster_imu();
+ImuDataSheet ouster_imu();
 /// IMU inside a Livox Mid-360 at 2000 deg/s and 4 g.
-ImuSheet mid360_imu();
+ImuDataSheet mid360_imu();
 /// InvenSense ICM-20601 at 2000 deg/s and 32 g.
-ImuSheet icm20601();
+ImuDataSheet icm20601();
 /// InvenSense ICM-20602 at 2000 deg/s and 16 g.
-ImuSheet icm20602();
+ImuDataSheet icm20602();
 /// STMicroelectronics LSM6DSV320X at 4000 deg/s and 16 g.
-ImuSheet lsm6dsv320x();
+ImuDataSheet lsm6dsv320x();
 /// Analog Devices ADIS16405 at 300 deg/s and 18 g.
-ImuSheet adis16405();
+ImuDataSheet adis16405();
 /// InvenSense IIM-42653 at 4000 deg/s and 32 g.
-ImuSheet iim42653();
+ImuDataSheet iim42653();
 
 /// Returns the data sheets of all IMUs with their names, for programs that select a data sheet by name.
-std::span<const std::pair<const char*, ImuSheet (*)()>> imus();
+std::span<const std::pair<const char*, ImuDataSheet (*)()>> imus();
 
 /// RoboSense RS-16.
-LidarSheet rs16();
+LidarDataSheet rs16();
 /// Livox Mid-40.
-LidarSheet mid40();
+LidarDataSheet mid40();
 /// Livox Mid-100.
-LidarSheet mid100();
+LidarDataSheet mid100();
 /// Velodyne VLP-16.
-LidarSheet vlp16();
+LidarDataSheet vlp16();
 /// Hesai XT16.
-LidarSheet xt16();
+LidarDataSheet xt16();
 /// Hesai XT32.
-LidarSheet xt32();
+LidarDataSheet xt32();
 /// RoboSense Helios with 32 beams.
-LidarSheet helios32();
+LidarDataSheet helios32();
 /// Ouster OS0 with 64 rings.
-LidarSheet os0_64();
+LidarDataSheet os0_64();
 /// Ouster OS0 with 128 rings.
-LidarSheet os0_128();
+LidarDataSheet os0_128();
 /// Ouster OS1 with 64 rings.
-LidarSheet os1_64();
+LidarDataSheet os1_64();
 /// Ouster OS1 with 128 rings.
-LidarSheet os1_128();
+LidarDataSheet os1_128();
 /// Livox Mid-360.
-LidarSheet mid360();
+LidarDataSheet mid360();
 
 /// Returns the data sheets of all lidars with their names.
-std::span<const std::pair<const char*, LidarSheet (*)()>> lidars();
+std::span<const std::pair<const char*, LidarDataSheet (*)()>> lidars();
 
 }  // namespace sheets
 

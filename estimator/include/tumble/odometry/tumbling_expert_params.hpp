@@ -12,8 +12,8 @@
 
 namespace tumble {
 
-/// SecondPassParams contains the parameters of the second pass over the first seconds of motion; see TumblingOdometry.
-struct SecondPassParams {
+/// SecondMappingPassParams contains the parameters of the second pass over the first seconds of motion; see TumblingOdometry.
+struct SecondMappingPassParams {
   double after_s = 3.0;    ///< duration of motion before the second pass starts; 0: none
   double lost_s = 0.4;     ///< duration of tracking failure that starts a second pass; 0: never
   double lag_s = 0.5;      ///< lag of the rates of the second pass
@@ -51,27 +51,27 @@ struct TumblingExpertParams {
   std::size_t sweeps_max = 16;
   /// Parameters of the rate estimation. By default, the prior probability that the IMU does not match its data sheet is
   /// 0.003. The covariance of each rate includes the uncertainty of the calibration.
-  RegimeStream::Params rate = rate_defaults();
+  MotionRegimeStream::Params rate = default_rate_params();
   /// Parameters of the mapping. By default, gravity's direction and the saturation deficit (true rate minus clipped
   /// reading) are unknowns of the registration.
   OdometryParams mapping = mapping_defaults();
   /// Parameters of SampleClock, which corrects IMU time stamps that a host computer assigned.
   SampleClock::Params stamps;
-  SecondPassParams second_pass;
+  SecondMappingPassParams second_mapping_pass;
   static OdometryParams mapping_defaults();
-  static RegimeStream::Params rate_defaults();
+  static MotionRegimeStream::Params default_rate_params();
   /// Returns the names of parameters that TumblingOdometry computes from other parameters. A name that ends in '*'
   /// stands for all names with that prefix. TumblingOdometry ignores user values of computed parameters.
   static std::span<const char* const> derived_fields();
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.0, 100.0, "strength of gravity", FieldRank::basic});
+    visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.0, 100.0, "strength of gravity", ParameterRank::common_use});
     visit(p.sweeps_max, {"sweeps_max", "1", 1, 1e6, "maximum number of sweeps that wait for IMU data"});
     visit.group("rate_", p.rate);
     visit.group("mapping_", p.mapping);
     visit.group("stamps_", p.stamps);
-    visit.group("second_pass_", p.second_pass);
+    visit.group("second_pass_", p.second_mapping_pass);
   }
 };
 

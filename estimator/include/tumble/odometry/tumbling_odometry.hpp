@@ -23,13 +23,13 @@
 namespace tumble {
 
 class LidarInertialOdometry;
-struct RecordingEstimate;
+struct WholeRecordingEstimate;
 struct RigCalibration;
 struct SaturationLevels;
-struct SweepScale;
+struct LidarScale;
 
 /// Estimates pose, velocity and map of a tumbling body from a lidar and one IMU, whose gyro may saturate. SampleClock
-/// corrects time stamps that a host computer assigned. RegimeStream estimates the angular velocity of each sample with
+/// corrects time stamps that a host computer assigned. MotionRegimeStream estimates the angular velocity of each sample with
 /// a delay of `lag_s`.
 ///
 /// Three poses of increasing accuracy are reported. newest() predicts the IMU's pose at the newest sample by inertial
@@ -40,25 +40,25 @@ struct SweepScale;
 /// half a second at rest, which determines the tilt. If the gyro's zero offset at rest exceeds 0.05 rad/s,
 /// TumblingOdometry subtracts the offset and restarts, which needs a second at rest.
 ///
-/// Some seconds after motion starts, SecondPass processes the first seconds of motion again with the calibration
-/// estimated so far. TumblingOdometry then continues with the map and pose of SecondPass; poses that were already
+/// Some seconds after motion starts, SecondMappingPass processes the first seconds of motion again with the calibration
+/// estimated so far. TumblingOdometry then continues with the map and pose of SecondMappingPass; poses that were already
 /// reported are not changed. If no sweep arrives for a second, inertial integration continues, and take() returns a
 /// sweep without points.
 ///
 /// With `lag_s` = kWholeRecording, add_imu() and add_sweep() store the data, and finish() estimates rates, poses and
-/// map from the whole recording. finish() estimates the rates with RegimeSmoother, checks the IMU, and repeats the
+/// map from the whole recording. finish() estimates the rates with MotionRegimeSmoother, checks the IMU, and repeats the
 /// mapping until the lidar's calibration has converged. With kWholeRecording, there are no live poses, and take()
 /// returns all sweeps after finish(). A step of the clock ends the recording, but a gap in the data does not. finish()
 /// needs more stack and memory than other functions.
 ///
-/// An IMU sample costs one step of RegimeStream, and sometimes the registration of a sweep. After start-up, add_imu()
-/// allocates memory only if the sample completes a sweep. While SecondPass runs, a sweep costs up to four
-/// registrations. The end of SecondPass costs five additional registrations. The bounded memory depends on lag, map
-/// radius, `sweeps_max` and the buffer of SecondPass. The map also stores 12 bytes per sweep until the robot has moved
+/// An IMU sample costs one step of MotionRegimeStream, and sometimes the registration of a sweep. After start-up, add_imu()
+/// allocates memory only if the sample completes a sweep. While SecondMappingPass runs, a sweep costs up to four
+/// registrations. The end of SecondMappingPass costs five additional registrations. The bounded memory depends on lag, map
+/// radius, `sweeps_max` and the buffer of SecondMappingPass. The map also stores 12 bytes per sweep until the robot has moved
 /// ten metres. A call needs at most 64 KiB of stack.
 ///
 /// TumblingOdometry starts no threads, uses no files and prints nothing. A copy of a TumblingOdometry contains the
-/// complete state, so the copy can process the following data. The limitations of RegimeStream and
+/// complete state, so the copy can process the following data. The limitations of MotionRegimeStream and
 /// LidarInertialOdometry apply to TumblingOdometry.
 class TumblingOdometry {
  public:
@@ -133,7 +133,7 @@ class TumblingOdometry {
   ///
   /// With kWholeRecording, finish() processes the whole recording, and later samples and sweeps are rejected until
   /// reset(). take() then returns all sweeps with their final poses in `report.pose` and `report.trajectory`. Returns
-  /// `ok`, an error of RateSmoother::estimate() such as `too_few`, or the error of a sample in the mapper. Without
+  /// `ok`, an error of AngularRateSmoother::estimate() such as `insufficient_data`, or the error of a sample in the mapper. Without
   /// kWholeRecording, finish() returns `ok`. finish() calls `on_sweep` before each sweep, with the number of processed
   /// sweeps and the number of all sweeps, for a progress display. Each pass over the recording starts again at 0
   /// processed sweeps.
@@ -150,42 +150,42 @@ class TumblingOdometry {
   /// last sweep). `velocity_covariance_I_m2_s2` (optional) is the covariance of the velocity error in IMU axes.
   Status newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2 = nullptr) const;
   /// Reports the suspected faults of the sensors and of the estimate. Estimation continues after any finding, and a
-  /// health finding ends when its fault ends (at the latest a minute later). The checks are RateStream::health(),
-  /// ImuPlausibility, RestGravity, SweepScale, LidarInertialOdometry::check_vertical() and localised(), Localisation
-  /// and StatedCalibration. With kWholeRecording, finish() checks the whole recording (detail/imu_findings.hpp), and
+  /// health finding ends when its fault ends (at the latest a minute later). The checks are AngularRateStream::health(),
+  /// ImuPlausibility, RestGravity, LidarScale, LidarInertialOdometry::check_vertical() and localised(), Localisation
+  /// and LidarImuCalibrationPrior. With kWholeRecording, finish() checks the whole recording (detail/imu_findings.hpp), and
   /// before finish() there is no finding. Cost: a few hundred operations; health().ok() allocates nothing without a
   /// finding.
   SensorHealth health() const;
   /// Returns the estimated scale of the lidar's ranges relative to the IMU, as far as the motion determines the scale
-  /// (mapping/detail/sweep_scale.hpp).
-  const SweepScale& sweep_scale() const;
+  /// (mapping/detail/lidar_scale.hpp).
+  const LidarScale& sweep_scale() const;
   /// Returns the newest Sweep::position_frame, for newest(); empty with kWholeRecording.
   const std::optional<PositionFrame>& position_frame() const;
   /// Returns the time of the newest accepted IMU sample.
   std::optional<TimeNs> newest_ns() const;
   /// Returns the rate of the newest IMU sample, if any. While the gyro is saturated, the rate of the newest sample is
   /// provisional.
-  std::optional<RateState> newest_rate() const;
+  std::optional<AngularRateState> newest_rate() const;
   /// Returns the latest smoothed rate, which is about `lag_s` old. Returns an empty value during the first `lag_s` of a
   /// run.
-  const std::optional<RateState>& smoothed_rate() const;
+  const std::optional<AngularRateState>& smoothed_rate() const;
   /// Returns the estimated calibration of the IMU on the body (angular_velocity/rig_constants.hpp): lever arm, biases,
   /// inertia ratios and gyro axis directions.
   RigCalibration rig() const;
-  const SaturationLevels& rails() const;
+  const SaturationLevels& saturation_levels() const;
   /// Returns the number of restarts after a gap or after a clock that stepped back.
   std::size_t restart_count() const;
   /// Returns the number of samples that OutlierFilter rejected because of a wrong reading or time stamp.
   std::size_t rejected_readings() const;
-  /// Returns true if SecondPass has replaced the map and the pose.
-  bool second_pass_applied() const;
+  /// Returns true if SecondMappingPass has replaced the map and the pose.
+  bool second_mapping_pass_applied() const;
   /// The following counters are 0 in normal operation. The function rejected_samples() counts IMU samples that the
   /// mapper rejected. The function dropped_sweeps() counts sweeps that take() did not return in time. The function
-  /// early_sweeps() counts sweeps that ended before the first IMU sample. The function unused_odometer_readings()
+  /// sweeps_before_first_imu() counts sweeps that ended before the first IMU sample. The function unused_odometer_readings()
   /// counts odometer readings that span two sweeps.
   std::size_t rejected_samples() const;
   std::size_t dropped_sweeps() const;
-  std::size_t early_sweeps() const;
+  std::size_t sweeps_before_first_imu() const;
   std::size_t unused_odometer_readings() const;
   /// Returns the number of unused points of further lidars: the points arrived late, or the first lidar had no sweep.
   std::size_t unused_points() const;
@@ -196,7 +196,7 @@ class TumblingOdometry {
   const LidarInertialOdometry& mapper() const;
   /// Returns the rates of all samples, the checks and the mapping passes of a whole recording
   /// (detail/recording_estimate.hpp). Returns null before finish() and without kWholeRecording.
-  const RecordingEstimate* recording() const;
+  const WholeRecordingEstimate* recording() const;
 
   /// Saves calibration, saturation limits, map and newest pose as bytes with a checksum, for load() after a reboot. The
   /// calibration consists of rig(), the detected delay and errors of the IMU, and the lidar's mounting and time offset,
@@ -204,7 +204,7 @@ class TumblingOdometry {
   /// that is not yet localised in the map of use_map() saves this map.
   ///
   /// The saved bytes do not contain velocity, filter states, health findings, counters, readings of further sensors,
-  /// and the buffer of SecondPass. Sweeps that wait for IMU samples or for take() are not saved. With kWholeRecording,
+  /// and the buffer of SecondMappingPass. Sweeps that wait for IMU samples or for take() are not saved. With kWholeRecording,
   /// the saved bytes contain the results of finish(), without the recorded data.
   std::vector<std::byte> save() const;
   /// Starts a new run from saved bytes, like a new object. The saved calibration replaces the calibration of the
@@ -215,7 +215,7 @@ class TumblingOdometry {
   /// after load(). With kWholeRecording, the new run starts at the saved pose with a new map.
   ///
   /// `last_pose` receives the saved pose with its time in the clock of the saved run, or is empty. On error, the object
-  /// is unchanged, and the returned status names the field, the saved value and the bound. The error is `too_few`
+  /// is unchanged, and the returned status names the field, the saved value and the bound. The error is `insufficient_data`
   /// (truncated bytes), `non_finite`, `degenerate` or `out_of_range`. load() rejects damaged bytes, and bytes that
   /// another version or a RollingOdometry saved. load() also rejects a saved run with another stated lever arm or lidar
   /// mounting.
@@ -224,7 +224,7 @@ class TumblingOdometry {
   struct Impl;  ///< private implementation
 
  private:
-  Indirect<Impl> impl_;
+  HeapValue<Impl> impl_;
 };
 
 /// Saves a map: position, normal and standard deviation of each point, in the order of `points`. The saved bytes also
@@ -233,7 +233,7 @@ class TumblingOdometry {
 std::vector<std::byte> save_map(std::span<const MapPoint> points);
 
 /// Loads a map that save_map() saved, for LidarInertialOdometry::use_map(). On error, `points` is unchanged, and the
-/// returned status names the field, the value and the bound. The error `too_few` means truncated bytes. The errors
+/// returned status names the field, the value and the bound. The error `insufficient_data` means truncated bytes. The errors
 /// `non_finite` and `out_of_range` mean another kind of data, another version, damaged bytes, or points that
 /// check_prior_map() rejects.
 Status load_map(std::span<const std::byte> bytes, std::vector<MapPoint>& points);

@@ -13,13 +13,13 @@
 namespace tumble {
 
 struct TumblingExpertParams;
-extern template class Indirect<TumblingExpertParams>;
+extern template class HeapValue<TumblingExpertParams>;
 
 /// FurtherLidar is a lidar in addition to the lidar of TumblingParams. The mounting relative to the first lidar and the
 /// clock offset must be exact, because TumblingOdometry estimates only the mounting of the first lidar.
 struct FurtherLidar {
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
-  LidarSheet sheet;
+  LidarDataSheet data_sheet;
   Eigen::AlignedBox3d own_body_L;  ///< see TumblingParams::own_body_L, in axes of this lidar
   double time_offset_s = 0.0;      ///< clock of the first lidar minus clock of this lidar
 };
@@ -27,7 +27,7 @@ struct FurtherLidar {
 struct TumblingParams {
   static constexpr double kWholeRecording = 1e9;  ///< value of `lag_s`; see TumblingOdometry
 
-  ImuSheet imu;
+  ImuDataSheet imu;
   /// Lever arm from the body's centre of mass to the IMU, in IMU axes, and its standard deviation per axis. The lever
   /// arm relates rates to forces; its error is estimated. The lever arm has no default, because zero would mean an IMU
   /// at the centre of mass.
@@ -38,7 +38,7 @@ struct TumblingParams {
   double mount_sigma_rad = 0.01;
   double mount_sigma_m = 0.006;
   double time_offset_sigma_s = 0.003;
-  LidarSheet lidar;
+  LidarDataSheet lidar;
   /// Box in lidar axes that contains the robot; lidar returns inside the box are dropped. The default, an empty Eigen
   /// box, keeps all returns. A box with swapped corners is rejected.
   Eigen::AlignedBox3d own_body_L;
@@ -47,10 +47,10 @@ struct TumblingParams {
   double lag_s = 0.2;
 
   using Expert = TumblingExpertParams;
-  Indirect<Expert> expert;  ///< rarely changed parameters, odometry/tumbling_expert_params.hpp
+  HeapValue<Expert> expert;  ///< rarely changed parameters, odometry/tumbling_expert_params.hpp
 
-  StatedCalibration stated_calibration() const {
-    StatedCalibration out{{}, mount_sigma_rad, mount_sigma_m, time_offset_sigma_s};
+  LidarImuCalibrationPrior calibration_prior() const {
+    LidarImuCalibrationPrior out{{}, mount_sigma_rad, mount_sigma_m, time_offset_sigma_s};
     out.calibration.T_IL = T_IL;
     return out;
   }
@@ -61,9 +61,9 @@ struct TumblingParams {
   static void fields(Self& p, Visitor& visit) {
     visit.group("imu_", p.imu);
     visit(p.lever_arm_I_m, {"lever_arm_m", "m", -10.0, 10.0, "lever arm from the centre of mass to the IMU, IMU axes",
-                            FieldRank::basic});
+                            ParameterRank::common_use});
     visit(p.lever_arm_sigma_m,
-          {"lever_arm_sigma_m", "m", 1e-9, 10.0, "standard deviation of the lever arm", FieldRank::basic});
+          {"lever_arm_sigma_m", "m", 1e-9, 10.0, "standard deviation of the lever arm", ParameterRank::common_use});
     visit(p.mount_sigma_rad, calibration_fields::kMountSigma_rad);
     visit(p.mount_sigma_m, calibration_fields::kMountSigma_m);
     visit(p.time_offset_sigma_s, calibration_fields::kTimeOffsetSigma_s);
@@ -71,7 +71,7 @@ struct TumblingParams {
     visit(p.lag_s, {"lag_s", "s", 0.0, kWholeRecording,
                     "maximum time for which a sweep waits for later data, at most 10 s; a longer time adds delay and "
                     "makes poses more accurate; 1e9: the whole recording",
-                    FieldRank::basic});
+                    ParameterRank::common_use});
     visit.group("", *p.expert);
   }
 };

@@ -40,10 +40,10 @@ class RollingFilter {
   /// one possible sequence of contact modes, with the estimate for this sequence
   struct Hypothesis {
     Vector x = Vector::Zero();  ///< errors: attitude (W), velocity and position of the IMU, constants
-    Covariance P = Covariance::Zero();
+    Covariance covariance = Covariance::Zero();
     Eigen::Vector3d contact_velocity_W_m_s = Eigen::Vector3d::Zero();  ///< contact velocity at the last time step
     double log_weight = 0.0;           ///< log probability relative to the most probable hypothesis
-    std::int64_t mode_start_node = 0;  ///< node at which the current contact mode began
+    std::int64_t first_node_of_mode = 0;  ///< node at which the current contact mode began
     std::int32_t parent = 0;           ///< index of the hypothesis' parent at the previous node
     RollingMode mode = RollingMode::grip;
     bool operator==(const Hypothesis&) const = default;
@@ -51,8 +51,8 @@ class RollingFilter {
 
   struct State {
     // pose and velocity at the last sample, from the most probable hypothesis
-    Eigen::Vector3d p_WG_m = Eigen::Vector3d::Zero();
-    Eigen::Vector3d v_WG_m_s = Eigen::Vector3d::Zero();
+    Eigen::Vector3d sphere_centre_W_m = Eigen::Vector3d::Zero();
+    Eigen::Vector3d sphere_velocity_W_m_s = Eigen::Vector3d::Zero();
     Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
     /// position covariance over all hypotheses, at the last time step (`node_s`)
     Eigen::Matrix3d position_covariance_m2 = Eigen::Matrix3d::Zero();
@@ -68,18 +68,18 @@ class RollingFilter {
     std::int64_t gaps = 0;  ///< number of bridged gaps
     double gap_longest_s = 0.0;
     // The errors of all contact-mode hypotheses are linearised about the nominal trajectory and calibration.
-    RollingNominal nominal;
-    RollingIntegrals sums;
+    RollingNominalState nominal;
+    RollingNodeIntegrals node_integrals;
     ImuAverage average;  ///< average of the readings that are not yet processed
-    Eigen::Matrix3d pruned_position_spread_m2 = Eigen::Matrix3d::Zero();  ///< position spread of the pruned hypotheses
-    RestDetector::State rest;
+    Eigen::Matrix3d pruned_position_covariance_m2 = Eigen::Matrix3d::Zero();  ///< position spread of the pruned hypotheses
+    RestDetector::State stationary_state;
     Eigen::Vector3d low_passed_rate_rad_s = Eigen::Vector3d::Zero();
     bool position_constrained = false;      ///< the sphere is at rest and the reported position is constant
-    double variance_before_event_m2 = 0.0;  ///< horizontal position variance at the last time step without an event
+    double variance_before_slip_m2 = 0.0;  ///< horizontal position variance at the last time step without an event
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
     std::array<Hypothesis, kHypotheses> hypotheses{};
-    int count = 0;
-    std::int64_t node = 0;
+    int hypothesis_count = 0;
+    std::int64_t node_index = 0;
     TimeNs last_time_ns = 0;
     bool started = false;
     bool operator==(const State&) const = default;
@@ -97,7 +97,7 @@ class RollingFilter {
   /// Calls `closed(state)` after each completed node (time step of `node_s`).
   template <typename Closed>
   Status step(const ImuSample& sample, State& state, Closed closed) const {
-    return step_with(sample, state,
+    return step_with_listener(sample, state,
                      Listener{&closed, [](void* to, const State& at) { (*static_cast<Closed*>(to))(at); }});
   }
 
@@ -108,16 +108,16 @@ class RollingFilter {
 
  private:
   struct Listener {
-    void* to;
-    void (*call)(void*, const State&);
+    void* target;
+    void (*function)(void*, const State&);
   };
 
-  Status step_with(const ImuSample& sample, State& state, Listener listener) const;
+  Status step_with_listener(const ImuSample& sample, State& state, Listener listener) const;
 
   void start(const ImuSample& sample, const Eigen::Quaterniond& q_WI, State& state) const;
-  void bridge(const ImuSample& sample, double gap_s, State& state, Listener listener) const;
-  void process_average(State& state, Listener listener) const;
-  void complete_node(const Eigen::Vector3d& next_rate_rad_s, State& state) const;
+  void bridge_gap(const ImuSample& sample, double gap_s, State& state, Listener listener) const;
+  void process_averaged_reading(State& state, Listener listener) const;
+  void complete_filter_node(const Eigen::Vector3d& next_rate_rad_s, State& state) const;
   void detect_rest(State& state) const;
   bool spins_in_place(const State& state) const;
   void correct_at_rest(State& state) const;
@@ -128,9 +128,9 @@ class RollingFilter {
   void constrain_position(State& state) const;
   static RollingMode most_probable_mode(const State& state);
   static const Eigen::Vector3d& newest_rate_rad_s(const State& state);
-  static Eigen::Matrix3d spread(const State& state, int first);
+  static Eigen::Matrix3d hypothesis_position_covariance(const State& state, int first);
   static void weigh_modes(State& state);
-  static void keep_most_probable(std::size_t count, State& state);
+  static void keep_most_probable_hypotheses(std::size_t count, State& state);
 
   Params params_;
   RestDetector rest_detector_;

@@ -94,10 +94,10 @@ class Tumble(needed_bindings().Feed):  # type: ignore[misc]  # the compiled part
         given = self.default_params() | self._given
         additional = {name: given.pop(name) for name in _ADDITIONAL}
         options: dict[str, Any] = {
-            "imu": _tumble.ImuSheet(rate_hz=self._imu.rate, gyro_noise_rad_s_sqrt_hz=self._imu.gyro,
+            "imu": _tumble.ImuDataSheet(rate_hz=self._imu.rate, gyro_noise_rad_s_sqrt_hz=self._imu.gyro,
                                     accel_noise_m_s2_sqrt_hz=self._imu.accel, gyro_range_rad_s=additional["gyro_range_rad_s"],
                                     accel_range_m_s2=additional["accel_range_m_s2"]),
-            "lidar": _tumble.LidarSheet(range_min_m=self._lidar.min_range, range_max_m=self._lidar.max_range),
+            "lidar": _tumble.LidarDataSheet(range_min_m=self._lidar.min_range, range_max_m=self._lidar.max_range),
             "gravity_m_s2": float(np.linalg.norm(self._imu.gravity)), "T_IL": self._T_IL}
         body = [[additional[f"own_body_{end}_{axis}_m"] for axis in "xyz"] for end in ("low", "high")]
         if np.any(body):

@@ -49,13 +49,13 @@ def files() -> dict[str, pathlib.Path]:
     return out
 
 
-def _imu_params(sheet: _tumble.ImuSheet, gravity_m_s2: float, device: str) -> types.ImuParams:
+def _imu_params(sheet: _tumble.ImuDataSheet, gravity_m_s2: float, device: str) -> types.ImuParams:
     return types.ImuParams(gyro=sheet.gyro_noise_rad_s_sqrt_hz, accel=sheet.accel_noise_m_s2_sqrt_hz, rate=sheet.rate_hz,
                            gravity=np.array([0.0, 0.0, -gravity_m_s2]), brand="simulated", model=device or "-")
 
 
 def _lidar_params(rows: int, columns: int, rate_hz: float, device: str) -> types.LidarParams:
-    sheet = getattr(sheets, device, _tumble.LidarSheet)()
+    sheet = getattr(sheets, device, _tumble.LidarDataSheet)()
     return types.LidarParams(num_rows=rows, num_columns=columns, min_range=sheet.range_min_m, max_range=sheet.range_max_m, rate=rate_hz,
                              brand="simulated", model=device or "-")
 

@@ -12,16 +12,16 @@ namespace arrow {
 inline constexpr int kBlockSize = 6;    ///< size of a block: rate and scaled angular acceleration
 inline constexpr int kBorderSize = 20;  ///< size of the border: see RigConstants
 
-using System = ArrowSystem<kBlockSize, kBorderSize>;
+using System = BlockArrowSystem<kBlockSize, kBorderSize>;
 using StateMatrix = System::StateMatrix;
 using StateVector = System::StateVector;
 using CrossMatrix = System::CrossMatrix;
 using BorderMatrix = System::BorderMatrix;
 using BorderVector = System::BorderVector;
-using Block = System::Block;
-using Corner = System::Corner;
-using Conditional = System::Conditional;
-using Marginal = System::Marginal;
+using Block = System::StateBlock;
+using Corner = System::BorderBlock;
+using Conditional = System::StateGivenNextState;
+using Marginal = System::MarginalDistribution;
 
 inline constexpr int kErrorCount = 29;  ///< number of sensor errors, which all blocks share: see SensorErrors
 
@@ -30,13 +30,13 @@ using ErrorMatrix = Eigen::Matrix<double, kBlockSize, kErrorCount>;
 using BorderErrors = Eigen::Matrix<double, kBorderSize, kErrorCount>;
 
 bool eliminate(Block& block, Block* next, Corner& corner);
-bool solve_corner(const Corner& corner, BorderVector& step, BorderMatrix& covariance);
+bool solve_border_block(const Corner& corner, BorderVector& step, BorderMatrix& covariance);
 StateVector back_substitute(const Block& block, const StateVector* next_step, const BorderVector& border_step);
-Conditional back_conditional(const Block& block, const Conditional* next);
+Conditional state_given_next_state(const Block& block, const Conditional* next);
 Marginal marginal(const Conditional& conditional, const BorderMatrix& border_covariance);
 
 /// Call eliminate() for `block` first. `next` is null for the last block.
-void eliminate_errors(const Block& block, ErrorMatrix& errors, ErrorMatrix* next, BorderErrors& border);
+void eliminate_sensor_errors(const Block& block, ErrorMatrix& errors, ErrorMatrix* next, BorderErrors& border);
 
 /// Returns the derivative of a block's step with respect to each sensor error. `next_moved` (null for the last block)
 /// and `border_moved` are the same derivatives of the next block and of the border.

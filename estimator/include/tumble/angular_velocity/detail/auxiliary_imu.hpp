@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "tumble/angular_velocity/detail/rail_detector.hpp"
-#include "tumble/angular_velocity/detail/rail_plane.hpp"
+#include "tumble/angular_velocity/detail/saturation_limit_detector.hpp"
+#include "tumble/angular_velocity/detail/saturation_plane.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
 
@@ -23,7 +23,7 @@ struct AuxiliaryAccelerometer {
 /// Mounting and accuracy of an additional IMU C on the body of the primary IMU. The biases and mounting errors of an
 /// additional IMU are not estimated, but increase the standard deviations of its readings.
 struct AuxiliaryImu {
-  Eigen::Isometry3d T_IC = Eigen::Isometry3d::Identity();  ///< pose of C in the axes of the primary IMU
+  Eigen::Isometry3d T_imu_device = Eigen::Isometry3d::Identity();  ///< pose of C in the axes of the primary IMU
   double gyro_noise_density = 5.236e-4;                    ///< [rad/s/sqrt(Hz)]; allowed: [1e-9, 1]
   double accel_noise_density = 5.9e-4;                     ///< [m/s^2/sqrt(Hz)]; allowed: [1e-9, 10]
   double gyro_error_rad_s = 0.01;  ///< standard deviation of bias and other rate-independent errors; [1e-9, 10]
@@ -31,7 +31,7 @@ struct AuxiliaryImu {
   double scale_error = 2e-3;       ///< relative scale and misalignment error; allowed: [0, 1]
   double position_error_m = 2e-3;  ///< standard deviation of the position p_IC; allowed: [1e-9, 1]
   double clock_error_s = 1e-3;     ///< standard deviation of the clocks' time offset; allowed: [0, 0.1]
-  SensingDirections gyro_elements = {}, accel_elements = {};  ///< sensing directions; needed if an element clips
+  SensingDirections gyro_sensing_directions = {}, accel_sensing_directions = {};  ///< sensing directions; needed if an element clips
 };
 
 /// Reading of an additional IMU, interpolated at the time of a sample of the primary IMU. Rate and force are in the
@@ -40,14 +40,14 @@ struct AuxiliaryImu {
 struct AuxiliaryReading {
   Eigen::Vector3d rate_rad_s, force_m_s2;
   Eigen::Vector3d rate_sigma_rad_s, force_sigma_m_s2;
-  bool rate_along_elements = false, force_along_elements = false;
+  bool rate_along_sensing_axes = false, force_along_sensing_axes = false;
   AuxiliaryReading();
   bool measures_all_rates() const { return rate_rad_s.allFinite(); }
 };
 
 /// Interpolates the unclipped readings of an additional IMU at the time stamps of the primary IMU. The interpolation is
 /// linear between readings at most `gap_max_s` apart. `clippings` contains one entry of ClippingFinder per sample.
-/// Returns `ok`, an error of check_samples() other than `gap`, or `too_few` if `clippings` has fewer entries than
+/// Returns `ok`, an error of check_samples() other than `gap`, or `insufficient_data` if `clippings` has fewer entries than
 /// `samples`. On error, `out` is unchanged. Cost: O(N).
 Status align(const AuxiliaryImu& auxiliary_imu, std::span<const ImuSample> samples, std::span<const Clipping> clippings,
              std::span<const ImuSample> primary, double gap_max_s, std::vector<AuxiliaryReading>& out);

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "tumble/angular_velocity/detail/rail_detector.hpp"
+#include "tumble/angular_velocity/detail/saturation_limit_detector.hpp"
 #include "tumble/angular_velocity/detail/rate_model_params.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
@@ -13,7 +13,7 @@ namespace tumble {
 
 struct AuxiliaryRecording {
   AuxiliaryImu imu;  ///< its sensing directions are ignored; align() estimates them
-  RailDetector::Params stated_rails;
+  SaturationLimitDetector::Params stated_saturation_limits;
   std::vector<ImuSample> samples;
 };
 
@@ -22,6 +22,6 @@ struct AuxiliaryRecording {
 /// kAuxiliaryImusMax are ignored. Returns `ok`, or the first error of align() for a single IMU. Cost: O(N), plus
 /// ClippingFinder::find().
 Status align(std::span<const AuxiliaryRecording> recordings, std::span<const ImuSample> primary, double gap_max_s,
-             RateModelParams& model, std::vector<std::vector<AuxiliaryReading>>& out);
+             AngularRateModelParams& model, std::vector<std::vector<AuxiliaryReading>>& out);
 
 }  // namespace tumble

@@ -20,15 +20,15 @@ namespace tumble {
 /// centre of mass. A lever arm with the wrong sign looks like an inverted accelerometer.
 class FlightSignCheck {
  public:
-  static constexpr double kMemory_s = 60.0;
+  static constexpr double kForgettingTime_s = 60.0;
 
   /// inverted axes: none, all, x, y, z
-  static constexpr std::size_t kAlternatives = 5;
+  static constexpr std::size_t kMirroredAlternatives = 5;
 
-  enum class Body { may_be_hand_held, thrown };
+  enum class BodyMotionType { possibly_hand_held, always_thrown };
 
   struct Params {
-    Body body = Body::may_be_hand_held;
+    BodyMotionType motion_type = BodyMotionType::possibly_hand_held;
     /// lever arm from the centre of mass to the IMU, in IMU axes
     Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();
     double gyro_range_rad_s = 0.0;  ///< range from the data sheet; 0: unknown
@@ -41,20 +41,20 @@ class FlightSignCheck {
             {"gyro_range_rad_s", "rad/s", 0.0, kUnbounded, "range stated by the device; 0: not stated"});
     }
   };
-  struct Reading {
+  struct AveragedReading {
     TimeNs time_ns = 0;
     Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero(), force_m_s2 = Eigen::Vector3d::Zero();
     /// sign of the rate on each saturated gyro axis; 0: unsaturated
-    Eigen::Vector3d at_rail = Eigen::Vector3d::Zero();
-    bool known = false;  ///< false if an axis was saturated during a part of the window
-    bool operator==(const Reading&) const = default;
+    Eigen::Vector3d saturation_sign = Eigen::Vector3d::Zero();
+    bool is_unsaturated = false;  ///< false if an axis was saturated during a part of the window
+    bool operator==(const AveragedReading&) const = default;
   };
   struct State {
     ImuAverage average;
-    std::array<Reading, 2> before{};                        ///< the last two readings, oldest first
-    int readings = 0;                                       ///< number of valid entries of `before`
-    std::array<double, kAlternatives> run_s{};              ///< current flight duration of each alternative
-    std::array<double, kAlternatives> flight_duration_s{};  ///< total flight duration of each alternative
+    std::array<AveragedReading, 2> last_readings{};                        ///< the last two readings, oldest first
+    int readings = 0;                                       ///< number of valid entries of `last_readings`
+    std::array<double, kMirroredAlternatives> current_flight_duration_s{};              ///< current flight duration of each alternative
+    std::array<double, kMirroredAlternatives> flight_duration_s{};  ///< total flight duration of each alternative
     TimeNs last_flight_end_ns = 0;                          ///< end of the last flight of an alternative
     TimeNs last_time_ns = 0;
     bool started = false;
@@ -69,12 +69,12 @@ class FlightSignCheck {
 
   /// Returns `out_of_range` if the forces in flight match an accelerometer with wrong signs.
   Status verdict(const State& state) const;
-  /// Returns verdict() if the last flight that fits inverted axes is at most kMemory_s old, and otherwise `ok`.
+  /// Returns verdict() if the last flight that fits inverted axes is at most kForgettingTime_s old, and otherwise `ok`.
   Status current_verdict(const State& state) const;
 
  private:
-  Reading reading_of(const ImuSample& mean, double rate_peak_rad_s) const;
-  void process_reading(const Reading& now, State& state) const;
+  AveragedReading reading_of(const ImuSample& mean, double rate_peak_rad_s) const;
+  void process_reading(const AveragedReading& now, State& state) const;
 
   Params params_;
 };

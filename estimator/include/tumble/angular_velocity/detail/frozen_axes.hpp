@@ -38,20 +38,20 @@ class FrozenAxes {
     double reading = 0.0;
     TimeNs since_ns = 0;               ///< first sample with the current reading
     double repeated_s = 0.0;           ///< duration for which the current reading has repeated
-    bool device_flagged = false;       ///< the device has flagged the current reading as saturated
-    bool frozen = false;               ///< the axis is frozen at the current reading
+    bool flagged_by_device = false;       ///< the device has flagged the current reading as saturated
+    bool is_frozen = false;               ///< the axis is frozen at the current reading
     double longest_s = 0.0;            ///< longest earlier repetition of a working axis
-    double changing_duration_s = 0.0;  ///< total time with changing readings
-    double smallest_change = 0.0;      ///< smallest observed change; 0: none yet
+    double changing_readings_duration_s = 0.0;  ///< total time with changing readings
+    double smallest_reading_change = 0.0;      ///< smallest observed change; 0: none yet
     double min_reading = 0.0, max_reading = 0.0;
     /// minimum, maximum and number of changes of the sensor's two other axes during the repetition
-    std::array<double, 2> others_min{}, others_max{}, others_changes{};
+    std::array<double, 2> other_axes_min{}, other_axes_max{}, other_axes_changes{};
     double samples = 0.0;  ///< number of repeated samples
     bool operator==(const Axis&) const = default;
   };
   struct State {
     std::array<Axis, 6> axes;  ///< gyro x, y, z; accelerometer x, y, z
-    std::array<double, 6> before{};
+    std::array<double, 6> previous_readings{};
     TimeNs last_time_ns = 0;
     double rate_max_so_far_rad_s = 0.0;  ///< largest rate that the gyro has read
     bool started = false;
@@ -67,7 +67,7 @@ class FrozenAxes {
   static const Axis& axis(Triad triad, int axis, const State& state);
 
   static bool any_frozen(const State& state);
-  /// Adds a warning (`frozen_axis` or `unit_frozen`) for each currently frozen axis.
+  /// Adds a warning (`frozen_axis` or `imu_frozen`) for each currently frozen axis.
   void add_findings(HealthFinding::Kind kind, const std::string& sensor, const State& state,
                     SensorHealth& health) const;
 
@@ -76,10 +76,10 @@ class FrozenAxes {
   Eigen::Vector3d rate_variance_rad2_s2(TimeNs time_ns, const State& state) const;
 
  private:
-  void track_repetition(std::size_t channel, const std::array<double, 6>& now, double dt_s, std::uint8_t flags,
+  void track_repeated_reading(std::size_t channel, const std::array<double, 6>& now, double dt_s, std::uint8_t flags,
                         State& state) const;
-  bool at_rail(std::size_t channel, const Axis& axis) const;
-  static bool others_move(std::size_t channel, const Axis& axis);
+  bool is_at_saturation_limit(std::size_t channel, const Axis& axis) const;
+  static bool other_axes_change(std::size_t channel, const Axis& axis);
 
   Params params_;
 };

@@ -11,9 +11,9 @@ struct TriadDelay {
   bool operator==(const TriadDelay&) const = default;
 };
 
-/// ImpactSums correlates angular acceleration and force at impacts, for delays of -4 to +4 samples between gyro and
+/// ImpactDelayCorrelation correlates angular acceleration and force at impacts, for delays of -4 to +4 samples between gyro and
 /// accelerometer: rate_smoother.md (R45).
-struct ImpactSums {
+struct ImpactDelayCorrelation {
   static constexpr int kDelayMax_samples = 4, kDelaysPerSample = 8, kDelayMax = kDelayMax_samples * kDelaysPerSample,
                        kDelayCount = 2 * kDelayMax + 1;
   using DelayGrid = Eigen::Matrix<double, kDelayCount, 1>;
@@ -22,7 +22,7 @@ struct ImpactSums {
   double intervals = 0.0, acceleration_sum = 0.0, acceleration_squared = 0.0;
   /// sums for each tested delay: force, squared force, force times angular acceleration, intervals with and without
   /// impact
-  DelayGrid force = DelayGrid::Zero(), force_squared = DelayGrid::Zero(), product = DelayGrid::Zero(),
+  DelayGrid force = DelayGrid::Zero(), force_squared = DelayGrid::Zero(), correlation_sum = DelayGrid::Zero(),
             impacts = DelayGrid::Zero(), flying = DelayGrid::Zero();
 
   /// Intervals without motion are ignored.
@@ -30,14 +30,14 @@ struct ImpactSums {
   /// Adds an interval with its mean angular acceleration [rad/s^2] and its mean force magnitude for each tested delay
   /// [m/s^2]. Cost: O(kDelayCount).
   void add(double acceleration_rad_s2, const DelayGrid& force_m_s2);
-  void decay(double share);
+  void decay_sums(double share);
   /// Returns the delay with the best correlation, for samples that are `period_s` apart. `slower_s` is the update
   /// period of the slower sensor. The returned sigma_s is 0 if no delay is accepted. Cost: O(kDelayCount).
   TriadDelay estimate_delay(double period_s, double slower_s) const;
   /// Returns the correlation at the tested delay that is nearest to `delay_s`. Cost: O(1).
-  double correlation_at(double delay_s, double period_s) const;
+  double force_correlation_at(double delay_s, double period_s) const;
 
-  bool operator==(const ImpactSums&) const = default;
+  bool operator==(const ImpactDelayCorrelation&) const = default;
 };
 
 }  // namespace tumble

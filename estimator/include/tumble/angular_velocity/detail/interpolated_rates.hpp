@@ -22,9 +22,9 @@ struct InterpolatedRate {
   Eigen::Vector3d variance_rad2_s2 = Eigen::Vector3d::Zero();
 };
 
-/// Returns the interpolated rate of sample `k` in the window of a RateStream. The result is empty if no reading
+/// Returns the interpolated rate of sample `k` in the window of an AngularRateStream. The result is empty if no reading
 /// repeats, the next reading has not yet arrived, or a reading is invalid. Cost: O(samples of three readings).
-std::optional<InterpolatedRate> rate_between_readings(std::span<const RateStreamKnot> window, std::size_t k,
+std::optional<InterpolatedRate> rate_between_readings(std::span<const AngularRateStreamKnot> window, std::size_t k,
                                                       double period_s);
 
 /// Returns the interpolated rates of a recording, or an empty result if no reading repeats. `hidden` contains one bit
@@ -39,6 +39,6 @@ std::vector<std::optional<InterpolatedRate>> rates_between_readings(std::span<co
 
 /// Returns the specific force at the time of each sample, for an accelerometer that updates more slowly than the log.
 /// The result is empty if no reading repeats. Cost: O(N).
-std::vector<Eigen::Vector3d> forces_between_readings(std::span<const ImuSample> samples);
+std::vector<Eigen::Vector3d> interpolated_forces(std::span<const ImuSample> samples);
 
 }  // namespace tumble

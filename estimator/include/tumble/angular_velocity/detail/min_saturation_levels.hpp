@@ -11,7 +11,7 @@ class MinSaturationLevels {
  public:
   void add(const Eigen::Vector3d& rate_rad_s);
   /// Returns true if the reading of element `axis` is certainly below its saturation limit.
-  bool is_below_min_level(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) const;
+  bool is_below_min_saturation_level(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) const;
   bool operator==(const MinSaturationLevels&) const = default;
 
  private:

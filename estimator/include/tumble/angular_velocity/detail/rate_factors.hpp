@@ -8,44 +8,44 @@
 namespace tumble {
 
 /// angular rate and angular acceleration of the body, in IMU axes
-struct RateKnot {
+struct AngularRateKnot {
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d acceleration_rad_s2 = Eigen::Vector3d::Zero();
-  bool operator==(const RateKnot&) const = default;
+  bool operator==(const AngularRateKnot&) const = default;
 };
 
 /// Residual of three rows, with its derivatives with respect to rate, angular acceleration and rig constants.
-struct RateFactor {
+struct AngularRateFactor {
   Eigen::Vector3d residual;
   Eigen::Matrix<double, 3, 6> jacobian_knot;
   Eigen::Matrix<double, 3, RigConstants::kSize> jacobian_calibration;
 };
 
 /// Gyro residual while unsaturated: rate + bias - reading [rad/s].
-RateFactor gyro_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_rad_s);
+AngularRateFactor gyro_factor(const AngularRateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_rad_s);
 
 /// Residual of the gyro per sensing element while an element clips: the component of (rate + bias - reading) along the
 /// sensing direction [rad/s].
-RateFactor element_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_rad_s);
+AngularRateFactor sensing_axis_factor(const AngularRateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_rad_s);
 
 /// Residual of the accelerometer in free flight [m/s^2]: tangential plus centripetal force at the lever arm, plus bias,
 /// minus reading.
-RateFactor flight_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_m_s2);
+AngularRateFactor flight_force_factor(const AngularRateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_m_s2);
 
 /// Residual of an accelerometer in free flight whose readings are `delay_s` late [m/s^2]. `jacobian_delay` (or null)
 /// receives the derivative of the residual with respect to the delay.
-RateFactor delayed_flight_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_m_s2,
+AngularRateFactor delayed_flight_force_factor(const AngularRateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_m_s2,
                                  double delay_s, Eigen::Vector3d* jacobian_delay);
 
-/// Residual of delayed_flight_factor() with derivatives only with respect to lever arm and accelerometer bias, at lower
+/// Residual of delayed_flight_force_factor() with derivatives only with respect to lever arm and accelerometer bias, at lower
 /// cost.
-RateFactor delayed_flight_jacobian_calibration(const RateKnot& knot, const RigConstants& rig,
+AngularRateFactor delayed_flight_calibration_jacobian(const AngularRateKnot& knot, const RigConstants& rig,
                                                const Eigen::Vector3d& reading_m_s2, double delay_s);
 
 /// Returns the second time derivative of the specific force at the lever arm in free flight [m/s^4].
-Eigen::Vector3d flight_curvature(const RateKnot& knot, const RigConstants& rig);
+Eigen::Vector3d flight_angular_jerk(const AngularRateKnot& knot, const RigConstants& rig);
 
 /// Residual of Euler's equation without torque, with the inertia scaled to trace 3 [rad/s^2].
-RateFactor euler_factor(const RateKnot& knot, const RigConstants& rig);
+AngularRateFactor euler_equation_factor(const AngularRateKnot& knot, const RigConstants& rig);
 
 }  // namespace tumble

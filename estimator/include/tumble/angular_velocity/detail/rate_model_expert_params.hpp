@@ -6,7 +6,7 @@
 
 namespace tumble {
 
-struct RateFlightParams {
+struct FlightRateParams {
   double sigma_m_s2 = 0.02;         ///< error of the specific force besides noise (drag, bias in motion)
   double euler_sigma_rad_s2 = 0.3;  ///< error of the angular acceleration from Euler's equation without torque
   static constexpr double kJerkPsd_rad2_s5 = 1e4;  ///< power spectral density of the white angular jerk
@@ -15,15 +15,15 @@ struct RateFlightParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.sigma_m_s2, {"flight_sigma_m_s2", "m/s^2", 1e-6, 100.0,
-                         "standard deviation of the force error of the flight model", FieldRank::basic});
+                         "standard deviation of the force error of the flight model", ParameterRank::common_use});
     visit(p.euler_sigma_rad_s2,
           {"euler_sigma_rad_s2", "rad/s^2", 1e-6, 1e6,
            "standard deviation of the angular acceleration that Euler's equation without torque does not explain",
-           FieldRank::basic});
+           ParameterRank::common_use});
   }
 };
 
-struct RateContactParams {
+struct ContactRateParams {
   /// angular acceleration that a contact force causes [rad/s^2 per m/s^2]
   static constexpr double kGain_rad_m = 4.0;
   /// factor on the standard deviation of rates during impacts, whose errors are not Gaussian
@@ -47,19 +47,19 @@ struct RateContactParams {
   }
 };
 
-struct RateModelExpertParams {
+struct AngularRateModelExpertParams {
   /// correlation time of the model errors of force, torque and rate
   static constexpr double kModelError_s = 0.01;
   /// standard deviation of the rate at rest per sample, including vibration and false detections of rest
   static constexpr double kRestSigma_rad_s = 0.01;
-  SensorErrorPriors error_priors = {};  ///< uncertainty of RateModelParams::errors
+  SensorErrorPriors error_priors = {};  ///< uncertainty of AngularRateModelParams::errors
   /// relative scale and misalignment error of the accelerometer
   static constexpr double kAccelScaleError = 1e-3;
   /// Uncertainty of a reading's time due to the gyro's bandwidth and clock.
   static constexpr double kGyroTimeSigma_s = 2.5e-4;
   static constexpr double kRailSigma_rad_s = 0.05;  ///< standard deviation of the lower bound from a clipped reading
-  RateFlightParams flight = {};
-  RateContactParams contact = {};
+  FlightRateParams flight = {};
+  ContactRateParams contact = {};
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {

@@ -15,8 +15,8 @@
 
 namespace tumble {
 
-/// Parameters of RateSmoother and RateStream for the sensors, the body and its motion.
-struct RateModelParams {
+/// Parameters of AngularRateSmoother and AngularRateStream for the sensors, the body and its motion.
+struct AngularRateModelParams {
   /// Prior mean of the rig constants: lever arm, biases, inertia ratios and gyro axis directions. Set the lever arm,
   /// which has no default, or set `calibration`.
   RigConstants nominal = {.lever_arm_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN())};
@@ -45,26 +45,26 @@ struct RateModelParams {
   double rate_max_rad_s = 50.0;
   double acceleration_max_rad_s2 = 5000.0;
 
-  using Expert = RateModelExpertParams;
+  using Expert = AngularRateModelExpertParams;
   Expert expert = {};  ///< rarely changed parameters
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.lever_arm_sigma_m,
           {"lever_arm_sigma_m", "m", 1e-9, 10.0,
-           "prior standard deviation of the lever arm from the centre of mass to the IMU", FieldRank::basic});
+           "prior standard deviation of the lever arm from the centre of mass to the IMU", ParameterRank::common_use});
     visit(p.gyro_bias_sigma_rad_s, {"gyro_bias_sigma_rad_s", "rad/s", 1e-9, 10.0,
-                                    "prior standard deviation of the gyro bias", FieldRank::basic});
+                                    "prior standard deviation of the gyro bias", ParameterRank::common_use});
     visit(p.accel_bias_sigma_m_s2, {"accel_bias_sigma_m_s2", "m/s^2", 1e-9, 10.0,
-                                    "prior standard deviation of the accelerometer bias", FieldRank::basic});
+                                    "prior standard deviation of the accelerometer bias", ParameterRank::common_use});
     visit(p.inertia_sigma,
           {"inertia_sigma", "1", 1e-9, 10.0,
            "prior standard deviation of the inertia ratios; the prior mean is a body with equal moments of inertia",
-           FieldRank::basic});
+           ParameterRank::common_use});
     visit(p.element_sigma, {"element_sigma", "1", 1e-9, 0.2,
                             "prior standard deviation of each cross-axis sensitivity of the gyro's sensing elements, "
                             "before the device's compensation",
-                            FieldRank::basic});
+                            ParameterRank::common_use});
     visit(p.gyro_noise_density,
           {"gyro_noise_density", "rad/s/sqrt(Hz)", 1e-9, 1.0,
            "noise density of the gyro; a larger value gives gyro readings less weight; default: 0.03 deg/s/sqrt(Hz)"});

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "tumble/angular_velocity/detail/rail_planes.hpp"
+#include "tumble/angular_velocity/detail/saturation_plane_finder.hpp"
 #include "tumble/angular_velocity/detail/rest_detector.hpp"
 #include "tumble/common/parameters.hpp"
 
 namespace tumble {
 
-struct RateDescentParams {
+struct RateOptimisationParams {
   int iterations_max = 15;
   double tolerance_rad_s = 2e-3;                  ///< converged if every rate changes by less than this
   static constexpr double kStepMax_rad_s = 10.0;  ///< largest change of a rate in one iteration
@@ -31,20 +31,20 @@ struct RateDescentParams {
   }
 };
 
-struct RateSmootherExpertParams {
-  RailPlaneFinder::Params planes = {};  ///< if no range is stated, the range of RateSmootherParams::rails applies
-  RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();
-  RestDetector::Params rests = {};
-  RateDescentParams descent = {};
+struct AngularRateSmootherExpertParams {
+  SaturationPlaneFinder::Params gyro_planes = {};  ///< if no range is stated, the range of AngularRateSmootherParams::rails applies
+  SaturationPlaneFinder::Params accel_saturation_planes = SaturationPlaneFinder::Params::defaults_for_accelerometer();
+  RestDetector::Params rest_detector = {};
+  RateOptimisationParams optimisation = {};
   /// maximum number of optimisations with corrected readings; 1: no correction of sensor errors
   int error_rounds_max = 3;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit.group("planes_", p.planes);
-    visit.group("accel_planes_", p.accel_planes);
-    visit.group("rests_", p.rests);
-    visit.group("", p.descent);
+    visit.group("planes_", p.gyro_planes);
+    visit.group("accel_planes_", p.accel_saturation_planes);
+    visit.group("rests_", p.rest_detector);
+    visit.group("", p.optimisation);
     visit(p.error_rounds_max, {"error_rounds_max", "1", 1, 10,
                                "maximum number of optimisations, each with the sensor errors estimated by the previous "
                                "one; 1: no correction of sensor errors"});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "tumble/angular_velocity/detail/rail_planes.hpp"
+#include "tumble/angular_velocity/detail/saturation_plane_finder.hpp"
 #include "tumble/angular_velocity/detail/rest_detector.hpp"
 #include "tumble/common/parameters.hpp"
 
@@ -9,7 +9,7 @@ namespace tumble {
 
 /// The uncertainty of an uncalibrated rig is increased until enough flight samples (number n, each of `model_error_s`)
 /// have updated the calibration.
-struct RigInflationParams {
+struct CalibrationInflationParams {
   /// The calibration's covariance is multiplied by 1 + covariance / (1 + n / samples), up to the prior covariance,
   /// after n flight samples.
   double covariance = 60.0;
@@ -37,24 +37,24 @@ struct RigInflationParams {
   }
 };
 
-struct RateStreamExpertParams {
-  RailPlaneFinder::Params planes = {};  ///< if no range is stated, the range of RateStreamParams::rails applies
-  RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();
-  RestDetector::Params rests = {};
+struct AngularRateStreamExpertParams {
+  SaturationPlaneFinder::Params gyro_planes = {};  ///< if no range is stated, the range of AngularRateStreamParams::rails applies
+  SaturationPlaneFinder::Params accel_saturation_planes = SaturationPlaneFinder::Params::defaults_for_accelerometer();
+  RestDetector::Params rest_detector = {};
   double initial_threshold_factor = 8.0;  ///< factor on a clipped sample's contact threshold; halved in each step
   static constexpr double kStepMax_rad_s = 10.0;  ///< largest change of a sample's rate in one step
   int bound_hard_steps = 3;  ///< number of steps until the lower bounds of a sample in contact become soft
   static constexpr double kBoundDamping = 0.5;  ///< weight of a new lower bound in each step
   int flight_run_min = 6;  ///< minimum number of consecutive flight samples that update the calibration
-  RigInflationParams inflation = {};
+  CalibrationInflationParams inflation = {};
   /// prior probability of an uncalibrated device; 0: the device is assumed to match its data sheet
   double uncalibrated = 0.3;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit.group("planes_", p.planes);
-    visit.group("accel_planes_", p.accel_planes);
-    visit.group("rests_", p.rests);
+    visit.group("planes_", p.gyro_planes);
+    visit.group("accel_planes_", p.accel_saturation_planes);
+    visit.group("rests_", p.rest_detector);
     visit(p.initial_threshold_factor,
           {"initial_threshold_factor", "1", 1.0, 1000.0,
            "factor on the contact threshold (flight_threshold) of a new clipped sample, halved in each step"});

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "tumble/angular_velocity/detail/rail_detector.hpp"
+#include "tumble/angular_velocity/detail/saturation_limit_detector.hpp"
 #include "tumble/angular_velocity/detail/rate_model_params.hpp"
 #include "tumble/angular_velocity/detail/rate_stream_expert_params.hpp"
 #include "tumble/angular_velocity/detail/sensor_errors.hpp"
@@ -12,23 +12,23 @@
 
 namespace tumble {
 
-struct RateStreamParams {
-  /// The priors of accelerometer bias (2 mg) and inertia are narrower than in RateModelParams, because RateStream
+struct AngularRateStreamParams {
+  /// The priors of accelerometer bias (2 mg) and inertia are narrower than in AngularRateModelParams, because AngularRateStream
   /// reports rates early.
-  RateModelParams model = {.accel_bias_sigma_m_s2 = 0.02, .inertia_sigma = 0.15};
-  RailDetector::Params rails = {};
+  AngularRateModelParams model = {.accel_bias_sigma_m_s2 = 0.02, .inertia_sigma = 0.15};
+  SaturationLimitDetector::Params saturation_detector = {};
   double period_s = 0.01;                    ///< nominal time between samples
   double lag_s = 0.2;                        ///< length of the window; [2 period_s, lag_max_s()]
-  double recovered_sigma_rad_s = 0.5;        ///< see RateSmootherParams
+  double recovered_sigma_rad_s = 0.5;        ///< see AngularRateSmootherParams
   double calibration_mahalanobis_max = 1.5;  ///< maximum distance from the prior; a larger one resets the calibration
   double gap_max_s = 1.0;                    ///< longest time between samples
   double step_s = 0.005;                     ///< minimum time between Gauss-Newton steps; 0: with each sample
 
-  /// Sensor errors from an earlier run, used unchanged instead of model.errors. If empty, RateStream corrects the
+  /// Sensor errors from an earlier run, used unchanged instead of model.errors. If empty, AngularRateStream corrects the
   /// readings by model.errors and estimates the remaining uncertainty.
   std::shared_ptr<const KnownSensorErrors> calibrated_errors;
 
-  using Expert = RateStreamExpertParams;
+  using Expert = AngularRateStreamExpertParams;
   Expert expert = {};  ///< rarely changed parameters
 
   /// maximum length of a window: the duration of 4096 samples, but at most 10 s
@@ -41,15 +41,15 @@ struct RateStreamParams {
     visit(p.lag_s, {"lag_s", "s", 2e-5, 10.0,
                     "age of a sample when its estimate is reported; a larger value adds delay and makes the estimate "
                     "more accurate",
-                    FieldRank::basic});
+                    ParameterRank::common_use});
     visit(p.recovered_sigma_rad_s, {"recovered_sigma_rad_s", "rad/s", 0.0, 1e4,
                                     "maximum standard deviation of a clipped axis that is reported as recovered; "
                                     "otherwise the axis is reported as bounded",
-                                    FieldRank::basic});
+                                    ParameterRank::common_use});
     visit(p.calibration_mahalanobis_max, {"calibration_mahalanobis_max", "1", 0.1, 1e6,
                                           "maximum Mahalanobis distance between the estimated rig constants and their "
                                           "prior; a larger distance resets the calibration to the prior",
-                                          FieldRank::basic});
+                                          ParameterRank::common_use});
     visit(p.gap_max_s,
           {"gap_max_s", "s", 1e-6, 3600.0, "maximum time between two samples; a longer gap causes an error"});
     visit(p.step_s, {"step_s", "s", 0.0, 0.1,

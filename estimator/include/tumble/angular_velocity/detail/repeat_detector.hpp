@@ -11,17 +11,17 @@ namespace tumble {
 
 /// State of a repeated reading (sample and hold), which occurs if the sensor updates more slowly than the log.
 struct RepeatedReading {
-  bool repeats = false;                              ///< repeats the reading of the previous sample
+  bool repeats_reading = false;                              ///< repeats the reading of the previous sample
   double age_samples = 0.0;                          ///< mean age of the reading
-  double period_samples = 1.0;                       ///< samples per reading; 1: no repeated readings
-  Eigen::Vector3d change = Eigen::Vector3d::Zero();  ///< change from the previous reading [unit of the reading]
+  double reading_period_samples = 1.0;                       ///< samples per reading; 1: no repeated readings
+  Eigen::Vector3d reading_change = Eigen::Vector3d::Zero();  ///< change from the previous reading [unit of the reading]
 
-  bool is_slower_than_log() const { return period_samples > 1.0; }
+  bool is_slower_than_samples() const { return reading_period_samples > 1.0; }
   /// Returns the time from the middle of the reading's averaging window to the middle of the sample's averaging window,
   /// in samples.
-  double delay_samples() const { return is_slower_than_log() ? age_samples + 0.5 * (period_samples - 1.0) : 0.0; }
+  double delay_samples() const { return is_slower_than_samples() ? age_samples + 0.5 * (reading_period_samples - 1.0) : 0.0; }
   /// Extrapolates with the slope of the last change.
-  Eigen::Vector3d change_since_reading() const;
+  Eigen::Vector3d change_since_new_reading() const;
   bool operator==(const RepeatedReading&) const = default;
 };
 
@@ -29,22 +29,22 @@ struct RepeatedReading {
 /// reading is 0.5 +- 0.29 samples, because the phase of the sensor's clock is unknown.
 class RepeatDetector {
  public:
-  struct Memory {
+  struct RepetitionMemory {
     Eigen::Vector3d reading = Eigen::Vector3d::Zero();
     double equal_samples = 0.0;           ///< consecutive samples with this reading
     double moving = 0.0, repeated = 0.0;  ///< samples in motion, and repeats among them; both decay slowly
     RepeatedReading now;
-    bool operator==(const Memory&) const = default;
+    bool operator==(const RepetitionMemory&) const = default;
   };
   struct State {
-    std::array<Memory, 2> memory;  ///< state of gyro and accelerometer, indexed by Triad
-    const RepeatedReading& of(Triad triad) const { return memory[static_cast<std::size_t>(triad)].now; }
+    std::array<RepetitionMemory, 2> repetition;  ///< state of gyro and accelerometer, indexed by Triad
+    const RepeatedReading& for_triad(Triad triad) const { return repetition[static_cast<std::size_t>(triad)].now; }
     bool operator==(const State&) const = default;
   };
 
   /// The sample must be finite. Samples that are `clipped` are ignored, because a clipped gyro repeats its reading at
   /// any update rate. Cost: O(1), no allocation.
-  void observe(const ImuSample& sample, bool clipped, State& state) const;
+  void observe_reading(const ImuSample& sample, bool clipped, State& state) const;
 };
 
 }  // namespace tumble

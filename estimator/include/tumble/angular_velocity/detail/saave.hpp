@@ -14,7 +14,7 @@
 
 namespace tumble {
 
-/// Estimates the angular velocity of a tumbling body from the centripetal force while the gyro is clipped. Saave
+/// Estimates the angular velocity of a tumbling body from the centripetal force while the gyro is clipped. SaturationAwareRateEstimator
 /// implements a published method (Deschenes et al., "Saturation-Aware Angular Velocity Estimation", ICRA 2024, eqs
 /// 5-7).
 ///
@@ -22,10 +22,10 @@ namespace tumble {
 /// axes of the sample have the variance of an unclipped reading. The smoothing stage smooths the rates of all samples
 /// with a white-noise-on-jerk prior.
 ///
-/// Saave assumes free flight, an unclipped accelerometer, no bias, and no angular acceleration across the rotation
-/// axis. If the IMU is close to the rotation axis, the estimate has a large error that Saave does not detect. All
+/// SaturationAwareRateEstimator assumes free flight, an unclipped accelerometer, no bias, and no angular acceleration across the rotation
+/// axis. If the IMU is close to the rotation axis, the estimate has a large error that SaturationAwareRateEstimator does not detect. All
 /// recovered rates have the same variance. The smoothed rates of clipped axes may be below the saturation limit.
-class Saave {
+class SaturationAwareRateEstimator {
  public:
   struct Params {
     /// Lever arm from the centre of mass to the IMU in IMU axes [m]. The lever arm has no default and must be accurate
@@ -38,7 +38,7 @@ class Saave {
     static constexpr double kVarianceMeasured_rad2_s2 = 2.741e-5;
     /// variance of a recovered rate [(rad/s)^2]: 0.2741 in the code of the ICRA 2024 paper, 3.648 in the paper
     static constexpr double kVarianceEstimated_rad2_s2 = 0.2741;
-    /// variance of a clipped axis whose rate Saave cannot recover [(rad/s)^2]
+    /// variance of a clipped axis whose rate SaturationAwareRateEstimator cannot recover [(rad/s)^2]
     static constexpr double kVarianceRejected_rad2_s2 = 1e6;
     /// power spectral density of the white angular jerk [rad^2/s^5]
     double jerk_psd_rad2_s5 = 1e6;
@@ -52,11 +52,11 @@ class Saave {
       visit(p.saturation_point_rad_s,
             {"saturation_point_rad_s", "rad/s", 0.01, 1000.0,
              "readings beyond this value count as clipped; choose a value slightly below the gyro's saturation limit",
-             FieldRank::basic});
+             ParameterRank::common_use});
       visit(
           p.jerk_psd_rad2_s5,
           {"jerk_psd_rad2_s5", "rad^2/s^5", 1e-12, 1e12,
-           "power spectral density of the smoother's white angular jerk (ICRA 2024 paper, sec. IV)", FieldRank::basic});
+           "power spectral density of the smoother's white angular jerk (ICRA 2024 paper, sec. IV)", ParameterRank::common_use});
       visit(p.gap_max_s,
             {"gap_max_s", "s", 1e-6, 3600.0, "maximum time between two samples; a longer gap causes an error"});
     }
@@ -69,7 +69,7 @@ class Saave {
     bool operator==(const State&) const = default;
   };
 
-  struct Recovered {
+  struct RecoveredRate {
     Eigen::Vector3d rate_rad_s;
     Eigen::Vector3d variance_rad2_s2;  ///< variance of each axis
     std::uint8_t clipped_axes = 0;     ///< bit j: the reading of axis j exceeds the saturation point
@@ -77,15 +77,15 @@ class Saave {
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.
-  explicit Saave(const Params& params);
+  explicit SaturationAwareRateEstimator(const Params& params);
 
   /// Processes one sample in the recursive stage. On error (`non_finite`, `time_order`, `gap`), `state` and `out` are
   /// unchanged. Cost: O(1), no allocation.
-  Status step(const ImuSample& sample, State& state, Recovered& out) const;
+  Status step(const ImuSample& sample, State& state, RecoveredRate& out) const;
 
   /// Returns `ok`, `empty`, `non_finite`, `time_order` or `gap`. On error, `out` is unchanged, and the status contains
   /// the field and value of the first invalid sample. Cost: O(N).
-  Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const;
+  Status estimate(std::span<const ImuSample> samples, std::vector<AngularRateState>& out) const;
 
   const Params& params() const { return params_; }
 

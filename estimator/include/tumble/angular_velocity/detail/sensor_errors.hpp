@@ -10,11 +10,11 @@ namespace tumble {
 /// Constant errors of gyro and accelerometer other than bias and noise. The vector of 29 errors follows the order of
 /// the members, with matrices row by row.
 struct SensorErrors {
-  static constexpr int kSize = 29, kAccel = 9, kGSensitivity = 18, kDelay = 27, kFilterTimeVariance = 28;
+  static constexpr int kSize = 29, kAccel = 9, kGSensitivity = 18, kDelay = 27, kAccelFilterTimeVariance = 28;
   using Vector = Eigen::Matrix<double, kSize, 1>;
   using Matrix = Eigen::Matrix<double, kSize, kSize>;
 
-  /// Errors of scale and misalignment. The gyro reads (1 + gyro) rate + g_sensitivity force + bias. The accelerometer
+  /// Errors of scale and misalignment. The gyro reads (1 + gyro) rate + g_sensitivity_fraction force + bias. The accelerometer
   /// reads (1 + accel) force + bias.
   Eigen::Matrix3d gyro = Eigen::Matrix3d::Zero(), accel = Eigen::Matrix3d::Zero();
   /// sensitivity of the gyro to specific force [rad/s per m/s^2]
@@ -36,9 +36,9 @@ struct KnownSensorErrors {
 };
 
 /// Returns `out_of_range` if a sensor error exceeds 0.2, or if the covariance has a negative eigenvalue.
-Status check_known(const KnownSensorErrors& earlier_runs);
+Status check_known_errors(const KnownSensorErrors& earlier_runs);
 /// Throws InvalidParams if a sensor error exceeds 0.2, or if the covariance has a negative eigenvalue.
-void require_known(const KnownSensorErrors& earlier_runs);
+void require_valid_known_errors(const KnownSensorErrors& earlier_runs);
 
 /// Prior standard deviations of sensor errors, for a calibrated and for an uncalibrated device, in the units of
 /// SensorErrors. The function fit_sensor_errors() estimates which of the two priors fits the readings.
@@ -86,28 +86,28 @@ SensorErrors::Vector prior_sigmas(const SensorErrorPriors& sizes, double share);
 /// Log-likelihood of a run's readings as a quadratic function of the sensor errors, expanded at `linearisation_point`.
 /// `information` is the second derivative of the cost (negative log-likelihood), and `gradient` is its negative first
 /// derivative.
-struct SensorErrorEvidence {
+struct SensorErrorInformation {
   SensorErrors linearisation_point;
   SensorErrors::Matrix information = SensorErrors::Matrix::Zero();
   SensorErrors::Vector gradient = SensorErrors::Vector::Zero();
 };
 
 /// Multiplies the information about sensor errors that free motion cannot determine by `share`: rate_smoother.md (R39).
-void discount_unobservable(double share, SensorErrorEvidence& evidence);
+void discount_unobservable(double share, SensorErrorInformation& evidence);
 
 struct SensorErrorFit {
-  KnownSensorErrors known;
+  KnownSensorErrors fitted_errors;
   double data_sheet_probability = 1.0;   ///< probability that scale and misalignment are within the data sheet
-  double synchronous_probability = 1.0;  ///< probability that gyro and accelerometer are synchronous
+  double synchronous_triads_probability = 1.0;  ///< probability that gyro and accelerometer are synchronous
 };
 
 /// Estimates the sensor errors by Bayesian model averaging over calibrated, intermediate and uncalibrated prior
-/// standard deviations. `earlier_runs` is the result of calibration_evidence() for earlier runs of the device. Cost:
+/// standard deviations. `earlier_runs` is the result of evidence_from_earlier_runs() for earlier runs of the device. Cost:
 /// O(1), about 30 systems of 29 unknowns.
-SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const SensorErrorPriors& sizes,
-                                 const SensorErrorEvidence& earlier_runs = {});
+SensorErrorFit fit_sensor_errors(const SensorErrorInformation& evidence, const SensorErrorPriors& sizes,
+                                 const SensorErrorInformation& earlier_runs = {});
 
 /// Converts the sensor errors that one run estimated to measurement information for the next run, without the prior.
-SensorErrorEvidence calibration_evidence(const KnownSensorErrors& earlier_runs, const SensorErrorPriors& sizes);
+SensorErrorInformation evidence_from_earlier_runs(const KnownSensorErrors& earlier_runs, const SensorErrorPriors& sizes);
 
 }  // namespace tumble

@@ -27,46 +27,46 @@ class StreamingClippingFinder {
     }
   };
   /// unit of the readings: rad/s for the gyro, m/s^2 for the accelerometer
-  struct Memory {
+  struct DistinctReadingMemory {
     std::vector<Eigen::Vector3d> readings;           ///< distinct readings, in time order
     Eigen::Vector3d peak = Eigen::Vector3d::Zero();  ///< largest magnitude of each axis
-    std::size_t near = 0,
-                unsearched_near_extremes = 0;  ///< number of readings near the extremes; number not yet searched
+    std::size_t near_limit_count = 0,
+                near_limit_since_search = 0;  ///< number of readings near the extremes; number not yet searched
     std::size_t samples_since_search = 0;      ///< readings near the extremes since the last search
-    bool pruned = false;                       ///< readings were dropped
-    bool operator==(const Memory&) const = default;
+    bool readings_pruned = false;                       ///< readings were dropped
+    bool operator==(const DistinctReadingMemory&) const = default;
   };
   struct State {
-    SaturationLevels known;
-    std::array<Memory, 2> memory;     ///< gyro and accelerometer
-    RailPlaneFinder::Workspace work;  ///< buffer, not part of the state
+    SaturationLevels known_limits;
+    std::array<DistinctReadingMemory, 2> distinct_readings;     ///< gyro and accelerometer
+    SaturationPlaneFinder::Workspace search_workspace;  ///< buffer, not part of the state
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit StreamingClippingFinder(const Params& params);
 
-  /// The returned state has all memory that observe() needs.
+  /// The returned state has all memory that observe_reading() needs.
   State start() const;
 
   /// The sample must be finite. Returns true if the known saturation limits or planes changed. Cost: O(1), but
   /// O(`readings_max`) when enough new large readings have arrived.
-  bool observe(const ImuSample& sample, State& state) const;
+  bool observe_reading(const ImuSample& sample, State& state) const;
 
   /// Returns the clipped axes of a finite sample, according to the saturation limits found so far and the flags of the
   /// device. `before` and `after` are the neighbours of the sample, or null at the ends. Cost: O(1).
-  Clipping classify(const ImuSample* before, const ImuSample& sample, const State& state,
+  Clipping classify_clipping(const ImuSample* before, const ImuSample& sample, const State& state,
                     const ImuSample* after = nullptr) const;
 
-  const RailDetector& axis_aligned_rails() const { return axis_aligned_rails_; }
+  const SaturationLimitDetector& axis_limit_detector() const { return axis_limit_detector_; }
 
  private:
-  void store(const Eigen::Vector3d& reading, Triad triad, Memory& memory) const;
-  bool is_near(const Eigen::Vector3d& reading, Triad triad, const Memory& memory, double share) const;
-  bool observe(const Eigen::Vector3d& reading, Triad triad, State& state) const;
-  RailPlanes search(Triad triad, State& state) const;
+  void store_distinct_reading(const Eigen::Vector3d& reading, Triad triad, DistinctReadingMemory& memory) const;
+  bool is_near(const Eigen::Vector3d& reading, Triad triad, const DistinctReadingMemory& memory, double share) const;
+  bool observe_reading(const Eigen::Vector3d& reading, Triad triad, State& state) const;
+  SaturationPlanes search_saturation_planes(Triad triad, State& state) const;
 
-  RailDetector axis_aligned_rails_;
-  std::array<std::array<RailPlaneFinder, 2>, 2> planes_;  // gyro and accelerometer, as in ClippingFinder
+  SaturationLimitDetector axis_limit_detector_;
+  std::array<std::array<SaturationPlaneFinder, 2>, 2> plane_finders_;  // gyro and accelerometer, as in ClippingFinder
   std::size_t readings_max_;
 };
 

@@ -14,22 +14,22 @@
 namespace tumble {
 
 struct ClippedReadings {
-  Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();  ///< sensing directions of the gyro, one per row
-  std::vector<ClipSigns> signs;                        ///< one entry per sample
-  std::vector<std::uint8_t> near;  ///< per sample: bit j is set if gyro element j may be partly saturated
+  Eigen::Matrix3d sensing_directions = Eigen::Matrix3d::Identity();  ///< sensing directions of the gyro, one per row
+  std::vector<ClipSigns> clip_signs;                        ///< one entry per sample
+  std::vector<std::uint8_t> possibly_clipped_axes;  ///< per sample: bit j is set if gyro element j may be partly saturated
 
-  ClippedElements clipped() const { return {rows, signs}; }
+  SensingAxisClipSigns clipped_element_signs() const { return {sensing_directions, clip_signs}; }
 
   /// Marks suspect gyro readings, which may be saturated at an unknown limit, as lower bounds of the rate. Bit j of
   /// `axes[k]` is set if the reading of gyro axis j in sample k is suspect.
-  void mark_suspect(std::span<const ImuSample> samples, std::span<const std::uint8_t> axes);
+  void mark_suspected_saturation(std::span<const ImuSample> samples, std::span<const std::uint8_t> axes);
 
-  /// Sets the source of a measured rate to `bounded_only` if the gyro reading may be saturated during a part of its
+  /// Sets the source of a measured rate to `lower_bound_only` if the gyro reading may be saturated during a part of its
   /// averaging window. `rates` contains one rate per sample.
-  void mark_partly_saturated(std::span<RateState> rates) const;
+  void mark_partly_saturated(std::span<AngularRateState> rates) const;
 };
 
 /// Cost: O(N).
-ClippedReadings to_clipped_readings(std::span<const ImuSample> samples, const ClippingFinder::Found& found);
+ClippedReadings clipped_readings_of(std::span<const ImuSample> samples, const ClippingFinder::ClippingSearchResult& found);
 
 }  // namespace tumble

@@ -13,15 +13,15 @@ namespace tumble {
 /// accelerometers share are not observable, and their estimates remain close to zero.
 class ForceErrors {
  public:
-  static constexpr int kUnits = 4;
-  static constexpr int kPerUnit = 15;  ///< bias, rows of M, position error
-  static constexpr int kStates = kUnits * kPerUnit;
-  static constexpr double kSpan_s = 0.032;
+  static constexpr int kImus = 4;
+  static constexpr int kErrorsPerImu = 15;  ///< bias, rows of M, position error
+  static constexpr int kStates = kImus * kErrorsPerImu;
+  static constexpr double kCorrelationTime_s = 0.032;
   using Vector = Eigen::Matrix<double, kStates, 1>;
   using Covariance = Eigen::Matrix<double, kStates, kStates>;
 
   struct Params {
-    std::array<Eigen::Vector3d, kUnits> p_C_m{};  ///< positions of the IMUs
+    std::array<Eigen::Vector3d, kImus> imu_positions_m{};  ///< positions of the IMUs
     int count = 1;                                ///< bound [1, kUnits]
     double bias_sigma_m_s2 = 0.05;                ///< prior standard deviation of the bias; bound [0, 1e3]
     double scale_sigma = 4e-3;                    ///< prior standard deviation of each entry of M; bound [0, 1]
@@ -32,10 +32,10 @@ class ForceErrors {
   };
   struct State {
     Vector x = Vector::Zero();
-    Covariance P = Covariance::Zero();
+    Covariance error_covariance = Covariance::Zero();
     // sums over the current averaging interval
-    Eigen::Matrix<double, 3, kUnits> difference_m_s2 = Eigen::Matrix<double, 3, kUnits>::Zero();
-    Eigen::Matrix<double, 3, kUnits> force_m_s2 = Eigen::Matrix<double, 3, kUnits>::Zero();
+    Eigen::Matrix<double, 3, kImus> force_difference_m_s2 = Eigen::Matrix<double, 3, kImus>::Zero();
+    Eigen::Matrix<double, 3, kImus> force_m_s2 = Eigen::Matrix<double, 3, kImus>::Zero();
     Eigen::Matrix3d jacobian_position = Eigen::Matrix3d::Zero();
     double acceleration_rad_s2 = 0.0;
     int samples = 0;
@@ -47,7 +47,7 @@ class ForceErrors {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit ForceErrors(const Params& params);
 
-  /// Processes the forces of all IMUs in common axes C, measured over `dt_s`. Cost: O((kPerUnit count)^2), no
+  /// Processes the forces of all IMUs in common axes C, measured over `dt_s`. Cost: O((kErrorsPerImu count)^2), no
   /// allocation.
   void calibrate(std::span<const Eigen::Vector3d> forces_m_s2, const Eigen::Vector3d& rate_rad_s,
                  const Eigen::Vector3d& acceleration_rad_s2, double dt_s, State& state) const;
@@ -55,7 +55,7 @@ class ForceErrors {
   static Eigen::Vector3d corrected(int k, const Eigen::Vector3d& force_m_s2, const State& state);
 
   static Eigen::Vector3d position_error_m(int k, const State& state) {
-    return state.x.segment<3>(kPerUnit * k + kPerUnit - 3);
+    return state.x.segment<3>(kErrorsPerImu * k + kErrorsPerImu - 3);
   }
 
  private:

@@ -13,12 +13,12 @@ namespace tumble {
 namespace hand_held {
 
 inline constexpr int kBlockSize = 18;  ///< size of a node's error vector: see Index
-inline constexpr int kBorderSize = 9;  ///< number of constants: see ConstantIndex
-using System = ArrowSystem<kBlockSize, kBorderSize>;
+inline constexpr int kBorderSize = 9;  ///< number of constants: see ConstantsIndex
+using System = BlockArrowSystem<kBlockSize, kBorderSize>;
 
 /// first index of each part of a node's error vector, with the attitude error phi: q_true = q_WI Exp(phi)
-enum Index { kPhi = 0, kRate = 3, kAngularAcceleration = 6, kHandAcceleration = 9, kVelocity = 12, kPosition = 15 };
-enum ConstantIndex { kGyroBias = 0, kAccelBias = 3, kLever = 6 };
+enum Index { kAttitudeError = 0, kRate = 3, kAngularAcceleration = 6, kHandAccelerationIndex = 9, kVelocity = 12, kPosition = 15 };
+enum ConstantsIndex { kGyroBias = 0, kAccelBias = 3, kLever = 6 };
 
 /// The held point is the point of the body at the hand.
 struct Node {
@@ -39,51 +39,51 @@ struct Constants {
 };
 
 /// Sums over the readings of one sensing element near a node, with times relative to the node.
-struct ElementSums {
+struct SensingAxisSums {
   double count = 0.0, time_sum_s = 0.0, time_squared_sum_s2 = 0.0, reading_sum = 0.0,
          reading_time_sum = 0.0;                           ///< count and sums of unsaturated readings
-  double clipped = 0.0, clipped_time_s = 0.0, rail = 0.0;  ///< count, mean time and mean level of clipped readings
-  double sign = 0.0;                                       ///< sign of the saturation limit
-  double unusable_count = 0.0, unusable_mean = 0.0;        ///< count and mean of unusable readings
+  double clipped_reading_count = 0.0, clipped_time_s = 0.0, mean_saturation_limit = 0.0;  ///< count, mean time and mean level of clipped readings
+  double saturated_side = 0.0;                                       ///< sign of the saturation limit
+  double unusable_reading_count = 0.0, mean_unusable_reading = 0.0;        ///< count and mean of unusable readings
   double partial_saturation_sigma = 0.0;  ///< standard deviation of readings that may be partly saturated
 };
 
 struct NodeReadings {
-  std::array<ElementSums, 3> gyro;
+  std::array<SensingAxisSums, 3> gyro;
   Eigen::Vector3d force_m_s2 = Eigen::Vector3d::Zero();  ///< mean force
-  Eigen::Vector3d force_bound =
+  Eigen::Vector3d force_bound_m_s2 =
       Eigen::Vector3d::Zero();           ///< sign of the saturation limit where an axis clips, otherwise 0
-  double force_count = 0.0;              ///< number of force readings
-  double force_time_s = 0.0;             ///< mean time of the force readings
+  double force_reading_count = 0.0;              ///< number of force readings
+  double mean_force_time_s = 0.0;             ///< mean time of the force readings
   double force_timing_sigma_m_s2 = 0.0;  ///< force error from uncertain reading times
-  bool rest = false;
+  bool is_stationary = false;
 };
 
 struct ReadingNoise {
   double gyro_rad_s = 0.0;               ///< standard deviation of one gyro reading
   double window_rate_sigma_rad_s = 0.0;  ///< standard deviation of (mean rate of a window - rate at its centre)
   double deficit_error_ratio = 0.0;      ///< error of an unclipped element / saturation deficit of a clipped element
-  double rail_rad_s = 0.0;               ///< standard deviation of a saturation limit
+  double saturation_limit_sigma_rad_s = 0.0;               ///< standard deviation of a saturation limit
   double bound = 1.0;                    ///< weight of the gyro's lower bounds; 1: full weight
-  double force_bound = 1.0;              ///< weight of the accelerometer's lower bounds; 1: full weight
+  double force_bound_weight = 1.0;              ///< weight of the accelerometer's lower bounds; 1: full weight
   double accel_m_s2 = 0.0;               ///< standard deviation of one force reading
   double force_noise_ratio = 0.0;        ///< additional force noise / (magnitude of the specific force - gravity)
-  double rest_rad_s = 0.0;               ///< standard deviation of the rate at rest, per node
-  double rest_m_s = 0.0;                 ///< standard deviation of the velocity at rest
-  double rest_m_s2 = 0.0;                ///< standard deviation of the acceleration at rest
+  double stationary_rate_sigma_rad_s = 0.0;               ///< standard deviation of the rate at rest, per node
+  double stationary_velocity_sigma_m_s = 0.0;                 ///< standard deviation of the velocity at rest
+  double stationary_acceleration_sigma_m_s2 = 0.0;                ///< standard deviation of the acceleration at rest
 };
 
 /// Row i of `rows` is the sensing direction of gyro element i. Clipped readings limit the component of (rate + bias)
 /// along row i from one side.
 double add_gyro(const NodeReadings& readings, const Eigen::Matrix3d& rows, const ReadingNoise& noise, const Node& node,
-                const Constants& constants, System::Block& block, System::Corner& corner);
+                const Constants& constants, System::StateBlock& block, System::BorderBlock& corner);
 
 /// Adds the residual of the specific force of one node, with gravity, the held point's acceleration, and the
 /// centripetal and tangential force at the lever arm.
 double add_force(const NodeReadings& readings, const Eigen::Vector3d& g_W_m_s2, const ReadingNoise& noise,
-                 const Node& node, const Constants& constants, System::Block& block, System::Corner& corner);
+                 const Node& node, const Constants& constants, System::StateBlock& block, System::BorderBlock& corner);
 
-double add_rest(const ReadingNoise& noise, const Node& node, System::Block& block);
+double add_rest(const ReadingNoise& noise, const Node& node, System::StateBlock& block);
 
 /// Motion model between two nodes that are `step_s` apart. The angular jerk is white noise. Acceleration, velocity and
 /// position of the held point return to zero, each with a separate time constant.
@@ -101,25 +101,25 @@ class Motion {
 
   /// `hand` multiplies the power spectral density of the held point's acceleration. `jerk` multiplies the root power
   /// spectral density of the angular jerk.
-  double add_step(const Node& from, const Node& to, double hand, System::Block& block, System::Block& next,
+  double add_motion_model(const Node& from, const Node& to, double hand, System::StateBlock& block, System::StateBlock& next,
                   double jerk = 1.0) const;
-  double add_bounds(const Node& node, System::Block& block) const;
+  double add_bounds(const Node& node, System::StateBlock& block) const;
   /// The prior fixes the heading. Every other unknown has the stationary variance of its stochastic process.
-  double add_initial_prior(const Node& node, System::Block& block) const;
+  double add_initial_prior(const Node& node, System::StateBlock& block) const;
 
  private:
-  double add_attitude(const Node& from, const Node& to, double jerk, System::Block& block, System::Block& next) const;
+  double add_attitude(const Node& from, const Node& to, double jerk, System::StateBlock& block, System::StateBlock& next) const;
 
   Params params_;
   Eigen::Matrix4d jerk_;  // information matrix of (rate, angular acceleration) of both nodes, one axis
-  Eigen::Matrix<double, 6, 6> hand_, kinematics_;  // information matrix of (acceleration, velocity, position), one axis
-  double phi_variance_;
+  Eigen::Matrix<double, 6, 6> hand_information_, kinematics_;  // information matrix of (acceleration, velocity, position), one axis
+  double attitude_error_variance_;
 };
 
 /// Returns the rotation vector between two nodes, for a rate that is a cubic polynomial in time.
-Eigen::Vector3d turned(const Node& from, const Node& to, double step_s);
+Eigen::Vector3d rotation_between_nodes(const Node& from, const Node& to, double step_s);
 
 }  // namespace hand_held
 
-extern template struct ArrowSystem<hand_held::kBlockSize, hand_held::kBorderSize>;  // hand_held_arrow.cpp
+extern template struct BlockArrowSystem<hand_held::kBlockSize, hand_held::kBorderSize>;  // hand_held_arrow.cpp
 }  // namespace tumble

@@ -6,7 +6,7 @@
 
 namespace tumble {
 
-struct HandMotionParams {
+struct HandMotionModelParams {
   static constexpr double kHandTau_s = 0.1;      ///< correlation time of the hand's acceleration
   static constexpr double kVelocityTau_s = 0.3;  ///< correlation time of the hand's velocity
   static constexpr double kPositionTau_s = 1.0;  ///< correlation time of the hand's position
@@ -24,12 +24,12 @@ struct HandMotionParams {
           {"hand_noise_adaptation", "1", 0.0, 1.0,
            "share by which the assumed acceleration of the hand adapts to the measured acceleration; "
            "0: constant assumed acceleration",
-           FieldRank::basic});
+           ParameterRank::common_use});
   }
 };
 
 /// errors of IMU readings other than white noise
-struct HandHeldReadingParams {
+struct HandHeldSensorParams {
   static constexpr double kDeficitErrorRatio =
       0.02;  ///< error of an unclipped element / saturation deficit of a clipped element
   static constexpr double kRailSigma_rad_s = 0.01;      ///< standard deviation of a saturation limit
@@ -54,21 +54,21 @@ struct HandHeldExpertParams {
   double gap_max_s = 1.0;
   /// Factor on the assumed angular jerk, with which HandHeldSmoother computes the reported covariances.
   double jerk_inflation = 4.0;
-  RestDetector::Params rest = {};
-  HandMotionParams hand = {};
-  HandHeldReadingParams readings = {};
+  RestDetector::Params rest_detector = {};
+  HandMotionModelParams hand_motion = {};
+  HandHeldSensorParams readings = {};
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.node_s, {"node_s", "s", 1e-3, 0.1, "time between two nodes of the smoother", FieldRank::basic});
-    visit(p.iterations_max, {"iterations_max", "1", 1, 1000, "maximum number of Gauss-Newton steps", FieldRank::basic});
+    visit(p.node_s, {"node_s", "s", 1e-3, 0.1, "time between two nodes of the smoother", ParameterRank::common_use});
+    visit(p.iterations_max, {"iterations_max", "1", 1, 1000, "maximum number of Gauss-Newton steps", ParameterRank::common_use});
     visit(p.gap_max_s,
           {"gap_max_s", "s", 1e-300, 1e4, "maximum time between two samples; a longer gap causes an error"});
     visit(p.jerk_inflation,
           {"jerk_inflation", "1", 1.0, 100.0,
-           "factor on the assumed angular jerk in the computation of the reported covariances", FieldRank::basic});
-    visit.group("rest_", p.rest);
-    visit.group("", p.hand);
+           "factor on the assumed angular jerk in the computation of the reported covariances", ParameterRank::common_use});
+    visit.group("rest_", p.rest_detector);
+    visit.group("", p.hand_motion);
     visit.group("", p.readings);
   }
 };
@@ -94,22 +94,22 @@ struct HandHeldParams {
     visit(p.gyro_noise_density, {"gyro_noise_density", "rad/s/sqrt(Hz)", 1e-6, 1.0, "noise density of the gyro"});
     visit(p.accel_noise_density,
           {"accel_noise_m_s2_sqrt_hz", "m/s^2/sqrt(Hz)", 1e-5, 10.0,
-           "noise density of the specific force, including unmodelled errors", FieldRank::basic});
+           "noise density of the specific force, including unmodelled errors", ParameterRank::common_use});
     visit(p.gyro_bias_sigma_rad_s, {"gyro_bias_sigma_rad_s", "rad/s", 1e-6, 10.0,
-                                    "prior standard deviation of the gyro bias", FieldRank::basic});
+                                    "prior standard deviation of the gyro bias", ParameterRank::common_use});
     visit(p.accel_bias_sigma_m_s2, {"accel_bias_sigma_m_s2", "m/s^2", 1e-6, 10.0,
-                                    "prior standard deviation of the accelerometer bias", FieldRank::basic});
+                                    "prior standard deviation of the accelerometer bias", ParameterRank::common_use});
     visit(p.lever_arm_sigma_m,
           {"lever_arm_sigma_m", "m", 1e-6, 10.0, "prior standard deviation of the lever arm from the hand-held point",
-           FieldRank::basic});
+           ParameterRank::common_use});
     visit(p.jerk_rad_s3_sqrts, {"jerk_rad_s3_sqrts", "rad/s^3 sqrt(s)", 1e-2, 1e6,
-                                "root power spectral density of the angular jerk", FieldRank::basic});
+                                "root power spectral density of the angular jerk", ParameterRank::common_use});
     visit(p.hand_sigma_m_s2, {"hand_sigma_m_s2", "m/s^2", 1e-3, 1e3,
-                              "standard deviation of the hand-held point's acceleration", FieldRank::basic});
+                              "standard deviation of the hand-held point's acceleration", ParameterRank::common_use});
     visit(p.velocity_m_s,
-          {"velocity_m_s", "m/s", 1e-3, 1e3, "standard deviation of the hand-held point's velocity", FieldRank::basic});
+          {"velocity_m_s", "m/s", 1e-3, 1e3, "standard deviation of the hand-held point's velocity", ParameterRank::common_use});
     visit(p.position_m,
-          {"position_m", "m", 1e-3, 1e3, "standard deviation of the hand-held point's position", FieldRank::basic});
+          {"position_m", "m", 1e-3, 1e3, "standard deviation of the hand-held point's position", ParameterRank::common_use});
     visit.group("", p.expert);
   }
 };

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "tumble/angular_velocity/detail/rail_detector.hpp"
+#include "tumble/angular_velocity/detail/saturation_limit_detector.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/attitude/detail/hand_held_model.hpp"
 #include "tumble/attitude/detail/hand_held_params.hpp"
@@ -18,18 +18,18 @@
 namespace tumble {
 
 /// One value per sensing element of an IMU: -1 or 1 if the element is clipped at the negative or positive limit, and 0
-/// if the element is unsaturated. `kMissing` marks a gyro reading that is invalid because of an overflow.
+/// if the element is unsaturated. `kMissingSign` marks a gyro reading that is invalid because of an overflow.
 struct ClipSigns {
-  static constexpr std::int8_t kMissing = 2;
+  static constexpr std::int8_t kMissingSign = 2;
   std::array<std::int8_t, 3> gyro{}, accel{};
 };
 ClipSigns clip_signs(const ImuSample& sample, const Clipping& clipping);
 
-/// Row i of `rows` is the sensing direction of gyro element i, in the axes of the gyro. While element i clips, the
+/// Row i of `sensing_directions` is the sensing direction of gyro element i, in the axes of the gyro. While element i clips, the
 /// component of (rate + bias) along row i is at or beyond the saturation limit.
-struct ClippedElements {
-  Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
-  std::span<const ClipSigns> signs;  ///< one entry per sample; empty: no clipping
+struct SensingAxisClipSigns {
+  Eigen::Matrix3d sensing_directions = Eigen::Matrix3d::Identity();
+  std::span<const ClipSigns> clip_signs;  ///< one entry per sample; empty: no clipping
   /// Covariance of each rate that was recovered from saturation [rad^2/s^2], in sensor axes; zero for a measured rate.
   /// An empty `recovered_covariance_rad2_s2` marks all rates as measured. A sample with a recovered rate must not have
   /// clipped sensing elements.
@@ -47,7 +47,7 @@ struct ClippedElements {
 /// Computation and memory (about 7 kB per time step `node_s`) are proportional to the duration of the recording, and
 /// independent of the sample rate of the IMU.
 ///
-/// HandHeldSmoother assumes constant biases and a body that is neither thrown nor hit (see `hand_acceleration_ratio`).
+/// HandHeldSmoother assumes constant biases and a body that is neither thrown nor hit (see `mean_hand_acceleration_ratio`).
 /// The heading is relative to the start of the recording.
 class HandHeldSmoother {
  public:
@@ -61,7 +61,7 @@ class HandHeldSmoother {
     double cost = 0.0;
     /// Largest mean acceleration of the hand over a quarter of a second, divided by `hand_sigma_m_s2`; above 2, the
     /// body was probably thrown or handled roughly.
-    double hand_acceleration_ratio = 0.0;
+    double mean_hand_acceleration_ratio = 0.0;
     /// During long saturation, the number of full revolutions can be ambiguous. `revolutions_tested` counts the
     /// saturated intervals in which HandHeldSmoother compared several numbers of revolutions. `revolutions_corrected`
     /// counts the saturated intervals in which another number of revolutions fitted better. `revolutions_ambiguous`
@@ -78,7 +78,7 @@ class HandHeldSmoother {
   /// from sensor axes to the world at each sample, with heading 0 at the start. Returns `ok`, `empty`, `non_finite`,
   /// `time_order`, `gap`, `out_of_range` (sizes of the inputs differ, or a covariance is invalid) or `diverged` (the
   /// normal equations are not positive definite). On error, the outputs are empty.
-  Status estimate(std::span<const ImuSample> samples, const ClippedElements& clipped, std::vector<RateState>& rates,
+  Status estimate(std::span<const ImuSample> samples, const SensingAxisClipSigns& clipped, std::vector<AngularRateState>& rates,
                   std::vector<AttitudeState>& attitudes, Report& report) const;
 
  private:

@@ -12,18 +12,18 @@
 
 namespace tumble {
 
-/// Estimates attitude and angular velocity of hand-held motion sample by sample, with a fixed lag. HandHeldStream
+/// Estimates attitude and angular velocity of hand-held motion sample by sample, with a fixed lag. HandHeldRateStream
 /// applies the model of HandHeldSmoother to a sliding window of time steps (nodes).
 ///
-/// HandHeldStream allocates memory only in start(). A run that continues from a copy of the State gives bit-identical
+/// HandHeldRateStream allocates memory only in start(). A run that continues from a copy of the State gives bit-identical
 /// results.
 ///
-/// Unlike HandHeldSmoother, HandHeldStream does not test other numbers of full revolutions during saturation. The rate
+/// Unlike HandHeldSmoother, HandHeldRateStream does not test other numbers of full revolutions during saturation. The rate
 /// covariance includes the error of one additional revolution: carried.md (C42), (C43). After the detection of a
-/// saturation limit, HandHeldStream classifies only the readings in the window again.
+/// saturation limit, HandHeldRateStream classifies only the readings in the window again.
 ///
 /// Cost: O(window) per node while a sample in the window is clipped, and a fifth of this cost otherwise.
-class HandHeldStream {
+class HandHeldRateStream {
  public:
   struct Params {
     HandHeldSmoother::Params body;  ///< `iterations_max` is ignored
@@ -45,13 +45,13 @@ class HandHeldStream {
 
   struct Reading {
     ImuSample sample;
-    ClipSigns signs;
+    ClipSigns clip_signs;
     /// times after the centre of the first sample's averaging window
-    double centre_s = 0.0, end_s = 0.0;
+    double window_centre_s = 0.0, end_s = 0.0;
     std::int64_t node = 0;  ///< node closest to the centre of the averaging window
-    bool rest = false;
+    bool is_stationary = false;
     RepeatedReading gyro, accel;        ///< detection state of repeated readings
-    std::optional<RateState> smoothed;  ///< unreported rate of a sample whose node has left the window
+    std::optional<AngularRateState> smoothed;  ///< unreported rate of a sample whose node has left the window
   };
   struct Knot {
     hand_held::Node node;
@@ -61,18 +61,18 @@ class HandHeldStream {
     std::vector<Reading> readings;  ///< readings of the nodes in the window, oldest first
     std::vector<Knot> window;       ///< nodes in the window, oldest first
     std::int64_t first_node = 0;    ///< number of the oldest node in the window
-    Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
+    Eigen::Matrix3d sensing_directions = Eigen::Matrix3d::Identity();
     hand_held::Constants constants;
     hand_held::System::BorderMatrix constants_covariance = hand_held::System::BorderMatrix::Zero();
     // Gaussian prior on the oldest node and on the constants (biases, lever arm), from all data that have left the
     // window.
-    hand_held::System::Block prior;
-    hand_held::System::Corner prior_corner;
+    hand_held::System::StateBlock prior;
+    hand_held::System::BorderBlock prior_border_block;
     hand_held::Node prior_node;
     hand_held::Constants prior_constants;
-    double acceleration_power_ratio =
+    double hand_acceleration_power_ratio =
         1.0;  ///< ratio of measured to assumed acceleration power of the hand, over marginalised nodes
-    RestDetector::State rests;
+    RestDetector::State stationary_state;
     std::int64_t reported_node = -1;  ///< node of the last reported estimate
     Eigen::Matrix3d reported_covariance_rad2_s2 = Eigen::Matrix3d::Zero();
     std::int64_t start_ns = 0;
@@ -81,11 +81,11 @@ class HandHeldStream {
     /// duration of the current saturation of each gyro element, and time integral of the rate's standard deviation
     Eigen::Vector3d clipped_duration_s = Eigen::Vector3d::Zero(), clipped_angle_sigma_rad = Eigen::Vector3d::Zero();
     std::size_t revolutions_ambiguous = 0;       ///< saturated intervals that may contain an additional revolution
-    std::vector<hand_held::System::Block> work;  ///< buffer, not part of the state
+    std::vector<hand_held::System::StateBlock> work_blocks;  ///< buffer, not part of the state
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.
-  explicit HandHeldStream(const Params& params);
+  explicit HandHeldRateStream(const Params& params);
 
   /// The returned state has all memory that push() needs.
   State start() const;
@@ -98,39 +98,39 @@ class HandHeldStream {
   ///
   /// Returns `ok`, `non_finite`, `time_order`, `gap`, `out_of_range` (no clip signs) or `degenerate` (linearly
   /// dependent sensing directions). On error, `state` is unchanged and `out` is empty.
-  Status push(const ImuSample& sample, const ClippedElements& known, State& state, std::optional<RateState>& out,
+  Status push(const ImuSample& sample, const SensingAxisClipSigns& known, State& state, std::optional<AngularRateState>& out,
               bool wanted = true, const RepeatDetector::State& repeated = {}) const;
 
   /// Appends the rates of the samples in the window that were not yet reported, oldest first.
-  void flush(const State& state, std::vector<RateState>& out) const;
+  void flush(const State& state, std::vector<AngularRateState>& out) const;
 
  private:
-  void append(const ImuSample& sample, const RepeatDetector::State& repeated, State& state) const;
+  void append_reading(const ImuSample& sample, const RepeatDetector::State& repeated, State& state) const;
   void add(const Reading& reading, State& state) const;
-  bool reclassify(const ClippedElements& known, State& state) const;
-  void rebuild(State& state) const;
-  hand_held::Node begin(const State& state) const;
+  bool update_clip_signs(const SensingAxisClipSigns& known, State& state) const;
+  void rebuild_window(State& state) const;
+  hand_held::Node first_node(const State& state) const;
   void predict(const hand_held::Node& before, const Eigen::Matrix3d& rows, Knot& knot) const;
   void predict_newest(State& state) const;
   hand_held::ReadingNoise adapted_noise(const State& state) const;
-  std::size_t first_unreported(const State& state) const;
+  std::size_t first_unreported_reading(const State& state) const;
   void store_oldest_rates(State& state) const;
   void prune_output_samples(State& state) const;
   void marginalise_oldest(State& state) const;
-  double hand(const State& state) const;
-  void add_prior(const State& state, hand_held::System::Block& block, hand_held::System::Corner& corner) const;
+  double hand_acceleration_power_ratio(const State& state) const;
+  void add_prior(const State& state, hand_held::System::StateBlock& block, hand_held::System::BorderBlock& corner) const;
   bool factorise(const hand_held::Motion& motion, const hand_held::ReadingNoise& noise, State& state,
                  hand_held::System::BorderVector& step) const;
   bool step(State& state) const;
-  void extend(State& state) const;
-  RateState compute_report(std::size_t at, bool due, bool factorised, State& state) const;
-  void report_rates(std::size_t first, std::size_t last, bool factorised, State& state, std::span<RateState> out) const;
-  void count_revolutions(std::size_t at, const RateState& rate, State& state) const;
-  RateState to_rate(const Reading& reading, const State& state, const Eigen::Matrix3d& covariance_rad2_s2) const;
+  void extend_nodes(State& state) const;
+  AngularRateState compute_report(std::size_t at, bool due, bool factorised, State& state) const;
+  void report_rates(std::size_t first, std::size_t last, bool factorised, State& state, std::span<AngularRateState> out) const;
+  void count_revolutions(std::size_t at, const AngularRateState& rate, State& state) const;
+  AngularRateState rate_state_of_reading(const Reading& reading, const State& state, const Eigen::Matrix3d& covariance_rad2_s2) const;
 
   Params params_;
   RestDetector rest_detector_;
-  hand_held::Motion motion_, inflated_;
+  hand_held::Motion motion_, inflated_motion_;
   hand_held::ReadingNoise noise_;
   Eigen::Vector3d g_W_m_s2_;
   std::size_t nodes_max_, readings_max_, delay_;

@@ -8,12 +8,12 @@
 #include <span>
 #include <string>
 
-#include "tumble/angular_velocity/detail/rail_plane.hpp"
+#include "tumble/angular_velocity/detail/saturation_plane.hpp"
 #include "tumble/attitude/detail/force_errors.hpp"
 #include "tumble/attitude/detail/imu_merge_expert_params.hpp"
 #include "tumble/attitude/detail/imu_merge_state.hpp"
 #include "tumble/attitude/detail/rate_recovery.hpp"
-#include "tumble/attitude/detail/unit_sign_check.hpp"
+#include "tumble/attitude/detail/multi_imu_sign_check.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/sensor_health.hpp"
@@ -24,7 +24,7 @@ namespace tumble {
 struct ImuMergeParams {
   static constexpr int kImus = ImuMergeState::kImus;
   /// pose of each IMU in the common axes C of the rigid body; the first `count` entries are used
-  std::array<Eigen::Isometry3d, kImus> T_CI{};
+  std::array<Eigen::Isometry3d, kImus> T_mean_imu{};
   int count = 1;
   static constexpr double kRateNoise_rad_s = 0.01;  ///< standard deviation of the mean rate over a window
   double window_s = 4e-3;                           ///< averaging time of the readings
@@ -32,8 +32,8 @@ struct ImuMergeParams {
   double gyro_range_rad_s = 1e3;  ///< readings at or above this rate are saturated
   double accel_range_m_s2 = 1e5;
   double gap_max_s = 1.0;
-  /// sensing directions of each IMU, as found by RailPlaneFinder
-  std::array<SensingDirections, kImus> gyro_elements{}, accel_elements{};
+  /// sensing directions of each IMU, as found by SaturationPlaneFinder
+  std::array<SensingDirections, kImus> gyro_sensing_directions{}, accel_sensing_directions{};
 
   using Expert = ImuMergeExpertParams;
   Expert expert = {};  ///< rarely changed parameters
@@ -74,13 +74,13 @@ struct ImuMergeParams {
 class ImuMerge {
  public:
   static constexpr int kImus = ImuMergeState::kImus;
-  static constexpr int kAccelerationWindows = ImuMergeState::kAccelerationWindows;
-  static constexpr int kErrorCount = ImuMergeUnit::kErrorCount;
+  static constexpr int kAngularAccelerationWindows = ImuMergeState::kAngularAccelerationWindows;
+  static constexpr int kErrorCount = MergedImuState::kErrorCount;
 
   using Params = ImuMergeParams;
 
-  using Repetition = ImuRepeat;
-  using Unit = ImuMergeUnit;
+  using Repetition = RepeatedImuReading;
+  using Unit = MergedImuState;
   using State = ImuMergeState;
 
   explicit ImuMerge(const Params& params);
@@ -94,15 +94,15 @@ class ImuMerge {
   /// their readings unchanged.
   static Status verdict(const State& state);
   static void add_finding(const Unit& unit, const std::string& name, SensorHealth& health);
-  /// Adds warnings about exchanged or inverted axes of all IMUs (UnitSignCheck), and about a wrong scale
+  /// Adds warnings about exchanged or inverted axes of all IMUs (MultiImuSignCheck), and about a wrong scale
   /// (lever_arm_agreement()). `gyro_confirmed` states whether another check confirms the scale of the gyros.
-  static void add_findings(const std::optional<UnitSignCheck::Detected>& mislabelled_axes,
+  static void add_findings(const std::optional<MultiImuSignCheck::DetectedMirroring>& mislabelled_axes,
                            const std::optional<double>& lever_arm_agreement, bool gyro_confirmed, SensorHealth& health);
 
-  Eigen::Vector3d p_C_m() const { return p_C_m_; }
+  Eigen::Vector3d mean_imu_position_m() const { return mean_imu_position_m_; }
 
   /// The samples must be simultaneous; the merged sample has the time stamp of the first IMU. `merged` is the mean over
-  /// `window_s` in axes C, or empty between two averages. Returns `too_few` if `samples` does not contain `count`
+  /// `window_s` in axes C, or empty between two averages. Returns `insufficient_data` if `samples` does not contain `count`
   /// samples, or if none of the samples is finite. On error, the state is unchanged and `merged` is empty. Cost:
   /// O(count), no allocation.
   Status step(std::span<const ImuSample> samples, State& state, std::optional<ImuSample>& merged) const;
@@ -110,36 +110,36 @@ class ImuMerge {
  private:
   using Vectors = std::array<Eigen::Vector3d, kImus>;
 
-  using UnitMask = std::array<bool, kImus>;
+  using ImuMask = std::array<bool, kImus>;
 
   /// mean readings over a window; the clip flags cover the whole window
   using Readings = std::array<ImuSample, kImus>;
 
   void accumulate_window(std::span<const ImuSample> samples, double dt_s, State& state) const;
   ImuSample merge(State& state) const;
-  UnitMask select_units(const Readings& readings, const UnitMask& present, const Vectors& rates, const Vectors& forces,
+  ImuMask select_agreeing_imus(const Readings& readings, const ImuMask& present, const Vectors& rates, const Vectors& forces,
                         double h, State& state) const;
-  ImuSample mean_of_used(const Vectors& rates, const Vectors& forces, const UnitMask& used, double h,
+  ImuSample mean_of_selected_imus(const Vectors& rates, const Vectors& forces, const ImuMask& used, double h,
                          const State& state) const;
-  std::uint8_t combined_flags(const Readings& readings, const UnitMask& which) const;
-  void close_windows(const UnitMask& present, const Vectors& rates, const Vectors& forces, bool all_used,
+  std::uint8_t combined_flags(const Readings& readings, const ImuMask& which) const;
+  void close_comparison_windows(const ImuMask& present, const Vectors& rates, const Vectors& forces, bool all_used,
                      const ImuSample& merged, State& state) const;
   void calibrate(const Vectors& rates, State& state) const;
-  void detect_frozen_units(const UnitMask& present, const Vectors& rates, const Vectors& forces, double dt_s,
+  void detect_frozen_units(const ImuMask& present, const Vectors& rates, const Vectors& forces, double dt_s,
                            TimeNs time_ns, State& state) const;
-  void detect_disagreeing_units(const UnitMask& present, const Vectors& rates, const Vectors& forces, TimeNs time_ns,
+  void detect_disagreeing_units(const ImuMask& present, const Vectors& rates, const Vectors& forces, TimeNs time_ns,
                                 State& state) const;
-  static Eigen::Vector3d median(const Vectors& values, const UnitMask& which);
-  void exclude_subsample_saturated(const Readings& samples, const UnitMask& present, const Vectors& forces,
-                                   const Eigen::Vector3d& rate, double h, State& state, UnitMask& used) const;
-  void recover(const Readings& readings, const UnitMask& present, double h, State& state, ImuSample& merged) const;
+  static Eigen::Vector3d median(const Vectors& values, const ImuMask& which);
+  void exclude_partly_saturated(const Readings& samples, const ImuMask& present, const Vectors& forces,
+                                   const Eigen::Vector3d& rate, double h, State& state, ImuMask& used) const;
+  void recover_saturated_rate(const Readings& readings, const ImuMask& present, double h, State& state, ImuSample& merged) const;
   static ForceErrors::Params force_params(const Params& params);
-  static RateRecovery::Params recovery_params(const Params& params);
+  static AngularRateRecovery::Params rate_recovery_params(const Params& params);
 
   Params params_;
-  Eigen::Vector3d p_C_m_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d mean_imu_position_m_ = Eigen::Vector3d::Zero();
   ForceErrors forces_;
-  RateRecovery recovery_;
+  AngularRateRecovery rate_recovery_;
 };
 
 }  // namespace tumble

@@ -7,61 +7,61 @@
 
 #include "tumble/attitude/detail/force_errors.hpp"
 #include "tumble/attitude/detail/rate_recovery.hpp"
-#include "tumble/attitude/detail/unit_sign_check.hpp"
+#include "tumble/attitude/detail/multi_imu_sign_check.hpp"
 #include "tumble/common/detail/imu_average.hpp"
 #include "tumble/common/time.hpp"
 
 namespace tumble {
 
 /// equal consecutive readings of one IMU, with the readings of other IMUs at the first one and the rotation since then
-struct ImuRepeat {
-  Eigen::Vector3d reading = Eigen::Vector3d::Zero(), others = Eigen::Vector3d::Zero();
+struct RepeatedImuReading {
+  Eigen::Vector3d repeated_reading = Eigen::Vector3d::Zero(), other_imus_reading = Eigen::Vector3d::Zero();
   Eigen::Vector3d turned_rad = Eigen::Vector3d::Zero();
   TimeNs since_ns = 0;
   double repeated_s = 0.0;
-  bool operator==(const ImuRepeat&) const = default;
+  bool operator==(const RepeatedImuReading&) const = default;
 };
 
 /// rate errors of one IMU relative to the mean of all IMUs
-struct ImuMergeUnit {
+struct MergedImuState {
   static constexpr int kErrorCount = 13;  ///< bias, scale and misalignment, time offset
 
   Eigen::Matrix<double, kErrorCount, 1> x = Eigen::Matrix<double, kErrorCount, 1>::Zero();
-  Eigen::Matrix<double, kErrorCount, kErrorCount> P = Eigen::Matrix<double, kErrorCount, kErrorCount>::Zero();
+  Eigen::Matrix<double, kErrorCount, kErrorCount> covariance = Eigen::Matrix<double, kErrorCount, kErrorCount>::Zero();
   ImuAverage window;  ///< average of the IMU's readings since the last window
   /// mean rate and force over the last window; for an absent IMU, predicted from other IMUs
   Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero(), last_force_m_s2 = Eigen::Vector3d::Zero();
   double exclusion_left_s = 0.0;      ///< remaining time of exclusion from the mean force
-  std::int64_t excluded_windows = 0;  ///< number of windows without this IMU
-  ImuRepeat rate_repeat, force_repeat;
-  double changing_readings_s = 0.0;
-  double rate_disagreement_rad_s = 0.0, force_disagreement_m_s2 = 0.0, disagreement_s = 0.0;
+  std::int64_t excluded_window_count = 0;  ///< number of windows without this IMU
+  RepeatedImuReading repeated_rate, repeated_force;
+  double changing_readings_duration_s = 0.0;
+  double rate_difference_to_others_rad_s = 0.0, force_disagreement_m_s2 = 0.0, disagreement_s = 0.0;
   TimeNs disagreement_since_ns = 0;
-  bool frozen = false, disagrees = false;
+  bool is_frozen = false, disagrees = false;
   std::int64_t missing_samples = 0;  ///< number of samples that were not finite
   TimeNs frozen_since_ns = 0, disagrees_since_ns = 0, missing_since_ns = 0;
-  bool is_excluded() const { return frozen || disagrees; }
+  bool is_excluded() const { return is_frozen || disagrees; }
   double offset_s() const { return x[kErrorCount - 1]; }
-  bool operator==(const ImuMergeUnit&) const = default;
+  bool operator==(const MergedImuState&) const = default;
 };
 
 struct ImuMergeState {
   static constexpr int kImus = 4;
-  static constexpr int kAccelerationWindows = 3;  ///< windows needed for an angular acceleration
+  static constexpr int kAngularAccelerationWindows = 3;  ///< windows needed for an angular acceleration
 
-  std::array<ImuMergeUnit, kImus> units{};
+  std::array<MergedImuState, kImus> imus{};
   ForceErrors::State forces;
-  RateRecovery::State recovery;
+  AngularRateRecovery::State rate_recovery;
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();           ///< merged mean rate over the last window
   Eigen::Vector3d previous_rate_rad_s = Eigen::Vector3d::Zero();  ///< merged mean rate over the window before the last
   double rotation_rate_rad_s = 0.0;                               ///< mean of the rate over half a second
   double window_s = 0.0;                                          ///< length of the current window
   double length_s = 0.0, previous_length_s = 0.0;                 ///< lengths of the last two windows
-  double lever_arm_correlation = 0.0, lever_arm_effect_m2_s3 = 0.0;  ///< sums for lever_arm_agreement()
-  UnitSignCheck sign_check;
-  std::int64_t samples = 0, windows = 0;
+  double lever_arm_correlation = 0.0, lever_arm_effect_power = 0.0;  ///< sums for lever_arm_agreement()
+  MultiImuSignCheck imu_sign_check;
+  std::int64_t sample_count = 0, window_count = 0;
   int unclipped_windows =
-      kAccelerationWindows;  ///< windows since a gyro was clipped or an IMU absent, at most kAccelerationWindows
+      kAngularAccelerationWindows;  ///< windows since a gyro was clipped or an IMU absent, at most kAngularAccelerationWindows
   TimeNs last_time_ns = 0;
   bool all_frozen = false;  ///< all IMUs in the last window are frozen
   bool operator==(const ImuMergeState&) const = default;

@@ -34,24 +34,24 @@ class ImuPlausibility {
     }
   };
 
-  struct Repetition {
+  struct RepeatedReadingTime {
     Eigen::Vector3d reading = Eigen::Vector3d::Zero();
-    double repeated_s = 0.0, longest_s = 0.0, changing_duration_s = 0.0;
+    double repeated_s = 0.0, longest_s = 0.0, changing_readings_duration_s = 0.0;
     double frozen_s = 0.0;  ///< duration for which the sensor was frozen; 0: never frozen
-    bool operator==(const Repetition&) const = default;
+    bool operator==(const RepeatedReadingTime&) const = default;
   };
   struct State {
-    Repetition gyro, accel;
+    RepeatedReadingTime gyro, accel;
     ImuAverage average;
-    Eigen::Vector3d force_start_m_s2 = Eigen::Vector3d::Zero();
-    Eigen::Quaterniond gyro_rotation = Eigen::Quaterniond::Identity();  ///< rotation within the window, from the gyro
+    Eigen::Vector3d window_start_force_m_s2 = Eigen::Vector3d::Zero();
+    Eigen::Quaterniond gyro_rotation_in_window = Eigen::Quaterniond::Identity();  ///< rotation within the window, from the gyro
     double length_s = 0.0;
     bool window_started = false, force_is_constant = false;
     bool in_range = true;           ///< whether all samples of the window are within the gyro's range
-    double non_rest_force_s = 0.0;  ///< time with forces that exclude rest
-    double unexplained_rad2 = 0.0;  ///< rotation of the force that the gyro does not explain
-    double force_rotation_rad2 = 0.0, gyro_rotation_rad2 = 0.0;  ///< sums over windows with rotating specific force
-    double rotated_windows = 0.0;                                ///< number of windows with rotating specific force
+    double moving_force_duration_s = 0.0;  ///< time with forces that exclude rest
+    double unexplained_force_rotation_rad2 = 0.0;  ///< rotation of the force that the gyro does not explain
+    double force_rotation_square_sum_rad2 = 0.0, gyro_rotation_square_sum_rad2 = 0.0;  ///< sums over windows with rotating specific force
+    double rotated_window_count = 0.0;                                ///< number of windows with rotating specific force
     TimeNs last_time_ns = 0;
     bool started = false;
     bool operator==(const State&) const = default;
@@ -67,10 +67,10 @@ class ImuPlausibility {
   static void limit_memory(State& state);
 
   /// Returns the fraction of the specific force's rotation that the gyro does not explain, or 0 while unknown.
-  double unexplained_rotation_ratio(const State& state) const;
+  double unexplained_force_rotation_ratio(const State& state) const;
   /// Returns the slope of the regression of the specific force's rotation on the gyro's rotation: imu_merge.md (I20).
   /// The slope is 1 for a correct gyro, 2 for a half-scale gyro, -1 for an inverted gyro, and 1 while unknown.
-  double rotation_slope(const State& state) const;
+  double force_to_gyro_rotation_ratio(const State& state) const;
   /// Returns the correlation of the gyro's rotation with the specific force's rotation, from -1 to 1. The correlation
   /// is 1 for a gyro of any scale, -1 for an inverted gyro, about 0 for swapped axes, and 1 while unknown.
   double rotation_agreement(const State& state) const;
@@ -83,7 +83,7 @@ class ImuPlausibility {
  private:
   /// Returns whether an inverted or rescaled gyro would leave a far smaller residual.
   bool fits_better(const State& state) const;
-  void process_average(State& state) const;
+  void process_averaged_reading(State& state) const;
   void compare_rotations(const Eigen::Vector3d& force_m_s2, State& state) const;
 
   Params params_;

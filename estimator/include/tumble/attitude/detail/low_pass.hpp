@@ -15,23 +15,23 @@ struct LowPass {
   using Vector = Eigen::Matrix<double, Rows, 1>;
 
   Vector value = Vector::Zero();
-  Vector slope = Vector::Zero();  ///< derivative divided by the corner's angular frequency
+  Vector normalised_derivative = Vector::Zero();  ///< derivative divided by the corner's angular frequency
   Vector input = Vector::Zero();  ///< the last input
-  double averaged_s = 0.0;
+  double averaged_duration_s = 0.0;
   double samples = 0.0;
 
   /// `dt_s` is the time since the previous input, and `warp` is the result of low_pass_prewarp().
   void advance(const Vector& next, double tau_s, double dt_s, double warp) {
-    if (averaged_s < tau_s) {
+    if (averaged_duration_s < tau_s) {
       samples += 1.0;
-      averaged_s += dt_s;
+      averaged_duration_s += dt_s;
       value += (next - value) / samples;
     } else {
       const double damping = std::numbers::sqrt2 * warp;
       const Vector rise =
-          ((1.0 - damping - warp * warp) * slope + warp * (input + next - 2.0 * value)) / (1.0 + damping + warp * warp);
-      value += warp * (slope + rise);
-      slope = rise;
+          ((1.0 - damping - warp * warp) * normalised_derivative + warp * (input + next - 2.0 * value)) / (1.0 + damping + warp * warp);
+      value += warp * (normalised_derivative + rise);
+      normalised_derivative = rise;
     }
     input = next;
   }

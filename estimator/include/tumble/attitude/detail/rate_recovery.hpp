@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "tumble/angular_velocity/detail/rail_plane.hpp"
+#include "tumble/angular_velocity/detail/saturation_plane.hpp"
 #include "tumble/common/imu.hpp"
 
 namespace tumble {
@@ -15,15 +15,15 @@ namespace tumble {
 /// extended Kalman filter estimates rate, angular acceleration, the specific force at the mean position of the IMUs,
 /// and the error of each lever arm. Readings that are flagged as clipped or beyond the range are lower bounds.
 ///
-/// RateRecovery neglects scale errors, and calibrates the lever arms relative to the gyro's scale. IMUs at one position
+/// AngularRateRecovery neglects scale errors, and calibrates the lever arms relative to the gyro's scale. IMUs at one position
 /// provide no information about the rate.
-class RateRecovery {
+class AngularRateRecovery {
  public:
-  static constexpr int kUnits = 4;
-  static constexpr int kStates = 9 + 3 * kUnits;
+  static constexpr int kImus = 4;
+  static constexpr int kStates = 9 + 3 * kImus;
   /// duration of a reading for which ReadingNoise holds; shorter readings have more noise
-  static constexpr double kReading_s = 4e-3;
-  static constexpr double kActiveRangeRatio = 0.5;  ///< fraction of the gyro's range above which the filter runs
+  static constexpr double kReadingInterval_s = 4e-3;
+  static constexpr double kMinSaturatedRangeFraction = 0.5;  ///< fraction of the gyro's range above which the filter runs
   using Vector = Eigen::Matrix<double, kStates, 1>;
   using Covariance = Eigen::Matrix<double, kStates, kStates>;
 
@@ -34,7 +34,7 @@ class RateRecovery {
     double force_share = 0.004;  ///< additional noise, as a fraction of the reading; bound [0, 1]
   };
   struct Params {
-    std::array<Eigen::Isometry3d, kUnits> T_CI{};   ///< poses of the IMUs relative to their mean position
+    std::array<Eigen::Isometry3d, kImus> T_mean_imu{};   ///< poses of the IMUs relative to their mean position
     int count = 1;                                  ///< bound [1, kUnits]
     double gyro_range_rad_s = 1e3;                  ///< readings at or above this rate are saturated; bound (0, 1e3]
     double accel_range_m_s2 = 1e5;                  ///< bound (0, 1e5]
@@ -44,18 +44,18 @@ class RateRecovery {
     double recovered_sigma_rad_s = 1.0;  ///< rates with a larger standard deviation remain clipped; bound (0, 1e3]
     ReadingNoise noise;
     /// sensing directions, along which the unsaturated elements of a clipped sensor are used
-    std::array<SensingDirections, kUnits> gyro_elements{}, accel_elements{};
+    std::array<SensingDirections, kImus> gyro_sensing_directions{}, accel_sensing_directions{};
   };
   struct State {
     Vector x = Vector::Zero();  ///< rate, angular acceleration, force, lever arm errors (axes C)
-    Covariance P = Covariance::Zero();
+    Covariance error_covariance = Covariance::Zero();
     bool started = false;  ///< true if the filter has been initialised
     bool running = false;
     bool operator==(const State&) const = default;
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.
-  explicit RateRecovery(const Params& params);
+  explicit AngularRateRecovery(const Params& params);
 
   /// `dt_s` is the time since the previous readings; each IMU's readings are in its own axes. IMUs whose readings are
   /// not finite are ignored. `merged` contains the mean of the used IMUs in axes C, and receives the recovered rate and

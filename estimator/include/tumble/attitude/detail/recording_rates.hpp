@@ -13,34 +13,34 @@
 
 namespace tumble {
 
-/// Returns `ok`, or an error of align() or RegimeSmoother::estimate().
+/// Returns `ok`, or an error of align() or MotionRegimeSmoother::estimate().
 Status estimate_rates(std::span<const ImuSample> samples, std::span<const AuxiliaryRecording> auxiliary_imus,
-                      const RegimeSmoother::Params& params, std::vector<RateState>& rates,
-                      RegimeSmoother::Report& report);
+                      const MotionRegimeSmoother::Params& params, std::vector<AngularRateState>& rates,
+                      MotionRegimeSmoother::Report& report);
 
 /// Recording with replaced gyro readings, for methods that need gyro readings instead of rates.
 struct RecoveredRates {
   std::vector<ImuSample> samples;  ///< the recording with replaced gyro readings
   std::vector<Eigen::Matrix3d>
       covariances_rad2_s2;          ///< one covariance per sample, in sensor axes; zero for unmodified readings
-  std::vector<RateSource> sources;  ///< one per sample; all `measured` if no rate was estimated
-  bool estimated = false;           ///< a reading clips, and RegimeSmoother estimated the rates
-  std::size_t replaced = 0;         ///< number of clipped or suspect readings that were replaced
-  RegimeSmoother::Report report;    ///< valid if `estimated`
-  SaturationLevels rails;
+  std::vector<AngularRateSource> sources;  ///< one per sample; all `measured` if no rate was estimated
+  bool estimated = false;           ///< a reading clips, and MotionRegimeSmoother estimated the rates
+  std::size_t replaced_reading_count = 0;         ///< number of clipped or suspect readings that were replaced
+  MotionRegimeSmoother::Report report;    ///< valid if `estimated`
+  SaturationLevels saturation_levels;
 };
 
-enum class ReplacedReadings : std::uint8_t {
+enum class ReadingsToReplace : std::uint8_t {
   clipped,  ///< readings with a clipped axis
   /// readings with a clipped or suspect axis; all readings if the gyro updates more slowly than the log
-  unreliable,
+  unreliable_readings,
 };
 
 /// Replaces clipped gyro readings by estimated rates plus the gyro bias, so that replaced and original readings have
 /// equal bias. All three axes of a reading are replaced, because a tilted plane of saturated readings also corrupts the
-/// unclipped axes. If no reading clips or the estimation fails, all readings remain. With `unreliable`, the readings of
+/// unclipped axes. If no reading clips or the estimation fails, all readings remain. With `unreliable_readings`, the readings of
 /// a gyro that updates more slowly than the log are still interpolated. Cost: O(N).
 RecoveredRates recover_rates(std::span<const ImuSample> samples, std::span<const AuxiliaryRecording> auxiliary_imus,
-                             const RegimeSmoother::Params& params, ReplacedReadings replaced);
+                             const MotionRegimeSmoother::Params& params, ReadingsToReplace replaced);
 
 }  // namespace tumble

@@ -7,9 +7,9 @@
 
 namespace tumble {
 
-/// Parameters that RegimeSmoother and RegimeStream share.
+/// Parameters that MotionRegimeSmoother and MotionRegimeStream share.
 struct RegimeParams {
-  RegimeEvidence::Params evidence;
+  MotionRegimeEvidence::Params evidence;
   SpinTracker::Params spin;
   double hand_held_probability_min = 0.02;  ///< minimum probability of hand-held motion for which its estimator runs
   double segment_gap_max_s = 0.1;           ///< clipped samples closer together than this form one segment

@@ -14,18 +14,18 @@
 namespace tumble {
 
 /// Estimates the angular velocity of a body in flight, in contact or hand-held, sample by sample, with a fixed lag.
-/// RateStream estimates the rates for flight and contact, and detects the saturation limits. Where the body is probably
-/// hand-held while the gyro clips, HandHeldStream estimates the rates for hand-held motion. RegimeStream combines the
-/// rates of RateStream and HandHeldStream by the probability of hand-held motion. An unclipped sample always has the
-/// rate of RateStream.
+/// AngularRateStream estimates the rates for flight and contact, and detects the saturation limits. Where the body is probably
+/// hand-held while the gyro clips, HandHeldRateStream estimates the rates for hand-held motion. MotionRegimeStream combines the
+/// rates of AngularRateStream and HandHeldRateStream by the probability of hand-held motion. An unclipped sample always has the
+/// rate of AngularRateStream.
 /// SpinTracker replaces the rate of a saturated axis during a steady spin.
 ///
-/// HandHeldStream runs only while the probability of hand-held motion is at least `hand_held_probability_min`.
-class RegimeStream {
+/// HandHeldRateStream runs only while the probability of hand-held motion is at least `hand_held_probability_min`.
+class MotionRegimeStream {
  public:
   struct Params : RegimeParams {
-    RateStream::Params rate;
-    HandHeldStream::Params hand_held;  ///< `rate` overrides `period_s` and `lag_s`
+    AngularRateStream::Params rate;
+    HandHeldRateStream::Params hand_held;  ///< `rate` overrides `period_s` and `lag_s`
 
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
@@ -34,64 +34,64 @@ class RegimeStream {
       RegimeParams::fields(p, visit);
     }
   };
-  struct ReportedProbability {
+  struct ReportedRegimeProbability {
     TimeNs time_ns = 0;
     double hand_held = 0.0;
   };
   struct State {
-    RateStream::State rate;
-    HandHeldStream::State hand_held;
+    AngularRateStream::State rate;
+    HandHeldRateStream::State hand_held;
     SpinTracker::State spin;
     std::size_t spin_samples = 0;  ///< number of reported saturated samples that are probably in a steady spin
-    std::vector<ClipSigns> signs;  ///< clip signs of RateStream's window; buffer
+    std::vector<ClipSigns> clip_signs;  ///< clip signs of AngularRateStream's window; buffer
     RegimeProbabilities probabilities{1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0};
-    RegimeProbabilities sum{};         ///< sum over all reported samples
-    std::size_t reported = 0;          ///< number of reported samples
-    std::size_t combined_samples = 0;  ///< number of reported samples combined with HandHeldStream
-    std::size_t starts = 0;            ///< number of starts of HandHeldStream
-    std::size_t rig_resets = 0;        ///< last value of RateStream's counter of calibration resets
-    double resets = 0.0;  ///< number of calibration resets of RateStream, decaying with the time constant `rate.lag_s`
-    bool hand_held_running = false;  ///< true if HandHeldStream is running
+    RegimeProbabilities regime_probability_sum{};         ///< sum over all reported samples
+    std::size_t reported_sample_count = 0;          ///< number of reported samples
+    std::size_t combined_samples = 0;  ///< number of reported samples combined with HandHeldRateStream
+    std::size_t hand_held_start_count = 0;            ///< number of starts of HandHeldRateStream
+    std::size_t calibration_reset_count = 0;        ///< last value of AngularRateStream's counter of calibration resets
+    double calibration_reset_rate = 0.0;  ///< number of calibration resets of AngularRateStream, decaying with the time constant `rate.lag_s`
+    bool hand_held_stream_running = false;  ///< true if HandHeldRateStream is running
     /// probabilities of hand-held motion in the last `segment_gap_max_s`; the oldest entry is the smallest
-    std::vector<ReportedProbability> near;
+    std::vector<ReportedRegimeProbability> recent_probabilities;
     TimeNs reported_ns = 0;            ///< time of the last reported sample
     std::optional<TimeNs> clipped_ns;  ///< last reported clipped sample
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.
-  explicit RegimeStream(const Params& params);
+  explicit MotionRegimeStream(const Params& params);
 
   /// The returned state has all memory that push() needs.
   State start() const;
 
-  /// Processes one sample like RateStream::push(), and combines the rates of RateStream and HandHeldStream.
+  /// Processes one sample like AngularRateStream::push(), and combines the rates of AngularRateStream and HandHeldRateStream.
   Status push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
-              std::optional<RateState>& out) const;
-  Status push(const ImuSample& sample, State& state, std::optional<RateState>& out) const {
+              std::optional<AngularRateState>& out) const;
+  Status push(const ImuSample& sample, State& state, std::optional<AngularRateState>& out) const {
     return push(sample, {}, state, out);
   }
 
   /// Appends the rates of the samples in the window that were not yet reported, oldest first.
-  void flush(const State& state, std::vector<RateState>& out) const;
+  void flush(const State& state, std::vector<AngularRateState>& out) const;
 
-  const RateStream& rate() const { return rate_; }
+  const AngularRateStream& rate() const { return rate_; }
   const Params& params() const { return params_; }
 
  private:
-  ClippedElements update_clip_signs(State& state) const;
-  std::size_t index_of(const RateState& rate, const State& state) const;
+  SensingAxisClipSigns update_clip_signs(State& state) const;
+  std::size_t index_of(const AngularRateState& rate, const State& state) const;
   bool calibration_is_unstable(const State& state) const;
-  RegimeProbabilities next(const RegimeProbabilities& before, double dt_s, std::span<const RateStream::Knot> window,
+  RegimeProbabilities next(const RegimeProbabilities& before, double dt_s, std::span<const AngularRateStream::Knot> window,
                            std::size_t k, const RigCalibration& rig, bool unstable) const;
-  void update_probabilities(const RateState& rate, State& state) const;
-  double hand_held_weight(const RateState& rate, State& state) const;
-  void flush_hand_held(std::span<RateState> out, State& last) const;
-  SpinRate track_spin(const RateState& rate, State& state) const;
+  void update_probabilities(const AngularRateState& rate, State& state) const;
+  double hand_held_weight(const AngularRateState& rate, State& state) const;
+  void flush_hand_held_rates(std::span<AngularRateState> out, State& last) const;
+  SpinRate track_spin(const AngularRateState& rate, State& state) const;
 
   Params params_;
-  RateStream rate_;
-  RegimeEvidence evidence_;
-  HandHeldStream hand_held_;
+  AngularRateStream rate_;
+  MotionRegimeEvidence regime_evidence_;
+  HandHeldRateStream hand_held_;
   SpinTracker spin_;
 };
 

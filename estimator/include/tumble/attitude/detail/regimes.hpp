@@ -25,9 +25,9 @@ struct RegimeProbabilities {
 /// contact, the residual force can have any magnitude. A Markov chain models the transitions between flight, contact
 /// and hand-held motion. Readings within `memory_s` count as one independent observation.
 ///
-/// RegimeEvidence does not use the attitude. RegimeEvidence does not model ropes, buoyancy, and aerodynamic forces
+/// MotionRegimeEvidence does not use the attitude. MotionRegimeEvidence does not model ropes, buoyancy, and aerodynamic forces
 /// above `flight_force_sigma_m_s2`.
-class RegimeEvidence {
+class MotionRegimeEvidence {
  public:
   struct Params {
     double gravity_m_s2 = 9.80665;
@@ -70,28 +70,28 @@ class RegimeEvidence {
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.
-  explicit RegimeEvidence(const Params& params);
+  explicit MotionRegimeEvidence(const Params& params);
 
   /// `rates` contains the angular velocity of each sample, estimated for flight and contact. `lever_arm_m` is the
   /// vector from the centre of mass to the IMU, in IMU axes. Returns `ok`, `empty` if there are no samples, or
   /// `out_of_range` if `rates` does not have one element per sample. Cost: O(N).
-  Status find(std::span<const ImuSample> samples, std::span<const RateState> rates, const Eigen::Vector3d& lever_arm_m,
+  Status find(std::span<const ImuSample> samples, std::span<const AngularRateState> rates, const Eigen::Vector3d& lever_arm_m,
               const Eigen::Matrix3d& lever_arm_covariance_m2, std::vector<RegimeProbabilities>& out) const;
 
   /// Returns the probabilities at `sample`, which is `dt_s` later than the probabilities `before`.
   /// `angular_acceleration_rad_s2` is the time derivative of the rate, in IMU axes. Cost: O(1).
   RegimeProbabilities next(const RegimeProbabilities& before, double dt_s, const ImuSample& sample,
-                           const RateState& rate, const Eigen::Vector3d& angular_acceleration_rad_s2,
+                           const AngularRateState& rate, const Eigen::Vector3d& angular_acceleration_rad_s2,
                            const Eigen::Vector3d& lever_arm_m, const Eigen::Matrix3d& lever_arm_covariance_m2) const;
 
  private:
-  Eigen::Vector3d likelihood(double dt_s, const ImuSample& sample, const RateState& rate, const Eigen::Vector3d& alpha,
+  Eigen::Vector3d likelihood(double dt_s, const ImuSample& sample, const AngularRateState& rate, const Eigen::Vector3d& alpha,
                              const Eigen::Vector3d& lever_arm_m, double lever_arm_variance_m2) const;
   Params params_;
 };
 
 /// Combines two estimates of a rate, where `share` is the probability that `second` is correct. The result has the mean
 /// of the more probable estimate, and a covariance that includes the difference between both estimates.
-RateState mix_rate_states(const RateState& first, const RateState& second, double share);
+AngularRateState mix_rate_states(const AngularRateState& first, const AngularRateState& second, double share);
 
 }  // namespace tumble

@@ -39,57 +39,57 @@ class RestGravity {
             {"accel_range_m_s2", "m/s^2", 0.0, kUnbounded, "range stated by the device; 0: not stated"});
     }
   };
-  struct MagnitudeState {
-    RestDetector::State rest, weightless, above_gravity;
-    double rest_s = 0.0, force_sum_m = 0.0;  ///< total duration of rests, and integral of the specific force at rest
+  struct GravityMagnitudeState {
+    RestDetector::State stationary_state, stationary_weightless, stationary_above_gravity;
+    double rest_s = 0.0, stationary_force_integral_m_s = 0.0;  ///< total duration of rests, and integral of the specific force at rest
     double weightless_s = 0.0;               ///< duration of rests without force
     TimeNs last_time_ns = 0;
-    bool started = false, rests = false;
-    bool operator==(const MagnitudeState&) const = default;
+    bool started = false, is_stationary = false;
+    bool operator==(const GravityMagnitudeState&) const = default;
   };
-  struct State : MagnitudeState {
+  struct State : GravityMagnitudeState {
     Eigen::Vector3d last_rest_force_m_s2 =
         Eigen::Vector3d::Zero();  ///< force at the last rest in sensor axes; 0: no rest yet
     Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< rotation since the last rest
-    double span_angle_rad = 0.0, variance_rad2 = 0.0;  ///< angle since the last rest, and variance of its error
-    Eigen::Vector3d velocity_sum_m_s = Eigen::Vector3d::Zero();  ///< integrated force since the last rest
+    double angle_since_last_rest_rad = 0.0, angle_variance_rad2 = 0.0;  ///< angle since the last rest, and variance of its error
+    Eigen::Vector3d integrated_force_m_s = Eigen::Vector3d::Zero();  ///< integrated force since the last rest
     double span_s = 0.0,
-           saturation_deficit_m_s = 0.0;           ///< time since the last rest; integrated saturation deficit
-    double segment_s = 0.0, segment_rad2_s = 0.0;  ///< duration and variance of the current run of unmeasured samples
-    double velocity_error_ratio = 0.0, velocity_error_ratio_max = 0.0;  ///< velocity error of the worst pair, and limit
-    std::size_t spans = 0;                                              ///< number of compared pairs of rests
+           integrated_saturation_deficit_m_s = 0.0;           ///< time since the last rest; integrated saturation deficit
+    double unmeasured_duration_s = 0.0, unmeasured_rotation_variance = 0.0;  ///< duration and variance of the current run of unmeasured samples
+    double worst_velocity_error_ratio = 0.0, worst_pair_error_limit = 0.0;  ///< velocity error of the worst pair, and limit
+    std::size_t compared_rest_pairs = 0;                                              ///< number of compared pairs of rests
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RestGravity(const Params& params);
 
   /// Cost: O(1), no allocation. Samples that are not finite or out of order are ignored.
-  void step(const ImuSample& sample, const RateState& rate, State& state) const;
+  void step(const ImuSample& sample, const AngularRateState& rate, State& state) const;
   /// Checks only the magnitude of the specific force at rest.
-  void step(const ImuSample& sample, MagnitudeState& state) const { (void)follow(sample, state); }
+  void step(const ImuSample& sample, GravityMagnitudeState& state) const { (void)detect_stationary_periods(sample, state); }
 
   /// Reduces the weight of old rests to a minute, so that a warning ends after its cause.
-  static void limit_memory(MagnitudeState& state);
+  static void limit_memory(GravityMagnitudeState& state);
 
   /// Returns the mean magnitude of the specific force at rest as a fraction of gravity. Returns 0 if every rest of a
   /// second was without force, and 1 if the body never rested.
-  double magnitude_error_ratio(const MagnitudeState& state) const;
-  /// Returns `out_of_range` if magnitude_error_ratio() differs from 1 by more than `error_max`.
-  Status magnitude_verdict(const MagnitudeState& state, double error_max = kMagnitudeErrorMax) const;
-  /// Returns the error of magnitude_verdict(), if any. Otherwise returns `out_of_range` if the velocity, integrated
+  double gravity_magnitude_error_ratio(const GravityMagnitudeState& state) const;
+  /// Returns `out_of_range` if gravity_magnitude_error_ratio() differs from 1 by more than `error_max`.
+  Status gravity_magnitude_verdict(const GravityMagnitudeState& state, double error_max = kMagnitudeErrorMax) const;
+  /// Returns the error of gravity_magnitude_verdict(), if any. Otherwise returns `out_of_range` if the velocity, integrated
   /// between two rests, contradicts zero velocity at both rests.
   Status verdict(const State& state) const;
 
  private:
-  enum class Continuity { unrelated, after_gap, directly };
+  enum class SampleContinuity { not_comparable, after_gap, consecutive };
   struct Step {
-    Continuity follows = Continuity::unrelated;
+    SampleContinuity continuity = SampleContinuity::not_comparable;
     double dt_s = 0.0;
   };
-  Step follow(const ImuSample& sample, MagnitudeState& state) const;
-  void integrate_rotation(const ImuSample& sample, const RateState& rate, double dt_s, State& state) const;
+  Step detect_stationary_periods(const ImuSample& sample, GravityMagnitudeState& state) const;
+  void integrate_rotation(const ImuSample& sample, const AngularRateState& rate, double dt_s, State& state) const;
   void end_segment(State& state) const;
-  void finish_span(State& state) const;
+  void finish_rest_pair(State& state) const;
 
   Params params_;
   RestDetector detector_, weightless_, above_gravity_;

@@ -24,7 +24,7 @@ struct SpinRate {
 template <int N>
 struct SpinFilter {
   Eigen::Matrix<double, N, 1> x = Eigen::Matrix<double, N, 1>::Zero();
-  Eigen::Matrix<double, N, N> P = Eigen::Matrix<double, N, N>::Zero();
+  Eigen::Matrix<double, N, N> covariance = Eigen::Matrix<double, N, N>::Zero();
   double variance_ratio = 1.0;  ///< ratio of the measured to the assumed variance of the readings across the spin axis
 };
 
@@ -79,7 +79,7 @@ class SpinTracker {
   /// Hypotheses are a steady spin and readings without relation to the spin.
   template <int N>
   struct Hypotheses {
-    SpinFilter<N> spin, independent;
+    SpinFilter<N> spin, independent_filter;
     double probability = 0.0;           ///< probability of a steady spin
     double measured_probability = 0.0;  ///< `probability` at the last sample with an unsaturated spin axis
   };
@@ -104,12 +104,12 @@ class SpinTracker {
   /// Combines a rate with the rate of the spin by the probability of a steady spin. The result equals `rate` if the
   /// spin axis is unsaturated, or if the probability is below `probability_min`. The result also equals `rate` if
   /// further IMUs measured `rate` (`further_imus`) with a smaller variance.
-  RateState combine(const RateState& rate, const SpinRate& spin, bool further_imus = false) const;
+  AngularRateState combine_with_spin_rate(const AngularRateState& rate, const SpinRate& spin, bool further_imus = false) const;
 
  private:
-  bool select_axis(const ImuSample& sample, State& state) const;
+  bool select_spin_axis(const ImuSample& sample, State& state) const;
   template <class Model, class Recorder>
-  SpinRate advance(const Model& model, const ImuSample& sample, std::uint8_t saturated_axes, double dt_s, bool first,
+  SpinRate advance_spin_filter(const Model& model, const ImuSample& sample, std::uint8_t saturated_axes, double dt_s, bool first,
                    int axis, Hypotheses<Model::kStates>& hypotheses, const Recorder& record) const;
 
   Params params_;

@@ -9,6 +9,6 @@ namespace tumble {
 
 /// On error, returns the status of check_stamp_order() and leaves `dt_s` unchanged. No pair of time stamps causes an
 /// overflow if `gap_max_s` is at most 1e9.
-Status elapsed(TimeNs time_ns, TimeNs last_time_ns, double gap_max_s, double& dt_s);
+Status elapsed_time_since_last(TimeNs time_ns, TimeNs last_time_ns, double gap_max_s, double& dt_s);
 
 }  // namespace tumble

@@ -34,20 +34,20 @@ struct TumbleAttitudeParams {
     visit(p.gyro_noise_rad_sqrts,
           {"gyro_noise_rad_sqrts", "rad/sqrt(s)", 1e-12, 1.0,
            "angle random walk of the gyro, including unmodelled errors; a larger value gives gyro readings less weight",
-           FieldRank::basic});
+           ParameterRank::common_use});
     visit(p.rate_error_sqrts,
           {"rate_error_sqrts", "sqrt(s)", 0.0, 1.0,
-           "angle random walk per rad/s of rate, caused by scale and timing errors", FieldRank::basic});
+           "angle random walk per rad/s of rate, caused by scale and timing errors", ParameterRank::common_use});
     visit(p.bias_sigma_start_rad_s,
-          {"bias_sigma_start_rad_s", "rad/s", 0.0, 1.0, "prior standard deviation of the gyro bias", FieldRank::basic});
+          {"bias_sigma_start_rad_s", "rad/s", 0.0, 1.0, "prior standard deviation of the gyro bias", ParameterRank::common_use});
     visit(p.velocity_m_sqrts, {"velocity_m_sqrts", "m/sqrt(s)", 1e-12, 1e3,
-                               "standard deviation of the mean velocity over 1 s of motion", FieldRank::basic});
+                               "standard deviation of the mean velocity over 1 s of motion", ParameterRank::common_use});
     visit(p.displacement_m_sqrts, {"displacement_m_sqrts", "m sqrt(s)", 1e-12, 1e3,
-                                   "standard deviation of the mean displacement over 1 s", FieldRank::basic});
+                                   "standard deviation of the mean displacement over 1 s", ParameterRank::common_use});
     visit(p.motion_tau_s,
           {"motion_tau_s", "s", 1e-3, 1e4,
            "correlation time of the body's velocity and displacement; also the averaging time of their magnitudes",
-           FieldRank::basic});
+           ParameterRank::common_use});
     visit(p.radius_m, {"radius_m", "m", 0.0, 10.0, "radius of the sphere"});
     visit(p.lever_arm_m, {"lever_arm_m", "m", -10.0, 10.0, "lever arm from the centre to the IMU, sensor axes"});
     visit.group("", p.expert);
@@ -101,21 +101,21 @@ class TumbleAttitude {
 
  private:
   void start(State& state) const;
-  void process_average(State& state) const;
-  bool rotates_within_bias(const State& state) const;
+  void process_averaged_reading(State& state) const;
+  bool rotates_within_gyro_bias(const State& state) const;
   void integrate(const ImuSample& sample, double dt_s, State& state) const;
   void bridge_gap(const ImuSample& after, const Eigen::Matrix3d& rate_covariance_rad2_s2, double gap_s,
                   State& state) const;
-  void add_recovered(double dt_s, State& state) const;
+  void add_recovered_rate_variance(double dt_s, State& state) const;
   void end_node(State& state) const;
   void predict_node(State& state) const;
-  void correct_node(State& state) const;
+  void correct_with_mean_force(State& state) const;
   void align(const Eigen::Quaterniond& corrected, State& state) const;
   void restart(const Eigen::Quaterniond& levelling, double tilt_rad2, double velocity_m2_s2, State& state) const;
   double body_velocity_variance_m2_s2(double power_m2_s2, const State& state) const;
   Eigen::Vector2d velocity_from_rotation(const State& state) const;
-  void correct_body(const Eigen::Vector2d& turned_m_s, State& state) const;
-  double motion_variance(const Eigen::Vector2d& misfit, int index, double sigma_sqrts, double power,
+  void correct_body_motion(const Eigen::Vector2d& turned_m_s, State& state) const;
+  double body_motion_variance(const Eigen::Vector2d& misfit, int index, double sigma_sqrts, double power,
                          const State& state) const;
   bool detect_slip(const Eigen::Vector2d& misfit_m_s, State& state) const;
 

@@ -48,7 +48,7 @@ struct TumbleAttitudeExpertParams {
   /// time of 0 disables averaging.
   double reading_s = 4e-3;
   double gap_max_s = 1.0;
-  RestDetector::Params rest = {.rate_max_rad_s = 3.4907e-2,
+  RestDetector::Params rest_detector = {.rate_max_rad_s = 3.4907e-2,
                                .rate_spread_rad_s = 3.4907e-2,
                                .force_spread_m_s2 = 0.5,
                                .rest_s = 1.0,
@@ -63,7 +63,7 @@ struct TumbleAttitudeExpertParams {
     visit(p.node_s, {"node_s", "s", 1e-4, 1.0, "time between two filter corrections"});
     visit(p.reading_s, {"reading_s", "s", 0.0, 0.1, "duration over which readings are averaged; 0: no averaging"});
     visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap causes an error"});
-    visit.group("rest_", p.rest);
+    visit.group("rest_", p.rest_detector);
     visit.group("", p.at_rest);
     visit.group("", p.gap);
   }

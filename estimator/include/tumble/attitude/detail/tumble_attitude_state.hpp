@@ -23,20 +23,20 @@ struct TumbleAttitudeState {
   Covariance covariance = Covariance::Zero();
   ImuAverage average;  ///< average of the readings that are not yet processed
   Eigen::Matrix3d recovered_covariance_rad2_s2 = Eigen::Matrix3d::Zero();  ///< mean rate covariance in `average`
-  Eigen::Quaterniond q_processed_WI = Eigen::Quaterniond::Identity();      ///< attitude at the last processed average
+  Eigen::Quaterniond last_processed_q_WI = Eigen::Quaterniond::Identity();      ///< attitude at the last processed average
   // integrals since the last node
-  Eigen::Matrix3d R_WI_s = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d integrated_rotation_matrix_s = Eigen::Matrix3d::Zero();
   Eigen::Vector3d force_integral_W_m_s = Eigen::Vector3d::Zero();
   double squared_rate_integral_rad2_s = 0.0;
-  Eigen::Vector2d recovered_variance_rad2 =
+  Eigen::Vector2d recovered_angle_variance_rad2 =
       Eigen::Vector2d::Zero();  ///< variances of tilt and heading due to recovered rates
-  double node_s = 0.0;
-  Eigen::Vector2d recovered_sigma_sum_rad =
+  double time_since_node_s = 0.0;
+  Eigen::Vector2d recovered_angle_sigma_sum_rad =
       Eigen::Vector2d::Zero();        ///< sum of the standard deviations of recovered rates
-  double velocity_power_m2_s2 = 0.0;  ///< variance of the body's velocity, per axis
-  double displacement_power_m2 = 0.0;
+  double velocity_variance_m2_s2 = 0.0;  ///< variance of the body's velocity, per axis
+  double displacement_variance_m2 = 0.0;
   CoarseAlignment alignment;
-  RestDetector::State rest;
+  RestDetector::State stationary_state;
   bool at_rest = false;
   // state of a rolling sphere
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();  ///< rate of the last sample, minus the bias

@@ -24,13 +24,13 @@ struct VqfParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.tau_s,
           {"tau_s", "s", 1e-3, 1e4, "time constant of the low-pass filter on the specific force in the inertial frame",
-           FieldRank::basic});
+           ParameterRank::common_use});
     visit(p.rest_bias_estimation,
-          switch_field("rest_bias_estimation", "1: estimate the gyro bias at rest", FieldRank::basic));
+          boolean_field("rest_bias_estimation", "1: estimate the gyro bias at rest", ParameterRank::common_use));
     visit(p.motion_bias_estimation,
-          switch_field("motion_bias_estimation", "1: also estimate the gyro bias in motion", FieldRank::basic));
+          boolean_field("motion_bias_estimation", "1: also estimate the gyro bias in motion", ParameterRank::common_use));
     visit(p.bias_sigma_start_rad_s, {"bias_sigma_start_rad_s", "rad/s", 1e-9, 1.0,
-                                     "prior standard deviation of the gyro bias", FieldRank::basic});
+                                     "prior standard deviation of the gyro bias", ParameterRank::common_use});
     visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap causes an error"});
   }
 };
@@ -46,12 +46,12 @@ class Vqf {
   using Params = VqfParams;
   struct State {
     Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();  ///< estimated attitude, q_WN * q_NI
-    Eigen::Quaterniond q_NI =
+    Eigen::Quaterniond attitude_without_correction =
         Eigen::Quaterniond::Identity();  ///< attitude from the gyro only, with the bias subtracted
-    Eigen::Quaterniond q_WN = Eigen::Quaterniond::Identity();
+    Eigen::Quaterniond inclination_correction = Eigen::Quaterniond::Identity();
     Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();
     Eigen::Matrix3d bias_covariance_rad2_s2 = Eigen::Matrix3d::Zero();
-    LowPass<3> f_N_m_s2;
+    LowPass<3> filtered_specific_force_m_s2;
     LowPass<9> R_WI;          ///< rotation matrix by columns, low-passed like the specific force
     LowPass<2> bias_W_rad_s;  ///< horizontal bias in world axes, low-passed like the specific force
     LowPass<3> rest_rate_rad_s;

@@ -15,7 +15,7 @@ namespace tumble {
 ///     |     E1' D2 ...  B2 |
 ///     | B0' B1' B2' ..  C  |
 template <int State, int Border>
-struct ArrowSystem {
+struct BlockArrowSystem {
   using StateMatrix = Eigen::Matrix<double, State, State>;
   using StateVector = Eigen::Matrix<double, State, 1>;
   using CrossMatrix = Eigen::Matrix<double, State, Border>;
@@ -24,58 +24,58 @@ struct ArrowSystem {
 
   /// Before elimination, a block row contains D, E, B and g of the matrix above. After elimination, the block row
   /// contains L^-1, L^-1 E, L^-1 B and L^-1 g, with D = L L'.
-  struct Block {
+  struct StateBlock {
     StateMatrix diagonal = StateMatrix::Zero();
-    StateMatrix coupling = StateMatrix::Zero();  ///< coupling of this block (rows) to the next block (columns)
-    CrossMatrix border = CrossMatrix::Zero();
+    StateMatrix coupling_to_next_state = StateMatrix::Zero();  ///< coupling of this block (rows) to the next block (columns)
+    CrossMatrix border_coupling = CrossMatrix::Zero();
     StateVector gradient = StateVector::Zero();
   };
 
   /// border block C and its gradient; after elimination, the Schur complements of both
-  struct Corner {
+  struct BorderBlock {
     BorderMatrix matrix = BorderMatrix::Zero();
     BorderVector gradient = BorderVector::Zero();
   };
 
   /// distribution of a block for a known border: covariance, and derivative of the mean by the border
-  struct Conditional {
+  struct StateGivenNextState {
     StateMatrix state;
-    CrossMatrix jacobian_border;
+    CrossMatrix border_jacobian;
   };
 
   /// posterior covariance of a block, and its cross-covariance with the border
-  struct Marginal {
+  struct MarginalDistribution {
     StateMatrix state;
-    CrossMatrix cross;
+    CrossMatrix cross_covariance;
   };
 
   /// Eliminates `block`, and adds its Schur complement to the corner and to `next` (null for the last block). Returns
   /// false if the block is not positive definite.
-  static bool eliminate(Block& block, Block* next, Corner& corner);
+  static bool eliminate(StateBlock& block, StateBlock* next, BorderBlock& corner);
 
   /// Computes the step of the border and its covariance, after all blocks are eliminated. Returns false if the corner
   /// is not positive definite.
-  static bool solve_corner(const Corner& corner, BorderVector& step, BorderMatrix& covariance);
+  static bool solve_border_block(const BorderBlock& corner, BorderVector& step, BorderMatrix& covariance);
 
   /// Returns the step of an eliminated block from the steps of the next block (null for the last block) and of the
   /// border.
-  static StateVector back_substitute(const Block& block, const StateVector* next_step, const BorderVector& border_step);
+  static StateVector back_substitute(const StateBlock& block, const StateVector* next_step, const BorderVector& border_step);
 
   /// `next` is null for the last block.
-  static Conditional back_conditional(const Block& block, const Conditional* next);
+  static StateGivenNextState state_given_next_state(const StateBlock& block, const StateGivenNextState* next);
 
   /// Returns the covariance of a block, including the uncertainty of the border.
-  static Marginal marginal(const Conditional& conditional, const BorderMatrix& border_covariance);
+  static MarginalDistribution marginal(const StateGivenNextState& conditional, const BorderMatrix& border_covariance);
 
  private:
-  static bool invert_factor(StateMatrix& a);
-  static void subtract_square(const CrossMatrix& border, BorderMatrix& corner);
+  static bool invert_cholesky_factor(StateMatrix& a);
+  static void subtract_squared_coupling(const CrossMatrix& border, BorderMatrix& corner);
 };
 
 // Replaces `a` with the inverse of its Cholesky factor. For small blocks, plain loops over columns are several times
 // faster than Eigen's general triangular solvers.
 template <int State, int Border>
-bool ArrowSystem<State, Border>::invert_factor(StateMatrix& a) {
+bool BlockArrowSystem<State, Border>::invert_cholesky_factor(StateMatrix& a) {
   StateMatrix L = a;
   StateVector over_pivot;
   for (int j = 0; j < State; ++j) {
@@ -103,7 +103,7 @@ bool ArrowSystem<State, Border>::invert_factor(StateMatrix& a) {
 
 // Computes only one triangle of the symmetric product.
 template <int State, int Border>
-void ArrowSystem<State, Border>::subtract_square(const CrossMatrix& border, BorderMatrix& corner) {
+void BlockArrowSystem<State, Border>::subtract_squared_coupling(const CrossMatrix& border, BorderMatrix& corner) {
   constexpr int kHead = Border > 16 ? 12 : Border > 8 ? 8 : Border - 1, kTail = Border - kHead;
   const auto head = border.template leftCols<kHead>();
   const auto tail = border.template rightCols<kTail>();
@@ -114,27 +114,27 @@ void ArrowSystem<State, Border>::subtract_square(const CrossMatrix& border, Bord
 }
 
 template <int State, int Border>
-bool ArrowSystem<State, Border>::eliminate(Block& block, Block* next, Corner& corner) {
-  if (!invert_factor(block.diagonal)) return false;
+bool BlockArrowSystem<State, Border>::eliminate(StateBlock& block, StateBlock* next, BorderBlock& corner) {
+  if (!invert_cholesky_factor(block.diagonal)) return false;
   // Fixed sizes let the compiler unroll and vectorise products with the inverse factor.
   const StateMatrix& L_inv = block.diagonal;
-  block.border = (L_inv.lazyProduct(block.border)).eval();
+  block.border_coupling = (L_inv.lazyProduct(block.border_coupling)).eval();
   block.gradient = (L_inv.lazyProduct(block.gradient)).eval();
-  subtract_square(block.border, corner.matrix);
-  corner.gradient.noalias() -= block.border.transpose().lazyProduct(block.gradient);
+  subtract_squared_coupling(block.border_coupling, corner.matrix);
+  corner.gradient.noalias() -= block.border_coupling.transpose().lazyProduct(block.gradient);
   if (next == nullptr) {
-    block.coupling.setZero();
+    block.coupling_to_next_state.setZero();
     return true;
   }
-  block.coupling = (L_inv.lazyProduct(block.coupling)).eval();
-  next->diagonal.noalias() -= block.coupling.transpose().lazyProduct(block.coupling);
-  next->border.noalias() -= block.coupling.transpose().lazyProduct(block.border);
-  next->gradient.noalias() -= block.coupling.transpose().lazyProduct(block.gradient);
+  block.coupling_to_next_state = (L_inv.lazyProduct(block.coupling_to_next_state)).eval();
+  next->diagonal.noalias() -= block.coupling_to_next_state.transpose().lazyProduct(block.coupling_to_next_state);
+  next->border_coupling.noalias() -= block.coupling_to_next_state.transpose().lazyProduct(block.border_coupling);
+  next->gradient.noalias() -= block.coupling_to_next_state.transpose().lazyProduct(block.gradient);
   return true;
 }
 
 template <int State, int Border>
-bool ArrowSystem<State, Border>::solve_corner(const Corner& corner, BorderVector& step, BorderMatrix& covariance) {
+bool BlockArrowSystem<State, Border>::solve_border_block(const BorderBlock& corner, BorderVector& step, BorderMatrix& covariance) {
   const Eigen::LLT<BorderMatrix> factor(corner.matrix);
   if (factor.info() != Eigen::Success) return false;
   covariance = factor.solve(BorderMatrix::Identity());
@@ -143,38 +143,38 @@ bool ArrowSystem<State, Border>::solve_corner(const Corner& corner, BorderVector
 }
 
 template <int State, int Border>
-auto ArrowSystem<State, Border>::back_substitute(const Block& block, const StateVector* next_step,
+auto BlockArrowSystem<State, Border>::back_substitute(const StateBlock& block, const StateVector* next_step,
                                                  const BorderVector& border_step) -> StateVector {
-  StateVector right = block.gradient - block.border.lazyProduct(border_step);
-  if (next_step != nullptr) right.noalias() -= block.coupling.lazyProduct(*next_step);
+  StateVector right = block.gradient - block.border_coupling.lazyProduct(border_step);
+  if (next_step != nullptr) right.noalias() -= block.coupling_to_next_state.lazyProduct(*next_step);
   return block.diagonal.transpose().lazyProduct(right);
 }
 
 template <int State, int Border>
-auto ArrowSystem<State, Border>::back_conditional(const Block& block, const Conditional* next) -> Conditional {
+auto BlockArrowSystem<State, Border>::state_given_next_state(const StateBlock& block, const StateGivenNextState* next) -> StateGivenNextState {
   const StateMatrix& L_inv = block.diagonal;
-  Conditional out;
+  StateGivenNextState out;
   out.state = L_inv.transpose().lazyProduct(L_inv);
   if (next == nullptr) {
-    out.jacobian_border = -L_inv.transpose().lazyProduct(block.border);
+    out.border_jacobian = -L_inv.transpose().lazyProduct(block.border_coupling);
     return out;
   }
-  CrossMatrix pull = block.border;
-  pull.noalias() += block.coupling.lazyProduct(next->jacobian_border);
-  out.jacobian_border = -L_inv.transpose().lazyProduct(pull);
-  const StateMatrix A = L_inv.transpose().lazyProduct(block.coupling);
+  CrossMatrix pull = block.border_coupling;
+  pull.noalias() += block.coupling_to_next_state.lazyProduct(next->border_jacobian);
+  out.border_jacobian = -L_inv.transpose().lazyProduct(pull);
+  const StateMatrix A = L_inv.transpose().lazyProduct(block.coupling_to_next_state);
   const StateMatrix A_state = A.lazyProduct(next->state);
   out.state.noalias() += A_state.lazyProduct(A.transpose());
   return out;
 }
 
 template <int State, int Border>
-auto ArrowSystem<State, Border>::marginal(const Conditional& conditional, const BorderMatrix& border_covariance)
-    -> Marginal {
-  Marginal out;
-  out.cross = conditional.jacobian_border.lazyProduct(border_covariance);
+auto BlockArrowSystem<State, Border>::marginal(const StateGivenNextState& conditional, const BorderMatrix& border_covariance)
+    -> MarginalDistribution {
+  MarginalDistribution out;
+  out.cross_covariance = conditional.border_jacobian.lazyProduct(border_covariance);
   out.state = conditional.state;
-  out.state.noalias() += out.cross.lazyProduct(conditional.jacobian_border.transpose());
+  out.state.noalias() += out.cross_covariance.lazyProduct(conditional.border_jacobian.transpose());
   return out;
 }
 

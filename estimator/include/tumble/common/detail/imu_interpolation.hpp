@@ -8,11 +8,11 @@
 
 namespace tumble {
 
-struct ImuNeighbours {
-  std::size_t before = 0, after = 0;  ///< neighbouring samples; outside the recording, the two samples at the end
-  double share = 0.0;                 ///< interpolation weight; outside of [0, 1] outside the recording
+struct ImuSamplePair {
+  std::size_t index_before = 0, index_after = 0;  ///< neighbouring samples; outside the recording, the two samples at the end
+  double interpolation_weight = 0.0;                 ///< interpolation weight; outside of [0, 1] outside the recording
   double length_s = 0.0;              ///< time between the two neighbouring samples
-  bool between() const { return share >= 0.0 && share <= 1.0; }
+  bool is_inside_recording() const { return interpolation_weight >= 0.0 && interpolation_weight <= 1.0; }
 };
 
 /// Interpolates the readings of one IMU linearly at the time stamps of another IMU. ImuInterpolation neglects different
@@ -23,15 +23,15 @@ class ImuInterpolation {
   explicit ImuInterpolation(std::span<const ImuSample> samples) : samples_(samples) {}
 
   /// Returns the neighbours of `time_ns`, which must not decrease from call to call. Cost: amortised O(1).
-  ImuNeighbours around(TimeNs time_ns);
+  ImuSamplePair samples_around(TimeNs time_ns);
 
   /// Returns the interpolated reading, with the clip flags of both neighbours. At the time of a sample, the result
   /// equals the sample bit for bit.
-  ImuSample at(TimeNs time_ns, const ImuNeighbours& neighbours) const;
+  ImuSample at(TimeNs time_ns, const ImuSamplePair& neighbours) const;
 
  private:
   std::span<const ImuSample> samples_;
-  std::size_t after_ = 1;
+  std::size_t index_after_ = 1;
 };
 
 }  // namespace tumble

@@ -24,10 +24,10 @@ class OutlierFilter {
   static constexpr double kRateMax_rad_s = 1000.0, kForceMax_m_s2 = 1e5;
   static constexpr std::size_t kDelayedMax = 5;  ///< longest sequence of outliers that is detected
   /// maximum reading of a device, as a multiple of the range in its data sheet
-  static constexpr double kStatedRangesMax = 2.0;
+  static constexpr double kMaxReadingToRangeRatio = 2.0;
 
   /// properties of the IMU from its data sheet; 0: unknown
-  struct Device {
+  struct ImuRanges {
     double gyro_range_rad_s = 0.0;
     double accel_range_m_s2 = 0.0;
     double period_s = 0.0;   ///< nominal time between samples; a sample after 1.75 periods is delayed
@@ -37,17 +37,17 @@ class OutlierFilter {
   struct State {
     std::array<ImuSample, 2> recent_inliers{};  ///< last samples that passed; the newest is last
     std::size_t count = 0;                      ///< samples that passed since the start, at most 3
-    std::array<ImuSample, kDelayedMax> delayed{};
+    std::array<ImuSample, kDelayedMax> delayed_sample{};
     std::size_t delayed_count = 0;  ///< number of valid samples in `delayed`
     std::size_t rejected = 0;       ///< number of samples rejected since the start
 
     std::span<const ImuSample> delayed_samples() const { return {delayed.data(), delayed_count}; }
   };
 
-  explicit OutlierFilter(const Device& device) : device_(device) {}
+  explicit OutlierFilter(const ImuRanges& device) : imu_ranges_(device) {}
 
   /// Returns the delayed samples if `next` confirms them; empty if they are rejected, remain delayed, or are absent.
-  /// The result is valid until the next call of must_delay(). `next` must be later than all samples that passed.
+  /// The result is valid until the next call of must_delay_for_check(). `next` must be later than all samples that passed.
   std::span<const ImuSample> filter_sample(const ImuSample& next, State& state) const;
 
   /// Returns true if the next samples show that the first samples of a run are outliers. The run should then restart
@@ -55,11 +55,11 @@ class OutlierFilter {
   bool first_is_outlier(const ImuSample& next, const State& state) const;
 
   /// Returns true if a finite sample must not be used now, because the sample is delayed or implausibly large. Call
-  /// filter_sample() before must_delay().
-  bool must_delay(const ImuSample& sample, State& state) const;
+  /// filter_sample() before must_delay_for_check().
+  bool must_delay_for_check(const ImuSample& sample, State& state) const;
 
-  /// Call pass() for each sample that filter_sample() returned or for which must_delay() returned false.
-  static void pass(const ImuSample& sample, State& state);
+  /// Call mark_accepted() for each sample that filter_sample() returned or for which must_delay_for_check() returned false.
+  static void mark_accepted(const ImuSample& sample, State& state);
 
   /// Rejects the delayed samples at the end of a run.
   static void finish(State& state);
@@ -69,11 +69,11 @@ class OutlierFilter {
   Verdict judge(const ImuSample& next, const State& state) const;
   bool is_implausible(const ImuSample& sample) const;
   double period_s(const State& state) const;
-  bool jumps(const ImuSample& sample, std::span<const ImuSample> delayed, const State& state) const;
-  bool is_suspicious(const ImuSample& sample, const State& state) const;
+  bool jumps(const ImuSample& sample, std::span<const ImuSample> delayed_sample, const State& state) const;
+  bool is_outlier_candidate(const ImuSample& sample, const State& state) const;
   bool is_outlier(std::size_t delayed, const ImuSample& after, const State& state) const;
 
-  Device device_;
+  ImuRanges imu_ranges_;
 };
 
 /// Element k of the result is true if sample k passes. The samples must be finite and in time order. Cost: O(N).

@@ -24,7 +24,7 @@ struct SweepPoint {
   std::uint16_t ring = 0;
 };
 
-struct PointBounds {
+struct PointSelectionBounds {
   double range_min_m = 0.3;
   double range_max_m = 100.0;
   Eigen::AlignedBox3d own_body_L;  ///< bounding box of the robot's own body, whose returns are dropped; may be empty
@@ -33,23 +33,23 @@ struct PointBounds {
 struct PointCounts {
   std::size_t received = 0;
   std::size_t finite = 0;  ///< number of returns with finite coordinates; a laser pulse without a return may be NaN
-  std::size_t used = 0;
+  std::size_t usable_points = 0;
   bool has_ring_numbers = false;  ///< false if the device does not report ring numbers
 };
 
 /// Selects the usable lidar returns of a sweep and transforms them to IMU axes. `sweep_start_s` is the start of the
 /// sweep relative to the start of the trajectory.
-PointCounts select_points(std::span<const LidarPoint> points, const PointBounds& bounds, const Eigen::Isometry3d& T_IL,
+PointCounts select_points(std::span<const LidarPoint> points, const PointSelectionBounds& bounds, const Eigen::Isometry3d& T_IL,
                           double sweep_start_s, std::vector<SweepPoint>& selected);
 
 /// Recomputes `points` for another calibration and writes the result to `moved`, which must be a different object.
 /// `later_s` is added to the times of the points in the IMU's clock. Cost: O(n).
-void apply_calibration(const SweepCalibration& calibration, double later_s, std::span<const SweepPoint> points,
+void apply_calibration(const LidarImuCalibration& calibration, double later_s, std::span<const SweepPoint> points,
                        std::vector<SweepPoint>& moved);
-void apply_calibration(const SweepCalibration& calibration, double later_s, std::span<SweepPoint> points);
+void apply_calibration(const LidarImuCalibration& calibration, double later_s, std::span<SweepPoint> points);
 
 /// Computes the lever arm vector of each point: the position of the point in the world minus
-/// SweepTrajectory::common_position_m() at the time of the point. Cost: O(n).
+/// SweepTrajectory::gravity_free_position_m() at the time of the point. Cost: O(n).
 void compute_lever_arm_vectors(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,
                                std::vector<Eigen::Vector3f>& levers_W_m);
 
@@ -62,7 +62,7 @@ void deskew(const SweepTrajectory& trajectory, std::span<const SweepPoint> point
 class SweepSampler {
  public:
   /// `chosen` receives the indices of the kept points, in increasing order.
-  void choose(std::span<const Eigen::Vector3f> positions_W_m, double voxel_m, std::vector<std::uint32_t>& chosen);
+  void choose_points_per_voxel(std::span<const Eigen::Vector3f> positions_W_m, double voxel_m, std::vector<std::uint32_t>& chosen);
 
  private:
   SpatialHash occupied_voxels_{1 << 14};

@@ -5,10 +5,10 @@
 
 namespace tumble {
 
-/// Standard deviations of the errors of inertial integration over kSpan_s, in addition to the uncertainty in RateState.
+/// Standard deviations of the errors of inertial integration over kSpan_s, in addition to the uncertainty in AngularRateState.
 /// Smaller standard deviations constrain the pose more strongly in a world with few features.
 struct InertialNoiseParams {
-  static constexpr double kSpan_s = 0.1;  ///< time between two sweeps of most lidars
+  static constexpr double kSweepInterval_s = 0.1;  ///< time between two sweeps of most lidars
   double sigma_m = 0.003;
   double sigma_rad = 0.002;
   double sigma_m_s = 0.01;
@@ -20,24 +20,24 @@ struct InertialNoiseParams {
   /// 0.05 to 0.5 s, the true random walks are 2.4 to 4.1 m/s and 3 to 11 rad/s per sqrt(s).
   double gap_velocity_walk_m_s_sqrt_s = 3.0;
   double gap_rate_walk_rad_s_sqrt_s = 9.0;
-  double rate_sigma_max_rad_s = 5.0;  ///< upper bound of the standard deviation in RateState
+  double rate_sigma_max_rad_s = 5.0;  ///< upper bound of the standard deviation in AngularRateState
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.sigma_m, {"prior_sigma_m", "m", 1e-9, 1e3,
-                      "standard deviation of the position after 0.1 s of inertial prediction", FieldRank::basic});
+                      "standard deviation of the position after 0.1 s of inertial prediction", ParameterRank::common_use});
     visit(p.sigma_rad, {"prior_sigma_rad", "rad", 1e-9, 1e3,
-                        "standard deviation of the attitude after 0.1 s of inertial prediction", FieldRank::basic});
+                        "standard deviation of the attitude after 0.1 s of inertial prediction", ParameterRank::common_use});
     visit(p.sigma_m_s, {"prior_sigma_m_s", "m/s", 1e-9, 1e3,
-                        "standard deviation of the velocity after 0.1 s of inertial prediction", FieldRank::basic});
+                        "standard deviation of the velocity after 0.1 s of inertial prediction", ParameterRank::common_use});
     visit(
         p.rotation_noise_ratio,
         {"rotation_sigma_ratio", "1", 0.0, 1.0,
-         "standard deviation of the attitude after inertial prediction, as a share of the rotation", FieldRank::basic});
+         "standard deviation of the attitude after inertial prediction, as a share of the rotation", ParameterRank::common_use});
     visit(p.force_share,
           {"force_sigma_ratio", "1", 0.0, 1.0,
            "standard deviation of the velocity after inertial prediction, as a share of the integrated force",
-           FieldRank::basic});
+           ParameterRank::common_use});
     visit(p.gap_velocity_walk_m_s_sqrt_s,
           {"gap_velocity_walk_m_s_sqrt_s", "m/s/sqrt(s)", 0.0, 1e3, "random walk of the velocity during an IMU gap"});
     visit(p.gap_rate_walk_rad_s_sqrt_s,
@@ -68,8 +68,8 @@ struct SaturatedImuParams {
     visit(p.rate_sigma_rad_s,
           {"clipped_sigma_rad_s", "rad/s", 0.0, 100.0,
            "standard deviation of the rate about a clipped axis that the rate estimator did not recover",
-           FieldRank::basic});
-    visit(p.estimate_deficit, switch_field("estimate_saturation_deficit",
+           ParameterRank::common_use});
+    visit(p.estimate_deficit, boolean_field("estimate_saturation_deficit",
                                            "1: estimate the saturation deficit of clipped axes in the registration"));
   }
 };

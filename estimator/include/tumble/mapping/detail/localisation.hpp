@@ -17,10 +17,10 @@ namespace tumble {
 /// mounting that the calibration explains.
 class Localisation {
  public:
-  static constexpr double kMemory_s = 30.0;
+  static constexpr double kForgettingTime_s = 30.0;
 
   /// `matched_m` is the matching distance of the mapper (MatchingParams::distance_m).
-  explicit Localisation(double matched_m) : matched_m_(matched_m) {}
+  explicit Localisation(double matched_m) : distance_when_localised_m_(matched_m) {}
 
   /// Sweeps must have a pose and be in time order. Cost: O(1).
   void add(const SweepReport& sweep);
@@ -28,16 +28,16 @@ class Localisation {
   /// Returns `out_of_range` with the violated limit if tracking has ever failed.
   Status verdict() const;
   /// Returns `out_of_range` with the violated limit if the position is uncertain, or if sweeps have contradicted their
-  /// predicted poses within kMemory_s.
+  /// predicted poses within kForgettingTime_s.
   Status current_verdict() const;
   /// Returns the time of the first sweep of the current tracking failure.
-  std::optional<TimeNs> lost_since_ns() const { return lost_since_ns_ ? lost_since_ns_ : previous_contradicted_ns_; }
+  std::optional<TimeNs> lost_since_ns() const { return lost_since_ns_ ? lost_since_ns_ : previous_contradicted_sweep_ns_; }
 
  private:
   void observe_fit(const SweepReport& sweep);
   Status fit_verdict() const;
 
-  double matched_m_;
+  double distance_when_localised_m_;
   bool map_started_ = false;
   double largest_sigma_m_ = 0.0, largest_innovation_ = 0.0, second_largest_innovation_ = 0.0;
   std::size_t aligned_sweeps_ = 0;                          ///< number of averaged sweeps
@@ -46,8 +46,8 @@ class Localisation {
   double sigma_m_ = 0.0;  ///< standard deviation of the newest position, relative to the map
   TimeNs newest_ns_ = 0;
   std::optional<TimeNs> lost_since_ns_;  ///< first sweep of the period with uncertain position
-  std::optional<TimeNs> last_contradicted_ns_,
-      previous_contradicted_ns_;  ///< last two sweeps that contradict their predicted poses
+  std::optional<TimeNs> last_contradicted_sweep_ns_,
+      previous_contradicted_sweep_ns_;  ///< last two sweeps that contradict their predicted poses
 };
 
 }  // namespace tumble

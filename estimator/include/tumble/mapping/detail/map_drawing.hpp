@@ -16,7 +16,7 @@ class ScanLines {
  public:
   /// Returns the line number of ring 0 of a sweep with the given spin axis, or VoxelMap::kUnknownScanLine if the device
   /// does not report rings.
-  std::uint32_t base(const Eigen::Vector3d& spin_axis_W, bool has_ring_numbers);
+  std::uint32_t line_number_offset(const Eigen::Vector3d& spin_axis_W, bool has_ring_numbers);
   static std::uint32_t line(std::uint32_t base, std::uint16_t ring) {
     return base == VoxelMap::kUnknownScanLine ? base : base | ring;
   }

@@ -14,12 +14,12 @@ struct LocalMapParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.voxel_m,
-          {"map_voxel_m", "m", 0.01, 10.0, "edge length of a voxel of the map's hash table", FieldRank::basic});
+          {"map_voxel_m", "m", 0.01, 10.0, "edge length of a voxel of the map's hash table", ParameterRank::common_use});
     visit(
         p.spacing_m,
         {"map_spacing_m", "m", 0.0, 10.0,
          "edge length of the cube that stores at most one map point; a larger value makes the map smaller and coarser",
-         FieldRank::basic});
+         ParameterRank::common_use});
     visit(p.radius_m, {"map_radius_m", "m", 0.0, 1e5,
                        "radius around the sensor within which map points are kept, accurate to 10 %"});
   }

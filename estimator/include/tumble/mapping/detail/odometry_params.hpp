@@ -19,14 +19,14 @@ struct OdometryExpertParams {
   double gravity_sigma_m_s2 = 0.0;
   /// number of newest sweeps that the fixed-lag smoother refines together; 1: no smoothing
   int window_sweeps = 2;
-  RestBoundsParams rest = {};
+  StationaryBoundsParams stationary_bounds = {};
   OdometryStartParams start = {};
   InertialNoiseParams prior = {};
-  SaturatedImuParams rails = {};
+  SaturatedImuParams saturated_imu = {};
   LocalMapParams map = {};
   MatchingParams matching = {};
   TrackingParams tracking = {};
-  WorldCovarianceParams world = {};
+  WorldCovarianceParams world_covariance = {};
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -34,19 +34,19 @@ struct OdometryExpertParams {
     visit(p.gravity_sigma_m_s2,
           {"gravity_sigma_m_s2", "m/s^2", 0.0, 10.0,
            "standard deviation of gravity's horizontal part after initial levelling; 0: fixed direction of gravity",
-           FieldRank::basic});
-    visit.group("", p.rest);
+           ParameterRank::common_use});
+    visit.group("", p.stationary_bounds);
     visit.group("", p.map);
     visit.group("", p.matching);
     visit.group("", p.prior);
-    visit.group("", p.rails);
+    visit.group("", p.saturated_imu);
     visit(p.window_sweeps, {"window_sweeps", "1", 1, 8,
                             "number of newest sweeps that are refined together; each pose is final after this number "
                             "minus one of later sweeps",
-                            FieldRank::basic});
+                            ParameterRank::common_use});
     visit.group("", p.tracking);
     visit.group("start_", p.start);
-    visit.group("world_", p.world);
+    visit.group("world_", p.world_covariance);
   }
 };
 
@@ -85,7 +85,7 @@ struct OdometryParams {
     visit(p.sweep_voxel_m, {"sweep_voxel_m", "m", 0.01, 10.0,
                             "edge length of the voxels; one point per voxel is registered, so a larger value is "
                             "faster and coarser",
-                            FieldRank::basic});
+                            ParameterRank::common_use});
     visit.group("", p.expert);
   }
 };

@@ -8,20 +8,20 @@
 
 namespace tumble {
 
-enum class PlaneVerdict { plane, too_few, collinear, one_scan_line, too_thick };
+enum class PlaneVerdict { plane, too_few_points, collinear, one_scan_line, plane_too_thick };
 
 /// plane through neighbouring map points: normal . x = normal . centre
 struct PlaneFit {
-  PlaneVerdict verdict = PlaneVerdict::too_few;
+  PlaneVerdict verdict = PlaneVerdict::too_few_points;
   Eigen::Vector3f normal_W = Eigen::Vector3f::Zero();  ///< unit length, arbitrary sign
-  Eigen::Vector3f centre_W_m = Eigen::Vector3f::Zero();
+  Eigen::Vector3f plane_centre_W_m = Eigen::Vector3f::Zero();
   float thickness_variance_m2 = 0.0f;  ///< smallest eigenvalue of the neighbours' covariance
   /// Standard deviation of the normal's error along the two axes of the plane, as columns.
   Eigen::Matrix<float, 3, 2> normal_sigma_W = Eigen::Matrix<float, 3, 2>::Zero();
 };
 
 /// limits of the eigenvalues l0 <= l1 <= l2 of the covariance of neighbouring map points
-struct PlaneBounds {
+struct PlaneFitBounds {
   int neighbours_min = 5;
   /// neighbours are collinear if l1 < collinear_ratio_max * l2, for example on one ring of a lidar at rest
   double collinear_ratio_max = 0.03;
@@ -45,6 +45,6 @@ struct PlaneBounds {
 };
 
 /// Fits a least-squares plane to neighbouring map points. No memory is allocated.
-PlaneFit fit_plane(const VoxelMap& map, const Neighbours& neighbours, const PlaneBounds& bounds);
+PlaneFit fit_plane(const VoxelMap& map, const NearestNeighbours& neighbours, const PlaneFitBounds& bounds);
 
 }  // namespace tumble

@@ -28,19 +28,19 @@ class OuterProducts;
 /// squared distances to planes through the nearest map points, and the squared Mahalanobis distance from the prior. The
 /// prior determines the directions that no surface constrains.
 class Registration {
-  static constexpr std::size_t kBlock = 128;  // points per partial sum; independent of the number of threads
+  static constexpr std::size_t kPointsPerPartialSum = 128;  // points per partial sum; independent of the number of threads
 
  public:
   using Params = RegistrationParams;
   using Result = RegistrationResult;
-  using Estimate = SweepUnknowns::Estimate;
-  using Prior = SweepUnknowns::Prior;
-  using Vector = SweepUnknowns::Vector;
-  using Matrix = SweepUnknowns::Matrix;
-  static constexpr int kMotionSize = SweepUnknowns::kMotionSize;
-  static constexpr int kDeficitStart = SweepUnknowns::kDeficitStart;
-  static constexpr int kCalibrationStart = SweepUnknowns::kCalibrationStart;
-  static constexpr int kUnknowns = SweepUnknowns::kUnknowns;
+  using Estimate = RegistrationUnknowns::Estimate;
+  using Prior = RegistrationUnknowns::Prior;
+  using Vector = RegistrationUnknowns::Vector;
+  using Matrix = RegistrationUnknowns::Matrix;
+  static constexpr int kMotionSize = RegistrationUnknowns::kMotionSize;
+  static constexpr int kFirstDeficitUnknown = RegistrationUnknowns::kFirstDeficitUnknown;
+  static constexpr int kFirstCalibrationUnknown = RegistrationUnknowns::kFirstCalibrationUnknown;
+  static constexpr int kUnknowns = RegistrationUnknowns::kUnknowns;
 
   explicit Registration(const Params& params);
 
@@ -55,7 +55,7 @@ class Registration {
   double point_variance_m2(const SweepPoint& point) const;
 
   /// Computes the distance of a point from a plane, and its derivatives with respect to all unknowns. Public for tests.
-  static double residual(const SweepTrajectory& trajectory, const SweepCalibration& calibration,
+  static double residual(const SweepTrajectory& trajectory, const LidarImuCalibration& calibration,
                          const SweepPoint& point, const PlaneFit& plane, std::size_t& hint, Vector& derivative);
 
  private:
@@ -65,38 +65,38 @@ class Registration {
     float map_variance_m2 = 0.0f;
     float farthest_neighbour_m =
         std::numeric_limits<float>::infinity();  // distance to the farthest neighbour, if all neighbours were found
-    bool searched = false;
+    bool plane_searched = false;
   };
   /// normal equations of the estimated unknowns, summed over the matches of one iteration
   struct Sums {
-    Matrix H = Matrix::Zero();
-    Vector g = Vector::Zero();
+    Matrix normal_matrix = Matrix::Zero();
+    Vector gradient = Vector::Zero();
     std::size_t matches = 0, inliers = 0;
 
     void add(const Sums& other);
   };
-  using Products = mapping::OuterProducts<kUnknowns, int{kBlock}>;
+  using Products = mapping::OuterProducts<kUnknowns, int{kPointsPerPartialSum}>;
   struct Unknowns;
-  struct Problem;
+  struct RegistrationProblem;
   struct IterationState;
 
-  Status iterate(const Problem& problem, IterationState& at, SweepTrajectory& trajectory, Result& result);
-  RegistrationVerdict classify_result(const Problem& problem, const IterationState& at) const;
-  Status finalise(const Problem& problem, const IterationState& at, SweepTrajectory& trajectory, Result& result);
+  Status iterate(const RegistrationProblem& problem, IterationState& at, SweepTrajectory& trajectory, Result& result);
+  RegistrationVerdict registration_verdict(const RegistrationProblem& problem, const IterationState& at) const;
+  Status finalise(const RegistrationProblem& problem, const IterationState& at, SweepTrajectory& trajectory, Result& result);
   void match_points(const SweepTrajectory& trajectory, std::span<const SweepPoint> points, const VoxelMap& map);
-  void find_match(const VoxelMap& map, std::size_t point, Neighbours& found);
+  void find_match(const VoxelMap& map, std::size_t point, NearestNeighbours& found);
   double kernel_width_m();
   void compute_eigenvalues(std::span<const SweepPoint> points, double kernel_m, const Sums& sum, Result& result) const;
   void accumulate(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
-                  const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m, Sums& sum);
+                  const LidarImuCalibration& calibration, const Unknowns& unknowns, double kernel_m, Sums& sum);
   void accumulate_block(std::span<const SweepPoint> points, std::size_t block, const SweepTrajectory& trajectory,
-                        const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m,
+                        const LidarImuCalibration& calibration, const Unknowns& unknowns, double kernel_m,
                         Products& products, Sums& sum);
 
-  struct NormalNoise;
-  struct Pulls;
+  struct SurfaceNormalNoise;
+  struct ClusterGradients;
   void compute_error_statistics(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
-                                const SweepCalibration& calibration, const Unknowns& unknowns, double kernel_m,
+                                const LidarImuCalibration& calibration, const Unknowns& unknowns, double kernel_m,
                                 Result& result);
   struct Weight {
     double variance_m2, robust, information;
@@ -106,12 +106,12 @@ class Registration {
   Params params_;
   // buffers, which do not influence results
   std::vector<Eigen::Vector3f> lever_arm_vectors_, positions_;
-  std::vector<SweepPoint> moved_;
+  std::vector<SweepPoint> transformed_points_;
   std::vector<Match> matches_;
-  std::vector<float> distances_, sorted_distances_;
-  std::vector<Sums> block_sums_;  // one per block of points
-  SpatialHash cluster_index_{1 << 10};
-  std::vector<Vector> cluster_gradients_;  // gradients of the point clusters
+  std::vector<float> residual_distances_m_, sorted_distances_;
+  std::vector<Sums> partial_sums_;  // one per block of points
+  SpatialHash point_cluster_index_{1 << 10};
+  std::vector<Vector> point_cluster_gradients_;  // gradients of the point clusters
 };
 
 }  // namespace tumble

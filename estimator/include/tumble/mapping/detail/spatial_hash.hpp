@@ -11,11 +11,11 @@ namespace tumble {
 /// Hash table from integer coordinates of a cube to a number; single keys cannot be removed.
 class SpatialHash {
  public:
-  static constexpr std::uint32_t kAbsent = 0xffffffffu;
-  static constexpr int kLimit = 1 << 20;  ///< coordinates must be in [-kLimit, kLimit)
+  static constexpr std::uint32_t kAbsentEntry = 0xffffffffu;
+  static constexpr int kCoordinateLimit = 1 << 20;  ///< coordinates must be in [-kLimit, kLimit)
 
   static std::uint64_t key(const Eigen::Vector3i& cube) {
-    const auto part = [](int v) { return static_cast<std::uint64_t>(v + kLimit) & 0x1fffffu; };
+    const auto part = [](int v) { return static_cast<std::uint64_t>(v + kCoordinateLimit) & 0x1fffffu; };
     return part(cube.x()) | (part(cube.y()) << 21) | (part(cube.z()) << 42);
   }
 
@@ -23,9 +23,9 @@ class SpatialHash {
 
   /// Returns kAbsent if the key is not stored.
   std::uint32_t find(std::uint64_t key) const {
-    for (std::size_t slot = slot_of(key);; slot = (slot + 1) & mask_) {
+    for (std::size_t slot = table_slot_of(key);; slot = (slot + 1) & mask_) {
       if (keys_[slot] == key) return values_[slot];
-      if (keys_[slot] == kFree) return kAbsent;
+      if (keys_[slot] == kFree) return kAbsentEntry;
     }
   }
 
@@ -45,20 +45,20 @@ class SpatialHash {
  private:
   static constexpr std::uint64_t kFree = ~std::uint64_t{0};
 
-  std::size_t slot_of(std::uint64_t key) const {
+  std::size_t table_slot_of(std::uint64_t key) const {
     // The eight cubes of a 2 x 2 x 2 block share a cache line, because successive queries are usually close together.
     constexpr std::uint64_t kInside = 1 | (std::uint64_t{1} << 21) | (std::uint64_t{1} << 42);
     const std::uint64_t block = key & ~kInside;
     const std::uint64_t hash = (block ^ (block >> 29)) * 0x9e3779b97f4a7c15u;
     const std::uint64_t inside = (key & 1) | ((key >> 20) & 2) | ((key >> 40) & 4);
-    return static_cast<std::size_t>((hash >> shift_) ^ inside) & mask_;
+    return static_cast<std::size_t>((hash >> hash_shift_bits_) ^ inside) & mask_;
   }
-  void grow();
+  void grow_table();
 
   std::vector<std::uint64_t> keys_;
   std::vector<std::uint32_t> values_;
   std::size_t mask_ = 0;
-  int shift_ = 0;
+  int hash_shift_bits_ = 0;
   std::size_t size_ = 0;
 };
 

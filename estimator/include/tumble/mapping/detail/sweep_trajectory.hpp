@@ -55,9 +55,9 @@ struct MotionState {
 class SweepTrajectory {
  public:
   static constexpr int kKnots = 3;
-  static constexpr int kDeficitSize = 3 * kKnots;  ///< number of unknowns: three axes per support point
+  static constexpr int kDeficitUnknowns = 3 * kKnots;  ///< number of unknowns: three axes per support point
   using Deficit = Eigen::Matrix<double, 3, kKnots>;
-  using DeficitJacobian = Eigen::Matrix<double, 3, kDeficitSize>;
+  using DeficitJacobian = Eigen::Matrix<double, 3, kDeficitUnknowns>;
 
   /// attitude, and double integral of the specific force, at the time of a lidar point
   struct PreintegratedMotion {
@@ -66,13 +66,13 @@ class SweepTrajectory {
   };
   /// derivatives of the attitude and of the double integral of the specific force with respect to the saturation
   /// deficit
-  struct DeficitDerivative {
-    DeficitJacobian attitude_jacobian_s;
+  struct SaturationDeficitJacobian {
+    DeficitJacobian attitude_by_deficit_s;
     DeficitJacobian position_jacobian_m_s;
   };
 
   /// Integrates the motion from `start` to `end_ns`. The samples must be contiguous and in time order, beginning at the
-  /// start. Returns `too_few` if there is no sample or if the samples end before `end_ns`. Returns `time_order` if the
+  /// start. Returns `insufficient_data` if there is no sample or if the samples end before `end_ns`. Returns `time_order` if the
   /// end is before the start. Returns `gap` with the time in seconds if the first sample begins after the start.
   Status build(const MotionState& start, std::span<const MotionSample> samples, TimeNs end_ns,
                const Eigen::Vector3d& gravity_W_m_s2, const Deficit& deficit_rad_s = Deficit::Zero());
@@ -89,16 +89,16 @@ class SweepTrajectory {
   /// kExtrapolation_s. `hint` is the interval of the previous call, and speeds up calls in time order.
   static constexpr double kExtrapolation_s = 0.02;
   PreintegratedMotion at(double t_s, std::size_t& hint) const;
-  /// Computes the lever arm vector of each point: the position of the point in the world minus common_position_m() at
+  /// Computes the lever arm vector of each point: the position of the point in the world minus gravity_free_position_m() at
   /// the time of the point.
   void lever_arm_vectors(std::span<const SweepPoint> points, std::span<Eigen::Vector3f> levers_W_m) const;
-  DeficitDerivative deficit_derivative(double t_s, std::size_t& hint) const;
+  SaturationDeficitJacobian saturation_deficit_jacobian(double t_s, std::size_t& hint) const;
   std::size_t intervals() const { return intervals_.size(); }
   /// end of interval i in seconds after the start of the segment
   double interval_end_s(std::size_t i) const { return intervals_[i].start_s + intervals_[i].length_s; }
 
   /// Returns the start position plus the effect of start velocity and gravity on the position at `t_s`.
-  Eigen::Vector3d common_position_m(double t_s) const {
+  Eigen::Vector3d gravity_free_position_m(double t_s) const {
     return start_.p_WI_m + t_s * start_.v_WI_m_s + (0.5 * t_s * t_s) * gravity_W_m_s2_;
   }
 
@@ -113,14 +113,14 @@ class SweepTrajectory {
   /// derivatives of position, attitude and velocity with respect to start state, saturation deficit and gravity
   struct Transition {
     Eigen::Matrix<double, 9, 9> jacobian_start;
-    Eigen::Matrix<double, 9, kDeficitSize> jacobian_deficit_s;
+    Eigen::Matrix<double, 9, kDeficitUnknowns> jacobian_saturation_deficit_s;
     Eigen::Matrix<double, 9, 3> jacobian_gravity;
   };
   Transition transition(double t_s) const;
 
   /// factor of the saturation deficit on each axis in the first or last interval; 0: axis not clipped
-  Eigen::Vector3d deficit_factor_at_start() const { return intervals_.front().deficit_factor.cwiseAbs(); }
-  Eigen::Vector3d deficit_factor_at_end() const { return intervals_.back().deficit_factor.cwiseAbs(); }
+  Eigen::Vector3d clipped_axes_at_start() const { return intervals_.front().clipped_axis_sign.cwiseAbs(); }
+  Eigen::Vector3d clipped_axes_at_end() const { return intervals_.back().clipped_axis_sign.cwiseAbs(); }
 
   /// gyro axes clipped in the segment: bit j for axis j
   std::uint8_t clipped_axes() const { return clipped_axes_; }
@@ -132,14 +132,14 @@ class SweepTrajectory {
     Eigen::Vector3d rate_I_rad_s, specific_force_W_m_s2;  // rate in body axes; mean specific force in world axes
     Eigen::Vector3d preintegrated_velocity_m_s,
         preintegrated_position_m;    // integrals of the specific force up to start_s
-    Eigen::Vector3d deficit_factor;  // factor s_j where axis j is clipped, 0 elsewhere
+    Eigen::Vector3d clipped_axis_sign;  // factor s_j where axis j is clipped, 0 elsewhere
     Eigen::Matrix<double, kKnots, 1> knot_weight =
         Eigen::Matrix<double, kKnots, 1>::Zero();  // weight of each knot's deficit in the interval
     DeficitJacobian attitude_jacobian, velocity_jacobian, position_jacobian,
         acceleration_jacobian;  // derivatives at start_s
   };
   const Interval& interval_at(double t_s, std::size_t& hint) const;
-  static DeficitJacobian deficit_jacobian_within(const Interval& now, double s);
+  static DeficitJacobian saturation_deficit_jacobian_within(const Interval& now, double s);
 
   MotionState start_;
   double duration_s_ = 0.0;

@@ -11,21 +11,21 @@ namespace tumble {
 
 /// Order of the unknowns: position, attitude (left perturbation in world axes) and velocity at the start of the
 /// trajectory, saturation deficit of clipped axes, calibration.
-struct SweepUnknowns {
+struct RegistrationUnknowns {
   static constexpr int kMotionSize = 9;  ///< position, attitude, velocity
-  static constexpr int kDeficitStart =
+  static constexpr int kFirstDeficitUnknown =
       kMotionSize;  ///< first unknown of the saturation deficit, one support point after another
-  static constexpr int kCalibrationStart =
-      kDeficitStart + SweepTrajectory::kDeficitSize;  ///< first unknown of the calibration
-  static constexpr int kUnknowns = kCalibrationStart + SweepCalibration::kErrorCount;
+  static constexpr int kFirstCalibrationUnknown =
+      kFirstDeficitUnknown + SweepTrajectory::kDeficitUnknowns;  ///< first unknown of the calibration
+  static constexpr int kUnknowns = kFirstCalibrationUnknown + LidarImuCalibration::kErrorCount;
   using Vector = Eigen::Matrix<double, kUnknowns, 1>;
   using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
   using Deficit = SweepTrajectory::Deficit;
 
   struct Estimate {
     MotionState state;  ///< motion state; its covariance is not used
-    SweepCalibration calibration;
-    Deficit deficit_rad_s = Deficit::Zero();
+    LidarImuCalibration calibration;
+    Deficit saturation_deficit_rad_s = Deficit::Zero();
 
     void add(const Vector& error);
     /// Returns the errors that transform `other` to this estimate, in the order of the unknowns.
@@ -37,7 +37,7 @@ struct SweepUnknowns {
   struct Prior {
     Estimate mean;
     Matrix covariance = Matrix::Zero();
-    Deficit deficit_start_rad_s = Deficit::Zero();  ///< initial value of the iterations
+    Deficit initial_saturation_deficit_rad_s = Deficit::Zero();  ///< initial value of the iterations
     std::optional<MotionState> start;               ///< initial value of the motion; empty: the mean
 
     Prior() = default;

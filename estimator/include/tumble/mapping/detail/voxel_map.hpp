@@ -13,11 +13,11 @@
 namespace tumble {
 
 /// nearest points of a map, nearest first
-struct Neighbours {
-  static constexpr int kMax = 32;
+struct NearestNeighbours {
+  static constexpr int kMaxNeighbours = 32;
   int count = 0;
-  std::array<float, kMax> distance2_m2;
-  std::array<std::uint32_t, kMax> index;  ///< index of the point in its VoxelMap
+  std::array<float, kMaxNeighbours> distance2_m2;
+  std::array<std::uint32_t, kMaxNeighbours> index;  ///< index of the point in its VoxelMap
 };
 
 /// Stores map points in world axes and finds nearest neighbours. VoxelMap keeps at most one point per cube of edge
@@ -66,11 +66,11 @@ class VoxelMap {
 
   /// Finds the k <= Neighbours::kMax nearest points within `radius_m`, without allocating memory. The cost grows with
   /// the number of cells within the distance of the k-th neighbour.
-  void nearest(const Eigen::Vector3f& query_W_m, int k, float radius_m, Neighbours& found) const;
+  void nearest(const Eigen::Vector3f& query_W_m, int k, float radius_m, NearestNeighbours& found) const;
 
-  /// Deletes the points farther than `radius_m` from `centre_W_m`. The indices of points change, and the remaining
+  /// Deletes the points farther than `radius_m` from `plane_centre_W_m`. The indices of points change, and the remaining
   /// sweeps are renumbered in order. Returns the old number of each remaining sweep. Cost: O(number of points).
-  std::vector<std::uint32_t> remove_beyond(const Eigen::Vector3f& centre_W_m, float radius_m);
+  std::vector<std::uint32_t> remove_points_beyond(const Eigen::Vector3f& centre_W_m, float radius_m);
 
   /// Deletes the points of `first_sweep` and of later sweeps. The indices of points change, but not the numbers of
   /// sweeps. Cost: O(number of points).
@@ -90,17 +90,17 @@ class VoxelMap {
   std::uint32_t line(std::uint32_t index) const { return line_[index]; }
   /// Returns the number of sweeps that saw through the point minus the number of sweeps that observed the point,
   /// limited to [0, 255].
-  std::uint8_t seen_through(std::uint32_t index) const { return seen_through_[index]; }
+  std::uint8_t seen_through_count(std::uint32_t index) const { return seen_through_counts_[index]; }
 
  private:
   static constexpr int kPointsPerChunk = 16;
   static constexpr std::uint32_t kNone = 0xffffffffu;
-  struct Chunk {
+  struct PointChunk {
     std::array<float, kPointsPerChunk> x, y, z;
     std::uint32_t next = kNone;
     std::uint32_t count = 0;
   };
-  struct Group {
+  struct VoxelGroup {
     static constexpr int kBits = 3, kMask = (1 << kBits) - 1;  // a group has 8 cells along each edge
     static std::size_t row_index_of(int y, int z);
     static std::size_t cell_index_of(const Eigen::Vector3i& cell);
@@ -109,26 +109,26 @@ class VoxelMap {
     std::array<std::uint32_t, 1u << (3 * kBits)> first;  // chunk of each cell
     std::array<std::uint8_t, 1u << (2 * kBits)> rows{};  // bit mask of the occupied cells along x
   };
-  class Rows;
+  class NeighbourVoxelRows;
 
   bool has_room_for(const Eigen::Vector3f& position_W_m) const;
   std::uint32_t store_point(const Eigen::Vector3f& position_W_m, float sigma_m, std::uint32_t sweep,
                             std::uint32_t line);
   std::uint32_t& first_chunk_of(const Eigen::Vector3i& cell);
   std::uint32_t new_chunk(std::uint32_t& first);
-  void search(std::uint32_t chunk, const Eigen::Vector3f& query_W_m, int k, float& worst_distance2_m2,
-              Neighbours& found) const;
+  void search_neighbours(std::uint32_t chunk, const Eigen::Vector3f& query_W_m, int k, float& worst_distance2_m2,
+              NearestNeighbours& found) const;
 
   Params params_;
   float cells_per_m_ = 0.0f;
   float cubes_per_m_ = 0.0f;  // cubes per metre, or cells per metre if all points are kept
-  SpatialHash group_index_;
+  SpatialHash voxel_group_index_;
   SpatialHash occupied_cubes_;
-  std::vector<Group> groups_;
-  std::vector<Chunk> chunks_;
+  std::vector<VoxelGroup> voxel_groups_;
+  std::vector<PointChunk> point_chunks_;
   std::vector<float> sigma_m_;  // one per slot of the chunks; negative: free slot
   std::vector<std::uint32_t> sweep_, line_;
-  std::vector<std::uint8_t> seen_through_;
+  std::vector<std::uint8_t> seen_through_counts_;
   std::size_t free_slots_ = 0;
 };
 

@@ -19,16 +19,16 @@
 
 namespace tumble {
 
-struct CheckedImu {
+struct ImuCheckParams {
   double gyro_range_rad_s = 0.0, accel_range_m_s2 = 0.0;  ///< ranges from the data sheet; 0: unknown
   double gravity_m_s2 = 9.80665;
   /// lever arm from the centre of mass to the IMU, in IMU axes
   Eigen::Vector3d lever_arm_I_m = Eigen::Vector3d::Zero();
   /// several IMUs are merged into one, which reports rates beyond the range of one IMU
-  bool merged = false;
+  bool is_merged = false;
 };
 
-struct ImuFindings {
+struct ImuHealthReport {
   SensorHealth health;
   std::vector<FrozenAxis> frozen_axes;  ///< intervals of the findings `frozen_axis`, sorted by axis and time
 };
@@ -45,41 +45,41 @@ void add_findings(const ImuPlausibility& plausibility, const ImuPlausibility::St
 
 /// Checks units, signs and axes of the readings: magnitude and rotation of gravity, and rotation about a pivot. Cost:
 /// about 1 ms per second of data at 100 Hz.
-SensorHealth check_readings(const CheckedImu& imu, std::span<const ImuSample> samples);
+SensorHealth check_readings(const ImuCheckParams& imu, std::span<const ImuSample> samples);
 
 /// Checks the magnitude of the force at rest with the tolerance `error_max` (see RestGravity). Cost: O(N).
-Status check_force_at_rest(const CheckedImu& imu, std::span<const ImuSample> samples, double error_max);
+Status check_force_at_rest(const ImuCheckParams& imu, std::span<const ImuSample> samples, double error_max);
 
 /// Cost: O(N).
-ImuFindings check_frozen(const CheckedImu& imu, std::span<const ImuSample> samples);
+ImuHealthReport check_frozen(const ImuCheckParams& imu, std::span<const ImuSample> samples);
 
 /// Checks readings, forces in flight, the motion from each rest to the next rest, and frozen axes. `carried_share` is
 /// the fraction of hand-held samples. If the body was never hand-held, flights also reveal flipped and swapped axes,
 /// and include flights with a clipped axis.
-ImuFindings check_recording(const CheckedImu& imu, std::span<const ImuSample> samples, std::span<const RateState> rates,
+ImuHealthReport check_recording(const ImuCheckParams& imu, std::span<const ImuSample> samples, std::span<const AngularRateState> rates,
                             std::optional<double> carried_share);
 
-struct MergedFindings {
-  MergedRecordings merged;
+struct MergedImuRecording {
+  MergedRecordings recordings;
   SensorHealth health;
 };
 
-struct MergedChecks {
+struct MergedImuChecks {
   RestGravity rest_gravity;
   ImuPlausibility plausibility;                                                   ///< check of the merged readings
-  std::array<RestGravity::MagnitudeState, ImuMerge::kImus> rest_gravity_state{};  ///< one state per IMU
+  std::array<RestGravity::GravityMagnitudeState, ImuMerge::kImus> rest_gravity_state{};  ///< one state per IMU
   ImuPlausibility::State plausibility_state{};
 };
 
 /// Checks faults of single IMUs, the merged readings, and the differences between the IMUs. The differences also reveal
 /// an inverted sign and exchanged axes. Cost: O(N).
-SensorHealth check_merged(const CheckedImu& imu, const MergedRecordings& merged);
+SensorHealth check_merged_imus(const ImuCheckParams& imu, const MergedRecordings& merged);
 
 /// Returns the covariance that the findings add to each rate, or an empty list without such findings. If the readings
 /// contradict each other, the standard deviation is the rate itself. For example, a flipped sign gives an error of
 /// twice the rate. While a gyro axis is frozen, the standard deviation is the largest reading of the recording. Cost:
 /// O(N).
-std::vector<Eigen::Matrix3d> suspect_covariance(const ImuFindings& findings, std::span<const ImuSample> samples,
-                                                std::span<const RateState> rates);
+std::vector<Eigen::Matrix3d> suspected_error_covariance(const ImuHealthReport& findings, std::span<const ImuSample> samples,
+                                                std::span<const AngularRateState> rates);
 
 }  // namespace tumble

@@ -10,7 +10,7 @@
 #include "tumble/angular_velocity/detail/clipping_finder.hpp"
 #include "tumble/common/sensor_health.hpp"
 #include "tumble/mapping/detail/localisation.hpp"
-#include "tumble/mapping/detail/sweep_scale.hpp"
+#include "tumble/mapping/detail/lidar_scale.hpp"
 #include "tumble/mapping/further_readings.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/odometry/detail/waiting_input.hpp"
@@ -19,11 +19,11 @@ namespace tumble {
 
 /// Sets the clip flags of saturated accelerometer readings that the device did not flag. Returns the saturation limits
 /// of the recording. Cost: O(N), plus the search of ClippingFinder.
-SaturationLevels flag_saturated_forces(const RailDetector::Params& stated, std::span<ImuSample> samples);
+SaturationLevels flag_saturated_forces(const SaturationLimitDetector::Params& stated, std::span<ImuSample> samples);
 
 struct MappingInput {
   std::span<const ImuSample> samples;  ///< samples after flag_saturated_forces()
-  std::span<const RateState> rates;    ///< one per sample
+  std::span<const AngularRateState> rates;    ///< one per sample
   std::size_t sweeps = 0;
   std::function<WaitingSweep(std::size_t)> sweep;  ///< function that returns the sweep with the given index
   /// Returns the odometer reading for a sweep from `from_ns` to `to_ns`; may be empty.
@@ -47,19 +47,19 @@ struct MappedRecording {
   std::size_t unfinished_sweeps = 0;  ///< unused sweeps that end after the last sample
   LidarInertialOdometry mapper;
   Localisation localisation;  ///< tracking failures over all sweeps
-  int passes = 1;
-  /// distance between the last calibration and the stated calibration (StatedCalibration::deviations)
+  int mapping_pass_count = 1;
+  /// distance between the last calibration and the stated calibration (LidarImuCalibrationPrior::deviations)
   double calibration_deviations = 0.0;
   bool calibration_converged = false;
 
   /// The estimated calibration differs from the stated calibration by more than the stated uncertainty allows.
   bool calibration_is_off() const;
   /// Adds findings about the scale of the lidar's ranges, the vertical, tracking, and the calibration of the lidar.
-  void add_findings(const SweepScale& scale, SensorHealth& health) const;
+  void add_findings(const LidarScale& scale, SensorHealth& health) const;
 };
 
 /// If the IMU covers most of the last sweep, the sweep is cut at the last sample.
-MappedRecording map_once(const MappingInput& input, const LidarInertialOdometry::Params& params);
+MappedRecording map_in_one_pass(const MappingInput& input, const LidarInertialOdometry::Params& params);
 
 /// Processes a recording until the lidar's calibration has converged. The first pass estimates the calibration. The
 /// last pass starts from the estimated calibration and builds a consistent map. If the calibration changes by more than
@@ -67,6 +67,6 @@ MappedRecording map_once(const MappingInput& input, const LidarInertialOdometry:
 /// than one sweep in five is rejected, because such a pass does not determine the calibration.
 MappedRecording map_with_calibration(const MappingInput& input, const LidarInertialOdometry::Params& params);
 
-SweepScale find_sweep_scale(std::span<const ImuSample> samples, const MappedRecording& mapped, double gravity_m_s2);
+LidarScale find_sweep_scale(std::span<const ImuSample> samples, const MappedRecording& mapped, double gravity_m_s2);
 
 }  // namespace tumble

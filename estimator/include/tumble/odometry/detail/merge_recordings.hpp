@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "tumble/attitude/detail/imu_merge.hpp"
-#include "tumble/attitude/detail/unit_sign_check.hpp"
+#include "tumble/attitude/detail/multi_imu_sign_check.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/sensor_health.hpp"
 #include "tumble/common/status.hpp"
@@ -18,41 +18,41 @@
 namespace tumble {
 
 /// all readings of one of several IMUs on a body, in time order
-struct UnitRecording {
-  ImuSheet sheet;
+struct ImuRecording {
+  ImuDataSheet data_sheet;
   Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
   std::vector<ImuSample> samples;
 };
 
 struct MergedRecordings {
   /// calibration of one IMU relative to the mean of all IMUs
-  struct Unit {
-    std::size_t unit = 0;                                   ///< index of the IMU
+  struct MergedImu {
+    std::size_t imu_index = 0;                                   ///< index of the IMU
     double time_offset_s = 0.0, time_offset_sigma_s = 0.0;  ///< positive: the IMU is late
     double rate_bias_rad_s = 0.0;                           ///< norm of the gyro bias
   };
   std::vector<ImuSample> samples;                         ///< samples of the merged IMU, in body axes
   Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< position of the merged IMU, in body axes
-  std::vector<Unit> units;                                ///< units in use
+  std::vector<MergedImu> imus;                                ///< units in use
   /// Excluded IMUs (units) that are silent, frozen, or in disagreement with the other units. A unit with a frozen axis
   /// is excluded only during the fault.
   SensorHealth faults;
   std::size_t excluded_readings = 0;                        ///< readings that ImuMerge excluded
   std::optional<double> lever_arm_agreement;                ///< ImuMerge::lever_arm_agreement
-  std::optional<UnitSignCheck::Detected> mislabelled_axes;  ///< mislabelled axes of the IMUs, as found by ImuMerge
+  std::optional<MultiImuSignCheck::DetectedMirroring> mislabelled_axes;  ///< mislabelled axes of the IMUs, as found by ImuMerge
 };
 
 /// Returns the name of a unit in findings: "imu_1" for index 0, or "imu" if there is only one unit.
-std::string unit_name(std::size_t unit, std::size_t units);
+std::string imu_name(std::size_t unit, std::size_t units);
 
 /// Merges the recordings of up to ImuMerge::kImus units on one body, with the saturation limits and faults of the whole
-/// recording. ClippingFinder flags the clipped readings, UnitAlignment resamples the units to common times, and
+/// recording. ClippingFinder flags the clipped readings, ImuTimeAlignment resamples the units to common times, and
 /// ImuMerge merges the units. A unit is excluded while an axis is frozen or readings are missing. If ImuMerge finds a
 /// frozen or contradicting unit, a second pass excludes the unit from the start of the fault. Units without samples are
 /// ignored. `params` states ranges and gaps; the function sets the number, mountings and sensing elements of the units.
 ///
 /// Returns `empty` if no IMU has a sample, or an error of ImuMerge. Returns `out_of_range` with the axis if frozen axes
 /// leave no IMU; `out.faults` then lists the excluded IMUs. Cost: O(N).
-Status merge_recordings(std::span<const UnitRecording> recordings, ImuMerge::Params params, MergedRecordings& out);
+Status merge_recordings(std::span<const ImuRecording> recordings, ImuMerge::Params params, MergedRecordings& out);
 
 }  // namespace tumble

@@ -10,25 +10,25 @@
 #include "tumble/attitude/detail/regime_smoother.hpp"
 #include "tumble/common/sensor_health.hpp"
 #include "tumble/common/time.hpp"
-#include "tumble/mapping/detail/sweep_scale.hpp"
+#include "tumble/mapping/detail/lidar_scale.hpp"
 #include "tumble/odometry/detail/imu_findings.hpp"
 #include "tumble/odometry/detail/mapping_passes.hpp"
 
 namespace tumble {
 
 /// results of TumblingOdometry for a whole recording, in addition to the sweeps of take()
-struct RecordingEstimate {
-  explicit RecordingEstimate(const LidarInertialOdometry::Params& mapping) : mapped(mapping) {}
+struct WholeRecordingEstimate {
+  explicit WholeRecordingEstimate(const LidarInertialOdometry::Params& mapping) : mapped_recording(mapping) {}
 
   std::vector<TimeNs> stamps_ns;  ///< received time stamps of the used samples; `rates` contains corrected times
-  std::vector<RateState> rates;   ///< one per used sample; the covariances include `suspect_rad2_s2`
-  std::vector<Eigen::Matrix3d> suspect_rad2_s2;  ///< see suspect_covariance(); empty without a finding
-  RegimeSmoother::Report report;                 ///< report of the rate estimation, with the calibration of the IMU
-  SaturationLevels rails;
-  ImuFindings findings;
+  std::vector<AngularRateState> rates;   ///< one per used sample; the covariances include `suspected_error_covariance_rad2_s2`
+  std::vector<Eigen::Matrix3d> suspected_error_covariance_rad2_s2;  ///< see suspected_error_covariance(); empty without a finding
+  MotionRegimeSmoother::Report report;                 ///< report of the rate estimation, with the calibration of the IMU
+  SaturationLevels saturation_levels;
+  ImuHealthReport findings;
   SensorHealth health;              ///< findings about IMU, lidar and estimate
-  MappedRecording mapped;           ///< mapper and passes; TumblingOdometry::take() returns the sweeps
-  SweepScale scale;                 ///< scale of the lidar's ranges
+  MappedRecording mapped_recording;           ///< mapper and passes; TumblingOdometry::take() returns the sweeps
+  LidarScale scale;                 ///< scale of the lidar's ranges
   double corrected_jitter_s = 0.0;  ///< largest correction of a time stamp
 };
 

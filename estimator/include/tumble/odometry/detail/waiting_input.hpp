@@ -35,16 +35,16 @@ class WaitingReadings {
 
   /// Returns the last odometer reading of the sweep, because the errors of several readings are correlated. All
   /// readings up to `end_ns` are deleted.
-  std::optional<OdometerReading> take(TimeNs from_ns, TimeNs end_ns);
+  std::optional<OdometerReading> take_readings_in(TimeNs from_ns, TimeNs end_ns);
 
-  /// Returns the last odometer reading within a sweep, like take(), but keeps all readings. Cost: O(log n).
+  /// Returns the last odometer reading within a sweep, like take_readings_in(), but keeps all readings. Cost: O(log n).
   std::optional<OdometerReading> find(TimeNs from_ns, TimeNs end_ns) const;
 
-  std::size_t spanning_two_sweeps() const { return spanning_two_sweeps_; }
+  std::size_t readings_spanning_two_sweeps() const { return readings_spanning_two_sweeps_; }
 
  private:
-  std::deque<OdometerReading> waiting_;  ///< waiting readings in the order of their middle times
-  std::size_t spanning_two_sweeps_ = 0;
+  std::deque<OdometerReading> waiting_readings_;  ///< waiting readings in the order of their middle times
+  std::size_t readings_spanning_two_sweeps_ = 0;
 };
 
 }  // namespace tumble

@@ -19,7 +19,7 @@ struct RollingContactParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.grip_sigma_m_s, {"grip_sigma_m_s", "m/s", 1e-12, 1e3,
-                             "standard deviation of the contact velocity while gripping", FieldRank::basic});
+                             "standard deviation of the contact velocity while gripping", ParameterRank::common_use});
     visit(p.grip_sigma_ratio,
           {"grip_sigma_ratio", "1", 1e-12, 1e3,
            "additional standard deviation of the contact velocity while gripping, as a share of the rolling speed"});
@@ -40,11 +40,11 @@ struct RollingModeParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.slip_begins_per_s,
-          {"slip_begins_per_s", "1/s", 1e-12, 1e3, "rate of transitions from grip to slip", FieldRank::basic});
+          {"slip_begins_per_s", "1/s", 1e-12, 1e3, "rate of transitions from grip to slip", ParameterRank::common_use});
     visit(p.bump_begins_per_s,
-          {"bump_begins_per_s", "1/s", 1e-12, 1e3, "rate of transitions from grip to bump", FieldRank::basic});
+          {"bump_begins_per_s", "1/s", 1e-12, 1e3, "rate of transitions from grip to bump", ParameterRank::common_use});
     visit(p.incline_begins_per_s, {"incline_begins_per_s", "1/s", 1e-12, 1e3,
-                                   "rate of transitions from level floor to slope", FieldRank::basic});
+                                   "rate of transitions from level floor to slope", ParameterRank::common_use});
     visit(p.event_sigma_growth_m,
           {"event_sigma_growth_m", "m", 1e-12, 1e3,
            "growth of the horizontal standard deviation of the position during slip or bump, above which the "

@@ -11,9 +11,9 @@ namespace tumble {
 /// RollingEstimate is the pose of a rolling sphere's centre G at one sample, with the contact mode.
 struct RollingEstimate {
   TimeNs time_ns = 0;
-  Eigen::Vector3d p_WG_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d sphere_centre_W_m = Eigen::Vector3d::Zero();
   Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
-  Eigen::Vector3d v_WG_m_s = Eigen::Vector3d::Zero();
+  Eigen::Vector3d sphere_velocity_W_m_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d w_WI_I_rad_s = Eigen::Vector3d::Zero();  ///< gyro reading minus bias
   /// covariance of the position error [m] and the attitude error [rad], in world axes
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
@@ -25,7 +25,7 @@ struct RollingEstimate {
 };
 
 /// Nominal trajectory and calibration, about which the filter linearises its errors.
-struct RollingNominal {
+struct RollingNominalState {
   Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
   Eigen::Vector3d v_WI_m_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d p_WI_m = Eigen::Vector3d::Zero();
@@ -35,10 +35,10 @@ struct RollingNominal {
   Eigen::Matrix3d gyro_scale = Eigen::Matrix3d::Zero();
   double accel_delay_s = 0.0;
   Eigen::Vector3d lever_arm_error_m = Eigen::Vector3d::Zero();
-  Eigen::Vector2d slope = Eigen::Vector2d::Zero();  ///< horizontal part of the floor's unit normal, in world axes
+  Eigen::Vector2d floor_slope = Eigen::Vector2d::Zero();  ///< horizontal part of the floor's unit normal, in world axes
   double radius_error_m = 0.0;
   Eigen::Vector3d last_rate_I_rad_s = Eigen::Vector3d::Zero();  ///< rate of the last reading
-  bool operator==(const RollingNominal&) const = default;
+  bool operator==(const RollingNominalState&) const = default;
 };
 
 /// Constants that one run estimated, usable as the prior of another run of the same sphere. The constants have the
@@ -50,12 +50,12 @@ struct RollingCalibration {
 };
 
 /// Integrals of attitude, specific force, rate and their products since the last measurement update (node).
-struct RollingIntegrals {
-  Eigen::Matrix3d rotation_integral_s = Eigen::Matrix3d::Zero();
-  Eigen::Matrix3d rotation_integral_used_force_s =
+struct RollingNodeIntegrals {
+  Eigen::Matrix3d integrated_rotation_s = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d integrated_rotation_with_force_s =
       Eigen::Matrix3d::Zero();  ///< integral of R over the readings whose force is used
   Eigen::Vector3d force_integral_W_m_s = Eigen::Vector3d::Zero();
-  Eigen::Matrix<double, 3, 9> rotation_force_integral = Eigen::Matrix<double, 3, 9>::Zero(),
+  Eigen::Matrix<double, 3, 9> rotation_by_force_integral = Eigen::Matrix<double, 3, 9>::Zero(),
                               rotation_rate_integral = Eigen::Matrix<double, 3, 9>::Zero();
   Eigen::Vector3d rate_cross_force_integral_W = Eigen::Vector3d::Zero();
   Eigen::Vector3d rate_integral_I_rad = Eigen::Vector3d::Zero(), force_integral_I_m_s = Eigen::Vector3d::Zero();
@@ -64,12 +64,12 @@ struct RollingIntegrals {
   double recovered_rate_s = 0.0;                       ///< duration of recovered rates
   double impact_m_s = 0.0;                             ///< integral of the part of | |f| - g | above its usual level
   double unexplained_impact_m_s = 0.0;                 ///< part of impact_m_s that rotation does not explain
-  Eigen::Vector3d subsample_saturation_W_m_s =
+  Eigen::Vector3d partial_saturation_W_m_s =
       Eigen::Vector3d::Zero();  ///< standard deviation of force lost to saturation shorter than a sample
   // duration of a gap, and variances that the gap adds to angle, rate (times duration), velocity
   double gap_s = 0.0, gap_angle_variance_rad2 = 0.0, gap_rate_variance_rad2_s = 0.0, gap_speed_variance_m2_s2 = 0.0;
-  double node_s = 0.0;
-  bool operator==(const RollingIntegrals&) const = default;
+  double node_interval_s = 0.0;
+  bool operator==(const RollingNodeIntegrals&) const = default;
 };
 
 }  // namespace tumble

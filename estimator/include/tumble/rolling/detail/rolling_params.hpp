@@ -19,12 +19,12 @@ struct RollingExpertParams {
   double reading_s = 4e-3;
   /// The rest detector processes the mean reading of each time step `node_s`. With a rate limit of 0.02 instead of
   /// 0.0115 rad/s per axis, the drift of a sphere that comes to rest would be 1.5 times as large.
-  RestDetector::Params rest = {
+  RestDetector::Params rest_detector = {
       .rate_max_rad_s = 0.0115, .rate_spread_rad_s = 0.016, .force_spread_m_s2 = 0.15, .rest_s = 0.4, .memory_s = 0.1};
   RollingPriorParams prior = {};
   RollingImuNoiseParams noise = {};
   RollingContactParams contact = {};
-  RollingRailParams rails = {};
+  RollingSaturationParams saturation = {};
   RollingModeParams modes = {};
   RollingGapParams gap = {};
 
@@ -32,11 +32,11 @@ struct RollingExpertParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.node_s, {"node_s", "s", 1e-3, 0.1, "time between two measurement updates"});
     visit(p.reading_s, {"reading_s", "s", 0.0, 0.1, "duration over which readings are averaged; 0: no averaging"});
-    visit.group("rest_", p.rest);
+    visit.group("rest_", p.rest_detector);
     visit.group("", p.prior);
     visit.group("", p.noise);
     visit.group("", p.contact);
-    visit.group("", p.rails);
+    visit.group("", p.saturation);
     visit.group("", p.modes);
     visit.group("", p.gap);
   }
@@ -65,10 +65,10 @@ struct RollingParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.radius_m, {"radius_m", "m", 1e-12, 10.0, "radius of the sphere"});
     visit(p.radius_sigma_m,
-          {"radius_sigma_m", "m", 0.0, 1e3, "prior standard deviation of the radius; 0: exact", FieldRank::basic});
+          {"radius_sigma_m", "m", 0.0, 1e3, "prior standard deviation of the radius; 0: exact", ParameterRank::common_use});
     visit(p.lever_arm_m, {"lever_arm_m", "m", -10.0, 10.0, "lever arm from the centre to the IMU, sensor axes"});
     visit(p.lever_arm_sigma_m,
-          {"lever_arm_sigma_m", "m", 0.0, 1e3, "prior standard deviation of the lever arm", FieldRank::basic});
+          {"lever_arm_sigma_m", "m", 0.0, 1e3, "prior standard deviation of the lever arm", ParameterRank::common_use});
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
     visit(p.gyro_range_rad_s, {"gyro_range_rad_s", "rad/s", 1e-12, 1e3,
                                "measuring range of the gyro; readings at or above this value count as saturated"});

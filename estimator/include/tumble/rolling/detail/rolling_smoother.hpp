@@ -23,13 +23,13 @@ namespace tumble {
 /// is corrected for errors of the path before the rest.
 class RollingSmoother {
  public:
-  static constexpr double kWholeRun = 1e9;
+  static constexpr double kWholeRecordingLag = 1e9;
 
   struct Params {
     RollingParams filter = {};
     /// ratio of the smoother's to RollingFilter's process noise; the reported covariance ignores this ratio
     static constexpr double kFinalPassNoiseRatio = 0.65;
-    double lag_s = kWholeRun;                ///< delay of an estimate behind the newest sample
+    double lag_s = kWholeRecordingLag;                ///< delay of an estimate behind the newest sample
     static constexpr double kBlock_s = 0.2;  ///< RollingSmoother reports estimates in blocks of this duration
     double rate_max_hz = 500.0;              ///< sample rate for which memory is allocated in advance
     /// Measured horizontal distance of the centre between start and end of the run, and its standard deviation; 0: not
@@ -42,15 +42,15 @@ class RollingSmoother {
       visit(p.lag_s,
             {"lag_s", "s", 1e-3, 1e9,
              "maximum delay of a pose; a longer delay makes poses more accurate; 1e9: until the end of the run",
-             FieldRank::basic});
+             ParameterRank::common_use});
       visit(p.rate_max_hz,
             {"rate_max_hz", "Hz", 1e-3, 1e5, "sample rate for which the memory of the delay is allocated in advance"});
       visit(p.known_distance_m,
             {"known_distance_m", "m", 0.0, 1e6,
              "known horizontal distance from start to end, from which the radius is estimated; 0: not known",
-             FieldRank::basic});
+             ParameterRank::common_use});
       visit(p.known_distance_sigma_m,
-            {"known_distance_sigma_m", "m", 1e-12, 1e3, "standard deviation of the known distance", FieldRank::basic});
+            {"known_distance_sigma_m", "m", 1e-12, 1e3, "standard deviation of the known distance", ParameterRank::common_use});
     }
   };
 
@@ -65,28 +65,28 @@ class RollingSmoother {
     bool operator==(const NodeModes&) const = default;
   };
   /// state of the smoother at the last node with reported estimates
-  struct FinalPassState {
-    RollingNominal nominal;
-    RollingFilter::Covariance P = RollingFilter::Covariance::Zero();
+  struct FinalSmoothingState {
+    RollingNominalState nominal;
+    RollingFilter::Covariance covariance = RollingFilter::Covariance::Zero();
     RollingMode mode = RollingMode::grip;
-    double event_start_variance_m2 = 0.0;                          ///< position variance at the start of the event
-    Eigen::Vector3d constrained_p_WG_m = Eigen::Vector3d::Zero();  ///< reported position while `position_constrained`
+    double slip_start_variance_m2 = 0.0;                          ///< position variance at the start of the event
+    Eigen::Vector3d constrained_sphere_centre_W_m = Eigen::Vector3d::Zero();  ///< reported position while `position_constrained`
     bool position_constrained = false;  ///< the sphere is at rest and the reported position is constant
     TimeNs last_time_ns = 0;
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
     // rate during a gap between samples, if the node is within a gap
-    Eigen::Vector3d gap_rate_rad_s = Eigen::Vector3d::Zero();
+    Eigen::Vector3d rate_before_gap_rad_s = Eigen::Vector3d::Zero();
     TimeNs gap_start_ns = 0;
-    int gap_step = 0;
+    int gap_step_index = 0;
     bool started = false;
-    bool operator==(const FinalPassState&) const = default;
+    bool operator==(const FinalSmoothingState&) const = default;
   };
   struct State {
-    RollingFilter::State live;
-    FinalPassState committed;
+    RollingFilter::State live_filter;
+    FinalSmoothingState committed_state;
     std::vector<ImuSample> samples;  ///< samples after the committed node
-    std::vector<NodeModes> steps;
-    RollingNominal constants;     ///< constants at the newest smoothed node
+    std::vector<NodeModes> node_modes;
+    RollingNominalState constants;     ///< constants at the newest smoothed node
     double radius_sigma_m = 0.0;  ///< standard deviation of the radius at the newest smoothed node
     bool operator==(const State& other) const;
   };
@@ -101,7 +101,7 @@ class RollingSmoother {
   /// The first call allocates the memory for the samples of the last `lag_s`. Later calls allocate memory only for
   /// `out` and for smoothing, at the last sample of a block of `block_s`. Smoothing temporarily needs 14 KiB per node
   /// of lag and block, or 4 MiB plus 0.3 KiB per node if there are many nodes. The memory of the state grows with the
-  /// duration (64 bytes per sample, 152 per node) with kWholeRun, above rate_max_hz, or beyond a million samples in
+  /// duration (64 bytes per sample, 152 per node) with kWholeRecordingLag, above rate_max_hz, or beyond a million samples in
   /// `lag_s`.
   Status step(const ImuSample& sample, State& state, std::vector<RollingEstimate>& out) const;
 
@@ -112,20 +112,20 @@ class RollingSmoother {
   void finish(State& state, std::vector<RollingEstimate>& out) const;
 
   /// Smooths all estimates with externally known contact modes. `known` contains one contact mode per sample of a run
-  /// that was processed with kWholeRun.
+  /// that was processed with kWholeRecordingLag.
   void finish(std::span<const RollingMode> known, State& state, const EstimateCallback& take) const;
 
  private:
-  struct Path;
+  struct MostProbableModePath;
 
   std::size_t preallocated_samples() const;
-  Path most_probable_path(const State& state) const;
-  void smooth_window(const Path& path, std::size_t emitted, State& state, const EstimateCallback& take) const;
+  MostProbableModePath most_probable_path(const State& state) const;
+  void smooth_window(const MostProbableModePath& path, std::size_t emitted, State& state, const EstimateCallback& take) const;
 
   Params params_;
-  RollingParams final_pass_params_;
+  RollingParams final_smoothing_params_;
   RollingFilter filter_;
-  std::size_t lag_nodes_ = 0, block_nodes_ = 0;
+  std::size_t lag_nodes_ = 0, nodes_per_block_ = 0;
 };
 
 }  // namespace tumble

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rail_evidence.hpp"
+#include "saturation_plane_evidence.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -56,7 +56,7 @@ Segment next_segment(std::span<const std::size_t> inliers, std::size_t& at) {
 
 // Returns the log-likelihood ratio of saturation to gyro noise for the scatter of readings about a line: rails.md
 // (R65). Saturated readings contain no noise if the device adds the noise before it clips.
-double thin_log_likelihood(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
+double plane_thickness_log_likelihood(const DistinctReadings& readings, const SaturationPlaneCandidate& facet, const Segment& s) {
   if (s.size() <= kThinLostFreedom) return 0.0;
   const std::size_t first = s.first + 1, count = s.size() - 2;
   const double middle = 0.5 * static_cast<double>(count - 1);
@@ -73,24 +73,24 @@ double thin_log_likelihood(const DistinctReadings& readings, const RailFacet& fa
     squares += std::pow(facet.row.dot(readings.rates[first + i]) - line, 2);
   }
   const double free = static_cast<double>(s.size() - kThinLostFreedom),
-               digit = readings.digit[facet.axis] / std::sqrt(12.0);
-  const double least = std::max(digit, kEqualReadingsRatio * facet.level);
+               digit = readings.min_reading_change[facet.axis] / std::sqrt(12.0);
+  const double least = std::max(digit, kEqualReadingsRatio * facet.plane_distance);
   const double noise = std::hypot(readings.noise[facet.axis], digit);
   const double scatter = std::max(least, std::sqrt(squares / free));
   return scatter < noise ? free * (std::log(noise / scatter) - 0.5 * (1.0 - std::pow(scatter / noise, 2))) : 0.0;
 }
 
-struct SegmentShape {
-  double bend = 0.0, flat = 0.0;
-  bool bends() const { return bend >= kBendRatioMin * flat; }
+struct CurvatureAtSegment {
+  double curvature_at_ends = 0.0, curvature_in_segment = 0.0;
+  bool is_curved_at_ends() const { return curvature_at_ends >= kBendRatioMin * curvature_in_segment; }
 };
 
-std::optional<SegmentShape> shape_of(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
+std::optional<CurvatureAtSegment> curvature_at_segment(const DistinctReadings& readings, const SaturationPlaneCandidate& facet, const Segment& s) {
   const std::vector<Vector3d>& rates = readings.rates;
-  const auto value = [&](std::size_t k) { return facet.sign * facet.row.dot(rates[k]); };
+  const auto value = [&](std::size_t k) { return facet.side * facet.row.dot(rates[k]); };
   double depth = std::numeric_limits<double>::max();
-  if (s.first >= 2) depth = std::min(depth, facet.level - value(s.first - 2));
-  if (s.last + 2 < rates.size()) depth = std::min(depth, facet.level - value(s.last + 2));
+  if (s.first >= 2) depth = std::min(depth, facet.plane_distance - value(s.first - 2));
+  if (s.last + 2 < rates.size()) depth = std::min(depth, facet.plane_distance - value(s.last + 2));
   if (s.size() < 2 || depth == std::numeric_limits<double>::max()) return std::nullopt;
   double low = std::numeric_limits<double>::max(), high = -low;
   for (std::size_t k = s.first; k <= s.last; ++k) {
@@ -99,12 +99,12 @@ std::optional<SegmentShape> shape_of(const DistinctReadings& readings, const Rai
   }
   // See rails.md (R61).
   const double n = static_cast<double>(s.size()), inside = (n - 1.0) / (n + 3.0);
-  return SegmentShape{depth * inside * inside, std::max(high - low, 2.0 * facet.deviation)};
+  return CurvatureAtSegment{depth * inside * inside, std::max(high - low, 2.0 * facet.noise_sigma_rad_s)};
 }
 
 // Returns the log likelihood of saturation from the change of slope where the saturation starts or ends: rails.md
 // (R64). An impact changes the slope on all axes.
-double kink_evidence(const DistinctReadings& readings, const RailFacet& facet, const Segment& s, bool after) {
+double end_kink_evidence(const DistinctReadings& readings, const SaturationPlaneCandidate& facet, const Segment& s, bool after) {
   const std::vector<Vector3d>& rates = readings.rates;
   if (s.size() < 3 || (after ? s.last + 3 >= rates.size() : s.first < 3)) return 0.0;
   const double noise = readings.noise[facet.axis];
@@ -119,12 +119,12 @@ double kink_evidence(const DistinctReadings& readings, const RailFacet& facet, c
   return std::clamp(-std::log(5.0 * ratio), -0.5, kMaxKinkLogLikelihood);
 }
 
-Eigen::Matrix3d information_of(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
+Eigen::Matrix3d information_of(const DistinctReadings& readings, const SaturationPlaneCandidate& facet, const Segment& s) {
   Vector3d mean = Vector3d::Zero();
   for (std::size_t k = s.first; k <= s.last; ++k) mean += readings.rates[k] / static_cast<double>(s.size());
   Vector3d A;
-  A << -facet.sign * mean[(facet.axis + 1) % 3], -facet.sign * mean[(facet.axis + 2) % 3], 1.0;
-  return A * A.transpose() / (facet.deviation * facet.deviation);
+  A << -facet.side * mean[(facet.axis + 1) % 3], -facet.side * mean[(facet.axis + 2) % 3], 1.0;
+  return A * A.transpose() / (facet.noise_sigma_rad_s * facet.noise_sigma_rad_s);
 }
 
 }  // namespace
@@ -133,19 +133,19 @@ DistinctReadings distinct_readings(std::span<const Vector3d> readings, std::vect
                                    std::vector<double>& noises) {
   DistinctReadings out{rates};
   rates.clear();
-  out.digit.setConstant(std::numeric_limits<double>::max());
+  out.min_reading_change.setConstant(std::numeric_limits<double>::max());
   for (const Vector3d& y : readings) {
     if (!out.rates.empty() && out.rates.back() == y) continue;
     out.peak = out.peak.cwiseMax(y.cwiseAbs());
     for (int j = 0; j < 3 && !out.rates.empty(); ++j) {
       const double change = std::abs(y[j] - out.rates.back()[j]);
       // The rounding error of a floating-point sum is smaller than any quantisation step of a sensor.
-      if (change > 1e-9 * (1.0 + std::abs(y[j]))) out.digit[j] = std::min(out.digit[j], change);
+      if (change > 1e-9 * (1.0 + std::abs(y[j]))) out.min_reading_change[j] = std::min(out.min_reading_change[j], change);
     }
     out.rates.push_back(y);
   }
   for (int j = 0; j < 3; ++j) {
-    if (out.digit[j] == std::numeric_limits<double>::max()) out.digit[j] = 0.0;
+    if (out.min_reading_change[j] == std::numeric_limits<double>::max()) out.min_reading_change[j] = 0.0;
     noises.clear();
     for (std::size_t k = 0; k + kNoiseWindow <= out.rates.size(); k += kNoiseWindow) {
       const std::span<const Vector3d> window = std::span(out.rates).subspan(k, kNoiseWindow);
@@ -161,36 +161,36 @@ DistinctReadings distinct_readings(std::span<const Vector3d> readings, std::vect
   return out;
 }
 
-double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d& slope_information,
-                        std::span<const std::size_t> inliers, RailFacet& facet) {
-  const double thickness = 2.5 * facet.deviation, noise = readings.noise[facet.axis];
-  const double of_level = std::log(kLevelRangeFraction * facet.level / thickness);
+double plateau_segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d& slope_information,
+                        std::span<const std::size_t> inliers, SaturationPlaneCandidate& facet) {
+  const double thickness = 2.5 * facet.noise_sigma_rad_s, noise = readings.noise[facet.axis];
+  const double of_level = std::log(kLevelRangeFraction * facet.plane_distance / thickness);
   double odds = 0.0;
   facet.segments = 0;
   Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
   H.topLeftCorner<2, 2>() = slope_information;
   for (std::size_t at = 0; at < inliers.size();) {
     const Segment s = next_segment(inliers, at);
-    const std::optional<SegmentShape> shape = shape_of(readings, facet, s);
+    const std::optional<CurvatureAtSegment> shape = curvature_at_segment(readings, facet, s);
     if (!shape) continue;
-    const double thin = thin_log_likelihood(readings, facet, s);
-    if (!shape->bends() && thin < kThinLogLikelihoodMin) continue;
+    const double thin = plane_thickness_log_likelihood(readings, facet, s);
+    if (!shape->is_curved_at_ends() && thin < kThinLogLikelihoodMin) continue;
     ++facet.segments;
     odds += std::max(0.0, thin);
-    if (!shape->bends()) continue;
+    if (!shape->is_curved_at_ends()) continue;
     // See rails.md (R62), (R63).
-    const double flatness = static_cast<double>(s.size() - 1) * std::log(shape->bend / shape->flat);
+    const double flatness = static_cast<double>(s.size() - 1) * std::log(shape->curvature_at_ends / shape->curvature_in_segment);
     odds += std::min(flatness, -std::log(kConstantRateFraction)) + of_level;
-    for (const bool after : {false, true}) odds += kink_evidence(readings, facet, s, after);
+    for (const bool after : {false, true}) odds += end_kink_evidence(readings, facet, s, after);
     H += information_of(readings, facet, s);
   }
   const auto beyond = std::count_if(inliers.begin(), inliers.end(), [&](std::size_t k) {
-    return facet.sign * facet.row.dot(readings.rates[k]) > facet.level + facet.tolerance;
+    return facet.side * facet.row.dot(readings.rates[k]) > facet.plane_distance + facet.plane_tolerance_rad_s;
   });
   odds -= kBeyondPenalty *
           std::max(0.0, static_cast<double>(beyond) - kOutlierFraction * static_cast<double>(inliers.size()));
   if (facet.segments == 0) return -std::numeric_limits<double>::infinity();
-  facet.tolerance = std::max(facet.tolerance, std::min(kAtRailSigmas * noise, kAtRailRatioMax * facet.level));
+  facet.plane_tolerance_rad_s = std::max(facet.plane_tolerance_rad_s, std::min(kAtRailSigmas * noise, kAtRailRatioMax * facet.plane_distance));
   // The Occam factor is the ratio of posterior to prior parameter volume: rails.md (R66).
   const Eigen::Matrix3d posterior_covariance = H.inverse();
   const double of_slopes =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/detail/rail_planes.hpp"
+#include "tumble/angular_velocity/detail/saturation_plane_finder.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -10,8 +10,8 @@
 #include <optional>
 #include <vector>
 
-#include "rail_evidence.hpp"
-#include "rail_facets.hpp"
+#include "saturation_plane_evidence.hpp"
+#include "saturation_plane_fit.hpp"
 #include "tumble/angular_velocity/detail/rail_ratios.hpp"
 #include "tumble/common/status.hpp"
 
@@ -22,10 +22,10 @@ namespace {
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-using rails::FacetPrior;
-using rails::Gate;
-using rails::others;
-using rails::Side;
+using rails::PlaneSlopePrior;
+using rails::PlaneInlierGate;
+using rails::other_axes_readings;
+using rails::SaturationPlaneSide;
 
 // Initial standard deviations of the saturated readings about their plane, relative to the thickness of the searched
 // layer. The plane is fitted with both values. The small value suits layers with few partly saturated readings.
@@ -38,70 +38,70 @@ constexpr double kNearKnownLogOdds = 6.0, kKnownLevelSigmaRatio = 0.003, kFarFro
 // standard deviation of the change of a cross-axis sensitivity between two runs
 constexpr double kKnownSlopeSigma = 2e-3;
 
-double log_normal_ratio(double value, double sigma) {
+double gaussian_log_ratio(double value, double sigma) {
   const double z = value / sigma;
   return std::max(kImpossibleLogOdds, -0.5 * z * z);
 }
 
 // See rails.md (R67).
-double level_log_odds(const RailPlaneFinder::Params& params, const DistinctReadings& readings, const RailPlanes& known,
+double equal_limits_log_odds(const SaturationPlaneFinder::Params& params, const DistinctReadings& readings, const SaturationPlanes& known,
                       const Side& side) {
-  const double level = side.facet.level;
+  const double level = side.plane.plane_distance;
   double odds = params.kLogOddsBefore;
   if (level < params.distance_min_rad_s) return kImpossibleLogOdds;
   for (int other = 0; other < 3; ++other) {
-    const auto& rail = known.element[static_cast<std::size_t>(other)];
+    const auto& rail = known.sensing_axis[static_cast<std::size_t>(other)];
     if (rail && other == side.axis) {
-      odds += kOppositeSignLogOdds + log_normal_ratio(level - rail->distance_rad_s, params.kOffsetSigmaRatio * level);
+      odds += kOppositeSignLogOdds + gaussian_log_ratio(level - rail->saturation_limit_rad_s, params.kOffsetSigmaRatio * level);
     } else if (rail) {
       odds +=
-          kNearElementLogOdds + log_normal_ratio(level - rail->distance_rad_s, 2.0 * params.kOffsetSigmaRatio * level);
+          kNearElementLogOdds + gaussian_log_ratio(level - rail->saturation_limit_rad_s, 2.0 * params.kOffsetSigmaRatio * level);
     }
     if (other == side.axis) continue;
     const double beyond = readings.peak[other] / level - 1.0 - kElementLevelRatio;
-    if (beyond > 0.0) odds += log_normal_ratio(beyond, params.kOffsetSigmaRatio);
+    if (beyond > 0.0) odds += gaussian_log_ratio(beyond, params.kOffsetSigmaRatio);
   }
-  if (const auto& rail = params.known.element[static_cast<std::size_t>(side.axis)]) {
-    const double apart = level - rail->distance_rad_s - side.sign * rail->offset_rad_s;
-    odds += std::max(kFarFromKnownLogOdds, kNearKnownLogOdds + log_normal_ratio(apart, kKnownLevelSigmaRatio * level));
+  if (const auto& rail = params.known_limits.sensing_axis[static_cast<std::size_t>(side.axis)]) {
+    const double apart = level - rail->saturation_limit_rad_s - side.side * rail->offset_rad_s;
+    odds += std::max(kFarFromKnownLogOdds, kNearKnownLogOdds + gaussian_log_ratio(apart, kKnownLevelSigmaRatio * level));
   }
-  if (params.stated_rad_s) {
-    const double ratio = level / *params.stated_rad_s;
+  if (params.stated_range_rad_s) {
+    const double ratio = level / *params.stated_range_rad_s;
     odds += ratio < kStatedRailMin ? kImpossibleLogOdds : ratio < 1.05 && ratio > 0.95 ? kNearStatedLogOdds : 0.0;
   }
   return odds;
 }
 
 // See rails.md (R53).
-RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& readings, const Side* minus,
+SaturationPlane merged_plane(const SaturationPlaneFinder::Params& params, const DistinctReadings& readings, const Side* minus,
                  const Side* plus) {
   Eigen::Matrix4d H = Eigen::Matrix4d::Zero();
   Eigen::Vector4d g = Eigen::Vector4d::Zero();
   const int axis = (plus != nullptr ? plus : minus)->axis;
-  const double level = (plus != nullptr ? plus : minus)->facet.level;
+  const double level = (plus != nullptr ? plus : minus)->plane.plane_distance;
   const double slope_information = 1.0 / (params.kSlopeSigma * params.kSlopeSigma);
   H.diagonal() << slope_information, slope_information, 0.0, 1.0 / std::pow(params.kOffsetSigmaRatio * level, 2);
-  RailPlane out;
+  SaturationPlane out;
   double squares = 0.0, weights = 0.0;
   for (const Side* side : {minus, plus}) {
     if (side == nullptr) continue;
-    const double weight = 1.0 / (side->facet.deviation * side->facet.deviation);
-    const Gate& gate = side->gate;
+    const double weight = 1.0 / (side->plane.noise_sigma_rad_s * side->plane.noise_sigma_rad_s);
+    const PlaneInlierGate& gate = side->gate;
     for (const Vector3d& y : readings.rates) {
-      if (!(side->sign * gate.row.dot(y) >= gate.from)) continue;
-      if (!(rails::highest_value(y, axis, side->sign, gate.steepest) >= gate.near_min)) continue;
+      if (!(side->side * gate.row.dot(y) >= gate.from)) continue;
+      if (!(rails::highest_value(y, axis, side->side, gate.max_cross_axis_slope) >= gate.near_readings_min)) continue;
       // The reading is linear in saturation level, offset and cross-axis sensitivities: rails.md (R59).
       Eigen::Vector4d A;
-      A << -others(y, axis), side->sign, 1.0;
+      A << -other_axes_readings(y, axis), side->side, 1.0;
       H += weight * A * A.transpose();
       g += weight * A * y[axis];
     }
-    squares += side->facet.deviation * side->facet.deviation * side->samples;
+    squares += side->plane.noise_sigma_rad_s * side->plane.noise_sigma_rad_s * side->samples;
     weights += side->samples;
-    const std::size_t i = side->sign > 0 ? 1 : 0;
+    const std::size_t i = side->side > 0 ? 1 : 0;
     out.samples[i] = side->samples;
-    out.segments[i] = side->facet.segments;
-    out.tolerance_rad_s = std::max(out.tolerance_rad_s, side->facet.tolerance);
+    out.segments[i] = side->plane.segments;
+    out.tolerance_rad_s = std::max(out.tolerance_rad_s, side->plane.plane_tolerance_rad_s);
     out.log_odds = std::max(out.log_odds, side->log_odds);
   }
   // If two sensing elements always clip together, their cross-axis sensitivity is undetermined.
@@ -111,7 +111,7 @@ RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& 
   out.row[axis] = 1.0;
   out.row[(axis + 1) % 3] = x[0];
   out.row[(axis + 2) % 3] = x[1];
-  out.distance_rad_s = x[2];
+  out.saturation_limit_rad_s = x[2];
   out.offset_rad_s = x[3];
   out.deviation_rad_s = std::sqrt(squares / weights);
   return out;
@@ -119,67 +119,67 @@ RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& 
 
 using Pair = std::array<std::optional<Side>, 2>;
 
-RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& readings, const Pair& pair) {
-  return joined(params, readings, pair[0] ? &*pair[0] : nullptr, pair[1] ? &*pair[1] : nullptr);
+SaturationPlane merged_plane(const SaturationPlaneFinder::Params& params, const DistinctReadings& readings, const Pair& pair) {
+  return merged_plane(params, readings, pair[0] ? &*pair[0] : nullptr, pair[1] ? &*pair[1] : nullptr);
 }
 
-struct SideSearch {
-  const RailPlaneFinder::Params& params;
+struct PlaneSideSearch {
+  const SaturationPlaneFinder::Params& params;
   const DistinctReadings& readings;
-  RailPlaneFinder::Workspace& workspace;
+  SaturationPlaneFinder::Workspace& workspace;
 
   // See rails.md (R60).
-  Side about(int axis, int sign, const RailPlanes& known, const FacetPrior& prior, double range) const {
+  Side search_near_prior(int axis, int sign, const SaturationPlanes& known, const PlaneSlopePrior& prior, double range) const {
     Side side{axis, sign, {}, {}};
-    const auto extreme = rails::find_extreme(params, readings, axis, sign, prior, range, workspace);
+    const auto extreme = rails::find_extreme_reading(params, readings, axis, sign, prior, range, workspace);
     if (!extreme) return side;
-    const Vector2d searched = rails::search_slopes(readings, *extreme, range, prior, workspace);
-    for (const Vector2d& slopes : {searched, prior.slopes}) {
+    const Vector2d searched = rails::search_cross_axis_slopes(readings, *extreme, range, prior, workspace);
+    for (const Vector2d& slopes : {searched, prior.cross_axis_slopes}) {
       for (const double start : kInitialSigmaRatios) {
-        Side tried = rails::fit_facet(readings, *extreme, prior, slopes, start * extreme->slab, workspace);
+        Side tried = rails::fit_saturation_plane(readings, *extreme, prior, slopes, start * extreme->slab_thickness, workspace);
         if (tried.samples < params.samples_min) continue;
-        tried.log_odds = level_log_odds(params, readings, known, tried) +
-                         segment_evidence(readings, prior.information, workspace.inliers, tried.facet);
+        tried.log_odds = equal_limits_log_odds(params, readings, known, tried) +
+                         plateau_segment_evidence(readings, prior.information, workspace.inliers, tried.plane);
         if (tried.log_odds > side.log_odds) side = tried;
       }
     }
     return side;
   }
 
-  Side search_side(int axis, int sign, const RailPlanes& known) const {
+  Side search_plane_on_side(int axis, int sign, const SaturationPlanes& known) const {
     const auto element = static_cast<std::size_t>(axis);
-    if (const auto& rail = known.element[element]) {
+    if (const auto& rail = known.sensing_axis[element]) {
       const Matrix2d of_slopes = rail->covariance.topLeftCorner<2, 2>();
-      const FacetPrior prior{others(rail->row, axis), (of_slopes + 1e-6 * Matrix2d::Identity()).inverse()};
+      const PlaneSlopePrior prior{other_axes_readings(rail->row, axis), (of_slopes + 1e-6 * Matrix2d::Identity()).inverse()};
       const double range = std::min(params.kSlopeMax, 3.0 * std::sqrt(of_slopes.trace()) + 1e-3);
-      return about(axis, sign, known, prior, range);
+      return search_near_prior(axis, sign, known, prior, range);
     }
     const Matrix2d unknown = Matrix2d::Identity() / (params.kSlopeSigma * params.kSlopeSigma);
-    const Side side = about(axis, sign, known, {Vector2d::Zero(), unknown}, params.kSlopeMax);
-    const auto& earlier = params.known.element[element];
+    const Side side = search_near_prior(axis, sign, known, {Vector2d::Zero(), unknown}, params.kSlopeMax);
+    const auto& earlier = params.known_limits.sensing_axis[element];
     if (!earlier) return side;
     const Matrix2d changed =
         earlier->covariance.topLeftCorner<2, 2>() + kKnownSlopeSigma * kKnownSlopeSigma * Matrix2d::Identity();
     const double range = std::min(params.kSlopeMax, 3.0 * std::sqrt(changed.trace()));
-    const Side same = about(axis, sign, known, {others(earlier->row, axis), changed.inverse()}, range);
+    const Side same = search_near_prior(axis, sign, known, {other_axes_readings(earlier->row, axis), changed.inverse()}, range);
     return same.log_odds > side.log_odds ? same : side;
   }
 
-  bool add(int axis, std::size_t i, bool kept, const RailPlanes& found, Pair& pair) const {
+  bool add(int axis, std::size_t i, bool kept, const SaturationPlanes& found, Pair& pair) const {
     const int sign = i == 0 ? -1 : 1;
-    const Side side = search_side(axis, sign, found);
+    const Side side = search_plane_on_side(axis, sign, found);
     if (side.log_odds >= (kept ? params.kLogOddsKeep : params.kLogOddsMin)) {
       pair[i] = side;
       return true;
     }
-    const auto& rail = found.element[static_cast<std::size_t>(axis)];
+    const auto& rail = found.sensing_axis[static_cast<std::size_t>(axis)];
     if (rail || !(side.log_odds > -std::numeric_limits<double>::infinity())) return false;
     // The planes of positive and negative saturation may be accepted together although each plane alone is rejected.
     Pair alone;
     alone[i] = side;
-    RailPlanes supposed = found;
-    supposed.element[static_cast<std::size_t>(axis)] = joined(params, readings, alone);
-    const Side other = search_side(axis, -sign, supposed);
+    SaturationPlanes supposed = found;
+    supposed.sensing_axis[static_cast<std::size_t>(axis)] = merged_plane(params, readings, alone);
+    const Side other = search_plane_on_side(axis, -sign, supposed);
     // The planes of positive and negative saturation share one prior: rails.md (R68).
     if (side.log_odds + other.log_odds - params.kLogOddsBefore < params.kLogOddsMin) return false;
     pair[i] = side;
@@ -190,49 +190,49 @@ struct SideSearch {
 
 }  // namespace
 
-RailPlaneFinder::RailPlaneFinder(const Params& params) : params_(params) {
+SaturationPlaneFinder::SaturationPlaneFinder(const Params& params) : params_(params) {
   require_valid_fields(params);
-  if (params.stated_rad_s) require_within("stated_rad_s", *params.stated_rad_s, 1e-6, 1000.0);
+  if (params.stated_range_rad_s) require_in_interval("stated_rad_s", *params.stated_range_rad_s, 1e-6, 1000.0);
 }
 
-void RailPlaneFinder::Workspace::reserve(std::size_t readings) {
+void SaturationPlaneFinder::Workspace::reserve(std::size_t readings) {
   rates.reserve(readings);
   values.reserve(readings);
-  near.reserve(readings);
+  near_plane_indices.reserve(readings);
   inliers.reserve(readings);
 }
 
-RailPlanes RailPlaneFinder::find(std::span<const ImuSample> samples, Triad triad) const {
+SaturationPlanes SaturationPlaneFinder::find(std::span<const ImuSample> samples, Triad triad) const {
   std::vector<Vector3d> readings(samples.size());
-  for (std::size_t k = 0; k < samples.size(); ++k) readings[k] = reading_of(samples[k], triad);
+  for (std::size_t k = 0; k < samples.size(); ++k) readings[k] = triad_reading_of(samples[k], triad);
   Workspace workspace;
   return find(readings, {}, workspace);
 }
 
-RailPlanes RailPlaneFinder::find(std::span<const Vector3d> readings_rad_s, const RailPlanes& before,
+SaturationPlanes SaturationPlaneFinder::find(std::span<const Vector3d> readings_rad_s, const SaturationPlanes& before,
                                  Workspace& workspace) const {
   const DistinctReadings readings = distinct_readings(readings_rad_s, workspace.rates, workspace.values);
-  RailPlanes found;
+  SaturationPlanes found;
   if (readings.rates.size() < static_cast<std::size_t>(params_.samples_min) + 2)
-    return merge_with_known_planes(found, readings.rates);
-  const SideSearch search{params_, readings, workspace};
+    return merge_known_saturation_planes(found, readings.rates);
+  const PlaneSideSearch search{params_, readings, workspace};
   std::array<Pair, 3> sides;
   // Each accepted plane changes the log odds of further planes.
   for (bool added = true; added;) {
     added = false;
     for (int axis = 0; axis < 3; ++axis) {
       const auto element = static_cast<std::size_t>(axis);
-      const auto& held = before.element[element];
+      const auto& held = before.sensing_axis[element];
       Pair& pair = sides[element];
       for (std::size_t i = 0; i < 2; ++i) {
-        const bool kept = held && held->seen(i == 0 ? -1 : 1);
+        const bool kept = held && held->was_reached(i == 0 ? -1 : 1);
         if (pair[i] || !search.add(axis, i, kept, found, pair)) continue;
         added = true;
-        found.element[element] = joined(params_, readings, pair);
+        found.sensing_axis[element] = merged_plane(params_, readings, pair);
       }
     }
   }
-  return merge_with_known_planes(found, readings.rates);
+  return merge_known_saturation_planes(found, readings.rates);
 }
 
 }  // namespace tumble

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/detail/subsample_saturation.hpp"
+#include "tumble/angular_velocity/detail/partial_saturation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,7 @@ constexpr double kDeficitSigmaRatio = 0.5, kDepthSigmaRatio = 0.25, kDepthMax = 
 }  // namespace
 
 // The rate is assumed to cross the saturation level with constant slope: rails.md (R69), (R70).
-SubsampleSaturation subsample_saturation(double reading_rad_s, double neighbour_rad_s, double rail_rad_s,
+PartialSaturation partial_saturation(double reading_rad_s, double neighbour_rad_s, double rail_rad_s,
                                          double noise_rad_s) {
   const double depth = rail_rad_s - reading_rad_s, slope = reading_rad_s - neighbour_rad_s;
   // Noise that is added before clipping lowers a fully saturated reading by less than a tenth of the noise.

@@ -18,23 +18,23 @@ namespace tumble {
 /// Detects the saturation limits of several IMUs on one body from their readings, causally. Only confirmed saturation
 /// limits count, as defined by ConfirmedSaturation.
 ///
-/// UnitRails detects a saturation limit from the first two to ten samples at the limit, which are not flagged.
-class UnitRails {
+/// ImuSaturationLimits detects a saturation limit from the first two to ten samples at the limit, which are not flagged.
+class ImuSaturationLimits {
  public:
-  struct Unit {
-    StreamingClippingFinder::State rails;
-    std::optional<ImuSample> before;  ///< last finite sample
+  struct ImuClippingState {
+    StreamingClippingFinder::State clipping_state;
+    std::optional<ImuSample> previous_sample;  ///< last finite sample
   };
-  using State = std::array<Unit, ImuMerge::kImus>;
+  using State = std::array<ImuClippingState, ImuMerge::kImus>;
   using Samples = std::array<ImuSample, ImuMerge::kImus>;
 
   /// At most ImuMerge::kImus data sheets. Throws InvalidParams if a stated range is out of bounds.
-  explicit UnitRails(std::span<const ImuSheet> sheets);
+  explicit ImuSaturationLimits(std::span<const ImuDataSheet> sheets);
 
   /// Sets the saturation limits and planes of an IMU as known from an earlier run.
-  void start_from(std::size_t unit, const SaturationLevels& rails);
+  void start_from_saturation_levels(std::size_t unit, const SaturationLevels& rails);
 
-  /// Returns the state before the first samples, with all memory that observe() needs: 110 KiB per IMU.
+  /// Returns the state before the first samples, with all memory that observe_readings() needs: 110 KiB per IMU.
   State start() const;
 
   /// Copies `samples` (one per IMU) to `out` and flags saturated axes, without allocating memory. Samples that are not
@@ -43,14 +43,14 @@ class UnitRails {
 
   /// The samples must be unflagged. Cost: O(1), except for rare searches for planes of saturated readings. No memory is
   /// allocated.
-  void observe(std::span<const ImuSample> samples, State& state) const;
+  void observe_readings(std::span<const ImuSample> samples, State& state) const;
 
  private:
-  struct UnitDetector {
-    StreamingClippingFinder watch;
-    ImuSheet sheet;
+  struct ImuClippingFinder {
+    StreamingClippingFinder clipping_finder;
+    ImuDataSheet data_sheet;
   };
-  std::vector<UnitDetector> units_;
+  std::vector<ImuClippingFinder> imus_;
 };
 
 }  // namespace tumble

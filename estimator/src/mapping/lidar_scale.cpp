@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/mapping/detail/sweep_scale.hpp"
+#include "tumble/mapping/detail/lidar_scale.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -24,11 +24,11 @@ constexpr int kDisjointMin = 4;       // minimum number of changes without a com
 constexpr std::size_t kSpanMax = 64;  // maximum number of buffered sweeps
 constexpr int kIterations = 10;
 constexpr double kBias_m_s2 = 0.05;  // constant error of the acceleration, from accelerometer bias and tilt
-constexpr double kMemory_s = 60.0;   // age up to which a change is compared, so that a finding ends
+constexpr double kForgettingTime_s = 60.0;   // age up to which a change is compared, so that a finding ends
 // width of the Huber kernel in standard deviations; ratio of standard deviation to median absolute deviation
 constexpr double kHuber = 1.5, kPerMedian = 1.4826;
 
-using Change = SweepScaleEstimator::Change;
+using Change = LidarScaleEstimator::VelocityChange;
 
 class ImuMotion {
  public:
@@ -41,7 +41,7 @@ class ImuMotion {
 
   /// Returns the mean velocity from `middle_ns` to `to_ns`, minus the mean velocity from `from_ns` to `middle_ns`.
   /// Returns nothing if a force between `from_ns` and `to_ns` is saturated or missing.
-  std::optional<Eigen::Vector3d> change(TimeNs from_ns, TimeNs middle_ns, TimeNs to_ns) const {
+  std::optional<Eigen::Vector3d> velocity_change(TimeNs from_ns, TimeNs middle_ns, TimeNs to_ns) const {
     if (attitudes_.empty()) return std::nullopt;
     const auto later = [](const ImuSample& sample, TimeNs time_ns) { return sample.time_ns <= time_ns; };
     auto next = std::lower_bound(samples_.begin(), samples_.end(), from_ns, later);
@@ -66,10 +66,10 @@ class ImuMotion {
   Eigen::Quaterniond attitude(TimeNs time_ns) const {
     const auto earlier = [](const PoseState& pose, TimeNs time) { return pose.time_ns < time; };
     const auto after = std::lower_bound(attitudes_.begin(), attitudes_.end(), time_ns, earlier);
-    if (after == attitudes_.end()) return attitudes_.back().q_WA;
-    if (after == attitudes_.begin()) return after->q_WA;
+    if (after == attitudes_.end()) return attitudes_.back().orientation_W;
+    if (after == attitudes_.begin()) return after->orientation_W;
     const PoseState &a = *(after - 1), &b = *after;
-    return a.q_WA.slerp(seconds(time_ns - a.time_ns) / seconds(b.time_ns - a.time_ns), b.q_WA);
+    return a.orientation_W.slerp(seconds(time_ns - a.time_ns) / seconds(b.time_ns - a.time_ns), b.orientation_W);
   }
 
   std::span<const ImuSample> samples_;
@@ -78,12 +78,12 @@ class ImuMotion {
 };
 
 /// Surfaces constrain the pose of a registered or degenerate sweep in at least one direction.
-bool is_placed(const SweepReport& sweep) {
+bool is_registered_in_map(const SweepReport& sweep) {
   return sweep.verdict == SweepVerdict::registered || sweep.verdict == SweepVerdict::degenerate;
 }
 
 template <class Sweeps>
-std::size_t sweeps_in(double span_s, const Sweeps& sweeps) {
+std::size_t sweep_count_in_duration(double span_s, const Sweeps& sweeps) {
   if (sweeps.size() < 2) return 1;
   const double all_s = seconds(sweeps.back().pose.time_ns - sweeps.front().pose.time_ns);
   const double count = span_s * static_cast<double>(sweeps.size() - 1) / std::max(all_s, 1e-9);
@@ -92,23 +92,23 @@ std::size_t sweeps_in(double span_s, const Sweeps& sweeps) {
 
 /// Returns nothing if the change of velocity is unknown or too small.
 template <class Sweeps>
-std::optional<Change> change_until(std::size_t last, std::size_t span, const Sweeps& sweeps,
+std::optional<Change> velocity_change_until(std::size_t last, std::size_t span, const Sweeps& sweeps,
                                    const ImuMotion& imu_motion) {
   for (std::size_t k = last - 2 * span; k <= last; ++k) {
-    if (!is_placed(sweeps[k])) return std::nullopt;
+    if (!is_registered_in_map(sweeps[k])) return std::nullopt;
   }
   const PoseState &from = sweeps[last - 2 * span].pose, &middle = sweeps[last - span].pose, &to = sweeps[last].pose;
   if (!(from.time_ns < middle.time_ns && middle.time_ns < to.time_ns)) return std::nullopt;
-  const auto by_imu = imu_motion.change(from.time_ns, middle.time_ns, to.time_ns);
+  const auto by_imu = imu_motion.velocity_change(from.time_ns, middle.time_ns, to.time_ns);
   if (!by_imu || !(by_imu->norm() >= kChange_m_s)) return std::nullopt;
   return Change{to.time_ns, *by_imu,
-                (to.p_WA_m - middle.p_WA_m) / seconds(to.time_ns - middle.time_ns) -
-                    (middle.p_WA_m - from.p_WA_m) / seconds(middle.time_ns - from.time_ns)};
+                (to.position_W_m - middle.position_W_m) / seconds(to.time_ns - middle.time_ns) -
+                    (middle.position_W_m - from.position_W_m) / seconds(middle.time_ns - from.time_ns)};
 }
 
 /// Changes of velocity are disjoint if they share no sweep.
 template <class Changes>
-int disjoint_changes(const Changes& changes) {
+int disjoint_velocity_changes(const Changes& changes) {
   int count = 0;
   std::optional<TimeNs> last_ns;
   for (const Change& change : changes) {
@@ -129,7 +129,7 @@ double score_variance(const Changes& changes, const std::vector<Eigen::Vector3d>
       const double pair = 1.0 - seconds(changes[k].time_ns - changes[l].time_ns) / (2.0 * kSpan_s);
       if (pair <= 0.0) break;
       const double product =
-          weighted[k].dot(weighted[l]) * changes[k].imu_change_m_s.dot(changes[l].imu_change_m_s) / 3.0;
+          weighted[k].dot(weighted[l]) * changes[k].imu_velocity_change_m_s.dot(changes[l].imu_velocity_change_m_s) / 3.0;
       variance += (k == l ? 1.0 : 2.0) * pair * product;
     }
   }
@@ -137,16 +137,16 @@ double score_variance(const Changes& changes, const std::vector<Eigen::Vector3d>
 }
 
 template <class Changes>
-SweepScale fit(const Changes& changes) {
-  SweepScale out;
-  out.changes = changes.size();
-  const int disjoint = disjoint_changes(changes);
+LidarScale fit(const Changes& changes) {
+  LidarScale out;
+  out.velocity_change_count = changes.size();
+  const int disjoint = disjoint_velocity_changes(changes);
   if (changes.size() < kChangesMin || disjoint < kDisjointMin) return out;
   std::vector<Eigen::Vector3d> residuals(changes.size());
   std::vector<double> sizes(changes.size());
   for (int i = 0; i < kIterations; ++i) {
     for (std::size_t k = 0; k < changes.size(); ++k) {
-      residuals[k] = changes[k].sweeps_change_m_s - out.scale * changes[k].imu_change_m_s;
+      residuals[k] = changes[k].lidar_velocity_change_m_s - out.scale * changes[k].imu_velocity_change_m_s;
       sizes[k] = residuals[k].norm();
     }
     std::vector<double> sorted = sizes;
@@ -156,9 +156,9 @@ SweepScale fit(const Changes& changes) {
     Eigen::Vector3d by_bias = Eigen::Vector3d::Zero();
     for (std::size_t k = 0; k < changes.size(); ++k) {
       const double weight = std::min(1.0, kHuber * deviation / std::max(sizes[k], 1e-12));
-      together += weight * changes[k].imu_change_m_s.dot(changes[k].sweeps_change_m_s);
-      squared += weight * changes[k].imu_change_m_s.squaredNorm();
-      by_bias += weight * kSpan_s * changes[k].imu_change_m_s;
+      together += weight * changes[k].imu_velocity_change_m_s.dot(changes[k].lidar_velocity_change_m_s);
+      squared += weight * changes[k].imu_velocity_change_m_s.squaredNorm();
+      by_bias += weight * kSpan_s * changes[k].imu_velocity_change_m_s;
       residuals[k] *= weight;
     }
     out.scale = together / squared;
@@ -172,34 +172,34 @@ SweepScale fit(const Changes& changes) {
 
 }  // namespace
 
-bool SweepScale::is_inconsistent() const {
+bool LidarScale::is_inconsistent() const {
   return std::abs(scale - 1.0) > std::max(kLeast, kScaleDeviations * sigma);
 }
 
-Status SweepScale::verdict() const {
+Status LidarScale::verdict() const {
   if (!is_inconsistent()) return {};
   const double bound = std::max(kLeast, kScaleDeviations * sigma);
   return {ErrorCode::out_of_range, "scale of the lidar's ranges relative to the motion measured by the IMU", scale,
           scale > 1.0 ? 1.0 + bound : 1.0 - bound};
 }
 
-SweepScale find_sweep_scale(std::span<const ImuSample> samples, std::span<const SweepReport> sweeps,
+LidarScale find_sweep_scale(std::span<const ImuSample> samples, std::span<const SweepReport> sweeps,
                             double gravity_m_s2) {
   std::vector<Change> changes;
   const ImuMotion imu_motion(samples, sweeps, gravity_m_s2);
-  const std::size_t span = sweeps_in(kSpan_s, sweeps);
+  const std::size_t span = sweep_count_in_duration(kSpan_s, sweeps);
   for (std::size_t k = 2 * span; k < sweeps.size(); ++k) {
-    if (const auto change = change_until(k, span, sweeps, imu_motion)) changes.push_back(*change);
+    if (const auto change = velocity_change_until(k, span, sweeps, imu_motion)) changes.push_back(*change);
   }
   return fit(changes);
 }
 
-SweepScaleEstimator::SweepScaleEstimator(double gravity_m_s2, std::size_t samples_max)
+LidarScaleEstimator::LidarScaleEstimator(double gravity_m_s2, std::size_t samples_max)
     : gravity_m_s2_(gravity_m_s2), samples_max_(samples_max) {
   samples_.reserve(samples_max_);
 }
 
-void SweepScaleEstimator::add(const ImuSample& sample) {
+void LidarScaleEstimator::add(const ImuSample& sample) {
   if (samples_.size() >= samples_max_) {  // the lidar has stopped delivering sweeps
     samples_.clear();
     sweeps_.clear();
@@ -207,24 +207,24 @@ void SweepScaleEstimator::add(const ImuSample& sample) {
   samples_.push_back(sample);
 }
 
-void SweepScaleEstimator::add(const SweepReport& sweep) {
+void LidarScaleEstimator::add(const SweepReport& sweep) {
   SweepReport& kept = sweeps_.emplace_back();
   kept.pose = sweep.pose;
   kept.verdict = sweep.verdict;
   kept.trajectory = sweep.trajectory;
-  const std::size_t span = std::min(sweeps_in(kSpan_s, sweeps_), kSpanMax);
+  const std::size_t span = std::min(sweep_count_in_duration(kSpan_s, sweeps_), kSpanMax);
   while (sweeps_.size() > 2 * span + 1) sweeps_.pop_front();
   const TimeNs from_ns = sweeps_.front().pose.time_ns;
   std::erase_if(samples_, [&](const ImuSample& earlier) { return earlier.time_ns <= from_ns; });
-  const auto is_old = [&](const Change& change) { return seconds(sweep.pose.time_ns - change.time_ns) > kMemory_s; };
-  if (std::erase_if(changes_, is_old) > 0) scale_ = fit(changes_);
+  const auto is_old = [&](const Change& change) { return seconds(sweep.pose.time_ns - change.time_ns) > kForgettingTime_s; };
+  if (std::erase_if(velocity_changes_, is_old) > 0) scale_ = fit(velocity_changes_);
   if (sweeps_.size() < 2 * span + 1) return;
   const ImuMotion imu_motion(samples_, sweeps_, gravity_m_s2_);
-  const std::optional<Change> change = change_until(2 * span, span, sweeps_, imu_motion);
+  const std::optional<Change> change = velocity_change_until(2 * span, span, sweeps_, imu_motion);
   if (!change) return;
-  changes_.push_back(*change);
-  if (changes_.size() > kChangesMax) changes_.pop_front();
-  scale_ = fit(changes_);
+  velocity_changes_.push_back(*change);
+  if (velocity_changes_.size() > kChangesMax) velocity_changes_.pop_front();
+  scale_ = fit(velocity_changes_);
 }
 
 }  // namespace tumble

@@ -5,16 +5,16 @@
 #include <span>
 #include <vector>
 
-#include "tumble/angular_velocity/detail/rail_plane.hpp"
+#include "tumble/angular_velocity/detail/saturation_plane.hpp"
 #include "tumble/common/imu.hpp"
 
 namespace tumble {
 
 /// Finds readings that may have been saturated for a part of their averaging window, see rails.md (R76). Cost: O(N).
-std::vector<std::uint8_t> possible_partial_saturation(std::span<const ImuSample> samples, const RailPlanes& planes);
+std::vector<std::uint8_t> possible_partial_saturation(std::span<const ImuSample> samples, const SaturationPlanes& planes);
 
 /// `before` and `after` are the readings next to `now`, or null.
 std::uint8_t possible_partial_saturation(const ImuSample* before, const ImuSample& now, const ImuSample* after,
-                                         const RailPlanes& planes);
+                                         const SaturationPlanes& planes);
 
 }  // namespace tumble

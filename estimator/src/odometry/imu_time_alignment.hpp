@@ -21,7 +21,7 @@ namespace tumble {
 /// most kSilentMax_s late. A common time is complete when each IMU has a later reading or is silent for kSilentMax_s.
 ///
 /// Cost: O(1) per reading. The stored readings cover kSilentMax_s.
-class UnitAlignment {
+class ImuTimeAlignment {
  public:
   static constexpr double kSilentMax_s = 0.05;
   using Readings = std::array<ImuSample, ImuMerge::kImus>;
@@ -29,13 +29,13 @@ class UnitAlignment {
   struct State {
     /// readings of each IMU, starting with the last reading before the newest common time
     std::array<std::vector<ImuSample>, ImuMerge::kImus> readings;
-    std::size_t reference = 0;
+    std::size_t reference_imu = 0;
     std::optional<TimeNs> first_ns;   ///< first reading of any IMU
-    std::optional<TimeNs> common_ns;  ///< newest common time
+    std::optional<TimeNs> newest_common_time_ns;  ///< newest common time
   };
 
   /// `units` is the number of IMUs, at most ImuMerge::kImus.
-  explicit UnitAlignment(std::size_t units) : units_(units) {}
+  explicit ImuTimeAlignment(std::size_t units) : imu_count_(units) {}
 
   /// Readings that are not finite are ignored. If the time stamp is not later than the IMU's last time stamp, push()
   /// returns `time_order` and the state is unchanged.
@@ -49,7 +49,7 @@ class UnitAlignment {
   void choose_reference(State& state) const;
   bool is_complete(std::size_t unit, TimeNs time_ns, const State& state) const;
 
-  std::size_t units_;
+  std::size_t imu_count_;
 };
 
 }  // namespace tumble

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "tumble/angular_velocity/detail/rail_plane.hpp"
+#include "tumble/angular_velocity/detail/saturation_plane.hpp"
 #include "tumble/angular_velocity/detail/triad.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/parameters.hpp"
@@ -14,21 +14,21 @@
 namespace tumble {
 
 /// Finds the planes on which the readings of saturated sensing elements lie, in a whole recording of a gyro or
-/// accelerometer. RailPlaneFinder needs neither clip flags nor the stated range of the sensor.
+/// accelerometer. SaturationPlaneFinder needs neither clip flags nor the stated range of the sensor.
 ///
 /// A plane of saturated readings is nearly axis-aligned, and all readings are below the plane, many of them closely.
 /// The equations are in docs/maths/rails.md.
 ///
-/// RailPlaneFinder assumes constant saturation limits, with one limit per sensing element and sign. RailPlaneFinder
-/// assumes that the three sensing elements of a sensor are of one type, with similar saturation limits. RailPlaneFinder
+/// SaturationPlaneFinder assumes constant saturation limits, with one limit per sensing element and sign. SaturationPlaneFinder
+/// assumes that the three sensing elements of a sensor are of one type, with similar saturation limits. SaturationPlaneFinder
 /// does not detect readings that overflow and change sign. Sensing elements without a plane of saturated readings count
 /// as unsaturated.
-class RailPlaneFinder {
+class SaturationPlaneFinder {
  public:
   struct Params {
     /// Returns the parameters for an accelerometer. The minimum saturation limit is about 1.5 g, because gravity alone
     /// can cause constant readings.
-    static Params for_accelerometer() {
+    static Params defaults_for_accelerometer() {
       Params out;
       out.distance_min_rad_s = 15.0;
       return out;
@@ -38,19 +38,19 @@ class RailPlaneFinder {
     static constexpr double kSlopeMax = 0.12;  ///< largest cross-axis sensitivity
     /// minimum saturation limit [rad/s]; excludes constant readings at rest and in slow motion
     double distance_min_rad_s = 1.5;
-    /// Range of the sensor according to its data sheet [rad/s], if known. RailPlaneFinder assumes a saturation limit
+    /// Range of the sensor according to its data sheet [rad/s], if known. SaturationPlaneFinder assumes a saturation limit
     /// that is not far below the stated range.
-    std::optional<double> stated_rad_s = std::nullopt;
-    /// prior standard deviation of RailPlane::offset_rad_s and of the differences between elements, relative to the
+    std::optional<double> stated_range_rad_s = std::nullopt;
+    /// prior standard deviation of SaturationPlane::offset_rad_s and of the differences between elements, relative to the
     /// limit
     static constexpr double kOffsetSigmaRatio = 0.02;
     int samples_min = 4;                            ///< minimum number of samples on the plane of one sign
     static constexpr double kLogOddsBefore = -6.0;  ///< prior log odds of saturation for each element and sign
     static constexpr double kLogOddsMin = 1.0;      ///< minimum log odds for accepting a plane
     static constexpr double kLogOddsKeep = -3.0;    ///< minimum log odds for keeping an accepted plane
-    /// Saturation planes found in an earlier run of the same device. RailPlaneFinder uses known planes from the start
+    /// Saturation planes found in an earlier run of the same device. SaturationPlaneFinder uses known planes from the start
     /// of a run until readings contradict the planes.
-    RailPlanes known = {};
+    SaturationPlanes known_limits = {};
 
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
@@ -65,31 +65,31 @@ class RailPlaneFinder {
   struct Workspace {
     std::vector<Eigen::Vector3d> rates;
     std::vector<double> values;
-    std::vector<std::size_t> near, inliers;
+    std::vector<std::size_t> near_plane_indices, inliers;
     void reserve(std::size_t readings);
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.
-  explicit RailPlaneFinder(const Params& params);
+  explicit SaturationPlaneFinder(const Params& params);
 
   /// Finds the planes of saturated readings in the gyro or accelerometer readings of a recording. The samples must be
   /// finite and in time order. Cost: O(N), plus some hundred tilted planes that are compared with the largest readings.
-  RailPlanes find(std::span<const ImuSample> samples, Triad triad = Triad::gyro) const;
+  SaturationPlanes find(std::span<const ImuSample> samples, Triad triad = Triad::gyro) const;
   /// Finds the planes of saturated readings in readings without time stamps [rad/s]. `before` contains the planes that
   /// were found in a subset of the readings.
-  RailPlanes find(std::span<const Eigen::Vector3d> readings_rad_s, const RailPlanes& before,
+  SaturationPlanes find(std::span<const Eigen::Vector3d> readings_rad_s, const SaturationPlanes& before,
                   Workspace& workspace) const;
 
   const Params& params() const { return params_; }
 
  private:
-  RailPlanes merge_with_known_planes(const RailPlanes& found, std::span<const Eigen::Vector3d> readings_rad_s) const;
+  SaturationPlanes merge_known_saturation_planes(const SaturationPlanes& found, std::span<const Eigen::Vector3d> readings_rad_s) const;
   Params params_;
 };
 
 /// Cost: O(1).
-ElementClipping classify(const ImuSample& sample, const RailPlanes& planes);
+SensingAxisClipping classify_clipping(const ImuSample& sample, const SaturationPlanes& planes);
 /// `out` must have the size of `samples`.
-void classify(std::span<const ImuSample> samples, const RailPlanes& planes, std::span<ElementClipping> out);
+void classify_clipping(std::span<const ImuSample> samples, const SaturationPlanes& planes, std::span<SensingAxisClipping> out);
 
 }  // namespace tumble
