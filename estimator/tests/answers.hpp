@@ -37,7 +37,8 @@ class Answers {
   void add(const SaturationLevels& rails) {
     for (const SaturationLimitDetector::Channel& channel : rails.axis_limit_state.channels) add(channel.plateau_limit);
     for (const SaturationPlanes* planes : {&rails.gyro_planes, &rails.accel_saturation_planes}) {
-      for (const std::optional<SaturationPlane>& plane : planes->sensing_axis) add(plane ? plane->saturation_limit_rad_s : 0.0);
+      for (const std::optional<SaturationPlane>& plane : planes->sensing_axis)
+        add(plane ? plane->saturation_limit_rad_s : 0.0);
     }
   }
 

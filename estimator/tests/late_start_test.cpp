@@ -145,7 +145,8 @@ TEST(LateLidar, SweepsWithoutPointsDoNotStartTheMap) {
       ASSERT_TRUE(odometry.add_sweep(sweeps[next].start_ns, sweeps[next].end_ns, sweeps[next].points).ok());
     while (auto sweep = odometry.take()) {
       without_pose += sweep->report.trajectory.empty();
-      EXPECT_EQ(sweep->status.error_code, sweep->report.trajectory.empty() ? ErrorCode::insufficient_data : ErrorCode::none);
+      EXPECT_EQ(sweep->status.error_code,
+                sweep->report.trajectory.empty() ? ErrorCode::insufficient_data : ErrorCode::none);
       if (sweep->report.verdict == SweepVerdict::first) first = sweep->report;
       last = sweep->report;
     }

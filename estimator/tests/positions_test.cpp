@@ -84,7 +84,8 @@ TEST(Positions, UpToAFifthMayBeWrong) {
     PositionAlignment alignment;
     for (int sweep = 0; sweep < 200; ++sweep) {
       PositionReading reading = reading_of(sweep, 0.05, random);
-      if (sweep % every == 0) reading.antenna_position_P_m += 10.0 * Eigen::Vector3d(std::sin(sweep), std::cos(sweep), 0.0);
+      if (sweep % every == 0)
+        reading.antenna_position_P_m += 10.0 * Eigen::Vector3d(std::sin(sweep), std::cos(sweep), 0.0);
       ASSERT_TRUE(add(alignment, reading).ok());
       alignment.add_sweep(report_of(sweep, no_drift));
     }
@@ -92,7 +93,9 @@ TEST(Positions, UpToAFifthMayBeWrong) {
       EXPECT_FALSE(alignment.position_frame()) << "negative control: half of the readings are wrong";
     } else {
       ASSERT_TRUE(alignment.position_frame());
-      EXPECT_LT((alignment.position_frame()->transform(truth(20.0)).position_W_m - kT_PW * truth(20.0).position_W_m).norm(), 0.1);
+      EXPECT_LT(
+          (alignment.position_frame()->transform(truth(20.0)).position_W_m - kT_PW * truth(20.0).position_W_m).norm(),
+          0.1);
     }
   }
 }

@@ -83,7 +83,8 @@ TEST(SavedRollingOdometry, ContinuesAtTheSavedPoseWithTheCalibration) {
     feed_units(kAtRest + 10, count, rebooted);
     const TimeNs later_ns = three_imus(false)[0].back().time_ns;
     feed_units(0, count, rebooted, false, later_ns);
-    EXPECT_NEAR(rebooted.newest()->pose.position_W_m.x() - last->position_W_m.x(), test::kPathLength_m, 0.02 * test::kPathLength_m);
+    EXPECT_NEAR(rebooted.newest()->pose.position_W_m.x() - last->position_W_m.x(), test::kPathLength_m,
+                0.02 * test::kPathLength_m);
   }
 }
 

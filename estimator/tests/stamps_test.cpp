@@ -49,7 +49,7 @@ TEST(Stamps, ThatJitterMoveNoRate) {
   uncorrected.expert->stamps.jitter_max = 0.0;
   TumblingOdometry without(uncorrected);
   const std::vector<AngularRateState> expected = rates_of(own_clock, exact), found = rates_of(host_clock, stamped),
-                               control = rates_of(without, stamped);
+                                      control = rates_of(without, stamped);
   EXPECT_FALSE(own_clock.estimated_jitter_s());
   ASSERT_TRUE(host_clock.estimated_jitter_s());
   EXPECT_NEAR(*host_clock.estimated_jitter_s(), 1.15e-3, 0.3e-3);  // of the uniform distribution

@@ -68,7 +68,8 @@ TEST(TumblingRecording, EstimatesAThrowBeyondTheRail) {
   ASSERT_EQ(whole->rates.size(), imu.size());
   EXPECT_TRUE(whole->health.ok());
   EXPECT_TRUE(whole->suspected_error_covariance_rad2_s2.empty());
-  EXPECT_GE(whole->mapped_recording.mapping_pass_count, 2);  // the last pass starts from the calibration of the first pass
+  EXPECT_GE(whole->mapped_recording.mapping_pass_count,
+            2);  // the last pass starts from the calibration of the first pass
   EXPECT_TRUE(whole->mapped_recording.calibration_converged);
   EXPECT_EQ(odometry.rig().constants, whole->report.rate.calibration.constants);
 }

@@ -72,10 +72,10 @@ std::string_view Online::take(std::string_view line) {
 std::string_view Online::pose() {
   const tumble::RollingFilter::State& s = *state_;
   const double sigma_m = std::sqrt(s.position_covariance_m2.topLeftCorner<2, 2>().trace());
-  const int length =
-      std::snprintf(text_, kLineMax, "%lld %.6f %.6f %.6f %.9f %.9f %.9f %.9f %s %.6f%s",
-                    static_cast<long long>(s.last_time_ns), s.sphere_centre_W_m.x(), s.sphere_centre_W_m.y(), s.sphere_centre_W_m.z(), s.q_WI.x(),
-                    s.q_WI.y(), s.q_WI.z(), s.q_WI.w(), name(s.mode), sigma_m, s.uncertain ? " uncertain" : "");
+  const int length = std::snprintf(text_, kLineMax, "%lld %.6f %.6f %.6f %.9f %.9f %.9f %.9f %s %.6f%s",
+                                   static_cast<long long>(s.last_time_ns), s.sphere_centre_W_m.x(),
+                                   s.sphere_centre_W_m.y(), s.sphere_centre_W_m.z(), s.q_WI.x(), s.q_WI.y(), s.q_WI.z(),
+                                   s.q_WI.w(), name(s.mode), sigma_m, s.uncertain ? " uncertain" : "");
   return {text_, std::min(static_cast<std::size_t>(std::max(length, 0)), kLineMax - 1)};
 }
 

@@ -45,7 +45,8 @@ std::tuple<Rates, Attitudes, HandHeldSmoother::Report> hand_held(const Carried& 
       ClippingFinder::Params finding;
       finding.axis_limit_params = self.axis_aligned_rails;
       const ClippedReadings known = clipped_readings_of(samples, ClippingFinder(finding).find(samples));
-      status = self.smoother.estimate(samples, known.clipped_element_signs(), rates, std::get<1>(out).rows, std::get<2>(out));
+      status = self.smoother.estimate(samples, known.clipped_element_signs(), rates, std::get<1>(out).rows,
+                                      std::get<2>(out));
       if (status.ok()) known.mark_partly_saturated(rates);
     }
   }

@@ -98,7 +98,8 @@ std::vector<Parameter> list_fields(const Params& params, const std::vector<const
     } else {
       number = nb::int_(static_cast<long long>(value));
     }
-    out.push_back({name, field.unit, number, field.low, field.high, field.description, field.audience == ParameterRank::common_use});
+    out.push_back({name, field.unit, number, field.low, field.high, field.description,
+                   field.audience == ParameterRank::common_use});
   });
   return out;
 }

@@ -63,7 +63,8 @@ void read_ranges(Keywords& keywords, SaturationLimitDetector::Params& rails) {
 
 nb::list as_list(const SaturationPlanes& planes) {
   nb::list out;
-  for (const std::optional<SaturationPlane>& plane : planes.sensing_axis) out.append(plane ? nb::cast(*plane) : nb::none());
+  for (const std::optional<SaturationPlane>& plane : planes.sensing_axis)
+    out.append(plane ? nb::cast(*plane) : nb::none());
   return out;
 }
 

@@ -63,13 +63,14 @@ AngularRateStream::Params stream_params(const nb::kwargs& given) {
   return params_of<AngularRateStream>("AngularRateStream", given);
 }
 
-/// MotionRegimeStream derives these parameters from its AngularRateStream. The HandHeldRateStream of MotionRegimeStream makes one iteration
-/// per node.
+/// MotionRegimeStream derives these parameters from its AngularRateStream. The HandHeldRateStream of MotionRegimeStream
+/// makes one iteration per node.
 const std::vector<const char*> kDerivedRegimeParameters = {"carried_period_s", "carried_lag_s", "carried_gap_max_s",
                                                            "carried_iterations_max"};
 
 MotionRegimeStream::Params regime_params(const nb::kwargs& given) {
-  MotionRegimeStream::Params params = params_of<MotionRegimeStream>("MotionRegimeStream", given, kDerivedRegimeParameters);
+  MotionRegimeStream::Params params =
+      params_of<MotionRegimeStream>("MotionRegimeStream", given, kDerivedRegimeParameters);
   params.hand_held.body.expert.gap_max_s = params.rate.gap_max_s;
   return params;
 }
@@ -88,8 +89,8 @@ std::pair<Rates, Report> smooth(const Smoother& self, const ArrayLike& time_ns, 
   return out;
 }
 
-Rates saave(const SaturationAwareRateEstimator& self, const ArrayLike& time_ns, const ArrayLike& gyro, const ArrayLike& accel,
-            const ArrayLike& clip_flags) {
+Rates saave(const SaturationAwareRateEstimator& self, const ArrayLike& time_ns, const ArrayLike& gyro,
+            const ArrayLike& accel, const ArrayLike& clip_flags) {
   const std::vector<ImuSample> samples = samples_of(time_ns, gyro, accel, clip_flags);
   Rates out;
   Status status;
@@ -120,7 +121,8 @@ void bind_batch(nb::module_& m) {
               "distance of the calibration from its prior; a value far above 1 indicates a wrong prior")
       .def_ro("calibration_at_prior", &AngularRateReport::calibration_at_prior,
               "True if the run did not update the calibration, which then equals its prior")
-      .def_ro("rail", &AngularRateReport::saturation_limits, "rails in use: gyro x y z [rad/s], accelerometer [m/s^2]; None: not detected")
+      .def_ro("rail", &AngularRateReport::saturation_limits,
+              "rails in use: gyro x y z [rad/s], accelerometer [m/s^2]; None: not detected")
       .def_prop_ro(
           "planes", [](const AngularRateReport& r) { return as_list(r.gyro_planes); },
           nb::for_getter(nb::sig("def planes(self) -> list[SaturationPlane | None]")), "rails of the gyro elements")
@@ -131,15 +133,16 @@ void bind_batch(nb::module_& m) {
       .def_ro("lower_bound_only", &AngularRateReport::lower_bound_only)
       .def_ro("flight_share", &AngularRateReport::flight_fraction)
       .def_prop_ro(
-          "suspect_axes", [](const AngularRateReport& r) { return owned(r.suspected_saturation_axes); }, nb::rv_policy::automatic,
-          "(N,) uint8, bit j: axis j may be at a rail that was not detected");
+          "suspect_axes", [](const AngularRateReport& r) { return owned(r.suspected_saturation_axes); },
+          nb::rv_policy::automatic, "(N,) uint8, bit j: axis j may be at a rail that was not detected");
   nb::class_<AngularRateSmoother>(
       m, "AngularRateSmoother",
       "Estimates the angular velocity of a tumbling body through gyro saturation, over a whole recording.\n\n"
       "AngularRateSmoother(lever_arm_m=(x, y, z), gyro_range_rad_s=None, accel_range_m_s2=None,\n"
       "calibration=None, **options): lever_arm_m is from the centre of mass to the IMU, in IMU axes.\n"
       "The ranges are those of the data sheet, or None. calibration is a RigCalibration of an earlier run.\n"
-      "parameters() lists the options. The model covers flight and contact. For hand-held motion use MotionRegimeSmoother "
+      "parameters() lists the options. The model covers flight and contact. For hand-held motion use "
+      "MotionRegimeSmoother "
       "or\n"
       "HandHeldSmoother; tumble.rate() uses MotionRegimeSmoother.")
       .def(
@@ -148,8 +151,9 @@ void bind_batch(nb::module_& m) {
             new (self) AngularRateSmoother(params_of<AngularRateSmoother>("AngularRateSmoother", options));
           },
           nb::arg("options"), takes_options())
-      .def("estimate", &smooth<AngularRateSmoother, AngularRateReport>, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
-           nb::arg("clip_flags") = nb::none(), "Returns one rate per sample, and an AngularRateReport.")
+      .def("estimate", &smooth<AngularRateSmoother, AngularRateReport>, nb::arg("time_ns"), nb::arg("gyro"),
+           nb::arg("accel"), nb::arg("clip_flags") = nb::none(),
+           "Returns one rate per sample, and an AngularRateReport.")
       .def_static("parameters", [] { return list_fields(AngularRateSmoother::Params{}); });
   using Joint = MotionRegimeSmoother::Report;
   nb::class_<Joint>(m, "RegimeReport", "Statistics of a run of MotionRegimeSmoother.")
@@ -183,7 +187,8 @@ void bind_batch(nb::module_& m) {
       "Recovers one clipped axis by the published method (Deschenes et al., ICRA 2024), followed by a smoother over "
       "the\n"
       "whole recording.\n\n"
-      "SaturationAwareRateEstimator(lever_arm_m=(x, y, z), saturation_point_rad_s=..., **options): lever_arm_m is from the centre of mass to\n"
+      "SaturationAwareRateEstimator(lever_arm_m=(x, y, z), saturation_point_rad_s=..., **options): lever_arm_m is from "
+      "the centre of mass to\n"
       "the IMU, in IMU axes. A reading beyond saturation_point_rad_s is clipped. parameters() lists the options.")
       .def(
           "__init__",
@@ -268,14 +273,16 @@ void bind_streams(nb::module_& m) {
   bind_stream<AngularRateStream>(
       m, "AngularRateStream",
       "The streaming form of AngularRateSmoother: returns each rate when its sample is lag_s old.\n\n"
-      "AngularRateStream(lever_arm_m=(x, y, z), gyro_range_rad_s=None, accel_range_m_s2=None, calibration=None, **options):\n"
+      "AngularRateStream(lever_arm_m=(x, y, z), gyro_range_rad_s=None, accel_range_m_s2=None, calibration=None, "
+      "**options):\n"
       "the arguments of AngularRateSmoother. parameters() lists the options.",
       &stream_params, [](const AngularRateStream& s) -> const AngularRateStream& { return s; },
       [](const AngularRateStream::State& s) -> const AngularRateStream::State& { return s; })
       .def_static("parameters", [] { return list_fields(AngularRateStream::Params{}); });
   bind_stream<MotionRegimeStream>(
       m, "MotionRegimeStream",
-      "Estimates the angular velocity of a body in flight, contact or hand-held motion, as a stream. Uses AngularRateStream, "
+      "Estimates the angular velocity of a body in flight, contact or hand-held motion, as a stream. Uses "
+      "AngularRateStream, "
       "and\n"
       "HandHeldRateStream where the gyro clips during hand-held motion.\n\n"
       "MotionRegimeStream(lever_arm_m=(x, y, z), gyro_range_rad_s=None, accel_range_m_s2=None, calibration=None,\n"

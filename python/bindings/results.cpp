@@ -79,7 +79,8 @@ void bind_rates_of_results(nb::module_& m) {
             return column<std::uint8_t>(s.rows,
                                         [](auto& r) { return reinterpret_cast<const std::uint8_t*>(&r.source); });
           },
-          "(N,) uint8: 0 measured, 1 recovered in flight, 2 recovered in contact, 3 bounded only (`AngularRateSource`)");
+          "(N,) uint8: 0 measured, 1 recovered in flight, 2 recovered in contact, 3 bounded only "
+          "(`AngularRateSource`)");
 }
 
 void bind_attitudes_of_results(nb::module_& m) {
@@ -87,7 +88,9 @@ void bind_attitudes_of_results(nb::module_& m) {
       .def_prop_ro("time_ns", &times<Attitudes>, kTimes)
       .def_prop_ro(
           "quaternion",
-          [](const Attitudes& s) { return column<double, 4>(s.rows, [](auto& r) { return r.orientation_W.coeffs().data(); }); },
+          [](const Attitudes& s) {
+            return column<double, 4>(s.rows, [](auto& r) { return r.orientation_W.coeffs().data(); });
+          },
           kQuaternions)
       .def_prop_ro(
           "covariance",
@@ -120,11 +123,14 @@ void bind_poses(nb::module_& m) {
   bind_rows<Poses>(m, "Poses", "Poses and velocities of a frame in the world, in order of time.")
       .def_prop_ro("time_ns", &times<Poses>, kTimes)
       .def_prop_ro(
-          "position", [](const Poses& s) { return column<double, 3>(s.rows, [](auto& r) { return r.position_W_m.data(); }); },
+          "position",
+          [](const Poses& s) { return column<double, 3>(s.rows, [](auto& r) { return r.position_W_m.data(); }); },
           "(N, 3), m")
       .def_prop_ro(
           "quaternion",
-          [](const Poses& s) { return column<double, 4>(s.rows, [](auto& r) { return r.orientation_W.coeffs().data(); }); },
+          [](const Poses& s) {
+            return column<double, 4>(s.rows, [](auto& r) { return r.orientation_W.coeffs().data(); });
+          },
           kQuaternions)
       .def_prop_ro(
           "velocity",
@@ -141,14 +147,16 @@ void bind_rolling_of_results(nb::module_& m) {
   bind_rows<R>(m, "RollingPoses", "Poses of the centre of a rolling sphere, with the state of the contact.")
       .def_prop_ro("time_ns", &times<R>, kTimes)
       .def_prop_ro(
-          "position", [](const R& s) { return column<double, 3>(s.rows, [](auto& r) { return r.sphere_centre_W_m.data(); }); },
+          "position",
+          [](const R& s) { return column<double, 3>(s.rows, [](auto& r) { return r.sphere_centre_W_m.data(); }); },
           "(N, 3), m")
       .def_prop_ro(
           "quaternion",
           [](const R& s) { return column<double, 4>(s.rows, [](auto& r) { return r.q_WI.coeffs().data(); }); },
           kQuaternions)
       .def_prop_ro(
-          "velocity", [](const R& s) { return column<double, 3>(s.rows, [](auto& r) { return r.sphere_velocity_W_m_s.data(); }); },
+          "velocity",
+          [](const R& s) { return column<double, 3>(s.rows, [](auto& r) { return r.sphere_velocity_W_m_s.data(); }); },
           "(N, 3), m/s, W")
       .def_prop_ro(
           "covariance",

@@ -224,7 +224,8 @@ void bind_rolling_odometry(nb::module_& m) {
       "live,\n"
       "smoothed with a lag of lag_s, or smoothed with the whole recording (lag_s=1e9: all poses come after "
       "finish()).\n\n"
-      "RollingOdometry(units=[(ImuDataSheet, T_BI), ...], radius_m=..., **options): T_BI (4, 4) is the pose of a unit in\n"
+      "RollingOdometry(units=[(ImuDataSheet, T_BI), ...], radius_m=..., **options): T_BI (4, 4) is the pose of a unit "
+      "in\n"
       "sphere axes, relative to the centre. parameters() lists the options. World: z up, origin at the centre at the "
       "first\n"
       "sample, yaw 0. The sphere must be stationary for the first second.");

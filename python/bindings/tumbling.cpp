@@ -115,7 +115,8 @@ void add_tumbling_sweep(BoundTumblingOdometry& self, const WholeNumber& start_ns
 
 void add_tumbling_position(BoundTumblingOdometry& self, const WholeNumber& time_ns, const ArrayLike& position,
                            const ArrayLike& covariance, nb::handle lever_arm) {
-  PositionReading reading{.time_ns = time_of(time_ns, "time_ns"), .antenna_position_P_m = vector_of(position, "position")};
+  PositionReading reading{.time_ns = time_of(time_ns, "time_ns"),
+                          .antenna_position_P_m = vector_of(position, "position")};
   const std::vector<double> numbers = numbers_of(as_array(covariance, "covariance").attr("ravel")(), "covariance", 9);
   reading.covariance_m2 = Eigen::Map<const Eigen::Matrix3d>(numbers.data());
   if (!lever_arm.is_none()) reading.antenna_lever_arm_I_m = vector_of(lever_arm, "lever_arm");

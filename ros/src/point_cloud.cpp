@@ -62,7 +62,8 @@ Status PointCloudReader::find_fields(const PointCloudView& cloud, Layout& layout
 Status PointCloudReader::find_unit(double span, std::size_t points) {
   if (!(span > 0.0)) return {ErrorCode::degenerate, "span of point times", span, 0.0};
   if (unit_ns_ == 0.0) {
-    if (points < kPointsForUnit) return {ErrorCode::insufficient_data, "points", double(points), double(kPointsForUnit)};
+    if (points < kPointsForUnit)
+      return {ErrorCode::insufficient_data, "points", double(points), double(kPointsForUnit)};
     for (const TimeUnit& unit : kTimeUnits)
       if (span * unit.ns >= kSpanMin_ns && span * unit.ns < kSpanMax_ns) unit_ns_ = unit.ns;
   }

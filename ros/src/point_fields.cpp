@@ -107,7 +107,8 @@ void TimeFieldChoice::offer(const std::string& name) {
 // In CDR, numbers are aligned to their size, relative to the end of the header of 4 bytes.
 Status LivoxCloud::parse(std::span<const std::uint8_t> cdr) {
   constexpr std::size_t kHeader = 4, kLivoxPoint = 19;
-  if (cdr.size() < kHeader) return {ErrorCode::insufficient_data, "bytes of CustomMsg", double(cdr.size()), double(kHeader)};
+  if (cdr.size() < kHeader)
+    return {ErrorCode::insufficient_data, "bytes of CustomMsg", double(cdr.size()), double(kHeader)};
   if (cdr[1] != 1) return {ErrorCode::out_of_range, "is_bigendian", 1.0, 0.0};
   const std::span<const std::uint8_t> body = cdr.subspan(kHeader);
   std::size_t at = 0, end = 0;
@@ -127,7 +128,8 @@ Status LivoxCloud::parse(std::span<const std::uint8_t> cdr) {
   next(4, 1);  // lidar_id, rsvd
   const std::uint32_t count = u32();
   const bool fits = has_frame && end <= body.size() && (count == 0 || count <= (body.size() - end + 1) / kLivoxStep);
-  if (!fits) return {ErrorCode::insufficient_data, "bytes of CustomMsg", double(body.size()), double(end + count * kLivoxPoint)};
+  if (!fits)
+    return {ErrorCode::insufficient_data, "bytes of CustomMsg", double(body.size()), double(end + count * kLivoxPoint)};
   stamp_ns = TimeNs{seconds} * 1'000'000'000 + nanoseconds;
   frame_id.assign(reinterpret_cast<const char*>(body.data() + frame_at), length > 0 ? length - 1 : 0);
   points_ = count;

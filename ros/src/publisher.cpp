@@ -11,8 +11,8 @@
 
 namespace tumble::ros {
 
-Odometry base_odometry(const PoseState& imu, const Eigen::Matrix3d& velocity_covariance_I_m2_s2, const AngularRateState& rate,
-                       const Eigen::Isometry3d& T_IB) {
+Odometry base_odometry(const PoseState& imu, const Eigen::Matrix3d& velocity_covariance_I_m2_s2,
+                       const AngularRateState& rate, const Eigen::Isometry3d& T_IB) {
   Odometry out;
   out.stamp_ns = imu.time_ns;
   const Eigen::Matrix3d R_OI = imu.orientation_W.toRotationMatrix(), R_BI = T_IB.linear().transpose();
@@ -55,12 +55,13 @@ std::vector<Segment> segments_of(const std::vector<PoseState>& trajectory) {
   std::vector<Segment> out;
   for (std::size_t i = 0; i + 1 < trajectory.size(); ++i) {
     const PoseState &a = trajectory[i], &b = trajectory[i + 1];
-    out.push_back({a.time_ns, seconds(b.time_ns - a.time_ns), a.orientation_W, a.position_W_m, so3::logarithm(a.orientation_W.conjugate() * b.orientation_W),
-                   b.position_W_m - a.position_W_m});
+    out.push_back({a.time_ns, seconds(b.time_ns - a.time_ns), a.orientation_W, a.position_W_m,
+                   so3::logarithm(a.orientation_W.conjugate() * b.orientation_W), b.position_W_m - a.position_W_m});
   }
   if (out.empty()) {
     const PoseState& only = trajectory.front();
-    out.push_back({only.time_ns, 1.0, only.orientation_W, only.position_W_m, Eigen::Vector3d::Zero(), only.velocity_W_m_s});
+    out.push_back(
+        {only.time_ns, 1.0, only.orientation_W, only.position_W_m, Eigen::Vector3d::Zero(), only.velocity_W_m_s});
   }
   return out;
 }

@@ -192,8 +192,8 @@ void TumblingAdapter::publish_newest() {
   PoseState pose;
   Eigen::Matrix3d velocity_covariance;
   if (!odometry_.newest(pose, &velocity_covariance).ok()) return;
-  publisher_.odometry_imu(
-      base_odometry(pose, velocity_covariance, odometry_.newest_rate().value_or(AngularRateState{}), params_.T_BI.inverse()));
+  publisher_.odometry_imu(base_odometry(pose, velocity_covariance, odometry_.newest_rate().value_or(AngularRateState{}),
+                                        params_.T_BI.inverse()));
 }
 
 const AngularRateState& TumblingAdapter::rate_at(TimeNs time_ns) const {

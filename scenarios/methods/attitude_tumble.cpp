@@ -55,7 +55,8 @@ Estimate run_rig(const sim::Sensors& sensors, const sim::Values& parameters) {
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
-  const RecoveredRates recovered = recovered_readings(sensors, samples, ReadingsToReplace::unreliable_readings, estimate);
+  const RecoveredRates recovered =
+      recovered_readings(sensors, samples, ReadingsToReplace::unreliable_readings, estimate);
   TumbleAttitude::Params params = stated(sensors);
   attitude_tumble_settings().apply(parameters, params);
   const TumbleAttitude filter(params);

@@ -55,7 +55,8 @@ Status run_carried(const sim::Sensors& sensors, const sim::Values& parameters, s
   const HandHeldSmoother::Params params = carried_params(sensors, parameters);
   const ClippedReadings known = find_clipped(sensors.imus.front(), samples, health);
   HandHeldSmoother::Report report;
-  const Status status = HandHeldSmoother(params).estimate(samples, known.clipped_element_signs(), rates, attitudes, report);
+  const Status status =
+      HandHeldSmoother(params).estimate(samples, known.clipped_element_signs(), rates, attitudes, report);
   if (!status.ok()) return status;
   known.mark_partly_saturated(rates);
   report_carried(report, health);

@@ -18,8 +18,9 @@ void report_findings(const SensorHealth& health, const sim::Sensors& sensors, Es
   add_findings(health, {&sensors.imus.front().name, 1}, estimate);
 }
 
-ImuHealthReport check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::span<const AngularRateState> rates,
-                      std::optional<double> carried_share, Estimate& estimate) {
+ImuHealthReport check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples,
+                          std::span<const AngularRateState> rates, std::optional<double> carried_share,
+                          Estimate& estimate) {
   ImuHealthReport out = check_recording(checked_imu(sensors), samples, rates, carried_share);
   report_findings(out.health, sensors, estimate);
   return out;

@@ -17,8 +17,9 @@ ImuCheckParams checked_imu(const sim::Sensors& sensors);
 
 void report_findings(const SensorHealth& health, const sim::Sensors& sensors, Estimate& estimate);
 
-ImuHealthReport check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::span<const AngularRateState> rates,
-                      std::optional<double> carried_share, Estimate& estimate);
+ImuHealthReport check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples,
+                          std::span<const AngularRateState> rates, std::optional<double> carried_share,
+                          Estimate& estimate);
 
 /// Only methods that process the whole recording may call inflate_rates, because live results must not depend on later
 /// readings.

@@ -31,7 +31,7 @@ const char* to_string(Frame frame);
 struct Estimate {
   Status status;                         ///< error of the whole run, or `ok`
   Frame frame = Frame::imu;              ///< frame of `attitudes` and `poses`
-  std::vector<AngularRateState> rates;          ///< kind slam: rates used for deskewing
+  std::vector<AngularRateState> rates;   ///< kind slam: rates used for deskewing
   std::vector<AttitudeState> attitudes;  ///< for kind attitude
   std::vector<PoseState> poses;          ///< kinds position and slam, IMU times
   /// Contact mode at each pose, or an empty vector if the method does not estimate contact modes. The contact mode

@@ -38,7 +38,8 @@ const Settings<SaturationAwareRateEstimator::Params>& saave_settings() {
 }
 
 Settings<SaturationAwareRateEstimator::Params> other_saave_settings(std::span<const sim::Parameter> others) {
-  return Settings<SaturationAwareRateEstimator::Params>(saave_defaults(), {.stated = stated_lever_arm(), .beside = others, .prefix = "rate_"});
+  return Settings<SaturationAwareRateEstimator::Params>(
+      saave_defaults(), {.stated = stated_lever_arm(), .beside = others, .prefix = "rate_"});
 }
 
 Status saave_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples,

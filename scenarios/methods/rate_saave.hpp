@@ -18,6 +18,7 @@ Settings<SaturationAwareRateEstimator::Params> other_saave_settings(std::span<co
 
 /// On error, `out` is empty.
 Status saave_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples,
-                   const Settings<SaturationAwareRateEstimator::Params>& settings, const sim::Values& parameters, std::vector<AngularRateState>& out);
+                   const Settings<SaturationAwareRateEstimator::Params>& settings, const sim::Values& parameters,
+                   std::vector<AngularRateState>& out);
 
 }  // namespace tumble::scenarios

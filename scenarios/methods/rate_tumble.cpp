@@ -27,8 +27,9 @@ AngularRateSmoother::Params stated_params(const sim::ImuRecord& record, AngularR
   return params;
 }
 
-AngularRateSmoother::Params smoother_params(const sim::ImuRecord& record, const Settings<AngularRateSmoother::Params>& settings,
-                                     const sim::Values& parameters) {
+AngularRateSmoother::Params smoother_params(const sim::ImuRecord& record,
+                                            const Settings<AngularRateSmoother::Params>& settings,
+                                            const sim::Values& parameters) {
   AngularRateSmoother::Params params = stated_params(record, settings.defaults());
   settings.apply(parameters, params);
   return params;

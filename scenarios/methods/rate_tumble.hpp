@@ -27,8 +27,9 @@ const std::vector<std::string>& stated_densities();
 AngularRateSmoother::Params stated_params(const sim::ImuRecord& record, AngularRateSmoother::Params params);
 
 /// A parameter in `parameters` has priority over the IMU record, which has priority over the defaults of `settings`.
-AngularRateSmoother::Params smoother_params(const sim::ImuRecord& record, const Settings<AngularRateSmoother::Params>& settings,
-                                     const sim::Values& parameters);
+AngularRateSmoother::Params smoother_params(const sim::ImuRecord& record,
+                                            const Settings<AngularRateSmoother::Params>& settings,
+                                            const sim::Values& parameters);
 
 MotionRegimeSmoother::Params regime_params(const sim::Sensors& sensors, const AngularRateSmoother::Params& rate);
 

@@ -30,7 +30,7 @@ const Settings<MotionRegimeStream::Params>& rate_tumble_lag_settings() {
 }
 
 MotionRegimeStream::Params stream_params(const sim::Sensors& sensors, const sim::Values& parameters,
-                                   const CalibratedRig* given) {
+                                         const CalibratedRig* given) {
   const sim::ImuRecord& record = sensors.imus.front();
   MotionRegimeStream::Params params = rate_tumble_lag_settings().defaults();
   AngularRateStream::Params& rate = params.rate;
@@ -99,7 +99,9 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   estimate.health["accel_delay_s"] = stream.sensor_errors(state).errors.accel_delay_s;
   report_rails(state.clipping_state.known_limits, estimate.health);
   const std::optional<double> carried_share =
-      all.reported_sample_count > 0 ? std::optional(all.regime_probability_sum.hand_held / static_cast<double>(all.reported_sample_count)) : std::nullopt;
+      all.reported_sample_count > 0
+          ? std::optional(all.regime_probability_sum.hand_held / static_cast<double>(all.reported_sample_count))
+          : std::nullopt;
   if (estimate.status.ok() && found != nullptr) {
     if (std::optional<CalibratedRig> rig = calibrated_rig(stream, params.rate, given, state)) *found = std::move(rig);
   }

@@ -46,7 +46,8 @@ json pairs(const CalibratedRig::Planes& planes) {
 
 json rails(const CalibratedRig& rig, std::size_t first) {
   json out = json::array();
-  for (std::size_t j = 0; j < 3; ++j) out.push_back(rig.saturation_limits[first + j] ? json(*rig.saturation_limits[first + j]) : json());
+  for (std::size_t j = 0; j < 3; ++j)
+    out.push_back(rig.saturation_limits[first + j] ? json(*rig.saturation_limits[first + j]) : json());
   return out;
 }
 

@@ -19,8 +19,8 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kRestMaxS = 1.0;
-/// The thresholds for a stationary rig at the start of a recording are those of the mapper (`mapping_stationary_params`), without the
-/// gravity test.
+/// The thresholds for a stationary rig at the start of a recording are those of the mapper
+/// (`mapping_stationary_params`), without the gravity test.
 constexpr RestDetector::Params kStart = {.rate_spread_rad_s = 0.05, .force_spread_m_s2 = 0.5, .rest_s = 0.0};
 constexpr double kVelocitySigmaMS = 1e-4;  // registration measures no velocity
 
@@ -53,7 +53,8 @@ Status start_at_rest(std::span<const ImuSample> samples, StartAtRest& out) {
     rest = state;
   }
   out.gyro_bias_rad_s = rest.mean_rate_rad_s();
-  return inclination_from_force(rest.is_stationary ? rest.mean_force_m_s2() : samples.front().specific_force_m_s2, out.q_WI);
+  return inclination_from_force(rest.is_stationary ? rest.mean_force_m_s2() : samples.front().specific_force_m_s2,
+                                out.q_WI);
 }
 
 std::vector<MotionSample> steady_motion(std::span<const ImuSample> samples, const Eigen::Vector3d& rate_I_rad_s,

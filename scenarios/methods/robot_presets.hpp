@@ -13,8 +13,8 @@ Eigen::Vector3d rig_lever_arm_m();
 /// bounding box are reflections from the rig.
 Eigen::AlignedBox3d rig_body_L();
 
-/// SaturationAwareRateEstimator's method treats gyro readings above this rate as saturated; the rate is slightly below the saturation limit of
-/// the MTi-30.
+/// SaturationAwareRateEstimator's method treats gyro readings above this rate as saturated; the rate is slightly below
+/// the saturation limit of the MTi-30.
 inline constexpr double kRigSaturationPoint_rad_s = 10.45;
 
 inline constexpr double kSphereRadius_m = 0.145;

@@ -49,14 +49,16 @@ std::string SettingsTable::name_of(const std::string& field_name) const {
 
 void SettingsTable::add(const std::string& field_name, double value, const Field& field, bool whole) {
   if (matches_any(field_name, options_.fixed)) return;
-  sim::Parameter row{texts_.emplace_back(name_of(field_name)), value, field.low, field.high, field.unit, field.description};
+  sim::Parameter row{
+      texts_.emplace_back(name_of(field_name)), value, field.low, field.high, field.unit, field.description};
   const bool stated = matches_any(field_name, options_.stated);
   if (stated) {
     row.doc = texts_.emplace_back(fmt::format("{}; default: the value in the recording, if any", field.description));
     stated_.insert(row.name);
   }
   if (whole) whole_.insert(row.name);
-  if (!stated && (field.audience == ParameterRank::common_use || matches_any(field_name, options_.first))) first_.insert(row.name);
+  if (!stated && (field.audience == ParameterRank::common_use || matches_any(field_name, options_.first)))
+    first_.insert(row.name);
   rows_.push_back(row);
 }
 

@@ -15,7 +15,8 @@ const Settings<SlamParams>& slam_icp_chain_settings() {
 }
 
 const Settings<SaturationAwareRateEstimator::Params>& slam_icp_rate_settings() {
-  static const Settings<SaturationAwareRateEstimator::Params> all = other_saave_settings(slam_icp_chain_settings().rows());
+  static const Settings<SaturationAwareRateEstimator::Params> all =
+      other_saave_settings(slam_icp_chain_settings().rows());
   return all;
 }
 

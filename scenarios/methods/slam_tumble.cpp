@@ -221,7 +221,8 @@ Estimate run(Output output, const Settings<TumblingOdometry::Params>& settings, 
   const std::size_t left_out = sensors.imus.front().time_ns.size() - samples.size();
   const std::size_t rejected = left_out + odometry.rejected_readings();
   if (output != Output::whole || rejected > 0) estimate.health["rejected_readings"] = static_cast<double>(rejected);
-  if (odometry.sweeps_before_first_imu() > 0) estimate.health["sweeps_before_imu"] = static_cast<double>(odometry.sweeps_before_first_imu());
+  if (odometry.sweeps_before_first_imu() > 0)
+    estimate.health["sweeps_before_imu"] = static_cast<double>(odometry.sweeps_before_first_imu());
   if (output != Output::whole || odometry.restart_count() > 0)
     estimate.health["gaps"] = static_cast<double>(odometry.restart_count());
   if (output != Output::whole) report_stream(odometry, estimate);

@@ -65,8 +65,10 @@ Status merge_imus(const sim::Sensors& sensors, MergedImus& out) {
   ImuMerge::Params params;
   params.gap_max_s = bridge::kGapMaxS;
   for (const ImuRecording& unit : units.recordings) {
-    params.gyro_range_rad_s = std::min(params.gyro_range_rad_s, range_below_saturation(unit.data_sheet.gyro_range_rad_s));
-    params.accel_range_m_s2 = std::min(params.accel_range_m_s2, range_below_saturation(unit.data_sheet.accel_range_m_s2));
+    params.gyro_range_rad_s =
+        std::min(params.gyro_range_rad_s, range_below_saturation(unit.data_sheet.gyro_range_rad_s));
+    params.accel_range_m_s2 =
+        std::min(params.accel_range_m_s2, range_below_saturation(unit.data_sheet.accel_range_m_s2));
   }
   return merge_recordings(units.recordings, params, out.merged);
 }

@@ -34,8 +34,9 @@ void leave_out_unfinished(Estimate& estimate) {
 }
 
 bool leave_out_before_map(const Status& status, const SweepReport& report, Estimate& estimate) {
-  const bool of_the_sweep = status.error_code == ErrorCode::insufficient_data || status.error_code == ErrorCode::empty ||
-                            status.error_code == ErrorCode::non_finite || status.error_code == ErrorCode::degenerate;
+  const bool of_the_sweep = status.error_code == ErrorCode::insufficient_data ||
+                            status.error_code == ErrorCode::empty || status.error_code == ErrorCode::non_finite ||
+                            status.error_code == ErrorCode::degenerate;
   if (!of_the_sweep || !report.trajectory.empty() || !estimate.sweeps.empty()) return false;
   count_trouble(status, estimate);
   return true;

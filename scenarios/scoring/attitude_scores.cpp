@@ -75,7 +75,8 @@ bool step_rest_rms(const ScoredEstimate& scored, double& value) {
   const AttitudeState* previous = nullptr;
   for (const AttitudeState& attitude : scored.estimate().attitudes) {
     const bool rest = truth.covers_attitude(attitude.time_ns) && truth.at_rest(attitude.time_ns);
-    if (rest && previous) steps.push_back(rotation_angle_rad(previous->orientation_W.conjugate() * attitude.orientation_W));
+    if (rest && previous)
+      steps.push_back(rotation_angle_rad(previous->orientation_W.conjugate() * attitude.orientation_W));
     previous = rest ? &attitude : nullptr;
   }
   if (steps.empty()) return false;

@@ -20,7 +20,7 @@ const PairedTrack& paired_track(const ScoredEstimate& scored);
 const ClippingTruth& clipping_truth(const ScoredEstimate& scored);
 
 struct PairedRate {
-  const AngularRateState* estimate = nullptr;         ///< points into the estimate
+  const AngularRateState* estimate = nullptr;  ///< points into the estimate
   std::optional<ClippingTruth::Sample> truth;  ///< empty if unknown
   std::size_t sample = 0;                      ///< sample of the primary IMU
 

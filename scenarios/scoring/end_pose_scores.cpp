@@ -74,7 +74,8 @@ std::optional<EndError> end_pose_error(const ScoredEstimate& scored) {
   EndError error;
   error.translation_m = first.orientation_W.conjugate() * (last.position_W_m - first.position_W_m) -
                         true_first.orientation_W.conjugate() * (true_last.position_W_m - true_first.position_W_m);
-  error.rotation = (true_first.orientation_W.conjugate() * true_last.orientation_W).conjugate() * (first.orientation_W.conjugate() * last.orientation_W);
+  error.rotation = (true_first.orientation_W.conjugate() * true_last.orientation_W).conjugate() *
+                   (first.orientation_W.conjugate() * last.orientation_W);
   return error;
 }
 
@@ -104,7 +105,8 @@ bool pose_nees(const ScoredEstimate& scored, double& value) {
   const PoseState aligned = alignment.apply(last);
   const PoseState true_pose = truth_track(scored).pose(last.time_ns);
   Eigen::Matrix<double, 6, 1> error;
-  error << true_pose.position_W_m - aligned.position_W_m, so3::logarithm((true_pose.orientation_W * aligned.orientation_W.conjugate()).normalized());
+  error << true_pose.position_W_m - aligned.position_W_m,
+      so3::logarithm((true_pose.orientation_W * aligned.orientation_W.conjugate()).normalized());
   const Eigen::Matrix3d back = alignment.transform().linear().transpose();
   error << Eigen::Vector3d(back * error.head<3>()), Eigen::Vector3d(back * error.tail<3>());
   const Eigen::LLT<Eigen::Matrix<double, 6, 6>> factor(last.covariance);

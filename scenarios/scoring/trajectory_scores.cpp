@@ -16,7 +16,8 @@ bool ate(const ScoredEstimate& scored, double& value) {
   const PairedTrack& track = paired_track(scored);
   if (track.poses.empty()) return false;
   std::vector<double> errors;
-  for (const PairedPose& pose : track.poses) errors.push_back((pose.estimate.position_W_m - pose.truth.position_W_m).norm());
+  for (const PairedPose& pose : track.poses)
+    errors.push_back((pose.estimate.position_W_m - pose.truth.position_W_m).norm());
   value = rms(errors);
   return true;
 }

@@ -102,7 +102,8 @@ void add_consistency(const scenarios::Estimate& estimate, const sim::Truth& trut
     if (!track.covers_attitude(attitude.time_ns) || track.at_rest(attitude.time_ns) || !(covariance.trace() > 0.0)) {
       continue;
     }
-    const Eigen::Vector2d error = scenarios::tilt_error_rad(attitude.orientation_W, track.pose(attitude.time_ns).orientation_W);
+    const Eigen::Vector2d error =
+        scenarios::tilt_error_rad(attitude.orientation_W, track.pose(attitude.time_ns).orientation_W);
     const double square = error.dot(covariance.inverse() * error);
     pool.nees += 0.5 * square;
     ++pool.samples;

@@ -106,8 +106,8 @@ TEST(Online, SaysWhatTheFilterSaysAndAllocatesNothing) {
   for (const ImuSample& sample : truth().samples) ASSERT_TRUE(filter.step(sample, *state).ok());
   const Pose pose = parse(last);
   EXPECT_EQ(pose.time_ns, truth().samples.back().time_ns);
-  EXPECT_LT((pose.p_m - state->sphere_centre_W_m).norm(), 2e-6);          // the text has six digits
-  EXPECT_LT((pose.p_m - truth().p_WG_m.back()).norm(), 0.01);  // 0.5 % of the path; ideal sensors
+  EXPECT_LT((pose.p_m - state->sphere_centre_W_m).norm(), 2e-6);  // the text has six digits
+  EXPECT_LT((pose.p_m - truth().p_WG_m.back()).norm(), 0.01);     // 0.5 % of the path; ideal sensors
   EXPECT_EQ(program.samples(), in.size());
 }
 

@@ -28,7 +28,8 @@ PoseState state_of(std::int64_t time_ns, const Isometry3d& T_WA) {
 }
 
 bool is_finite_pose(const PoseState& state) {
-  return state.position_W_m.allFinite() && state.orientation_W.coeffs().allFinite() && state.orientation_W.norm() > 1e-6;
+  return state.position_W_m.allFinite() && state.orientation_W.coeffs().allFinite() &&
+         state.orientation_W.norm() > 1e-6;
 }
 
 Isometry3d to_truth(const scenarios::Estimate& estimate, const sim::Truth& truth) {

@@ -22,10 +22,11 @@ struct SampleInterval {
   Vector3d value, sigma;
 };
 
-SampleInterval between(const Vector3d& value, const Vector3d& change, const ImuSamplePair& near, double noise, double error,
-                const AuxiliaryImu& auxiliary_imu) {
+SampleInterval between(const Vector3d& value, const Vector3d& change, const ImuSamplePair& near, double noise,
+                       double error, const AuxiliaryImu& auxiliary_imu) {
   // The standard deviation includes the interpolation error and the clock error of the auxiliary IMU.
-  const double crooked = near.interpolation_weight * (1.0 - near.interpolation_weight) + auxiliary_imu.clock_error_s / near.length_s;
+  const double crooked =
+      near.interpolation_weight * (1.0 - near.interpolation_weight) + auxiliary_imu.clock_error_s / near.length_s;
   const double scaled = auxiliary_imu.scale_error * value.norm();
   return {value, (Vector3d::Constant(noise * noise + error * error + scaled * scaled) + (crooked * change).cwiseAbs2())
                      .cwiseSqrt()};
@@ -34,7 +35,10 @@ SampleInterval between(const Vector3d& value, const Vector3d& change, const ImuS
 }  // namespace
 
 AuxiliaryReading::AuxiliaryReading()
-    : rate_rad_s(empty_reading()), force_m_s2(empty_reading()), rate_sigma_rad_s(empty_reading()), force_sigma_m_s2(empty_reading()) {}
+    : rate_rad_s(empty_reading()),
+      force_m_s2(empty_reading()),
+      rate_sigma_rad_s(empty_reading()),
+      force_sigma_m_s2(empty_reading()) {}
 
 Status align(const AuxiliaryImu& auxiliary_imu, std::span<const ImuSample> samples, std::span<const Clipping> clippings,
              std::span<const ImuSample> primary, double gap_max_s, std::vector<AuxiliaryReading>& out) {
@@ -65,8 +69,10 @@ Status align(const AuxiliaryImu& auxiliary_imu, std::span<const ImuSample> sampl
     const unsigned accel = (left ? c.accel : 0u) | (right ? d.accel : 0u);
     out[k].rate_along_sensing_axes = gyro != 0;
     out[k].force_along_sensing_axes = accel != 0;
-    const Vector3d rates = gyro != 0 ? auxiliary_imu.gyro_sensing_directions.sensing_directions * rate.value : rate.value;
-    const Vector3d forces = accel != 0 ? auxiliary_imu.accel_sensing_directions.sensing_directions * force.value : force.value;
+    const Vector3d rates =
+        gyro != 0 ? auxiliary_imu.gyro_sensing_directions.sensing_directions * rate.value : rate.value;
+    const Vector3d forces =
+        accel != 0 ? auxiliary_imu.accel_sensing_directions.sensing_directions * force.value : force.value;
     for (int j = 0; j < 3; ++j) {
       if ((gyro >> j & 1u) == 0) {
         out[k].rate_rad_s[j] = rates[j];

@@ -27,7 +27,8 @@ SensingAxisReading sensing_axis_reading(const ImuSample& sample, const Clipping&
   const std::uint8_t clipped = triad == Triad::gyro ? clipping.gyro : clipping.accel;
   if (triad == Triad::gyro && (clipping.unusable_gyro >> axis & 1u) != 0) return SensingAxisReading::invalid_reading;
   if ((clipped >> axis & 1u) == 0) return SensingAxisReading::not_clipped;
-  return triad_reading_of(sample, triad)[axis] < 0.0 ? SensingAxisReading::clipped_low : SensingAxisReading::clipped_high;
+  return triad_reading_of(sample, triad)[axis] < 0.0 ? SensingAxisReading::clipped_low
+                                                     : SensingAxisReading::clipped_high;
 }
 
 std::uint8_t clip_flags(const Clipping& clipping) {
@@ -44,18 +45,22 @@ std::uint8_t ConfirmedSaturation::flags(const ImuSample& sample, const Clipping&
   for (int axis = 0; axis < 3; ++axis) {
     const auto j = static_cast<std::size_t>(axis);
     const double rate = sample.angular_velocity_rad_s[axis], force = sample.specific_force_m_s2[axis];
-    if (certain(rate, gyro_range_rad_s, gyro.sensing_axis[j])) out |= clipped & static_cast<unsigned>(kClipGyroX << axis);
-    if (certain(force, accel_range_m_s2, accel.sensing_axis[j])) out |= clipped & static_cast<unsigned>(kClipAccelX << axis);
+    if (certain(rate, gyro_range_rad_s, gyro.sensing_axis[j]))
+      out |= clipped & static_cast<unsigned>(kClipGyroX << axis);
+    if (certain(force, accel_range_m_s2, accel.sensing_axis[j]))
+      out |= clipped & static_cast<unsigned>(kClipAccelX << axis);
   }
   return static_cast<std::uint8_t>(out);
 }
 
 ClippingFinder::ClippingFinder(const Params& params)
-    : axis_limit_detector_(params.axis_limit_params), plane_finders_(make_plane_finders(params)), use_tilted_planes_(params.tilted) {}
+    : axis_limit_detector_(params.axis_limit_params),
+      plane_finders_(make_plane_finders(params)),
+      use_tilted_planes_(params.tilted) {}
 
 SaturationPlanes ClippingFinder::find_planes(std::span<const ImuSample> samples, Triad triad,
-                                       const SaturationLimitDetector::State& axis_aligned_rails,
-                                       bool& clips_after_compensation) const {
+                                             const SaturationLimitDetector::State& axis_aligned_rails,
+                                             bool& clips_after_compensation) const {
   std::vector<Eigen::Vector3d> readings(samples.size());
   for (std::size_t k = 0; k < samples.size(); ++k) readings[k] = triad_reading_of(samples[k], triad);
   SaturationPlaneFinder::Workspace workspace;
@@ -68,19 +73,21 @@ SaturationPlanes ClippingFinder::find_planes(std::span<const ImuSample> samples,
 ClippingFinder::ClippingSearchResult ClippingFinder::find(std::span<const ImuSample> samples) const {
   ClippingSearchResult out;
   out.clipping_per_sample.resize(samples.size());
-  axis_limit_detector_.classify_clipping_of_all(samples, out.saturation_levels.axis_limit_state, out.clipping_per_sample);
+  axis_limit_detector_.classify_clipping_of_all(samples, out.saturation_levels.axis_limit_state,
+                                                out.clipping_per_sample);
   if (!use_tilted_planes_) return out;
-  out.saturation_levels.gyro_planes =
-      find_planes(samples, Triad::gyro, out.saturation_levels.axis_limit_state, out.saturation_levels.gyro_clips_after_compensation);
-  out.saturation_levels.accel_saturation_planes = find_planes(samples, Triad::accelerometer, out.saturation_levels.axis_limit_state,
-                                       out.saturation_levels.accel_clips_after_compensation);
+  out.saturation_levels.gyro_planes = find_planes(samples, Triad::gyro, out.saturation_levels.axis_limit_state,
+                                                  out.saturation_levels.gyro_clips_after_compensation);
+  out.saturation_levels.accel_saturation_planes =
+      find_planes(samples, Triad::accelerometer, out.saturation_levels.axis_limit_state,
+                  out.saturation_levels.accel_clips_after_compensation);
   for (const Triad triad : {Triad::gyro, Triad::accelerometer}) {
     const SaturationPlanes planes = out.saturation_levels.saturation_planes_in_use(triad);
     if (!planes.any_plane_found()) continue;
     const std::vector<Neighbours> beside = neighbouring_readings(samples, triad);
     for (std::size_t k = 0; k < samples.size(); ++k) {
-      out.clipping_per_sample[k] =
-          clipping_from_planes(planes, triad, out.clipping_per_sample[k], beside[k].previous_sample, samples[k], beside[k].next_sample);
+      out.clipping_per_sample[k] = clipping_from_planes(planes, triad, out.clipping_per_sample[k],
+                                                        beside[k].previous_sample, samples[k], beside[k].next_sample);
     }
   }
   return out;

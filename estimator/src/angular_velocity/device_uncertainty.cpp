@@ -15,7 +15,8 @@ using Vector = SensorErrors::Vector;
 
 constexpr double kOddsEvidenceWeight = 0.3;
 
-void set_normal_equations(const SensorErrorInformation& evidence, const Vector& deviation, double share, Matrix& system) {
+void set_normal_equations(const SensorErrorInformation& evidence, const Vector& deviation, double share,
+                          Matrix& system) {
   for (int j = 0; j < SensorErrors::kSize; ++j) {
     for (int i = 0; i < SensorErrors::kSize; ++i) {
       const double system_evidence = 0.5 * (evidence.information(i, j) + evidence.information(j, i));
@@ -34,14 +35,16 @@ double log_odds(const SensorErrorInformation& evidence, const Vector& deviation,
 }
 
 // Computes the second moment (covariance plus squared mean) of one device's sensor errors: rate_stream.md (R102).
-bool corrected_covariance(const SensorErrorInformation& evidence, const Vector& deviation, SensorErrorUncertainty::WorkMatrices& work) {
+bool corrected_covariance(const SensorErrorInformation& evidence, const Vector& deviation,
+                          SensorErrorUncertainty::WorkMatrices& work) {
   constexpr int kRest = SensorErrors::kSize - SensorErrors::kGSensitivity;
   constexpr double kSensorErrorEvidenceWeight = SensorErrorUncertainty::kSensorErrorEvidenceWeight;
   set_normal_equations(evidence, deviation, kSensorErrorEvidenceWeight, work.normal_matrix);
   // The estimated scale and misalignment stay zero, because errors of the free-flight equations have the same effect.
   Vector mean = Vector::Zero();
   const Eigen::Matrix<double, kRest, kRest> rest = work.normal_matrix.bottomRightCorner<kRest, kRest>();
-  mean.tail<kRest>() = rest.llt().solve(kSensorErrorEvidenceWeight * deviation.cwiseProduct(evidence.gradient).tail<kRest>());
+  mean.tail<kRest>() =
+      rest.llt().solve(kSensorErrorEvidenceWeight * deviation.cwiseProduct(evidence.gradient).tail<kRest>());
   mean = deviation.cwiseProduct(mean).eval();
   const Eigen::LLT<Eigen::Ref<Matrix>> factor(work.normal_matrix);
   if (factor.info() != Eigen::Success) return false;
@@ -68,7 +71,7 @@ void SensorErrorUncertainty::reset(Posterior& posterior) const {
 }
 
 void SensorErrorUncertainty::update(const SensorErrorInformation& evidence, WorkMatrices& work, Posterior& posterior,
-                               bool unlike_sheet) const {
+                                    bool unlike_sheet) const {
   if (unlike_sheet) {
     if (!corrected_covariance(evidence, uncalibrated_sigma_, work))
       work.corrected_covariance = uncalibrated_sigma_.cwiseAbs2().asDiagonal();
@@ -105,10 +108,12 @@ double SensorErrorUncertainty::delay_correction_s(const SensorErrorInformation& 
   deviation[kAt] = reach_s;
   const Rest system_evidence = evidence.information.bottomRightCorner<kRest, kRest>(),
              both = 0.5 * (system_evidence + system_evidence.transpose());
-  const Rest system = Rest::Identity() + deviation.asDiagonal() * (kSensorErrorEvidenceWeight * both) * deviation.asDiagonal();
+  const Rest system =
+      Rest::Identity() + deviation.asDiagonal() * (kSensorErrorEvidenceWeight * both) * deviation.asDiagonal();
   const Eigen::LLT<Rest> factor(system);
   if (factor.info() != Eigen::Success) return 0.0;
-  const Eigen::Matrix<double, kRest, 1> z = kSensorErrorEvidenceWeight * deviation.cwiseProduct(evidence.gradient.tail<kRest>());
+  const Eigen::Matrix<double, kRest, 1> z =
+      kSensorErrorEvidenceWeight * deviation.cwiseProduct(evidence.gradient.tail<kRest>());
   const double out = reach_s * factor.solve(z)[kAt];
   return std::isfinite(out) ? std::clamp(out, -reach_s, reach_s) : 0.0;
 }

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tumble/angular_velocity/detail/rail_ratios.hpp"
 #include "tumble/angular_velocity/detail/partial_saturation.hpp"
+#include "tumble/angular_velocity/detail/rail_ratios.hpp"
 
 namespace tumble {
 
@@ -46,7 +46,7 @@ bool has_unequal_limits(const SaturationPlane& rail) {
 }
 
 std::array<SaturationPlaneFinder, 2> plane_finders_by_stated_range(SaturationPlaneFinder::Params params,
-                                                              const std::optional<double>& stated) {
+                                                                   const std::optional<double>& stated) {
   SaturationPlaneFinder::Params unstated = params;
   unstated.stated_range_rad_s = std::nullopt;
   if (!params.stated_range_rad_s) params.stated_range_rad_s = stated;
@@ -56,18 +56,20 @@ std::array<SaturationPlaneFinder, 2> plane_finders_by_stated_range(SaturationPla
 }  // namespace
 
 std::array<std::array<SaturationPlaneFinder, 2>, 2> make_plane_finders(const ClippingFinder::Params& params) {
-  return {plane_finders_by_stated_range(params.gyro_planes, params.axis_limit_params.stated_gyro_range_rad_s),
-          plane_finders_by_stated_range(params.accel_saturation_planes, params.axis_limit_params.stated_accel_range_m_s2)};
+  return {
+      plane_finders_by_stated_range(params.gyro_planes, params.axis_limit_params.stated_gyro_range_rad_s),
+      plane_finders_by_stated_range(params.accel_saturation_planes, params.axis_limit_params.stated_accel_range_m_s2)};
 }
 
-bool stated_range_contradicted(const SaturationLimitDetector& axis_aligned_rails, const SaturationLimitDetector::State& state, Triad triad) {
+bool stated_range_contradicted(const SaturationLimitDetector& axis_aligned_rails,
+                               const SaturationLimitDetector::State& state, Triad triad) {
   const int first = static_cast<int>(first_channel(triad));
   return axis_aligned_rails.disagrees(state, first) || axis_aligned_rails.disagrees(state, first + 1) ||
          axis_aligned_rails.disagrees(state, first + 2);
 }
 
-bool are_upright(std::span<const Eigen::Vector3d> readings, const SaturationPlanes& planes, const SaturationLimitDetector::State& rails,
-                 Triad triad) {
+bool are_upright(std::span<const Eigen::Vector3d> readings, const SaturationPlanes& planes,
+                 const SaturationLimitDetector::State& rails, Triad triad) {
   int nil = 0;
   for (std::size_t j = 0; j < 3; ++j) {
     const auto& rail = planes.sensing_axis[j];
@@ -97,7 +99,8 @@ bool are_upright(std::span<const Eigen::Vector3d> readings, const SaturationPlan
   return nil >= 2;
 }
 
-SaturationPlanes without_planes_from_plateaus(const SaturationPlanes& planes, const SaturationLimitDetector::State& rails, Triad triad) {
+SaturationPlanes without_planes_from_plateaus(const SaturationPlanes& planes,
+                                              const SaturationLimitDetector::State& rails, Triad triad) {
   SaturationPlanes out = planes;
   for (std::size_t j = 0; j < 3; ++j) {
     if (rails.channels[first_channel(triad) + j].plateau_limit > 0.0) out.sensing_axis[j].reset();
@@ -106,7 +109,7 @@ SaturationPlanes without_planes_from_plateaus(const SaturationPlanes& planes, co
 }
 
 Clipping clipping_from_planes(const SaturationPlanes& planes, Triad triad, const Clipping& by_axis_aligned_rails,
-                            const ImuSample* before, const ImuSample& now, const ImuSample* after) {
+                              const ImuSample* before, const ImuSample& now, const ImuSample* after) {
   Clipping out = by_axis_aligned_rails;
   std::uint8_t& bits = triad == Triad::gyro ? out.gyro : out.accel;
   const std::uint8_t unreadable = triad == Triad::gyro ? by_axis_aligned_rails.unusable_gyro : 0;
@@ -115,8 +118,8 @@ Clipping clipping_from_planes(const SaturationPlanes& planes, Triad triad, const
     if (!rail || (unreadable >> j & 1u) != 0) continue;
     const int sign = half_range_side(now, triad, j);
     const auto beside = [&](const ImuSample* sample, const ImuSample* outside) {
-      return sample != nullptr && half_range_side(*sample, triad, j) == sign && is_at_saturation_limit(*sample, triad, *rail, j) &&
-             reaches_limit(*rail, triad, now, outside, sign);
+      return sample != nullptr && half_range_side(*sample, triad, j) == sign &&
+             is_at_saturation_limit(*sample, triad, *rail, j) && reaches_limit(*rail, triad, now, outside, sign);
     };
     const bool clipped = is_at_saturation_limit(now, triad, *rail, j) || beside(after, before) || beside(before, after);
     const auto bit = static_cast<std::uint8_t>(1u << j);
@@ -125,9 +128,9 @@ Clipping clipping_from_planes(const SaturationPlanes& planes, Triad triad, const
   return out;
 }
 
-void mark_partial_saturation(const SaturationPlanes& planes, const SaturationLimitDetector& rails, const SaturationLimitDetector::State& state,
-                               double noise_rad_s, const ImuSample* before, AngularRateObservation& now,
-                               const ImuSample* after) {
+void mark_partial_saturation(const SaturationPlanes& planes, const SaturationLimitDetector& rails,
+                             const SaturationLimitDetector::State& state, double noise_rad_s, const ImuSample* before,
+                             AngularRateObservation& now, const ImuSample* after) {
   mark_partial_saturation(rails, state, noise_rad_s, before, now, after);
   for (std::size_t j = 0; j < 3; ++j) {
     const auto& rail = planes.sensing_axis[j];
@@ -138,9 +141,9 @@ void mark_partial_saturation(const SaturationPlanes& planes, const SaturationLim
     const int sign = half_range_side(now.sample, Triad::gyro, j);
     const double level = rail->saturation_limit_rad_s;
     const double reading = level - rail->distance_to_plane_rad_s(now.sample.angular_velocity_rad_s, sign);
-    const double neighbour =
-        unsaturated_neighbour_reading(reading, level, static_cast<int>(j), before, after,
-                              [&](const Eigen::Vector3d& beside) { return level - rail->distance_to_plane_rad_s(beside, sign); });
+    const double neighbour = unsaturated_neighbour_reading(
+        reading, level, static_cast<int>(j), before, after,
+        [&](const Eigen::Vector3d& beside) { return level - rail->distance_to_plane_rad_s(beside, sign); });
     if (level - reading <= rail->tolerance_rad_s || neighbour > reading) continue;
     const PartialSaturation loss = partial_saturation(reading, neighbour, level, noise_rad_s);
     if (!loss.saturated) continue;
@@ -152,9 +155,10 @@ void mark_partial_saturation(const SaturationPlanes& planes, const SaturationLim
 
 // See rails.md (R59).
 std::optional<EstimatedCrossAxisSlopes> estimated_slopes(const SaturationPlanes& planes, bool upright, int element,
-                                                const Eigen::Matrix2d& before) {
+                                                         const Eigen::Matrix2d& before) {
   if (upright) {
-    return EstimatedCrossAxisSlopes{Eigen::Vector2d::Zero(), kUprightSigma * kUprightSigma * Eigen::Matrix2d::Identity()};
+    return EstimatedCrossAxisSlopes{Eigen::Vector2d::Zero(),
+                                    kUprightSigma * kUprightSigma * Eigen::Matrix2d::Identity()};
   }
   const auto& rail = planes.sensing_axis[static_cast<std::size_t>(element)];
   if (!rail) return std::nullopt;
@@ -164,7 +168,8 @@ std::optional<EstimatedCrossAxisSlopes> estimated_slopes(const SaturationPlanes&
   return EstimatedCrossAxisSlopes{{rail->row[(element + 1) % 3], rail->row[(element + 2) % 3]}, estimated};
 }
 
-RigCalibration calibration_prior_from_planes(const AngularRateModel& before, const SaturationPlanes& planes, bool upright) {
+RigCalibration calibration_prior_from_planes(const AngularRateModel& before, const SaturationPlanes& planes,
+                                             bool upright) {
   RigCalibration out{before.prior_constants(), before.prior_covariance()};
   for (int j = 0; j < 3; ++j) {
     const Eigen::Index first = RigConstants::kGyroMisalignment + 2 * j;

@@ -8,9 +8,9 @@
 #include <span>
 
 #include "tumble/angular_velocity/detail/clipping_finder.hpp"
+#include "tumble/angular_velocity/detail/rate_model.hpp"
 #include "tumble/angular_velocity/detail/saturation_limit_detector.hpp"
 #include "tumble/angular_velocity/detail/saturation_plane_finder.hpp"
-#include "tumble/angular_velocity/detail/rate_model.hpp"
 
 namespace tumble {
 
@@ -24,32 +24,35 @@ inline std::size_t first_channel(Triad triad) {
 /// Returns a SaturationPlaneFinder for gyro and accelerometer, each with and without the data sheet's range.
 std::array<std::array<SaturationPlaneFinder, 2>, 2> make_plane_finders(const ClippingFinder::Params& params);
 
-bool stated_range_contradicted(const SaturationLimitDetector& axis_aligned_rails, const SaturationLimitDetector::State& state, Triad triad);
+bool stated_range_contradicted(const SaturationLimitDetector& axis_aligned_rails,
+                               const SaturationLimitDetector::State& state, Triad triad);
 
 /// Returns whether the device clips each output axis separately (upright rails).
-bool are_upright(std::span<const Eigen::Vector3d> readings, const SaturationPlanes& planes, const SaturationLimitDetector::State& rails,
-                 Triad triad);
+bool are_upright(std::span<const Eigen::Vector3d> readings, const SaturationPlanes& planes,
+                 const SaturationLimitDetector::State& rails, Triad triad);
 
 /// Removes the planes of axes on which several successive extreme readings are equal.
-SaturationPlanes without_planes_from_plateaus(const SaturationPlanes& planes, const SaturationLimitDetector::State& rails, Triad triad);
+SaturationPlanes without_planes_from_plateaus(const SaturationPlanes& planes,
+                                              const SaturationLimitDetector::State& rails, Triad triad);
 
 /// Marks a sample as clipped if its reading is at or beyond a saturation limit of `planes`, or if the device flags the
 /// sample.
 Clipping clipping_from_planes(const SaturationPlanes& planes, Triad triad, const Clipping& by_axis_aligned_rails,
-                            const ImuSample* before, const ImuSample& now, const ImuSample* after);
+                              const ImuSample* before, const ImuSample& now, const ImuSample* after);
 
 /// Marks axes that are saturated for a part of the sample's averaging window.
-void mark_partial_saturation(const SaturationPlanes& planes, const SaturationLimitDetector& rails, const SaturationLimitDetector::State& state,
-                               double noise_rad_s, const ImuSample* before, AngularRateObservation& now,
-                               const ImuSample* after);
+void mark_partial_saturation(const SaturationPlanes& planes, const SaturationLimitDetector& rails,
+                             const SaturationLimitDetector::State& state, double noise_rad_s, const ImuSample* before,
+                             AngularRateObservation& now, const ImuSample* after);
 
 struct EstimatedCrossAxisSlopes {
   Eigen::Vector2d cross_axis_slopes;
   Eigen::Matrix2d covariance;
 };
 std::optional<EstimatedCrossAxisSlopes> estimated_slopes(const SaturationPlanes& planes, bool upright, int element,
-                                                const Eigen::Matrix2d& before);
+                                                         const Eigen::Matrix2d& before);
 
-RigCalibration calibration_prior_from_planes(const AngularRateModel& before, const SaturationPlanes& planes, bool upright);
+RigCalibration calibration_prior_from_planes(const AngularRateModel& before, const SaturationPlanes& planes,
+                                             bool upright);
 
 }  // namespace tumble

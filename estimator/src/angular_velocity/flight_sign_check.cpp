@@ -19,7 +19,8 @@ constexpr double kTolerance = 0.25;        // tolerance of the agreement, as a f
 constexpr double kRun_s = 0.02;            // minimum duration of agreement, which excludes chance on the ground
 constexpr double kFlightGapMax_s = 0.1;    // a longer gap resets the current run
 constexpr double kAlternativeMin_s = 0.1, kAlternativeRatioMin = 4.0, kThrownRatioMin = 2.0;
-constexpr double kGroupsPerSide = 0.05;    // minimum squared component of the lever arm across a saturated axis, as a fraction
+constexpr double kGroupsPerSide =
+    0.05;                           // minimum squared component of the lever arm across a saturated axis, as a fraction
 constexpr double kBelowRail = 0.1;  // fraction of the saturation level by which a recovered rate may be below the level
 
 struct MirroredAxes {
@@ -40,8 +41,8 @@ constexpr std::array<MirroredAxes, FlightSignCheck::kMirroredAlternatives> kAlte
 }};
 
 /// See imu_merge.md (I32).
-FlightSignCheck::AveragedReading convert_reading(const FlightSignCheck::AveragedReading& reading, const MirroredAxes& sense,
-                                         const Eigen::Vector3d& t) {
+FlightSignCheck::AveragedReading convert_reading(const FlightSignCheck::AveragedReading& reading,
+                                                 const MirroredAxes& sense, const Eigen::Vector3d& t) {
   FlightSignCheck::AveragedReading out = reading;
   out.force_m_s2 = sense.corrected(reading.force_m_s2);
   if (!reading.is_unsaturated || reading.saturation_sign.isZero(0.0)) return out;
@@ -53,7 +54,8 @@ FlightSignCheck::AveragedReading convert_reading(const FlightSignCheck::Averaged
   const Eigen::Vector3d unit = Eigen::Vector3d::Unit(axis).cross(t), rest = others.cross(t);
   const double a = unit.squaredNorm(), b = unit.dot(rest), c = rest.squaredNorm() + out.force_m_s2.dot(t);
   const double root = b * b - a * c;
-  out.is_unsaturated = reading.saturation_sign.cwiseAbs().sum() == 1.0 && a >= kGroupsPerSide * t.squaredNorm() && root >= 0.0;
+  out.is_unsaturated =
+      reading.saturation_sign.cwiseAbs().sum() == 1.0 && a >= kGroupsPerSide * t.squaredNorm() && root >= 0.0;
   if (!out.is_unsaturated) return out;
   const double rate = (-b + (sign > 0.0 ? 1.0 : -1.0) * std::sqrt(root)) / a, read = out.rate_rad_s[axis];
   out.is_unsaturated = rate * read > 0.0 && std::abs(rate) >= (1.0 - kBelowRail) * std::abs(read);
@@ -66,8 +68,8 @@ bool agrees_with_flight(const MirroredAxes& sense, const std::array<FlightSignCh
                         const FlightSignCheck::Params& params) {
   const Eigen::Vector3d& t = params.lever_arm_m;
   const FlightSignCheck::AveragedReading first = convert_reading(readings[0], sense, t),
-                                 middle = convert_reading(readings[1], sense, t),
-                                 last = convert_reading(readings[2], sense, t);
+                                         middle = convert_reading(readings[1], sense, t),
+                                         last = convert_reading(readings[2], sense, t);
   if (!first.is_unsaturated || !middle.is_unsaturated || !last.is_unsaturated) return false;
   const double dt_s = seconds(last.time_ns - first.time_ns);
   const Eigen::Vector3d &w = middle.rate_rad_s, alpha = (last.rate_rad_s - first.rate_rad_s) / dt_s;
@@ -108,11 +110,13 @@ void FlightSignCheck::step(const ImuSample& sample, State& state) const {
 }
 
 FlightSignCheck::AveragedReading FlightSignCheck::reading_of(const ImuSample& mean, double rate_peak_rad_s) const {
-  AveragedReading out{mean.time_ns, mean.angular_velocity_rad_s, mean.specific_force_m_s2, Eigen::Vector3d::Zero(), true};
+  AveragedReading out{mean.time_ns, mean.angular_velocity_rad_s, mean.specific_force_m_s2, Eigen::Vector3d::Zero(),
+                      true};
   const double rail = params_.gyro_range_rad_s == 0.0 ? kUnbounded : (1.0 - kNearRailRatio) * params_.gyro_range_rad_s;
   for (int axis = 0; axis < 3; ++axis) {
     const bool flagged = (mean.device_clip_flags & (kClipGyroX << axis)) != 0;
-    if (flagged || std::abs(out.rate_rad_s[axis]) >= rail) out.saturation_sign[axis] = out.rate_rad_s[axis] < 0.0 ? -1.0 : 1.0;
+    if (flagged || std::abs(out.rate_rad_s[axis]) >= rail)
+      out.saturation_sign[axis] = out.rate_rad_s[axis] < 0.0 ? -1.0 : 1.0;
   }
   const bool by_the_force = params_.motion_type == BodyMotionType::always_thrown && !out.saturation_sign.isZero(0.0);
   out.is_unsaturated = by_the_force || (rate_peak_rad_s < rail && out.saturation_sign.isZero(0.0));

@@ -38,7 +38,8 @@ std::array<double, 6> readings(const ImuSample& sample) {
   return {w.x(), w.y(), w.z(), f.x(), f.y(), f.z()};
 }
 
-void start_repeated_reading(std::size_t channel, const std::array<double, 6>& now, TimeNs time_ns, FrozenAxes::Axis& axis) {
+void start_repeated_reading(std::size_t channel, const std::array<double, 6>& now, TimeNs time_ns,
+                            FrozenAxes::Axis& axis) {
   axis.reading = now[channel];
   axis.since_ns = time_ns;
   axis.repeated_s = axis.samples = 0.0;
@@ -68,8 +69,10 @@ void FrozenAxes::step(const ImuSample& sample, State& state) const {
     if (!state.started || now[c] != axis.reading) {
       if (state.started) {
         const double change = std::abs(now[c] - axis.reading);
-        axis.smallest_reading_change = axis.smallest_reading_change > 0.0 ? std::min(axis.smallest_reading_change, change) : change;
-        if (!axis.is_frozen && !is_at_saturation_limit(c, axis)) axis.longest_s = std::max(axis.longest_s, axis.repeated_s);
+        axis.smallest_reading_change =
+            axis.smallest_reading_change > 0.0 ? std::min(axis.smallest_reading_change, change) : change;
+        if (!axis.is_frozen && !is_at_saturation_limit(c, axis))
+          axis.longest_s = std::max(axis.longest_s, axis.repeated_s);
         axis.changing_readings_duration_s += dt_s;
       }
       start_repeated_reading(c, now, sample.time_ns, axis);
@@ -83,7 +86,7 @@ void FrozenAxes::step(const ImuSample& sample, State& state) const {
 }
 
 void FrozenAxes::track_repeated_reading(std::size_t channel, const std::array<double, 6>& now, double dt_s,
-                                  std::uint8_t flags, State& state) const {
+                                        std::uint8_t flags, State& state) const {
   Axis& axis = state.axes[channel];
   const int first = is_gyro(channel) ? kClipGyroX : kClipAccelX;
   axis.flagged_by_device = axis.flagged_by_device || (flags & first << channel % 3) != 0;

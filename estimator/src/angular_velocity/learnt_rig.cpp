@@ -39,7 +39,8 @@ constexpr double kLevelToleranceRatio = 2e-3;
 // saturation level.
 bool is_level_known(const SaturationPlane& plane, int sign) {
   const Eigen::Vector4d cut(0.0, 0.0, sign, 1.0);
-  const double variance = cut.dot(plane.covariance * cut), most = 0.5 * kLevelToleranceRatio * plane.saturation_limit_rad_s;
+  const double variance = cut.dot(plane.covariance * cut),
+               most = 0.5 * kLevelToleranceRatio * plane.saturation_limit_rad_s;
   return variance <= most * most;
 }
 
@@ -70,8 +71,7 @@ void CalibratedRig::keep_prior_planes(const SaturationPlanes& planes, Triad tria
     }
     if (!plane || triad == Triad::gyro) continue;
     for (std::size_t i = 0; i < 2; ++i) {
-      accel_misalignment[static_cast<Eigen::Index>(2 * j + i)] =
-          plane->row[static_cast<Eigen::Index>((j + 1 + i) % 3)];
+      accel_misalignment[static_cast<Eigen::Index>(2 * j + i)] = plane->row[static_cast<Eigen::Index>((j + 1 + i) % 3)];
     }
   }
 }
@@ -97,10 +97,12 @@ void store_saturation_limit(const SaturationPlane& plane, Triad triad, std::size
 
 }  // namespace
 
-std::optional<CalibratedRig> calibration_with_saturation_limits(const CalibratedRig& before, const SaturationLevels& rails) {
+std::optional<CalibratedRig> calibration_with_saturation_limits(const CalibratedRig& before,
+                                                                const SaturationLevels& rails) {
   CalibratedRig found, out = before;
   if (!rails.gyro_clips_after_compensation) found.keep_prior_planes(rails.gyro_planes);
-  if (!rails.accel_clips_after_compensation) found.keep_prior_planes(rails.accel_saturation_planes, Triad::accelerometer);
+  if (!rails.accel_clips_after_compensation)
+    found.keep_prior_planes(rails.accel_saturation_planes, Triad::accelerometer);
   out.only_saturation_limits = true;
   bool sure = false;
   for (const Triad triad : {Triad::gyro, Triad::accelerometer}) {
@@ -108,7 +110,8 @@ std::optional<CalibratedRig> calibration_with_saturation_limits(const Calibrated
     const CalibratedRig::Planes& now = gyro ? found.gyro_saturation_planes_rad_s : found.accel_saturation_planes_m_s2;
     CalibratedRig::Planes& kept = gyro ? out.gyro_saturation_planes_rad_s : out.accel_saturation_planes_m_s2;
     for (std::size_t j = 0; j < 3; ++j) {
-      const std::optional<SaturationPlane>& plane = (gyro ? rails.gyro_planes : rails.accel_saturation_planes).sensing_axis[j];
+      const std::optional<SaturationPlane>& plane =
+          (gyro ? rails.gyro_planes : rails.accel_saturation_planes).sensing_axis[j];
       for (std::size_t i = 0; i < 2; ++i) {
         if (now[j][i] || !plane || plane->samples[i] == 0) kept[j][i] = now[j][i];
       }
@@ -126,7 +129,8 @@ SaturationPlanes CalibratedRig::saturation_planes(Triad triad) const {
   const RigConstants of_accel{.gyro_misalignment = accel_misalignment};
   SaturationPlanes out;
   for (int j = 0; j < 3; ++j) {
-    const auto& [low, high] = (gyro ? gyro_saturation_planes_rad_s : accel_saturation_planes_m_s2)[static_cast<std::size_t>(j)];
+    const auto& [low, high] =
+        (gyro ? gyro_saturation_planes_rad_s : accel_saturation_planes_m_s2)[static_cast<std::size_t>(j)];
     if (!low && !high) continue;
     const Eigen::Index first = RigConstants::kGyroMisalignment + 2 * j;
     SaturationPlane plane;
@@ -153,7 +157,8 @@ void start_from_calibration(const CalibratedRig& rig, double trust, AngularRateS
   params.model.calibration->covariance *= trust;
   params.expert.gyro_planes.known_limits = rig.saturation_planes();
   params.expert.accel_saturation_planes.known_limits = rig.saturation_planes(Triad::accelerometer);
-  for (SaturationPlanes* const known : {&params.expert.gyro_planes.known_limits, &params.expert.accel_saturation_planes.known_limits}) {
+  for (SaturationPlanes* const known :
+       {&params.expert.gyro_planes.known_limits, &params.expert.accel_saturation_planes.known_limits}) {
     for (std::optional<SaturationPlane>& plane : known->sensing_axis) {
       if (plane) plane->covariance *= trust;
     }
@@ -175,7 +180,8 @@ void apply_saved_calibration(const CalibratedRig& rig, AngularRateSmoother::Para
   constants.gyro_bias_rad_s = params.model.nominal.gyro_bias_rad_s;
   constants.accel_bias_m_s2 = params.model.nominal.accel_bias_m_s2;
   RigConstants::Matrix& covariance = params.model.calibration->covariance;
-  covariance.diagonal().tail<RigConstants::kSize - RigConstants::kGyroMisalignment>().array() += kElementDrift * kElementDrift;
+  covariance.diagonal().tail<RigConstants::kSize - RigConstants::kGyroMisalignment>().array() +=
+      kElementDrift * kElementDrift;
   covariance.middleRows<kBiases>(kBias).setZero();
   covariance.middleCols<kBiases>(kBias).setZero();
   const RigConstants::Matrix floor = (1.0 - 1.0 / kNextRunInflation) * prior.inverse();
@@ -207,7 +213,7 @@ void apply_saved_calibration(const CalibratedRig& rig, AngularRateStream::Params
 }
 
 std::optional<CalibratedRig> calibrated_rig(const AngularRateReport& report, const CalibratedRig* given,
-                                    const AngularRateModelParams& model) {
+                                            const AngularRateModelParams& model) {
   if (!report.calibration_at_prior) return calibrated_rig(report);
   SaturationLevels rails;
   rails.gyro_planes = report.gyro_planes;
@@ -231,7 +237,8 @@ CalibratedRig stream_calibration(const AngularRateStream& stream, const AngularR
   for (int c = 0; c < 6; ++c) {
     std::optional<double>& rail = rig.saturation_limits[static_cast<std::size_t>(c)];
     rail = axis_aligned_rails.saturation_limit(known.axis_limit_state, c);
-    const auto& plane = (c < 3 ? known.gyro_planes : known.accel_saturation_planes).sensing_axis[static_cast<std::size_t>(c % 3)];
+    const auto& plane =
+        (c < 3 ? known.gyro_planes : known.accel_saturation_planes).sensing_axis[static_cast<std::size_t>(c % 3)];
     if (plane) rail = plane->saturation_limit_rad_s;
   }
   if (!known.gyro_clips_after_compensation) rig.keep_prior_planes(known.gyro_planes);
@@ -242,7 +249,7 @@ CalibratedRig stream_calibration(const AngularRateStream& stream, const AngularR
 }  // namespace
 
 std::optional<CalibratedRig> calibrated_rig(const AngularRateStream& stream, const AngularRateStream::Params& params,
-                                    const CalibratedRig* given, const AngularRateStream::State& state) {
+                                            const CalibratedRig* given, const AngularRateStream::State& state) {
   const bool late = state.sensor_errors.front().accel_delay_state.delay_found;
   std::optional<CalibratedRig> rig;
   if (!is_at_prior(stream, state)) {

@@ -53,7 +53,8 @@ std::uint8_t possible_partial_saturation(const ImuSample* before, const ImuSampl
   return axes_near_saturation_limits(Rates(readings.data(), count), at, planes);
 }
 
-std::vector<std::uint8_t> possible_partial_saturation(std::span<const ImuSample> samples, const SaturationPlanes& planes) {
+std::vector<std::uint8_t> possible_partial_saturation(std::span<const ImuSample> samples,
+                                                      const SaturationPlanes& planes) {
   std::vector<std::uint8_t> out(samples.size(), 0);
   if (!planes.any_plane_found()) return out;
   std::vector<Eigen::Vector3d> readings;

@@ -11,7 +11,8 @@
 namespace tumble {
 
 /// Finds readings that may have been saturated for a part of their averaging window, see rails.md (R76). Cost: O(N).
-std::vector<std::uint8_t> possible_partial_saturation(std::span<const ImuSample> samples, const SaturationPlanes& planes);
+std::vector<std::uint8_t> possible_partial_saturation(std::span<const ImuSample> samples,
+                                                      const SaturationPlanes& planes);
 
 /// `before` and `after` are the readings next to `now`, or null.
 std::uint8_t possible_partial_saturation(const ImuSample* before, const ImuSample& now, const ImuSample* after,

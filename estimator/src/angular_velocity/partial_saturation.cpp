@@ -16,7 +16,7 @@ constexpr double kDeficitSigmaRatio = 0.5, kDepthSigmaRatio = 0.25, kDepthMax = 
 
 // The rate is assumed to cross the saturation level with constant slope: rails.md (R69), (R70).
 PartialSaturation partial_saturation(double reading_rad_s, double neighbour_rad_s, double rail_rad_s,
-                                         double noise_rad_s) {
+                                     double noise_rad_s) {
   const double depth = rail_rad_s - reading_rad_s, slope = reading_rad_s - neighbour_rad_s;
   // Noise that is added before clipping lowers a fully saturated reading by less than a tenth of the noise.
   if (!(depth > 0.1 * noise_rad_s)) return {};

@@ -51,8 +51,9 @@ bool MinSaturationLevels::is_below_min_saturation_level(const Eigen::Vector3d& r
          (1.0 - kNearRailRatio) * least;
 }
 
-void inflate_covariance_near_limits(const SaturationPlanes& planes, const MinSaturationLevels& least, double noise_rad_s,
-                                 const ImuSample* before, AngularRateObservation& now, const ImuSample* after) {
+void inflate_covariance_near_limits(const SaturationPlanes& planes, const MinSaturationLevels& least,
+                                    double noise_rad_s, const ImuSample* before, AngularRateObservation& now,
+                                    const ImuSample* after) {
   const double rail = lowest_saturation_limit(planes);
   now.rarely_high_axes = 0;
   if (rail == 0.0) return;
@@ -75,8 +76,9 @@ void inflate_covariance_near_limits(const SaturationPlanes& planes, const MinSat
   }
 }
 
-void inflate_covariance_at_plateaus(const SaturationPlanes& planes, const MinSaturationLevels& least, double offset_sigma_ratio,
-                             double noise_rad_s, std::span<AngularRateObservation> observations) {
+void inflate_covariance_at_plateaus(const SaturationPlanes& planes, const MinSaturationLevels& least,
+                                    double offset_sigma_ratio, double noise_rad_s,
+                                    std::span<AngularRateObservation> observations) {
   const double from = (1.0 - kMaxElementSigmas * offset_sigma_ratio) * lowest_saturation_limit(planes);
   const bool flags = std::any_of(observations.begin(), observations.end(),
                                  [](const AngularRateObservation& o) { return o.sample.device_clip_flags != 0; });

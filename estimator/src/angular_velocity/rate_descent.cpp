@@ -40,8 +40,8 @@ void compute_flight_weights(const AngularRateModel& model, std::span<const Angul
 }
 
 bool run_gauss_newton(const AngularRateSmoother::Params& params, const AngularRateModel& model,
-                      std::span<const AngularRateObservation> observations, double threshold_factor, RateSolution& solution,
-                      AngularRateReport& health) {
+                      std::span<const AngularRateObservation> observations, double threshold_factor,
+                      RateSolution& solution, AngularRateReport& health) {
   solution.estimates = first_guess(observations, params.model, model, params.gap_max_s);
   solution.rig = model.prior_constants();
   solution.rig_covariance = model.prior_covariance();
@@ -84,8 +84,8 @@ bool run_gauss_newton(const AngularRateSmoother::Params& params, const AngularRa
 
 // Returns how well free flight explains the samples: rate_smoother.md (R31). `share` receives the fraction of flight
 // samples among the samples with a clipped axis.
-double explained_force_fraction(std::span<const AngularRateObservation> observations, std::span<const AngularRateEstimate> estimates,
-                 double& share) {
+double explained_force_fraction(std::span<const AngularRateObservation> observations,
+                                std::span<const AngularRateEstimate> estimates, double& share) {
   double sum = 0.0, unmeasured_axes = 0.0, flight = 0.0;
   for (std::size_t k = 0; k < estimates.size(); ++k) {
     sum += std::sqrt(estimates[k].flight_weight);
@@ -101,7 +101,7 @@ double explained_force_fraction(std::span<const AngularRateObservation> observat
 
 // See rate_smoother.md (R26).
 bool GaussNewtonRateStep::factorise(const AngularRateModel& model, std::span<const AngularRateEstimate> estimates,
-                              const RigConstants& rig) {
+                                    const RigConstants& rig) {
   border_block_ = {};
   model.add_rig_prior(rig, border_block_);
   state_blocks_[0] = {};
@@ -125,8 +125,8 @@ double GaussNewtonRateStep::newton_decrement() const {
   return sum;
 }
 
-double GaussNewtonRateStep::apply(const AngularRateModel& model, double step_max, std::span<AngularRateEstimate> estimates,
-                            RigConstants& rig) const {
+double GaussNewtonRateStep::apply(const AngularRateModel& model, double step_max,
+                                  std::span<AngularRateEstimate> estimates, RigConstants& rig) const {
   double largest = 0.0;
   arrow::StateVector step;
   for (std::size_t k = state_blocks_.size(); k-- > 0;) {
@@ -144,9 +144,8 @@ double GaussNewtonRateStep::apply(const AngularRateModel& model, double step_max
 }
 
 // See rate_smoother.md (R37), (R38), (R39).
-GaussNewtonRateStep::SensorErrorDerivatives GaussNewtonRateStep::error_derivatives(const AngularRateModel& model,
-                                                                       std::span<const AngularRateEstimate> estimates,
-                                                                       const RigConstants& rig) const {
+GaussNewtonRateStep::SensorErrorDerivatives GaussNewtonRateStep::error_derivatives(
+    const AngularRateModel& model, std::span<const AngularRateEstimate> estimates, const RigConstants& rig) const {
   SensorErrorDerivatives out;
   out.sample_error_jacobian.assign(state_blocks_.size(), arrow::ErrorMatrix::Zero());
   arrow::BorderErrors border = arrow::BorderErrors::Zero();
@@ -154,7 +153,8 @@ GaussNewtonRateStep::SensorErrorDerivatives GaussNewtonRateStep::error_derivativ
     arrow::ErrorMatrix& errors = out.sample_error_jacobian[k];
     model.add_sensor_errors(observations_[k], estimates[k], rig, errors, border, out.sensor_error_evidence);
     const bool last = k + 1 == state_blocks_.size();
-    arrow::eliminate_sensor_errors(state_blocks_[k], errors, last ? nullptr : &out.sample_error_jacobian[k + 1], border);
+    arrow::eliminate_sensor_errors(state_blocks_[k], errors, last ? nullptr : &out.sample_error_jacobian[k + 1],
+                                   border);
     out.sensor_error_evidence.information.noalias() -= errors.transpose() * errors;
     out.sensor_error_evidence.gradient.noalias() += errors.transpose() * state_blocks_[k].gradient;
   }
@@ -163,15 +163,17 @@ GaussNewtonRateStep::SensorErrorDerivatives GaussNewtonRateStep::error_derivativ
   out.sensor_error_evidence.gradient.noalias() += border.transpose() * calibration_step_;
   for (std::size_t k = state_blocks_.size(); k-- > 0;) {
     const arrow::ErrorMatrix* const next = k + 1 == state_blocks_.size() ? nullptr : &out.sample_error_jacobian[k + 1];
-    out.sample_error_jacobian[k] = arrow::back_substitute_errors(state_blocks_[k], out.sample_error_jacobian[k], next, out.calibration_error_jacobian);
+    out.sample_error_jacobian[k] = arrow::back_substitute_errors(state_blocks_[k], out.sample_error_jacobian[k], next,
+                                                                 out.calibration_error_jacobian);
   }
   discount_unobservable(model.independent_sample_fraction(), out.sensor_error_evidence);
   return out;
 }
 
-bool solve(const AngularRateSmoother::Params& params, const AngularRateModel& model, std::span<const AngularRateObservation> observations,
-           RateSolution& solution, AngularRateReport& health) {
-  if (!run_gauss_newton(params, model, observations, params.expert.optimisation.initial_threshold_factor, solution, health))
+bool solve(const AngularRateSmoother::Params& params, const AngularRateModel& model,
+           std::span<const AngularRateObservation> observations, RateSolution& solution, AngularRateReport& health) {
+  if (!run_gauss_newton(params, model, observations, params.expert.optimisation.initial_threshold_factor, solution,
+                        health))
     return false;
   double share = 1.0;
   double best = explained_force_fraction(observations, solution.estimates, share);

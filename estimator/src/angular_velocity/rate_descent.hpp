@@ -15,10 +15,12 @@ class GaussNewtonRateStep {
       : observations_(observations), state_blocks_(observations.size()) {}
 
   /// Returns false if the normal equations are not positive definite.
-  bool factorise(const AngularRateModel& model, std::span<const AngularRateEstimate> estimates, const RigConstants& rig);
+  bool factorise(const AngularRateModel& model, std::span<const AngularRateEstimate> estimates,
+                 const RigConstants& rig);
   /// Adds the last step, scaled so that no angular rate changes by more than step_max. Returns the largest change of an
   /// angular rate in the unscaled step.
-  double apply(const AngularRateModel& model, double step_max, std::span<AngularRateEstimate> estimates, RigConstants& rig) const;
+  double apply(const AngularRateModel& model, double step_max, std::span<AngularRateEstimate> estimates,
+               RigConstants& rig) const;
 
   /// Calls use(k, conditional) for each sample k from last to first, with the distribution of its rate and angular
   /// acceleration for known calibration constants.
@@ -26,7 +28,8 @@ class GaussNewtonRateStep {
   void for_each_state_given_next(Use use) const {
     arrow::Conditional conditional;
     for (std::size_t k = state_blocks_.size(); k-- > 0;) {
-      conditional = arrow::state_given_next_state(state_blocks_[k], k + 1 == state_blocks_.size() ? nullptr : &conditional);
+      conditional =
+          arrow::state_given_next_state(state_blocks_[k], k + 1 == state_blocks_.size() ? nullptr : &conditional);
       use(k, conditional);
     }
   }
@@ -37,7 +40,8 @@ class GaussNewtonRateStep {
     arrow::BorderErrors calibration_error_jacobian;
     SensorErrorInformation sensor_error_evidence;
   };
-  SensorErrorDerivatives error_derivatives(const AngularRateModel& model, std::span<const AngularRateEstimate> estimates,
+  SensorErrorDerivatives error_derivatives(const AngularRateModel& model,
+                                           std::span<const AngularRateEstimate> estimates,
                                            const RigConstants& rig) const;
 
   const RigConstants::Matrix& rig_covariance() const { return rig_covariance_; }
@@ -62,7 +66,7 @@ struct RateSolution {
 /// Returns false if the normal equations are not positive definite. If most clipped samples are classified as contact,
 /// solve() repeats the optimisation with other contact thresholds, because a wrong initial lever arm may lead to a
 /// local minimum.
-bool solve(const AngularRateSmoother::Params& params, const AngularRateModel& model, std::span<const AngularRateObservation> observations,
-           RateSolution& solution, AngularRateReport& health);
+bool solve(const AngularRateSmoother::Params& params, const AngularRateModel& model,
+           std::span<const AngularRateObservation> observations, RateSolution& solution, AngularRateReport& health);
 
 }  // namespace tumble

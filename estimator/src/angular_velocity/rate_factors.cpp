@@ -79,7 +79,8 @@ AngularRateFactor gyro_factor(const AngularRateKnot& knot, const RigConstants& r
 }
 
 // See rate_smoother.md (R8), rails.md (R52).
-AngularRateFactor sensing_axis_factor(const AngularRateKnot& knot, const RigConstants& rig, const Vector3d& reading_rad_s) {
+AngularRateFactor sensing_axis_factor(const AngularRateKnot& knot, const RigConstants& rig,
+                                      const Vector3d& reading_rad_s) {
   const Vector3d off = knot.rate_rad_s + rig.gyro_bias_rad_s - reading_rad_s;
   AngularRateFactor f;
   f.jacobian_knot.setZero();
@@ -96,7 +97,8 @@ AngularRateFactor sensing_axis_factor(const AngularRateKnot& knot, const RigCons
 }
 
 // See rate_smoother.md (R10).
-AngularRateFactor flight_force_factor(const AngularRateKnot& knot, const RigConstants& rig, const Vector3d& reading_m_s2) {
+AngularRateFactor flight_force_factor(const AngularRateKnot& knot, const RigConstants& rig,
+                                      const Vector3d& reading_m_s2) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2, &t = rig.lever_arm_m;
   AngularRateFactor f;
   f.residual = alpha.cross(t) + w.cross(w.cross(t)) + rig.accel_bias_m_s2 - reading_m_s2;
@@ -110,8 +112,8 @@ AngularRateFactor flight_force_factor(const AngularRateKnot& knot, const RigCons
 }
 
 // See rate_smoother.md (R12).
-AngularRateFactor delayed_flight_force_factor(const AngularRateKnot& knot, const RigConstants& rig, const Vector3d& reading_m_s2,
-                                 double delay_s, Vector3d* jacobian_delay) {
+AngularRateFactor delayed_flight_force_factor(const AngularRateKnot& knot, const RigConstants& rig,
+                                              const Vector3d& reading_m_s2, double delay_s, Vector3d* jacobian_delay) {
   const Jerk jerk = jerk_of(knot, rig);
   const JerkDerivatives derivatives = jerk_derivatives_of(jerk, knot);
   const double d = delay_s, half = 0.5 * delay_s * delay_s;
@@ -130,7 +132,7 @@ AngularRateFactor delayed_flight_force_factor(const AngularRateKnot& knot, const
 
 // See rate_smoother.md (R12).
 AngularRateFactor delayed_flight_calibration_jacobian(const AngularRateKnot& knot, const RigConstants& rig,
-                                               const Vector3d& reading_m_s2, double delay_s) {
+                                                      const Vector3d& reading_m_s2, double delay_s) {
   AngularRateFactor f = flight_force_factor(knot_before(delay_s, knot, jerk_of(knot, rig)), rig, reading_m_s2);
   f.jacobian_knot.setZero();
   return f;
@@ -141,7 +143,8 @@ Vector3d flight_angular_jerk(const AngularRateKnot& knot, const RigConstants& ri
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2, &t = rig.lever_arm_m;
   const Jerk jerk = jerk_of(knot, rig);
   const Vector3d& j = jerk.value;
-  const Vector3d snap = -jerk.J_inv * (j.cross(jerk.rate_jerk) + 2.0 * alpha.cross(jerk.acceleration_jerk) + w.cross(Vector3d(jerk.J * j)));
+  const Vector3d snap = -jerk.J_inv * (j.cross(jerk.rate_jerk) + 2.0 * alpha.cross(jerk.acceleration_jerk) +
+                                       w.cross(Vector3d(jerk.J * j)));
   return snap.cross(t) + j.cross(w.cross(t)) + 2.0 * alpha.cross(alpha.cross(t)) + w.cross(j.cross(t));
 }
 

@@ -17,8 +17,9 @@ constexpr double kVarianceUnknown = 100.0;  // variance of a clipped axis at the
 
 }  // namespace
 
-std::vector<AngularRateEstimate> first_guess(std::span<const AngularRateObservation> observations, const AngularRateModelParams& model,
-                                      const AngularRateModel& derived, double gap_max_s) {
+std::vector<AngularRateEstimate> first_guess(std::span<const AngularRateObservation> observations,
+                                             const AngularRateModelParams& model, const AngularRateModel& derived,
+                                             double gap_max_s) {
   double smallest = model.rate_max_rad_s;
   for (const AngularRateObservation& o : observations) {
     for (int j = 0; j < 3; ++j) {
@@ -27,8 +28,8 @@ std::vector<AngularRateEstimate> first_guess(std::span<const AngularRateObservat
     }
   }
   const SaturationAwareRateEstimator saave({.lever_arm_m = derived.prior_constants().lever_arm_m,
-                     .saturation_point_rad_s = std::max(0.01, 0.9999 * smallest),
-                     .gap_max_s = gap_max_s});
+                                            .saturation_point_rad_s = std::max(0.01, 0.9999 * smallest),
+                                            .gap_max_s = gap_max_s});
   SaturationAwareRateEstimator::State state;
   SaturationAwareRateEstimator::RecoveredRate recovered;
   const double measured = derived.gyro_sigma_rad_s() * derived.gyro_sigma_rad_s();

@@ -25,7 +25,8 @@ void check(const AuxiliaryImu& p) {
   require_in_interval("auxiliary_imu share_error", p.scale_error, 0.0, 1.0);
   require_in_interval("auxiliary_imu position_error_m", p.position_error_m, 1e-9, 1.0);
   require_in_interval("auxiliary_imu clock_error_s", p.clock_error_s, 0.0, 0.1);
-  for (const double value : p.T_imu_device.matrix().reshaped()) require_in_interval("auxiliary_imu T_IC", value, -100.0, 100.0);
+  for (const double value : p.T_imu_device.matrix().reshaped())
+    require_in_interval("auxiliary_imu T_IC", value, -100.0, 100.0);
 }
 
 void check(const AngularRateModelParams& p) {
@@ -34,7 +35,9 @@ void check(const AngularRateModelParams& p) {
   require_in_interval("auxiliary_imus", p.auxiliary_imus.size(), 0, kAuxiliaryImusMax);
   for (const AuxiliaryImu& auxiliary_imu : p.auxiliary_imus) check(auxiliary_imu);
   const Status rig = check_rig_constants(p.calibration ? p.calibration->constants : p.nominal);
-  if (!rig.ok()) require_in_interval(rig.field, rig.value, -RigConstants::kMaxConstantMagnitude, RigConstants::kMaxConstantMagnitude);
+  if (!rig.ok())
+    require_in_interval(rig.field, rig.value, -RigConstants::kMaxConstantMagnitude,
+                        RigConstants::kMaxConstantMagnitude);
 }
 
 RigConstants::Matrix covariance_of(const AngularRateModelParams& p) {
@@ -72,7 +75,8 @@ Eigen::Matrix3d euler_equation_covariance(const AngularRateFactor& f, const RigC
 }
 
 // See rate_smoother.md (R16).
-double normalised(const AngularRateFactor& f, Eigen::Matrix3d spread, double sigma, const Vector3d& more = Vector3d::Zero()) {
+double normalised(const AngularRateFactor& f, Eigen::Matrix3d spread, double sigma,
+                  const Vector3d& more = Vector3d::Zero()) {
   spread.diagonal().array() += sigma * sigma;
   spread.diagonal() += more;
   return f.residual.dot(spread.inverse() * f.residual);
@@ -87,8 +91,8 @@ double mahalanobis(const RigConstants::Vector& moved, const RigConstants::Matrix
 }
 
 // Returns A' * information, where A is the derivative of the residual with respect to the sample's unknowns.
-Eigen::Matrix<double, 6, 3> add_to_knot(const AngularRateFactor& f, const Eigen::Matrix3d& information, double time_scale_s,
-                                        arrow::Block& block) {
+Eigen::Matrix<double, 6, 3> add_to_knot(const AngularRateFactor& f, const Eigen::Matrix3d& information,
+                                        double time_scale_s, arrow::Block& block) {
   Eigen::Matrix<double, 3, 6> A = f.jacobian_knot;
   A.rightCols<3>() /= time_scale_s;
   const Eigen::Matrix<double, 6, 3> At = A.transpose().lazyProduct(information);
@@ -98,8 +102,8 @@ Eigen::Matrix<double, 6, 3> add_to_knot(const AngularRateFactor& f, const Eigen:
 }
 
 template <int kFirst, int kCount>
-void add_to_calibration(const AngularRateFactor& f, const Eigen::Matrix3d& information, const Eigen::Matrix<double, 6, 3>& At,
-                arrow::Block& block, arrow::Corner& corner) {
+void add_to_calibration(const AngularRateFactor& f, const Eigen::Matrix3d& information,
+                        const Eigen::Matrix<double, 6, 3>& At, arrow::Block& block, arrow::Corner& corner) {
   const Eigen::Matrix<double, 3, kCount> B = f.jacobian_calibration.middleCols<kCount>(kFirst);
   const Eigen::Matrix<double, kCount, 3> Bt = B.transpose().lazyProduct(information);
   block.border_coupling.middleCols<kCount>(kFirst).noalias() += At.lazyProduct(B);
@@ -107,8 +111,8 @@ void add_to_calibration(const AngularRateFactor& f, const Eigen::Matrix3d& infor
   corner.gradient.segment<kCount>(kFirst).noalias() -= Bt.lazyProduct(f.residual);
 }
 
-void add_flight(const AngularRateFactor& f, const Eigen::Matrix3d& information, double time_scale_s, arrow::Block& block,
-                arrow::Corner& corner) {
+void add_flight(const AngularRateFactor& f, const Eigen::Matrix3d& information, double time_scale_s,
+                arrow::Block& block, arrow::Corner& corner) {
   const Eigen::Matrix<double, 6, 3> At = add_to_knot(f, information, time_scale_s, block);
   add_to_calibration<kLever, 3>(f, information, At, block, corner);
   add_to_calibration<kAccelBias, 3>(f, information, At, block, corner);
@@ -119,8 +123,8 @@ void add_flight(const AngularRateFactor& f, const Eigen::Matrix3d& information, 
   corner.matrix.block<3, 3>(kAccelBias, kLever) += mixed.transpose();
 }
 
-void add_euler_equation(const AngularRateFactor& f, const Eigen::Matrix3d& information, double time_scale_s, arrow::Block& block,
-               arrow::Corner& corner) {
+void add_euler_equation(const AngularRateFactor& f, const Eigen::Matrix3d& information, double time_scale_s,
+                        arrow::Block& block, arrow::Corner& corner) {
   const Eigen::Matrix<double, 6, 3> At = add_to_knot(f, information, time_scale_s, block);
   add_to_calibration<kInertia, 5>(f, information, At, block, corner);
 }
@@ -132,7 +136,8 @@ Eigen::Matrix3d with_added_covariance(const Eigen::Matrix3d& information, const 
 
 }  // namespace
 
-AngularRateModel::AngularRateModel(const AngularRateModelParams& params, double period_s) : params_(params), time_scale_s_(period_s) {
+AngularRateModel::AngularRateModel(const AngularRateModelParams& params, double period_s)
+    : params_(params), time_scale_s_(period_s) {
   check(params);
   require_in_interval("period_s", period_s, 1e-6, 10.0);
   const double bandwidth_hz = 1.0 / period_s;
@@ -151,14 +156,15 @@ AngularRateModel::AngularRateModel(const AngularRateModelParams& params, double 
 }
 
 void AngularRateModel::compute_flight_weight(const AngularRateObservation& observation, const RigConstants& rig,
-                                      const RigConstants::Matrix& rig_covariance, double threshold_factor, double jump,
-                                      AngularRateEstimate& estimate) const {
+                                             const RigConstants::Matrix& rig_covariance, double threshold_factor,
+                                             double jump, AngularRateEstimate& estimate) const {
   AngularRateFactor flight = flight_force_calibration_jacobian(observation, estimate.knot, rig);
   const Vector3d hidden = accel_sensing_axis_readings(observation, flight);
   const AngularRateFactor euler = euler_equation_factor(estimate.knot, rig);
-  const double r2 = normalised(flight, flight_force_covariance(flight, rig_covariance), accel_sigma_m_s2(observation), hidden) +
-                    normalised(euler, euler_equation_covariance(euler, rig_covariance), params_.expert.flight.euler_sigma_rad_s2) +
-                    jump;
+  const double r2 =
+      normalised(flight, flight_force_covariance(flight, rig_covariance), accel_sigma_m_s2(observation), hidden) +
+      normalised(euler, euler_equation_covariance(euler, rig_covariance), params_.expert.flight.euler_sigma_rad_s2) +
+      jump;
   const double threshold = threshold_factor * params_.expert.flight.kThreshold;
   // Geman-McClure weight: rate_smoother.md (R18)
   const double ratio = 1.0 / (1.0 + r2 / (threshold * threshold));
@@ -174,7 +180,8 @@ double AngularRateModel::accel_sigma_m_s2(const AngularRateObservation& observat
 // Model errors that last longer than a sample do not average out.
 double AngularRateModel::total_accel_variance(const AngularRateObservation& observation) const {
   const double single = accel_sigma_m_s2(observation), noise2 = accel_noise_m_s2_ * accel_noise_m_s2_;
-  return independent_sample_fraction_ < 1.0 ? noise2 + (single * single - noise2) / independent_sample_fraction_ : single * single;
+  return independent_sample_fraction_ < 1.0 ? noise2 + (single * single - noise2) / independent_sample_fraction_
+                                            : single * single;
 }
 
 // See rate_smoother.md (R17), (R4).
@@ -185,14 +192,16 @@ double AngularRateModel::jump(const AngularRateKnot& from, const AngularRateKnot
   return scale * (12.0 * e0.squaredNorm() - 12.0 * e0.dot(e1) + 4.0 * e1.squaredNorm());
 }
 
-double AngularRateModel::gyro_information(const AngularRateObservation& observation, const AngularRateEstimate& estimate, int axis) const {
+double AngularRateModel::gyro_information(const AngularRateObservation& observation,
+                                          const AngularRateEstimate& estimate, int axis) const {
   if (observation.gyro_repeats) return 0.0;
   if (observation.gyro_age_s > 0.0) {
     // A contact force may change the rate between a gyro reading and its time stamp: rate_smoother.md (R7).
     const double change =
         params_.expert.contact.kGain_rad_m * estimate.contact_force_m_s2.norm() * observation.gyro_age_s;
-    const double lost =
-        (observation.partly_saturated_axes() >> axis & 1u) != 0 ? observation.saturation_deficit_sigma_rad_s[axis] : 0.0;
+    const double lost = (observation.partly_saturated_axes() >> axis & 1u) != 0
+                            ? observation.saturation_deficit_sigma_rad_s[axis]
+                            : 0.0;
     return 1.0 / (gyro_sigma_rad_s_ * gyro_sigma_rad_s_ + change * change + lost * lost);
   }
   if ((observation.partly_saturated_axes() >> axis & 1u) == 0) return 1.0 / (gyro_sigma_rad_s_ * gyro_sigma_rad_s_);
@@ -202,11 +211,13 @@ double AngularRateModel::gyro_information(const AngularRateObservation& observat
 }
 
 // In contact, the contact force has mean zero and the estimated force as standard deviation: rate_smoother.md (R20).
-AngularRateModel::ForceFactor AngularRateModel::force_factor(const AngularRateObservation& observation, const AngularRateEstimate& estimate,
-                                               const RigConstants& rig) const {
+AngularRateModel::ForceFactor AngularRateModel::force_factor(const AngularRateObservation& observation,
+                                                             const AngularRateEstimate& estimate,
+                                                             const RigConstants& rig) const {
   const double flight2 = total_accel_variance(observation);
   const double share = observation.unmeasured_axes() != 0 ? params_.expert.contact.force_share : 0.0;
-  const double contact2 = flight2 + share * share * estimate.contact_force_m_s2.squaredNorm() / independent_sample_fraction_;
+  const double contact2 =
+      flight2 + share * share * estimate.contact_force_m_s2.squaredNorm() / independent_sample_fraction_;
   ForceFactor out;
   const double information =
       estimate.flight_weight / flight2 + (share > 0.0 ? (1.0 - estimate.flight_weight) / contact2 : 0.0);
@@ -216,8 +227,8 @@ AngularRateModel::ForceFactor AngularRateModel::force_factor(const AngularRateOb
   return out;
 }
 
-void AngularRateModel::add_gyro(const AngularRateObservation& observation, const AngularRateEstimate& estimate, const RigConstants& rig,
-                         arrow::Block& block, arrow::Corner& corner) const {
+void AngularRateModel::add_gyro(const AngularRateObservation& observation, const AngularRateEstimate& estimate,
+                                const RigConstants& rig, arrow::Block& block, arrow::Corner& corner) const {
   const AngularRateFactor gyro =
       gyro_factor(knot_at_reading(observation, estimate), rig, corrected_rate(observation, estimate));
   const double age = observation.gyro_age_s / time_scale_s_;
@@ -239,8 +250,9 @@ void AngularRateModel::add_gyro(const AngularRateObservation& observation, const
   }
 }
 
-void AngularRateModel::add_sample(const AngularRateObservation& observation, const AngularRateEstimate& estimate, const RigConstants& rig,
-                           arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* rig_spread) const {
+void AngularRateModel::add_sample(const AngularRateObservation& observation, const AngularRateEstimate& estimate,
+                                  const RigConstants& rig, arrow::Block& block, arrow::Corner& corner,
+                                  const RigConstants::Matrix* rig_spread) const {
   if (observation.has_clipped_sensing_axis()) {
     add_sensing_axis_readings(observation, estimate, rig, block, corner, rig_spread);
   } else {
@@ -284,11 +296,12 @@ Eigen::Matrix3d AngularRateModel::euler_equation_information(const AngularRateEs
   if (!(force > 0.0)) return across * Eigen::Matrix3d::Identity();
   const double twist = params_.expert.contact.twist_ratio * lever;
   const Vector3d n = estimate.contact_force_m_s2 / force;
-  return across * Eigen::Matrix3d::Identity() + (independent_sample_fraction_ / (flight + twist * twist) - across) * n * n.transpose();
+  return across * Eigen::Matrix3d::Identity() +
+         (independent_sample_fraction_ / (flight + twist * twist) - across) * n * n.transpose();
 }
 
-void AngularRateModel::add_motion_model(const AngularRateEstimate& from, const AngularRateEstimate& to, double dt_s, arrow::Block& block,
-                         arrow::Block& next) const {
+void AngularRateModel::add_motion_model(const AngularRateEstimate& from, const AngularRateEstimate& to, double dt_s,
+                                        arrow::Block& block, arrow::Block& next) const {
   const double h = time_scale_s_, ratio = dt_s / h;
   // See rate_smoother.md (R5).
   const double change =
@@ -347,11 +360,12 @@ arrow::StateVector AngularRateModel::scaled_difference(const Eigen::Matrix<doubl
   return out;
 }
 
-AngularRateSource rate_source_of(const AngularRateObservation& o, const AngularRateEstimate& e, const Eigen::Matrix3d& covariance,
-                       double sigma) {
+AngularRateSource rate_source_of(const AngularRateObservation& o, const AngularRateEstimate& e,
+                                 const Eigen::Matrix3d& covariance, double sigma) {
   const int clipped = o.clipping.gyro | o.clipping.unusable_gyro;
   // A reading that may be saturated is a lower bound of the rate.
-  if (clipped == 0) return o.possibly_saturated_axes() == 0 ? AngularRateSource::measured : AngularRateSource::lower_bound_only;
+  if (clipped == 0)
+    return o.possibly_saturated_axes() == 0 ? AngularRateSource::measured : AngularRateSource::lower_bound_only;
   if (e.flight_weight >= 0.5) return AngularRateSource::recovered_in_flight;
   double largest = 0.0;
   for (int j = 0; j < 3; ++j) {

@@ -24,7 +24,8 @@ bool depends_only_on_unclipped_axes(const Eigen::RowVector3d& axis, const Angula
   constexpr double kNegligibleCoupling = 0.02;
   if (observation.clipping.accel == 0) return true;
   const bool tilted = observation.accel_sensing_directions.has_misaligned_axes();
-  const Eigen::RowVector3d sees = tilted ? Eigen::RowVector3d(axis * observation.accel_sensing_directions.sensing_directions.inverse()) : axis;
+  const Eigen::RowVector3d sees =
+      tilted ? Eigen::RowVector3d(axis * observation.accel_sensing_directions.sensing_directions.inverse()) : axis;
   for (int i = 0; i < 3; ++i) {
     if ((observation.clipping.accel >> i & 1u) != 0 && std::abs(sees[i]) > kNegligibleCoupling) return false;
   }
@@ -44,8 +45,9 @@ double sensing_direction_sigma(const SensingDirections& elements, bool is_elemen
 
 }  // namespace
 
-void AngularRateModel::add_auxiliary_imus(const AngularRateObservation& observation, const AngularRateEstimate& estimate,
-                                   const RigConstants& rig, arrow::Block& block) const {
+void AngularRateModel::add_auxiliary_imus(const AngularRateObservation& observation,
+                                          const AngularRateEstimate& estimate, const RigConstants& rig,
+                                          arrow::Block& block) const {
   for (std::size_t i = 0; i < params_.auxiliary_imus.size(); ++i) {
     const AuxiliaryImu& mount = params_.auxiliary_imus[i];
     const AuxiliaryReading& reading = observation.auxiliary_imus[i];
@@ -56,14 +58,16 @@ void AngularRateModel::add_auxiliary_imus(const AngularRateObservation& observat
     const Vector3d force = observation.sample.specific_force_m_s2 - rig.accel_bias_m_s2 + rotation.residual;
     const double position_error_sigma_m_s2 =
         mount.position_error_m * (estimate.knot.rate_rad_s.squaredNorm() + estimate.knot.acceleration_rad_s2.norm());
-    const Eigen::Matrix3d gyro = axes_of_auxiliary(R_CI, mount.gyro_sensing_directions, reading.rate_along_sensing_axes);
-    const Eigen::Matrix3d accel = axes_of_auxiliary(R_CI, mount.accel_sensing_directions, reading.force_along_sensing_axes);
+    const Eigen::Matrix3d gyro =
+        axes_of_auxiliary(R_CI, mount.gyro_sensing_directions, reading.rate_along_sensing_axes);
+    const Eigen::Matrix3d accel =
+        axes_of_auxiliary(R_CI, mount.accel_sensing_directions, reading.force_along_sensing_axes);
     for (int j = 0; j < 3; ++j) {
       if (std::isfinite(reading.rate_rad_s[j])) {
         AuxiliaryRow row = AuxiliaryRow::Zero();
         row.head<3>() = gyro.row(j);
-        const double unknown = sensing_direction_sigma(mount.gyro_sensing_directions, reading.rate_along_sensing_axes, j,
-                                                       estimate.knot.rate_rad_s.norm());
+        const double unknown = sensing_direction_sigma(mount.gyro_sensing_directions, reading.rate_along_sensing_axes,
+                                                       j, estimate.knot.rate_rad_s.norm());
         add_row(row, gyro.row(j).dot(estimate.knot.rate_rad_s) - reading.rate_rad_s[j],
                 std::hypot(reading.rate_sigma_rad_s[j], unknown), block);
       }
@@ -73,9 +77,9 @@ void AngularRateModel::add_auxiliary_imus(const AngularRateObservation& observat
       row.tail<3>() /= time_scale_s_;
       const double unknown =
           sensing_direction_sigma(mount.accel_sensing_directions, reading.force_along_sensing_axes, j, force.norm());
-      const double lasting =
-          std::sqrt((position_error_sigma_m_s2 * position_error_sigma_m_s2 + unknown * unknown) / independent_sample_fraction_ +
-                    total_accel_variance(observation));
+      const double lasting = std::sqrt((position_error_sigma_m_s2 * position_error_sigma_m_s2 + unknown * unknown) /
+                                           independent_sample_fraction_ +
+                                       total_accel_variance(observation));
       const double sigma = std::hypot(reading.force_sigma_m_s2[j], lasting);
       add_row(row, axis.dot(force) - reading.force_m_s2[j], sigma, block);
     }

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tumble/angular_velocity/detail/rate_model.hpp"
 #include "tumble/angular_velocity/detail/partial_saturation.hpp"
+#include "tumble/angular_velocity/detail/rate_model.hpp"
 #include "tumble/angular_velocity/detail/truncated_normal.hpp"
 
 namespace tumble {
@@ -24,7 +24,7 @@ constexpr double kFlightSearchStepMax = 3.0, kFlightForceRatioMax = 0.25;
 }  // namespace
 
 void AngularRateModel::search_flight_solutions(const AngularRateObservation& observation, const RigConstants& rig,
-                              AngularRateEstimate& estimate) const {
+                                               AngularRateEstimate& estimate) const {
   const int unmeasured_axes = observation.unmeasured_axes();
   if (unmeasured_axes == 0 || observation.clipping.accel != 0) return;
   const Vector3d reading = corrected_rate(observation, estimate);
@@ -66,7 +66,7 @@ void AngularRateModel::search_flight_solutions(const AngularRateObservation& obs
 }
 
 void AngularRateModel::initialise_rate_bounds(const AngularRateObservation& observation, const RigConstants& rig,
-                             AngularRateEstimate& estimate) const {
+                                              AngularRateEstimate& estimate) const {
   estimate.use_soft_bounds = true;
   const AngularRateFactor off =
       sensing_axis_factor(knot_at_reading(observation, estimate), rig, corrected_rate(observation, estimate));
@@ -75,13 +75,14 @@ void AngularRateModel::initialise_rate_bounds(const AngularRateObservation& obse
     const double guess = off.residual[j];
     const bool negative = observation.sample.angular_velocity_rad_s[j] < 0.0;
     estimate.lower_bound_precision[j] = kStartPrecision;
-    estimate.lower_bound_information_mean[j] = kStartPrecision * (negative ? std::min(guess, 0.0) : std::max(guess, 0.0));
+    estimate.lower_bound_information_mean[j] =
+        kStartPrecision * (negative ? std::min(guess, 0.0) : std::max(guess, 0.0));
   }
 }
 
 void AngularRateModel::update_bounds(const AngularRateObservation& observation, const RigConstants& rig,
-                              const arrow::Conditional& conditional, const RigConstants::Matrix& rig_covariance,
-                              double damping, AngularRateEstimate& estimate) const {
+                                     const arrow::Conditional& conditional, const RigConstants::Matrix& rig_covariance,
+                                     double damping, AngularRateEstimate& estimate) const {
   if ((observation.unmeasured_axes() & observation.clipping.gyro) == 0) return;
   const AngularRateFactor off =
       sensing_axis_factor(knot_at_reading(observation, estimate), rig, corrected_rate(observation, estimate));
@@ -95,16 +96,18 @@ void AngularRateModel::update_bounds(const AngularRateObservation& observation, 
     const Vector3d by_state = conditional.state.topLeftCorner<3, 3>().lazyProduct(row);
     // See rate_smoother.md (R22), (R35).
     const GaussianMoments marginal{sign * off.residual[j], row.dot(by_state) + cross.dot(jacobian_calibration)};
-    const GaussianLikelihoodApproximation site = refined_bound_approximation(marginal, {estimate.lower_bound_precision[j], sign * estimate.lower_bound_information_mean[j]},
-                                            0.0, params_.expert.kRailSigma_rad_s * params_.expert.kRailSigma_rad_s,
-                                            params_.rate_max_rad_s * params_.rate_max_rad_s, damping);
+    const GaussianLikelihoodApproximation site = refined_bound_approximation(
+        marginal, {estimate.lower_bound_precision[j], sign * estimate.lower_bound_information_mean[j]}, 0.0,
+        params_.expert.kRailSigma_rad_s * params_.expert.kRailSigma_rad_s,
+        params_.rate_max_rad_s * params_.rate_max_rad_s, damping);
     estimate.lower_bound_precision[j] = site.precision;
     estimate.lower_bound_information_mean[j] = sign * site.information_mean;
   }
 }
 
-void mark_partial_saturation(const SaturationLimitDetector& rails, const SaturationLimitDetector::State& state, double noise_rad_s,
-                               const ImuSample* before, AngularRateObservation& now, const ImuSample* after) {
+void mark_partial_saturation(const SaturationLimitDetector& rails, const SaturationLimitDetector::State& state,
+                             double noise_rad_s, const ImuSample* before, AngularRateObservation& now,
+                             const ImuSample* after) {
   now.partial_saturation_flags = 0;
   for (int j = 0; j < 3; ++j) {
     const bool flagged = (now.sample.device_clip_flags >> j & 1u) != 0 && (now.clipping.unusable_gyro >> j & 1u) == 0;
@@ -112,7 +115,7 @@ void mark_partial_saturation(const SaturationLimitDetector& rails, const Saturat
     if (!flagged || !rail) continue;
     const double reading = now.sample.angular_velocity_rad_s[j], sign = std::copysign(1.0, reading);
     const double neighbour = unsaturated_neighbour_reading(std::abs(reading), *rail, j, before, after,
-                                                   [&](const Vector3d& beside) { return sign * beside[j]; });
+                                                           [&](const Vector3d& beside) { return sign * beside[j]; });
     if (neighbour > std::abs(reading)) continue;
     const PartialSaturation loss = partial_saturation(std::abs(reading), neighbour, *rail, noise_rad_s);
     if (!loss.saturated) continue;

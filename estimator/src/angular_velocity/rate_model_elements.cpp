@@ -50,8 +50,10 @@ void add_row(const AngularRateFactor& gyro, int j, double age, double informatio
 
 }  // namespace
 
-void AngularRateModel::add_sensing_axis_readings(const AngularRateObservation& observation, const AngularRateEstimate& estimate, const RigConstants& rig,
-                             arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* rig_spread) const {
+void AngularRateModel::add_sensing_axis_readings(const AngularRateObservation& observation,
+                                                 const AngularRateEstimate& estimate, const RigConstants& rig,
+                                                 arrow::Block& block, arrow::Corner& corner,
+                                                 const RigConstants::Matrix* rig_spread) const {
   const AngularRateFactor gyro =
       sensing_axis_factor(knot_at_reading(observation, estimate), rig, corrected_rate(observation, estimate));
   for (int j = 0; j < 3; ++j) {
@@ -74,7 +76,8 @@ void AngularRateModel::add_sensing_axis_readings(const AngularRateObservation& o
   }
 }
 
-Eigen::Vector3d AngularRateModel::accel_sensing_axis_readings(const AngularRateObservation& observation, AngularRateFactor& flight) {
+Eigen::Vector3d AngularRateModel::accel_sensing_axis_readings(const AngularRateObservation& observation,
+                                                              AngularRateFactor& flight) {
   Eigen::Vector3d unknown = Eigen::Vector3d::Zero();
   const unsigned clipped = observation.clipping.accel;
   if (clipped == 0) return unknown;
@@ -96,7 +99,8 @@ Eigen::Vector3d AngularRateModel::accel_sensing_axis_readings(const AngularRateO
     flight.jacobian_calibration.row(j).setZero();
   }
   for (int j = 0; j < 3; ++j) {
-    if ((clipped >> j & 1u) == 0) unknown[j] = elements.cross_axis_slope_sigma[j] * elements.cross_axis_slope_sigma[j] * hidden2;
+    if ((clipped >> j & 1u) == 0)
+      unknown[j] = elements.cross_axis_slope_sigma[j] * elements.cross_axis_slope_sigma[j] * hidden2;
   }
   return unknown;
 }

@@ -25,20 +25,22 @@ void AngularRateModel::exclude_from_calibration(const AngularRateObservation& o,
 }
 
 // See rate_smoother.md (R7).
-AngularRateKnot AngularRateModel::knot_at_reading(const AngularRateObservation& observation, const AngularRateEstimate& estimate) const {
+AngularRateKnot AngularRateModel::knot_at_reading(const AngularRateObservation& observation,
+                                                  const AngularRateEstimate& estimate) const {
   const AngularRateKnot& knot = estimate.knot;
   return {knot.rate_rad_s - observation.gyro_age_s * knot.acceleration_rad_s2, knot.acceleration_rad_s2};
 }
 
-Vector3d AngularRateModel::corrected_rate(const AngularRateObservation& observation, const AngularRateEstimate& estimate) const {
+Vector3d AngularRateModel::corrected_rate(const AngularRateObservation& observation,
+                                          const AngularRateEstimate& estimate) const {
   const Vector3d& reading = observation.sample.angular_velocity_rad_s;
   if (uses_raw_readings_) return reading;
   return reading - params_.errors.gyro * estimate.knot.rate_rad_s -
          params_.errors.g_sensitivity_s_m * observation.sample.specific_force_m_s2;
 }
 
-AngularRateFactor AngularRateModel::flight(const AngularRateObservation& observation, const AngularRateKnot& knot, const RigConstants& rig,
-                             Vector3d* jacobian_delay) const {
+AngularRateFactor AngularRateModel::flight(const AngularRateObservation& observation, const AngularRateKnot& knot,
+                                           const RigConstants& rig, Vector3d* jacobian_delay) const {
   const Vector3d& reading = observation.sample.specific_force_m_s2;
   const double delay_s = params_.errors.accel_delay_s + observation.accel_age_s;
   if (uses_raw_readings_ && delay_s == 0.0 && jacobian_delay == nullptr) return flight_force_factor(knot, rig, reading);
@@ -50,20 +52,23 @@ AngularRateFactor AngularRateModel::flight(const AngularRateObservation& observa
   return out;
 }
 
-AngularRateFactor AngularRateModel::flight_force_calibration_jacobian(const AngularRateObservation& observation, const AngularRateKnot& knot,
-                                                  const RigConstants& rig) const {
+AngularRateFactor AngularRateModel::flight_force_calibration_jacobian(const AngularRateObservation& observation,
+                                                                      const AngularRateKnot& knot,
+                                                                      const RigConstants& rig) const {
   const Vector3d& reading = observation.sample.specific_force_m_s2;
   const double delay_s = params_.errors.accel_delay_s + observation.accel_age_s;
   if (uses_raw_readings_ && delay_s == 0.0) return flight_force_factor(knot, rig, reading);
-  AngularRateFactor out = delayed_flight_calibration_jacobian(knot, rig, reading - params_.errors.accel * reading, delay_s);
+  AngularRateFactor out =
+      delayed_flight_calibration_jacobian(knot, rig, reading - params_.errors.accel * reading, delay_s);
   out.residual += 0.5 * params_.errors.accel_filter_time_variance_s2 * flight_angular_jerk(knot, rig);
   return out;
 }
 
 // See rate_smoother.md (R36), (R38).
-void AngularRateModel::add_sensor_errors(const AngularRateObservation& observation, const AngularRateEstimate& estimate, const RigConstants& rig,
-                           arrow::ErrorMatrix& block, arrow::BorderErrors& border, SensorErrorInformation& evidence,
-                           bool rig_spread) const {
+void AngularRateModel::add_sensor_errors(const AngularRateObservation& observation, const AngularRateEstimate& estimate,
+                                         const RigConstants& rig, arrow::ErrorMatrix& block,
+                                         arrow::BorderErrors& border, SensorErrorInformation& evidence,
+                                         bool rig_spread) const {
   constexpr int kGyroBias = 3, kAccelBias = 6;
   using Row = Eigen::Matrix<double, 1, SensorErrors::kSize>;
   const Vector3d &rate = estimate.knot.rate_rad_s, &force = observation.sample.specific_force_m_s2;
@@ -75,8 +80,9 @@ void AngularRateModel::add_sensor_errors(const AngularRateObservation& observati
   const bool is_element_clipped = observation.has_clipped_sensing_axis();
   if (rig_spread && is_element_clipped) return;
   const Vector3d reading = corrected_rate(observation, estimate);
-  const AngularRateFactor gyro = is_element_clipped ? sensing_axis_factor(knot_at_reading(observation, estimate), rig, reading)
-                                             : gyro_factor(knot_at_reading(observation, estimate), rig, reading);
+  const AngularRateFactor gyro = is_element_clipped
+                                     ? sensing_axis_factor(knot_at_reading(observation, estimate), rig, reading)
+                                     : gyro_factor(knot_at_reading(observation, estimate), rig, reading);
   const unsigned lost =
       observation.clipping.unusable_gyro | (observation.clipping.gyro & ~observation.partial_saturation_flags);
   for (int j = 0; j < 3; ++j) {
@@ -88,7 +94,8 @@ void AngularRateModel::add_sensor_errors(const AngularRateObservation& observati
       by_errors.segment<3>(SensorErrors::kGSensitivity + 3 * i) = sees[i] * force.transpose();
     }
     const double information = gyro_information(observation, estimate, j);
-    const double part = (observation.partial_saturation_flags >> j & 1u) != 0 ? observation.expected_saturation_deficit_rad_s[j] : 0.0;
+    const double part =
+        (observation.partial_saturation_flags >> j & 1u) != 0 ? observation.expected_saturation_deficit_rad_s[j] : 0.0;
     const Row pull = information * by_errors;
     block.topRows<3>().noalias() -= sees.transpose() * pull;
     block.bottomRows<3>().noalias() += observation.gyro_age_s / time_scale_s_ * sees.transpose() * pull;
@@ -101,7 +108,8 @@ void AngularRateModel::add_sensor_errors(const AngularRateObservation& observati
   }
 
   if (rig_spread || has_no_error_information(estimate)) return;
-  if (observation.clipping.accel != 0 && observation.accel_sensing_directions.has_misaligned_axes()) return;  // tilted elements mix the axes
+  if (observation.clipping.accel != 0 && observation.accel_sensing_directions.has_misaligned_axes())
+    return;  // tilted elements mix the axes
   auto [flight, information] = force_factor(observation, estimate, rig);
   Vector3d jacobian_delay;
   (void)this->flight(observation, estimate.knot, rig, &jacobian_delay);
@@ -122,8 +130,9 @@ void AngularRateModel::add_sensor_errors(const AngularRateObservation& observati
 }
 
 // See rate_smoother.md (R49).
-Eigen::Matrix3d AngularRateModel::output_covariance(const Eigen::Matrix3d& covariance, const AngularRateObservation& observation,
-                                    const AngularRateEstimate& estimate) const {
+Eigen::Matrix3d AngularRateModel::output_covariance(const Eigen::Matrix3d& covariance,
+                                                    const AngularRateObservation& observation,
+                                                    const AngularRateEstimate& estimate) const {
   const double factor = 1.0 + (params_.expert.contact.kSigmaFactor - 1.0) * (1.0 - estimate.flight_weight);
   Vector3d wider = Vector3d::Ones();
   for (int j = 0; j < 3; ++j) {

@@ -12,7 +12,8 @@ namespace tumble {
 namespace {
 
 void report_rails(const ClippingFinder& finder, const SaturationLevels& rails, AngularRateReport& health) {
-  const SaturationPlanes planes = rails.saturation_planes_in_use(), accel_planes = rails.saturation_planes_in_use(Triad::accelerometer);
+  const SaturationPlanes planes = rails.saturation_planes_in_use(),
+                         accel_planes = rails.saturation_planes_in_use(Triad::accelerometer);
   health.gyro_planes = rails.gyro_planes;
   health.accel_saturation_planes = accel_planes;
   health.clips_after_compensation = rails.gyro_clips_after_compensation;
@@ -37,7 +38,7 @@ void mark_possibly_clipped(const SaturationPlaneFinder::Params& expected, const 
   for (std::size_t k = 0; k < observations.size(); ++k) {
     const auto [before, after] = beside[k];
     mark_partial_saturation(planes, finder.axis_limit_detector(), rails.axis_limit_state, noise_rad_s, before,
-                              observations[k], after);
+                            observations[k], after);
     if (rails.gyro_clips_after_compensation) continue;
     inflate_covariance_near_limits(planes, least, noise_rad_s, before, observations[k], after);
   }
@@ -61,16 +62,20 @@ void mark_repeated(const std::optional<RepeatedReadings>& gyro, const std::optio
 }  // namespace
 
 AngularRateReadings read_samples(const AngularRateSmoother::Params& params, const ClippingFinder& rails,
-                          const ClippingFinder::ClippingSearchResult& found, const std::vector<bool>& rest,
-                          std::span<const ImuSample> samples,
-                          std::span<const std::vector<AuxiliaryReading>> auxiliary_imus, AngularRateReport& health) {
+                                 const ClippingFinder::ClippingSearchResult& found, const std::vector<bool>& rest,
+                                 std::span<const ImuSample> samples,
+                                 std::span<const std::vector<AuxiliaryReading>> auxiliary_imus,
+                                 AngularRateReport& health) {
   health.samples = samples.size();
   report_rails(rails, found.saturation_levels, health);
 
-  AngularRateReadings out{std::vector<AngularRateObservation>(samples.size()), params.model, found.saturation_levels.saturation_planes_in_use(), {}};
+  AngularRateReadings out{std::vector<AngularRateObservation>(samples.size()),
+                          params.model,
+                          found.saturation_levels.saturation_planes_in_use(),
+                          {}};
   const double period_s = median_period_s(samples);
-  out.known_params.calibration =
-      calibration_prior_from_planes(AngularRateModel(params.model, period_s), out.gyro_planes, found.saturation_levels.gyro_clips_after_compensation);
+  out.known_params.calibration = calibration_prior_from_planes(
+      AngularRateModel(params.model, period_s), out.gyro_planes, found.saturation_levels.gyro_clips_after_compensation);
   const SensingDirections accel_rows = found.saturation_levels.rows(Triad::accelerometer, params.model.element_sigma);
   for (std::size_t k = 0; k < samples.size(); ++k) {
     AngularRateObservation& o = out.observations[k];

@@ -22,8 +22,9 @@ struct AngularRateReadings {
 
 /// Classifies at least two samples. Cost: O(N).
 AngularRateReadings read_samples(const AngularRateSmoother::Params& params, const ClippingFinder& rails,
-                          const ClippingFinder::ClippingSearchResult& found, const std::vector<bool>& rest,
-                          std::span<const ImuSample> samples,
-                          std::span<const std::vector<AuxiliaryReading>> auxiliary_imus, AngularRateReport& health);
+                                 const ClippingFinder::ClippingSearchResult& found, const std::vector<bool>& rest,
+                                 std::span<const ImuSample> samples,
+                                 std::span<const std::vector<AuxiliaryReading>> auxiliary_imus,
+                                 AngularRateReport& health);
 
 }  // namespace tumble

@@ -14,7 +14,7 @@ namespace {
 
 // At the ends of the recording, the last available reading repeats.
 void shift_force_by_delay(std::span<const ImuSample> samples, std::span<const Clipping> clippings, std::ptrdiff_t shift,
-                 std::span<const double> accel_age_s, std::span<AngularRateObservation> observations) {
+                          std::span<const double> accel_age_s, std::span<AngularRateObservation> observations) {
   const auto last = static_cast<std::ptrdiff_t>(samples.size()) - 1;
   for (std::ptrdiff_t k = 0; k <= last; ++k) {
     const auto from = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(k + shift, 0, last));
@@ -82,9 +82,9 @@ double mahalanobis_of(const AngularRateModelParams& known, const AngularRateMode
 }
 
 // If the estimated calibration is implausible, a second optimisation holds the calibration at its prior.
-Status optimise_or_fix_rig_prior(const AngularRateSmoother::Params& params, const AngularRateModelParams& known, double period_s,
-                             std::span<const AngularRateObservation> observations, bool struck, AngularRateFit& fit,
-                             AngularRateReport& health) {
+Status optimise_or_fix_rig_prior(const AngularRateSmoother::Params& params, const AngularRateModelParams& known,
+                                 double period_s, std::span<const AngularRateObservation> observations, bool struck,
+                                 AngularRateFit& fit, AngularRateReport& health) {
   fit.model = AngularRateModel(known, period_s);
   if (!solve(params, fit.model, observations, fit.solution, health)) {
     return {ErrorCode::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
@@ -147,7 +147,7 @@ SensorErrorInformation calibration_evidence_at(const SensorErrors& given, KnownS
 
 // `learnt` is the estimate of an earlier run, relative to the sensor errors `given` by the user.
 SensorErrorFit fit_errors_at(const SensorErrors& given, SensorErrorInformation evidence, const SensorErrorPriors& sizes,
-                         const SensorErrorInformation& learnt) {
+                             const SensorErrorInformation& learnt) {
   evidence.linearisation_point = SensorErrors::from(evidence.linearisation_point.vector() - given.vector());
   SensorErrorFit out = fit_sensor_errors(evidence, sizes, learnt);
   out.fitted_errors.errors = SensorErrors::from(out.fitted_errors.errors.vector() + given.vector());
@@ -162,24 +162,31 @@ struct CorrectionIterations {
   double period_s = 0.0;
   bool estimated = false;
   bool triads_asynchronous = false;  ///< gyro or accelerometer repeats readings
-  TriadDelay impact_delay = {};             ///< delay from impacts; empty if the data sheet states the delay
+  TriadDelay impact_delay = {};      ///< delay from impacts; empty if the data sheet states the delay
   std::vector<double> age_s = {};    ///< age of the accelerometer's readings in the log
-  SensorErrorPriors error_prior_sigmas = {};      ///< standard deviations of the data sheet, enlarged for asynchronous triads
+  SensorErrorPriors error_prior_sigmas =
+      {};  ///< standard deviations of the data sheet, enlarged for asynchronous triads
 
   const SensorErrorPriors& stated_error_priors() const { return params_with_stated_errors.expert.error_priors; }
-  bool is_delay_unknown() const { return estimated && stated_error_priors().delay_uncalibrated_s > stated_error_priors().delay_s; }
+  bool is_delay_unknown() const {
+    return estimated && stated_error_priors().delay_uncalibrated_s > stated_error_priors().delay_s;
+  }
   /// Returns whether the body has impacts and flight, and is therefore not hand-held.
   bool has_impact_delay() const { return impact_delay.sigma_s > 0.0; }
 };
 
-CorrectionIterations make_correction_iterations(const AngularRateSmoother::Params& params, const AngularRateModelParams& known, std::span<const ImuSample> samples,
-                   std::span<const Clipping> clippings, std::span<const AngularRateObservation> observations,
-                   const AngularRateReport& health) {
+CorrectionIterations make_correction_iterations(const AngularRateSmoother::Params& params,
+                                                const AngularRateModelParams& known, std::span<const ImuSample> samples,
+                                                std::span<const Clipping> clippings,
+                                                std::span<const AngularRateObservation> observations,
+                                                const AngularRateReport& health) {
   CorrectionIterations out{params, known, samples, clippings, median_period_s(samples)};
   out.estimated = params.expert.error_rounds_max > 1;
   out.triads_asynchronous = health.gyro_update_interval_s > 0.0 || health.accel_update_interval_s > 0.0;
   out.error_prior_sigmas = out.stated_error_priors();
-  if (out.triads_asynchronous) out.error_prior_sigmas.delay_s = std::max(out.error_prior_sigmas.delay_s, out.error_prior_sigmas.delay_uncalibrated_s);
+  if (out.triads_asynchronous)
+    out.error_prior_sigmas.delay_s =
+        std::max(out.error_prior_sigmas.delay_s, out.error_prior_sigmas.delay_uncalibrated_s);
   const RigConstants rig = known.calibration ? known.calibration->constants : known.nominal;
   if (out.is_delay_unknown()) out.impact_delay = guess_triad_delay(samples, clippings, rig.lever_arm_m);
   out.age_s.resize(samples.size());
@@ -200,21 +207,26 @@ InitialErrors initial_calibration(const SensorErrors& assumed, const CorrectionI
   if (!has_delay(guess)) return out;
   if (std::abs(guess.delay_s - assumed.accel_delay_s) > kGuessSigmasMax * guess.sigma_s)
     out.errors.accel_delay_s = guess.delay_s;
-  out.alternative_delay_s = out.errors.accel_delay_s == guess.delay_s ? rounds.params_with_stated_errors.errors.accel_delay_s : guess.delay_s;
+  out.alternative_delay_s =
+      out.errors.accel_delay_s == guess.delay_s ? rounds.params_with_stated_errors.errors.accel_delay_s : guess.delay_s;
   return out;
 }
 
-Status optimise_corrected_readings(const CorrectionIterations& rounds, const SensorErrors& errors, std::span<AngularRateObservation> observations,
-                          AngularRateFit& fit, AngularRateReport& health) {
+Status optimise_corrected_readings(const CorrectionIterations& rounds, const SensorErrors& errors,
+                                   std::span<AngularRateObservation> observations, AngularRateFit& fit,
+                                   AngularRateReport& health) {
   const double shift = std::round(errors.accel_delay_s / rounds.period_s);
-  shift_force_by_delay(rounds.samples, rounds.clipping_per_sample, static_cast<std::ptrdiff_t>(shift), rounds.age_s, observations);
+  shift_force_by_delay(rounds.samples, rounds.clipping_per_sample, static_cast<std::ptrdiff_t>(shift), rounds.age_s,
+                       observations);
   AngularRateModelParams corrected = rounds.params_with_stated_errors;
   corrected.errors = errors;
   corrected.errors.accel_delay_s -= shift * rounds.period_s;
-  return optimise_or_fix_rig_prior(rounds.params, corrected, rounds.period_s, observations, rounds.has_impact_delay(), fit, health);
+  return optimise_or_fix_rig_prior(rounds.params, corrected, rounds.period_s, observations, rounds.has_impact_delay(),
+                                   fit, health);
 }
 
-Status collect_error_evidence(const CorrectionIterations& rounds, const SensorErrors& errors, AngularRateFit& fit, const AngularRateReport& health) {
+Status collect_error_evidence(const CorrectionIterations& rounds, const SensorErrors& errors, AngularRateFit& fit,
+                              const AngularRateReport& health) {
   const RateSolution& solution = fit.solution;
   fit.error_derivatives = solution.iteration.error_derivatives(fit.model, solution.estimates, solution.rig);
   if (rounds.estimated) {
@@ -223,7 +235,8 @@ Status collect_error_evidence(const CorrectionIterations& rounds, const SensorEr
     if (!again.factorise(fit.model, solution.estimates, solution.rig)) {
       return {ErrorCode::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
     }
-    fit.error_derivatives.sensor_error_evidence = again.error_derivatives(fit.model, solution.estimates, solution.rig).sensor_error_evidence;
+    fit.error_derivatives.sensor_error_evidence =
+        again.error_derivatives(fit.model, solution.estimates, solution.rig).sensor_error_evidence;
   }
   fit.error_derivatives.sensor_error_evidence.linearisation_point = errors;
   add_impact_delay(rounds.impact_delay, fit.error_derivatives.sensor_error_evidence);
@@ -237,18 +250,20 @@ struct CorrectionIterationState {
   bool is_plausible = true;  ///< the errors are plausible for a device
 };
 
-Status iterate_corrections(const CorrectionIterations& rounds, std::span<AngularRateObservation> observations, AngularRateFit& fit, AngularRateReport& health,
-                       CorrectionIterationState& rounds_state) {
+Status iterate_corrections(const CorrectionIterations& rounds, std::span<AngularRateObservation> observations,
+                           AngularRateFit& fit, AngularRateReport& health, CorrectionIterationState& rounds_state) {
   const SensorErrors& given = rounds.params_with_stated_errors.errors;
   const std::optional<KnownSensorErrors>& learnt = rounds.params.calibrated_errors;
   bool has_calibration = rounds.estimated && learnt.has_value();
-  if (has_calibration) rounds_state.calibration_evidence = calibration_evidence_at(given, *learnt, rounds.stated_error_priors());
+  if (has_calibration)
+    rounds_state.calibration_evidence = calibration_evidence_at(given, *learnt, rounds.stated_error_priors());
   InitialErrors start = initial_calibration(has_calibration ? learnt->errors : given, rounds);
   rounds_state.errors = start.errors;
   health.correction_iterations = 0;
   for (int round = 1;; ++round) {  // counts from the last restart; the report counts all rounds
     ++health.correction_iterations;
-    if (Status status = optimise_corrected_readings(rounds, rounds_state.errors, observations, fit, health); !status.ok())
+    if (Status status = optimise_corrected_readings(rounds, rounds_state.errors, observations, fit, health);
+        !status.ok())
       return status;
     if (health.calibration_at_prior && has_calibration) {
       // The loaded calibration may belong to a different device.
@@ -266,8 +281,10 @@ Status iterate_corrections(const CorrectionIterations& rounds, std::span<Angular
       continue;
     }
     if (Status status = collect_error_evidence(rounds, rounds_state.errors, fit, health); !status.ok()) return status;
-    rounds_state.sensor_error_fit = fit_errors_at(given, fit.error_derivatives.sensor_error_evidence, rounds.error_prior_sigmas, rounds_state.calibration_evidence);
-    rounds_state.is_plausible = plausible(rounds_state.sensor_error_fit.fitted_errors.errors, given, rounds.stated_error_priors());
+    rounds_state.sensor_error_fit = fit_errors_at(given, fit.error_derivatives.sensor_error_evidence,
+                                                  rounds.error_prior_sigmas, rounds_state.calibration_evidence);
+    rounds_state.is_plausible =
+        plausible(rounds_state.sensor_error_fit.fitted_errors.errors, given, rounds.stated_error_priors());
     if (health.calibration_at_prior || !rounds_state.is_plausible || round >= rounds.params.expert.error_rounds_max)
       return {};
     if (!differ_significantly(rounds_state.sensor_error_fit.fitted_errors.errors, rounds_state.errors)) return {};
@@ -276,16 +293,20 @@ Status iterate_corrections(const CorrectionIterations& rounds, std::span<Angular
 }
 
 // If the readings clearly contradict the data sheet, the function returns the priors of an uncalibrated device.
-SensorErrorPriors widened_error_priors(const CorrectionIterations& rounds, const AngularRateFit& fit, CorrectionIterationState& rounds_state, AngularRateReport& health) {
-  const bool open = rounds.is_delay_unknown() &&
-                    (contradicts_data_sheet(rounds_state.sensor_error_fit, rounds.stated_error_priors(), rounds.triads_asynchronous) ||
-                     health.calibration_mahalanobis > rounds.params.calibration_mahalanobis_max);
+SensorErrorPriors widened_error_priors(const CorrectionIterations& rounds, const AngularRateFit& fit,
+                                       CorrectionIterationState& rounds_state, AngularRateReport& health) {
+  const bool open =
+      rounds.is_delay_unknown() && (contradicts_data_sheet(rounds_state.sensor_error_fit, rounds.stated_error_priors(),
+                                                           rounds.triads_asynchronous) ||
+                                    health.calibration_mahalanobis > rounds.params.calibration_mahalanobis_max);
   if (!open) return rounds.error_prior_sigmas;
   const SensorErrorPriors sizes = uncalibrated_priors(rounds.error_prior_sigmas);
   health.common_delay_sigma_s = std::sqrt(0.5) * sizes.delay_s;
   KnownSensorErrors& found = rounds_state.sensor_error_fit.fitted_errors;
   const KnownSensorErrors unknown =
-      fit_errors_at(rounds.params_with_stated_errors.errors, fit.error_derivatives.sensor_error_evidence, sizes, rounds_state.calibration_evidence).fitted_errors;
+      fit_errors_at(rounds.params_with_stated_errors.errors, fit.error_derivatives.sensor_error_evidence, sizes,
+                    rounds_state.calibration_evidence)
+          .fitted_errors;
   const SensorErrors::Vector apart = unknown.errors.vector() - found.errors.vector();
   found.covariance = unknown.covariance + apart * apart.transpose();
   return sizes;
@@ -293,7 +314,8 @@ SensorErrorPriors widened_error_priors(const CorrectionIterations& rounds, const
 
 void apply_correction(const SensorErrors::Vector& step, AngularRateFit& fit) {
   for (std::size_t k = 0; k < fit.solution.estimates.size(); ++k) {
-    const Eigen::Matrix<double, 6, 1> moved = fit.model.unscaled_step(fit.error_derivatives.sample_error_jacobian[k] * step);
+    const Eigen::Matrix<double, 6, 1> moved =
+        fit.model.unscaled_step(fit.error_derivatives.sample_error_jacobian[k] * step);
     fit.solution.estimates[k].knot.rate_rad_s += moved.head<3>();
     fit.solution.estimates[k].knot.acceleration_rad_s2 += moved.tail<3>();
   }
@@ -302,14 +324,16 @@ void apply_correction(const SensorErrors::Vector& step, AngularRateFit& fit) {
 
 }  // namespace
 
-Status fit_rounds(const AngularRateSmoother::Params& params, const AngularRateModelParams& known, std::span<const ImuSample> samples,
-                  std::span<const Clipping> clippings, std::span<AngularRateObservation> observations, AngularRateFit& fit,
-                  AngularRateReport& health) {
-  const CorrectionIterations rounds = make_correction_iterations(params, known, samples, clippings, observations, health);
+Status fit_rounds(const AngularRateSmoother::Params& params, const AngularRateModelParams& known,
+                  std::span<const ImuSample> samples, std::span<const Clipping> clippings,
+                  std::span<AngularRateObservation> observations, AngularRateFit& fit, AngularRateReport& health) {
+  const CorrectionIterations rounds =
+      make_correction_iterations(params, known, samples, clippings, observations, health);
   CorrectionIterationState rounds_state;
   if (Status status = iterate_corrections(rounds, observations, fit, health, rounds_state); !status.ok()) return status;
   health.data_sheet_probability = rounds_state.sensor_error_fit.data_sheet_probability;
-  health.synchronous_triads_probability = rounds.triads_asynchronous ? 0.0 : rounds_state.sensor_error_fit.synchronous_triads_probability;
+  health.synchronous_triads_probability =
+      rounds.triads_asynchronous ? 0.0 : rounds_state.sensor_error_fit.synchronous_triads_probability;
   const SensorErrorPriors sizes = widened_error_priors(rounds, fit, rounds_state, health);
   const SensorErrorPriors stated = data_sheet_priors(rounds.stated_error_priors());
   if (health.calibration_at_prior || !rounds_state.is_plausible || !rounds.estimated) {
@@ -324,8 +348,8 @@ Status fit_rounds(const AngularRateSmoother::Params& params, const AngularRateMo
   health.calibration.constants = fit.solution.rig;
   // The estimated calibration depends on the uncertain sensor errors, so its covariance includes their uncertainty.
   const SensorErrors::Matrix device_covariance = fit_sensor_errors({}, stated).fitted_errors.covariance;
-  health.calibration.covariance +=
-      fit.error_derivatives.calibration_error_jacobian * device_covariance * fit.error_derivatives.calibration_error_jacobian.transpose();
+  health.calibration.covariance += fit.error_derivatives.calibration_error_jacobian * device_covariance *
+                                   fit.error_derivatives.calibration_error_jacobian.transpose();
   return {};
 }
 

@@ -19,8 +19,8 @@ struct AngularRateFit {
 /// Optimises repeatedly, each time with readings corrected by the last estimated sensor errors. If the calibration
 /// changes by more than its standard deviations, contact was classified as flight, and the optimisation restarts with
 /// another accelerometer delay. If the restart also fails, the calibration is held at its prior.
-Status fit_rounds(const AngularRateSmoother::Params& params, const AngularRateModelParams& known, std::span<const ImuSample> samples,
-                  std::span<const Clipping> clippings, std::span<AngularRateObservation> observations, AngularRateFit& fit,
-                  AngularRateReport& health);
+Status fit_rounds(const AngularRateSmoother::Params& params, const AngularRateModelParams& known,
+                  std::span<const ImuSample> samples, std::span<const Clipping> clippings,
+                  std::span<AngularRateObservation> observations, AngularRateFit& fit, AngularRateReport& health);
 
 }  // namespace tumble

@@ -29,7 +29,8 @@ Status check_auxiliary_imus(const AngularRateModelParams& params,
 }
 
 /// A large zero offset of the gyro becomes the nominal bias, unless the user states a bias.
-AngularRateSmootherParams with_gyro_offset(const AngularRateSmootherParams& params, std::span<const ImuSample> samples) {
+AngularRateSmootherParams with_gyro_offset(const AngularRateSmootherParams& params,
+                                           std::span<const ImuSample> samples) {
   AngularRateSmootherParams out = params;
   Eigen::Vector3d& nominal = out.model.nominal.gyro_bias_rad_s;
   if (nominal.isZero(0.0) && !out.model.calibration) nominal = GyroOffset().find(samples);
@@ -48,8 +49,8 @@ AngularRateSmoother::AngularRateSmoother(const Params& params)
 }
 
 Status AngularRateSmoother::estimate(std::span<const ImuSample> samples,
-                              std::span<const std::vector<AuxiliaryReading>> auxiliary_imus,
-                              std::vector<AngularRateState>& out, AngularRateReport& report) const {
+                                     std::span<const std::vector<AuxiliaryReading>> auxiliary_imus,
+                                     std::vector<AngularRateState>& out, AngularRateReport& report) const {
   if (Status status = check_recording(samples, 2, std::numeric_limits<double>::infinity()); !status.ok()) return status;
   if (Status status = check_auxiliary_imus(params_.model, auxiliary_imus, samples.size()); !status.ok()) return status;
 
@@ -59,7 +60,8 @@ Status AngularRateSmoother::estimate(std::span<const ImuSample> samples,
   const std::vector<bool> rests = rest_detector_.find(samples, params.model.nominal.gyro_bias_rad_s);
   AngularRateReadings readings = read_samples(params, clipping_finder_, found, rests, samples, auxiliary_imus, health);
   AngularRateFit fit(readings.observations, AngularRateModel(readings.known_params, median_period_s(samples)));
-  if (Status status = fit_rounds(params, readings.known_params, samples, found.clipping_per_sample, readings.observations, fit, health);
+  if (Status status = fit_rounds(params, readings.known_params, samples, found.clipping_per_sample,
+                                 readings.observations, fit, health);
       !status.ok()) {
     return status;
   }

@@ -64,8 +64,9 @@ Eigen::Matrix3d common_delay_covariance(double variance_s2, const AngularRateMod
   return variance_s2 * (alpha * alpha.transpose() + change * change * Eigen::Matrix3d::Identity());
 }
 
-AngularRateState extrapolated_state(std::span<const AngularRateObservation> observations, std::span<const AngularRateEstimate> estimates,
-                             std::span<const Eigen::Matrix3d> covariances, std::size_t k, double late_s) {
+AngularRateState extrapolated_state(std::span<const AngularRateObservation> observations,
+                                    std::span<const AngularRateEstimate> estimates,
+                                    std::span<const Eigen::Matrix3d> covariances, std::size_t k, double late_s) {
   AngularRateState out;
   double left_s = late_s;
   for (; k + 1 < estimates.size(); ++k) {
@@ -85,15 +86,17 @@ AngularRateState extrapolated_state(std::span<const AngularRateObservation> obse
   return out;
 }
 
-std::vector<Eigen::Matrix3d> rate_covariances(const AngularRateSmoother::Params& params, const AngularRateReadings& readings,
-                                              const AngularRateFit& fit, const AngularRateReport& health) {
+std::vector<Eigen::Matrix3d> rate_covariances(const AngularRateSmoother::Params& params,
+                                              const AngularRateReadings& readings, const AngularRateFit& fit,
+                                              const AngularRateReport& health) {
   const std::vector<AngularRateEstimate>& estimates = fit.solution.estimates;
   const double shared_s2 = health.common_delay_sigma_s * health.common_delay_sigma_s;
   std::vector<Eigen::Matrix3d> out(estimates.size());
   fit.solution.iteration.for_each_state_given_next([&](std::size_t k, const arrow::Conditional& conditional) {
     const Eigen::Matrix3d covariance =
         arrow::rate_covariance(conditional, fit.solution.rig_covariance) +
-        sensor_error_covariance(fit.error_derivatives.sample_error_jacobian[k], health.sensor_errors.covariance, params.model.rate_max_rad_s) +
+        sensor_error_covariance(fit.error_derivatives.sample_error_jacobian[k], health.sensor_errors.covariance,
+                                params.model.rate_max_rad_s) +
         common_delay_covariance(shared_s2, readings.known_params, readings.observations, estimates, k);
     out[k] = fit.model.output_covariance(covariance, readings.observations[k], estimates[k]);
   });
@@ -106,13 +109,16 @@ void count(const AngularRateState& state, const AngularRateObservation& observat
   report.recovered_in_contact += state.source == AngularRateSource::recovered_in_contact;
   report.lower_bound_only += state.source == AngularRateSource::lower_bound_only;
   report.missing_readings += observation.clipping.unusable_gyro != 0;
-  report.suspected_saturation_axes.push_back(static_cast<std::uint8_t>(observation.possibly_saturated_axes() & ~state.clipped_axes));
+  report.suspected_saturation_axes.push_back(
+      static_cast<std::uint8_t>(observation.possibly_saturated_axes() & ~state.clipped_axes));
 }
 
 }  // namespace
 
-std::vector<AngularRateState> rate_states_of_recording(const AngularRateSmoother::Params& params, std::span<const ImuSample> samples,
-                                   const AngularRateReadings& readings, const AngularRateFit& fit, AngularRateReport& health) {
+std::vector<AngularRateState> rate_states_of_recording(const AngularRateSmoother::Params& params,
+                                                       std::span<const ImuSample> samples,
+                                                       const AngularRateReadings& readings, const AngularRateFit& fit,
+                                                       AngularRateReport& health) {
   const std::vector<AngularRateObservation>& observations = readings.observations;
   const RateSolution& solution = fit.solution;
   const SensorErrors& errors = health.sensor_errors.errors;

@@ -37,8 +37,8 @@ void clamp_to_bounds(const AngularRateObservation& o, Vector3d& rate) {
 }
 
 // See rate_stream.md (R91).
-void add_prior(const AngularRateStream::State& state, const AngularRateModel& model, const AngularRateKnot& knot, arrow::Block& block,
-               arrow::Corner& corner) {
+void add_prior(const AngularRateStream::State& state, const AngularRateModel& model, const AngularRateKnot& knot,
+               arrow::Block& block, arrow::Corner& corner) {
   Eigen::Matrix<double, 6, 1> moved;
   moved << knot.rate_rad_s - state.prior_knot.rate_rad_s,
       knot.acceleration_rad_s2 - state.prior_knot.acceleration_rad_s2;
@@ -48,7 +48,8 @@ void add_prior(const AngularRateStream::State& state, const AngularRateModel& mo
   block.border_coupling += state.prior.border_coupling;
   block.gradient += state.prior.gradient - state.prior.diagonal * x - state.prior.border_coupling * c;
   corner.matrix += state.prior_border_block.matrix;
-  corner.gradient += state.prior_border_block.gradient - state.prior_border_block.matrix * c - state.prior.border_coupling.transpose() * x;
+  corner.gradient += state.prior_border_block.gradient - state.prior_border_block.matrix * c -
+                     state.prior.border_coupling.transpose() * x;
 }
 
 AngularRateModelParams model_params_with_corrections(const AngularRateStreamParams& params) {
@@ -61,11 +62,12 @@ AngularRateModelParams model_params_with_corrections(const AngularRateStreamPara
 
 AngularRateStream::AngularRateStream(const Params& params)
     : params_(params),
-      clipping_finder_({.clipping = {params.saturation_detector, params.expert.gyro_planes, params.expert.accel_saturation_planes}}),
+      clipping_finder_(
+          {.clipping = {params.saturation_detector, params.expert.gyro_planes, params.expert.accel_saturation_planes}}),
       rest_detector_(params.expert.rest_detector),
       frozen_axes_(frozen_axes_params(params.saturation_detector)),
       flight_axis_sign_check_({.lever_arm_m = params.model.nominal.lever_arm_m,
-                          .gyro_range_rad_s = params.saturation_detector.stated_gyro_range_rad_s.value_or(0.0)}),
+                               .gyro_range_rad_s = params.saturation_detector.stated_gyro_range_rad_s.value_or(0.0)}),
       model_(model_params_with_corrections(params), params.period_s),
       sensor_error_estimator_(params.model.expert.error_priors, params.expert.uncalibrated) {
   require_valid_fields(params);
@@ -100,7 +102,7 @@ AngularRateStream::State AngularRateStream::start() const {
 }
 
 Status AngularRateStream::push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
-                        std::optional<AngularRateState>& out) const {
+                               std::optional<AngularRateState>& out) const {
   out.reset();
   if (!auxiliary_imus.empty() && auxiliary_imus.size() != params_.model.auxiliary_imus.size()) {
     return {ErrorCode::insufficient_data, "auxiliary_imus", static_cast<double>(auxiliary_imus.size()),
@@ -168,8 +170,8 @@ void AngularRateStream::marginalise(std::size_t first, State& state) const {
                     short_flight ? &state.rig_covariance : nullptr);
   AngularRateStreamSensorErrors& device = state.sensor_errors.front();
   arrow::ErrorMatrix errors = device.prior;
-  model_.add_sensor_errors(oldest.observation, oldest.estimate, state.rig, errors, device.border_errors, device.sensor_error_evidence,
-                    short_flight);
+  model_.add_sensor_errors(oldest.observation, oldest.estimate, state.rig, errors, device.border_errors,
+                           device.sensor_error_evidence, short_flight);
   model_.add_motion_model(oldest.estimate, next.estimate, seconds_between(oldest, next), block, after);
   if (arrow::eliminate(block, &after, corner)) {
     state.prior = after;
@@ -196,18 +198,22 @@ double AngularRateStream::rate_change_before_window(const Knot& oldest, const St
                      seconds(oldest.observation.sample.time_ns - state.last_marginalised_ns));
 }
 
-void AngularRateStream::append_knot(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state) const {
+void AngularRateStream::append_knot(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus,
+                                    State& state) const {
   frozen_axes_.step(sample, state.frozen_axes);
   flight_axis_sign_check_.step(sample, state.flight_sign_check);
   const bool changed = clipping_finder_.observe_reading(sample, state.clipping_state);
   Knot knot;
-  knot.clipping_at_axis_limits = clipping_finder_.axis_limit_detector().classify_clipping(sample, state.clipping_state.known_limits.axis_limit_state);
-  repeat_detector_.observe_reading(sample, (knot.clipping_at_axis_limits.gyro | knot.clipping_at_axis_limits.unusable_gyro) != 0,
-                           state.repetition_state);
-  knot.observation = {sample, knot.clipping_at_axis_limits,
-                      rest_detector_.detect_stationary(sample, state.stationary_state, params_.model.nominal.gyro_bias_rad_s)};
+  knot.clipping_at_axis_limits = clipping_finder_.axis_limit_detector().classify_clipping(
+      sample, state.clipping_state.known_limits.axis_limit_state);
+  repeat_detector_.observe_reading(
+      sample, (knot.clipping_at_axis_limits.gyro | knot.clipping_at_axis_limits.unusable_gyro) != 0,
+      state.repetition_state);
+  knot.observation = {
+      sample, knot.clipping_at_axis_limits,
+      rest_detector_.detect_stationary(sample, state.stationary_state, params_.model.nominal.gyro_bias_rad_s)};
   knot.received_force = {sample.specific_force_m_s2, static_cast<std::uint8_t>(sample.device_clip_flags & kClipAccel),
-               knot.clipping_at_axis_limits.accel};
+                         knot.clipping_at_axis_limits.accel};
   std::copy(auxiliary_imus.begin(), auxiliary_imus.end(), knot.observation.auxiliary_imus.begin());
   const RepeatedReading& repeated = state.repetition_state.for_triad(Triad::gyro);
   knot.repeats_reading = repeated.repeats_reading && !knot.observation.at_rest;

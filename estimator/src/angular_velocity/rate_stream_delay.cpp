@@ -73,12 +73,15 @@ void AngularRateStream::pair_force_with_rate(std::size_t k, State& state) const 
   o.sample.device_clip_flags =
       static_cast<std::uint8_t>((o.sample.device_clip_flags & kClipGyro) | source.received_force.device_clip_flags);
   knot.clipping_at_axis_limits.accel = source.received_force.clipped_axes;
-  o.accel_age_s = (state.sensor_errors.front().accel_delay_state.applied_delay_s - prior_delay_s_) - seconds_to(knot, source);
+  o.accel_age_s =
+      (state.sensor_errors.front().accel_delay_state.applied_delay_s - prior_delay_s_) - seconds_to(knot, source);
 }
 
 std::size_t AngularRateStream::pair_newest_force(State& state) const {
   const std::size_t newest = state.window.size() - 1;
-  if (state.sensor_errors.front().accel_delay_state.applied_delay_s == prior_delay_s_ && force_delay_samples(state) == 0) return newest;
+  if (state.sensor_errors.front().accel_delay_state.applied_delay_s == prior_delay_s_ &&
+      force_delay_samples(state) == 0)
+    return newest;
   const auto waiting = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, force_delay_samples(state)));
   const std::size_t first = newest - std::min(newest, waiting);
   for (std::size_t k = first; k <= newest; ++k) pair_force_with_rate(k, state);
@@ -92,7 +95,8 @@ void AngularRateStream::accumulate_impacts(State& state) const {
   const Knot &a = state.window[after - 1], &b = state.window[after];
   const Eigen::Vector3d &begin = a.observation.sample.angular_velocity_rad_s,
                         &end = b.observation.sample.angular_velocity_rad_s;
-  if (a.observation.has_clipped_sensing_axis() || b.observation.has_clipped_sensing_axis() || !ImpactDelayCorrelation::counts(begin, end))
+  if (a.observation.has_clipped_sensing_axis() || b.observation.has_clipped_sensing_axis() ||
+      !ImpactDelayCorrelation::counts(begin, end))
     return;
   const ForceNormIntegral force(state.window, after, first);
   const double span_s = seconds_to(a, b), step_s = params_.period_s / ImpactDelayCorrelation::kDelaysPerSample;
@@ -128,8 +132,8 @@ void AngularRateStream::update_delay(State& state) const {
     const bool gains =
         correlates(guess.delay_s) - correlates(prior_delay_s_) > kCorrelationGainMin &&
         std::abs(guess.delay_s - prior_delay_s_) < kReach * params_.model.expert.error_priors.delay_uncalibrated_s;
-    const bool plain =
-        gains && sensor_error_estimator_.data_sheet_odds(guess.delay_s - prior_delay_s_, guess.sigma_s) < kContradictionOdds;
+    const bool plain = gains && sensor_error_estimator_.data_sheet_odds(guess.delay_s - prior_delay_s_, guess.sigma_s) <
+                                    kContradictionOdds;
     const bool far = std::abs(guess.delay_s - delay.applied_delay_s) > kGuessSigmasMax * guess.sigma_s;
     delay.impact_delay = guess;
     if (plain && (!delay.delay_found || far)) return apply_delay(guess.delay_s, true, state);

@@ -15,7 +15,8 @@ using Eigen::Matrix3d;
 constexpr TimeNs kUpdatePeriod_ns = 50'000'000;
 
 // See rate_smoother.md (R44).
-Matrix3d rate_covariance_from_errors(const arrow::ErrorMatrix& moved, const SensorErrors::Matrix& covariance, double rate_max_rad_s) {
+Matrix3d rate_covariance_from_errors(const arrow::ErrorMatrix& moved, const SensorErrors::Matrix& covariance,
+                                     double rate_max_rad_s) {
   const Eigen::Matrix<double, 3, SensorErrors::kSize> rates = moved.topRows<3>(),
                                                       spread = rates.lazyProduct(covariance);
   const Matrix3d out = spread.lazyProduct(rates.transpose());
@@ -86,8 +87,8 @@ void AngularRateStream::add_sensor_error_covariance(const arrow::BorderVector& r
   }
   calibration_by_errors.noalias() = state.rig_covariance.lazyProduct(border);
   for (std::size_t k = count; k-- > 0;)
-    errors[k] = arrow::back_substitute_errors(state.work_blocks[k], errors[k], k + 1 == count ? nullptr : &errors[k + 1],
-                                              calibration_by_errors);
+    errors[k] = arrow::back_substitute_errors(state.work_blocks[k], errors[k],
+                                              k + 1 == count ? nullptr : &errors[k + 1], calibration_by_errors);
 
   const TimeNs now_ns = state.window.back().observation.sample.time_ns;
   if (params_.calibrated_errors || (device.updated_ns && now_ns - *device.updated_ns < kUpdatePeriod_ns)) return;
@@ -99,12 +100,14 @@ void AngularRateStream::add_sensor_error_covariance(const arrow::BorderVector& r
   if (delay.delay_found) {
     if (const TriadDelay& guess = delay.impact_delay; guess.sigma_s > 0.0) {
       // The division by kSensorErrorEvidenceWeight gives the delay from impacts full weight.
-      const double information = 1.0 / (SensorErrorUncertainty::kSensorErrorEvidenceWeight * guess.sigma_s * guess.sigma_s);
+      const double information =
+          1.0 / (SensorErrorUncertainty::kSensorErrorEvidenceWeight * guess.sigma_s * guess.sigma_s);
       window_error_evidence.information(SensorErrors::kDelay, SensorErrors::kDelay) += information;
       window_error_evidence.gradient[SensorErrors::kDelay] += information * (guess.delay_s - delay.applied_delay_s);
     }
-    delay.estimated_s = std::clamp(delay.applied_delay_s + sensor_error_estimator_.delay_correction_s(window_error_evidence, max_accel_delay_s()),
-                                   -max_accel_delay_s(), max_accel_delay_s());
+    delay.estimated_s = std::clamp(
+        delay.applied_delay_s + sensor_error_estimator_.delay_correction_s(window_error_evidence, max_accel_delay_s()),
+        -max_accel_delay_s(), max_accel_delay_s());
   }
   sensor_error_estimator_.update(window_error_evidence, posterior_workspace, device.posterior, delay.delay_found);
 }
@@ -113,7 +116,8 @@ Matrix3d AngularRateStream::sensor_error_rate_covariance(std::size_t k, const St
   const Knot& knot = state.window[k];
   if (!has_moved_states(knot)) return Matrix3d::Zero();
   const AngularRateStreamSensorErrors& device = state.sensor_errors.front();
-  Matrix3d out = rate_covariance_from_errors(device.sample_jacobian[k], device.posterior.covariance, params_.model.rate_max_rad_s);
+  Matrix3d out =
+      rate_covariance_from_errors(device.sample_jacobian[k], device.posterior.covariance, params_.model.rate_max_rad_s);
   const double shared_s2 = sensor_error_estimator_.common_delay_variance_s2(device.posterior);
   const Eigen::Vector3d& alpha = knot.estimate.knot.acceleration_rad_s2;
   const double struck = params_.model.expert.contact.kGain_rad_m * knot.estimate.contact_force_m_s2.norm();

@@ -29,8 +29,8 @@ double AngularRateStream::saturation_deficit_from_slopes_rad_s(std::size_t at, i
   while (first > 0 && hidden(first - 1)) --first;
   while (last + 1 < window.size() && hidden(last + 1)) ++last;
   const bool from_flight = state.consecutive_flight_samples >= static_cast<std::size_t>(params_.expert.flight_run_min);
-  const double before =
-      static_cast<double>(at - first) + 0.5 + (first > 0 || from_flight ? 0.0 : state.samples_since_clipping_start[axis]);
+  const double before = static_cast<double>(at - first) + 0.5 +
+                        (first > 0 || from_flight ? 0.0 : state.samples_since_clipping_start[axis]);
   // An unfinished run of clipped readings is assumed to continue for at least as long as it has lasted.
   const double left = static_cast<double>(last - at) + 0.5,
                after = last + 1 < window.size() ? left : std::max(before, left);
@@ -50,8 +50,8 @@ Eigen::Matrix3d AngularRateStream::suspected_error_covariance(std::size_t at, co
     if ((knot.observation.unmeasured_axes() & knot.observation.clipping.gyro & 1u << j) == 0) continue;
     const double read = std::abs(knot.observation.sample.angular_velocity_rad_s[j]);
     const double beyond = std::max(0.0, std::abs(knot.estimate.knot.rate_rad_s[j]) - read);
-    const double least =
-        std::max(share * beyond, params_.expert.inflation.slopes * (saturation_deficit_from_slopes_rad_s(at, j, state) - beyond));
+    const double least = std::max(share * beyond, params_.expert.inflation.slopes *
+                                                      (saturation_deficit_from_slopes_rad_s(at, j, state) - beyond));
     out(j, j) = std::max(out(j, j), least * least);
   }
   return out;
@@ -70,7 +70,8 @@ bool AngularRateStream::may_be_partly_saturated(std::size_t at, const State& sta
 }
 
 // See rate_stream.md (R108). After the newest sample, the angular acceleration is assumed constant.
-void AngularRateStream::extrapolate_estimate(std::size_t at, double late_s, const State& state, AngularRateState& out) const {
+void AngularRateStream::extrapolate_estimate(std::size_t at, double late_s, const State& state,
+                                             AngularRateState& out) const {
   const auto reported = [&](std::size_t k) {
     const Knot& knot = state.window[k];
     return model_.output_covariance(suspected_error_covariance(k, state), knot.observation, knot.estimate);
@@ -115,7 +116,8 @@ AngularRateState AngularRateStream::rate_state_of_knot(std::size_t at, const Sta
   out.covariance_rad2_s2.diagonal() += frozen_axes_.rate_variance_rad2_s2(out.time_ns, state.frozen_axes);
   out.clipped_axes = knot.observation.clipping.gyro | knot.observation.clipping.unusable_gyro;
   out.source = rate_source_of(knot.observation, knot.estimate, covariance, params_.recovered_sigma_rad_s);
-  if (out.source == AngularRateSource::measured && may_be_partly_saturated(at, state)) out.source = AngularRateSource::lower_bound_only;
+  if (out.source == AngularRateSource::measured && may_be_partly_saturated(at, state))
+    out.source = AngularRateSource::lower_bound_only;
   return out;
 }
 

@@ -72,14 +72,16 @@ void AngularRateStream::reclassify_window_clipping(State& state) const {
     knot.clipping_at_axis_limits = clipping_finder_.axis_limit_detector().classify_clipping(sample, axis_aligned_rails);
     knot.received_force.clipped_axes = knot.clipping_at_axis_limits.accel;
   }
-  for (std::size_t k = 0; force_delay_samples(state) != 0 && k < state.window.size(); ++k) pair_force_with_rate(k, state);
+  for (std::size_t k = 0; force_delay_samples(state) != 0 && k < state.window.size(); ++k)
+    pair_force_with_rate(k, state);
 }
 
 // A new reading may show whether the previous reading is clipped.
 void AngularRateStream::classify_clipping_from(std::size_t changed, State& state) const {
   const std::size_t first = reading_before(changed, state.window).value_or(0);
   const SaturationLevels& rails = state.clipping_state.known_limits;
-  const SaturationPlanes planes = rails.saturation_planes_in_use(), accel_planes = rails.saturation_planes_in_use(Triad::accelerometer);
+  const SaturationPlanes planes = rails.saturation_planes_in_use(),
+                         accel_planes = rails.saturation_planes_in_use(Triad::accelerometer);
   const SensingDirections accel_rows = rails.rows(Triad::accelerometer, params_.model.element_sigma);
   const double noise = model_.gyro_sigma_rad_s();
   for (std::size_t k = first; k < state.window.size(); ++k) {
@@ -93,16 +95,19 @@ void AngularRateStream::classify_clipping_from(std::size_t changed, State& state
     const std::uint8_t read = now.unmeasured_axes();
     Clipping by_axis_aligned_rails = knot.clipping_at_axis_limits;
     if (sample_after != nullptr) {
-      clipping_finder_.axis_limit_detector().add_rising_edge_at_limit(now.sample, *sample_after, state.window[k + 1].clipping_at_axis_limits,
-                                                  rails.axis_limit_state, by_axis_aligned_rails);
+      clipping_finder_.axis_limit_detector().add_rising_edge_at_limit(now.sample, *sample_after,
+                                                                      state.window[k + 1].clipping_at_axis_limits,
+                                                                      rails.axis_limit_state, by_axis_aligned_rails);
     }
     now.clipping = clipping_from_planes(planes, Triad::gyro, by_axis_aligned_rails, before, now.sample, after);
     now.clipping =
         clipping_from_planes(accel_planes, Triad::accelerometer, now.clipping, sample_before, now.sample, sample_after);
     now.accel_sensing_directions = accel_rows;
-    mark_partial_saturation(planes, clipping_finder_.axis_limit_detector(), rails.axis_limit_state, noise, before, now, after);
-    knot.possibly_clipped_axes = rails.gyro_clips_after_compensation ? std::uint8_t{0}
-                                                    : possible_partial_saturation(before, now.sample, after, planes);
+    mark_partial_saturation(planes, clipping_finder_.axis_limit_detector(), rails.axis_limit_state, noise, before, now,
+                            after);
+    knot.possibly_clipped_axes = rails.gyro_clips_after_compensation
+                                     ? std::uint8_t{0}
+                                     : possible_partial_saturation(before, now.sample, after, planes);
     mark_undetected_clipping(k, state);
     const bool newest = k + 1 == state.window.size();
     if (!newest && (now.unmeasured_axes() & ~read) == 0) continue;
@@ -126,7 +131,8 @@ bool AngularRateStream::may_clip(const ImuSample& sample, int axis, int sign, co
     return plane->distance_to_plane_rad_s(y, sign) <= plane->tolerance_rad_s + kSlopeSigmasMax * open;
   }
   const double extreme = std::abs(state.reading_extremes_rad_s[sign > 0 ? 1 : 0][axis]);
-  const bool high = extreme >= params_.expert.gyro_planes.distance_min_rad_s && is_near_limit_of_other_axis(planes, extreme);
+  const bool high =
+      extreme >= params_.expert.gyro_planes.distance_min_rad_s && is_near_limit_of_other_axis(planes, extreme);
   return high && std::abs(y[axis]) >= (1.0 - kNearRailRatio) * extreme;
 }
 
@@ -135,8 +141,8 @@ void AngularRateStream::mark_undetected_clipping(std::size_t k, State& state) co
   now.rarely_high_axes = 0;
   if (state.clipping_state.known_limits.gyro_clips_after_compensation) return;
   const auto [before, after] = neighbour_readings(k, state);
-  inflate_covariance_near_limits(state.clipping_state.known_limits.saturation_planes_in_use(), state.min_saturation_levels, model_.gyro_sigma_rad_s(), before,
-                              now, after);
+  inflate_covariance_near_limits(state.clipping_state.known_limits.saturation_planes_in_use(),
+                                 state.min_saturation_levels, model_.gyro_sigma_rad_s(), before, now, after);
 }
 
 // A later, larger reading or a newly detected saturation level may show that suspect readings are unsaturated.
@@ -153,7 +159,8 @@ void AngularRateStream::mark_possible_saturation(State& state) const {
   const unsigned stood = state.window.front().observation.suspected_saturation;
   clear_suspected_saturation(state);
   for (int j = 0; j < 3; ++j) {
-    if (clipping_finder_.axis_limit_detector().saturation_limit(state.clipping_state.known_limits.axis_limit_state, j)) continue;
+    if (clipping_finder_.axis_limit_detector().saturation_limit(state.clipping_state.known_limits.axis_limit_state, j))
+      continue;
     for (std::size_t k = 0; k < state.window.size();) {
       const int sign = state.window[k].observation.sample.angular_velocity_rad_s[j] < 0.0 ? -1 : 1;
       std::size_t end = k;
@@ -196,7 +203,8 @@ void AngularRateStream::mark_suspected_plateau(int axis, std::size_t first, std:
     lowest = std::min(lowest, size(k));
   }
   const double slope = plateau_slope(axis, first, last, state);
-  const double samples = static_cast<double>(last - first + 1) + (first > 0 ? 0.0 : state.samples_since_clipping_start[axis]);
+  const double samples =
+      static_cast<double>(last - first + 1) + (first > 0 ? 0.0 : state.samples_since_clipping_start[axis]);
   const double cut = 0.25 * samples * slope;
   const double noise = model_.gyro_sigma_rad_s();
   if (cut < kHeightRatioMin * (highest - lowest) || cut < kHeightNoiseSigmas * noise) return;
@@ -246,7 +254,8 @@ void AngularRateStream::add_saturation_plane_prior(const State& state, arrow::Co
     if (!prior_slopes) continue;
     const Eigen::Matrix2d information = prior_slopes->covariance.inverse();
     corner.matrix.block<2, 2>(first, first) += information;
-    corner.gradient.segment<2>(first) -= information * (state.rig.gyro_misalignment.segment<2>(2 * j) - prior_slopes->cross_axis_slopes);
+    corner.gradient.segment<2>(first) -=
+        information * (state.rig.gyro_misalignment.segment<2>(2 * j) - prior_slopes->cross_axis_slopes);
   }
 }
 

@@ -11,7 +11,8 @@ namespace tumble {
 Status check_recording(std::span<const ImuSample> samples, std::size_t count_min, double gap_max_s) {
   if (samples.empty()) return {ErrorCode::empty, "samples", 0.0, 1.0};
   if (samples.size() < count_min) {
-    return {ErrorCode::insufficient_data, "samples", static_cast<double>(samples.size()), static_cast<double>(count_min)};
+    return {ErrorCode::insufficient_data, "samples", static_cast<double>(samples.size()),
+            static_cast<double>(count_min)};
   }
   return check_samples(samples, gap_max_s);
 }

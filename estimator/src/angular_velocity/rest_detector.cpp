@@ -35,13 +35,14 @@ bool RestDetector::detect_stationary(const ImuSample& sample, State& state, cons
   const double share = 1.0 / static_cast<double>(state.pending_samples);
   state.pending_samples = 0;
   state.last_reading_ns = sample.time_ns;
-  return detect_stationary_from_mean(share * state.pending_rate_rad_s, share * state.pending_force_m_s2, state.pending_first_ns,
-                      sample.time_ns, bias_rad_s, state);
+  return detect_stationary_from_mean(share * state.pending_rate_rad_s, share * state.pending_force_m_s2,
+                                     state.pending_first_ns, sample.time_ns, bias_rad_s, state);
 }
 
 /// See attitude.md (A15).
-bool RestDetector::detect_stationary_from_mean(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2, TimeNs from_ns,
-                                TimeNs to_ns, const Eigen::Vector3d& bias_rad_s, State& state) const {
+bool RestDetector::detect_stationary_from_mean(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2,
+                                               TimeNs from_ns, TimeNs to_ns, const Eigen::Vector3d& bias_rad_s,
+                                               State& state) const {
   const double step_s = seconds(to_ns - state.last_averaged_reading_ns);
   state.last_averaged_reading_ns = to_ns;
   state.is_stationary = false;

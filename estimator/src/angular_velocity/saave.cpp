@@ -46,7 +46,8 @@ Status SaturationAwareRateEstimator::step(const ImuSample& sample, State& state,
   out.clipped_axes = axes_above_bound(reading, params_.saturation_point_rad_s);
   out.accepted = true;
   if (out.clipped_axes != 0) {
-    // As in the publication, SaturationAwareRateEstimator recovers only the first clipped axis in the order x, y, z: saave.md (S3).
+    // As in the publication, SaturationAwareRateEstimator recovers only the first clipped axis in the order x, y, z:
+    // saave.md (S3).
     int j = 0;
     while ((out.clipped_axes >> j & 1u) == 0) ++j;
     Eigen::Vector3d unclipped = reading;
@@ -67,7 +68,8 @@ Status SaturationAwareRateEstimator::step(const ImuSample& sample, State& state,
   return {};
 }
 
-Status SaturationAwareRateEstimator::estimate(std::span<const ImuSample> samples, std::vector<AngularRateState>& out) const {
+Status SaturationAwareRateEstimator::estimate(std::span<const ImuSample> samples,
+                                              std::vector<AngularRateState>& out) const {
   if (samples.empty()) return {ErrorCode::empty, "samples", 0.0, 1.0};
   State state;
   std::vector<RecoveredRate> recovered(samples.size());

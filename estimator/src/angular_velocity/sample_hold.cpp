@@ -25,8 +25,8 @@ struct Clock {
   double clock_age_samples(double sample) const { return sample - phase_samples - period * reading(sample); }
 };
 
-std::size_t count_missed_repetitions(const Clock& clock, std::span<const std::size_t> moving, const std::vector<bool>& repeats,
-                         std::size_t most) {
+std::size_t count_missed_repetitions(const Clock& clock, std::span<const std::size_t> moving,
+                                     const std::vector<bool>& repeats, std::size_t most) {
   std::size_t misses = 0;
   double last_at = -1.0, last = 0.0;
   for (const std::size_t k : moving) {
@@ -45,8 +45,8 @@ struct ClockPhaseSegment {
   int count = 0;
 };
 
-ClockPhaseSegment best_clock_phases(double period, std::span<const std::size_t> moving, const std::vector<bool>& repeats,
-                     std::size_t most) {
+ClockPhaseSegment best_clock_phases(double period, std::span<const std::size_t> moving,
+                                    const std::vector<bool>& repeats, std::size_t most) {
   const auto middle = static_cast<double>(moving[moving.size() / 2]);
   std::array<std::size_t, kPhases> misses;
   ClockPhaseSegment out{most + 1};
@@ -68,7 +68,7 @@ ClockPhaseSegment best_clock_phases(double period, std::span<const std::size_t> 
 
 // If several clocks predict the repetitions equally well, the result is the middle of their periods and phases.
 Clock best_matching_clock(const Clock& first, double reach, int periods, std::span<const std::size_t> moving,
-                 const std::vector<bool>& repeats, double& found) {
+                          const std::vector<bool>& repeats, double& found) {
   ClockPhaseSegment best{moving.size()};
   int begin = 0, end = 0;
   const auto period = [&](double i) { return first.period * (1.0 + reach * i / periods); };
@@ -98,7 +98,7 @@ std::optional<RepeatedReadings> find_repeated(std::span<const ImuSample> samples
   for (std::size_t k = 1; k < samples.size(); ++k) {
     const ImuSample &now = samples[k], &before = samples[k - 1];
     out.repeats_per_sample[k] = triad == Triad::gyro ? now.angular_velocity_rad_s == before.angular_velocity_rad_s
-                                          : now.specific_force_m_s2 == before.specific_force_m_s2;
+                                                     : now.specific_force_m_s2 == before.specific_force_m_s2;
     if (now.angular_velocity_rad_s.norm() < kMoving_rad_s || moving.size() == kMovingMax) continue;
     moving.push_back(k);
     repeated += out.repeats_per_sample[k] ? 1 : 0;
@@ -106,12 +106,15 @@ std::optional<RepeatedReadings> find_repeated(std::span<const ImuSample> samples
   const auto count = static_cast<double>(moving.size());
   if (moving.size() < kMovingMin || static_cast<double>(repeated) < kRepeatsMin * count) return std::nullopt;
   Clock clock{1.0 / (1.0 - std::min(0.95, static_cast<double>(repeated) / count)), 0.0};
-  clock = best_matching_clock(clock, kPeriodRangeRatio, kPeriods, moving, out.repeats_per_sample, out.regular_clock_fraction);
-  clock = best_matching_clock(clock, 2.0 * kPeriodRangeRatio / kPeriods, kFineSteps, moving, out.repeats_per_sample, out.regular_clock_fraction);
+  clock = best_matching_clock(clock, kPeriodRangeRatio, kPeriods, moving, out.repeats_per_sample,
+                              out.regular_clock_fraction);
+  clock = best_matching_clock(clock, 2.0 * kPeriodRangeRatio / kPeriods, kFineSteps, moving, out.repeats_per_sample,
+                              out.regular_clock_fraction);
   const double sample_s = median_period_s(samples);
   out.period_s = clock.period * sample_s;
   if (!out.has_regular_clock()) return out;
-  for (std::size_t k = 0; k < samples.size(); ++k) out.age_s[k] = clock.clock_age_samples(static_cast<double>(k)) * sample_s;
+  for (std::size_t k = 0; k < samples.size(); ++k)
+    out.age_s[k] = clock.clock_age_samples(static_cast<double>(k)) * sample_s;
   if (clock.period > sample_hold::kSlowest) return out;
   const double window_ratio = triad == Triad::gyro ? 1.0 : kAccelWindowRatio;
   out.window_lag_s = 0.5 * std::max(0.0, window_ratio * out.period_s - sample_s);

@@ -14,9 +14,9 @@ namespace tumble {
 
 /// RepeatedReadings describes a gyro or accelerometer that is slower than its log (sample and hold).
 struct RepeatedReadings {
-  double period_s = 0.0;      ///< time between two readings
-  double regular_clock_fraction = 0.0;     ///< fraction of samples whose repetitions a regular clock predicts
-  std::vector<double> age_s;  ///< per sample: age of its reading in addition to window_lag_s
+  double period_s = 0.0;                 ///< time between two readings
+  double regular_clock_fraction = 0.0;   ///< fraction of samples whose repetitions a regular clock predicts
+  std::vector<double> age_s;             ///< per sample: age of its reading in addition to window_lag_s
   std::vector<bool> repeats_per_sample;  ///< per sample: reading equals that of the previous sample
   /// A gyro averages over its period, an accelerometer over an unknown part of its period: carried.md (C11), (C12).
   double window_lag_s = 0.0;

@@ -35,8 +35,10 @@ void set_bit(std::uint8_t& bits, int j) {
 }  // namespace
 
 SaturationLimitDetector::SaturationLimitDetector(const Params& params) : params_(params) {
-  if (params.stated_gyro_range_rad_s) require_in_interval("stated_gyro_rad_s", *params.stated_gyro_range_rad_s, 1e-6, 1000.0);
-  if (params.stated_accel_range_m_s2) require_in_interval("stated_accel_m_s2", *params.stated_accel_range_m_s2, 1e-6, 1e5);
+  if (params.stated_gyro_range_rad_s)
+    require_in_interval("stated_gyro_rad_s", *params.stated_gyro_range_rad_s, 1e-6, 1000.0);
+  if (params.stated_accel_range_m_s2)
+    require_in_interval("stated_accel_m_s2", *params.stated_accel_range_m_s2, 1e-6, 1e5);
 }
 
 SaturationLimitDetector::State SaturationLimitDetector::start() const {
@@ -58,10 +60,12 @@ void SaturationLimitDetector::observe_reading(const ImuSample& sample, State& st
     const bool continues = channel.run_length > 0 && std::abs(value - channel.plateau_first_reading) <= spread;
     if (channel.run_length > 0 && !continues) {
       if (channel.min_reading_change == 0.0 || change < channel.min_reading_change) channel.min_reading_change = change;
-      if (magnitude < channel.peak && plateau(c, channel, change)) channel.plateau_limit = std::abs(channel.plateau_first_reading);
+      if (magnitude < channel.peak && plateau(c, channel, change))
+        channel.plateau_limit = std::abs(channel.plateau_first_reading);
     }
     channel.peak = std::max(channel.peak, magnitude);
-    if (channel.plateau_limit > 0.0 && channel.peak > channel.plateau_limit * (1.0 + kRangeContradictionRatio)) channel.plateau_limit = 0.0;
+    if (channel.plateau_limit > 0.0 && channel.peak > channel.plateau_limit * (1.0 + kRangeContradictionRatio))
+      channel.plateau_limit = 0.0;
     if (!continues) {
       channel.entry_change = channel.run_length > 0 ? change : 0.0;
       channel.plateau_first_reading = value;
@@ -129,14 +133,17 @@ Clipping SaturationLimitDetector::classify_clipping(const ImuSample& sample, Sta
   return out;
 }
 
-void SaturationLimitDetector::classify_clipping_of_all(std::span<const ImuSample> samples, State& state, std::span<Clipping> out) const {
+void SaturationLimitDetector::classify_clipping_of_all(std::span<const ImuSample> samples, State& state,
+                                                       std::span<Clipping> out) const {
   for (const ImuSample& sample : samples) observe_reading(sample, state);
   for (std::size_t k = 0; k < samples.size(); ++k) out[k] = classify_clipping(samples[k], state);
-  for (std::size_t k = samples.size(); k-- > 1;) add_rising_edge_at_limit(samples[k - 1], samples[k], out[k], state, out[k - 1]);
+  for (std::size_t k = samples.size(); k-- > 1;)
+    add_rising_edge_at_limit(samples[k - 1], samples[k], out[k], state, out[k - 1]);
 }
 
-void SaturationLimitDetector::add_rising_edge_at_limit(const ImuSample& sample, const ImuSample& next, const Clipping& of_next,
-                                   const State& state, Clipping& clipping) const {
+void SaturationLimitDetector::add_rising_edge_at_limit(const ImuSample& sample, const ImuSample& next,
+                                                       const Clipping& of_next, const State& state,
+                                                       Clipping& clipping) const {
   for (int c = 0; c < 6; ++c) {
     const std::uint8_t after = c < 3 ? of_next.gyro : of_next.accel;
     if ((after >> (c % 3) & 1u) == 0) continue;

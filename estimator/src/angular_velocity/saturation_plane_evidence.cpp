@@ -56,7 +56,8 @@ Segment next_segment(std::span<const std::size_t> inliers, std::size_t& at) {
 
 // Returns the log-likelihood ratio of saturation to gyro noise for the scatter of readings about a line: rails.md
 // (R65). Saturated readings contain no noise if the device adds the noise before it clips.
-double plane_thickness_log_likelihood(const DistinctReadings& readings, const SaturationPlaneCandidate& facet, const Segment& s) {
+double plane_thickness_log_likelihood(const DistinctReadings& readings, const SaturationPlaneCandidate& facet,
+                                      const Segment& s) {
   if (s.size() <= kThinLostFreedom) return 0.0;
   const std::size_t first = s.first + 1, count = s.size() - 2;
   const double middle = 0.5 * static_cast<double>(count - 1);
@@ -85,7 +86,8 @@ struct CurvatureAtSegment {
   bool is_curved_at_ends() const { return curvature_at_ends >= kBendRatioMin * curvature_in_segment; }
 };
 
-std::optional<CurvatureAtSegment> curvature_at_segment(const DistinctReadings& readings, const SaturationPlaneCandidate& facet, const Segment& s) {
+std::optional<CurvatureAtSegment> curvature_at_segment(const DistinctReadings& readings,
+                                                       const SaturationPlaneCandidate& facet, const Segment& s) {
   const std::vector<Vector3d>& rates = readings.rates;
   const auto value = [&](std::size_t k) { return facet.side * facet.row.dot(rates[k]); };
   double depth = std::numeric_limits<double>::max();
@@ -104,7 +106,8 @@ std::optional<CurvatureAtSegment> curvature_at_segment(const DistinctReadings& r
 
 // Returns the log likelihood of saturation from the change of slope where the saturation starts or ends: rails.md
 // (R64). An impact changes the slope on all axes.
-double end_kink_evidence(const DistinctReadings& readings, const SaturationPlaneCandidate& facet, const Segment& s, bool after) {
+double end_kink_evidence(const DistinctReadings& readings, const SaturationPlaneCandidate& facet, const Segment& s,
+                         bool after) {
   const std::vector<Vector3d>& rates = readings.rates;
   if (s.size() < 3 || (after ? s.last + 3 >= rates.size() : s.first < 3)) return 0.0;
   const double noise = readings.noise[facet.axis];
@@ -119,7 +122,8 @@ double end_kink_evidence(const DistinctReadings& readings, const SaturationPlane
   return std::clamp(-std::log(5.0 * ratio), -0.5, kMaxKinkLogLikelihood);
 }
 
-Eigen::Matrix3d information_of(const DistinctReadings& readings, const SaturationPlaneCandidate& facet, const Segment& s) {
+Eigen::Matrix3d information_of(const DistinctReadings& readings, const SaturationPlaneCandidate& facet,
+                               const Segment& s) {
   Vector3d mean = Vector3d::Zero();
   for (std::size_t k = s.first; k <= s.last; ++k) mean += readings.rates[k] / static_cast<double>(s.size());
   Vector3d A;
@@ -140,7 +144,8 @@ DistinctReadings distinct_readings(std::span<const Vector3d> readings, std::vect
     for (int j = 0; j < 3 && !out.rates.empty(); ++j) {
       const double change = std::abs(y[j] - out.rates.back()[j]);
       // The rounding error of a floating-point sum is smaller than any quantisation step of a sensor.
-      if (change > 1e-9 * (1.0 + std::abs(y[j]))) out.min_reading_change[j] = std::min(out.min_reading_change[j], change);
+      if (change > 1e-9 * (1.0 + std::abs(y[j])))
+        out.min_reading_change[j] = std::min(out.min_reading_change[j], change);
     }
     out.rates.push_back(y);
   }
@@ -162,7 +167,7 @@ DistinctReadings distinct_readings(std::span<const Vector3d> readings, std::vect
 }
 
 double plateau_segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d& slope_information,
-                        std::span<const std::size_t> inliers, SaturationPlaneCandidate& facet) {
+                                std::span<const std::size_t> inliers, SaturationPlaneCandidate& facet) {
   const double thickness = 2.5 * facet.noise_sigma_rad_s, noise = readings.noise[facet.axis];
   const double of_level = std::log(kLevelRangeFraction * facet.plane_distance / thickness);
   double odds = 0.0;
@@ -179,7 +184,8 @@ double plateau_segment_evidence(const DistinctReadings& readings, const Eigen::M
     odds += std::max(0.0, thin);
     if (!shape->is_curved_at_ends()) continue;
     // See rails.md (R62), (R63).
-    const double flatness = static_cast<double>(s.size() - 1) * std::log(shape->curvature_at_ends / shape->curvature_in_segment);
+    const double flatness =
+        static_cast<double>(s.size() - 1) * std::log(shape->curvature_at_ends / shape->curvature_in_segment);
     odds += std::min(flatness, -std::log(kConstantRateFraction)) + of_level;
     for (const bool after : {false, true}) odds += end_kink_evidence(readings, facet, s, after);
     H += information_of(readings, facet, s);
@@ -190,7 +196,8 @@ double plateau_segment_evidence(const DistinctReadings& readings, const Eigen::M
   odds -= kBeyondPenalty *
           std::max(0.0, static_cast<double>(beyond) - kOutlierFraction * static_cast<double>(inliers.size()));
   if (facet.segments == 0) return -std::numeric_limits<double>::infinity();
-  facet.plane_tolerance_rad_s = std::max(facet.plane_tolerance_rad_s, std::min(kAtRailSigmas * noise, kAtRailRatioMax * facet.plane_distance));
+  facet.plane_tolerance_rad_s =
+      std::max(facet.plane_tolerance_rad_s, std::min(kAtRailSigmas * noise, kAtRailRatioMax * facet.plane_distance));
   // The Occam factor is the ratio of posterior to prior parameter volume: rails.md (R66).
   const Eigen::Matrix3d posterior_covariance = H.inverse();
   const double of_slopes =

@@ -22,9 +22,9 @@ namespace {
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-using rails::PlaneSlopePrior;
-using rails::PlaneInlierGate;
 using rails::other_axes_readings;
+using rails::PlaneInlierGate;
+using rails::PlaneSlopePrior;
 using rails::SaturationPlaneSide;
 
 // Initial standard deviations of the saturated readings about their plane, relative to the thickness of the searched
@@ -44,18 +44,19 @@ double gaussian_log_ratio(double value, double sigma) {
 }
 
 // See rails.md (R67).
-double equal_limits_log_odds(const SaturationPlaneFinder::Params& params, const DistinctReadings& readings, const SaturationPlanes& known,
-                      const Side& side) {
+double equal_limits_log_odds(const SaturationPlaneFinder::Params& params, const DistinctReadings& readings,
+                             const SaturationPlanes& known, const Side& side) {
   const double level = side.plane.plane_distance;
   double odds = params.kLogOddsBefore;
   if (level < params.distance_min_rad_s) return kImpossibleLogOdds;
   for (int other = 0; other < 3; ++other) {
     const auto& rail = known.sensing_axis[static_cast<std::size_t>(other)];
     if (rail && other == side.axis) {
-      odds += kOppositeSignLogOdds + gaussian_log_ratio(level - rail->saturation_limit_rad_s, params.kOffsetSigmaRatio * level);
+      odds += kOppositeSignLogOdds +
+              gaussian_log_ratio(level - rail->saturation_limit_rad_s, params.kOffsetSigmaRatio * level);
     } else if (rail) {
-      odds +=
-          kNearElementLogOdds + gaussian_log_ratio(level - rail->saturation_limit_rad_s, 2.0 * params.kOffsetSigmaRatio * level);
+      odds += kNearElementLogOdds +
+              gaussian_log_ratio(level - rail->saturation_limit_rad_s, 2.0 * params.kOffsetSigmaRatio * level);
     }
     if (other == side.axis) continue;
     const double beyond = readings.peak[other] / level - 1.0 - kElementLevelRatio;
@@ -63,7 +64,8 @@ double equal_limits_log_odds(const SaturationPlaneFinder::Params& params, const 
   }
   if (const auto& rail = params.known_limits.sensing_axis[static_cast<std::size_t>(side.axis)]) {
     const double apart = level - rail->saturation_limit_rad_s - side.side * rail->offset_rad_s;
-    odds += std::max(kFarFromKnownLogOdds, kNearKnownLogOdds + gaussian_log_ratio(apart, kKnownLevelSigmaRatio * level));
+    odds +=
+        std::max(kFarFromKnownLogOdds, kNearKnownLogOdds + gaussian_log_ratio(apart, kKnownLevelSigmaRatio * level));
   }
   if (params.stated_range_rad_s) {
     const double ratio = level / *params.stated_range_rad_s;
@@ -73,8 +75,8 @@ double equal_limits_log_odds(const SaturationPlaneFinder::Params& params, const 
 }
 
 // See rails.md (R53).
-SaturationPlane merged_plane(const SaturationPlaneFinder::Params& params, const DistinctReadings& readings, const Side* minus,
-                 const Side* plus) {
+SaturationPlane merged_plane(const SaturationPlaneFinder::Params& params, const DistinctReadings& readings,
+                             const Side* minus, const Side* plus) {
   Eigen::Matrix4d H = Eigen::Matrix4d::Zero();
   Eigen::Vector4d g = Eigen::Vector4d::Zero();
   const int axis = (plus != nullptr ? plus : minus)->axis;
@@ -119,7 +121,8 @@ SaturationPlane merged_plane(const SaturationPlaneFinder::Params& params, const 
 
 using Pair = std::array<std::optional<Side>, 2>;
 
-SaturationPlane merged_plane(const SaturationPlaneFinder::Params& params, const DistinctReadings& readings, const Pair& pair) {
+SaturationPlane merged_plane(const SaturationPlaneFinder::Params& params, const DistinctReadings& readings,
+                             const Pair& pair) {
   return merged_plane(params, readings, pair[0] ? &*pair[0] : nullptr, pair[1] ? &*pair[1] : nullptr);
 }
 
@@ -129,14 +132,16 @@ struct PlaneSideSearch {
   SaturationPlaneFinder::Workspace& workspace;
 
   // See rails.md (R60).
-  Side search_near_prior(int axis, int sign, const SaturationPlanes& known, const PlaneSlopePrior& prior, double range) const {
+  Side search_near_prior(int axis, int sign, const SaturationPlanes& known, const PlaneSlopePrior& prior,
+                         double range) const {
     Side side{axis, sign, {}, {}};
     const auto extreme = rails::find_extreme_reading(params, readings, axis, sign, prior, range, workspace);
     if (!extreme) return side;
     const Vector2d searched = rails::search_cross_axis_slopes(readings, *extreme, range, prior, workspace);
     for (const Vector2d& slopes : {searched, prior.cross_axis_slopes}) {
       for (const double start : kInitialSigmaRatios) {
-        Side tried = rails::fit_saturation_plane(readings, *extreme, prior, slopes, start * extreme->slab_thickness, workspace);
+        Side tried =
+            rails::fit_saturation_plane(readings, *extreme, prior, slopes, start * extreme->slab_thickness, workspace);
         if (tried.samples < params.samples_min) continue;
         tried.log_odds = equal_limits_log_odds(params, readings, known, tried) +
                          plateau_segment_evidence(readings, prior.information, workspace.inliers, tried.plane);
@@ -150,7 +155,8 @@ struct PlaneSideSearch {
     const auto element = static_cast<std::size_t>(axis);
     if (const auto& rail = known.sensing_axis[element]) {
       const Matrix2d of_slopes = rail->covariance.topLeftCorner<2, 2>();
-      const PlaneSlopePrior prior{other_axes_readings(rail->row, axis), (of_slopes + 1e-6 * Matrix2d::Identity()).inverse()};
+      const PlaneSlopePrior prior{other_axes_readings(rail->row, axis),
+                                  (of_slopes + 1e-6 * Matrix2d::Identity()).inverse()};
       const double range = std::min(params.kSlopeMax, 3.0 * std::sqrt(of_slopes.trace()) + 1e-3);
       return search_near_prior(axis, sign, known, prior, range);
     }
@@ -161,7 +167,8 @@ struct PlaneSideSearch {
     const Matrix2d changed =
         earlier->covariance.topLeftCorner<2, 2>() + kKnownSlopeSigma * kKnownSlopeSigma * Matrix2d::Identity();
     const double range = std::min(params.kSlopeMax, 3.0 * std::sqrt(changed.trace()));
-    const Side same = search_near_prior(axis, sign, known, {other_axes_readings(earlier->row, axis), changed.inverse()}, range);
+    const Side same =
+        search_near_prior(axis, sign, known, {other_axes_readings(earlier->row, axis), changed.inverse()}, range);
     return same.log_odds > side.log_odds ? same : side;
   }
 
@@ -210,7 +217,7 @@ SaturationPlanes SaturationPlaneFinder::find(std::span<const ImuSample> samples,
 }
 
 SaturationPlanes SaturationPlaneFinder::find(std::span<const Vector3d> readings_rad_s, const SaturationPlanes& before,
-                                 Workspace& workspace) const {
+                                             Workspace& workspace) const {
   const DistinctReadings readings = distinct_readings(readings_rad_s, workspace.rates, workspace.values);
   SaturationPlanes found;
   if (readings.rates.size() < static_cast<std::size_t>(params_.samples_min) + 2)

@@ -32,7 +32,8 @@ double candidates(const DistinctReadings& readings, int axis, int sign, double s
   return sure - slab;
 }
 
-void collect_plane_inliers(const DistinctReadings& readings, double from, SaturationPlaneSide& side, Workspace& workspace) {
+void collect_plane_inliers(const DistinctReadings& readings, double from, SaturationPlaneSide& side,
+                           Workspace& workspace) {
   workspace.inliers.clear();
   side.gate.row = side.plane.row;
   side.gate.from = from;
@@ -43,8 +44,8 @@ void collect_plane_inliers(const DistinctReadings& readings, double from, Satura
 
 // Fits a plane to the saturated readings by least squares, with a prior on the cross-axis sensitivities: rails.md
 // (R58). Cauchy weights reduce the effect of partly saturated readings, which are below the plane.
-void fit(const DistinctReadings& readings, const PlaneSlopePrior& prior, double deviation, SaturationPlaneCandidate& facet,
-         Workspace& workspace) {
+void fit(const DistinctReadings& readings, const PlaneSlopePrior& prior, double deviation,
+         SaturationPlaneCandidate& facet, Workspace& workspace) {
   const int axis = facet.axis;
   const Vector3d row = facet.row;
   const double level = facet.plane_distance;
@@ -82,19 +83,24 @@ void fit(const DistinctReadings& readings, const PlaneSlopePrior& prior, double 
 
 }  // namespace
 
-std::optional<ExtremeReading> find_extreme_reading(const SaturationPlaneFinder::Params& params, const DistinctReadings& readings, int axis,
-                                    int sign, const PlaneSlopePrior& prior, double slope_range, Workspace& workspace) {
+std::optional<ExtremeReading> find_extreme_reading(const SaturationPlaneFinder::Params& params,
+                                                   const DistinctReadings& readings, int axis, int sign,
+                                                   const PlaneSlopePrior& prior, double slope_range,
+                                                   Workspace& workspace) {
   double peak = 0.0;
   for (const Vector3d& y : readings.rates) peak = std::max(peak, sign * y[axis]);
   if (peak < 0.5 * params.distance_min_rad_s) return std::nullopt;
   const double steepest = slope_range + prior.cross_axis_slopes.lpNorm<Eigen::Infinity>() + kGridStep;
-  ExtremeReading out{axis, sign, std::max({0.002 * peak, 4.0 * readings.noise[axis], 3.0 * readings.min_reading_change[axis]}), steepest};
-  out.near_readings_min = candidates(readings, axis, sign, steepest, 2.0 * out.slab_thickness, workspace.near_plane_indices);
+  ExtremeReading out{axis, sign,
+                     std::max({0.002 * peak, 4.0 * readings.noise[axis], 3.0 * readings.min_reading_change[axis]}),
+                     steepest};
+  out.near_readings_min =
+      candidates(readings, axis, sign, steepest, 2.0 * out.slab_thickness, workspace.near_plane_indices);
   return out;
 }
 
 Vector2d search_cross_axis_slopes(const DistinctReadings& readings, const ExtremeReading& extreme, double slope_max,
-                       const PlaneSlopePrior& prior, Workspace& workspace) {
+                                  const PlaneSlopePrior& prior, Workspace& workspace) {
   const std::vector<std::size_t>& near = workspace.near_plane_indices;
   const int axis = extreme.axis;
   const int steps = static_cast<int>(std::floor(slope_max / kGridStep + 1e-9));
@@ -112,7 +118,8 @@ Vector2d search_cross_axis_slopes(const DistinctReadings& readings, const Extrem
         values[i] = extreme.side * (y[axis] + slopes.dot(other_axes_readings(y, axis)));
         top = std::max(top, values[i]);
       }
-      const auto count = std::count_if(values.begin(), values.end(), [&](double v) { return v >= top - extreme.slab_thickness; });
+      const auto count =
+          std::count_if(values.begin(), values.end(), [&](double v) { return v >= top - extreme.slab_thickness; });
       const Vector2d off = slopes - prior.cross_axis_slopes;
       const double score = static_cast<double>(count) - 0.5 * off.dot(prior.information * off);
       if (!(score > highest)) continue;
@@ -123,8 +130,9 @@ Vector2d search_cross_axis_slopes(const DistinctReadings& readings, const Extrem
   return best;
 }
 
-SaturationPlaneSide fit_saturation_plane(const DistinctReadings& readings, const ExtremeReading& extreme, const PlaneSlopePrior& prior,
-               const Vector2d& slopes, double deviation, Workspace& workspace) {
+SaturationPlaneSide fit_saturation_plane(const DistinctReadings& readings, const ExtremeReading& extreme,
+                                         const PlaneSlopePrior& prior, const Vector2d& slopes, double deviation,
+                                         Workspace& workspace) {
   const int axis = extreme.axis;
   SaturationPlaneSide side{axis, extreme.side, {}, {}};
   side.gate.max_cross_axis_slope = extreme.max_cross_axis_slope;
@@ -136,7 +144,8 @@ SaturationPlaneSide fit_saturation_plane(const DistinctReadings& readings, const
   facet.row[(axis + 1) % 3] = slopes[0];
   facet.row[(axis + 2) % 3] = slopes[1];
   double top = -std::numeric_limits<double>::max();
-  for (const std::size_t k : workspace.near_plane_indices) top = std::max(top, facet.side * facet.row.dot(readings.rates[k]));
+  for (const std::size_t k : workspace.near_plane_indices)
+    top = std::max(top, facet.side * facet.row.dot(readings.rates[k]));
   collect_plane_inliers(readings, top - extreme.slab_thickness, side, workspace);
   double floor = readings.min_reading_change[axis];
   facet.plane_tolerance_rad_s = extreme.slab_thickness;
@@ -144,7 +153,8 @@ SaturationPlaneSide fit_saturation_plane(const DistinctReadings& readings, const
     fit(readings, prior, deviation, facet, workspace);
     floor = std::max(kSlabRatioMin * facet.plane_distance, readings.min_reading_change[axis]);
     deviation = std::max(facet.noise_sigma_rad_s, 0.25 * floor);
-    facet.plane_tolerance_rad_s = std::clamp(kSlabDeviations * deviation, floor, std::max(floor, kSlabRatioMax * facet.plane_distance));
+    facet.plane_tolerance_rad_s =
+        std::clamp(kSlabDeviations * deviation, floor, std::max(floor, kSlabRatioMax * facet.plane_distance));
     collect_plane_inliers(readings, facet.plane_distance - facet.plane_tolerance_rad_s, side, workspace);
   }
   side.samples = static_cast<int>(workspace.inliers.size());

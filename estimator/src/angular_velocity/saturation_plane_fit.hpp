@@ -45,16 +45,19 @@ struct ExtremeReading {
 };
 
 /// Returns nothing if the largest reading of the axis is too small for saturation. Cost: O(N).
-std::optional<ExtremeReading> find_extreme_reading(const SaturationPlaneFinder::Params& params, const DistinctReadings& readings, int axis,
-                                    int sign, const PlaneSlopePrior& prior, double slope_range,
-                                    SaturationPlaneFinder::Workspace& workspace);
+std::optional<ExtremeReading> find_extreme_reading(const SaturationPlaneFinder::Params& params,
+                                                   const DistinctReadings& readings, int axis, int sign,
+                                                   const PlaneSlopePrior& prior, double slope_range,
+                                                   SaturationPlaneFinder::Workspace& workspace);
 
 /// Returns the cross-axis sensitivities of the plane that has the most readings closely below it: rails.md (R57).
-Eigen::Vector2d search_cross_axis_slopes(const DistinctReadings& readings, const ExtremeReading& extreme, double slope_max,
-                              const PlaneSlopePrior& prior, SaturationPlaneFinder::Workspace& workspace);
+Eigen::Vector2d search_cross_axis_slopes(const DistinctReadings& readings, const ExtremeReading& extreme,
+                                         double slope_max, const PlaneSlopePrior& prior,
+                                         SaturationPlaneFinder::Workspace& workspace);
 
 /// Fits a plane to the saturated readings, starting from the cross-axis sensitivities `slopes`: rails.md (R58).
-SaturationPlaneSide fit_saturation_plane(const DistinctReadings& readings, const ExtremeReading& extreme, const PlaneSlopePrior& prior,
-               const Eigen::Vector2d& slopes, double deviation, SaturationPlaneFinder::Workspace& workspace);
+SaturationPlaneSide fit_saturation_plane(const DistinctReadings& readings, const ExtremeReading& extreme,
+                                         const PlaneSlopePrior& prior, const Eigen::Vector2d& slopes, double deviation,
+                                         SaturationPlaneFinder::Workspace& workspace);
 
 }  // namespace tumble::rails

@@ -17,7 +17,7 @@ constexpr double kSameShare = 0.003;
 }  // namespace
 
 SaturationPlanes SaturationPlaneFinder::merge_known_saturation_planes(const SaturationPlanes& found,
-                                                    std::span<const Vector3d> readings_rad_s) const {
+                                                                      std::span<const Vector3d> readings_rad_s) const {
   SaturationPlanes out = found;
   for (std::size_t j = 0; j < 3; ++j) {
     const auto& earlier = params_.known_limits.sensing_axis[j];
@@ -49,7 +49,8 @@ SensingDirections sensing_directions(const SaturationPlanes& planes, double unkn
   for (std::size_t j = 0; j < 3; ++j) {
     const auto i = static_cast<Eigen::Index>(j);
     const std::optional<SaturationPlane>& plane = planes.sensing_axis[j];
-    out.cross_axis_slope_sigma[i] = plane ? std::sqrt(0.5 * plane->covariance.topLeftCorner<2, 2>().trace()) : unknown_sigma;
+    out.cross_axis_slope_sigma[i] =
+        plane ? std::sqrt(0.5 * plane->covariance.topLeftCorner<2, 2>().trace()) : unknown_sigma;
     if (plane) out.sensing_directions.row(i) = plane->row.transpose();
   }
   return out;
@@ -62,13 +63,15 @@ SensingAxisClipping classify_clipping(const ImuSample& sample, const SaturationP
     const auto& rail = planes.sensing_axis[j];
     if (!rail) continue;
     for (const int sign : {-1, 1}) {
-      if (rail->is_saturated(sample.angular_velocity_rad_s, sign)) out.saturated_side[j] = static_cast<std::int8_t>(sign);
+      if (rail->is_saturated(sample.angular_velocity_rad_s, sign))
+        out.saturated_side[j] = static_cast<std::int8_t>(sign);
     }
   }
   return out;
 }
 
-void classify_clipping(std::span<const ImuSample> samples, const SaturationPlanes& planes, std::span<SensingAxisClipping> out) {
+void classify_clipping(std::span<const ImuSample> samples, const SaturationPlanes& planes,
+                       std::span<SensingAxisClipping> out) {
   for (std::size_t k = 0; k < samples.size(); ++k) out[k] = classify_clipping(samples[k], planes);
 }
 

@@ -176,8 +176,9 @@ SensorErrorFit fit_sensor_errors(const SensorErrorInformation& evidence, const S
       for (std::size_t f = 0; f < (one_g_sensitivity ? 1 : kGSensitivitySizes.size()); ++f) {
         for (std::size_t d = 0; d < (one_delay ? 1 : kDelaySizes.size()); ++d) {
           const ErrorSize scale = kScaleSizes[i], cross = kCrossSizes[m], g_sensitivity = kGSensitivitySizes[f],
-                     delay = kDelaySizes[d];
-          const ErrorFractions shares{scale.error_fraction, cross.error_fraction, g_sensitivity.error_fraction, delay.error_fraction};
+                          delay = kDelaySizes[d];
+          const ErrorFractions shares{scale.error_fraction, cross.error_fraction, g_sensitivity.error_fraction,
+                                      delay.error_fraction};
           const double prior = scale.probability * cross.probability * g_sensitivity.probability * delay.probability;
           all.push_back(
               posterior(information, earlier_runs.information, h, prior_deviations(sizes, shares), std::log(prior)));
@@ -213,7 +214,8 @@ SensorErrorFit fit_sensor_errors(const SensorErrorInformation& evidence, const S
 }
 
 // See rate_smoother.md (R43).
-SensorErrorInformation evidence_from_earlier_runs(const KnownSensorErrors& earlier_runs, const SensorErrorPriors& sizes) {
+SensorErrorInformation evidence_from_earlier_runs(const KnownSensorErrors& earlier_runs,
+                                                  const SensorErrorPriors& sizes) {
   const Vector unit = prior_deviations(sizes, {});
   const Matrix symmetric = 0.5 * (earlier_runs.covariance + earlier_runs.covariance.transpose());
   const Matrix scaled = unit.cwiseInverse().asDiagonal() * symmetric * unit.cwiseInverse().asDiagonal();

@@ -26,7 +26,7 @@ constexpr std::size_t kSearchGrowthDivisor = 8;
 constexpr double kLowReadingRatios[] = {0.5, 0.9};
 
 std::array<std::optional<double>, 6> saturation_limits_of(const SaturationLimitDetector& axis_aligned_rails,
-                                              const SaturationLimitDetector::State& state) {
+                                                          const SaturationLimitDetector::State& state) {
   std::array<std::optional<double>, 6> out;
   for (int c = 0; c < 6; ++c) out[static_cast<std::size_t>(c)] = axis_aligned_rails.saturation_limit(state, c);
   return out;
@@ -50,7 +50,8 @@ StreamingClippingFinder::State StreamingClippingFinder::start() const {
   return state;
 }
 
-bool StreamingClippingFinder::is_near(const Vector3d& reading, Triad triad, const DistinctReadingMemory& memory, double share) const {
+bool StreamingClippingFinder::is_near(const Vector3d& reading, Triad triad, const DistinctReadingMemory& memory,
+                                      double share) const {
   const std::size_t i = index_of(triad);
   for (int j = 0; j < 3; ++j) {
     const double magnitude = std::abs(reading[j]);
@@ -61,7 +62,8 @@ bool StreamingClippingFinder::is_near(const Vector3d& reading, Triad triad, cons
 }
 
 // Above readings_max_ readings, those far from the largest readings are dropped first, then the oldest.
-void StreamingClippingFinder::store_distinct_reading(const Vector3d& reading, Triad triad, DistinctReadingMemory& memory) const {
+void StreamingClippingFinder::store_distinct_reading(const Vector3d& reading, Triad triad,
+                                                     DistinctReadingMemory& memory) const {
   std::vector<Vector3d>& readings = memory.readings;
   if (readings.size() == readings_max_) {
     memory.readings_pruned = true;
@@ -87,12 +89,15 @@ void StreamingClippingFinder::store_distinct_reading(const Vector3d& reading, Tr
 
 SaturationPlanes StreamingClippingFinder::search_saturation_planes(Triad triad, State& state) const {
   const DistinctReadingMemory& memory = state.distinct_readings[index_of(triad)];
-  const SaturationPlanes& known = triad == Triad::gyro ? state.known_limits.gyro_planes : state.known_limits.accel_saturation_planes;
+  const SaturationPlanes& known =
+      triad == Triad::gyro ? state.known_limits.gyro_planes : state.known_limits.accel_saturation_planes;
   const bool unstated = stated_range_contradicted(axis_limit_detector_, state.known_limits.axis_limit_state, triad);
-  SaturationPlanes found = plane_finders_[index_of(triad)][unstated ? 1 : 0].find(memory.readings, known, state.search_workspace);
+  SaturationPlanes found =
+      plane_finders_[index_of(triad)][unstated ? 1 : 0].find(memory.readings, known, state.search_workspace);
   for (std::size_t j = 0; j < 3 && memory.readings_pruned; ++j) {
     const auto& before = known.sensing_axis[j];
-    if (!found.sensing_axis[j] && before && !before->is_contradicted_by_readings(memory.readings)) found.sensing_axis[j] = before;
+    if (!found.sensing_axis[j] && before && !before->is_contradicted_by_readings(memory.readings))
+      found.sensing_axis[j] = before;
   }
   return found;
 }
@@ -110,14 +115,16 @@ bool StreamingClippingFinder::observe_reading(const Vector3d& reading, Triad tri
   }
   const bool ended = memory.samples_since_search == kBeside - 1;
   if (memory.near_limit_since_search == 0) return false;
-  if (!ended && memory.near_limit_since_search < std::max<std::size_t>(2, memory.near_limit_count / kSearchGrowthDivisor))
+  if (!ended &&
+      memory.near_limit_since_search < std::max<std::size_t>(2, memory.near_limit_count / kSearchGrowthDivisor))
     return false;
   memory.near_limit_since_search = 0;
   const SaturationPlanes planes = search_saturation_planes(triad, state);
   const bool upright = are_upright(memory.readings, planes, state.known_limits.axis_limit_state, triad);
-  SaturationPlanes& known = triad == Triad::gyro ? state.known_limits.gyro_planes : state.known_limits.accel_saturation_planes;
-  bool& known_upright =
-      triad == Triad::gyro ? state.known_limits.gyro_clips_after_compensation : state.known_limits.accel_clips_after_compensation;
+  SaturationPlanes& known =
+      triad == Triad::gyro ? state.known_limits.gyro_planes : state.known_limits.accel_saturation_planes;
+  bool& known_upright = triad == Triad::gyro ? state.known_limits.gyro_clips_after_compensation
+                                             : state.known_limits.accel_clips_after_compensation;
   const bool changed = planes != known || upright != known_upright;
   known = planes;
   known_upright = upright;
@@ -134,13 +141,13 @@ bool StreamingClippingFinder::observe_reading(const ImuSample& sample, State& st
   return changed;
 }
 
-Clipping StreamingClippingFinder::classify_clipping(const ImuSample* before, const ImuSample& sample, const State& state,
-                                           const ImuSample* after) const {
+Clipping StreamingClippingFinder::classify_clipping(const ImuSample* before, const ImuSample& sample,
+                                                    const State& state, const ImuSample* after) const {
   SaturationLimitDetector::State axis_aligned_rails = state.known_limits.axis_limit_state;
   Clipping out = axis_limit_detector_.classify_clipping(sample, axis_aligned_rails);
   if (after != nullptr)
-    axis_limit_detector_.add_rising_edge_at_limit(sample, *after, axis_limit_detector_.classify_clipping(*after, axis_aligned_rails),
-                                        axis_aligned_rails, out);
+    axis_limit_detector_.add_rising_edge_at_limit(
+        sample, *after, axis_limit_detector_.classify_clipping(*after, axis_aligned_rails), axis_aligned_rails, out);
   for (const Triad triad : {Triad::gyro, Triad::accelerometer})
     out = clipping_from_planes(state.known_limits.saturation_planes_in_use(triad), triad, out, before, sample, after);
   return out;

@@ -88,7 +88,9 @@ std::vector<RotationSample> rotation_samples(const TriadReadings& gyro) {
   std::vector<RotationSample> out;
   for (std::size_t k = 1; k + 1 < gyro.size() && out.size() < kSamplesMax; ++k) {
     const Vector3d &before = gyro.value[k - 1], &w = gyro.value[k], &after = gyro.value[k + 1];
-    if (w.norm() < kRateMin_rad_s || gyro.is_sample_clipped[k - 1] || gyro.is_sample_clipped[k] || gyro.is_sample_clipped[k + 1]) continue;
+    if (w.norm() < kRateMin_rad_s || gyro.is_sample_clipped[k - 1] || gyro.is_sample_clipped[k] ||
+        gyro.is_sample_clipped[k + 1])
+      continue;
     const double left = gyro.time_s[k] - gyro.time_s[k - 1], right = gyro.time_s[k + 1] - gyro.time_s[k];
     const Vector3d alpha = (left / right * (after - w) + right / left * (w - before)) / (left + right);
     out.push_back({gyro.time_s[k], so3::hat(alpha) + so3::hat(w) * so3::hat(w)});
@@ -98,7 +100,7 @@ std::vector<RotationSample> rotation_samples(const TriadReadings& gyro) {
 
 // Returns the robust cost of the flight residuals, minimised over lever arm and bias: rate_smoother.md (R10).
 double alignment_cost(const TriadReadings& accel, std::span<const RotationSample> instants, const Vector3d& lever_arm_m,
-            double delay_s) {
+                      double delay_s) {
   Unknown prior, at, information;
   prior << lever_arm_m, Vector3d::Zero();
   information << Vector3d::Constant(1.0 / (kLeverSigma_m * kLeverSigma_m)),
@@ -161,13 +163,16 @@ TriadDelay delay_from_impacts(const TriadReadings& gyro, const TriadReadings& ac
   std::array<std::size_t, ImpactDelayCorrelation::kDelayCount> begin{}, end{};
   ImpactDelayCorrelation sums;
   for (std::size_t k = 1; k < gyro.size(); ++k) {
-    if (gyro.is_sample_clipped[k] || gyro.is_sample_clipped[k - 1] || !ImpactDelayCorrelation::counts(gyro.value[k - 1], gyro.value[k])) continue;
+    if (gyro.is_sample_clipped[k] || gyro.is_sample_clipped[k - 1] ||
+        !ImpactDelayCorrelation::counts(gyro.value[k - 1], gyro.value[k]))
+      continue;
     const double begin_s = gyro.time_s[k - 1], end_s = gyro.time_s[k], span_s = end_s - begin_s;
     ImpactDelayCorrelation::DelayGrid mean;
     for (int i = 0; i < ImpactDelayCorrelation::kDelayCount; ++i) {
       const auto at = static_cast<std::size_t>(i);
       const double delay_s = (i - ImpactDelayCorrelation::kDelayMax) * step_s;
-      mean[i] = (force.integral_until(end_s + delay_s, end[at]) - force.integral_until(begin_s + delay_s, begin[at])) / span_s;
+      mean[i] = (force.integral_until(end_s + delay_s, end[at]) - force.integral_until(begin_s + delay_s, begin[at])) /
+                span_s;
     }
     sums.add((gyro.value[k] - gyro.value[k - 1]).norm() / span_s, mean);
   }

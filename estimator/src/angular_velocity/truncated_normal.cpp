@@ -27,14 +27,16 @@ GaussianMoments truncated_gaussian_moments(const GaussianMoments& from, double b
 }
 
 // See rate_smoother.md (R22), (R25).
-GaussianLikelihoodApproximation refined_bound_approximation(const GaussianMoments& marginal, const GaussianLikelihoodApproximation& now, double bound, double bound_variance,
-                           double variance_max, double share) {
+GaussianLikelihoodApproximation refined_bound_approximation(const GaussianMoments& marginal,
+                                                            const GaussianLikelihoodApproximation& now, double bound,
+                                                            double bound_variance, double variance_max, double share) {
   const double precision = std::max(1.0 / marginal.variance - now.precision, 1.0 / variance_max);
   const GaussianMoments cavity{(marginal.mean / marginal.variance - now.information_mean) / precision, 1.0 / precision};
   const GaussianMoments wanted = truncated_gaussian_moments(cavity, bound, bound_variance);
   const double found = std::max(0.0, 1.0 / wanted.variance - precision);
   const double shift = wanted.mean / wanted.variance - precision * cavity.mean;
-  return {now.precision + share * (found - now.precision), now.information_mean + share * (shift - now.information_mean)};
+  return {now.precision + share * (found - now.precision),
+          now.information_mean + share * (shift - now.information_mean)};
 }
 
 }  // namespace tumble

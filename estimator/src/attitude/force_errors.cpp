@@ -63,7 +63,8 @@ void ForceErrors::update(State& state) const {
   const double samples = state.samples;
   double reach_m = 0.0;
   for (int k = 1; k < params_.count; ++k) {
-    reach_m = std::max(reach_m, (params_.imu_positions_m[static_cast<std::size_t>(k)] - params_.imu_positions_m[0]).norm());
+    reach_m =
+        std::max(reach_m, (params_.imu_positions_m[static_cast<std::size_t>(k)] - params_.imu_positions_m[0]).norm());
   }
   const double variance = squared(params_.noise_m_s2) +
                           squared(params_.acceleration_noise_ratio * reach_m * state.acceleration_rad_s2 / samples);

@@ -16,7 +16,8 @@ namespace {
 constexpr double kSecondDifference = 11.0 / 20.0, kJerkSpan_periods = 1.5;
 
 bool is_free(const GyroReadings& rates, std::size_t k, Eigen::Index axis) {
-  return rates.clip_signs[k].gyro[static_cast<std::size_t>(axis)] == 0 && !(rates.partial_saturation_sigma_rad_s[k][axis] > 0.0);
+  return rates.clip_signs[k].gyro[static_cast<std::size_t>(axis)] == 0 &&
+         !(rates.partial_saturation_sigma_rad_s[k][axis] > 0.0);
 }
 
 struct SampleRange {
@@ -33,7 +34,8 @@ void add_jerk_from_curvature(const GyroReadings& rates, const Eigen::Matrix3d& r
   const double unit = kSecondDifference * period_s * period_s * period_s;
   std::vector<double> counts(densities.size(), 0.0);
   for (std::size_t k = 1; k + 1 < rates.samples.size(); ++k) {
-    if (rates.averaging_windows.end_s[k + 1] - rates.averaging_windows.end_s[k - 1] > 2.0 * kLongest * period_s) continue;
+    if (rates.averaging_windows.end_s[k + 1] - rates.averaging_windows.end_s[k - 1] > 2.0 * kLongest * period_s)
+      continue;
     const Vector3d bend = rates.samples[k + 1].angular_velocity_rad_s - 2.0 * rates.samples[k].angular_velocity_rad_s +
                           rates.samples[k - 1].angular_velocity_rad_s;
     double sum = 0.0, count = 0.0;
@@ -52,8 +54,8 @@ void add_jerk_from_curvature(const GyroReadings& rates, const Eigen::Matrix3d& r
 }
 
 // Returns false if reading k or k + 1 is saturated, or if a reading is missing between them.
-bool unclipped_slope_of(const GyroReadings& rates, const Eigen::Matrix3d& rows, std::size_t k, Eigen::Index axis, double& slope,
-              double& at_s) {
+bool unclipped_slope_of(const GyroReadings& rates, const Eigen::Matrix3d& rows, std::size_t k, Eigen::Index axis,
+                        double& slope, double& at_s) {
   if (!is_free(rates, k, axis) || !is_free(rates, k + 1, axis)) return false;
   const double dt_s = rates.averaging_windows.window_centre_s[k + 1] - rates.averaging_windows.window_centre_s[k];
   if (!(dt_s > 0.0) || dt_s > kLongest * rates.averaging_windows.period_s) return false;
@@ -65,7 +67,7 @@ bool unclipped_slope_of(const GyroReadings& rates, const Eigen::Matrix3d& rows, 
 
 // See carried.md (C25).
 void add_jerk_from_clipped_slopes(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s,
-                                 double node_s, std::vector<double>& densities) {
+                                  double node_s, std::vector<double>& densities) {
   const std::size_t count = rates.samples.size();
   const double noise = 2.0 * noise_rad_s / rates.averaging_windows.period_s;  // noise of the difference of two slopes
   for (Eigen::Index axis = 0; axis < 3; ++axis) {

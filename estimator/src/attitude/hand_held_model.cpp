@@ -71,7 +71,9 @@ double clipped_axis_deficit(const NodeReadings& readings, const std::array<GyroS
     const SensingAxisSums& element = readings.gyro[static_cast<std::size_t>(i)];
     if (i == except) continue;
     const double predicted = rows[static_cast<std::size_t>(i)].predicted;
-    const double beyond = element.clipped_reading_count > 0.0 ? element.saturated_side * (predicted - element.mean_saturation_limit) : 0.0;
+    const double beyond = element.clipped_reading_count > 0.0
+                              ? element.saturated_side * (predicted - element.mean_saturation_limit)
+                              : 0.0;
     const double off = element.unusable_reading_count > 0.0 ? std::abs(predicted - element.mean_unusable_reading) : 0.0;
     sum += std::max({0.0, beyond, off});
   }
@@ -80,8 +82,8 @@ double clipped_axis_deficit(const NodeReadings& readings, const std::array<GyroS
 
 // Unclipped readings form two independent measurements, the rate at the mean time and the slope of the rate: carried.md
 // (C13).
-double add_unclipped_readings(const SensingAxisSums& e, const GyroSensingAxisRow& rows, double information, System::StateBlock& block,
-                              System::BorderBlock& corner) {
+double add_unclipped_readings(const SensingAxisSums& e, const GyroSensingAxisRow& rows, double information,
+                              System::StateBlock& block, System::BorderBlock& corner) {
   const double mean_t = e.time_sum_s / e.count;
   const double mean_z = e.reading_sum / e.count;
   const GyroRow row = rows.value + mean_t * rows.row_derivative;
@@ -91,20 +93,22 @@ double add_unclipped_readings(const SensingAxisSums& e, const GyroSensingAxisRow
   const double spread = e.time_squared_sum_s2 - e.time_sum_s * mean_t;
   if (e.count > 1.5 && spread > 1e-12) {
     const double slope_error = rows.predicted_derivative - (e.reading_time_sum - e.time_sum_s * mean_z) / spread;
-    add_gyro_row(rows.row_derivative, BorderRow::Zero(), spread * information, spread * information * slope_error, block,
-                 corner);
+    add_gyro_row(rows.row_derivative, BorderRow::Zero(), spread * information, spread * information * slope_error,
+                 block, corner);
     cost += spread * information * slope_error * slope_error;
   }
   return cost;
 }
 
 // See carried.md (C14).
-double add_bound(const SensingAxisSums& e, const GyroSensingAxisRow& rows, double sigma, double share, System::StateBlock& block,
-                 System::BorderBlock& corner) {
+double add_bound(const SensingAxisSums& e, const GyroSensingAxisRow& rows, double sigma, double share,
+                 System::StateBlock& block, System::BorderBlock& corner) {
   const GyroRow row = rows.value + e.clipped_time_s * rows.row_derivative;
-  const double u = e.saturated_side * (rows.predicted + e.clipped_time_s * rows.predicted_derivative - e.mean_saturation_limit) / sigma;
+  const double u = e.saturated_side *
+                   (rows.predicted + e.clipped_time_s * rows.predicted_derivative - e.mean_saturation_limit) / sigma;
   const double h = normal_hazard_function(u);
-  add_gyro_row(row, rows.border_row, share * h * (h + u) / (sigma * sigma), -e.saturated_side * h / sigma, block, corner);
+  add_gyro_row(row, rows.border_row, share * h * (h + u) / (sigma * sigma), -e.saturated_side * h / sigma, block,
+               corner);
   return minus_two_log_normal_cdf(u);
 }
 
@@ -117,7 +121,8 @@ double add_zero_prior(const Vector3d& value, double w, int i, System::StateBlock
 
 template <int N>
 double add_motion_factor(const Eigen::Matrix<double, 2 * N, 2 * N>& information, double scale, int first,
-                         const Eigen::Matrix<double, 3, 2 * N>& values, System::StateBlock& block, System::StateBlock& next) {
+                         const Eigen::Matrix<double, 3, 2 * N>& values, System::StateBlock& block,
+                         System::StateBlock& next) {
   const Eigen::Matrix<double, 3, 2 * N> slope = scale * values * information;
   for (int i = 0; i < N; ++i) {
     const int row = first + 3 * i;
@@ -171,7 +176,8 @@ double add_gyro(const NodeReadings& readings, const Matrix3d& rows, const Readin
           corner);
     }
     if (e.clipped_reading_count > 0.0) {
-      const double sigma = std::sqrt(variance / e.clipped_reading_count + noise.saturation_limit_sigma_rad_s * noise.saturation_limit_sigma_rad_s);
+      const double sigma = std::sqrt(variance / e.clipped_reading_count +
+                                     noise.saturation_limit_sigma_rad_s * noise.saturation_limit_sigma_rad_s);
       cost += add_bound(e, element, sigma, noise.bound, block, corner);
     }
   }
@@ -229,9 +235,13 @@ double add_force(const NodeReadings& readings, const Vector3d& g_W_m_s2, const R
 }
 
 double add_rest(const ReadingNoise& noise, const Node& node, System::StateBlock& block) {
-  return add_zero_prior(node.w_WI_I_rad_s, 1.0 / (noise.stationary_rate_sigma_rad_s * noise.stationary_rate_sigma_rad_s), kRate, block) +
-         add_zero_prior(node.v_W_m_s, 1.0 / (noise.stationary_velocity_sigma_m_s * noise.stationary_velocity_sigma_m_s), kVelocity, block) +
-         add_zero_prior(node.a_W_m_s2, 1.0 / (noise.stationary_acceleration_sigma_m_s2 * noise.stationary_acceleration_sigma_m_s2), kHandAccelerationIndex, block);
+  return add_zero_prior(node.w_WI_I_rad_s,
+                        1.0 / (noise.stationary_rate_sigma_rad_s * noise.stationary_rate_sigma_rad_s), kRate, block) +
+         add_zero_prior(node.v_W_m_s, 1.0 / (noise.stationary_velocity_sigma_m_s * noise.stationary_velocity_sigma_m_s),
+                        kVelocity, block) +
+         add_zero_prior(node.a_W_m_s2,
+                        1.0 / (noise.stationary_acceleration_sigma_m_s2 * noise.stationary_acceleration_sigma_m_s2),
+                        kHandAccelerationIndex, block);
 }
 
 // See carried.md (C3).
@@ -295,8 +305,8 @@ double Motion::add_attitude(const Node& from, const Node& to, double jerk, Syste
 }
 
 // Adds the motion model of one time step: carried.md (C2), (C4), (C6), (C7), (C8).
-double Motion::add_motion_model(const Node& from, const Node& to, double hand, System::StateBlock& block, System::StateBlock& next,
-                        double jerk) const {
+double Motion::add_motion_model(const Node& from, const Node& to, double hand, System::StateBlock& block,
+                                System::StateBlock& next, double jerk) const {
   double cost = add_attitude(from, to, jerk, block, next);
   Eigen::Matrix<double, 3, 4> turn;
   turn << from.w_WI_I_rad_s, from.angular_acceleration_rad_s2, to.w_WI_I_rad_s, to.angular_acceleration_rad_s2;

@@ -49,7 +49,7 @@ HandHeldProblem::HandHeldProblem(const HandHeldProblem& whole, const ProblemSegm
       constants_(whole.constants_),
       jerk_(nodes_.size(), 1.0),
       hand_acceleration_factors_(whole.hand_acceleration_factors_.begin() + static_cast<std::ptrdiff_t>(part.first),
-            whole.hand_acceleration_factors_.begin() + static_cast<std::ptrdiff_t>(part.last + 1)),
+                                 whole.hand_acceleration_factors_.begin() + static_cast<std::ptrdiff_t>(part.last + 1)),
       state_blocks_(nodes_.size()) {}
 
 // See carried.md (C17).

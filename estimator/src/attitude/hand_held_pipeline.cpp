@@ -19,7 +19,8 @@ Eigen::Matrix3d sensing_directions_of(const SaturationPlanes& planes) {
 
 }  // namespace
 
-HandHeldPipeline::HandHeldPipeline(const Params& params) : stream_(params.stream), clipping_finder_(params.clipping_finder) {}
+HandHeldPipeline::HandHeldPipeline(const Params& params)
+    : stream_(params.stream), clipping_finder_(params.clipping_finder) {}
 
 HandHeldPipeline::State HandHeldPipeline::start() const {
   State state;
@@ -38,7 +39,8 @@ Status HandHeldPipeline::push(const ImuSample& sample, State& state, std::option
   state.clip_signs.push_back(clip_signs(sample, judged));
   RepeatDetector::State repeat_state = state.repetition_state;
   RepeatDetector().observe_reading(sample, (judged.gyro | judged.unusable_gyro) != 0, repeat_state);
-  const SensingAxisClipSigns known{sensing_directions_of(state.clipping_state.known_limits.gyro_planes), state.clip_signs};
+  const SensingAxisClipSigns known{sensing_directions_of(state.clipping_state.known_limits.gyro_planes),
+                                   state.clip_signs};
   const Status status = stream_.push(sample, known, state.stream, out, true, repeat_state);
   if (!status.ok()) return status;
   state.repetition_state = repeat_state;
@@ -54,12 +56,14 @@ void HandHeldPipeline::classify_window_clipping(const ImuSample& next, State& st
   if (state.saturation_limits_changed) {
     for (SaturationLimitDetector::Channel& channel : axis_aligned_rails.channels) channel.is_clipped = false;
   }
-  for (std::size_t k = state.saturation_limits_changed || window.empty() ? 0 : window.size() - 1; k < window.size(); ++k) {
+  for (std::size_t k = state.saturation_limits_changed || window.empty() ? 0 : window.size() - 1; k < window.size();
+       ++k) {
     const ImuSample* const before = k > 0 ? &window[k - 1].sample : nullptr;
     const ImuSample& after = k + 1 < window.size() ? window[k + 1].sample : next;
-    state.clip_signs.push_back(
-        clip_signs(window[k].sample, clipping_finder_.classify_clipping(before, window[k].sample, state.clipping_state, &after)));
-    if (state.saturation_limits_changed) clipping_finder_.axis_limit_detector().classify_clipping(window[k].sample, axis_aligned_rails);
+    state.clip_signs.push_back(clip_signs(
+        window[k].sample, clipping_finder_.classify_clipping(before, window[k].sample, state.clipping_state, &after)));
+    if (state.saturation_limits_changed)
+      clipping_finder_.axis_limit_detector().classify_clipping(window[k].sample, axis_aligned_rails);
   }
 }
 

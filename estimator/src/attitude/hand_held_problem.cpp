@@ -65,8 +65,8 @@ ReadingNoise noise_from_data_sheet(const HandHeldSmoother::Params& params, Readi
 
 }  // namespace
 
-HandHeldProblem::HandHeldProblem(const HandHeldSmoother::Params& params, const Eigen::Matrix3d& rows, const NodeData& collected,
-                 std::vector<Node> nodes)
+HandHeldProblem::HandHeldProblem(const HandHeldSmoother::Params& params, const Eigen::Matrix3d& rows,
+                                 const NodeData& collected, std::vector<Node> nodes)
     : params_(params),
       sensing_directions_(rows),
       readings_(collected.nodes),
@@ -92,7 +92,8 @@ double add_node(const NodeReadings& readings, const Eigen::Matrix3d& rows, const
 }
 
 // See carried.md (C1).
-double add_constants_prior(const HandHeldSmoother::Params& params, const Constants& constants, System::BorderBlock& corner) {
+double add_constants_prior(const HandHeldSmoother::Params& params, const Constants& constants,
+                           System::BorderBlock& corner) {
   double cost = 0.0;
   const auto prior = [&](const Vector3d& value, double sigma, int at) {
     const double information = 1.0 / (sigma * sigma);
@@ -109,19 +110,21 @@ double add_constants_prior(const HandHeldSmoother::Params& params, const Constan
 double HandHeldProblem::add_node(std::size_t i, System::StateBlock& block, System::BorderBlock& corner) const {
   ReadingNoise noise = noise_;
   noise.window_rate_sigma_rad_s *= jerk_[i];
-  return hand_held::add_node(readings_[i], sensing_directions_, noise, g_W_m_s2_, motion_, nodes_[i], constants_, block, corner);
+  return hand_held::add_node(readings_[i], sensing_directions_, noise, g_W_m_s2_, motion_, nodes_[i], constants_, block,
+                             corner);
 }
 
 double HandHeldProblem::linearise() {
   std::fill(state_blocks_.begin(), state_blocks_.end(), System::StateBlock{});
   border_block_ = {};
-  double cost =
-      problem_segment_ ? problem_segment_->message_from_before.add(nodes_.front(), state_blocks_.front()) + problem_segment_->message_from_after.add(nodes_.back(), state_blocks_.back())
-            : motion_.add_initial_prior(nodes_[0], state_blocks_[0]);
+  double cost = problem_segment_ ? problem_segment_->message_from_before.add(nodes_.front(), state_blocks_.front()) +
+                                       problem_segment_->message_from_after.add(nodes_.back(), state_blocks_.back())
+                                 : motion_.add_initial_prior(nodes_[0], state_blocks_[0]);
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     cost += add_node(i, state_blocks_[i], border_block_);
     if (i + 1 < nodes_.size())
-      cost += motion_.add_motion_model(nodes_[i], nodes_[i + 1], hand_acceleration_factors_[i], state_blocks_[i], state_blocks_[i + 1], jerk_[i]);
+      cost += motion_.add_motion_model(nodes_[i], nodes_[i + 1], hand_acceleration_factors_[i], state_blocks_[i],
+                                       state_blocks_[i + 1], jerk_[i]);
   }
   if (problem_segment_) {
     border_block_ = {};
@@ -179,7 +182,7 @@ void HandHeldProblem::adapt_process_noise() {
     const std::size_t a = i > half ? i - half : 0, b = std::min(count, i + half + 1);
     const double local = (hand_power_cumulative_[b] - hand_power_cumulative_[a]) / static_cast<double>(b - a);
     hand_acceleration_factors_[i] = std::max(params_.expert.hand_motion.kHandNoiseFloorRatio,
-                        1.0 + params_.expert.hand_motion.hand_noise_adaptation * (local - 1.0));
+                                             1.0 + params_.expert.hand_motion.hand_noise_adaptation * (local - 1.0));
   }
 }
 
@@ -196,7 +199,8 @@ Status HandHeldProblem::solve(HandHeldSmoother::Report& report) {
   std::optional<Iterate> before;
   report.converged = false;
   for (int k = 0; k < params_.expert.iterations_max; ++k) {
-    if (k >= kFirstAdaptIteration && k <= kLastAdaptIteration && params_.expert.hand_motion.hand_noise_adaptation > 0.0) {
+    if (k >= kFirstAdaptIteration && k <= kLastAdaptIteration &&
+        params_.expert.hand_motion.hand_noise_adaptation > 0.0) {
       adapt_process_noise();
       before.reset();  // costs with different process noise are not comparable
     }

@@ -16,11 +16,13 @@ ReadingNoise reading_noise(const HandHeldSmoother::Params& params, double period
 double add_node(const NodeReadings& readings, const Eigen::Matrix3d& rows, const ReadingNoise& noise,
                 const Eigen::Vector3d& g_W_m_s2, const Motion& motion, const Node& node, const Constants& constants,
                 System::StateBlock& block, System::BorderBlock& corner);
-double add_constants_prior(const HandHeldSmoother::Params& params, const Constants& constants, System::BorderBlock& corner);
+double add_constants_prior(const HandHeldSmoother::Params& params, const Constants& constants,
+                           System::BorderBlock& corner);
 /// Returns the difference between the states of two nodes, as a step for Node::move.
 System::StateVector node_difference(const Node& from, const Node& to);
 
-/// Message replaces all earlier or all later nodes by a prior on one node, linearised at the state `linearisation_node`.
+/// Message replaces all earlier or all later nodes by a prior on one node, linearised at the state
+/// `linearisation_node`.
 struct NodeMessage {
   Node linearisation_node;
   System::StateMatrix information = System::StateMatrix::Zero();
@@ -37,7 +39,7 @@ struct ProblemSegment {
 class HandHeldProblem {
  public:
   HandHeldProblem(const HandHeldSmoother::Params& params, const Eigen::Matrix3d& rows, const NodeData& collected,
-          std::vector<Node> nodes);
+                  std::vector<Node> nodes);
   /// condense_other_nodes() must have set `part.before` and `part.message_from_after`.
   HandHeldProblem(const HandHeldProblem& whole, const ProblemSegment& part);
 
@@ -51,7 +53,9 @@ class HandHeldProblem {
     std::vector<double> hand_acceleration_factors;
     std::vector<Eigen::Matrix<double, 9, 9>> covariances;
   };
-  Solution solution() const { return {nodes_, constants_, constants_covariance_, hand_acceleration_factors_, covariances_}; }
+  Solution solution() const {
+    return {nodes_, constants_, constants_covariance_, hand_acceleration_factors_, covariances_};
+  }
   void restore(Solution answer);
   /// Returns false if the normal equations are not positive definite.
   bool condense_other_nodes(std::span<ProblemSegment> parts) const;
@@ -94,11 +98,13 @@ class HandHeldProblem {
   double period_s_ = 0.0;  // period of the gyro's readings, without repetitions
   ReadingNoise noise_;
   Eigen::Vector3d g_W_m_s2_;
-  std::optional<ProblemSegment> problem_segment_;  // if set, this problem is a part of another problem, with fixed constants
+  std::optional<ProblemSegment>
+      problem_segment_;  // if set, this problem is a part of another problem, with fixed constants
   std::vector<Node> nodes_;
   Constants constants_;
-  std::vector<double> jerk_;        // factor on the root density of the jerk, per node
-  std::vector<double> hand_acceleration_factors_;        // factor on the density of the hand's acceleration, per step between nodes
+  std::vector<double> jerk_;  // factor on the root density of the jerk, per node
+  std::vector<double>
+      hand_acceleration_factors_;  // factor on the density of the hand's acceleration, per step between nodes
   std::vector<double> hand_power_cumulative_;  // cumulative sum of the squared multipliers
   std::vector<System::StateBlock> state_blocks_;
   std::vector<System::StateVector> state_steps_;

@@ -89,7 +89,7 @@ void add_gyro_reading(double z, double t, int sign, SensingAxisSums& e) {
 
 /// Replaces a clipped segment of one sensing element by a cubic.
 void interpolate_segment(std::span<const ImuSample> samples, const std::vector<double>& raw, std::size_t begin,
-                  std::size_t end, int sign, std::vector<double>& filled) {
+                         std::size_t end, int sign, std::vector<double>& filled) {
   if (begin < 2 || end + 1 >= raw.size()) return;
   const std::size_t a = begin - 1, b = end;
   const double gap = since_s(samples, a, b);
@@ -110,10 +110,11 @@ struct ClippedSegment {
 };
 
 ClippedSegment clipped_segment(std::span<const ClipSigns> signs, std::size_t element, std::size_t begin,
-                             const std::vector<double>& raw) {
+                               const std::vector<double>& raw) {
   ClippedSegment out{begin, 0};
   if (signs[begin].gyro[element] == 0) {
-    while (out.clipped_segment_end < signs.size() && signs[out.clipped_segment_end].gyro[element] == 0) ++out.clipped_segment_end;
+    while (out.clipped_segment_end < signs.size() && signs[out.clipped_segment_end].gyro[element] == 0)
+      ++out.clipped_segment_end;
     return out;
   }
   for (; out.clipped_segment_end < signs.size(); ++out.clipped_segment_end) {
@@ -180,7 +181,7 @@ void correct_partial_saturation(double noise_rad_s, const Eigen::Matrix3d& rows,
       const std::size_t inside = before != 0 ? k - 1 : k + 1, outside = before != 0 ? k + 1 : k - 1;
       const auto axis = static_cast<Eigen::Index>(j);
       const PartialSaturation loss = partial_saturation(sign * along(k, axis), sign * along(outside, axis),
-                                                            sign * along(inside, axis), noise_rad_s);
+                                                        sign * along(inside, axis), noise_rad_s);
       if (!(loss.expected_saturation_deficit_rad_s > noise_rad_s)) continue;
       lost[k][axis] = sign * loss.expected_saturation_deficit_rad_s;
       rates.partial_saturation_sigma_rad_s[k][axis] = loss.sigma_rad_s;
@@ -190,10 +191,12 @@ void correct_partial_saturation(double noise_rad_s, const Eigen::Matrix3d& rows,
 }
 
 // Recovered rates have correlated errors: carried.md (C15).
-void recovered_readings(const HandHeldSmoother::Params& params, const SensingAxisClipSigns& clipped, GyroReadings& rates) {
+void recovered_readings(const HandHeldSmoother::Params& params, const SensingAxisClipSigns& clipped,
+                        GyroReadings& rates) {
   const double nodes = std::sqrt(2.0 * params.expert.readings.kRecoveredTau_s / params.expert.node_s);
   for (std::size_t k = 0; k < clipped.recovered_covariance_rad2_s2.size(); ++k) {
-    const Eigen::Matrix3d along = clipped.sensing_directions * clipped.recovered_covariance_rad2_s2[k] * clipped.sensing_directions.transpose();
+    const Eigen::Matrix3d along =
+        clipped.sensing_directions * clipped.recovered_covariance_rad2_s2[k] * clipped.sensing_directions.transpose();
     Vector3d& subsample_sigma_rad_s = rates.partial_saturation_sigma_rad_s[rates.reading_index_of_sample[k]];
     subsample_sigma_rad_s = subsample_sigma_rad_s.cwiseMax(nodes * along.diagonal().cwiseMax(0.0).cwiseSqrt());
   }
@@ -202,7 +205,8 @@ void recovered_readings(const HandHeldSmoother::Params& params, const SensingAxi
 TimedReadings timed_readings(std::span<const ImuSample> samples, const SensingAxisClipSigns& clipped, Triad triad,
                              TimeNs origin_ns, double period_s) {
   std::optional<RepeatedReadings> repeated = find_repeated(samples, triad);
-  if (repeated && (repeated->regular_clock_fraction < kMinClockAgreement || repeated->period_s > sample_hold::kSlowest * period_s))
+  if (repeated &&
+      (repeated->regular_clock_fraction < kMinClockAgreement || repeated->period_s > sample_hold::kSlowest * period_s))
     repeated.reset();
   TimedReadings out;
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -226,8 +230,9 @@ TimedReadings timed_readings(std::span<const ImuSample> samples, const SensingAx
 }  // namespace
 
 bool clips(const NodeReadings& readings) {
-  return std::any_of(readings.gyro.begin(), readings.gyro.end(),
-                     [](const SensingAxisSums& e) { return e.clipped_reading_count > 0.0 || e.unusable_reading_count > 0.0; });
+  return std::any_of(readings.gyro.begin(), readings.gyro.end(), [](const SensingAxisSums& e) {
+    return e.clipped_reading_count > 0.0 || e.unusable_reading_count > 0.0;
+  });
 }
 
 void add_rate(const ImuSample& sample, const Eigen::Matrix3d& rows, const ClipSigns& signs, double t,
@@ -251,12 +256,13 @@ void add_force(const ImuSample& sample, const ClipSigns& signs, double t, NodeRe
 }
 
 NodeData collect_node_data(const HandHeldSmoother::Params& params, std::span<const ImuSample> samples,
-                 const SensingAxisClipSigns& clipped) {
+                           const SensingAxisClipSigns& clipped) {
   NodeData out;
   const double period_s = median_step_or(samples, params.expert.node_s);
   const TimeNs origin_ns = samples.front().time_ns - nanoseconds(0.5 * period_s);
   out.samples = averaging_windows_of(samples, origin_ns, period_s);
-  out.nodes.resize(static_cast<std::size_t>(std::llround(out.samples.window_centre_s.back() / params.expert.node_s)) + 1);
+  out.nodes.resize(static_cast<std::size_t>(std::llround(out.samples.window_centre_s.back() / params.expert.node_s)) +
+                   1);
   assign_windows_to_nodes(params.expert.node_s, out.nodes.size(), out.samples);
 
   out.rates = {timed_readings(samples, clipped, Triad::gyro, origin_ns, period_s), {}};
@@ -301,7 +307,8 @@ std::vector<Vector3d> filled_rates(std::span<const ImuSample> samples, const Sen
     filled = raw;
     for (std::size_t begin = 0; begin < count;) {
       const ClippedSegment segment = clipped_segment(clipped.clip_signs, j, begin, raw);
-      if (segment.saturated_side != 0) interpolate_segment(samples, raw, begin, segment.clipped_segment_end, segment.saturated_side, filled);
+      if (segment.saturated_side != 0)
+        interpolate_segment(samples, raw, begin, segment.clipped_segment_end, segment.saturated_side, filled);
       begin = segment.clipped_segment_end;
     }
     for (std::size_t k = 0; k < count; ++k) rates[k][axis] = filled[k];
@@ -349,7 +356,8 @@ Status start_nodes(const HandHeldSmoother::Params& params, const Eigen::Matrix3d
       nodes[i].angular_acceleration_rad_s2 =
           (nodes[b].w_WI_I_rad_s - nodes[a].w_WI_I_rad_s) / (static_cast<double>(b - a) * params.expert.node_s);
     }
-    if (collected.nodes[i].force_reading_count > 0.0) nodes[i].a_W_m_s2 = nodes[i].q_WI * collected.nodes[i].force_m_s2 + g_W;
+    if (collected.nodes[i].force_reading_count > 0.0)
+      nodes[i].a_W_m_s2 = nodes[i].q_WI * collected.nodes[i].force_m_s2 + g_W;
   }
   return {};
 }

@@ -23,8 +23,8 @@ struct AveragingWindows {
 
 /// The times of repeated readings are corrected, and each reading is contained once.
 struct TimedReadings {
-  std::vector<ImuSample> samples;  ///< stamped at the end of their windows
-  std::vector<ClipSigns> clip_signs;    ///< one per sample
+  std::vector<ImuSample> samples;     ///< stamped at the end of their windows
+  std::vector<ClipSigns> clip_signs;  ///< one per sample
   AveragingWindows averaging_windows;
   std::vector<std::size_t> reading_index_of_sample;  ///< index of the reading of each IMU sample
 };
@@ -43,7 +43,7 @@ struct NodeData {
 };
 
 NodeData collect_node_data(const HandHeldSmoother::Params& params, std::span<const ImuSample> samples,
-                 const SensingAxisClipSigns& clipped);
+                           const SensingAxisClipSigns& clipped);
 
 inline constexpr double kLongest = 1.5;  ///< longest averaging window, in sample periods
 

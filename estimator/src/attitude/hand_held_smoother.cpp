@@ -50,13 +50,14 @@ std::uint8_t clipped_axes(const hand_held::GyroReadings& rates, std::size_t k) {
 AngularRateSource source(const AngularRateState& rate, double recovered_sigma) {
   if (rate.clipped_axes == 0) return AngularRateSource::measured;
   const double variance = rate.covariance_rad2_s2.selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff();
-  return variance < recovered_sigma * recovered_sigma ? AngularRateSource::recovered_in_contact : AngularRateSource::lower_bound_only;
+  return variance < recovered_sigma * recovered_sigma ? AngularRateSource::recovered_in_contact
+                                                      : AngularRateSource::lower_bound_only;
 }
 
 /// The gyro's scale error increases the attitude covariance in proportion to the rotation since the last rest:
 /// carried.md (C27).
 void add_rotation_covariance(const HandHeldSmoother::Params& params, const hand_held::NodeData& collected,
-                       const std::vector<AngularRateState>& rates, std::vector<AttitudeState>& attitudes) {
+                             const std::vector<AngularRateState>& rates, std::vector<AttitudeState>& attitudes) {
   const double share = params.expert.readings.recovered_scale_sigma;
   const auto turned_on = [&](std::size_t k, Eigen::Vector3d& turned) {
     if (collected.nodes[collected.samples.node_of[k]].is_stationary) return turned.setZero(), void();

@@ -75,7 +75,8 @@ void HandHeldRateStream::restart(State& state) const {
 }
 
 Status HandHeldRateStream::push(const ImuSample& sample, const SensingAxisClipSigns& known, State& state,
-                            std::optional<AngularRateState>& out, bool wanted, const RepeatDetector::State& repeated) const {
+                                std::optional<AngularRateState>& out, bool wanted,
+                                const RepeatDetector::State& repeated) const {
   out.reset();
   if (const Status status = check_sample(sample); !status.ok()) return status;
   if (state.samples > 0) {
@@ -126,7 +127,8 @@ void HandHeldRateStream::predict_newest(State& state) const {
   }
 }
 
-void HandHeldRateStream::append_reading(const ImuSample& sample, const RepeatDetector::State& repeated, State& state) const {
+void HandHeldRateStream::append_reading(const ImuSample& sample, const RepeatDetector::State& repeated,
+                                        State& state) const {
   Reading reading;
   reading.sample = sample;
   reading.gyro = repeated.for_triad(Triad::gyro);
@@ -182,7 +184,7 @@ void HandHeldRateStream::add(const Reading& reading, State& state) const {
   };
   const auto node_of = [&](const RepeatedReading& repeated, double centre_s) {
     return repeated.is_slower_than_samples() ? std::min(reading.node, std::int64_t{std::llround(centre_s / node_s)})
-                                         : reading.node;
+                                             : reading.node;
   };
   const double rate_s = centre(reading.gyro, 0.5), force_s = centre(reading.accel, 0.25);
   const std::int64_t rate_node = node_of(reading.gyro, rate_s), force_node = node_of(reading.accel, force_s);
@@ -192,24 +194,28 @@ void HandHeldRateStream::add(const Reading& reading, State& state) const {
     const double share =
         reading.gyro.is_slower_than_samples() ? hand_held::kAge_samples / reading.gyro.reading_period_samples : 0.0;
     const Vector3d subsample_sigma_rad_s = share * (state.sensing_directions * reading.gyro.reading_change).cwiseAbs();
-    hand_held::add_rate(reading.sample, state.sensing_directions, reading.clip_signs, rate_s - static_cast<double>(rate_node) * node_s,
-                        subsample_sigma_rad_s, *rates);
+    hand_held::add_rate(reading.sample, state.sensing_directions, reading.clip_signs,
+                        rate_s - static_cast<double>(rate_node) * node_s, subsample_sigma_rad_s, *rates);
   }
   if (forces != nullptr) {
-    const double share =
-        reading.accel.is_slower_than_samples()
-            ? std::hypot(hand_held::kWindowCentreSigmaRatio, hand_held::kAge_samples / reading.accel.reading_period_samples)
-            : 0.0;
-    hand_held::add_force(reading.sample, reading.clip_signs, force_s - static_cast<double>(force_node) * node_s, *forces);
-    forces->force_timing_sigma_m_s2 = std::max(forces->force_timing_sigma_m_s2, share * reading.accel.reading_change.norm());
+    const double share = reading.accel.is_slower_than_samples()
+                             ? std::hypot(hand_held::kWindowCentreSigmaRatio,
+                                          hand_held::kAge_samples / reading.accel.reading_period_samples)
+                             : 0.0;
+    hand_held::add_force(reading.sample, reading.clip_signs, force_s - static_cast<double>(force_node) * node_s,
+                         *forces);
+    forces->force_timing_sigma_m_s2 =
+        std::max(forces->force_timing_sigma_m_s2, share * reading.accel.reading_change.norm());
   }
-  if (hand_held::NodeReadings* const own = readings_at(reading.node)) own->is_stationary = own->is_stationary || reading.is_stationary;
+  if (hand_held::NodeReadings* const own = readings_at(reading.node))
+    own->is_stationary = own->is_stationary || reading.is_stationary;
 }
 
 hand_held::ReadingNoise HandHeldRateStream::adapted_noise(const State& state) const {
   const RepeatedReading& gyro = state.readings.back().gyro;
-  return gyro.is_slower_than_samples() ? hand_held::reading_noise(params_.body, gyro.reading_period_samples * params_.period_s)
-                                   : noise_;
+  return gyro.is_slower_than_samples()
+             ? hand_held::reading_noise(params_.body, gyro.reading_period_samples * params_.period_s)
+             : noise_;
 }
 
 Node HandHeldRateStream::first_node(const State& state) const {
@@ -232,7 +238,8 @@ void HandHeldRateStream::predict(const Node& before, const Eigen::Matrix3d& rows
     const hand_held::SensingAxisSums& e = knot.readings.gyro[static_cast<std::size_t>(j)];
     if (e.clipped_reading_count > 0.0) {
       const double rail = std::abs(e.mean_saturation_limit);
-      elements[j] = e.saturated_side * std::clamp(e.saturated_side * elements[j], rail, hand_held::kFillRatioMax * rail);
+      elements[j] =
+          e.saturated_side * std::clamp(e.saturated_side * elements[j], rail, hand_held::kFillRatioMax * rail);
     } else if (e.count > 0.0) {
       elements[j] = e.reading_sum / e.count;
     }
@@ -246,8 +253,9 @@ void HandHeldRateStream::predict(const Node& before, const Eigen::Matrix3d& rows
 
 // See carried.md (C41).
 double HandHeldRateStream::hand_acceleration_power_ratio(const State& state) const {
-  return std::max(params_.body.expert.hand_motion.kHandNoiseFloorRatio,
-                  1.0 + params_.body.expert.hand_motion.hand_noise_adaptation * (state.hand_acceleration_power_ratio - 1.0));
+  return std::max(
+      params_.body.expert.hand_motion.kHandNoiseFloorRatio,
+      1.0 + params_.body.expert.hand_motion.hand_noise_adaptation * (state.hand_acceleration_power_ratio - 1.0));
 }
 
 // See rate_stream.md (R91).
@@ -263,7 +271,8 @@ void HandHeldRateStream::add_prior(const State& state, System::StateBlock& block
   block.border_coupling += state.prior.border_coupling;
   block.gradient += state.prior.gradient - state.prior.diagonal * x - state.prior.border_coupling * c;
   corner.matrix += state.prior_border_block.matrix;
-  corner.gradient += state.prior_border_block.gradient - state.prior_border_block.matrix * c - state.prior.border_coupling.transpose() * x;
+  corner.gradient += state.prior_border_block.gradient - state.prior_border_block.matrix * c -
+                     state.prior.border_coupling.transpose() * x;
 }
 
 // Replaces the oldest time step by a prior: carried.md (C17), (C41), rate_stream.md (R90).
@@ -274,8 +283,8 @@ void HandHeldRateStream::marginalise_oldest(State& state) const {
   System::StateBlock block, after;
   System::BorderBlock corner;
   add_prior(state, block, corner);
-  (void)hand_held::add_node(oldest.readings, state.sensing_directions, adapted_noise(state), g_W_m_s2_, motion_, oldest.node,
-                            state.constants, block, corner);
+  (void)hand_held::add_node(oldest.readings, state.sensing_directions, adapted_noise(state), g_W_m_s2_, motion_,
+                            oldest.node, state.constants, block, corner);
   (void)motion_.add_motion_model(oldest.node, next, hand_acceleration_power_ratio(state), block, after);
   if (System::eliminate(block, &after, corner)) {
     state.prior = after;
@@ -307,7 +316,7 @@ void HandHeldRateStream::prune_output_samples(State& state) const {
 
 // See carried.md (C17), (C18).
 bool HandHeldRateStream::factorise(const hand_held::Motion& motion, const hand_held::ReadingNoise& noise, State& state,
-                               System::BorderVector& step) const {
+                                   System::BorderVector& step) const {
   const std::size_t count = state.window.size();
   const double lively = hand_acceleration_power_ratio(state);
   System::BorderBlock corner;
@@ -317,8 +326,8 @@ bool HandHeldRateStream::factorise(const hand_held::Motion& motion, const hand_h
     const Knot& knot = state.window[i];
     System::StateBlock& block = state.work_blocks[i];
     const bool last = i + 1 == count;
-    (void)hand_held::add_node(knot.readings, state.sensing_directions, noise, g_W_m_s2_, motion, knot.node, state.constants, block,
-                              corner);
+    (void)hand_held::add_node(knot.readings, state.sensing_directions, noise, g_W_m_s2_, motion, knot.node,
+                              state.constants, block, corner);
     if (!last) {
       state.work_blocks[i + 1] = {};
       (void)motion.add_motion_model(knot.node, state.window[i + 1].node, lively, block, state.work_blocks[i + 1]);
@@ -340,7 +349,8 @@ bool HandHeldRateStream::step(State& state) const {
   }
   if (!std::isfinite(turn)) return false;
   const double share = turn > kRotationMax_rad ? kRotationMax_rad / turn : 1.0;
-  for (std::size_t i = 0; i < state.window.size(); ++i) state.window[i].node.move(share * state.work_blocks[i].gradient);
+  for (std::size_t i = 0; i < state.window.size(); ++i)
+    state.window[i].node.move(share * state.work_blocks[i].gradient);
   state.constants.move(share * border);
   return true;
 }

@@ -45,7 +45,8 @@ std::size_t HandHeldRateStream::first_unreported_reading(const State& state) con
   return state.readings.size() - std::min(state.readings.size(), delay_ + 1);
 }
 
-// If the sample rate is lower than stated, a node may leave the window of HandHeldRateStream before its rate is reported.
+// If the sample rate is lower than stated, a node may leave the window of HandHeldRateStream before its rate is
+// reported.
 void HandHeldRateStream::store_oldest_rates(State& state) const {
   const std::size_t first = first_unreported_reading(state);
   for (std::size_t k = first; k < state.readings.size() && state.readings[k].node <= state.first_node; ++k) {
@@ -56,7 +57,8 @@ void HandHeldRateStream::store_oldest_rates(State& state) const {
   }
 }
 
-AngularRateState HandHeldRateStream::rate_state_of_reading(const Reading& reading, const State& state, const Eigen::Matrix3d& covariance) const {
+AngularRateState HandHeldRateStream::rate_state_of_reading(const Reading& reading, const State& state,
+                                                           const Eigen::Matrix3d& covariance) const {
   const auto at = static_cast<std::size_t>(std::max<std::int64_t>(0, reading.node - state.first_node));
   const Node& node = state.window[at].node;
   AngularRateState out;
@@ -99,7 +101,7 @@ void HandHeldRateStream::count_revolutions(std::size_t at, const AngularRateStat
 // See carried.md (C23), (C42). `factorised` is true if the equations are already factorised for the assumed jerk
 // density.
 void HandHeldRateStream::report_rates(std::size_t first, std::size_t last, bool factorised, State& state,
-                                  std::span<AngularRateState> out) const {
+                                      std::span<AngularRateState> out) const {
   const auto of = [&](std::size_t k) {
     return static_cast<std::size_t>(std::max<std::int64_t>(0, state.readings[k].node - state.first_node));
   };
@@ -123,7 +125,8 @@ void HandHeldRateStream::report_rates(std::size_t first, std::size_t last, bool 
       covariance = here.state.block<3, 3>(hand_held::kRate, hand_held::kRate) +
                    rows * state.constants_covariance * rows.transpose();
     }
-    for (; k > first && of(k - 1) == i; --k) out[k - 1 - first] = rate_state_of_reading(state.readings[k - 1], state, covariance);
+    for (; k > first && of(k - 1) == i; --k)
+      out[k - 1 - first] = rate_state_of_reading(state.readings[k - 1], state, covariance);
     next = here;
   }
 }

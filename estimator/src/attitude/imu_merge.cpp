@@ -39,7 +39,8 @@ constexpr double kAccelerationSigmaRatio = 0.3;
 ForceErrors::Params ImuMerge::force_params(const Params& p) {
   ForceErrors::Params out;
   out.count = std::clamp(p.count, 1, kImus);
-  for (std::size_t k = 0; k < static_cast<std::size_t>(out.count); ++k) out.imu_positions_m[k] = p.T_mean_imu[k].translation();
+  for (std::size_t k = 0; k < static_cast<std::size_t>(out.count); ++k)
+    out.imu_positions_m[k] = p.T_mean_imu[k].translation();
   return out;
 }
 
@@ -73,7 +74,8 @@ ImuMerge::ImuMerge(const Params& p) : params_(p), forces_(force_params(p)), rate
 Status ImuMerge::step(std::span<const ImuSample> samples, State& state, std::optional<ImuSample>& merged) const {
   merged.reset();
   if (samples.size() != static_cast<std::size_t>(params_.count)) {
-    return {ErrorCode::insufficient_data, "samples", static_cast<double>(samples.size()), static_cast<double>(params_.count)};
+    return {ErrorCode::insufficient_data, "samples", static_cast<double>(samples.size()),
+            static_cast<double>(params_.count)};
   }
   const bool received =
       std::any_of(samples.begin(), samples.end(), [](const ImuSample& s) { return check_sample(s).ok(); });
@@ -150,7 +152,8 @@ ImuSample ImuMerge::merge(State& state) const {
     forces[k] = ForceErrors::corrected(static_cast<int>(k), forces[k], state.forces);
   }
   state.all_frozen = true;
-  for (std::size_t k = 0; k < count; ++k) state.all_frozen = state.all_frozen && (!finite[k] || state.imus[k].is_frozen);
+  for (std::size_t k = 0; k < count; ++k)
+    state.all_frozen = state.all_frozen && (!finite[k] || state.imus[k].is_frozen);
   if (std::none_of(present.begin(), present.end(), [](bool one) { return one; })) present = finite;
 
   const ImuMask used = select_agreeing_imus(readings, present, rates, forces, h, state);
@@ -178,14 +181,15 @@ ImuSample ImuMerge::merge(State& state) const {
 
 /// Selects unsaturated IMUs that agree with the median of all IMUs: imu_merge.md (I5).
 ImuMerge::ImuMask ImuMerge::select_agreeing_imus(const Readings& readings, const ImuMask& present, const Vectors& rates,
-                                          const Vectors& forces, double h, State& state) const {
+                                                 const Vectors& forces, double h, State& state) const {
   const Eigen::Vector3d middle_rate = median(rates, present), middle_force = median(forces, present);
   const auto units = std::count(present.begin(), present.end(), true);
   const double rate_tolerance = params_.expert.outliers.rate_rad_s + kRateToleranceRatio * middle_rate.norm();
   ImuMask used{};
   for (std::size_t i = 0; i < used.size(); ++i) {
     if (!present[i]) continue;
-    const double turned = (params_.T_mean_imu[i].translation() - mean_imu_position_m_).norm() * middle_rate.squaredNorm() * 2.0;
+    const double turned =
+        (params_.T_mean_imu[i].translation() - mean_imu_position_m_).norm() * middle_rate.squaredNorm() * 2.0;
     const bool agrees = units < 3 || ((rates[i] - middle_rate).norm() < rate_tolerance &&
                                       (forces[i] - middle_force).norm() < params_.expert.outliers.force_m_s2 + turned);
     // With three or more IMUs, AngularRateRecovery uses a clipped gyro as a lower bound.
@@ -199,13 +203,14 @@ ImuMerge::ImuMask ImuMerge::select_agreeing_imus(const Readings& readings, const
   if (units >= kMinImusForRecovery && apart && middle_rate.cwiseAbs().maxCoeff() < params_.gyro_range_rad_s) {
     exclude_partly_saturated(readings, present, forces, middle_rate, h, state, used);
   }
-  for (std::size_t i = 0; i < static_cast<std::size_t>(params_.count); ++i) state.imus[i].excluded_window_count += !used[i];
+  for (std::size_t i = 0; i < static_cast<std::size_t>(params_.count); ++i)
+    state.imus[i].excluded_window_count += !used[i];
   return used;
 }
 
 /// See imu_merge.md (I1), (I2).
 ImuSample ImuMerge::mean_of_selected_imus(const Vectors& rates, const Vectors& forces, const ImuMask& used, double h,
-                                 const State& state) const {
+                                          const State& state) const {
   const auto kept = static_cast<int>(std::count(used.begin(), used.end(), true));
   Eigen::Vector3d rate = Eigen::Vector3d::Zero(), force = Eigen::Vector3d::Zero(), position = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < used.size(); ++i) {
@@ -233,8 +238,8 @@ std::optional<double> ImuMerge::lever_arm_agreement(const State& state) {
   return state.lever_arm_correlation / state.lever_arm_effect_power;
 }
 
-void ImuMerge::close_comparison_windows(const ImuMask& present, const Vectors& rates, const Vectors& forces, bool all_used,
-                             const ImuSample& merged, State& state) const {
+void ImuMerge::close_comparison_windows(const ImuMask& present, const Vectors& rates, const Vectors& forces,
+                                        bool all_used, const ImuSample& merged, State& state) const {
   const double length_s = state.window_count > 0 ? state.window_s : params_.window_s;
   const bool follows = state.window_count > 1 && length_s < kWindowMax_s;
   // An IMU that repeats its reading may be frozen. If all IMUs repeat their readings, the rate is constant and no IMU
@@ -257,8 +262,8 @@ void ImuMerge::close_comparison_windows(const ImuMask& present, const Vectors& r
     } else {  // the last reading is outdated: use the merged motion of the other IMUs
       const Eigen::Vector3d& rate = merged.angular_velocity_rad_s;
       unit.last_rate_rad_s = rate;
-      unit.last_force_m_s2 =
-          merged.specific_force_m_s2 + rate.cross(rate.cross(params_.T_mean_imu[k].translation() - mean_imu_position_m_));
+      unit.last_force_m_s2 = merged.specific_force_m_s2 +
+                             rate.cross(rate.cross(params_.T_mean_imu[k].translation() - mean_imu_position_m_));
     }
     unit.window = {};
   }
@@ -273,7 +278,7 @@ void ImuMerge::close_comparison_windows(const ImuMask& present, const Vectors& r
 /// Excludes accelerometers that an impact may have saturated for a part of the averaging window: imu_merge.md (I6). If
 /// no two IMUs agree, a common angular acceleration within the averaging window is estimated first: imu_merge.md (I7).
 void ImuMerge::exclude_partly_saturated(const Readings& samples, const ImuMask& present, const Vectors& forces,
-                                           const Eigen::Vector3d& rate, double h, State& state, ImuMask& used) const {
+                                        const Eigen::Vector3d& rate, double h, State& state, ImuMask& used) const {
   const double since_s = 0.5 * (h + state.length_s);
   const double window_centre_step_s = 0.5 * (state.length_s + state.previous_length_s);
   const Eigen::Vector3d before = (state.rate_rad_s - state.previous_rate_rad_s) / window_centre_step_s;
@@ -310,7 +315,7 @@ void ImuMerge::exclude_partly_saturated(const Readings& samples, const ImuMask& 
 }
 
 void ImuMerge::recover_saturated_rate(const Readings& readings, const ImuMask& present, double h, State& state,
-                       ImuSample& merged) const {
+                                      ImuSample& merged) const {
   Readings corrected = readings;
   for (std::size_t k = 0; k < static_cast<std::size_t>(params_.count); ++k) {
     if (!present[k]) {

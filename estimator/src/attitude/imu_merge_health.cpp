@@ -111,7 +111,8 @@ Status ImuMerge::verdict(const State& state) {
   if (!state.all_frozen) return {};
   double repeated_s = 0.0;
   for (const Unit& unit : state.imus) {
-    if (unit.is_frozen) repeated_s = std::max({repeated_s, unit.repeated_rate.repeated_s, unit.repeated_force.repeated_s});
+    if (unit.is_frozen)
+      repeated_s = std::max({repeated_s, unit.repeated_rate.repeated_s, unit.repeated_force.repeated_s});
   }
   return {ErrorCode::out_of_range, "time in s for which every IMU repeats one reading while the body rotates",
           repeated_s, kUnitFrozen_s};
@@ -148,8 +149,8 @@ void ImuMerge::add_findings(const std::optional<MultiImuSignCheck::DetectedMirro
   const double share = *lever_arm_agreement;
   const double off = gyro_confirmed ? 1.0 - kArmShareMin : kArmShareOff, bound = 1.0 + std::copysign(off, share - 1.0);
   if (std::abs(share - 1.0) <= off) return;
-  health.add(share < 0.0 ? Kind::wrong_axes_or_signs : Kind::gyro_scale, {ErrorCode::out_of_range, kQuantity, share, bound},
-             "imu");
+  health.add(share < 0.0 ? Kind::wrong_axes_or_signs : Kind::gyro_scale,
+             {ErrorCode::out_of_range, kQuantity, share, bound}, "imu");
 }
 
 void ImuMerge::detect_disagreeing_units(const ImuMask& present, const Vectors& rates, const Vectors& forces,
@@ -169,12 +170,15 @@ void ImuMerge::detect_disagreeing_units(const ImuMask& present, const Vectors& r
   for (std::size_t k = 0; k < present.size(); ++k) {
     if (!present[k] || state.imus[k].window.readings == 0) continue;
     Unit& unit = state.imus[k];
-    const double turned = (params_.T_mean_imu[k].translation() - mean_imu_position_m_).norm() * 2.0 * middle_rate.squaredNorm();
+    const double turned =
+        (params_.T_mean_imu[k].translation() - mean_imu_position_m_).norm() * 2.0 * middle_rate.squaredNorm();
     const double force = std::max(0.0, (forces[k] - middle_force).norm() - turned);
-    unit.rate_difference_to_others_rad_s += share * ((rates[k] - middle_rate).norm() - unit.rate_difference_to_others_rad_s);
+    unit.rate_difference_to_others_rad_s +=
+        share * ((rates[k] - middle_rate).norm() - unit.rate_difference_to_others_rad_s);
     unit.force_disagreement_m_s2 += share * (force - unit.force_disagreement_m_s2);
     const double rate_bound = kDisagreeRate_rad_s + kDisagreeRateRatio * state.rotation_rate_rad_s;
-    const bool off = unit.rate_difference_to_others_rad_s > rate_bound || unit.force_disagreement_m_s2 > kDisagreeForce_m_s2;
+    const bool off =
+        unit.rate_difference_to_others_rad_s > rate_bound || unit.force_disagreement_m_s2 > kDisagreeForce_m_s2;
     if (off && unit.disagreement_s == 0.0) unit.disagreement_since_ns = time_ns;
     unit.disagreement_s = off ? unit.disagreement_s + h : 0.0;
     if (unit.disagreement_s < kDisagrees_s) continue;

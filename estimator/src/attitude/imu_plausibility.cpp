@@ -34,7 +34,8 @@ constexpr double kDirectionForceRatioMin = 0.05;  // minimum force with a usable
 
 // See imu_merge.md (I20).
 double force_gyro_rotation_product_rad2(const ImuPlausibility::State& state) {
-  return 0.5 * (state.force_rotation_square_sum_rad2 + state.gyro_rotation_square_sum_rad2 - state.unexplained_force_rotation_rad2);
+  return 0.5 * (state.force_rotation_square_sum_rad2 + state.gyro_rotation_square_sum_rad2 -
+                state.unexplained_force_rotation_rad2);
 }
 
 bool rotated_enough(const ImuPlausibility::State& state) {
@@ -143,13 +144,14 @@ void ImuPlausibility::limit_memory(State& state) {
   }
   if (state.rotated_window_count <= kWindowsMax) return;
   const double share = kWindowsMax / state.rotated_window_count;
-  for (double* sum :
-       {&state.unexplained_force_rotation_rad2, &state.force_rotation_square_sum_rad2, &state.gyro_rotation_square_sum_rad2, &state.rotated_window_count})
+  for (double* sum : {&state.unexplained_force_rotation_rad2, &state.force_rotation_square_sum_rad2,
+                      &state.gyro_rotation_square_sum_rad2, &state.rotated_window_count})
     *sum *= share;
 }
 
 double ImuPlausibility::unexplained_force_rotation_ratio(const State& state) const {
-  return rotated_enough(state) ? state.unexplained_force_rotation_rad2 / std::max(state.force_rotation_square_sum_rad2, state.gyro_rotation_square_sum_rad2)
+  return rotated_enough(state) ? state.unexplained_force_rotation_rad2 /
+                                     std::max(state.force_rotation_square_sum_rad2, state.gyro_rotation_square_sum_rad2)
                                : 0.0;
 }
 
@@ -162,8 +164,8 @@ double ImuPlausibility::frozen_s(const State& state) const {
   };
   const bool rotation_unmeasured = unexplained_force_rotation_ratio(state) >= kUnmeasuredMin;
   const bool gyro = never_moved(state.gyro) && (rotation_unmeasured || state.moving_force_duration_s >= kPushedMin_s);
-  const bool accel =
-      never_moved(state.accel) && state.accel.reading.isZero(0.0) && state.gyro.changing_readings_duration_s >= kFrozen_s;
+  const bool accel = never_moved(state.accel) && state.accel.reading.isZero(0.0) &&
+                     state.gyro.changing_readings_duration_s >= kFrozen_s;
   return std::max({state.gyro.frozen_s, state.accel.frozen_s, gyro ? state.gyro.repeated_s : 0.0,
                    accel ? state.accel.repeated_s : 0.0});
 }
@@ -177,7 +179,8 @@ double ImuPlausibility::force_to_gyro_rotation_ratio(const State& state) const {
 double ImuPlausibility::rotation_agreement(const State& state) const {
   if (!rotated_enough(state)) return 1.0;
   return force_gyro_rotation_product_rad2(state) /
-         std::sqrt(state.force_rotation_square_sum_rad2 * std::max(state.gyro_rotation_square_sum_rad2, kStandstillRad2));
+         std::sqrt(state.force_rotation_square_sum_rad2 *
+                   std::max(state.gyro_rotation_square_sum_rad2, kStandstillRad2));
 }
 
 /// See imu_merge.md (I21). Pushes of the body also rotate the measured force, but no gyro scale explains this rotation.
@@ -187,8 +190,8 @@ bool ImuPlausibility::fits_better(const State& state) const {
   // Pushes of the body often reduce the regression slope, but rarely invert it or increase it by half. If the gyro
   // measures slow rotation only, pushes cause any slope.
   const double slow_rad = kSlow_rad_s * kGravityWindow_s;
-  const bool pushed =
-      (slope > 0.0 && slope < 1.0) || state.gyro_rotation_square_sum_rad2 < state.rotated_window_count * slow_rad * slow_rad;
+  const bool pushed = (slope > 0.0 && slope < 1.0) ||
+                      state.gyro_rotation_square_sum_rad2 < state.rotated_window_count * slow_rad * slow_rad;
   const double most = pushed ? kReducedResidualMax : kScaledResidualMax;
   return left < most * state.unexplained_force_rotation_rad2;
 }

@@ -29,13 +29,14 @@ Eigen::Vector3d rotational_acceleration(const Eigen::Vector3d& w, const Eigen::V
 
 /// See imu_merge.md (I9).
 void MultiImuSignCheck::add(const Eigen::Vector3d& force_m_s2, const Eigen::Vector3d& position_m,
-                        const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& acceleration_rad_s2,
-                        double length_s) {
+                            const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& acceleration_rad_s2,
+                            double length_s) {
   const Eigen::Vector3d read = rotational_acceleration(rate_rad_s, acceleration_rad_s2, position_m);
   for (std::size_t k = 0; k < kSingleSensorAlternatives; ++k) {
     const Eigen::Vector3d of_gyros =
         rotational_acceleration(apply_mirroring(k, rate_rad_s), apply_mirroring(k, acceleration_rad_s2), position_m);
-    explained_effect_per_alternative[k] += length_s * ((force_m_s2 - read).squaredNorm() - (force_m_s2 - of_gyros).squaredNorm());
+    explained_effect_per_alternative[k] +=
+        length_s * ((force_m_s2 - read).squaredNorm() - (force_m_s2 - of_gyros).squaredNorm());
     effect_per_alternative[k] += length_s * (of_gyros - read).squaredNorm();
     const Eigen::Vector3d force = apply_mirroring(k, force_m_s2);
     explained_effect_per_alternative[kSingleSensorAlternatives + k] +=
@@ -48,7 +49,9 @@ std::optional<MultiImuSignCheck::DetectedMirroring> MultiImuSignCheck::detected_
   std::optional<DetectedMirroring> best;
   double most = 0.0;
   for (std::size_t k = 0; k < kMirroredAlternatives; ++k) {
-    if (effect_per_alternative[k] < kMinEffectOnForces || explained_effect_per_alternative[k] < kMinExplainedFraction * effect_per_alternative[k]) continue;
+    if (effect_per_alternative[k] < kMinEffectOnForces ||
+        explained_effect_per_alternative[k] < kMinExplainedFraction * effect_per_alternative[k])
+      continue;
     if (explained_effect_per_alternative[k] <= most) continue;
     most = explained_effect_per_alternative[k];
     best = DetectedMirroring{k, explained_effect_per_alternative[k] / effect_per_alternative[k]};

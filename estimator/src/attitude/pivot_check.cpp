@@ -144,7 +144,7 @@ void conclude_gyro_scale(const std::vector<GyroScaleVote>& votes, PivotMotionChe
 }  // namespace
 
 PivotMotionCheck PivotMotionCheck::of(std::span<const ImuSample> samples, double gravity_m_s2, double gyro_range_rad_s,
-                          double accel_range_m_s2) {
+                                      double accel_range_m_s2) {
   static const Readings readings = all_readings();
   // The second series is shifted by half a segment, so that an impact between two segments is inside another segment.
   std::array<Segments, 2> series = {Segments(gravity_m_s2, readings), Segments(gravity_m_s2, readings)};
@@ -196,7 +196,8 @@ PivotMotionCheck PivotMotionCheck::of(std::span<const ImuSample> samples, double
 /// See imu_merge.md (I29), (I30).
 Status PivotMotionCheck::verdict() const {
   const double least = std::max(kEvidenceMin, kMeanEvidenceMin * static_cast<double>(comparable_segments));
-  const auto better = static_cast<double>(better_explained_segments), worse = static_cast<double>(worse_explained_segments);
+  const auto better = static_cast<double>(better_explained_segments),
+             worse = static_cast<double>(worse_explained_segments);
   if (log_evidence > least && better >= kBetterSegmentsMin && better >= kBetterWorseRatioMin * worse) {
     return {ErrorCode::out_of_range, "evidence from rotation about a pivot for other axes, signs or scale of the gyro",
             log_evidence, least};

@@ -45,7 +45,9 @@ class PivotMotionSums {
     using Nine = Eigen::Matrix<double, 9, 1>;
     const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
     Eigen::Matrix<double, 9, 9> normal;
-    normal << squared_time_sum_ * one, time_arm_jacobian_sum_, time_sum_ * one, time_arm_jacobian_sum_.transpose(), squared_arm_jacobian_sum_ + kArm * one, arm_jacobian_sum_.transpose(), time_sum_ * one, arm_jacobian_sum_, sample_count_ * one;
+    normal << squared_time_sum_ * one, time_arm_jacobian_sum_, time_sum_ * one, time_arm_jacobian_sum_.transpose(),
+        squared_arm_jacobian_sum_ + kArm * one, arm_jacobian_sum_.transpose(), time_sum_ * one, arm_jacobian_sum_,
+        sample_count_ * one;
     Nine right;
     right << time_velocity_sum_, arm_velocity_sum_, velocity_sum_;
     const Nine x = normal.ldlt().solve(right);
@@ -57,8 +59,10 @@ class PivotMotionSums {
   Eigen::Quaterniond rotation_ = Eigen::Quaterniond::Identity();
   Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();  ///< integral of the forces, in sensor axes at the start
   double sample_count_ = 0.0, time_sum_ = 0.0, squared_time_sum_ = 0.0, squared_velocity_sum_ = 0.0;
-  Eigen::Matrix3d arm_jacobian_sum_ = Eigen::Matrix3d::Zero(), time_arm_jacobian_sum_ = Eigen::Matrix3d::Zero(), squared_arm_jacobian_sum_ = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d velocity_sum_ = Eigen::Vector3d::Zero(), time_velocity_sum_ = Eigen::Vector3d::Zero(), arm_velocity_sum_ = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d arm_jacobian_sum_ = Eigen::Matrix3d::Zero(), time_arm_jacobian_sum_ = Eigen::Matrix3d::Zero(),
+                  squared_arm_jacobian_sum_ = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d velocity_sum_ = Eigen::Vector3d::Zero(), time_velocity_sum_ = Eigen::Vector3d::Zero(),
+                  arm_velocity_sum_ = Eigen::Vector3d::Zero();
 };
 
 }  // namespace tumble

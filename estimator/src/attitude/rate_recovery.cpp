@@ -42,8 +42,8 @@ struct SaturatedReading {
 };
 
 template <typename Railed>
-SaturatedReading saturated_reading_of_imu(const SensingDirections& elements, const Eigen::Matrix3d& R_IC, const Eigen::Vector3d& reading,
-             const Railed& railed) {
+SaturatedReading saturated_reading_of_imu(const SensingDirections& elements, const Eigen::Matrix3d& R_IC,
+                                          const Eigen::Vector3d& reading, const Railed& railed) {
   SaturatedReading out{R_IC, reading};
   bool any = false;
   for (int axis = 0; axis < 3; ++axis) any |= out.is_saturated[static_cast<std::size_t>(axis)] = railed(axis);
@@ -51,7 +51,8 @@ SaturatedReading saturated_reading_of_imu(const SensingDirections& elements, con
   out.sensing_directions_mean_frame = elements.sensing_directions * R_IC;
   out.reading = elements.sensing_directions * reading;
   for (int axis = 0; axis < 3; ++axis) {
-    if (!out.is_saturated[static_cast<std::size_t>(axis)]) out.cross_axis_slope_sigma[axis] = elements.cross_axis_slope_sigma[axis];
+    if (!out.is_saturated[static_cast<std::size_t>(axis)])
+      out.cross_axis_slope_sigma[axis] = elements.cross_axis_slope_sigma[axis];
   }
   return out;
 }
@@ -87,7 +88,8 @@ bool AngularRateRecovery::is_force_saturated(const ImuSample& unit, int axis) co
          (unit.device_clip_flags & (kClipAccelX << axis)) != 0;
 }
 
-AngularRateRecovery::SaturatedSensors AngularRateRecovery::find_saturated_sensors(std::span<const ImuSample> units) const {
+AngularRateRecovery::SaturatedSensors AngularRateRecovery::find_saturated_sensors(
+    std::span<const ImuSample> units) const {
   SaturatedSensors out;
   std::size_t clipped = 0, received = 0;
   for (const ImuSample& unit : units) {
@@ -110,7 +112,8 @@ void AngularRateRecovery::step(std::span<const ImuSample> units, double dt_s, St
   // Accelerometers saturate where gravity and centripetal force add up, so the unsaturated accelerometers have a biased
   // mean.
   merged.device_clip_flags = met.force ? kClipAccelX | kClipAccelY | kClipAccelZ : 0;
-  const bool fast = merged.angular_velocity_rad_s.cwiseAbs().maxCoeff() >= kMinSaturatedRangeFraction * params_.gyro_range_rad_s;
+  const bool fast =
+      merged.angular_velocity_rad_s.cwiseAbs().maxCoeff() >= kMinSaturatedRangeFraction * params_.gyro_range_rad_s;
   if (!fast && !met.rate) {
     state.running = false;
     return;
@@ -124,7 +127,8 @@ void AngularRateRecovery::step(std::span<const ImuSample> units, double dt_s, St
   measure_forces(units, dt_s, state);
   state.error_covariance = (0.5 * (state.error_covariance + state.error_covariance.transpose())).eval();
 
-  if (met.rate && state.error_covariance.diagonal().segment<3>(kRate).maxCoeff() < squared(params_.recovered_sigma_rad_s)) {
+  if (met.rate &&
+      state.error_covariance.diagonal().segment<3>(kRate).maxCoeff() < squared(params_.recovered_sigma_rad_s)) {
     merged.angular_velocity_rad_s = state.x.segment<3>(kRate);
   } else if (met.rate) {
     merged.device_clip_flags = static_cast<std::uint8_t>(merged.device_clip_flags | kClipGyro);
@@ -171,7 +175,8 @@ void AngularRateRecovery::measure_rates(std::span<const ImuSample> units, double
     if (!is_finite(units[k])) continue;
     const Eigen::Matrix3d R_IC = params_.T_mean_imu[k].linear().transpose();
     const auto railed = [&](int axis) { return is_rate_saturated(units[k], axis); };
-    const SaturatedReading seen = saturated_reading_of_imu(params_.gyro_sensing_directions[k], R_IC, units[k].angular_velocity_rad_s, railed);
+    const SaturatedReading seen =
+        saturated_reading_of_imu(params_.gyro_sensing_directions[k], R_IC, units[k].angular_velocity_rad_s, railed);
     const double hidden = seen.saturation_excess(seen.sensing_directions_mean_frame * state.x.segment<3>(kRate));
     for (int axis = 0; axis < 3; ++axis) {
       const double reading = seen.reading[axis];
@@ -181,7 +186,8 @@ void AngularRateRecovery::measure_rates(std::span<const ImuSample> units, double
       Row row = Row::Zero();
       row.segment<3>(kRate) = seen.sensing_directions_mean_frame.row(axis);
       const double sigma = params_.noise.rate_rad_s + params_.noise.rate_share * std::abs(reading);
-      const double variance = seen.is_saturated[static_cast<std::size_t>(axis)] ? squared(kRailSigma_rad_s) : squared(sigma);
+      const double variance =
+          seen.is_saturated[static_cast<std::size_t>(axis)] ? squared(kRailSigma_rad_s) : squared(sigma);
       update_rate_state(row, missing, shorter * variance + squared(seen.cross_axis_slope_sigma[axis] * hidden), state);
     }
   }
@@ -194,7 +200,8 @@ void AngularRateRecovery::measure_forces(std::span<const ImuSample> units, doubl
     if (!is_finite(units[k])) continue;
     const Eigen::Matrix3d R_IC = params_.T_mean_imu[k].linear().transpose();
     const auto railed = [&](int axis) { return is_force_saturated(units[k], axis); };
-    const SaturatedReading seen = saturated_reading_of_imu(params_.accel_sensing_directions[k], R_IC, units[k].specific_force_m_s2, railed);
+    const SaturatedReading seen =
+        saturated_reading_of_imu(params_.accel_sensing_directions[k], R_IC, units[k].specific_force_m_s2, railed);
     const int arm = kArms + 3 * static_cast<int>(k);
     for (int axis = 0; axis < 3; ++axis) {
       const double reading = seen.reading[axis];
@@ -209,10 +216,12 @@ void AngularRateRecovery::measure_forces(std::span<const ImuSample> units, doubl
       row.segment<3>(kForce) = axis_C;
       row.segment<3>(arm) = axis_C * jacobian_position;
       const Eigen::Vector3d force = state.x.segment<3>(kForce) + jacobian_position * position;
-      const double hidden = seen.cross_axis_slope_sigma[axis] > 0.0 ? seen.saturation_excess(seen.sensing_directions_mean_frame * force) : 0.0;
+      const double hidden = seen.cross_axis_slope_sigma[axis] > 0.0
+                                ? seen.saturation_excess(seen.sensing_directions_mean_frame * force)
+                                : 0.0;
       const double sigma = params_.noise.force_m_s2 + params_.noise.force_share * std::abs(reading);
-      update_rate_state(row, reading - axis_C.dot(force), shorter * squared(sigma) + squared(seen.cross_axis_slope_sigma[axis] * hidden),
-             state);
+      update_rate_state(row, reading - axis_C.dot(force),
+                        shorter * squared(sigma) + squared(seen.cross_axis_slope_sigma[axis] * hidden), state);
     }
   }
 }

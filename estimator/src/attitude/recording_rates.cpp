@@ -13,7 +13,8 @@ namespace tumble {
 namespace {
 
 bool keeps_estimated_rate(const AngularRateState& rate, ReadingsToReplace replaced) {
-  return rate.clipped_axes == 0 && (replaced == ReadingsToReplace::clipped || rate.source == AngularRateSource::measured);
+  return rate.clipped_axes == 0 &&
+         (replaced == ReadingsToReplace::clipped || rate.source == AngularRateSource::measured);
 }
 
 bool any_clips(std::span<const ClipSigns> signs) {

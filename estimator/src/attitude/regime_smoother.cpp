@@ -50,8 +50,8 @@ MotionRegimeSmoother::MotionRegimeSmoother(const Params& params)
 }
 
 Status MotionRegimeSmoother::estimate(std::span<const ImuSample> samples,
-                                std::span<const std::vector<AuxiliaryReading>> auxiliary_imus,
-                                std::vector<AngularRateState>& rates, Report& report) const {
+                                      std::span<const std::vector<AuxiliaryReading>> auxiliary_imus,
+                                      std::vector<AngularRateState>& rates, Report& report) const {
   rates.clear();
   report = {};
   const Status status = rate_.estimate(samples, auxiliary_imus, rates, report.rate);
@@ -64,13 +64,14 @@ Status MotionRegimeSmoother::estimate(std::span<const ImuSample> samples,
   return {};
 }
 
-void MotionRegimeSmoother::join_regime_rates(std::span<const ImuSample> samples, std::vector<AngularRateState>& rates, Report& report) const {
+void MotionRegimeSmoother::join_regime_rates(std::span<const ImuSample> samples, std::vector<AngularRateState>& rates,
+                                             Report& report) const {
   join_hand_held_rates(samples, rates, report);
   join_spin_rates(samples, false, rates, report);
 }
 
-void MotionRegimeSmoother::join_spin_rates(std::span<const ImuSample> samples, bool further_imus, std::vector<AngularRateState>& rates,
-                               Report& report) const {
+void MotionRegimeSmoother::join_spin_rates(std::span<const ImuSample> samples, bool further_imus,
+                                           std::vector<AngularRateState>& rates, Report& report) const {
   std::vector<std::uint8_t> saturated_axes(samples.size());
   for (std::size_t k = 0; k < samples.size(); ++k)
     saturated_axes[k] = static_cast<std::uint8_t>(rates[k].clipped_axes | report.rate.suspected_saturation_axes[k] |
@@ -82,12 +83,13 @@ void MotionRegimeSmoother::join_spin_rates(std::span<const ImuSample> samples, b
   }
 }
 
-void MotionRegimeSmoother::join_hand_held_rates(std::span<const ImuSample> samples, std::vector<AngularRateState>& rates,
-                                    Report& report) const {
+void MotionRegimeSmoother::join_hand_held_rates(std::span<const ImuSample> samples,
+                                                std::vector<AngularRateState>& rates, Report& report) const {
   const RigCalibration& rig = report.rate.calibration;
   const Eigen::Matrix3d lever_covariance = rig.covariance.topLeftCorner<3, 3>();
   std::vector<RegimeProbabilities> probabilities;
-  if (!regime_evidence_.find(interpolate_forces(samples), rates, rig.constants.lever_arm_m, lever_covariance, probabilities)
+  if (!regime_evidence_
+           .find(interpolate_forces(samples), rates, rig.constants.lever_arm_m, lever_covariance, probabilities)
            .ok())
     return;
   report.regimes_estimated = true;
@@ -120,7 +122,8 @@ void MotionRegimeSmoother::join_hand_held_rates(std::span<const ImuSample> sampl
 /// Replaces the rates by the rates of HandHeldSmoother, separately between gaps of the recording. `report` describes
 /// the last part between gaps.
 bool MotionRegimeSmoother::estimate_hand_held(std::span<const ImuSample> samples, const ClippedReadings& known,
-                                        std::vector<AngularRateState>& rates, HandHeldSmoother::Report& report) const {
+                                              std::vector<AngularRateState>& rates,
+                                              HandHeldSmoother::Report& report) const {
   bool any = false;
   std::vector<AngularRateState> part;
   std::vector<AttitudeState> attitudes;
@@ -141,9 +144,9 @@ bool MotionRegimeSmoother::estimate_hand_held(std::span<const ImuSample> samples
 }
 
 /// Returns the probability of hand-held motion near clipped or suspect readings, and 0 elsewhere: carried.md (C40).
-std::vector<double> MotionRegimeSmoother::segment_hand_held_probability(std::span<const RegimeProbabilities> probabilities,
-                                                                  const AngularRateReport& report,
-                                                                  std::span<const AngularRateState> rates) const {
+std::vector<double> MotionRegimeSmoother::segment_hand_held_probability(
+    std::span<const RegimeProbabilities> probabilities, const AngularRateReport& report,
+    std::span<const AngularRateState> rates) const {
   std::vector<double> out(rates.size(), 0.0);
   const TimeNs near_ns = static_cast<TimeNs>(1e9 * params_.segment_gap_max_s);
   for (std::size_t k = 0; k < rates.size();) {

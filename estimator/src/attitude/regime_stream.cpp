@@ -37,12 +37,13 @@ ClipSigns clip_signs_of(const AngularRateObservation& observation) {
 AngularRateState mixed_rate(const AngularRateState& rate, const AngularRateState& hand_held, double share) {
   AngularRateState out = mix_rate_states(rate, hand_held, share);
   out.clipped_axes = rate.clipped_axes;
-  if (rate.source == AngularRateSource::lower_bound_only && out.source == AngularRateSource::measured) out.source = rate.source;
+  if (rate.source == AngularRateSource::lower_bound_only && out.source == AngularRateSource::measured)
+    out.source = rate.source;
   return out;
 }
 
-// The rates give the angular acceleration, because the value from AngularRateStream depends on the specific force under test:
-// carried.md (C44).
+// The rates give the angular acceleration, because the value from AngularRateStream depends on the specific force under
+// test: carried.md (C44).
 Eigen::Vector3d angular_acceleration(std::span<const AngularRateStream::Knot> window, std::size_t k) {
   const auto between_s = [&](std::size_t from, std::size_t to) {
     return seconds(window[to].observation.sample.time_ns - window[from].observation.sample.time_ns);
@@ -58,7 +59,11 @@ Eigen::Vector3d angular_acceleration(std::span<const AngularRateStream::Knot> wi
 }  // namespace
 
 MotionRegimeStream::MotionRegimeStream(const Params& params)
-    : params_(params), rate_(params.rate), regime_evidence_(params.regime_evidence), hand_held_(with_common_params(params)), spin_(params.spin) {
+    : params_(params),
+      rate_(params.rate),
+      regime_evidence_(params.regime_evidence),
+      hand_held_(with_common_params(params)),
+      spin_(params.spin) {
   require_valid_fields(params);
 }
 
@@ -67,12 +72,13 @@ MotionRegimeStream::State MotionRegimeStream::start() const {
   state.rate = rate_.start();
   state.hand_held = hand_held_.start();
   state.clip_signs.reserve(state.rate.window.capacity());
-  state.recent_probabilities.reserve(static_cast<std::size_t>(std::ceil(params_.segment_gap_max_s / params_.rate.period_s)) + 2);
+  state.recent_probabilities.reserve(
+      static_cast<std::size_t>(std::ceil(params_.segment_gap_max_s / params_.rate.period_s)) + 2);
   return state;
 }
 
 Status MotionRegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
-                          std::optional<AngularRateState>& out) const {
+                                std::optional<AngularRateState>& out) const {
   if (const Status status = rate_.push(sample, auxiliary_imus, state.rate, out); !status.ok()) return status;
   double share = 0.0;
   if (out) {
@@ -91,10 +97,10 @@ Status MotionRegimeStream::push(const ImuSample& sample, std::span<const Auxilia
     const bool wanted = share > params_.hand_held_probability_min;
     ImuSample without_offset = sample;
     without_offset.angular_velocity_rad_s -= params_.rate.model.nominal.gyro_bias_rad_s;
-    state.hand_held_stream_running =
-        hand_held_
-            .push(without_offset, update_clip_signs(state), state.hand_held, hand_held, wanted, state.rate.repetition_state)
-            .ok();
+    state.hand_held_stream_running = hand_held_
+                                         .push(without_offset, update_clip_signs(state), state.hand_held, hand_held,
+                                               wanted, state.rate.repetition_state)
+                                         .ok();
   } else {
     state.hand_held_stream_running = false;
   }
@@ -119,19 +125,21 @@ SpinRate MotionRegimeStream::track_spin(const AngularRateState& rate, State& sta
 
 SensingAxisClipSigns MotionRegimeStream::update_clip_signs(State& state) const {
   state.clip_signs.clear();
-  for (const AngularRateStream::Knot& knot : state.rate.window) state.clip_signs.push_back(clip_signs_of(knot.observation));
+  for (const AngularRateStream::Knot& knot : state.rate.window)
+    state.clip_signs.push_back(clip_signs_of(knot.observation));
   SensingAxisClipSigns out;
   out.clip_signs = state.clip_signs;
   for (int j = 0; j < 3; ++j) {
-    const std::optional<SaturationPlane>& plane = state.rate.clipping_state.known_limits.gyro_planes.sensing_axis[static_cast<std::size_t>(j)];
+    const std::optional<SaturationPlane>& plane =
+        state.rate.clipping_state.known_limits.gyro_planes.sensing_axis[static_cast<std::size_t>(j)];
     if (plane) out.sensing_directions.row(j) = plane->row.transpose();
   }
   return out;
 }
 
 RegimeProbabilities MotionRegimeStream::next(const RegimeProbabilities& before, double dt_s,
-                                       std::span<const AngularRateStream::Knot> window, std::size_t k,
-                                       const RigCalibration& rig, bool unstable) const {
+                                             std::span<const AngularRateStream::Knot> window, std::size_t k,
+                                             const RigCalibration& rig, bool unstable) const {
   const AngularRateStream::Knot& knot = window[k];
   // While the calibration is unstable, it was fitted to contact forces, so rate and force agree in any motion.
   if (unstable && knot.observation.unmeasured_axes() != 0) return before;
@@ -140,7 +148,7 @@ RegimeProbabilities MotionRegimeStream::next(const RegimeProbabilities& before, 
   rate.covariance_rad2_s2 = knot.covariance_rad2_s2;
   rate.clipped_axes = static_cast<std::uint8_t>(knot.observation.unmeasured_axes());
   return regime_evidence_.next(before, dt_s, knot.observation.sample, rate, angular_acceleration(window, k),
-                        rig.constants.lever_arm_m, rig.covariance.topLeftCorner<3, 3>());
+                               rig.constants.lever_arm_m, rig.covariance.topLeftCorner<3, 3>());
 }
 
 std::size_t MotionRegimeStream::index_of(const AngularRateState& rate, const State& state) const {
@@ -158,7 +166,8 @@ bool MotionRegimeStream::calibration_is_unstable(const State& state) const {
 
 // Updates the probabilities of the motion regimes: forward recursion of carried.md (C38).
 void MotionRegimeStream::update_probabilities(const AngularRateState& rate, State& state) const {
-  const double dt_s = state.reported_sample_count == 0 ? params_.regime_evidence.memory_s : seconds(rate.time_ns - state.reported_ns);
+  const double dt_s =
+      state.reported_sample_count == 0 ? params_.regime_evidence.memory_s : seconds(rate.time_ns - state.reported_ns);
   state.probabilities = next(state.probabilities, dt_s, state.rate.window, index_of(rate, state),
                              rate_.calibration(state.rate), calibration_is_unstable(state));
   const auto dropped = static_cast<double>(state.rate.calibration_reset_count - state.calibration_reset_count);

@@ -74,8 +74,9 @@ MotionRegimeEvidence::MotionRegimeEvidence(const Params& params) : params_(param
 }
 
 // Returns the likelihoods of flight, contact and hand-held motion: carried.md (C31), (C32), (C33), (C34), (C36).
-Vector3d MotionRegimeEvidence::likelihood(double dt_s, const ImuSample& sample, const AngularRateState& rate, const Vector3d& alpha,
-                                    const Vector3d& lever_arm_m, double lever_arm_variance_m2) const {
+Vector3d MotionRegimeEvidence::likelihood(double dt_s, const ImuSample& sample, const AngularRateState& rate,
+                                          const Vector3d& alpha, const Vector3d& lever_arm_m,
+                                          double lever_arm_variance_m2) const {
   const Vector3d& w = rate.w_WI_I_rad_s;
   const double arm_m = lever_arm_m.norm();
   const Vector3d turning = alpha.cross(lever_arm_m) + w.cross(w.cross(lever_arm_m));
@@ -89,7 +90,7 @@ Vector3d MotionRegimeEvidence::likelihood(double dt_s, const ImuSample& sample, 
   const Vector3d left = f - turning;
   Vector3d logs(log_gaussian(left.squaredNorm(), flight_variance),
                 log_density_in_contact(left.norm(), f.norm(), params_.contact_force_max_m_s2, params_.gravity_m_s2,
-                            hand_variance + grip_variance),
+                                       hand_variance + grip_variance),
                 log_density_hand_held(f.norm(), params_.gravity_m_s2, hand_variance, grip_variance));
   if (w.norm() < params_.rest_rate_rad_s) logs.setZero();
   logs *= std::min(1.0, dt_s / params_.memory_s);
@@ -98,9 +99,11 @@ Vector3d MotionRegimeEvidence::likelihood(double dt_s, const ImuSample& sample, 
 
 // See carried.md (C38).
 RegimeProbabilities MotionRegimeEvidence::next(const RegimeProbabilities& before, double dt_s, const ImuSample& sample,
-                                         const AngularRateState& rate, const Vector3d& alpha, const Vector3d& lever_arm_m,
-                                         const Matrix3d& lever_arm_covariance_m2) const {
-  const Vector3d predicted = regime_transition_matrix(params_, dt_s) * Vector3d(before.flight, before.contact, before.hand_held);
+                                               const AngularRateState& rate, const Vector3d& alpha,
+                                               const Vector3d& lever_arm_m,
+                                               const Matrix3d& lever_arm_covariance_m2) const {
+  const Vector3d predicted =
+      regime_transition_matrix(params_, dt_s) * Vector3d(before.flight, before.contact, before.hand_held);
   Vector3d after =
       predicted.cwiseProduct(likelihood(dt_s, sample, rate, alpha, lever_arm_m, lever_arm_covariance_m2.trace()));
   after /= after.sum();
@@ -109,8 +112,8 @@ RegimeProbabilities MotionRegimeEvidence::next(const RegimeProbabilities& before
 
 // See carried.md (C38).
 Status MotionRegimeEvidence::find(std::span<const ImuSample> samples, std::span<const AngularRateState> rates,
-                            const Vector3d& lever_arm_m, const Matrix3d& lever_arm_covariance_m2,
-                            std::vector<RegimeProbabilities>& out) const {
+                                  const Vector3d& lever_arm_m, const Matrix3d& lever_arm_covariance_m2,
+                                  std::vector<RegimeProbabilities>& out) const {
   out.clear();
   const std::size_t count = samples.size();
   if (count == 0) return {ErrorCode::empty, "samples", 0.0, 1.0};
@@ -123,7 +126,8 @@ Status MotionRegimeEvidence::find(std::span<const ImuSample> samples, std::span<
     const double dt_s = k == 0 ? params_.memory_s : seconds(samples[k].time_ns - samples[k - 1].time_ns);
     likelihood[k] =
         this->likelihood(dt_s, samples[k], rates[k], angular_acceleration(rates, k), lever_arm_m, arm_variance);
-    const Vector3d before = k == 0 ? Vector3d::Constant(1.0 / 3.0) : Vector3d(regime_transition_matrix(params_, dt_s) * forward[k - 1]);
+    const Vector3d before =
+        k == 0 ? Vector3d::Constant(1.0 / 3.0) : Vector3d(regime_transition_matrix(params_, dt_s) * forward[k - 1]);
     forward[k] = before.cwiseProduct(likelihood[k]);
     forward[k] /= forward[k].sum();
   }

@@ -59,7 +59,8 @@ RestGravity::RestGravity(const Params& params)
 RestGravity::Step RestGravity::detect_stationary_periods(const ImuSample& sample, GravityMagnitudeState& state) const {
   if (!check_sample(sample).ok()) return {};
   double dt_s = 0.0;
-  const Status follows = state.started ? elapsed_time_since_last(sample.time_ns, state.last_time_ns, kRestGapMax_s, dt_s) : Status{};
+  const Status follows =
+      state.started ? elapsed_time_since_last(sample.time_ns, state.last_time_ns, kRestGapMax_s, dt_s) : Status{};
   if (follows.error_code == ErrorCode::time_order) return {};
   state.started = true;
   state.last_time_ns = sample.time_ns;
@@ -99,11 +100,13 @@ void RestGravity::step(const ImuSample& sample, const AngularRateState& rate, St
   state.rotation.setIdentity();
   state.integrated_force_m_s.setZero();
   state.span_s = state.integrated_saturation_deficit_m_s = 0.0;
-  state.angle_since_last_rest_rad = state.angle_variance_rad2 = state.unmeasured_duration_s = state.unmeasured_rotation_variance = 0.0;
+  state.angle_since_last_rest_rad = state.angle_variance_rad2 = state.unmeasured_duration_s =
+      state.unmeasured_rotation_variance = 0.0;
 }
 
 /// See imu_merge.md (I25). A reading is the mean over its averaging window, and is valid at the window's middle.
-void RestGravity::integrate_rotation(const ImuSample& sample, const AngularRateState& rate, double dt_s, State& state) const {
+void RestGravity::integrate_rotation(const ImuSample& sample, const AngularRateState& rate, double dt_s,
+                                     State& state) const {
   const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * rate.w_WI_I_rad_s);
   const Eigen::Vector3d& force = sample.specific_force_m_s2;
   state.integrated_force_m_s += dt_s * ((state.rotation * half) * force);
@@ -117,7 +120,8 @@ void RestGravity::integrate_rotation(const ImuSample& sample, const AngularRateS
 
 /// Errors within one clipped segment are correlated: imu_merge.md (I23).
 void RestGravity::end_segment(State& state) const {
-  state.angle_variance_rad2 += std::max(kCorrelation_s, state.unmeasured_duration_s) * state.unmeasured_rotation_variance;
+  state.angle_variance_rad2 +=
+      std::max(kCorrelation_s, state.unmeasured_duration_s) * state.unmeasured_rotation_variance;
   state.unmeasured_duration_s = state.unmeasured_rotation_variance = 0.0;
 }
 
@@ -134,7 +138,8 @@ void RestGravity::finish_rest_pair(State& state) const {
   const double from_end =
       (state.rotation.conjugate() * mean_m_s2 - current_force_m_s2).norm() / current_force_m_s2.norm();
   const double share = from_start + from_end;
-  const double hidden = 2.0 * state.integrated_saturation_deficit_m_s / (state.span_s * state.last_rest_force_m_s2.norm());
+  const double hidden =
+      2.0 * state.integrated_saturation_deficit_m_s / (state.span_s * state.last_rest_force_m_s2.norm());
   const double allowed = std::hypot(allowed_rad(std::sqrt(state.angle_variance_rad2)), hidden);
   if (share * state.worst_pair_error_limit < state.worst_velocity_error_ratio * allowed) return;
   state.worst_velocity_error_ratio = share;

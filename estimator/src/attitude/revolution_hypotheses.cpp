@@ -45,7 +45,8 @@ struct RevolutionAlternatives {
 
 /// Returns the cost of the angular jerk that one additional revolution within `steps` node intervals requires.
 double revolution_cost(const HandHeldProblem& problem, std::size_t steps) {
-  return hand_held::revolution_cost(static_cast<double>(steps) * problem.node_interval_s(), problem.jerk_rad_s3_sqrts());
+  return hand_held::revolution_cost(static_cast<double>(steps) * problem.node_interval_s(),
+                                    problem.jerk_rad_s3_sqrts());
 }
 
 /// See carried.md (C28).
@@ -81,7 +82,7 @@ std::vector<Segment> possibly_wrong_segments(const HandHeldProblem& problem) {
 
 /// Adds `turns` revolutions about `axis` between nodes a and b as a smooth bump of the rate.
 std::vector<Node> with_extra_revolutions(const HandHeldProblem& part, const Vector3d& axis, double turns, std::size_t a,
-                                        std::size_t b) {
+                                         std::size_t b) {
   std::vector<Node> nodes(part.nodes().begin(), part.nodes().end());
   const double h = part.node_interval_s(), span_s = static_cast<double>(b - a) * h, mean = 2.0 * kPi * turns / span_s;
   const auto along = [&](std::size_t i) { return static_cast<double>(i - a) / static_cast<double>(b - a); };
@@ -90,7 +91,8 @@ std::vector<Node> with_extra_revolutions(const HandHeldProblem& part, const Vect
     nodes[i].w_WI_I_rad_s += mean * (1.0 - std::cos(phase)) * axis;
     nodes[i].angular_acceleration_rad_s2 += mean * 2.0 * kPi / span_s * std::sin(phase) * axis;
   }
-  for (std::size_t i = a; i < b; ++i) nodes[i + 1].q_WI = nodes[i].q_WI * so3::exp(rotation_between_nodes(nodes[i], nodes[i + 1], h));
+  for (std::size_t i = a; i < b; ++i)
+    nodes[i + 1].q_WI = nodes[i].q_WI * so3::exp(rotation_between_nodes(nodes[i], nodes[i + 1], h));
   const Vector3d missed = so3::logarithm(nodes[b].q_WI.conjugate() * part.nodes()[b].q_WI);
   const Vector3d& g_W = part.gravity_W_m_s2();
   for (std::size_t i = a; i <= b; ++i) {
@@ -109,7 +111,8 @@ double angle_between(std::span<const Node> from, std::span<const Node> to, const
 
 std::vector<Hypothesis> hypotheses(const HandHeldProblem& whole, const Segment& segment, const ProblemSegment& part) {
   const Eigen::RowVector3d m = whole.sensing_directions().row(static_cast<Eigen::Index>(segment.sensing_axis));
-  const Vector3d axis = whole.sensing_directions().inverse().col(static_cast<Eigen::Index>(segment.sensing_axis)).normalized();
+  const Vector3d axis =
+      whole.sensing_directions().inverse().col(static_cast<Eigen::Index>(segment.sensing_axis)).normalized();
   const std::size_t a = segment.first - 1 - part.first, b = segment.last + 1 - part.first;
   std::vector<Hypothesis> out;
   const auto keep = [&](HandHeldProblem& problem) {
@@ -137,8 +140,8 @@ std::vector<Hypothesis> hypotheses(const HandHeldProblem& whole, const Segment& 
   return out;
 }
 
-/// `found` contains solutions with different numbers of revolutions, best first. `accepted_alternative` is the index of the solution
-/// with the present number of revolutions.
+/// `found` contains solutions with different numbers of revolutions, best first. `accepted_alternative` is the index of
+/// the solution with the present number of revolutions.
 struct TestedRevolutionSegment {
   std::size_t from = 0;
   std::vector<Hypothesis> revolution_hypotheses;
@@ -147,23 +150,28 @@ struct TestedRevolutionSegment {
 };
 
 /// See carried.md (C29).
-RevolutionAlternatives revolution_probabilities(const TestedRevolutionSegment& tested, std::optional<std::size_t> standing) {
+RevolutionAlternatives revolution_probabilities(const TestedRevolutionSegment& tested,
+                                                std::optional<std::size_t> standing) {
   RevolutionAlternatives out{tested.from, {}};
   const double least = tested.revolution_hypotheses.front().cost;
   const auto weight = [&](const Hypothesis& each) { return std::exp(-0.5 * (each.cost - least)); };
   double sum = 0.0;
   for (const Hypothesis& each : tested.revolution_hypotheses) sum += weight(each);
   for (std::size_t k = 0; k < tested.revolution_hypotheses.size(); ++k) {
-    if (k != standing) out.alternative_nodes.emplace_back(weight(tested.revolution_hypotheses[k]) / sum, tested.revolution_hypotheses[k].nodes);
+    if (k != standing)
+      out.alternative_nodes.emplace_back(weight(tested.revolution_hypotheses[k]) / sum,
+                                         tested.revolution_hypotheses[k].nodes);
   }
   return out;
 }
 
 /// `taken` is true if each segment now has its most probable number of revolutions.
-std::vector<RevolutionAlternatives> remaining_revolution_hypotheses(const std::vector<TestedRevolutionSegment>& tested, bool taken) {
+std::vector<RevolutionAlternatives> remaining_revolution_hypotheses(const std::vector<TestedRevolutionSegment>& tested,
+                                                                    bool taken) {
   std::vector<RevolutionAlternatives> out;
   for (const TestedRevolutionSegment& each : tested) {
-    const std::optional<std::size_t> standing = taken && each.needs_another_solution ? std::optional<std::size_t>(0) : each.accepted_alternative;
+    const std::optional<std::size_t> standing =
+        taken && each.needs_another_solution ? std::optional<std::size_t>(0) : each.accepted_alternative;
     RevolutionAlternatives open = revolution_probabilities(each, standing);
     if (!open.alternative_nodes.empty()) out.push_back(std::move(open));
   }
@@ -188,8 +196,10 @@ std::vector<ProblemSegment> with_neighbouring_nodes(const HandHeldProblem& probl
 }
 
 /// `fallen` marks segments whose number of revolutions an earlier round has changed.
-std::vector<TestedRevolutionSegment> test_revolution_segments(const HandHeldProblem& problem, std::span<const Segment> segments,
-                                         std::span<const ProblemSegment> parts, std::vector<bool>& fallen) {
+std::vector<TestedRevolutionSegment> test_revolution_segments(const HandHeldProblem& problem,
+                                                              std::span<const Segment> segments,
+                                                              std::span<const ProblemSegment> parts,
+                                                              std::vector<bool>& fallen) {
   std::vector<TestedRevolutionSegment> out;
   for (std::size_t k = 0; k < parts.size(); ++k) {
     const ProblemSegment& part = parts[k];
@@ -200,10 +210,13 @@ std::vector<TestedRevolutionSegment> test_revolution_segments(const HandHeldProb
     const std::span<const Node> before = problem.nodes().subspan(part.first, part.last - part.first + 1);
     const Eigen::RowVector3d m = problem.sensing_directions().row(static_cast<Eigen::Index>(segments[k].sensing_axis));
     for (std::size_t i = 0; i < tested.revolution_hypotheses.size() && !tested.accepted_alternative; ++i) {
-      if (std::abs(angle_between(before, tested.revolution_hypotheses[i].nodes, m, problem.node_interval_s())) <= kPi) tested.accepted_alternative = i;
+      if (std::abs(angle_between(before, tested.revolution_hypotheses[i].nodes, m, problem.node_interval_s())) <= kPi)
+        tested.accepted_alternative = i;
     }
     const double margin = fallen[k] ? 0.0 : 2.0 * kAcceptLogOdds;
-    tested.needs_another_solution = !tested.accepted_alternative || tested.revolution_hypotheses[*tested.accepted_alternative].cost > tested.revolution_hypotheses.front().cost + margin;
+    tested.needs_another_solution =
+        !tested.accepted_alternative || tested.revolution_hypotheses[*tested.accepted_alternative].cost >
+                                            tested.revolution_hypotheses.front().cost + margin;
     fallen[k] = fallen[k] || tested.needs_another_solution;
     out.push_back(std::move(tested));
   }
@@ -237,8 +250,8 @@ void test_revolutions(HandHeldProblem& problem, HandHeldSmoother::Report& report
   for (int round = 0; round < kRounds; ++round) {
     if (!problem.condense_other_nodes(parts)) break;
     const std::vector<TestedRevolutionSegment> tested = test_revolution_segments(problem, segments, parts, fallen);
-    const auto taken =
-        std::count_if(tested.begin(), tested.end(), [](const TestedRevolutionSegment& each) { return each.needs_another_solution; });
+    const auto taken = std::count_if(tested.begin(), tested.end(),
+                                     [](const TestedRevolutionSegment& each) { return each.needs_another_solution; });
     open = remaining_revolution_hypotheses(tested, true);  // replaces the alternatives of the previous round
     if (taken == 0) break;
     const HandHeldProblem::Solution before = problem.solution();

@@ -19,12 +19,12 @@ struct RigidBodyImuForces {
 
   std::array<bool, kImuCount> imu_present{};
   std::array<Eigen::Vector3d, kImuCount> position_m{}, force_m_s2{};
-  std::array<double, kImuCount> peak_m_s2{};    ///< largest component of the IMU's readings in the window
+  std::array<double, kImuCount> peak_m_s2{};          ///< largest component of the IMU's readings in the window
   std::array<double, kImuCount> force_change_m_s2{};  ///< change of the specific force since the last window
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero(), acceleration_rad_s2 = Eigen::Vector3d::Zero();
-  double uncertainty_rad_s2 = 0.0;  ///< standard deviation of the angular acceleration
-  double unsaturated_peak_max_m_s2 = 0.0;     ///< two IMUs with smaller readings are unsaturated
-  double tolerated_saturation_m_s2 = 0.0;   ///< tolerated disagreement with all other IMUs
+  double uncertainty_rad_s2 = 0.0;         ///< standard deviation of the angular acceleration
+  double unsaturated_peak_max_m_s2 = 0.0;  ///< two IMUs with smaller readings are unsaturated
+  double tolerated_saturation_m_s2 = 0.0;  ///< tolerated disagreement with all other IMUs
 
   struct AgreeingImuForces {
     std::size_t imu = 0;
@@ -50,7 +50,8 @@ struct RigidBodyImuForces {
       if (!imu_present[k]) continue;
       int others = 0;
       for (std::size_t j = 0; j < kImuCount; ++j) others += imu_present[j] && j != k && forces_agree(k, j);
-      if (others > best.agreeing_imu_count || (others == best.agreeing_imu_count && force_change_m_s2[k] < force_change_m_s2[best.imu]))
+      if (others > best.agreeing_imu_count ||
+          (others == best.agreeing_imu_count && force_change_m_s2[k] < force_change_m_s2[best.imu]))
         best = {k, others};
     }
     return best;

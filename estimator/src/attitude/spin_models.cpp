@@ -18,7 +18,7 @@ using Eigen::Vector2d;
 constexpr int kRate = 0, kAcceleration = 1;
 constexpr int kTurning = 2, kFixed = 4;               // of Modulation
 constexpr int kArm = 2, kForce = 4, kWorldForce = 6;  // of Centripetal
-constexpr double kReadingInterval_s = 0.01;                   // time within which vibration is correlated
+constexpr double kReadingInterval_s = 0.01;           // time within which vibration is correlated
 constexpr double kScaleMemory_s = 0.5;                // averaging time of the variance ratio
 constexpr double kVarianceRatioMax = 1e3;             // bounds of the variance ratio
 constexpr double kReadingSigma_rad_s = 0.02;          // of an unsaturated reading
@@ -92,7 +92,8 @@ void turn_part(const SpinFilter<N>& filter, int part, double related, double dt_
 template <int N>
 double update_across(const Eigen::Matrix<double, 2, N>& H, const Vector2d& innovation, double sigma, double dt_s,
                      SpinFilter<N>& filter) {
-  const double variance = filter.variance_ratio * squared(sigma) * std::max(1.0, kReadingInterval_s / std::max(dt_s, 1e-6));
+  const double variance =
+      filter.variance_ratio * squared(sigma) * std::max(1.0, kReadingInterval_s / std::max(dt_s, 1e-6));
   const Matrix2d noise = variance * Matrix2d::Identity();
   const Matrix2d S = H * filter.P * H.transpose() + noise;
   const double squared_norm = innovation.dot(S.inverse() * innovation);

@@ -47,8 +47,9 @@ void smooth_spin(std::span<const RecordedSpin<N>> run, std::span<SpinRate> out) 
   Eigen::Vector2d backward = Eigen::Vector2d::Ones();  // spin, other motion
   for (std::size_t k = run.size() - 1; k-- > 0;) {
     const RecordedSpin<N>& next = run[k + 1];
-    const Eigen::Matrix<double, N, N> gain =
-        next.predicted.predicted_covariance.ldlt().solve(next.predicted.transition_matrix * run[k].filter.covariance).transpose();
+    const Eigen::Matrix<double, N, N> gain = next.predicted.predicted_covariance.ldlt()
+                                                 .solve(next.predicted.transition_matrix * run[k].filter.covariance)
+                                                 .transpose();
     x = (run[k].filter.x + gain * (x - next.predicted.x)).eval();
     P = (run[k].filter.covariance + gain * (P - next.predicted.predicted_covariance) * gain.transpose()).eval();
     out[k].rate_rad_s = x[kRate];
@@ -90,9 +91,9 @@ bool SpinTracker::select_spin_axis(const ImuSample& sample, State& state) const 
 
 // Continues one model of a spin by one sample. `record` receives what smooth_spin() needs.
 template <class Model, class Recorder>
-SpinRate SpinTracker::advance_spin_filter(const Model& model, const ImuSample& sample, std::uint8_t saturated_axes, double dt_s,
-                              bool first, int axis, Hypotheses<Model::kStates>& hypotheses,
-                              const Recorder& record) const {
+SpinRate SpinTracker::advance_spin_filter(const Model& model, const ImuSample& sample, std::uint8_t saturated_axes,
+                                          double dt_s, bool first, int axis, Hypotheses<Model::kStates>& hypotheses,
+                                          const Recorder& record) const {
   const SpinReading reading = model.reading(sample, saturated_axes, axis, dt_s);
   RecordedSpin<Model::kStates> recorded;
   recorded.spin_change_probability = probability_of_change(params_.changes_hz, dt_s);
@@ -101,9 +102,9 @@ SpinRate SpinTracker::advance_spin_filter(const Model& model, const ImuSample& s
     hypotheses.probability = hypotheses.measured_probability = kStartProbability;
   } else if (dt_s > 0.0) {
     recorded.predicted = model.predict(hypotheses.spin, 1.0, dt_s);
-    const double log_ratio =
-        model.update(recorded.predicted, reading, 1.0, hypotheses.spin) -
-        model.update(model.predict(hypotheses.independent_filter, 0.0, dt_s), reading, 0.0, hypotheses.independent_filter);
+    const double log_ratio = model.update(recorded.predicted, reading, 1.0, hypotheses.spin) -
+                             model.update(model.predict(hypotheses.independent_filter, 0.0, dt_s), reading, 0.0,
+                                          hypotheses.independent_filter);
     double ratio =
         std::exp(std::clamp(std::min(1.0, dt_s / params_.memory_s) * log_ratio, -kLogRatioMax, kLogRatioMax));
     const double c = recorded.spin_change_probability;
@@ -122,7 +123,8 @@ SpinRate SpinTracker::advance_spin_filter(const Model& model, const ImuSample& s
   recorded.filter = hypotheses.spin;
   recorded.probability = hypotheses.probability;
   record(recorded);
-  return {axis, hypotheses.spin.x[kRate], hypotheses.spin.covariance(kRate, kRate), hypotheses.probability, reading.saturated};
+  return {axis, hypotheses.spin.x[kRate], hypotheses.spin.covariance(kRate, kRate), hypotheses.probability,
+          reading.saturated};
 }
 
 SpinRate SpinTracker::step(const ImuSample& sample, std::uint8_t saturated_axes, State& state) const {
@@ -131,9 +133,10 @@ SpinRate SpinTracker::step(const ImuSample& sample, std::uint8_t saturated_axes,
   state.time_ns = sample.time_ns;
   if (state.axis < 0) return {};
   const auto ignore = [](const auto&) {};
-  return select_spin(
-      advance_spin_filter(Modulation{params_}, sample, saturated_axes, dt_s, first, state.axis, state.modulation, ignore),
-      advance_spin_filter(Centripetal{params_}, sample, saturated_axes, dt_s, first, state.axis, state.centripetal, ignore));
+  return select_spin(advance_spin_filter(Modulation{params_}, sample, saturated_axes, dt_s, first, state.axis,
+                                         state.modulation, ignore),
+                     advance_spin_filter(Centripetal{params_}, sample, saturated_axes, dt_s, first, state.axis,
+                                         state.centripetal, ignore));
 }
 
 std::vector<SpinRate> SpinTracker::smooth(std::span<const ImuSample> samples,
@@ -155,10 +158,12 @@ std::vector<SpinRate> SpinTracker::smooth(std::span<const ImuSample> samples,
     state.time_ns = samples[k].time_ns;
     if (state.axis < 0 || first) smooth_run(k);
     if (state.axis < 0) continue;
-    modulation[k] = advance_spin_filter(Modulation{params_}, samples[k], saturated_axes[k], dt_s, first, state.axis,
+    modulation[k] =
+        advance_spin_filter(Modulation{params_}, samples[k], saturated_axes[k], dt_s, first, state.axis,
                             state.modulation, [&](const auto& recorded) { modulation_run.push_back(recorded); });
-    centripetal[k] = advance_spin_filter(Centripetal{params_}, samples[k], saturated_axes[k], dt_s, first, state.axis,
-                             state.centripetal, [&](const auto& recorded) { centripetal_run.push_back(recorded); });
+    centripetal[k] =
+        advance_spin_filter(Centripetal{params_}, samples[k], saturated_axes[k], dt_s, first, state.axis,
+                            state.centripetal, [&](const auto& recorded) { centripetal_run.push_back(recorded); });
   }
   smooth_run(samples.size());
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -167,7 +172,8 @@ std::vector<SpinRate> SpinTracker::smooth(std::span<const ImuSample> samples,
   return modulation;
 }
 
-AngularRateState SpinTracker::combine_with_spin_rate(const AngularRateState& rate, const SpinRate& spin, bool further_imus) const {
+AngularRateState SpinTracker::combine_with_spin_rate(const AngularRateState& rate, const SpinRate& spin,
+                                                     bool further_imus) const {
   if (spin.axis < 0 || !spin.saturated || spin.probability < params_.probability_min) return rate;
   if (further_imus && rate.covariance_rad2_s2(spin.axis, spin.axis) < spin.variance_rad2_s2) return rate;
   AngularRateState spinning = rate;

@@ -83,7 +83,8 @@ Status TumbleAttitude::step(const ImuSample& sample, const Eigen::Matrix3d& rate
     start(state);
   } else {
     double dt_s = 0.0;
-    if (const Status bad = elapsed_time_since_last(sample.time_ns, state.last_time_ns, params_.expert.gap_max_s, dt_s); !bad.ok())
+    if (const Status bad = elapsed_time_since_last(sample.time_ns, state.last_time_ns, params_.expert.gap_max_s, dt_s);
+        !bad.ok())
       return bad;
     if (dt_s > kGapMin_s) {
       bridge_gap(sample, rate_covariance_rad2_s2, dt_s, state);
@@ -126,7 +127,8 @@ void TumbleAttitude::process_averaged_reading(State& state) const {
   const double length_s = state.average.length_s;
   state.average = {};
   state.last_processed_q_WI.setIdentity();
-  state.at_rest = rest_detector_.detect_stationary(reading, state.stationary_state, state.bias_rad_s) && rotates_within_gyro_bias(state);
+  state.at_rest = rest_detector_.detect_stationary(reading, state.stationary_state, state.bias_rad_s) &&
+                  rotates_within_gyro_bias(state);
   integrate(reading, length_s, state);
   add_recovered_rate_variance(length_s, state);
   if (state.time_since_node_s >= params_.expert.node_s - 0.5 * length_s) end_node(state);
@@ -167,7 +169,8 @@ void TumbleAttitude::integrate(const ImuSample& sample, double dt_s, State& stat
 void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& rate_covariance_rad2_s2, double gap_s,
                                 State& state) const {
   if (state.average.readings > 0) process_averaged_reading(state);
-  state.at_rest = rest_detector_.detect_stationary(after, state.stationary_state, state.bias_rad_s) && rotates_within_gyro_bias(state);
+  state.at_rest = rest_detector_.detect_stationary(after, state.stationary_state, state.bias_rad_s) &&
+                  rotates_within_gyro_bias(state);
   const Eigen::Vector3d from = state.rate_rad_s;
   Eigen::Vector3d to = after.angular_velocity_rad_s - state.bias_rad_s;
   if (state.at_rest) to.setZero();
@@ -223,7 +226,8 @@ void TumbleAttitude::align(const Eigen::Quaterniond& corrected, State& state) co
   const double variance = alignment.variance_rad2(velocity, params_.gravity_m_s2);
   if (variance > squared(params_.expert.gap.kAlignedTilt_rad)) {
     // When the body comes to rest, the coarse alignment restarts and uses only later data.
-    if (state.at_rest && alignment.start_velocity_variance_m2_s2 > velocity) alignment.start_alignment(velocity, alignment.tilt_rad2());
+    if (state.at_rest && alignment.start_velocity_variance_m2_s2 > velocity)
+      alignment.start_alignment(velocity, alignment.tilt_rad2());
     return;
   }
   const double filtered = tilt_variance_rad2(state);
@@ -290,7 +294,8 @@ void TumbleAttitude::predict_node(State& state) const {
   const double turn = squared(params_.gyro_noise_rad_sqrts) * h +
                       squared(params_.rate_error_sqrts) * state.squared_rate_integral_rad2_s;
   state.covariance.diagonal().segment<2>(kTilt).array() += turn + state.recovered_angle_variance_rad2[0];
-  if (state.alignment.running) state.alignment.tilt_variance_growth_rad2 += turn + state.recovered_angle_variance_rad2[0];
+  if (state.alignment.running)
+    state.alignment.tilt_variance_growth_rad2 += turn + state.recovered_angle_variance_rad2[0];
   state.covariance(kHeading, kHeading) += state.at_rest ? 0.0 : turn + state.recovered_angle_variance_rad2[1];
   state.covariance.diagonal().segment<3>(kBias).array() += squared(params_.expert.kBiasWalk_rad_s_sqrts) * h;
   state.covariance.diagonal().segment<2>(kVelocity).array() += squared(kAccelerationNoise_m_s_sqrts) * h;
@@ -315,7 +320,7 @@ bool TumbleAttitude::detect_slip(const Eigen::Vector2d& misfit_m_s, State& state
 
 /// See attitude.md (A13).
 double TumbleAttitude::body_motion_variance(const Eigen::Vector2d& misfit, int index, double sigma_sqrts, double power,
-                                       const State& state) const {
+                                            const State& state) const {
   const double seen = 0.5 * (misfit.squaredNorm() - state.covariance.block<2, 2>(index, index).trace());
   const double decayed_power = std::exp(-state.time_since_node_s / params_.motion_tau_s) * power;
   return std::max({squared(sigma_sqrts) / params_.motion_tau_s, seen, decayed_power});

@@ -51,15 +51,20 @@ Status Vqf::step(const ImuSample& sample, State& state) const {
   if (const Status bad = check_sample(sample); !bad.ok()) return bad;
   double dt_s = 0.0;
   if (state.started) {
-    if (const Status bad = elapsed_time_since_last(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s); !bad.ok()) return bad;
+    if (const Status bad = elapsed_time_since_last(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s);
+        !bad.ok())
+      return bad;
   } else {
-    if (const Status bad = inclination_from_force(sample.specific_force_m_s2, state.inclination_correction); !bad.ok()) return bad;
+    if (const Status bad = inclination_from_force(sample.specific_force_m_s2, state.inclination_correction); !bad.ok())
+      return bad;
     state.bias_covariance_rad2_s2.diagonal().setConstant(params_.bias_sigma_start_rad_s *
                                                          params_.bias_sigma_start_rad_s);
   }
   if (dt_s > 0.0) {
     detect_rest(sample, dt_s, state);
-    state.attitude_without_correction = (state.attitude_without_correction * so3::exp((sample.angular_velocity_rad_s - state.bias_rad_s) * dt_s)).normalized();
+    state.attitude_without_correction =
+        (state.attitude_without_correction * so3::exp((sample.angular_velocity_rad_s - state.bias_rad_s) * dt_s))
+            .normalized();
     if (sample.specific_force_m_s2.norm() >= kNoDirection_m_s2) {
       const Eigen::Vector3d up_W = level_inertial_frame(sample.specific_force_m_s2, dt_s, state);
       if (params_.rest_bias_estimation || params_.motion_bias_estimation) estimate_bias(up_W, dt_s, state);
@@ -85,7 +90,8 @@ void Vqf::detect_rest(const ImuSample& sample, double dt_s, State& state) const 
 /// Levels frame W, and returns the unit vector along the specific force (upwards) in the frame before levelling.
 Eigen::Vector3d Vqf::level_inertial_frame(const Eigen::Vector3d& f_I_m_s2, double dt_s, State& state) const {
   // See attitude.md (A3).
-  state.filtered_specific_force_m_s2.advance(state.attitude_without_correction * f_I_m_s2, params_.tau_s, dt_s, low_pass_prewarp(params_.tau_s, dt_s));
+  state.filtered_specific_force_m_s2.advance(state.attitude_without_correction * f_I_m_s2, params_.tau_s, dt_s,
+                                             low_pass_prewarp(params_.tau_s, dt_s));
   const double length = state.filtered_specific_force_m_s2.value.norm();
   if (length < kNoDirection_m_s2) return Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d up_W = state.inclination_correction * (state.filtered_specific_force_m_s2.value / length);

@@ -83,7 +83,8 @@ RecentTriadReadings recent_triad_readings(const OutlierFilter::State& state) {
   return out;
 }
 
-RecentTriadReadings sequence_until(const ImuSample& last, std::span<const ImuSample> delayed, const OutlierFilter::State& state) {
+RecentTriadReadings sequence_until(const ImuSample& last, std::span<const ImuSample> delayed,
+                                   const OutlierFilter::State& state) {
   RecentTriadReadings out = recent_triad_readings(state);
   for (const ImuSample& sample : delayed) out.add(sample);
   out.add(last);
@@ -133,15 +134,15 @@ double distance(const ImuSample& sample, const OutlierFilter::State& state, cons
   return std::min(apart, (step - step_s(last, sample) * slope).cwiseAbs().maxCoeff());
 }
 
-double gyro_threshold(const OutlierFilter::ImuRanges& device, const RecentTriadReadings& sequence, const ImuSample& judged,
-                      double step) {
+double gyro_threshold(const OutlierFilter::ImuRanges& device, const RecentTriadReadings& sequence,
+                      const ImuSample& judged, double step) {
   if (gyro_of(device).beyond_range(judged)) return kRateMin_rad_s;
   const double caused = kAccelerationPerForce_rad_m * step * largest_step(sequence, accel_of(device));
   return std::clamp(caused, kRateMin_rad_s, kRateJumpMax_rad_s);
 }
 
-double accel_threshold(const OutlierFilter::ImuRanges& device, const RecentTriadReadings& sequence, const ImuSample& judged,
-                       double step) {
+double accel_threshold(const OutlierFilter::ImuRanges& device, const RecentTriadReadings& sequence,
+                       const ImuSample& judged, double step) {
   if (accel_of(device).beyond_range(judged)) return kForceMin_m_s2;
   const double caused = kLever_m / step * largest_second_difference(sequence, gyro_of(device));
   return std::clamp(caused, kForceMin_m_s2, std::max(kForceMin_m_s2, kVelocityJumpMax_m_s / step));
@@ -185,7 +186,8 @@ bool OutlierFilter::first_is_outlier(const ImuSample& next, const State& state) 
 }
 
 bool OutlierFilter::is_implausible(const ImuSample& sample) const {
-  return gyro_of(imu_ranges_).largest_component(sample) > kRateMax_rad_s || accel_of(imu_ranges_).largest_component(sample) > kForceMax_m_s2;
+  return gyro_of(imu_ranges_).largest_component(sample) > kRateMax_rad_s ||
+         accel_of(imu_ranges_).largest_component(sample) > kForceMax_m_s2;
 }
 
 bool OutlierFilter::must_delay_for_check(const ImuSample& sample, State& state) const {
@@ -226,7 +228,8 @@ bool OutlierFilter::jumps(const ImuSample& sample, std::span<const ImuSample> de
 bool OutlierFilter::is_outlier(std::size_t index, const ImuSample& after, const State& state) const {
   const ImuSample &before = state.recent_inliers[1], &delayed = state.delayed_sample[index];
   if (state.count == 0 || step_s(before, delayed) > kNear_s || step_s(delayed, after) > kNear_s) return false;
-  const double step = std::max(step_s(index == 0 ? before : state.delayed_sample[index - 1], delayed), imu_ranges_.period_s);
+  const double step =
+      std::max(step_s(index == 0 ? before : state.delayed_sample[index - 1], delayed), imu_ranges_.period_s);
   const RecentTriadReadings sequence = sequence_until(after, state.delayed_samples(), state);
   const auto stands_out = [&](const Triad& triad, double threshold) {
     const double by = distance_from_neighbours(triad.of(before), triad.of(delayed), triad.of(after));

@@ -31,10 +31,11 @@ struct FittedLine {
   double period_ns = 0.0, last_ns = 0.0;
   double weighted_sample_index_sum = 0.0,
          weighted_squared_sample_index_sum = 0.0;  ///< sums over the sample numbers, counted from the last stamp
-  double mean_square_error_ns2 = 0.0;        ///< variance of the stamps about the line
+  double mean_square_error_ns2 = 0.0;              ///< variance of the stamps about the line
 };
 
-using StateOffsets = std::array<double, SampleClock::kFirstLineFitStampCount>;  // times relative to the first stamp [ns]
+using StateOffsets =
+    std::array<double, SampleClock::kFirstLineFitStampCount>;  // times relative to the first stamp [ns]
 using Numbers = std::array<double, SampleClock::kFirstLineFitStampCount>;
 
 FittedLine fit(const StateOffsets& x_ns, const Numbers& n) {
@@ -50,7 +51,8 @@ FittedLine fit(const StateOffsets& x_ns, const Numbers& n) {
   }
   const double determinant =
       kCount * line.weighted_squared_sample_index_sum - line.weighted_sample_index_sum * line.weighted_sample_index_sum;
-  line.last_ns = (line.weighted_squared_sample_index_sum * sum_x - line.weighted_sample_index_sum * sum_nx) / determinant;
+  line.last_ns =
+      (line.weighted_squared_sample_index_sum * sum_x - line.weighted_sample_index_sum * sum_nx) / determinant;
   line.period_ns = (kCount * sum_nx - line.weighted_sample_index_sum * sum_x) / determinant;
   for (std::size_t k = 0; k < SampleClock::kFirstLineFitStampCount; ++k) {
     const double residual = x_ns[k] - line.last_ns - (n[k] - n.back()) * line.period_ns;
@@ -126,7 +128,8 @@ Status SampleClock::push(TimeNs stamp_ns, State& state, TimeNs& time_ns) const {
 
 void SampleClock::start_line_fit(State& state) const {
   StateOffsets x_ns{};
-  for (std::size_t k = 0; k < kFirstLineFitStampCount; ++k) x_ns[k] = difference_ns(state.start[k], state.start.front());
+  for (std::size_t k = 0; k < kFirstLineFitStampCount; ++k)
+    x_ns[k] = difference_ns(state.start[k], state.start.front());
   state.samples = 0;
   Numbers numbers = sample_index_from_steps(x_ns, median_step(x_ns));
   FittedLine line = fit(x_ns, numbers);
@@ -151,8 +154,8 @@ void SampleClock::update_line(double step_ns, TimeNs stamp_ns, State& state) con
   const double number = std::max(1.0, std::round(passed_ns / state.period_ns));
   const double prediction_error_ns = passed_ns - number * state.period_ns;
   const double jitter_ns = std::max(std::sqrt(state.mean_square_error_ns2), params_.kJitterMin * state.period_ns);
-  const double before =
-      state.sum_of_weights * state.weighted_squared_sample_index_sum - state.weighted_sample_index_sum * state.weighted_sample_index_sum;
+  const double before = state.sum_of_weights * state.weighted_squared_sample_index_sum -
+                        state.weighted_sample_index_sum * state.weighted_sample_index_sum;
   const double extrapolation_sigma_ns = number * jitter_ns * std::sqrt(state.sum_of_weights / before);
   state.outliers = std::abs(prediction_error_ns) > kStray * state.period_ns ? state.outliers + 1 : 0;
   const bool lost = extrapolation_sigma_ns > kSampleNumberSigmaMax * state.period_ns ||
@@ -171,12 +174,13 @@ void SampleClock::update_line(double step_ns, TimeNs stamp_ns, State& state) con
   state.prediction_error_ns = limited_ns;
 
   const double keep = 1.0 - forget_fraction;
-  state.weighted_squared_sample_index_sum = keep * (state.weighted_squared_sample_index_sum -
-                                              2.0 * number * state.weighted_sample_index_sum + number * number * state.sum_of_weights);
+  state.weighted_squared_sample_index_sum =
+      keep * (state.weighted_squared_sample_index_sum - 2.0 * number * state.weighted_sample_index_sum +
+              number * number * state.sum_of_weights);
   state.weighted_sample_index_sum = keep * (state.weighted_sample_index_sum - number * state.sum_of_weights);
   state.sum_of_weights = keep * state.sum_of_weights + 1.0;
-  const double determinant =
-      state.sum_of_weights * state.weighted_squared_sample_index_sum - state.weighted_sample_index_sum * state.weighted_sample_index_sum;
+  const double determinant = state.sum_of_weights * state.weighted_squared_sample_index_sum -
+                             state.weighted_sample_index_sum * state.weighted_sample_index_sum;
   state.fit_residual_ns = state.weighted_squared_sample_index_sum / determinant * limited_ns - prediction_error_ns;
   state.period_ns -= state.weighted_sample_index_sum / determinant * limited_ns;
 }

@@ -24,13 +24,16 @@ struct FaultDescription {
 constexpr std::array kMeanings = {
     FaultDescription{"frozen_axis", false, "the axis repeats one reading; check the sensor"},
     FaultDescription{"frozen_sensor", true, "the sensor repeats one reading; do not use the estimate"},
-    FaultDescription{"imu_frozen", false, "the IMU repeats one reading, and its readings are left out; check the sensor"},
+    FaultDescription{"imu_frozen", false,
+                     "the IMU repeats one reading, and its readings are left out; check the sensor"},
     FaultDescription{"imu_silent", false, "the IMU delivers no readings"},
     FaultDescription{"imu_disagrees", false, "the IMU disagrees with the other IMUs, and its readings are left out"},
-    FaultDescription{"force_at_rest", true,
-            "the specific force at rest differs from gravity, probably because of a wrong unit or scale of the "
-            "accelerometer; do not use the estimate"},
-    FaultDescription{"wrong_axes_or_signs", true, "axes of the IMU seem to be exchanged or inverted; do not use the estimate"},
+    FaultDescription{
+        "force_at_rest", true,
+        "the specific force at rest differs from gravity, probably because of a wrong unit or scale of the "
+        "accelerometer; do not use the estimate"},
+    FaultDescription{"wrong_axes_or_signs", true,
+                     "axes of the IMU seem to be exchanged or inverted; do not use the estimate"},
     FaultDescription{
         "inverted_accel_in_flight", true,
         "the specific force in free flight contradicts the rotation; axes of the accelerometer seem to be inverted; do "
@@ -42,15 +45,18 @@ constexpr std::array kMeanings = {
     FaultDescription{"gyro_scale", true, "the forces of the IMUs contradict the gyros; do not use the estimate"},
     FaultDescription{"lidar_scale", true, "the scale of the lidar's ranges contradicts the motion measured by the IMU"},
     FaultDescription{"lidar_calibration", true, "the stated mounting or clock of the lidar seems to be wrong"},
-    FaultDescription{"rig_calibration", false,
-            "the stored calibration differs from the estimate of this run, so the file may belong to another rig; "
-            "estimated rates beyond saturation depend on the calibration; the program left the file unchanged"},
-    FaultDescription{"attitude_unknown", true,
-            "the direction of gravity is uncertain, for example after a gap of the IMU; the covariance includes this "
-            "uncertainty"},
+    FaultDescription{
+        "rig_calibration", false,
+        "the stored calibration differs from the estimate of this run, so the file may belong to another rig; "
+        "estimated rates beyond saturation depend on the calibration; the program left the file unchanged"},
+    FaultDescription{
+        "attitude_unknown", true,
+        "the direction of gravity is uncertain, for example after a gap of the IMU; the covariance includes this "
+        "uncertainty"},
     FaultDescription{"vertical_unknown", true, "the vertical of the map is uncertain after a start in motion"},
     FaultDescription{"tracking_lost", true, "the position in the map is unknown; do not use the estimate"},
-    FaultDescription{"not_localised", true, "the robot is not localised in the prior map; the poses are in a local frame"}};
+    FaultDescription{"not_localised", true,
+                     "the robot is not localised in the prior map; the poses are in a local frame"}};
 
 static_assert(kMeanings.size() == static_cast<std::size_t>(HealthFinding::kLast) + 1);
 
@@ -92,8 +98,8 @@ std::string to_text(const HealthFinding& finding) {
   if (!out.empty()) out += ": ";
   out += fault_description(finding.kind).text;
   if (finding.quantity[0] == '\0') return out;
-  return out + " (" + finding.quantity + " is " + text_with_six_digits(finding.value) + ", bound " + text_with_six_digits(finding.bound) +
-         ")";
+  return out + " (" + finding.quantity + " is " + text_with_six_digits(finding.value) + ", bound " +
+         text_with_six_digits(finding.bound) + ")";
 }
 
 bool SensorHealth::invalidates_estimate() const {

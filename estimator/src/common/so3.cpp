@@ -66,7 +66,8 @@ Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& phi) {
   const double angle2 = phi.squaredNorm();
   const double angle = std::sqrt(angle2);
   const Eigen::Matrix3d k = hat(phi);
-  return Eigen::Matrix3d::Identity() + one_minus_cosine_term(angle, angle2) * k + angle_minus_sine_term(angle, angle2) * k * k;
+  return Eigen::Matrix3d::Identity() + one_minus_cosine_term(angle, angle2) * k +
+         angle_minus_sine_term(angle, angle2) * k * k;
 }
 
 Eigen::Matrix3d left_jacobian_inverse(const Eigen::Vector3d& phi) {

@@ -43,7 +43,8 @@ const char* to_string(ErrorCode error_code) {
 
 std::string Status::message() const {
   if (ok()) return "ok";
-  return std::string(to_string(error_code)) + ": " + field + " is " + text_of_number(value) + "; the bound is " + text_of_number(bound);
+  return std::string(to_string(error_code)) + ": " + field + " is " + text_of_number(value) + "; the bound is " +
+         text_of_number(bound);
 }
 
 InvalidParams::InvalidParams(const std::string& field, double value, const std::string& bound)

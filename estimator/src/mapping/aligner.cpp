@@ -65,15 +65,17 @@ Registration::Prior from(const Registration::Result& found, const Registration::
 }  // namespace
 
 SweepAligner::SweepAligner(const LidarInertialOdometry::Params& params)
-    : full_registration_(full_registration_params(params)), subsampled_registration_(registration_params(params)), coarse_registration_(coarse_params(params)) {}
+    : full_registration_(full_registration_params(params)),
+      subsampled_registration_(registration_params(params)),
+      coarse_registration_(coarse_params(params)) {}
 
-void SweepAligner::align_with_all_points(const Registration::Prior& prior, const RegistrationScene& scene, SweepTrajectory& trajectory,
-                                    Registration::Result& found) {
+void SweepAligner::align_with_all_points(const Registration::Prior& prior, const RegistrationScene& scene,
+                                         SweepTrajectory& trajectory, Registration::Result& found) {
   align(full_registration_, prior, scene, scene.points, trajectory, found);
 }
 
-void SweepAligner::align_to_convergence(const Registration::Prior& prior, const RegistrationScene& scene, SweepTrajectory& trajectory,
-                                   Registration::Result& found) {
+void SweepAligner::align_to_convergence(const Registration::Prior& prior, const RegistrationScene& scene,
+                                        SweepTrajectory& trajectory, Registration::Result& found) {
   select_evenly(scene.points, kSubsamplePoints, subsampled_points_);
   align(subsampled_registration_, prior, scene, subsampled_points_, trajectory, found);
   if (found.verdict != RegistrationVerdict::converged) return;
@@ -84,7 +86,8 @@ void SweepAligner::align_to_convergence(const Registration::Prior& prior, const 
 }
 
 void SweepAligner::align_coarse_to_fine(const Registration::Prior& start, const Registration::Prior& prior,
-                                   const RegistrationScene& scene, SweepTrajectory& trajectory, Registration::Result& found) {
+                                        const RegistrationScene& scene, SweepTrajectory& trajectory,
+                                        Registration::Result& found) {
   select_evenly(scene.points, kCoarsePoints, subsampled_points_);
   const auto rough = std::make_unique<Registration::Result>();
   align(coarse_registration_, start, scene, subsampled_points_, trajectory, *rough);

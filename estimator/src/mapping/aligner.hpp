@@ -23,14 +23,14 @@ class SweepAligner {
   explicit SweepAligner(const LidarInertialOdometry::Params& params);
 
   /// Registers a sweep with all points and few iterations, and continues with fewer points if it does not converge.
-  void align_with_all_points(const Registration::Prior& prior, const RegistrationScene& scene, SweepTrajectory& trajectory,
-                             Registration::Result& found);
+  void align_with_all_points(const Registration::Prior& prior, const RegistrationScene& scene,
+                             SweepTrajectory& trajectory, Registration::Result& found);
   /// Registers a sweep with a subset of its points until convergence, then with all points.
-  void align_to_convergence(const Registration::Prior& prior, const RegistrationScene& scene, SweepTrajectory& trajectory,
-                            Registration::Result& found);
-  /// Starts with a coarse stage, because the initial pose may be far from the solution.
-  void align_coarse_to_fine(const Registration::Prior& start, const Registration::Prior& prior, const RegistrationScene& scene,
+  void align_to_convergence(const Registration::Prior& prior, const RegistrationScene& scene,
                             SweepTrajectory& trajectory, Registration::Result& found);
+  /// Starts with a coarse stage, because the initial pose may be far from the solution.
+  void align_coarse_to_fine(const Registration::Prior& start, const Registration::Prior& prior,
+                            const RegistrationScene& scene, SweepTrajectory& trajectory, Registration::Result& found);
 
   const Registration& registration() const { return full_registration_; }
 

@@ -20,8 +20,8 @@ constexpr double kSpeed_m_s = 10.0, kSpeedTime_s = 1.0;
 // For a start in motion, the mean force over half a second is assumed to differ from gravity by 1 m/s^2.
 constexpr double kMovingTilt_rad = 0.1, kMovingSpeed_m_s = 2.0;
 
-StateEstimate state_estimate_of_motion(const MotionState& state, const LidarImuCalibration& calibration, const Motion& weight,
-                        const Motion& error) {
+StateEstimate state_estimate_of_motion(const MotionState& state, const LidarImuCalibration& calibration,
+                                       const Motion& weight, const Motion& error) {
   StateEstimate out;
   out.mean.state = state;
   out.mean.state.covariance = weight;
@@ -96,7 +96,8 @@ StateEstimate transformed_to_pose(const Eigen::Isometry3d& T_WI, const StateEsti
   state.covariance = u::sub_block(estimate.prior_weight_covariance, u::motion);
   error.covariance = u::sub_block(estimate.state_error_covariance, u::motion);
   state = transformed_to_pose(T_WI, state);
-  return state_estimate_of_motion(state, estimate.mean.calibration, state.covariance, transformed_to_pose(T_WI, error).covariance);
+  return state_estimate_of_motion(state, estimate.mean.calibration, state.covariance,
+                                  transformed_to_pose(T_WI, error).covariance);
 }
 
 StateEstimate with_start_tilt(const LidarInertialOdometry::StartTilt& tilt, const StateEstimate& estimate) {
@@ -112,12 +113,14 @@ StateEstimate with_start_tilt(const LidarInertialOdometry::StartTilt& tilt, cons
     u::variances(out, u::tilt).setConstant(tilt.sigma_rad * tilt.sigma_rad);
     return out;
   };
-  return state_estimate_of_motion(state, estimate.mean.calibration, corrected(estimate.prior_weight_covariance), corrected(estimate.state_error_covariance));
+  return state_estimate_of_motion(state, estimate.mean.calibration, corrected(estimate.prior_weight_covariance),
+                                  corrected(estimate.state_error_covariance));
 }
 
 StateEstimate reset_origin_and_yaw(const StateEstimate& reckoned, double step_s) {
   MotionState state = reckoned.mean.state;
-  Motion C = u::sub_block(reckoned.prior_weight_covariance, u::motion), E = u::sub_block(reckoned.state_error_covariance, u::motion);
+  Motion C = u::sub_block(reckoned.prior_weight_covariance, u::motion),
+         E = u::sub_block(reckoned.state_error_covariance, u::motion);
   bound_speed(kSpeed_m_s * std::sqrt(kSpeedTime_s / step_s), state, C, E);
   const Eigen::Quaterniond turn = so3::exp({0.0, 0.0, -yaw_rad(state.q_WI)});
   state.p_WI_m.setZero();

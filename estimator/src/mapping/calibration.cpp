@@ -16,7 +16,8 @@ void LidarImuCalibration::add(const Eigen::Matrix<double, kErrorCount, 1>& error
   gravity_W_m_s2 += error.segment<3>(7);
 }
 
-Eigen::Matrix<double, LidarImuCalibration::kErrorCount, 1> LidarImuCalibration::minus(const LidarImuCalibration& other) const {
+Eigen::Matrix<double, LidarImuCalibration::kErrorCount, 1> LidarImuCalibration::minus(
+    const LidarImuCalibration& other) const {
   Eigen::Matrix<double, kErrorCount, 1> error;
   error << so3::logarithm(Eigen::Quaterniond(T_IL.linear() * other.T_IL.linear().transpose()).normalized()),
       T_IL.translation() - other.T_IL.translation(), time_offset_s - other.time_offset_s,

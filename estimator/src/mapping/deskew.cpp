@@ -7,8 +7,8 @@
 
 namespace tumble {
 
-PointCounts select_points(std::span<const LidarPoint> points, const PointSelectionBounds& bounds, const Eigen::Isometry3d& T_IL,
-                          double sweep_start_s, std::vector<SweepPoint>& selected) {
+PointCounts select_points(std::span<const LidarPoint> points, const PointSelectionBounds& bounds,
+                          const Eigen::Isometry3d& T_IL, double sweep_start_s, std::vector<SweepPoint>& selected) {
   selected.clear();
   PointCounts counts;
   counts.received = points.size();
@@ -69,7 +69,7 @@ void deskew(const SweepTrajectory& trajectory, std::span<const SweepPoint> point
 }
 
 void SweepSampler::choose_points_per_voxel(std::span<const Eigen::Vector3f> positions_W_m, double voxel_m,
-                          std::vector<std::uint32_t>& chosen) {
+                                           std::vector<std::uint32_t>& chosen) {
   occupied_voxels_.clear();
   chosen.clear();
   const float cubes_per_m = static_cast<float>(1.0 / voxel_m);

@@ -59,7 +59,8 @@ void FrameChange::apply(SweepBoundary& boundary) const {
   propagate_covariance(T, boundary.end_by_start_jacobian, turned);
   boundary.end_by_start_jacobian = turned;
   boundary.clipped_velocity_variance_m2_s2 =
-      (T_prior_map_world.linear() * boundary.clipped_velocity_variance_m2_s2 * T_prior_map_world.linear().transpose()).eval();
+      (T_prior_map_world.linear() * boundary.clipped_velocity_variance_m2_s2 * T_prior_map_world.linear().transpose())
+          .eval();
 }
 
 void FrameChange::apply(LagWindow& window) const {

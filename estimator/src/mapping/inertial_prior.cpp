@@ -68,7 +68,8 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
 }
 
 /// Computes the covariance of the velocity due to saturated accelerometer readings: mapping.md (R45).
-Eigen::Matrix3d velocity_variance_from_clipping(const SweepTrajectory& trajectory, std::span<const MotionSample> samples) {
+Eigen::Matrix3d velocity_variance_from_clipping(const SweepTrajectory& trajectory,
+                                                std::span<const MotionSample> samples) {
   std::size_t hint = 0;
   Eigen::Matrix3d lasted = Eigen::Matrix3d::Zero();  // column j: saturated time of axis j, as a vector in W
   for (const MotionSample& sample : samples) {
@@ -89,7 +90,9 @@ Status start_at_rest(const LidarInertialOdometry::Params& params, std::span<cons
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   double count = 0.0;
   for (const MotionSample& sample : samples) {
-    if (seconds(sample.time_ns - samples.front().from_ns) > params.expert.stationary_bounds.levelling_max_s && count > 0.0) break;
+    if (seconds(sample.time_ns - samples.front().from_ns) > params.expert.stationary_bounds.levelling_max_s &&
+        count > 0.0)
+      break;
     force += sample.f_I_m_s2;
     count += 1.0;
   }
@@ -112,7 +115,8 @@ Status level_at_rest(const LidarInertialOdometry::Params& params, const Eigen::V
 
 Eigen::Vector3d assumed_rate_sigma(const LidarInertialOdometry::Params& params, const AngularRateState& rate) {
   Eigen::Vector3d sigma = rate.covariance_rad2_s2.diagonal().cwiseMax(0.0).cwiseSqrt();
-  const bool recovered = rate.source == AngularRateSource::recovered_in_flight || rate.source == AngularRateSource::recovered_in_contact;
+  const bool recovered =
+      rate.source == AngularRateSource::recovered_in_flight || rate.source == AngularRateSource::recovered_in_contact;
   for (int axis = 0; axis < 3; ++axis) {
     if (rate.clipped_axes >> axis & 1 && !recovered)
       sigma[axis] = std::max(sigma[axis], params.expert.saturated_imu.rate_sigma_rad_s);

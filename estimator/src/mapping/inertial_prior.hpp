@@ -18,7 +18,8 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
 
 /// Returns the covariance, in frame W, of the velocity change over a sweep due to accelerometer saturation. The
 /// saturation deficit of the specific force is assumed constant while the saturation lasts.
-Eigen::Matrix3d velocity_variance_from_clipping(const SweepTrajectory& trajectory, std::span<const MotionSample> samples);
+Eigen::Matrix3d velocity_variance_from_clipping(const SweepTrajectory& trajectory,
+                                                std::span<const MotionSample> samples);
 
 /// Computes the state of an IMU at rest, at the origin of W with yaw 0, at the start of the first averaging window. The
 /// mean specific force of the first `rest.levelling_max_s` seconds levels the attitude. Returns `degenerate` if the

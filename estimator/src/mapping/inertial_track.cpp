@@ -92,16 +92,19 @@ void InertialTrack::update_rest(const Params& params, const ImuSample& sample, c
   ImuSample received = sample;
   received.angular_velocity_rad_s = rate.w_WI_I_rad_s;
   const bool clipped = (rate.clipped_axes & kClipGyro) != 0;
-  const Eigen::Vector3d bias = initial_rest_.still_stationary ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : initial_rest_.gyro_bias_rad_s;
+  const Eigen::Vector3d bias =
+      initial_rest_.still_stationary ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : initial_rest_.gyro_bias_rad_s;
   if (clipped) stationary_state_ = {};
-  if (!clipped && rest_detector_.detect_stationary(received, stationary_state_, bias)) next.rest_start_ns = stationary_state_.first_ns;
+  if (!clipped && rest_detector_.detect_stationary(received, stationary_state_, bias))
+    next.rest_start_ns = stationary_state_.first_ns;
   if (initial_rest_.still_stationary) {
     if (!initial_rest_.first_ns) initial_rest_.first_ns = initial_rest_.initial_rest_start_ns = sample.time_ns;
     // The mean reading at the start of a rest is as noisy as single readings, so noise may interrupt the detected rest.
     if (next.rest_start_ns && seconds(*next.rest_start_ns - *initial_rest_.first_ns) < params.expert.start.bias_rest_s)
       initial_rest_.initial_rest_start_ns = next.rest_start_ns;
     initial_rest_.still_stationary = next.rest_start_ns == initial_rest_.initial_rest_start_ns;
-    if (initial_rest_.still_stationary && seconds(stationary_state_.small_rate_since_ns) >= params.expert.start.bias_rest_s)
+    if (initial_rest_.still_stationary &&
+        seconds(stationary_state_.small_rate_since_ns) >= params.expert.start.bias_rest_s)
       initial_rest_.gyro_bias_rad_s = stationary_state_.mean_rate_rad_s();
   }
   next.at_rest = initial_rest_.still_stationary;

@@ -45,8 +45,8 @@ class InertialTrack {
   /// The initial rest ends with the first motion, but its gyro bias remains in use.
   struct InitialRest {
     bool still_stationary = true;
-    std::optional<TimeNs> first_ns;  ///< first sample of the recording
-    std::optional<TimeNs> initial_rest_start_ns;    ///< first sample of the current rest
+    std::optional<TimeNs> first_ns;               ///< first sample of the recording
+    std::optional<TimeNs> initial_rest_start_ns;  ///< first sample of the current rest
     Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();
   };
 

@@ -49,7 +49,7 @@ void LagWindow::move_inserted_sweeps(LocalMap& map) const {
     const WindowSweep& sweep = sweeps_[k];
     if (sweep.inserted.empty() || !sweep.motion(trajectory).ok()) continue;
     const LidarImuCalibration &now = sweep.smoothed.mean.calibration,
-                           &inserted_calibration = sweep.filtered.mean.calibration;
+                              &inserted_calibration = sweep.filtered.mean.calibration;
     map.move(trajectory, now.T_IL, now.time_offset_s - inserted_calibration.time_offset_s, sweep.inserted);
   }
 }

@@ -59,10 +59,12 @@ std::optional<LidarInertialOdometry::StartTilt> LidarInertialOdometry::start_til
   constexpr double kBetter = 0.5;  // maximum ratio of the standard deviations of the new tilt and the initial tilt
   namespace u = mapping::unknowns;
   const Eigen::Vector3d& gravity = impl_->sweep_boundary.state_estimate.mean.calibration.gravity_W_m_s2;
-  const double variance = u::variances(impl_->sweep_boundary.state_estimate.state_error_covariance, u::gravity).head<2>().maxCoeff();
+  const double variance =
+      u::variances(impl_->sweep_boundary.state_estimate.state_error_covariance, u::gravity).head<2>().maxCoeff();
   StartTilt out;
   out.sigma_rad = std::sqrt(variance) / std::max(gravity.norm(), 1e-3);
-  const bool in_motion = impl_->start_tilt || impl_->world_covariance.tilt_sigma_rad() > impl_->params.expert.world_covariance.tilt_sigma_rad;
+  const bool in_motion = impl_->start_tilt || impl_->world_covariance.tilt_sigma_rad() >
+                                                  impl_->params.expert.world_covariance.tilt_sigma_rad;
   if (!mapping::has_started(impl_->tracking) || impl_->localiser.is_localised() || !in_motion) return std::nullopt;
   if (!(out.sigma_rad <= kBetter * impl_->world_covariance.tilt_sigma_rad())) return impl_->start_tilt;
   out.rotation = Eigen::Quaterniond::FromTwoVectors(gravity, -Eigen::Vector3d::UnitZ());
@@ -125,7 +127,8 @@ Status LidarInertialOdometry::predict(std::span<const ImuSample> samples, std::s
     if (velocity_covariance_I_m2_s2) *velocity_covariance_I_m2_s2 = mapping::velocity_covariance_I(state, errors);
   };
   if (track.samples().empty()) {
-    report_velocity(mapping::unknowns::sub_block(my.sweep_boundary.state_estimate.state_error_covariance, mapping::unknowns::motion),
+    report_velocity(mapping::unknowns::sub_block(my.sweep_boundary.state_estimate.state_error_covariance,
+                                                 mapping::unknowns::motion),
                     my.sweep_boundary.state_estimate.mean.state);
     return pose_at(my.sweep_boundary.time_ns(), pose);
   }
@@ -141,13 +144,14 @@ Status LidarInertialOdometry::predict(std::span<const ImuSample> samples, std::s
   const std::unique_ptr<const mapping::Prediction> at_start(
       new mapping::Prediction(mapping::predict(my.params, my.sweep_boundary, motion, trajectory, my.motion_prior)));
   const Registration::Estimate& mean = at_start->prior.mean;  // already includes an odometer reading
-  if (Status status =
-          trajectory.build(mean.state, track.samples(), end_ns, mean.calibration.gravity_W_m_s2, mean.saturation_deficit_rad_s);
+  if (Status status = trajectory.build(mean.state, track.samples(), end_ns, mean.calibration.gravity_W_m_s2,
+                                       mean.saturation_deficit_rad_s);
       !status.ok())
     return status;
   pose = my.pose_along(trajectory, trajectory.duration_s(), at_start->motion_error_covariance);
   pose.time_ns = end_ns;
-  report_velocity(mapping::marginal_motion_errors(mapping::unknowns_at(trajectory, trajectory.duration_s()), at_start->motion_error_covariance),
+  report_velocity(mapping::marginal_motion_errors(mapping::unknowns_at(trajectory, trajectory.duration_s()),
+                                                  at_start->motion_error_covariance),
                   trajectory.state(trajectory.duration_s()));
   return {};
 }
@@ -159,17 +163,20 @@ LidarImuCalibration LidarInertialOdometry::calibration() const {
 }
 
 LidarImuCalibration::Covariance LidarInertialOdometry::calibration_covariance() const {
-  return mapping::unknowns::sub_block(impl_->sweep_boundary.state_estimate.state_error_covariance, mapping::unknowns::calibration);
+  return mapping::unknowns::sub_block(impl_->sweep_boundary.state_estimate.state_error_covariance,
+                                      mapping::unknowns::calibration);
 }
 
 LidarImuCalibration::Covariance LidarInertialOdometry::calibration_prior_covariance() const {
-  return mapping::unknowns::sub_block(impl_->sweep_boundary.state_estimate.prior_weight_covariance, mapping::unknowns::calibration);
+  return mapping::unknowns::sub_block(impl_->sweep_boundary.state_estimate.prior_weight_covariance,
+                                      mapping::unknowns::calibration);
 }
 
 Status LidarInertialOdometry::check_vertical() const {
   constexpr double kMost_rad = 0.02;
   namespace u = mapping::unknowns;
-  const double variance = u::variances(impl_->sweep_boundary.state_estimate.state_error_covariance, u::gravity).head<2>().maxCoeff();
+  const double variance =
+      u::variances(impl_->sweep_boundary.state_estimate.state_error_covariance, u::gravity).head<2>().maxCoeff();
   const double sigma_rad = std::sqrt(variance) / std::max(impl_->params.expert.gravity_m_s2, 1e-3);
   if (!mapping::has_started(impl_->tracking) || !(sigma_rad > kMost_rad)) return {};
   return {ErrorCode::out_of_range, "standard deviation in rad of the map's vertical after a start in motion", sigma_rad,

@@ -23,8 +23,8 @@ constexpr std::size_t kChangesMin = 5, kChangesMax = 1000;
 constexpr int kDisjointMin = 4;       // minimum number of changes without a common sweep; fewer do not determine sigma
 constexpr std::size_t kSpanMax = 64;  // maximum number of buffered sweeps
 constexpr int kIterations = 10;
-constexpr double kBias_m_s2 = 0.05;  // constant error of the acceleration, from accelerometer bias and tilt
-constexpr double kForgettingTime_s = 60.0;   // age up to which a change is compared, so that a finding ends
+constexpr double kBias_m_s2 = 0.05;         // constant error of the acceleration, from accelerometer bias and tilt
+constexpr double kForgettingTime_s = 60.0;  // age up to which a change is compared, so that a finding ends
 // width of the Huber kernel in standard deviations; ratio of standard deviation to median absolute deviation
 constexpr double kHuber = 1.5, kPerMedian = 1.4826;
 
@@ -93,7 +93,7 @@ std::size_t sweep_count_in_duration(double span_s, const Sweeps& sweeps) {
 /// Returns nothing if the change of velocity is unknown or too small.
 template <class Sweeps>
 std::optional<Change> velocity_change_until(std::size_t last, std::size_t span, const Sweeps& sweeps,
-                                   const ImuMotion& imu_motion) {
+                                            const ImuMotion& imu_motion) {
   for (std::size_t k = last - 2 * span; k <= last; ++k) {
     if (!is_registered_in_map(sweeps[k])) return std::nullopt;
   }
@@ -128,8 +128,8 @@ double score_variance(const Changes& changes, const std::vector<Eigen::Vector3d>
     for (std::size_t l = k + 1; l-- > 0;) {
       const double pair = 1.0 - seconds(changes[k].time_ns - changes[l].time_ns) / (2.0 * kSpan_s);
       if (pair <= 0.0) break;
-      const double product =
-          weighted[k].dot(weighted[l]) * changes[k].imu_velocity_change_m_s.dot(changes[l].imu_velocity_change_m_s) / 3.0;
+      const double product = weighted[k].dot(weighted[l]) *
+                             changes[k].imu_velocity_change_m_s.dot(changes[l].imu_velocity_change_m_s) / 3.0;
       variance += (k == l ? 1.0 : 2.0) * pair * product;
     }
   }
@@ -216,7 +216,9 @@ void LidarScaleEstimator::add(const SweepReport& sweep) {
   while (sweeps_.size() > 2 * span + 1) sweeps_.pop_front();
   const TimeNs from_ns = sweeps_.front().pose.time_ns;
   std::erase_if(samples_, [&](const ImuSample& earlier) { return earlier.time_ns <= from_ns; });
-  const auto is_old = [&](const Change& change) { return seconds(sweep.pose.time_ns - change.time_ns) > kForgettingTime_s; };
+  const auto is_old = [&](const Change& change) {
+    return seconds(sweep.pose.time_ns - change.time_ns) > kForgettingTime_s;
+  };
   if (std::erase_if(velocity_changes_, is_old) > 0) scale_ = fit(velocity_changes_);
   if (sweeps_.size() < 2 * span + 1) return;
   const ImuMotion imu_motion(samples_, sweeps_, gravity_m_s2_);

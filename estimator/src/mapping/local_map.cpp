@@ -51,7 +51,8 @@ std::size_t LocalMap::insert(const Params& params, const SweepToInsert& sweep, c
   const PoseVariance pose_variance(sweep.covariance, trajectory);
   const std::uint32_t number = sweeps();
   const MotionState middle = trajectory.state(0.5 * trajectory.duration_s());
-  const std::uint32_t line = scan_lines_.line_number_offset(middle.q_WI * params.T_IL.linear().col(2), sweep.has_ring_numbers);
+  const std::uint32_t line =
+      scan_lines_.line_number_offset(middle.q_WI * params.T_IL.linear().col(2), sweep.has_ring_numbers);
   const double moved_m =
       (trajectory.gravity_free_position_m(trajectory.duration_s()) - trajectory.gravity_free_position_m(0.0)).norm();
   free_space_.start(middle.p_WI_m.cast<float>(), static_cast<float>(0.5 * moved_m));
@@ -62,7 +63,8 @@ std::size_t LocalMap::insert(const Params& params, const SweepToInsert& sweep, c
       free_space_.add(position);
       if (map_.is_occupied(position)) continue;  // most points end here
       // See mapping.md (R64).
-      const double sigma_m = std::sqrt(noise.point_variance_m2(points[i]) + pose_variance.position_variance_at_m2(points[i]));
+      const double sigma_m =
+          std::sqrt(noise.point_variance_m2(points[i]) + pose_variance.position_variance_at_m2(points[i]));
       if (sigma_m > sigma_max_m) continue;
       const std::uint32_t index =
           map_.add(position, static_cast<float>(sigma_m), number, ScanLines::line(line, points[i].ring));
@@ -100,7 +102,8 @@ void LocalMap::move(const SweepTrajectory& trajectory, const Eigen::Isometry3d& 
   }
 }
 
-void LocalMap::start_from_map_points(const Params& params, std::span<const MapPoint> points, const Eigen::Isometry3f* T_MW) {
+void LocalMap::start_from_map_points(const Params& params, std::span<const MapPoint> points,
+                                     const Eigen::Isometry3f* T_MW) {
   constexpr float kDistant_m = 1e5f;
   const LocalMap before = std::exchange(*this, LocalMap(params));
   for (int axis = 0; axis < 3; ++axis) {
@@ -126,7 +129,8 @@ bool LocalMap::prune(const Params& params, const Eigen::Vector3d& p_WI_m) {
   const float moved = (here - last_pruning_position_W_m_).norm();
   if (moved < static_cast<float>(LocalMapParams::kPruneRatio * params.expert.map.radius_m)) return false;
   last_pruning_position_W_m_ = here;
-  const std::vector<std::uint32_t> kept = map_.remove_points_beyond(here, static_cast<float>(params.expert.map.radius_m));
+  const std::vector<std::uint32_t> kept =
+      map_.remove_points_beyond(here, static_cast<float>(params.expert.map.radius_m));
   std::vector<Eigen::Vector3f> from(kept.size());
   for (std::size_t i = 0; i < kept.size(); ++i) from[i] = seen_from_W_m_[kept[i]];
   seen_from_W_m_.swap(from);

@@ -68,7 +68,8 @@ Status Localisation::fit_verdict() const {
 
 Status Localisation::current_verdict() const {
   if (sigma_m_ > distance_when_localised_m_)
-    return {ErrorCode::out_of_range, "standard deviation in m of the position in the map", sigma_m_, distance_when_localised_m_};
+    return {ErrorCode::out_of_range, "standard deviation in m of the position in the map", sigma_m_,
+            distance_when_localised_m_};
   if (!previous_contradicted_sweep_ns_ ||
       check_stamp_order(newest_ns_, *previous_contradicted_sweep_ns_, kForgettingTime_s).error_code == ErrorCode::gap)
     return fit_verdict();
@@ -80,7 +81,8 @@ Status Localisation::current_verdict() const {
 /// See mapping.md (R70), (R71).
 Status Localisation::verdict() const {
   if (largest_sigma_m_ > distance_when_localised_m_)
-    return {ErrorCode::out_of_range, "standard deviation in m of a sweep's position", largest_sigma_m_, distance_when_localised_m_};
+    return {ErrorCode::out_of_range, "standard deviation in m of a sweep's position", largest_sigma_m_,
+            distance_when_localised_m_};
   if (second_largest_innovation_ > innovation_max())
     return {ErrorCode::out_of_range,
             "second-largest innovation of a sweep (registered minus predicted pose) in standard deviations",

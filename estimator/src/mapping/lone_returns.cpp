@@ -110,7 +110,8 @@ void LoneReturns::sort_by_ring(const std::vector<SweepPoint>& points) {
     if (point.ring + 2u > next_beam_on_ring_.size()) next_beam_on_ring_.resize(point.ring + 2u, 0);
     ++next_beam_on_ring_[point.ring + 1u];
   }
-  for (std::size_t ring = 1; ring < next_beam_on_ring_.size(); ++ring) next_beam_on_ring_[ring] += next_beam_on_ring_[ring - 1];
+  for (std::size_t ring = 1; ring < next_beam_on_ring_.size(); ++ring)
+    next_beam_on_ring_[ring] += next_beam_on_ring_[ring - 1];
   beam_order_.resize(points.size());
   beams_.resize(points.size());
   for (std::uint32_t i = 0; i < points.size(); ++i) {
@@ -133,7 +134,8 @@ void LoneReturns::measure_beam_steps() {
 /// Returns 1 without successive beams on a ring.
 float LoneReturns::median_step2() {
   if (sorted_squared_beam_steps_.empty()) return 1.0f;
-  const auto middle = sorted_squared_beam_steps_.begin() + static_cast<std::ptrdiff_t>(sorted_squared_beam_steps_.size() / 2);
+  const auto middle =
+      sorted_squared_beam_steps_.begin() + static_cast<std::ptrdiff_t>(sorted_squared_beam_steps_.size() / 2);
   std::nth_element(sorted_squared_beam_steps_.begin(), middle, sorted_squared_beam_steps_.end());
   return *middle;
 }

@@ -45,8 +45,9 @@ class LoneReturns {
   bool is_confirmed(const RangeNoise& noise, std::size_t at, float reach2) const;
 
   std::vector<std::uint32_t> next_beam_on_ring_, beam_order_;
-  std::vector<Beam> beams_;                    // beams ring by ring, in firing order
-  std::vector<float> squared_beam_steps_, sorted_squared_beam_steps_;  // squared sines of the angle between successive beams on a ring
+  std::vector<Beam> beams_;  // beams ring by ring, in firing order
+  std::vector<float> squared_beam_steps_,
+      sorted_squared_beam_steps_;  // squared sines of the angle between successive beams on a ring
   std::vector<std::uint8_t> isolated_;
 };
 

@@ -75,8 +75,8 @@ void MapLocaliser::propose_map_pose(const std::vector<SurfacePoint>& points, con
     region.search_angle_rad = std::max(kSigmas * map().sigma_rad, kMinReach_rad);
   }
   std::size_t tried = 0;
-  const std::vector<FramePose> found =
-      prior_scene_->find_candidate_poses(points, p_WI_m, static_cast<std::size_t>(attempts_), map().T_prior_map_imu ? &region : nullptr, tried);
+  const std::vector<FramePose> found = prior_scene_->find_candidate_poses(
+      points, p_WI_m, static_cast<std::size_t>(attempts_), map().T_prior_map_imu ? &region : nullptr, tried);
   ++attempts_;
   sweeps_since_search_ = successive_passed_tests_ = successive_failed_tests_ = 0;
   if (found.empty()) return;
@@ -89,7 +89,8 @@ void MapLocaliser::propose_map_pose(const std::vector<SurfacePoint>& points, con
 /// Returns whether the agreement with the prior map at `pose` is improbable by chance: mapping.md (R74).
 bool MapLocaliser::matches_prior_map(const FramePose& pose) const {
   if (pose.agreement_ratio() <= random_agreement_fraction_ || random_agreement_fraction_ >= 1.0) return false;
-  return double(pose.covered_point_count) * relative_entropy(pose.agreement_ratio(), random_agreement_fraction_) >= std::log(compared_pose_count_ / kFalseAcceptance);
+  return double(pose.covered_point_count) * relative_entropy(pose.agreement_ratio(), random_agreement_fraction_) >=
+         std::log(compared_pose_count_ / kFalseAcceptance);
 }
 
 Status MapLocaliser::status() const {

@@ -36,9 +36,9 @@ class MapLocaliser {
   std::shared_ptr<const PriorMapScene> prior_scene_;
   bool localised_ = false;
   std::optional<Eigen::Isometry3d> T_prior_map_world_;  // proposed pose
-  double random_agreement_fraction_ = 0.0;                    // fraction of surface points that agree with the prior map at a wrong pose
-  double compared_pose_count_ = 1.0;            // number of poses that the search compared
-  int successive_passed_tests_ = 0, successive_failed_tests_ = 0;            // successive sweeps that passed or failed the test
+  double random_agreement_fraction_ = 0.0;  // fraction of surface points that agree with the prior map at a wrong pose
+  double compared_pose_count_ = 1.0;        // number of poses that the search compared
+  int successive_passed_tests_ = 0, successive_failed_tests_ = 0;  // successive sweeps that passed or failed the test
   int attempts_ = 0, sweeps_since_search_ = 0;
 };
 

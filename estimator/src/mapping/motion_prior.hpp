@@ -12,7 +12,8 @@ struct SweepBoundary;
 struct MotionWindow;
 struct Prediction;
 
-/// `apply_velocity_prior` runs before the process noise of the sweep is added, and `weigh_with_motion_prior` afterwards.
+/// `apply_velocity_prior` runs before the process noise of the sweep is added, and `weigh_with_motion_prior`
+/// afterwards.
 
 /// With InertialPrior, the IMU alone propagates the velocity from the end of the last sweep.
 struct InertialPrior {};
@@ -42,7 +43,7 @@ inline void apply_velocity_prior(const MotionPrior& prior, Prediction& predictio
 void fuse_reading(const OdometerReading& reading, const SweepBoundary& boundary, const MotionWindow& window,
                   const MotionNoise& within, Prediction& prediction);
 inline void weigh_with_motion_prior(const MotionPrior& prior, const SweepBoundary& boundary, const MotionWindow& window,
-                  const MotionNoise& within, Prediction& prediction) {
+                                    const MotionNoise& within, Prediction& prediction) {
   if (const auto* const reading = std::get_if<OdometerReading>(&prior))
     fuse_reading(*reading, boundary, window, within, prediction);
 }

@@ -62,11 +62,14 @@ struct LidarInertialOdometry::Impl {
   mapping::StateEstimate update(const mapping::MotionWindow& motion, const mapping::SweepRegistration& placed,
                                 mapping::Prediction& prediction) const;
   std::vector<mapping::InsertedPoint> insert(const mapping::UpdatedSweep& sweep, mapping::SweepPoints& points,
-                                             bool has_ring_numbers, const mapping::SweepRegistration& placed, SweepReport& report);
-  void propagate(const mapping::UpdatedSweep& sweep, const mapping::SweepRegistration& placed, const mapping::MotionWindow& motion,
-                 std::vector<mapping::InsertedPoint> inserted, SweepReport& report);
-  static mapping::WindowSweep& append_to_lag_window(const mapping::UpdatedSweep& sweep, const mapping::MotionWindow& motion,
-                                            const mapping::SweepBoundary& from, mapping::LagWindow& into);
+                                             bool has_ring_numbers, const mapping::SweepRegistration& placed,
+                                             SweepReport& report);
+  void propagate(const mapping::UpdatedSweep& sweep, const mapping::SweepRegistration& placed,
+                 const mapping::MotionWindow& motion, std::vector<mapping::InsertedPoint> inserted,
+                 SweepReport& report);
+  static mapping::WindowSweep& append_to_lag_window(const mapping::UpdatedSweep& sweep,
+                                                    const mapping::MotionWindow& motion,
+                                                    const mapping::SweepBoundary& from, mapping::LagWindow& into);
   void predict_stationary(const mapping::MotionWindow& motion, const mapping::SweepBoundary& from,
                           mapping::Prediction& prediction) const;
   void propagate_alternative_pose(const mapping::MotionWindow& motion, bool unconfirmed_before);
@@ -95,13 +98,13 @@ struct LidarInertialOdometry::Impl {
   mapping::TrackingState tracking;
   mapping::InertialTrack inertial_track;
   mapping::SweepBoundary sweep_boundary;  // boundary between the last sweep and the next sweep
-  mapping::MotionPrior motion_prior;       // additional information about the motion of the next sweep
-  int resting_sweeps = 0;           // number of consecutive sweeps at rest, detected by the IMU
+  mapping::MotionPrior motion_prior;      // additional information about the motion of the next sweep
+  int resting_sweeps = 0;                 // number of consecutive sweeps at rest, detected by the IMU
   mapping::LagWindow window;
   mapping::LocalMap map;
   mapping::WorldCovariance world_covariance;
   std::optional<mapping::DeadReckoning> alternative;  // alternative pose, see DeadReckoning
-  mapping::MapLocaliser localiser;              // localiser in a prior map, if any
+  mapping::MapLocaliser localiser;                    // localiser in a prior map, if any
   mapping::SweepScratch sweep_scratch;
 };
 

@@ -12,7 +12,8 @@
 
 namespace tumble {
 
-using mapping::StateEstimate, mapping::InsertedPoint, mapping::MotionWindow, mapping::SweepRegistration, mapping::Prediction;
+using mapping::StateEstimate, mapping::InsertedPoint, mapping::MotionWindow, mapping::SweepRegistration,
+    mapping::Prediction;
 using mapping::UpdatedSweep, mapping::WindowSweep;
 
 namespace {
@@ -33,20 +34,21 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   }
   SweepTrajectory& trajectory = sweep_scratch.trajectory;
   const Registration::Estimate& before = sweep_boundary.state_estimate.mean;
-  if (Status status = trajectory.build(before.state, inertial_track.samples(), end_ns, before.calibration.gravity_W_m_s2);
+  if (Status status =
+          trajectory.build(before.state, inertial_track.samples(), end_ns, before.calibration.gravity_W_m_s2);
       !status.ok())
     return status;
   const int previous_resting_sweeps = resting_sweeps;
   resting_sweeps = is_stationary(inertial_track, trajectory, end_ns) ? resting_sweeps + 1 : 0;
   const MotionWindow motion{inertial_track.samples(), end_ns, resting_sweeps};
-  const std::unique_ptr<Prediction> prediction(
-      new Prediction(mapping::predict(params, sweep_boundary, motion, trajectory, motion_prior)));  // too large for the stack
+  const std::unique_ptr<Prediction> prediction(new Prediction(
+      mapping::predict(params, sweep_boundary, motion, trajectory, motion_prior)));  // too large for the stack
 
   // A sweep without usable returns gets the inertially predicted pose.
   mapping::SweepPoints& points = sweep_scratch.points;
   mapping::SweepPoints::Counts counts;
   const Status points_status = points.select_returns(params, returns, end_ns - start_ns, before.calibration,
-                                             seconds(start_ns - sweep_boundary.time_ns()), counts);
+                                                     seconds(start_ns - sweep_boundary.time_ns()), counts);
   report.points_used = counts.usable_points;
   report.isolated_points = counts.isolated;
   const auto placed = std::make_unique<SweepRegistration>();
@@ -111,13 +113,15 @@ Status LidarInertialOdometry::Impl::initialise_inclination() {
     return {};
   }
   sweep_boundary.state_estimate = mapping::estimate_at_start(params, levelled);
-  world_covariance = mapping::WorldCovariance(params.expert.world_covariance, levelled.q_WI, params.T_IL.translation(), levelled.p_WI_m);
+  world_covariance = mapping::WorldCovariance(params.expert.world_covariance, levelled.q_WI, params.T_IL.translation(),
+                                              levelled.p_WI_m);
   return {};
 }
 
 Status LidarInertialOdometry::Impl::level_start(MotionState& levelled) const {
   const Status status = mapping::start_at_rest(params, inertial_track.samples(), levelled);
-  if (status.ok() && !inertial_track.starts_at_rest(params.expert.start.bias_rest_s)) mapping::add_motion_covariance(levelled);
+  if (status.ok() && !inertial_track.starts_at_rest(params.expert.start.bias_rest_s))
+    mapping::add_motion_covariance(levelled);
   return status;
 }
 
@@ -127,18 +131,23 @@ Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, st
                                               SweepReport& report) {
   const LidarImuCalibration calibration = sweep_boundary.state_estimate.mean.calibration;
   mapping::SweepPoints::Counts counts;
-  const Status selected = sweep_scratch.points.select_returns(params, returns, end_ns - start_ns, calibration, 0.0, counts);
+  const Status selected =
+      sweep_scratch.points.select_returns(params, returns, end_ns - start_ns, calibration, 0.0, counts);
   report.points_used = counts.usable_points;
   report.isolated_points = counts.isolated;
   const std::size_t points = selected.ok() ? sweep_scratch.points.all().size() : 0;
   const bool usable = points >= params.expert.matching.matches_min;
-  if (usable && !inertial_track.sweep_boundary_ns() && seconds(start_ns - sweep_boundary.time_ns()) <= kFirstSweepDelayMax_s) return {};
+  if (usable && !inertial_track.sweep_boundary_ns() &&
+      seconds(start_ns - sweep_boundary.time_ns()) <= kFirstSweepDelayMax_s)
+    return {};
   if (usable) {
     const mapping::MotionPrior sweep_prior = std::exchange(motion_prior, mapping::InertialPrior{});
     if (Status status = dead_reckon(start_ns); !status.ok()) return status;
     motion_prior = sweep_prior;
-    if (start_pose) sweep_boundary.state_estimate = mapping::transformed_to_pose(*start_pose, sweep_boundary.state_estimate);
-    if (start_tilt) sweep_boundary.state_estimate = mapping::with_start_tilt(*start_tilt, sweep_boundary.state_estimate);
+    if (start_pose)
+      sweep_boundary.state_estimate = mapping::transformed_to_pose(*start_pose, sweep_boundary.state_estimate);
+    if (start_tilt)
+      sweep_boundary.state_estimate = mapping::with_start_tilt(*start_tilt, sweep_boundary.state_estimate);
     world_covariance = mapping::world_at_first_sweep(params, sweep_boundary.state_estimate);
     sweep_boundary.state_estimate = mapping::estimate_at_first_sweep(params, sweep_boundary.state_estimate);
     return {};
@@ -156,7 +165,8 @@ Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
     if (Status status = level_start(levelled); !status.ok()) return status;
     sweep_boundary.state_estimate = mapping::estimate_before_map(params, levelled);
   }
-  if (const std::optional<Eigen::Vector3d> force = inertial_track.resting_force(end_ns, params.expert.stationary_bounds.levelling_max_s)) {
+  if (const std::optional<Eigen::Vector3d> force =
+          inertial_track.resting_force(end_ns, params.expert.stationary_bounds.levelling_max_s)) {
     if (Status status = mapping::level_at_rest(params, *force, levelled); !status.ok()) return status;
     levelled.time_ns = end_ns;
     if (!inertial_track.has_not_moved()) {
@@ -168,10 +178,12 @@ Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
   while (sweep_boundary.time_ns() < end_ns) {
     const TimeNs from_ns = sweep_boundary.time_ns(), to_ns = std::min(end_ns, from_ns + kStep_ns);
     const MotionWindow motion{inertial_track.motion_samples_from(from_ns), to_ns, 0};
-    if (Status status = continue_by_inertia(motion, inertial_track.is_stationary_between(from_ns, to_ns), sweep_boundary, nullptr);
+    if (Status status =
+            continue_by_inertia(motion, inertial_track.is_stationary_between(from_ns, to_ns), sweep_boundary, nullptr);
         !status.ok())
       return status;
-    sweep_boundary.state_estimate = mapping::reset_origin_and_yaw(sweep_boundary.state_estimate, seconds(to_ns - from_ns));
+    sweep_boundary.state_estimate =
+        mapping::reset_origin_and_yaw(sweep_boundary.state_estimate, seconds(to_ns - from_ns));
   }
   inertial_track.prune_until(end_ns);
   return {};
@@ -179,7 +191,7 @@ Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
 
 /// A robot at rest measures only gravity, in the direction that the estimated attitude predicts.
 bool LidarInertialOdometry::Impl::is_stationary(const mapping::InertialTrack& inertial, const SweepTrajectory& motion,
-                                        TimeNs end_ns) const {
+                                                TimeNs end_ns) const {
   if (!inertial.is_stationary_until(end_ns)) return false;
   const Eigen::Vector3d gained_m_s =
       motion.state(motion.duration_s()).v_WI_m_s - sweep_boundary.state_estimate.mean.state.v_WI_m_s;
@@ -196,15 +208,17 @@ void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, 
   const bool prior_certain = mapping::prior_is_certain(params, sweep_boundary, motion, trajectory);
   points.choose_points_per_voxel(params, trajectory);
   const mapping::RegistrationScene scene{motion.samples, motion.end_ns, points.sampled_points(), map.voxels()};
-  const mapping::RegistrationAttempt attempt = mapping::attempt_registration(params, {tracking, prediction.prior, rejected_relocalisation()},
-                                                    scene, sweep_scratch.sweep_aligner, trajectory, placed.alignment);
+  const mapping::RegistrationAttempt attempt =
+      mapping::attempt_registration(params, {tracking, prediction.prior, rejected_relocalisation()}, scene,
+                                    sweep_scratch.sweep_aligner, trajectory, placed.alignment);
   report.points_registered = scene.points.size();
   report.iterations = attempt.iterations;
   report.inlier_ratio = attempt.inlier_ratio;
   if (placed.alignment) {
     const Registration::Result& aligned = *placed.alignment;
     report.innovation = mapping::innovation(prediction, aligned.mean);
-    placed.agrees_with_prediction = mapping::agrees_with_prediction(params, prediction, aligned.mean, report.innovation);
+    placed.agrees_with_prediction =
+        mapping::agrees_with_prediction(params, prediction, aligned.mean, report.innovation);
     report.eigenvalue_ratio = aligned.eigenvalues[5] > 0.0 ? aligned.eigenvalues[0] / aligned.eigenvalues[5] : 0.0;
     report.least_constrained_direction = aligned.directions.col(0);
     report.least_constrained_sigma_m = aligned.least_constrained_sigma_m;
@@ -236,8 +250,8 @@ std::vector<InsertedPoint> LidarInertialOdometry::Impl::insert(const UpdatedSwee
     points.apply_calibration_shift(now, now.time_offset_s - before.mean.calibration.time_offset_s);
   }
   std::vector<InsertedPoint> inserted;
-  const bool sure =
-      placed.verdict == SweepVerdict::registered && !mapping::is_lost(tracking) && !mapping::is_unconfirmed_relocalisation(tracking);
+  const bool sure = placed.verdict == SweepVerdict::registered && !mapping::is_lost(tracking) &&
+                    !mapping::is_unconfirmed_relocalisation(tracking);
   report.map_points_added =
       map.insert(params, {sweep.trajectory, sweep.start.prior_weight_covariance, points.all(), has_ring_numbers, sure},
                  sweep_scratch.sweep_aligner.registration(), inserted);
@@ -245,8 +259,9 @@ std::vector<InsertedPoint> LidarInertialOdometry::Impl::insert(const UpdatedSwee
 }
 
 /// append_to_lag_window() needs the state at the end of the previous sweep, which sweep_boundary_after() replaces.
-void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const SweepRegistration& placed, const MotionWindow& motion,
-                                            std::vector<InsertedPoint> inserted, SweepReport& report) {
+void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const SweepRegistration& placed,
+                                            const MotionWindow& motion, std::vector<InsertedPoint> inserted,
+                                            SweepReport& report) {
   const Registration::Result* aligned = placed.alignment ? &*placed.alignment : nullptr;
   const bool unconfirmed_before = mapping::is_unconfirmed_relocalisation(tracking);
   tracking = mapping::tracking_state_after_sweep(tracking, placed.outcome, placed.verdict);
@@ -257,8 +272,9 @@ void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Swe
     world_covariance.add_drift(report.least_constrained_sigma_m, report.least_constrained_direction);
   report.trajectory = poses_along(sweep.trajectory, motion.end_ns, sweep.start.state_error_covariance);
   const Registration::Matrix to_end = mapping::unknowns_at(sweep.trajectory, sweep.trajectory.duration_s());
-  report.map_sigma_m = world_covariance.sigma_in_map_m(mapping::propagate_pose_and_mounting(to_end, sweep.start.state_error_covariance),
-                                            report.trajectory.back().position_W_m);
+  report.map_sigma_m =
+      world_covariance.sigma_in_map_m(mapping::propagate_pose_and_mounting(to_end, sweep.start.state_error_covariance),
+                                      report.trajectory.back().position_W_m);
   append_to_lag_window(sweep, motion, sweep_boundary, window).inserted = std::move(inserted);
   if (aligned) {
     window.smooth();
@@ -280,14 +296,15 @@ void LidarInertialOdometry::Impl::add_map_drift(const UpdatedSweep& sweep, const
   const double inserted_fraction =
       report.points_used == 0 ? 0.0 : double(report.map_points_added) / double(report.points_used);
   world_covariance.add_inserted_sweep(inserted_fraction, sweep.trajectory, sweep.start.state_error_covariance,
-                      sweep_boundary.state_estimate.mean.calibration.T_IL.translation());
+                                      sweep_boundary.state_estimate.mean.calibration.T_IL.translation());
 }
 
 void LidarInertialOdometry::Impl::prune_until(TimeNs end_ns) {
   motion_prior = mapping::InertialPrior{};
   inertial_track.prune_until(end_ns);
-  if (mapping::is_unconfirmed_relocalisation(tracking)) return;  // pruning would change the sweep numbers for remove_sweeps_since()
-  if (localiser.is_localised()) return;           // the prior map is never pruned
+  if (mapping::is_unconfirmed_relocalisation(tracking))
+    return;                              // pruning would change the sweep numbers for remove_sweeps_since()
+  if (localiser.is_localised()) return;  // the prior map is never pruned
   if (map.prune(params, sweep_boundary.state_estimate.mean.state.p_WI_m)) window.clear_inserted();
 }
 
@@ -304,7 +321,8 @@ void LidarInertialOdometry::Impl::propagate_alternative_pose(const MotionWindow&
   }
   if (!relocalisation_unconfirmed && !mapping::is_lost(tracking)) alternative.reset();
   if (!alternative) return;
-  const bool rests = std::holds_alternative<mapping::InertialPrior>(motion_prior) && inertial_track.is_stationary_until(motion.end_ns);
+  const bool rests =
+      std::holds_alternative<mapping::InertialPrior>(motion_prior) && inertial_track.is_stationary_until(motion.end_ns);
   if (!continue_by_inertia(motion, rests, alternative->sweep_boundary, &alternative->window).ok()) alternative.reset();
 }
 
@@ -317,7 +335,8 @@ Status LidarInertialOdometry::Impl::continue_by_inertia(const MotionWindow& moti
   if (Status status = trajectory.build(before.state, motion.samples, motion.end_ns, before.calibration.gravity_W_m_s2);
       !status.ok())
     return status;
-  const std::unique_ptr<Prediction> prediction(new Prediction(mapping::predict(params, at, motion, trajectory, motion_prior)));
+  const std::unique_ptr<Prediction> prediction(
+      new Prediction(mapping::predict(params, at, motion, trajectory, motion_prior)));
   if (rests) mapping::predict_stationary_sweep(at, *prediction);
   const std::unique_ptr<const StateEstimate> start(new StateEstimate(mapping::posterior(*prediction)));
   const Registration::Estimate& mean = start->mean;
@@ -333,7 +352,8 @@ Status LidarInertialOdometry::Impl::continue_by_inertia(const MotionWindow& moti
 /// Removes the map points that were inserted since a wrong relocalisation, and continues from the inertial pose. The
 /// wrong pose remains a starting pose of the search after a tracking failure.
 void LidarInertialOdometry::Impl::revert_to_inertial_pose() {
-  map.remove_sweeps_since(std::exchange(alternative->first_inserted_sweep, 0));  // 0, because pruning changes sweep numbers
+  map.remove_sweeps_since(
+      std::exchange(alternative->first_inserted_sweep, 0));  // 0, because pruning changes sweep numbers
   std::swap(sweep_boundary, alternative->sweep_boundary);
   std::swap(window, alternative->window);
   alternative->window.clear_inserted();
@@ -346,7 +366,8 @@ const MotionState* LidarInertialOdometry::Impl::rejected_relocalisation() const 
 }
 
 WindowSweep& LidarInertialOdometry::Impl::append_to_lag_window(const UpdatedSweep& sweep, const MotionWindow& motion,
-                                                       const mapping::SweepBoundary& from, mapping::LagWindow& into) {
+                                                               const mapping::SweepBoundary& from,
+                                                               mapping::LagWindow& into) {
   WindowSweep& newest = into.append_sweep();
   newest.predicted.mean = sweep.prediction.prior.mean;
   newest.predicted.error_covariance = sweep.prediction.motion_error_covariance;

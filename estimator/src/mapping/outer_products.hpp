@@ -16,7 +16,9 @@ class OuterProducts {
  public:
   using Matrix = Eigen::Matrix<double, Rows, Rows>;
 
-  static std::unique_ptr<OuterProducts> make_unique_products() { return std::unique_ptr<OuterProducts>(new OuterProducts); }
+  static std::unique_ptr<OuterProducts> make_unique_products() {
+    return std::unique_ptr<OuterProducts>(new OuterProducts);
+  }
   OuterProducts(const OuterProducts&) = delete;  // the blocks contain addresses of this object
   OuterProducts& operator=(const OuterProducts&) = delete;
 

@@ -36,8 +36,8 @@ namespace u = unknowns;
 using Params = LidarInertialOdometry::Params;
 
 /// The missing gyro rate at the end of a sweep continues in the next sweep, and decays exponentially: mapping.md (R48).
-void propagate_saturation_deficit(const Params& params, const SweepBoundary& boundary, const SweepTrajectory& trajectory,
-                   Prediction& next) {
+void propagate_saturation_deficit(const Params& params, const SweepBoundary& boundary,
+                                  const SweepTrajectory& trajectory, Prediction& next) {
   constexpr int kLast = SweepTrajectory::kKnots - 1;
   u::row_range(next.boundary_jacobian, u::deficit).setZero();
   if (!params.expert.saturated_imu.estimate_deficit) return;
@@ -47,8 +47,10 @@ void propagate_saturation_deficit(const Params& params, const SweepBoundary& bou
     if (!(boundary_factor[axis] > 0.0 && boundary.clipped_axis_sign[axis] > 0.0)) continue;
     double remains = std::clamp(boundary.clipped_axis_sign[axis] / boundary_factor[axis], 0.0, kDeficitCarryMax);
     for (int knot = 0; knot <= kLast; ++knot) {
-      next.prior.mean.saturation_deficit_rad_s(axis, knot) = remains * boundary.state_estimate.mean.saturation_deficit_rad_s(axis, kLast);
-      next.boundary_jacobian(u::saturation_deficit_index(axis, knot), u::saturation_deficit_index(axis, kLast)) = remains;
+      next.prior.mean.saturation_deficit_rad_s(axis, knot) =
+          remains * boundary.state_estimate.mean.saturation_deficit_rad_s(axis, kLast);
+      next.boundary_jacobian(u::saturation_deficit_index(axis, knot), u::saturation_deficit_index(axis, kLast)) =
+          remains;
       remains *= rho;
     }
   }
@@ -68,7 +70,7 @@ double saturation_deficit_sigma(const MotionWindow& window, const SweepTrajector
 /// The missing gyro rate is a first-order Gauss-Markov process: mapping.md (R46), (R47). If the saturation continues
 /// from the last sweep, mapping.md (R49) gives the covariance.
 void add_saturation_deficit_noise(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory,
-                       Prediction& next) {
+                                  Prediction& next) {
   if (!params.expert.saturated_imu.estimate_deficit) return;
   const double rho = deficit_knot_correlation(trajectory);
   for (int axis = 0; axis < 3; ++axis) {
@@ -81,7 +83,8 @@ void add_saturation_deficit_noise(const Params& params, const MotionWindow& wind
         next.noise(u::saturation_deficit_index(axis, a), u::saturation_deficit_index(axis, b)) +=
             sigma * sigma * (std::pow(rho, std::abs(a - b)) - known);
       }
-      next.noise(u::saturation_deficit_index(axis, a), u::saturation_deficit_index(axis, a)) += kKnotSigmaRatio * kKnotSigmaRatio * sigma * sigma;
+      next.noise(u::saturation_deficit_index(axis, a), u::saturation_deficit_index(axis, a)) +=
+          kKnotSigmaRatio * kKnotSigmaRatio * sigma * sigma;
     }
   }
 }
@@ -168,7 +171,7 @@ namespace {
 
 /// See mapping.md (R52). A separate function keeps large matrices out of the stack frame of posterior().
 [[gnu::noinline]] void gain_of_prior_error(const Prediction& prediction, const Registration::Result& aligned,
-                                        Registration::Matrix& out) {
+                                           Registration::Matrix& out) {
   // Noise of the surface normals carries no information about the motion.
   Registration::Matrix kept = Registration::Matrix::Identity();
   dense::solve_semidefinite(make_invertible(prediction.prior.covariance), kept);
@@ -200,21 +203,23 @@ double innovation(const Prediction& prediction, const Registration::Estimate& al
 }
 
 bool agrees_with_prediction(const Params& params, const Prediction& prediction, const Registration::Estimate& aligned,
-                 double innovation) {
+                            double innovation) {
   const Eigen::Vector3d away_m = aligned.state.p_WI_m - prediction.prior.mean.state.p_WI_m;
   return innovation * innovation * Registration::kMotionSize <= unknowns::kAgreementChi2Max &&
          away_m.norm() <= params.expert.matching.distance_m;
 }
 
 void sweep_boundary_after(const Params& params, const StateEstimate& start, const MotionWindow& window,
-                    const SweepTrajectory& trajectory, const Registration::Result* alignment, SweepBoundary& boundary) {
+                          const SweepTrajectory& trajectory, const Registration::Result* alignment,
+                          SweepBoundary& boundary) {
   boundary.end_by_start_jacobian = unknowns_at(trajectory, trajectory.duration_s());
   at_end(start, trajectory, boundary.end_by_start_jacobian, window.end_ns, boundary.state_estimate);
   boundary.clipped_velocity_variance_m2_s2 = velocity_variance_from_clipping(trajectory, window.samples);
   const bool aligned = alignment != nullptr;
   boundary.clipped_axis_sign = Eigen::Vector3d::Zero();
   if (aligned) boundary.clipped_axis_sign = trajectory.clipped_axes_at_end();
-  boundary.all_directions_constrained = aligned && alignment->least_constrained_sigma_m <= params.expert.matching.degenerate_sigma_m;
+  boundary.all_directions_constrained =
+      aligned && alignment->least_constrained_sigma_m <= params.expert.matching.degenerate_sigma_m;
 }
 
 }  // namespace tumble::mapping

@@ -15,8 +15,8 @@ struct SweepBoundary {
   /// standard deviation of each rate at the end of the last sweep, relative to the maximum: mapping.md (R8)
   Eigen::Vector3d clipped_axis_sign = Eigen::Vector3d::Zero();
   Eigen::Matrix3d clipped_velocity_variance_m2_s2 =
-      Eigen::Matrix3d::Zero();  ///< variance of the velocity due to the accelerometer's saturation, in W
-  bool all_directions_constrained = false;     ///< surfaces constrained the last sweep in all directions
+      Eigen::Matrix3d::Zero();              ///< variance of the velocity due to the accelerometer's saturation, in W
+  bool all_directions_constrained = false;  ///< surfaces constrained the last sweep in all directions
 
   TimeNs time_ns() const { return state_estimate.mean.state.time_ns; }
 };
@@ -31,12 +31,14 @@ struct Prediction {
   Registration::Prior prior;
   /// derivative of the predicted unknowns with respect to the unknowns at the end of the last sweep
   Registration::Matrix boundary_jacobian = Registration::Matrix::Identity();
-  Registration::Matrix noise = Registration::Matrix::Zero();   ///< process noise
-  Registration::Matrix motion_error_covariance = Registration::Matrix::Zero();  ///< covariance of the actual errors of the mean
+  Registration::Matrix noise = Registration::Matrix::Zero();  ///< process noise
+  Registration::Matrix motion_error_covariance =
+      Registration::Matrix::Zero();  ///< covariance of the actual errors of the mean
 
   /// compose_with_boundary() requires that all other members are set.
   void compose_with_boundary(const StateEstimate& at_boundary);
-  /// Sets the velocity to zero and removes its correlations. Call zero_velocity_update() before compose_with_boundary().
+  /// Sets the velocity to zero and removes its correlations. Call zero_velocity_update() before
+  /// compose_with_boundary().
   void zero_velocity_update(double sigma_m_s);
 };
 
@@ -60,11 +62,12 @@ double innovation(const Prediction& prediction, const Registration::Estimate& al
 /// See mapping.md (R67). A registered pose is expected if its difference from the prediction is within the predicted
 /// covariance and the matching distance. Beyond the matching distance, any nearby surface may match by chance.
 bool agrees_with_prediction(const LidarInertialOdometry::Params& params, const Prediction& prediction,
-                 const Registration::Estimate& aligned, double innovation);
+                            const Registration::Estimate& aligned, double innovation);
 
 /// `alignment` is null for a sweep without registration.
-void sweep_boundary_after(const LidarInertialOdometry::Params& params, const StateEstimate& start, const MotionWindow& window,
-                    const SweepTrajectory& trajectory, const Registration::Result* alignment, SweepBoundary& boundary);
+void sweep_boundary_after(const LidarInertialOdometry::Params& params, const StateEstimate& start,
+                          const MotionWindow& window, const SweepTrajectory& trajectory,
+                          const Registration::Result* alignment, SweepBoundary& boundary);
 
 /// Returns the correlation of the saturation deficit between adjacent knots of a sweep, see mapping.md (R46).
 double deficit_knot_correlation(const SweepTrajectory& trajectory);

@@ -61,7 +61,8 @@ std::vector<SurfacePoint> select_points_by_slope(const std::vector<SurfacePoint>
 
 bool is_same_pose(const FramePose& a, const FramePose& b, const Eigen::Vector3d& sensor_W_m) {
   if ((a.T_prior_map_world * sensor_W_m - b.T_prior_map_world * sensor_W_m).norm() > kApart_m) return false;
-  return Eigen::AngleAxisd(a.T_prior_map_world.linear().transpose() * b.T_prior_map_world.linear()).angle() < kApart_rad;
+  return Eigen::AngleAxisd(a.T_prior_map_world.linear().transpose() * b.T_prior_map_world.linear()).angle() <
+         kApart_rad;
 }
 
 }  // namespace
@@ -132,8 +133,9 @@ void PriorMapScene::build_grid() {
   for (std::uint32_t index = 0; index < voxels_.index_end(); ++index) {
     if (!voxels_.exists(index)) continue;
     const Eigen::Vector3f position = voxels_.position_W_m(index);
-    const std::uint32_t k = number.insert(SpatialHash::key(voxel_cube_of(position - lower_corner_prior_map_m_, 1.0f / cell_m_)),
-                                          static_cast<std::uint32_t>(sums.size()));
+    const std::uint32_t k =
+        number.insert(SpatialHash::key(voxel_cube_of(position - lower_corner_prior_map_m_, 1.0f / cell_m_)),
+                      static_cast<std::uint32_t>(sums.size()));
     if (k == sums.size()) {
       sums.emplace_back();
       at.push_back(index_of(position));
@@ -167,15 +169,16 @@ Eigen::Isometry3d PriorMapScene::pose_of(const PoseCandidate& candidate, const S
   const double yaw = 2.0 * std::numbers::pi * candidate.yaw / kYaws;
   Eigen::Isometry3d T_MW = Eigen::Isometry3d::Identity();
   T_MW.linear() = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  T_MW.translation() =
-      cells_[candidate.grid_cell_index].position_prior_map_m.cast<double>() - T_MW.linear() * anchor.position_W_m.cast<double>();
+  T_MW.translation() = cells_[candidate.grid_cell_index].position_prior_map_m.cast<double>() -
+                       T_MW.linear() * anchor.position_W_m.cast<double>();
   return T_MW;
 }
 
 /// Scores every pose that moves one surface point (the anchor) to a surface cell of the prior map, with every heading.
 std::vector<PriorMapScene::PoseCandidate> PriorMapScene::best_candidates(const std::vector<SurfacePoint>& points,
-                                                               const SurfacePoint& anchor, const SearchRegion* region,
-                                                               std::size_t& tried) const {
+                                                                         const SurfacePoint& anchor,
+                                                                         const SearchRegion* region,
+                                                                         std::size_t& tried) const {
   const std::vector<SurfacePoint> scored = select_points_by_slope(points, kCoarsePoints);
   std::vector<std::vector<std::int64_t>> steps(kYaws);
   for (int yaw = 0; yaw < kYaws; ++yaw) {
@@ -222,8 +225,9 @@ std::vector<PriorMapScene::PoseCandidate> PriorMapScene::best_candidates(const s
   return best;
 }
 
-std::vector<FramePose> PriorMapScene::find_candidate_poses(const std::vector<SurfacePoint>& points, const Eigen::Vector3d& sensor_W_m,
-                                          std::size_t attempt, const SearchRegion* region, std::size_t& tried) const {
+std::vector<FramePose> PriorMapScene::find_candidate_poses(const std::vector<SurfacePoint>& points,
+                                                           const Eigen::Vector3d& sensor_W_m, std::size_t attempt,
+                                                           const SearchRegion* region, std::size_t& tried) const {
   tried = 0;
   std::vector<SurfacePoint> anchors;
   for (const SurfacePoint& point : points)
@@ -251,14 +255,15 @@ std::vector<FramePose> PriorMapScene::find_candidate_poses(const std::vector<Sur
       *twin = pose;
     }
   }
-  std::stable_sort(distinct.begin(), distinct.end(),
-                   [](const FramePose& a, const FramePose& b) { return a.agreeing_point_count > b.agreeing_point_count; });
+  std::stable_sort(distinct.begin(), distinct.end(), [](const FramePose& a, const FramePose& b) {
+    return a.agreeing_point_count > b.agreeing_point_count;
+  });
   if (distinct.size() > 2) distinct.resize(2);
   return distinct;
 }
 
 FramePose PriorMapScene::refined_pose(const FramePose& start, const std::vector<SurfacePoint>& points,
-                              const Eigen::Vector3d& sensor_W_m, float first_kernel_m) const {
+                                      const Eigen::Vector3d& sensor_W_m, float first_kernel_m) const {
   using Vector6 = Eigen::Matrix<double, 6, 1>;
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
   constexpr int kIterations = 18;
@@ -292,7 +297,8 @@ FramePose PriorMapScene::refined_pose(const FramePose& start, const std::vector<
     moved.linear() = so3::exp(step.tail<3>()).toRotationMatrix();
     moved.translation() = about + step.head<3>() - moved.linear() * about;
     pose.T_prior_map_world = moved * pose.T_prior_map_world;
-    pose.T_prior_map_world.linear() = Eigen::Quaterniond(pose.T_prior_map_world.linear()).normalized().toRotationMatrix();
+    pose.T_prior_map_world.linear() =
+        Eigen::Quaterniond(pose.T_prior_map_world.linear()).normalized().toRotationMatrix();
     if (kernel_m <= kLastKernel_m && step.head<3>().norm() < 1e-3 && step.tail<3>().norm() < 2e-4) break;
     kernel_m = std::max(kLastKernel_m, 0.75f * kernel_m);
   }
@@ -315,7 +321,7 @@ void PriorMapScene::count(const std::vector<SurfacePoint>& points, FramePose& po
     ++pose.covered_point_count;
     if (found.distance2_m2[0] > kNearSurface_m * kNearSurface_m) continue;
     pose.agreeing_point_count += std::abs(n.dot(x - voxels_.position_W_m(found.index[0]))) <= kAgreeDistance_m &&
-                     std::abs(n.dot(T.linear() * point.normal_W)) >= kAgreeNormal;
+                                 std::abs(n.dot(T.linear() * point.normal_W)) >= kAgreeNormal;
   }
 }
 
@@ -345,7 +351,8 @@ Status check_prior_map(const PriorMap& map) {
   const auto with_normal = static_cast<std::size_t>(std::count_if(map.points.begin(), map.points.end(), has_normal));
   if (with_normal < kLeast)
     return {ErrorCode::insufficient_data, "prior map's points with normals", double(with_normal), double(kLeast)};
-  if (!std::isfinite(map.sigma_m) || !std::isfinite(map.sigma_rad) || (map.T_prior_map_imu && !map.T_prior_map_imu->matrix().allFinite()))
+  if (!std::isfinite(map.sigma_m) || !std::isfinite(map.sigma_rad) ||
+      (map.T_prior_map_imu && !map.T_prior_map_imu->matrix().allFinite()))
     return {ErrorCode::non_finite, "pose in the prior map", std::nan(""), 0.0};
   if (map.sigma_m < 0.0) return {ErrorCode::out_of_range, "sigma_m", map.sigma_m, 0.0};
   if (map.sigma_rad < 0.0) return {ErrorCode::out_of_range, "sigma_rad", map.sigma_rad, 0.0};

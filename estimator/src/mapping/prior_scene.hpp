@@ -27,12 +27,14 @@ struct FramePose {
   /// covariance of the pose in axes of the prior map's frame M: displacement and rotation about the sensor
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 
-  double agreement_ratio() const { return covered_point_count == 0 ? 0.0 : double(agreeing_point_count) / double(covered_point_count); }
+  double agreement_ratio() const {
+    return covered_point_count == 0 ? 0.0 : double(agreeing_point_count) / double(covered_point_count);
+  }
 };
 
 /// SearchRegion limits the position of the sensor in frame M and the heading of frame W in frame M.
 struct SearchRegion {
-  Eigen::Vector3d p_WI_m = Eigen::Vector3d::Zero();  ///< sensor position to which the limits refer, in W
+  Eigen::Vector3d p_WI_m = Eigen::Vector3d::Zero();                 ///< sensor position to which the limits refer, in W
   Eigen::Vector3d centre_in_prior_map_m = Eigen::Vector3d::Zero();  ///< centre of the region
   double search_radius_m = 0.0, search_angle_rad = 0.0;
 };
@@ -49,11 +51,12 @@ class PriorMapScene {
   /// @param attempt     number of the search; determines the surface point that is moved to surfaces of the prior map
   /// @param region      limits of the search; null: the whole map
   /// @param tried       receives the number of poses that the search compared
-  std::vector<FramePose> find_candidate_poses(const std::vector<SurfacePoint>& points, const Eigen::Vector3d& sensor_W_m,
-                                std::size_t attempt, const SearchRegion* region, std::size_t& tried) const;
+  std::vector<FramePose> find_candidate_poses(const std::vector<SurfacePoint>& points,
+                                              const Eigen::Vector3d& sensor_W_m, std::size_t attempt,
+                                              const SearchRegion* region, std::size_t& tried) const;
   /// Refines a pose by point-to-plane registration, and counts the points that agree with the prior map.
-  FramePose refined_pose(const FramePose& start, const std::vector<SurfacePoint>& points, const Eigen::Vector3d& sensor_W_m,
-                    float first_kernel_m) const;
+  FramePose refined_pose(const FramePose& start, const std::vector<SurfacePoint>& points,
+                         const Eigen::Vector3d& sensor_W_m, float first_kernel_m) const;
 
  private:
   struct PoseCandidate {
@@ -69,7 +72,7 @@ class PriorMapScene {
   void build_grid();
   std::int64_t index_of(const Eigen::Vector3f& position_M_m) const;
   std::vector<PoseCandidate> best_candidates(const std::vector<SurfacePoint>& points, const SurfacePoint& anchor,
-                                         const SearchRegion* region, std::size_t& tried) const;
+                                             const SearchRegion* region, std::size_t& tried) const;
   Eigen::Isometry3d pose_of(const PoseCandidate& candidate, const SurfacePoint& anchor) const;
   void count(const std::vector<SurfacePoint>& points, FramePose& pose) const;
 

@@ -48,7 +48,8 @@ struct MotionInstant {
 
 class SweepMotion {
  public:
-  SweepMotion(const Registration::Estimate& predicted, const MotionWindow& window) : predicted_estimate_(predicted), window_(window) {}
+  SweepMotion(const Registration::Estimate& predicted, const MotionWindow& window)
+      : predicted_estimate_(predicted), window_(window) {}
 
   bool holds(TimeNs time_ns) const {
     const auto beyond_ns = static_cast<TimeNs>(1e9 * SweepTrajectory::kExtrapolation_s);
@@ -103,7 +104,8 @@ PredictedReading zero_innovation() {
 }
 
 /// See mapping.md (R35).
-PredictedReading predict_reading(const VelocityReading& reading, const SweepMotion& sweep, const StateOffsets& offsets) {
+PredictedReading predict_reading(const VelocityReading& reading, const SweepMotion& sweep,
+                                 const StateOffsets& offsets) {
   PredictedReading out = zero_innovation<3>();
   const MotionInstant now = sweep.at(reading.time_ns, offsets);
   const Eigen::Matrix3d to_I = now.q_WI.toRotationMatrix().transpose();
@@ -149,11 +151,12 @@ using Gain = Eigen::Matrix<double, Size, Eigen::Dynamic, 0, Size, kMost>;
 
 /// The matrices of Work are on the heap, because propagate_covariance() needs 32 KiB of stack.
 struct UpdateWorkspace {
-  Matrix start_covariance, noise_covariance, remaining_error_factor;  ///< covariance at the start; its part due to noise; factor of the remaining errors
+  Matrix start_covariance, noise_covariance,
+      remaining_error_factor;  ///< covariance at the start; its part due to noise; factor of the remaining errors
   StateOffsets state_offsets;
   PredictedReading predicted_reading;
   Gain<kUnknowns> jacobian_start;  ///< Kalman gain of the unknowns at the boundary
-  Gain<kMotionSize> noise_gain;      ///< Kalman gain of the process noise since the boundary
+  Gain<kMotionSize> noise_gain;    ///< Kalman gain of the process noise since the boundary
 };
 
 /// See mapping.md (R37).
@@ -161,7 +164,8 @@ bool compute_gains(const MotionNoise& within, UpdateWorkspace& work) {
   const PredictedReading& expected = work.predicted_reading;
   work.jacobian_start = work.start_covariance * expected.jacobian_start.transpose();
   work.noise_gain = within * expected.noise_jacobian.transpose();
-  Covariance S = expected.jacobian_start * work.jacobian_start + expected.noise_jacobian * work.noise_gain + expected.innovation_variance;
+  Covariance S = expected.jacobian_start * work.jacobian_start + expected.noise_jacobian * work.noise_gain +
+                 expected.innovation_variance;
   make_symmetric(S);
   const Eigen::LLT<Covariance> factors(S);
   if (factors.info() != Eigen::Success) return false;
@@ -174,9 +178,11 @@ bool compute_gains(const MotionNoise& within, UpdateWorkspace& work) {
 [[gnu::noinline]] bool iterate_to_convergence(const OdometerReading& reading, const SweepMotion& sweep,
                                               const MotionNoise& within, UpdateWorkspace& work) {
   for (int iteration = 0; iteration < kIterations; ++iteration) {
-    work.predicted_reading = std::visit([&](const auto& kind) { return predict_reading(kind, sweep, work.state_offsets); }, reading);
+    work.predicted_reading =
+        std::visit([&](const auto& kind) { return predict_reading(kind, sweep, work.state_offsets); }, reading);
     if (!compute_gains(within, work)) return false;
-    const Values innovation = work.predicted_reading.residual + work.predicted_reading.jacobian_start * work.state_offsets.start +
+    const Values innovation = work.predicted_reading.residual +
+                              work.predicted_reading.jacobian_start * work.state_offsets.start +
                               work.predicted_reading.noise_jacobian * work.state_offsets.noise;
     const StateOffsets next{work.jacobian_start * innovation, work.noise_gain * innovation};
     if (!next.start.allFinite() || !next.noise.allFinite()) return false;
@@ -220,7 +226,8 @@ void fuse_reading(const OdometerReading& reading, const SweepBoundary& boundary,
   if (!holds(sweep, reading)) return;
   const auto work = std::make_unique<UpdateWorkspace>();
   // The Kalman gains follow from the covariance that weights the prediction: mapping.md (R37).
-  propagate_covariance(prediction.boundary_jacobian, boundary.state_estimate.prior_weight_covariance, work->start_covariance);
+  propagate_covariance(prediction.boundary_jacobian, boundary.state_estimate.prior_weight_covariance,
+                       work->start_covariance);
   Matrix& before = work->noise_covariance;  // noise at the start: saturation deficit, earlier saturation
   before = prediction.noise;
   u::sub_block(before, u::motion) -= within;

@@ -125,8 +125,8 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
   result.mean = prior.mean;
   result.covariance = prior.covariance;
   result.points = points.size();
-  const std::unique_ptr<IterationState> descent(
-      new IterationState{.now = prior.mean, .points = points, .normal_equations = {}, .kernel_m = params_.expert.kernel_min_m});
+  const std::unique_ptr<IterationState> descent(new IterationState{
+      .now = prior.mean, .points = points, .normal_equations = {}, .kernel_m = params_.expert.kernel_min_m});
   IterationState& at = *descent;
   at.now.saturation_deficit_rad_s = prior.initial_saturation_deficit_rad_s;
   if (prior.start) at.now.state = *prior.start;
@@ -143,7 +143,8 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
   return problem.build_trajectory(prior.mean, trajectory);
 }
 
-Status Registration::iterate(const RegistrationProblem& problem, IterationState& at, SweepTrajectory& trajectory, Result& result) {
+Status Registration::iterate(const RegistrationProblem& problem, IterationState& at, SweepTrajectory& trajectory,
+                             Result& result) {
   const Estimate& mean = problem.prior.mean;
   if (problem.unknowns.calibration_free && result.iterations > 1) {
     apply_calibration(at.now.calibration, at.now.calibration.time_offset_s - mean.calibration.time_offset_s,
@@ -180,12 +181,14 @@ Status Registration::iterate(const RegistrationProblem& problem, IterationState&
   return {};
 }
 
-RegistrationVerdict Registration::registration_verdict(const RegistrationProblem& problem, const IterationState& at) const {
+RegistrationVerdict Registration::registration_verdict(const RegistrationProblem& problem,
+                                                       const IterationState& at) const {
   // At a wrong local minimum of the cost, most matched points are far from their planes.
-  const bool fits =
-      static_cast<double>(at.normal_equations.inliers) >= params_.expert.inlier_ratio_min * static_cast<double>(at.normal_equations.matches);
+  const bool fits = static_cast<double>(at.normal_equations.inliers) >=
+                    params_.expert.inlier_ratio_min * static_cast<double>(at.normal_equations.matches);
   if (!at.converged || !fits) return RegistrationVerdict::diverged;
-  if (at.normal_equations.matches < problem.matches_needed && !agrees_with_prior(problem.prior, at.now)) return RegistrationVerdict::too_few_matches;
+  if (at.normal_equations.matches < problem.matches_needed && !agrees_with_prior(problem.prior, at.now))
+    return RegistrationVerdict::too_few_matches;
   return RegistrationVerdict::converged;
 }
 
@@ -225,10 +228,11 @@ void Registration::compute_eigenvalues(std::span<const SweepPoint> points, doubl
   dense::decompose(scale.asDiagonal() * shape * scale.asDiagonal() / weight, result.eigenvalues, result.directions);
   result.eigenvalues = result.eigenvalues.cwiseMax(0.0).eval();
   Eigen::Matrix<double, 6, 1> information;
-  dense::eigenvalues(scale.asDiagonal() *
-                         (u::sub_block(sum.normal_matrix, u::pose) - u::sub_block(result.surface_normal_noise_information, u::pose)) *
-                         scale.asDiagonal(),
-                     information);
+  dense::eigenvalues(
+      scale.asDiagonal() *
+          (u::sub_block(sum.normal_matrix, u::pose) - u::sub_block(result.surface_normal_noise_information, u::pose)) *
+          scale.asDiagonal(),
+      information);
   result.least_constrained_sigma_m = 1.0 / std::sqrt(std::max(information[0], 1e-12));
 }
 

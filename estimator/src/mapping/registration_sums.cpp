@@ -89,7 +89,8 @@ double Registration::residual(const SweepTrajectory& trajectory, const LidarImuC
   const Eigen::Vector3d n = plane.normal_W.cast<double>();
   const mapping::PointMotion motion(trajectory, calibration, point, hint);
   motion.derivative_along_normal(n, derivative);
-  return n.dot(trajectory.gravity_free_position_m(point.t_s) + motion.lever_m() - plane.plane_centre_W_m.cast<double>());
+  return n.dot(trajectory.gravity_free_position_m(point.t_s) + motion.lever_m() -
+               plane.plane_centre_W_m.cast<double>());
 }
 
 void Registration::find_match(const VoxelMap& map, std::size_t point, NearestNeighbours& found) {
@@ -135,7 +136,8 @@ void Registration::match_points(const SweepTrajectory& trajectory, std::span<con
   residual_distances_m_.resize(points.size());
   run_parallel(params_.parallel_for, partial_sum_count(points.size(), kPointsPerPartialSum), [&](std::size_t block) {
     NearestNeighbours found;
-    const std::size_t begin = block * kPointsPerPartialSum, end = std::min(points.size(), (block + 1) * kPointsPerPartialSum);
+    const std::size_t begin = block * kPointsPerPartialSum,
+                      end = std::min(points.size(), (block + 1) * kPointsPerPartialSum);
     trajectory.lever_arm_vectors(points.subspan(begin, end - begin),
                                  std::span(lever_arm_vectors_).subspan(begin, end - begin));
     for (std::size_t i = begin; i < end; ++i) {
@@ -151,7 +153,8 @@ void Registration::match_points(const SweepTrajectory& trajectory, std::span<con
 double Registration::kernel_width_m() {
   sorted_distances_.clear();
   for (std::size_t i = 0; i < matches_.size(); ++i) {
-    if (matches_[i].plane.verdict == PlaneVerdict::plane) sorted_distances_.push_back(std::abs(residual_distances_m_[i]));
+    if (matches_[i].plane.verdict == PlaneVerdict::plane)
+      sorted_distances_.push_back(std::abs(residual_distances_m_[i]));
   }
   if (sorted_distances_.empty()) return params_.expert.kernel_min_m;
   const auto middle = sorted_distances_.begin() + static_cast<std::ptrdiff_t>(sorted_distances_.size() / 2);

@@ -46,8 +46,8 @@ bool is_sufficient_fit(const Registration::Result& found) {
 
 /// If the registration fails and a gyro axis is clipped, the registration is repeated with larger missing gyro rates.
 /// Saturation within one sweep may rotate the initial pose by a radian.
-void track_sweep(const Params& params, const Registration::Prior& prior, const RegistrationScene& scene, SweepAligner& aligner,
-           SweepTrajectory& trajectory, Registration::Result& found) {
+void track_sweep(const Params& params, const Registration::Prior& prior, const RegistrationScene& scene,
+                 SweepAligner& aligner, SweepTrajectory& trajectory, Registration::Result& found) {
   aligner.align_with_all_points(prior, scene, trajectory, found);
   int iterations = found.iterations, tries = 0;
   // If the first registration exceeds the limits of the pose correction, further iterations would also exceed these
@@ -76,8 +76,8 @@ void track_sweep(const Params& params, const Registration::Prior& prior, const R
 
 /// If no initial pose fits, the result is the pose with the most inliers. The number of initial poses per sweep is
 /// limited, so an unsuccessful search continues with the next sweep.
-void search_displaced_poses(const RelocalisationContext& from, const RegistrationScene& scene, SweepAligner& aligner, SweepTrajectory& trajectory,
-            Registration::Result& found) {
+void search_displaced_poses(const RelocalisationContext& from, const RegistrationScene& scene, SweepAligner& aligner,
+                            SweepTrajectory& trajectory, Registration::Result& found) {
   const Registration::Prior& prior = from.prior;
   if (from.contradicted_motion != nullptr) {
     const auto start = std::make_unique<Registration::Prior>(prior);
@@ -125,8 +125,9 @@ void displace_starting_pose(int index, Registration::Prior& prior) {
   }
 }
 
-RegistrationAttempt attempt_registration(const Params& params, const RelocalisationContext& from, const RegistrationScene& scene, SweepAligner& aligner,
-                SweepTrajectory& trajectory, std::optional<Registration::Result>& alignment) {
+RegistrationAttempt attempt_registration(const Params& params, const RelocalisationContext& from,
+                                         const RegistrationScene& scene, SweepAligner& aligner,
+                                         SweepTrajectory& trajectory, std::optional<Registration::Result>& alignment) {
   Registration::Result& found = alignment.emplace();
   found.points = scene.points.size();
   if (is_lost(from.tracking)) {
@@ -143,15 +144,15 @@ RegistrationAttempt attempt_registration(const Params& params, const Relocalisat
 }
 
 void judge_registration(const Params& params, const TrackingState& before, std::size_t points, bool prior_certain,
-           const RegistrationAttempt& attempt, SweepRegistration& out) {
+                        const RegistrationAttempt& attempt, SweepRegistration& out) {
   if (out.alignment) {
     const bool holds = out.alignment->least_constrained_sigma_m <= params.expert.matching.degenerate_sigma_m;
     out.verdict = holds ? SweepVerdict::registered : SweepVerdict::degenerate;
     const bool fits = double(out.alignment->inliers) >= kConfirmInlierRatio * double(out.alignment->matches);
     const bool relocalisation_unconfirmed =
         (is_lost(before) && !(out.agrees_with_prediction && fits)) || (is_unconfirmed_relocalisation(before) && !fits);
-    out.outcome =
-        relocalisation_unconfirmed ? RegistrationOutcome::relocalisation_unconfirmed : RegistrationOutcome::alignment_found;
+    out.outcome = relocalisation_unconfirmed ? RegistrationOutcome::relocalisation_unconfirmed
+                                             : RegistrationOutcome::alignment_found;
     return;
   }
   const bool enough = points >= params.expert.matching.matches_min;

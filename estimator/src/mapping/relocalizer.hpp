@@ -14,7 +14,8 @@ struct RegistrationAttempt {
   double inlier_ratio = 0.0;  ///< inlier fraction of the last registration
 };
 
-/// RelocalisationContext contains the possible states at the start of a sweep, from which the search chooses initial poses.
+/// RelocalisationContext contains the possible states at the start of a sweep, from which the search chooses initial
+/// poses.
 struct RelocalisationContext {
   const TrackingState& tracking;
   const Registration::Prior& prior;
@@ -24,8 +25,9 @@ struct RelocalisationContext {
 
 /// `trajectory` receives the registered motion, or the last motion of a failed registration. `alignment` is empty if no
 /// registration succeeded.
-RegistrationAttempt attempt_registration(const LidarInertialOdometry::Params& params, const RelocalisationContext& from, const RegistrationScene& scene,
-                SweepAligner& aligner, SweepTrajectory& trajectory, std::optional<Registration::Result>& alignment);
+RegistrationAttempt attempt_registration(const LidarInertialOdometry::Params& params, const RelocalisationContext& from,
+                                         const RegistrationScene& scene, SweepAligner& aligner,
+                                         SweepTrajectory& trajectory, std::optional<Registration::Result>& alignment);
 
 struct SweepRegistration {
   SweepVerdict verdict = SweepVerdict::rejected;
@@ -37,7 +39,7 @@ struct SweepRegistration {
 
 /// The verdict is `degenerate` if the map has too few points, or after enough failed searches.
 void judge_registration(const LidarInertialOdometry::Params& params, const TrackingState& before, std::size_t points,
-           bool prior_certain, const RegistrationAttempt& attempt, SweepRegistration& placed);
+                        bool prior_certain, const RegistrationAttempt& attempt, SweepRegistration& placed);
 
 /// Initial pose number 0 is the predicted pose; all others are shifted or rotated along one axis, closest first:
 /// mapping.md (R66).

@@ -24,7 +24,9 @@ class FreeSpaceGrid {
   static constexpr int kBins = 60;  // number of bins along an edge: 1 to 2 deg per bin
   struct Direction {
     int cube_face, column, row;
-    std::size_t direction_bin_index() const { return static_cast<std::size_t>((cube_face * kBins + row) * kBins + column); }
+    std::size_t direction_bin_index() const {
+      return static_cast<std::size_t>((cube_face * kBins + row) * kBins + column);
+    }
   };
   static std::optional<Direction> direction(const Eigen::Vector3f& lever_m);
   float free_space_range_m(const Direction& towards) const;

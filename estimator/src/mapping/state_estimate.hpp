@@ -10,7 +10,8 @@ namespace tumble::mapping {
 /// The covariances `prior_weight_covariance` and `state_error_covariance` are C and E of mapping.md, "Two covariances".
 struct StateEstimate {
   Registration::Estimate mean;  ///< mean; the covariance of its state is the motion block of `prior_weight_covariance`
-  /// For robustness, `prior_weight_covariance` assigns less information to the points than independent points would have.
+  /// For robustness, `prior_weight_covariance` assigns less information to the points than independent points would
+  /// have.
   Registration::Matrix prior_weight_covariance = Registration::Matrix::Zero();
   /// covariance of the errors of `mean`
   Registration::Matrix state_error_covariance = Registration::Matrix::Zero();

@@ -18,16 +18,19 @@ class SweepPoints {
   explicit SweepPoints(const Params& params);
 
   struct Counts {
-    std::size_t usable_points = 0;      ///< finite returns in range that do not hit the robot itself
-    std::size_t isolated = 0;  ///< number of dropped lone returns
+    std::size_t usable_points = 0;  ///< finite returns in range that do not hit the robot itself
+    std::size_t isolated = 0;       ///< number of dropped lone returns
     bool has_ring_numbers = false;
   };
-  /// The sweep starts `start_s` seconds after the start of its trajectory. Returns the errors of check_point_selection().
+  /// The sweep starts `start_s` seconds after the start of its trajectory. Returns the errors of
+  /// check_point_selection().
   Status select_returns(const Params& params, std::span<const LidarPoint> returns, TimeNs span_ns,
-                const LidarImuCalibration& calibration, double start_s, Counts& counts);
+                        const LidarImuCalibration& calibration, double start_s, Counts& counts);
   /// Selects one point per cube of the world for the registration, with the points at their predicted positions.
   void choose_points_per_voxel(const Params& params, const SweepTrajectory& predicted);
-  void apply_calibration_shift(const LidarImuCalibration& calibration, double later_s) { apply_calibration(calibration, later_s, all_); }
+  void apply_calibration_shift(const LidarImuCalibration& calibration, double later_s) {
+    apply_calibration(calibration, later_s, all_);
+  }
 
   const std::vector<SweepPoint>& all() const { return all_; }
   const std::vector<SweepPoint>& sampled_points() const { return sampled_points_; }

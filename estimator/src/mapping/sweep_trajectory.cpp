@@ -80,7 +80,8 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
   intervals_.clear();
   if (end_ns < start.time_ns) return {ErrorCode::time_order, "end_ns", double(end_ns), double(start.time_ns)};
   if (samples.empty() || samples.back().time_ns < end_ns) {
-    return {ErrorCode::insufficient_data, "imu time_ns", samples.empty() ? 0.0 : double(samples.back().time_ns), double(end_ns)};
+    return {ErrorCode::insufficient_data, "imu time_ns", samples.empty() ? 0.0 : double(samples.back().time_ns),
+            double(end_ns)};
   }
   if (samples.front().from_ns > start.time_ns) {
     // Each `gap` error reports a duration in seconds.
@@ -172,7 +173,8 @@ SweepTrajectory::DeficitJacobian SweepTrajectory::saturation_deficit_jacobian_wi
 }
 
 /// See mapping.md (R9), (R10).
-SweepTrajectory::SaturationDeficitJacobian SweepTrajectory::saturation_deficit_jacobian(double t_s, std::size_t& hint) const {
+SweepTrajectory::SaturationDeficitJacobian SweepTrajectory::saturation_deficit_jacobian(double t_s,
+                                                                                        std::size_t& hint) const {
   const double t = std::clamp(t_s, 0.0, duration_s_);
   const Interval& now = interval_at(t, hint);
   const double s = t - now.start_s;

@@ -8,18 +8,21 @@ namespace {
 constexpr int kAgreeing = 2;  // number of sweeps that confirm a relocalisation; a single sweep may fit by chance
 
 bool is_registered(RegistrationOutcome placement) {
-  return placement == RegistrationOutcome::alignment_found || placement == RegistrationOutcome::relocalisation_unconfirmed;
+  return placement == RegistrationOutcome::alignment_found ||
+         placement == RegistrationOutcome::relocalisation_unconfirmed;
 }
 
 }  // namespace
 
-TrackingState tracking_state_after_sweep(const TrackingState& before, RegistrationOutcome placement, SweepVerdict verdict) {
+TrackingState tracking_state_after_sweep(const TrackingState& before, RegistrationOutcome placement,
+                                         SweepVerdict verdict) {
   const int failed =
       is_registered(placement) ? 0 : failed_searches(before) + (placement == RegistrationOutcome::failed);
   if (verdict == SweepVerdict::rejected) return TrackingLost{consecutive_rejected_sweeps(before) + 1, failed};
   if (is_lost(before) && placement == RegistrationOutcome::relocalisation_unconfirmed)
     return Relocalised{consecutive_rejected_sweeps(before), failed_searches(before), 0};
-  if (const Relocalised* found = std::get_if<Relocalised>(&before); found != nullptr && found->agreeing_sweep_count + 1 < kAgreeing)
+  if (const Relocalised* found = std::get_if<Relocalised>(&before);
+      found != nullptr && found->agreeing_sweep_count + 1 < kAgreeing)
     return Relocalised{found->rejected_sweeps_before, found->failed_searches, found->agreeing_sweep_count + 1};
   return Tracking{failed};
 }

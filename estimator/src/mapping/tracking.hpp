@@ -36,7 +36,8 @@ enum class RegistrationOutcome : std::uint8_t {
   alignment_found,
 };
 
-TrackingState tracking_state_after_sweep(const TrackingState& before, RegistrationOutcome placement, SweepVerdict verdict);
+TrackingState tracking_state_after_sweep(const TrackingState& before, RegistrationOutcome placement,
+                                         SweepVerdict verdict);
 
 bool contradicts_tracking(const TrackingState& before, RegistrationOutcome placement);
 TrackingLost after_reverted_relocalisation(const TrackingState& relocalised);

@@ -3,7 +3,8 @@
 
 #include "tumble/mapping/detail/registration.hpp"
 
-/// Names the registration's unknowns (docs/maths/mapping.md), as in `row_range(F, velocity)` and `segment(step, velocity)`.
+/// Names the registration's unknowns (docs/maths/mapping.md), as in `row_range(F, velocity)` and `segment(step,
+/// velocity)`.
 namespace tumble::mapping::unknowns {
 
 template <int First, int Size>
@@ -18,7 +19,8 @@ inline constexpr UnknownRange<0, Registration::kMotionSize> motion;
 inline constexpr UnknownRange<Registration::kFirstDeficitUnknown, SweepTrajectory::kDeficitUnknowns> deficit;
 inline constexpr UnknownRange<0, Registration::kFirstCalibrationUnknown> moving;  ///< motion and deficit
 inline constexpr UnknownRange<Registration::kFirstCalibrationUnknown, LidarImuCalibration::kErrorCount> calibration;
-inline constexpr UnknownRange<Registration::kFirstCalibrationUnknown, 6> mounting;  ///< rotation and translation of T_IL
+inline constexpr UnknownRange<Registration::kFirstCalibrationUnknown, 6>
+    mounting;  ///< rotation and translation of T_IL
 inline constexpr UnknownRange<Registration::kFirstCalibrationUnknown, 3> mounting_rotation;
 inline constexpr UnknownRange<Registration::kFirstCalibrationUnknown + 3, 3> mounting_translation;
 inline constexpr UnknownRange<Registration::kFirstCalibrationUnknown + 6, 1> clock;

@@ -81,7 +81,8 @@ inline Eigen::Vector3i VoxelMap::VoxelGroup::of(const Eigen::Vector3i& cell) {
 /// Rows returns the occupied cells near a cell. The hash table finds each group (8 x 8 x 8 cells) at most once.
 class VoxelMap::NeighbourVoxelRows {
  public:
-  NeighbourVoxelRows(const VoxelMap& map, const Eigen::Vector3i& cell, int reach) : map_(map), first_voxel_x_(cell.x() - reach) {
+  NeighbourVoxelRows(const VoxelMap& map, const Eigen::Vector3i& cell, int reach)
+      : map_(map), first_voxel_x_(cell.x() - reach) {
     low_ = VoxelGroup::of(cell.array() - reach);
     row_length_ = VoxelGroup::of(cell.array() + reach).x() - low_.x() + 1;
     neighbour_groups_.fill(kGroupNotSearched);
@@ -109,7 +110,8 @@ class VoxelMap::NeighbourVoxelRows {
   static constexpr std::uint32_t kGroupNotSearched = SpatialHash::kAbsentEntry - 1;
 
   std::uint32_t voxel_group_of(const Eigen::Vector3i& away) {
-    std::uint32_t& group = neighbour_groups_[static_cast<std::size_t>((away.z() * kGroupsPerSide + away.y()) * kGroupsPerSide + away.x())];
+    std::uint32_t& group =
+        neighbour_groups_[static_cast<std::size_t>((away.z() * kGroupsPerSide + away.y()) * kGroupsPerSide + away.x())];
     if (group == kGroupNotSearched) group = map_.voxel_group_index_.find(SpatialHash::key(low_ + away));
     return group;
   }
@@ -121,8 +123,8 @@ class VoxelMap::NeighbourVoxelRows {
 };
 
 std::uint32_t& VoxelMap::first_chunk_of(const Eigen::Vector3i& cell) {
-  const std::uint32_t group =
-      voxel_group_index_.insert(SpatialHash::key(VoxelGroup::of(cell)), static_cast<std::uint32_t>(voxel_groups_.size()));
+  const std::uint32_t group = voxel_group_index_.insert(SpatialHash::key(VoxelGroup::of(cell)),
+                                                        static_cast<std::uint32_t>(voxel_groups_.size()));
   if (group == voxel_groups_.size()) voxel_groups_.emplace_back().first.fill(kNone);
   voxel_groups_[group].rows[VoxelGroup::row_index_of(cell.y(), cell.z())] |=
       static_cast<std::uint8_t>(1 << (cell.x() & VoxelGroup::kMask));
@@ -181,7 +183,8 @@ std::uint32_t VoxelMap::store_point(const Eigen::Vector3f& position, float sigma
 }
 
 bool VoxelMap::move(std::uint32_t index, const Eigen::Vector3f& position) {
-  if (!position.allFinite() || voxel_cube_of(position, cells_per_m_) != voxel_cube_of(position_W_m(index), cells_per_m_)) {
+  if (!position.allFinite() ||
+      voxel_cube_of(position, cells_per_m_) != voxel_cube_of(position_W_m(index), cells_per_m_)) {
     return false;
   }
   PointChunk& chunk = point_chunks_[index / kPointsPerChunk];
@@ -247,7 +250,7 @@ std::size_t VoxelMap::bytes() const {
 
 /// `worst_distance2_m2` is the square of the current search radius.
 void VoxelMap::search_neighbours(std::uint32_t first, const Eigen::Vector3f& query, int k, float& worst_distance2_m2,
-                      NearestNeighbours& found) const {
+                                 NearestNeighbours& found) const {
   for (std::uint32_t c = first; c != kNone; c = point_chunks_[c].next) {
     const PointChunk& chunk = point_chunks_[c];
     alignas(16) float distance2[kPointsPerChunk];

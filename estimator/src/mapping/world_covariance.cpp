@@ -35,7 +35,8 @@ Pose WorldCovariance::mounting_jacobian_at_start(const Eigen::Vector3d& p_WI_m) 
   return start;
 }
 
-WorldCovariance WorldCovariance::covariance_in_prior_map(const WorldCovarianceParams& params, const Eigen::Vector3d& p_WI_m) {
+WorldCovariance WorldCovariance::covariance_in_prior_map(const WorldCovarianceParams& params,
+                                                         const Eigen::Vector3d& p_WI_m) {
   WorldCovariance out;
   out.params_ = params;
   out.params_.tilt_sigma_rad = 0.0;
@@ -70,7 +71,7 @@ void WorldCovariance::add_drift(double least_constrained_sigma_m,
 
 /// See mapping.md (R59), (R60). Mounting errors of the lidar do not change the map.
 void WorldCovariance::add_inserted_sweep(double inserted_fraction, const SweepTrajectory& trajectory,
-                                    const Registration::Matrix& errors, const Eigen::Vector3d& p_IL_m) {
+                                         const Registration::Matrix& errors, const Eigen::Vector3d& p_IL_m) {
   const double middle_s = 0.5 * trajectory.duration_s();
   // A rotation of the newest part of the map also displaces the map at the robot's position.
   const Eigen::Vector3d p_WI_m = trajectory.state(middle_s).p_WI_m;

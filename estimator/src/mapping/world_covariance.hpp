@@ -34,8 +34,8 @@ class WorldCovariance {
   void add_drift(double least_constrained_sigma_m, const Eigen::Matrix<double, 6, 1>& least_constrained_direction);
   /// `inserted_fraction` is the fraction of the sweep's points that were inserted into the map. `errors` is the
   /// covariance of the registration's unknowns at the start of the sweep.
-  void add_inserted_sweep(double inserted_fraction, const SweepTrajectory& trajectory, const Registration::Matrix& errors,
-                     const Eigen::Vector3d& p_IL_m);
+  void add_inserted_sweep(double inserted_fraction, const SweepTrajectory& trajectory,
+                          const Registration::Matrix& errors, const Eigen::Vector3d& p_IL_m);
 
   double tilt_sigma_rad() const { return params_.tilt_sigma_rad; }
 
@@ -43,8 +43,9 @@ class WorldCovariance {
   Pose mounting_jacobian_at_start(const Eigen::Vector3d& p_WI_m) const;
 
   WorldCovarianceParams params_;
-  Eigen::Vector3d first_position_W_m_ = Eigen::Vector3d::Zero();   // position of the first pose of the IMU
-  Eigen::Vector3d last_map_extension_W_m_ = Eigen::Vector3d::Zero();  // position of the sweep that extended the map last
+  Eigen::Vector3d first_position_W_m_ = Eigen::Vector3d::Zero();  // position of the first pose of the IMU
+  Eigen::Vector3d last_map_extension_W_m_ =
+      Eigen::Vector3d::Zero();  // position of the sweep that extended the map last
   Pose mounting_jacobian_at_start_ = Pose::Zero();
   Pose map_ = Pose::Zero();  // covariance of the map relative to the world, at last_map_extension_W_m_
   Eigen::Matrix3d drift_covariance_m2_ = Eigen::Matrix3d::Zero();  // covariance of the position drift

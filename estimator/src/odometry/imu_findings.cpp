@@ -42,16 +42,18 @@ bool check_readings(const ImuCheckParams& imu, std::span<const ImuSample> sample
   add_findings(plausibility, state, kImu, health);
   health.add(Kind::force_at_rest, check_force_at_rest(imu, samples, RestGravity::kMagnitudeErrorMax), kImu);
   if (!imu.is_merged) {  // several IMUs are on a sphere, which does not rotate about a pivot
-    const PivotMotionCheck pivots = PivotMotionCheck::of(samples, imu.gravity_m_s2, imu.gyro_range_rad_s, imu.accel_range_m_s2);
+    const PivotMotionCheck pivots =
+        PivotMotionCheck::of(samples, imu.gravity_m_s2, imu.gyro_range_rad_s, imu.accel_range_m_s2);
     health.add(Kind::rotation, pivots.verdict(), kImu);
   }
   return confirms_gyro(plausibility, state);
 }
 
-void check_flight_forces(const ImuCheckParams& imu, std::span<const ImuSample> samples, std::optional<double> carried_share,
-                   SensorHealth& health) {
+void check_flight_forces(const ImuCheckParams& imu, std::span<const ImuSample> samples,
+                         std::optional<double> carried_share, SensorHealth& health) {
   const bool thrown = carried_share && *carried_share < kRepeatedFraction;
-  const FlightSignCheck sense({.motion_type = thrown ? FlightSignCheck::BodyMotionType::always_thrown : FlightSignCheck::BodyMotionType::possibly_hand_held,
+  const FlightSignCheck sense({.motion_type = thrown ? FlightSignCheck::BodyMotionType::always_thrown
+                                                     : FlightSignCheck::BodyMotionType::possibly_hand_held,
                                .lever_arm_m = imu.lever_arm_I_m,
                                .gyro_range_rad_s = imu.gyro_range_rad_s});
   FlightSignCheck::State state;
@@ -60,13 +62,13 @@ void check_flight_forces(const ImuCheckParams& imu, std::span<const ImuSample> s
 }
 
 /// The estimated rates must rotate gravity correctly from each rest to the next rest.
-void check_stationary_gravity(const ImuCheckParams& imu, std::span<const ImuSample> samples, std::span<const AngularRateState> rates,
-                 SensorHealth& health) {
+void check_stationary_gravity(const ImuCheckParams& imu, std::span<const ImuSample> samples,
+                              std::span<const AngularRateState> rates, SensorHealth& health) {
   const RestGravity gravity = rest_gravity(imu);
   RestGravity::State state;
   for (std::size_t k = 0; k < std::min(samples.size(), rates.size()); ++k) gravity.step(samples[k], rates[k], state);
-  health.add(gravity.gravity_magnitude_verdict(state).ok() ? Kind::rotation : Kind::force_at_rest, gravity.verdict(state),
-             kImu);
+  health.add(gravity.gravity_magnitude_verdict(state).ok() ? Kind::rotation : Kind::force_at_rest,
+             gravity.verdict(state), kImu);
 }
 
 }  // namespace
@@ -116,8 +118,8 @@ SensorHealth check_merged_imus(const ImuCheckParams& imu, const MergedRecordings
   return out;
 }
 
-ImuHealthReport check_recording(const ImuCheckParams& imu, std::span<const ImuSample> samples, std::span<const AngularRateState> rates,
-                            std::optional<double> carried_share) {
+ImuHealthReport check_recording(const ImuCheckParams& imu, std::span<const ImuSample> samples,
+                                std::span<const AngularRateState> rates, std::optional<double> carried_share) {
   ImuHealthReport out = check_frozen(imu, samples);
   check_flight_forces(imu, samples, carried_share, out.health);
   (void)check_readings(imu, samples, out.health);
@@ -125,11 +127,13 @@ ImuHealthReport check_recording(const ImuCheckParams& imu, std::span<const ImuSa
   return out;
 }
 
-std::vector<Eigen::Matrix3d> suspected_error_covariance(const ImuHealthReport& findings, std::span<const ImuSample> samples,
-                                                std::span<const AngularRateState> rates) {
+std::vector<Eigen::Matrix3d> suspected_error_covariance(const ImuHealthReport& findings,
+                                                        std::span<const ImuSample> samples,
+                                                        std::span<const AngularRateState> rates) {
   std::vector<Eigen::Matrix3d> out;
   if (findings.health.invalidates_estimate()) {
-    for (const AngularRateState& rate : rates) out.emplace_back(rate.w_WI_I_rad_s.squaredNorm() * Eigen::Matrix3d::Identity());
+    for (const AngularRateState& rate : rates)
+      out.emplace_back(rate.w_WI_I_rad_s.squaredNorm() * Eigen::Matrix3d::Identity());
   }
   const double sigma_rad_s = rate_max_so_far_rad_s(samples);
   for (const FrozenAxis& axis : findings.frozen_axes) {

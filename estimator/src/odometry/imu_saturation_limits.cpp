@@ -32,7 +32,7 @@ ImuSaturationLimits::ImuSaturationLimits(std::span<const ImuDataSheet> sheets) {
 void ImuSaturationLimits::start_from_saturation_levels(std::size_t unit, const SaturationLevels& rails) {
   StreamingClippingFinder::Params params = clipping_finder_params(imus_[unit].data_sheet);
   odometry::start_from_saturation_levels(rails, params.clipping.axis_limit_params, params.clipping.gyro_planes,
-                             params.clipping.accel_saturation_planes);
+                                         params.clipping.accel_saturation_planes);
   imus_[unit].clipping_finder = StreamingClippingFinder(params);
 }
 
@@ -47,7 +47,8 @@ void ImuSaturationLimits::flag_clipped(std::span<const ImuSample> samples, const
     out[k] = samples[k];
     if (!check_sample(samples[k]).ok()) continue;
     const StreamingClippingFinder::State& rails = state[k].clipping_state;
-    const Clipping judged = imus_[k].clipping_finder.classify_clipping(state[k].previous_sample ? &*state[k].previous_sample : nullptr, samples[k], rails);
+    const Clipping judged = imus_[k].clipping_finder.classify_clipping(
+        state[k].previous_sample ? &*state[k].previous_sample : nullptr, samples[k], rails);
     const ConfirmedSaturation certain{.gyro = rails.known_limits.saturation_planes_in_use(),
                                       .accel = rails.known_limits.saturation_planes_in_use(Triad::accelerometer),
                                       .gyro_range_rad_s = imus_[k].data_sheet.gyro_range_rad_s,

@@ -18,7 +18,8 @@ namespace tumble {
 /// Detects the saturation limits of several IMUs on one body from their readings, causally. Only confirmed saturation
 /// limits count, as defined by ConfirmedSaturation.
 ///
-/// ImuSaturationLimits detects a saturation limit from the first two to ten samples at the limit, which are not flagged.
+/// ImuSaturationLimits detects a saturation limit from the first two to ten samples at the limit, which are not
+/// flagged.
 class ImuSaturationLimits {
  public:
   struct ImuClippingState {

@@ -36,8 +36,9 @@ bool is_silent(std::size_t unit, const ImuTimeAlignment::State& state) {
 }
 
 auto samples_after_common_time(const std::vector<ImuSample>& readings, const ImuTimeAlignment::State& state) {
-  return std::find_if(readings.begin(), readings.end(),
-                      [&](const ImuSample& reading) { return !state.newest_common_time_ns || reading.time_ns > *state.newest_common_time_ns; });
+  return std::find_if(readings.begin(), readings.end(), [&](const ImuSample& reading) {
+    return !state.newest_common_time_ns || reading.time_ns > *state.newest_common_time_ns;
+  });
 }
 
 ImuSample reading_at(TimeNs time_ns, const std::vector<ImuSample>& readings) {

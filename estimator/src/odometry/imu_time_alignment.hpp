@@ -30,7 +30,7 @@ class ImuTimeAlignment {
     /// readings of each IMU, starting with the last reading before the newest common time
     std::array<std::vector<ImuSample>, ImuMerge::kImus> readings;
     std::size_t reference_imu = 0;
-    std::optional<TimeNs> first_ns;   ///< first reading of any IMU
+    std::optional<TimeNs> first_ns;               ///< first reading of any IMU
     std::optional<TimeNs> newest_common_time_ns;  ///< newest common time
   };
 

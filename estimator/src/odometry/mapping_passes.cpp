@@ -113,7 +113,7 @@ class MappingPass {
 };
 
 LidarImuCalibrationPrior calibration_prior(const LidarInertialOdometry::Params& started,
-                                     const LidarInertialOdometry::Params& given) {
+                                           const LidarInertialOdometry::Params& given) {
   LidarImuCalibrationPrior out;
   out.calibration.T_IL = started.T_IL;
   out.calibration.time_offset_s = started.time_offset_s;

@@ -7,9 +7,9 @@
 #include <memory>
 #include <utility>
 
+#include "imu_time_alignment.hpp"
 #include "tumble/angular_velocity/detail/clipping_finder.hpp"
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
-#include "imu_time_alignment.hpp"
 
 namespace tumble {
 
@@ -79,12 +79,14 @@ Status prepare_imu_readings(std::span<const ImuRecording> recordings, ImuReading
     const ImuRecording& recording = recordings[k];
     if (recording.samples.empty()) continue;
     std::vector<ImuSample> samples = recording.samples;
-    flag_clipped(recording.data_sheet, samples, units.gyro_sensing_directions.emplace_back(), units.accel_sensing_directions.emplace_back());
+    flag_clipped(recording.data_sheet, samples, units.gyro_sensing_directions.emplace_back(),
+                 units.accel_sensing_directions.emplace_back());
     units.index.push_back(k);
     units.T_BI.push_back(recording.T_BI);
-    units.frozen_axes.push_back(find_frozen_axes(FrozenAxes({.gyro_range_rad_s = recording.data_sheet.gyro_range_rad_s,
-                                                        .accel_range_m_s2 = recording.data_sheet.accel_range_m_s2}),
-                                            samples));
+    units.frozen_axes.push_back(
+        find_frozen_axes(FrozenAxes({.gyro_range_rad_s = recording.data_sheet.gyro_range_rad_s,
+                                     .accel_range_m_s2 = recording.data_sheet.accel_range_m_s2}),
+                         samples));
     units.samples.push_back(std::move(samples));
   }
   if (units.index.empty()) return {ErrorCode::empty, "number of IMUs with samples", 0.0, 1.0};
@@ -94,8 +96,10 @@ Status prepare_imu_readings(std::span<const ImuRecording> recordings, ImuReading
 void set_imu_params(const ImuReadingSets& units, ImuMerge::Params& params) {
   params.count = static_cast<int>(units.index.size());
   std::copy(units.T_BI.begin(), units.T_BI.end(), params.T_mean_imu.begin());
-  std::copy(units.gyro_sensing_directions.begin(), units.gyro_sensing_directions.end(), params.gyro_sensing_directions.begin());
-  std::copy(units.accel_sensing_directions.begin(), units.accel_sensing_directions.end(), params.accel_sensing_directions.begin());
+  std::copy(units.gyro_sensing_directions.begin(), units.gyro_sensing_directions.end(),
+            params.gyro_sensing_directions.begin());
+  std::copy(units.accel_sensing_directions.begin(), units.accel_sensing_directions.end(),
+            params.accel_sensing_directions.begin());
 }
 
 /// TimeWithoutGaps removes gaps from time stamps, so that ImuMerge keeps its calibration.
@@ -144,7 +148,7 @@ void reset_motion_state(ImuMerge::State& state) {
 }
 
 Status merge_imu_readings(const ImuMerge& merge, double gap_max_s, const ImuReadingSets& units, ImuMerge::State& state,
-           std::vector<ImuSample>& out) {
+                          std::vector<ImuSample>& out) {
   std::vector<ImuSample> now(units.samples.size());
   std::optional<ImuSample> merged;
   TimeWithoutGaps time(gap_max_s);
@@ -261,8 +265,8 @@ void report_calibration(const ImuMerge& merge, const ImuMerge::State& state, con
     const ImuMerge::Unit& unit = state.imus[k];
     constexpr int kOffset = ImuMerge::kErrorCount - 1;
     out.excluded_readings += static_cast<std::size_t>(unit.excluded_window_count);
-    out.imus.push_back(
-        {units.index[k], unit.offset_s(), std::sqrt(std::max(0.0, unit.covariance(kOffset, kOffset))), unit.x.head<3>().norm()});
+    out.imus.push_back({units.index[k], unit.offset_s(), std::sqrt(std::max(0.0, unit.covariance(kOffset, kOffset))),
+                        unit.x.head<3>().norm()});
   }
 }
 
@@ -281,13 +285,15 @@ Status merge_recordings(std::span<const ImuRecording> recordings, ImuMerge::Para
   set_imu_params(units, params);
   auto state = std::make_unique<ImuMerge::State>();
   const ImuMerge first(params);
-  if (Status status = merge_imu_readings(first, params.gap_max_s, units, *state, out.samples); !status.ok()) return status;
+  if (Status status = merge_imu_readings(first, params.gap_max_s, units, *state, out.samples); !status.ok())
+    return status;
   const bool faulty = exclude_faulty_imus(*state, units, out.faults);
   set_imu_params(units, params);
   const ImuMerge merge(params);
   if (faulty) {
     *state = {};
-    if (Status status = merge_imu_readings(merge, params.gap_max_s, units, *state, out.samples); !status.ok()) return status;
+    if (Status status = merge_imu_readings(merge, params.gap_max_s, units, *state, out.samples); !status.ok())
+      return status;
   }
   report_calibration(merge, *state, units, out);
   return {};

@@ -128,7 +128,8 @@ Status OdometryPass::newest(PoseState& pose, Eigen::Matrix3d* velocity_covarianc
   rates_.flush(rate_stream_state_, rates);
   std::vector<ImuSample> samples;
   ClippingClassifiedSamples classified(pending_.all(), rate_stream_state_.rate);
-  std::erase_if(rates, [&](const AngularRateState& rate) { return last_mapped_ns_ && rate.time_ns <= *last_mapped_ns_; });
+  std::erase_if(rates,
+                [&](const AngularRateState& rate) { return last_mapped_ns_ && rate.time_ns <= *last_mapped_ns_; });
   for (AngularRateState& rate : rates) {
     samples.push_back(classified.at(rate.time_ns));
     rate = limit_rate_covariance(rate, samples.back(), rate_sigma_max_rad_s_);

@@ -9,16 +9,16 @@
 
 #include "tumble/attitude/detail/regime_stream.hpp"
 #include "tumble/attitude/detail/rest_gravity.hpp"
-#include "tumble/mapping/detail/localisation.hpp"
 #include "tumble/mapping/detail/lidar_scale.hpp"
+#include "tumble/mapping/detail/localisation.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
 namespace tumble {
 
-/// Processes IMU samples and lidar sweeps once, in time order. MotionRegimeStream estimates the rates. LidarInertialOdometry
-/// processes the samples and sweeps for which rates are available. TumblingOdometry runs one OdometryPass live, and
-/// SecondMappingPass runs a second OdometryPass with the estimated calibration. A copy of an OdometryPass contains the
-/// complete state.
+/// Processes IMU samples and lidar sweeps once, in time order. MotionRegimeStream estimates the rates.
+/// LidarInertialOdometry processes the samples and sweeps for which rates are available. TumblingOdometry runs one
+/// OdometryPass live, and SecondMappingPass runs a second OdometryPass with the estimated calibration. A copy of an
+/// OdometryPass contains the complete state.
 class OdometryPass {
  public:
   /// first-in, first-out queue of samples that reuses its memory

@@ -44,7 +44,8 @@ PositionFrame fit_position_frame(const std::deque<PositionAlignment::PositionPai
   mean_W_m /= weight;
   mean_P_m /= weight;
   for (const auto& pair : pairs) {
-    const Eigen::Vector2d a = (pair.antenna_position_W_m - mean_W_m).head<2>(), b = (pair.antenna_position_P_m - mean_P_m).head<2>();
+    const Eigen::Vector2d a = (pair.antenna_position_W_m - mean_W_m).head<2>(),
+                          b = (pair.antenna_position_P_m - mean_P_m).head<2>();
     sine += (a.x() * b.y() - a.y() * b.x()) / pair.variance_m2;
     cosine += a.dot(b) / pair.variance_m2;
     spread += a.squaredNorm() / pair.variance_m2;
@@ -62,7 +63,8 @@ PositionFrame fit_position_frame(const std::deque<PositionAlignment::PositionPai
 
 Status PositionAlignment::add(const PositionReading& reading, TimeNs done_ns, TimeNs latest_ns, std::size_t most) {
   const Eigen::Matrix3d& covariance = reading.covariance_m2;
-  if (!reading.antenna_position_P_m.allFinite() || !covariance.allFinite() || !reading.antenna_lever_arm_I_m.allFinite())
+  if (!reading.antenna_position_P_m.allFinite() || !covariance.allFinite() ||
+      !reading.antenna_lever_arm_I_m.allFinite())
     return {ErrorCode::non_finite, "position", std::numeric_limits<double>::quiet_NaN(), 0.0};
   const double least = covariance.diagonal().minCoeff();
   if (!(least > 0.0) || !covariance.isApprox(covariance.transpose(), 1e-6) || !dense::Cholesky(covariance).ok())
@@ -73,7 +75,8 @@ Status PositionAlignment::add(const PositionReading& reading, TimeNs done_ns, Ti
   if (waiting_readings_.size() >= most)
     return {ErrorCode::out_of_range, "positions waiting", double(waiting_readings_.size() + 1), double(most)};
   const auto later = [](TimeNs at_ns, const PositionReading& other) { return at_ns < other.time_ns; };
-  waiting_readings_.insert(std::upper_bound(waiting_readings_.begin(), waiting_readings_.end(), time_ns, later), reading);
+  waiting_readings_.insert(std::upper_bound(waiting_readings_.begin(), waiting_readings_.end(), time_ns, later),
+                           reading);
   return {};
 }
 
@@ -85,7 +88,8 @@ void PositionAlignment::add_sweep(const SweepReport& report) {
   last_position_W_m_ = report.pose.position_W_m;
   pose_variance_m2_ = report.pose.covariance.topLeftCorner<3, 3>().trace();
   bool any = false;
-  for (; !waiting_readings_.empty() && waiting_readings_.front().time_ns <= report.pose.time_ns; waiting_readings_.pop_front()) {
+  for (; !waiting_readings_.empty() && waiting_readings_.front().time_ns <= report.pose.time_ns;
+       waiting_readings_.pop_front()) {
     if (waiting_readings_.front().time_ns < report.trajectory.front().time_ns) continue;
     add_position_pair(waiting_readings_.front(), pose_at(report.trajectory, waiting_readings_.front().time_ns));
     any = true;
@@ -101,8 +105,10 @@ void PositionAlignment::restart_fit() {
 /// If the robot has hardly moved since the last reading, the function averages both readings.
 void PositionAlignment::add_position_pair(const PositionReading& reading, const PoseState& pose) {
   const double variance_m2 = reading.covariance_m2.trace() / 3.0;
-  const PositionPair pair{pose.position_W_m + pose.orientation_W * reading.antenna_lever_arm_I_m, reading.antenna_position_P_m, variance_m2, path_m_, pose_variance_m2_};
-  if (position_pairs_.empty() || (pair.antenna_position_W_m - position_pairs_.back().antenna_position_W_m).norm() > kSpacing * std::sqrt(variance_m2)) {
+  const PositionPair pair{pose.position_W_m + pose.orientation_W * reading.antenna_lever_arm_I_m,
+                          reading.antenna_position_P_m, variance_m2, path_m_, pose_variance_m2_};
+  if (position_pairs_.empty() || (pair.antenna_position_W_m - position_pairs_.back().antenna_position_W_m).norm() >
+                                     kSpacing * std::sqrt(variance_m2)) {
     if (position_pairs_.size() >= kMaxPositionPairs) position_pairs_.pop_front();
     position_pairs_.push_back(pair);
     return;
@@ -125,10 +131,12 @@ void PositionAlignment::fit() {
   while (inliers.size() >= least) {
     const PositionFrame found = fit_position_frame(inliers);
     const auto misfit = [&](const PositionPair& pair) {
-      return (found.T_readings_world * pair.antenna_position_W_m - pair.antenna_position_P_m).squaredNorm() / pair.variance_m2;
+      return (found.T_readings_world * pair.antenna_position_W_m - pair.antenna_position_P_m).squaredNorm() /
+             pair.variance_m2;
     };
-    const auto worst = std::max_element(inliers.begin(), inliers.end(),
-                                        [&](const PositionPair& a, const PositionPair& b) { return misfit(a) < misfit(b); });
+    const auto worst =
+        std::max_element(inliers.begin(), inliers.end(),
+                         [&](const PositionPair& a, const PositionPair& b) { return misfit(a) < misfit(b); });
     if (misfit(*worst) <= kGate) {
       if (found.covariance(3, 3) < kHeadingSigma_rad * kHeadingSigma_rad) position_frame_ = found;
       return;

@@ -44,7 +44,7 @@ class PositionAlignment {
   std::deque<PositionPair> position_pairs_;
   std::optional<PositionFrame> position_frame_;
   Eigen::Vector3d last_position_W_m_ = Eigen::Vector3d::Zero();  ///< position of the IMU at the end of the last sweep
-  double path_m_ = 0.0, pose_variance_m2_ = 0.0;        ///< length of the path; variance of the last pose, all axes
+  double path_m_ = 0.0, pose_variance_m2_ = 0.0;  ///< length of the path; variance of the last pose, all axes
   bool in_prior_map_ = false;
 };
 

@@ -46,7 +46,8 @@ SensorHealth RollingOdometry::Impl::health() const {
   }
   add_forces_at_rest(merged_imu_checks_, count, out);
   add_findings(merged_imu_checks_.plausibility, merged_imu_checks_.plausibility_state, "imu", out);
-  ImuMerge::add_findings(imu_merge_state_->imu_sign_check.detected_mirroring(), ImuMerge::lever_arm_agreement(*imu_merge_state_),
+  ImuMerge::add_findings(imu_merge_state_->imu_sign_check.detected_mirroring(),
+                         ImuMerge::lever_arm_agreement(*imu_merge_state_),
                          confirms_gyro(merged_imu_checks_.plausibility, merged_imu_checks_.plausibility_state), out);
   return out;
 }

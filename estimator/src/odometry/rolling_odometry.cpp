@@ -30,7 +30,8 @@ bool any_reading(std::span<const ImuSample> samples) {
 
 RollingOdometry::Pose as_pose(const RollingEstimate& estimate) {
   RollingOdometry::Pose out;
-  out.pose = {estimate.time_ns, estimate.sphere_centre_W_m, estimate.q_WI, estimate.sphere_velocity_W_m_s, estimate.covariance};
+  out.pose = {estimate.time_ns, estimate.sphere_centre_W_m, estimate.q_WI, estimate.sphere_velocity_W_m_s,
+              estimate.covariance};
   out.angular_velocity_rad_s = estimate.w_WI_I_rad_s;
   out.velocity_covariance_B_m2_s2 = estimate.velocity_covariance_I_m2_s2;
   out.mode = estimate.mode;
@@ -55,7 +56,7 @@ RollingOdometry::Impl::Impl(const Params& params, const ImuMerge::Params& merged
       outlier_filters_(outlier_filters_of(params)),
       frozen_axis_detectors_(frozen_axis_detectors(params)),
       merged_imu_checks_{RestGravity({.gravity_m_s2 = params.gravity_m_s2}),
-              ImuPlausibility(plausibility_params(params.gravity_m_s2, 0.0))},
+                         ImuPlausibility(plausibility_params(params.gravity_m_s2, 0.0))},
       is_live_(params.lag_s <= 0.0) {}
 
 Status RollingOdometry::Impl::add_imus(std::span<const ImuSample> samples) {
@@ -112,8 +113,8 @@ Status RollingOdometry::Impl::add_imu(std::size_t unit, const ImuSample& sample)
   return add_time_aligned_readings(false);
 }
 
-/// Processes the readings at all common times that ImuTimeAlignment has completed. `ended` is true if no further readings
-/// follow.
+/// Processes the readings at all common times that ImuTimeAlignment has completed. `ended` is true if no further
+/// readings follow.
 Status RollingOdometry::Impl::add_time_aligned_readings(bool ended) {
   Status first;
   ImuTimeAlignment::Readings readings;
@@ -252,7 +253,8 @@ void RollingOdometry::Impl::end_continuous_run() {
   delayed_count_ = 0;
   const std::size_t before = finished_results_.size();
   if (!is_live_ && !finished_) smoother_.finish(*state_, finished_results_);
-  for (std::size_t k = before; k < finished_results_.size(); ++k) finished_results_[k] = transform_to_world(finished_results_[k]);
+  for (std::size_t k = before; k < finished_results_.size(); ++k)
+    finished_results_[k] = transform_to_world(finished_results_[k]);
 }
 
 void RollingOdometry::Impl::reset() {
@@ -297,7 +299,8 @@ Status RollingOdometry::Impl::process_ordered_sample(const ImuSample& merged) {
     status = smoother_.step(merged, *state_, finished_results_);
   }
   initialise_pose();
-  for (std::size_t k = before; k < finished_results_.size(); ++k) finished_results_[k] = transform_to_world(finished_results_[k]);
+  for (std::size_t k = before; k < finished_results_.size(); ++k)
+    finished_results_[k] = transform_to_world(finished_results_[k]);
   if (!status.ok()) return status;
   merged_imu_checks_.plausibility.step(merged, merged_imu_checks_.plausibility_state);
   ImuPlausibility::limit_memory(merged_imu_checks_.plausibility_state);

@@ -9,6 +9,8 @@
 #include <span>
 #include <vector>
 
+#include "imu_saturation_limits.hpp"
+#include "imu_time_alignment.hpp"
 #include "rolling_restart.hpp"
 #include "stamp_order.hpp"
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
@@ -19,8 +21,6 @@
 #include "tumble/odometry/rolling_expert_params.hpp"
 #include "tumble/odometry/rolling_odometry.hpp"
 #include "tumble/rolling/detail/rolling_smoother.hpp"
-#include "imu_time_alignment.hpp"
-#include "imu_saturation_limits.hpp"
 
 namespace tumble {
 
@@ -73,7 +73,8 @@ struct RollingOdometry::Impl {
   ImuSaturationLimits imu_saturation_limits_;
   ImuTimeAlignment imu_time_alignment_;
   ImuTimeAlignment::State imu_time_alignment_state_;
-  std::array<std::vector<ImuSample>, ImuMerge::kImus> recorded_samples_;  ///< readings of each IMU, with kWholeRecording
+  std::array<std::vector<ImuSample>, ImuMerge::kImus>
+      recorded_samples_;  ///< readings of each IMU, with kWholeRecording
   /// State of ImuMerge, and buffer for its next state.
   HeapValue<ImuMerge::State> imu_merge_state_, merge_state_buffer_;
   HeapValue<RollingSmoother::State> state_;
@@ -85,12 +86,13 @@ struct RollingOdometry::Impl {
   std::size_t delayed_count_ = 0;                  ///< number of valid elements of `delayed_samples_`
   std::vector<FrozenAxes> frozen_axis_detectors_;  ///< one detector per IMU
   Frozen frozen_imus_{};
-  MergedImuChecks merged_imu_checks_;                          ///< checks of the merged IMUs, with their states
+  MergedImuChecks merged_imu_checks_;                                 ///< checks of the merged IMUs, with their states
   std::shared_ptr<const MergedImuRecording> whole_recording_result_;  ///< set by finish() with kWholeRecording
   std::vector<RollingEstimate> finished_results_;
   std::size_t returned_result_count_ = 0;
-  std::optional<Eigen::Isometry3d> start_;    ///< pose passed to reset(), until the first sample
-  std::optional<Eigen::Isometry3d> T_world_run_origin_;  ///< pose of the filter's frame in the world; empty: equal frames
+  std::optional<Eigen::Isometry3d> start_;  ///< pose passed to reset(), until the first sample
+  std::optional<Eigen::Isometry3d>
+      T_world_run_origin_;  ///< pose of the filter's frame in the world; empty: equal frames
   std::size_t restart_count_ = 0;
   std::optional<RollingRestart> restart_;  ///< last restart; poses after a restart are uncertain
   bool is_live_ = true, finished_ = false;

@@ -108,8 +108,8 @@ std::vector<OutlierFilter> outlier_filters_of(const RollingOdometry::Params& par
   std::vector<OutlierFilter> out;
   for (const RollingOdometry::ImuSetup& unit : params.imus) {
     out.emplace_back(OutlierFilter::ImuRanges{.gyro_range_rad_s = unit.data_sheet.gyro_range_rad_s,
-                                           .accel_range_m_s2 = unit.data_sheet.accel_range_m_s2,
-                                           .period_s = 1.0 / unit.data_sheet.rate_hz});
+                                              .accel_range_m_s2 = unit.data_sheet.accel_range_m_s2,
+                                              .period_s = 1.0 / unit.data_sheet.rate_hz});
   }
   return out;
 }

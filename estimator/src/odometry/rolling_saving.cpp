@@ -36,7 +36,8 @@ void visit_saved_state(Visit& visit, Saved& saved) {
 
 std::vector<std::byte> RollingOdometry::Impl::save() const {
   const auto ended = std::make_unique<Impl>(*this);
-  if (state_->live_filter.started) ended->restart_at_newest(0.0);  // needs most of the stack, so this function needs little
+  if (state_->live_filter.started)
+    ended->restart_at_newest(0.0);  // needs most of the stack, so this function needs little
   if (!ended->start_) return save_with_pose(std::nullopt);
   PoseState pose;
   pose.time_ns = state_->live_filter.last_time_ns;
@@ -47,7 +48,8 @@ std::vector<std::byte> RollingOdometry::Impl::save() const {
 }
 
 std::vector<std::byte> RollingOdometry::Impl::save_with_pose(const std::optional<PoseState>& pose) const {
-  SavedRollingState saved{params_.radius_m, imu_merge_.mean_imu_position_m(), static_cast<std::uint32_t>(params_.imus.size()), {}, pose};
+  SavedRollingState saved{
+      params_.radius_m, imu_merge_.mean_imu_position_m(), static_cast<std::uint32_t>(params_.imus.size()), {}, pose};
   if (state_->live_filter.started) {
     saved.calibration = RollingFilter::calibration(state_->live_filter);
   } else if (params_.expert->rolling.filter.calibration) {
@@ -55,7 +57,8 @@ std::vector<std::byte> RollingOdometry::Impl::save_with_pose(const std::optional
   }
   odometry::SavedStateWriter out;
   visit_saved_state(out, std::as_const(saved));
-  for (std::size_t k = 0; k < params_.imus.size(); ++k) odometry::write_saturation_levels(imu_saturation_limits_state_[k].clipping_state.known_limits, out);
+  for (std::size_t k = 0; k < params_.imus.size(); ++k)
+    odometry::write_saturation_levels(imu_saturation_limits_state_[k].clipping_state.known_limits, out);
   return std::move(out).finish(odometry::SavedStateKind::rolling);
 }
 
@@ -71,7 +74,8 @@ Status RollingOdometry::Impl::load(std::span<const std::byte> bytes, std::option
   in.require_equal("lever_arm_m", saved.lever_arm_m, imu_merge_.mean_imu_position_m());
   std::vector<SaturationLevels> rails(units);
   for (SaturationLevels& unit : rails) odometry::read_saturation_levels(in, unit);
-  in.require_condition("number of bytes after the saved state", in.remaining_bytes().empty(), double(in.remaining_bytes().size()), 0.0);
+  in.require_condition("number of bytes after the saved state", in.remaining_bytes().empty(),
+                       double(in.remaining_bytes().size()), 0.0);
   if (!in.status().ok()) return in.status();
 
   Params params = params_;

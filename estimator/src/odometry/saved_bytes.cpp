@@ -48,7 +48,8 @@ std::uint64_t integer_at(std::span<const std::byte> bytes, std::size_t at, std::
 
 Status check_header(SavedStateKind kind, std::span<const std::byte> bytes) {
   constexpr const char* kSize = "number of bytes of the saved state";
-  if (bytes.size() < kSavedHeader) return {ErrorCode::insufficient_data, kSize, double(bytes.size()), double(kSavedHeader)};
+  if (bytes.size() < kSavedHeader)
+    return {ErrorCode::insufficient_data, kSize, double(bytes.size()), double(kSavedHeader)};
   const auto expected = header(kind, bytes.size() - kSavedHeader);
   struct HeaderField {
     const char* name;
@@ -56,7 +57,8 @@ Status check_header(SavedStateKind kind, std::span<const std::byte> bytes) {
   };
   for (const HeaderField& part :
        {HeaderField{"magic number of the saved state", 0, 8}, HeaderField{"version of the saved state", 8, 4},
-        HeaderField{"kind of the saved state", 12, 4}, HeaderField{kSize, 24, 8}, HeaderField{"layout of the saved state", 16, 8}}) {
+        HeaderField{"kind of the saved state", 12, 4}, HeaderField{kSize, 24, 8},
+        HeaderField{"layout of the saved state", 16, 8}}) {
     const std::uint64_t found = integer_at(bytes, part.at, part.byte_count),
                         wanted = integer_at(expected, part.at, part.byte_count);
     if (found == wanted) continue;
@@ -78,7 +80,8 @@ std::vector<std::byte> SavedStateWriter::finish(SavedStateKind kind) && {
   return std::move(bytes_);
 }
 
-SavedStateReader::SavedStateReader(SavedStateKind kind, std::span<const std::byte> bytes) : status_(check_header(kind, bytes)) {
+SavedStateReader::SavedStateReader(SavedStateKind kind, std::span<const std::byte> bytes)
+    : status_(check_header(kind, bytes)) {
   if (status_.ok()) remaining_bytes_ = bytes.subspan(kSavedHeader);
 }
 

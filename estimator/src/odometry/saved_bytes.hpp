@@ -65,9 +65,9 @@ class SavedStateWriter {
   std::vector<std::byte> bytes_ = std::vector<std::byte>(kSavedHeader);
 };
 
-/// SavedStateReader reads numbers from untrusted bytes, without allocating memory. After the first error, SavedStateReader stops
-/// reading, and the values read so far are invalid. The errors are `insufficient_data` (the bytes end within `field`),
-/// `non_finite` and `out_of_range`.
+/// SavedStateReader reads numbers from untrusted bytes, without allocating memory. After the first error,
+/// SavedStateReader stops reading, and the values read so far are invalid. The errors are `insufficient_data` (the
+/// bytes end within `field`), `non_finite` and `out_of_range`.
 class SavedStateReader {
  public:
   SavedStateReader(SavedStateKind kind, std::span<const std::byte> bytes);

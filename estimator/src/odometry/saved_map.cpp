@@ -31,8 +31,10 @@ Status load_map(std::span<const std::byte> bytes, std::vector<MapPoint>& points)
   odometry::SavedStateReader in(odometry::SavedStateKind::map, bytes);
   std::uint64_t count = 0;
   in("map.points", count);
-  in.require_condition("map.points", in.remaining_bytes().size() % kPointBytes == 0 && count == in.remaining_bytes().size() / kPointBytes,
-             double(count), double(in.remaining_bytes().size()) / kPointBytes);
+  in.require_condition(
+      "map.points",
+      in.remaining_bytes().size() % kPointBytes == 0 && count == in.remaining_bytes().size() / kPointBytes,
+      double(count), double(in.remaining_bytes().size()) / kPointBytes);
   if (!in.status().ok()) return in.status();
   std::vector<MapPoint> loaded(count);
   for (MapPoint& point : loaded) visit_point(in, point);

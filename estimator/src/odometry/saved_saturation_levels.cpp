@@ -10,7 +10,8 @@ namespace {
 template <class Visit, class Rails>
 void visit_saturation_levels(Visit& visit, Rails& rails) {
   constexpr double kLimitMax = 1e6, kCountMax = 1e9, kSlopeMax = 1.0;
-  for (auto& channel : rails.axis_limit_state.channels) visit("saturation limit", channel.plateau_limit, 0.0, kLimitMax);
+  for (auto& channel : rails.axis_limit_state.channels)
+    visit("saturation limit", channel.plateau_limit, 0.0, kLimitMax);
   for (auto* const planes : {&rails.gyro_planes, &rails.accel_saturation_planes}) {
     for (auto& plane : planes->sensing_axis) {
       if (!visit.presence_flag("saturation plane", plane)) continue;
@@ -50,9 +51,10 @@ void read_saturation_levels(SavedStateReader& in, SaturationLevels& rails) {
   }
 }
 
-void start_from_saturation_levels(const SaturationLevels& rails, SaturationLimitDetector::Params& detector, SaturationPlaneFinder::Params& gyro,
-                      SaturationPlaneFinder::Params& accel) {
-  for (std::size_t c = 0; c < detector.known.size(); ++c) detector.known[c] = rails.axis_limit_state.channels[c].plateau_limit;
+void start_from_saturation_levels(const SaturationLevels& rails, SaturationLimitDetector::Params& detector,
+                                  SaturationPlaneFinder::Params& gyro, SaturationPlaneFinder::Params& accel) {
+  for (std::size_t c = 0; c < detector.known.size(); ++c)
+    detector.known[c] = rails.axis_limit_state.channels[c].plateau_limit;
   gyro.known_limits = rails.gyro_planes;
   accel.known_limits = rails.accel_saturation_planes;
 }

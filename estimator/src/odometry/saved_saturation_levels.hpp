@@ -9,7 +9,7 @@ namespace tumble::odometry {
 void write_saturation_levels(const SaturationLevels& rails, SavedStateWriter& out);
 void read_saturation_levels(SavedStateReader& in, SaturationLevels& rails);
 
-void start_from_saturation_levels(const SaturationLevels& rails, SaturationLimitDetector::Params& detector, SaturationPlaneFinder::Params& gyro,
-                      SaturationPlaneFinder::Params& accel);
+void start_from_saturation_levels(const SaturationLevels& rails, SaturationLimitDetector::Params& detector,
+                                  SaturationPlaneFinder::Params& gyro, SaturationPlaneFinder::Params& accel);
 
 }  // namespace tumble::odometry

@@ -25,7 +25,8 @@ constexpr std::size_t kSweepsPerRejection = 5;
 void start_from_saturation_levels(const SaturationLevels& known, double inflation, AngularRateStream::Params& params) {
   params.expert.gyro_planes.known_limits = known.gyro_planes;
   params.expert.accel_saturation_planes.known_limits = known.accel_saturation_planes;
-  for (SaturationPlanes* const planes : {&params.expert.gyro_planes.known_limits, &params.expert.accel_saturation_planes.known_limits}) {
+  for (SaturationPlanes* const planes :
+       {&params.expert.gyro_planes.known_limits, &params.expert.accel_saturation_planes.known_limits}) {
     for (std::optional<SaturationPlane>& plane : planes->sensing_axis) {
       if (plane) plane->covariance *= inflation;
     }
@@ -35,7 +36,7 @@ void start_from_saturation_levels(const SaturationLevels& known, double inflatio
 }  // namespace
 
 SecondMappingPass::SecondMappingPass(const Params& params, const MotionRegimeStream::Params& rate,
-                       const LidarInertialOdometry::Params& mapping)
+                                     const LidarInertialOdometry::Params& mapping)
     : params_(params),
       rate_(rate),
       mapping_(mapping),
@@ -57,7 +58,8 @@ void SecondMappingPass::abandon_second_pass() {
 
 void SecondMappingPass::store_input(const ImuSample& sample) {
   if (!enabled_) return;
-  if (!motion_start_ns_ && !rest_detector_.detect_stationary(sample, stationary_state_, rate_.rate.model.nominal.gyro_bias_rad_s))
+  if (!motion_start_ns_ &&
+      !rest_detector_.detect_stationary(sample, stationary_state_, rate_.rate.model.nominal.gyro_bias_rad_s))
     motion_start_ns_ = sample.time_ns;
   if (!motion_start_ns_) {
     const TimeNs from_ns = sample.time_ns - static_cast<TimeNs>(1e9 * params_.rest_s);
@@ -71,7 +73,7 @@ void SecondMappingPass::store_input(const ImuSample& sample) {
 }
 
 void SecondMappingPass::store_input(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points,
-                       const std::optional<OdometerReading>& reading, SweepVerdict verdict) {
+                                    const std::optional<OdometerReading>& reading, SweepVerdict verdict) {
   if (!enabled_) return;
   sweeps_.push_back({start_ns, end_ns, std::move(points), reading, verdict});
   rejected_in_first_pass_ += verdict == SweepVerdict::rejected;
@@ -165,9 +167,11 @@ void SecondMappingPass::run_second_pass(OdometryPass& first, std::size_t sweeps)
     }
     if (!replayed_pass_->has_rates_until(sweep.end_ns)) {
       tail = true;
-      replayed_pass_->flush_until(std::max(first.smoothed_rate()->time_ns, replayed_pass_->oldest_needed_ns(sweep.end_ns)));
+      replayed_pass_->flush_until(
+          std::max(first.smoothed_rate()->time_ns, replayed_pass_->oldest_needed_ns(sweep.end_ns)));
     }
-    if (!replayed_pass_->has_rates_until(sweep.end_ns)) {  // the clocks differ by more than assumed: wait for the next sweep
+    if (!replayed_pass_->has_rates_until(
+            sweep.end_ns)) {  // the clocks differ by more than assumed: wait for the next sweep
       --next_sweep_;
       return;
     }

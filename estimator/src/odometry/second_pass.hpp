@@ -16,15 +16,15 @@ namespace tumble {
 
 /// Processes the first seconds of motion again with the calibration estimated so far, while the first pass continues.
 ///
-/// The first pass maps the start of a tumble while lever arm, mounting and time offset are still uncertain. SecondMappingPass
-/// buffers samples and sweeps from the end of the initial rest. After `after_s` of motion, the buffer is processed with
-/// the current calibration, and with rates smoothed with a lag of `lag_s`. The second pass processes `sweeps` buffered
-/// sweeps per new sweep. When the second pass ends, its map and pose replace those of the first pass. The result is
-/// discarded if tracking failed in the second pass, or if the second pass rejected clearly more sweeps.
+/// The first pass maps the start of a tumble while lever arm, mounting and time offset are still uncertain.
+/// SecondMappingPass buffers samples and sweeps from the end of the initial rest. After `after_s` of motion, the buffer
+/// is processed with the current calibration, and with rates smoothed with a lag of `lag_s`. The second pass processes
+/// `sweeps` buffered sweeps per new sweep. When the second pass ends, its map and pose replace those of the first pass.
+/// The result is discarded if tracking failed in the second pass, or if the second pass rejected clearly more sweeps.
 ///
 /// If tracking of the first pass has failed for `lost_s`, the whole buffer is processed immediately, once. Another
-/// second pass still follows after `after_s` of motion. SecondMappingPass does not change earlier poses: the reported pose
-/// jumps by the error of the first pass.
+/// second pass still follows after `after_s` of motion. SecondMappingPass does not change earlier poses: the reported
+/// pose jumps by the error of the first pass.
 ///
 /// SecondMappingPass stores samples and sweeps of `rest_s` at rest and of at most 10 s of motion. The second pass
 /// also needs memory for a second map. If a jolt ends the rest long before the tumble, the second pass starts too
@@ -34,7 +34,8 @@ class SecondMappingPass {
   using Params = SecondMappingPassParams;
 
   /// `rate` and `mapping` are the parameters of the first pass. Throws InvalidParams if a parameter is out of bounds.
-  SecondMappingPass(const Params& params, const MotionRegimeStream::Params& rate, const LidarInertialOdometry::Params& mapping);
+  SecondMappingPass(const Params& params, const MotionRegimeStream::Params& rate,
+                    const LidarInertialOdometry::Params& mapping);
 
   /// Sets the gyro's zero offset, before the first sample.
   void set_gyro_offset(const Eigen::Vector3d& offset_rad_s) { rate_.rate.model.nominal.gyro_bias_rad_s = offset_rad_s; }
@@ -43,7 +44,7 @@ class SecondMappingPass {
   void store_input(const ImuSample& sample);
   /// Buffers a sweep that the first pass has processed.
   void store_input(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points,
-             const std::optional<OdometerReading>& reading, SweepVerdict verdict);
+                   const std::optional<OdometerReading>& reading, SweepVerdict verdict);
 
   /// Continues the second pass after each sweep of the first pass. When the second pass has processed all buffered
   /// sweeps, its map replaces the map of `first`.

@@ -143,21 +143,21 @@ ImuDataSheet iim42653() {
 
 std::span<const std::pair<const char*, ImuDataSheet (*)()>> imus() {
   static constexpr std::pair<const char*, ImuDataSheet (*)()> kAll[] = {{"mti30", mti30},
-                                                                    {"vn100", vn100},
-                                                                    {"phidget1044", phidget1044},
-                                                                    {"mpu6050", mpu6050},
-                                                                    {"bmi088", bmi088},
-                                                                    {"icm20948", icm20948},
-                                                                    {"icm42688", icm42688},
-                                                                    {"mti3", mti3},
-                                                                    {"lsm6dso", lsm6dso},
-                                                                    {"ouster_imu", ouster_imu},
-                                                                    {"mid360_imu", mid360_imu},
-                                                                    {"icm20601", icm20601},
-                                                                    {"icm20602", icm20602},
-                                                                    {"lsm6dsv320x", lsm6dsv320x},
-                                                                    {"adis16405", adis16405},
-                                                                    {"iim42653", iim42653}};
+                                                                        {"vn100", vn100},
+                                                                        {"phidget1044", phidget1044},
+                                                                        {"mpu6050", mpu6050},
+                                                                        {"bmi088", bmi088},
+                                                                        {"icm20948", icm20948},
+                                                                        {"icm42688", icm42688},
+                                                                        {"mti3", mti3},
+                                                                        {"lsm6dso", lsm6dso},
+                                                                        {"ouster_imu", ouster_imu},
+                                                                        {"mid360_imu", mid360_imu},
+                                                                        {"icm20601", icm20601},
+                                                                        {"icm20602", icm20602},
+                                                                        {"lsm6dsv320x", lsm6dsv320x},
+                                                                        {"adis16405", adis16405},
+                                                                        {"iim42653", iim42653}};
   return kAll;
 }
 

@@ -26,7 +26,7 @@ class StampOrder {
 
   struct State {
     std::optional<TimeNs> newest_ns;  ///< last accepted time stamp
-    bool only_one_sample = false;              ///< only one sample was accepted
+    bool only_one_sample = false;     ///< only one sample was accepted
     std::optional<RejectedStamps> rejected;
   };
   enum class Verdict { continues_in_order, restarts_after_gap, restarts_after_step_back };

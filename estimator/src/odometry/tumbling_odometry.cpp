@@ -108,7 +108,8 @@ Status TumblingOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, std::sp
     return {};
   }
   const std::size_t most = max_waiting_sweeps();
-  if (waiting_sweeps_.size() >= most && !newest_ns_) sweeps_before_first_imu_ += drop_until(waiting_sweeps_.front().end_ns, waiting_sweeps_);
+  if (waiting_sweeps_.size() >= most && !newest_ns_)
+    sweeps_before_first_imu_ += drop_until(waiting_sweeps_.front().end_ns, waiting_sweeps_);
   if (waiting_sweeps_.size() >= most)
     return {ErrorCode::out_of_range, "sweeps waiting", double(waiting_sweeps_.size() + 1), double(most)};
   if (const Status status = mapping::check_time_offsets(end_ns - start_ns, points); !status.ok()) return status;
@@ -133,14 +134,16 @@ Status TumblingOdometry::Impl::add_sweep(std::size_t lidar, TimeNs start_ns, Tim
 
 Status TumblingOdometry::Impl::add_reading(const OdometerReading& reading) {
   if (!newest_ns_) return {ErrorCode::empty, "imu samples", 0.0, 1.0};
-  const std::size_t most = uses_whole_recording() ? std::numeric_limits<std::size_t>::max() : WaitingReadings::kReadingsMax;
+  const std::size_t most =
+      uses_whole_recording() ? std::numeric_limits<std::size_t>::max() : WaitingReadings::kReadingsMax;
   const TimeNs latest_ns = *newest_ns_ + static_cast<TimeNs>(1e9 * kAhead_s);
   return readings_.add(reading, odometry_pass_.oldest_needed_ns(*last_registered_ns_), latest_ns, most);
 }
 
 Status TumblingOdometry::Impl::add_position(const PositionReading& position) {
   if (!newest_ns_) return {ErrorCode::empty, "imu samples", 0.0, 1.0};
-  const std::size_t most = uses_whole_recording() ? std::numeric_limits<std::size_t>::max() : PositionAlignment::kReadingsMax;
+  const std::size_t most =
+      uses_whole_recording() ? std::numeric_limits<std::size_t>::max() : PositionAlignment::kReadingsMax;
   const TimeNs latest_ns = *newest_ns_ + static_cast<TimeNs>(1e9 * kAhead_s);
   return positions_.add(position, odometry_pass_.oldest_needed_ns(*last_registered_ns_), latest_ns, most);
 }
@@ -191,8 +194,8 @@ void TumblingOdometry::Impl::register_sweep(TimeNs start_ns, TimeNs end_ns, std:
     ++dropped_sweeps_;
   }
   Sweep& out = finished_results_.emplace_back();
-  const std::optional<OdometerReading> reading =
-      readings_.take_readings_in(odometry_pass_.oldest_needed_ns(*last_registered_ns_), odometry_pass_.oldest_needed_ns(end_ns));
+  const std::optional<OdometerReading> reading = readings_.take_readings_in(
+      odometry_pass_.oldest_needed_ns(*last_registered_ns_), odometry_pass_.oldest_needed_ns(end_ns));
   out.status = odometry_pass_.add_sweep(start_ns, end_ns, points, reading, out.report);
   last_registered_ns_ = end_ns;
   if (out.report.trajectory.empty()) return;
@@ -222,7 +225,8 @@ void TumblingOdometry::Impl::register_sweeps_with_rates() {
     const TimeNs end_ns = waiting_sweeps_.front().end_ns;
     // The sample that covers the end of a sweep may be up to one sample period later than the end. flush_until()
     // reports the rate of this sample before lag_s has passed.
-    if (!odometry_pass_.has_rates_until(end_ns) && is_due(end_ns)) odometry_pass_.flush_until(odometry_pass_.oldest_needed_ns(end_ns));
+    if (!odometry_pass_.has_rates_until(end_ns) && is_due(end_ns))
+      odometry_pass_.flush_until(odometry_pass_.oldest_needed_ns(end_ns));
     if (!odometry_pass_.has_rates_until(end_ns)) break;
     WaitingSweep sweep = std::move(waiting_sweeps_.front());
     waiting_sweeps_.pop_front();
@@ -233,7 +237,8 @@ void TumblingOdometry::Impl::register_sweeps_with_rates() {
   if (!waiting_sweeps_.empty() || !covered_ns) return;
   if (seconds(*covered_ns - *last_registered_ns_) > kLidarSilent_s) {
     register_sweep(*covered_ns, *covered_ns, {});
-    if (finished_results_.back().report.trajectory.empty()) finished_results_.pop_back();  // no sweep has started the map yet
+    if (finished_results_.back().report.trajectory.empty())
+      finished_results_.pop_back();  // no sweep has started the map yet
     sweep_end_ns_ = *covered_ns;
   }
 }

@@ -41,7 +41,9 @@ struct TumblingOdometry::Impl {
   Status newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2 = nullptr) const;
   SensorHealth health() const;
   const LidarScale& sweep_scale() const;
-  std::optional<AngularRateState> newest_rate() const { return odometry_pass_.rates().rate().newest(odometry_pass_.rate_stream_state().rate); }
+  std::optional<AngularRateState> newest_rate() const {
+    return odometry_pass_.rates().rate().newest(odometry_pass_.rate_stream_state().rate);
+  }
   RigCalibration rig() const;
   const SaturationLevels& saturation_levels() const;
   std::optional<double> estimated_jitter_s() const;
@@ -61,13 +63,15 @@ struct TumblingOdometry::Impl {
   void restart_without_first_sample();
   void restart_with_gyro_offset(const Eigen::Vector3d& offset_rad_s);
   void set_gyro_offset(const Eigen::Vector3d& offset_rad_s);
-  const Eigen::Vector3d& gyro_offset_rad_s() const { return odometry_pass_.rates().params().rate.model.nominal.gyro_bias_rad_s; }
+  const Eigen::Vector3d& gyro_offset_rad_s() const {
+    return odometry_pass_.rates().params().rate.model.nominal.gyro_bias_rad_s;
+  }
   void start_rate_estimation();
   bool uses_whole_recording() const { return params_.lag_s >= kWholeRecording; }
   Status record_sample(const ImuSample& sample);
   Status finish_whole_recording(const SweepProgress& on_sweep);
 
-  Params params_;             ///< with the calibration of load()
+  Params params_;                                ///< with the calibration of load()
   LidarImuCalibrationPrior stated_calibration_;  ///< calibration that the caller stated
   StampOrder stamp_order_;
   StampOrder::State stamp_order_state_;
@@ -90,8 +94,8 @@ struct TumblingOdometry::Impl {
   WaitingReadings readings_;
   PositionAlignment positions_;
   std::deque<Sweep> finished_results_;
-  std::optional<TimeNs> sweep_end_ns_;              ///< end of the last accepted sweep
-  std::vector<ImuSample> recorded_samples_;                 ///< samples of a whole recording; the sweeps are in `waiting_sweeps_`
+  std::optional<TimeNs> sweep_end_ns_;       ///< end of the last accepted sweep
+  std::vector<ImuSample> recorded_samples_;  ///< samples of a whole recording; the sweeps are in `waiting_sweeps_`
   std::shared_ptr<const WholeRecordingEstimate> whole_recording_result_;  ///< set by finish() with kWholeRecording
   bool finished_ = false;
 };

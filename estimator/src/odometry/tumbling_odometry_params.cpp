@@ -56,8 +56,10 @@ MotionRegimeStream::Params rate_stream_params(const TumblingOdometry::Params& pa
   model.lever_arm_sigma_m = params.lever_arm_sigma_m;
   model.gyro_noise_density = params.imu.gyro_noise_rad_s_sqrt_hz;
   model.accel_noise_density = params.imu.accel_noise_m_s2_sqrt_hz;
-  if (params.imu.gyro_range_rad_s > 0.0) out.rate.saturation_detector.stated_gyro_range_rad_s = params.imu.gyro_range_rad_s;
-  if (params.imu.accel_range_m_s2 > 0.0) out.rate.saturation_detector.stated_accel_range_m_s2 = params.imu.accel_range_m_s2;
+  if (params.imu.gyro_range_rad_s > 0.0)
+    out.rate.saturation_detector.stated_gyro_range_rad_s = params.imu.gyro_range_rad_s;
+  if (params.imu.accel_range_m_s2 > 0.0)
+    out.rate.saturation_detector.stated_accel_range_m_s2 = params.imu.accel_range_m_s2;
   out.rate.period_s = 1.0 / params.imu.rate_hz;
   const bool whole = params.lag_s >= TumblingOdometry::kWholeRecording;  // rates_ is unused for a whole recording
   out.rate.lag_s = std::max(whole ? TumblingParams{}.lag_s : params.lag_s, 2.0 * out.rate.period_s);
@@ -83,7 +85,8 @@ LidarInertialOdometry::Params mapper_params(const TumblingOdometry::Params& para
   out.range_min_m = params.lidar.range_min_m;
   out.range_max_m = params.lidar.range_max_m;
   out.own_body_L = params.own_body_L;
-  if (params.imu.accel_range_m_s2 > 0.0) out.expert.saturated_imu.accel_m_s2 = range_below_saturation(params.imu.accel_range_m_s2);
+  if (params.imu.accel_range_m_s2 > 0.0)
+    out.expert.saturated_imu.accel_m_s2 = range_below_saturation(params.imu.accel_range_m_s2);
   return out;
 }
 

@@ -78,7 +78,8 @@ Status TumblingOdometry::Impl::finish_whole_recording(const SweepProgress& on_sw
       !status.ok())
     return status;
   if (Status status = estimate_rates(params_, samples, *whole); !status.ok()) return status;
-  whole->saturation_levels = flag_saturated_forces(odometry::recording_rate_params(params_).rate.saturation_detector, samples);
+  whole->saturation_levels =
+      flag_saturated_forces(odometry::recording_rate_params(params_).rate.saturation_detector, samples);
   for (WaitingSweep& sweep : waiting_sweeps_) further_lidars_.merge_into(sweep);
   if (!waiting_sweeps_.empty()) {
     const MappingInput input{samples,
@@ -116,11 +117,13 @@ const LidarScale& TumblingOdometry::Impl::sweep_scale() const {
 }
 
 RigCalibration TumblingOdometry::Impl::rig() const {
-  return whole_recording_result_ ? whole_recording_result_->report.rate.calibration : odometry_pass_.rates().rate().calibration(odometry_pass_.rate_stream_state().rate);
+  return whole_recording_result_ ? whole_recording_result_->report.rate.calibration
+                                 : odometry_pass_.rates().rate().calibration(odometry_pass_.rate_stream_state().rate);
 }
 
 const SaturationLevels& TumblingOdometry::Impl::saturation_levels() const {
-  return whole_recording_result_ ? whole_recording_result_->saturation_levels : odometry_pass_.rate_stream_state().rate.clipping_state.known_limits;
+  return whole_recording_result_ ? whole_recording_result_->saturation_levels
+                                 : odometry_pass_.rate_stream_state().rate.clipping_state.known_limits;
 }
 
 }  // namespace tumble

@@ -127,7 +127,8 @@ std::optional<PoseState> newest_or_start_pose(const TumblingOdometry::Impl& odom
 }  // namespace
 
 std::vector<std::byte> TumblingOdometry::Impl::save() const {
-  return save_with_pose(newest_or_start_pose(*this));  // the pose needs most of the stack, so this function needs little
+  return save_with_pose(
+      newest_or_start_pose(*this));  // the pose needs most of the stack, so this function needs little
 }
 
 std::vector<std::byte> TumblingOdometry::Impl::save_with_pose(const std::optional<PoseState>& pose) const {
@@ -137,7 +138,8 @@ std::vector<std::byte> TumblingOdometry::Impl::save_with_pose(const std::optiona
   const AngularRateStream& stream = odometry_pass_.rates().rate();
   const AngularRateStream::State& state = odometry_pass_.rate_stream_state().rate;
   const AngularRateStreamParams& used = odometry_pass_.rates().params().rate;
-  const bool estimated = whole_recording_result_ ? !whole_recording_result_->report.rate.calibration_at_prior : !is_at_prior(stream, state);
+  const bool estimated = whole_recording_result_ ? !whole_recording_result_->report.rate.calibration_at_prior
+                                                 : !is_at_prior(stream, state);
   if (estimated || used.model.calibration) out->rig = rig();
   if (out->rig && !check_calibration(*out->rig).ok()) out->rig.reset();
   if (whole_recording_result_ && estimated) out->sensor_errors = whole_recording_result_->report.rate.sensor_errors;
@@ -157,7 +159,8 @@ Status TumblingOdometry::Impl::load(std::span<const std::byte> bytes, std::optio
   const auto heap = std::make_unique<SavedTumblingState>();  // too large for a small stack
   SavedTumblingState& saved = *heap;
   PriorMap map;
-  const Status read_status = read(bytes, params_.lever_arm_I_m, stated_calibration_.calibration.T_IL, saved, map.points);
+  const Status read_status =
+      read(bytes, params_.lever_arm_I_m, stated_calibration_.calibration.T_IL, saved, map.points);
   if (!read_status.ok()) return read_status;
   const auto changed = std::make_unique<Params>(params_);
   Params& params = *changed;
@@ -171,7 +174,8 @@ Status TumblingOdometry::Impl::load(std::span<const std::byte> bytes, std::optio
     rate.model.calibration = saved.rig;
   }
   if (saved.sensor_errors) rate.calibrated_errors = std::make_shared<KnownSensorErrors>(*saved.sensor_errors);
-  odometry::start_from_saturation_levels(saved.saturation_levels, rate.saturation_detector, rate.expert.gyro_planes, rate.expert.accel_saturation_planes);
+  odometry::start_from_saturation_levels(saved.saturation_levels, rate.saturation_detector, rate.expert.gyro_planes,
+                                         rate.expert.accel_saturation_planes);
   // The mounting of further lidars relative to the first lidar is exact.
   for (FurtherLidar& further : params.further_lidars)
     further.T_IL = saved.lidar.calibration.T_IL * params.T_IL.inverse() * further.T_IL;

@@ -28,7 +28,8 @@ Status WaitingReadings::add(const OdometerReading& reading, TimeNs done_ns, Time
   if (waiting_readings_.size() >= most)
     return {ErrorCode::out_of_range, "readings waiting", double(waiting_readings_.size() + 1), double(most)};
   const auto later = [](TimeNs time_ns, const OdometerReading& other) { return time_ns < middle_ns(other); };
-  waiting_readings_.insert(std::upper_bound(waiting_readings_.begin(), waiting_readings_.end(), middle, later), reading);
+  waiting_readings_.insert(std::upper_bound(waiting_readings_.begin(), waiting_readings_.end(), middle, later),
+                           reading);
   return {};
 }
 

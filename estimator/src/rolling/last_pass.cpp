@@ -5,8 +5,9 @@
 
 namespace tumble::rolling {
 
-FinalSmoothingPass::FinalSmoothingPass(const RollingParams& params, std::span<const ImuSample> samples, std::span<const ModePathNode> path,
-                   std::optional<Distance> distance, std::size_t segment)
+FinalSmoothingPass::FinalSmoothingPass(const RollingParams& params, std::span<const ImuSample> samples,
+                                       std::span<const ModePathNode> path, std::optional<Distance> distance,
+                                       std::size_t segment)
     : params_(params), samples_(samples), mode_path_(path), distance_(distance), length_(segment) {
   segment_ends_.resize(std::max<std::size_t>(1, (path.size() + length_ - 1) / length_));
   node_records_.reserve(std::min(path.size(), length_));
@@ -27,7 +28,8 @@ void FinalSmoothingPass::run_to_cut(const Checkpoint& start, std::size_t cut) {
     if (loaded_ != segment) recompute_segment_filter(segment);
     segment_ends_[segment].end = adjoint_;
     backward_pass(adjoint_, node_records_);
-    smoothed_start_error_ = -output_covariance_rows(segment_ends_[segment].start.filter.covariance) * adjoint_.adjoint_vector;
+    smoothed_start_error_ =
+        -output_covariance_rows(segment_ends_[segment].start.filter.covariance) * adjoint_.adjoint_vector;
     for (std::size_t k = 0; k < node_records_.size(); ++k) {
       const auto& P = node_records_[k].smoothed_covariance;
       horizontal_variance_m2_[first_node_of(segment) + k] = P(kPosition, kPosition) + P(kPosition + 1, kPosition + 1);
@@ -71,7 +73,8 @@ void FinalSmoothingPass::filter_forward(std::size_t segment, Checkpoint& at) {
         const ImuSample& sample = samples_[k];
         so_far.add(sample, seconds(sample.time_ns - last_ns));
         last_ns = sample.time_ns;
-        store_sample_point(last_ns, extrapolate_nominal(params_, so_far, filter.nominal), so_far.mean.angular_velocity_rad_s, node);
+        store_sample_point(last_ns, extrapolate_nominal(params_, so_far, filter.nominal),
+                           so_far.mean.angular_velocity_rad_s, node);
       }
       if (reading.is_whole) integrate(params_, average, filter.nominal, sums);
     }
@@ -88,8 +91,8 @@ void FinalSmoothingPass::recompute_segment_filter(std::size_t segment) {
   filter_forward(segment, recomputation_checkpoint_);
 }
 
-void FinalSmoothingPass::store_sample_point(TimeNs time_ns, const RollingNominalState& nominal, const Eigen::Vector3d& rate_I_rad_s,
-                     std::size_t node) {
+void FinalSmoothingPass::store_sample_point(TimeNs time_ns, const RollingNominalState& nominal,
+                                            const Eigen::Vector3d& rate_I_rad_s, std::size_t node) {
   points_.push_back({time_ns, nominal.q_WI, nominal.v_WI_m_s, nominal.p_WI_m, rate_I_rad_s, node});
 }
 
@@ -110,7 +113,7 @@ void FinalSmoothingPass::report_smoothed(std::size_t until, const std::function<
 }
 
 void FinalSmoothingPass::report_smoothed_segment(std::size_t segment, std::size_t until,
-                              const std::function<void(const Smoothed&)>& take) const {
+                                                 const std::function<void(const Smoothed&)>& take) const {
   const std::size_t first = first_node_of(segment);
   const Checkpoint& start = segment_ends_[segment].start;
   for (const SampleMotion& point : points_) {

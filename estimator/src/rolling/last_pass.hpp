@@ -13,13 +13,14 @@ namespace tumble::rolling {
 
 /// FinalSmoothingPass runs a Kalman filter with known contact modes forward, and a smoother backward.
 ///
-/// The backward pass needs more than 10 KiB per node, so FinalSmoothingPass divides the nodes into segments. FinalSmoothingPass stores only
-/// the filter at each segment's start and the adjoint at its end, and recomputes other data bit for bit. A window of
-/// one segment needs one run of the filter, a longer window needs three. A FinalSmoothingPass is too large for the stack (four
-/// filters of 13 KiB).
+/// The backward pass needs more than 10 KiB per node, so FinalSmoothingPass divides the nodes into segments.
+/// FinalSmoothingPass stores only the filter at each segment's start and the adjoint at its end, and recomputes other
+/// data bit for bit. A window of one segment needs one run of the filter, a longer window needs three. A
+/// FinalSmoothingPass is too large for the stack (four filters of 13 KiB).
 class FinalSmoothingPass {
  public:
-  static constexpr std::size_t kNodesPerSegment = 128;  ///< number of nodes per segment; the backward pass needs 1.6 MiB
+  static constexpr std::size_t kNodesPerSegment =
+      128;  ///< number of nodes per segment; the backward pass needs 1.6 MiB
 
   struct Checkpoint {
     ModePathFilter filter;
@@ -31,15 +32,16 @@ class FinalSmoothingPass {
   struct Smoothed {
     const SampleMotion& point;
     const RollingNominalState& nominal;
-    Reported smoothed_error;          ///< smoothed error of the nominal trajectory at the sample
+    Reported smoothed_error;       ///< smoothed error of the nominal trajectory at the sample
     const FilterNodeRecord* node;  ///< node with the covariance of the sample; null if the window has no node
     std::size_t index;
   };
 
   /// All arguments must outlive the pass. A known `distance` from the start acts as a measurement after the last
   /// sample. `segment` is the number of nodes whose records are stored at a time.
-  FinalSmoothingPass(const RollingParams& params, std::span<const ImuSample> samples, std::span<const ModePathNode> path,
-           std::optional<Distance> distance, std::size_t segment = kNodesPerSegment);
+  FinalSmoothingPass(const RollingParams& params, std::span<const ImuSample> samples,
+                     std::span<const ModePathNode> path, std::optional<Distance> distance,
+                     std::size_t segment = kNodesPerSegment);
 
   /// After run(), cut() returns the filter after the first `cut` nodes.
   void run_to_cut(const Checkpoint& start, std::size_t cut);
@@ -63,8 +65,10 @@ class FinalSmoothingPass {
   void filter_forward(std::size_t segment, Checkpoint& at);
   void recompute_segment_filter(std::size_t segment);
   void load(std::size_t segment);
-  void store_sample_point(TimeNs time_ns, const RollingNominalState& nominal, const Eigen::Vector3d& rate_I_rad_s, std::size_t node);
-  void report_smoothed_segment(std::size_t segment, std::size_t until, const std::function<void(const Smoothed&)>& take) const;
+  void store_sample_point(TimeNs time_ns, const RollingNominalState& nominal, const Eigen::Vector3d& rate_I_rad_s,
+                          std::size_t node);
+  void report_smoothed_segment(std::size_t segment, std::size_t until,
+                               const std::function<void(const Smoothed&)>& take) const;
 
   const RollingParams& params_;
   std::span<const ImuSample> samples_;
@@ -76,7 +80,7 @@ class FinalSmoothingPass {
   std::size_t cut_node_ = 0;
   Checkpoint cut_checkpoint_, end_checkpoint_;
   Checkpoint recomputation_checkpoint_;  ///< filter for a segment that is recomputed
-  Adjoint adjoint_;   ///< state of the backward pass
+  Adjoint adjoint_;                      ///< state of the backward pass
   // index of the segment (`length_` successive nodes) whose filter records are in `node_records_`
   std::size_t loaded_ = 0;
   std::vector<FilterNodeRecord> node_records_;

@@ -13,7 +13,8 @@ namespace tumble::rolling {
 /// the sphere is assumed to be small.
 template <class EstimateCallback>
 void contact_measurement_rows(const RollingParams& params, const Contact& c, RollingMode mode, double node_s,
-                  const Eigen::Vector3d& v_WI_m_s, const Vector& x, const Covariance& P, EstimateCallback&& take) {
+                              const Eigen::Vector3d& v_WI_m_s, const Vector& x, const Covariance& P,
+                              EstimateCallback&& take) {
   // The part of the contact velocity that is not linear in the error state is subtracted from the measurement.
   const Eigen::Vector3d u = c.velocity(x) - c.measurement_jacobian * x, variance = contact_variance(params, c, mode);
   if (!may_slip(mode)) {
@@ -27,8 +28,8 @@ void contact_measurement_rows(const RollingParams& params, const Contact& c, Rol
 
 /// See rolling.md (R28).
 template <class EstimateCallback>
-void stationary_measurement_rows(const RollingParams& params, const RollingNodeIntegrals& sums, const RollingNominalState& nominal,
-               bool spins_in_place, EstimateCallback&& take) {
+void stationary_measurement_rows(const RollingParams& params, const RollingNodeIntegrals& sums,
+                                 const RollingNominalState& nominal, bool spins_in_place, EstimateCallback&& take) {
   for (int axis = 0; axis < 3; ++axis) {
     take(kVelocity + axis, -nominal.v_WI_m_s[axis], squared(params.expert.contact.kRestVelocitySigma_m_s));
     if (spins_in_place) continue;

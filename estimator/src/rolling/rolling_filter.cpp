@@ -31,7 +31,9 @@ Status RollingFilter::step_with_listener(const ImuSample& sample, State& state, 
   if (const Status bad = check_sample(sample); !bad.ok()) return bad;
   if (state.started) {
     double dt_s = 0.0;
-    if (const Status bad = elapsed_time_since_last(sample.time_ns, state.last_time_ns, params_.expert.gap.gap_max_s, dt_s); !bad.ok())
+    if (const Status bad =
+            elapsed_time_since_last(sample.time_ns, state.last_time_ns, params_.expert.gap.gap_max_s, dt_s);
+        !bad.ok())
       return bad;
     if (dt_s > params_.expert.gap.kGapMinDuration_s) {
       bridge_gap(sample, dt_s, state, listener);
@@ -112,11 +114,12 @@ void RollingFilter::complete_filter_node(const Eigen::Vector3d& next_rate_rad_s,
   } else {
     choose_modes(0.5 * (state.last_rate_rad_s + next_rate_rad_s), heading_lost, state);
   }
-  state.position_covariance_m2 =
-      state.hypotheses[0].covariance.block<3, 3>(rolling::kPosition, rolling::kPosition) + hypothesis_position_covariance(state, rolling::kPosition);
+  state.position_covariance_m2 = state.hypotheses[0].covariance.block<3, 3>(rolling::kPosition, rolling::kPosition) +
+                                 hypothesis_position_covariance(state, rolling::kPosition);
   // The differences between the hypotheses about past motion increase the covariance of the current position.
   if (state.at_rest && state.hypothesis_count == 1) {
-    state.hypotheses[0].covariance.block<3, 3>(rolling::kPosition, rolling::kPosition) += state.pruned_position_covariance_m2;
+    state.hypotheses[0].covariance.block<3, 3>(rolling::kPosition, rolling::kPosition) +=
+        state.pruned_position_covariance_m2;
     state.position_covariance_m2 += state.pruned_position_covariance_m2;
   }
   flag_uncertain(state);
@@ -136,9 +139,9 @@ void RollingFilter::detect_rest(State& state) const {
   }
   const Eigen::Vector3d w_mean = state.node_integrals.rate_integral_I_rad / h + state.nominal.gyro_bias_rad_s;
   const TimeNs from_ns = state.stationary_state.last_averaged_reading_ns;  // the last node ended where this node starts
-  state.at_rest =
-      rest_detector_.detect_stationary_from_mean(w_mean, state.node_integrals.force_integral_I_m_s / h, from_ns, from_ns + std::llround(1e9 * h),
-                                  state.nominal.gyro_bias_rad_s, state.stationary_state);
+  state.at_rest = rest_detector_.detect_stationary_from_mean(w_mean, state.node_integrals.force_integral_I_m_s / h,
+                                                             from_ns, from_ns + std::llround(1e9 * h),
+                                                             state.nominal.gyro_bias_rad_s, state.stationary_state);
   state.low_passed_rate_rad_s += -std::expm1(-h / kSlowRateTau_s) * (w_mean - state.low_passed_rate_rad_s);
   state.spins_in_place = state.at_rest && spins_in_place(state);
 }
@@ -192,9 +195,9 @@ void RollingFilter::weigh_modes(State& state) {
 
 /// While the sphere is at rest, the reported position remains constant.
 void RollingFilter::constrain_position(State& state) const {
-  const bool quiet =
-      seconds(state.stationary_state.small_rate_since_ns) >= std::min(rolling::kConstrainAfter_s, params_.expert.rest_detector.rest_s) &&
-      !may_slip(state.hypotheses[0].mode);
+  const bool quiet = seconds(state.stationary_state.small_rate_since_ns) >=
+                         std::min(rolling::kConstrainAfter_s, params_.expert.rest_detector.rest_s) &&
+                     !may_slip(state.hypotheses[0].mode);
   const bool revised = state.hypotheses[0].parent != 0;
   const bool stands = quiet && !revised && state.sphere_velocity_W_m_s.norm() < rolling::kConstrainSpeed_m_s;
   if (!stands || !state.position_constrained) {

@@ -69,7 +69,7 @@ double log_normalised_square(double square) {
 
 /// See rolling.md (R23).
 double log_likelihood_stationary(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode,
-                      const RollingParams& params) {
+                                 const RollingParams& params) {
   RollingFilter::Vector x = h.x;
   Eigen::Matrix<double, 3, rolling::kStates> H = c.measurement_jacobian;
   const bool slope_reset = rolling::resets_floor_slope(h.mode, mode);
@@ -101,12 +101,13 @@ double log_likelihood_stationary(const rolling::Contact& c, const RollingFilter:
 
 /// See rolling.md (R24), (R25).
 double log_likelihood_moving(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode,
-                  const Eigen::Vector3d& u, const RollingParams& params) {
+                             const Eigen::Vector3d& u, const RollingParams& params) {
   const Eigen::Vector3d change = u - h.contact_velocity_W_m_s;
   const double horizontal = log_normalised_square(change.head<2>().squaredNorm());
   if (mode == RollingMode::bump) return horizontal + log_floor_rise(change.z());
   const double check_vertical =
-      c.measurement_jacobian.row(2) * h.covariance * c.measurement_jacobian.row(2).transpose() + squared(params.expert.contact.kVerticalSigma_m_s);
+      c.measurement_jacobian.row(2) * h.covariance * c.measurement_jacobian.row(2).transpose() +
+      squared(params.expert.contact.kVerticalSigma_m_s);
   return horizontal + gaussian_log_density(u.z(), check_vertical);
 }
 
@@ -140,7 +141,7 @@ using Candidates = std::array<ModeCandidate, kRollingModes * RollingFilter::kHyp
 
 /// Returns all pairs of a hypothesis and a next contact mode, most probable first.
 std::span<const ModeCandidate> propose_mode_changes(const RollingParams& params, const rolling::Contact& c,
-                                   const RollingFilter::State& state, Candidates& out) {
+                                                    const RollingFilter::State& state, Candidates& out) {
   const double node_s = state.node_integrals.node_interval_s;
   const bool in_gap = state.node_integrals.gap_s > 0.0;
   const bool too_fast = c.rolling_speed_m_s > params.speed_max_m_s;
@@ -154,7 +155,9 @@ std::span<const ModeCandidate> propose_mode_changes(const RollingParams& params,
       if (mode != h.mode && bound) continue;
       if (too_fast && !may_slip(mode)) continue;
       double likelihood = 0.0;  // a gap is no evidence of a mode
-      if (!in_gap) likelihood = may_slip(mode) ? log_likelihood_moving(c, h, mode, u, params) : log_likelihood_stationary(c, h, mode, params);
+      if (!in_gap)
+        likelihood = may_slip(mode) ? log_likelihood_moving(c, h, mode, u, params)
+                                    : log_likelihood_stationary(c, h, mode, params);
       const double impact =
           mode == RollingMode::bump ? 0.0 : state.node_integrals.unexplained_impact_m_s / kUnexplainedImpact_m_s;
       out[total++] = {h.log_weight + log_transition(params, h.mode, mode, node_s) + likelihood - impact, parent, mode,
@@ -162,9 +165,10 @@ std::span<const ModeCandidate> propose_mode_changes(const RollingParams& params,
     }
   }
   // std::stable_sort would allocate memory, so candidates of equal weight are sorted by hypothesis and mode.
-  std::sort(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(total), [](const ModeCandidate& a, const ModeCandidate& b) {
-    return std::tuple(-a.log_weight, a.parent, a.mode) < std::tuple(-b.log_weight, b.parent, b.mode);
-  });
+  std::sort(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(total),
+            [](const ModeCandidate& a, const ModeCandidate& b) {
+              return std::tuple(-a.log_weight, a.parent, a.mode) < std::tuple(-b.log_weight, b.parent, b.mode);
+            });
   return {out.data(), total};
 }
 
@@ -186,14 +190,16 @@ struct KeptHypotheses {
 KeptHypotheses keep_probable_candidates(std::span<const ModeCandidate> candidates, std::int64_t node, double node_s) {
   KeptHypotheses kept;
   for (const ModeCandidate& candidate : candidates) {
-    if (kept.count == kept.candidates.size() || candidate.log_weight < candidates[0].log_weight + kPruneLogWeight) break;
+    if (kept.count == kept.candidates.size() || candidate.log_weight < candidates[0].log_weight + kPruneLogWeight)
+      break;
     const bool has_earlier_mode = candidate.first_node_of_mode < candidates[0].first_node_of_mode;
     if (kept.count + kMinDissentingHypotheses >= kept.candidates.size() && !has_earlier_mode) continue;
     const std::int64_t since = mode_beginning_node(candidate.first_node_of_mode, node, node_s);
     const auto same = [&](const ModeCandidate& other) {
       return other.mode == candidate.mode && mode_beginning_node(other.first_node_of_mode, node, node_s) == since;
     };
-    if (std::any_of(kept.candidates.begin(), kept.candidates.begin() + static_cast<std::ptrdiff_t>(kept.count), same)) continue;
+    if (std::any_of(kept.candidates.begin(), kept.candidates.begin() + static_cast<std::ptrdiff_t>(kept.count), same))
+      continue;
     kept.candidates[kept.count++] = candidate;
   }
   return kept;
@@ -248,9 +254,10 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, bool headi
     const ModeCandidate& candidate = kept.candidates[k];
     Hypothesis& h = state.hypotheses[k];
     rolling::update_slope_for_mode(params_, h.mode, candidate.mode, node_s, state.nominal, h.x, h.covariance);
-    rolling::contact_measurement_rows(
-        params_, c, candidate.mode, node_s, state.nominal.v_WI_m_s, h.x, h.covariance,
-        [&](const auto& row, double measured, double variance) { rolling::update(row, measured, variance, h.x, h.covariance); });
+    rolling::contact_measurement_rows(params_, c, candidate.mode, node_s, state.nominal.v_WI_m_s, h.x, h.covariance,
+                                      [&](const auto& row, double measured, double variance) {
+                                        rolling::update(row, measured, variance, h.x, h.covariance);
+                                      });
     h.contact_velocity_W_m_s = c.velocity(h.x);
     h.log_weight = candidate.log_weight - ordered[0].log_weight;
     h.mode = candidate.mode;
@@ -273,12 +280,13 @@ void RollingFilter::correct_at_rest(State& state) const {
   for (int k = 0; k < state.hypothesis_count; ++k) {
     Hypothesis& h = state.hypotheses[static_cast<std::size_t>(k)];
     double likelihood = 0.0;
-    rolling::stationary_measurement_rows(params_, state.node_integrals, state.nominal, state.spins_in_place,
-                       [&](int index, double measured, double variance) {
-                         if (index < rolling::kPosition)  // a velocity is evidence of a mode, a bias is not
-                           likelihood += gaussian_log_density(measured - h.x[index], h.covariance(index, index) + variance);
-                         rolling::update(index, measured, variance, h.x, h.covariance);
-                       });
+    rolling::stationary_measurement_rows(
+        params_, state.node_integrals, state.nominal, state.spins_in_place,
+        [&](int index, double measured, double variance) {
+          if (index < rolling::kPosition)  // a velocity is evidence of a mode, a bias is not
+            likelihood += gaussian_log_density(measured - h.x[index], h.covariance(index, index) + variance);
+          rolling::update(index, measured, variance, h.x, h.covariance);
+        });
     h.log_weight += std::max(likelihood, kRestLogLikelihoodMin);
     h.parent = k;
     if (may_slip(h.mode)) {
@@ -296,7 +304,8 @@ void RollingFilter::correct_at_rest(State& state) const {
   rearrange_hypotheses(order, count, state.hypotheses);
   // After some time at rest, all hypotheses agree about the present state.
   const bool rested = seconds(state.stationary_state.small_rate_since_ns) > kModeAgeMax_s;
-  if (rested && state.hypothesis_count > 1) state.pruned_position_covariance_m2 = hypothesis_position_covariance(state, rolling::kPosition);
+  if (rested && state.hypothesis_count > 1)
+    state.pruned_position_covariance_m2 = hypothesis_position_covariance(state, rolling::kPosition);
   const double best = state.hypotheses[0].log_weight;
   std::size_t kept = 0;
   for (std::size_t k = 0; k < count; ++k) {

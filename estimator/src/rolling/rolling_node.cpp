@@ -55,13 +55,15 @@ constexpr double kGapTimeSigmaRatio = 0.15;  // uncertain time of a rate change 
 Eigen::Vector3d contact_variance(const RollingParams& params, const Contact& c, RollingMode mode) {
   const double rough =
       mode == RollingMode::uneven ? squared(params.expert.contact.kRoughShare * c.rolling_speed_m_s) : 0.0;
-  return {c.grip_variance, c.grip_variance, squared(params.expert.contact.kVerticalSigma_m_s) + rough + c.gap_extra_variance};
+  return {c.grip_variance, c.grip_variance,
+          squared(params.expert.contact.kVerticalSigma_m_s) + rough + c.gap_extra_variance};
 }
 
 /// See rolling.md (R17).
 Eigen::Vector3d Contact::velocity(const Vector& x) const {
   const Eigen::Vector2d change = x.segment<2>(kSlope);
-  const double curved = vertical_component(floor_slope + change) - vertical_component(floor_slope) + floor_slope.dot(change) / vertical_component(floor_slope);
+  const double curved = vertical_component(floor_slope + change) - vertical_component(floor_slope) +
+                        floor_slope.dot(change) / vertical_component(floor_slope);
   return contact_velocity_W_m_s + measurement_jacobian * x + curved * normal_height_derivative_W;
 }
 
@@ -70,7 +72,7 @@ bool starts_in_motion(const Eigen::Vector3d& rate_I_rad_s) {
 }
 
 RollingNominalState start_nominal(const RollingParams& params, const Eigen::Quaterniond& q_WI,
-                             const Eigen::Vector3d& rate_I_rad_s) {
+                                  const Eigen::Vector3d& rate_I_rad_s) {
   RollingNominalState nominal;
   if (params.calibration) {
     Vector x = Vector::Zero();
@@ -122,7 +124,8 @@ struct SaturatedForce {
 
 /// For a saturated reading, the assumed force is the reading or the force that keeps the velocity of the centre
 /// constant, whichever is larger: rolling.md (R8).
-SaturatedForce saturated_force(const ImuSample& sample, const Eigen::Vector3d& read_m_s2, const Eigen::Vector3d& kept_m_s2) {
+SaturatedForce saturated_force(const ImuSample& sample, const Eigen::Vector3d& read_m_s2,
+                               const Eigen::Vector3d& kept_m_s2) {
   int largest = 0;
   sample.specific_force_m_s2.cwiseAbs().maxCoeff(&largest);
   const int flags = sample.device_clip_flags & kClipAccel;
@@ -142,8 +145,8 @@ SaturatedForce saturated_force(const ImuSample& sample, const Eigen::Vector3d& r
 }  // namespace
 
 /// See rolling.md (R2) to (R9).
-void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominalState& nominal, RollingNodeIntegrals& sums,
-               Force known) {
+void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominalState& nominal,
+               RollingNodeIntegrals& sums, Force known) {
   const ImuSample& sample = reading.mean;
   const double dt_s = reading.length_s;
   const Eigen::Vector3d& w_raw = sample.angular_velocity_rad_s;
@@ -211,7 +214,7 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
 }
 
 RollingNominalState extrapolate_nominal(const RollingParams& params, const ImuAverage& reading,
-                                   const RollingNominalState& nominal) {
+                                        const RollingNominalState& nominal) {
   RollingNominalState out = nominal;
   if (reading.readings == 0) return out;
   RollingNodeIntegrals unused;
@@ -223,8 +226,8 @@ int gap_step_count(const RollingParams& params, double gap_s) {
   return std::max(1, static_cast<int>(std::lround(gap_s / params.expert.node_s)));
 }
 
-ImuAverage gap_step_average(const RollingParams& params, const ImuSample& before, const ImuSample& after, double gap_s, int k,
-                    GapUncertainty& uncertainty) {
+ImuAverage gap_step_average(const RollingParams& params, const ImuSample& before, const ImuSample& after, double gap_s,
+                            int k, GapUncertainty& uncertainty) {
   const int pieces = gap_step_count(params, gap_s);
   const double share = (k + 0.5) / pieces;
   const Eigen::Vector3d change = after.angular_velocity_rad_s - before.angular_velocity_rad_s;
@@ -317,7 +320,8 @@ Contact contact(const RollingParams& params, const RollingNominalState& nominal,
   const Eigen::Matrix3d by_normal = -r * so3::hat(w_W);
   out.normal_height_derivative_W = by_normal.col(2);
   out.floor_slope = nominal.floor_slope;
-  out.measurement_jacobian.middleCols<2>(kSlope) = by_normal.leftCols<2>() - out.normal_height_derivative_W * nominal.floor_slope.transpose() / n.z();
+  out.measurement_jacobian.middleCols<2>(kSlope) =
+      by_normal.leftCols<2>() - out.normal_height_derivative_W * nominal.floor_slope.transpose() / n.z();
   out.measurement_jacobian.col(kRadius) = -w_W.cross(n);
   out.rolling_speed_m_s = r * w_W.cross(n).norm();
   out.grip_variance =
@@ -365,8 +369,8 @@ void update_slope_for_mode(const RollingParams& params, RollingMode from, Rollin
 }
 
 /// See rolling.md (R30).
-bool reset_tilt(const RollingParams& params, const RollingNodeIntegrals& sums, bool at_rest, RollingNominalState& nominal,
-                Covariance& P) {
+bool reset_tilt(const RollingParams& params, const RollingNodeIntegrals& sums, bool at_rest,
+                RollingNominalState& nominal, Covariance& P) {
   if (sums.force_clipped_s >= sums.node_interval_s) return false;
   if (sums.squared_rate_integral_rad2_s > squared(kFastRate_rad_s) * sums.node_interval_s) return false;
   const Eigen::Vector3d f_I_m_s2 = sums.force_integral_I_m_s / sums.node_interval_s;

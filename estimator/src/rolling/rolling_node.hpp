@@ -31,10 +31,10 @@ struct Contact {
   Eigen::Vector3d contact_velocity_W_m_s;
   Eigen::Matrix<double, 3, kStates> measurement_jacobian;
   double grip_variance = 0.0;
-  double gap_extra_variance = 0.0;       ///< additional variance due to a gap, in every direction
-  double rolling_speed_m_s = 0.0;  ///< speed of the centre if the sphere rolls without slip
-  Eigen::Vector3d normal_height_derivative_W;          ///< derivative of u with respect to the normal's third component
-  Eigen::Vector2d floor_slope;           ///< slope of the floor on the nominal trajectory
+  double gap_extra_variance = 0.0;             ///< additional variance due to a gap, in every direction
+  double rolling_speed_m_s = 0.0;              ///< speed of the centre if the sphere rolls without slip
+  Eigen::Vector3d normal_height_derivative_W;  ///< derivative of u with respect to the normal's third component
+  Eigen::Vector2d floor_slope;                 ///< slope of the floor on the nominal trajectory
 
   /// The contact velocity is linear in the error state `x`, except for the unit length of the normal.
   Eigen::Vector3d velocity(const Vector& x) const;
@@ -47,25 +47,25 @@ bool starts_in_motion(const Eigen::Vector3d& rate_I_rad_s);
 
 /// The initial state has a levelled or stated attitude, the centre at the origin, and zero or rolling velocity.
 RollingNominalState start_nominal(const RollingParams& params, const Eigen::Quaterniond& q_WI,
-                             const Eigen::Vector3d& rate_I_rad_s);
+                                  const Eigen::Vector3d& rate_I_rad_s);
 void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s, Covariance& P);
 
 enum class Force { force_measured, force_unknown };
 
-void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominalState& nominal, RollingNodeIntegrals& sums,
-               Force known = Force::force_measured);
+void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominalState& nominal,
+               RollingNodeIntegrals& sums, Force known = Force::force_measured);
 
 /// Extrapolates the nominal trajectory by the mean of the unprocessed readings.
 RollingNominalState extrapolate_nominal(const RollingParams& params, const ImuAverage& reading,
-                                   const RollingNominalState& nominal);
+                                        const RollingNominalState& nominal);
 
 int gap_step_count(const RollingParams& params, double gap_s);
 
 struct GapUncertainty {
   double rotation_variance_rad2 = 0.0, rate_variance_rad2_s = 0.0, speed_variance_m2_s2 = 0.0;
 };
-ImuAverage gap_step_average(const RollingParams& params, const ImuSample& before, const ImuSample& after, double gap_s, int k,
-                    GapUncertainty& uncertainty);
+ImuAverage gap_step_average(const RollingParams& params, const ImuSample& before, const ImuSample& after, double gap_s,
+                            int k, GapUncertainty& uncertainty);
 
 void integrate_gap(const RollingParams& params, const ImuAverage& piece, const GapUncertainty& uncertainty,
                    RollingNominalState& nominal, RollingNodeIntegrals& sums);
@@ -91,8 +91,8 @@ bool resets_floor_slope(RollingMode from, RollingMode to);
 
 /// Aligns an uncertain tilt with the mean specific force of the node, and resets the velocity. Returns false without a
 /// reset if the tilt is certain enough, or if the specific force is unusable.
-bool reset_tilt(const RollingParams& params, const RollingNodeIntegrals& sums, bool at_rest, RollingNominalState& nominal,
-                Covariance& P);
+bool reset_tilt(const RollingParams& params, const RollingNodeIntegrals& sums, bool at_rest,
+                RollingNominalState& nominal, Covariance& P);
 
 /// Applies a Kalman update with the scalar measurement `measured` = row x + noise.
 void update(const Row& row, double measured, double variance, Vector& x, Covariance& P);

@@ -63,7 +63,8 @@ Eigen::Matrix<double, 6, 6> pose_covariance(const rolling::FilterNodeRecord& nod
 /// While the sphere is at rest, the reported position remains constant.
 void constrain_position(const rolling::ModePathNode& node, RollingSmoother::FinalSmoothingState& committed,
                         RollingEstimate& estimate) {
-  const bool stands = node.holds_constant_position && !may_slip(node.mode) && estimate.sphere_velocity_W_m_s.norm() < rolling::kConstrainSpeed_m_s;
+  const bool stands = node.holds_constant_position && !may_slip(node.mode) &&
+                      estimate.sphere_velocity_W_m_s.norm() < rolling::kConstrainSpeed_m_s;
   if (stands && !committed.position_constrained) committed.constrained_sphere_centre_W_m = estimate.sphere_centre_W_m;
   if (stands) estimate.sphere_centre_W_m = committed.constrained_sphere_centre_W_m;
   committed.position_constrained = stands;
@@ -81,7 +82,8 @@ void start_window(const RollingParams& filter, const RollingParams& path, const 
   if (last.started) {
     start.filter.nominal = last.nominal;
     start.filter.covariance = last.covariance;
-    start.reading = {last.last_time_ns, last.last_rate_rad_s, 0, last.rate_before_gap_rad_s, last.gap_start_ns, last.gap_step_index};
+    start.reading = {last.last_time_ns,          last.last_rate_rad_s, 0,
+                     last.rate_before_gap_rad_s, last.gap_start_ns,    last.gap_step_index};
     return;
   }
   const ImuSample& sample = state.samples[0];
@@ -95,12 +97,14 @@ void start_window(const RollingParams& filter, const RollingParams& path, const 
 
 struct SlipAndBumpEvents {
   std::vector<bool> uncertain;
-  double committed_position_variance_m2 = 0.0;  ///< slip_start_variance_m2 (see FinalSmoothingState) after the node `emitted`
+  double committed_position_variance_m2 =
+      0.0;  ///< slip_start_variance_m2 (see FinalSmoothingState) after the node `emitted`
 };
 
-SlipAndBumpEvents find_slip_and_bump_events(const RollingSmoother::Params& params, std::span<const rolling::ModePathNode> path,
-                   std::span<const double> horizontal_variance_m2, std::size_t emitted,
-                   const RollingSmoother::FinalSmoothingState& committed) {
+SlipAndBumpEvents find_slip_and_bump_events(const RollingSmoother::Params& params,
+                                            std::span<const rolling::ModePathNode> path,
+                                            std::span<const double> horizontal_variance_m2, std::size_t emitted,
+                                            const RollingSmoother::FinalSmoothingState& committed) {
   const std::size_t count = horizontal_variance_m2.size();
   SlipAndBumpEvents out;
   out.uncertain.resize(count, false);
@@ -140,7 +144,8 @@ RollingEstimate estimate_at(const RollingSmoother::Params& params, const rolling
   if (at.node == nullptr) return estimate;
   estimate.covariance = stated_distance_sigma(params) * pose_covariance(*at.node, arm_W);
   estimate.velocity_covariance_I_m2_s2 =
-      stated_distance_sigma(params) * rolling::velocity_covariance_I(at.node->nominal, estimate.w_WI_I_rad_s, at.node->smoothed_covariance);
+      stated_distance_sigma(params) *
+      rolling::velocity_covariance_I(at.node->nominal, estimate.w_WI_I_rad_s, at.node->smoothed_covariance);
   estimate.mode = at.node->mode_path_node.mode;
   estimate.at_rest = at.node->mode_path_node.at_rest;
   return estimate;
@@ -153,8 +158,8 @@ struct RollingSmoother::MostProbableModePath {
 };
 
 bool RollingSmoother::State::operator==(const State& other) const {
-  return live_filter == other.live_filter && committed_state == other.committed_state && node_modes == other.node_modes && constants == other.constants &&
-         radius_sigma_m == other.radius_sigma_m &&
+  return live_filter == other.live_filter && committed_state == other.committed_state &&
+         node_modes == other.node_modes && constants == other.constants && radius_sigma_m == other.radius_sigma_m &&
          std::equal(samples.begin(), samples.end(), other.samples.begin(), other.samples.end(), equal);
 }
 
@@ -256,7 +261,8 @@ void RollingSmoother::smooth_window(const MostProbableModePath& path, std::size_
   if (emitted > path.nodes.size() && params_.known_distance_m > 0.0) {
     distance = {params_.known_distance_m, params_.known_distance_sigma_m};
   }
-  const auto owned_pass = std::make_unique<rolling::FinalSmoothingPass>(final_smoothing_params_, state.samples, path.nodes, distance);
+  const auto owned_pass =
+      std::make_unique<rolling::FinalSmoothingPass>(final_smoothing_params_, state.samples, path.nodes, distance);
   rolling::FinalSmoothingPass& pass = *owned_pass;
   const auto start = std::make_unique<rolling::FinalSmoothingPass::Checkpoint>();
   start_window(params_.filter, final_smoothing_params_, state, *start);
@@ -264,12 +270,14 @@ void RollingSmoother::smooth_window(const MostProbableModePath& path, std::size_
   state.constants = pass.end_filter().nominal;
   state.radius_sigma_m = std::sqrt(std::max(0.0, pass.end_filter().covariance(rolling::kRadius, rolling::kRadius)));
 
-  const SlipAndBumpEvents events = find_slip_and_bump_events(params_, path.nodes, pass.horizontal_variance_m2(), emitted, state.committed_state);
+  const SlipAndBumpEvents events =
+      find_slip_and_bump_events(params_, path.nodes, pass.horizontal_variance_m2(), emitted, state.committed_state);
   pass.report_smoothed(emitted, [&](const rolling::FinalSmoothingPass::Smoothed& at) {
     RollingEstimate estimate = estimate_at(params_, at);
     if (at.node != nullptr) {
       estimate.uncertain = events.uncertain[at.index];
-      if (params_.lag_s < kWholeRecordingLag) constrain_position(at.node->mode_path_node, state.committed_state, estimate);
+      if (params_.lag_s < kWholeRecordingLag)
+        constrain_position(at.node->mode_path_node, state.committed_state, estimate);
     }
     take(estimate);
   });

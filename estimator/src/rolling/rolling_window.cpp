@@ -17,7 +17,8 @@ constexpr double kNoDirection_m = 0.05;  // minimum distance of two positions wh
 
 /// A residual beyond kMaxSigmas standard deviations has less weight, because a large linear correction would distort
 /// the whole run: rolling.md (R37).
-void update_with_measurement(const Row& H, double measured, double variance, FilterNodeRecord& record, Vector& x, Covariance& P) {
+void update_with_measurement(const Row& H, double measured, double variance, FilterNodeRecord& record, Vector& x,
+                             Covariance& P) {
   const auto k = static_cast<std::size_t>(record.measurement_count++);
   const Vector PHt = P * H.transpose();
   record.measurement_rows[k] = H;
@@ -28,7 +29,8 @@ void update_with_measurement(const Row& H, double measured, double variance, Fil
   P.noalias() -= PHt * record.gain[k].transpose();
 }
 
-void update_with_measurement(int index, double measured, double variance, FilterNodeRecord& record, Vector& x, Covariance& P) {
+void update_with_measurement(int index, double measured, double variance, FilterNodeRecord& record, Vector& x,
+                             Covariance& P) {
   update_with_measurement(Row(Vector::Unit(index).transpose()), measured, variance, record, x, P);
 }
 
@@ -72,7 +74,8 @@ bool RollingReadings::next(RollingReading& out) {
   out = {};
   out.first = out.end = cursor_.next;
   if (cursor_.next >= samples_.size()) return false;
-  if (cursor_.gap_step_index > 0) return next_gap_step(seconds(samples_[cursor_.next].time_ns - cursor_.gap_start_ns), out);
+  if (cursor_.gap_step_index > 0)
+    return next_gap_step(seconds(samples_[cursor_.next].time_ns - cursor_.gap_start_ns), out);
   TimeNs last_ns = cursor_.time_ns;
   for (; out.end < samples_.size(); ++out.end) {
     const ImuSample& sample = samples_[out.end];
@@ -117,8 +120,9 @@ Eigen::Matrix3d velocity_covariance_I(const RollingNominalState& nominal, const 
   return J * reported * J.transpose();
 }
 
-void complete_filter_node(const RollingParams& params, const RollingNodeIntegrals& sums, const Eigen::Vector3d& rate_I_rad_s,
-                   const ModePathNode& path, ModePathFilter& filter, FilterNodeRecord& record) {
+void complete_filter_node(const RollingParams& params, const RollingNodeIntegrals& sums,
+                          const Eigen::Vector3d& rate_I_rad_s, const ModePathNode& path, ModePathFilter& filter,
+                          FilterNodeRecord& record) {
   record.mode_path_node = path;
   record.moving_jacobian = transition(sums);
   Vector x = Vector::Zero();
@@ -135,7 +139,8 @@ void complete_filter_node(const RollingParams& params, const RollingNodeIntegral
   } else {
     Contact c = contact(params, filter.nominal, rate_I_rad_s, sums);
     if (record.heading_lost) remove_heading_component(c);
-    contact_measurement_rows(params, c, path.mode, sums.node_interval_s, filter.nominal.v_WI_m_s, x, filter.covariance, take);
+    contact_measurement_rows(params, c, path.mode, sums.node_interval_s, filter.nominal.v_WI_m_s, x, filter.covariance,
+                             take);
   }
   make_symmetric(filter.covariance);
   filter.covariance.block<3, 3>(kPosition, kPosition) += path.position_spread_m2;
@@ -152,7 +157,8 @@ void complete_filter_node(const RollingParams& params, const RollingNodeIntegral
 
 Reported error_before_update(const FilterNodeRecord& node) {
   const Reported error = node.smoothed + node.correction;
-  return node.heading_lost ? Reported(error - node.smoothed[kAttitude + 2] * reported_errors(node.heading_correction)) : error;
+  return node.heading_lost ? Reported(error - node.smoothed[kAttitude + 2] * reported_errors(node.heading_correction))
+                           : error;
 }
 
 /// See rolling.md (R41).
@@ -186,7 +192,8 @@ void backward_pass(Adjoint& adjoint, std::span<FilterNodeRecord> nodes) {
   for (std::size_t n = nodes.size(); n-- > 0;) {
     FilterNodeRecord& node = nodes[n];
     node.smoothed = -node.covariance_rows * adjoint_vector;
-    node.smoothed_covariance = reported_covariance(node.covariance_rows) - node.covariance_rows * adjoint_matrix * node.covariance_rows.transpose();
+    node.smoothed_covariance = reported_covariance(node.covariance_rows) -
+                               node.covariance_rows * adjoint_matrix * node.covariance_rows.transpose();
     if (node.heading_lost) transform_adjoint(node.heading_correction, adjoint);
     for (std::size_t k = static_cast<std::size_t>(node.measurement_count); k-- > 0;) {
       const Row& H = node.measurement_rows[k];
@@ -195,7 +202,7 @@ void backward_pass(Adjoint& adjoint, std::span<FilterNodeRecord> nodes) {
       adjoint_vector -= H.transpose() * (K.dot(adjoint_vector) + node.innovation[k] / node.variance[k]);
       const Row seen = H * (K.dot(through) + 1.0 / node.variance[k]);
       adjoint_matrix += H.transpose().lazyProduct(seen) - H.transpose().lazyProduct(through.transpose()) -
-                through.lazyProduct(H);  // avoids a temporary matrix of 13 KiB per measurement
+                        through.lazyProduct(H);  // avoids a temporary matrix of 13 KiB per measurement
     }
     if (node.resets_floor_slope) {
       adjoint_vector.segment<2>(kSlope).setZero();

@@ -13,8 +13,8 @@ namespace tumble::rolling {
 struct ModePathNode {
   RollingMode mode = RollingMode::grip;
   bool at_rest = false;
-  bool spins_in_place = false;  ///< the sphere is at rest, but rotates about the contact point
-  bool holds_constant_position = false;          ///< the sphere has rested long enough for a constant reported position
+  bool spins_in_place = false;           ///< the sphere is at rest, but rotates about the contact point
+  bool holds_constant_position = false;  ///< the sphere has rested long enough for a constant reported position
   Eigen::Matrix3d position_spread_m2 = Eigen::Matrix3d::Zero();
 };
 
@@ -23,7 +23,8 @@ inline constexpr int kReported = 12;
 using Reported = Eigen::Matrix<double, kReported, 1>;
 
 struct FilterNodeRecord {
-  static constexpr int kMaxMeasurements = 7;  ///< maximum number of measurements, for a node at rest with a known distance
+  static constexpr int kMaxMeasurements =
+      7;  ///< maximum number of measurements, for a node at rest with a known distance
   Moving moving_jacobian;
   std::array<Row, kMaxMeasurements> measurement_rows;
   std::array<Vector, kMaxMeasurements> gain;
@@ -33,9 +34,9 @@ struct FilterNodeRecord {
   bool tilt_reset = false;
   bool heading_lost = false;
   Eigen::Matrix<double, kReported, kStates> covariance_rows;  ///< rows of P after the update, for the reported states
-  Reported correction;                               ///< correction of the nominal state by the update
-  Vector heading_correction;                                     ///< heading_component() of the correction, if the heading is lost
-  RollingNominalState nominal;                            ///< nominal state after the update
+  Reported correction;                                        ///< correction of the nominal state by the update
+  Vector heading_correction;    ///< heading_component() of the correction, if the heading is lost
+  RollingNominalState nominal;  ///< nominal state after the update
   ModePathNode mode_path_node;
   TimeNs time_ns = 0;
   Reported smoothed;
@@ -47,7 +48,7 @@ struct RollingReading {
   ImuAverage average;
   GapUncertainty uncertainty;
   bool in_gap = false;
-  bool is_whole = true;               ///< false: last reading of the run, too short to be processed
+  bool is_whole = true;            ///< false: last reading of the run, too short to be processed
   std::size_t first = 0, end = 0;  ///< index range of the reading's samples; in a gap, only the last piece has a sample
   TimeNs end_ns = 0;
 };
@@ -102,8 +103,9 @@ Eigen::Matrix<double, kReported, kReported> reported_covariance(const Eigen::Mat
 Eigen::Matrix3d velocity_covariance_I(const RollingNominalState& nominal, const Eigen::Vector3d& w_WI_I_rad_s,
                                       const Eigen::Matrix<double, kReported, kReported>& reported);
 
-void complete_filter_node(const RollingParams& params, const RollingNodeIntegrals& sums, const Eigen::Vector3d& rate_I_rad_s,
-                   const ModePathNode& path, ModePathFilter& filter, FilterNodeRecord& record);
+void complete_filter_node(const RollingParams& params, const RollingNodeIntegrals& sums,
+                          const Eigen::Vector3d& rate_I_rad_s, const ModePathNode& path, ModePathFilter& filter,
+                          FilterNodeRecord& record);
 
 /// Returns the smoothed error at a node, relative to the nominal trajectory before the node's update.
 Reported error_before_update(const FilterNodeRecord& node);

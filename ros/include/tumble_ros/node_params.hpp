@@ -42,8 +42,9 @@ struct TumblingAdapterParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit.group("", p.odometry);
-    visit(p.map_period_s, {"map_period_s", "s", 0.1, 1e6,
-                           "time between two publications of the map, by the stamps of the IMU", ParameterRank::common_use});
+    visit(p.map_period_s,
+          {"map_period_s", "s", 0.1, 1e6, "time between two publications of the map, by the stamps of the IMU",
+           ParameterRank::common_use});
     visit(p.prior_map_extend,
           {"prior_map_extend", "1", 0, 1, "true: sweeps extend the prior map; false: the prior map stays unchanged",
            ParameterRank::common_use});

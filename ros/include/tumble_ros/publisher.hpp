@@ -74,8 +74,8 @@ class Publisher {
 /// covariance. The velocity includes the rotation of the lever arm from the IMU to the base.
 /// @param velocity_covariance_I_m2_s2  covariance of the velocity in IMU axes (SweepReport)
 /// @param T_IB                         pose of the base in IMU axes
-Odometry base_odometry(const PoseState& imu, const Eigen::Matrix3d& velocity_covariance_I_m2_s2, const AngularRateState& rate,
-                       const Eigen::Isometry3d& T_IB);
+Odometry base_odometry(const PoseState& imu, const Eigen::Matrix3d& velocity_covariance_I_m2_s2,
+                       const AngularRateState& rate, const Eigen::Isometry3d& T_IB);
 
 /// Transforms the points of a sweep to lidar axes at the end of the sweep.
 /// @param trajectory    poses of the IMU within the sweep, in order of time (SweepReport::trajectory)

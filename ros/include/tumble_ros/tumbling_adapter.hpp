@@ -90,11 +90,11 @@ class TumblingAdapter {
   TumblingOdometry odometry_;
   std::vector<MapPoint> prior_map_;
   PointCloudReader reader_;
-  std::deque<ImuSample> samples_;    ///< accepted samples whose rate is not smoothed yet
-  std::deque<AngularRateState> rates_;      ///< smoothed rates of the last seconds
-  std::deque<TimedSweep> early_;     ///< sweeps that wait for IMU samples
-  std::deque<TimedSweep> sweeps_;    ///< sweeps that wait for their poses
-  std::optional<SweepReport> last_;  ///< newest registered sweep, without its trajectory
+  std::deque<ImuSample> samples_;       ///< accepted samples whose rate is not smoothed yet
+  std::deque<AngularRateState> rates_;  ///< smoothed rates of the last seconds
+  std::deque<TimedSweep> early_;        ///< sweeps that wait for IMU samples
+  std::deque<TimedSweep> sweeps_;       ///< sweeps that wait for their poses
+  std::optional<SweepReport> last_;     ///< newest registered sweep, without its trajectory
   Rejections imu_, clouds_, positions_;
   Schedule map_, diagnostics_;
 };

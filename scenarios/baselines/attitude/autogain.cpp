@@ -79,7 +79,9 @@ Status Autogain::step(const ImuSample& sample, State& state) const {
   Eigen::Quaterniond q;
   if (state.started) {
     double dt_s = 0.0;
-    if (const Status bad = elapsed_time_since_last(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s); !bad.ok()) return bad;
+    if (const Status bad = elapsed_time_since_last(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s);
+        !bad.ok())
+      return bad;
     const Eigen::Vector3d& f = sample.specific_force_m_s2;
     const AutogainGains gain = gains(sample.angular_velocity_rad_s, dt_s);
     q = madgwick_step(state.q_WI, sample.angular_velocity_rad_s, f, gain.madgwick_rad_s, dt_s);

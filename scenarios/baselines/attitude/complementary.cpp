@@ -20,7 +20,9 @@ Status Complementary::step(const ImuSample& sample, State& state) const {
   Eigen::Quaterniond q_WI;
   if (state.started) {
     double dt_s = 0.0;
-    if (const Status bad = elapsed_time_since_last(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s); !bad.ok()) return bad;
+    if (const Status bad = elapsed_time_since_last(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s);
+        !bad.ok())
+      return bad;
     q_WI = state.q_WI * so3::exp(sample.angular_velocity_rad_s * dt_s);
     if (const double force = sample.specific_force_m_s2.norm(); force >= kForceMin_m_s2) {
       const double share = -std::expm1(-dt_s / params_.tau_s);

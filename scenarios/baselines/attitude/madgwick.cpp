@@ -55,7 +55,9 @@ Status Madgwick::step(const ImuSample& sample, State& state) const {
   Eigen::Quaterniond q_WI;
   if (state.started) {
     double dt_s = 0.0;
-    if (const Status bad = elapsed_time_since_last(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s); !bad.ok()) return bad;
+    if (const Status bad = elapsed_time_since_last(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s);
+        !bad.ok())
+      return bad;
     q_WI =
         madgwick_step(state.q_WI, sample.angular_velocity_rad_s, sample.specific_force_m_s2, params_.gain_rad_s, dt_s);
   } else if (const Status bad = inclination_from_force(sample.specific_force_m_s2, q_WI); !bad.ok()) {

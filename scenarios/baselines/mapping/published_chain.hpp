@@ -41,19 +41,19 @@ class PublishedChain {
              ParameterRank::common_use});
       visit(p.late_velocity,
             boolean_field("late_velocity",
-                         "1: take the mean velocity since the last sweep as the velocity at the end of the sweep, as "
-                         "in the launch files; 0: take it as the velocity in the middle between both sweeps",
-                         ParameterRank::common_use));
+                          "1: take the mean velocity since the last sweep as the velocity at the end of the sweep, as "
+                          "in the launch files; 0: take it as the velocity in the middle between both sweeps",
+                          ParameterRank::common_use));
       visit(p.voxel_averages_time,
             boolean_field("voxel_averages_time",
-                         "1: average the times of the points in a voxel, as in the launch files; 0: average the "
-                         "variances that follow from these times",
-                         ParameterRank::common_use));
+                          "1: average the times of the points in a voxel, as in the launch files; 0: average the "
+                          "variances that follow from these times",
+                          ParameterRank::common_use));
       visit(p.abort_ends_mapping,
             boolean_field("abort_ends_mapping",
-                         "1: a failed registration ends mapping, as in the launch files; 0: the pose of the sweep "
-                         "comes from odometry only",
-                         ParameterRank::common_use));
+                          "1: a failed registration ends mapping, as in the launch files; 0: the pose of the sweep "
+                          "comes from odometry only",
+                          ParameterRank::common_use));
       visit.group("", p.icp);
       visit(p.own_body_L.min(),
             {"own_body_min_m", "m", -kUnbounded, kUnbounded,

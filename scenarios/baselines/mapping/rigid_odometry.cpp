@@ -105,7 +105,8 @@ void RigidOdometry::register_points(SweepReport& report) {
 void RigidOdometry::extend_map(bool has_ring_numbers, SweepReport& report) {
   const Eigen::Isometry3d T_WI = pose_of(state_);
   place(T_WI);
-  const std::uint32_t base = scan_lines_.line_number_offset((T_WI.linear() * params_.T_IL.linear()).col(2), has_ring_numbers);
+  const std::uint32_t base =
+      scan_lines_.line_number_offset((T_WI.linear() * params_.T_IL.linear()).col(2), has_ring_numbers);
   const auto sweep = static_cast<std::uint32_t>(seen_from_W_m_.size());
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const auto sigma = static_cast<float>(std::sqrt(registration_.point_variance_m2(points_[i])));

@@ -48,8 +48,8 @@ class RigidOdometry {
                               "edge length of the voxels; one point per voxel and sweep is registered, so a larger "
                               "value is faster and coarser",
                               ParameterRank::common_use});
-      visit(p.map_voxel_m,
-            {"map_voxel_m", "m", 0.01, 100.0, "edge length of a voxel of the map's hash table", ParameterRank::common_use});
+      visit(p.map_voxel_m, {"map_voxel_m", "m", 0.01, 100.0, "edge length of a voxel of the map's hash table",
+                            ParameterRank::common_use});
       visit(p.map_spacing_m, {"map_spacing_m", "m", 0.0, 100.0,
                               "edge length of the cube that stores at most one map point; a larger value makes the map "
                               "smaller and coarser",

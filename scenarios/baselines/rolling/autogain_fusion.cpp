@@ -30,7 +30,9 @@ Status AutogainFusion::step(const ImuSample& sample, const Eigen::Quaterniond& q
   if (const Status bad = check_attitude(q_WI); !bad.ok()) return bad;
   if (state.started) {
     double dt_s = 0.0;
-    if (const Status bad = elapsed_time_since_last(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s); !bad.ok()) return bad;
+    if (const Status bad = elapsed_time_since_last(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s);
+        !bad.ok())
+      return bad;
     const Eigen::Vector3d v_acc_W = accelerated(sample, q_WI, dt_s, state);
     const Eigen::Vector3d v_rot_W =
         params_.radius_m * (q_WI * sample.angular_velocity_rad_s).cross(Eigen::Vector3d::UnitZ());

@@ -32,7 +32,8 @@ Status RollingOdometry::step(TimeNs time_ns, const Eigen::Vector3d& w_I_rad_s, c
   if (const Status bad = check_input(w_I_rad_s, q_WI); !bad.ok()) return bad;
   double dt_s = 0.0;
   if (state.started) {
-    if (const Status bad = elapsed_time_since_last(time_ns, state.last_time_ns, params_.gap_max_s, dt_s); !bad.ok()) return bad;
+    if (const Status bad = elapsed_time_since_last(time_ns, state.last_time_ns, params_.gap_max_s, dt_s); !bad.ok())
+      return bad;
   }
   const Eigen::Vector3d w_W_rad_s = q_WI * w_I_rad_s;
   const Eigen::Vector3d v_WG_m_s = params_.radius_m * w_W_rad_s.cross(params_.normal_W);

@@ -104,7 +104,9 @@ TEST(ArrowSolver, SolutionAndCovarianceAreThoseOfTheDenseSystem) {
       const Marginal found = marginal(conditional, border_covariance);
       EXPECT_LE((step - want.segment(i, kBlockSize)).norm(), 1e-9 * want.norm()) << k;
       EXPECT_LE((found.state - covariance.block(i, i, kBlockSize, kBlockSize)).norm(), 1e-9 * covariance.norm()) << k;
-      EXPECT_LE((found.cross_covariance - covariance.block(i, n, kBlockSize, kBorderSize)).norm(), 1e-9 * covariance.norm()) << k;
+      EXPECT_LE((found.cross_covariance - covariance.block(i, n, kBlockSize, kBorderSize)).norm(),
+                1e-9 * covariance.norm())
+          << k;
       EXPECT_LE((rate_covariance(conditional, border_covariance) - found.state.topLeftCorner<3, 3>()).norm(),
                 1e-12 * covariance.norm())
           << k;

@@ -99,7 +99,8 @@ TEST_P(BroadClipping, IsNeverWorseThanTheClippedGyro) {
   // the saturation level is found without a stated range, down to a third of the slowest peak, and no level where
   // nothing clips
   double found = 0.0;
-  for (int j = 0; j < 3; ++j) found = std::max(found, report.saturation_limits[static_cast<std::size_t>(j)].value_or(0.0));
+  for (int j = 0; j < 3; ++j)
+    found = std::max(found, report.saturation_limits[static_cast<std::size_t>(j)].value_or(0.0));
   EXPECT_NEAR(found, trial.rail_rad_s, 1e-9);
   const SaturationLimitDetector rails(params.saturation_detector);
   SaturationLimitDetector::State whole;

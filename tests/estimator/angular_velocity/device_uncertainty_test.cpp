@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tests how a stream treats uncertain device errors: the mixture against closed forms, and an AngularRateStream of a device
-// whose errors are not corrected.
+// Tests how a stream treats uncertain device errors: the mixture against closed forms, and an AngularRateStream of a
+// device whose errors are not corrected.
 #include "tumble/angular_velocity/detail/device_uncertainty.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,8 @@ SensorErrorInformation delay_of(double delay_s, double sigma_s) {
   return out;
 }
 
-SensorErrorUncertainty::Posterior posterior_by(const SensorErrorUncertainty& device, const SensorErrorInformation& evidence) {
+SensorErrorUncertainty::Posterior posterior_by(const SensorErrorUncertainty& device,
+                                               const SensorErrorInformation& evidence) {
   SensorErrorUncertainty::WorkMatrices work;
   SensorErrorUncertainty::Posterior out;
   device.update(evidence, work, out);
@@ -69,7 +70,7 @@ TEST(SensorErrorUncertainty, IsBayesOverTwoDevices) {
 TEST(SensorErrorUncertainty, APlainDelayLeavesAllOpenAndNoneTakesTheSheetsWord) {
   const SensorErrorUncertainty device({}, 0.3);
   const SensorErrorUncertainty::Posterior late = posterior_by(device, delay_of(8e-3, 1e-4)),
-                                     in_time = posterior_by(device, delay_of(0.0, 1e-5));
+                                          in_time = posterior_by(device, delay_of(0.0, 1e-5));
   EXPECT_GT(late.uncalibrated_probability, 0.999);
   EXPECT_GT(late.covariance(kDelay, kDelay), 8e-3 * 8e-3 * 0.9);
   EXPECT_GT(late.covariance(0, 0), 0.9 * 0.01 * 0.01) << "who states one wrongly states all wrongly";
@@ -79,7 +80,8 @@ TEST(SensorErrorUncertainty, APlainDelayLeavesAllOpenAndNoneTakesTheSheetsWord) 
 
 TEST(SensorErrorUncertainty, OfNoneThatIsUncalibratedTheSheetIsBelieved) {
   const SensorErrorPriors sizes;
-  const SensorErrorUncertainty::Posterior posterior = posterior_by(SensorErrorUncertainty(sizes, 0.0), delay_of(8e-3, 1e-4));
+  const SensorErrorUncertainty::Posterior posterior =
+      posterior_by(SensorErrorUncertainty(sizes, 0.0), delay_of(8e-3, 1e-4));
   EXPECT_EQ(posterior.uncalibrated_probability, 0.0);
   EXPECT_LE(posterior.covariance(0, 0), 1.001 * prior_sigmas(sizes, 0.0)[0] * prior_sigmas(sizes, 0.0)[0]);
 }

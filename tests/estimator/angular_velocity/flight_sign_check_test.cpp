@@ -108,7 +108,8 @@ TEST(FlightSignCheck, AFlightInWhichAnAxisClipsTellsAsMuch) {
   for (const ImuSample& sample : thrown_flight())
     clipped += (sample.angular_velocity_rad_s.array().abs() > kRange_rad_s).count() == 1 ? 1 : 0;
   ASSERT_GT(clipped, 30U) << "nothing clips";
-  EXPECT_EQ(sense_told(thrown_flight(), FlightSignCheck::BodyMotionType::always_thrown, kRange_rad_s, [](ImuSample&) {}), "");
+  EXPECT_EQ(
+      sense_told(thrown_flight(), FlightSignCheck::BodyMotionType::always_thrown, kRange_rad_s, [](ImuSample&) {}), "");
   for (const auto& [name, harm] : other_senses())
     EXPECT_EQ(sense_told(thrown_flight(), FlightSignCheck::BodyMotionType::always_thrown, kRange_rad_s, harm), name);
 }
@@ -120,8 +121,9 @@ TEST(FlightSignCheck, OfABodyThatIsPerhapsHeldOnlyTheClearestIsTold) {
   const Eigen::Vector3d mirrored = kFlightArm_m.cwiseProduct(Eigen::Vector3d(-1.0, 1.0, 1.0));
   const auto x_flipped = [](ImuSample& s) { s.specific_force_m_s2.x() *= -1.0; };
   EXPECT_EQ(sense_told(thrown_flight(), FlightSignCheck::BodyMotionType::possibly_hand_held, 100.0, x_flipped), "");
-  EXPECT_EQ(sense_told(thrown_flight(), FlightSignCheck::BodyMotionType::possibly_hand_held, 100.0, other_senses()[0].second),
-            other_senses()[0].first);
+  EXPECT_EQ(
+      sense_told(thrown_flight(), FlightSignCheck::BodyMotionType::possibly_hand_held, 100.0, other_senses()[0].second),
+      other_senses()[0].first);
   EXPECT_EQ(sense_told(swung(mirrored), FlightSignCheck::BodyMotionType::possibly_hand_held, 100.0, nothing), "");
   EXPECT_EQ(sense_told(swung(kFlightArm_m), FlightSignCheck::BodyMotionType::always_thrown, 100.0, nothing), "");
   EXPECT_NE(sense_told(swung(-kFlightArm_m), FlightSignCheck::BodyMotionType::always_thrown, 100.0, nothing), "")

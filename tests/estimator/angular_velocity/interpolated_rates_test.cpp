@@ -154,7 +154,9 @@ TEST(HeldRates, BatchAndStreamAreInTime) {
     const TumbleRecording recording = slow_gyro(seed, 18);
     std::vector<AngularRateState> rates;
     AngularRateReport report;
-    ASSERT_TRUE(AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(recording.samples, rates, report).ok());
+    ASSERT_TRUE(AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>())
+                    .estimate(recording.samples, rates, report)
+                    .ok());
     EXPECT_NEAR(report.gyro_update_interval_s, 0.018, 2e-4);
     batch += late_s(recording, rates) / kTumbles;
 

@@ -117,7 +117,8 @@ TEST(SaturationLimitDetector, ThePlateauOverrulesTheStatedRange) {
     classify(rails, run, state);
     EXPECT_EQ(rails.saturation_limit(state, 0).value_or(0.0), 10.5);
     EXPECT_TRUE(rails.disagrees(state, 0));
-    EXPECT_EQ(rails.saturation_limit(state, 2).value_or(0.0), 10.5);  // the axis at rest uses the limit of the other axis
+    EXPECT_EQ(rails.saturation_limit(state, 2).value_or(0.0),
+              10.5);  // the axis at rest uses the limit of the other axis
     EXPECT_FALSE(rails.disagrees(state, 2));
   }
   const SaturationLimitDetector right({.stated_gyro_range_rad_s = 10.5});

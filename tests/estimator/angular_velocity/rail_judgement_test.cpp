@@ -226,7 +226,9 @@ TEST(RailJudgement, AnAuxiliaryImuIsReadAlongItsElements) {
     EXPECT_EQ(readings[k].rate_along_sensing_axes, found.clipping_per_sample[k].gyro != 0) << k;
     if (!readings[k].rate_along_sensing_axes || tumble.hidden[k].norm() < 2.0) continue;
     for (int j = 0; j < 3; ++j) {
-      if (!std::isfinite(readings[k].rate_rad_s[j]) || auxiliary_imu.gyro_sensing_directions.cross_axis_slope_sigma[j] > 0.01) continue;
+      if (!std::isfinite(readings[k].rate_rad_s[j]) ||
+          auxiliary_imu.gyro_sensing_directions.cross_axis_slope_sigma[j] > 0.01)
+        continue;
       along += std::abs(readings[k].rate_rad_s[j] - rows.row(j).dot(tumble.truth[k]));
       by_axis += std::abs(tumble.samples[k].angular_velocity_rad_s[j] - tumble.truth[k][j]);
       ++count;
@@ -235,7 +237,8 @@ TEST(RailJudgement, AnAuxiliaryImuIsReadAlongItsElements) {
   ASSERT_GT(count, 50);
   EXPECT_LT(along, 0.3 * by_axis);
   std::vector<Clipping> few(3);
-  EXPECT_EQ(align(auxiliary_imu, tumble.samples, few, tumble.samples, 1.0, readings).error_code, ErrorCode::insufficient_data);
+  EXPECT_EQ(align(auxiliary_imu, tumble.samples, few, tumble.samples, 1.0, readings).error_code,
+            ErrorCode::insufficient_data);
 }
 
 // Published methods use the axis-aligned level of each axis, and planes only on request.

@@ -148,7 +148,8 @@ TEST(SaturationPlanes, ReadingsThatRepeatOrAreCoarseDoNotHideARail) {
   const SaturationPlanes planes = find(held);
   for (int j = 0; j < 3; ++j) {
     ASSERT_TRUE(planes.sensing_axis[static_cast<std::size_t>(j)].has_value()) << j;
-    EXPECT_NEAR((planes.sensing_axis[static_cast<std::size_t>(j)]->row - rows.row(j).transpose()).norm(), 0.0, 3e-3) << j;
+    EXPECT_NEAR((planes.sensing_axis[static_cast<std::size_t>(j)]->row - rows.row(j).transpose()).norm(), 0.0, 3e-3)
+        << j;
   }
   // negative control: the same motion, never clipped
   std::vector<Vector3d> free;

@@ -69,14 +69,16 @@ TEST(RateElements, WhatIsLearntOfTheElementsIsNearTheTruth) {
   const TumbleRecording tumble = make_tumble(options);
   std::vector<AngularRateState> states;
   AngularRateReport report;
-  ASSERT_TRUE(AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(tumble.samples, states, report).ok());
+  ASSERT_TRUE(
+      AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(tumble.samples, states, report).ok());
   EXPECT_FALSE(report.clips_after_compensation);
   ASSERT_TRUE(report.gyro_planes.any_plane_found());
   double known = 0.0;
   for (int i = 0; i < 6; ++i) {
     const int j = i / 2, k = (j + 1 + i % 2) % 3, at = RigConstants::kGyroMisalignment + i;
     const double sigma = std::sqrt(report.calibration.covariance(at, at));
-    EXPECT_LT(std::abs(report.calibration.constants.gyro_misalignment[i] - options.gyro_rows(j, k)), 4.0 * sigma + 1e-3) << i;
+    EXPECT_LT(std::abs(report.calibration.constants.gyro_misalignment[i] - options.gyro_rows(j, k)), 4.0 * sigma + 1e-3)
+        << i;
     known += sigma < 0.005 ? 1.0 : 0.0;
   }
   EXPECT_GE(known, 3.0);
@@ -86,7 +88,8 @@ TEST(RateElements, AnUprightDeviceIsTakenForOne) {
   const TumbleRecording tumble = make_tumble({});
   std::vector<AngularRateState> states;
   AngularRateReport report;
-  ASSERT_TRUE(AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(tumble.samples, states, report).ok());
+  ASSERT_TRUE(
+      AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(tumble.samples, states, report).ok());
   EXPECT_TRUE(report.clips_after_compensation);
 }
 
@@ -131,7 +134,8 @@ TEST(UnseenRails, APlateauOfTheMotionNearTheOthersMayHideWhereItsSlopesMeet) {
 TEST(UnseenRails, NothingIsDoubtedThatIsKnownOrFarFromTheRails) {
   const auto suspect = [](const SaturationPlanes& planes, std::vector<AngularRateObservation> tops) {
     inflate_covariance_at_plateaus(planes, {}, 0.02, 0.005, tops);
-    return std::any_of(tops.begin(), tops.end(), [](const AngularRateObservation& o) { return o.suspected_saturation != 0; });
+    return std::any_of(tops.begin(), tops.end(),
+                       [](const AngularRateObservation& o) { return o.suspected_saturation != 0; });
   };
   const std::vector<AngularRateObservation> top = cut_tops(8.5, 0.4, 0.4, 1);
   EXPECT_TRUE(suspect(plane_of_x(8.7), top));

@@ -133,7 +133,8 @@ TEST(RateFactors, AScaleOfTheGyroShowsByTheAccelerationAlone) {
     for (const double t : {0.0, 0.3, 1.7}) {
       const Vector3d a = body.acceleration(t);
       const AngularRateKnot scaled{(1.0 + k) * body.rate(t), (1.0 + k) * a};
-      const Vector3d force_status = flight_force_factor(scaled, other, body.specific_force(t, rig.lever_arm_m)).residual;
+      const Vector3d force_status =
+          flight_force_factor(scaled, other, body.specific_force(t, rig.lever_arm_m)).residual;
       EXPECT_LT((force_status + k * a.cross(rig.lever_arm_m)).norm(), 1e-9 + 1.1 * k * k * a.norm() * 0.11);
       const Vector3d of_torque = euler_equation_factor(scaled, other).residual;
       EXPECT_LT((of_torque + k * (rig.inertia_matrix() - Eigen::Matrix3d::Identity()) * a).norm(), 1e-9);
@@ -224,7 +225,7 @@ TEST(LateFlight, ByTheRigAloneIsTheSameToTheBit) {
   for (const double delay_s : {0.0, 5e-4, 3e-3}) {
     const Point p = random_point(noise);
     const AngularRateFactor whole = delayed_flight_force_factor(p.knot, p.rig, kReading, delay_s, nullptr),
-                     part = delayed_flight_calibration_jacobian(p.knot, p.rig, kReading, delay_s);
+                            part = delayed_flight_calibration_jacobian(p.knot, p.rig, kReading, delay_s);
     EXPECT_EQ(part.residual, whole.residual);
     EXPECT_EQ(part.jacobian_calibration.leftCols<9>(), whole.jacobian_calibration.leftCols<9>());
     EXPECT_TRUE(part.jacobian_knot.isZero(0.0));

@@ -23,7 +23,8 @@ TumbleRecording short_tumble() {
 
 std::vector<AngularRateState> sound_rates(const std::vector<ImuSample>& samples, AngularRateReport& report) {
   std::vector<AngularRateState> out;
-  const Status status = AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(samples, out, report);
+  const Status status =
+      AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(samples, out, report);
   EXPECT_TRUE(status.ok()) << status.message();
   EXPECT_EQ(out.size(), samples.size());
   for (const AngularRateState& state : out) {
@@ -163,7 +164,9 @@ TEST(RateSmootherInput, RefusesParametersOutsideOfTheirBounds) {
   refused([](AngularRateSmoother::Params& p) { p.model.nominal.lever_arm_m.x() = std::nan(""); });
   refused([](AngularRateSmoother::Params& p) { p.model.lever_arm_sigma_m = 0.0; });
   refused([](AngularRateSmoother::Params& p) { p.saturation_detector.stated_gyro_range_rad_s = -1.0; });
-  refused([](AngularRateSmoother::Params& p) { p.model.calibration = RigCalibration{{}, -RigConstants::Matrix::Identity()}; });
+  refused([](AngularRateSmoother::Params& p) {
+    p.model.calibration = RigCalibration{{}, -RigConstants::Matrix::Identity()};
+  });
 }
 
 }  // namespace

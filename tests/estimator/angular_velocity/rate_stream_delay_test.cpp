@@ -33,7 +33,8 @@ ImpactDelayCorrelation struck_every_tenth(int late, int intervals, double betwee
       const double phase = std::min(since, 80.0 - since) / 8.0;  // samples since the nearest stroke
       return between_m_s2 + 100.0 * std::exp(-0.5 * phase * phase);
     };
-    for (int i = 0; i < ImpactDelayCorrelation::kDelayCount; ++i) force[i] = at(i - ImpactDelayCorrelation::kDelayMax - late);
+    for (int i = 0; i < ImpactDelayCorrelation::kDelayCount; ++i)
+      force[i] = at(i - ImpactDelayCorrelation::kDelayMax - late);
     out.add(3.0 * at(0.0), force);
   }
   return out;
@@ -112,7 +113,8 @@ TEST(AngularRateStreamDelay, AFurtherDelayIsTheWeightedMean) {
                impacts = 1.0 / (of_strokes_s * of_strokes_s);
   told.information(SensorErrors::kDelay, SensorErrors::kDelay) =
       (readings + impacts) / SensorErrorUncertainty::kSensorErrorEvidenceWeight;
-  told.gradient[SensorErrors::kDelay] = (readings * 1e-3 - impacts * 2e-3) / SensorErrorUncertainty::kSensorErrorEvidenceWeight;
+  told.gradient[SensorErrors::kDelay] =
+      (readings * 1e-3 - impacts * 2e-3) / SensorErrorUncertainty::kSensorErrorEvidenceWeight;
   const double expected = (readings * 1e-3 - impacts * 2e-3) / (readings + impacts + 1.0 / (reach_s * reach_s));
   EXPECT_NEAR(SensorErrorUncertainty({}, 0.3).delay_correction_s(told, reach_s), expected, 1e-12);
   told.information(SensorErrors::kDelay, SensorErrors::kDelay) = -1e12;
@@ -132,7 +134,8 @@ TEST(AngularRateStreamDelay, IsThatOfTheBatch) {
     const double sigma_s = std::sqrt(errors.covariance(SensorErrors::kDelay, SensorErrors::kDelay));
     std::vector<AngularRateState> states;
     AngularRateReport report;
-    ASSERT_TRUE(AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(late.samples, states, report).ok());
+    ASSERT_TRUE(
+        AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(late.samples, states, report).ok());
     EXPECT_NEAR(errors.errors.accel_delay_s, 0.01, 3.0 * sigma_s) << seed;
     EXPECT_NEAR(errors.errors.accel_delay_s, report.sensor_errors.errors.accel_delay_s, 3.0 * sigma_s) << seed;
     EXPECT_LT(sigma_s, 2e-3);

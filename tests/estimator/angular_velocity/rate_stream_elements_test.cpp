@@ -122,7 +122,8 @@ TEST(RateStreamElements, NothingIsCalledClippedWhereNothingClips) {
     const TumbleRecording tumble = make_tumble(options);
     const AngularRateStream method(with_lever_arm<AngularRateStream::Params>());
     AngularRateStream::State state = method.start();
-    for (const AngularRateState& rate : streamed_rates(method, tumble.samples, state)) EXPECT_EQ(rate.clipped_axes, 0) << seed;
+    for (const AngularRateState& rate : streamed_rates(method, tumble.samples, state))
+      EXPECT_EQ(rate.clipped_axes, 0) << seed;
   }
 }
 

@@ -356,7 +356,8 @@ TEST(AngularRateStream, WhatNoCalibrationCanBeIsToldAsAValueToo) {
   EXPECT_STREQ(far.field, "lever_arm_m");
   EXPECT_EQ(far.value, -11.0);
   EXPECT_EQ(far.bound, -10.0);
-  EXPECT_STREQ(told([](RigCalibration& rig) { rig.constants.gyro_misalignment[5] = std::nan(""); }).field, "rig constants");
+  EXPECT_STREQ(told([](RigCalibration& rig) { rig.constants.gyro_misalignment[5] = std::nan(""); }).field,
+               "rig constants");
   EXPECT_EQ(told([](RigCalibration& rig) { rig.covariance(3, 3) = 0.0; }).error_code, ErrorCode::degenerate);
   EXPECT_EQ(told([](RigCalibration& rig) { rig.covariance(0, 1) = std::nan(""); }).error_code, ErrorCode::degenerate);
 }

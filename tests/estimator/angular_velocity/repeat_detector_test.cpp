@@ -66,7 +66,8 @@ TEST(RepeatDetector, WhatIsStaleIsTheSlopeTimesTheAge) {
 // Controls: new readings each time, a body at rest, a frozen sensor.
 TEST(RepeatDetector, SaysNothingOfOthers) {
   EXPECT_FALSE(detect_frozen_units(1.0, 1.0).state.for_triad(Triad::gyro).is_slower_than_samples());
-  EXPECT_EQ(detect_frozen_units(1.0, 1.0).state.for_triad(Triad::gyro).change_since_new_reading(), Eigen::Vector3d::Zero());
+  EXPECT_EQ(detect_frozen_units(1.0, 1.0).state.for_triad(Triad::gyro).change_since_new_reading(),
+            Eigen::Vector3d::Zero());
   EXPECT_FALSE(detect_frozen_units(3.3, 0.0).state.for_triad(Triad::gyro).is_slower_than_samples());
   EXPECT_FALSE(detect_frozen_units(1e6, 1.0).state.for_triad(Triad::gyro).is_slower_than_samples());
   // at its limits on all axes

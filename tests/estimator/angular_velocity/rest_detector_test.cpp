@@ -134,8 +134,8 @@ TEST(RestDetector, TakesMeans) {
   const RestDetector detector({.rest_s = 0.4, .reading_s = 1.0});
   RestDetector::State state;
   const auto take = [&](double rate_rad_s, int k) {
-    return detector.detect_stationary_from_mean({rate_rad_s, 0.0, 0.0}, {0.0, 0.0, 9.8}, k * kNode_ns, (k + 1) * kNode_ns,
-                                 Eigen::Vector3d::Zero(), state);
+    return detector.detect_stationary_from_mean({rate_rad_s, 0.0, 0.0}, {0.0, 0.0, 9.8}, k * kNode_ns,
+                                                (k + 1) * kNode_ns, Eigen::Vector3d::Zero(), state);
   };
   for (int k = 0; k < 19; ++k) EXPECT_FALSE(take(0.01, k)) << k;
   EXPECT_TRUE(take(0.01, 19)) << "0.4 s";
@@ -169,7 +169,8 @@ TEST(RestDetector, RefusesParametersOutOfBounds) {
 TEST(AngularRateSmoother, StandstillTellsTheBias) {
   std::vector<AngularRateState> out;
   AngularRateReport report;
-  ASSERT_TRUE(AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(standing(300, 5), out, report).ok());
+  ASSERT_TRUE(
+      AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(standing(300, 5), out, report).ok());
   // 300 samples of noise 0.0052 and tremor 0.01: a deviation of 0.0007, and 0.4 % of the way to the prior
   for (int j = 0; j < 3; ++j) EXPECT_NEAR(report.calibration.constants.gyro_bias_rad_s[j], 0.01 * (j - 1), 0.002) << j;
 }

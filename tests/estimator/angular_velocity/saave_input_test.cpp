@@ -129,8 +129,12 @@ TEST(SaaveInput, RefusesParametersOutsideOfTheirBounds) {
     EXPECT_THROW(SaturationAwareRateEstimator{params}, InvalidParams);
   };
   EXPECT_NO_THROW(SaturationAwareRateEstimator{stated_device()});
-  refused([](SaturationAwareRateEstimator::Params& p) { p.lever_arm_m = SaturationAwareRateEstimator::Params{}.lever_arm_m; });  // neither has a default
-  refused([](SaturationAwareRateEstimator::Params& p) { p.saturation_point_rad_s = SaturationAwareRateEstimator::Params{}.saturation_point_rad_s; });
+  refused([](SaturationAwareRateEstimator::Params& p) {
+    p.lever_arm_m = SaturationAwareRateEstimator::Params{}.lever_arm_m;
+  });  // neither has a default
+  refused([](SaturationAwareRateEstimator::Params& p) {
+    p.saturation_point_rad_s = SaturationAwareRateEstimator::Params{}.saturation_point_rad_s;
+  });
   refused([](SaturationAwareRateEstimator::Params& p) { p.lever_arm_m.y() = std::nan(""); });
   refused([](SaturationAwareRateEstimator::Params& p) { p.lever_arm_m.x() = 11.0; });
   refused([](SaturationAwareRateEstimator::Params& p) { p.saturation_point_rad_s = 0.0; });

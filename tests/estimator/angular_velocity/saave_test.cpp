@@ -37,7 +37,8 @@ ImuSample sample_at(std::size_t k, const Vector3d& rate, const Vector3d& force) 
 }
 
 // Returns the estimate for `second`, after one accepted unclipped sample that sets the axis.
-SaturationAwareRateEstimator::RecoveredRate after_axis(const Vector3d& first_rate, const ImuSample& second, const SaturationAwareRateEstimator::Params& params) {
+SaturationAwareRateEstimator::RecoveredRate after_axis(const Vector3d& first_rate, const ImuSample& second,
+                                                       const SaturationAwareRateEstimator::Params& params) {
   const SaturationAwareRateEstimator saave(params);
   SaturationAwareRateEstimator::State state;
   SaturationAwareRateEstimator::RecoveredRate out;
@@ -145,14 +146,16 @@ TEST(SaaveEdge, ContactIsBelieved) {
   // resting contact: 1 g along the lever arm adds g / (2 r w), 3.2 rad/s
   const Vector3d w = 15.0 * Vector3d::UnitX(), to_axis = Vector3d(-0.022, 0, 0) - kLever;
   const Vector3d force = w.cross(w.cross(kLever)) + 9.81 * to_axis.normalized();
-  const SaturationAwareRateEstimator::RecoveredRate out = after_axis(w / 2.0, sample_at(1, clipped_rate(w), force), params_below_rail());
+  const SaturationAwareRateEstimator::RecoveredRate out =
+      after_axis(w / 2.0, sample_at(1, clipped_rate(w), force), params_below_rail());
   EXPECT_NEAR(out.rate_rad_s.x() - 15.0, 3.2, 0.35);  // first-order value; the exact value is 2.94
 }
 
 TEST(SaaveEdge, DeviceFlagsAreNotUsed) {
   ImuSample sample = sample_at(1, {9.0, 0.0, 0.0}, Vector3d(0.0, 40.0, -30.0));
   sample.device_clip_flags = kClipGyroX;
-  const SaturationAwareRateEstimator::RecoveredRate out = after_axis(5.0 * Vector3d::UnitX(), sample, params_below_rail());
+  const SaturationAwareRateEstimator::RecoveredRate out =
+      after_axis(5.0 * Vector3d::UnitX(), sample, params_below_rail());
   EXPECT_EQ(out.clipped_axes, 0);
   EXPECT_EQ(out.rate_rad_s.x(), 9.0);
 }
@@ -200,8 +203,8 @@ struct TumbleErrors {
   std::size_t clipped, several;
 };
 
-TumbleErrors tumble_errors(const Vector3d& moments, const Vector3d& w0, const SaturationAwareRateEstimator::Params& params,
-                           bool noisy = true) {
+TumbleErrors tumble_errors(const Vector3d& moments, const Vector3d& w0,
+                           const SaturationAwareRateEstimator::Params& params, bool noisy = true) {
   const oracles::TorqueFreeRotation motion(moments, w0);
   oracles::Gaussian noise(7);
   std::vector<ImuSample> run;

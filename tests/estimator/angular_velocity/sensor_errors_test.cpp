@@ -186,7 +186,8 @@ TEST(SensorErrors, WhatWasLearntComesBack) {
   EXPECT_LT(apart.cwiseAbs().maxCoeff(), 1e-6);
   // a result that is as uncertain as the prior contains no information
   const KnownSensorErrors nothing = fit_sensor_errors({}, open).fitted_errors;
-  EXPECT_LT(evidence_from_earlier_runs(nothing, open).information.cwiseAbs().maxCoeff() * open.delay_s * open.delay_s, 1e-6);
+  EXPECT_LT(evidence_from_earlier_runs(nothing, open).information.cwiseAbs().maxCoeff() * open.delay_s * open.delay_s,
+            1e-6);
 }
 
 TEST(TriadDelay, IsGuessedWhereThereIsOne) {
@@ -226,12 +227,15 @@ TEST(RateSmootherDevices, ALateAccelerometerIsFound) {
     const TumbleRecording late = late_tumble(seed, 1), clean = late_tumble(seed, 0);
     std::vector<AngularRateState> states;
     AngularRateReport report;
-    ASSERT_TRUE(AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(late.samples, states, report).ok());
+    ASSERT_TRUE(
+        AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(late.samples, states, report).ok());
     EXPECT_NEAR(report.sensor_errors.errors.accel_delay_s, 0.01, 1e-3);
     EXPECT_LT(report.synchronous_triads_probability, 0.05);
     late_sum += clipped_errors(late, rates_of(states), 10.49).median;
     count(late, states, found);
-    ASSERT_TRUE(AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(clean.samples, states, report).ok());
+    ASSERT_TRUE(AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>())
+                    .estimate(clean.samples, states, report)
+                    .ok());
     EXPECT_GT(report.synchronous_triads_probability, 0.05);
     EXPECT_LT(std::abs(report.sensor_errors.errors.accel_delay_s), 2e-4);
     count(clean, states, in_time);
@@ -258,7 +262,8 @@ TEST(RateSmootherDevices, ADelayThatIsNotFoundIsNotSilent) {
     const TumbleRecording late = late_tumble(seed, 1);
     std::vector<AngularRateState> states;
     AngularRateReport report;
-    ASSERT_TRUE(AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(late.samples, states, report).ok());
+    ASSERT_TRUE(
+        AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(late.samples, states, report).ok());
     EXPECT_TRUE(report.calibration_at_prior || std::abs(report.sensor_errors.errors.accel_delay_s - 0.01) < 1e-3)
         << seed;
     EXPECT_GT(report.calibration_mahalanobis, 1.0) << seed;
@@ -280,7 +285,9 @@ TEST(RateSmootherDevices, GivenErrorsAreKept) {
   AngularRateReport report;
   ASSERT_TRUE(AngularRateSmoother(params).estimate(recording.samples, states, report).ok());
   EXPECT_LT((report.sensor_errors.errors.gyro - params.model.errors.gyro).cwiseAbs().maxCoeff(), 1e-12);
-  ASSERT_TRUE(AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(recording.samples, without, report).ok());
+  ASSERT_TRUE(AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>())
+                  .estimate(recording.samples, without, report)
+                  .ok());
   double given_sum = 0.0, without_sum = 0.0;
   for (std::size_t k = 0; k < states.size(); ++k) {
     if (states[k].clipped_axes != 0) continue;
@@ -314,8 +321,11 @@ TEST(RateSmootherDevices, WhatARunLearnsOfTheDeviceHelpsTheNext) {
   const TumbleRecording first = late_tumble(3, 1), second = late_tumble(5, 1);
   std::vector<AngularRateState> states;
   AngularRateReport of_first, fresh, informed;
-  ASSERT_TRUE(AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(first.samples, states, of_first).ok());
-  ASSERT_TRUE(AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(second.samples, states, fresh).ok());
+  ASSERT_TRUE(AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>())
+                  .estimate(first.samples, states, of_first)
+                  .ok());
+  ASSERT_TRUE(
+      AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(second.samples, states, fresh).ok());
   auto params = with_lever_arm<AngularRateSmoother::Params>();
   params.calibrated_errors = of_first.sensor_errors;
   ASSERT_TRUE(AngularRateSmoother(params).estimate(second.samples, states, informed).ok());
@@ -333,7 +343,8 @@ TEST(RateSmootherDevices, WhatWasLearntOfAnotherDeviceGivesWayToTheReadings) {
   const TumbleRecording first = late_tumble(3, 1), second = late_tumble(5, 0);
   std::vector<AngularRateState> states;
   AngularRateReport report;
-  ASSERT_TRUE(AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(first.samples, states, report).ok());
+  ASSERT_TRUE(
+      AngularRateSmoother(with_lever_arm<AngularRateSmoother::Params>()).estimate(first.samples, states, report).ok());
   auto params = with_lever_arm<AngularRateSmoother::Params>();
   params.calibrated_errors = report.sensor_errors;
   ASSERT_TRUE(AngularRateSmoother(params).estimate(second.samples, states, report).ok());

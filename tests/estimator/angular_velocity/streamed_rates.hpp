@@ -11,8 +11,9 @@
 namespace tumble {
 
 /// Returns all rates that the stream reports for the samples, including those at its end.
-inline std::vector<AngularRateState> streamed_rates(const AngularRateStream& method, const std::vector<ImuSample>& samples,
-                                             AngularRateStream::State& state) {
+inline std::vector<AngularRateState> streamed_rates(const AngularRateStream& method,
+                                                    const std::vector<ImuSample>& samples,
+                                                    AngularRateStream::State& state) {
   std::vector<AngularRateState> out;
   std::optional<AngularRateState> one;
   for (const ImuSample& sample : samples) {

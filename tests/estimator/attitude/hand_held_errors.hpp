@@ -16,8 +16,8 @@ namespace tumble::testing {
 
 /// Returns the norms of the errors at clipped samples from `from_s` on; there is one rate per sample, at its stamp
 /// [rad/s].
-inline std::vector<double> clipped_errors(const HandHeldRecording& recording, const std::vector<AngularRateState>& rates,
-                                          double from_s) {
+inline std::vector<double> clipped_errors(const HandHeldRecording& recording,
+                                          const std::vector<AngularRateState>& rates, double from_s) {
   std::vector<double> out;
   for (std::size_t k = 0; k < rates.size(); ++k) {
     EXPECT_EQ(rates[k].time_ns, recording.samples[k].time_ns);

@@ -43,7 +43,8 @@ Point random_point(std::uint64_t seed, double step_s) {
   Point point;
   point.here = random_node(noise);
   point.next = random_node(noise);
-  point.next.q_WI = point.here.q_WI * so3::exp(rotation_between_nodes(point.here, point.next, step_s) + draw(noise, 0.05));
+  point.next.q_WI =
+      point.here.q_WI * so3::exp(rotation_between_nodes(point.here, point.next, step_s) + draw(noise, 0.05));
   point.constants = {draw(noise, 0.1), draw(noise, 0.3), draw(noise, 0.2)};
   return point;
 }
@@ -100,7 +101,8 @@ ReadingNoise plain_noise() {
   noise.gyro_rad_s = 0.5;
   noise.saturation_limit_sigma_rad_s = 0.2;
   noise.accel_m_s2 = 0.7;
-  noise.stationary_rate_sigma_rad_s = 0.1, noise.stationary_velocity_sigma_m_s = 0.2, noise.stationary_acceleration_sigma_m_s2 = 0.3;
+  noise.stationary_rate_sigma_rad_s = 0.1, noise.stationary_velocity_sigma_m_s = 0.2,
+  noise.stationary_acceleration_sigma_m_s2 = 0.3;
   return noise;
 }
 

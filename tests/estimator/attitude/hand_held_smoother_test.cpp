@@ -65,7 +65,8 @@ double inclination_rms_rad(const HandHeldRecording& recording, const HandHeldEst
   double sum = 0.0;
   for (std::size_t k = 0; k < recording.samples.size(); ++k) {
     const Eigen::Vector3d up(0.0, 0.0, 1.0);
-    const Eigen::Vector3d truth = recording.q_WI[k].conjugate() * up, ours = result.attitudes[k].orientation_W.conjugate() * up;
+    const Eigen::Vector3d truth = recording.q_WI[k].conjugate() * up,
+                          ours = result.attitudes[k].orientation_W.conjugate() * up;
     sum += truth.cross(ours).squaredNorm();
   }
   return std::sqrt(sum / static_cast<double>(recording.samples.size()));

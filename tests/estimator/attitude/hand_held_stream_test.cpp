@@ -22,7 +22,7 @@ using testing::HandHeldRecording;
 using testing::quantile;
 
 std::vector<AngularRateState> stream(const HandHeldRecording& recording, const HandHeldRateStream::Params& params,
-                              std::size_t split = 0) {
+                                     std::size_t split = 0) {
   const HandHeldRateStream stream(params);
   HandHeldRateStream::State state = stream.start();
   std::vector<AngularRateState> out;
@@ -109,8 +109,8 @@ TEST(HandHeldRateStream, GivesEachRateWhereSamplesComeSparserThanIsSaid) {
   for (const double hz : {30.0, 20.0, 12.0}) {
     const HandHeldRecording recording = testing::record({.spin_hz = 0.45}, hz, 12.0, 5.0);
     const HandHeldRateStream::Params params;
-    ASSERT_GT(params.lag_s / params.period_s, hz * params.window_s);  // the lag is longer than the window
-    const std::vector<AngularRateState> live = stream(recording, params);    // one result per sample
+    ASSERT_GT(params.lag_s / params.period_s, hz * params.window_s);       // the lag is longer than the window
+    const std::vector<AngularRateState> live = stream(recording, params);  // one result per sample
     std::vector<double> raw;
     for (std::size_t k = 0; k < live.size(); ++k) {
       EXPECT_GT(live[k].covariance_rad2_s2.diagonal().minCoeff(), 0.0) << hz << " Hz, " << k;

@@ -62,7 +62,8 @@ Joined go_on(const std::vector<ImuSample>& samples, const MotionRegimeStream::Pa
   return out;
 }
 
-Joined joined(const std::vector<ImuSample>& samples, const MotionRegimeStream::Params& params, Middle* middle = nullptr) {
+Joined joined(const std::vector<ImuSample>& samples, const MotionRegimeStream::Params& params,
+              Middle* middle = nullptr) {
   return go_on(samples, params, {0, MotionRegimeStream(params).start(), 0}, middle);
 }
 

@@ -68,7 +68,9 @@ TEST(MultiImuSignCheck, EachIsToldByItsPlace) {
 }
 
 TEST(MultiImuSignCheck, ABodyThatHardlyTurnsTellsNothing) {
-  EXPECT_FALSE(senses_of(0.05, [](auto& w, auto& a, auto&) { w.x() = -w.x(), a.x() = -a.x(); }).detected_mirroring().has_value());
+  EXPECT_FALSE(senses_of(0.05, [](auto& w, auto& a, auto&) { w.x() = -w.x(), a.x() = -a.x(); })
+                   .detected_mirroring()
+                   .has_value());
 }
 
 }  // namespace

@@ -87,7 +87,8 @@ double nees_of_run(int run) {
   }
   const double end_s = 0.1 * kSweepsOfRun;
   Eigen::Matrix<double, 6, 1> error;
-  error << motion.p_m(end_s) - report.pose.position_W_m, so3::logarithm(motion.q(end_s) * report.pose.orientation_W.conjugate());
+  error << motion.p_m(end_s) - report.pose.position_W_m,
+      so3::logarithm(motion.q(end_s) * report.pose.orientation_W.conjugate());
   return error.dot(report.pose.covariance.llt().solve(error)) / 6.0;
 }
 

@@ -126,7 +126,8 @@ TEST(SweepTrajectory, SaysWhatItLacks) {
   SweepTrajectory trajectory;
   MotionState start;
   EXPECT_EQ(trajectory.build(start, {}, 100, test::kRoomGravity_m_s2).error_code, ErrorCode::insufficient_data);
-  EXPECT_EQ(trajectory.build(start, samples, 200'000'001, test::kRoomGravity_m_s2).error_code, ErrorCode::insufficient_data);
+  EXPECT_EQ(trajectory.build(start, samples, 200'000'001, test::kRoomGravity_m_s2).error_code,
+            ErrorCode::insufficient_data);
   EXPECT_EQ(trajectory.build(start, samples, -1, test::kRoomGravity_m_s2).error_code, ErrorCode::time_order);
   start.time_ns = -1;
   EXPECT_EQ(trajectory.build(start, samples, 100'000'000, test::kRoomGravity_m_s2).error_code, ErrorCode::gap);

@@ -38,9 +38,9 @@ TEST(FreeSpaceGrid, TellsFreeSpaceFromWhatIsThere) {
   };
   EXPECT_EQ(verdict(4.0f, -0.8f, 0.3f), FreeSpaceGrid::Verdict::free_space);
   EXPECT_EQ(verdict(kWall_m, -1.6f, 0.3f), FreeSpaceGrid::Verdict::occupied);
-  EXPECT_EQ(verdict(4.0f, 0.5f, 0.3f), FreeSpaceGrid::Verdict::occupied);           // the post
-  EXPECT_EQ(verdict(2.0f, 0.25f, 0.1f), FreeSpaceGrid::Verdict::free_space);  // before the post
-  EXPECT_EQ(verdict(7.0f, 0.875f, 0.3f), FreeSpaceGrid::Verdict::unknown_space);      // behind it
+  EXPECT_EQ(verdict(4.0f, 0.5f, 0.3f), FreeSpaceGrid::Verdict::occupied);         // the post
+  EXPECT_EQ(verdict(2.0f, 0.25f, 0.1f), FreeSpaceGrid::Verdict::free_space);      // before the post
+  EXPECT_EQ(verdict(7.0f, 0.875f, 0.3f), FreeSpaceGrid::Verdict::unknown_space);  // behind it
   EXPECT_EQ(verdict(kWall_m + 3.0f, -1.6f, 0.3f), FreeSpaceGrid::Verdict::unknown_space);
   EXPECT_EQ(verdict(4.4f, 0.75f, 0.3f), FreeSpaceGrid::Verdict::unknown_space);  // by the post's edge
   EXPECT_EQ(verdict(-4.0f, 0.0f, 0.3f), FreeSpaceGrid::Verdict::unknown_space);  // nothing returned from there

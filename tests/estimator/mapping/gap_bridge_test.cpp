@@ -106,7 +106,8 @@ Followed over_a_gap(LidarInertialOdometry::Params params, int first, int missing
       if ((next + 1) * test::kSamplesPerSweep <= first) continue;
       const double t_s = 1e-9 * static_cast<double>(report.pose.time_ns);
       Eigen::Matrix<double, 6, 1> off;
-      off << report.pose.position_W_m - room.motion.p_m(t_s), so3::logarithm(report.pose.orientation_W * room.motion.q(t_s).conjugate());
+      off << report.pose.position_W_m - room.motion.p_m(t_s),
+          so3::logarithm(report.pose.orientation_W * room.motion.q(t_s).conjugate());
       const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> weight(report.pose.covariance);
       out.end_m = off.head<3>().norm();
       out.worst_rad = std::max(out.worst_rad, off.tail<3>().norm());

@@ -81,7 +81,8 @@ MotionState moved(const Case& c, TimeNs time_ns, const Registration::Vector& sta
   Registration::Estimate at = c.prediction.prior.mean;
   at.add(off);
   SweepTrajectory trajectory;
-  EXPECT_TRUE(trajectory.build(at.state, c.samples, kEnd_ns, at.calibration.gravity_W_m_s2, at.saturation_deficit_rad_s).ok());
+  EXPECT_TRUE(
+      trajectory.build(at.state, c.samples, kEnd_ns, at.calibration.gravity_W_m_s2, at.saturation_deficit_rad_s).ok());
   return trajectory.state(seconds(time_ns - kStart_ns));
 }
 
@@ -200,8 +201,8 @@ TEST(OdometerReading, OfAMotionIsTheJointUpdateByDifferences) {
       const Eigen::Isometry3d expected = read_motion(c, from_ns, to_ns, start, noise);
       Eigen::VectorXd out(6);
       out.head<3>() = expected.translation() - reading.relative_pose.translation();
-      out.tail<3>() =
-          so3::logarithm(Eigen::Quaterniond(Eigen::Matrix3d(expected.linear() * reading.relative_pose.linear().transpose())));
+      out.tail<3>() = so3::logarithm(
+          Eigen::Quaterniond(Eigen::Matrix3d(expected.linear() * reading.relative_pose.linear().transpose())));
       return out;
     };
     expect_joint(c, reading, off, reading.covariance, kScale);
@@ -284,7 +285,8 @@ TEST(OdometerReading, IsCheckedByItself) {
     return check_reading(reading);
   };
   EXPECT_EQ(refusal([](MotionReading& r) { r.to_ns = 0; }).error_code, ErrorCode::time_order);
-  EXPECT_EQ(refusal([&](MotionReading& r) { r.relative_pose.translation().y() = nan; }).error_code, ErrorCode::non_finite);
+  EXPECT_EQ(refusal([&](MotionReading& r) { r.relative_pose.translation().y() = nan; }).error_code,
+            ErrorCode::non_finite);
   EXPECT_EQ(refusal([&](MotionReading& r) { r.covariance(0, 4) = nan; }).error_code, ErrorCode::non_finite);
   EXPECT_STREQ(refusal([](MotionReading& r) { r.relative_pose.linear() *= 1.001; }).field, "T_from_to");
   EXPECT_STREQ(refusal([](MotionReading& r) { r.relative_pose.linear() *= -1.0; }).field, "T_from_to");

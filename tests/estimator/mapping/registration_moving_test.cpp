@@ -42,7 +42,8 @@ class MovingSweep : public testing::Test {
     // one deficit over the sweep: its knots are correlated
     for (int a = 0; a < SweepTrajectory::kKnots; ++a) {
       for (int b = 0; b < SweepTrajectory::kKnots; ++b) {
-        prior.covariance.block<3, 3>(Registration::kFirstDeficitUnknown + 3 * a, Registration::kFirstDeficitUnknown + 3 * b) =
+        prior.covariance.block<3, 3>(Registration::kFirstDeficitUnknown + 3 * a,
+                                     Registration::kFirstDeficitUnknown + 3 * b) =
             deficit_sigma * deficit_sigma * std::pow(0.9, std::abs(a - b)) * Eigen::Matrix3d::Identity();
       }
     }
@@ -84,9 +85,9 @@ TEST_F(MovingSweep, FindsTheDeficitOfClippedAxes) {
   double variance = 0.0;
   for (int a = 0; a < SweepTrajectory::kKnots; ++a) {
     for (int b = 0; b < SweepTrajectory::kKnots; ++b) {
-      variance +=
-          result_.covariance(Registration::kFirstDeficitUnknown + 3 * a + axis, Registration::kFirstDeficitUnknown + 3 * b + axis) /
-          9.0;
+      variance += result_.covariance(Registration::kFirstDeficitUnknown + 3 * a + axis,
+                                     Registration::kFirstDeficitUnknown + 3 * b + axis) /
+                  9.0;
     }
   }
   EXPECT_LT(std::sqrt(variance), 0.5);

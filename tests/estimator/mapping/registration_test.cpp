@@ -206,7 +206,8 @@ TEST(Registration, TakesNoNoiseOfNormalsForInformationOfAMounting) {
   prior.covariance.bottomRightCorner<LidarImuCalibration::kErrorCount, LidarImuCalibration::kErrorCount>()
       .topLeftCorner<6, 6>()
       .setIdentity();
-  prior.covariance.bottomRightCorner<LidarImuCalibration::kErrorCount, LidarImuCalibration::kErrorCount>() *= 0.01 * 0.01;
+  prior.covariance.bottomRightCorner<LidarImuCalibration::kErrorCount, LidarImuCalibration::kErrorCount>() *=
+      0.01 * 0.01;
   const Registration::Result corridor = align(test::Room::corridor(), prior, {}, kNoise_m);
   ASSERT_EQ(corridor.verdict, RegistrationVerdict::converged);
   const Registration::Matrix& B = corridor.surface_normal_noise_information;

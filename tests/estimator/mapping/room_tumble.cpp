@@ -56,7 +56,8 @@ Status add_sweep(Odometry& odometry, int sweep, std::span<const LidarPoint> poin
 PoseError error_of(const PoseState& pose) {
   const double t = 1e-9 * static_cast<double>(pose.time_ns);
   const Motion& motion = room_tumble().motion;
-  return {(pose.position_W_m - motion.p_m(t)).norm(), so3::logarithm(pose.orientation_W * motion.q(t).conjugate()).norm(),
+  return {(pose.position_W_m - motion.p_m(t)).norm(),
+          so3::logarithm(pose.orientation_W * motion.q(t).conjugate()).norm(),
           (pose.velocity_W_m_s - motion.v_m_s(t)).norm()};
 }
 
@@ -76,8 +77,9 @@ bool same(const Odometry::SweepReport& a, const Odometry::SweepReport& b) {
     return false;
   for (std::size_t i = 0; i < a.trajectory.size(); ++i) {
     const PoseState &p = a.trajectory[i], &q = b.trajectory[i];
-    if (p.time_ns != q.time_ns || p.position_W_m != q.position_W_m || p.orientation_W.coeffs() != q.orientation_W.coeffs() ||
-        p.velocity_W_m_s != q.velocity_W_m_s || p.covariance != q.covariance) {
+    if (p.time_ns != q.time_ns || p.position_W_m != q.position_W_m ||
+        p.orientation_W.coeffs() != q.orientation_W.coeffs() || p.velocity_W_m_s != q.velocity_W_m_s ||
+        p.covariance != q.covariance) {
       return false;
     }
   }

@@ -36,7 +36,9 @@ std::vector<MotionSample> pushed() {
 SweepTrajectory along(const StateEstimate& state_estimate, const std::vector<MotionSample>& samples, TimeNs end_ns) {
   SweepTrajectory trajectory;
   const Registration::Estimate& mean = state_estimate.mean;
-  EXPECT_TRUE(trajectory.build(mean.state, samples, end_ns, mean.calibration.gravity_W_m_s2, mean.saturation_deficit_rad_s).ok());
+  EXPECT_TRUE(
+      trajectory.build(mean.state, samples, end_ns, mean.calibration.gravity_W_m_s2, mean.saturation_deficit_rad_s)
+          .ok());
   return trajectory;
 }
 

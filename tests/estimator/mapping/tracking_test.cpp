@@ -22,8 +22,8 @@ std::string text(const TrackingState& state) {
       return "lost " + std::to_string(s.sweeps) + " " + std::to_string(s.failed_searches);
     }
     std::string operator()(const Relocalised& s) const {
-      return "found after " + std::to_string(s.rejected_sweeps_before) + " " + std::to_string(s.failed_searches) + ", agree " +
-             std::to_string(s.agreeing_sweep_count);
+      return "found after " + std::to_string(s.rejected_sweeps_before) + " " + std::to_string(s.failed_searches) +
+             ", agree " + std::to_string(s.agreeing_sweep_count);
     }
   };
   return std::visit(Name{}, state);
@@ -57,7 +57,8 @@ TEST(Tracking, GoesFromStateToStateAsTheTableSays) {
       {Relocalised{3, 2, 1}, alignment_found, registered, "tracking 0"},
   };
   for (const Row& row : rows) {
-    EXPECT_EQ(text(tracking_state_after_sweep(row.before, row.placement, row.verdict)), row.after) << "from " << text(row.before);
+    EXPECT_EQ(text(tracking_state_after_sweep(row.before, row.placement, row.verdict)), row.after)
+        << "from " << text(row.before);
   }
 }
 
@@ -102,7 +103,7 @@ DelayGrid failed_with(bool too_few) {
 }
 
 SweepRegistration judged(const LidarInertialOdometry::Params& params, const TrackingState& before, std::size_t points,
-              bool trusted, DelayGrid tried) {
+                         bool trusted, DelayGrid tried) {
   judge_registration(params, before, points, trusted, tried.attempt, tried.placed);
   return tried.placed;
 }

@@ -181,7 +181,8 @@ TEST(Window, PosesCanBeAskedAtAnyTimeWithin) {
     EXPECT_EQ(pose.time_ns, t);
     // also between IMU samples; at 15 rad/s and metres per second. Measured: 12 mm
     EXPECT_LT(run.error_m(pose), 0.03);
-    EXPECT_LT(so3::logarithm(pose.orientation_W * run.motion.q(1e-9 * static_cast<double>(t)).conjugate()).norm(), 0.02);
+    EXPECT_LT(so3::logarithm(pose.orientation_W * run.motion.q(1e-9 * static_cast<double>(t)).conjugate()).norm(),
+              0.02);
     EXPECT_GT(pose.covariance.diagonal().minCoeff(), 0.0);
   }
 }

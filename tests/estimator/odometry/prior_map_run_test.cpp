@@ -135,7 +135,8 @@ TEST(SavedRun, ARunSavedInMotionKeepsItsMap) {
   std::optional<PoseState> last;
   ASSERT_TRUE(after.odometry.load(before.odometry.save(), &last).ok());
   ASSERT_TRUE(last);
-  EXPECT_LT((last->position_W_m - elsewhere() * before.moves.p_m(1e-9 * static_cast<double>(last->time_ns))).norm(), 0.1);
+  EXPECT_LT((last->position_W_m - elsewhere() * before.moves.p_m(1e-9 * static_cast<double>(last->time_ns))).norm(),
+            0.1);
   EXPECT_EQ(after.odometry.mapper().prior_map()->points.size(), before.odometry.mapper().map().size());
   after.odometry.reset(elsewhere());  // the robot was carried back
   after.feed(0, 5);

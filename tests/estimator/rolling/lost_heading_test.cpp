@@ -80,7 +80,8 @@ TEST(LostHeading, TheContactTellsNothingOfATurnOfTheWholeRun) {
   turn[rolling::kAttitude + 2] = 1.0;
   turn.segment<2>(rolling::kVelocity) = turned(nominal.v_WI_m_s);
   turn.segment<2>(rolling::kSlope) = turned(nominal.floor_slope);
-  const Eigen::Vector3d with_all = c.measurement_jacobian * turn, of_turn = Eigen::Vector3d::UnitZ().cross(c.contact_velocity_W_m_s);
+  const Eigen::Vector3d with_all = c.measurement_jacobian * turn,
+                        of_turn = Eigen::Vector3d::UnitZ().cross(c.contact_velocity_W_m_s);
   EXPECT_GT(of_turn.norm(), 0.1);
   EXPECT_LT((with_all - of_turn).norm(), 1e-9);
   rolling::remove_heading_component(c);

@@ -79,7 +79,8 @@ TEST(RollingRates, ReadingsAsLongAsTheWindowAreTakenAsTheyAre) {
   const testing::RollingTruth truth = slipping_sampled(4'000'000);
   RollingSmoother::Params one_by_one = testing::lagged_params(RollingSmoother::kWholeRecordingLag);
   one_by_one.filter.expert.reading_s = 0.0;
-  const Smoothed averaged = smoothed_samples(truth.samples, testing::lagged_params(RollingSmoother::kWholeRecordingLag)),
+  const Smoothed averaged =
+                     smoothed_samples(truth.samples, testing::lagged_params(RollingSmoother::kWholeRecordingLag)),
                  plain = smoothed_samples(truth.samples, one_by_one);
   EXPECT_TRUE(averaged.out.back().sphere_centre_W_m == plain.out.back().sphere_centre_W_m);
   EXPECT_TRUE(averaged.out.back().covariance == plain.out.back().covariance);

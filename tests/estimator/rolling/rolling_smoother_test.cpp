@@ -156,10 +156,12 @@ TEST(RollingSmoother, WithALagAStandstillHasNoDrift) {
     ASSERT_EQ(out.size(), truth.samples.size());
     for (const auto& [from_s, to_s] : {std::pair(0.5, 1.9), std::pair(4.6, 5.4), std::pair(8.1, 10.0)}) {
       const auto first = static_cast<std::size_t>(from_s / 0.004), end = static_cast<std::size_t>(to_s / 0.004);
-      for (std::size_t k = first; k < end; ++k) ASSERT_EQ(out[k].sphere_centre_W_m, out[first].sphere_centre_W_m) << lag_s << " " << k;
+      for (std::size_t k = first; k < end; ++k)
+        ASSERT_EQ(out[k].sphere_centre_W_m, out[first].sphere_centre_W_m) << lag_s << " " << k;
     }
     // and the position changes again when the motion continues
-    for (std::size_t k = 0; k < out.size(); ++k) ASSERT_LT((out[k].sphere_centre_W_m - truth.p_WG_m[k]).norm(), 0.03) << k;
+    for (std::size_t k = 0; k < out.size(); ++k)
+      ASSERT_LT((out[k].sphere_centre_W_m - truth.p_WG_m[k]).norm(), 0.03) << k;
   }
 }
 
@@ -229,7 +231,8 @@ TEST(RollingSmoother, SplitRunsEqual) {
   EXPECT_TRUE(*second == *whole);
   ASSERT_EQ(out_split.size(), out_whole.size());
   ASSERT_FALSE(out_whole.empty());
-  for (std::size_t k = 0; k < out_whole.size(); ++k) ASSERT_EQ(out_split[k].sphere_centre_W_m, out_whole[k].sphere_centre_W_m) << k;
+  for (std::size_t k = 0; k < out_whole.size(); ++k)
+    ASSERT_EQ(out_split[k].sphere_centre_W_m, out_whole[k].sphere_centre_W_m) << k;
 }
 
 TEST(RollingSmoother, RefusesBadParamsAndBadSamples) {

@@ -28,5 +28,6 @@ int main() {
     if (!rolling.step(sample, *rolling_state).ok()) return 1;
   }
   const Eigen::Vector3d x_W = attitude_state.q_WI * Eigen::Vector3d::UnitX();
-  std::printf("turned %.2f rad, position %.2f m\n", std::acos(std::fmax(-1.0, x_W.x())), rolling_state->sphere_centre_W_m.x());
+  std::printf("turned %.2f rad, position %.2f m\n", std::acos(std::fmax(-1.0, x_W.x())),
+              rolling_state->sphere_centre_W_m.x());
 }

@@ -126,7 +126,8 @@ double replay_median_arcsec(const testing::SphereLog& log, const Autogain::Param
   for (std::size_t k = 1; k < log.samples.size(); ++k) {
     Autogain::State state{log.q_WI[k - 1], log.samples[k - 1].time_ns, true};
     EXPECT_TRUE(filter.step(log.samples[k], state).ok()) << k;
-    residuals.push_back(so3::logarithm(state.q_WI.conjugate() * log.q_WI[k]).norm() * 180.0 / std::numbers::pi * 3600.0);
+    residuals.push_back(so3::logarithm(state.q_WI.conjugate() * log.q_WI[k]).norm() * 180.0 / std::numbers::pi *
+                        3600.0);
   }
   EXPECT_EQ(residuals.size() + 1, log.samples.size());
   std::nth_element(residuals.begin(), residuals.begin() + residuals.size() / 2, residuals.end());

@@ -101,7 +101,8 @@ TEST(PublishedChain, TellsASweepThatHoldsNothingToRegister) {
   EXPECT_EQ(chain.add({test::kSweep_ns, 2 * test::kSweep_ns, points}, report).error_code, ErrorCode::degenerate);
   points = room.sweeps[2];
   for (LidarPoint& point : points) point.position_L_m *= 0.001f;
-  EXPECT_EQ(chain.add({2 * test::kSweep_ns, 3 * test::kSweep_ns, points}, report).error_code, ErrorCode::insufficient_data);
+  EXPECT_EQ(chain.add({2 * test::kSweep_ns, 3 * test::kSweep_ns, points}, report).error_code,
+            ErrorCode::insufficient_data);
   points.front().offset_ns = static_cast<std::uint32_t>(test::kSweep_ns + 1);
   EXPECT_EQ(chain.add({2 * test::kSweep_ns, 3 * test::kSweep_ns, points}, report).error_code, ErrorCode::out_of_range);
   EXPECT_FALSE(chain.covers({3 * test::kSweep_ns, 9 * test::kSweep_ns, {}}));

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "scenarios/baselines/angular_velocity/clipped_baseline.hpp"
-#include "tumble/angular_velocity/detail/rate_observation.hpp"
 #include "tumble/angular_velocity/detail/partial_saturation.hpp"
+#include "tumble/angular_velocity/detail/rate_observation.hpp"
 
 namespace tumble::baselines {
 namespace {
@@ -85,8 +85,9 @@ double worst_of(const Swing& swing, Run run) {
 
 double worst_baseline(const Swing& swing) {
   const std::vector<ImuSample> samples = swing.samples();
-  return worst_of(
-      swing, [&](std::vector<AngularRateState>& out) { return ClippedBaseline({.rails = rails()}).estimate(samples, out); });
+  return worst_of(swing, [&](std::vector<AngularRateState>& out) {
+    return ClippedBaseline({.rails = rails()}).estimate(samples, out);
+  });
 }
 
 double raw(const Swing& swing) {

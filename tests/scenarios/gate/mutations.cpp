@@ -68,7 +68,8 @@ void lose_a_bump(const sim::Recording& recording, Estimate& estimate) {
   for (PoseState& pose : estimate.poses) {
     if (pose.time_ns <= begin_ns) met = pose.position_W_m;
     if (pose.time_ns > begin_ns && pose.time_ns <= end_ns) lost = pose.position_W_m - met;
-    if (pose.time_ns > begin_ns) pose.position_W_m -= pose.time_ns <= end_ns ? Eigen::Vector3d(pose.position_W_m - met) : lost;
+    if (pose.time_ns > begin_ns)
+      pose.position_W_m -= pose.time_ns <= end_ns ? Eigen::Vector3d(pose.position_W_m - met) : lost;
   }
 }
 
@@ -133,7 +134,8 @@ void tilt_attitudes(const sim::Recording&, Estimate& estimate) {
 void turn_attitudes(const sim::Recording&, Estimate& estimate) {
   for (AttitudeState& attitude : estimate.attitudes) {
     const double since_s = 1e-9 * static_cast<double>(attitude.time_ns - estimate.attitudes.front().time_ns);
-    attitude.orientation_W = Eigen::AngleAxisd(kTurn_rad_s * since_s, Eigen::Vector3d::UnitZ()) * attitude.orientation_W;
+    attitude.orientation_W =
+        Eigen::AngleAxisd(kTurn_rad_s * since_s, Eigen::Vector3d::UnitZ()) * attitude.orientation_W;
   }
 }
 

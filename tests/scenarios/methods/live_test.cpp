@@ -135,12 +135,14 @@ bool same(const AngularRateState& a, const AngularRateState& b) {
 }
 
 bool same(const AttitudeState& a, const AttitudeState& b) {
-  return a.time_ns == b.time_ns && a.orientation_W.coeffs() == b.orientation_W.coeffs() && a.covariance_rad2 == b.covariance_rad2;
+  return a.time_ns == b.time_ns && a.orientation_W.coeffs() == b.orientation_W.coeffs() &&
+         a.covariance_rad2 == b.covariance_rad2;
 }
 
 bool same(const PoseState& a, const PoseState& b) {
-  return a.time_ns == b.time_ns && a.position_W_m == b.position_W_m && a.orientation_W.coeffs() == b.orientation_W.coeffs() &&
-         a.velocity_W_m_s == b.velocity_W_m_s && a.covariance == b.covariance;
+  return a.time_ns == b.time_ns && a.position_W_m == b.position_W_m &&
+         a.orientation_W.coeffs() == b.orientation_W.coeffs() && a.velocity_W_m_s == b.velocity_W_m_s &&
+         a.covariance == b.covariance;
 }
 
 /// A Comparison contains the number of compared states, and the time of the first different state.

@@ -68,8 +68,9 @@ double farthest(const std::vector<State>& found, const std::vector<State>& expec
 double apart(Kind kind, const Estimate& found, const Estimate& expected) {
   switch (kind) {
     case Kind::rate:
-      return farthest(found.rates, expected.rates,
-                      [](const AngularRateState& a, const AngularRateState& b) { return (a.w_WI_I_rad_s - b.w_WI_I_rad_s).norm(); });
+      return farthest(found.rates, expected.rates, [](const AngularRateState& a, const AngularRateState& b) {
+        return (a.w_WI_I_rad_s - b.w_WI_I_rad_s).norm();
+      });
     case Kind::attitude:
       return farthest(found.attitudes, expected.attitudes,
                       [](const auto& a, const auto& b) { return a.orientation_W.angularDistance(b.orientation_W); });

@@ -178,14 +178,16 @@ TEST(RateLearnt, RailsThatReadingsContradictGoAndOthersStay) {
   SaturationLevels rails;
   EXPECT_FALSE(calibration_with_saturation_limits(before, rails).has_value());
   rails.gyro_planes.sensing_axis[0] = plane;
-  rails.gyro_planes.sensing_axis[1] = before.saturation_planes().sensing_axis[1];  // as returned by a run that did not reach this plane
+  rails.gyro_planes.sensing_axis[1] =
+      before.saturation_planes().sensing_axis[1];  // as returned by a run that did not reach this plane
   const std::optional<CalibratedRig> after = calibration_with_saturation_limits(before, rails);
   ASSERT_TRUE(after);
   EXPECT_EQ(after->gyro_saturation_planes_rad_s[0][1], 7.3);
   EXPECT_EQ(after->saturation_limits[0], 7.3);
   EXPECT_EQ(after->calibration.constants.gyro_misalignment[0], 0.01);
   EXPECT_EQ(after->gyro_saturation_planes_rad_s[1], before.gyro_saturation_planes_rad_s[1]);
-  EXPECT_FALSE(after->gyro_saturation_planes_rad_s[2][0] || after->gyro_saturation_planes_rad_s[2][1]) << "the finder has dropped it";
+  EXPECT_FALSE(after->gyro_saturation_planes_rad_s[2][0] || after->gyro_saturation_planes_rad_s[2][1])
+      << "the finder has dropped it";
   rails.gyro_planes.sensing_axis[0]->log_odds = 5.0;
   EXPECT_FALSE(calibration_with_saturation_limits(before, rails).has_value()) << "not sure";
 }

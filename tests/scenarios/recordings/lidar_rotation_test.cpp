@@ -92,8 +92,8 @@ std::vector<SeenRotation> exact_rotations(int pairs) {
   std::vector<SeenRotation> out;
   for (std::size_t k = 0; k < static_cast<std::size_t>(pairs); ++k) {
     const auto at_ns = static_cast<std::int64_t>(k) * kSweep_ns;
-    out.push_back(
-        {at_ns, at_ns + kSweep_ns, so3::logarithm(Eigen::Quaterniond(q_WL[100 * k].conjugate() * q_WL[100 * (k + 1)]))});
+    out.push_back({at_ns, at_ns + kSweep_ns,
+                   so3::logarithm(Eigen::Quaterniond(q_WL[100 * k].conjugate() * q_WL[100 * (k + 1)]))});
   }
   return out;
 }

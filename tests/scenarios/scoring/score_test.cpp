@@ -167,7 +167,8 @@ TEST(AttitudeScores, SplitTheErrorAsBroadDoes) {
   Estimate estimate = perfect_estimate(rig());
   for (std::size_t k = 1; k < estimate.attitudes.size(); ++k) {
     estimate.attitudes[k].orientation_W = Eigen::AngleAxisd(tilt, Eigen::Vector3d::UnitX()) *
-                                 Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) * estimate.attitudes[k].orientation_W;
+                                          Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
+                                          estimate.attitudes[k].orientation_W;
   }
   const auto values = scores(Kind::attitude, estimate, rig());
   EXPECT_NEAR(values.at("inclination_rmse_rad"), tilt, 1e-9);
@@ -255,7 +256,8 @@ TEST(AttitudeScores, TheTiltIsHeldToItsCovarianceWhateverTheHeading) {
   for (AttitudeState& attitude : estimate.attitudes) {
     // q_true = Exp(phi) q, with phi about x and y of the estimate's world frame, which is rotated about the vertical
     const Eigen::Quaterniond tilt(Eigen::AngleAxisd(kTilt, Eigen::Vector3d(1.0, 1.0, 0.0).normalized()));
-    attitude.orientation_W = tilt.conjugate() * Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitZ()) * attitude.orientation_W;
+    attitude.orientation_W =
+        tilt.conjugate() * Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitZ()) * attitude.orientation_W;
   }
   const double square = kTilt * kTilt / 2.0;
   for (const double variance : {4.0 * square, 2.0 * square, square / 8.0, square / 10.0}) {
@@ -279,7 +281,8 @@ TEST(PositionScores, DriftAtStandstillIsWithinOneSpell) {
 
 TEST(TrajectoryScores, AteIsTheRmsOfAConstantShift) {
   Estimate estimate = perfect_estimate(rig());
-  for (std::size_t k = 1; k < estimate.poses.size(); ++k) estimate.poses[k].position_W_m += Eigen::Vector3d(0.3, 0.4, 0.0);
+  for (std::size_t k = 1; k < estimate.poses.size(); ++k)
+    estimate.poses[k].position_W_m += Eigen::Vector3d(0.3, 0.4, 0.0);
   const double n = static_cast<double>(estimate.poses.size());
   EXPECT_NEAR(scores(Kind::slam, estimate, rig()).at("ate_m"), 0.5 * std::sqrt((n - 1.0) / n), 1e-9);
 }
@@ -287,7 +290,8 @@ TEST(TrajectoryScores, AteIsTheRmsOfAConstantShift) {
 TEST(TrajectoryScores, AteOfTheRotationIsTheRmsOfAConstantTurn) {
   Estimate estimate = perfect_estimate(rig());
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.2, Eigen::Vector3d(1, 2, 2) / 3.0));
-  for (std::size_t k = 1; k < estimate.poses.size(); ++k) estimate.poses[k].orientation_W = estimate.poses[k].orientation_W * turn;
+  for (std::size_t k = 1; k < estimate.poses.size(); ++k)
+    estimate.poses[k].orientation_W = estimate.poses[k].orientation_W * turn;
   const double n = static_cast<double>(estimate.poses.size());
   const auto values = scores(Kind::slam, estimate, rig());
   EXPECT_NEAR(values.at("ate_rad"), 0.2 * std::sqrt((n - 1.0) / n), 1e-9);
@@ -334,7 +338,8 @@ TEST(SweepBorderScores, AJumpAtEveryBorderIsFound) {
     for (PoseState& pose : estimate.sweeps[k].trajectory) {
       pose.velocity_W_m_s += Eigen::Vector3d(0.0, 0.3, 0.4);
       const double t = 1e-9 * static_cast<double>(pose.time_ns);
-      pose.orientation_W = so3::exp(0.2 * t * testing::SyntheticMotion().axis_W) * pose.orientation_W;  // axis of motion: rates add
+      pose.orientation_W =
+          so3::exp(0.2 * t * testing::SyntheticMotion().axis_W) * pose.orientation_W;  // axis of motion: rates add
     }
   }
   const auto values = scores(Kind::slam, estimate, rig());

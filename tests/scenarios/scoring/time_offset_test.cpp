@@ -110,7 +110,8 @@ TEST(TimeOffset, OfRatesIsToldByWhatIsNotClipped) {
 TEST(TimeOffset, OfAnErrorThatIsNoneOfTimeIsZero) {
   Estimate estimate = late_estimate(0.0);
   const Eigen::Vector3d across_W = Eigen::Vector3d::UnitZ().cross(motion().axis_W).normalized();
-  for (AttitudeState& attitude : estimate.attitudes) attitude.orientation_W = so3::exp(0.02 * across_W) * attitude.orientation_W;
+  for (AttitudeState& attitude : estimate.attitudes)
+    attitude.orientation_W = so3::exp(0.02 * across_W) * attitude.orientation_W;
   for (std::size_t k = 1; k < estimate.poses.size(); k += 2) {
     PoseState& pose = estimate.poses[k];
     pose.orientation_W = so3::exp((k % 4 == 1 ? 0.02 : -0.02) * motion().axis_W) * pose.orientation_W;

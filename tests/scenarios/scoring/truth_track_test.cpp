@@ -30,8 +30,9 @@ TEST(TruthTrack, InterpolatesBetweenPhysicsSamples) {
     const PoseState pose = track.pose(time_ns);
     // linear interpolation between samples errs by acceleration dt^2 / 8 = 21 m/s^2 x 3.1e-8 s^2
     EXPECT_NEAR((pose.position_W_m - p).norm(), 0.0, 1e-6);
-    EXPECT_NEAR(rotation_angle_rad((motion.attitude(t) * Eigen::Quaterniond(T_BI.linear())).conjugate() * pose.orientation_W),
-                0.0, 1e-6);
+    EXPECT_NEAR(
+        rotation_angle_rad((motion.attitude(t) * Eigen::Quaterniond(T_BI.linear())).conjugate() * pose.orientation_W),
+        0.0, 1e-6);
     // the velocity errs by jerk dt^2 / 8 of the IMU on its lever arm of 0.1 m: 14^3 x 0.1 x 3.1e-8
     const Eigen::Vector3d v =
         motion.velocity_m_s(t) + motion.attitude(t) * motion.rate_B_rad_s(t).cross(T_BI.translation());
@@ -77,7 +78,8 @@ TEST(TruthTrack, DoesNotCoverWhatAReferenceDidNotSee) {
   EXPECT_FALSE(track.covers(4000 * period_ns + 1));
   ASSERT_TRUE(track.covers(3999 * period_ns));
   EXPECT_TRUE(track.covers(4001 * period_ns));
-  EXPECT_EQ(track.pose(3999 * period_ns).position_W_m, before.position_W_m) << "the unknown neighbour has no part in it";
+  EXPECT_EQ(track.pose(3999 * period_ns).position_W_m, before.position_W_m)
+      << "the unknown neighbour has no part in it";
   EXPECT_EQ(track.pose(3999 * period_ns).orientation_W.coeffs(), before.orientation_W.coeffs());
   // the path lacks two steps of at most 1 m/s
   EXPECT_NEAR(track.path_m(track.last_ns()), path_m, 1e-3);
@@ -102,7 +104,7 @@ TEST(Alignment, RemovesYawAndPositionAndLeavesTilt) {
       PoseState estimate;
       estimate.position_W_m = {-5, 0, 0};
       estimate.orientation_W = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
-                      Eigen::AngleAxisd(tilt, Eigen::Vector3d::UnitX()) * truth.orientation_W;
+                               Eigen::AngleAxisd(tilt, Eigen::Vector3d::UnitX()) * truth.orientation_W;
       const PoseState aligned = Alignment::at(estimate, truth).apply(estimate);
       EXPECT_NEAR((aligned.position_W_m - truth.position_W_m).norm(), 0.0, 1e-14);
       EXPECT_NEAR(rotation_angle_rad(aligned.orientation_W * truth.orientation_W.conjugate()), tilt, 1e-12);

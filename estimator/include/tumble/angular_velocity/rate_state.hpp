@@ -9,10 +9,10 @@
 namespace tumble {
 
 enum class AngularRateSource : std::uint8_t {
-  measured,           ///< no gyro axis is clipped or suspect
+  measured,              ///< no gyro axis is clipped or suspect
   recovered_in_flight,   ///< clipped; recovered from the centripetal force in free flight
   recovered_in_contact,  ///< clipped; recovered from the specific force during contact
-  lower_bound_only,       ///< clipped or suspect; limited only by a lower bound and by smooth motion
+  lower_bound_only,      ///< clipped or suspect; limited only by a lower bound and by smooth motion
 };
 
 const char* to_string(AngularRateSource source);

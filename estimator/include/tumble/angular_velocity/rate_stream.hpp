@@ -24,12 +24,12 @@
 namespace tumble {
 
 /// Estimates angular velocity through gyro saturation, sample by sample, with a fixed lag. AngularRateStream uses the
-/// measurement models of AngularRateSmoother over a sliding window of fixed length, with one Gauss-Newton step per sample or
-/// per 5 ms. The equations are in docs/maths/rate_stream.md.
+/// measurement models of AngularRateSmoother over a sliding window of fixed length, with one Gauss-Newton step per
+/// sample or per 5 ms. The equations are in docs/maths/rate_stream.md.
 ///
-/// AngularRateStream detects saturation limits from the readings, and classifies the samples in the window again after each
-/// detection. The rate error is 1.1 times the error of AngularRateSmoother with the calibration of an earlier run, and 1.6
-/// times without. The limitations of AngularRateSmoother also apply to AngularRateStream.
+/// AngularRateStream detects saturation limits from the readings, and classifies the samples in the window again after
+/// each detection. The rate error is 1.1 times the error of AngularRateSmoother with the calibration of an earlier run,
+/// and 1.6 times without. The limitations of AngularRateSmoother also apply to AngularRateStream.
 ///
 /// Cost: O(window) per step. AngularRateStream allocates memory only in start().
 class AngularRateStream {
@@ -89,7 +89,9 @@ class AngularRateStream {
   double rate_change_before_window(const Knot& oldest, const State& state) const;
   void append_knot(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state) const;
   void reclassify_window_clipping(State& state) const;
-  void classify_window_clipping(bool all, State& state) const { classify_clipping_from(all ? 0 : state.window.size() - 1, state); }
+  void classify_window_clipping(bool all, State& state) const {
+    classify_clipping_from(all ? 0 : state.window.size() - 1, state);
+  }
   void classify_clipping_from(std::size_t changed, State& state) const;
   void mark_undetected_clipping(std::size_t k, State& state) const;
   void clear_suspected_saturation(State& state) const;

@@ -24,9 +24,9 @@ enum class ParameterRank : std::uint8_t { common_use, expert_use };
 
 /// All strings in a Field must have static lifetime.
 struct Field {
-  const char* name;     ///< name with its unit as suffix, used in tables and messages
-  const char* unit;     ///< unit; "1" if dimensionless
-  double low, high;     ///< inclusive bounds; for a vector, of each coordinate
+  const char* name;         ///< name with its unit as suffix, used in tables and messages
+  const char* unit;         ///< unit; "1" if dimensionless
+  double low, high;         ///< inclusive bounds; for a vector, of each coordinate
   const char* description;  ///< one sentence that states the parameter's effect and source
   ParameterRank audience = ParameterRank::expert_use;
 };

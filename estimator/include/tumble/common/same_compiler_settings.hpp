@@ -28,7 +28,7 @@ struct CompilerSettingsCheck {
 };
 
 using CompiledHere = CompilerSettingsCheck<EIGEN_MAX_STATIC_ALIGN_BYTES, EIGEN_MALLOC_ALREADY_ALIGNED != 0, kRowMajor,
-                                          sizeof(Eigen::Index), kCheckedContainers>;
+                                           sizeof(Eigen::Index), kCheckedContainers>;
 
 template <>
 const char CompiledHere::link_time_check;  // a declaration; src/common/same_compiler_settings.cpp has the definition

@@ -43,19 +43,19 @@ class SampleClock {
   static constexpr std::size_t kFirstLineFitStampCount = 32;  ///< number of time stamps used for the first line fit
 
   struct State {
-    std::size_t samples = 0;                      ///< number of valid entries of `start`, before the first fit
+    std::size_t samples = 0;                              ///< number of valid entries of `start`, before the first fit
     std::array<TimeNs, kFirstLineFitStampCount> start{};  ///< time stamps collected for the first fit
-    std::optional<TimeNs> stamp_ns;               ///< last time stamp
-    TimeNs time_ns = 0;                           ///< last estimated sample time
-    bool line_fit_valid = false;                     ///< the line and its sums below are valid
-    double period_ns = 0.0;                       ///< slope of the line: estimated sample period
-    double fit_residual_ns = 0.0;                 ///< value of the line at the last sample minus the time stamp
+    std::optional<TimeNs> stamp_ns;                       ///< last time stamp
+    TimeNs time_ns = 0;                                   ///< last estimated sample time
+    bool line_fit_valid = false;                          ///< the line and its sums below are valid
+    double period_ns = 0.0;                               ///< slope of the line: estimated sample period
+    double fit_residual_ns = 0.0;                         ///< value of the line at the last sample minus the time stamp
     double sum_of_weights = 0.0, weighted_sample_index_sum = 0.0,
            weighted_squared_sample_index_sum = 0.0;  ///< weighted sums over sample numbers relative to the last sample
     double mean_square_error_ns2 = 0.0,
            successive_error_product_ns2 = 0.0;  ///< mean square prediction error; mean product of successive errors
-    double prediction_error_ns = 0.0;        ///< last prediction error
-    std::size_t outliers = 0;                ///< number of consecutive prediction errors close to half a period
+    double prediction_error_ns = 0.0;           ///< last prediction error
+    std::size_t outliers = 0;                   ///< number of consecutive prediction errors close to half a period
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.

@@ -14,23 +14,23 @@ namespace tumble {
 /// One suspected fault of a sensor or of the estimate, reported by health() of an odometry class.
 struct HealthFinding {
   enum class Kind : std::uint8_t {
-    frozen_axis,        ///< one axis of a gyro or an accelerometer repeats one reading
-    frozen_sensor,      ///< all axes of a gyro or an accelerometer, or all IMUs, repeat one reading
-    imu_frozen,        ///< one of several IMUs repeats one reading, on `axis` or on all axes
-    imu_silent,        ///< one of several IMUs delivers no readings
-    imu_disagrees,     ///< one of several IMUs differs from the other IMUs
-    force_at_rest,      ///< the specific force at rest has another magnitude than gravity, or another unit
-    wrong_axes_or_signs,      ///< axes are exchanged or inverted
-    inverted_accel_in_flight,      ///< forces in free flight fit inverted axes of the accelerometer
-    rotation,           ///< the direction of gravity, or a body on a pivot, does not rotate as the gyro measures
-    gyro_scale,         ///< the forces of several IMUs contradict the scale of the gyros
-    lidar_scale,        ///< the lidar's ranges have another scale than the motion
-    lidar_calibration,  ///< mounting or clock of the lidar differ from the stated values
-    rig_calibration,    ///< a stored calibration belongs to another rig
-    attitude_unknown,   ///< the direction of gravity is unknown; value: duration [s]
-    vertical_unknown,   ///< the vertical of the map is uncertain after a start in motion
-    tracking_lost,      ///< the pose in the map is uncertain, or sweeps contradict their predicted poses
-    not_localised,      ///< the robot is not localised in the prior map
+    frozen_axis,               ///< one axis of a gyro or an accelerometer repeats one reading
+    frozen_sensor,             ///< all axes of a gyro or an accelerometer, or all IMUs, repeat one reading
+    imu_frozen,                ///< one of several IMUs repeats one reading, on `axis` or on all axes
+    imu_silent,                ///< one of several IMUs delivers no readings
+    imu_disagrees,             ///< one of several IMUs differs from the other IMUs
+    force_at_rest,             ///< the specific force at rest has another magnitude than gravity, or another unit
+    wrong_axes_or_signs,       ///< axes are exchanged or inverted
+    inverted_accel_in_flight,  ///< forces in free flight fit inverted axes of the accelerometer
+    rotation,                  ///< the direction of gravity, or a body on a pivot, does not rotate as the gyro measures
+    gyro_scale,                ///< the forces of several IMUs contradict the scale of the gyros
+    lidar_scale,               ///< the lidar's ranges have another scale than the motion
+    lidar_calibration,         ///< mounting or clock of the lidar differ from the stated values
+    rig_calibration,           ///< a stored calibration belongs to another rig
+    attitude_unknown,          ///< the direction of gravity is unknown; value: duration [s]
+    vertical_unknown,          ///< the vertical of the map is uncertain after a start in motion
+    tracking_lost,             ///< the pose in the map is uncertain, or sweeps contradict their predicted poses
+    not_localised,             ///< the robot is not localised in the prior map
   };
   static constexpr Kind kLast = Kind::not_localised;
 

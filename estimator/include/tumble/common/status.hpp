@@ -11,14 +11,14 @@ namespace tumble {
 
 enum class ErrorCode : std::uint8_t {
   none,
-  empty,         ///< a required input is missing
-  non_finite,    ///< NaN or infinity
-  time_order,    ///< a time stamp is not later than the previous time stamp
-  gap,           ///< a time stamp is too long after the previous time stamp
-  out_of_range,  ///< a value is outside its stated bounds
-  insufficient_data,       ///< fewer samples, points or matches than the computation needs
-  degenerate,    ///< the data do not determine the result in every direction
-  diverged,      ///< an iteration left its trust region
+  empty,              ///< a required input is missing
+  non_finite,         ///< NaN or infinity
+  time_order,         ///< a time stamp is not later than the previous time stamp
+  gap,                ///< a time stamp is too long after the previous time stamp
+  out_of_range,       ///< a value is outside its stated bounds
+  insufficient_data,  ///< fewer samples, points or matches than the computation needs
+  degenerate,         ///< the data do not determine the result in every direction
+  diverged,           ///< an iteration left its trust region
 };
 
 const char* to_string(ErrorCode error_code);

@@ -25,7 +25,8 @@ struct LidarImuCalibration {
   Eigen::Matrix<double, kErrorCount, 1> minus(const LidarImuCalibration& other) const;
 };
 
-/// `deviations` is the result of LidarImuCalibrationPrior::deviations(). Returns `out_of_range` above kDistanceMax_sigmas.
+/// `deviations` is the result of LidarImuCalibrationPrior::deviations(). Returns `out_of_range` above
+/// kDistanceMax_sigmas.
 Status distance_verdict(double deviations);
 
 /// Calibration that the caller states, with one standard deviation per axis for rotation, translation and time offset.

@@ -48,7 +48,7 @@ struct PositionReading {
   TimeNs time_ns = 0;  ///< in the IMU's clock
   Eigen::Vector3d antenna_position_P_m = Eigen::Vector3d::Zero();
   Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< in the frame P; the mean variance of the axes is used
-  Eigen::Vector3d antenna_lever_arm_I_m = Eigen::Vector3d::Zero();         ///< position of the antenna or tag A in IMU axes
+  Eigen::Vector3d antenna_lever_arm_I_m = Eigen::Vector3d::Zero();  ///< position of the antenna or tag A in IMU axes
 };
 
 /// PositionFrame is the estimated transform from the odometry frame W of the poses to the position frame P of the
@@ -56,8 +56,8 @@ struct PositionReading {
 struct PositionFrame {
   Eigen::Isometry3d T_readings_world = Eigen::Isometry3d::Identity();  ///< the rotation is about the vertical
   Eigen::Vector3d reference_point_W_m = Eigen::Vector3d::Zero();
-  /// Covariance of the error of T_PW, in axes of the position frame P: translation at `reference_point_W_m` [m], and rotation
-  /// about the vertical through this point [rad].
+  /// Covariance of the error of T_PW, in axes of the position frame P: translation at `reference_point_W_m` [m], and
+  /// rotation about the vertical through this point [rad].
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
 
   /// Converts a pose from the odometry frame W to the position frame P. The covariance of position and heading comes

@@ -103,11 +103,12 @@ class LidarInertialOdometry {
   /// Registers a sweep of points fired in [start_ns, end_ns]. Consecutive sweeps must not overlap. A point with NaN
   /// coordinates is a laser pulse without a return.
   ///
-  /// Returns `time_order` if the sweep ends before its start or overlaps the last sweep. Returns `insufficient_data` if the IMU
-  /// samples do not cover the sweep, and `out_of_range` if a point fired outside the sweep. If the points are unusable,
-  /// the pose is the inertial prediction and the verdict is `rejected`. The status of unusable points is `empty` (no
-  /// points), `non_finite` (no finite point), `insufficient_data` (no point in range) or `degenerate` (one time stamp). Before
-  /// the map starts, a sweep with too few usable points has no pose, and `report.trajectory` is empty.
+  /// Returns `time_order` if the sweep ends before its start or overlaps the last sweep. Returns `insufficient_data` if
+  /// the IMU samples do not cover the sweep, and `out_of_range` if a point fired outside the sweep. If the points are
+  /// unusable, the pose is the inertial prediction and the verdict is `rejected`. The status of unusable points is
+  /// `empty` (no points), `non_finite` (no finite point), `insufficient_data` (no point in range) or `degenerate` (one
+  /// time stamp). Before the map starts, a sweep with too few usable points has no pose, and `report.trajectory` is
+  /// empty.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, SweepReport& report);
 
   /// Predicts pose and velocity with covariance at the last of `samples`, by inertial integration from the end of the

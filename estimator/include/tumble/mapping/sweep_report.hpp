@@ -48,7 +48,8 @@ struct SweepReport {
   /// Unit vector of position and attitude in world axes, along which the lidar constrains the pose least. The attitude
   /// is multiplied by the root-mean-square distance of the points from the IMU.
   Eigen::Matrix<double, 6, 1> least_constrained_direction = Eigen::Matrix<double, 6, 1>::Zero();
-  Eigen::Vector3d mean_saturation_deficit_rad_s = Eigen::Vector3d::Zero();  ///< mean correction of the clipped gyro axes
+  Eigen::Vector3d mean_saturation_deficit_rad_s =
+      Eigen::Vector3d::Zero();        ///< mean correction of the clipped gyro axes
   std::size_t points_used = 0;        ///< finite returns in range that do not hit the robot
   std::size_t isolated_points = 0;    ///< unused returns that no neighbouring beam confirms
   std::size_t points_registered = 0;  ///< usable points after sampling, one per voxel

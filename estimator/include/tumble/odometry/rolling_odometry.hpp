@@ -25,9 +25,10 @@ struct RollingOdometryExpertParams;
 extern template class HeapValue<RollingOdometryExpertParams>;
 
 /// Estimates the pose of a rolling sphere from one to four IMUs, through grip, slip, bumps and slopes. The reported
-/// poses are live, smoothed with the data of the following `lag_s`, or smoothed with the whole recording. ImuSaturationLimits
-/// flags readings that a device clips without reporting saturation, ImuMerge fuses the IMUs, and RollingSmoother (with
-/// its RollingFilter) estimates the motion. With kWholeRecording, merge_recordings() flags and fuses the readings.
+/// poses are live, smoothed with the data of the following `lag_s`, or smoothed with the whole recording.
+/// ImuSaturationLimits flags readings that a device clips without reporting saturation, ImuMerge fuses the IMUs, and
+/// RollingSmoother (with its RollingFilter) estimates the motion. With kWholeRecording, merge_recordings() flags and
+/// fuses the readings.
 ///
 /// The z axis of the world frame points upwards. The first sample defines origin and yaw of the world frame; the origin
 /// is the sphere's centre. The sphere should be at rest for one second at the start.
@@ -47,7 +48,7 @@ class RollingOdometry {
     Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
   };
   struct Params {
-    double radius_m = 0.0;    ///< required; has no default
+    double radius_m = 0.0;       ///< required; has no default
     std::vector<ImuSetup> imus;  ///< 1 to 4 IMUs; required
     /// Standard deviation of the sphere's true centre relative to the stated centre, from which the poses T_BI of the
     /// IMUs are measured. RollingOdometry estimates the true centre.
@@ -86,7 +87,8 @@ class RollingOdometry {
     }
   };
   struct Calibration {
-    Eigen::Vector3d sphere_centre_B_m = Eigen::Vector3d::Zero();  ///< true centre of the sphere, relative to the stated centre
+    Eigen::Vector3d sphere_centre_B_m =
+        Eigen::Vector3d::Zero();  ///< true centre of the sphere, relative to the stated centre
     /// radius and its standard deviation; 0: the radius is fixed (expert.rolling.filter.radius_sigma_m)
     double radius_m = 0.0, radius_sigma_m = 0.0;
   };
@@ -114,9 +116,9 @@ class RollingOdometry {
   /// Processes simultaneous readings of all IMUs, with the time stamp of the first IMU. SampleClock corrects time
   /// stamps with jitter. Pass NaN for an IMU without a reading. OutlierFilter rejects outliers of each IMU, and may
   /// delay the samples of all IMUs by one to five. newest() is then older. On error, the state is unchanged. The
-  /// errors are `insufficient_data` (wrong number of IMUs, or no reading), `time_order`, `degenerate` (no gravity in the first
-  /// sample), `gap` and `out_of_range`. `out_of_range` means that the run has finished, the time stamp exceeds
-  /// kStampMax_ns, or the only IMU with readings has a frozen axis.
+  /// errors are `insufficient_data` (wrong number of IMUs, or no reading), `time_order`, `degenerate` (no gravity in
+  /// the first sample), `gap` and `out_of_range`. `out_of_range` means that the run has finished, the time stamp
+  /// exceeds kStampMax_ns, or the only IMU with readings has a frozen axis.
   ///
   /// A single wrong time stamp causes the loss of one sample. After a gap of more than a second between two samples,
   /// add_imus() rejects the first sample with `gap`, and restarts with the second sample. If the clock steps back,
@@ -193,9 +195,10 @@ class RollingOdometry {
   /// All poses of the new run have the flag `uncertain`. If the sphere may have moved, call reset(pose) after load().
   ///
   /// `last_pose` receives the saved pose with its time in the clock of the saved run, or is empty. On error, the object
-  /// is unchanged, and the returned status names the field, the saved value and the bound. The error is `insufficient_data`
-  /// (truncated bytes), `non_finite` or `out_of_range`. load() rejects damaged bytes, and bytes that another version or
-  /// a TumblingOdometry saved. load() also rejects a saved run with another radius or other IMUs.
+  /// is unchanged, and the returned status names the field, the saved value and the bound. The error is
+  /// `insufficient_data` (truncated bytes), `non_finite` or `out_of_range`. load() rejects damaged bytes, and bytes
+  /// that another version or a TumblingOdometry saved. load() also rejects a saved run with another radius or other
+  /// IMUs.
   Status load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose = nullptr);
 
   struct Impl;  ///< private implementation

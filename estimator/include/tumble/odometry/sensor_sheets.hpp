@@ -21,12 +21,12 @@ struct ImuDataSheet {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.rate_hz, {"rate_hz", "Hz", 1.0, 1e5, "samples per second", ParameterRank::common_use});
-    visit(p.gyro_range_rad_s,
-          {"gyro_range_rad_s", "rad/s", 0.0, 100.0, "stated range of the gyro; 0: not stated", ParameterRank::common_use});
+    visit(p.gyro_range_rad_s, {"gyro_range_rad_s", "rad/s", 0.0, 100.0, "stated range of the gyro; 0: not stated",
+                               ParameterRank::common_use});
     visit(p.accel_range_m_s2, {"accel_range_m_s2", "m/s^2", 0.0, 1e5,
                                "stated range of the accelerometer; 0: not stated", ParameterRank::common_use});
-    visit(p.gyro_noise_rad_s_sqrt_hz,
-          {"gyro_noise_rad_s_sqrt_hz", "rad/s/sqrt(Hz)", 1e-9, 1.0, "noise density of the gyro", ParameterRank::common_use});
+    visit(p.gyro_noise_rad_s_sqrt_hz, {"gyro_noise_rad_s_sqrt_hz", "rad/s/sqrt(Hz)", 1e-9, 1.0,
+                                       "noise density of the gyro", ParameterRank::common_use});
     visit(p.accel_noise_m_s2_sqrt_hz, {"accel_noise_m_s2_sqrt_hz", "m/s^2/sqrt(Hz)", 1e-9, 100.0,
                                        "noise density of the accelerometer", ParameterRank::common_use});
   }

@@ -12,7 +12,8 @@
 
 namespace tumble {
 
-/// SecondMappingPassParams contains the parameters of the second pass over the first seconds of motion; see TumblingOdometry.
+/// SecondMappingPassParams contains the parameters of the second pass over the first seconds of motion; see
+/// TumblingOdometry.
 struct SecondMappingPassParams {
   double after_s = 3.0;    ///< duration of motion before the second pass starts; 0: none
   double lost_s = 0.4;     ///< duration of tracking failure that starts a second pass; 0: never

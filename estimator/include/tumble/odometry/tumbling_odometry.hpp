@@ -29,8 +29,8 @@ struct SaturationLevels;
 struct LidarScale;
 
 /// Estimates pose, velocity and map of a tumbling body from a lidar and one IMU, whose gyro may saturate. SampleClock
-/// corrects time stamps that a host computer assigned. MotionRegimeStream estimates the angular velocity of each sample with
-/// a delay of `lag_s`.
+/// corrects time stamps that a host computer assigned. MotionRegimeStream estimates the angular velocity of each sample
+/// with a delay of `lag_s`.
 ///
 /// Three poses of increasing accuracy are reported. newest() predicts the IMU's pose at the newest sample by inertial
 /// integration from the last registered sweep. take() returns a sweep registered to the map (`report.pose`), at most
@@ -41,21 +41,21 @@ struct LidarScale;
 /// TumblingOdometry subtracts the offset and restarts, which needs a second at rest.
 ///
 /// Some seconds after motion starts, SecondMappingPass processes the first seconds of motion again with the calibration
-/// estimated so far. TumblingOdometry then continues with the map and pose of SecondMappingPass; poses that were already
-/// reported are not changed. If no sweep arrives for a second, inertial integration continues, and take() returns a
-/// sweep without points.
+/// estimated so far. TumblingOdometry then continues with the map and pose of SecondMappingPass; poses that were
+/// already reported are not changed. If no sweep arrives for a second, inertial integration continues, and take()
+/// returns a sweep without points.
 ///
 /// With `lag_s` = kWholeRecording, add_imu() and add_sweep() store the data, and finish() estimates rates, poses and
-/// map from the whole recording. finish() estimates the rates with MotionRegimeSmoother, checks the IMU, and repeats the
-/// mapping until the lidar's calibration has converged. With kWholeRecording, there are no live poses, and take()
+/// map from the whole recording. finish() estimates the rates with MotionRegimeSmoother, checks the IMU, and repeats
+/// the mapping until the lidar's calibration has converged. With kWholeRecording, there are no live poses, and take()
 /// returns all sweeps after finish(). A step of the clock ends the recording, but a gap in the data does not. finish()
 /// needs more stack and memory than other functions.
 ///
-/// An IMU sample costs one step of MotionRegimeStream, and sometimes the registration of a sweep. After start-up, add_imu()
-/// allocates memory only if the sample completes a sweep. While SecondMappingPass runs, a sweep costs up to four
-/// registrations. The end of SecondMappingPass costs five additional registrations. The bounded memory depends on lag, map
-/// radius, `sweeps_max` and the buffer of SecondMappingPass. The map also stores 12 bytes per sweep until the robot has moved
-/// ten metres. A call needs at most 64 KiB of stack.
+/// An IMU sample costs one step of MotionRegimeStream, and sometimes the registration of a sweep. After start-up,
+/// add_imu() allocates memory only if the sample completes a sweep. While SecondMappingPass runs, a sweep costs up to
+/// four registrations. The end of SecondMappingPass costs five additional registrations. The bounded memory depends on
+/// lag, map radius, `sweeps_max` and the buffer of SecondMappingPass. The map also stores 12 bytes per sweep until the
+/// robot has moved ten metres. A call needs at most 64 KiB of stack.
 ///
 /// TumblingOdometry starts no threads, uses no files and prints nothing. A copy of a TumblingOdometry contains the
 /// complete state, so the copy can process the following data. The limitations of MotionRegimeStream and
@@ -133,10 +133,10 @@ class TumblingOdometry {
   ///
   /// With kWholeRecording, finish() processes the whole recording, and later samples and sweeps are rejected until
   /// reset(). take() then returns all sweeps with their final poses in `report.pose` and `report.trajectory`. Returns
-  /// `ok`, an error of AngularRateSmoother::estimate() such as `insufficient_data`, or the error of a sample in the mapper. Without
-  /// kWholeRecording, finish() returns `ok`. finish() calls `on_sweep` before each sweep, with the number of processed
-  /// sweeps and the number of all sweeps, for a progress display. Each pass over the recording starts again at 0
-  /// processed sweeps.
+  /// `ok`, an error of AngularRateSmoother::estimate() such as `insufficient_data`, or the error of a sample in the
+  /// mapper. Without kWholeRecording, finish() returns `ok`. finish() calls `on_sweep` before each sweep, with the
+  /// number of processed sweeps and the number of all sweeps, for a progress display. Each pass over the recording
+  /// starts again at 0 processed sweeps.
   Status finish(const SweepProgress& on_sweep = {});
   /// Starts a new run with a new map, at the origin and at rest. After reset(), take() still returns the remaining
   /// sweeps of the old run, and counters keep their values.
@@ -150,11 +150,11 @@ class TumblingOdometry {
   /// last sweep). `velocity_covariance_I_m2_s2` (optional) is the covariance of the velocity error in IMU axes.
   Status newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2 = nullptr) const;
   /// Reports the suspected faults of the sensors and of the estimate. Estimation continues after any finding, and a
-  /// health finding ends when its fault ends (at the latest a minute later). The checks are AngularRateStream::health(),
-  /// ImuPlausibility, RestGravity, LidarScale, LidarInertialOdometry::check_vertical() and localised(), Localisation
-  /// and LidarImuCalibrationPrior. With kWholeRecording, finish() checks the whole recording (detail/imu_findings.hpp), and
-  /// before finish() there is no finding. Cost: a few hundred operations; health().ok() allocates nothing without a
-  /// finding.
+  /// health finding ends when its fault ends (at the latest a minute later). The checks are
+  /// AngularRateStream::health(), ImuPlausibility, RestGravity, LidarScale, LidarInertialOdometry::check_vertical() and
+  /// localised(), Localisation and LidarImuCalibrationPrior. With kWholeRecording, finish() checks the whole recording
+  /// (detail/imu_findings.hpp), and before finish() there is no finding. Cost: a few hundred operations; health().ok()
+  /// allocates nothing without a finding.
   SensorHealth health() const;
   /// Returns the estimated scale of the lidar's ranges relative to the IMU, as far as the motion determines the scale
   /// (mapping/detail/lidar_scale.hpp).
@@ -181,8 +181,8 @@ class TumblingOdometry {
   bool second_mapping_pass_applied() const;
   /// The following counters are 0 in normal operation. The function rejected_samples() counts IMU samples that the
   /// mapper rejected. The function dropped_sweeps() counts sweeps that take() did not return in time. The function
-  /// sweeps_before_first_imu() counts sweeps that ended before the first IMU sample. The function unused_odometer_readings()
-  /// counts odometer readings that span two sweeps.
+  /// sweeps_before_first_imu() counts sweeps that ended before the first IMU sample. The function
+  /// unused_odometer_readings() counts odometer readings that span two sweeps.
   std::size_t rejected_samples() const;
   std::size_t dropped_sweeps() const;
   std::size_t sweeps_before_first_imu() const;
@@ -204,8 +204,8 @@ class TumblingOdometry {
   /// that is not yet localised in the map of use_map() saves this map.
   ///
   /// The saved bytes do not contain velocity, filter states, health findings, counters, readings of further sensors,
-  /// and the buffer of SecondMappingPass. Sweeps that wait for IMU samples or for take() are not saved. With kWholeRecording,
-  /// the saved bytes contain the results of finish(), without the recorded data.
+  /// and the buffer of SecondMappingPass. Sweeps that wait for IMU samples or for take() are not saved. With
+  /// kWholeRecording, the saved bytes contain the results of finish(), without the recorded data.
   std::vector<std::byte> save() const;
   /// Starts a new run from saved bytes, like a new object. The saved calibration replaces the calibration of the
   /// parameters, also after a later reset(). The saved biases get the uncertainty of the prior, because biases change
@@ -215,10 +215,10 @@ class TumblingOdometry {
   /// after load(). With kWholeRecording, the new run starts at the saved pose with a new map.
   ///
   /// `last_pose` receives the saved pose with its time in the clock of the saved run, or is empty. On error, the object
-  /// is unchanged, and the returned status names the field, the saved value and the bound. The error is `insufficient_data`
-  /// (truncated bytes), `non_finite`, `degenerate` or `out_of_range`. load() rejects damaged bytes, and bytes that
-  /// another version or a RollingOdometry saved. load() also rejects a saved run with another stated lever arm or lidar
-  /// mounting.
+  /// is unchanged, and the returned status names the field, the saved value and the bound. The error is
+  /// `insufficient_data` (truncated bytes), `non_finite`, `degenerate` or `out_of_range`. load() rejects damaged bytes,
+  /// and bytes that another version or a RollingOdometry saved. load() also rejects a saved run with another stated
+  /// lever arm or lidar mounting.
   Status load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose = nullptr);
 
   struct Impl;  ///< private implementation
@@ -233,8 +233,8 @@ class TumblingOdometry {
 std::vector<std::byte> save_map(std::span<const MapPoint> points);
 
 /// Loads a map that save_map() saved, for LidarInertialOdometry::use_map(). On error, `points` is unchanged, and the
-/// returned status names the field, the value and the bound. The error `insufficient_data` means truncated bytes. The errors
-/// `non_finite` and `out_of_range` mean another kind of data, another version, damaged bytes, or points that
+/// returned status names the field, the value and the bound. The error `insufficient_data` means truncated bytes. The
+/// errors `non_finite` and `out_of_range` mean another kind of data, another version, damaged bytes, or points that
 /// check_prior_map() rejects.
 Status load_map(std::span<const std::byte> bytes, std::vector<MapPoint>& points);
 

@@ -42,9 +42,9 @@ class RollingFilter {
     Vector x = Vector::Zero();  ///< errors: attitude (W), velocity and position of the IMU, constants
     Covariance covariance = Covariance::Zero();
     Eigen::Vector3d contact_velocity_W_m_s = Eigen::Vector3d::Zero();  ///< contact velocity at the last time step
-    double log_weight = 0.0;           ///< log probability relative to the most probable hypothesis
+    double log_weight = 0.0;              ///< log probability relative to the most probable hypothesis
     std::int64_t first_node_of_mode = 0;  ///< node at which the current contact mode began
-    std::int32_t parent = 0;           ///< index of the hypothesis' parent at the previous node
+    std::int32_t parent = 0;              ///< index of the hypothesis' parent at the previous node
     RollingMode mode = RollingMode::grip;
     bool operator==(const Hypothesis&) const = default;
   };
@@ -71,10 +71,11 @@ class RollingFilter {
     RollingNominalState nominal;
     RollingNodeIntegrals node_integrals;
     ImuAverage average;  ///< average of the readings that are not yet processed
-    Eigen::Matrix3d pruned_position_covariance_m2 = Eigen::Matrix3d::Zero();  ///< position spread of the pruned hypotheses
+    Eigen::Matrix3d pruned_position_covariance_m2 =
+        Eigen::Matrix3d::Zero();  ///< position spread of the pruned hypotheses
     RestDetector::State stationary_state;
     Eigen::Vector3d low_passed_rate_rad_s = Eigen::Vector3d::Zero();
-    bool position_constrained = false;      ///< the sphere is at rest and the reported position is constant
+    bool position_constrained = false;     ///< the sphere is at rest and the reported position is constant
     double variance_before_slip_m2 = 0.0;  ///< horizontal position variance at the last time step without an event
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
     std::array<Hypothesis, kHypotheses> hypotheses{};
@@ -98,7 +99,7 @@ class RollingFilter {
   template <typename Closed>
   Status step(const ImuSample& sample, State& state, Closed closed) const {
     return step_with_listener(sample, state,
-                     Listener{&closed, [](void* to, const State& at) { (*static_cast<Closed*>(to))(at); }});
+                              Listener{&closed, [](void* to, const State& at) { (*static_cast<Closed*>(to))(at); }});
   }
 
   /// The covariance of the returned estimate contains only the position block.

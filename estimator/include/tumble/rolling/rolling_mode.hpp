@@ -11,7 +11,7 @@ enum class RollingMode : std::uint8_t {
   slip,     ///< the contact point moves along the floor: the sphere spins too fast or slides
   bump,     ///< the contact point also rises or falls: an obstacle, or flight
   incline,  ///< the contact point is at rest; the floor has an estimated slope
-  uneven,    ///< the contact point is at rest; the floor rises and falls about the level
+  uneven,   ///< the contact point is at rest; the floor rises and falls about the level
 };
 inline constexpr int kRollingModes = 5;
 

@@ -24,14 +24,15 @@ struct AuxiliaryAccelerometer {
 /// additional IMU are not estimated, but increase the standard deviations of its readings.
 struct AuxiliaryImu {
   Eigen::Isometry3d T_imu_device = Eigen::Isometry3d::Identity();  ///< pose of C in the axes of the primary IMU
-  double gyro_noise_density = 5.236e-4;                    ///< [rad/s/sqrt(Hz)]; allowed: [1e-9, 1]
-  double accel_noise_density = 5.9e-4;                     ///< [m/s^2/sqrt(Hz)]; allowed: [1e-9, 10]
+  double gyro_noise_density = 5.236e-4;                            ///< [rad/s/sqrt(Hz)]; allowed: [1e-9, 1]
+  double accel_noise_density = 5.9e-4;                             ///< [m/s^2/sqrt(Hz)]; allowed: [1e-9, 10]
   double gyro_error_rad_s = 0.01;  ///< standard deviation of bias and other rate-independent errors; [1e-9, 10]
   double accel_error_m_s2 = 0.07;  ///< standard deviation of the difference of both IMUs' biases; [1e-9, 10]
   double scale_error = 2e-3;       ///< relative scale and misalignment error; allowed: [0, 1]
   double position_error_m = 2e-3;  ///< standard deviation of the position p_IC; allowed: [1e-9, 1]
   double clock_error_s = 1e-3;     ///< standard deviation of the clocks' time offset; allowed: [0, 0.1]
-  SensingDirections gyro_sensing_directions = {}, accel_sensing_directions = {};  ///< sensing directions; needed if an element clips
+  SensingDirections gyro_sensing_directions = {},
+                    accel_sensing_directions = {};  ///< sensing directions; needed if an element clips
 };
 
 /// Reading of an additional IMU, interpolated at the time of a sample of the primary IMU. Rate and force are in the
@@ -47,8 +48,8 @@ struct AuxiliaryReading {
 
 /// Interpolates the unclipped readings of an additional IMU at the time stamps of the primary IMU. The interpolation is
 /// linear between readings at most `gap_max_s` apart. `clippings` contains one entry of ClippingFinder per sample.
-/// Returns `ok`, an error of check_samples() other than `gap`, or `insufficient_data` if `clippings` has fewer entries than
-/// `samples`. On error, `out` is unchanged. Cost: O(N).
+/// Returns `ok`, an error of check_samples() other than `gap`, or `insufficient_data` if `clippings` has fewer entries
+/// than `samples`. On error, `out` is unchanged. Cost: O(N).
 Status align(const AuxiliaryImu& auxiliary_imu, std::span<const ImuSample> samples, std::span<const Clipping> clippings,
              std::span<const ImuSample> primary, double gap_max_s, std::vector<AuxiliaryReading>& out);
 

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "tumble/angular_velocity/detail/saturation_limit_detector.hpp"
 #include "tumble/angular_velocity/detail/rate_model_params.hpp"
+#include "tumble/angular_velocity/detail/saturation_limit_detector.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
 

@@ -14,9 +14,10 @@
 namespace tumble {
 
 struct SaturationLevels {
-  SaturationLimitDetector::State axis_limit_state;       ///< limits detected from equal readings, and limits from the data sheet
-  SaturationPlanes gyro_planes;                            ///< planes of the gyro's saturated readings; empty if not observed
-  SaturationPlanes accel_saturation_planes;                      ///< planes of the accelerometer's saturated readings
+  SaturationLimitDetector::State
+      axis_limit_state;                         ///< limits detected from equal readings, and limits from the data sheet
+  SaturationPlanes gyro_planes;                 ///< planes of the gyro's saturated readings; empty if not observed
+  SaturationPlanes accel_saturation_planes;     ///< planes of the accelerometer's saturated readings
   bool gyro_clips_after_compensation = false;   ///< the gyro clips after misalignment compensation, axis by axis
   bool accel_clips_after_compensation = false;  ///< the accelerometer clips after misalignment compensation
 
@@ -42,18 +43,19 @@ std::uint8_t clip_flags(const Clipping& clipping);
 /// ConfirmedSaturation contains the saturation limits that a frozen sensor cannot imitate. Limits from equal readings
 /// are excluded, because a frozen sensor also causes equal readings.
 struct ConfirmedSaturation {
-  SaturationPlanes gyro, accel;                                 ///< planes of saturated readings used to classify readings
+  SaturationPlanes gyro, accel;                           ///< planes of saturated readings used to classify readings
   double gyro_range_rad_s = 0.0, accel_range_m_s2 = 0.0;  ///< range from the data sheet; 0: unknown
   std::uint8_t flags(const ImuSample& sample, const Clipping& judged) const;
 };
 
-/// Finds the clipped readings of a recording from the device's clip flags, from equal readings (SaturationLimitDetector) and from
-/// tilted planes of saturated readings (SaturationPlaneFinder).
+/// Finds the clipped readings of a recording from the device's clip flags, from equal readings
+/// (SaturationLimitDetector) and from tilted planes of saturated readings (SaturationPlaneFinder).
 class ClippingFinder {
  public:
   struct Params {
     SaturationLimitDetector::Params axis_limit_params = {};
-    SaturationPlaneFinder::Params gyro_planes = {};  ///< if no range is stated here, the range of `axis_aligned_rails` applies
+    SaturationPlaneFinder::Params gyro_planes =
+        {};  ///< if no range is stated here, the range of `axis_aligned_rails` applies
     SaturationPlaneFinder::Params accel_saturation_planes = SaturationPlaneFinder::Params::defaults_for_accelerometer();
     /// If `tilted` is false, ClippingFinder uses only clip flags and equal readings.
     bool tilted = true;
@@ -83,8 +85,9 @@ class ClippingFinder {
   const SaturationLimitDetector& axis_limit_detector() const { return axis_limit_detector_; }
 
  private:
-  SaturationPlanes find_planes(std::span<const ImuSample> samples, Triad triad, const SaturationLimitDetector::State& axis_aligned_rails,
-                         bool& clips_after_compensation) const;
+  SaturationPlanes find_planes(std::span<const ImuSample> samples, Triad triad,
+                               const SaturationLimitDetector::State& axis_aligned_rails,
+                               bool& clips_after_compensation) const;
 
   SaturationLimitDetector axis_limit_detector_;
   // The first index is 0 for the gyro and 1 for the accelerometer.

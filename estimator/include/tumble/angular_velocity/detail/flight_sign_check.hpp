@@ -51,11 +51,12 @@ class FlightSignCheck {
   };
   struct State {
     ImuAverage average;
-    std::array<AveragedReading, 2> last_readings{};                        ///< the last two readings, oldest first
-    int readings = 0;                                       ///< number of valid entries of `last_readings`
-    std::array<double, kMirroredAlternatives> current_flight_duration_s{};              ///< current flight duration of each alternative
+    std::array<AveragedReading, 2> last_readings{};  ///< the last two readings, oldest first
+    int readings = 0;                                ///< number of valid entries of `last_readings`
+    std::array<double, kMirroredAlternatives>
+        current_flight_duration_s{};                                ///< current flight duration of each alternative
     std::array<double, kMirroredAlternatives> flight_duration_s{};  ///< total flight duration of each alternative
-    TimeNs last_flight_end_ns = 0;                          ///< end of the last flight of an alternative
+    TimeNs last_flight_end_ns = 0;                                  ///< end of the last flight of an alternative
     TimeNs last_time_ns = 0;
     bool started = false;
     bool operator==(const State&) const = default;

@@ -36,13 +36,13 @@ class FrozenAxes {
   };
   struct Axis {
     double reading = 0.0;
-    TimeNs since_ns = 0;               ///< first sample with the current reading
-    double repeated_s = 0.0;           ///< duration for which the current reading has repeated
-    bool flagged_by_device = false;       ///< the device has flagged the current reading as saturated
-    bool is_frozen = false;               ///< the axis is frozen at the current reading
-    double longest_s = 0.0;            ///< longest earlier repetition of a working axis
+    TimeNs since_ns = 0;                        ///< first sample with the current reading
+    double repeated_s = 0.0;                    ///< duration for which the current reading has repeated
+    bool flagged_by_device = false;             ///< the device has flagged the current reading as saturated
+    bool is_frozen = false;                     ///< the axis is frozen at the current reading
+    double longest_s = 0.0;                     ///< longest earlier repetition of a working axis
     double changing_readings_duration_s = 0.0;  ///< total time with changing readings
-    double smallest_reading_change = 0.0;      ///< smallest observed change; 0: none yet
+    double smallest_reading_change = 0.0;       ///< smallest observed change; 0: none yet
     double min_reading = 0.0, max_reading = 0.0;
     /// minimum, maximum and number of changes of the sensor's two other axes during the repetition
     std::array<double, 2> other_axes_min{}, other_axes_max{}, other_axes_changes{};
@@ -77,7 +77,7 @@ class FrozenAxes {
 
  private:
   void track_repeated_reading(std::size_t channel, const std::array<double, 6>& now, double dt_s, std::uint8_t flags,
-                        State& state) const;
+                              State& state) const;
   bool is_at_saturation_limit(std::size_t channel, const Axis& axis) const;
   static bool other_axes_change(std::size_t channel, const Axis& axis);
 

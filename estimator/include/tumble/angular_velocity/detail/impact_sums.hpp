@@ -11,8 +11,8 @@ struct TriadDelay {
   bool operator==(const TriadDelay&) const = default;
 };
 
-/// ImpactDelayCorrelation correlates angular acceleration and force at impacts, for delays of -4 to +4 samples between gyro and
-/// accelerometer: rate_smoother.md (R45).
+/// ImpactDelayCorrelation correlates angular acceleration and force at impacts, for delays of -4 to +4 samples between
+/// gyro and accelerometer: rate_smoother.md (R45).
 struct ImpactDelayCorrelation {
   static constexpr int kDelayMax_samples = 4, kDelaysPerSample = 8, kDelayMax = kDelayMax_samples * kDelaysPerSample,
                        kDelayCount = 2 * kDelayMax + 1;

@@ -12,7 +12,8 @@ namespace tumble {
 /// Calibration that one run estimates and that a later run may start from.
 struct CalibratedRig {
   RigCalibration calibration;
-  std::array<std::optional<double>, 6> saturation_limits;  ///< limits of gyro [rad/s], accelerometer [m/s^2]; empty: not observed
+  std::array<std::optional<double>, 6>
+      saturation_limits;  ///< limits of gyro [rad/s], accelerometer [m/s^2]; empty: not observed
   /// Intersections of the planes of the gyro's saturated readings with the axis of each sensing element, for the
   /// negative and the positive sign; empty if not observed.
   using Planes = std::array<std::array<std::optional<double>, 2>, 3>;
@@ -35,7 +36,8 @@ CalibratedRig calibrated_rig(const AngularRateReport& report);
 
 /// Updates `before` by the certain saturation limits of a run that could not estimate the rig constants. Returns empty
 /// if no plane of saturated readings is certain.
-std::optional<CalibratedRig> calibration_with_saturation_limits(const CalibratedRig& before, const SaturationLevels& rails);
+std::optional<CalibratedRig> calibration_with_saturation_limits(const CalibratedRig& before,
+                                                                const SaturationLevels& rails);
 
 /// Applies a calibration to the next run. The covariance of the constants is multiplied by `trust`, because a rig may
 /// be reassembled between runs. Throws std::invalid_argument if `trust` is below 1.
@@ -53,13 +55,15 @@ CalibratedRig prior_rig_calibration(const CalibratedRig* given, const AngularRat
 /// Returns the calibration to save after a run that started from `given` (null: none). If the run did not estimate the
 /// rig constants, the result is `given` or the prior of `model`, with the certain saturation limits of the run. Returns
 /// empty if the run estimated neither constants nor saturation limits.
-std::optional<CalibratedRig> calibrated_rig(const AngularRateReport& report, const CalibratedRig* given, const AngularRateModelParams& model);
+std::optional<CalibratedRig> calibrated_rig(const AngularRateReport& report, const CalibratedRig* given,
+                                            const AngularRateModelParams& model);
 
 /// Returns true if an AngularRateStream has not estimated the rig constants since its start or its last reset.
 bool is_at_prior(const AngularRateStream& stream, const AngularRateStream::State& state);
-/// Returns the calibration to save after a run of an AngularRateStream, which estimates no sensor error except the delay.
+/// Returns the calibration to save after a run of an AngularRateStream, which estimates no sensor error except the
+/// delay.
 std::optional<CalibratedRig> calibrated_rig(const AngularRateStream& stream, const AngularRateStream::Params& params,
-                                    const CalibratedRig* given, const AngularRateStream::State& state);
+                                            const CalibratedRig* given, const AngularRateStream::State& state);
 
 /// Returns the larger of the Mahalanobis distances of lever arm and inertia between two calibrations, each divided by
 /// the square root of its dimension. In 18 pairs of runs on an unchanged rig, the result was 0.14 to 1.0; an inertia

@@ -11,21 +11,21 @@ namespace tumble {
 struct PartialSaturation {
   bool saturated = false;
   double expected_saturation_deficit_rad_s = 0.0;  ///< expected |truth| - |reading|
-  double sigma_rad_s = 0.0;             ///< standard deviation of the saturation deficit
+  double sigma_rad_s = 0.0;                        ///< standard deviation of the saturation deficit
 };
 
 /// Estimates the saturation deficit of a partly saturated reading from its unsaturated neighbour, for a rate with
 /// constant slope: rails.md (R70). `neighbour_rad_s` is the smaller of the neighbours' readings, with a sign for which
 /// the saturation limit is positive.
 PartialSaturation partial_saturation(double reading_rad_s, double neighbour_rad_s, double rail_rad_s,
-                                         double noise_rad_s);
+                                     double noise_rad_s);
 
 /// Returns the smaller reading of the neighbours `before` and `after`, which may be null: rails.md (R70). `read`
 /// converts the angular velocity of a neighbour to a reading. A neighbour flagged as saturated is used only if most of
 /// its averaging window was unsaturated. Returns the saturation limit if there is no usable neighbour.
 template <class Read>
 double unsaturated_neighbour_reading(double reading_rad_s, double rail_rad_s, int axis, const ImuSample* before,
-                             const ImuSample* after, const Read& read) {
+                                     const ImuSample* after, const Read& read) {
   double smallest = rail_rad_s;
   for (const ImuSample* beside : {before, after}) {
     if (beside == nullptr) continue;

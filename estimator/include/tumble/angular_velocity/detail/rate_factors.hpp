@@ -22,25 +22,29 @@ struct AngularRateFactor {
 };
 
 /// Gyro residual while unsaturated: rate + bias - reading [rad/s].
-AngularRateFactor gyro_factor(const AngularRateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_rad_s);
+AngularRateFactor gyro_factor(const AngularRateKnot& knot, const RigConstants& rig,
+                              const Eigen::Vector3d& reading_rad_s);
 
 /// Residual of the gyro per sensing element while an element clips: the component of (rate + bias - reading) along the
 /// sensing direction [rad/s].
-AngularRateFactor sensing_axis_factor(const AngularRateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_rad_s);
+AngularRateFactor sensing_axis_factor(const AngularRateKnot& knot, const RigConstants& rig,
+                                      const Eigen::Vector3d& reading_rad_s);
 
 /// Residual of the accelerometer in free flight [m/s^2]: tangential plus centripetal force at the lever arm, plus bias,
 /// minus reading.
-AngularRateFactor flight_force_factor(const AngularRateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_m_s2);
+AngularRateFactor flight_force_factor(const AngularRateKnot& knot, const RigConstants& rig,
+                                      const Eigen::Vector3d& reading_m_s2);
 
 /// Residual of an accelerometer in free flight whose readings are `delay_s` late [m/s^2]. `jacobian_delay` (or null)
 /// receives the derivative of the residual with respect to the delay.
-AngularRateFactor delayed_flight_force_factor(const AngularRateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_m_s2,
-                                 double delay_s, Eigen::Vector3d* jacobian_delay);
+AngularRateFactor delayed_flight_force_factor(const AngularRateKnot& knot, const RigConstants& rig,
+                                              const Eigen::Vector3d& reading_m_s2, double delay_s,
+                                              Eigen::Vector3d* jacobian_delay);
 
-/// Residual of delayed_flight_force_factor() with derivatives only with respect to lever arm and accelerometer bias, at lower
-/// cost.
+/// Residual of delayed_flight_force_factor() with derivatives only with respect to lever arm and accelerometer bias, at
+/// lower cost.
 AngularRateFactor delayed_flight_calibration_jacobian(const AngularRateKnot& knot, const RigConstants& rig,
-                                               const Eigen::Vector3d& reading_m_s2, double delay_s);
+                                                      const Eigen::Vector3d& reading_m_s2, double delay_s);
 
 /// Returns the second time derivative of the specific force at the lever arm in free flight [m/s^4].
 Eigen::Vector3d flight_angular_jerk(const AngularRateKnot& knot, const RigConstants& rig);

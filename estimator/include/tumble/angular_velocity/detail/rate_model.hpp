@@ -35,29 +35,33 @@ class AngularRateModel {
 
   /// Moves the unmeasured rates of a sample in contact to the minimum of the contact force, if this minimum is far
   /// below the current contact force.
-  void search_flight_solutions(const AngularRateObservation& observation, const RigConstants& rig, AngularRateEstimate& estimate) const;
+  void search_flight_solutions(const AngularRateObservation& observation, const RigConstants& rig,
+                               AngularRateEstimate& estimate) const;
 
-  void initialise_rate_bounds(const AngularRateObservation& observation, const RigConstants& rig, AngularRateEstimate& estimate) const;
+  void initialise_rate_bounds(const AngularRateObservation& observation, const RigConstants& rig,
+                              AngularRateEstimate& estimate) const;
 
   /// Refines the lower bounds of a sample's clipped rates by expectation propagation (Minka 2001). `damping` in (0, 1]
   /// is the weight of the new bound.
-  void update_bounds(const AngularRateObservation& observation, const RigConstants& rig, const arrow::Conditional& conditional,
-                     const RigConstants::Matrix& rig_covariance, double damping, AngularRateEstimate& estimate) const;
+  void update_bounds(const AngularRateObservation& observation, const RigConstants& rig,
+                     const arrow::Conditional& conditional, const RigConstants::Matrix& rig_covariance, double damping,
+                     AngularRateEstimate& estimate) const;
 
   /// `rig_spread` is null, or the covariance of the calibration. If a covariance is passed, the sample has a reduced
   /// weight and does not update the calibration. Pass a covariance for short flights, because a different calibration
   /// could explain the same readings as contact.
-  void add_sample(const AngularRateObservation& observation, const AngularRateEstimate& estimate, const RigConstants& rig,
-                  arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* rig_spread = nullptr) const;
+  void add_sample(const AngularRateObservation& observation, const AngularRateEstimate& estimate,
+                  const RigConstants& rig, arrow::Block& block, arrow::Corner& corner,
+                  const RigConstants::Matrix* rig_spread = nullptr) const;
 
   /// Adds the derivatives of a sample's gradient with respect to the sensor errors, and the sample's information about
   /// these errors. Clipped elements and samples in contact contribute no information about SensorErrors.
-  void add_sensor_errors(const AngularRateObservation& observation, const AngularRateEstimate& estimate, const RigConstants& rig,
-                  arrow::ErrorMatrix& block, arrow::BorderErrors& border, SensorErrorInformation& evidence,
-                  bool rig_spread = false) const;
+  void add_sensor_errors(const AngularRateObservation& observation, const AngularRateEstimate& estimate,
+                         const RigConstants& rig, arrow::ErrorMatrix& block, arrow::BorderErrors& border,
+                         SensorErrorInformation& evidence, bool rig_spread = false) const;
 
-  void add_motion_model(const AngularRateEstimate& from, const AngularRateEstimate& to, double dt_s, arrow::Block& block,
-                arrow::Block& next) const;
+  void add_motion_model(const AngularRateEstimate& from, const AngularRateEstimate& to, double dt_s,
+                        arrow::Block& block, arrow::Block& next) const;
 
   void add_rig_prior(const RigConstants& rig, arrow::Corner& corner) const;
 
@@ -72,8 +76,9 @@ class AngularRateModel {
   arrow::StateVector scaled_difference(const Eigen::Matrix<double, 6, 1>& difference) const;
   /// Returns the covariance to report, which includes the uncertain time of the reading. In contact, the reported
   /// covariance is larger than the least-squares covariance `covariance_rad2_s2`.
-  Eigen::Matrix3d output_covariance(const Eigen::Matrix3d& covariance_rad2_s2, const AngularRateObservation& observation,
-                           const AngularRateEstimate& estimate) const;
+  Eigen::Matrix3d output_covariance(const Eigen::Matrix3d& covariance_rad2_s2,
+                                    const AngularRateObservation& observation,
+                                    const AngularRateEstimate& estimate) const;
   double gyro_sigma_rad_s() const { return gyro_sigma_rad_s_; }
   /// Returns period_s / model_error_s, at most 1: the weight of one sample, because close samples have equal model
   /// errors.
@@ -86,24 +91,27 @@ class AngularRateModel {
   };
   /// Converts the flight residual to element directions if an accelerometer element clips. Returns variances from
   /// uncertain sensing directions and from the saturation deficit of the specific force.
-  static Eigen::Vector3d accel_sensing_axis_readings(const AngularRateObservation& observation, AngularRateFactor& flight);
+  static Eigen::Vector3d accel_sensing_axis_readings(const AngularRateObservation& observation,
+                                                     AngularRateFactor& flight);
   ForceFactor force_factor(const AngularRateObservation& observation, const AngularRateEstimate& estimate,
                            const RigConstants& rig) const;
   AngularRateKnot knot_at_reading(const AngularRateObservation& observation, const AngularRateEstimate& estimate) const;
   Eigen::Vector3d corrected_rate(const AngularRateObservation& observation, const AngularRateEstimate& estimate) const;
-  AngularRateFactor flight(const AngularRateObservation& observation, const AngularRateKnot& knot, const RigConstants& rig,
-                    Eigen::Vector3d* jacobian_delay = nullptr) const;
-  AngularRateFactor flight_force_calibration_jacobian(const AngularRateObservation& observation, const AngularRateKnot& knot,
-                                         const RigConstants& rig) const;
-  double gyro_information(const AngularRateObservation& observation, const AngularRateEstimate& estimate, int axis) const;
+  AngularRateFactor flight(const AngularRateObservation& observation, const AngularRateKnot& knot,
+                           const RigConstants& rig, Eigen::Vector3d* jacobian_delay = nullptr) const;
+  AngularRateFactor flight_force_calibration_jacobian(const AngularRateObservation& observation,
+                                                      const AngularRateKnot& knot, const RigConstants& rig) const;
+  double gyro_information(const AngularRateObservation& observation, const AngularRateEstimate& estimate,
+                          int axis) const;
   void add_gyro(const AngularRateObservation& observation, const AngularRateEstimate& estimate, const RigConstants& rig,
                 arrow::Block& block, arrow::Corner& corner) const;
-  void add_sensing_axis_readings(const AngularRateObservation& observation, const AngularRateEstimate& estimate, const RigConstants& rig,
-                    arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* rig_spread) const;
+  void add_sensing_axis_readings(const AngularRateObservation& observation, const AngularRateEstimate& estimate,
+                                 const RigConstants& rig, arrow::Block& block, arrow::Corner& corner,
+                                 const RigConstants::Matrix* rig_spread) const;
   static bool has_no_error_information(const AngularRateEstimate& estimate);
   static void exclude_from_calibration(const AngularRateObservation& observation, AngularRateFactor& flight);
-  void add_auxiliary_imus(const AngularRateObservation& observation, const AngularRateEstimate& estimate, const RigConstants& rig,
-                          arrow::Block& block) const;
+  void add_auxiliary_imus(const AngularRateObservation& observation, const AngularRateEstimate& estimate,
+                          const RigConstants& rig, arrow::Block& block) const;
   Eigen::Matrix3d euler_equation_information(const AngularRateEstimate& estimate) const;
   double accel_sigma_m_s2(const AngularRateObservation& observation) const;
   double total_accel_variance(const AngularRateObservation& observation) const;
@@ -122,6 +130,6 @@ class AngularRateModel {
 
 /// In contact, a clipped axis counts as recovered if its standard deviation is at most `recovered_sigma_rad_s`.
 AngularRateSource rate_source_of(const AngularRateObservation& observation, const AngularRateEstimate& estimate,
-                       const Eigen::Matrix3d& covariance_rad2_s2, double recovered_sigma_rad_s);
+                                 const Eigen::Matrix3d& covariance_rad2_s2, double recovered_sigma_rad_s);
 
 }  // namespace tumble

@@ -6,11 +6,11 @@
 #include <cstdint>
 
 #include "tumble/angular_velocity/detail/auxiliary_imu.hpp"
-#include "tumble/angular_velocity/detail/saturation_limit_detector.hpp"
-#include "tumble/angular_velocity/detail/saturation_plane.hpp"
+#include "tumble/angular_velocity/detail/partial_saturation.hpp"
 #include "tumble/angular_velocity/detail/rate_factors.hpp"
 #include "tumble/angular_velocity/detail/rate_model_params.hpp"
-#include "tumble/angular_velocity/detail/partial_saturation.hpp"
+#include "tumble/angular_velocity/detail/saturation_limit_detector.hpp"
+#include "tumble/angular_velocity/detail/saturation_plane.hpp"
 #include "tumble/common/imu.hpp"
 
 namespace tumble {
@@ -21,8 +21,8 @@ struct AngularRateObservation {
   bool at_rest = false;  ///< the rate is zero, see RestDetector
   // bit masks of axes whose readings have a separate standard deviation; an axis is in at most one mask
   std::uint8_t partial_saturation_flags = 0;  ///< saturated during a part of the sample, see PartialSaturation
-  std::uint8_t rarely_high_axes = 0;   ///< few high readings, whose saturation limit is unknown
-  std::uint8_t suspected_saturation = 0;              ///< readings that may be at an unknown saturation limit: lower bounds
+  std::uint8_t rarely_high_axes = 0;          ///< few high readings, whose saturation limit is unknown
+  std::uint8_t suspected_saturation = 0;      ///< readings that may be at an unknown saturation limit: lower bounds
   Eigen::Vector3d expected_saturation_deficit_rad_s =
       Eigen::Vector3d::Zero();  ///< expected saturation deficit, with the reading's sign
   Eigen::Vector3d saturation_deficit_sigma_rad_s =
@@ -30,7 +30,8 @@ struct AngularRateObservation {
   /// ages of the readings at the time stamp of the sample
   double gyro_age_s = 0.0, accel_age_s = 0.0;
   bool gyro_repeats = false;
-  SensingDirections accel_sensing_directions = {};  ///< sensing directions of the accelerometer; needed if an element clips
+  SensingDirections accel_sensing_directions =
+      {};  ///< sensing directions of the accelerometer; needed if an element clips
   std::array<AuxiliaryReading, kAuxiliaryImusMax> auxiliary_imus =
       {};  ///< readings in the order of AngularRateModelParams::auxiliary_imus
 
@@ -41,7 +42,9 @@ struct AngularRateObservation {
   std::uint8_t partly_saturated_axes() const {
     return static_cast<std::uint8_t>(partial_saturation_flags | rarely_high_axes | suspected_saturation);
   }
-  std::uint8_t possibly_saturated_axes() const { return static_cast<std::uint8_t>(rarely_high_axes | suspected_saturation); }
+  std::uint8_t possibly_saturated_axes() const {
+    return static_cast<std::uint8_t>(rarely_high_axes | suspected_saturation);
+  }
 
   /// Returns the axes whose rate has no measurement or only a lower bound.
   std::uint8_t unmeasured_axes() const {
@@ -54,8 +57,9 @@ struct AngularRateObservation {
 };
 
 /// `before` and `after` are null if absent.
-void mark_partial_saturation(const SaturationLimitDetector& rails, const SaturationLimitDetector::State& state, double noise_rad_s,
-                               const ImuSample* before, AngularRateObservation& now, const ImuSample* after);
+void mark_partial_saturation(const SaturationLimitDetector& rails, const SaturationLimitDetector::State& state,
+                             double noise_rad_s, const ImuSample* before, AngularRateObservation& now,
+                             const ImuSample* after);
 
 struct AngularRateEstimate {
   AngularRateKnot knot;

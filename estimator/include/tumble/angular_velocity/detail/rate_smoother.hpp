@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/clipping_finder.hpp"
-#include "tumble/angular_velocity/detail/saturation_limit_detector.hpp"
-#include "tumble/angular_velocity/detail/saturation_plane.hpp"
 #include "tumble/angular_velocity/detail/rate_model_params.hpp"
 #include "tumble/angular_velocity/detail/rate_smoother_expert_params.hpp"
 #include "tumble/angular_velocity/detail/rest_detector.hpp"
+#include "tumble/angular_velocity/detail/saturation_limit_detector.hpp"
+#include "tumble/angular_velocity/detail/saturation_plane.hpp"
 #include "tumble/angular_velocity/detail/sensor_errors.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/common/imu.hpp"
@@ -25,8 +25,8 @@ struct AngularRateSmootherParams {
   AngularRateModelParams model = {};
   SaturationLimitDetector::Params saturation_detector = {};
   double recovered_sigma_rad_s = 0.5;  ///< clipped rates with a smaller standard deviation count as recovered
-  /// Maximum Mahalanobis distance of the estimated rig constants from their prior; beyond, AngularRateSmoother fixes the rig
-  /// constants at the prior.
+  /// Maximum Mahalanobis distance of the estimated rig constants from their prior; beyond, AngularRateSmoother fixes
+  /// the rig constants at the prior.
   double calibration_mahalanobis_max = 1.5;
   /// Sensor errors of an earlier run (AngularRateReport::sensor_errors), used only if `error_rounds_max` is above 1.
   std::optional<KnownSensorErrors> calibrated_errors = std::nullopt;
@@ -59,24 +59,29 @@ struct AngularRateReport {
   double last_step_rad_s = 0.0;  ///< largest change of a rate in the last iteration
   RigCalibration calibration;    ///< estimated calibration; can initialise the next run
   /// Mahalanobis distance of the estimated rig constants from their prior, in standard deviations. A Mahalanobis
-  /// distance far above 1 indicates a wrong prior, or a run without flight that AngularRateSmoother classified as flight.
+  /// distance far above 1 indicates a wrong prior, or a run without flight that AngularRateSmoother classified as
+  /// flight.
   double calibration_mahalanobis = 0.0;
-  bool calibration_at_prior = false;          ///< the rig constants were fixed at their prior
-  std::array<std::optional<double>, 6> saturation_limits;  ///< saturation limits: gyro [rad/s], accelerometer [m/s^2]; empty: none
-  std::array<bool, 6> saturation_limit_observed{};        ///< the limit was observed on this axis, not inferred from another axis
-  SaturationPlanes gyro_planes;                          ///< planes of the gyro's saturated readings, where observed
-  SaturationPlanes accel_saturation_planes;                    ///< planes of the accelerometer's saturated readings [m/s^2]
+  bool calibration_at_prior = false;  ///< the rig constants were fixed at their prior
+  std::array<std::optional<double>, 6>
+      saturation_limits;  ///< saturation limits: gyro [rad/s], accelerometer [m/s^2]; empty: none
+  std::array<bool, 6>
+      saturation_limit_observed{};           ///< the limit was observed on this axis, not inferred from another axis
+  SaturationPlanes gyro_planes;              ///< planes of the gyro's saturated readings, where observed
+  SaturationPlanes accel_saturation_planes;  ///< planes of the accelerometer's saturated readings [m/s^2]
   KnownSensorErrors sensor_errors;
   double data_sheet_probability = 1.0, synchronous_triads_probability = 1.0;  ///< see SensorErrorFit
   /// Standard deviation of a delay common to gyro and accelerometer [s]; 0 if the device agrees with its data sheet.
   double common_delay_sigma_s = 0.0;
-  double gyro_update_interval_s = 0.0, accel_update_interval_s = 0.0;  ///< update interval of repeated readings; 0: no repeated readings
-  int correction_iterations = 0;                              ///< number of optimisations with corrected readings
-  bool clips_after_compensation = false;             ///< the gyro clips after misalignment compensation, axis by axis
-  std::array<bool, 6> contradicts_stated_range{};    ///< whether the readings contradict the stated range
-  std::size_t samples = 0, clipped_sample_count = 0, recovered_in_flight = 0, recovered_in_contact = 0, lower_bound_only = 0;
+  double gyro_update_interval_s = 0.0,
+         accel_update_interval_s = 0.0;            ///< update interval of repeated readings; 0: no repeated readings
+  int correction_iterations = 0;                   ///< number of optimisations with corrected readings
+  bool clips_after_compensation = false;           ///< the gyro clips after misalignment compensation, axis by axis
+  std::array<bool, 6> contradicts_stated_range{};  ///< whether the readings contradict the stated range
+  std::size_t samples = 0, clipped_sample_count = 0, recovered_in_flight = 0, recovered_in_contact = 0,
+              lower_bound_only = 0;
   std::size_t missing_readings = 0;  ///< samples in which a gyro axis overflowed (flipped sign)
-  double flight_fraction = 0.0;         ///< fraction of samples classified as free flight
+  double flight_fraction = 0.0;      ///< fraction of samples classified as free flight
   /// Gyro axes that may be saturated at an unknown limit: one byte per sample, bit j for axis j.
   std::vector<std::uint8_t> suspected_saturation_axes;
 };
@@ -90,18 +95,18 @@ struct AngularRateReport {
 /// specific force and Euler's equation have lower weights. Between samples, the angular jerk is white noise, whose
 /// density increases with the contact force. The equations are in docs/maths/rate_smoother.md.
 ///
-/// A Gauss-Newton solver starts from the rates of the published method SaturationAwareRateEstimator. An iteration costs O(N), including the
-/// covariance.
+/// A Gauss-Newton solver starts from the rates of the published method SaturationAwareRateEstimator. An iteration costs
+/// O(N), including the covariance.
 ///
 /// AngularRateSmoother also estimates the constant errors of gyro and accelerometer (SensorErrors), and repeats the
 /// optimisation with corrected readings. The covariances of rates and rig constants include the remaining uncertainty
 /// of the sensor errors.
 ///
-/// While a sensing element clips, AngularRateSmoother processes the gyro element by element, because the device mixes the
-/// clipped element into all output axes.
+/// While a sensing element clips, AngularRateSmoother processes the gyro element by element, because the device mixes
+/// the clipped element into all output axes.
 ///
-/// The estimated rates refer to the time of the gyro's readings, which are means over the sample's window. AngularRateSmoother
-/// does not model a persistent contact point, or a delay common to gyro and accelerometer.
+/// The estimated rates refer to the time of the gyro's readings, which are means over the sample's window.
+/// AngularRateSmoother does not model a persistent contact point, or a delay common to gyro and accelerometer.
 class AngularRateSmoother {
  public:
   using Params = AngularRateSmootherParams;
@@ -109,15 +114,16 @@ class AngularRateSmoother {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit AngularRateSmoother(const Params& params);
 
-  /// Returns `ok`, `empty`, `insufficient_data` (less than two samples), `non_finite`, `time_order` or `diverged`. On error, the
-  /// outputs are unchanged. The rates before and after a gap in the samples are independent, with one common
+  /// Returns `ok`, `empty`, `insufficient_data` (less than two samples), `non_finite`, `time_order` or `diverged`. On
+  /// error, the outputs are unchanged. The rates before and after a gap in the samples are independent, with one common
   /// calibration.
-  Status estimate(std::span<const ImuSample> samples, std::vector<AngularRateState>& out, AngularRateReport& report) const {
+  Status estimate(std::span<const ImuSample> samples, std::vector<AngularRateState>& out,
+                  AngularRateReport& report) const {
     return estimate(samples, {}, out, report);
   }
   /// Estimates the rates with additional IMUs on the body. `auxiliary_imus` contains one list of readings per entry of
-  /// AngularRateModelParams::auxiliary_imus, computed by align(). Returns `insufficient_data` if the number of lists or of readings is
-  /// wrong.
+  /// AngularRateModelParams::auxiliary_imus, computed by align(). Returns `insufficient_data` if the number of lists or
+  /// of readings is wrong.
   Status estimate(std::span<const ImuSample> samples, std::span<const std::vector<AuxiliaryReading>> auxiliary_imus,
                   std::vector<AngularRateState>& out, AngularRateReport& report) const;
 

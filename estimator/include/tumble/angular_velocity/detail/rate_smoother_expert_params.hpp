@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "tumble/angular_velocity/detail/saturation_plane_finder.hpp"
 #include "tumble/angular_velocity/detail/rest_detector.hpp"
+#include "tumble/angular_velocity/detail/saturation_plane_finder.hpp"
 #include "tumble/common/parameters.hpp"
 
 namespace tumble {
@@ -32,7 +32,8 @@ struct RateOptimisationParams {
 };
 
 struct AngularRateSmootherExpertParams {
-  SaturationPlaneFinder::Params gyro_planes = {};  ///< if no range is stated, the range of AngularRateSmootherParams::rails applies
+  SaturationPlaneFinder::Params gyro_planes =
+      {};  ///< if no range is stated, the range of AngularRateSmootherParams::rails applies
   SaturationPlaneFinder::Params accel_saturation_planes = SaturationPlaneFinder::Params::defaults_for_accelerometer();
   RestDetector::Params rest_detector = {};
   RateOptimisationParams optimisation = {};

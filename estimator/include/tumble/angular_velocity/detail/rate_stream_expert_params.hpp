@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "tumble/angular_velocity/detail/saturation_plane_finder.hpp"
 #include "tumble/angular_velocity/detail/rest_detector.hpp"
+#include "tumble/angular_velocity/detail/saturation_plane_finder.hpp"
 #include "tumble/common/parameters.hpp"
 
 namespace tumble {
@@ -38,7 +38,8 @@ struct CalibrationInflationParams {
 };
 
 struct AngularRateStreamExpertParams {
-  SaturationPlaneFinder::Params gyro_planes = {};  ///< if no range is stated, the range of AngularRateStreamParams::rails applies
+  SaturationPlaneFinder::Params gyro_planes =
+      {};  ///< if no range is stated, the range of AngularRateStreamParams::rails applies
   SaturationPlaneFinder::Params accel_saturation_planes = SaturationPlaneFinder::Params::defaults_for_accelerometer();
   RestDetector::Params rest_detector = {};
   double initial_threshold_factor = 8.0;  ///< factor on a clipped sample's contact threshold; halved in each step

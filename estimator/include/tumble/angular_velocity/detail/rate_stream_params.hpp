@@ -4,17 +4,17 @@
 #include <algorithm>
 #include <memory>
 
-#include "tumble/angular_velocity/detail/saturation_limit_detector.hpp"
 #include "tumble/angular_velocity/detail/rate_model_params.hpp"
 #include "tumble/angular_velocity/detail/rate_stream_expert_params.hpp"
+#include "tumble/angular_velocity/detail/saturation_limit_detector.hpp"
 #include "tumble/angular_velocity/detail/sensor_errors.hpp"
 #include "tumble/common/parameters.hpp"
 
 namespace tumble {
 
 struct AngularRateStreamParams {
-  /// The priors of accelerometer bias (2 mg) and inertia are narrower than in AngularRateModelParams, because AngularRateStream
-  /// reports rates early.
+  /// The priors of accelerometer bias (2 mg) and inertia are narrower than in AngularRateModelParams, because
+  /// AngularRateStream reports rates early.
   AngularRateModelParams model = {.accel_bias_sigma_m_s2 = 0.02, .inertia_sigma = 0.15};
   SaturationLimitDetector::Params saturation_detector = {};
   double period_s = 0.01;                    ///< nominal time between samples
@@ -24,8 +24,8 @@ struct AngularRateStreamParams {
   double gap_max_s = 1.0;                    ///< longest time between samples
   double step_s = 0.005;                     ///< minimum time between Gauss-Newton steps; 0: with each sample
 
-  /// Sensor errors from an earlier run, used unchanged instead of model.errors. If empty, AngularRateStream corrects the
-  /// readings by model.errors and estimates the remaining uncertainty.
+  /// Sensor errors from an earlier run, used unchanged instead of model.errors. If empty, AngularRateStream corrects
+  /// the readings by model.errors and estimates the remaining uncertainty.
   std::shared_ptr<const KnownSensorErrors> calibrated_errors;
 
   using Expert = AngularRateStreamExpertParams;

@@ -12,14 +12,16 @@ namespace tumble {
 /// State of a repeated reading (sample and hold), which occurs if the sensor updates more slowly than the log.
 struct RepeatedReading {
   bool repeats_reading = false;                              ///< repeats the reading of the previous sample
-  double age_samples = 0.0;                          ///< mean age of the reading
+  double age_samples = 0.0;                                  ///< mean age of the reading
   double reading_period_samples = 1.0;                       ///< samples per reading; 1: no repeated readings
   Eigen::Vector3d reading_change = Eigen::Vector3d::Zero();  ///< change from the previous reading [unit of the reading]
 
   bool is_slower_than_samples() const { return reading_period_samples > 1.0; }
   /// Returns the time from the middle of the reading's averaging window to the middle of the sample's averaging window,
   /// in samples.
-  double delay_samples() const { return is_slower_than_samples() ? age_samples + 0.5 * (reading_period_samples - 1.0) : 0.0; }
+  double delay_samples() const {
+    return is_slower_than_samples() ? age_samples + 0.5 * (reading_period_samples - 1.0) : 0.0;
+  }
   /// Extrapolates with the slope of the last change.
   Eigen::Vector3d change_since_new_reading() const;
   bool operator==(const RepeatedReading&) const = default;

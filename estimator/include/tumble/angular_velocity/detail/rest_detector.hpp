@@ -54,11 +54,11 @@ class RestDetector {
     // sums of the latest consecutive readings that stay close to their mean
     Eigen::Vector3d rate_sum_rad_s = Eigen::Vector3d::Zero();
     Eigen::Vector3d force_sum_m_s2 = Eigen::Vector3d::Zero();
-    double weight = 0.0;              ///< number of readings in the sums; older readings count less
-    TimeNs first_ns = 0;              ///< time of the first sample in the sums
-    TimeNs last_averaged_reading_ns = 0;          ///< time of the last reading
-    TimeNs small_rate_since_ns = 0;  ///< start of the time in which the mean rate is within the bias bound
-    bool is_stationary = false;               ///< true if the IMU is at rest, up to the last reading
+    double weight = 0.0;                  ///< number of readings in the sums; older readings count less
+    TimeNs first_ns = 0;                  ///< time of the first sample in the sums
+    TimeNs last_averaged_reading_ns = 0;  ///< time of the last reading
+    TimeNs small_rate_since_ns = 0;       ///< start of the time in which the mean rate is within the bias bound
+    bool is_stationary = false;           ///< true if the IMU is at rest, up to the last reading
     // sums of the samples since the last averaged reading
     Eigen::Vector3d pending_rate_rad_s = Eigen::Vector3d::Zero();
     Eigen::Vector3d pending_force_m_s2 = Eigen::Vector3d::Zero();
@@ -77,11 +77,11 @@ class RestDetector {
   /// Processes a finite sample, and returns true if the IMU is at rest. `bias_rad_s` is the known gyro bias [rad/s].
   /// Cost: O(1), no allocation.
   bool detect_stationary(const ImuSample& sample, State& state,
-               const Eigen::Vector3d& bias_rad_s = Eigen::Vector3d::Zero()) const;
+                         const Eigen::Vector3d& bias_rad_s = Eigen::Vector3d::Zero()) const;
 
   /// Processes the mean rate and force over a time span as one reading, independent of `reading_s`.
-  bool detect_stationary_from_mean(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2, TimeNs from_ns, TimeNs to_ns,
-                    const Eigen::Vector3d& bias_rad_s, State& state) const;
+  bool detect_stationary_from_mean(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2, TimeNs from_ns,
+                                   TimeNs to_ns, const Eigen::Vector3d& bias_rad_s, State& state) const;
 
   /// Returns for each sample of a recording whether the IMU is at rest. Cost: O(N).
   std::vector<bool> find(std::span<const ImuSample> samples,

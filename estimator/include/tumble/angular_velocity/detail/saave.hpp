@@ -14,17 +14,18 @@
 
 namespace tumble {
 
-/// Estimates the angular velocity of a tumbling body from the centripetal force while the gyro is clipped. SaturationAwareRateEstimator
-/// implements a published method (Deschenes et al., "Saturation-Aware Angular Velocity Estimation", ICRA 2024, eqs
-/// 5-7).
+/// Estimates the angular velocity of a tumbling body from the centripetal force while the gyro is clipped.
+/// SaturationAwareRateEstimator implements a published method (Deschenes et al., "Saturation-Aware Angular Velocity
+/// Estimation", ICRA 2024, eqs 5-7).
 ///
 /// The recursive stage recovers at most one clipped axis per sample, the first in the order x, y, z. Further clipped
 /// axes of the sample have the variance of an unclipped reading. The smoothing stage smooths the rates of all samples
 /// with a white-noise-on-jerk prior.
 ///
-/// SaturationAwareRateEstimator assumes free flight, an unclipped accelerometer, no bias, and no angular acceleration across the rotation
-/// axis. If the IMU is close to the rotation axis, the estimate has a large error that SaturationAwareRateEstimator does not detect. All
-/// recovered rates have the same variance. The smoothed rates of clipped axes may be below the saturation limit.
+/// SaturationAwareRateEstimator assumes free flight, an unclipped accelerometer, no bias, and no angular acceleration
+/// across the rotation axis. If the IMU is close to the rotation axis, the estimate has a large error that
+/// SaturationAwareRateEstimator does not detect. All recovered rates have the same variance. The smoothed rates of
+/// clipped axes may be below the saturation limit.
 class SaturationAwareRateEstimator {
  public:
   struct Params {
@@ -53,10 +54,10 @@ class SaturationAwareRateEstimator {
             {"saturation_point_rad_s", "rad/s", 0.01, 1000.0,
              "readings beyond this value count as clipped; choose a value slightly below the gyro's saturation limit",
              ParameterRank::common_use});
-      visit(
-          p.jerk_psd_rad2_s5,
-          {"jerk_psd_rad2_s5", "rad^2/s^5", 1e-12, 1e12,
-           "power spectral density of the smoother's white angular jerk (ICRA 2024 paper, sec. IV)", ParameterRank::common_use});
+      visit(p.jerk_psd_rad2_s5,
+            {"jerk_psd_rad2_s5", "rad^2/s^5", 1e-12, 1e12,
+             "power spectral density of the smoother's white angular jerk (ICRA 2024 paper, sec. IV)",
+             ParameterRank::common_use});
       visit(p.gap_max_s,
             {"gap_max_s", "s", 1e-6, 3600.0, "maximum time between two samples; a longer gap causes an error"});
     }

@@ -24,18 +24,18 @@ struct SaturationLimitDetectorParams {
   std::optional<double> stated_gyro_range_rad_s = std::nullopt;
   std::optional<double> stated_accel_range_m_s2 = std::nullopt;
 
-  /// Saturation limits of an earlier run of the device, in the order of SaturationLimitDetector::State::channels; 0: none.
-  /// SaturationLimitDetector uses known limits from the start of a run until readings exceed the limits.
+  /// Saturation limits of an earlier run of the device, in the order of SaturationLimitDetector::State::channels; 0:
+  /// none. SaturationLimitDetector uses known limits from the start of a run until readings exceed the limits.
   std::array<double, 6> known = {};
 };
 
 /// Detects the saturation limit of each gyro and accelerometer axis from the readings of the axis. The saturation limit
 /// of a device may differ from the stated range in its data sheet.
 ///
-/// A plateau is a run of readings of one sign that are closer together than sensor noise allows. SaturationLimitDetector uses the
-/// stated range until a plateau is found or a reading exceeds the stated range. Readings that the device flags as
-/// clipped also count as clipped. SaturationLimitDetector assumes constant saturation limits that are equal for both signs of an
-/// axis.
+/// A plateau is a run of readings of one sign that are closer together than sensor noise allows.
+/// SaturationLimitDetector uses the stated range until a plateau is found or a reading exceeds the stated range.
+/// Readings that the device flags as clipped also count as clipped. SaturationLimitDetector assumes constant saturation
+/// limits that are equal for both signs of an axis.
 class SaturationLimitDetector {
  public:
   using Params = SaturationLimitDetectorParams;
@@ -43,12 +43,12 @@ class SaturationLimitDetector {
   /// The channels are gyro x, y, z, then accelerometer x, y, z.
   struct Channel {
     double plateau_limit = 0.0;  ///< saturation limit from a plateau; 0: none found
-    double peak = 0.0;  ///< largest magnitude so far
+    double peak = 0.0;           ///< largest magnitude so far
     double plateau_first_reading = 0.0;
     int run_length = 0;
-    double previous_reading = 0.0;  ///< previous reading
-    double entry_change = 0.0;   ///< change of the reading before the current equal readings; 0: no change yet
-    double min_reading_change = 0.0;   ///< smallest observed change between two readings; 0: none yet
+    double previous_reading = 0.0;    ///< previous reading
+    double entry_change = 0.0;        ///< change of the reading before the current equal readings; 0: no change yet
+    double min_reading_change = 0.0;  ///< smallest observed change between two readings; 0: none yet
     double last = 0.0;
     bool is_clipped = false;
     bool operator==(const Channel&) const = default;
@@ -70,8 +70,8 @@ class SaturationLimitDetector {
   void classify_clipping_of_all(std::span<const ImuSample> samples, State& state, std::span<Clipping> out) const;
 
   /// Adds the axes to `clipping` that are near the saturation limit in `sample` and clipped in the next sample `next`.
-  void add_rising_edge_at_limit(const ImuSample& sample, const ImuSample& next, const Clipping& of_next, const State& state,
-                       Clipping& clipping) const;
+  void add_rising_edge_at_limit(const ImuSample& sample, const ImuSample& next, const Clipping& of_next,
+                                const State& state, Clipping& clipping) const;
 
   /// Returns the saturation limit of channel c (0-5): from a plateau of channel c, the largest plateau on another axis,
   /// or the stated range. A limit from another axis or from the stated range applies only while all readings of channel

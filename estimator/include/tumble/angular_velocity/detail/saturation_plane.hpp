@@ -11,15 +11,15 @@
 
 namespace tumble {
 
-/// SaturationPlane contains the two parallel planes on which the output readings lie while one sensing element of a gyro is
-/// saturated: row . reading = offset -+ limit. The two planes are tilted if the device clips first and then compensates
-/// scale and misalignment. The device also subtracts the bias of the sensing element, which shifts both planes. For an
-/// accelerometer, the unit is m/s^2 instead of rad/s.
+/// SaturationPlane contains the two parallel planes on which the output readings lie while one sensing element of a
+/// gyro is saturated: row . reading = offset -+ limit. The two planes are tilted if the device clips first and then
+/// compensates scale and misalignment. The device also subtracts the bias of the sensing element, which shifts both
+/// planes. For an accelerometer, the unit is m/s^2 instead of rad/s.
 struct SaturationPlane {
   /// sensing direction of the element: 1 along its own axis j, and a cross-axis sensitivity along each other axis
   Eigen::Vector3d row = Eigen::Vector3d::Zero();
   double saturation_limit_rad_s = 0.0;  ///< saturation limit
-  double offset_rad_s = 0.0;    ///< close to 0 if saturation of only one sign was observed
+  double offset_rad_s = 0.0;            ///< close to 0 if saturation of only one sign was observed
   /// covariance of the sensitivity to axis (j+1) % 3, the sensitivity to axis (j+2) % 3, limit, and offset
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
   std::array<int, 2> samples{};   ///< number of samples on the negative and on the positive plane
@@ -54,7 +54,8 @@ struct SaturationPlanes {
 /// SensingDirections contains the directions along which the sensing elements of a sensor measure, one row per element.
 struct SensingDirections {
   Eigen::Matrix3d sensing_directions = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d cross_axis_slope_sigma = Eigen::Vector3d::Zero();  ///< standard deviation of both cross-axis sensitivities
+  Eigen::Vector3d cross_axis_slope_sigma =
+      Eigen::Vector3d::Zero();  ///< standard deviation of both cross-axis sensitivities
   bool has_misaligned_axes() const { return sensing_directions != Eigen::Matrix3d::Identity(); }
   bool operator==(const SensingDirections&) const = default;
 };

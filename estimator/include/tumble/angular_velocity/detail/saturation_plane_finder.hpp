@@ -19,10 +19,10 @@ namespace tumble {
 /// A plane of saturated readings is nearly axis-aligned, and all readings are below the plane, many of them closely.
 /// The equations are in docs/maths/rails.md.
 ///
-/// SaturationPlaneFinder assumes constant saturation limits, with one limit per sensing element and sign. SaturationPlaneFinder
-/// assumes that the three sensing elements of a sensor are of one type, with similar saturation limits. SaturationPlaneFinder
-/// does not detect readings that overflow and change sign. Sensing elements without a plane of saturated readings count
-/// as unsaturated.
+/// SaturationPlaneFinder assumes constant saturation limits, with one limit per sensing element and sign.
+/// SaturationPlaneFinder assumes that the three sensing elements of a sensor are of one type, with similar saturation
+/// limits. SaturationPlaneFinder does not detect readings that overflow and change sign. Sensing elements without a
+/// plane of saturated readings count as unsaturated.
 class SaturationPlaneFinder {
  public:
   struct Params {
@@ -38,18 +38,18 @@ class SaturationPlaneFinder {
     static constexpr double kSlopeMax = 0.12;  ///< largest cross-axis sensitivity
     /// minimum saturation limit [rad/s]; excludes constant readings at rest and in slow motion
     double distance_min_rad_s = 1.5;
-    /// Range of the sensor according to its data sheet [rad/s], if known. SaturationPlaneFinder assumes a saturation limit
-    /// that is not far below the stated range.
+    /// Range of the sensor according to its data sheet [rad/s], if known. SaturationPlaneFinder assumes a saturation
+    /// limit that is not far below the stated range.
     std::optional<double> stated_range_rad_s = std::nullopt;
-    /// prior standard deviation of SaturationPlane::offset_rad_s and of the differences between elements, relative to the
-    /// limit
+    /// prior standard deviation of SaturationPlane::offset_rad_s and of the differences between elements, relative to
+    /// the limit
     static constexpr double kOffsetSigmaRatio = 0.02;
     int samples_min = 4;                            ///< minimum number of samples on the plane of one sign
     static constexpr double kLogOddsBefore = -6.0;  ///< prior log odds of saturation for each element and sign
     static constexpr double kLogOddsMin = 1.0;      ///< minimum log odds for accepting a plane
     static constexpr double kLogOddsKeep = -3.0;    ///< minimum log odds for keeping an accepted plane
-    /// Saturation planes found in an earlier run of the same device. SaturationPlaneFinder uses known planes from the start
-    /// of a run until readings contradict the planes.
+    /// Saturation planes found in an earlier run of the same device. SaturationPlaneFinder uses known planes from the
+    /// start of a run until readings contradict the planes.
     SaturationPlanes known_limits = {};
 
     template <class Self, class Visitor>
@@ -78,18 +78,20 @@ class SaturationPlaneFinder {
   /// Finds the planes of saturated readings in readings without time stamps [rad/s]. `before` contains the planes that
   /// were found in a subset of the readings.
   SaturationPlanes find(std::span<const Eigen::Vector3d> readings_rad_s, const SaturationPlanes& before,
-                  Workspace& workspace) const;
+                        Workspace& workspace) const;
 
   const Params& params() const { return params_; }
 
  private:
-  SaturationPlanes merge_known_saturation_planes(const SaturationPlanes& found, std::span<const Eigen::Vector3d> readings_rad_s) const;
+  SaturationPlanes merge_known_saturation_planes(const SaturationPlanes& found,
+                                                 std::span<const Eigen::Vector3d> readings_rad_s) const;
   Params params_;
 };
 
 /// Cost: O(1).
 SensingAxisClipping classify_clipping(const ImuSample& sample, const SaturationPlanes& planes);
 /// `out` must have the size of `samples`.
-void classify_clipping(std::span<const ImuSample> samples, const SaturationPlanes& planes, std::span<SensingAxisClipping> out);
+void classify_clipping(std::span<const ImuSample> samples, const SaturationPlanes& planes,
+                       std::span<SensingAxisClipping> out);
 
 }  // namespace tumble

@@ -14,8 +14,8 @@ struct SensorErrors {
   using Vector = Eigen::Matrix<double, kSize, 1>;
   using Matrix = Eigen::Matrix<double, kSize, kSize>;
 
-  /// Errors of scale and misalignment. The gyro reads (1 + gyro) rate + g_sensitivity_fraction force + bias. The accelerometer
-  /// reads (1 + accel) force + bias.
+  /// Errors of scale and misalignment. The gyro reads (1 + gyro) rate + g_sensitivity_fraction force + bias. The
+  /// accelerometer reads (1 + accel) force + bias.
   Eigen::Matrix3d gyro = Eigen::Matrix3d::Zero(), accel = Eigen::Matrix3d::Zero();
   /// sensitivity of the gyro to specific force [rad/s per m/s^2]
   Eigen::Matrix3d g_sensitivity_s_m = Eigen::Matrix3d::Zero();
@@ -97,17 +97,18 @@ void discount_unobservable(double share, SensorErrorInformation& evidence);
 
 struct SensorErrorFit {
   KnownSensorErrors fitted_errors;
-  double data_sheet_probability = 1.0;   ///< probability that scale and misalignment are within the data sheet
+  double data_sheet_probability = 1.0;          ///< probability that scale and misalignment are within the data sheet
   double synchronous_triads_probability = 1.0;  ///< probability that gyro and accelerometer are synchronous
 };
 
 /// Estimates the sensor errors by Bayesian model averaging over calibrated, intermediate and uncalibrated prior
-/// standard deviations. `earlier_runs` is the result of evidence_from_earlier_runs() for earlier runs of the device. Cost:
-/// O(1), about 30 systems of 29 unknowns.
+/// standard deviations. `earlier_runs` is the result of evidence_from_earlier_runs() for earlier runs of the device.
+/// Cost: O(1), about 30 systems of 29 unknowns.
 SensorErrorFit fit_sensor_errors(const SensorErrorInformation& evidence, const SensorErrorPriors& sizes,
                                  const SensorErrorInformation& earlier_runs = {});
 
 /// Converts the sensor errors that one run estimated to measurement information for the next run, without the prior.
-SensorErrorInformation evidence_from_earlier_runs(const KnownSensorErrors& earlier_runs, const SensorErrorPriors& sizes);
+SensorErrorInformation evidence_from_earlier_runs(const KnownSensorErrors& earlier_runs,
+                                                  const SensorErrorPriors& sizes);
 
 }  // namespace tumble

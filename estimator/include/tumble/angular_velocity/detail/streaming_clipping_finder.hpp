@@ -32,14 +32,14 @@ class StreamingClippingFinder {
     Eigen::Vector3d peak = Eigen::Vector3d::Zero();  ///< largest magnitude of each axis
     std::size_t near_limit_count = 0,
                 near_limit_since_search = 0;  ///< number of readings near the extremes; number not yet searched
-    std::size_t samples_since_search = 0;      ///< readings near the extremes since the last search
-    bool readings_pruned = false;                       ///< readings were dropped
+    std::size_t samples_since_search = 0;     ///< readings near the extremes since the last search
+    bool readings_pruned = false;             ///< readings were dropped
     bool operator==(const DistinctReadingMemory&) const = default;
   };
   struct State {
     SaturationLevels known_limits;
-    std::array<DistinctReadingMemory, 2> distinct_readings;     ///< gyro and accelerometer
-    SaturationPlaneFinder::Workspace search_workspace;  ///< buffer, not part of the state
+    std::array<DistinctReadingMemory, 2> distinct_readings;  ///< gyro and accelerometer
+    SaturationPlaneFinder::Workspace search_workspace;       ///< buffer, not part of the state
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.
@@ -55,7 +55,7 @@ class StreamingClippingFinder {
   /// Returns the clipped axes of a finite sample, according to the saturation limits found so far and the flags of the
   /// device. `before` and `after` are the neighbours of the sample, or null at the ends. Cost: O(1).
   Clipping classify_clipping(const ImuSample* before, const ImuSample& sample, const State& state,
-                    const ImuSample* after = nullptr) const;
+                             const ImuSample* after = nullptr) const;
 
   const SaturationLimitDetector& axis_limit_detector() const { return axis_limit_detector_; }
 

@@ -18,7 +18,8 @@ struct GaussianLikelihoodApproximation {
 /// Returns the Gaussian factor that gives `marginal` the moments of a distribution truncated at `bound`. `now` is the
 /// current Gaussian factor, and `share` in (0, 1] is the weight of the new one. The standard deviation of `marginal`
 /// without its current factor is limited to sqrt(`variance_max`).
-GaussianLikelihoodApproximation refined_bound_approximation(const GaussianMoments& marginal, const GaussianLikelihoodApproximation& now, double bound, double bound_variance,
-                           double variance_max, double share);
+GaussianLikelihoodApproximation refined_bound_approximation(const GaussianMoments& marginal,
+                                                            const GaussianLikelihoodApproximation& now, double bound,
+                                                            double bound_variance, double variance_max, double share);
 
 }  // namespace tumble

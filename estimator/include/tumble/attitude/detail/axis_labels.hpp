@@ -11,7 +11,7 @@ namespace tumble {
 /// reveal that all three axes of the accelerometer are flipped. AxisLabels describes only rotations by multiples of a
 /// right angle.
 struct AxisLabels {
-  std::array<int, 3> axis = {0, 1, 2};        ///< index of the accelerometer reading along x, y, z of the gyro
+  std::array<int, 3> axis = {0, 1, 2};              ///< index of the accelerometer reading along x, y, z of the gyro
   std::array<double, 3> axis_signs = {1., 1., 1.};  ///< sign of each axis; the first sign is 1
   bool all_rates_inverted = false;                  ///< all three rates are inverted
 

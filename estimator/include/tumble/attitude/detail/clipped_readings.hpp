@@ -15,8 +15,9 @@ namespace tumble {
 
 struct ClippedReadings {
   Eigen::Matrix3d sensing_directions = Eigen::Matrix3d::Identity();  ///< sensing directions of the gyro, one per row
-  std::vector<ClipSigns> clip_signs;                        ///< one entry per sample
-  std::vector<std::uint8_t> possibly_clipped_axes;  ///< per sample: bit j is set if gyro element j may be partly saturated
+  std::vector<ClipSigns> clip_signs;                                 ///< one entry per sample
+  std::vector<std::uint8_t>
+      possibly_clipped_axes;  ///< per sample: bit j is set if gyro element j may be partly saturated
 
   SensingAxisClipSigns clipped_element_signs() const { return {sensing_directions, clip_signs}; }
 
@@ -30,6 +31,7 @@ struct ClippedReadings {
 };
 
 /// Cost: O(N).
-ClippedReadings clipped_readings_of(std::span<const ImuSample> samples, const ClippingFinder::ClippingSearchResult& found);
+ClippedReadings clipped_readings_of(std::span<const ImuSample> samples,
+                                    const ClippingFinder::ClippingSearchResult& found);
 
 }  // namespace tumble

@@ -16,9 +16,9 @@ namespace tumble {
 struct CoarseAlignment {
   bool running = false;
   double time_s = 0.0;
-  double start_velocity_variance_m2_s2 = 0.0;                            ///< variance of the velocity at the start, per axis
-  double start_tilt_variance_rad2 = 0.0;                  ///< variance of the tilt at the start, per axis
-  double tilt_variance_growth_rad2 = 0.0;                 ///< growth of the tilt's variance since the start
+  double start_velocity_variance_m2_s2 = 0.0;  ///< variance of the velocity at the start, per axis
+  double start_tilt_variance_rad2 = 0.0;       ///< variance of the tilt at the start, per axis
+  double tilt_variance_growth_rad2 = 0.0;      ///< growth of the tilt's variance since the start
   Eigen::Vector3d integrated_force_W_m_s = Eigen::Vector3d::Zero();  ///< integral of the specific force since the start
   bool operator==(const CoarseAlignment&) const = default;
 
@@ -42,12 +42,15 @@ struct CoarseAlignment {
   double variance_rad2(double velocity_variance_m2_s2, double gravity_m_s2) const {
     const double gravity_m_s = gravity_m_s2 * std::max(time_s, 1e-9);
     const double seen = squared(integrated_force_W_m_s.norm() - gravity_m_s);
-    return std::max(start_velocity_variance_m2_s2 + velocity_variance_m2_s2, seen) / squared(gravity_m_s) + tilt_variance_growth_rad2;
+    return std::max(start_velocity_variance_m2_s2 + velocity_variance_m2_s2, seen) / squared(gravity_m_s) +
+           tilt_variance_growth_rad2;
   }
 
   /// Returns the rotation in world axes that turns the mean force upwards and keeps the heading.
   Eigen::Quaterniond levelling() const { return tumble::levelling(integrated_force_W_m_s.normalized()); }
-  double mean_force_tilt_rad() const { return std::atan2(integrated_force_W_m_s.head<2>().norm(), integrated_force_W_m_s.z()); }
+  double mean_force_tilt_rad() const {
+    return std::atan2(integrated_force_W_m_s.head<2>().norm(), integrated_force_W_m_s.z());
+  }
 };
 
 }  // namespace tumble

@@ -22,10 +22,10 @@ class ForceErrors {
 
   struct Params {
     std::array<Eigen::Vector3d, kImus> imu_positions_m{};  ///< positions of the IMUs
-    int count = 1;                                ///< bound [1, kUnits]
-    double bias_sigma_m_s2 = 0.05;                ///< prior standard deviation of the bias; bound [0, 1e3]
-    double scale_sigma = 4e-3;                    ///< prior standard deviation of each entry of M; bound [0, 1]
-    double position_sigma_m = 1.5e-3;             ///< prior standard deviation of the position error; bound [0, 10]
+    int count = 1;                                         ///< bound [1, kUnits]
+    double bias_sigma_m_s2 = 0.05;                         ///< prior standard deviation of the bias; bound [0, 1e3]
+    double scale_sigma = 4e-3;               ///< prior standard deviation of each entry of M; bound [0, 1]
+    double position_sigma_m = 1.5e-3;        ///< prior standard deviation of the position error; bound [0, 10]
     double noise_m_s2 = 0.06;                ///< noise of one force difference, averaged over kSpan_s; bound (0, 1e3]
     double acceleration_noise_ratio = 0.02;  ///< additional noise / tangential force a x p; bound [0, 1]
     double gate_sigmas = 5.0;  ///< largest accepted force difference, in standard deviations; bound (0, 1e3]

@@ -17,7 +17,14 @@ inline constexpr int kBorderSize = 9;  ///< number of constants: see ConstantsIn
 using System = BlockArrowSystem<kBlockSize, kBorderSize>;
 
 /// first index of each part of a node's error vector, with the attitude error phi: q_true = q_WI Exp(phi)
-enum Index { kAttitudeError = 0, kRate = 3, kAngularAcceleration = 6, kHandAccelerationIndex = 9, kVelocity = 12, kPosition = 15 };
+enum Index {
+  kAttitudeError = 0,
+  kRate = 3,
+  kAngularAcceleration = 6,
+  kHandAccelerationIndex = 9,
+  kVelocity = 12,
+  kPosition = 15
+};
 enum ConstantsIndex { kGyroBias = 0, kAccelBias = 3, kLever = 6 };
 
 /// The held point is the point of the body at the hand.
@@ -41,10 +48,11 @@ struct Constants {
 /// Sums over the readings of one sensing element near a node, with times relative to the node.
 struct SensingAxisSums {
   double count = 0.0, time_sum_s = 0.0, time_squared_sum_s2 = 0.0, reading_sum = 0.0,
-         reading_time_sum = 0.0;                           ///< count and sums of unsaturated readings
-  double clipped_reading_count = 0.0, clipped_time_s = 0.0, mean_saturation_limit = 0.0;  ///< count, mean time and mean level of clipped readings
-  double saturated_side = 0.0;                                       ///< sign of the saturation limit
-  double unusable_reading_count = 0.0, mean_unusable_reading = 0.0;        ///< count and mean of unusable readings
+         reading_time_sum = 0.0;  ///< count and sums of unsaturated readings
+  double clipped_reading_count = 0.0, clipped_time_s = 0.0,
+         mean_saturation_limit = 0.0;  ///< count, mean time and mean level of clipped readings
+  double saturated_side = 0.0;         ///< sign of the saturation limit
+  double unusable_reading_count = 0.0, mean_unusable_reading = 0.0;  ///< count and mean of unusable readings
   double partial_saturation_sigma = 0.0;  ///< standard deviation of readings that may be partly saturated
 };
 
@@ -53,8 +61,8 @@ struct NodeReadings {
   Eigen::Vector3d force_m_s2 = Eigen::Vector3d::Zero();  ///< mean force
   Eigen::Vector3d force_bound_m_s2 =
       Eigen::Vector3d::Zero();           ///< sign of the saturation limit where an axis clips, otherwise 0
-  double force_reading_count = 0.0;              ///< number of force readings
-  double mean_force_time_s = 0.0;             ///< mean time of the force readings
+  double force_reading_count = 0.0;      ///< number of force readings
+  double mean_force_time_s = 0.0;        ///< mean time of the force readings
   double force_timing_sigma_m_s2 = 0.0;  ///< force error from uncertain reading times
   bool is_stationary = false;
 };
@@ -63,14 +71,14 @@ struct ReadingNoise {
   double gyro_rad_s = 0.0;               ///< standard deviation of one gyro reading
   double window_rate_sigma_rad_s = 0.0;  ///< standard deviation of (mean rate of a window - rate at its centre)
   double deficit_error_ratio = 0.0;      ///< error of an unclipped element / saturation deficit of a clipped element
-  double saturation_limit_sigma_rad_s = 0.0;               ///< standard deviation of a saturation limit
-  double bound = 1.0;                    ///< weight of the gyro's lower bounds; 1: full weight
-  double force_bound_weight = 1.0;              ///< weight of the accelerometer's lower bounds; 1: full weight
-  double accel_m_s2 = 0.0;               ///< standard deviation of one force reading
-  double force_noise_ratio = 0.0;        ///< additional force noise / (magnitude of the specific force - gravity)
-  double stationary_rate_sigma_rad_s = 0.0;               ///< standard deviation of the rate at rest, per node
-  double stationary_velocity_sigma_m_s = 0.0;                 ///< standard deviation of the velocity at rest
-  double stationary_acceleration_sigma_m_s2 = 0.0;                ///< standard deviation of the acceleration at rest
+  double saturation_limit_sigma_rad_s = 0.0;   ///< standard deviation of a saturation limit
+  double bound = 1.0;                          ///< weight of the gyro's lower bounds; 1: full weight
+  double force_bound_weight = 1.0;             ///< weight of the accelerometer's lower bounds; 1: full weight
+  double accel_m_s2 = 0.0;                     ///< standard deviation of one force reading
+  double force_noise_ratio = 0.0;              ///< additional force noise / (magnitude of the specific force - gravity)
+  double stationary_rate_sigma_rad_s = 0.0;    ///< standard deviation of the rate at rest, per node
+  double stationary_velocity_sigma_m_s = 0.0;  ///< standard deviation of the velocity at rest
+  double stationary_acceleration_sigma_m_s2 = 0.0;  ///< standard deviation of the acceleration at rest
 };
 
 /// Row i of `rows` is the sensing direction of gyro element i. Clipped readings limit the component of (rate + bias)
@@ -101,18 +109,20 @@ class Motion {
 
   /// `hand` multiplies the power spectral density of the held point's acceleration. `jerk` multiplies the root power
   /// spectral density of the angular jerk.
-  double add_motion_model(const Node& from, const Node& to, double hand, System::StateBlock& block, System::StateBlock& next,
-                  double jerk = 1.0) const;
+  double add_motion_model(const Node& from, const Node& to, double hand, System::StateBlock& block,
+                          System::StateBlock& next, double jerk = 1.0) const;
   double add_bounds(const Node& node, System::StateBlock& block) const;
   /// The prior fixes the heading. Every other unknown has the stationary variance of its stochastic process.
   double add_initial_prior(const Node& node, System::StateBlock& block) const;
 
  private:
-  double add_attitude(const Node& from, const Node& to, double jerk, System::StateBlock& block, System::StateBlock& next) const;
+  double add_attitude(const Node& from, const Node& to, double jerk, System::StateBlock& block,
+                      System::StateBlock& next) const;
 
   Params params_;
   Eigen::Matrix4d jerk_;  // information matrix of (rate, angular acceleration) of both nodes, one axis
-  Eigen::Matrix<double, 6, 6> hand_information_, kinematics_;  // information matrix of (acceleration, velocity, position), one axis
+  Eigen::Matrix<double, 6, 6> hand_information_,
+      kinematics_;  // information matrix of (acceleration, velocity, position), one axis
   double attitude_error_variance_;
 };
 

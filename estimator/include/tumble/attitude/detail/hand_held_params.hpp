@@ -61,12 +61,13 @@ struct HandHeldExpertParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.node_s, {"node_s", "s", 1e-3, 0.1, "time between two nodes of the smoother", ParameterRank::common_use});
-    visit(p.iterations_max, {"iterations_max", "1", 1, 1000, "maximum number of Gauss-Newton steps", ParameterRank::common_use});
+    visit(p.iterations_max,
+          {"iterations_max", "1", 1, 1000, "maximum number of Gauss-Newton steps", ParameterRank::common_use});
     visit(p.gap_max_s,
           {"gap_max_s", "s", 1e-300, 1e4, "maximum time between two samples; a longer gap causes an error"});
-    visit(p.jerk_inflation,
-          {"jerk_inflation", "1", 1.0, 100.0,
-           "factor on the assumed angular jerk in the computation of the reported covariances", ParameterRank::common_use});
+    visit(p.jerk_inflation, {"jerk_inflation", "1", 1.0, 100.0,
+                             "factor on the assumed angular jerk in the computation of the reported covariances",
+                             ParameterRank::common_use});
     visit.group("rest_", p.rest_detector);
     visit.group("", p.hand_motion);
     visit.group("", p.readings);
@@ -106,10 +107,10 @@ struct HandHeldParams {
                                 "root power spectral density of the angular jerk", ParameterRank::common_use});
     visit(p.hand_sigma_m_s2, {"hand_sigma_m_s2", "m/s^2", 1e-3, 1e3,
                               "standard deviation of the hand-held point's acceleration", ParameterRank::common_use});
-    visit(p.velocity_m_s,
-          {"velocity_m_s", "m/s", 1e-3, 1e3, "standard deviation of the hand-held point's velocity", ParameterRank::common_use});
-    visit(p.position_m,
-          {"position_m", "m", 1e-3, 1e3, "standard deviation of the hand-held point's position", ParameterRank::common_use});
+    visit(p.velocity_m_s, {"velocity_m_s", "m/s", 1e-3, 1e3, "standard deviation of the hand-held point's velocity",
+                           ParameterRank::common_use});
+    visit(p.position_m, {"position_m", "m", 1e-3, 1e3, "standard deviation of the hand-held point's position",
+                         ParameterRank::common_use});
     visit.group("", p.expert);
   }
 };

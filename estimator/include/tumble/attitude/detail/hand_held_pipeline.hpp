@@ -30,8 +30,8 @@ class HandHeldPipeline {
     HandHeldRateStream::State stream;
     StreamingClippingFinder::State clipping_state;
     RepeatDetector::State repetition_state;
-    bool saturation_limits_changed = false;   ///< true if the last sample changed the known saturation limits
-    std::vector<ClipSigns> clip_signs;  ///< buffer, not part of the state
+    bool saturation_limits_changed = false;  ///< true if the last sample changed the known saturation limits
+    std::vector<ClipSigns> clip_signs;       ///< buffer, not part of the state
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.

@@ -25,8 +25,8 @@ struct ClipSigns {
 };
 ClipSigns clip_signs(const ImuSample& sample, const Clipping& clipping);
 
-/// Row i of `sensing_directions` is the sensing direction of gyro element i, in the axes of the gyro. While element i clips, the
-/// component of (rate + bias) along row i is at or beyond the saturation limit.
+/// Row i of `sensing_directions` is the sensing direction of gyro element i, in the axes of the gyro. While element i
+/// clips, the component of (rate + bias) along row i is at or beyond the saturation limit.
 struct SensingAxisClipSigns {
   Eigen::Matrix3d sensing_directions = Eigen::Matrix3d::Identity();
   std::span<const ClipSigns> clip_signs;  ///< one entry per sample; empty: no clipping
@@ -47,8 +47,8 @@ struct SensingAxisClipSigns {
 /// Computation and memory (about 7 kB per time step `node_s`) are proportional to the duration of the recording, and
 /// independent of the sample rate of the IMU.
 ///
-/// HandHeldSmoother assumes constant biases and a body that is neither thrown nor hit (see `mean_hand_acceleration_ratio`).
-/// The heading is relative to the start of the recording.
+/// HandHeldSmoother assumes constant biases and a body that is neither thrown nor hit (see
+/// `mean_hand_acceleration_ratio`). The heading is relative to the start of the recording.
 class HandHeldSmoother {
  public:
   using Params = HandHeldParams;
@@ -78,8 +78,8 @@ class HandHeldSmoother {
   /// from sensor axes to the world at each sample, with heading 0 at the start. Returns `ok`, `empty`, `non_finite`,
   /// `time_order`, `gap`, `out_of_range` (sizes of the inputs differ, or a covariance is invalid) or `diverged` (the
   /// normal equations are not positive definite). On error, the outputs are empty.
-  Status estimate(std::span<const ImuSample> samples, const SensingAxisClipSigns& clipped, std::vector<AngularRateState>& rates,
-                  std::vector<AttitudeState>& attitudes, Report& report) const;
+  Status estimate(std::span<const ImuSample> samples, const SensingAxisClipSigns& clipped,
+                  std::vector<AngularRateState>& rates, std::vector<AttitudeState>& attitudes, Report& report) const;
 
  private:
   Params params_;

@@ -15,11 +15,11 @@ namespace tumble {
 /// Estimates attitude and angular velocity of hand-held motion sample by sample, with a fixed lag. HandHeldRateStream
 /// applies the model of HandHeldSmoother to a sliding window of time steps (nodes).
 ///
-/// HandHeldRateStream allocates memory only in start(). A run that continues from a copy of the State gives bit-identical
-/// results.
+/// HandHeldRateStream allocates memory only in start(). A run that continues from a copy of the State gives
+/// bit-identical results.
 ///
-/// Unlike HandHeldSmoother, HandHeldRateStream does not test other numbers of full revolutions during saturation. The rate
-/// covariance includes the error of one additional revolution: carried.md (C42), (C43). After the detection of a
+/// Unlike HandHeldSmoother, HandHeldRateStream does not test other numbers of full revolutions during saturation. The
+/// rate covariance includes the error of one additional revolution: carried.md (C42), (C43). After the detection of a
 /// saturation limit, HandHeldRateStream classifies only the readings in the window again.
 ///
 /// Cost: O(window) per node while a sample in the window is clipped, and a fifth of this cost otherwise.
@@ -50,7 +50,7 @@ class HandHeldRateStream {
     double window_centre_s = 0.0, end_s = 0.0;
     std::int64_t node = 0;  ///< node closest to the centre of the averaging window
     bool is_stationary = false;
-    RepeatedReading gyro, accel;        ///< detection state of repeated readings
+    RepeatedReading gyro, accel;               ///< detection state of repeated readings
     std::optional<AngularRateState> smoothed;  ///< unreported rate of a sample whose node has left the window
   };
   struct Knot {
@@ -80,7 +80,7 @@ class HandHeldRateStream {
     std::size_t failures = 0;  ///< number of steps skipped because the normal equations were not positive definite
     /// duration of the current saturation of each gyro element, and time integral of the rate's standard deviation
     Eigen::Vector3d clipped_duration_s = Eigen::Vector3d::Zero(), clipped_angle_sigma_rad = Eigen::Vector3d::Zero();
-    std::size_t revolutions_ambiguous = 0;       ///< saturated intervals that may contain an additional revolution
+    std::size_t revolutions_ambiguous = 0;  ///< saturated intervals that may contain an additional revolution
     std::vector<hand_held::System::StateBlock> work_blocks;  ///< buffer, not part of the state
   };
 
@@ -98,8 +98,9 @@ class HandHeldRateStream {
   ///
   /// Returns `ok`, `non_finite`, `time_order`, `gap`, `out_of_range` (no clip signs) or `degenerate` (linearly
   /// dependent sensing directions). On error, `state` is unchanged and `out` is empty.
-  Status push(const ImuSample& sample, const SensingAxisClipSigns& known, State& state, std::optional<AngularRateState>& out,
-              bool wanted = true, const RepeatDetector::State& repeated = {}) const;
+  Status push(const ImuSample& sample, const SensingAxisClipSigns& known, State& state,
+              std::optional<AngularRateState>& out, bool wanted = true,
+              const RepeatDetector::State& repeated = {}) const;
 
   /// Appends the rates of the samples in the window that were not yet reported, oldest first.
   void flush(const State& state, std::vector<AngularRateState>& out) const;
@@ -118,15 +119,18 @@ class HandHeldRateStream {
   void prune_output_samples(State& state) const;
   void marginalise_oldest(State& state) const;
   double hand_acceleration_power_ratio(const State& state) const;
-  void add_prior(const State& state, hand_held::System::StateBlock& block, hand_held::System::BorderBlock& corner) const;
+  void add_prior(const State& state, hand_held::System::StateBlock& block,
+                 hand_held::System::BorderBlock& corner) const;
   bool factorise(const hand_held::Motion& motion, const hand_held::ReadingNoise& noise, State& state,
                  hand_held::System::BorderVector& step) const;
   bool step(State& state) const;
   void extend_nodes(State& state) const;
   AngularRateState compute_report(std::size_t at, bool due, bool factorised, State& state) const;
-  void report_rates(std::size_t first, std::size_t last, bool factorised, State& state, std::span<AngularRateState> out) const;
+  void report_rates(std::size_t first, std::size_t last, bool factorised, State& state,
+                    std::span<AngularRateState> out) const;
   void count_revolutions(std::size_t at, const AngularRateState& rate, State& state) const;
-  AngularRateState rate_state_of_reading(const Reading& reading, const State& state, const Eigen::Matrix3d& covariance_rad2_s2) const;
+  AngularRateState rate_state_of_reading(const Reading& reading, const State& state,
+                                         const Eigen::Matrix3d& covariance_rad2_s2) const;
 
   Params params_;
   RestDetector rest_detector_;

@@ -12,8 +12,8 @@
 #include "tumble/attitude/detail/force_errors.hpp"
 #include "tumble/attitude/detail/imu_merge_expert_params.hpp"
 #include "tumble/attitude/detail/imu_merge_state.hpp"
-#include "tumble/attitude/detail/rate_recovery.hpp"
 #include "tumble/attitude/detail/multi_imu_sign_check.hpp"
+#include "tumble/attitude/detail/rate_recovery.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/sensor_health.hpp"
@@ -102,9 +102,9 @@ class ImuMerge {
   Eigen::Vector3d mean_imu_position_m() const { return mean_imu_position_m_; }
 
   /// The samples must be simultaneous; the merged sample has the time stamp of the first IMU. `merged` is the mean over
-  /// `window_s` in axes C, or empty between two averages. Returns `insufficient_data` if `samples` does not contain `count`
-  /// samples, or if none of the samples is finite. On error, the state is unchanged and `merged` is empty. Cost:
-  /// O(count), no allocation.
+  /// `window_s` in axes C, or empty between two averages. Returns `insufficient_data` if `samples` does not contain
+  /// `count` samples, or if none of the samples is finite. On error, the state is unchanged and `merged` is empty.
+  /// Cost: O(count), no allocation.
   Status step(std::span<const ImuSample> samples, State& state, std::optional<ImuSample>& merged) const;
 
  private:
@@ -117,13 +117,13 @@ class ImuMerge {
 
   void accumulate_window(std::span<const ImuSample> samples, double dt_s, State& state) const;
   ImuSample merge(State& state) const;
-  ImuMask select_agreeing_imus(const Readings& readings, const ImuMask& present, const Vectors& rates, const Vectors& forces,
-                        double h, State& state) const;
+  ImuMask select_agreeing_imus(const Readings& readings, const ImuMask& present, const Vectors& rates,
+                               const Vectors& forces, double h, State& state) const;
   ImuSample mean_of_selected_imus(const Vectors& rates, const Vectors& forces, const ImuMask& used, double h,
-                         const State& state) const;
+                                  const State& state) const;
   std::uint8_t combined_flags(const Readings& readings, const ImuMask& which) const;
   void close_comparison_windows(const ImuMask& present, const Vectors& rates, const Vectors& forces, bool all_used,
-                     const ImuSample& merged, State& state) const;
+                                const ImuSample& merged, State& state) const;
   void calibrate(const Vectors& rates, State& state) const;
   void detect_frozen_units(const ImuMask& present, const Vectors& rates, const Vectors& forces, double dt_s,
                            TimeNs time_ns, State& state) const;
@@ -131,8 +131,9 @@ class ImuMerge {
                                 State& state) const;
   static Eigen::Vector3d median(const Vectors& values, const ImuMask& which);
   void exclude_partly_saturated(const Readings& samples, const ImuMask& present, const Vectors& forces,
-                                   const Eigen::Vector3d& rate, double h, State& state, ImuMask& used) const;
-  void recover_saturated_rate(const Readings& readings, const ImuMask& present, double h, State& state, ImuSample& merged) const;
+                                const Eigen::Vector3d& rate, double h, State& state, ImuMask& used) const;
+  void recover_saturated_rate(const Readings& readings, const ImuMask& present, double h, State& state,
+                              ImuSample& merged) const;
   static ForceErrors::Params force_params(const Params& params);
   static AngularRateRecovery::Params rate_recovery_params(const Params& params);
 

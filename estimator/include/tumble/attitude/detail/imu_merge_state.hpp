@@ -6,8 +6,8 @@
 #include <cstdint>
 
 #include "tumble/attitude/detail/force_errors.hpp"
-#include "tumble/attitude/detail/rate_recovery.hpp"
 #include "tumble/attitude/detail/multi_imu_sign_check.hpp"
+#include "tumble/attitude/detail/rate_recovery.hpp"
 #include "tumble/common/detail/imu_average.hpp"
 #include "tumble/common/time.hpp"
 
@@ -31,7 +31,7 @@ struct MergedImuState {
   ImuAverage window;  ///< average of the IMU's readings since the last window
   /// mean rate and force over the last window; for an absent IMU, predicted from other IMUs
   Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero(), last_force_m_s2 = Eigen::Vector3d::Zero();
-  double exclusion_left_s = 0.0;      ///< remaining time of exclusion from the mean force
+  double exclusion_left_s = 0.0;           ///< remaining time of exclusion from the mean force
   std::int64_t excluded_window_count = 0;  ///< number of windows without this IMU
   RepeatedImuReading repeated_rate, repeated_force;
   double changing_readings_duration_s = 0.0;
@@ -60,8 +60,8 @@ struct ImuMergeState {
   double lever_arm_correlation = 0.0, lever_arm_effect_power = 0.0;  ///< sums for lever_arm_agreement()
   MultiImuSignCheck imu_sign_check;
   std::int64_t sample_count = 0, window_count = 0;
-  int unclipped_windows =
-      kAngularAccelerationWindows;  ///< windows since a gyro was clipped or an IMU absent, at most kAngularAccelerationWindows
+  int unclipped_windows = kAngularAccelerationWindows;  ///< windows since a gyro was clipped or an IMU absent, at most
+                                                        ///< kAngularAccelerationWindows
   TimeNs last_time_ns = 0;
   bool all_frozen = false;  ///< all IMUs in the last window are frozen
   bool operator==(const ImuMergeState&) const = default;

@@ -44,14 +44,16 @@ class ImuPlausibility {
     RepeatedReadingTime gyro, accel;
     ImuAverage average;
     Eigen::Vector3d window_start_force_m_s2 = Eigen::Vector3d::Zero();
-    Eigen::Quaterniond gyro_rotation_in_window = Eigen::Quaterniond::Identity();  ///< rotation within the window, from the gyro
+    Eigen::Quaterniond gyro_rotation_in_window =
+        Eigen::Quaterniond::Identity();  ///< rotation within the window, from the gyro
     double length_s = 0.0;
     bool window_started = false, force_is_constant = false;
-    bool in_range = true;           ///< whether all samples of the window are within the gyro's range
-    double moving_force_duration_s = 0.0;  ///< time with forces that exclude rest
+    bool in_range = true;                          ///< whether all samples of the window are within the gyro's range
+    double moving_force_duration_s = 0.0;          ///< time with forces that exclude rest
     double unexplained_force_rotation_rad2 = 0.0;  ///< rotation of the force that the gyro does not explain
-    double force_rotation_square_sum_rad2 = 0.0, gyro_rotation_square_sum_rad2 = 0.0;  ///< sums over windows with rotating specific force
-    double rotated_window_count = 0.0;                                ///< number of windows with rotating specific force
+    double force_rotation_square_sum_rad2 = 0.0,
+           gyro_rotation_square_sum_rad2 = 0.0;  ///< sums over windows with rotating specific force
+    double rotated_window_count = 0.0;           ///< number of windows with rotating specific force
     TimeNs last_time_ns = 0;
     bool started = false;
     bool operator==(const State&) const = default;

@@ -16,7 +16,7 @@ struct LowPass {
 
   Vector value = Vector::Zero();
   Vector normalised_derivative = Vector::Zero();  ///< derivative divided by the corner's angular frequency
-  Vector input = Vector::Zero();  ///< the last input
+  Vector input = Vector::Zero();                  ///< the last input
   double averaged_duration_s = 0.0;
   double samples = 0.0;
 
@@ -29,7 +29,8 @@ struct LowPass {
     } else {
       const double damping = std::numbers::sqrt2 * warp;
       const Vector rise =
-          ((1.0 - damping - warp * warp) * normalised_derivative + warp * (input + next - 2.0 * value)) / (1.0 + damping + warp * warp);
+          ((1.0 - damping - warp * warp) * normalised_derivative + warp * (input + next - 2.0 * value)) /
+          (1.0 + damping + warp * warp);
       value += warp * (normalised_derivative + rise);
       normalised_derivative = rise;
     }

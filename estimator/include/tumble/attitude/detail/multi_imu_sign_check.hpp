@@ -9,7 +9,8 @@
 namespace tumble {
 
 /// Detects wrong axes that all IMUs share: a flipped axis of the gyros or of the accelerometers, or two swapped axes.
-/// MultiImuSignCheck compares force differences between IMUs at different positions of one rigid body: imu_merge.md (I9).
+/// MultiImuSignCheck compares force differences between IMUs at different positions of one rigid body: imu_merge.md
+/// (I9).
 struct MultiImuSignCheck {
   static constexpr std::size_t kMirroredAlternatives =
       12;  ///< gyros, then accelerometers: x, y or z flipped; xy, yz or zx swapped

@@ -15,15 +15,16 @@ namespace tumble {
 /// extended Kalman filter estimates rate, angular acceleration, the specific force at the mean position of the IMUs,
 /// and the error of each lever arm. Readings that are flagged as clipped or beyond the range are lower bounds.
 ///
-/// AngularRateRecovery neglects scale errors, and calibrates the lever arms relative to the gyro's scale. IMUs at one position
-/// provide no information about the rate.
+/// AngularRateRecovery neglects scale errors, and calibrates the lever arms relative to the gyro's scale. IMUs at one
+/// position provide no information about the rate.
 class AngularRateRecovery {
  public:
   static constexpr int kImus = 4;
   static constexpr int kStates = 9 + 3 * kImus;
   /// duration of a reading for which ReadingNoise holds; shorter readings have more noise
   static constexpr double kReadingInterval_s = 4e-3;
-  static constexpr double kMinSaturatedRangeFraction = 0.5;  ///< fraction of the gyro's range above which the filter runs
+  static constexpr double kMinSaturatedRangeFraction =
+      0.5;  ///< fraction of the gyro's range above which the filter runs
   using Vector = Eigen::Matrix<double, kStates, 1>;
   using Covariance = Eigen::Matrix<double, kStates, kStates>;
 
@@ -34,8 +35,8 @@ class AngularRateRecovery {
     double force_share = 0.004;  ///< additional noise, as a fraction of the reading; bound [0, 1]
   };
   struct Params {
-    std::array<Eigen::Isometry3d, kImus> T_mean_imu{};   ///< poses of the IMUs relative to their mean position
-    int count = 1;                                  ///< bound [1, kUnits]
+    std::array<Eigen::Isometry3d, kImus> T_mean_imu{};  ///< poses of the IMUs relative to their mean position
+    int count = 1;                                      ///< bound [1, kUnits]
     double gyro_range_rad_s = 1e3;                  ///< readings at or above this rate are saturated; bound (0, 1e3]
     double accel_range_m_s2 = 1e5;                  ///< bound (0, 1e5]
     double lever_arm_sigma_m = 1.5e-3;              ///< prior standard deviation of the lever arm; bound (0, 10]

@@ -22,11 +22,11 @@ Status estimate_rates(std::span<const ImuSample> samples, std::span<const Auxili
 struct RecoveredRates {
   std::vector<ImuSample> samples;  ///< the recording with replaced gyro readings
   std::vector<Eigen::Matrix3d>
-      covariances_rad2_s2;          ///< one covariance per sample, in sensor axes; zero for unmodified readings
+      covariances_rad2_s2;                 ///< one covariance per sample, in sensor axes; zero for unmodified readings
   std::vector<AngularRateSource> sources;  ///< one per sample; all `measured` if no rate was estimated
-  bool estimated = false;           ///< a reading clips, and MotionRegimeSmoother estimated the rates
-  std::size_t replaced_reading_count = 0;         ///< number of clipped or suspect readings that were replaced
-  MotionRegimeSmoother::Report report;    ///< valid if `estimated`
+  bool estimated = false;                  ///< a reading clips, and MotionRegimeSmoother estimated the rates
+  std::size_t replaced_reading_count = 0;  ///< number of clipped or suspect readings that were replaced
+  MotionRegimeSmoother::Report report;     ///< valid if `estimated`
   SaturationLevels saturation_levels;
 };
 
@@ -38,8 +38,8 @@ enum class ReadingsToReplace : std::uint8_t {
 
 /// Replaces clipped gyro readings by estimated rates plus the gyro bias, so that replaced and original readings have
 /// equal bias. All three axes of a reading are replaced, because a tilted plane of saturated readings also corrupts the
-/// unclipped axes. If no reading clips or the estimation fails, all readings remain. With `unreliable_readings`, the readings of
-/// a gyro that updates more slowly than the log are still interpolated. Cost: O(N).
+/// unclipped axes. If no reading clips or the estimation fails, all readings remain. With `unreliable_readings`, the
+/// readings of a gyro that updates more slowly than the log are still interpolated. Cost: O(N).
 RecoveredRates recover_rates(std::span<const ImuSample> samples, std::span<const AuxiliaryRecording> auxiliary_imus,
                              const MotionRegimeSmoother::Params& params, ReadingsToReplace replaced);
 

@@ -14,11 +14,11 @@
 
 namespace tumble {
 
-/// Estimates the angular velocity of a body in flight, in contact or hand-held, over a whole recording. AngularRateSmoother
-/// estimates the rates for flight and contact. Where the body was probably hand-held while the gyro clipped,
-/// HandHeldSmoother estimates the rates for hand-held motion. MotionRegimeSmoother combines the rates of both smoothers by
-/// the probability of hand-held motion (MotionRegimeEvidence), which is constant during each saturated interval.
-/// SpinTracker replaces the rate of a saturated axis during a steady spin.
+/// Estimates the angular velocity of a body in flight, in contact or hand-held, over a whole recording.
+/// AngularRateSmoother estimates the rates for flight and contact. Where the body was probably hand-held while the gyro
+/// clipped, HandHeldSmoother estimates the rates for hand-held motion. MotionRegimeSmoother combines the rates of both
+/// smoothers by the probability of hand-held motion (MotionRegimeEvidence), which is constant during each saturated
+/// interval. SpinTracker replaces the rate of a saturated axis during a steady spin.
 class MotionRegimeSmoother {
  public:
   struct Params : RegimeParams {
@@ -34,7 +34,7 @@ class MotionRegimeSmoother {
   };
   struct Report {
     AngularRateReport rate;
-    bool regimes_estimated = false;                     ///< MotionRegimeSmoother estimated the probabilities below
+    bool regimes_estimated = false;          ///< MotionRegimeSmoother estimated the probabilities below
     RegimeProbabilities probabilities{};     ///< mean probabilities over all samples
     double hand_held_probability_max = 0.0;  ///< largest probability of hand-held motion in a clipped segment
     bool hand_held_smoother_ran = false;     ///< HandHeldSmoother succeeded; `hand_held` contains its report
@@ -45,28 +45,31 @@ class MotionRegimeSmoother {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit MotionRegimeSmoother(const Params& params);
 
-  /// Returns the status of AngularRateSmoother; on error, `rates` is empty. If HandHeldSmoother fails, `rates` contains the
-  /// result of AngularRateSmoother.
+  /// Returns the status of AngularRateSmoother; on error, `rates` is empty. If HandHeldSmoother fails, `rates` contains
+  /// the result of AngularRateSmoother.
   Status estimate(std::span<const ImuSample> samples, std::vector<AngularRateState>& rates, Report& report) const {
     return estimate(samples, {}, rates, report);
   }
-  /// Estimates the rates with additional IMUs on the body, like AngularRateSmoother::estimate(). With additional IMUs, the
-  /// rates are those of AngularRateSmoother and `report.regimes_estimated` is false.
+  /// Estimates the rates with additional IMUs on the body, like AngularRateSmoother::estimate(). With additional IMUs,
+  /// the rates are those of AngularRateSmoother and `report.regimes_estimated` is false.
   Status estimate(std::span<const ImuSample> samples, std::span<const std::vector<AuxiliaryReading>> auxiliary_imus,
                   std::vector<AngularRateState>& rates, Report& report) const;
 
-  /// Combines the rates of AngularRateSmoother, given in `rates`, with the rates of HandHeldSmoother and SpinTracker. The
-  /// caller must set `report.rate` to the report of AngularRateSmoother before calling join_regime_rates().
-  void join_regime_rates(std::span<const ImuSample> samples, std::vector<AngularRateState>& rates, Report& report) const;
+  /// Combines the rates of AngularRateSmoother, given in `rates`, with the rates of HandHeldSmoother and SpinTracker.
+  /// The caller must set `report.rate` to the report of AngularRateSmoother before calling join_regime_rates().
+  void join_regime_rates(std::span<const ImuSample> samples, std::vector<AngularRateState>& rates,
+                         Report& report) const;
 
  private:
-  void join_hand_held_rates(std::span<const ImuSample> samples, std::vector<AngularRateState>& rates, Report& report) const;
+  void join_hand_held_rates(std::span<const ImuSample> samples, std::vector<AngularRateState>& rates,
+                            Report& report) const;
   void join_spin_rates(std::span<const ImuSample> samples, bool further_imus, std::vector<AngularRateState>& rates,
-                 Report& report) const;
+                       Report& report) const;
   bool estimate_hand_held(std::span<const ImuSample> samples, const ClippedReadings& known,
                           std::vector<AngularRateState>& rates, HandHeldSmoother::Report& report) const;
   std::vector<double> segment_hand_held_probability(std::span<const RegimeProbabilities> probabilities,
-                                                    const AngularRateReport& report, std::span<const AngularRateState> rates) const;
+                                                    const AngularRateReport& report,
+                                                    std::span<const AngularRateState> rates) const;
 
   Params params_;
   AngularRateSmoother rate_;

@@ -14,11 +14,11 @@
 namespace tumble {
 
 /// Estimates the angular velocity of a body in flight, in contact or hand-held, sample by sample, with a fixed lag.
-/// AngularRateStream estimates the rates for flight and contact, and detects the saturation limits. Where the body is probably
-/// hand-held while the gyro clips, HandHeldRateStream estimates the rates for hand-held motion. MotionRegimeStream combines the
-/// rates of AngularRateStream and HandHeldRateStream by the probability of hand-held motion. An unclipped sample always has the
-/// rate of AngularRateStream.
-/// SpinTracker replaces the rate of a saturated axis during a steady spin.
+/// AngularRateStream estimates the rates for flight and contact, and detects the saturation limits. Where the body is
+/// probably hand-held while the gyro clips, HandHeldRateStream estimates the rates for hand-held motion.
+/// MotionRegimeStream combines the rates of AngularRateStream and HandHeldRateStream by the probability of hand-held
+/// motion. An unclipped sample always has the rate of AngularRateStream. SpinTracker replaces the rate of a saturated
+/// axis during a steady spin.
 ///
 /// HandHeldRateStream runs only while the probability of hand-held motion is at least `hand_held_probability_min`.
 class MotionRegimeStream {
@@ -42,15 +42,16 @@ class MotionRegimeStream {
     AngularRateStream::State rate;
     HandHeldRateStream::State hand_held;
     SpinTracker::State spin;
-    std::size_t spin_samples = 0;  ///< number of reported saturated samples that are probably in a steady spin
+    std::size_t spin_samples = 0;       ///< number of reported saturated samples that are probably in a steady spin
     std::vector<ClipSigns> clip_signs;  ///< clip signs of AngularRateStream's window; buffer
     RegimeProbabilities probabilities{1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0};
-    RegimeProbabilities regime_probability_sum{};         ///< sum over all reported samples
-    std::size_t reported_sample_count = 0;          ///< number of reported samples
-    std::size_t combined_samples = 0;  ///< number of reported samples combined with HandHeldRateStream
-    std::size_t hand_held_start_count = 0;            ///< number of starts of HandHeldRateStream
-    std::size_t calibration_reset_count = 0;        ///< last value of AngularRateStream's counter of calibration resets
-    double calibration_reset_rate = 0.0;  ///< number of calibration resets of AngularRateStream, decaying with the time constant `rate.lag_s`
+    RegimeProbabilities regime_probability_sum{};  ///< sum over all reported samples
+    std::size_t reported_sample_count = 0;         ///< number of reported samples
+    std::size_t combined_samples = 0;              ///< number of reported samples combined with HandHeldRateStream
+    std::size_t hand_held_start_count = 0;         ///< number of starts of HandHeldRateStream
+    std::size_t calibration_reset_count = 0;       ///< last value of AngularRateStream's counter of calibration resets
+    double calibration_reset_rate =
+        0.0;  ///< number of calibration resets of AngularRateStream, decaying with the time constant `rate.lag_s`
     bool hand_held_stream_running = false;  ///< true if HandHeldRateStream is running
     /// probabilities of hand-held motion in the last `segment_gap_max_s`; the oldest entry is the smallest
     std::vector<ReportedRegimeProbability> recent_probabilities;
@@ -64,7 +65,8 @@ class MotionRegimeStream {
   /// The returned state has all memory that push() needs.
   State start() const;
 
-  /// Processes one sample like AngularRateStream::push(), and combines the rates of AngularRateStream and HandHeldRateStream.
+  /// Processes one sample like AngularRateStream::push(), and combines the rates of AngularRateStream and
+  /// HandHeldRateStream.
   Status push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
               std::optional<AngularRateState>& out) const;
   Status push(const ImuSample& sample, State& state, std::optional<AngularRateState>& out) const {
@@ -81,8 +83,9 @@ class MotionRegimeStream {
   SensingAxisClipSigns update_clip_signs(State& state) const;
   std::size_t index_of(const AngularRateState& rate, const State& state) const;
   bool calibration_is_unstable(const State& state) const;
-  RegimeProbabilities next(const RegimeProbabilities& before, double dt_s, std::span<const AngularRateStream::Knot> window,
-                           std::size_t k, const RigCalibration& rig, bool unstable) const;
+  RegimeProbabilities next(const RegimeProbabilities& before, double dt_s,
+                           std::span<const AngularRateStream::Knot> window, std::size_t k, const RigCalibration& rig,
+                           bool unstable) const;
   void update_probabilities(const AngularRateState& rate, State& state) const;
   double hand_held_weight(const AngularRateState& rate, State& state) const;
   void flush_hand_held_rates(std::span<AngularRateState> out, State& last) const;

@@ -25,8 +25,8 @@ struct RegimeProbabilities {
 /// contact, the residual force can have any magnitude. A Markov chain models the transitions between flight, contact
 /// and hand-held motion. Readings within `memory_s` count as one independent observation.
 ///
-/// MotionRegimeEvidence does not use the attitude. MotionRegimeEvidence does not model ropes, buoyancy, and aerodynamic forces
-/// above `flight_force_sigma_m_s2`.
+/// MotionRegimeEvidence does not use the attitude. MotionRegimeEvidence does not model ropes, buoyancy, and aerodynamic
+/// forces above `flight_force_sigma_m_s2`.
 class MotionRegimeEvidence {
  public:
   struct Params {
@@ -75,8 +75,9 @@ class MotionRegimeEvidence {
   /// `rates` contains the angular velocity of each sample, estimated for flight and contact. `lever_arm_m` is the
   /// vector from the centre of mass to the IMU, in IMU axes. Returns `ok`, `empty` if there are no samples, or
   /// `out_of_range` if `rates` does not have one element per sample. Cost: O(N).
-  Status find(std::span<const ImuSample> samples, std::span<const AngularRateState> rates, const Eigen::Vector3d& lever_arm_m,
-              const Eigen::Matrix3d& lever_arm_covariance_m2, std::vector<RegimeProbabilities>& out) const;
+  Status find(std::span<const ImuSample> samples, std::span<const AngularRateState> rates,
+              const Eigen::Vector3d& lever_arm_m, const Eigen::Matrix3d& lever_arm_covariance_m2,
+              std::vector<RegimeProbabilities>& out) const;
 
   /// Returns the probabilities at `sample`, which is `dt_s` later than the probabilities `before`.
   /// `angular_acceleration_rad_s2` is the time derivative of the rate, in IMU axes. Cost: O(1).
@@ -85,8 +86,9 @@ class MotionRegimeEvidence {
                            const Eigen::Vector3d& lever_arm_m, const Eigen::Matrix3d& lever_arm_covariance_m2) const;
 
  private:
-  Eigen::Vector3d likelihood(double dt_s, const ImuSample& sample, const AngularRateState& rate, const Eigen::Vector3d& alpha,
-                             const Eigen::Vector3d& lever_arm_m, double lever_arm_variance_m2) const;
+  Eigen::Vector3d likelihood(double dt_s, const ImuSample& sample, const AngularRateState& rate,
+                             const Eigen::Vector3d& alpha, const Eigen::Vector3d& lever_arm_m,
+                             double lever_arm_variance_m2) const;
   Params params_;
 };
 

@@ -41,8 +41,9 @@ class RestGravity {
   };
   struct GravityMagnitudeState {
     RestDetector::State stationary_state, stationary_weightless, stationary_above_gravity;
-    double rest_s = 0.0, stationary_force_integral_m_s = 0.0;  ///< total duration of rests, and integral of the specific force at rest
-    double weightless_s = 0.0;               ///< duration of rests without force
+    double rest_s = 0.0, stationary_force_integral_m_s =
+                             0.0;  ///< total duration of rests, and integral of the specific force at rest
+    double weightless_s = 0.0;     ///< duration of rests without force
     TimeNs last_time_ns = 0;
     bool started = false, is_stationary = false;
     bool operator==(const GravityMagnitudeState&) const = default;
@@ -51,13 +52,16 @@ class RestGravity {
     Eigen::Vector3d last_rest_force_m_s2 =
         Eigen::Vector3d::Zero();  ///< force at the last rest in sensor axes; 0: no rest yet
     Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< rotation since the last rest
-    double angle_since_last_rest_rad = 0.0, angle_variance_rad2 = 0.0;  ///< angle since the last rest, and variance of its error
+    double angle_since_last_rest_rad = 0.0,
+           angle_variance_rad2 = 0.0;  ///< angle since the last rest, and variance of its error
     Eigen::Vector3d integrated_force_m_s = Eigen::Vector3d::Zero();  ///< integrated force since the last rest
     double span_s = 0.0,
-           integrated_saturation_deficit_m_s = 0.0;           ///< time since the last rest; integrated saturation deficit
-    double unmeasured_duration_s = 0.0, unmeasured_rotation_variance = 0.0;  ///< duration and variance of the current run of unmeasured samples
-    double worst_velocity_error_ratio = 0.0, worst_pair_error_limit = 0.0;  ///< velocity error of the worst pair, and limit
-    std::size_t compared_rest_pairs = 0;                                              ///< number of compared pairs of rests
+           integrated_saturation_deficit_m_s = 0.0;  ///< time since the last rest; integrated saturation deficit
+    double unmeasured_duration_s = 0.0,
+           unmeasured_rotation_variance = 0.0;  ///< duration and variance of the current run of unmeasured samples
+    double worst_velocity_error_ratio = 0.0,
+           worst_pair_error_limit = 0.0;  ///< velocity error of the worst pair, and limit
+    std::size_t compared_rest_pairs = 0;  ///< number of compared pairs of rests
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.
@@ -66,7 +70,9 @@ class RestGravity {
   /// Cost: O(1), no allocation. Samples that are not finite or out of order are ignored.
   void step(const ImuSample& sample, const AngularRateState& rate, State& state) const;
   /// Checks only the magnitude of the specific force at rest.
-  void step(const ImuSample& sample, GravityMagnitudeState& state) const { (void)detect_stationary_periods(sample, state); }
+  void step(const ImuSample& sample, GravityMagnitudeState& state) const {
+    (void)detect_stationary_periods(sample, state);
+  }
 
   /// Reduces the weight of old rests to a minute, so that a warning ends after its cause.
   static void limit_memory(GravityMagnitudeState& state);
@@ -76,8 +82,8 @@ class RestGravity {
   double gravity_magnitude_error_ratio(const GravityMagnitudeState& state) const;
   /// Returns `out_of_range` if gravity_magnitude_error_ratio() differs from 1 by more than `error_max`.
   Status gravity_magnitude_verdict(const GravityMagnitudeState& state, double error_max = kMagnitudeErrorMax) const;
-  /// Returns the error of gravity_magnitude_verdict(), if any. Otherwise returns `out_of_range` if the velocity, integrated
-  /// between two rests, contradicts zero velocity at both rests.
+  /// Returns the error of gravity_magnitude_verdict(), if any. Otherwise returns `out_of_range` if the velocity,
+  /// integrated between two rests, contradicts zero velocity at both rests.
   Status verdict(const State& state) const;
 
  private:

@@ -104,13 +104,15 @@ class SpinTracker {
   /// Combines a rate with the rate of the spin by the probability of a steady spin. The result equals `rate` if the
   /// spin axis is unsaturated, or if the probability is below `probability_min`. The result also equals `rate` if
   /// further IMUs measured `rate` (`further_imus`) with a smaller variance.
-  AngularRateState combine_with_spin_rate(const AngularRateState& rate, const SpinRate& spin, bool further_imus = false) const;
+  AngularRateState combine_with_spin_rate(const AngularRateState& rate, const SpinRate& spin,
+                                          bool further_imus = false) const;
 
  private:
   bool select_spin_axis(const ImuSample& sample, State& state) const;
   template <class Model, class Recorder>
-  SpinRate advance_spin_filter(const Model& model, const ImuSample& sample, std::uint8_t saturated_axes, double dt_s, bool first,
-                   int axis, Hypotheses<Model::kStates>& hypotheses, const Recorder& record) const;
+  SpinRate advance_spin_filter(const Model& model, const ImuSample& sample, std::uint8_t saturated_axes, double dt_s,
+                               bool first, int axis, Hypotheses<Model::kStates>& hypotheses,
+                               const Recorder& record) const;
 
   Params params_;
 };

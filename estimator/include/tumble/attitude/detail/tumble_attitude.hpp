@@ -38,10 +38,11 @@ struct TumbleAttitudeParams {
     visit(p.rate_error_sqrts,
           {"rate_error_sqrts", "sqrt(s)", 0.0, 1.0,
            "angle random walk per rad/s of rate, caused by scale and timing errors", ParameterRank::common_use});
-    visit(p.bias_sigma_start_rad_s,
-          {"bias_sigma_start_rad_s", "rad/s", 0.0, 1.0, "prior standard deviation of the gyro bias", ParameterRank::common_use});
-    visit(p.velocity_m_sqrts, {"velocity_m_sqrts", "m/sqrt(s)", 1e-12, 1e3,
-                               "standard deviation of the mean velocity over 1 s of motion", ParameterRank::common_use});
+    visit(p.bias_sigma_start_rad_s, {"bias_sigma_start_rad_s", "rad/s", 0.0, 1.0,
+                                     "prior standard deviation of the gyro bias", ParameterRank::common_use});
+    visit(p.velocity_m_sqrts,
+          {"velocity_m_sqrts", "m/sqrt(s)", 1e-12, 1e3, "standard deviation of the mean velocity over 1 s of motion",
+           ParameterRank::common_use});
     visit(p.displacement_m_sqrts, {"displacement_m_sqrts", "m sqrt(s)", 1e-12, 1e3,
                                    "standard deviation of the mean displacement over 1 s", ParameterRank::common_use});
     visit(p.motion_tau_s,
@@ -116,7 +117,7 @@ class TumbleAttitude {
   Eigen::Vector2d velocity_from_rotation(const State& state) const;
   void correct_body_motion(const Eigen::Vector2d& turned_m_s, State& state) const;
   double body_motion_variance(const Eigen::Vector2d& misfit, int index, double sigma_sqrts, double power,
-                         const State& state) const;
+                              const State& state) const;
   bool detect_slip(const Eigen::Vector2d& misfit_m_s, State& state) const;
 
   Params params_;

@@ -49,11 +49,11 @@ struct TumbleAttitudeExpertParams {
   double reading_s = 4e-3;
   double gap_max_s = 1.0;
   RestDetector::Params rest_detector = {.rate_max_rad_s = 3.4907e-2,
-                               .rate_spread_rad_s = 3.4907e-2,
-                               .force_spread_m_s2 = 0.5,
-                               .rest_s = 1.0,
-                               .reading_s = 0.0,  // the readings are already averaged
-                               .memory_s = 1.0};
+                                        .rate_spread_rad_s = 3.4907e-2,
+                                        .force_spread_m_s2 = 0.5,
+                                        .rest_s = 1.0,
+                                        .reading_s = 0.0,  // the readings are already averaged
+                                        .memory_s = 1.0};
   AttitudeRestParams at_rest = {};
   AttitudeGapParams gap = {};
 

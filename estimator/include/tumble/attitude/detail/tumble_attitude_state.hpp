@@ -22,8 +22,8 @@ struct TumbleAttitudeState {
   /// displacement, heading error phi_z. The attitude error is defined by q_true = Exp(phi) q_WI.
   Covariance covariance = Covariance::Zero();
   ImuAverage average;  ///< average of the readings that are not yet processed
-  Eigen::Matrix3d recovered_covariance_rad2_s2 = Eigen::Matrix3d::Zero();  ///< mean rate covariance in `average`
-  Eigen::Quaterniond last_processed_q_WI = Eigen::Quaterniond::Identity();      ///< attitude at the last processed average
+  Eigen::Matrix3d recovered_covariance_rad2_s2 = Eigen::Matrix3d::Zero();   ///< mean rate covariance in `average`
+  Eigen::Quaterniond last_processed_q_WI = Eigen::Quaterniond::Identity();  ///< attitude at the last processed average
   // integrals since the last node
   Eigen::Matrix3d integrated_rotation_matrix_s = Eigen::Matrix3d::Zero();
   Eigen::Vector3d force_integral_W_m_s = Eigen::Vector3d::Zero();
@@ -32,7 +32,7 @@ struct TumbleAttitudeState {
       Eigen::Vector2d::Zero();  ///< variances of tilt and heading due to recovered rates
   double time_since_node_s = 0.0;
   Eigen::Vector2d recovered_angle_sigma_sum_rad =
-      Eigen::Vector2d::Zero();        ///< sum of the standard deviations of recovered rates
+      Eigen::Vector2d::Zero();           ///< sum of the standard deviations of recovered rates
   double velocity_variance_m2_s2 = 0.0;  ///< variance of the body's velocity, per axis
   double displacement_variance_m2 = 0.0;
   CoarseAlignment alignment;

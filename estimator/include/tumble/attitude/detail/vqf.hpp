@@ -27,8 +27,8 @@ struct VqfParams {
            ParameterRank::common_use});
     visit(p.rest_bias_estimation,
           boolean_field("rest_bias_estimation", "1: estimate the gyro bias at rest", ParameterRank::common_use));
-    visit(p.motion_bias_estimation,
-          boolean_field("motion_bias_estimation", "1: also estimate the gyro bias in motion", ParameterRank::common_use));
+    visit(p.motion_bias_estimation, boolean_field("motion_bias_estimation", "1: also estimate the gyro bias in motion",
+                                                  ParameterRank::common_use));
     visit(p.bias_sigma_start_rad_s, {"bias_sigma_start_rad_s", "rad/s", 1e-9, 1.0,
                                      "prior standard deviation of the gyro bias", ParameterRank::common_use});
     visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap causes an error"});

@@ -26,7 +26,8 @@ struct BlockArrowSystem {
   /// contains L^-1, L^-1 E, L^-1 B and L^-1 g, with D = L L'.
   struct StateBlock {
     StateMatrix diagonal = StateMatrix::Zero();
-    StateMatrix coupling_to_next_state = StateMatrix::Zero();  ///< coupling of this block (rows) to the next block (columns)
+    StateMatrix coupling_to_next_state =
+        StateMatrix::Zero();  ///< coupling of this block (rows) to the next block (columns)
     CrossMatrix border_coupling = CrossMatrix::Zero();
     StateVector gradient = StateVector::Zero();
   };
@@ -59,7 +60,8 @@ struct BlockArrowSystem {
 
   /// Returns the step of an eliminated block from the steps of the next block (null for the last block) and of the
   /// border.
-  static StateVector back_substitute(const StateBlock& block, const StateVector* next_step, const BorderVector& border_step);
+  static StateVector back_substitute(const StateBlock& block, const StateVector* next_step,
+                                     const BorderVector& border_step);
 
   /// `next` is null for the last block.
   static StateGivenNextState state_given_next_state(const StateBlock& block, const StateGivenNextState* next);
@@ -134,7 +136,8 @@ bool BlockArrowSystem<State, Border>::eliminate(StateBlock& block, StateBlock* n
 }
 
 template <int State, int Border>
-bool BlockArrowSystem<State, Border>::solve_border_block(const BorderBlock& corner, BorderVector& step, BorderMatrix& covariance) {
+bool BlockArrowSystem<State, Border>::solve_border_block(const BorderBlock& corner, BorderVector& step,
+                                                         BorderMatrix& covariance) {
   const Eigen::LLT<BorderMatrix> factor(corner.matrix);
   if (factor.info() != Eigen::Success) return false;
   covariance = factor.solve(BorderMatrix::Identity());
@@ -144,14 +147,15 @@ bool BlockArrowSystem<State, Border>::solve_border_block(const BorderBlock& corn
 
 template <int State, int Border>
 auto BlockArrowSystem<State, Border>::back_substitute(const StateBlock& block, const StateVector* next_step,
-                                                 const BorderVector& border_step) -> StateVector {
+                                                      const BorderVector& border_step) -> StateVector {
   StateVector right = block.gradient - block.border_coupling.lazyProduct(border_step);
   if (next_step != nullptr) right.noalias() -= block.coupling_to_next_state.lazyProduct(*next_step);
   return block.diagonal.transpose().lazyProduct(right);
 }
 
 template <int State, int Border>
-auto BlockArrowSystem<State, Border>::state_given_next_state(const StateBlock& block, const StateGivenNextState* next) -> StateGivenNextState {
+auto BlockArrowSystem<State, Border>::state_given_next_state(const StateBlock& block, const StateGivenNextState* next)
+    -> StateGivenNextState {
   const StateMatrix& L_inv = block.diagonal;
   StateGivenNextState out;
   out.state = L_inv.transpose().lazyProduct(L_inv);
@@ -169,8 +173,8 @@ auto BlockArrowSystem<State, Border>::state_given_next_state(const StateBlock& b
 }
 
 template <int State, int Border>
-auto BlockArrowSystem<State, Border>::marginal(const StateGivenNextState& conditional, const BorderMatrix& border_covariance)
-    -> MarginalDistribution {
+auto BlockArrowSystem<State, Border>::marginal(const StateGivenNextState& conditional,
+                                               const BorderMatrix& border_covariance) -> MarginalDistribution {
   MarginalDistribution out;
   out.cross_covariance = conditional.border_jacobian.lazyProduct(border_covariance);
   out.state = conditional.state;

@@ -9,8 +9,9 @@
 namespace tumble {
 
 struct ImuSamplePair {
-  std::size_t index_before = 0, index_after = 0;  ///< neighbouring samples; outside the recording, the two samples at the end
-  double interpolation_weight = 0.0;                 ///< interpolation weight; outside of [0, 1] outside the recording
+  std::size_t index_before = 0,
+              index_after = 0;        ///< neighbouring samples; outside the recording, the two samples at the end
+  double interpolation_weight = 0.0;  ///< interpolation weight; outside of [0, 1] outside the recording
   double length_s = 0.0;              ///< time between the two neighbouring samples
   bool is_inside_recording() const { return interpolation_weight >= 0.0 && interpolation_weight <= 1.0; }
 };

@@ -47,7 +47,8 @@ class OutlierFilter {
   explicit OutlierFilter(const ImuRanges& device) : imu_ranges_(device) {}
 
   /// Returns the delayed samples if `next` confirms them; empty if they are rejected, remain delayed, or are absent.
-  /// The result is valid until the next call of must_delay_for_check(). `next` must be later than all samples that passed.
+  /// The result is valid until the next call of must_delay_for_check(). `next` must be later than all samples that
+  /// passed.
   std::span<const ImuSample> filter_sample(const ImuSample& next, State& state) const;
 
   /// Returns true if the next samples show that the first samples of a run are outliers. The run should then restart
@@ -58,7 +59,8 @@ class OutlierFilter {
   /// filter_sample() before must_delay_for_check().
   bool must_delay_for_check(const ImuSample& sample, State& state) const;
 
-  /// Call mark_accepted() for each sample that filter_sample() returned or for which must_delay_for_check() returned false.
+  /// Call mark_accepted() for each sample that filter_sample() returned or for which must_delay_for_check() returned
+  /// false.
   static void mark_accepted(const ImuSample& sample, State& state);
 
   /// Rejects the delayed samples at the end of a run.

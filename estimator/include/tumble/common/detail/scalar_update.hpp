@@ -27,7 +27,7 @@ Eigen::Matrix<double, N, 1> scalar_update(const Eigen::MatrixBase<Row>& row, dou
 /// The measurement is component `index` of the state vector.
 template <int N>
 Eigen::Matrix<double, N, 1> kalman_update_of_component(Eigen::Index index, double innovation, double variance,
-                                             Eigen::Matrix<double, N, N>& P) {
+                                                       Eigen::Matrix<double, N, N>& P) {
   const Eigen::Matrix<double, N, 1> column = P.col(index);
   const double s = column[index] + variance;
   P -= column * (column / s).transpose();

@@ -39,8 +39,8 @@ struct PointCounts {
 
 /// Selects the usable lidar returns of a sweep and transforms them to IMU axes. `sweep_start_s` is the start of the
 /// sweep relative to the start of the trajectory.
-PointCounts select_points(std::span<const LidarPoint> points, const PointSelectionBounds& bounds, const Eigen::Isometry3d& T_IL,
-                          double sweep_start_s, std::vector<SweepPoint>& selected);
+PointCounts select_points(std::span<const LidarPoint> points, const PointSelectionBounds& bounds,
+                          const Eigen::Isometry3d& T_IL, double sweep_start_s, std::vector<SweepPoint>& selected);
 
 /// Recomputes `points` for another calibration and writes the result to `moved`, which must be a different object.
 /// `later_s` is added to the times of the points in the IMU's clock. Cost: O(n).
@@ -62,7 +62,8 @@ void deskew(const SweepTrajectory& trajectory, std::span<const SweepPoint> point
 class SweepSampler {
  public:
   /// `chosen` receives the indices of the kept points, in increasing order.
-  void choose_points_per_voxel(std::span<const Eigen::Vector3f> positions_W_m, double voxel_m, std::vector<std::uint32_t>& chosen);
+  void choose_points_per_voxel(std::span<const Eigen::Vector3f> positions_W_m, double voxel_m,
+                               std::vector<std::uint32_t>& chosen);
 
  private:
   SpatialHash occupied_voxels_{1 << 14};

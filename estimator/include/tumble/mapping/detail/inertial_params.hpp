@@ -5,8 +5,8 @@
 
 namespace tumble {
 
-/// Standard deviations of the errors of inertial integration over kSpan_s, in addition to the uncertainty in AngularRateState.
-/// Smaller standard deviations constrain the pose more strongly in a world with few features.
+/// Standard deviations of the errors of inertial integration over kSpan_s, in addition to the uncertainty in
+/// AngularRateState. Smaller standard deviations constrain the pose more strongly in a world with few features.
 struct InertialNoiseParams {
   static constexpr double kSweepInterval_s = 0.1;  ///< time between two sweeps of most lidars
   double sigma_m = 0.003;
@@ -24,16 +24,19 @@ struct InertialNoiseParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.sigma_m, {"prior_sigma_m", "m", 1e-9, 1e3,
-                      "standard deviation of the position after 0.1 s of inertial prediction", ParameterRank::common_use});
-    visit(p.sigma_rad, {"prior_sigma_rad", "rad", 1e-9, 1e3,
-                        "standard deviation of the attitude after 0.1 s of inertial prediction", ParameterRank::common_use});
-    visit(p.sigma_m_s, {"prior_sigma_m_s", "m/s", 1e-9, 1e3,
-                        "standard deviation of the velocity after 0.1 s of inertial prediction", ParameterRank::common_use});
-    visit(
-        p.rotation_noise_ratio,
-        {"rotation_sigma_ratio", "1", 0.0, 1.0,
-         "standard deviation of the attitude after inertial prediction, as a share of the rotation", ParameterRank::common_use});
+    visit(p.sigma_m,
+          {"prior_sigma_m", "m", 1e-9, 1e3, "standard deviation of the position after 0.1 s of inertial prediction",
+           ParameterRank::common_use});
+    visit(p.sigma_rad,
+          {"prior_sigma_rad", "rad", 1e-9, 1e3, "standard deviation of the attitude after 0.1 s of inertial prediction",
+           ParameterRank::common_use});
+    visit(p.sigma_m_s,
+          {"prior_sigma_m_s", "m/s", 1e-9, 1e3, "standard deviation of the velocity after 0.1 s of inertial prediction",
+           ParameterRank::common_use});
+    visit(p.rotation_noise_ratio,
+          {"rotation_sigma_ratio", "1", 0.0, 1.0,
+           "standard deviation of the attitude after inertial prediction, as a share of the rotation",
+           ParameterRank::common_use});
     visit(p.force_share,
           {"force_sigma_ratio", "1", 0.0, 1.0,
            "standard deviation of the velocity after inertial prediction, as a share of the integrated force",
@@ -70,7 +73,7 @@ struct SaturatedImuParams {
            "standard deviation of the rate about a clipped axis that the rate estimator did not recover",
            ParameterRank::common_use});
     visit(p.estimate_deficit, boolean_field("estimate_saturation_deficit",
-                                           "1: estimate the saturation deficit of clipped axes in the registration"));
+                                            "1: estimate the saturation deficit of clipped axes in the registration"));
   }
 };
 

@@ -40,7 +40,8 @@ class LidarScaleEstimator {
   /// change of velocity from one time span to the next
   struct VelocityChange {
     TimeNs time_ns = 0;
-    Eigen::Vector3d imu_velocity_change_m_s = Eigen::Vector3d::Zero(), lidar_velocity_change_m_s = Eigen::Vector3d::Zero();
+    Eigen::Vector3d imu_velocity_change_m_s = Eigen::Vector3d::Zero(),
+                    lidar_velocity_change_m_s = Eigen::Vector3d::Zero();
   };
 
   /// The buffer for `samples_max` samples should cover two seconds; with more samples between two sweeps, the sweep is

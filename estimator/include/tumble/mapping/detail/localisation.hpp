@@ -31,7 +31,9 @@ class Localisation {
   /// predicted poses within kForgettingTime_s.
   Status current_verdict() const;
   /// Returns the time of the first sweep of the current tracking failure.
-  std::optional<TimeNs> lost_since_ns() const { return lost_since_ns_ ? lost_since_ns_ : previous_contradicted_sweep_ns_; }
+  std::optional<TimeNs> lost_since_ns() const {
+    return lost_since_ns_ ? lost_since_ns_ : previous_contradicted_sweep_ns_;
+  }
 
  private:
   void observe_fit(const SweepReport& sweep);

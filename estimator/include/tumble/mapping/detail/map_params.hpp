@@ -13,8 +13,8 @@ struct LocalMapParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.voxel_m,
-          {"map_voxel_m", "m", 0.01, 10.0, "edge length of a voxel of the map's hash table", ParameterRank::common_use});
+    visit(p.voxel_m, {"map_voxel_m", "m", 0.01, 10.0, "edge length of a voxel of the map's hash table",
+                      ParameterRank::common_use});
     visit(
         p.spacing_m,
         {"map_spacing_m", "m", 0.0, 10.0,

@@ -23,7 +23,8 @@ struct MatchingParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.neighbours, {"neighbours", "1", 3, 32, "number of map points used for each plane fit", ParameterRank::common_use});
+    visit(p.neighbours,
+          {"neighbours", "1", 3, 32, "number of map points used for each plane fit", ParameterRank::common_use});
     visit(p.distance_m, {"match_distance_m", "m", 1e-3, 10.0,
                          "maximum distance between a point and its matches in the map", ParameterRank::common_use});
     visit(p.matches_min, {"matches_min", "1", 0, 1e9, "minimum number of matches for an accepted sweep"});

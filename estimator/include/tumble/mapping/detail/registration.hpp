@@ -28,7 +28,8 @@ class OuterProducts;
 /// squared distances to planes through the nearest map points, and the squared Mahalanobis distance from the prior. The
 /// prior determines the directions that no surface constrains.
 class Registration {
-  static constexpr std::size_t kPointsPerPartialSum = 128;  // points per partial sum; independent of the number of threads
+  static constexpr std::size_t kPointsPerPartialSum =
+      128;  // points per partial sum; independent of the number of threads
 
  public:
   using Params = RegistrationParams;
@@ -82,7 +83,8 @@ class Registration {
 
   Status iterate(const RegistrationProblem& problem, IterationState& at, SweepTrajectory& trajectory, Result& result);
   RegistrationVerdict registration_verdict(const RegistrationProblem& problem, const IterationState& at) const;
-  Status finalise(const RegistrationProblem& problem, const IterationState& at, SweepTrajectory& trajectory, Result& result);
+  Status finalise(const RegistrationProblem& problem, const IterationState& at, SweepTrajectory& trajectory,
+                  Result& result);
   void match_points(const SweepTrajectory& trajectory, std::span<const SweepPoint> points, const VoxelMap& map);
   void find_match(const VoxelMap& map, std::size_t point, NearestNeighbours& found);
   double kernel_width_m();

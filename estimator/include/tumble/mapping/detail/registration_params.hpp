@@ -63,9 +63,11 @@ struct RegistrationParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.neighbours, {"neighbours", "1", 3, 32, "number of map points used for each plane fit", ParameterRank::common_use});
-    visit(p.match_distance_m, {"match_distance_m", "m", 1e-3, kMatchDistanceMax_m,
-                               "maximum distance between a point and its matches in the map", ParameterRank::common_use});
+    visit(p.neighbours,
+          {"neighbours", "1", 3, 32, "number of map points used for each plane fit", ParameterRank::common_use});
+    visit(p.match_distance_m,
+          {"match_distance_m", "m", 1e-3, kMatchDistanceMax_m,
+           "maximum distance between a point and its matches in the map", ParameterRank::common_use});
     visit(p.iterations_max, {"iterations_max", "1", 1, 200, "maximum number of iterations"});
     visit(p.range_sigma_m, {"range_sigma_m", "m", 1e-6, 10.0, "minimum standard deviation of a range"});
     visit(p.range_sigma_ratio,

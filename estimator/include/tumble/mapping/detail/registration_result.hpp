@@ -12,8 +12,8 @@ namespace tumble {
 
 enum class RegistrationVerdict : std::uint8_t {
   converged,
-  too_few_matches,   ///< too few matches; the result is the prior
-  diverged,  ///< no convergence, too large a correction, or too few fitting matches; the result is the prior
+  too_few_matches,  ///< too few matches; the result is the prior
+  diverged,         ///< no convergence, too large a correction, or too few fitting matches; the result is the prior
 };
 
 struct RegistrationResult {

@@ -14,8 +14,9 @@ struct StationaryBoundsParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.levelling_max_s, {"rest_s", "s", 1e-9, 60.0,
-                              "maximum duration of the initial rest that determines the tilt", ParameterRank::common_use});
+    visit(p.levelling_max_s,
+          {"rest_s", "s", 1e-9, 60.0, "maximum duration of the initial rest that determines the tilt",
+           ParameterRank::common_use});
     visit(p.rate_rad_s,
           {"rest_rate_rad_s", "rad/s", 1e-6, 10.0,
            "at rest: maximum difference between the rate and the bias, and between the rate and its mean, per axis"});

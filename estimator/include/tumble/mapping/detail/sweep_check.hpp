@@ -13,8 +13,8 @@ namespace tumble::mapping {
 /// Returns `out_of_range` if a point's time is after the end of the sweep.
 Status check_time_offsets(TimeNs span_ns, std::span<const LidarPoint> points);
 
-/// Returns `empty` (no points), `non_finite` (no finite point), `insufficient_data` (no point in range) or `degenerate` (all
-/// points have one time stamp, although the sweep has a duration).
+/// Returns `empty` (no points), `non_finite` (no finite point), `insufficient_data` (no point in range) or `degenerate`
+/// (all points have one time stamp, although the sweep has a duration).
 Status check_point_selection(TimeNs span_ns, std::span<const LidarPoint> points, const PointCounts& counts);
 
 }  // namespace tumble::mapping

@@ -72,8 +72,9 @@ class SweepTrajectory {
   };
 
   /// Integrates the motion from `start` to `end_ns`. The samples must be contiguous and in time order, beginning at the
-  /// start. Returns `insufficient_data` if there is no sample or if the samples end before `end_ns`. Returns `time_order` if the
-  /// end is before the start. Returns `gap` with the time in seconds if the first sample begins after the start.
+  /// start. Returns `insufficient_data` if there is no sample or if the samples end before `end_ns`. Returns
+  /// `time_order` if the end is before the start. Returns `gap` with the time in seconds if the first sample begins
+  /// after the start.
   Status build(const MotionState& start, std::span<const MotionSample> samples, TimeNs end_ns,
                const Eigen::Vector3d& gravity_W_m_s2, const Deficit& deficit_rad_s = Deficit::Zero());
   /// The gravity has magnitude `gravity_m_s2` along -z.
@@ -89,8 +90,8 @@ class SweepTrajectory {
   /// kExtrapolation_s. `hint` is the interval of the previous call, and speeds up calls in time order.
   static constexpr double kExtrapolation_s = 0.02;
   PreintegratedMotion at(double t_s, std::size_t& hint) const;
-  /// Computes the lever arm vector of each point: the position of the point in the world minus gravity_free_position_m() at
-  /// the time of the point.
+  /// Computes the lever arm vector of each point: the position of the point in the world minus
+  /// gravity_free_position_m() at the time of the point.
   void lever_arm_vectors(std::span<const SweepPoint> points, std::span<Eigen::Vector3f> levers_W_m) const;
   SaturationDeficitJacobian saturation_deficit_jacobian(double t_s, std::size_t& hint) const;
   std::size_t intervals() const { return intervals_.size(); }
@@ -131,7 +132,7 @@ class SweepTrajectory {
     Eigen::Quaterniond q_WI;
     Eigen::Vector3d rate_I_rad_s, specific_force_W_m_s2;  // rate in body axes; mean specific force in world axes
     Eigen::Vector3d preintegrated_velocity_m_s,
-        preintegrated_position_m;    // integrals of the specific force up to start_s
+        preintegrated_position_m;       // integrals of the specific force up to start_s
     Eigen::Vector3d clipped_axis_sign;  // factor s_j where axis j is clipped, 0 elsewhere
     Eigen::Matrix<double, kKnots, 1> knot_weight =
         Eigen::Matrix<double, kKnots, 1>::Zero();  // weight of each knot's deficit in the interval

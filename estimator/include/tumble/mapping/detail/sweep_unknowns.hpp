@@ -38,7 +38,7 @@ struct RegistrationUnknowns {
     Estimate mean;
     Matrix covariance = Matrix::Zero();
     Deficit initial_saturation_deficit_rad_s = Deficit::Zero();  ///< initial value of the iterations
-    std::optional<MotionState> start;               ///< initial value of the motion; empty: the mean
+    std::optional<MotionState> start;                            ///< initial value of the motion; empty: the mean
 
     Prior() = default;
     /// The saturation deficit and the calibration are fixed.

@@ -68,8 +68,9 @@ class VoxelMap {
   /// the number of cells within the distance of the k-th neighbour.
   void nearest(const Eigen::Vector3f& query_W_m, int k, float radius_m, NearestNeighbours& found) const;
 
-  /// Deletes the points farther than `radius_m` from `plane_centre_W_m`. The indices of points change, and the remaining
-  /// sweeps are renumbered in order. Returns the old number of each remaining sweep. Cost: O(number of points).
+  /// Deletes the points farther than `radius_m` from `plane_centre_W_m`. The indices of points change, and the
+  /// remaining sweeps are renumbered in order. Returns the old number of each remaining sweep. Cost: O(number of
+  /// points).
   std::vector<std::uint32_t> remove_points_beyond(const Eigen::Vector3f& centre_W_m, float radius_m);
 
   /// Deletes the points of `first_sweep` and of later sweeps. The indices of points change, but not the numbers of
@@ -117,7 +118,7 @@ class VoxelMap {
   std::uint32_t& first_chunk_of(const Eigen::Vector3i& cell);
   std::uint32_t new_chunk(std::uint32_t& first);
   void search_neighbours(std::uint32_t chunk, const Eigen::Vector3f& query_W_m, int k, float& worst_distance2_m2,
-              NearestNeighbours& found) const;
+                         NearestNeighbours& found) const;
 
   Params params_;
   float cells_per_m_ = 0.0f;

@@ -56,8 +56,8 @@ ImuHealthReport check_frozen(const ImuCheckParams& imu, std::span<const ImuSampl
 /// Checks readings, forces in flight, the motion from each rest to the next rest, and frozen axes. `carried_share` is
 /// the fraction of hand-held samples. If the body was never hand-held, flights also reveal flipped and swapped axes,
 /// and include flights with a clipped axis.
-ImuHealthReport check_recording(const ImuCheckParams& imu, std::span<const ImuSample> samples, std::span<const AngularRateState> rates,
-                            std::optional<double> carried_share);
+ImuHealthReport check_recording(const ImuCheckParams& imu, std::span<const ImuSample> samples,
+                                std::span<const AngularRateState> rates, std::optional<double> carried_share);
 
 struct MergedImuRecording {
   MergedRecordings recordings;
@@ -66,7 +66,7 @@ struct MergedImuRecording {
 
 struct MergedImuChecks {
   RestGravity rest_gravity;
-  ImuPlausibility plausibility;                                                   ///< check of the merged readings
+  ImuPlausibility plausibility;  ///< check of the merged readings
   std::array<RestGravity::GravityMagnitudeState, ImuMerge::kImus> rest_gravity_state{};  ///< one state per IMU
   ImuPlausibility::State plausibility_state{};
 };
@@ -79,7 +79,8 @@ SensorHealth check_merged_imus(const ImuCheckParams& imu, const MergedRecordings
 /// contradict each other, the standard deviation is the rate itself. For example, a flipped sign gives an error of
 /// twice the rate. While a gyro axis is frozen, the standard deviation is the largest reading of the recording. Cost:
 /// O(N).
-std::vector<Eigen::Matrix3d> suspected_error_covariance(const ImuHealthReport& findings, std::span<const ImuSample> samples,
-                                                std::span<const AngularRateState> rates);
+std::vector<Eigen::Matrix3d> suspected_error_covariance(const ImuHealthReport& findings,
+                                                        std::span<const ImuSample> samples,
+                                                        std::span<const AngularRateState> rates);
 
 }  // namespace tumble

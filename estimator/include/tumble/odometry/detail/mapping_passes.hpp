@@ -9,8 +9,8 @@
 
 #include "tumble/angular_velocity/detail/clipping_finder.hpp"
 #include "tumble/common/sensor_health.hpp"
-#include "tumble/mapping/detail/localisation.hpp"
 #include "tumble/mapping/detail/lidar_scale.hpp"
+#include "tumble/mapping/detail/localisation.hpp"
 #include "tumble/mapping/further_readings.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/odometry/detail/waiting_input.hpp"
@@ -22,8 +22,8 @@ namespace tumble {
 SaturationLevels flag_saturated_forces(const SaturationLimitDetector::Params& stated, std::span<ImuSample> samples);
 
 struct MappingInput {
-  std::span<const ImuSample> samples;  ///< samples after flag_saturated_forces()
-  std::span<const AngularRateState> rates;    ///< one per sample
+  std::span<const ImuSample> samples;       ///< samples after flag_saturated_forces()
+  std::span<const AngularRateState> rates;  ///< one per sample
   std::size_t sweeps = 0;
   std::function<WaitingSweep(std::size_t)> sweep;  ///< function that returns the sweep with the given index
   /// Returns the odometer reading for a sweep from `from_ns` to `to_ns`; may be empty.

@@ -27,19 +27,20 @@ struct ImuRecording {
 struct MergedRecordings {
   /// calibration of one IMU relative to the mean of all IMUs
   struct MergedImu {
-    std::size_t imu_index = 0;                                   ///< index of the IMU
+    std::size_t imu_index = 0;                              ///< index of the IMU
     double time_offset_s = 0.0, time_offset_sigma_s = 0.0;  ///< positive: the IMU is late
     double rate_bias_rad_s = 0.0;                           ///< norm of the gyro bias
   };
   std::vector<ImuSample> samples;                         ///< samples of the merged IMU, in body axes
   Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< position of the merged IMU, in body axes
-  std::vector<MergedImu> imus;                                ///< units in use
+  std::vector<MergedImu> imus;                            ///< units in use
   /// Excluded IMUs (units) that are silent, frozen, or in disagreement with the other units. A unit with a frozen axis
   /// is excluded only during the fault.
   SensorHealth faults;
-  std::size_t excluded_readings = 0;                        ///< readings that ImuMerge excluded
-  std::optional<double> lever_arm_agreement;                ///< ImuMerge::lever_arm_agreement
-  std::optional<MultiImuSignCheck::DetectedMirroring> mislabelled_axes;  ///< mislabelled axes of the IMUs, as found by ImuMerge
+  std::size_t excluded_readings = 0;          ///< readings that ImuMerge excluded
+  std::optional<double> lever_arm_agreement;  ///< ImuMerge::lever_arm_agreement
+  std::optional<MultiImuSignCheck::DetectedMirroring>
+      mislabelled_axes;  ///< mislabelled axes of the IMUs, as found by ImuMerge
 };
 
 /// Returns the name of a unit in findings: "imu_1" for index 0, or "imu" if there is only one unit.

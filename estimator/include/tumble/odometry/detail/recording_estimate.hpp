@@ -21,15 +21,17 @@ struct WholeRecordingEstimate {
   explicit WholeRecordingEstimate(const LidarInertialOdometry::Params& mapping) : mapped_recording(mapping) {}
 
   std::vector<TimeNs> stamps_ns;  ///< received time stamps of the used samples; `rates` contains corrected times
-  std::vector<AngularRateState> rates;   ///< one per used sample; the covariances include `suspected_error_covariance_rad2_s2`
-  std::vector<Eigen::Matrix3d> suspected_error_covariance_rad2_s2;  ///< see suspected_error_covariance(); empty without a finding
-  MotionRegimeSmoother::Report report;                 ///< report of the rate estimation, with the calibration of the IMU
+  std::vector<AngularRateState>
+      rates;  ///< one per used sample; the covariances include `suspected_error_covariance_rad2_s2`
+  std::vector<Eigen::Matrix3d>
+      suspected_error_covariance_rad2_s2;  ///< see suspected_error_covariance(); empty without a finding
+  MotionRegimeSmoother::Report report;     ///< report of the rate estimation, with the calibration of the IMU
   SaturationLevels saturation_levels;
   ImuHealthReport findings;
-  SensorHealth health;              ///< findings about IMU, lidar and estimate
-  MappedRecording mapped_recording;           ///< mapper and passes; TumblingOdometry::take() returns the sweeps
-  LidarScale scale;                 ///< scale of the lidar's ranges
-  double corrected_jitter_s = 0.0;  ///< largest correction of a time stamp
+  SensorHealth health;               ///< findings about IMU, lidar and estimate
+  MappedRecording mapped_recording;  ///< mapper and passes; TumblingOdometry::take() returns the sweeps
+  LidarScale scale;                  ///< scale of the lidar's ranges
+  double corrected_jitter_s = 0.0;   ///< largest correction of a time stamp
 };
 
 }  // namespace tumble

@@ -19,8 +19,8 @@ struct RollingPriorParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.tilt_sigma_rad, {"tilt_sigma_rad", "rad", 0.0, 1e3,
                              "prior standard deviation of the tilt from the first sample", ParameterRank::common_use});
-    visit(p.gyro_bias_sigma_rad_s,
-          {"gyro_bias_sigma_rad_s", "rad/s", 0.0, 1e3, "prior standard deviation of the gyro bias", ParameterRank::common_use});
+    visit(p.gyro_bias_sigma_rad_s, {"gyro_bias_sigma_rad_s", "rad/s", 0.0, 1e3,
+                                    "prior standard deviation of the gyro bias", ParameterRank::common_use});
     visit(p.accel_bias_sigma_m_s2, {"accel_bias_sigma_m_s2", "m/s^2", 0.0, 1e3,
                                     "prior standard deviation of the accelerometer bias", ParameterRank::common_use});
     visit(p.accel_scale_sigma,
@@ -79,8 +79,7 @@ struct RollingGapParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.gap_max_s,
-          {"gap_max_s", "s", 1e-9, 1.0, "maximum time between two samples; a longer gap causes an error"});
+    visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1.0, "maximum time between two samples; a longer gap causes an error"});
   }
 };
 

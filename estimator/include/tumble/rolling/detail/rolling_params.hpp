@@ -64,8 +64,8 @@ struct RollingParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.radius_m, {"radius_m", "m", 1e-12, 10.0, "radius of the sphere"});
-    visit(p.radius_sigma_m,
-          {"radius_sigma_m", "m", 0.0, 1e3, "prior standard deviation of the radius; 0: exact", ParameterRank::common_use});
+    visit(p.radius_sigma_m, {"radius_sigma_m", "m", 0.0, 1e3, "prior standard deviation of the radius; 0: exact",
+                             ParameterRank::common_use});
     visit(p.lever_arm_m, {"lever_arm_m", "m", -10.0, 10.0, "lever arm from the centre to the IMU, sensor axes"});
     visit(p.lever_arm_sigma_m,
           {"lever_arm_sigma_m", "m", 0.0, 1e3, "prior standard deviation of the lever arm", ParameterRank::common_use});

@@ -29,7 +29,7 @@ class RollingSmoother {
     RollingParams filter = {};
     /// ratio of the smoother's to RollingFilter's process noise; the reported covariance ignores this ratio
     static constexpr double kFinalPassNoiseRatio = 0.65;
-    double lag_s = kWholeRecordingLag;                ///< delay of an estimate behind the newest sample
+    double lag_s = kWholeRecordingLag;       ///< delay of an estimate behind the newest sample
     static constexpr double kBlock_s = 0.2;  ///< RollingSmoother reports estimates in blocks of this duration
     double rate_max_hz = 500.0;              ///< sample rate for which memory is allocated in advance
     /// Measured horizontal distance of the centre between start and end of the run, and its standard deviation; 0: not
@@ -49,8 +49,8 @@ class RollingSmoother {
             {"known_distance_m", "m", 0.0, 1e6,
              "known horizontal distance from start to end, from which the radius is estimated; 0: not known",
              ParameterRank::common_use});
-      visit(p.known_distance_sigma_m,
-            {"known_distance_sigma_m", "m", 1e-12, 1e3, "standard deviation of the known distance", ParameterRank::common_use});
+      visit(p.known_distance_sigma_m, {"known_distance_sigma_m", "m", 1e-12, 1e3,
+                                       "standard deviation of the known distance", ParameterRank::common_use});
     }
   };
 
@@ -69,8 +69,9 @@ class RollingSmoother {
     RollingNominalState nominal;
     RollingFilter::Covariance covariance = RollingFilter::Covariance::Zero();
     RollingMode mode = RollingMode::grip;
-    double slip_start_variance_m2 = 0.0;                          ///< position variance at the start of the event
-    Eigen::Vector3d constrained_sphere_centre_W_m = Eigen::Vector3d::Zero();  ///< reported position while `position_constrained`
+    double slip_start_variance_m2 = 0.0;  ///< position variance at the start of the event
+    Eigen::Vector3d constrained_sphere_centre_W_m =
+        Eigen::Vector3d::Zero();        ///< reported position while `position_constrained`
     bool position_constrained = false;  ///< the sphere is at rest and the reported position is constant
     TimeNs last_time_ns = 0;
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
@@ -86,8 +87,8 @@ class RollingSmoother {
     FinalSmoothingState committed_state;
     std::vector<ImuSample> samples;  ///< samples after the committed node
     std::vector<NodeModes> node_modes;
-    RollingNominalState constants;     ///< constants at the newest smoothed node
-    double radius_sigma_m = 0.0;  ///< standard deviation of the radius at the newest smoothed node
+    RollingNominalState constants;  ///< constants at the newest smoothed node
+    double radius_sigma_m = 0.0;    ///< standard deviation of the radius at the newest smoothed node
     bool operator==(const State& other) const;
   };
 
@@ -101,8 +102,8 @@ class RollingSmoother {
   /// The first call allocates the memory for the samples of the last `lag_s`. Later calls allocate memory only for
   /// `out` and for smoothing, at the last sample of a block of `block_s`. Smoothing temporarily needs 14 KiB per node
   /// of lag and block, or 4 MiB plus 0.3 KiB per node if there are many nodes. The memory of the state grows with the
-  /// duration (64 bytes per sample, 152 per node) with kWholeRecordingLag, above rate_max_hz, or beyond a million samples in
-  /// `lag_s`.
+  /// duration (64 bytes per sample, 152 per node) with kWholeRecordingLag, above rate_max_hz, or beyond a million
+  /// samples in `lag_s`.
   Status step(const ImuSample& sample, State& state, std::vector<RollingEstimate>& out) const;
 
   /// Smooths the remaining estimates with all data, and passes the estimates to `take` in time order. For a whole run
@@ -120,7 +121,8 @@ class RollingSmoother {
 
   std::size_t preallocated_samples() const;
   MostProbableModePath most_probable_path(const State& state) const;
-  void smooth_window(const MostProbableModePath& path, std::size_t emitted, State& state, const EstimateCallback& take) const;
+  void smooth_window(const MostProbableModePath& path, std::size_t emitted, State& state,
+                     const EstimateCallback& take) const;
 
   Params params_;
   RollingParams final_smoothing_params_;
