@@ -129,7 +129,7 @@ MotionRegimeSmoother::Params regime_params(const sim::Sensors& sensors, const An
 }
 
 RecoveredRates recovered_readings(const sim::Sensors& sensors, std::span<const ImuSample> samples,
-                                  ReplacedReadings replaced, Estimate& estimate) {
+                                  ReadingsToReplace replaced, Estimate& estimate) {
   const AngularRateSmoother::Params rate = stated_params(sensors.imus.front(), rate_tumble_settings().defaults());
   std::vector<AuxiliaryRecording> auxiliary_imus;
   if (!auxiliary_recordings(sensors, auxiliary_imus).ok()) auxiliary_imus.clear();

@@ -37,7 +37,7 @@ Status auxiliary_recordings(const sim::Sensors& sensors, std::vector<AuxiliaryRe
 
 /// If the data of one auxiliary IMU are invalid, no auxiliary IMU is used.
 RecoveredRates recovered_readings(const sim::Sensors& sensors, std::span<const ImuSample> samples,
-                                  ReplacedReadings replaced, Estimate& estimate);
+                                  ReadingsToReplace replaced, Estimate& estimate);
 
 /// Starts from the saved calibration `given`, and writes the new calibration to `found`; both may be null. If the run
 /// fails, or estimates neither rig constants nor a saturation limit, `found` stays unchanged. The covariance of the

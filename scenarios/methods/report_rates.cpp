@@ -32,14 +32,14 @@ void report_smoother(const AngularRateReport& report, std::map<std::string, doub
   for (std::size_t axis = 0; axis < 3; ++axis) {
     health[std::string("learnt_lever_arm_") + kAxes[axis] + "_m"] =
         report.calibration.constants.lever_arm_m[static_cast<Eigen::Index>(axis)];
-    if (report.rail_observed[axis]) report_level(axis, *report.rail[axis], health);
+    if (report.saturation_limit_observed[axis]) report_level(axis, *report.rail[axis], health);
   }
 }
 
 }  // namespace
 
 void report_rails(const SaturationLevels& rails, std::map<std::string, double>& health) {
-  const SaturationPlanes in_use = rails.planes_in_use();
+  const SaturationPlanes in_use = rails.saturation_planes_in_use();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double level_rad_s = rails.axis_aligned_rails.channels[axis].rail;
     if (in_use.element[axis]) {

@@ -45,7 +45,7 @@ double gaussian_log_ratio(double value, double sigma) {
 
 // See rails.md (R67).
 double equal_limits_log_odds(const SaturationPlaneFinder::Params& params, const DistinctReadings& readings,
-                             const SaturationPlanes& known, const Side& side) {
+                             const SaturationPlanes& known, const SaturationPlaneSide& side) {
   const double level = side.plane.plane_distance;
   double odds = params.kLogOddsBefore;
   if (level < params.distance_min_rad_s) return kImpossibleLogOdds;
@@ -76,7 +76,7 @@ double equal_limits_log_odds(const SaturationPlaneFinder::Params& params, const 
 
 // See rails.md (R53).
 SaturationPlane merged_plane(const SaturationPlaneFinder::Params& params, const DistinctReadings& readings,
-                             const Side* minus, const Side* plus) {
+                             const SaturationPlaneSide* minus, const SaturationPlaneSide* plus) {
   Eigen::Matrix4d H = Eigen::Matrix4d::Zero();
   Eigen::Vector4d g = Eigen::Vector4d::Zero();
   const int axis = (plus != nullptr ? plus : minus)->axis;
@@ -85,7 +85,7 @@ SaturationPlane merged_plane(const SaturationPlaneFinder::Params& params, const 
   H.diagonal() << slope_information, slope_information, 0.0, 1.0 / std::pow(params.kOffsetSigmaRatio * level, 2);
   SaturationPlane out;
   double squares = 0.0, weights = 0.0;
-  for (const Side* side : {minus, plus}) {
+  for (const SaturationPlaneSide* side : {minus, plus}) {
     if (side == nullptr) continue;
     const double weight = 1.0 / (side->plane.noise_sigma_rad_s * side->plane.noise_sigma_rad_s);
     const PlaneInlierGate& gate = side->gate;
@@ -119,7 +119,7 @@ SaturationPlane merged_plane(const SaturationPlaneFinder::Params& params, const 
   return out;
 }
 
-using Pair = std::array<std::optional<Side>, 2>;
+using Pair = std::array<std::optional<SaturationPlaneSide>, 2>;
 
 SaturationPlane merged_plane(const SaturationPlaneFinder::Params& params, const DistinctReadings& readings,
                              const Pair& pair) {
@@ -132,15 +132,15 @@ struct PlaneSideSearch {
   SaturationPlaneFinder::Workspace& workspace;
 
   // See rails.md (R60).
-  Side search_near_prior(int axis, int sign, const SaturationPlanes& known, const PlaneSlopePrior& prior,
-                         double range) const {
-    Side side{axis, sign, {}, {}};
+  SaturationPlaneSide search_near_prior(int axis, int sign, const SaturationPlanes& known, const PlaneSlopePrior& prior,
+                                        double range) const {
+    SaturationPlaneSide side{axis, sign, {}, {}};
     const auto extreme = rails::find_extreme_reading(params, readings, axis, sign, prior, range, workspace);
     if (!extreme) return side;
     const Vector2d searched = rails::search_cross_axis_slopes(readings, *extreme, range, prior, workspace);
     for (const Vector2d& slopes : {searched, prior.cross_axis_slopes}) {
       for (const double start : kInitialSigmaRatios) {
-        Side tried =
+        SaturationPlaneSide tried =
             rails::fit_saturation_plane(readings, *extreme, prior, slopes, start * extreme->slab_thickness, workspace);
         if (tried.samples < params.samples_min) continue;
         tried.log_odds = equal_limits_log_odds(params, readings, known, tried) +
@@ -151,7 +151,7 @@ struct PlaneSideSearch {
     return side;
   }
 
-  Side search_plane_on_side(int axis, int sign, const SaturationPlanes& known) const {
+  SaturationPlaneSide search_plane_on_side(int axis, int sign, const SaturationPlanes& known) const {
     const auto element = static_cast<std::size_t>(axis);
     if (const auto& rail = known.sensing_axis[element]) {
       const Matrix2d of_slopes = rail->covariance.topLeftCorner<2, 2>();
@@ -161,20 +161,21 @@ struct PlaneSideSearch {
       return search_near_prior(axis, sign, known, prior, range);
     }
     const Matrix2d unknown = Matrix2d::Identity() / (params.kSlopeSigma * params.kSlopeSigma);
-    const Side side = search_near_prior(axis, sign, known, {Vector2d::Zero(), unknown}, params.kSlopeMax);
+    const SaturationPlaneSide side =
+        search_near_prior(axis, sign, known, {Vector2d::Zero(), unknown}, params.kSlopeMax);
     const auto& earlier = params.known_limits.sensing_axis[element];
     if (!earlier) return side;
     const Matrix2d changed =
         earlier->covariance.topLeftCorner<2, 2>() + kKnownSlopeSigma * kKnownSlopeSigma * Matrix2d::Identity();
     const double range = std::min(params.kSlopeMax, 3.0 * std::sqrt(changed.trace()));
-    const Side same =
+    const SaturationPlaneSide same =
         search_near_prior(axis, sign, known, {other_axes_readings(earlier->row, axis), changed.inverse()}, range);
     return same.log_odds > side.log_odds ? same : side;
   }
 
   bool add(int axis, std::size_t i, bool kept, const SaturationPlanes& found, Pair& pair) const {
     const int sign = i == 0 ? -1 : 1;
-    const Side side = search_plane_on_side(axis, sign, found);
+    const SaturationPlaneSide side = search_plane_on_side(axis, sign, found);
     if (side.log_odds >= (kept ? params.kLogOddsKeep : params.kLogOddsMin)) {
       pair[i] = side;
       return true;
@@ -186,7 +187,7 @@ struct PlaneSideSearch {
     alone[i] = side;
     SaturationPlanes supposed = found;
     supposed.sensing_axis[static_cast<std::size_t>(axis)] = merged_plane(params, readings, alone);
-    const Side other = search_plane_on_side(axis, -sign, supposed);
+    const SaturationPlaneSide other = search_plane_on_side(axis, -sign, supposed);
     // The planes of positive and negative saturation share one prior: rails.md (R68).
     if (side.log_odds + other.log_odds - params.kLogOddsBefore < params.kLogOddsMin) return false;
     pair[i] = side;

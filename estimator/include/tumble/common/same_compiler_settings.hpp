@@ -34,6 +34,6 @@ template <>
 const char CompiledHere::link_time_check;  // a declaration; src/common/same_compiler_settings.cpp has the definition
 
 /// This reference to `link_time_check` makes the linker check each source file.
-[[gnu::usable_points]] static const char* const kSameCompilerSettings = &CompiledHere::link_time_check;
+[[gnu::used]] static const char* const kSameCompilerSettings = &CompiledHere::link_time_check;
 
 }  // namespace tumble::detail
