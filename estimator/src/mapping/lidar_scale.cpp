@@ -14,7 +14,7 @@ namespace tumble {
 
 namespace {
 
-constexpr double kLeast = 0.02, kScaleDeviations = 3.5;
+constexpr double kLeast = 0.02, kScaleDeviations = 5.0;
 // Over short time spans, the IMU's weight in the mapping hides errors of the lidar's scale. If ranges are 10 % too
 // long, velocity changes over 0.4 s give the scale 1.08, but changes over 0.1 s only 1.02 to 1.03.
 constexpr double kSpan_s = 0.4;

@@ -10,12 +10,13 @@
 namespace tumble {
 namespace {
 
-SweepReport sweep(double sigma_m, double innovation) {
+SweepReport sweep(double sigma_m, double innovation, double inlier_ratio = 0.6) {
   SweepReport report;
   report.verdict = SweepVerdict::registered;
   report.pose.covariance.setZero();
   report.pose.covariance.diagonal().head<3>().setConstant(sigma_m * sigma_m / 3.0);
   report.innovation = innovation;
+  report.inlier_ratio = inlier_ratio;
   return report;
 }
 
@@ -48,6 +49,19 @@ TEST(Localisation, WithoutAMapNothingIsLost) {
   localisation.add(first);
   EXPECT_TRUE(localisation.verdict().ok());
   localisation.add(empty);
+  EXPECT_FALSE(localisation.verdict().ok());
+}
+
+// Reversed point times or a wrong mounting distort each sweep.
+TEST(Localisation, SweepsWhosePointsDoNotFitTheMapAreReported) {
+  Localisation localisation(1.0);
+  for (int k = 0; k < 60; ++k) localisation.add(sweep(0.1, 0.35, 0.4));  // a low-cost IMU
+  for (int k = 0; k < 60; ++k) localisation.add(sweep(0.1, 0.05, 0.1));  // grass
+  EXPECT_TRUE(localisation.verdict().ok());
+  for (int k = 0; k < 60; ++k) localisation.add(sweep(0.1, 0.35, 0.1));
+  EXPECT_NE(std::string(localisation.current_verdict().field).find("fit the map"), std::string::npos);
+  for (int k = 0; k < 60; ++k) localisation.add(sweep(0.1, 0.05, 0.6));
+  EXPECT_TRUE(localisation.current_verdict().ok());
   EXPECT_FALSE(localisation.verdict().ok());
 }
 

@@ -76,6 +76,27 @@ TEST(Verdicts, SlamThatLagsFindsALidarOfAnotherScale) {
   EXPECT_EQ(said_of(method, draw, "lidar_ranges_long").localised, 0.0);
 }
 
+// A person moves the rig slowly, so velocity and rotation change little.
+TEST(Verdicts, SlamThatLagsFindsFaultsInSlowMotion) {
+  const DataRoot data{test::source_dir()};
+  const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "stroll"), 650001, 1);
+  const auto says = [&](const char* wrong) { return run_wrong(draw, "slam/tumble_lag", wrong).faults; };
+  EXPECT_FALSE(says("none").invalidates_estimate());
+  for (const char* wrong : {"accel_scale_5_percent", "lidar_ranges_long", "lidar_times_reversed"})
+    EXPECT_TRUE(says(wrong).invalidates_estimate()) << wrong;
+}
+
+// The IMU starts during the motion. At the end of the run, pushes tilt the force while the rig rocks.
+TEST(Verdicts, AZeroOffsetOfAGyroThatStartsLateIsNoFault) {
+  const DataRoot data{test::source_dir()};
+  const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 1001, 1, Lidars::left_out);
+  for (const char* wrong : {"gyros_late_offset_5_deg_s", "gyros_late_offset_8_deg_s"}) {
+    const Estimate estimate = run_wrong(draw, "rate/tumble", wrong);
+    EXPECT_TRUE(estimate.faults.ok()) << estimate.faults.message();
+  }
+  EXPECT_TRUE(has_implausible_readings(run_wrong(draw, "rate/tumble", "gyro_halved")));
+}
+
 // The method corrects a part of a mounting error of 10 deg, and the final position is wrong by 0.7 m. The size of the
 // correction reveals the fault.
 TEST(Verdicts, SlamLiveTellsAMountingThatMovedBeyondWhatWasGiven) {

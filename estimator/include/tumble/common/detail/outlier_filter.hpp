@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -41,7 +40,7 @@ class OutlierFilter {
     std::size_t delayed_count = 0;  ///< number of valid samples in `delayed`
     std::size_t rejected = 0;       ///< number of samples rejected since the start
 
-    std::span<const ImuSample> delayed_samples() const { return {delayed.data(), delayed_count}; }
+    std::span<const ImuSample> delayed_samples() const { return {delayed_sample.data(), delayed_count}; }
   };
 
   explicit OutlierFilter(const ImuRanges& device) : imu_ranges_(device) {}
