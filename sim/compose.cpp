@@ -133,7 +133,7 @@ World compose(const ResolvedSituation& situation, const std::filesystem::path& m
   spec->option.integrator = mjINT_RK4;
   spec->compiler.usethread = 0;
   robot_type.shape(spec.get(), situation->robot.values, world);
-  world_type.build(spec.get(), situation->world.values, situation->seed, world);
+  world_type.build(spec.get(), situation->world.values, situation->seed_of(kWorldStream), world);
   world.free = robot_type.anchor.empty();
   if (!world.free) move_to_start(spec.get(), robot_type.anchor, world);
 

@@ -67,8 +67,9 @@ Recording simulate(const BuiltSituation& built, int threads) {
   for (std::size_t i = 0; i < situation.sensors.size(); ++i) {
     const SensorSpec& sensor = situation.sensors[i];
     const Eigen::Isometry3d given_T_BX = given_pose(world, sensor, mountings[i]);
-    const SensorContext context{world,          sensor, mountings[i], given_T_BX, recording.sensors.gravity_m_s2,
-                                situation.seed, threads};
+    const SensorContext context{
+        world,  sensor, mountings[i], given_T_BX, recording.sensors.gravity_m_s2, situation.seed_of(sensor.name),
+        threads};
     find_sensor_type(sensor.kind).simulate(context, recording);
   }
   return recording;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <span>
 #include <string>
 #include <utility>
@@ -33,8 +34,19 @@ struct Situation {
   Component robot;
   Component motion;
   std::vector<SensorSpec> sensors;
+  /// Seeds of single random streams: of the world's shape ("world"), and of the errors of a sensor (its name). All
+  /// other streams use `seed`.
+  std::map<std::string, std::uint64_t> streams;
   bool operator==(const Situation&) const = default;
+
+  std::uint64_t seed_of(const std::string& stream) const {
+    const auto at = streams.find(stream);
+    return at == streams.end() ? seed : at->second;
+  }
 };
+
+/// Name of the world's random stream in Situation::streams
+inline constexpr const char* kWorldStream = "world";
 
 std::span<const ComponentType> world_types();
 std::span<const ComponentType> robot_types();

@@ -34,6 +34,7 @@ sim::Situation draw_given(const Scenario& scenario, std::span<const DataSheet> s
   sim::Situation out;
   out.scenario = scenario.name;
   out.seed = seed;
+  out.streams = scenario.streams;
   out.duration_s = draw_number(scenario.duration_s, seed, "duration_s");
   out.world = draw_part(scenario.world, seed, "world");
   out.robot = draw_part(scenario.robot, seed, "robot");

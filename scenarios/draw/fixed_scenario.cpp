@@ -70,7 +70,7 @@ std::string to_yaml(const Scenario& scenario) {
   out += part_text("world", scenario.world) + part_text("robot", scenario.robot) + part_text("motion", scenario.motion);
   out += "sensors:\n";
   for (const Scenario::Sensor& sensor : scenario.sensors) out += sensor_text(sensor);
-  return out;
+  return out + streams_text(scenario.streams);
 }
 
 }  // namespace tumble::scenarios

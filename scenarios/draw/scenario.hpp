@@ -33,7 +33,8 @@ struct Scenario {
   Distribution duration_s;
   Part world, robot, motion;
   std::vector<Sensor> sensors;
-  std::optional<NamedCase> named_case;  ///< for files in scenarios/regressions
+  std::map<std::string, std::uint64_t> streams;  ///< as in sim::Situation
+  std::optional<NamedCase> named_case;           ///< for files in scenarios/regressions
 };
 
 std::vector<std::string> scenario_names(const DataRoot& data);

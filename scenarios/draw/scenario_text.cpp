@@ -5,6 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "scenarios/draw/case_text.hpp"
 #include "scenarios/draw/drawn_numbers.hpp"
@@ -127,6 +132,18 @@ std::vector<Scenario::Sensor> parse_sensors(const YamlNode& list, const Registry
   return out;
 }
 
+std::map<std::string, std::uint64_t> parse_streams(const YamlNode& node, std::span<const Scenario::Sensor> sensors) {
+  std::vector<std::string> known = {sim::kWorldStream};
+  for (const Scenario::Sensor& sensor : sensors) known.push_back(sensor.name);
+  std::map<std::string, std::uint64_t> out;
+  for (const auto& [name, seed] : node.entries()) {
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      seed.fail(fmt::format("unknown random stream '{}'{}", name, suggestion(name, known)));
+    out[name] = seed.unsigned_integer();
+  }
+  return out;
+}
+
 }  // namespace
 
 const sim::Parameter& duration_parameter() {
@@ -135,7 +152,7 @@ const sim::Parameter& duration_parameter() {
 
 Scenario parse_scenario(const std::string& text, const std::string& file, const Registry& registry) {
   static const std::array<std::string, 7> kKeys = {"name", "doc", "duration_s", "world", "robot", "motion", "sensors"};
-  static const std::array<std::string, 1> kOptional = {"case"};
+  static const std::array<std::string, 2> kOptional = {"case", "streams"};
   const auto fields = YamlNode::parse(text, file).fields(kKeys, kOptional);
   Scenario out;
   out.file = file;
@@ -146,6 +163,7 @@ Scenario parse_scenario(const std::string& text, const std::string& file, const 
   out.robot = parse_part(fields.at("robot"), registry.robots);
   out.motion = parse_part(fields.at("motion"), registry.motions);
   out.sensors = parse_sensors(fields.at("sensors"), registry);
+  if (fields.contains("streams")) out.streams = parse_streams(fields.at("streams"), out.sensors);
   if (fields.contains("case")) {
     out.named_case = case_from_yaml(fields.at("case"));
     const std::vector<DrawnNumber> drawn = drawn_numbers(out);

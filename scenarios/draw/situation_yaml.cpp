@@ -61,13 +61,14 @@ std::string to_yaml(const sim::Situation& situation) {
   out += component_text("motion", situation.motion);
   out += situation.sensors.empty() ? "sensors: []\n" : "sensors:\n";
   for (const sim::SensorSpec& sensor : situation.sensors) out += sensor_text(sensor);
-  return out;
+  return out + streams_text(situation.streams);
 }
 
 sim::Situation situation_from_yaml(const std::string& text, const std::string& place) {
   static const std::array<std::string, 7> kKeys = {"scenario", "seed",   "duration_s", "world",
                                                    "robot",    "motion", "sensors"};
-  const auto fields = YamlNode::parse(text, place).fields(kKeys);
+  static const std::array<std::string, 1> kOptional = {"streams"};
+  const auto fields = YamlNode::parse(text, place).fields(kKeys, kOptional);
   sim::Situation out;
   out.scenario = fields.at("scenario").any_text();
   out.seed = fields.at("seed").unsigned_integer();
@@ -76,6 +77,8 @@ sim::Situation situation_from_yaml(const std::string& text, const std::string& p
   out.robot = component_from(fields.at("robot"));
   out.motion = component_from(fields.at("motion"));
   for (const YamlNode& sensor : fields.at("sensors").items()) out.sensors.push_back(sensor_from(sensor));
+  if (!fields.contains("streams")) return out;
+  for (const auto& [name, seed] : fields.at("streams").entries()) out.streams[name] = seed.unsigned_integer();
   return out;
 }
 

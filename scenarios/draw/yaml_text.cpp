@@ -43,4 +43,10 @@ std::string yaml_word(const std::string& text) {
   return out + "\"";
 }
 
+std::string streams_text(const std::map<std::string, std::uint64_t>& streams) {
+  std::string out = streams.empty() ? "" : "streams:\n";
+  for (const auto& [name, seed] : streams) out += "  " + yaml_word(name) + ": " + std::to_string(seed) + "\n";
+  return out;
+}
+
 }  // namespace tumble::scenarios

@@ -69,7 +69,7 @@ class Evaluator {
     std::vector<std::size_t> missing;
     for (std::size_t i = 0; i < points.size(); ++i) {
       const std::size_t index = runs_.size() + i;
-      if (!is_stored(index, points[i].seed)) {
+      if (!is_stored(index, points[i].seed())) {
         missing.push_back(i);
       } else if (is_failure(stored_.at(index))) {
         ++failures_;
@@ -109,9 +109,9 @@ class Evaluator {
 
   void execute(std::span<const SplittingPoint> points, const std::vector<std::size_t>& missing) {
     std::vector<Scenario> scenarios;
-    for (const std::size_t i : missing) scenarios.push_back(scenario_at(scenario_, numbers_, points[i].normals));
+    for (const std::size_t i : missing) scenarios.push_back(scenario_at(scenario_, numbers_, points[i]));
     const auto task_of = [&](std::size_t k) {
-      return DrawTask{scenario_.name, &scenarios[k], nullptr, points[missing[k]].seed, {}, {{&method_, {}}}, {}};
+      return DrawTask{scenario_.name, &scenarios[k], nullptr, points[missing[k]].seed(), {}, {{&method_, {}}}, {}};
     };
     const double limit_s = options_.timeout_s * (1.0 + kSimulateTimeouts);
     std::size_t done = runs_.size() + points.size() - missing.size();
@@ -219,11 +219,7 @@ class Report {
   FoundFailure found(std::size_t index) const {
     const ScoredPoint& draw = draws()[index];
     const SearchedRun& run = evaluator_.runs()[index];
-    return {index,
-            distance_of(draw),
-            run.status,
-            run.value,
-            scenario_at(scenario_, evaluator_.numbers(), draw.point.normals),
+    return {index,   distance_of(draw), run.status, run.value, scenario_at(scenario_, evaluator_.numbers(), draw.point),
             run.seed};
   }
 
@@ -247,10 +243,18 @@ class Report {
 
 }  // namespace
 
-Scenario scenario_at(const Scenario& scenario, std::span<const DrawnNumber> numbers, std::span<const double> normals) {
+std::vector<std::string> stream_names(const Scenario& scenario) {
+  std::vector<std::string> out = {sim::kWorldStream};
+  for (const Scenario::Sensor& sensor : scenario.sensors) out.push_back(sensor.name);
+  return out;
+}
+
+Scenario scenario_at(const Scenario& scenario, std::span<const DrawnNumber> numbers, const SplittingPoint& point) {
   Scenario out = scenario;
   for (std::size_t i = 0; i < numbers.size(); ++i)
-    fix_number(out, numbers[i].place, number_at(numbers[i].distribution, normals[i]));
+    fix_number(out, numbers[i].place, number_at(numbers[i].distribution, point.normals[i]));
+  const std::vector<std::string> streams = stream_names(scenario);
+  for (std::size_t i = 0; i < streams.size(); ++i) out.streams[streams[i]] = point.seeds[i];
   return out;
 }
 
@@ -265,6 +269,7 @@ SearchResult search_failures(const DataRoot& data, const Scenario& scenario, con
   claim(results, scenario, method, goal, options);
   SplittingOptions splitting;
   splitting.numbers = evaluator.numbers().size();
+  splitting.streams = stream_names(scenario).size();
   splitting.population = options.population;
   splitting.budget = options.budget;
   splitting.bound = goal.bound();

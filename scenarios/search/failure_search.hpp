@@ -56,12 +56,16 @@ struct SearchResult {
   std::vector<InputShift> shifts;    ///< of the failures in the last population, or without failures of all its members
 };
 
-/// Replaces each random parameter of the scenario by its value at the standard normal number in `normals` (number_at).
-Scenario scenario_at(const Scenario& scenario, std::span<const DrawnNumber> numbers, std::span<const double> normals);
+/// Returns the names of the random streams of a scenario, as in sim::Situation: the world and each sensor.
+std::vector<std::string> stream_names(const Scenario& scenario);
+
+/// Replaces each random parameter of the scenario by its value at the standard normal number of `point` (number_at),
+/// and sets the seed of each random stream.
+Scenario scenario_at(const Scenario& scenario, std::span<const DrawnNumber> numbers, const SplittingPoint& point);
 
 /// Estimates the probability of a failure by adaptive multilevel splitting over all random parameters of the scenario
-/// and the seed (splitting.hpp). Each run is simulated and estimated in a separate process, and stored in `results`. A
-/// search whose runs are in `results` continues. The result is equal for any number of jobs.
+/// and the seed of each random stream (splitting.hpp). Each run is simulated and estimated in a separate process, and
+/// stored in `results`. A search whose runs are in `results` continues. The result is equal for any number of jobs.
 ///
 /// Throws BadInput for invalid options, for a scenario without random parameters, if the method cannot process the
 /// scenario, if `results` contains another search on this scenario and method, or if the operating system killed a run.

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <functional>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -29,6 +31,7 @@ void require_sound(const SplittingOptions& options) {
   if (options.budget < options.population)
     throw BadInput(fmt::format("the budget is {} simulated runs; it must be at least the population, {}",
                                options.budget, options.population));
+  if (options.streams == 0) throw BadInput("the number of random streams is 0; it must be at least 1");
   if (!std::isfinite(options.bound))
     throw BadInput(fmt::format("the bound of the score is {}; it must be finite", std::to_string(options.bound)));
 }
@@ -88,7 +91,7 @@ class Splitting {
     std::vector<ScoredPoint> fresh(options_.population);
     for (std::size_t i = 0; i < fresh.size(); ++i) {
       for (std::size_t k = 0; k < options_.numbers; ++k) fresh[i].point.normals.push_back(stream_.normal());
-      fresh[i].point.seed = stream_.bits();
+      for (std::size_t k = 0; k < options_.streams; ++k) fresh[i].point.seeds.push_back(stream_.bits());
       fresh[i].family = i;
     }
     if (!add(std::move(fresh))) return false;
@@ -157,7 +160,7 @@ class Splitting {
       if (!add(std::move(proposals))) return false;
       for (std::size_t i = 0; i < moved.size(); ++i) {
         std::size_t& member = result_.members[moved[i]];
-        const bool is_new = draws()[first + i].point.seed != draws()[member].point.seed;
+        const bool is_new = draws()[first + i].point.seeds != draws()[member].point.seeds;
         const bool accepted = draws()[first + i].score > level;
         if (accepted) member = first + i;
         taken += accepted;
@@ -181,7 +184,10 @@ class Splitting {
   ScoredPoint proposal(const ScoredPoint& from) {
     ScoredPoint out = from;
     out.point.normals = options_.move(from.point.normals, rate_.step, [&] { return stream_.normal(); });
-    if (stream_.uniform() < 0.5) out.point.seed = stream_.bits();
+    if (stream_.uniform() < 0.5) {
+      const std::size_t stream = options_.streams == 1 ? 0 : stream_.bits() % options_.streams;
+      out.point.seeds[stream] = stream_.bits();
+    }
     return out;
   }
 
@@ -206,6 +212,10 @@ class Splitting {
 };
 
 }  // namespace
+
+std::uint64_t SplittingPoint::seed() const {
+  return std::accumulate(seeds.begin(), seeds.end(), std::uint64_t{0}, std::bit_xor<>());
+}
 
 std::vector<double> crank_nicolson(std::span<const double> normals, double step,
                                    const std::function<double()>& normal) {

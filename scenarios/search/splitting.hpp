@@ -14,11 +14,14 @@
 /// Analysis and Applications 25:417, 2007; docs/maths/statistics.md, "Probability of a rare failure").
 namespace tumble::scenarios {
 
-/// SplittingPoint is one random draw: a standard normal number for each random parameter, and the seed of all other
-/// random numbers (noise, terrain).
+/// SplittingPoint is one random draw: a standard normal number for each random parameter, and a seed for each random
+/// stream (noise of a sensor, terrain).
 struct SplittingPoint {
   std::vector<double> normals;
-  std::uint64_t seed = 0;
+  std::vector<std::uint64_t> seeds;
+
+  /// Returns a number that changes with each seed.
+  std::uint64_t seed() const;
 };
 
 /// ScorePoints returns one score per draw. To stop the search, ScorePoints returns fewer scores, which are ignored.
@@ -35,6 +38,7 @@ std::vector<double> crank_nicolson(std::span<const double> normals, double step,
 
 struct SplittingOptions {
   std::size_t numbers = 0;      ///< number of random parameters
+  std::size_t streams = 1;      ///< number of random streams, at least 1
   std::size_t population = 50;  ///< number of draws that advance together, at least 4
   std::size_t budget = 1000;    ///< largest number of scored draws, at least `population`
   double bound = 0.0;           ///< a draw fails if its score exceeds the bound; finite
@@ -71,7 +75,7 @@ struct SplittingResult {
 ///
 /// In each step, the search removes the quarter of the draws with the lowest scores. A copy of another draw replaces
 /// each removed draw. Each copy makes several Metropolis moves, and accepts a move if its score exceeds all removed
-/// scores. Half of the Metropolis moves also draw a new seed of noise and terrain. The probability is the product of
+/// scores. Half of the Metropolis moves also draw a new seed of one random stream. The probability is the product of
 /// the fractions that remain in each step and the final fraction above the bound. The search ends if three quarters of
 /// the draws exceed the bound.
 ///

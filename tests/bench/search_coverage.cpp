@@ -3,6 +3,7 @@
 // independent draws (docs/maths/statistics.md, "Probability of a rare failure"). The score is a standard normal number.
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <numeric>
@@ -19,16 +20,19 @@ using tumble::scenarios::SplittingPoint;
 
 constexpr int kRepetitions = 200;
 
-/// Returns a standard normal number, of which the seed contributes the fraction `noise` of the variance.
+/// Returns a standard normal number, of which the seeds together contribute the fraction `noise` of the variance.
 double score(const SplittingPoint& point, double noise) {
   const double sum = std::accumulate(point.normals.begin(), point.normals.end(), 0.0);
   const double drawn = std::sqrt((1.0 - noise) / static_cast<double>(point.normals.size())) * sum;
-  return drawn + std::sqrt(noise) * tumble::sim::Stream(point.seed, "noise").normal();
+  double random = 0.0;
+  for (const std::uint64_t seed : point.seeds) random += tumble::sim::Stream(seed, "noise").normal();
+  return drawn + std::sqrt(noise / static_cast<double>(point.seeds.size())) * random;
 }
 
-void measure(double probability, double noise) {
+void measure(double probability, double noise, std::size_t streams) {
   tumble::scenarios::SplittingOptions options;
   options.numbers = 10;
+  options.streams = streams;
   options.budget = 10000000;
   options.bound = quantile(complement(boost::math::normal(), probability));
   double covered = 0.0, runs = 0.0, mean = 0.0, squares = 0.0;
@@ -46,16 +50,18 @@ void measure(double probability, double noise) {
     squares += std::pow(p.value / probability, 2) / kRepetitions;
   }
   const double plain = (1.0 - probability) / probability / (squares - mean * mean);
-  std::printf("%11g %5.1f %9.1f %% %8.0f %13.2f %22.2f\n", probability, noise, 100.0 * covered, runs, mean,
-              plain / runs);
+  std::printf("%11g %5.1f %7zu %9.1f %% %8.0f %13.2f %22.2f\n", probability, noise, streams, 100.0 * covered, runs,
+              mean, plain / runs);
   std::fflush(stdout);
 }
 
 }  // namespace
 
 int main() {
-  std::puts("probability noise    covered     runs estimate/true plain draws/run");
+  std::puts("probability noise streams    covered     runs estimate/true plain draws/run");
   for (const double probability : {1e-2, 1e-3, 1e-4, 1e-6}) {
-    for (const double noise : {0.0, 0.3, 0.5, 0.7}) measure(probability, noise);
+    for (const double noise : {0.0, 0.3, 0.5, 0.7}) {
+      for (const std::size_t streams : {1, 4}) measure(probability, noise, streams);
+    }
   }
 }

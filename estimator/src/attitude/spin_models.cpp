@@ -25,6 +25,8 @@ constexpr double kReadingSigma_rad_s = 0.02;          // of an unsaturated readi
 constexpr double kRailSigma_rad_s = 0.1;              // of a lower bound
 constexpr double kStartSigma_rad_s = 1.0, kStartSigma_rad_s2 = 10.0, kStartSaturatedRatio = 0.5;
 constexpr double kForceSigma_m_s2 = 0.3, kForceWalk_m_s2_sqrts = 0.1, kVibration_m_s2 = 0.5;
+// The air force is smooth. Larger residuals indicate contact or vibration, and contradict a spin in the air.
+constexpr double kSmoothVarianceRatioMax = 20.0, kContradiction = 1e3;
 // Angular jerk relative to that of Modulation: the air changes the spin slowly.
 constexpr double kForceJerkRatio = 0.3;
 constexpr double kWorldForceSigma_m_s2 = 3.0, kWorldForceWalk_m_s2_sqrts = 1.0;
@@ -204,6 +206,7 @@ double Centripetal::update(const SpinPrediction<kStates>& predicted, const SpinR
     const Vector2d predicted_force =
         related * by_arm * arm + filter.x.segment<2>(kForce) + filter.x.segment<2>(kWorldForce);
     log_likelihood = update_across<kStates>(H, reading.across - predicted_force, kVibration_m_s2, reading.dt_s, filter);
+    if (related > 0.0 && filter.variance_ratio > kSmoothVarianceRatioMax) log_likelihood -= kContradiction;
   }
   update_rate(reading, true, filter);
   return log_likelihood;

@@ -4,7 +4,9 @@
 
 #include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <string>
 
 #include "scenarios/draw/fixture_registry.hpp"
 #include "scenarios/draw/scenario.hpp"
@@ -40,6 +42,13 @@ TEST(SituationYaml, RoundTripIsExact) {
   EXPECT_EQ(back, situation);
   EXPECT_TRUE(std::signbit(back.sensors[0].mount_error.at("x_m"))) << "-0.0 keeps its sign";
   EXPECT_EQ(to_yaml(back), to_yaml(situation));
+}
+
+TEST(SituationYaml, KeepsTheSeedsOfRandomStreams) {
+  sim::Situation situation = example();
+  EXPECT_EQ(to_yaml(situation).find("streams"), std::string::npos);
+  situation.streams = {{"imu", std::numeric_limits<std::uint64_t>::max()}, {sim::kWorldStream, 0}};
+  EXPECT_EQ(situation_from_yaml(to_yaml(situation), "recording.h5"), situation);
 }
 
 TEST(SituationYaml, RoundTripIsExactForManyDoubles) {

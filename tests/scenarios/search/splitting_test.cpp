@@ -44,12 +44,15 @@ double noise_of(std::uint64_t seed) {
   return sim::Stream(seed, "noise").normal();
 }
 
-/// Linear limit state: a standard normal number, of which the noise contributes the fraction `noise` of the variance.
+/// Linear limit state: a standard normal number, of which the noise of all random streams contributes the fraction
+/// `noise` of the variance.
 PointScore linear(double noise) {
   return [noise](const SplittingPoint& point) {
     const double sum = std::accumulate(point.normals.begin(), point.normals.end(), 0.0);
     const double drawn = std::sqrt((1.0 - noise) / static_cast<double>(point.normals.size())) * sum;
-    return drawn + (noise > 0.0 ? std::sqrt(noise) * noise_of(point.seed) : 0.0);
+    double random = 0.0;
+    for (const std::uint64_t seed : point.seeds) random += noise > 0.0 ? noise_of(seed) : 0.0;
+    return drawn + std::sqrt(noise / static_cast<double>(point.seeds.size())) * random;
   };
 }
 
@@ -95,13 +98,16 @@ constexpr int kSideMissesMax = 13, kMissesMin = 2;
 
 struct Case {
   double probability, noise;
+  std::size_t streams = 1;
 };
 
 class Coverage : public ::testing::TestWithParam<Case> {};
 
 TEST_P(Coverage, OfTheIntervalIsTwoSided) {
-  const auto [probability, noise] = GetParam();
-  const Misses found = misses(linear(noise), probability, options_for(exceeded_with(probability), 10, 0));
+  const auto [probability, noise, streams] = GetParam();
+  SplittingOptions options = options_for(exceeded_with(probability), 10, 0);
+  options.streams = streams;
+  const Misses found = misses(linear(noise), probability, options);
   EXPECT_LE(found.below, kSideMissesMax);
   EXPECT_LE(found.above, kSideMissesMax);
   EXPECT_GE(found.below + found.above, kMissesMin) << "the interval is too wide";
@@ -109,7 +115,8 @@ TEST_P(Coverage, OfTheIntervalIsTwoSided) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Splitting, Coverage,
-                         ::testing::Values(Case{1e-2, 0.0}, Case{1e-2, 0.3}, Case{1e-3, 0.0}, Case{1e-3, 0.3}));
+                         ::testing::Values(Case{1e-2, 0.0}, Case{1e-2, 0.3}, Case{1e-3, 0.0}, Case{1e-3, 0.3},
+                                           Case{1e-3, 0.7, 4}));
 
 /// Negative control: a random walk does not leave the prior distribution invariant.
 TEST(Splitting, CoverageOfABiasedMoveIsRejected) {

@@ -6,6 +6,7 @@
 #include <ostream>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scenarios/draw/scenario.hpp"
@@ -32,7 +33,9 @@ TEST(HillSuite, HoldsWithThoseOfRailsAndFaultsEveryScenarioButTheSpheres) {
   std::size_t rigs = 0;
   for (const std::string& name : scenario_names(tree_data())) {
     const std::string robot = load_scenario(tree_data(), name).robot.type;
-    EXPECT_EQ(listed.count(name), (robot != "sphere" && name != "stroll") || name == "slip_faults" ? 1u : 0u) << name;
+    EXPECT_EQ(listed.count(name),
+              (robot != "sphere" && name != "stroll") || name == "slip_faults" || name == "ball" ? 1u : 0u)
+        << name;
     rigs += robot == "rig" ? 1 : 0;
   }
   EXPECT_GE(rigs, 7u);
@@ -116,6 +119,34 @@ INSTANTIATE_TEST_SUITE_P(
                       RigExpected{"stairs", "step_", 0.7, 0.2}, RigExpected{"cliff", "terrain", 0.7, 0.3},
                       RigExpected{"throw", "terrain", 1.0, 0.9}, RigExpected{"drop", "terrain", 1.5, 0.3}),
     [](const auto& test) { return std::string(test.param.scenario); });
+
+/// Returns the largest rate of the body, and the time for which a gyro axis exceeds the saturation limit.
+std::pair<double, double> largest_rate_and_clipped_s(const char* scenario, std::uint64_t seed) {
+  const sim::ResolvedSituation situation = draw(tree_data(), load_scenario(tree_data(), scenario), seed);
+  const sim::Recording recording = sim::simulate(sim::BuiltSituation(situation, tree_data().models()));
+  const double limit_rad_s = situation->sensors[0].values.at("gyro_rail_rad_s");
+  double largest_rad_s = 0.0, clipped_s = 0.0;
+  for (const Eigen::Vector3d& rate_rad_s : recording.truth.imus.at(0).rate_rad_s) {
+    largest_rad_s = std::max(largest_rad_s, rate_rad_s.norm());
+    if (rate_rad_s.cwiseAbs().maxCoeff() > limit_rad_s)
+      clipped_s += 1e-9 * static_cast<double>(recording.sensors.imus[0].period_ns);
+  }
+  return {largest_rad_s, clipped_s};
+}
+
+TEST(SpinningScenarios, ExceedTheSaturationLimitForSeconds) {
+  for (const auto& [scenario, least_s] : {std::pair{"spin", 2.0}, std::pair{"rocket", 0.5}, std::pair{"ball", 0.5}}) {
+    std::vector<double> clipped_s;
+    for (std::uint64_t seed = kClippedSeed; seed < kClippedSeed + 5; ++seed) {
+      const auto [rate_rad_s, time_s] = largest_rate_and_clipped_s(scenario, seed);
+      EXPECT_GT(rate_rad_s, 10.0) << scenario << " " << seed;
+      EXPECT_LT(rate_rad_s, 120.0) << scenario << " " << seed;
+      clipped_s.push_back(time_s);
+    }
+    std::sort(clipped_s.begin(), clipped_s.end());
+    EXPECT_GT(clipped_s[2], least_s) << scenario;
+  }
+}
 
 /// Returns the share of samples whose reading repeats the one before.
 double repeated_share(const std::vector<Eigen::Vector3d>& readings) {

@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <string>
 #include <utility>
 
 #include "sim/compose.hpp"
@@ -50,6 +52,26 @@ DeadReckoning integrate(const Recording& recording) {
   out.velocity_m_s = (v - true_velocity(last)).norm();
   out.position_m = (p - truth.p_WB_m[last] - truth.q_WB[last] * T_BI.translation()).norm();
   return out;
+}
+
+/// Returns a tumble on bumpy ground with two noisy IMUs, of which one random stream has its own seed.
+Recording with_stream(const std::string& stream, std::uint64_t seed) {
+  Situation situation = tumble_down(2.0, 200.0);
+  situation.sensors.push_back(imu_at("other", "vn100", 200.0));
+  for (SensorSpec& sensor : situation.sensors) sensor.values.set("gyro_noise_rad_s_sqrt_hz", 0.01);
+  if (!stream.empty()) situation.streams[stream] = seed;
+  return simulate(built(situation));
+}
+
+TEST(Simulate, TheSeedOfOneStreamMovesThisStreamAlone) {
+  const Recording run = with_stream("", 0), noise = with_stream("other", 6), ground = with_stream(kWorldStream, 6);
+  EXPECT_EQ(noise.truth.p_WB_m, run.truth.p_WB_m);
+  EXPECT_EQ(noise.sensors.imus[0].gyro_rad_s, run.sensors.imus[0].gyro_rad_s);
+  EXPECT_NE(noise.sensors.imus[1].gyro_rad_s, run.sensors.imus[1].gyro_rad_s);
+  EXPECT_NE(ground.truth.p_WB_m, run.truth.p_WB_m);
+  // the seed of the run, stated for a stream, changes nothing
+  EXPECT_EQ(with_stream("other", 5).sensors.imus[1].gyro_rad_s, run.sensors.imus[1].gyro_rad_s);
+  EXPECT_EQ(with_stream(kWorldStream, 5).truth.p_WB_m, run.truth.p_WB_m);
 }
 
 TEST(Simulate, IntegralOfTheSamplesIsTheMotionThroughImpacts) {

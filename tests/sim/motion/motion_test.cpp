@@ -182,6 +182,43 @@ TEST(Swing, LeadsAsideAndUpHoldsAndLetsGo) {
   EXPECT_LT(again_m, 0.1);
 }
 
+Situation launched(double duration_s) {
+  Situation situation = moved_by("launch", duration_s);
+  situation.world = {"floor", {}};
+  for (const auto& [name, value] :
+       {std::pair{"height_m", 1000.0}, std::pair{"elevation_rad", -1.57079632679}, std::pair{"drag_1_m", 0.02}}) {
+    situation.motion.values.set(name, value);
+  }
+  return situation;
+}
+
+TEST(Launch, FallsAtTheTerminalSpeedAndSpinsAsTheFinsAreCanted) {
+  Situation situation = launched(12.0);
+  situation.motion.values.set("roll_rad_m", -2.0);
+  situation.motion.values.set("roll_damping_1_m", 0.1);
+  const Truth truth = simulate(built(situation)).truth;
+  const double terminal_m_s = std::sqrt(9.80665 / 0.02);
+  EXPECT_NEAR(truth.v_WB_m_s.back().z(), -terminal_m_s, 0.01);
+  EXPECT_NEAR((truth.w_WB_B_rad_s.back() - Vector3d(-2.0 * terminal_m_s, 0.0, 0.0)).norm(), 0.0, 0.1);
+  EXPECT_NEAR(truth.f_B_m_s2.back().x(), -9.80665, 0.01) << "the air drag carries the weight";
+}
+
+TEST(Launch, ThrustAndParachuteActAsStated) {
+  Situation situation = launched(3.0);
+  for (const auto& [name, value] :
+       {std::pair{"elevation_rad", 1.57079632679}, std::pair{"drag_1_m", 0.0}, std::pair{"thrust_m_s2", 60.0},
+        std::pair{"burn_s", 1.0}, std::pair{"parachute_s", 1.5}, std::pair{"parachute_drag_1_m", 0.1}}) {
+    situation.motion.values.set(name, value);
+  }
+  const Truth truth = simulate(built(situation)).truth;
+  const auto at = [](double time_s) { return static_cast<std::size_t>(std::lround(time_s / 0.0005)); };
+  EXPECT_NEAR(truth.f_B_m_s2[at(1.0)].x(), 60.0, 1e-6);
+  EXPECT_NEAR(truth.v_WB_m_s[at(1.6)].z(), 60.0 * 0.95 - 1.1 * 9.80665, 0.1);  // thrust rises and falls in 0.05 s each
+  EXPECT_NEAR(truth.f_B_m_s2[at(1.9)].norm(), 0.0, 1e-6);
+  const std::size_t open = at(2.4);
+  EXPECT_NEAR(truth.f_B_m_s2[open].norm(), 0.1 * truth.v_WB_m_s[open].squaredNorm(), 0.2);
+}
+
 TEST(Clearance, IsThatOfTheTurnedRobot) {
   const engine::World world = engine::compose(resolve(tumble_down(1.0, 100.0)), models_folder());
   const Eigen::Quaterniond upright = Eigen::Quaterniond::Identity();
