@@ -32,7 +32,7 @@ std::uint8_t saturated_forces(const ImuSample& sample, const AngularRateReport& 
   constexpr double kMargin = 0.95;  // the saturation limits differ between the axes
   unsigned out = 0;
   for (int j = 0; j < 3; ++j) {
-    const std::optional<double>& rail = report.rail[static_cast<std::size_t>(3 + j)];
+    const std::optional<double>& rail = report.saturation_limits[static_cast<std::size_t>(3 + j)];
     if (rail && std::abs(sample.specific_force_m_s2[j]) > kMargin * *rail) out |= 8u << j;
   }
   return static_cast<std::uint8_t>(out);
@@ -43,7 +43,7 @@ std::uint8_t saturated_forces(const ImuSample& sample, const AngularRateReport& 
 MotionRegimeSmoother::MotionRegimeSmoother(const Params& params)
     : params_(params),
       rate_(params.rate),
-      regime_evidence_(params.regime_evidence),
+      regime_evidence_(params.evidence),
       hand_held_(params.hand_held),
       spin_(params.spin) {
   require_valid_fields(params);

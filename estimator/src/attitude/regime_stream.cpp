@@ -61,7 +61,7 @@ Eigen::Vector3d angular_acceleration(std::span<const AngularRateStream::Knot> wi
 MotionRegimeStream::MotionRegimeStream(const Params& params)
     : params_(params),
       rate_(params.rate),
-      regime_evidence_(params.regime_evidence),
+      regime_evidence_(params.evidence),
       hand_held_(with_common_params(params)),
       spin_(params.spin) {
   require_valid_fields(params);
@@ -167,7 +167,7 @@ bool MotionRegimeStream::calibration_is_unstable(const State& state) const {
 // Updates the probabilities of the motion regimes: forward recursion of carried.md (C38).
 void MotionRegimeStream::update_probabilities(const AngularRateState& rate, State& state) const {
   const double dt_s =
-      state.reported_sample_count == 0 ? params_.regime_evidence.memory_s : seconds(rate.time_ns - state.reported_ns);
+      state.reported_sample_count == 0 ? params_.evidence.memory_s : seconds(rate.time_ns - state.reported_ns);
   state.probabilities = next(state.probabilities, dt_s, state.rate.window, index_of(rate, state),
                              rate_.calibration(state.rate), calibration_is_unstable(state));
   const auto dropped = static_cast<double>(state.rate.calibration_reset_count - state.calibration_reset_count);

@@ -56,27 +56,28 @@ template <int N>
 SpinFilter<N> start_filter(const SpinReading& reading) {
   SpinFilter<N> out;
   out.x[kRate] = reading.rate_rad_s;
-  out.P.diagonal().setConstant(squared(kStartSigma_rad_s));
-  out.P(kAcceleration, kAcceleration) = squared(kStartSigma_rad_s2);
-  if (reading.saturated) out.P(kRate, kRate) = squared(kStartSaturatedRatio * reading.rate_rad_s);
+  out.covariance.diagonal().setConstant(squared(kStartSigma_rad_s));
+  out.covariance(kAcceleration, kAcceleration) = squared(kStartSigma_rad_s2);
+  if (reading.saturated) out.covariance(kRate, kRate) = squared(kStartSaturatedRatio * reading.rate_rad_s);
   return out;
 }
 
-// Predicts rate and angular acceleration in `out.x`, and the covariance with the derivatives `out.F`.
+// Predicts rate and angular acceleration in `out.x`, and the covariance with the derivatives `out.transition_matrix`.
 template <int N>
 void predict_spin(const SpinFilter<N>& filter, double jerk_rad_s3_sqrts, double dt_s, SpinPrediction<N>& out) {
-  out.F(kRate, kAcceleration) = dt_s;
+  out.transition_matrix(kRate, kAcceleration) = dt_s;
   out.x[kRate] += dt_s * filter.x[kAcceleration];
-  out.P = out.F * filter.P * out.F.transpose();
+  out.covariance = out.transition_matrix * filter.covariance * out.transition_matrix.transpose();
   const double jerk = squared(jerk_rad_s3_sqrts) * dt_s;
-  out.P(kRate, kRate) += jerk * dt_s * dt_s / 3.0;
-  out.P(kRate, kAcceleration) += 0.5 * jerk * dt_s;
-  out.P(kAcceleration, kRate) += 0.5 * jerk * dt_s;
-  out.P(kAcceleration, kAcceleration) += jerk;
+  out.covariance(kRate, kRate) += jerk * dt_s * dt_s / 3.0;
+  out.covariance(kRate, kAcceleration) += 0.5 * jerk * dt_s;
+  out.covariance(kAcceleration, kRate) += 0.5 * jerk * dt_s;
+  out.covariance(kAcceleration, kAcceleration) += jerk;
 }
 
-// Turns the components `part` of the state by the angle -ratio * (angle of the spin), with the derivatives `out.F`. In
-// the axes of the body, a vector that is constant in the world turns by minus the angle of the spin.
+// Turns the components `part` of the state by the angle -ratio * (angle of the spin), with the derivatives
+// `out.transition_matrix`. In the axes of the body, a vector that is constant in the world turns by minus the angle of
+// the spin.
 template <int N>
 void turn_part(const SpinFilter<N>& filter, int part, double related, double dt_s, SpinPrediction<N>& out) {
   const auto& x = filter.x;
@@ -84,9 +85,9 @@ void turn_part(const SpinFilter<N>& filter, int part, double related, double dt_
   const double c = std::cos(angle), s = std::sin(angle);
   const Matrix2d turn = (Matrix2d() << c, -s, s, c).finished();
   const Vector2d by_angle = (Matrix2d() << -s, -c, c, -s).finished() * x.template segment<2>(part);
-  out.F.template block<2, 2>(part, part) = turn;
-  out.F.template block<2, 1>(part, kRate) = -related * dt_s * by_angle;
-  out.F.template block<2, 1>(part, kAcceleration) = -0.5 * related * dt_s * dt_s * by_angle;
+  out.transition_matrix.template block<2, 2>(part, part) = turn;
+  out.transition_matrix.template block<2, 1>(part, kRate) = -related * dt_s * by_angle;
+  out.transition_matrix.template block<2, 1>(part, kAcceleration) = -0.5 * related * dt_s * dt_s * by_angle;
   out.x.template segment<2>(part) = turn * x.template segment<2>(part);
 }
 
@@ -97,9 +98,9 @@ double update_across(const Eigen::Matrix<double, 2, N>& H, const Vector2d& innov
   const double variance =
       filter.variance_ratio * squared(sigma) * std::max(1.0, kReadingInterval_s / std::max(dt_s, 1e-6));
   const Matrix2d noise = variance * Matrix2d::Identity();
-  const Matrix2d S = H * filter.P * H.transpose() + noise;
+  const Matrix2d S = H * filter.covariance * H.transpose() + noise;
   const double squared_norm = innovation.dot(S.inverse() * innovation);
-  filter.x += vector_update<2, N>(H, innovation, noise, filter.P);
+  filter.x += vector_update<2, N>(H, innovation, noise, filter.covariance);
   const double ratio = 1.0 + std::min(1.0, dt_s / kScaleMemory_s) * (0.5 * squared_norm - 1.0);
   filter.variance_ratio = std::clamp(ratio * filter.variance_ratio, 1.0 / kVarianceRatioMax, kVarianceRatioMax);
   return -0.5 * (squared_norm + std::log(S.determinant()));
@@ -111,13 +112,13 @@ template <int N>
 void update_rate(const SpinReading& reading, bool keeps_variance, SpinFilter<N>& filter) {
   const double innovation = reading.rate_rad_s - filter.x[kRate];
   if (!reading.saturated) {
-    filter.x += kalman_update_of_component<N>(kRate, innovation, squared(kReadingSigma_rad_s), filter.P);
+    filter.x += kalman_update_of_component<N>(kRate, innovation, squared(kReadingSigma_rad_s), filter.covariance);
   } else if (innovation * reading.rate_rad_s > 0.0 && filter.x[kRate] * reading.rate_rad_s > 0.0) {
-    Eigen::Matrix<double, N, N> bounded = filter.P;
+    Eigen::Matrix<double, N, N> bounded = filter.covariance;
     filter.x += kalman_update_of_component<N>(kRate, innovation, squared(kRailSigma_rad_s), bounded);
-    if (!keeps_variance) filter.P = bounded;
+    if (!keeps_variance) filter.covariance = bounded;
   }
-  filter.P = (0.5 * (filter.P + filter.P.transpose())).eval();
+  filter.covariance = (0.5 * (filter.covariance + filter.covariance.transpose())).eval();
 }
 
 }  // namespace
@@ -137,18 +138,19 @@ Modulation::Filter Modulation::start(const SpinReading& reading) const {
 
 SpinPrediction<Modulation::kStates> Modulation::predict(const Filter& filter, double related, double dt_s) const {
   SpinPrediction<kStates> out;
-  out.F.setIdentity();
+  out.transition_matrix.setIdentity();
   out.x = filter.x;
   turn_part(filter, kTurning, related, dt_s, out);
   predict_spin(filter, params.jerk_rad_s3_sqrts, dt_s, out);
-  out.P.diagonal().segment<4>(kTurning).array() += filter.variance_ratio * squared(params.walk_rad_s_sqrts) * dt_s;
+  out.covariance.diagonal().segment<4>(kTurning).array() +=
+      filter.variance_ratio * squared(params.walk_rad_s_sqrts) * dt_s;
   return out;
 }
 
 double Modulation::update(const SpinPrediction<kStates>& predicted, const SpinReading& reading, double,
                           Filter& filter) const {
   filter.x = predicted.x;
-  filter.P = predicted.P;
+  filter.covariance = predicted.covariance;
   double log_likelihood = 0.0;
   if (reading.across_valid) {
     Eigen::Matrix<double, 2, kStates> H = Eigen::Matrix<double, 2, kStates>::Zero();
@@ -170,28 +172,28 @@ SpinReading Centripetal::reading(const ImuSample& sample, std::uint8_t saturated
 
 Centripetal::Filter Centripetal::start(const SpinReading& reading) const {
   Filter out = start_filter<kStates>(reading);
-  out.P.diagonal().segment<2>(kArm).setConstant(squared(params.body_size_m));
-  out.P.diagonal().segment<2>(kForce).setConstant(squared(kForceSigma_m_s2));
-  out.P.diagonal().segment<2>(kWorldForce).setConstant(squared(kWorldForceSigma_m_s2));
+  out.covariance.diagonal().segment<2>(kArm).setConstant(squared(params.body_size_m));
+  out.covariance.diagonal().segment<2>(kForce).setConstant(squared(kForceSigma_m_s2));
+  out.covariance.diagonal().segment<2>(kWorldForce).setConstant(squared(kWorldForceSigma_m_s2));
   return out;
 }
 
 SpinPrediction<Centripetal::kStates> Centripetal::predict(const Filter& filter, double related, double dt_s) const {
   SpinPrediction<kStates> out;
-  out.F.setIdentity();
+  out.transition_matrix.setIdentity();
   out.x = filter.x;
   turn_part(filter, kWorldForce, related, dt_s, out);
   predict_spin(filter, kForceJerkRatio * params.jerk_rad_s3_sqrts, dt_s, out);
   const double scale = filter.variance_ratio * dt_s;
-  out.P.diagonal().segment<2>(kForce).array() += scale * squared(kForceWalk_m_s2_sqrts);
-  out.P.diagonal().segment<2>(kWorldForce).array() += scale * squared(kWorldForceWalk_m_s2_sqrts);
+  out.covariance.diagonal().segment<2>(kForce).array() += scale * squared(kForceWalk_m_s2_sqrts);
+  out.covariance.diagonal().segment<2>(kWorldForce).array() += scale * squared(kWorldForceWalk_m_s2_sqrts);
   return out;
 }
 
 double Centripetal::update(const SpinPrediction<kStates>& predicted, const SpinReading& reading, double related,
                            Filter& filter) const {
   filter.x = predicted.x;
-  filter.P = predicted.P;
+  filter.covariance = predicted.covariance;
   double log_likelihood = 0.0;
   if (reading.across_valid) {
     const double rate = filter.x[kRate], acceleration = filter.x[kAcceleration];

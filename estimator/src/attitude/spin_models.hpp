@@ -14,7 +14,7 @@ namespace tumble {
 template <int N>
 struct SpinPrediction {
   Eigen::Matrix<double, N, 1> x;
-  Eigen::Matrix<double, N, N> P, F;
+  Eigen::Matrix<double, N, N> covariance, transition_matrix;
 };
 
 /// SpinReading is one sample about a spin axis: the readings of the two axes across the spin axis, in the order of a

@@ -47,11 +47,10 @@ void smooth_spin(std::span<const RecordedSpin<N>> run, std::span<SpinRate> out) 
   Eigen::Vector2d backward = Eigen::Vector2d::Ones();  // spin, other motion
   for (std::size_t k = run.size() - 1; k-- > 0;) {
     const RecordedSpin<N>& next = run[k + 1];
-    const Eigen::Matrix<double, N, N> gain = next.predicted.predicted_covariance.ldlt()
-                                                 .solve(next.predicted.transition_matrix * run[k].filter.covariance)
-                                                 .transpose();
+    const Eigen::Matrix<double, N, N> gain =
+        next.predicted.covariance.ldlt().solve(next.predicted.transition_matrix * run[k].filter.covariance).transpose();
     x = (run[k].filter.x + gain * (x - next.predicted.x)).eval();
-    P = (run[k].filter.covariance + gain * (P - next.predicted.predicted_covariance) * gain.transpose()).eval();
+    P = (run[k].filter.covariance + gain * (P - next.predicted.covariance) * gain.transpose()).eval();
     out[k].rate_rad_s = x[kRate];
     out[k].variance_rad2_s2 = std::max(0.0, P(kRate, kRate));
     const double spins = next.likelihood_ratio * backward[0], other = backward[1], c = next.spin_change_probability;

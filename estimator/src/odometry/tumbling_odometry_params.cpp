@@ -63,7 +63,7 @@ MotionRegimeStream::Params rate_stream_params(const TumblingOdometry::Params& pa
   out.rate.period_s = 1.0 / params.imu.rate_hz;
   const bool whole = params.lag_s >= TumblingOdometry::kWholeRecording;  // rates_ is unused for a whole recording
   out.rate.lag_s = std::max(whole ? TumblingParams{}.lag_s : params.lag_s, 2.0 * out.rate.period_s);
-  out.regime_evidence.gravity_m_s2 = out.hand_held.body.gravity_m_s2 = params.expert->gravity_m_s2;
+  out.evidence.gravity_m_s2 = out.hand_held.body.gravity_m_s2 = params.expert->gravity_m_s2;
   out.hand_held.body.expert.gap_max_s = out.rate.gap_max_s;
   return out;
 }
@@ -105,7 +105,7 @@ MotionRegimeSmoother::Params recording_rate_params(const TumblingOdometry::Param
   out.rate.expert.gyro_planes = stream.rate.expert.gyro_planes;
   out.rate.expert.accel_saturation_planes = stream.rate.expert.accel_saturation_planes;
   out.rate.expert.rest_detector = stream.rate.expert.rest_detector;
-  static_cast<RegimeParams&>(out) = stream;
+  static_cast<MotionRegimeParams&>(out) = stream;
   out.hand_held = stream.hand_held.body;
   return out;
 }

@@ -8,7 +8,7 @@
 namespace tumble {
 
 /// Parameters that MotionRegimeSmoother and MotionRegimeStream share.
-struct RegimeParams {
+struct MotionRegimeParams {
   MotionRegimeEvidence::Params evidence;
   SpinTracker::Params spin;
   double hand_held_probability_min = 0.02;  ///< minimum probability of hand-held motion for which its estimator runs

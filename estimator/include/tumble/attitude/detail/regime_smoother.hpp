@@ -21,7 +21,7 @@ namespace tumble {
 /// interval. SpinTracker replaces the rate of a saturated axis during a steady spin.
 class MotionRegimeSmoother {
  public:
-  struct Params : RegimeParams {
+  struct Params : MotionRegimeParams {
     AngularRateSmoother::Params rate;
     HandHeldSmoother::Params hand_held;
 
@@ -29,7 +29,7 @@ class MotionRegimeSmoother {
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.rate);
       visit.group("carried_", p.hand_held);
-      RegimeParams::fields(p, visit);
+      MotionRegimeParams::fields(p, visit);
     }
   };
   struct Report {

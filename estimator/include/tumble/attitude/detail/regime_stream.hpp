@@ -23,7 +23,7 @@ namespace tumble {
 /// HandHeldRateStream runs only while the probability of hand-held motion is at least `hand_held_probability_min`.
 class MotionRegimeStream {
  public:
-  struct Params : RegimeParams {
+  struct Params : MotionRegimeParams {
     AngularRateStream::Params rate;
     HandHeldRateStream::Params hand_held;  ///< `rate` overrides `period_s` and `lag_s`
 
@@ -31,7 +31,7 @@ class MotionRegimeStream {
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.rate);
       visit.group("carried_", p.hand_held);
-      RegimeParams::fields(p, visit);
+      MotionRegimeParams::fields(p, visit);
     }
   };
   struct ReportedRegimeProbability {
