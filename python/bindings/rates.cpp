@@ -89,7 +89,7 @@ std::pair<Rates, Report> smooth(const Smoother& self, const ArrayLike& time_ns, 
   return out;
 }
 
-Rates saave(const SaturationAwareRateEstimator& self, const ArrayLike& time_ns, const ArrayLike& gyro,
+Rates saave(const Saave& self, const ArrayLike& time_ns, const ArrayLike& gyro,
             const ArrayLike& accel, const ArrayLike& clip_flags) {
   const std::vector<ImuSample> samples = samples_of(time_ns, gyro, accel, clip_flags);
   Rates out;
@@ -182,29 +182,29 @@ void bind_batch(nb::module_& m) {
       .def("estimate", &smooth<MotionRegimeSmoother, Joint>, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
            nb::arg("clip_flags") = nb::none(), "Returns one rate per sample, and a RegimeReport.")
       .def_static("parameters", [] { return list_fields(MotionRegimeSmoother::Params{}); });
-  nb::class_<SaturationAwareRateEstimator>(
-      m, "SaturationAwareRateEstimator",
+  nb::class_<Saave>(
+      m, "Saave",
       "Recovers one clipped axis by the published method (Deschenes et al., ICRA 2024), followed by a smoother over "
       "the\n"
       "whole recording.\n\n"
-      "SaturationAwareRateEstimator(lever_arm_m=(x, y, z), saturation_point_rad_s=..., **options): lever_arm_m is from "
+      "Saave(lever_arm_m=(x, y, z), saturation_point_rad_s=..., **options): lever_arm_m is from "
       "the centre of mass to\n"
       "the IMU, in IMU axes. A reading beyond saturation_point_rad_s is clipped. parameters() lists the options.")
       .def(
           "__init__",
-          [](SaturationAwareRateEstimator* self, const nb::kwargs& options) {
-            Keywords keywords("SaturationAwareRateEstimator", options);
+          [](Saave* self, const nb::kwargs& options) {
+            Keywords keywords("Saave", options);
             keywords.need("lever_arm_m");
             keywords.need("saturation_point_rad_s");
-            SaturationAwareRateEstimator::Params params;
+            Saave::Params params;
             read_fields(keywords, params);
             keywords.done();
-            new (self) SaturationAwareRateEstimator(params);
+            new (self) Saave(params);
           },
           nb::arg("options"), takes_options())
       .def("estimate", &saave, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
            nb::arg("clip_flags") = nb::none(), "Returns one rate per sample.")
-      .def_static("parameters", [] { return list_fields(SaturationAwareRateEstimator::Params{}); });
+      .def_static("parameters", [] { return list_fields(Saave::Params{}); });
 }
 
 /// Binds the interface that both rate streams share. `rate(stream)` returns the AngularRateStream inside a stream, and

@@ -23,7 +23,7 @@ STREAMS = {
 BATCHES = {
     "smoother": lambda *s: tumble.AngularRateSmoother(lever_arm_m=LEVER).estimate(*s),
     "regimes": lambda *s: tumble.MotionRegimeSmoother(lever_arm_m=LEVER).estimate(*s),
-    "saave": lambda *s: tumble.SaturationAwareRateEstimator(lever_arm_m=LEVER, saturation_point_rad_s=10.0).estimate(*s),
+    "saave": lambda *s: tumble.Saave(lever_arm_m=LEVER, saturation_point_rad_s=10.0).estimate(*s),
     "carried_batch": lambda *s: tumble.HandHeldSmoother().estimate(*s),
     "rails": lambda *s: tumble.find_rails(*s),
 }

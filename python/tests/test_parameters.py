@@ -12,7 +12,7 @@ NEEDED = {
     "MotionRegimeSmoother": {"lever_arm_m": (0.0, 0.0, 0.0)},
     "AngularRateStream": {"lever_arm_m": (0.0, 0.0, 0.0)},
     "MotionRegimeStream": {"lever_arm_m": (0.0, 0.0, 0.0)},
-    "SaturationAwareRateEstimator": {"lever_arm_m": (0.0, 0.0, 0.0), "saturation_point_rad_s": 10.0},
+    "Saave": {"lever_arm_m": (0.0, 0.0, 0.0), "saturation_point_rad_s": 10.0},
     "HandHeldSmoother": {}, "HandHeldRateStream": {}, "Vqf": {}, "TumbleAttitude": {}, "Strapdown": {}, "ImuDataSheet": {}, "LidarDataSheet": {},
     "RollingSmoother": {"radius_m": 0.145},
     "RollingFilter": {"radius_m": 0.145},

@@ -39,7 +39,7 @@ def same_covariance(own, expected):
 
 def test_saave(hill, estimates):
     expected = estimates("rate/saave").rates
-    own = tumble.SaturationAwareRateEstimator(lever_arm_m=hill.imus[0].lever_arm_m, saturation_point_rad_s=10.45).estimate(*hill.imus[0].samples)
+    own = tumble.Saave(lever_arm_m=hill.imus[0].lever_arm_m, saturation_point_rad_s=10.45).estimate(*hill.imus[0].samples)
     assert same(own.rate, expected.rate) and same_covariance(own, expected) and same(own.time_ns, expected.time_ns)
     assert same(own.source, expected.source) and same(own.clipped_axes, expected.clipped_axes)
 

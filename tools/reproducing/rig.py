@@ -102,7 +102,7 @@ def page(runs: Runs, recordings: dict[int, Recording], errors: dict, exact: dict
 
 
 def unseen_share(recordings: dict[int, Recording]) -> float:
-    """Returns the fraction of the clipped samples in which no axis exceeds the default threshold of SaturationAwareRateEstimator."""
+    """Returns the fraction of the clipped samples in which no axis exceeds the default threshold of Saave."""
     highest = np.concatenate([np.abs(r.gyro_rad_s[r.clipped]).max(axis=1) for r in recordings.values()])
     return float(np.mean(highest <= DEFAULT_THRESHOLD_RAD_S)) if len(highest) else 0.0
 
@@ -288,18 +288,18 @@ SCALE_PX = 26
 PAGE = """# The tumbling rig: the ICRA paper next to our simulation
 
 The authors of *Saturation-Aware Angular Velocity Estimation* (Deschênes et al., ICRA 2024) push a lidar rig down a
-hill until its gyro saturates. The method SaturationAwareRateEstimator of the ICRA paper recovers the rate about the saturated axis from the
+hill until its gyro saturates. The method Saave of the ICRA paper recovers the rate about the saturated axis from the
 accelerometer. `tools/reproduce papers --only rig` writes this page from {draws} simulated runs of the scenario
 `hill` (seeds {first} to {last}).
 
 {headline}
-- In the column *ICRA paper*, the first of two numbers is for the raw gyro, and the second for SaturationAwareRateEstimator.
+- In the column *ICRA paper*, the first of two numbers is for the raw gyro, and the second for Saave.
 - The column *raw gyro* shows the mapping of the ICRA paper with clipped gyro readings (`rate/raw`, `slam/icp_raw`).
-- The column *published* shows the rates of SaturationAwareRateEstimator (`rate/saave`), and the mapping of the ICRA paper with these rates
+- The column *published* shows the rates of Saave (`rate/saave`), and the mapping of the ICRA paper with these rates
   (`slam/published`). The constants come from launch files of the ICRA paper's authors.
-- SaturationAwareRateEstimator treats gyro readings above a saturation threshold of 10.45 rad/s as clipped. In {unseen} of our clipped
+- Saave treats gyro readings above a saturation threshold of 10.45 rad/s as clipped. In {unseen} of our clipped
   samples, no axis exceeds 10.45 rad/s, because our simulated gyros have different saturation limits. The column
-  *published, threshold 10.0 rad/s* shows SaturationAwareRateEstimator with `{threshold}`.
+  *published, threshold 10.0 rad/s* shows Saave with `{threshold}`.
 - The column *ours, whole recording* shows the methods `rate/tumble` and `slam/tumble`. The last column shows
   `rate/tumble_lag` with a lag of 0.2 s, and `slam/tumble_lag` with a lag of 0.3 s.
 - The gyro clips in {clipping} simulated runs, in {clipped} samples. The highest angular speed is {top_speed} rad/s
@@ -314,11 +314,11 @@ accelerometer. `tools/reproduce papers --only rig` writes this page from {draws}
 
 ## What is reproduced
 
-- With an exact centre of mass, one clipped gyro axis and a saturation threshold of 10.0 rad/s, SaturationAwareRateEstimator reduces the rate
+- With an exact centre of mass, one clipped gyro axis and a saturation threshold of 10.0 rad/s, Saave reduces the rate
   error nearly as much as in the ICRA paper.
-- Mapping with SaturationAwareRateEstimator reduces the median localisation errors at least as much as in the ICRA paper. On the simulated
-  runs most similar to the ICRA paper, mapping with SaturationAwareRateEstimator also raises the map overlap.
-- Mapping with SaturationAwareRateEstimator sometimes fails in our simulation, whose fastest motions exceed the motions of the ICRA paper.
+- Mapping with Saave reduces the median localisation errors at least as much as in the ICRA paper. On the simulated
+  runs most similar to the ICRA paper, mapping with Saave also raises the map overlap.
+- Mapping with Saave sometimes fails in our simulation, whose fastest motions exceed the motions of the ICRA paper.
 
 ## What differs from the ICRA paper
 
@@ -347,7 +347,7 @@ The figure shows the simulated run with the most collisions while the gyro clips
 {rates}
 The table shows the median rate error for samples with one clipped sensing element of the gyro ({one} of the clipped
 samples), and with two or three ({more}). In the rows *inexact*, the assumed centre of mass has an error of up to 20 mm.
-SaturationAwareRateEstimator recovers the rate about only one clipped axis per sample.
+Saave recovers the rate about only one clipped axis per sample.
 
 ![distribution of the rate error](rig_rate_errors.png)
 
@@ -365,7 +365,7 @@ The next table covers only the {alike_draws} of {draws} simulated runs that are 
 
 ![maps coloured by error](rig_maps.png)
 
-The figure shows maps of seed {worst} from the raw gyro, from SaturationAwareRateEstimator, and from our method with the whole recording.
+The figure shows maps of seed {worst} from the raw gyro, from Saave, and from our method with the whole recording.
 
 ## Angular speed against acceleration
 

@@ -6,7 +6,7 @@ x y z w, and rotate sensor or body axes to the world (z up). Invalid input raise
 `parameters()` of a class lists its keywords.
 
 Odometry        TumblingOdometry (an IMU that may clip and a lidar), RollingOdometry (IMUs in a sphere), sheets: data sheets of sensors
-Rates           MotionRegimeSmoother, AngularRateSmoother, HandHeldSmoother, SaturationAwareRateEstimator (whole recordings), MotionRegimeStream, AngularRateStream, HandHeldRateStream (live), find_rails
+Rates           MotionRegimeSmoother, AngularRateSmoother, HandHeldSmoother, Saave (whole recordings), MotionRegimeStream, AngularRateStream, HandHeldRateStream (live), find_rails
 Attitude        TumbleAttitude, Vqf, Strapdown
 Sphere          RollingSmoother, RollingFilter (live)
 Mapper          LidarInertialOdometry
@@ -47,7 +47,7 @@ from ._tumble import (
     RollingOdometry,
     RollingPoses,
     RollingSmoother,
-    SaturationAwareRateEstimator,
+    Saave,
     SphereUnit,
     Strapdown,
     Sweep,
@@ -77,7 +77,7 @@ __all__ = [
     "Attitudes", "HandHeldReport", "HandHeldSmoother", "HandHeldRateStream", "Contacts", "Estimate", "HealthFinding", "Imu", "ImuDataSheet", "ImuTruth", "Lidar",
     "LidarInertialOdometry", "LidarDataSheet", "LidarTruth", "MapPoints", "Parameter", "Pose", "Poses", "ProgramError", "SaturationPlane", "Rails", "AngularRateReport", "AngularRateSmoother", "AngularRateSource",
     "AngularRateStream", "RateTable", "Rates", "Recording", "RegimeReport", "MotionRegimeSmoother", "MotionRegimeStream", "RigCalibration", "RollingFilter", "RollingMode", "RollingOdometry",
-    "RollingPoses", "RollingSmoother", "SaturationAwareRateEstimator", "Series", "SeriesTruth", "SphereUnit", "Strapdown", "Sweep", "LidarImuCalibration", "SweepReport", "SweepScale", "SweepVerdict", "Trajectory",
+    "RollingPoses", "RollingSmoother", "Saave", "Series", "SeriesTruth", "SphereUnit", "Strapdown", "Sweep", "LidarImuCalibration", "SweepReport", "SweepScale", "SweepVerdict", "Trajectory",
     "Truth", "Tumble", "TumbleAttitude", "TumbleError", "TumblingOdometry", "Vqf", "call", "describe_method", "estimate",
     "find_rails", "odometry", "plot", "point_errors", "program", "rails_parameters", "rate", "read", "read_airbrakes", "read_broad", "read_estimate", "read_repoimu", "read_tum", "record", "results", "rolling", "run",
     "score", "score_rows", "serve", "sheet_of", "sheets", "sweep", "tumbling", "tumbling_options", "write", "write_tum",
