@@ -89,8 +89,8 @@ std::pair<Rates, Report> smooth(const Smoother& self, const ArrayLike& time_ns, 
   return out;
 }
 
-Rates saave(const Saave& self, const ArrayLike& time_ns, const ArrayLike& gyro,
-            const ArrayLike& accel, const ArrayLike& clip_flags) {
+Rates saave(const Saave& self, const ArrayLike& time_ns, const ArrayLike& gyro, const ArrayLike& accel,
+            const ArrayLike& clip_flags) {
   const std::vector<ImuSample> samples = samples_of(time_ns, gyro, accel, clip_flags);
   Rates out;
   Status status;

@@ -124,7 +124,7 @@ Method calibrating_method(const Method& method, RigCalibrationUse& learning) {
 MotionRegimeSmoother::Params regime_params(const sim::Sensors& sensors, const AngularRateSmoother::Params& rate) {
   MotionRegimeSmoother::Params out;
   out.rate = rate;
-  out.regime_evidence.gravity_m_s2 = out.hand_held.gravity_m_s2 = sensors.gravity_m_s2;
+  out.evidence.gravity_m_s2 = out.hand_held.gravity_m_s2 = sensors.gravity_m_s2;
   return out;
 }
 
@@ -134,7 +134,7 @@ RecoveredRates recovered_readings(const sim::Sensors& sensors, std::span<const I
   std::vector<AuxiliaryRecording> auxiliary_imus;
   if (!auxiliary_recordings(sensors, auxiliary_imus).ok()) auxiliary_imus.clear();
   const RecoveredRates out = recover_rates(samples, auxiliary_imus, regime_params(sensors, rate), replaced);
-  report_rails(out.saturation_detector, estimate.health);
+  report_rails(out.saturation_levels, estimate.health);
   return out;
 }
 

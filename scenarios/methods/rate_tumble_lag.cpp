@@ -40,7 +40,7 @@ MotionRegimeStream::Params stream_params(const sim::Sensors& sensors, const sim:
   rate.model = batch.model;
   rate.saturation_detector = batch.saturation_detector;
   if (record.period_ns > 0) rate.period_s = seconds(record.period_ns);
-  params.regime_evidence.gravity_m_s2 = params.hand_held.body.gravity_m_s2 = sensors.gravity_m_s2;
+  params.evidence.gravity_m_s2 = params.hand_held.body.gravity_m_s2 = sensors.gravity_m_s2;
   rate_tumble_lag_settings().apply(parameters, params);
   rate.lag_s = std::max(rate.lag_s, 2.0 * rate.period_s);
   params.hand_held.body.expert.gap_max_s = rate.gap_max_s;

@@ -32,7 +32,7 @@ void report_smoother(const AngularRateReport& report, std::map<std::string, doub
   for (std::size_t axis = 0; axis < 3; ++axis) {
     health[std::string("learnt_lever_arm_") + kAxes[axis] + "_m"] =
         report.calibration.constants.lever_arm_m[static_cast<Eigen::Index>(axis)];
-    if (report.saturation_limit_observed[axis]) report_level(axis, *report.rail[axis], health);
+    if (report.saturation_limit_observed[axis]) report_level(axis, *report.saturation_limits[axis], health);
   }
 }
 
@@ -41,9 +41,9 @@ void report_smoother(const AngularRateReport& report, std::map<std::string, doub
 void report_rails(const SaturationLevels& rails, std::map<std::string, double>& health) {
   const SaturationPlanes in_use = rails.saturation_planes_in_use();
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double level_rad_s = rails.axis_aligned_rails.channels[axis].rail;
-    if (in_use.element[axis]) {
-      report_level(axis, in_use.element[axis]->distance_rad_s, health);
+    const double level_rad_s = rails.axis_limit_state.channels[axis].plateau_limit;
+    if (in_use.sensing_axis[axis]) {
+      report_level(axis, in_use.sensing_axis[axis]->saturation_limit_rad_s, health);
     } else if (level_rad_s > 0.0) {
       report_level(axis, level_rad_s, health);
     }
