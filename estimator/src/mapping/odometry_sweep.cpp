@@ -70,7 +70,6 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
     if (!status.ok()) return status;
   }
   const UpdatedSweep sweep{*prediction, *start, trajectory};
-  // If the map has too few points for a registration, the sweep is inserted at its predicted pose.
   std::vector<InsertedPoint> inserted;
   if (extends_map() && (placed->verdict != SweepVerdict::rejected || placed->map_too_sparse))
     inserted = insert(sweep, points, counts.has_ring_numbers, *placed, report);
@@ -125,8 +124,6 @@ Status LidarInertialOdometry::Impl::level_start(MotionState& levelled) const {
   return status;
 }
 
-/// If the first sweep begins after the first IMU sample, dead reckoning provides the state at its start (mapping.md,
-/// "Start").
 Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns,
                                               SweepReport& report) {
   const LidarImuCalibration calibration = sweep_boundary.state_estimate.mean.calibration;
@@ -227,7 +224,6 @@ void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, 
   mapping::judge_registration(params, tracking, scene.points.size(), prior_certain, attempt, placed);
 }
 
-/// At rest after a tracking failure, update() also corrects `prediction`, because the lag window uses `prediction`.
 StateEstimate LidarInertialOdometry::Impl::update(const MotionWindow& motion, const SweepRegistration& placed,
                                                   Prediction& prediction) const {
   if (placed.alignment) return mapping::posterior(prediction, *placed.alignment);
@@ -258,7 +254,6 @@ std::vector<InsertedPoint> LidarInertialOdometry::Impl::insert(const UpdatedSwee
   return inserted;
 }
 
-/// append_to_lag_window() needs the state at the end of the previous sweep, which sweep_boundary_after() replaces.
 void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const SweepRegistration& placed,
                                             const MotionWindow& motion, std::vector<InsertedPoint> inserted,
                                             SweepReport& report) {
@@ -280,7 +275,6 @@ void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Swe
     window.smooth();
     window.move_inserted_sweeps(map);
   }
-  // The oldest sweep leaves the lag window with the next sweep, so the pose of the oldest sweep is final.
   if (window.is_full()) report.smoothed = poses_of(window.sweeps().front());
   mapping::sweep_boundary_after(params, sweep.start, motion, sweep.trajectory, aligned, sweep_boundary);
   report.pose = sweep_boundary.state_estimate.mean.state.pose();

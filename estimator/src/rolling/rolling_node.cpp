@@ -310,7 +310,6 @@ Contact contact(const RollingParams& params, const RollingNominalState& nominal,
   out.contact_velocity_W_m_s = nominal.v_WI_m_s + reach * w_W;
   out.measurement_jacobian.setZero();
   out.measurement_jacobian.middleCols<3>(kVelocity).setIdentity();
-  // An attitude error rotates the rate w and the lever arm, but not the normal of the floor.
   out.measurement_jacobian.middleCols<3>(kAttitude) = so3::hat(w_W.cross(arm_W)) - r * so3::hat(n) * so3::hat(w_W);
   out.measurement_jacobian.middleCols<3>(kGyroBias) = -reach * R;
   for (int axis = 0; axis < 3; ++axis) {
@@ -326,7 +325,6 @@ Contact contact(const RollingParams& params, const RollingNominalState& nominal,
   out.rolling_speed_m_s = r * w_W.cross(n).norm();
   out.grip_variance =
       squared(params.expert.contact.grip_sigma_m_s) + squared(params.expert.contact.grip_sigma_ratio * r * w_W.norm());
-  // A clip flag indicates saturation even if the rate is below the stated range.
   const bool beyond = rate_I_rad_s.cwiseAbs().maxCoeff() >= params.gyro_range_rad_s || sums.recovered_rate_s > 0.0;
   const bool recovered = params.expert.saturation.recovered_rate_sigma_rad_s > 0.0;
   if (sums.rate_clipped_s > 0.0 || (beyond && !recovered)) {
@@ -358,7 +356,6 @@ void update_slope_for_mode(const RollingParams& params, RollingMode from, Rollin
   if (from == RollingMode::incline && to == from) {
     P.diagonal().segment<2>(kSlope).array() += squared(kSlopeWalk_sqrts) * h_s;
   }
-  // On a rough floor, the path is shorter than radius times rotation, by an unknown amount.
   if (to == RollingMode::uneven) P(kRadius, kRadius) += squared(kRoughRadiusWalk_m_sqrts) * h_s;
   if (!resets_floor_slope(from, to)) return;
   P.middleRows<2>(kSlope).setZero();

@@ -45,7 +45,6 @@ TEST(Metrics, AreNamedByTheirUnitAndDescribed) {
   }
 }
 
-// the test computes all metrics for an estimate that equals the truth in another world frame
 TEST(Metrics, OfTheTruthAreZeroWhereverItsWorldStands) {
   const std::set<std::string> shares = {"rate_coverage_3sigma", "rate_coverage_3sigma_flight",
                                         "rate_coverage_3sigma_impact", "map_coverage"};
@@ -196,7 +195,6 @@ TEST(AttitudeScores, JitterIsTheStepAtStandstillAlone) {
 }
 
 TEST(PositionScores, AGrowingOffsetGivesKnownErrors) {
-  // the estimate moves 10 % too far along the body's straight path, and rises by 3 cm
   Estimate estimate = perfect_estimate(rig(), Frame::body);
   const Eigen::Vector3d start = estimate.poses.front().position_W_m;
   for (PoseState& pose : estimate.poses) pose.position_W_m = start + 1.1 * (pose.position_W_m - start);
@@ -236,7 +234,6 @@ TEST(PositionScores, CoverageCountsErrorsWithinThreeSigmas) {
   EXPECT_LT(scores(Kind::position, estimate, rig()).at("position_coverage_3sigma"), 0.66);
 }
 
-// the coverage is 1 for all of these estimates
 TEST(PositionScores, TheNormalisedErrorSeesACovarianceThatIsHalved) {
   Estimate estimate = perfect_estimate(rig(), Frame::body);
   EXPECT_FALSE(scores(Kind::position, estimate, rig()).contains("position_nees_median")) << "nothing is stated";
@@ -312,7 +309,6 @@ TEST(EndPoseScores, CountFromTheSixthRegisteredSweep) {
   // the sweeps are wrong until the fifth and right from the sixth on, so the error is zero
   for (std::size_t k = 0; k < 5; ++k) estimate.sweeps[k].pose.position_W_m += Eigen::Vector3d(1, 1, 1);
   EXPECT_NEAR(scores(Kind::slam, estimate, rig()).at("translation_error_end_m"), 0.0, 1e-9);
-  // with one rejected sweep, the sixth registered sweep is the seventh of all sweeps
   estimate.sweeps[2].verdict = SweepVerdict::rejected;
   estimate.sweeps[5].pose.position_W_m += Eigen::Vector3d(1, 1, 1);
   EXPECT_NEAR(scores(Kind::slam, estimate, rig()).at("translation_error_end_m"), 0.0, 1e-9);
@@ -374,7 +370,6 @@ TEST(Verdict, AnEstimateThatStopsOrAnswersHalfIsADivergence) {
   stopped.attitudes.resize(stopped.attitudes.size() / 2);
   EXPECT_EQ(verdict_of(Kind::position, stopped, rig()), OutcomeStatus::diverged);
   EXPECT_EQ(verdict_of(Kind::attitude, stopped, rig()), OutcomeStatus::diverged);
-  // the estimate contains only the rates of unclipped samples
   Estimate picked = perfect_estimate(rig());
   const ClippingTruth truth(rig().sensors, rig().truth);
   std::erase_if(picked.rates, [&](const AngularRateState& rate) { return truth.at(rate.time_ns)->clipped_axes != 0; });
