@@ -70,7 +70,7 @@ scenarios::fixture::Wand stand_in_wand() {
   scenarios::fixture::Wand wand;
   wand.duration_s = 120.0;
   const WandRail rail;
-  wand.rail_rad_s = rail.saturation_limit_rad_s;
+  wand.rail_rad_s = rail.distance_rad_s;
   wand.rail_offset_rad_s = rail.offset_rad_s;
   wand.rail_y_slope = rail.y_slope;
   wand.rail_tilt = rail.z_slope;

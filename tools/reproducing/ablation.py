@@ -121,7 +121,7 @@ def shown(row):
 
 
 def page(described, rows):
-    table = Table(["mechanism", "lines", "largest change: median; 90 %", "changed"])
+    table = Table(["mechanism", "source lines", "largest change: median; 90 %", "changed"])
     without_effect = []
     for name, mechanism in described["mechanisms"].items():
         own = [row for row in rows if row["mechanism"] == name]

@@ -287,26 +287,27 @@ SCALE_PX = 26
 
 PAGE = """# The tumbling rig: the ICRA paper next to our simulation
 
-The authors of *Saturation-Aware Angular Velocity Estimation* (Deschênes et al., ICRA 2024) push a lidar rig down a
-hill until its gyro saturates. The method Saave of the ICRA paper recovers the rate about the saturated axis from the
-accelerometer. `tools/reproduce papers --only rig` writes this page from {draws} simulated runs of the scenario
-`hill` (seeds {first} to {last}).
+The authors of *Saturation-Aware Angular Velocity Estimation* (Deschênes et al., ICRA 2024) push a lidar rig down a hill
+until its gyro saturates. Their method Saave recovers the rate about one saturated axis per sample from the
+accelerometer. `tools/reproduce papers --only rig` writes this page from {draws} simulated runs of the scenario `hill`
+(seeds {first} to {last}).
 
 {headline}
 - In the column *ICRA paper*, the first of two numbers is for the raw gyro, and the second for Saave.
-- The column *raw gyro* shows the mapping of the ICRA paper with clipped gyro readings (`rate/raw`, `slam/icp_raw`).
-- The column *published* shows the rates of Saave (`rate/saave`), and the mapping of the ICRA paper with these rates
+- The column *raw gyro* shows the clipped readings (`rate/raw`), and the mapping of the ICRA paper with these readings
+  (`slam/icp_raw`).
+- The column *published* shows the rates of Saave (`rate/saave`), and the same mapping with these rates
   (`slam/published`). The constants come from launch files of the ICRA paper's authors.
-- Saave treats gyro readings above a saturation threshold of 10.45 rad/s as clipped. In {unseen} of our clipped
-  samples, no axis exceeds 10.45 rad/s, because our simulated gyros have different saturation limits. The column
-  *published, threshold 10.0 rad/s* shows Saave with `{threshold}`.
-- The column *ours, whole recording* shows the methods `rate/tumble` and `slam/tumble`. The last column shows
-  `rate/tumble_lag` with a lag of 0.2 s, and `slam/tumble_lag` with a lag of 0.3 s.
+- Saave treats gyro readings above a saturation threshold of 10.45 rad/s as clipped. In {unseen} of our clipped samples,
+  no axis exceeds this threshold, because the simulated gyros have different saturation limits. The column *published,
+  threshold 10.0 rad/s* shows Saave with `{threshold}`.
+- The column *ours, whole recording* shows `rate/tumble` and `slam/tumble`. The last column shows `rate/tumble_lag` (0.2
+  s lag) and `slam/tumble_lag` (0.3 s lag).
 - The gyro clips in {clipping} simulated runs, in {clipped} samples. The highest angular speed is {top_speed} rad/s
   (median over the runs: {speed} rad/s; ICRA paper: up to 18.6 rad/s). The highest acceleration is {top_force} m/s²
   (median over the runs: {force} m/s²; ICRA paper: up to 157.8 m/s²).
-- The median rate error covers only clipped samples. The end error is the error of the motion from the sixth
-  registered sweep to the last sweep, as in the ICRA paper.
+- The median rate error covers only clipped samples. The end error is the error of the motion from the sixth registered
+  sweep to the last, as in the ICRA paper.
 - The map overlap is the share of map points within 0.25 m of the true surface. A map fails if its overlap is below
   85 %, as in the ICRA paper.
 - In medians and means, a failed run counts with the largest error and a map overlap of 0. The ICRA paper limits
@@ -316,8 +317,8 @@ accelerometer. `tools/reproduce papers --only rig` writes this page from {draws}
 
 - With an exact centre of mass, one clipped gyro axis and a saturation threshold of 10.0 rad/s, Saave reduces the rate
   error nearly as much as in the ICRA paper.
-- Mapping with Saave reduces the median localisation errors at least as much as in the ICRA paper. On the simulated
-  runs most similar to the ICRA paper, mapping with Saave also raises the map overlap.
+- Mapping with Saave reduces the median localisation errors at least as much as in the ICRA paper. On the runs most
+  similar to the ICRA paper, the map overlap also rises.
 - Mapping with Saave sometimes fails in our simulation, whose fastest motions exceed the motions of the ICRA paper.
 
 ## What differs from the ICRA paper
@@ -338,16 +339,13 @@ accelerometer. `tools/reproduce papers --only rig` writes this page from {draws}
 
 ## Rate through a tumble
 
-![rate through a tumble](rig_rate.png)
-
-The figure shows the simulated run with the most collisions while the gyro clips.
+![rate in the simulated run with the most collisions while the gyro clips](rig_rate.png)
 
 ## Rate error with and without recovery
 
 {rates}
-The table shows the median rate error for samples with one clipped sensing element of the gyro ({one} of the clipped
+The table shows the median rate error for samples with one clipped sensing element ({one} of the clipped
 samples), and with two or three ({more}). In the rows *inexact*, the assumed centre of mass has an error of up to 20 mm.
-Saave recovers the rate about only one clipped axis per sample.
 
 ![distribution of the rate error](rig_rate_errors.png)
 
@@ -355,23 +353,21 @@ Saave recovers the rate about only one clipped axis per sample.
 
 ![percentiles of the localisation error](rig_localisation.png)
 
-The figure of localisation errors shows a failed run as an error of 10 m and 180°.
+The figure shows a failed run as an error of 10 m and 180°.
 
-The next table covers only the {alike_draws} of {draws} simulated runs that are most similar to the ICRA paper: at most
-2 % of their clipped samples have two or three clipped sensing elements.
+The table covers only the {alike_draws} of {draws} simulated runs that are most similar to the ICRA paper: at most 2 %
+of their clipped samples have two or three clipped sensing elements.
 
 {alike}
 ## Map outliers
 
-![maps coloured by error](rig_maps.png)
-
-The figure shows maps of seed {worst} from the raw gyro, from Saave, and from our method with the whole recording.
+![maps of seed {worst}, coloured by error](rig_maps.png)
 
 ## Angular speed against acceleration
 
 ![angular speed against acceleration](rig_density.png)
 
-In the figure, a rectangle marks the highest values of other data sets according to the ICRA paper: 4.7 rad/s and
-30.7 m/s². For each acceleration step of 5 m/s², two lines show the highest angular speeds in the public data sets BROAD
-(Laidig et al., Data 2021, CC BY 4.0) and AirbrakesV2 (MIT).
+A rectangle marks the highest values of other data sets according to the ICRA paper: 4.7 rad/s and 30.7 m/s². For each
+acceleration step of 5 m/s², two lines show the highest angular speeds in the public data sets BROAD (Laidig et al.,
+Data 2021, CC BY 4.0) and AirbrakesV2 (MIT).
 """

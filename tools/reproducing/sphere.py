@@ -308,11 +308,11 @@ def draw_map(maps: dict[int, dict[str, np.ndarray]], path: pathlib.Path) -> None
 
 PAGE = """# The rolling sphere: the MFI paper next to our simulation
 
-The authors of *IMU-Based Pose-Estimation for Spherical Robots with Limited Resources* (Zevering et al., IEEE MFI
-2021) roll a sphere with a diameter of 29 cm by hand. The attitude filter Autogain of the MFI paper switches between
-Madgwick's filter and a complementary filter. The position filter of the MFI paper fuses the rolling velocity with
-the integrated acceleration. `tools/reproduce papers --only sphere` writes this page from {draws} simulated runs of
-each scenario (seeds {first} to {last}). The numbers for figures of the MFI paper come from data files of its authors.
+The authors of *IMU-Based Pose-Estimation for Spherical Robots with Limited Resources* (Zevering et al., IEEE MFI 2021)
+roll a sphere with a diameter of 29 cm by hand. Their attitude filter Autogain switches between Madgwick's filter and a
+complementary filter. Their position filter fuses the rolling velocity with the integrated acceleration.
+`tools/reproduce papers --only sphere` writes this page from {draws} simulated runs of each scenario (seeds {first} to
+{last}). The numbers for figures of the MFI paper come from data files of its authors.
 
 ## What is reproduced
 
@@ -340,57 +340,52 @@ each scenario (seeds {first} to {last}). The numbers for figures of the MFI pape
 
 {jitter}
 An attitude step is the rotation of the estimated attitude between two successive samples (figure 2 of the MFI
-paper). An attitude step of Madgwick's filter is at most twice the gain times the sample time: 0.092° at our sample time
-of 4 ms, and 0.229° at 10 ms. Successive attitude steps of Madgwick's filter have a correlation of {lag1} in our
-simulation, and −0.83 in the MFI paper's data. A correlation near −1 means that Madgwick's filter alternates between two
-attitudes.
+paper). A step of Madgwick's filter is at most twice the gain times the sample time: 0.092° at our sample time of 4 ms,
+and 0.229° at 10 ms. Madgwick's filter alternates between two attitudes: successive steps have a correlation of
+{lag1} in our simulation, and −0.83 in the MFI paper's data.
 
 ![steps at standstill](sphere_jitter.png)
 
 ## Autogain against Madgwick: distance to the reference and its derivative
 
 The *distance* is the angle between estimated and true attitude (figures 5 and 6 of the MFI paper). A *step* is the
-change of the attitude distance from sample to sample at 120 Hz. A *second difference* is the change between successive
-steps. Each cell is a median over the simulated runs. The mean angular rate is {slow} rad/s in `slow_roll`, {fast} rad/s
-in `roll`, and 0.56 rad/s in a log of the MFI paper's authors. The total variation of the distance in the MFI paper
+change of the distance from sample to sample at 120 Hz. A *second difference* is the change between successive steps.
+Each cell is a median over the simulated runs. The mean angular rate is {slow} rad/s in `slow_roll`, {fast} rad/s in
+`roll`, and 0.56 rad/s in a log of the MFI paper's authors. The total variation of the distance in the MFI paper
 includes noise of the optical tracker.
 
 {distance}
-![distance to the truth](sphere_distance.png)
-
-The figure of attitude distances shows the first simulated run of the scenario `slow_roll`.
+![distance to the truth in the first run of slow_roll](sphere_distance.png)
 
 ## The L-shaped path of 1 m × 1 m with slip and with slide
 
 {ways}
 - In the column *MFI paper*, the first of two lengths comes from rotation alone. The second length, or a single value,
-  comes from the position filter of the MFI paper.
-- The scenario `slip_l` is an L-shaped path with slip, as in figure 7 of the MFI paper: on slippery patches, the sphere
-  spins 1.5 to 2.8 times faster than during rolling without slip.
-- The scenario `slide_l` is an L-shaped path with sliding, as in figure 8 of the MFI paper: on slippery patches, a hand
-  slows the rotation to at most 0.7 times the rate of rolling without slip.
+  comes from the position filter.
+- In the scenario `slip_l` (figure 7 of the MFI paper), the sphere spins 1.5 to 2.8 times faster on slippery patches
+  than without slip.
+- In the scenario `slide_l` (figure 8 of the MFI paper), a hand slows the rotation on slippery patches to at most 0.7
+  times the rate without slip.
 - The medians of the true lengths of first and second leg are
   {true_legs}.
-- The column *published fusion* shows the position filter of the MFI paper with the sphere's radius of 0.145 m. The
-  column *published fusion, radius 0.29 m* uses the sphere's diameter as radius, like the code of the MFI paper.
-- While the velocity from the accelerometer is near zero, the position filter of the MFI paper halves the rolling
-  velocity. The doubled radius of 0.29 m partly cancels the halving of the rolling velocity.
+- The column *published fusion* shows the position filter with the sphere's radius of 0.145 m. The column *published
+  fusion, radius 0.29 m* uses the sphere's diameter as radius, like the code of the MFI paper.
+- While the velocity from the accelerometer is near zero, the position filter halves the rolling velocity. The doubled
+  radius partly cancels the halving.
 
-![paths with slip](sphere_slip.png)
+![three paths with slip, from above](sphere_slip.png)
 
-![paths with slide](sphere_slide.png)
+![three paths with slide, from above](sphere_slide.png)
 
 ![errors of the legs](sphere_legs.png)
 
-The figures of paths show three simulated L-shaped paths with slip, and three with sliding, from above. The figure of
-leg errors also shows the scenario `slip`, in which the sphere rolls 1 m in 2 to 5 s. In the MFI paper, the sphere rolls
-1 m in 5 to 9 s.
+The figure of leg errors also shows the faster scenario `slip`: 1 m in 2 to 5 s, instead of 5 to 9 s in the MFI paper.
 
 ## The map of a room
 
 {rooms}
-The table counts map points more than 0.1 m below the floor, in {rooms_draws} simulated runs of the scenario `roll` in
-a furnished room. The figure shows the map of seed {map_seed} from the side.
+The table counts map points more than 0.1 m below the floor, in {rooms_draws} simulated runs of the scenario
+`roll` in a furnished room.
 
-![the map from the side](sphere_map.png)
+![the map of seed {map_seed} from the side](sphere_map.png)
 """
