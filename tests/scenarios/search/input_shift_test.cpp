@@ -20,7 +20,7 @@ std::vector<ScoredPoint> draws(std::uint64_t seed, std::size_t families, std::si
   std::vector<ScoredPoint> out;
   for (std::size_t family = 0; family < families; ++family) {
     const std::vector<double> normals = {stream.normal(), stream.normal() + shift};
-    for (std::size_t i = 0; i < size; ++i) out.push_back({{normals, 0}, 0.0, family});
+    for (std::size_t i = 0; i < size; ++i) out.push_back({{normals, {0}}, 0.0, family});
   }
   return out;
 }

@@ -27,7 +27,7 @@ SimulatedDraw sample_draw(std::uint64_t seed = 5001) {
   sim::SensorSpec imu{"imu", "imu", "ideal", "mti30", {}, {}};
   imu.values.set("time_offset_s", 0.002);
   imu.values.set("gyro_rail_rad_s", kRail);
-  const sim::Situation situation{"hill", seed, 10.0, {"floor", {}}, {"rig", {}}, {"push", {}}, {imu}};
+  const sim::Situation situation{"hill", seed, 10.0, {"floor", {}}, {"rig", {}}, {"push", {}}, {imu}, {}};
   draw.built.emplace(sim::resolve(situation), test::source_dir() / "models");
   return draw;
 }
