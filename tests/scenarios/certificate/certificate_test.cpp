@@ -260,7 +260,7 @@ TEST(Rows, ElementsDrawnHalfAsWideDoNotReachTheRealRails) {
 
 TEST(Rows, UprightElementsDoNotReachTheRealRails) {
   const std::vector<std::string> failed = real_rail_failures({.spread_factor = 0.0});
-  EXPECT_EQ(failed.size(), 22u);  // slope and offset of each of the eleven data sheets
+  EXPECT_EQ(failed.size(), 32u);  // slope and offset of each of the sixteen data sheets
 }
 
 TEST(Rows, APendulumOfAnotherLengthFailsEnergyAndPeriods) {
