@@ -265,7 +265,7 @@ TEST(FirstRun, AScenarioAloneDoesSomethingGood) {
     for (const json& outcome : document["outcomes"]) names.push_back(outcome["method"]);
     return names;
   };
-  EXPECT_THAT(methods(said), ::testing::ElementsAre("integrate", "tumble", "rolling", "tumble"));
+  EXPECT_THAT(methods(said), ::testing::ElementsAre("raw", "tumble", "integrate", "tumble", "rolling", "tumble"));
   for (const char* file : {"recording.h5", "snapshots/scene.png", "estimates/position-tumble/estimate.json"})
     EXPECT_TRUE(fs::exists(folder / "roll" / file)) << file;
   EXPECT_THAT(ended.err, HasSubstr("the results are in roll/"));
