@@ -5,7 +5,7 @@
 
 namespace tumble::scenarios {
 
-ImuCheckParams checked_imu(const sim::Sensors& sensors) {
+ImuDescription checked_imu(const sim::Sensors& sensors) {
   const sim::ImuRecord& record = sensors.imus.front();
   return {.gyro_range_rad_s = record.stated_gyro_range_rad_s,
           .accel_range_m_s2 = record.stated_accel_range_m_s2,

@@ -13,7 +13,7 @@
 
 namespace tumble::scenarios {
 
-ImuCheckParams checked_imu(const sim::Sensors& sensors);
+ImuDescription checked_imu(const sim::Sensors& sensors);
 
 void report_findings(const SensorHealth& health, const sim::Sensors& sensors, Estimate& estimate);
 

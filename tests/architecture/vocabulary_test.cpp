@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 using tumble::test::text_of;
 
 /// No name may contain these words; docs/glossary.md lists the terms of the field.
-constexpr std::array kReplaced = {"companion", "excess", "stretch", "stretches", "surprise", "thrust"};
+constexpr std::array kReplaced = {"companion", "excess", "stretch", "stretches", "surprise"};
 
 /// These names may not appear anywhere.
 constexpr std::array kReplacedNames = {"CarriedWay", "GravityTurn", "GravityTurningParams", "kPartialInContact",

@@ -39,7 +39,7 @@ _HEADERS = {
     "exception": "current_exception exception_ptr rethrow_exception",
     "filesystem": "filesystem",
     "fstream": "ifstream ofstream",
-    "functional": "function identity",
+    "functional": "bit_xor function identity",
     "iostream": "cerr cin cout",
     "limits": "numeric_limits",
     "list": "list",

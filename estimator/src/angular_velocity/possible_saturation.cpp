@@ -24,7 +24,7 @@ double lowest_saturation_limit(const SaturationPlanes& planes) {
 }
 
 // Returns how far the rate may exceed a flat maximum of `count` equal readings: rails.md (R74).
-double excess_above_plateau(double count, double entered, double left) {
+double rise_above_plateau(double count, double entered, double left) {
   const double both = std::max(0.0, entered) + std::max(0.0, left);
   return both > 0.0 ? count * std::max(0.0, entered) * std::max(0.0, left) / both : 0.0;
 }
@@ -102,7 +102,7 @@ void inflate_covariance_at_plateaus(const SaturationPlanes& planes, const MinSat
         k = last + 1;
         if (first == 0 || last + 1 == count || first == last) continue;
         const double rise =
-            excess_above_plateau(static_cast<double>(last - first + 1), top - value(first - 1), top - value(last + 1));
+            rise_above_plateau(static_cast<double>(last - first + 1), top - value(first - 1), top - value(last + 1));
         if (!(rise > 0.0)) continue;  // no maximum
         if (least.is_below_min_saturation_level(observations[first].sample.angular_velocity_rad_s, axis)) continue;
         for (std::size_t i = first; i <= last; ++i) {

@@ -31,7 +31,7 @@ struct SaturatedReading {
   Eigen::Vector3d reading, cross_axis_slope_sigma = Eigen::Vector3d::Zero();
   std::array<bool, 3> is_saturated{};
 
-  double saturation_excess(const Eigen::Vector3d& expected) const {
+  double saturation_deficit(const Eigen::Vector3d& expected) const {
     double sum2 = 0.0;
     for (int axis = 0; axis < 3; ++axis) {
       const double missing = reading[axis] - expected[axis];
@@ -177,7 +177,7 @@ void AngularRateRecovery::measure_rates(std::span<const ImuSample> units, double
     const auto railed = [&](int axis) { return is_rate_saturated(units[k], axis); };
     const SaturatedReading seen =
         saturated_reading_of_imu(params_.gyro_sensing_directions[k], R_IC, units[k].angular_velocity_rad_s, railed);
-    const double hidden = seen.saturation_excess(seen.sensing_directions_mean_frame * state.x.segment<3>(kRate));
+    const double hidden = seen.saturation_deficit(seen.sensing_directions_mean_frame * state.x.segment<3>(kRate));
     for (int axis = 0; axis < 3; ++axis) {
       const double reading = seen.reading[axis];
       const double missing = reading - seen.sensing_directions_mean_frame.row(axis).dot(state.x.segment<3>(kRate));
@@ -217,7 +217,7 @@ void AngularRateRecovery::measure_forces(std::span<const ImuSample> units, doubl
       row.segment<3>(arm) = axis_C * jacobian_position;
       const Eigen::Vector3d force = state.x.segment<3>(kForce) + jacobian_position * position;
       const double hidden = seen.cross_axis_slope_sigma[axis] > 0.0
-                                ? seen.saturation_excess(seen.sensing_directions_mean_frame * force)
+                                ? seen.saturation_deficit(seen.sensing_directions_mean_frame * force)
                                 : 0.0;
       const double sigma = params_.noise.force_m_s2 + params_.noise.force_share * std::abs(reading);
       update_rate_state(row, reading - axis_C.dot(force),

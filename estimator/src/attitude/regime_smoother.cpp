@@ -76,7 +76,7 @@ void MotionRegimeSmoother::join_spin_rates(std::span<const ImuSample> samples, b
   for (std::size_t k = 0; k < samples.size(); ++k)
     saturated_axes[k] = static_cast<std::uint8_t>(rates[k].clipped_axes | report.rate.suspected_saturation_axes[k] |
                                                   saturated_forces(samples[k], report.rate));
-  const std::vector<SpinRate> spins = spin_.smooth(samples, saturated_axes);
+  const std::vector<SpinRate> spins = spin_.smooth(samples, saturated_axes, further_imus);
   for (std::size_t k = 0; k < samples.size(); ++k) {
     rates[k] = spin_.combine_with_spin_rate(rates[k], spins[k], further_imus);
     if (spins[k].saturated && spins[k].probability > 0.5) ++report.spin_samples;

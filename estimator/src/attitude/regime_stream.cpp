@@ -120,7 +120,7 @@ SpinRate MotionRegimeStream::track_spin(const AngularRateState& rate, State& sta
   const AngularRateObservation& observation = state.rate.window[index_of(rate, state)].observation;
   const auto saturated = static_cast<std::uint8_t>(observation.unmeasured_axes() | observation.partly_saturated_axes() |
                                                    observation.clipping.accel << 3);
-  return spin_.step(observation.sample, saturated, state.spin);
+  return spin_.step(observation.sample, saturated, state.spin, !params_.rate.model.auxiliary_imus.empty());
 }
 
 SensingAxisClipSigns MotionRegimeStream::update_clip_signs(State& state) const {

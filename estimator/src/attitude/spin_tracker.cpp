@@ -61,9 +61,10 @@ void smooth_spin(std::span<const RecordedSpin<N>> run, std::span<SpinRate> out) 
   }
 }
 
-// Returns the estimate of the more probable model.
-SpinRate select_spin(const SpinRate& modulation, const SpinRate& force) {
-  const bool by_force = force.probability > modulation.probability;
+// Returns the estimate of the more probable model. With further IMUs, the rates already depend on all specific forces,
+// so the model of one IMU's specific force is not used.
+SpinRate select_spin(const SpinRate& modulation, const SpinRate& force, bool further_imus) {
+  const bool by_force = !further_imus && force.probability > modulation.probability;
   SpinRate out = by_force ? force : modulation;
   out.variance_rad2_s2 += squared((by_force ? kForceRatioSigma : kRatioSigma) * out.rate_rad_s);
   return out;
@@ -126,7 +127,8 @@ SpinRate SpinTracker::advance_spin_filter(const Model& model, const ImuSample& s
           reading.saturated};
 }
 
-SpinRate SpinTracker::step(const ImuSample& sample, std::uint8_t saturated_axes, State& state) const {
+SpinRate SpinTracker::step(const ImuSample& sample, std::uint8_t saturated_axes, State& state,
+                           bool further_imus) const {
   const bool first = select_spin_axis(sample, state);
   const double dt_s = first ? 0.0 : seconds(sample.time_ns - state.time_ns);
   state.time_ns = sample.time_ns;
@@ -135,11 +137,12 @@ SpinRate SpinTracker::step(const ImuSample& sample, std::uint8_t saturated_axes,
   return select_spin(advance_spin_filter(Modulation{params_}, sample, saturated_axes, dt_s, first, state.axis,
                                          state.modulation, ignore),
                      advance_spin_filter(Centripetal{params_}, sample, saturated_axes, dt_s, first, state.axis,
-                                         state.centripetal, ignore));
+                                         state.centripetal, ignore),
+                     further_imus);
 }
 
 std::vector<SpinRate> SpinTracker::smooth(std::span<const ImuSample> samples,
-                                          std::span<const std::uint8_t> saturated_axes) const {
+                                          std::span<const std::uint8_t> saturated_axes, bool further_imus) const {
   std::vector<SpinRate> modulation(samples.size()), centripetal(samples.size());
   std::vector<RecordedSpin<Modulation::kStates>> modulation_run;
   std::vector<RecordedSpin<Centripetal::kStates>> centripetal_run;
@@ -166,7 +169,7 @@ std::vector<SpinRate> SpinTracker::smooth(std::span<const ImuSample> samples,
   }
   smooth_run(samples.size());
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (modulation[k].axis >= 0) modulation[k] = select_spin(modulation[k], centripetal[k]);
+    if (modulation[k].axis >= 0) modulation[k] = select_spin(modulation[k], centripetal[k], further_imus);
   }
   return modulation;
 }

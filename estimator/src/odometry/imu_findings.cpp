@@ -30,12 +30,12 @@ double rate_max_so_far_rad_s(std::span<const ImuSample> samples) {
   return fastest;
 }
 
-RestGravity rest_gravity(const ImuCheckParams& imu) {
+RestGravity rest_gravity(const ImuDescription& imu) {
   return RestGravity({.gravity_m_s2 = imu.gravity_m_s2, .accel_range_m_s2 = imu.accel_range_m_s2});
 }
 
 /// Returns whether the gyro agrees with the measured rotation of gravity.
-bool check_readings(const ImuCheckParams& imu, std::span<const ImuSample> samples, SensorHealth& health) {
+bool check_readings(const ImuDescription& imu, std::span<const ImuSample> samples, SensorHealth& health) {
   const ImuPlausibility plausibility(plausibility_params(imu.gravity_m_s2, imu.is_merged ? 0.0 : imu.gyro_range_rad_s));
   ImuPlausibility::State state;
   for (const ImuSample& sample : samples) plausibility.step(sample, state);
@@ -49,7 +49,7 @@ bool check_readings(const ImuCheckParams& imu, std::span<const ImuSample> sample
   return confirms_gyro(plausibility, state);
 }
 
-void check_flight_forces(const ImuCheckParams& imu, std::span<const ImuSample> samples,
+void check_flight_forces(const ImuDescription& imu, std::span<const ImuSample> samples,
                          std::optional<double> carried_share, SensorHealth& health) {
   const bool thrown = carried_share && *carried_share < kRepeatedFraction;
   const FlightSignCheck sense({.motion_type = thrown ? FlightSignCheck::BodyMotionType::always_thrown
@@ -62,7 +62,7 @@ void check_flight_forces(const ImuCheckParams& imu, std::span<const ImuSample> s
 }
 
 /// The estimated rates must rotate gravity correctly from each rest to the next rest.
-void check_stationary_gravity(const ImuCheckParams& imu, std::span<const ImuSample> samples,
+void check_stationary_gravity(const ImuDescription& imu, std::span<const ImuSample> samples,
                               std::span<const AngularRateState> rates, SensorHealth& health) {
   const RestGravity gravity = rest_gravity(imu);
   RestGravity::State state;
@@ -91,34 +91,34 @@ bool confirms_gyro(const ImuPlausibility& plausibility, const ImuPlausibility::S
          plausibility.rotation_agreement(state) > kSlopeAgreementMin;
 }
 
-Status check_force_at_rest(const ImuCheckParams& imu, std::span<const ImuSample> samples, double error_max) {
+Status check_force_at_rest(const ImuDescription& imu, std::span<const ImuSample> samples, double error_max) {
   const RestGravity gravity = rest_gravity(imu);
   RestGravity::GravityMagnitudeState state;
   for (const ImuSample& sample : samples) gravity.step(sample, state);
   return gravity.gravity_magnitude_verdict(state, error_max);
 }
 
-SensorHealth check_readings(const ImuCheckParams& imu, std::span<const ImuSample> samples) {
+SensorHealth check_readings(const ImuDescription& imu, std::span<const ImuSample> samples) {
   SensorHealth out;
   (void)check_readings(imu, samples, out);
   return out;
 }
 
-ImuHealthReport check_frozen(const ImuCheckParams& imu, std::span<const ImuSample> samples) {
+ImuHealthReport check_frozen(const ImuDescription& imu, std::span<const ImuSample> samples) {
   const FrozenAxes detector({.gyro_range_rad_s = imu.gyro_range_rad_s, .accel_range_m_s2 = imu.accel_range_m_s2});
   ImuHealthReport out{{}, find_frozen_axes(detector, samples)};
   for (const FrozenAxis& axis : out.frozen_axes) add_finding(Kind::frozen_axis, kImu, axis, out.health);
   return out;
 }
 
-SensorHealth check_merged_imus(const ImuCheckParams& imu, const MergedRecordings& merged) {
+SensorHealth check_merged_imus(const ImuDescription& imu, const MergedRecordings& merged) {
   SensorHealth out = merged.faults;
   const bool gyro_confirmed = check_readings(imu, merged.samples, out);
   ImuMerge::add_findings(merged.mislabelled_axes, merged.lever_arm_agreement, gyro_confirmed, out);
   return out;
 }
 
-ImuHealthReport check_recording(const ImuCheckParams& imu, std::span<const ImuSample> samples,
+ImuHealthReport check_recording(const ImuDescription& imu, std::span<const ImuSample> samples,
                                 std::span<const AngularRateState> rates, std::optional<double> carried_share) {
   ImuHealthReport out = check_frozen(imu, samples);
   check_flight_forces(imu, samples, carried_share, out.health);

@@ -10,7 +10,7 @@ namespace tumble {
 
 namespace {
 
-ImuCheckParams imu_check_params(const TumblingOdometry::Params& params) {
+ImuDescription imu_check_params(const TumblingOdometry::Params& params) {
   return {.gyro_range_rad_s = params.imu.gyro_range_rad_s,
           .accel_range_m_s2 = params.imu.accel_range_m_s2,
           .gravity_m_s2 = params.expert->gravity_m_s2,

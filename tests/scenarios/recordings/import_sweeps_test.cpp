@@ -223,7 +223,7 @@ TEST_F(ImportSweeps, HostileInputIsOneClearLine) {
   EXPECT_THAT(complaint_of(), HasSubstr("times.txt:3: the time stamp 1000000000 ns must be larger than the "
                                         "previous time stamp, 1100000000 ns"));
   put("times.txt", "1.0\n1.1x\n");
-  EXPECT_THAT(complaint_of(), HasSubstr("times.txt:2: the time stamp '1.1x' must be seconds"));
+  EXPECT_THAT(complaint_of(), HasSubstr("times.txt:2: the time stamp '1.1x' must be in seconds"));
   put("times.txt", "1.0\n1.1\n");
   ASSERT_EQ(complaint_of(), "");
   put("2.ply", sweep("float time", {"0.01", "nan", "0.09"}));

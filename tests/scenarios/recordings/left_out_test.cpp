@@ -339,8 +339,9 @@ TEST_F(OddTable, OneFaultyLineCostsOneReading) {
     const Imported imported = import_imu_csv(folder_ / "a.csv", {});
     EXPECT_EQ(imported.sensors.imus.at(0).time_ns.size(), 99u) << odd;
     EXPECT_EQ(imported.sensors.imus.at(0).period_ns, 10 * kMilli_ns) << odd;
-    EXPECT_THAT(imported.notes, Contains(AllOf(HasSubstr("caution: the import leaves out 1 of 100 readings: 1 with"),
-                                               HasSubstr("a.csv:62"))))
+    EXPECT_THAT(imported.notes,
+                Contains(AllOf(HasSubstr("caution: the import leaves out 1 of 100 readings: 1 because of"),
+                               HasSubstr("a.csv:62"))))
         << odd;
   }
 }

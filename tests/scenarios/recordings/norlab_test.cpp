@@ -291,7 +291,7 @@ TEST(KittiRaw, ItsTimesAreDates) {
   EXPECT_THAT(read_stamps(file), testing::ElementsAre(1317042145'964389445, 1317042146'067000000));
   fixture::put(file, "2011-13-26 13:02:25.9\n");
   EXPECT_THAT(fixture::complaint([&] { read_stamps(file); }),
-              HasSubstr("timestamps.txt:1: the time stamp '2011-13-26 13:02:25.9' must be seconds"));
+              HasSubstr("timestamps.txt:1: the time stamp '2011-13-26 13:02:25.9' must be in seconds"));
   std::filesystem::remove(file);
 }
 

@@ -56,7 +56,7 @@ TEST_F(CurveSuiteTest, ComplaintsNameFileLineAndNearestName) {
   EXPECT_THAT(complaint("  rate/saave.saturation_rad_s: [9]\n"), HasSubstr("'saturation_point_rad_s'"));
   EXPECT_THAT(complaint("  rate/saave.saturation_point_rad_s: [-9]\n"), HasSubstr("must be within"));
   EXPECT_THAT(complaint("  given.time_offset_s: []\n"), HasSubstr("test.yaml:7"));
-  EXPECT_THAT(complaint("  given.time_offset_s: []\n"), HasSubstr("no value"));
+  EXPECT_THAT(complaint("  given.time_offset_s: []\n"), HasSubstr("is empty; list at least one value"));
   EXPECT_THAT(complaint("  given.time_offset_s: [0, 5]\n"), HasSubstr("must be within [-1, 1]"));
   EXPECT_THAT(complaint("  given.time_offset_s: [0, 0]\n"), HasSubstr("a value occurs twice"));
   EXPECT_THAT(complaint("  given.time_offset_s: [zero]\n"), HasSubstr("test.yaml:7"));

@@ -95,11 +95,13 @@ class SpinTracker {
 
   /// Processes the next finite sample. Bit j of `saturated_axes` states that the reading of gyro axis j is saturated or
   /// possibly saturated, and bit 3 + j that the reading of accelerometer axis j is saturated.
-  SpinRate step(const ImuSample& sample, std::uint8_t saturated_axes, State& state) const;
+  /// With further IMUs on the body (`further_imus`), only the modulation of the rate is used.
+  SpinRate step(const ImuSample& sample, std::uint8_t saturated_axes, State& state, bool further_imus = false) const;
 
   /// Returns the rate of the spin at each sample of a recording, from all earlier and later samples of the spin. The
   /// argument `saturated_axes` contains one value per sample. Memory: about 2 kB per sample of the longest spin.
-  std::vector<SpinRate> smooth(std::span<const ImuSample> samples, std::span<const std::uint8_t> saturated_axes) const;
+  std::vector<SpinRate> smooth(std::span<const ImuSample> samples, std::span<const std::uint8_t> saturated_axes,
+                               bool further_imus = false) const;
 
   /// Combines a rate with the rate of the spin by the probability of a steady spin. The result equals `rate` if the
   /// spin axis is unsaturated, or if the probability is below `probability_min`. The result also equals `rate` if

@@ -19,7 +19,7 @@
 
 namespace tumble {
 
-struct ImuCheckParams {
+struct ImuDescription {
   double gyro_range_rad_s = 0.0, accel_range_m_s2 = 0.0;  ///< ranges from the data sheet; 0: unknown
   double gravity_m_s2 = 9.80665;
   /// lever arm from the centre of mass to the IMU, in IMU axes
@@ -45,18 +45,18 @@ void add_findings(const ImuPlausibility& plausibility, const ImuPlausibility::St
 
 /// Checks units, signs and axes of the readings: magnitude and rotation of gravity, and rotation about a pivot. Cost:
 /// about 1 ms per second of data at 100 Hz.
-SensorHealth check_readings(const ImuCheckParams& imu, std::span<const ImuSample> samples);
+SensorHealth check_readings(const ImuDescription& imu, std::span<const ImuSample> samples);
 
 /// Checks the magnitude of the force at rest with the tolerance `error_max` (see RestGravity). Cost: O(N).
-Status check_force_at_rest(const ImuCheckParams& imu, std::span<const ImuSample> samples, double error_max);
+Status check_force_at_rest(const ImuDescription& imu, std::span<const ImuSample> samples, double error_max);
 
 /// Cost: O(N).
-ImuHealthReport check_frozen(const ImuCheckParams& imu, std::span<const ImuSample> samples);
+ImuHealthReport check_frozen(const ImuDescription& imu, std::span<const ImuSample> samples);
 
 /// Checks readings, forces in flight, the motion from each rest to the next rest, and frozen axes. `carried_share` is
 /// the fraction of hand-held samples. If the body was never hand-held, flights also reveal flipped and swapped axes,
 /// and include flights with a clipped axis.
-ImuHealthReport check_recording(const ImuCheckParams& imu, std::span<const ImuSample> samples,
+ImuHealthReport check_recording(const ImuDescription& imu, std::span<const ImuSample> samples,
                                 std::span<const AngularRateState> rates, std::optional<double> carried_share);
 
 struct MergedImuRecording {
@@ -73,7 +73,7 @@ struct MergedImuChecks {
 
 /// Checks faults of single IMUs, the merged readings, and the differences between the IMUs. The differences also reveal
 /// an inverted sign and exchanged axes. Cost: O(N).
-SensorHealth check_merged_imus(const ImuCheckParams& imu, const MergedRecordings& merged);
+SensorHealth check_merged_imus(const ImuDescription& imu, const MergedRecordings& merged);
 
 /// Returns the covariance that the findings add to each rate, or an empty list without such findings. If the readings
 /// contradict each other, the standard deviation is the rate itself. For example, a flipped sign gives an error of
