@@ -89,8 +89,8 @@ std::pair<Rates, Report> smooth(const Smoother& self, const ArrayLike& time_ns, 
   return out;
 }
 
-Rates saave(const Saave& self, const ArrayLike& time_ns, const ArrayLike& gyro, const ArrayLike& accel,
-            const ArrayLike& clip_flags) {
+Rates saave(const SaturationAwareRateEstimator& self, const ArrayLike& time_ns, const ArrayLike& gyro,
+            const ArrayLike& accel, const ArrayLike& clip_flags) {
   const std::vector<ImuSample> samples = samples_of(time_ns, gyro, accel, clip_flags);
   Rates out;
   Status status;
@@ -182,7 +182,7 @@ void bind_batch(nb::module_& m) {
       .def("estimate", &smooth<MotionRegimeSmoother, Joint>, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
            nb::arg("clip_flags") = nb::none(), "Returns one rate per sample, and a RegimeReport.")
       .def_static("parameters", [] { return list_fields(MotionRegimeSmoother::Params{}); });
-  nb::class_<Saave>(
+  nb::class_<SaturationAwareRateEstimator>(
       m, "Saave",
       "Recovers one clipped axis by the published method (Deschenes et al., ICRA 2024), followed by a smoother over "
       "the\n"
@@ -192,19 +192,19 @@ void bind_batch(nb::module_& m) {
       "the IMU, in IMU axes. A reading beyond saturation_point_rad_s is clipped. parameters() lists the options.")
       .def(
           "__init__",
-          [](Saave* self, const nb::kwargs& options) {
+          [](SaturationAwareRateEstimator* self, const nb::kwargs& options) {
             Keywords keywords("Saave", options);
             keywords.need("lever_arm_m");
             keywords.need("saturation_point_rad_s");
-            Saave::Params params;
+            SaturationAwareRateEstimator::Params params;
             read_fields(keywords, params);
             keywords.done();
-            new (self) Saave(params);
+            new (self) SaturationAwareRateEstimator(params);
           },
           nb::arg("options"), takes_options())
       .def("estimate", &saave, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
            nb::arg("clip_flags") = nb::none(), "Returns one rate per sample.")
-      .def_static("parameters", [] { return list_fields(Saave::Params{}); });
+      .def_static("parameters", [] { return list_fields(SaturationAwareRateEstimator::Params{}); });
 }
 
 /// Binds the interface that both rate streams share. `rate(stream)` returns the AngularRateStream inside a stream, and
