@@ -100,8 +100,8 @@ bool called_measured(const ScoredEstimate& scored, double& value) {
     for (unsigned j = 0; j < 3; ++j) {
       if ((pair.clipped_axes() & (1u << j)) == 0) continue;
       axes += 1.0;
-      const bool doubted = rate.clipped_axes == 0 && rate.source != AngularRateSource::measured;
-      missed += (rate.clipped_axes & (1u << j)) == 0 && !doubted ? 1.0 : 0.0;
+      const bool is_unmeasured = rate.clipped_axes == 0 && rate.source != AngularRateSource::measured;
+      missed += (rate.clipped_axes & (1u << j)) == 0 && !is_unmeasured ? 1.0 : 0.0;
     }
   }
   value = missed / axes;
