@@ -158,14 +158,14 @@ void RestGravity::limit_memory(GravityMagnitudeState& state) {
   state.stationary_force_integral_m_s *= 0.5;
 }
 
-Status RestGravity::gravity_magnitude_verdict(const GravityMagnitudeState& state, double error_max) const {
+Status RestGravity::gravity_magnitude_verdict(const GravityMagnitudeState& state) const {
   const double size = gravity_magnitude_error_ratio(state);
-  if (std::abs(size - 1.0) > error_max) {
+  if (std::abs(size - 1.0) > kMagnitudeErrorMax) {
     const bool unit = size > 0.0 && (size < 1.0 / kWrongUnitRatio || size > kWrongUnitRatio);
     return {ErrorCode::out_of_range,
             unit ? "accelerometer unit: specific force at rest (share of gravity)"
                  : "specific force at rest (share of gravity)",
-            size, 1.0 + std::copysign(error_max, size - 1.0)};
+            size, 1.0 + std::copysign(kMagnitudeErrorMax, size - 1.0)};
   }
   return {};
 }

@@ -34,13 +34,20 @@ RestGravity rest_gravity(const ImuDescription& imu) {
   return RestGravity({.gravity_m_s2 = imu.gravity_m_s2, .accel_range_m_s2 = imu.accel_range_m_s2});
 }
 
+Status check_force_at_rest(const ImuDescription& imu, std::span<const ImuSample> samples) {
+  const RestGravity gravity = rest_gravity(imu);
+  RestGravity::GravityMagnitudeState state;
+  for (const ImuSample& sample : samples) gravity.step(sample, state);
+  return gravity.gravity_magnitude_verdict(state);
+}
+
 /// Returns whether the gyro agrees with the measured rotation of gravity.
 bool check_readings(const ImuDescription& imu, std::span<const ImuSample> samples, SensorHealth& health) {
   const ImuPlausibility plausibility(plausibility_params(imu.gravity_m_s2, imu.is_merged ? 0.0 : imu.gyro_range_rad_s));
   ImuPlausibility::State state;
   for (const ImuSample& sample : samples) plausibility.step(sample, state);
   add_findings(plausibility, state, kImu, health);
-  health.add(Kind::force_at_rest, check_force_at_rest(imu, samples, RestGravity::kMagnitudeErrorMax), kImu);
+  health.add(Kind::force_at_rest, check_force_at_rest(imu, samples), kImu);
   if (!imu.is_merged) {  // several IMUs are on a sphere, which does not rotate about a pivot
     const PivotMotionCheck pivots =
         PivotMotionCheck::of(samples, imu.gravity_m_s2, imu.gyro_range_rad_s, imu.accel_range_m_s2);
@@ -89,13 +96,6 @@ void add_findings(const ImuPlausibility& plausibility, const ImuPlausibility::St
 bool confirms_gyro(const ImuPlausibility& plausibility, const ImuPlausibility::State& state) {
   return std::abs(plausibility.force_to_gyro_rotation_ratio(state) - 1.0) < kSlopeTolerance &&
          plausibility.rotation_agreement(state) > kSlopeAgreementMin;
-}
-
-Status check_force_at_rest(const ImuDescription& imu, std::span<const ImuSample> samples, double error_max) {
-  const RestGravity gravity = rest_gravity(imu);
-  RestGravity::GravityMagnitudeState state;
-  for (const ImuSample& sample : samples) gravity.step(sample, state);
-  return gravity.gravity_magnitude_verdict(state, error_max);
 }
 
 SensorHealth check_readings(const ImuDescription& imu, std::span<const ImuSample> samples) {

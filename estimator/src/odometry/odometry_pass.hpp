@@ -66,9 +66,7 @@ class OdometryPass {
   const MotionRegimeStream::State& rate_stream_state() const { return rate_stream_state_; }
   const LidarInertialOdometry& mapper() const { return mapper_; }
   /// Returns `out_of_range` if the magnitude of the specific force at rest contradicts gravity.
-  Status check_force_at_rest() const {
-    return rest_gravity_.gravity_magnitude_verdict(rest_gravity_state_, RestGravity::kMappingErrorMax);
-  }
+  Status check_force_at_rest() const { return rest_gravity_.gravity_magnitude_verdict(rest_gravity_state_); }
   const LidarScale& sweep_scale() const { return scale_.scale(); }
   const Localisation& localisation() const { return localisation_; }
   const std::optional<AngularRateState>& smoothed_rate() const { return smoothed_; }

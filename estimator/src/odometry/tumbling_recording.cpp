@@ -101,8 +101,6 @@ Status TumblingOdometry::Impl::finish_whole_recording(const SweepProgress& on_sw
   }
   whole->mapped_recording.sweeps.clear();
   whole->health = whole->findings.health;
-  whole->health.add(HealthFinding::Kind::force_at_rest,
-                    check_force_at_rest(imu_check_params(params_), samples, RestGravity::kMappingErrorMax), "imu");
   if (!waiting_sweeps_.empty()) whole->mapped_recording.add_findings(whole->scale, whole->health);
   whole_recording_result_ = whole;
   return whole->mapped_recording.status;

@@ -24,9 +24,6 @@ namespace tumble {
 class RestGravity {
  public:
   static constexpr double kMagnitudeErrorMax = 0.15;  ///< covers 80 mg of bias and 3 % of scale
-  /// Velocity and position integrate the force, so they need a more accurate accelerometer than rates and attitudes.
-  /// 4 % cover three standard deviations of 1 % of scale and 5 mg of bias, as of a low-cost accelerometer.
-  static constexpr double kMappingErrorMax = 0.04;
 
   struct Params {
     double gravity_m_s2 = 9.80665;
@@ -80,8 +77,8 @@ class RestGravity {
   /// Returns the mean magnitude of the specific force at rest as a fraction of gravity. Returns 0 if every rest of a
   /// second was without force, and 1 if the body never rested.
   double gravity_magnitude_error_ratio(const GravityMagnitudeState& state) const;
-  /// Returns `out_of_range` if gravity_magnitude_error_ratio() differs from 1 by more than `error_max`.
-  Status gravity_magnitude_verdict(const GravityMagnitudeState& state, double error_max = kMagnitudeErrorMax) const;
+  /// Returns `out_of_range` if gravity_magnitude_error_ratio() differs from 1 by more than kMagnitudeErrorMax.
+  Status gravity_magnitude_verdict(const GravityMagnitudeState& state) const;
   /// Returns the error of gravity_magnitude_verdict(), if any. Otherwise returns `out_of_range` if the velocity,
   /// integrated between two rests, contradicts zero velocity at both rests.
   Status verdict(const State& state) const;

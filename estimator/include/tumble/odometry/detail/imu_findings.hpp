@@ -47,9 +47,6 @@ void add_findings(const ImuPlausibility& plausibility, const ImuPlausibility::St
 /// about 1 ms per second of data at 100 Hz.
 SensorHealth check_readings(const ImuDescription& imu, std::span<const ImuSample> samples);
 
-/// Checks the magnitude of the force at rest with the tolerance `error_max` (see RestGravity). Cost: O(N).
-Status check_force_at_rest(const ImuDescription& imu, std::span<const ImuSample> samples, double error_max);
-
 /// Cost: O(N).
 ImuHealthReport check_frozen(const ImuDescription& imu, std::span<const ImuSample> samples);
 
