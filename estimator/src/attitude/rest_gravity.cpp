@@ -14,6 +14,7 @@ namespace {
 
 // The limits of the rest detector accept any unit of the specific force and any plausible gyro bias.
 constexpr RestDetector::Params kRests{.rate_max_rad_s = 0.15, .force_min_m_s2 = 0.3};
+constexpr double kMagnitudeErrorMax = 0.15;  // covers 80 mg of bias and 3 % of scale
 // The tolerance of the angle between measured and expected gravity covers gyro bias and pushes at rest.
 constexpr double kAngleMax_sigmas = 5.0, kAngleToleranceMin_rad = 0.3, kAngleToleranceMax_rad = 0.6;
 constexpr double kCorrelation_s = 0.1;        // minimum correlation time of a rate's error

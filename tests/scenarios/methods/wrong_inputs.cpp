@@ -156,7 +156,6 @@ const std::map<std::string, std::function<void(sim::Sensors&)>>& wrong_inputs() 
   static const std::map<std::string, std::function<void(sim::Sensors&)>> all = {
       {"none", [](sim::Sensors&) {}},
       {"accel_in_g", [](sim::Sensors& s) { each_reading(s, [](Vector&, Vector& f) { f /= kOneG_m_s2; }); }},
-      {"accel_scale_5_percent", [](sim::Sensors& s) { each_reading(s, [](Vector&, Vector& f) { f *= 1.05; }); }},
       {"gyros_late_offset_5_deg_s", [](sim::Sensors& s) { offset_late_gyros(s, 5.0); }},
       {"gyros_late_offset_8_deg_s", [](sim::Sensors& s) { offset_late_gyros(s, 8.0); }},
       {"accel_flipped", [](sim::Sensors& s) { each_reading(s, [](Vector&, Vector& f) { f = -f; }); }},

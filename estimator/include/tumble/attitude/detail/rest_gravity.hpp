@@ -23,8 +23,6 @@ namespace tumble {
 /// ground and another in a steadily moving vehicle, RestGravity mistakes correct rates for wrong rates.
 class RestGravity {
  public:
-  static constexpr double kMagnitudeErrorMax = 0.15;  ///< covers 80 mg of bias and 3 % of scale
-
   struct Params {
     double gravity_m_s2 = 9.80665;
     double accel_range_m_s2 = 0.0;  ///< range from the data sheet; 0: unknown
@@ -77,7 +75,7 @@ class RestGravity {
   /// Returns the mean magnitude of the specific force at rest as a fraction of gravity. Returns 0 if every rest of a
   /// second was without force, and 1 if the body never rested.
   double gravity_magnitude_error_ratio(const GravityMagnitudeState& state) const;
-  /// Returns `out_of_range` if gravity_magnitude_error_ratio() differs from 1 by more than kMagnitudeErrorMax.
+  /// Returns `out_of_range` if gravity_magnitude_error_ratio() differs from 1 by more than 15 %.
   Status gravity_magnitude_verdict(const GravityMagnitudeState& state) const;
   /// Returns the error of gravity_magnitude_verdict(), if any. Otherwise returns `out_of_range` if the velocity,
   /// integrated between two rests, contradicts zero velocity at both rests.
