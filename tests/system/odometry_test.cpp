@@ -197,7 +197,8 @@ TEST(Odometry, AnEstimateThatItsHealthInvalidatesIsDiverged) {
   const std::string bag = bag_of(folder / "bag", "fast-lio", &half).string(), out = (folder / "out").string(),
                     recording = (folder / "r.h5").string(), rates = (folder / "rates").string();
   const Ended odometry = run_program({"odometry", bag, "-o", out, "--json"});
-  EXPECT_EQ(odometry.status, 0) << odometry.err;
+  EXPECT_EQ(odometry.status, 1) << odometry.err;
+  EXPECT_TRUE(fs::exists(fs::path(out) / "trajectory.tum"));
   EXPECT_EQ(json_of(odometry)["status"], "diverged");
   EXPECT_THAT(json_of(odometry)["summary"]["health"].get<std::string>(), HasSubstr("diverged: "));
   EXPECT_THAT(json_of(odometry)["message"].get<std::string>(), HasSubstr("health: "));

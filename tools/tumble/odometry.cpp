@@ -214,7 +214,7 @@ int run_odometry(const Session& session, const OdometryOptions& options) {
     session.note(
         fmt::format("written: {} (trajectory.tum, map.ply, map.pcd, map.tumblemap, estimate.json, replay.html)",
                     options.folder.string()));
-    return kDone;
+    return outcome.status == scenarios::OutcomeStatus::diverged ? kCheckFailed : kDone;
   }
   throw BadInput(fmt::format("{}: {} failed: {}; 'tumble doctor {}' searches for the cause",
                              options.input.path.string(), full_name(info), failure_reason(estimate.status, sensors),
@@ -240,6 +240,8 @@ Action declare_odometry(VerbOptions& verb, const Session& session) {
            "list "
            "methods NAME' lists them)")
       .one_at_a_time();
+  verb.footer(
+      "Exit status: 0 estimate written, 1 estimate written but its health is 'diverged', 2 wrong use or bad input.");
   return [&session, options] { return run_odometry(session, *options); };
 }
 

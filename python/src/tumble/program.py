@@ -10,6 +10,7 @@ import shutil
 import sqlite3
 import subprocess
 import tempfile
+import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from numbers import Integral, Real
 from typing import Any
@@ -38,20 +39,20 @@ def program() -> str:
     return found
 
 
-def call(verb: str, *words: Path | Number, timeout_s: float | None = None) -> str:
+def call(verb: str, *words: Path | Number, timeout_s: float | None = None, accepted: Sequence[int] = (0,)) -> str:
     """Runs `tumble verb words... --quiet` and returns what it prints.
 
-    Raises TumbleError `program` for wrong use, invalid input and failed checks (the value is the exit status), ProgramError for a
-    defect, and subprocess.TimeoutExpired.
+    Raises TumbleError `program` for wrong use, invalid input and failed checks (the value is the exit status) unless `accepted`
+    contains the exit status, ProgramError for a defect, and subprocess.TimeoutExpired.
     """
     command = [program(), verb, *map(_word, words), "--quiet"]
     ended = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=timeout_s)
+    if ended.returncode in accepted:
+        return ended.stdout
     if ended.returncode in (1, 2):
         output = ended.stderr.strip() or ended.stdout.strip()
         raise TumbleError(output, "program", verb, ended.returncode, 0)
-    if ended.returncode != 0:
-        raise ProgramError(f"{' '.join(command)} ended with exit status {ended.returncode}: {ended.stderr.strip()}")
-    return ended.stdout
+    raise ProgramError(f"{' '.join(command)} ended with exit status {ended.returncode}: {ended.stderr.strip()}")
 
 
 def _word(word: Path | Number) -> str:
@@ -119,15 +120,17 @@ def odometry(recording: Path, folder: Path | None = None, live: bool = False, op
     live:      uses past data only (`slam/tumble_live`).
     options:   further words of the command, for example ["--lever-arm", 0.1, 0, 0.02, "--imu-topic", "/imu"].
 
-    `poses` of the result are poses of the IMU in a world with z up, at the times of the IMU. Raises TumbleError for a recording that
-    cannot be used; the message names the option that helps.
+    `poses` of the result are poses of the IMU in a world with z up, at the times of the IMU. Warns if the method's own health rejects
+    the estimate. Raises TumbleError for a recording that cannot be used; the message names the option that helps.
     """
     if isinstance(options, (str, os.PathLike)) or not isinstance(options, Sequence):
         raise wrong_type("options", options, "a list of words")
     words: list[Path | Number] = [_named("recording", recording), *options, *(["--live"] if live else [])]
     with tempfile.TemporaryDirectory() as scratch:
         out = pathlib.Path(scratch) / "odometry" if folder is None else pathlib.Path(path_of("folder", folder))
-        call("odometry", *words, "-o", out, timeout_s=timeout_s)
+        report = json.loads(call("odometry", *words, "-o", out, "--json", timeout_s=timeout_s, accepted=(0, 1)))
+        if report["status"] == "diverged":
+            warnings.warn(f"the estimate of {recording} is diverged: {report['message']}", stacklevel=2)
         return read_estimate(out)
 
 
