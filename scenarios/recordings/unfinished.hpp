@@ -21,8 +21,8 @@ class Unfinished {
   int place_ = -1;
 };
 
-/// SignalsWait delays signals during its lifetime, to protect a new path until an Unfinished object exists for this
-/// path.
+/// SignalsWait delays signals such as SIGINT during its lifetime. Between the creation of a file and the construction
+/// of its Unfinished object, a signal would otherwise leave the file on the disk.
 class SignalsWait {
  public:
   SignalsWait();

@@ -112,7 +112,8 @@ class Splitting {
     return out;
   }
 
-  /// Replaces the draws with the lowest scores. Returns false if the budget is too small or no higher scores remain.
+  /// Removes the draws with the lowest scores, and replaces them by copies of other draws. Returns false if the budget
+  /// is too small or no higher scores remain.
   bool advance() {
     std::vector<double> scores;
     for (std::size_t i = 0; i < result_.members.size(); ++i) scores.push_back(score_of(i));

@@ -42,8 +42,8 @@ void SplittingEstimate::advance(std::size_t removed, std::span<const std::size_t
   if (left > 1.0) log_correction_ += std::log((left - 1.0) * n * n / (left * (n * n - siblings)));
 }
 
-/// Equation (S30) of statistics.md: only the upper limit contains half of the variance, because the median of a
-/// log-normal distribution is below its mean.
+/// Equation (S30) of statistics.md. Half of the variance is added only to the logarithm of the upper limit, because the
+/// median of a log-normal distribution is below its mean.
 Interval SplittingEstimate::interval(std::span<const std::size_t> members, double risk) const {
   const auto n = static_cast<double>(population_), own = static_cast<double>(members.size());
   const double share = own / n, log_value = log_probability_ + std::log(share);

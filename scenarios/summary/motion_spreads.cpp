@@ -39,8 +39,9 @@ constexpr std::array kQuantities = {
              "share of the clipped samples with at least two clipped axes, over all simulated runs", "%", 100.0,
              "target: 10 to 40", kNone, kNone, Over::clipped_samples},
     Quantity{"motion_cross_axis_share",
-             "share of the clipped samples with a cross-axis error on an unclipped axis, over all simulated runs", "%",
-             100.0, "", kNone, kNone, Over::clipped_samples},
+             "share of the clipped samples in which clipping also causes an error on an unclipped axis, over all "
+             "simulated runs",
+             "%", 100.0, "", kNone, kNone, Over::clipped_samples},
     Quantity{"motion_path_m", "path", "m", 1.0, "5 to 10", 5.0, 10.0},
     Quantity{"motion_peak_accel_m_s2", "largest specific force", "m/s²", 1.0,
              "specific forces up to 157.8 m/s²; a 16 g accelerometer saturates at 156.9", 157.8, 157.8},

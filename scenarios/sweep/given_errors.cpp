@@ -71,8 +71,8 @@ void state_no_rail(sim::ImuRecord& imu) {
   for (std::uint8_t& flags : imu.clip_flags) flags = static_cast<std::uint8_t>(flags & ~kGyroClipFlags);
 }
 
-/// Clipped readings become unclipped readings plus an error that is constant in each clipping interval, to simulate a
-/// rate method with a constant error.
+/// Simulates a rate method with a constant error: replaces each clipped reading by the unclipped reading plus an error,
+/// which is constant in each clipping interval.
 void rate_error(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const ClippingTruth clipping(sensors, truth);
   sim::ImuRecord& imu = primary(sensors, truth);

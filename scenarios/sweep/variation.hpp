@@ -29,8 +29,8 @@ Reach reach(const Setting& setting);
 
 bool needs_lidar(const Setting& setting);
 
-/// Throws BadInput if a key is unknown or does not apply to a scenario, or if keys of scenario, `given` errors and
-/// methods are mixed.
+/// A key belongs to the scenario, to the `given` errors or to a method. Throws BadInput if a key is unknown, if it does
+/// not apply to a scenario, or if a variation has keys of several kinds.
 void check(const Variation& variation, const DataRoot& data, std::span<const std::string> scenarios,
            std::uint64_t seed);
 

@@ -112,7 +112,7 @@ def coverage_change(row):
 
 
 def shown(row):
-    cells = [f"{row['scenario']} {row['method'].split('/')[1]}", interval(row, "median"), interval(row, "tail")]
+    cells = [f"{row['scenario']} {row['method'].split('/')[1]}", f"median {interval(row, 'median')}", f"tail {interval(row, 'tail')}"]
     if row["failed_on"] != row["failed_off"]:
         cells.append(f"failed {row['failed_on']} → {row['failed_off']}")
     if coverage_change(row) >= 1.0:
@@ -121,7 +121,7 @@ def shown(row):
 
 
 def page(described, rows):
-    table = Table(["mechanism", "source lines", "largest change: median; 90 %", "changed"])
+    table = Table(["mechanism", "source lines", "largest change", "changed"])
     without_effect = []
     for name, mechanism in described["mechanisms"].items():
         own = [row for row in rows if row["mechanism"] == name]

@@ -368,6 +368,6 @@ of their clipped samples have two or three clipped sensing elements.
 ![angular speed against acceleration](rig_density.png)
 
 A rectangle marks the highest values of other data sets according to the ICRA paper: 4.7 rad/s and 30.7 m/s². For each
-acceleration step of 5 m/s², two lines show the highest angular speeds in the public data sets BROAD (Laidig et al.,
+interval of 5 m/s², two lines show the highest angular speeds in the public data sets BROAD (Laidig et al.,
 Data 2021, CC BY 4.0) and AirbrakesV2 (MIT).
 """

@@ -241,8 +241,8 @@ int run_gate(const Session& session, const GateOptions& options) {
 Action declare_gate(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<GateOptions>();
   verb.add("SUITE", options->suite,
-           "runs the fixed seeds of this suite, suite file or scenario; or this named case (a stored failure); or all "
-           "named cases ('regressions')")
+           "runs the fixed seeds of a suite or scenario, or a stored failure (a named case). 'regressions' runs all "
+           "named cases")
       .required()
       .check(a_suite_or_cases(session));
   verb.add("--against", options->accepted,

@@ -7,7 +7,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-// In contact, the force residual could strongly change calibration constants with a large uncertainty.
+// Below this flight weight, the force residual does not change the calibration: a contact force could strongly change
+// uncertain calibration constants.
 constexpr double kRigWeightMin = 0.05;
 
 }  // namespace

@@ -20,8 +20,9 @@ StateEstimate transformed_to_pose(const Eigen::Isometry3d& T_WI, const StateEsti
 /// Replaces roll and pitch by `tilt`, whose errors are independent of all other errors.
 StateEstimate with_start_tilt(const LidarInertialOdometry::StartTilt& tilt, const StateEstimate& estimate);
 
-/// Returns the dead-reckoned state in a frame with origin and yaw of the IMU, `step_s` after the last call. A weak
-/// prior on the speed limits the errors of tilt and velocity over minutes of motion.
+/// Returns the dead-reckoned state in a new frame, with the origin and the yaw of the IMU's present pose. `step_s` is
+/// the time since the last call. A weak prior on the speed limits the errors of tilt and velocity over minutes of
+/// motion.
 StateEstimate reset_origin_and_yaw(const StateEstimate& reckoned, double step_s);
 
 /// The lidar's pose at the start of the first sweep defines the map frame, and is therefore exact. In the map frame,

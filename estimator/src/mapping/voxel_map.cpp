@@ -78,7 +78,8 @@ inline Eigen::Vector3i VoxelMap::VoxelGroup::of(const Eigen::Vector3i& cell) {
   return {cell.x() >> kBits, cell.y() >> kBits, cell.z() >> kBits};
 }
 
-/// Rows returns the occupied cells near a cell. The hash table finds each group (8 x 8 x 8 cells) at most once.
+/// Iterates over rows of cells near a cell, and returns the occupied cells of each row. The hash table finds each group
+/// (8 x 8 x 8 cells) at most once.
 class VoxelMap::NeighbourVoxelRows {
  public:
   NeighbourVoxelRows(const VoxelMap& map, const Eigen::Vector3i& cell, int reach)

@@ -44,7 +44,7 @@ class OdometryPass {
   bool has_rates_until(TimeNs end_ns) const;
   /// Returns the time, in the lidar's clock, up to which rates are available; empty before the first rate.
   std::optional<TimeNs> covered_ns() const;
-  /// Returns the time stamp of the first sample at or after the lidar time `end_ns` whose rate is not yet available.
+  /// Returns the time stamp of the first sample that is not earlier than the lidar time `end_ns` and has no rate yet.
   std::optional<TimeNs> covering_ns(TimeNs end_ns) const;
   /// `reading` is the odometer reading within the sweep, if any.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
