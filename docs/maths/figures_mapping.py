@@ -4,6 +4,7 @@
 
 Usage: python3 docs/maths/figures_mapping.py [NAME]...   (without a name: all figures; needs numpy and matplotlib)
 """
+import math
 import pathlib
 import sys
 
@@ -171,37 +172,32 @@ def imu_merge_rigid_body():
     return figure
 
 
-def statistics_sequential():
-    """Plots the stopping bounds of the sequential sign test for 5 % risk, 20 looks and 400 pairs, by (S13) to (S15)."""
-    risk, looks, pairs = 0.05, 20, 400
-    normal = NormalDist()
-    going, low, spent, bounds = np.array([1.0]), 0, 0.0, []
-    for look in range(1, looks + 1):
-        share = look / looks
-        for _ in range(pairs // looks):
-            going = 0.5 * (np.append(going, 0.0) + np.insert(going, 0, 0.0))
-        allowed = 2.0 * (1.0 - normal.cdf(normal.inv_cdf(1.0 - risk / 4.0) / np.sqrt(share)))
-        while len(going) > 2 and spent + going[-1] <= allowed:
-            spent += going[-1]
-            going, low = going[1:-1], low + 1
-        bounds.append((look * pairs // looks, low + len(going)))
-    count, needed = np.array(bounds).T
+def statistics_sequence():
+    """Plots the limits of the confidence sequence (S15) for 5 % risk, beyond which the share of positive pairs differs from one half."""
+    risk, pairs = 0.05, 400
+    normal, count, needed = NormalDist(), np.arange(10, pairs + 1), []
+    for n in count:
+        k = math.ceil(n / 2)
+        while k < n and (n + 1) * math.comb(n, k) * 0.5 ** int(n) > risk:
+            k += 1
+        needed.append(k)
+    share = np.array(needed) / count
     figure, axes = plt.subplots(figsize=(6.4, 3.2))
-    axes.step(count, needed / count, where="post", color=RED, label="bound of (S15)")
-    axes.step(count, 1.0 - needed / count, where="post", color=RED)
+    axes.plot(count, share, color=RED, label="limit of (S15)")
+    axes.plot(count, 1.0 - share, color=RED)
     single = 0.5 + 0.5 * normal.inv_cdf(1.0 - risk / 2.0) / np.sqrt(count)
-    axes.plot(count, single, color=GREY, ls="--", label="bound of a single test with 5 % risk")
+    axes.plot(count, single, color=GREY, ls="--", label="limit of a single test with 5 % risk")
     axes.plot(count, 1.0 - single, color=GREY, ls="--")
     axes.text(250, 0.72, "positive", color=RED)
     axes.text(250, 0.25, "negative", color=RED)
     axes.text(250, 0.49, "continue")
-    axes.set(xlabel="nonzero pairs m", ylabel="share of positive pairs k/m", ylim=(0, 1), xlim=(0, pairs))
+    axes.set(xlabel="nonzero pairs n", ylabel="share of positive pairs k/n", ylim=(0, 1), xlim=(0, pairs))
     axes.legend(fontsize=8, loc="lower right")
     return figure
 
 
 FIGURES = {f.__name__: f for f in (mapping_deficit, rolling_contact, attitude_growth, imu_merge_rigid_body,
-                                   statistics_sequential)}
+                                   statistics_sequence)}
 
 
 def main(names):

@@ -10,14 +10,12 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/scoring/score.hpp"
-#include "scenarios/statistics/sequential.hpp"
+#include "scenarios/statistics/confidence_sequence.hpp"
 #include "scenarios/summary/selection.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
-
-constexpr int kLooksMax = 1000;
 
 std::string kind_of(const std::string& name) {
   const std::size_t slash = name.find('/');
@@ -67,50 +65,34 @@ AnswerPairs pairs_of(const Results& results, const Question& question, std::uint
 
 Answer answer_of(const std::string& scenario, const std::map<std::uint64_t, AnswerPair>& pairs,
                  const Question& question, std::uint64_t last_seed) {
-  SequentialSignTest test(question.risk / static_cast<double>(question.scenarios.size()));
+  const double risk = question.risk / static_cast<double>(question.scenarios.size());
   const MetricInfo& info = metric_info(question.metric);
   const Margin wanted{-question.margin.value, question.margin.relative};
-  const auto all = static_cast<double>(question.last_seed - question.first_seed) + 1.0;
   Answer answer{scenario};
-  auto next = pairs.begin();
-  for (const std::uint64_t seed : question.look_seeds()) {
-    if (seed > last_seed || test.verdict() != SequentialSignTest::Verdict::open) break;
-    for (; next != pairs.end() && next->first <= seed; ++next) {
-      if (!next->second.own || !next->second.other) continue;
-      const double difference = worse_by(info, *next->second.own, *next->second.other, wanted);
-      answer.better += difference < 0.0;
-      answer.worse += difference > 0.0;
-    }
+  answer.seeds = last_seed - question.first_seed + 1;
+  answer.better_share = probability_at_any_time(0, 0, risk);
+  for (const auto& [seed, pair] : pairs) {
+    if (!pair.own || !pair.other) continue;
+    const double difference = worse_by(info, *pair.own, *pair.other, wanted);
+    if (difference == 0.0) continue;
+    (difference < 0.0 ? answer.better : answer.worse) += 1;
+    answer.better_share = probability_at_any_time(answer.better, answer.worse, risk);
+    if (answer.better_share.low <= 0.5 && answer.better_share.high >= 0.5) continue;
+    answer.finding = answer.better_share.low > 0.5 ? Finding::better : Finding::worse;
     answer.seeds = seed - question.first_seed + 1;
-    test.look(static_cast<double>(answer.seeds) / all, answer.better, answer.worse);
-    answer.needed = test.needed();
+    break;
   }
-  if (test.verdict() == SequentialSignTest::Verdict::negative) answer.finding = Finding::better;
-  if (test.verdict() == SequentialSignTest::Verdict::positive) answer.finding = Finding::worse;
   return answer;
 }
 
 }  // namespace
 
-std::vector<std::uint64_t> Question::look_seeds() const {
-  const std::uint64_t seeds = last_seed - first_seed + 1;
-  std::vector<std::uint64_t> out;
-  for (int k = 1; k <= looks; ++k) {
-    const auto upto = static_cast<std::uint64_t>(
-        std::ceil(static_cast<double>(seeds) * static_cast<double>(k) / static_cast<double>(looks)));
-    const std::uint64_t seed = first_seed + std::min(std::max<std::uint64_t>(upto, 1), seeds) - 1;
-    if (out.empty() || seed > out.back()) out.push_back(seed);
-  }
-  return out;
-}
-
 std::string Question::describe() const {
   std::string scenes;
   for (const std::string& scenario : scenarios) scenes += (scenes.empty() ? "" : ",") + scenario;
-  return fmt::format(
-      "{}:{}:{}:{:.17g}{} of scenarios {}, seeds {}..{}, {} interim analyses, risk of a wrong answer {:.17g}", method,
-      against, metric, margin.relative ? 100.0 * margin.value : margin.value, margin.relative ? "%" : "", scenes,
-      first_seed, last_seed, looks, risk);
+  return fmt::format("{}:{}:{}:{:.17g}{} of scenarios {}, seeds from {}, risk of a wrong answer {:.17g}", method,
+                     against, metric, margin.relative ? 100.0 * margin.value : margin.value, margin.relative ? "%" : "",
+                     scenes, first_seed, risk);
 }
 
 void require_sound(const Question& question) {
@@ -133,12 +115,7 @@ void require_sound(const Question& question) {
   if (!(question.risk > 0.0 && question.risk < 1.0))
     throw BadInput(fmt::format("the risk of a wrong answer to the question (--until) is {}; it must be within (0, 1)",
                                std::to_string(question.risk)));
-  if (question.looks < 1 || question.looks > kLooksMax)
-    throw BadInput(
-        fmt::format("the number of interim analyses is {}; it must be within [1, {}]", question.looks, kLooksMax));
   if (question.scenarios.empty()) throw BadInput("the comparison of two methods (--until) needs at least one scenario");
-  if (question.last_seed < question.first_seed)
-    throw BadInput("the comparison of two methods (--until) needs at least one seed");
 }
 
 void claim(Results& results, const Question& question, const std::filesystem::path& database) {

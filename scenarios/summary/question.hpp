@@ -6,11 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/statistics/statistics.hpp"
 #include "scenarios/summary/comparison.hpp"
 #include "scenarios/sweep/results.hpp"
 
-/// A sweep (many simulated runs of several scenarios) can stop early: interim analyses test whether one method is
-/// better than another (docs/maths/statistics.md, "Sequential test").
+/// A sweep (many simulated runs of several scenarios) can stop early: a confidence sequence shows whether one method is
+/// better than another (docs/maths/statistics.md, "Confidence sequence").
 namespace tumble::scenarios {
 
 inline constexpr const char* kQuestionNote = "until";
@@ -20,25 +21,23 @@ struct Question {
   std::string metric;
   Margin margin;       ///< 0: any improvement
   double risk = 0.05;  ///< of any wrong answer
-  int looks = 20;      ///< at equal intervals of the seeds
-  std::uint64_t first_seed = 1, last_seed = 1;
+  std::uint64_t first_seed = 1;
   std::vector<std::string> scenarios;
 
-  std::vector<std::uint64_t> look_seeds() const;
   std::string describe() const;
 };
 
 struct Answer {
   std::string scenario;
   Finding finding = Finding::undecided;  ///< `worse`: not better by the margin
-  std::uint64_t seeds = 0;               ///< at the last analysis
+  std::uint64_t seeds = 0;               ///< up to the finding
   std::int64_t better = 0, worse = 0;    ///< without ties
-  std::int64_t needed = 0;               ///< required pairs of one sign
+  Interval better_share{};               ///< anytime-valid interval of the share of better runs
 };
 
 void require_sound(const Question& question);
 
-/// Stores the question of a sequential test (is one method better?) in the results database before the first run.
+/// Stores the question (is one method better?) in the results database before the first run.
 /// Throws BadInput if the database contains another question, or runs without a question.
 void claim(Results& results, const Question& question, const std::filesystem::path& database);
 

@@ -37,7 +37,7 @@ TEST(ParseQuestion, ReadsMethodsMetricAndMargin) {
   EXPECT_EQ(plain.against, "position/autogain_fusion");
   EXPECT_EQ(plain.metric, "position_end_error_share");
   EXPECT_EQ(plain.margin.value, 0.0);
-  EXPECT_EQ(plain.last_seed, 14u);
+  EXPECT_EQ(plain.first_seed, 1u);
   const scenarios::Question share = parse_question(std::string(kAsked) + ":10%", 0.01, small_suite());
   EXPECT_TRUE(share.margin.relative);
   EXPECT_DOUBLE_EQ(share.margin.value, 0.1);
@@ -99,18 +99,18 @@ TEST_F(SweepUntilTest, EndsWhenItIsAnswered) {
   const AskedSweep one = run("one.db", kAsked, 1);
   ASSERT_EQ(one.answers.size(), 1u);
   EXPECT_EQ(one.answers[0].finding, scenarios::Finding::better);
-  EXPECT_EQ(one.answers[0].seeds, 9u) << "nine of nine, the least that 14 seeds answer from";
-  EXPECT_EQ(one.progress.draws_done, 9u);
-  EXPECT_EQ(one.progress.draws_total, 9u);
+  EXPECT_EQ(one.answers[0].seeds, 8u) << "eight of eight: 9 / 2^8 < 0.05";
+  EXPECT_EQ(one.progress.draws_done, 10u) << "the first step";
+  EXPECT_EQ(one.progress.draws_total, 10u);
   const auto seen = rows("one.db");
-  EXPECT_EQ(seen.size(), 18u);
+  EXPECT_EQ(seen.size(), 20u);
 
-  EXPECT_EQ(run("two.db", kAsked, 2).progress.draws_done, 9u);
+  EXPECT_EQ(run("two.db", kAsked, 2).progress.draws_done, 10u);
   EXPECT_EQ(rows("two.db"), seen);
 
   std::atomic<bool> stop = true;
-  EXPECT_LT(run("three.db", kAsked, 2, &stop).progress.draws_done, 9u);
-  EXPECT_EQ(run("three.db", kAsked, 2).answers[0].seeds, 9u);
+  EXPECT_LT(run("three.db", kAsked, 2, &stop).progress.draws_done, 10u);
+  EXPECT_EQ(run("three.db", kAsked, 2).answers[0].seeds, 8u);
   EXPECT_EQ(rows("three.db"), seen);
 }
 
@@ -125,6 +125,7 @@ TEST_F(SweepUntilTest, GoesOnWhileItIsOpen) {
                                       parse_question(kAsked, 0.05, suite));
   EXPECT_EQ(open.answers[0].finding, scenarios::Finding::undecided) << "four signs never answer";
   EXPECT_EQ(open.progress.draws_done, 4u);
+  EXPECT_EQ(run("b.db", kAsked, 2).answers[0].finding, scenarios::Finding::better) << "more seeds continue the sweep";
 }
 
 }  // namespace

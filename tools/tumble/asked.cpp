@@ -47,7 +47,6 @@ Question parse_question(const std::string& text, double risk, const scenarios::S
   if (words.size() == 4) question.margin = parse_margin("the margin of --until", words[3]);
   question.risk = risk;
   question.first_seed = suite.first_seed;
-  question.last_seed = suite.last_seed;
   question.scenarios = suite.scenarios;
   require_sound(question);
   return question;
@@ -64,11 +63,13 @@ Table table_of(const std::vector<scenarios::Answer>& answers, const Question& qu
                                        : fmt::format(" by {:g}", question.margin.value),
           question.risk),
       {"scenario", "answer", "seeds used",
-       question.margin.value > 0.0 ? "better by the margin : other" : "better : worse", "seeds needed at least"});
+       question.margin.value > 0.0 ? "better by the margin : other" : "better : worse", "share better, interval"});
   table.align_right_from(2);
   for (const scenarios::Answer& each : answers) {
     table.add_row({each.scenario, finding_text(each, question), std::to_string(each.seeds),
-                   fmt::format("{} : {}", each.better, each.worse), std::to_string(each.needed)});
+                   fmt::format("{} : {}", each.better, each.worse),
+                   fmt::format("{:.0f} % [{:.0f}, {:.0f}]", 100.0 * each.better_share.value,
+                               100.0 * each.better_share.low, 100.0 * each.better_share.high)});
   }
   return table;
 }
@@ -81,7 +82,9 @@ nlohmann::json json_of(const std::vector<scenarios::Answer>& answers, const Ques
                     {"seeds", each.seeds},
                     {"better", each.better},
                     {"worse", each.worse},
-                    {"needed", each.needed}});
+                    {"better_share", each.better_share.value},
+                    {"better_share_low", each.better_share.low},
+                    {"better_share_high", each.better_share.high}});
   }
   return {{"question", question.describe()}, {"answers", std::move(rows)}};
 }

@@ -306,8 +306,8 @@ Action declare_sweep(VerbOptions& verb, const Session& session) {
       .shows_default();
   verb.add("--until", options->until,
            "stops when the simulated runs show whether method A is better than B by more than the margin: "
-           "A:B:METRIC[:MARGIN]. The margin is in the metric's unit, or a percentage of B's value such as 10%. The "
-           "sweep evaluates the question up to 20 times")
+           "A:B:METRIC[:MARGIN]. The margin is in the metric's unit, or a percentage of B's value such as 10%. More "
+           "--seeds continue a sweep without answer")
       .filled();
   verb.add("--risk", options->risk,
            "sets the accepted probability that --until gives an answer although neither method is better")

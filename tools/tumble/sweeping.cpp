@@ -32,6 +32,12 @@ scenarios::SweepProgress sum(const scenarios::SweepProgress& before, const scena
   return all;
 }
 
+/// Number of further seeds after `done` seeds. The steps grow, so that many processes have enough work.
+std::uint64_t step_of(std::uint64_t done) {
+  constexpr std::uint64_t kFirstStep = 10;
+  return std::max(kFirstStep, done / 4) - 1;
+}
+
 }  // namespace
 
 void take_scenarios(const std::vector<std::string>& named, scenarios::Suite& suite) {
@@ -83,7 +89,8 @@ AskedSweep sweep_until(const Session& session, const scenarios::DataRoot& data, 
   if (options.keep.which == scenarios::Keep::Which::worst) own.keep = {};
   const auto draws_of = [&](std::uint64_t seeds) { return seeds * suite.scenarios.size(); };
   const std::uint64_t all = draws_of(suite.last_seed - suite.first_seed + 1);
-  for (const std::uint64_t seed : question.look_seeds()) {
+  while (part.first_seed <= suite.last_seed) {
+    const std::uint64_t seed = std::min(suite.last_seed, part.first_seed + step_of(part.first_seed - suite.first_seed));
     part.last_seed = seed;
     const scenarios::SweepProgress before = out.progress;
     if (!session.quiet) own.on_progress = [&](const scenarios::SweepProgress& p) { shown.show(sum(before, p, all)); };

@@ -25,8 +25,7 @@ scenarios::SweepProgress sweep_with_progress(const Session& session, const scena
                                              scenarios::SweepOptions options);
 
 /// AskedSweep sweeps until the question is answered for all its scenarios, or the seeds are used up. The question is
-/// evaluated after fixed numbers of seeds, so the content of the database does not depend on the number of jobs or on
-/// interruptions.
+/// evaluated after numbers of seeds that do not depend on the number of jobs or on interruptions.
 struct AskedSweep {
   scenarios::SweepProgress progress;  ///< of all steps
   std::vector<scenarios::Answer> answers;
