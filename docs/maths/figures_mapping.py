@@ -175,12 +175,13 @@ def imu_merge_rigid_body():
 def statistics_sequence():
     """Plots the limits of the confidence sequence (S15) for 5 % risk, beyond which the share of positive pairs differs from one half."""
     risk, pairs = 0.05, 400
-    normal, count, needed = NormalDist(), np.arange(10, pairs + 1), []
+    normal, count, needed = NormalDist(), range(10, pairs + 1), []
     for n in count:
         k = math.ceil(n / 2)
-        while k < n and (n + 1) * math.comb(n, k) * 0.5 ** int(n) > risk:
+        while k < n and (n + 1) * math.comb(n, k) * 0.5**n > risk:
             k += 1
         needed.append(k)
+    count = np.array(count)
     share = np.array(needed) / count
     figure, axes = plt.subplots(figsize=(6.4, 3.2))
     axes.plot(count, share, color=RED, label="limit of (S15)")
