@@ -72,6 +72,9 @@ sim::ImuRecord read_imu(const OpenedBag& bag, SensorMountings& places, const std
        {lost, bursts, evened, gaps_text(imu), units, stamps.remark(), repeats_text(repeated)}) {
     if (!remark.empty()) notes.push_back(topic + ": " + remark);
   }
+  // --lever-arm states the position of the IMU, and not its orientation
+  if (const auto stated = places.of(frame); stated && reading.imu_placed && imu.T_BI.linear().isIdentity())
+    imu.T_BI.linear() = stated->linear();
   places.place(topic, frame, "--lever-arm", reading.imu_placed, imu.T_BI, notes);
   return imu;
 }

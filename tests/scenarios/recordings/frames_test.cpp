@@ -282,6 +282,19 @@ TEST_P(Frames, AStatedZeroIsAMounting) {
   EXPECT_THAT(GetParam().read(path_, reading).notes, testing::Not(missing));
 }
 
+// --lever-arm states a position only; without the rotation, tracking fails
+TEST_P(Frames, AStatedLeverArmKeepsTheOrientationOfTheImu) {
+  const Eigen::Matrix3d mounted = Eigen::AngleAxisd(2.0, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  recording_.sensors.imus[0].T_BI.linear() = mounted;
+  GetParam().write(recording_.sensors, {}, path_);
+  BagReading reading;
+  reading.imu_placed = true;
+  reading.imu.T_BI.translation() = Eigen::Vector3d(0.1, 0.2, 0.3);
+  const Eigen::Isometry3d placed = GetParam().read(path_, reading).recording.sensors.imus[0].T_BI;
+  EXPECT_TRUE(placed.linear().isApprox(mounted, 1e-12));
+  EXPECT_EQ(placed.translation(), Eigen::Vector3d(0.1, 0.2, 0.3));
+}
+
 // zeros of an estimate mean unknown; zeros of the truth are values
 TEST_P(Frames, WhatAnEstimateDoesNotKnowIsUnknown) {
   const StoredTruth truth = fixture::stored_truth(recording_, folder_);
