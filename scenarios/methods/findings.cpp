@@ -97,6 +97,7 @@ nlohmann::json json_of(const HealthFinding& finding) {
           {"confidence", finding.confidence()},
           {"since_ns", finding.since_ns ? nlohmann::json(*finding.since_ns) : nlohmann::json()},
           {"ended", finding.ended},
+          {"invalidates_estimate", finding.invalidates_estimate()},
           {"text", to_text(finding)}};
 }
 

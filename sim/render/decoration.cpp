@@ -139,4 +139,14 @@ void add_points(const View& view, mjvScene& scene) {
   }
 }
 
+void add_legend(const View& view, const mjrContext& context) {
+  constexpr float kLeft = 0.01F, kLine = 0.035F;  // shares of the picture
+  float y = 1.0F;
+  for (const DrawnPath& path : view.paths) {
+    if (path.name.empty()) continue;
+    y -= kLine;
+    mjr_text(mjFONT_BIG, path.name.c_str(), &context, kLeft, y, path.rgba[0], path.rgba[1], path.rgba[2]);
+  }
+}
+
 }  // namespace tumble::sim

@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "sim/built_situation.hpp"
@@ -24,6 +25,7 @@ struct DrawnPath {
   std::vector<Eigen::Vector3d> points_W_m;
   std::array<float, 4> rgba = {1, 1, 1, 1};
   double width_m = 0.02;
+  std::string name{};  ///< for the legend; empty: no entry
 };
 
 struct DrawnPoints {

@@ -93,7 +93,7 @@ TEST_F(CurvesTest, AFailureRanksAsTheWorstAndAFailedMapCountsAsOne) {
   const Setting clean{kOffset, 0.0}, late{kOffset, 0.01};
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     store(seed, Kind::slam, "icp_raw", clean,
-          {{"translation_error_end_m", 1.0}, {"map_failed", seed == 1 ? 1.0 : 0.0}});
+          {{"translation_error_end_m", 1.0}, {"map_failed", seed == 1 ? 1.0 : 0.0}, {"health_wrong", 1.0}});
     store(seed, Kind::slam, "icp_raw", late, {{"translation_error_end_m", 2.0}},
           seed <= 3 ? scenarios::OutcomeStatus::diverged : scenarios::OutcomeStatus::ok);
     store(seed, Kind::slam, "tumble", late, {{"translation_error_end_m", 0.1}});

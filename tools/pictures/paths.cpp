@@ -94,7 +94,7 @@ Path near_truth(const Path& path, const Path& truth) {
   const auto end =
       std::find_if(path.points_W_m.begin(), path.points_W_m.end(), [&](const Vector3d& p) { return !box.contains(p); });
   const auto count = end - path.points_W_m.begin();
-  return {{path.time_ns.begin(), path.time_ns.begin() + count}, {path.points_W_m.begin(), end}};
+  return {{path.time_ns.begin(), path.time_ns.begin() + count}, {path.points_W_m.begin(), end}, path.name};
 }
 
 Span moving_span(const sim::Truth& truth, double margin_s) {

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "scenarios/methods/method.hpp"
@@ -14,6 +15,7 @@ namespace tumble::tools {
 struct Path {
   std::vector<std::int64_t> time_ns;
   std::vector<Eigen::Vector3d> points_W_m;
+  std::string name{};  ///< in the legend of a picture
   bool empty() const { return points_W_m.empty(); }
 };
 

@@ -55,9 +55,11 @@ std::vector<sim::DrawnPath> drawn_paths(const Scene& scene) {
   const double width_m = line_width_m(scene);
   std::vector<sim::DrawnPath> paths;
   const auto add = [&](const Path& path, Colour colour, double width) {
-    if (path.points_W_m.size() > 1) paths.push_back({thinned(path.points_W_m, 1.5 * width_m), colour.rgba(), width});
+    if (path.points_W_m.size() > 1)
+      paths.push_back({thinned(path.points_W_m, 1.5 * width_m), colour.rgba(), width, path.name});
   };
-  const Path truth = scene.truth == nullptr ? Path() : true_path(*scene.sensors, *scene.truth, 10);
+  Path truth = scene.truth == nullptr ? Path() : true_path(*scene.sensors, *scene.truth, 10);
+  truth.name = "truth";
   add(truth, truth_colour(), 1.5 * width_m);
   for (std::size_t i = 0; i < scene.estimates.size(); ++i) {
     add(near_truth(scene.estimates[i], truth), method_colour(i), width_m);

@@ -42,7 +42,7 @@ struct ShownCounter {
 };
 constexpr ShownCounter kShownCounters[] = {
     {"readings_missing", "IMU readings that are missing", ""},
-    {"sweeps_registered", "sweeps aligned with the map", ""},
+    {"sweeps_registered", "sweeps aligned with the map in all directions", ""},
     {"end_sigma_m", "standard deviation of the last position", "m"},
     {"end_sigma_rad", "standard deviation of the last attitude", "rad"},
 };

@@ -132,11 +132,14 @@ nlohmann::json summary_of(const sim::Sensors& sensors, const Estimate& estimate,
                           double run_s) {
   const std::size_t sweeps = sensors.lidars.front().sweep_start_ns.size();
   const scenarios::Saturation saturation = scenarios::saturation_of(sensors.imus.front());
-  const auto registered =
-      std::ranges::count_if(estimate.sweeps, [](const auto& sweep) { return sweep.verdict != SweepVerdict::rejected; });
+  const auto count = [&](SweepVerdict verdict) {
+    return std::ranges::count_if(estimate.sweeps, [&](const auto& sweep) { return sweep.verdict == verdict; });
+  };
+  const auto registered = static_cast<long>(estimate.sweeps.size()) - count(SweepVerdict::rejected);
   return {{"duration_s", imu_duration_s(sensors.imus.front())},
           {"path_m", path_length_m(estimate)},
           {"sweeps_registered", registered},
+          {"sweeps_degenerate", count(SweepVerdict::degenerate)},
           {"sweeps", sweeps},
           {"clipped_share", saturation.gyro_share},
           {"health", health_text(estimate, status)},
@@ -145,12 +148,13 @@ nlohmann::json summary_of(const sim::Sensors& sensors, const Estimate& estimate,
 
 Table summary_table(const nlohmann::json& summary) {
   Table table("result", {"duration", "path", "sweeps registered", "samples clipped", "health", "speed"});
-  table.add_row(
-      {fmt::format("{:.1f} s", summary["duration_s"].get<double>()),
-       fmt::format("{:.1f} m", summary["path_m"].get<double>()),
-       fmt::format("{} of {}", summary["sweeps_registered"].get<long>(), summary["sweeps"].get<std::size_t>()),
-       fmt::format("{:.1f} %", 100.0 * summary["clipped_share"].get<double>()), summary["health"].get<std::string>(),
-       fmt::format("{:.0f} sweeps/s", summary["sweeps_per_s"].get<double>())});
+  table.add_row({fmt::format("{:.1f} s", summary["duration_s"].get<double>()),
+                 fmt::format("{:.1f} m", summary["path_m"].get<double>()),
+                 fmt::format("{} of {}, {} degenerate", summary["sweeps_registered"].get<long>(),
+                             summary["sweeps"].get<std::size_t>(), summary["sweeps_degenerate"].get<long>()),
+                 fmt::format("{:.1f} %", 100.0 * summary["clipped_share"].get<double>()),
+                 summary["health"].get<std::string>(),
+                 fmt::format("{:.0f} sweeps/s", summary["sweeps_per_s"].get<double>())});
   return table;
 }
 

@@ -80,6 +80,7 @@ void load_recording(const scenarios::DataRoot& data, const RenderOptions& option
     Path path = estimated_path(estimate, content.sensors, content.truth);
     if (path.empty())
       throw BadInput(fmt::format("{}: this estimate contains no poses, so its path cannot be shown", folder.string()));
+    path.name = scenarios::full_name(kind, method);
     content.scene.estimates.push_back(std::move(path));
   }
 }

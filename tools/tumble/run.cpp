@@ -120,8 +120,9 @@ void leave_files(const fs::path& folder, const scenarios::RunResult& result) {
 
 void leave_pictures(const fs::path& folder, const scenarios::RunResult& result) {
   Scene scene{&result.built.value(), &result.recording.sensors, &result.recording.truth, {}};
-  for (const scenarios::Estimate& estimate : result.estimates) {
-    Path path = estimated_path(estimate, result.recording.sensors, result.recording.truth);
+  for (std::size_t i = 0; i < result.estimates.size(); ++i) {
+    Path path = estimated_path(result.estimates[i], result.recording.sensors, result.recording.truth);
+    path.name = full_name(result.methods[i]->info);
     if (!path.empty()) scene.estimates.push_back(std::move(path));
   }
   make_folder(folder / "snapshots");

@@ -290,7 +290,7 @@ TEST_P(Frames, AStatedLeverArmKeepsTheOrientationOfTheImu) {
   BagReading reading;
   reading.imu_placed = true;
   reading.imu.T_BI.translation() = Eigen::Vector3d(0.1, 0.2, 0.3);
-  const Eigen::Isometry3d placed = GetParam().read(path_, reading).recording.sensors.imus[0].T_BI;
+  const Eigen::Isometry3d placed = GetParam().read(path_, reading).sensors.imus[0].T_BI;
   EXPECT_TRUE(placed.linear().isApprox(mounted, 1e-12));
   EXPECT_EQ(placed.translation(), Eigen::Vector3d(0.1, 0.2, 0.3));
 }
