@@ -91,7 +91,8 @@ scenarios::SweepReading sweep_reading(const Session& session, const ImportOption
 
 void declare_lidar(VerbOptions& verb, ImportOptions& options) {
   verb.add("--lidar", options.lidar,
-           "names the data sheet of the lidar ('tumble list sensors' lists the sheets) [default: unknown]");
+           "names the data sheet of the lidar ('tumble list sensors' lists the sheets) [default: unknown; odometry "
+           "detects the lidar]");
   verb.add("--T-body-lidar", options.T_body_lidar,
            "sets the pose of the lidar in the body frame: X Y Z in m, then the quaternion QX QY QZ QW. The origin of "
            "the "
@@ -154,7 +155,7 @@ void declare_sensors(VerbOptions& verb, ImportOptions& options) {
            "detected from extension or content]");
   verb.add("--device", options.device,
            "names the data sheet of the IMU, which states ranges and noise ('tumble list sensors' lists the sheets) "
-           "[default: unknown]");
+           "[default: unknown; odometry uses the sheet that the topic names]");
   verb.add("--accel-unit", options.accel_unit,
            "sets the unit of the accelerometer in a CSV file or bag: m/s^2 or g [default: m/s^2; for a bag g, if the "
            "readings at rest indicate g]");

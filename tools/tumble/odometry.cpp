@@ -181,6 +181,7 @@ void print_notes(const Session& session, const OpenRecording& recording, const E
 int run_odometry(const Session& session, const OdometryOptions& options) {
   const Eigen::AlignedBox3d box = own_body(options);
   const std::string name = method_name(options);
+  scenarios::OutputFolder folder(options.folder);
   OpenRecording recording = open_recording(session, options.input);
   const sim::Sensors& sensors = recording.content.sensors;
   require_both_sensors(options.input.path, sensors);
@@ -190,7 +191,6 @@ int run_odometry(const Session& session, const OdometryOptions& options) {
   const scenarios::MethodInfo& info = method.info;
   const scenarios::MethodPointer chosen[] = {scenarios::unowned(method)};
   const std::vector<scenarios::Method> methods = scenarios::with_parameters(chosen, parameter_texts(options, info));
-  scenarios::OutputFolder folder(options.folder);
   Estimate estimate;
   const double run_s = run_with_progress(session, methods.front(), sensors, estimate);
   scenarios::write_estimate(options.folder, info.name, info.kind, estimate, scenarios::digest(sensors, nullptr),
@@ -218,7 +218,10 @@ int run_odometry(const Session& session, const OdometryOptions& options) {
     session.note(
         fmt::format("written: {} (trajectory.tum, map.ply, map.pcd, map.tumblemap, estimate.json, replay.html)",
                     options.folder.string()));
-    return outcome.status == scenarios::OutcomeStatus::diverged ? kCheckFailed : kDone;
+    if (outcome.status != scenarios::OutcomeStatus::diverged) return kDone;
+    session.note(fmt::format("do not use this estimate; 'tumble doctor {}' searches for the cause",
+                             options.input.path.string()));
+    return kCheckFailed;
   }
   throw BadInput(fmt::format("{}: {} failed: {}; 'tumble doctor {}' searches for the cause",
                              options.input.path.string(), full_name(info), failure_reason(estimate.status, sensors),
