@@ -139,13 +139,17 @@ void add_points(const View& view, mjvScene& scene) {
   }
 }
 
-void add_legend(const View& view, const mjrContext& context) {
-  constexpr float kLeft = 0.01F, kLine = 0.035F;  // shares of the picture
-  float y = 1.0F;
+void add_legend(const View& view, const mjrRect& area, const mjrContext& context) {
+  constexpr int kHeight = 44, kLetter = 17, kMargin = 12;  // pixels of the oversampled picture
+  std::size_t letters = 0;
+  for (const DrawnPath& path : view.paths) letters = std::max(letters, path.name.size());
+  mjrRect label = {kMargin, area.height - kMargin, kLetter * static_cast<int>(letters + 2), kHeight};
   for (const DrawnPath& path : view.paths) {
     if (path.name.empty()) continue;
-    y -= kLine;
-    mjr_text(mjFONT_BIG, path.name.c_str(), &context, kLeft, y, path.rgba[0], path.rgba[1], path.rgba[2]);
+    label.bottom -= kHeight;
+    const auto& [red, green, blue, opacity] = path.rgba;
+    const float text = 0.3F * red + 0.6F * green + 0.1F * blue > 0.45F ? 0.0F : 1.0F;
+    mjr_label(label, mjFONT_BIG, path.name.c_str(), red, green, blue, opacity, text, text, text, &context);
   }
 }
 

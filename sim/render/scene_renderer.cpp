@@ -224,7 +224,7 @@ Picture SceneRenderer::draw(const View& view) {
   if (engine.currentBuffer != mjFB_OFFSCREEN)
     throw std::runtime_error("render: OpenGL cannot create the off-screen buffer");
   mjr_render(area, &scene, &engine);
-  add_legend(view, engine);
+  add_legend(view, area, engine);
   std::vector<std::uint8_t> large(3 * static_cast<std::size_t>(area.width) * static_cast<std::size_t>(area.height));
   mjr_readPixels(large.data(), nullptr, area, &engine);
   return averaged(large, view.width, view.height);
