@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <map>
@@ -123,6 +124,13 @@ nlohmann::json json_of(const Ended& ended) {
   nlohmann::json document = nlohmann::json::parse(ended.out, nullptr, false);
   EXPECT_FALSE(document.is_discarded()) << "not JSON: " << ended.out << ended.err;
   return document;
+}
+
+double metric(const nlohmann::json& scored, const std::string& name) {
+  for (const nlohmann::json& row : scored["scores"]) {
+    if (row["metric"] == name) return row["value"].get<double>();
+  }
+  return std::nan("");
 }
 
 std::size_t line_count(const std::string& text) {

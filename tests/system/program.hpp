@@ -55,6 +55,8 @@ std::filesystem::path shared_run(const std::string& scenario);
 std::string read_file(const std::filesystem::path& path);
 /// Returns standard output as JSON; output that is no JSON fails the test.
 nlohmann::json json_of(const Ended& ended);
+/// Returns the value of a metric in the answer of `score --json`, or NaN when it is absent.
+double metric(const nlohmann::json& scored, const std::string& name);
 /// Returns the number of lines, which must all be terminated.
 std::size_t line_count(const std::string& text);
 
