@@ -7,25 +7,15 @@
 #include <limits>
 #include <stdexcept>
 
-#include "sim/situation.hpp"
-#include "tests/tree.hpp"
+#include "tests/tools/replays.hpp"
 
 namespace tumble::tools {
 namespace {
 
 using Rgb = std::array<std::uint8_t, 3>;
 
-/// Returns an empty square room with its floor at z = 0.
 const sim::Surface& surface() {
-  static const sim::Surface room = [] {
-    sim::Situation situation;
-    situation.scenario = "test";
-    situation.world.type = "floor";
-    for (const char* none : {"pillar_count", "box_count"}) situation.world.values.set(none, 0.0);
-    situation.robot.type = "sphere";
-    situation.motion.type = "hand_roll";
-    return sim::Surface(sim::BuiltSituation(sim::resolve(situation), test::source_dir() / "models"));
-  }();
+  static const sim::Surface room(testing::room());
   return room;
 }
 
