@@ -155,7 +155,7 @@ TEST(Run, PrintsATablePerKind) {
   EXPECT_THAT(ended.out, HasSubstr("digest"));
 }
 
-TEST(Run, WhatIsLearntOfTheRigIsCarriedOn) {
+TEST(Run, TheCalibrationOfTheRigIsUsedInTheNextRun) {
   const fs::path file = test_folder() / "rig.json";
   const auto run_with = [&](const std::string& method) {
     const Ended ended =
@@ -171,7 +171,7 @@ TEST(Run, WhatIsLearntOfTheRigIsCarriedOn) {
   EXPECT_EQ(run_program({"run", "hill", "--seed", "1", "--method", "rate/saave", "--learnt", file.string()}).status, 2);
 }
 
-TEST(Run, WhereNothingIsLearntOfTheRigItIsSaid) {
+TEST(Run, AMissingCalibrationOfTheRigIsReported) {
   const fs::path file = test_folder() / "rig.json";
   const Ended ended =
       run_program({"run", "stroll", "--seed", "1", "--method", "rate/tumble_lag", "--learnt", file.string()});
@@ -306,7 +306,7 @@ TEST(Estimate, PrintsWhatMattersWithUnits) {
 
 /// The method uses a parameter given by `--set`, the estimate reports it, and a wrong name or value ends the program at
 /// once.
-TEST(Set, AGivenParameterIsTakenToldAndBounded) {
+TEST(Set, AGivenParameterIsUsedReportedAndBounded) {
   const fs::path folder = test_folder();
   const fs::path recording = shared_run("roll") / "recording.h5";
   const auto estimated = [&](const std::string& name, std::vector<std::string> more) {

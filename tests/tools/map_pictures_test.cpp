@@ -68,7 +68,7 @@ int count(const sim::Picture& picture, const Rgb& colour, int left, int right, i
   return found;
 }
 
-TEST(ErrorMap, IsHeldToTheTrueSurfaceInTheTruthsWorld) {
+TEST(ErrorMap, IsComparedWithTheTrueSurfaceInTheTruthsWorld) {
   const sim::Truth truth = straight_path();
   const ErrorMap map = map_by_error("slam/test", estimate_elsewhere(truth), truth, surface());
   ASSERT_EQ(map.points_W_m.size(), 4u) << "the point that is none is left out";

@@ -72,7 +72,7 @@ TEST(Bench, ResultsOfAnotherSuiteAreRefused) {
   EXPECT_THAT(refusal(result, small()), HasSubstr("contains 2 simulated runs"));
 }
 
-TEST(Bench, ResultsOfAnotherSimulationAreTold) {
+TEST(Bench, ResultsOfAnotherSimulationAreReported) {
   const BenchResult a = some_result("a", {0.1, 0.2, 0.3});
   BenchResult b = some_result("b", {0.1, 0.2, 0.3});
   EXPECT_EQ(other_recording(a, b), "");

@@ -101,7 +101,7 @@ TEST_F(RigCalibrationFile, ComplaintsNameTheKey) {
 
 // When two elements were saturated only together, nobody knows the level at which the plane cuts the row: the next run
 // would assume a saturation level that does not exist.
-TEST_F(RigCalibrationFile, PlanesWhoseLevelIsNotToldAreNotHandedOn) {
+TEST_F(RigCalibrationFile, PlanesWithAnUncertainLevelAreNotSaved) {
   SaturationPlane plane;
   plane.row = {1.0, 0.05, 0.0};
   plane.saturation_limit_rad_s = 10.2;
@@ -130,7 +130,7 @@ TEST_F(RigCalibrationFile, PlanesWhoseLevelIsNotToldAreNotHandedOn) {
 
 // A plane from a few readings, one of them a partial one, stated slopes to 5e-4 that were wrong by 0.02: the next run
 // on the device used them and was wrong by twice as much.
-TEST_F(RigCalibrationFile, SlopesOfUnsurePlanesAreDoubted) {
+TEST_F(RigCalibrationFile, SlopesOfUncertainPlanesHaveALargeCovariance) {
   SaturationPlane plane;
   plane.row = {1.0, 0.0244, 0.0107};
   plane.saturation_limit_rad_s = 10.21;

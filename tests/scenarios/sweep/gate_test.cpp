@@ -86,7 +86,7 @@ TEST(Gate, TheAcceptedRunPasses) {
   }
 }
 
-TEST(Gate, PairsTellAShiftThatIsSmallBesideTheDraws) {
+TEST(Gate, PairsDetectAShiftThatIsSmallNextToTheSpreadOfTheDraws) {
   EXPECT_THAT(fault_after(kError, scaled(kError, 1.05)), HasSubstr("worse in 16 of 16"));
   EXPECT_EQ(fault_after(kError, scaled(kError, 1.015)), "") << "within the margin";
   const std::vector<GateResult> better = held_after(scaled(kError, 0.9));
@@ -103,7 +103,7 @@ TEST(Gate, WhatGoesUpAndDownPasses) {
 
 // one of the sphere's IMUs is missing: the error is 10 to 50 % worse on each of three scenarios, and significant on
 // none of them
-TEST(Gate, AShiftThatNoScenarioTellsByItselfIsToldByAllTogether) {
+TEST(Gate, AShiftThatNoScenarioShowsAloneIsDetectedByAllTogether) {
   const auto both = [](double factor) {
     std::vector<Outcome> outcomes = accepted_outcomes();
     for (Outcome& outcome : outcomes) score_of(outcome, kError) *= outcome.seed <= 10 ? factor : 1.0 / 1.01;
@@ -126,12 +126,12 @@ TEST(Gate, AShiftThatNoScenarioTellsByItselfIsToldByAllTogether) {
   }
 }
 
-TEST(Gate, ACovarianceIsHeldOnBothSides) {
+TEST(Gate, ACovarianceHasTwoBounds) {
   EXPECT_THAT(fault_after(kNees, scaled(kNees, 2.0)), HasSubstr("higher in 16"));
   EXPECT_THAT(fault_after(kNees, scaled(kNees, 0.5)), HasSubstr("lower in 16"));
 }
 
-TEST(Gate, WhatHasASignIsHeldByItsDifferenceOnBothSides) {
+TEST(Gate, ASignedMetricHasTwoBoundsOnItsDifference) {
   const auto later = [](double by_s) { return [=](Outcome& outcome) { score_of(outcome, kOffset) += by_s; }; };
   EXPECT_THAT(fault_after(kOffset, later(1e-4)), HasSubstr("higher in 16"));
   EXPECT_THAT(fault_after(kOffset, later(-1e-4)), HasSubstr("lower in 16"));

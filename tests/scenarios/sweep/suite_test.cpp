@@ -83,7 +83,7 @@ TEST_F(SuiteTest, ComplaintsNameFileLineAndNearestName) {
   }
 }
 
-TEST_F(SuiteTest, AScenarioIsToldFromASuite) {
+TEST_F(SuiteTest, AScenarioIsDistinguishedFromASuite) {
   EXPECT_THAT(complaint("name: icy\ndoc: d\nduration_s: 4\nmotion: {type: push}\n"),
               ::testing::AllOf(::testing::HasSubstr("test.yaml:4: motion: this key belongs to a scenario"),
                                ::testing::HasSubstr("scenarios/catalogue")));
