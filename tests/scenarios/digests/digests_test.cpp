@@ -36,11 +36,11 @@ std::vector<Kept> kept(const char* name = "digests.txt") {
   for (std::string line; std::getline(file, line);) {
     if (line.empty() || line.front() == '#') continue;
     std::istringstream words(line);
-    std::string seeds;
     Kept each;
-    words >> each.scenario >> seeds >> each.lidars >> each.digest;
-    each.first = std::stoull(seeds);
-    each.last = std::stoull(seeds.substr(seeds.rfind('.') + 1));
+    words >> each.scenario >> each.first;
+    each.last = each.first;
+    if (char dot = 0; words.peek() == '.') words >> dot >> dot >> each.last;
+    words >> each.lidars >> each.digest;
     all.push_back(each);
   }
   return all;

@@ -13,6 +13,7 @@
 #include "scenarios/methods/synthetic_recording.hpp"
 #include "scenarios/recordings/table_file.hpp"
 #include "scenarios/scoring/score.hpp"
+#include "tests/complaint.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace tumble::scenarios {
@@ -28,12 +29,7 @@ class EstimateFile : public testing::TemporaryFolder {
   std::string complaint(const std::filesystem::path& path) const {
     Kind kind;
     std::string method;
-    try {
-      read_estimate(path, kind, method, Frame::imu);
-    } catch (const BadInput& error) {
-      return error.what();
-    }
-    return "";
+    return test::complaint([&] { read_estimate(path, kind, method, Frame::imu); });
   }
 };
 

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "scenarios/errors.hpp"
+#include "tests/complaint.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace tumble::scenarios {
@@ -52,12 +53,7 @@ class RigCalibrationFile : public testing::TemporaryFolder {
     EXPECT_NE(at, std::string::npos) << from;
     if (at != std::string::npos) spoilt.replace(at, from.size(), to);
     std::ofstream(path()) << spoilt;
-    try {
-      read_rig_calibration(path());
-    } catch (const BadInput& error) {
-      return error.what();
-    }
-    return "";
+    return test::complaint([&] { read_rig_calibration(path()); });
   }
 };
 

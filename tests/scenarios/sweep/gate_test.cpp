@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "scenarios/errors.hpp"
+#include "tests/complaint.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace tumble::scenarios {
@@ -209,12 +210,7 @@ class GateFiles : public testing::TemporaryFolder {
   std::string complaint(const std::string& policy, const std::string& run) const {
     write("bad.yaml", policy);
     write("bad.csv", run);
-    try {
-      load_gate(DataRoot{folder_}, (folder_ / "bad.yaml").string());
-    } catch (const BadInput& error) {
-      return error.what();
-    }
-    return "";
+    return test::complaint([&] { load_gate(DataRoot{folder_}, (folder_ / "bad.yaml").string()); });
   }
 };
 
@@ -258,18 +254,8 @@ TEST_F(GateFiles, SayWhatIsWrongAndWhere) {
               HasSubstr("0.7"));
   write("scenarios/gates/other.yaml", kPolicy);
   write("scenarios/gates/other.csv", good);
-  try {
-    load_gate(DataRoot{folder_}, "other");
-    FAIL() << "a gate of another suite";
-  } catch (const BadInput& error) {
-    EXPECT_THAT(error.what(), HasSubstr("must be 'other'"));
-  }
-  try {
-    load_gate(DataRoot{folder_}, "slip");
-    FAIL() << "a gate out of nothing";
-  } catch (const BadInput& error) {
-    EXPECT_THAT(error.what(), HasSubstr("--accept"));
-  }
+  EXPECT_THAT(test::complaint([&] { load_gate(DataRoot{folder_}, "other"); }), HasSubstr("must be 'other'"));
+  EXPECT_THAT(test::complaint([&] { load_gate(DataRoot{folder_}, "slip"); }), HasSubstr("--accept"));
 }
 
 }  // namespace
