@@ -46,7 +46,7 @@ std::string text_of_source(const std::string& file) {
 }
 
 // An entry that is written without a failed check would not be reported.
-TEST(Health, RowsOfDoubtsAreWrittenByDoubtsAlone) {
+TEST(Health, RowsOfFindingsAreWrittenByFindingsAlone) {
   const std::string own = "scenarios/methods/findings.cpp";
   for (const char* row : {"\"imu_implausible\"", "\"localised\""}) {
     for (const std::string& file : harness_sources())

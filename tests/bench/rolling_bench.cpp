@@ -6,36 +6,15 @@
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
-#include <cstdlib>
 #include <memory>
-#include <new>
 #include <string>
 #include <vector>
 
 #include "examples/online/online.hpp"
 #include "scenarios/baselines/rolling/rolling_odometry.hpp"
+#include "tests/allocation_counter.hpp"
 #include "tests/estimator/rolling/rolling_truth.hpp"
 #include "tumble/rolling/detail/rolling_smoother.hpp"
-
-namespace {
-std::size_t allocations = 0, held = 0;
-}  // namespace
-
-// the function is not inlined, so that the compiler does not report mismatched new and delete
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++allocations;
-  held += size;
-  void* memory = std::malloc(size);
-  if (memory == nullptr) throw std::bad_alloc();
-  return memory;
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t size) noexcept {
-  held -= size;
-  std::free(memory);
-}
 
 namespace {
 
@@ -72,9 +51,9 @@ void live_filter(benchmark::State& state) {
   std::size_t asked = 0;
   for (auto _ : state) {
     const auto s = std::make_unique<tumble::RollingFilter::State>();
-    const std::size_t before = allocations;
+    const std::size_t before = tumble::test::allocations.count;
     for (const tumble::ImuSample& sample : truth().samples) benchmark::DoNotOptimize(filter.step(sample, *s));
-    asked = allocations - before;
+    asked = tumble::test::allocations.count - before;
   }
   report(state, sizeof(tumble::RollingFilter::State), asked);
 }
@@ -91,12 +70,12 @@ void online_example(benchmark::State& state) {
   }
   std::size_t asked = 0, bytes = 0;
   for (auto _ : state) {
-    const std::size_t held_before = held;
+    const std::size_t held_before = tumble::test::allocations.bytes;
     online::Online program{tumble::RollingParams{.radius_m = tumble::testing::kRadius_m}};
-    bytes = held - held_before + sizeof program;
-    const std::size_t before = allocations;
+    bytes = tumble::test::allocations.bytes - held_before + sizeof program;
+    const std::size_t before = tumble::test::allocations.count;
     for (const std::string& line : lines) benchmark::DoNotOptimize(program.take(line));
-    asked = allocations - before;
+    asked = tumble::test::allocations.count - before;
   }
   report(state, bytes, asked);
 }
@@ -111,11 +90,11 @@ void smoother_with_lag(benchmark::State& state) {
   out.reserve(truth().samples.size());
   std::size_t bytes = 0;
   for (auto _ : state) {
-    const std::size_t held_before = held;
+    const std::size_t held_before = tumble::test::allocations.bytes;
     const auto s = std::make_unique<tumble::RollingSmoother::State>();
     out.clear();
     for (const tumble::ImuSample& sample : truth().samples) benchmark::DoNotOptimize(smoother.step(sample, *s, out));
-    bytes = held - held_before;
+    bytes = tumble::test::allocations.bytes - held_before;
     smoother.finish(*s, out);
   }
   report(state, bytes, 0);

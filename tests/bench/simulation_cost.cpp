@@ -4,37 +4,27 @@
 // The program measures the processor time (user and system) of building and simulating a draw without its lidars and
 // with them, and prints a line per draw and the medians. Equal digests show that two builds simulated the same bits.
 // The program uses one thread.
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <string>
 #include <vector>
 
 #include "scenarios/statistics/statistics.hpp"
 #include "scenarios/sweep/evaluate.hpp"
-#include "tests/bench/program.hpp"
 #include "tests/tree.hpp"
 
 namespace {
 
 using namespace tumble;  // NOLINT: a program of its own
 
-struct Request {
-  std::string scenario;
-  std::uint64_t first = 0, last = 0;
-};
-
-bool parse(int count, char** words, Request& request) {
-  if (count != 4) return false;
-  request = {words[1], std::strtoull(words[2], nullptr, 10), std::strtoull(words[3], nullptr, 10)};
-  return request.first <= request.last;
-}
-
-int run(const Request& request) {
+int run(const std::string& name, std::uint64_t first, std::uint64_t last) {
   const scenarios::DataRoot data{test::source_dir()};
-  const scenarios::Scenario scenario = scenarios::load_scenario(data, request.scenario);
+  const scenarios::Scenario scenario = scenarios::load_scenario(data, name);
   std::vector<double> bare_s, whole_s;
   std::printf("%6s %9s %9s  %-32s  %s\n", "seed", "no lidar", "lidar", "digest without lidar", "with");
-  bench::for_each_draw(request.first, request.last, [&](std::uint64_t seed) {
+  for (std::uint64_t seed = first; seed <= last; ++seed) {
     const auto bare = scenarios::simulate_draw(data, scenario, seed, 1, scenarios::Lidars::left_out);
     const auto whole = scenarios::simulate_draw(data, scenario, seed, 1);
     bare_s.push_back(bare.simulate_cpu_s);
@@ -42,7 +32,7 @@ int run(const Request& request) {
     std::printf("%6llu %7.3f s %7.3f s  %s  %s\n", static_cast<unsigned long long>(seed), bare_s.back(), whole_s.back(),
                 bare.recording_digest.c_str(), whole.recording_digest.c_str());
     std::fflush(stdout);
-  });
+  }
   if (bare_s.empty()) return 1;
   std::printf("%6s %7.3f s %7.3f s\n", "median", scenarios::quantile(bare_s, 0.5), scenarios::quantile(whole_s, 0.5));
   return 0;
@@ -51,5 +41,14 @@ int run(const Request& request) {
 }  // namespace
 
 int main(int count, char** words) {
-  return bench::run_program<Request>(count, words, "simulation_cost SCENARIO FIRST LAST", parse, run);
+  if (count != 4) {
+    std::fprintf(stderr, "usage: simulation_cost SCENARIO FIRST LAST\n");
+    return 2;
+  }
+  try {
+    return run(words[1], std::strtoull(words[2], nullptr, 10), std::strtoull(words[3], nullptr, 10));
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
+  }
 }

@@ -2,7 +2,6 @@
 #include "examples/online/online.hpp"
 
 #include <gtest/gtest.h>
-#include <malloc.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,30 +11,12 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
-#include <new>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "estimator/rolling/rolling_truth.hpp"
-
-namespace {
-std::size_t allocations = 0;
-}  // namespace
-
-// the function is not inlined, so that the compiler does not report mismatched new and delete
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++allocations;
-  void* memory = std::malloc(size);
-  if (memory == nullptr) throw std::bad_alloc();
-  return memory;
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
+#include "tests/allocation_counter.hpp"
 
 namespace tumble {
 namespace {
@@ -94,14 +75,14 @@ TEST(Online, SaysWhatTheFilterSaysAndAllocatesNothing) {
   last.reserve(online::Online::kLineMax);
   (void)program.take(in[0]);
   ASSERT_TRUE(program.ok());
-  const std::size_t before = allocations;
+  const std::size_t before = test::allocations.count;
   const std::size_t held = mallinfo2().uordblks;
   for (std::size_t k = 1; k < in.size(); ++k) {
     const std::string_view answer = program.take(in[k]);
     ASSERT_TRUE(program.ok()) << k << ": " << answer;
     last.assign(answer);
   }
-  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(test::allocations.count, before);
   EXPECT_EQ(mallinfo2().uordblks, held);
   for (const ImuSample& sample : truth().samples) ASSERT_TRUE(filter.step(sample, *state).ok());
   const Pose pose = parse(last);

@@ -66,7 +66,7 @@ TEST(TorqueFreeRotation, KeepsEnergyAndAngularMomentumInTheWorld) {
   }
 }
 
-TEST(TorqueFreeRotation, StartsWhereItIsTold) {
+TEST(TorqueFreeRotation, StartsAtTheGivenState) {
   const Quaterniond q0(Eigen::AngleAxisd(-2.0, Vector3d(3, -2, 1).normalized()));
   for (const Body& body : bodies()) {
     const TorqueFreeRotation motion(body.moments, body.rate, q0);

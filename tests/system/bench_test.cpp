@@ -70,7 +70,7 @@ class Bench : public ::testing::Test {
   const fs::path folder_ = test_folder();
 };
 
-TEST_F(Bench, MethodsOfStrangersAreHeldBesideOurs) {
+TEST_F(Bench, ForeignMethodsAreComparedWithOurs) {
   const std::string c = path("doubtful.c"), program = path("doubtful");
   ASSERT_EQ(std::system(("cc -O2 -Wall -Wextra -o " + program + " " + c + " -lm").c_str()), 0);
   std::ofstream(folder_ / "crashes.py") << "def rate(recording):\n    raise ValueError('out of luck')\n";

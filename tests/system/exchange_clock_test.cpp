@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <fstream>
 #include <sstream>
 
@@ -16,14 +15,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using ::testing::HasSubstr;
 
-double ate_m(const Ended& scored) {
-  const json document = json_of(scored);
-  for (const json& row : document["scores"])
-    if (row["metric"] == "ate_m") return row["value"].get<double>();
-  return std::nan("");
-}
-
-TEST(Exchange, AStatedZeroIsStatedAndColumnsAreNamed) {
+TEST(Exchange, AStatedZeroIsAPoseAndColumnsAreNamed) {
   const fs::path folder = test_folder();
   const std::string table = (folder / "a.csv").string(), back = (folder / "back.h5").string();
   {
@@ -61,7 +53,7 @@ TEST(Exchange, AFolderOfTablesComesBackWithItsTruth) {
   EXPECT_THAT(said["notes"].dump(), HasSubstr("notes.csv:1: the header contains no known column name"));
   const Ended scored = run_program({"score", tum, back, "--frame", "body", "--json"});
   ASSERT_EQ(scored.status, 0) << scored.err;
-  EXPECT_LT(ate_m(scored), 1e-6);
+  EXPECT_LT(metric(json_of(scored), "ate_m"), 1e-6);
 }
 
 /// A bag, a TUM file and tables of one simulated recording have the same time stamps; files that count from zero are
@@ -90,7 +82,7 @@ TEST(Exchange, ExportsOfARecordingHaveOneClock) {
     for (const std::string& of : {recording, back}) {
       const Ended scored = run_program({"score", reference, of, "--frame", "body", "--json"});
       ASSERT_EQ(scored.status, 0) << scored.err;
-      EXPECT_LT(ate_m(scored), 1e-9);
+      EXPECT_LT(metric(json_of(scored), "ate_m"), 1e-9);
     }
   }
 }

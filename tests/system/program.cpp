@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <map>
@@ -32,6 +33,15 @@ fs::path fresh_folder(const std::string& name) {
   fs::create_directories(folder);
   return folder;
 }
+
+/// Contains a baseline, a method of this project and an oracle of each kind. Tests of the library run all methods.
+const std::map<std::string, std::vector<std::string>> kSharedMethods = {
+    {"hill",
+     {"rate/raw", "rate/tumble_lag", "rate/oracle", "attitude/vqf", "attitude/tumble", "slam/icp_raw", "slam/tumble",
+      "slam/oracle"}},
+    {"roll",
+     {"rate/raw", "attitude/madgwick", "position/rolling", "position/tumble_live", "position/oracle",
+      "slam/poses_rolling"}}};
 
 int exit_status(int raw) {
   return WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw);
@@ -108,7 +118,10 @@ fs::path shared_run(const std::string& scenario) {
   const auto found = made.find(scenario);
   if (found != made.end()) return found->second;
   const fs::path folder = fresh_folder("run_" + scenario);
-  const Ended ended = run_program({"run", shared_scenario(scenario), "--seed", "1", "-o", folder.string(), "--json"});
+  std::vector<std::string> arguments = {"run", shared_scenario(scenario), "--seed", "1",
+                                        "-o",  folder.string(),           "--json"};
+  for (const std::string& method : kSharedMethods.at(scenario)) arguments.insert(arguments.end(), {"--method", method});
+  const Ended ended = run_program(arguments);
   EXPECT_EQ(ended.status, 0) << ended.err;
   std::ofstream(folder / "out.json") << ended.out;
   return made[scenario] = folder;
@@ -123,6 +136,13 @@ nlohmann::json json_of(const Ended& ended) {
   nlohmann::json document = nlohmann::json::parse(ended.out, nullptr, false);
   EXPECT_FALSE(document.is_discarded()) << "not JSON: " << ended.out << ended.err;
   return document;
+}
+
+double metric(const nlohmann::json& scored, const std::string& name) {
+  for (const nlohmann::json& row : scored["scores"]) {
+    if (row["metric"] == name) return row["value"].get<double>();
+  }
+  return std::nan("");
 }
 
 std::size_t line_count(const std::string& text) {

@@ -48,13 +48,15 @@ std::string shared_scenario(const std::string& name);
 /// are in a folder of the process with the same files in each process, so that a certificate measured over one serves
 /// the others.
 std::function<void()> in_short_catalogue();
-/// Returns the folder of `tumble run SHARED_SCENARIO --seed 1 -o ...`, made once per process. Tests must not change the
-/// folder.
+/// Returns the folder of `tumble run SHARED_SCENARIO --seed 1 -o ...` with some methods of each kind, made once per
+/// process. Tests must not change the folder.
 std::filesystem::path shared_run(const std::string& scenario);
 
 std::string read_file(const std::filesystem::path& path);
 /// Returns standard output as JSON; output that is no JSON fails the test.
 nlohmann::json json_of(const Ended& ended);
+/// Returns the value of a metric in the answer of `score --json`, or NaN when it is absent.
+double metric(const nlohmann::json& scored, const std::string& name);
 /// Returns the number of lines, which must all be terminated.
 std::size_t line_count(const std::string& text);
 

@@ -131,7 +131,7 @@ TEST(Report, IsAFunctionOfWhatASweepHasLeft) {
   EXPECT_THAT(own_part(page), HasSubstr("examples.json"));
 }
 
-TEST(Report, ShowsDrawsThatFailedWhereItTellsOfThem) {
+TEST(Report, ShowsFailedDrawsInTheSectionOfFailures) {
   const fs::path folder = test_folder();
   const fs::path database = folder / "f.db", page = folder / "report.html";
   std::ofstream(folder / "lost.yaml") << "name: lost\nkind: position\ncommand: [sh, -c, 'exit 3 # {output}']\n";

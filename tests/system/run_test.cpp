@@ -90,7 +90,7 @@ TEST_P(OnRobot, SameSeedGivesTheSameDigestForAnyThreads) {
   };
   const auto expected = digests("1", "2");
   EXPECT_EQ(digests("1", "1"), expected) << "two threads or one";
-  EXPECT_EQ(expected.second, shared_result(GetParam())["recording_digest"]) << "beside all methods or one";
+  EXPECT_EQ(expected.second, shared_result(GetParam())["recording_digest"]) << "next to several methods or one";
   const auto other = digests("2", "2");
   EXPECT_NE(other.first, expected.first) << "negative control: another seed is another run";
   EXPECT_NE(other.second, expected.second);
@@ -155,11 +155,11 @@ TEST(Run, PrintsATablePerKind) {
   EXPECT_THAT(ended.out, HasSubstr("digest"));
 }
 
-TEST(Run, WhatIsLearntOfTheRigIsCarriedOn) {
+TEST(Run, TheCalibrationOfTheRigIsUsedInTheNextRun) {
   const fs::path file = test_folder() / "rig.json";
   const auto run_with = [&](const std::string& method) {
-    const Ended ended =
-        run_program({"run", "hill", "--seed", "1", "--method", "rate/" + method, "--learnt", file.string(), "--json"});
+    const Ended ended = run_program({"run", shared_scenario("hill"), "--seed", "1", "--method", "rate/" + method,
+                                     "--learnt", file.string(), "--json"});
     EXPECT_EQ(ended.status, 0) << ended.err;
     return json_of(ended)["outcomes"][0]["digest"].get<std::string>();
   };
@@ -168,10 +168,11 @@ TEST(Run, WhatIsLearntOfTheRigIsCarriedOn) {
   const std::string of_stream = read_file(file);
   EXPECT_NE(run_with("tumble_lag"), fresh) << "the file counts";
   EXPECT_NE(read_file(file), of_stream) << "written anew";
-  EXPECT_EQ(run_program({"run", "hill", "--seed", "1", "--method", "rate/saave", "--learnt", file.string()}).status, 2);
+  EXPECT_EQ(run_program({"run", shared_scenario("hill"), "--method", "rate/saave", "--learnt", file.string()}).status,
+            2);
 }
 
-TEST(Run, WhereNothingIsLearntOfTheRigItIsSaid) {
+TEST(Run, AMissingCalibrationOfTheRigIsReported) {
   const fs::path file = test_folder() / "rig.json";
   const Ended ended =
       run_program({"run", "stroll", "--seed", "1", "--method", "rate/tumble_lag", "--learnt", file.string()});
@@ -306,7 +307,7 @@ TEST(Estimate, PrintsWhatMattersWithUnits) {
 
 /// The method uses a parameter given by `--set`, the estimate reports it, and a wrong name or value ends the program at
 /// once.
-TEST(Set, AGivenParameterIsTakenToldAndBounded) {
+TEST(Set, AGivenParameterIsUsedReportedAndBounded) {
   const fs::path folder = test_folder();
   const fs::path recording = shared_run("roll") / "recording.h5";
   const auto estimated = [&](const std::string& name, std::vector<std::string> more) {

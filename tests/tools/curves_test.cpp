@@ -3,14 +3,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <nlohmann/json.hpp>
-#include <optional>
 
+#include "tests/tools/results_fixture.hpp"
 #include "tools/report/page.hpp"
 
 namespace tumble::tools {
@@ -26,26 +24,13 @@ using ::testing::Not;
 constexpr const char* kMedian = "rate_error_clipped_median_rad_s";
 constexpr const char* kOffset = "given.time_offset_s";
 
-class CurvesTest : public testing::Test {
+class CurvesTest : public testing::ResultsFixture {
  protected:
-  CurvesTest()
-      : path_(std::filesystem::path(testing::TempDir()) / ("tumble_curves_" + std::to_string(getpid()) + ".db")) {
-    std::filesystem::remove(path_);
-    results_.emplace(path_, scenarios::Results::Mode::create_or_append);
-  }
-  ~CurvesTest() override { std::filesystem::remove(path_); }
-
   void store(std::uint64_t seed, Kind kind, const std::string& method, const Setting& setting,
              std::vector<scenarios::Score> scores, scenarios::OutcomeStatus status = scenarios::OutcomeStatus::ok) {
-    scenarios::Outcome outcome;
-    outcome.scenario = "hill";
-    outcome.seed = seed;
-    outcome.kind = kind;
-    outcome.method = method;
-    outcome.status = status;
-    outcome.scores = std::move(scores);
+    scenarios::Outcome outcome = testing::hill_outcome(seed, kind, method, status, std::move(scores));
     outcome.setting = setting;
-    results_->store(outcome);
+    results().store(outcome);
   }
   const Curve* find(const std::vector<Curve>& curves, const std::string& axis, const std::string& metric) const {
     for (const Curve& curve : curves) {
@@ -53,11 +38,6 @@ class CurvesTest : public testing::Test {
     }
     return nullptr;
   }
-  scenarios::Results& results() { return *results_; }
-
- private:
-  std::filesystem::path path_;
-  std::optional<scenarios::Results> results_;
 };
 
 TEST_F(CurvesTest, AreDrawnPerMethodOverTheValuesThatWereSet) {
@@ -149,7 +129,7 @@ TEST_F(CurvesTest, OfBinnedMetricsStandAtTheBinsAndInNoTable) {
   const Figure figure = curve_figure(*curve);
   const auto ticks = nlohmann::json::parse(figure.layout)["xaxis"]["ticktext"];
   EXPECT_THAT(ticks.get<std::vector<std::string>>(),
-              testing::IsSupersetOf(std::vector<std::string>{"0.055 – 0.105", labels[0], labels[2]}));
+              ::testing::IsSupersetOf(std::vector<std::string>{"0.055 – 0.105", labels[0], labels[2]}));
   const auto traces = nlohmann::json::parse(figure.traces);
   const auto line = std::find_if(traces.begin(), traces.end(), [](const auto& trace) {
     return trace.value("mode", "") == "lines+markers" && !trace.contains("yaxis");

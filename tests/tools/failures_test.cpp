@@ -9,33 +9,23 @@
 
 #include "scenarios/sweep/run_again.hpp"
 #include "scenarios/sweep/sweep_notes.hpp"
-#include "tests/temporary_folder.hpp"
+#include "tests/tools/results_fixture.hpp"
 
 namespace tumble::tools {
 namespace {
 
 using scenarios::Kind;
 using scenarios::OutcomeStatus;
-using scenarios::Results;
 using ::testing::UnorderedElementsAre;
 
-class FailedDrawsTest : public scenarios::testing::TemporaryFolder {
+class FailedDrawsTest : public testing::ResultsFixture {
  protected:
-  void SetUp() override {
-    TemporaryFolder::SetUp();
-    results_.emplace(folder_ / "a.db", Results::Mode::create_or_append);
-  }
   void store(std::uint64_t seed, const std::string& method, OutcomeStatus status, const std::string& message = "") {
-    scenarios::Outcome outcome;
-    outcome.scenario = "hill";
-    outcome.seed = seed;
-    outcome.kind = Kind::rate;
-    outcome.method = method;
-    outcome.status = status;
+    scenarios::Outcome outcome = testing::hill_outcome(seed, Kind::rate, method, status);
     outcome.message = message;
-    results_->store(outcome);
+    results().store(outcome);
   }
-  FailedDraws found() const { return failed_draws(*results_, scenarios::summarize(*results_), folder_ / "a.db"); }
+  FailedDraws found() const { return failed_draws(results(), scenarios::summarize(results()), database()); }
   /// Returns the commands of the first draw.
   std::vector<std::string> commands() const {
     const FailedDraws failed = found();
@@ -43,10 +33,6 @@ class FailedDrawsTest : public scenarios::testing::TemporaryFolder {
     for (const FailedRun& run : failed.shown.at(0).runs) out.push_back(run.command);
     return out;
   }
-  Results& results() { return *results_; }
-
- private:
-  std::optional<Results> results_;
 };
 
 TEST_F(FailedDrawsTest, StandInTheOrderOfHowManyMethodsFailed) {

@@ -117,7 +117,7 @@ TEST(Page, TextInTablesWrapsAndColoursStandOutOnDarkGround) {
 }
 
 // there are six colours: further methods have another symbol and filling, and lines have other dashes
-TEST(Page, TellsMoreMethodsApartThanThereAreColours) {
+TEST(Page, DistinguishesMoreMethodsThanThereAreColours) {
   Summary summary = page_summary("hill");
   Section& section = summary.sections[0];
   while (section.methods.size() < 20) {

@@ -51,7 +51,9 @@ TEST_F(ImportFormat, AFolderOfBagsIsOneBagInParts) {
   write("loose/run_0.mcap", ""), write("loose/run_1.mcap", "");
   EXPECT_EQ(format("loose"), "rosbag2");
   write("loose/run_0.bag", "");
-  EXPECT_THAT(format("loose"), testing::HasSubstr("this folder contains files of the formats"));
+  EXPECT_THAT(format("loose"), ::testing::HasSubstr("this folder contains files of the formats"));
+  std::filesystem::create_directory(folder_ / "empty");
+  EXPECT_THAT(format("empty"), ::testing::HasSubstr("contains no .ply, .pcd, .vtk"));
 }
 
 }  // namespace

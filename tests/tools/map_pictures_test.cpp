@@ -7,25 +7,15 @@
 #include <limits>
 #include <stdexcept>
 
-#include "sim/situation.hpp"
-#include "tests/tree.hpp"
+#include "tests/tools/replays.hpp"
 
 namespace tumble::tools {
 namespace {
 
 using Rgb = std::array<std::uint8_t, 3>;
 
-/// Returns an empty square room with its floor at z = 0.
 const sim::Surface& surface() {
-  static const sim::Surface room = [] {
-    sim::Situation situation;
-    situation.scenario = "test";
-    situation.world.type = "floor";
-    for (const char* none : {"pillar_count", "box_count"}) situation.world.values.set(none, 0.0);
-    situation.robot.type = "sphere";
-    situation.motion.type = "hand_roll";
-    return sim::Surface(sim::BuiltSituation(sim::resolve(situation), test::source_dir() / "models"));
-  }();
+  static const sim::Surface room(testing::room());
   return room;
 }
 
@@ -78,7 +68,7 @@ int count(const sim::Picture& picture, const Rgb& colour, int left, int right, i
   return found;
 }
 
-TEST(ErrorMap, IsHeldToTheTrueSurfaceInTheTruthsWorld) {
+TEST(ErrorMap, IsComparedWithTheTrueSurfaceInTheTruthsWorld) {
   const sim::Truth truth = straight_path();
   const ErrorMap map = map_by_error("slam/test", estimate_elsewhere(truth), truth, surface());
   ASSERT_EQ(map.points_W_m.size(), 4u) << "the point that is none is left out";

@@ -212,7 +212,7 @@ TEST(Page, DrawsAScoreOverTheRangeOfWhatBreaksIt) {
   EXPECT_THAT(page_html(content, ""), Not(HasSubstr("<svg class=\"dependence\""))) << "one class has no shape";
 }
 
-TEST(Page, SaysHowManyDrawsMoreTellWhatBreaksAMethod) {
+TEST(Page, StatesHowManyMoreDrawsTheSensitivityNeeds) {
   EXPECT_EQ(draws_needed_text({{"hill", 24}, {"roll", 500}}), "");
   EXPECT_EQ(draws_needed_text({{"hill", 5}, {"roll", 500}, {"slip", 23}}),
             "A scenario needs 12 simulated runs to compute the influence of its parameters, and 24 simulated runs for "
@@ -251,7 +251,7 @@ TEST(Page, LinksFailedDrawsThatHavePictures) {
   EXPECT_THAT(page, Not(HasSubstr("tumble replay 7"))) << "it has one";
 }
 
-TEST(Page, ShowsAFailedDrawWhereItsFailureIsTold) {
+TEST(Page, ShowsAFailedDrawInTheSectionOfFailures) {
   PageContent content;
   content.summary = page_summary("hill");
   content.examples = {evil_example("roll"), evil_example("hill")};

@@ -3,11 +3,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <filesystem>
 #include <limits>
+
+#include "tests/tools/results_fixture.hpp"
 
 namespace tumble::tools {
 namespace {
@@ -25,32 +25,12 @@ using ::testing::Not;
 
 constexpr const char* kError = "rate_error_clipped_median_rad_s";
 
-/// SummaryTest has an empty results database in the test's folder.
-class SummaryTest : public testing::Test {
+class SummaryTest : public testing::ResultsFixture {
  protected:
-  SummaryTest()
-      : path_(std::filesystem::path(testing::TempDir()) / ("tumble_summary_" + std::to_string(getpid()) + ".db")) {
-    std::filesystem::remove(path_);
-    results_.emplace(path_, scenarios::Results::Mode::create_or_append);
-  }
-  ~SummaryTest() override { std::filesystem::remove(path_); }
   void store(std::uint64_t seed, Kind kind, const std::string& method, scenarios::OutcomeStatus status,
              std::vector<scenarios::Score> scores) {
-    scenarios::Outcome outcome;
-    outcome.scenario = "hill";
-    outcome.seed = seed;
-    outcome.kind = kind;
-    outcome.method = method;
-    outcome.status = status;
-    outcome.scores = std::move(scores);
-    results_->store(outcome);
+    results().store(testing::hill_outcome(seed, kind, method, status, std::move(scores)));
   }
-  const scenarios::Results& results() const { return *results_; }
-  scenarios::Results& results() { return *results_; }
-
- private:
-  std::filesystem::path path_;
-  std::optional<scenarios::Results> results_;
 };
 
 TEST_F(SummaryTest, PairsDrawByDrawWithTheBaseline) {

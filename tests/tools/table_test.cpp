@@ -10,6 +10,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "tests/tools/results_fixture.hpp"
 #include "tools/tumble/score_tables.hpp"
 
 namespace tumble::tools {
@@ -109,14 +110,7 @@ TEST(NumberText, HasFourSignificantDigits) {
 
 scenarios::Outcome outcome(scenarios::Kind kind, const std::string& method, scenarios::OutcomeStatus status,
                            std::vector<scenarios::Score> scores) {
-  scenarios::Outcome out;
-  out.scenario = "hill";
-  out.seed = 7;
-  out.kind = kind;
-  out.method = method;
-  out.status = status;
-  out.scores = std::move(scores);
-  return out;
+  return testing::hill_outcome(7, kind, method, status, std::move(scores));
 }
 
 TEST(ScoreTables, HaveARowPerMetricAndAColumnPerMethod) {

@@ -78,7 +78,7 @@ TEST(SensorErrorUncertainty, APlainDelayLeavesAllOpenAndNoneTakesTheSheetsWord) 
   EXPECT_GT(device.common_delay_variance_s2(late), 10.0 * device.common_delay_variance_s2(in_time));
 }
 
-TEST(SensorErrorUncertainty, OfNoneThatIsUncalibratedTheSheetIsBelieved) {
+TEST(SensorErrorUncertainty, WithoutCalibrationTheDataSheetIsUsed) {
   const SensorErrorPriors sizes;
   const SensorErrorUncertainty::Posterior posterior =
       posterior_by(SensorErrorUncertainty(sizes, 0.0), delay_of(8e-3, 1e-4));

@@ -95,14 +95,14 @@ const std::vector<std::pair<std::string, std::function<void(ImuSample&)>>>& othe
   return all;
 }
 
-TEST(FlightSignCheck, EachOtherSensorIsToldByItsName) {
+TEST(FlightSignCheck, EachOtherSensorIsReportedByItsName) {
   EXPECT_EQ(sense_told(thrown_flight(), FlightSignCheck::BodyMotionType::always_thrown, 100.0, [](ImuSample&) {}), "");
   for (const auto& [name, harm] : other_senses())
     EXPECT_EQ(sense_told(thrown_flight(), FlightSignCheck::BodyMotionType::always_thrown, 100.0, harm), name);
 }
 
 // The force determines the rate of the clipped axis, and the remaining force determines the sign.
-TEST(FlightSignCheck, AFlightInWhichAnAxisClipsTellsAsMuch) {
+TEST(FlightSignCheck, AFlightInWhichAnAxisClipsShowsAsMuch) {
   constexpr double kRange_rad_s = 6.5;
   std::size_t clipped = 0;
   for (const ImuSample& sample : thrown_flight())
@@ -116,7 +116,7 @@ TEST(FlightSignCheck, AFlightInWhichAnAxisClipsTellsAsMuch) {
 
 // A body that is swung about a point on the other side of the mass centre feels what a mirrored sensor would feel in
 // flight.
-TEST(FlightSignCheck, OfABodyThatIsPerhapsHeldOnlyTheClearestIsTold) {
+TEST(FlightSignCheck, OnABodyThatMayBeHandHeldOnlyTheClearestIsReported) {
   const auto nothing = [](ImuSample&) {};
   const Eigen::Vector3d mirrored = kFlightArm_m.cwiseProduct(Eigen::Vector3d(-1.0, 1.0, 1.0));
   const auto x_flipped = [](ImuSample& s) { s.specific_force_m_s2.x() *= -1.0; };

@@ -47,7 +47,7 @@ struct Bent {
 
 // The requested rate is the mean over the sample's own window. A cubic reproduces a parabola exactly, except for the
 // effect of the longer window, which is stated as a deviation.
-TEST(HeldRates, AParabolaComesBackAtItsOwnTime) {
+TEST(InterpolatedRates, AParabolaComesBackAtItsOwnTime) {
   const Bent motion;
   for (const std::size_t period : {2u, 3u, 4u}) {
     const std::vector<AngularRateStreamKnot> window = motion.window(24, period);
@@ -65,7 +65,7 @@ TEST(HeldRates, AParabolaComesBackAtItsOwnTime) {
   }
 }
 
-TEST(HeldRates, NothingIsSaidWithoutBothReadings) {
+TEST(InterpolatedRates, NothingIsSaidWithoutBothReadings) {
   const Bent motion;
   std::vector<AngularRateStreamKnot> window = motion.window(24, 3);
   EXPECT_FALSE(rate_between_readings(window, 23, kPeriod_s).has_value());  // the next reading is missing
@@ -79,7 +79,7 @@ TEST(HeldRates, NothingIsSaidWithoutBothReadings) {
 
 // Interpolated forces along a line are correct at the middle of the sample's window, up to the error of the clock;
 // logged forces are later by the reading's age and longer window.
-TEST(HeldRates, ForcesOnALineComeBackAtTheirOwnTime) {
+TEST(InterpolatedRates, ForcesOnALineComeBackAtTheirOwnTime) {
   constexpr std::size_t kEach = 4;
   constexpr double kSlope_m_s3 = 10.0;
   std::vector<ImuSample> samples(400), all;
@@ -147,7 +147,7 @@ double late_s(const TumbleRecording& recording, const std::vector<AngularRateSta
 // The test averages over tumbles, because one dominant impact makes the remaining clock error of a single tumble early
 // or late. The measured delay is 11.1 ms as read, 0.9 ms in batch and 2.1 ms live, because a stream detects repetitions
 // only after 30 moving samples.
-TEST(HeldRates, BatchAndStreamAreInTime) {
+TEST(InterpolatedRates, BatchAndStreamAreInTime) {
   double read = 0.0, batch = 0.0, live = 0.0;
   constexpr double kTumbles = 8.0;
   for (std::uint64_t seed = 2; seed < 10; ++seed) {

@@ -56,7 +56,7 @@ Twirl twirl(double amplitude_rad_s, double hz, int times = 1) {
 }
 
 // A partly saturated window reads too little: each such window is marked, and few others.
-TEST(NearRails, EachWindowThatMetTheRailInAPartIsTold) {
+TEST(PartlySaturatedWindows, EachWindowThatIsPartlySaturatedIsReported) {
   for (const double hz : {0.7, 1.3, 2.9, 5.3}) {
     for (const int times : {1, 2}) {
       const Twirl motion = twirl(9.0, hz, times);
@@ -80,7 +80,7 @@ TEST(NearRails, EachWindowThatMetTheRailInAPartIsTold) {
 }
 
 // Motion well below the saturation level, or slowly close to it, is measured.
-TEST(NearRails, WhatStaysBelowTheRailIsMeasured) {
+TEST(PartlySaturatedWindows, WhatStaysBelowTheRailIsMeasured) {
   const auto none = [](const std::vector<std::uint8_t>& near) {
     return std::all_of(near.begin(), near.end(), [](std::uint8_t bits) { return bits == 0; });
   };
@@ -90,7 +90,7 @@ TEST(NearRails, WhatStaysBelowTheRailIsMeasured) {
   EXPECT_FALSE(none(possible_partial_saturation(twirl(0.98 * kRail_rad_s, 2.9).samples, planes())));
 }
 
-TEST(NearRails, ARailThatWasNotSeenIsNotMet) {
+TEST(PartlySaturatedWindows, ASaturationLimitThatWasNotSeenIsNotMet) {
   const Twirl motion = twirl(9.0, 2.9);
   for (const std::uint8_t bits : possible_partial_saturation(motion.samples, {})) EXPECT_EQ(bits, 0);
   SaturationPlanes one_sided = planes();
@@ -106,7 +106,7 @@ TEST(NearRails, ARailThatWasNotSeenIsNotMet) {
 }
 
 // The distance is that to the plane, not to an axis-aligned level, because motion on other axes shifts the plane.
-TEST(NearRails, TheRailIsThePlane) {
+TEST(PartlySaturatedWindows, TheRailIsThePlane) {
   std::vector<ImuSample> samples(3);
   for (std::size_t k = 0; k < samples.size(); ++k)
     samples[k].angular_velocity_rad_s = Vector3d(k == 1 ? 7.0 : 6.5, 0.0, 4.0);

@@ -140,7 +140,7 @@ TEST(SaturationLimitDetector, TheStatedRangeServesUntilThereIsAPlateau) {
   EXPECT_EQ(got.accel, 1 | 2);
 }
 
-TEST(SaturationLimitDetector, BelievesTheFlagsOfTheDevice) {
+TEST(SaturationLimitDetector, UsesTheFlagsOfTheDevice) {
   const SaturationLimitDetector rails({});
   SaturationLimitDetector::State state;
   ImuSample sample;
@@ -150,7 +150,7 @@ TEST(SaturationLimitDetector, BelievesTheFlagsOfTheDevice) {
   EXPECT_EQ(got.accel, 4);
 }
 
-TEST(SaturationLimitDetector, AFlipFromRailToRailIsAnOverflow) {
+TEST(SaturationLimitDetector, AFlipBetweenOppositeLimitsIsAnOverflow) {
   const SaturationLimitDetector rails({.stated_gyro_range_rad_s = 10.5});
   SaturationLimitDetector::State state;
   ImuSample sample;

@@ -63,7 +63,7 @@ struct Share {
   }
 };
 
-TEST(RailJudgement, FindsTheTiltedRailsOfAnAccelerometer) {
+TEST(SaturationPlaneDecision, FindsTheTiltedRailsOfAnAccelerometer) {
   Share all, seen;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     const Tumble tumble = railed_tumble(seed, 0.02);
@@ -97,7 +97,7 @@ TEST(RailJudgement, FindsTheTiltedRailsOfAnAccelerometer) {
 }
 
 // Negative control: an accelerometer that never saturated has no level, including rest and gravity.
-TEST(RailJudgement, AnAccelerometerThatDoesNotClipHasNoRail) {
+TEST(SaturationPlaneDecision, AnAccelerometerThatDoesNotClipHasNoRail) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     const Tumble tumble = railed_tumble(seed, 0.02, 1e4);
     const ClippingFinder::ClippingSearchResult found = ClippingFinder({}).find(tumble.recording.samples);
@@ -126,7 +126,7 @@ std::vector<ImuSample> swung_wand(double offset_rad_s, std::vector<bool>& lost) 
   return out;
 }
 
-TEST(RailJudgement, RailsOfTwoSignsThatDifferAreNoDevicesOwn) {
+TEST(SaturationPlaneDecision, SaturationLimitsOfTwoSignsThatDifferAreNoDevicesOwn) {
   for (const double offset_rad_s : {0.0, 0.05, -0.05, 0.005}) {
     std::vector<bool> lost;
     const std::vector<ImuSample> samples = swung_wand(offset_rad_s, lost);
@@ -185,7 +185,7 @@ ErrorsAtRails errors_with(Params params, double distance_min) {
   return out;
 }
 
-TEST(RailJudgement, ASaturatedForceIsABoundAlongItsElement) {
+TEST(SaturationPlaneDecision, ASaturatedForceIsABoundAlongItsElement) {
   ErrorsAtRails ours = errors_with(with_lever_arm<AngularRateSmoother::Params>(), 15.0);
   // negative control: the same smoother without planes uses wrong forces
   ErrorsAtRails blind = errors_with(with_lever_arm<AngularRateSmoother::Params>(), 1000.0);
@@ -197,7 +197,7 @@ TEST(RailJudgement, ASaturatedForceIsABoundAlongItsElement) {
   EXPECT_LT(blind.within, 0.97 * blind.axes);
 }
 
-TEST(RailJudgement, TheStreamReadsItAlike) {
+TEST(SaturationPlaneDecision, TheStreamReadsItAlike) {
   ErrorsAtRails ours = errors_with(with_lever_arm<AngularRateStream::Params>(), 15.0),
                 blind = errors_with(with_lever_arm<AngularRateStream::Params>(), 1000.0);
   ASSERT_GT(ours.all.size(), 200u);
@@ -212,7 +212,7 @@ TumbleRecording tilted_gyro() {
 }
 
 // An auxiliary IMU with tilted elements is correct along its free elements while another clips, but not axis by axis.
-TEST(RailJudgement, AnAuxiliaryImuIsReadAlongItsElements) {
+TEST(SaturationPlaneDecision, AnAuxiliaryImuIsReadAlongItsElements) {
   const TumbleRecording tumble = tilted_gyro();
   const ClippingFinder::ClippingSearchResult found = ClippingFinder({}).find(tumble.samples);
   AuxiliaryImu auxiliary_imu;
@@ -242,7 +242,7 @@ TEST(RailJudgement, AnAuxiliaryImuIsReadAlongItsElements) {
 }
 
 // Published methods use the axis-aligned level of each axis, and planes only on request.
-TEST(RailJudgement, PublishedFamiliesKeepUprightRailsUnlessAsked) {
+TEST(SaturationPlaneDecision, PublishedFamiliesKeepUprightRailsUnlessAsked) {
   const TumbleRecording tumble = tilted_gyro();
   std::vector<AngularRateState> upright, planes;
   ASSERT_TRUE(baselines::ClippedBaseline({}).estimate(tumble.samples, upright).ok());
@@ -258,7 +258,7 @@ TEST(RailJudgement, PublishedFamiliesKeepUprightRailsUnlessAsked) {
 }
 
 // The first readings, usually at rest, determine the noise even if later readings are forgotten.
-TEST(RailJudgement, TheWatchKeepsTheFirstReadingsAndTheLatest) {
+TEST(SaturationPlaneDecision, TheWatchKeepsTheFirstReadingsAndTheLatest) {
   for (const int readings_max : {64, 1024}) {
     const StreamingClippingFinder watch({.clipping = {}, .readings_max = readings_max});
     StreamingClippingFinder::State state = watch.start();
@@ -286,7 +286,7 @@ TEST(RailJudgement, TheWatchKeepsTheFirstReadingsAndTheLatest) {
 
 // The next sample reveals that the sample before a saturated segment was partly saturated. With calibrated saturation
 // levels, the stream judges like the batch.
-TEST(RailJudgement, TheWatchJudgesByWhatComesAfterToo) {
+TEST(SaturationPlaneDecision, TheWatchJudgesByWhatComesAfterToo) {
   const TumbleRecording tumble = tilted_gyro();
   const ClippingFinder::ClippingSearchResult batch = ClippingFinder({}).find(tumble.samples);
   const StreamingClippingFinder watch({});
@@ -306,7 +306,7 @@ TEST(RailJudgement, TheWatchJudgesByWhatComesAfterToo) {
   EXPECT_GT(apart_by_before, 3);
 }
 
-TEST(RailJudgement, TellsWhatAReadingIsWorth) {
+TEST(SaturationPlaneDecision, ReportsTheUncertaintyOfAReading) {
   ImuSample sample;
   sample.angular_velocity_rad_s = {10.0, -10.0, 1.0};
   sample.specific_force_m_s2 = {1.0, -50.0, 2.0};

@@ -50,9 +50,9 @@ struct Known {
   int samples;                                         // samples at the saturation limit, counted by hand
 };
 
-class RealRails : public ::testing::TestWithParam<Known> {};
+class RealSaturationPlanes : public ::testing::TestWithParam<Known> {};
 
-TEST_P(RealRails, AreFoundWithoutAnybodyStatingThem) {
+TEST_P(RealSaturationPlanes, AreFoundWithoutAnybodyStatingThem) {
   const std::vector<ImuSample> samples = read_repoimu(test::written(GetParam().folder) / GetParam().file);
   ASSERT_GT(samples.size(), 1000u);
   const SaturationPlanes planes = SaturationPlaneFinder({}).find(samples);
@@ -85,11 +85,11 @@ std::vector<Known> known_rails() {
   return all;
 }
 
-INSTANTIATE_TEST_SUITE_P(RepoImu, RealRails, ::testing::ValuesIn(known_rails()));
+INSTANTIATE_TEST_SUITE_P(RepoImu, RealSaturationPlanes, ::testing::ValuesIn(known_rails()));
 
-class NoRails : public ::testing::TestWithParam<std::string> {};
+class UnsaturatedGyro : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(NoRails, AreFoundInARealGyroThatDoesNotClip) {
+TEST_P(UnsaturatedGyro, AreFoundInARealGyroThatDoesNotClip) {
   const std::vector<ImuSample> samples = testing::read_broad_trial(GetParam()).samples;
   ASSERT_GT(samples.size(), 10000u);
   EXPECT_FALSE(SaturationPlaneFinder({}).find(samples).any_plane_found());
@@ -97,7 +97,7 @@ TEST_P(NoRails, AreFoundInARealGyroThatDoesNotClip) {
   EXPECT_FALSE(forces.find(samples, Triad::accelerometer).any_plane_found());
 }
 
-INSTANTIATE_TEST_SUITE_P(Broad, NoRails, ::testing::ValuesIn(testing::broad_trials()));
+INSTANTIATE_TEST_SUITE_P(Broad, UnsaturatedGyro, ::testing::ValuesIn(testing::broad_trials()));
 
 }  // namespace
 }  // namespace tumble

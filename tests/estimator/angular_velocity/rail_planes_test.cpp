@@ -137,7 +137,7 @@ TEST(SaturationPlanes, SpinsTopsRestAndCreepingAreNoRails) {
   }
 }
 
-TEST(SaturationPlanes, ReadingsThatRepeatOrAreCoarseDoNotHideARail) {
+TEST(SaturationPlanes, ReadingsThatRepeatOrAreCoarseDoNotHideASaturationLimit) {
   const Eigen::Matrix3d rows = drawn_rows(3, 0.03);
   const std::vector<Vector3d> exact = clipped_along(waved(18.0, 20.0, 0.004, 5), rows, Vector3d::Zero(), 10.3);
   std::vector<Vector3d> held;

@@ -30,7 +30,7 @@ std::vector<ImuSample> one_segment(double scatter) {
 }
 
 // A rate has noise: a single segment without noise is a saturation level, but with noise it may be a spin.
-TEST(RailThinness, OneSegmentIsEnoughWhereItHasNoNoise) {
+TEST(SaturationPlaneThickness, OneSegmentIsEnoughWhereItHasNoNoise) {
   const SaturationPlaneFinder finder{{}};
   const SaturationPlanes rail = finder.find(one_segment(1e-4)), spin = finder.find(one_segment(kNoise));
   ASSERT_TRUE(rail.sensing_axis[1].has_value());

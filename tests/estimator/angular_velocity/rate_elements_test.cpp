@@ -115,7 +115,7 @@ SaturationPlanes plane_of_x(double distance_rad_s) {
 }
 
 // The top of the straight lines hides 2 rad/s; whole samples leave half a step uncertain at either end.
-TEST(UnseenRails, APlateauOfTheMotionNearTheOthersMayHideWhereItsSlopesMeet) {
+TEST(PossibleSaturation, APlateauOfTheMotionNearTheOthersMayHideWhereItsSlopesMeet) {
   for (const int sign : {-1, 1}) {
     for (const double down : {0.25, 0.5}) {
       std::vector<AngularRateObservation> tops = cut_tops(8.5, 0.4, down, sign);
@@ -131,7 +131,7 @@ TEST(UnseenRails, APlateauOfTheMotionNearTheOthersMayHideWhereItsSlopesMeet) {
   }
 }
 
-TEST(UnseenRails, NothingIsDoubtedThatIsKnownOrFarFromTheRails) {
+TEST(PossibleSaturation, NothingIsSuspectThatIsKnownOrFarFromTheSaturationLimits) {
   const auto suspect = [](const SaturationPlanes& planes, std::vector<AngularRateObservation> tops) {
     inflate_covariance_at_plateaus(planes, {}, 0.02, 0.005, tops);
     return std::any_of(tops.begin(), tops.end(),
@@ -151,7 +151,7 @@ TEST(UnseenRails, NothingIsDoubtedThatIsKnownOrFarFromTheRails) {
 
 // With a tilt of 0.06, the level is at least 9.5 - 0.06 * 2 where 9.5 was read with 2 on other axes; 8.5 with 0.5 is at
 // most at a level of 8.53.
-TEST(UnseenRails, WhatWasReadFarBeyondRefutesThem) {
+TEST(PossibleSaturation, WhatWasReadFarBeyondRefutesThem) {
   MinSaturationLevels least;
   least.add({2.0, 9.5, 0.0});
   EXPECT_TRUE(least.is_below_min_saturation_level({0.5, 8.5, 0.0}, 1));

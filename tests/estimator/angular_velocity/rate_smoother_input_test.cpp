@@ -110,7 +110,7 @@ TEST(RateSmootherInput, ADeadAxis) {
   sound_rates(tumble.samples, report);
 }
 
-TEST(RateSmootherInput, OverflowsAreNotBelieved) {
+TEST(RateSmootherInput, OverflowsAreRejected) {
   TumbleOptions options;
   options.seed = 13;
   options.speed_low_rad_s = 14.0;
@@ -136,7 +136,7 @@ TEST(RateSmootherInput, OverflowsAreNotBelieved) {
   EXPECT_LT(clipped_errors(tumble, rates_of(out), 10.49).median, 0.05);
 }
 
-TEST(RateSmootherInput, TellsWhenTheStatedRangeIsWrong) {
+TEST(RateSmootherInput, ReportsWhenTheStatedRangeIsWrong) {
   TumbleOptions options;
   options.seed = 13;
   TumbleRecording tumble = make_tumble(options);

@@ -68,7 +68,7 @@ AngularRateStream::Params looking(bool looks_for_it = true) {
   return out;
 }
 
-TEST(ImpactDelayCorrelation, TellADelayThatIsThere) {
+TEST(ImpactDelayCorrelation, DetectAnExistingDelay) {
   for (const int late : {-20, -3, 0, 8, 13, 30}) {
     const TriadDelay told = struck_every_tenth(late, 200).estimate_delay(kStrokePeriod_s, kStrokePeriod_s);
     EXPECT_NEAR(told.delay_s, late * kStrokePeriod_s / 8.0, 1e-9) << late;
@@ -77,7 +77,7 @@ TEST(ImpactDelayCorrelation, TellADelayThatIsThere) {
   }
 }
 
-TEST(ImpactDelayCorrelation, TellNothingOfFewOrOfAHandOrAtTheEnds) {
+TEST(ImpactDelayCorrelation, DetectNothingInFewSamplesInAHandOrAtTheEnds) {
   EXPECT_EQ(struck_every_tenth(8, 29).estimate_delay(kStrokePeriod_s, kStrokePeriod_s).sigma_s, 0.0);
   EXPECT_EQ(struck_every_tenth(8, 200, 10.0).estimate_delay(kStrokePeriod_s, kStrokePeriod_s).sigma_s, 0.0)
       << "never without a force";

@@ -177,7 +177,7 @@ Believed believed(const AngularRateStream::Params& params) {
 }
 
 // A level is detected some samples after it was first reached, when the lag is over; until then, readings are suspect.
-TEST(RateStreamElements, NothingAtARailGoesOutAsMeasuredBeforeTheRailIsKnown) {
+TEST(RateStreamElements, NothingAtASaturationLimitGoesOutAsMeasuredBeforeTheRailIsKnown) {
   auto params = with_lever_arm<AngularRateStream::Params>();
   params.lag_s = 0.06;
   params.calibrated_errors =
@@ -228,7 +228,7 @@ TEST(RateStreamElements, ARunOfClippedReadingsIsAsOpenAsItsSlopes) {
 }
 
 // With the level of x known, y stays near this height, is suspect, and is then read far beyond it within the lag.
-TEST(RateStreamElements, ADoubtThatALargerReadingRefutesIsTakenBack) {
+TEST(RateStreamElements, ASuspicionThatALargerReadingRefutesIsRemoved) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     std::vector<ImuSample> samples = Swing(seed, 800).samples;
     constexpr std::size_t kTop = 752;  // x crosses zero at 7.54 s
@@ -262,7 +262,7 @@ TEST(RateStreamElements, ADoubtThatALargerReadingRefutesIsTakenBack) {
 }
 
 // No reading refutes this suspicion, so all readings are reported as suspect, also the rest of the run.
-TEST(RateStreamElements, ADoubtStaysUntilItIsGivenOut) {
+TEST(RateStreamElements, ASuspicionStaysUntilItIsReported) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     std::vector<ImuSample> samples = Swing(seed).samples;
     constexpr std::size_t kTop = 377;  // x crosses zero at 3.77 s, before its first clipping

@@ -5,32 +5,13 @@
 #include <algorithm>
 
 #include <cmath>
-#include <cstdlib>
 #include <new>
 #include <vector>
 
 #include "estimator/angular_velocity/streamed_rates.hpp"
 #include "estimator/angular_velocity/tumble_recording.hpp"
+#include "tests/allocation_counter.hpp"
 #include "tumble/angular_velocity/detail/rate_smoother.hpp"
-
-namespace {
-// counts the allocations of this program, to show that push() makes none
-thread_local std::size_t allocations = 0;
-}  // namespace
-
-// the function is not inlined, so that the compiler does not report mismatched new and delete
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++allocations;
-  void* memory = std::malloc(size);
-  if (memory == nullptr) throw std::bad_alloc();
-  return memory;
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
 
 namespace tumble {
 namespace {
@@ -243,19 +224,19 @@ TEST(AngularRateStream, AllocatesNothingPerSample) {
   const AngularRateStream method(wrong_lever(4));
   AngularRateStream::State state = method.start();
   std::optional<AngularRateState> one;
-  const std::size_t before = allocations;
+  const std::size_t before = test::allocations.count;
   for (const ImuSample& sample : samples) ASSERT_TRUE(method.push(sample, state, one).ok());
-  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(test::allocations.count, before);
   TumbleOptions tilted = options_of(4);
   tilted.gyro_rows << 1.0, 0.03, -0.02, 0.01, 1.0, 0.04, -0.03, 0.02, 1.0;
   const std::vector<ImuSample> of_planes = make_tumble(tilted).samples;
   AngularRateStream::State other = method.start();
-  const std::size_t between = allocations;
+  const std::size_t between = test::allocations.count;
   for (const ImuSample& sample : of_planes) ASSERT_TRUE(method.push(sample, other, one).ok());
-  EXPECT_EQ(allocations, between);
+  EXPECT_EQ(test::allocations.count, between);
   EXPECT_TRUE(other.clipping_state.known_limits.gyro_planes.any_plane_found());
   ::operator delete(::operator new(3));  // the counter works; a compiler may remove an unused `new`
-  EXPECT_EQ(allocations, between + 1);
+  EXPECT_EQ(test::allocations.count, between + 1);
 }
 
 TEST(AngularRateStream, ARunWithoutClippingReturnsTheGyro) {
@@ -337,7 +318,7 @@ TEST(AngularRateStream, RefusesParametersOutsideOfTheirBounds) {
   refused([](AngularRateStream::Params& p) { p.model.rate_max_rad_s = 0.0; });
 }
 
-TEST(AngularRateStream, WhatNoCalibrationCanBeIsToldAsAValueToo) {
+TEST(AngularRateStream, AnImpossibleCalibrationIsReportedAsAValueToo) {
   const auto told = [](auto change) {
     RigCalibration rig;
     change(rig);

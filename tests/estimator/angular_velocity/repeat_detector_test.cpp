@@ -40,7 +40,7 @@ Watched detect_frozen_units(double period, double rate_rad_s, bool clipped = fal
   return out;
 }
 
-TEST(RepeatDetector, TellsPeriodAndRepeats) {
+TEST(RepeatDetector, ReportsPeriodAndRepeats) {
   for (const double period : {1.25, 1.8, 3.3, 7.9}) {
     const Watched found = detect_frozen_units(period, 1.0);
     const RepeatedReading& gyro = found.state.for_triad(Triad::gyro);

@@ -166,7 +166,7 @@ TEST(RestDetector, RefusesParametersOutOfBounds) {
   EXPECT_THROW((RestDetector(params)), InvalidParams);
 }
 
-TEST(AngularRateSmoother, StandstillTellsTheBias) {
+TEST(AngularRateSmoother, StandstillDeterminesTheBias) {
   std::vector<AngularRateState> out;
   AngularRateReport report;
   ASSERT_TRUE(

@@ -98,7 +98,7 @@ TEST(SaturationAwareRateEstimator, ZeroRadicandIsRejectedToo) {
   EXPECT_FALSE(out.accepted);
 }
 
-TEST(SaturationAwareRateEstimator, TheThresholdIsStrictSoARailExactlyOnItIsNeverSeen) {
+TEST(SaturationAwareRateEstimator, TheThresholdIsStrictSoASaturationLimitExactlyOnItIsNeverSeen) {
   SaturationAwareRateEstimator::Params params = params_below_rail();
   params.saturation_point_rad_s = kRail;
   const Vector3d w = 15.0 * Vector3d::UnitX();
@@ -133,7 +133,7 @@ TEST(SaaveEdge, OnlyTheFirstOfSeveralClippedAxesIsTreated) {
   EXPECT_NEAR(out.rate_rad_s.x(), std::sqrt(w.squaredNorm() - 2.0 * kRail * kRail), 1e-12);
 }
 
-TEST(SaaveEdge, ClippedAccelerometersAreBelieved) {
+TEST(SaaveEdge, ClippedAccelerometersAreUsed) {
   const Vector3d w = 15.0 * Vector3d::UnitX();
   ImuSample sample = sample_at(1, clipped_rate(w), w.cross(w.cross(kLever)).cwiseMin(10.0).cwiseMax(-10.0));
   sample.device_clip_flags = kClipAccelX | kClipAccelY | kClipAccelZ;
@@ -142,7 +142,7 @@ TEST(SaaveEdge, ClippedAccelerometersAreBelieved) {
   EXPECT_LT(out.rate_rad_s.x(), 13.0);
 }
 
-TEST(SaaveEdge, ContactIsBelieved) {
+TEST(SaaveEdge, ContactIsAccepted) {
   // resting contact: 1 g along the lever arm adds g / (2 r w), 3.2 rad/s
   const Vector3d w = 15.0 * Vector3d::UnitX(), to_axis = Vector3d(-0.022, 0, 0) - kLever;
   const Vector3d force = w.cross(w.cross(kLever)) + 9.81 * to_axis.normalized();

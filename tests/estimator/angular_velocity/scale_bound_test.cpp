@@ -69,7 +69,7 @@ ScaleInformation scale_information(std::uint64_t seed, const Vector3d& moments) 
   return out;
 }
 
-TEST(ScaleBound, ARunTellsNoMoreOfAScaleThanItsAcceleration) {
+TEST(ScaleBound, ARunDeterminesAScaleNoBetterThanItsAcceleration) {
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
     const ScaleInformation tumbling = scale_information(seed, {1.0, 1.15, 1.3});
     EXPECT_LT(tumbling.of_model, tumbling.at_most) << seed;

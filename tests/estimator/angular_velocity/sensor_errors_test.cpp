@@ -60,7 +60,7 @@ TEST(SensorErrors, ComeBackFromTheirVector) {
 }
 
 // Information that any motion could explain counts by time, not by samples; all other information is unchanged: (R39).
-TEST(SensorErrors, WhatNoMotionTellsIsDiscounted) {
+TEST(SensorErrors, WhatNoMotionDeterminesIsDiscounted) {
   oracles::Gaussian noise(2);
   SensorErrors::Matrix root;
   for (double& x : root.reshaped()) x = noise();
@@ -299,7 +299,7 @@ TEST(RateSmootherDevices, GivenErrorsAreKept) {
 }
 
 // A stated delay is the centre of the search: 30 ms are accepted although devices without a statement have less.
-TEST(RateSmootherDevices, AStatedDelayFarFromZeroIsBelieved) {
+TEST(RateSmootherDevices, AStatedDelayFarFromZeroIsUsed) {
   const TumbleRecording late = late_tumble(3, 3);
   auto params = with_lever_arm<AngularRateSmoother::Params>();
   params.model.errors.accel_delay_s = 0.03;

@@ -141,7 +141,7 @@ TEST_P(Broad, TheComplementaryFilterStaysWhereItIs) {
 
 /// In these trials, a hand swings the sensor about an external point, and thereby pushes the sensor. The push is in the
 /// direction of the rotation in trials 07 and 11, and against the rotation in trial 27.
-TEST_P(Broad, GoodSensorsAreNotDoubtedAndOtherScalesAndSensesAre) {
+TEST_P(Broad, GoodSensorsAreNotSuspectAndOtherScalesAndSignsAre) {
   const auto verdict_of = [](const BroadTrial& trial, double gyro_scale) {
     const ImuPlausibility plausibility({});
     ImuPlausibility::State state;
@@ -168,7 +168,7 @@ TEST_P(Broad, GoodSensorsAreNotDoubtedAndOtherScalesAndSensesAre) {
 /// set use the same gain.
 constexpr double kTauPerSample_s = 0.17324;
 
-TEST_P(Broad, AutogainIsQuietAtRestAndBelievesAccelerations) {
+TEST_P(Broad, AutogainIsQuietAtRestAndFollowsAccelerations) {
   const BroadError paper = run_trials("autogain", baselines::Autogain({.tau_s = kTauPerSample_s}), trials()).back();
   // the errors over all 30 trials are 10.8 degrees in motion and 0.17 degrees at rest
   EXPECT_NEAR(paper.inclination_rest_deg, 0.17, 0.02);

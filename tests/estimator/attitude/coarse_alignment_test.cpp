@@ -66,7 +66,7 @@ Found behind_a_strike(const TumbleAttitude::Params& params, double after_s) {
   return found;
 }
 
-TEST(CoarseAlignment, BehindAGapTheFilterIsToldWhereUpIs) {
+TEST(CoarseAlignment, AfterAGapTheFilterReceivesTheVertical) {
   const Found found = behind_a_strike({}, 4.0);
   EXPECT_LT(found.tilt_rad, 0.1);
   EXPECT_LT(found.deviation_rad, 0.1);
@@ -79,7 +79,7 @@ TEST(CoarseAlignment, BehindAGapTheFilterIsToldWhereUpIs) {
   EXPECT_GT(believed.tilt_rad, 1.0);
 }
 
-TEST(CoarseAlignment, ASecondGapBeforeUpIsFoundLosesNothingOfTheDoubt) {
+TEST(CoarseAlignment, ASecondGapBeforeAlignmentKeepsTheUncertainty) {
   const TumbleAttitude filter({});
   TumbleAttitude::State state;
   const auto step = [&](TimeNs time_ns, double rate_rad_s) {

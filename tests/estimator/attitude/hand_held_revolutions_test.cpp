@@ -88,7 +88,7 @@ double closed_form_sigma(const HandHeldRateStream::Params& params, double lasts_
 /// A segment contains a whole turn more, half a turn or none, as white jerk allows; the stated deviation must include
 /// them, and the report must say so. When bounds counted as readings, a third of these samples, 408, were beyond three
 /// deviations.
-TEST(HandHeldRevolutions, ATurnThatNothingTellsIsStated) {
+TEST(HandHeldRevolutions, ATurnThatNothingDeterminesIsReported) {
   std::size_t all = 0, beyond = 0;
   for (const double from_s : {2.0, 2.3}) {
     for (const double lasts_s : {0.7, 1.2}) {

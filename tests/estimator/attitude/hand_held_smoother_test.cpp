@@ -92,7 +92,7 @@ TEST(HandHeldSmoother, ReadingsThatWrapSayNothing) {
 }
 
 /// Another method has recovered rates about x that are 2 rad/s too large for a third of a second: carried.md (C15)
-TEST(HandHeldSmoother, ARecoveredRateIsBelievedAsFarAsItIsTold) {
+TEST(HandHeldSmoother, ARecoveredRateIsUsedWithItsCovariance) {
   HandHeldRecording recording = testing::record({.spin_rad = 1.0}, 100.0, 12.0, 0.0);
   std::vector<Eigen::Matrix3d> told(recording.samples.size(), Eigen::Matrix3d::Zero()), untold = told;
   for (std::size_t k = 500; k < 533; ++k) {

@@ -107,7 +107,7 @@ TiltedSpin tilted() {
   return spin;
 }
 
-TEST(ImuMergeRails, ReadsTiltedElementsAlongTheirRows) {
+TEST(ImuMergeSaturation, ReadsTiltedElementsAlongTheirRows) {
   const TiltedSpin spin = tilted();
   const RailedMerge ours = merge_tilted(spin, tilted_params(spin, 3));
   ASSERT_GT(ours.clipped, 100);
@@ -120,7 +120,7 @@ TEST(ImuMergeRails, ReadsTiltedElementsAlongTheirRows) {
 }
 
 // The device saturates at 12 rad/s, where its data sheet states 34.9, and sets its flag.
-TEST(ImuMergeRails, AFlagFarBelowTheRangeIsHeard) {
+TEST(ImuMergeSaturation, AFlagFarBelowTheRangeIsUsed) {
   const TiltedSpin spin{16.0, 12.0};
   const RailedMerge ours = merge_tilted(spin, tilted_params(spin, 3));
   ASSERT_GT(ours.clipped, 100);
@@ -130,7 +130,7 @@ TEST(ImuMergeRails, AFlagFarBelowTheRangeIsHeard) {
   EXPECT_GT(merge_tilted(spin, tilted_params(spin, 3), {false, false, false}).error_rad_s, 2.0);
 }
 
-TEST(ImuMergeRails, OneUnitOrTwoKeepTheirFlags) {
+TEST(ImuMergeSaturation, OneUnitOrTwoKeepTheirFlags) {
   const TiltedSpin spin{16.0, 12.0};
   for (const int count : {1, 2}) {
     const RailedMerge ours = merge_tilted(spin, tilted_params(spin, count));
@@ -139,7 +139,7 @@ TEST(ImuMergeRails, OneUnitOrTwoKeepTheirFlags) {
   }
 }
 
-TEST(ImuMergeRails, FlagsTurnWithTheMounting) {
+TEST(ImuMergeSaturation, FlagsTurnWithTheMounting) {
   const TiltedSpin spin{16.0, 12.0};
   ImuMerge::Params p = tilted_params(spin, 1);
   p.T_mean_imu[0].linear() = so3::exp(0.5 * 3.14159265358979 * Vector3d::UnitZ()).toRotationMatrix();
@@ -152,7 +152,7 @@ TEST(ImuMergeRails, FlagsTurnWithTheMounting) {
   EXPECT_EQ(merged->device_clip_flags, kClipGyroY | kClipAccelX);
 }
 
-TEST(ImuMergeRails, OfTwoTheOneThatIsFreeIsBelieved) {
+TEST(ImuMergeSaturation, OfTwoTheUnsaturatedOneIsUsed) {
   TiltedSpin spin{16.0, 12.0};
   const ImuMerge merge(tilted_params(spin, 2));
   ImuMerge::State state;

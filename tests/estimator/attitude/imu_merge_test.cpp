@@ -84,7 +84,7 @@ MergeErrors merge_errors(const Spin& spin, const ImuMerge::Params& p, double top
   return out;
 }
 
-TEST(ImuMerge, TellsARateBeyondTheRangeByTheAccelerometers) {
+TEST(ImuMerge, EstimatesARateBeyondTheRangeFromTheAccelerometers) {
   const Spin spin;
   const MergeErrors exact = merge_errors(spin, spin_params(spin), 44.0);
   ASSERT_GT(exact.railed, 100);
@@ -168,7 +168,7 @@ TEST(ImuMerge, TakesOutMisalignmentsThatLargeForcesShow) {
   EXPECT_LT(corrected, 0.3 * plain);
 }
 
-TEST(ImuMerge, LeavesOutARailThatAnImpactHides) {
+TEST(ImuMerge, LeavesOutASaturationLimitThatAnImpactHides) {
   const Spin spin;
   const ImuMerge merge(spin_params(spin));
   ImuMerge::State state;

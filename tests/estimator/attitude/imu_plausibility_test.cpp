@@ -153,7 +153,7 @@ ImuPlausibility::State of_a_pendulum(double gyro_scale) {
   return state;
 }
 
-TEST(ImuPlausibility, APendulumIsHeldToItsLiftNotToItsSwing) {
+TEST(ImuPlausibility, APendulumIsCheckedByItsLiftNotByItsSwing) {
   const ImuPlausibility plausibility({});
   const ImuPlausibility::State good = of_a_pendulum(1.0);
   EXPECT_TRUE(plausibility.verdict(good).ok()) << plausibility.verdict(good).message();
@@ -167,7 +167,7 @@ TEST(ImuPlausibility, APendulumIsHeldToItsLiftNotToItsSwing) {
 
 // Pushes and a wrong gyro scale both change the slope. A corrected scale reduces the residual only if the gyro's scale
 // is wrong.
-TEST(ImuPlausibility, ASlopeIsToldWhereItExplainsWhatTheGyroLeaves) {
+TEST(ImuPlausibility, ASlopeIsReportedWhereItExplainsTheResidualOfTheGyro) {
   const ImuPlausibility plausibility({});
   const auto verdict_at = [&](double force_rotation_rad2, double correlation) {
     ImuPlausibility::State state;
@@ -274,7 +274,7 @@ ImuPlausibility::State with_a_dead(bool gyro, bool turns, double dead) {
   return state;
 }
 
-TEST(ImuPlausibility, ATriadThatNeverMovedIsDeadWhereTheOtherTellsATurn) {
+TEST(ImuPlausibility, ATriadThatNeverMovedIsDeadWhereTheOtherMeasuresARotation) {
   const ImuPlausibility plausibility({});
   for (const double dead : {0.0, 0.01}) {
     const ImuPlausibility::State gyro = with_a_dead(true, true, dead);

@@ -84,7 +84,7 @@ TEST(PivotMotionCheck, RatesExplainATurningAboutAPoint) {
   EXPECT_NEAR(found.scale, 1.0, 0.002);
 }
 
-TEST(PivotMotionCheck, AGyroNamedOrScaledOtherwiseIsTold) {
+TEST(PivotMotionCheck, AGyroNamedOrScaledOtherwiseIsReported) {
   const auto told = [](const std::function<void(Eigen::Vector3d&)>& harm) {
     return says(about_a_pivot({}, [&](ImuSample& sample) { harm(sample.angular_velocity_rad_s); }));
   };
@@ -95,7 +95,7 @@ TEST(PivotMotionCheck, AGyroNamedOrScaledOtherwiseIsTold) {
   EXPECT_EQ(told([](Eigen::Vector3d& w) { w *= 2.0; }), kEvidence);
 }
 
-TEST(PivotMotionCheck, ANearPivotTellsTheScale) {
+TEST(PivotMotionCheck, ANearPivotDeterminesTheScale) {
   const auto scaled = [](const PivotMotion& motion) {
     return about_a_pivot(motion, [](ImuSample& sample) { sample.angular_velocity_rad_s *= 1.05; });
   };

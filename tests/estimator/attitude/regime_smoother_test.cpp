@@ -53,7 +53,7 @@ TEST(MotionRegimeSmoother, ATwirlIsTheHands) {
 
 // Each force is logged four times; assigned to each sample's own time, the hidden segments would look like flight, with
 // errors of 11 rad/s.
-TEST(MotionRegimeSmoother, AForceThatIsHeldIsComparedInItsOwnTime) {
+TEST(MotionRegimeSmoother, ARepeatedForceIsComparedAtItsOwnTime) {
   HandHeldMotion motion;
   motion.spin_rad = 4.0;
   motion.spin_hz = motion.hand_hz = 1.0;
@@ -73,7 +73,7 @@ TEST(MotionRegimeSmoother, AForceThatIsHeldIsComparedInItsOwnTime) {
 
 // The motion reverses ten times with few readings in between, so it is one segment; an unknown motion type in the first
 // tenth of a second must not affect the rest, which would be wrong by 10 rad/s.
-TEST(MotionRegimeSmoother, WhoHeldItAtFirstSaysNothingOfTheRest) {
+TEST(MotionRegimeSmoother, AHandAtTheStartSaysNothingAboutTheRest) {
   HandHeldMotion motion;
   motion.spin_rad = 4.0;
   motion.spin_hz = motion.hand_hz = 1.0;

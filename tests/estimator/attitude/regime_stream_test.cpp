@@ -106,7 +106,7 @@ struct SlowlyBegun {
   }
 };
 
-TEST(MotionRegimeStream, AHandIsKnownAndBelieved) {
+TEST(MotionRegimeStream, AHandIsDetected) {
   const HandHeldRecording recording = SlowlyBegun().record(100.0, 16.0, 7.3);
   const std::vector<ImuSample>& samples = recording.samples;
   Middle middle;
@@ -205,7 +205,7 @@ TEST(MotionRegimeStream, ReadingsThatTheLogSaysAgainCountOnce) {
 
 /// The motion reverses once a second with few readings in between, so it is one clipped segment; an unknown motion type
 /// at first must not affect the rest. The flight model would be wrong by 10 rad/s.
-TEST(MotionRegimeStream, WhoHeldItAtFirstSaysNothingOfTheRest) {
+TEST(MotionRegimeStream, AHandAtTheStartSaysNothingAboutTheRest) {
   HandHeldMotion motion;
   motion.spin_rad = 4.0;
   motion.spin_hz = motion.hand_hz = 1.0;

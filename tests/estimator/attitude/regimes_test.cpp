@@ -94,7 +94,7 @@ TEST(Regimes, EachAloneIsFound) {
   }
 }
 
-TEST(Regimes, ABodyThatIsThrownWhileCarriedIsFoundInFlight) {
+TEST(Regimes, AHandHeldBodyThatIsThrownIsDetectedInFlight) {
   RegimeRecording motion;
   motion.go_on(Regime::hand_held, 3.0);
   motion.go_on(Regime::flight, 0.6);

@@ -59,7 +59,7 @@ AngularRateState middle(const ClippedSpin& spin, const SpinEstimate& result) {
 /// With white jerk alone between both sides, an angle theta beyond the uniform spin costs 720 theta^2 / (T^5 q), with
 /// the rate theta/T 30 u^2 (1 - u)^2: additional turns have this probability, and fewer turns are below the saturation
 /// level.
-TEST(RevolutionHypotheses, WhatNothingTellsIsCountedInTheCovariance) {
+TEST(RevolutionHypotheses, WhatNothingDeterminesIsCountedInTheCovariance) {
   ClippedSpin spin;
   spin.more_rad_s = 4.0;
   const SpinEstimate result = estimated_spin(spin);

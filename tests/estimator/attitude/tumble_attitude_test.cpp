@@ -36,7 +36,7 @@ TEST(TumbleAttitude, RefusesBadParams) {
   EXPECT_THROW(TumbleAttitude({.velocity_m_sqrts = std::numeric_limits<double>::quiet_NaN()}), InvalidParams);
 }
 
-TEST(TumbleAttitude, AtRestTheBiasIsFoundAndTheAttitudeHeld) {
+TEST(TumbleAttitude, AtRestTheBiasIsEstimatedAndTheAttitudeIsConstant) {
   const TumbleAttitude filter({});
   const Eigen::Vector3d bias(0.005, -0.004, 0.006);
   TumbleAttitude::State state, after_2s;

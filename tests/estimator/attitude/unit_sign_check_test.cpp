@@ -37,7 +37,7 @@ MultiImuSignCheck senses_of(double size, const TurnedReading& misread) {
   return out;
 }
 
-TEST(MultiImuSignCheck, WhatIsReadAsItIsIsNotTold) {
+TEST(MultiImuSignCheck, ACorrectReadingIsNotReported) {
   const auto as_it_is = [](auto&, auto&, auto&) {};
   const MultiImuSignCheck out = senses_of(1.0, as_it_is);
   EXPECT_FALSE(out.detected_mirroring().has_value());
@@ -48,7 +48,7 @@ TEST(MultiImuSignCheck, WhatIsReadAsItIsIsNotTold) {
   EXPECT_FALSE(MultiImuSignCheck{}.detected_mirroring().has_value());
 }
 
-TEST(MultiImuSignCheck, EachIsToldByItsPlace) {
+TEST(MultiImuSignCheck, EachIsReportedWithItsSensor) {
   for (int axis = 0; axis < 3; ++axis) {
     const int next = (axis + 1) % 3;
     const auto gyro_flipped = [=](auto& w, auto& a, auto&) { w[axis] = -w[axis], a[axis] = -a[axis]; };
@@ -67,7 +67,7 @@ TEST(MultiImuSignCheck, EachIsToldByItsPlace) {
   }
 }
 
-TEST(MultiImuSignCheck, ABodyThatHardlyTurnsTellsNothing) {
+TEST(MultiImuSignCheck, ABodyThatHardlyRotatesIndicatesNothing) {
   EXPECT_FALSE(senses_of(0.05, [](auto& w, auto& a, auto&) { w.x() = -w.x(), a.x() = -a.x(); })
                    .detected_mirroring()
                    .has_value());

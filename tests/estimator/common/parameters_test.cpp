@@ -78,7 +78,7 @@ TEST(Fields, OutOfBoundsAreNamedWithTheirGroup) {
   EXPECT_EQ(status.bound, 1.0);
 }
 
-TEST(Fields, TheFirstOfSeveralIsTold) {
+TEST(Fields, TheFirstOfSeveralIsReported) {
   Outer params;
   params.left.count = 0;
   params.right.share = 1.5;

@@ -102,7 +102,7 @@ TEST(SampleClock, FollowsAPeriodThatNobodyStatedThroughLostSamples) {
   }
 }
 
-TEST(SampleClock, TellsTheJitterAndMendsNoneThatItIsToldToLeave) {
+TEST(SampleClock, ReportsTheJitterAndRepairsNoneThatItMustKeep) {
   const std::vector<TimeNs> times_ns = regular(2000, 4e6);
   std::vector<TimeNs> stamps_ns = jittered(times_ns, 5e5);
   double corrected_jitter_s = 0.0;

@@ -47,7 +47,7 @@ TEST(ScalarUpdate, IsBayesRuleForAComponent) {
   }
 }
 
-TEST(ScalarUpdate, CheckTellsAnotherVariance) {
+TEST(ScalarUpdate, CheckDetectsAnotherVariance) {
   Matrix4 P = kPrior;
   kalman_update_of_component(1, 0.0, 0.2, P);
   EXPECT_GT((P - (kPrior.inverse() + Matrix4(Vector4::Unit(1) * Vector4::Unit(1).transpose() / 0.3)).inverse()).norm(),

@@ -77,7 +77,7 @@ TEST(CheckSample, RefusesWhatNoSensorSays) {
   EXPECT_EQ(check_sample(sample).bound, kReadingMax);
 }
 
-TEST(CheckSamples, TellsTheFirstTroubleOfASequence) {
+TEST(CheckSamples, ReportsTheFirstErrorOfASequence) {
   std::vector<ImuSample> samples(4);
   for (std::size_t k = 0; k < samples.size(); ++k) samples[k].time_ns = static_cast<TimeNs>(k) * 10'000'000;
   EXPECT_TRUE(check_samples(samples, 0.01).ok());

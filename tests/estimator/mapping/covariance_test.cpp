@@ -134,7 +134,7 @@ double deviations_after_a_knock(std::uint8_t flags, double noise_m) {
   return report.pose.position_W_m.x() / std::sqrt(report.pose.covariance(0, 0));
 }
 
-TEST(Covariance, CountsWhatTheAccelerometersRailHides) {
+TEST(Covariance, CountsWhatTheSaturatedAccelerometerHides) {
   EXPECT_LT(std::abs(deviations_after_a_knock(kClipAccelX, 0.0)), 3.0);
   EXPECT_GT(std::abs(deviations_after_a_knock(0, 0.0)), 3.0);  // a knock that nobody owns up to
   // wrong normals look like surfaces across the corridor

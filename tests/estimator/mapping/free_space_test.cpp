@@ -31,7 +31,7 @@ FreeSpaceGrid before_a_wall(float moved_m) {
   return sight;
 }
 
-TEST(FreeSpaceGrid, TellsFreeSpaceFromWhatIsThere) {
+TEST(FreeSpaceGrid, DistinguishesFreeSpaceFromSurfaces) {
   const FreeSpaceGrid sight = before_a_wall(0.0f);
   const auto verdict = [&](float x, float y, float z, float sigma_m = 0.01f) {
     return sight.verdict(kFrom + Eigen::Vector3f(x, y, z), sigma_m);

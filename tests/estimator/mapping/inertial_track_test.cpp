@@ -82,7 +82,7 @@ TEST(InertialTrack, ATooShortRestTeachesNoBias) {
 }
 
 // readings take 10 ms, and motion within a reading is detected at its end
-TEST(InertialTrack, AFastImuIsHeldNoLongerThanItRests) {
+TEST(InertialTrack, AFastImuIsConstrainedOnlyWhileItRests) {
   Listener listener;
   listener.step_ns = 1'000'000;
   listener.hear(1004, kBias_rad_s);

@@ -171,7 +171,7 @@ TEST(LidarInertialOdometry, AnExactlyDegenerateAlignmentCounts) {
 
 /// Above a floor alone, which leaves two directions undetermined, and with an accelerometer error of 0.5 m/s^2 after
 /// the rest, the integrated motion drifts; a stated velocity at every sweep prevents the drift.
-TEST(LidarInertialOdometry, AVelocityThatIsToldHoldsWhatTheSurfacesDoNot) {
+TEST(LidarInertialOdometry, AGivenVelocityConstrainsWhatTheSurfacesDoNot) {
   const test::Motion& motion = test::room_tumble().motion;
   const auto end_error_m = [&](bool told) {
     Odometry odometry(rig_params());

@@ -28,7 +28,7 @@ Status after(const SweepReport& one) {
   return localisation.verdict();
 }
 
-TEST(Localisation, IsWhatTheDeviationSaysHoweverManySweepsWereHeld) {
+TEST(Localisation, AgreesWithItsDeviationForAnyNumberOfConstrainedSweeps) {
   EXPECT_TRUE(Localisation(1.0).verdict().ok());
   SweepReport rejected = sweep(0.9, 0.0);
   rejected.verdict = SweepVerdict::rejected;

@@ -165,7 +165,7 @@ TEST(LidarInertialOdometry, ThrowsOnBadParams) {
   EXPECT_THROW(Odometry{params}, InvalidParams);
 }
 
-TEST(LidarInertialOdometry, BadParamsAreToldAsAValueToo) {
+TEST(LidarInertialOdometry, BadParamsAreReportedAsAValueToo) {
   EXPECT_TRUE(check_odometry_params({}).ok());
   const auto told = [](auto change) {
     Odometry::Params params;

@@ -251,7 +251,7 @@ TEST(OdometerReading, ThatKnowsNothingOrIsOfAnotherTimeChangesNothing) {
 
 /// A clipped axis hides half a radian of the sweep, which a camera measured. One Gauss-Newton step would be
 /// insufficient.
-TEST(OdometerReading, OfAMotionFindsWhatARailHid) {
+TEST(OdometerReading, OfAMotionFindsWhatASaturationLimitHid) {
   Case c(1e-3);
   for (MotionSample& sample : c.samples) sample.clipped_axes = 1;
   u::variances(c.boundary.state_estimate.prior_weight_covariance, u::deficit).setConstant(25.0);

@@ -210,7 +210,7 @@ TEST(Recovery, ASweepOfUnknownGroundExtendsTheMap) {
   see_the_other_side(rig, SweepVerdict::degenerate);
 }
 
-TEST(Recovery, ASweepOfUnknownGroundExtendsTheMapWhereThePriorIsNotTrusted) {
+TEST(Recovery, ASweepOfUnknownGroundExtendsTheMapWhereThePriorIsNotUsed) {
   Odometry::Params params = true_params();
   params.expert.tracking.extend_sigma_max_m = 0.0;
   Rig rig(params);

@@ -277,7 +277,7 @@ Registration::Result align_few(const Registration::Prior& prior, std::size_t agr
   return result;
 }
 
-TEST(Registration, BelievesFewMatchesWhereThePriorExpectsThem) {
+TEST(Registration, AcceptsFewMatchesWhereThePriorExpectsThem) {
   Registration::Prior prior = loose_prior(0.1, 0.03);
   prior.mean.state.p_WI_m = Eigen::Vector3d(0.08, -0.06, 0.04);
   const Registration::Result result = align_few(prior, 30);
@@ -289,7 +289,7 @@ TEST(Registration, BelievesFewMatchesWhereThePriorExpectsThem) {
             RegistrationVerdict::too_few_matches);
 }
 
-TEST(Registration, BelievesNoFewMatchesWhereThePriorExpectsNone) {
+TEST(Registration, RejectsFewMatchesWhereThePriorExpectsMore) {
   Registration::Prior prior = loose_prior(0.05, 0.03);  // with an error of seven standard deviations
   prior.mean.state.p_WI_m = Eigen::Vector3d(0.25, -0.2, 0.15);
   const Registration::Result result = align_few(prior, 30);

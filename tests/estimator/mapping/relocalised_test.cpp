@@ -92,7 +92,7 @@ TEST(Relocalised, OnePlaceThatTwoSweepsBearOutStands) {
   EXPECT_GT(rig.error_m(), 0.5);
 }
 
-TEST(Relocalised, WhereInertiaHasItItIsBelievedAtOnce) {
+TEST(Relocalised, ARelocalisationThatInertiaConfirmsIsAcceptedAtOnce) {
   RoomRig rig(true_params());
   rig.run(0, kCovered);
   rig.feed_imu(kCovered);
@@ -128,7 +128,7 @@ LidarInertialOdometry::Impl& impl_of(LidarInertialOdometry& odometry);
 template struct PrivateMember<&LidarInertialOdometry::impl_>;
 
 // as after a motion of the alternative pose that could not be built
-TEST(Relocalised, ADoubtedPlaceWithoutASecondOpinionIsBorneOutOrLost) {
+TEST(Relocalised, AnUnconfirmedPoseWithoutAnAlternativeIsConfirmedOrLost) {
   RoomRig rig(true_params());
   find_again(rig, kElsewhere_m);
   ASSERT_TRUE(rig.report.relocalisation_unconfirmed);

@@ -59,7 +59,7 @@ TEST(LidarScale, IsThatOfTheRanges) {
 }
 
 // Sweep by sweep, the slope is the same, and later sweeps do not change earlier results.
-TEST(LidarScale, IsToldWhileSweepsCome) {
+TEST(LidarScale, IsReportedWhileSweepsCome) {
   for (const double scale : {0.9, 1.0, 1.1}) {
     const Flight flight = hops(scale, 0.005);
     LidarScaleEstimator watch(kGravity, 200);
@@ -104,7 +104,7 @@ TEST(LidarScale, NothingIsComparedOverAGapOfTheImu) {
   EXPECT_FALSE(found.is_inconsistent()) << found.scale << " +- " << found.sigma;
 }
 
-TEST(LidarScale, NothingIsSaidWhereNothingTells) {
+TEST(LidarScale, NothingIsReportedWithoutEvidence) {
   const Flight flight = hops(1.1, 0.005);
   EXPECT_FALSE(find_sweep_scale({}, {}, kGravity).is_inconsistent());
   EXPECT_FALSE(find_sweep_scale(flight.samples, {}, kGravity).is_inconsistent());

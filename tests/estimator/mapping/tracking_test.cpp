@@ -141,7 +141,7 @@ DelayGrid aligned_of(std::size_t inliers, bool expected) {
   return out;
 }
 
-TEST(Tracking, APlaceIsDoubtedWhereInertiaHasItNotOrItsSurfacesDoNotFit) {
+TEST(Tracking, ARelocalisationIsUnconfirmedWhereInertiaOrSurfacesContradictIt) {
   const LidarInertialOdometry::Params params;
   const auto placement = [&](const TrackingState& before, std::size_t inliers, bool expected) {
     return judged(params, before, 500, false, aligned_of(inliers, expected)).outcome;

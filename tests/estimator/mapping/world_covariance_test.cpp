@@ -62,7 +62,7 @@ TEST(WorldCovariance, AnErrorOfTheMountingIsNoneOfTheStart) {
   EXPECT_GT((in_world(covariance, joint).topLeftCorner<3, 3>().trace()), 1e-3);
 }
 
-TEST(WorldCovariance, DriftGrowsAlongTheDirectionThatNothingHeld) {
+TEST(WorldCovariance, DriftGrowsAlongTheUnconstrainedDirection) {
   WorldCovarianceParams params = without_tilt();
   params.drift_ratio = 0.1;
   params.drift_sigma_max_m = 3.0;

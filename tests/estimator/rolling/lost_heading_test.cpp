@@ -53,7 +53,7 @@ End end_of(double gap_s, double before_s, double lag_s) {
 }
 
 // without the correction, heading and velocity were estimated as if both had continued: up to 7.1 deviations
-TEST(LostHeading, ABounceInAGapIsToldByTheCovariance) {
+TEST(LostHeading, ABounceInAGapIncreasesTheCovariance) {
   double worst_m = 0.0;
   for (const double lag_s : {RollingSmoother::kWholeRecordingLag, 1.0}) {
     for (const double before_s : {0.03, 0.1, 0.15, 0.25}) {
@@ -66,7 +66,7 @@ TEST(LostHeading, ABounceInAGapIsToldByTheCovariance) {
   EXPECT_LT(end_of(0.0, 0.0, RollingSmoother::kWholeRecordingLag).error_m, 0.03);
 }
 
-TEST(LostHeading, TheContactTellsNothingOfATurnOfTheWholeRun) {
+TEST(LostHeading, TheContactDoesNotDetermineARotationOfTheWholeRun) {
   RollingParams params = testing::lagged_params(0.0).filter;
   RollingNominalState nominal;
   nominal.q_WI = so3::exp({0.3, -0.7, 1.1});

@@ -231,7 +231,7 @@ TEST(RollingFilter, FindsItsWayThroughSlipAndSlide) {
 
 /// A slide over two seconds with constant spin: its contact velocity is on a plateau, which looks like grip at another
 /// speed until the floor grips again.
-TEST(RollingFilter, AHeldSpinIsNotTakenForGrip) {
+TEST(RollingFilter, AConstrainedSpinIsNotTakenForGrip) {
   const auto along = [](double speed) { return Eigen::Vector3d(speed, 0.0, 0.0); };
   const auto rise = [](double s) {
     const double x = std::clamp(s, 0.0, 1.0);

@@ -1,39 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
-#include <malloc.h>
 
-#include <algorithm>
-#include <cstdlib>
 #include <memory>
-#include <new>
 #include <optional>
 #include <vector>
 
 #include "estimator/rolling/rolling_truth.hpp"
 #include "estimator/src/rolling/last_pass.hpp"
+#include "tests/allocation_counter.hpp"
 #include "tumble/rolling/detail/rolling_smoother.hpp"
-
-namespace {
-// bytes that this program has allocated, now and at most
-thread_local std::size_t position_constrained = 0, held_most = 0;
-}  // namespace
-
-// the function is not inlined, so that the compiler does not report mismatched new and delete
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  void* memory = std::malloc(size);
-  if (memory == nullptr) throw std::bad_alloc();
-  position_constrained += malloc_usable_size(memory);
-  held_most = std::max(held_most, position_constrained);
-  return memory;
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-  position_constrained -= malloc_usable_size(memory);
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-  position_constrained -= malloc_usable_size(memory);
-  std::free(memory);
-}
 
 namespace tumble {
 namespace {
@@ -47,35 +22,35 @@ testing::RollingTruth path(double duration_s) {
                         .lever_arm_m = kLeverArm});
 }
 
-struct Held {
+struct MemoryUse {
   double nodes = 0.0, state = 0.0, at_the_end = 0.0;  ///< bytes; at_the_end is in addition to the state
 };
 
-Held held_by(double duration_s) {
+MemoryUse memory_use(double duration_s) {
   const testing::RollingTruth truth = path(duration_s);
   RollingSmoother::Params params;
   params.filter.radius_m = testing::kRadius_m;
   params.filter.lever_arm_m = kLeverArm;
   const RollingSmoother smoother(params);
   std::vector<RollingEstimate> none;
-  const std::size_t before = position_constrained;
+  const std::size_t before = test::allocations.bytes;
   const auto state = std::make_unique<RollingSmoother::State>();
   for (const ImuSample& sample : truth.samples) EXPECT_TRUE(smoother.step(sample, *state, none).ok());
-  Held out;
+  MemoryUse out;
   out.nodes = static_cast<double>(state->node_modes.size());
-  out.state = static_cast<double>(position_constrained - before);
-  held_most = position_constrained;
-  const std::size_t with_state = position_constrained;
+  out.state = static_cast<double>(test::allocations.bytes - before);
+  test::allocations.peak_bytes = test::allocations.bytes;
+  const std::size_t with_state = test::allocations.bytes;
   std::size_t estimates = 0;
   smoother.finish(*state, [&](const RollingEstimate&) { ++estimates; });
   EXPECT_EQ(estimates, truth.samples.size());
-  out.at_the_end = static_cast<double>(held_most - with_state);
+  out.at_the_end = static_cast<double>(test::allocations.peak_bytes - with_state);
   return out;
 }
 
 // The cost of a node is the growth from a run to one of twice the length; a node's record alone is more than 10 KiB.
 TEST(RollingMemory, AWholeRunHoldsLittleForEachNode) {
-  const Held one = held_by(60.0), two = held_by(120.0);
+  const MemoryUse one = memory_use(60.0), two = memory_use(120.0);
   const double nodes = two.nodes - one.nodes;
   ASSERT_NEAR(nodes, 3000.0, 2.0);
   // five samples of 64 bytes and a step of 152 bytes, in vectors that double; measured 557
@@ -95,12 +70,12 @@ TEST(RollingMemory, ALagBeyondAllRunsTakesNoMoreThanARun) {
   const RollingSmoother smoother(params);
   const testing::RollingTruth truth = path(2.0);
   std::vector<RollingEstimate> out;
-  const std::size_t before = position_constrained;
+  const std::size_t before = test::allocations.bytes;
   const auto state = std::make_unique<RollingSmoother::State>();
   for (const ImuSample& sample : truth.samples) ASSERT_TRUE(smoother.step(sample, *state, out).ok());
   EXPECT_TRUE(out.empty());
-  EXPECT_LT(position_constrained - before, 300u << 20);  // a million samples and nodes
-  EXPECT_GT(position_constrained - before, 100u << 20) << "the bound says nothing any more";
+  EXPECT_LT(test::allocations.bytes - before, 300u << 20);  // a million samples and nodes
+  EXPECT_GT(test::allocations.bytes - before, 100u << 20) << "the bound says nothing any more";
 }
 
 /// Returns all results of the last pass for a path, in one row.
@@ -133,7 +108,7 @@ std::vector<double> told(std::span<const ImuSample> samples, std::span<const rol
   return out;
 }
 
-TEST(RollingMemory, HowMuchIsHeldAtATimeChangesNoBit) {
+TEST(RollingMemory, TheSizeOfTheBufferChangesNoBit) {
   const testing::RollingTruth truth = path(10.0);
   constexpr std::size_t kNodes = 499;
   std::vector<rolling::ModePathNode> path(kNodes);

@@ -34,7 +34,7 @@ Gained gained(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_
 
 // An impact that saturates a part of the window is at least the reading, as without the flag; without the correction,
 // its velocity was zero within 16 mm/s.
-TEST(RollingRails, AnImpactIsAtLeastWhatWasRead) {
+TEST(RollingSaturation, AnImpactIsAtLeastWhatWasRead) {
   const Eigen::Vector3d read(-3.0, 17.0, 57.0);
   const double gravity = RollingParams{}.gravity_m_s2;
   const Eigen::Vector3d expected = kRepeated_s * (read - gravity * Eigen::Vector3d::UnitZ());
@@ -49,7 +49,7 @@ TEST(RollingRails, AnImpactIsAtLeastWhatWasRead) {
 
 // A fast rotation about z saturates x: 160 m/s^2 keep the centre where it is, without an impact. The other axes keep
 // their readings.
-TEST(RollingRails, AFastTurnIsWhatItTakesToKeepTheCentre) {
+TEST(RollingSaturation, AFastTurnIsWhatItTakesToKeepTheCentre) {
   constexpr double kRate_rad_s = 40.0;
   const double gravity = RollingParams{}.gravity_m_s2;
   const Eigen::Vector3d read(-kRail_m_s2, 0.0, gravity);
@@ -63,7 +63,7 @@ TEST(RollingRails, AFastTurnIsWhatItTakesToKeepTheCentre) {
 }
 
 // A force that is ignored has no bias that changes the velocity.
-TEST(RollingRails, AnIgnoredForceHasNoBias) {
+TEST(RollingSaturation, AnIgnoredForceHasNoBias) {
   const Eigen::Vector3d rate(0.0, 0.0, 5.0), force(0.0, 0.0, 9.8);
   const auto by_bias = [&](std::uint8_t flags) {
     RollingNominalState nominal;

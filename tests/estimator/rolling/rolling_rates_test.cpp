@@ -126,7 +126,7 @@ TEST(RollingRates, SplitRunsEqualWithAveragesAndGaps) {
   }
 }
 
-TEST(RollingRates, AGapCostsWhatItMustAndIsTold) {
+TEST(RollingRates, AGapCostsAccuracyAndIsReported) {
   const testing::RollingTruth truth = slipping_sampled(4'000'000);
   const Eigen::Vector3d& end_m = truth.p_WG_m.back();
   const auto without = [&](double from_s, double length_s) {
@@ -167,7 +167,7 @@ TEST(RollingRates, AGapCostsWhatItMustAndIsTold) {
   EXPECT_GT(status.value, 1.0);  // seconds
 }
 
-TEST(RollingRates, AStartInMotionIsToldAndBelievedLess) {
+TEST(RollingRates, AStartInMotionIsReportedWithALargerCovariance) {
   const testing::RollingTruth truth = slipping_sampled(4'000'000);
   for (const double from_s : {2.4, 3.2, 6.7}) {
     std::vector<ImuSample> samples;

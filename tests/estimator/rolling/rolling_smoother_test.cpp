@@ -183,7 +183,7 @@ TEST(RollingSmoother, ASlowTurnAtTheEndIsNoBias) {
 }
 
 /// The sphere is 2 % larger than assumed, on a path with known ends: the radius and the path are estimated.
-TEST(RollingSmoother, AKnownDistanceTellsTheRadius) {
+TEST(RollingSmoother, AKnownDistanceDeterminesTheRadius) {
   constexpr double kBelieved_m = 0.148, kTrue_m = 0.145;
   const testing::RollingTruth truth = slipping();
   const Eigen::Vector3d end = truth.p_WG_m.back() - truth.p_WG_m.front();

@@ -90,7 +90,7 @@ TEST(PublishedChain, FollowsAGentleMotionAndDrawsItsMap) {
   EXPECT_GT(chain.map().size(), 1000u);
 }
 
-TEST(PublishedChain, TellsASweepThatHoldsNothingToRegister) {
+TEST(PublishedChain, ReportsASweepWithoutPointsToRegister) {
   const InARoom room = gentle(3);
   PublishedChain chain({}, room.samples, room.rates);
   PublishedChain::SweepReport report;

@@ -140,7 +140,7 @@ TEST(PartialSaturation, IsExactForAConstantSlope) {
 
 // All readings sink from sample to sample along a tilted saturation level, and all are flagged: none of them was
 // saturated for only a part of its window, except the one that follows an unsaturated reading.
-TEST(PartialSaturation, OfAFlaggedNeighbourNothingIsTold) {
+TEST(PartialSaturation, OfAFlaggedNeighbourNothingIsReported) {
   SaturationLimitDetector::State state;
   state.channels[0].plateau_limit = kRail;
   const SaturationLimitDetector rails({});

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "scenarios/errors.hpp"
+#include "tests/complaint.hpp"
 #include "tests/scenarios/bench/some_result.hpp"
 #include "tests/temporary_folder.hpp"
 
@@ -18,12 +19,7 @@ using ::testing::HasSubstr;
 using testing::some_result;
 
 std::string refusal(const std::string& line) {
-  try {
-    parse_bench_result(line, "a.jsonl:3");
-  } catch (const BadInput& error) {
-    return error.what();
-  }
-  return "";
+  return test::complaint([&] { parse_bench_result(line, "a.jsonl:3"); });
 }
 
 std::string replaced(std::string text, const std::string& old, const std::string& by) {

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "scenarios/errors.hpp"
+#include "tests/complaint.hpp"
 #include "tests/scenarios/bench/some_result.hpp"
 
 namespace tumble::scenarios {
@@ -49,12 +49,7 @@ TEST(Bench, ADrawWithNothingToScoreDoesNotCountForAnybody) {
 
 TEST(Bench, ResultsOfAnotherSuiteAreRefused) {
   const auto refusal = [](const BenchResult& result, const Suite& suite) -> std::string {
-    try {
-      require_of_suite(result, suite);
-    } catch (const BadInput& error) {
-      return error.what();
-    }
-    return "";
+    return test::complaint([&] { require_of_suite(result, suite); });
   };
   BenchResult result = some_result("mine", {0.1, 0.2, 0.3});
   result.suite_digest = bench_suite_digest(small());
@@ -72,7 +67,7 @@ TEST(Bench, ResultsOfAnotherSuiteAreRefused) {
   EXPECT_THAT(refusal(result, small()), HasSubstr("contains 2 simulated runs"));
 }
 
-TEST(Bench, ResultsOfAnotherSimulationAreTold) {
+TEST(Bench, ResultsOfAnotherSimulationAreReported) {
   const BenchResult a = some_result("a", {0.1, 0.2, 0.3});
   BenchResult b = some_result("b", {0.1, 0.2, 0.3});
   EXPECT_EQ(other_recording(a, b), "");

@@ -51,7 +51,7 @@ TEST(HoldCase, WhatHoldsHasToHold) {
   EXPECT_THAT(fault(bounded, slam_outcome(OutcomeStatus::ok, 1.1, false)), HasSubstr("1.1"));
 }
 
-TEST(HoldCase, WhatFailsIsHeldOnBothSides) {
+TEST(HoldCase, AFailureHasTwoBounds) {
   const Expectation fails = expects(true, 2.0);
   EXPECT_THAT(fault(fails, slam_outcome(OutcomeStatus::ok, 2.0, true)), IsEmpty());
   EXPECT_THAT(fault(fails, slam_outcome(OutcomeStatus::ok, 3.9, true)), IsEmpty());
@@ -71,7 +71,7 @@ TEST(HoldCase, WhatFailsIsHeldOnBothSides) {
               HasSubstr("has no value, but the accepted result has a value"));
 }
 
-TEST(HoldCase, WhatIsAcceptedIsHeldAsItWas) {
+TEST(HoldCase, AnAcceptedResultIsCompared) {
   for (const bool map_failed : {false, true}) {
     const Outcome now = slam_outcome(OutcomeStatus::ok, 0.3, map_failed);
     for (const bool before : {false, true}) {

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "scenarios/errors.hpp"
+#include "tests/complaint.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -49,12 +49,7 @@ TEST(SameFailure, ARunWithoutTheMetricIsAnotherThing) {
 
 TEST(SameFailure, WhatDoesNotFailIsRefused) {
   const auto complaint = [](const Failure& failure, const Outcome& of) {
-    try {
-      const SameFailure same(failure, of);
-    } catch (const BadInput& error) {
-      return std::string(error.what());
-    }
-    return std::string();
+    return test::complaint([&] { const SameFailure same(failure, of); });
   };
   EXPECT_THAT(complaint({"ate_m", 1.0}, outcome(OutcomeStatus::ok, {{"ate_m", 0.5}})),
               testing::HasSubstr("ate_m is 0.5, which is not worse than the limit 1"));

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <cmath>
 
-#include "scenarios/errors.hpp"
+#include "tests/complaint.hpp"
 #include "tests/tree.hpp"
 
 namespace tumble::scenarios {
@@ -17,12 +17,7 @@ const DataRoot kData{test::source_dir()};
 
 std::string complaint(const std::string& key, double value) {
   Scenario scenario = load_scenario(kData, "hill");
-  try {
-    fix_number(scenario, key, value);
-  } catch (const BadInput& error) {
-    return error.what();
-  }
-  return "";
+  return test::complaint([&] { fix_number(scenario, key, value); });
 }
 
 TEST(FixNumber, SetsOneNumberAndLeavesTheDrawsOfAllOthersAlone) {

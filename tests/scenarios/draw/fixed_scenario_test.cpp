@@ -9,6 +9,7 @@
 
 #include "scenarios/draw/scenario_text.hpp"
 #include "scenarios/errors.hpp"
+#include "tests/complaint.hpp"
 #include "tests/tree.hpp"
 
 namespace tumble::scenarios {
@@ -63,12 +64,7 @@ std::string complaint_after(const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   text.replace(at, from.size(), to);
-  try {
-    parse_scenario(text, "a.yaml", Registry::of_simulation());
-  } catch (const BadInput& error) {
-    return error.what();
-  }
-  return "";
+  return test::complaint([&] { parse_scenario(text, "a.yaml", Registry::of_simulation()); });
 }
 
 TEST(NamedCase, WhatIsWrongIsNamedWithItsPlace) {
@@ -105,12 +101,7 @@ class CaseFiles : public testing::Test {
     std::ofstream(folder / "lost.yaml") << text;
   }
   std::string complaint(const std::string& name) {
-    try {
-      load_scenario(data_, name);
-    } catch (const BadInput& error) {
-      return error.what();
-    }
-    return "";
+    return test::complaint([&] { load_scenario(data_, name); });
   }
   DataRoot data_;
   std::string case_, plain_;

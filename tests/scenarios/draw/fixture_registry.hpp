@@ -5,7 +5,7 @@
 #include <string>
 
 #include "scenarios/draw/registry.hpp"
-#include "scenarios/errors.hpp"
+#include "tests/complaint.hpp"
 
 namespace tumble::scenarios::fixture {
 
@@ -63,15 +63,6 @@ struct Wrong {
   const char* what;   ///< part of the message
 };
 
-/// Returns the message of the BadInput that `call` throws, or an empty string when it throws none.
-template <class Call>
-std::string complaint(Call&& call) {
-  try {
-    call();
-  } catch (const BadInput& error) {
-    return error.what();
-  }
-  return "";
-}
+using test::complaint;
 
 }  // namespace tumble::scenarios::fixture

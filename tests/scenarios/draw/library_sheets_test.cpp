@@ -66,7 +66,7 @@ TEST(LibrarySheets, HaveEveryImuAndLidarOfTheModels) {
 }
 
 // negative control
-TEST(LibrarySheets, AnotherNumberIsTold) {
+TEST(LibrarySheets, AnotherNumberIsReported) {
   ImuDataSheet sheet = sheets::mti30();
   sheet.accel_range_m_s2 = 147.1;
   EXPECT_EQ(compare(sheet, "mti30").different(), 1);

@@ -198,142 +198,110 @@ void draw_map_twice_turned(const sim::Recording&, Estimate& estimate) {
   }
 }
 
+/// A Timed contains the metrics of a method that must detect a wrong covariance and a delay of 1 ms.
+struct Timed {
+  std::string scenario, method;
+  std::vector<std::string> halved, doubled, shifted;  ///< empty: the fault is not tested with this method
+};
+
+/// Returns the faults of covariance and time stamps, which every kind of method can have.
+void add_timed(std::vector<Mutation>& all) {
+  const Timed kTimed[] = {
+      {"hill", "rate/tumble", {"rate_nees_flight"}, {"rate_nees_flight", "rate_nees_impact"}, {"rate_time_offset_s"}},
+      {"hill", "rate/tumble_lag", {"rate_nees_flight"}, {"rate_nees_flight"}, {"rate_time_offset_s"}},
+      {"swing", "rate/tumble", {"rate_nees_flight"}, {"rate_nees_flight"}, {"rate_time_offset_s"}},
+      {"bump", "attitude/tumble", {"inclination_nees_median"}, {}, {}},
+      {"swing",
+       "attitude/tumble",
+       {"inclination_nees_median"},
+       {"inclination_nees_median"},
+       {"attitude_time_offset_s"}},
+      {"bump",
+       "position/tumble",
+       {"position_nees_median"},
+       {"position_nees_median"},
+       {"pose_time_offset_s", "ate_rad", "rpe_1m_rad"}},
+      {"bump", "position/tumble_lag", {"position_nees_median"}, {}, {"pose_time_offset_s"}},
+      {"bump", "position/tumble_live", {"position_nees_median"}, {}, {"pose_time_offset_s"}},
+      {"roll", "position/tumble", {"position_nees_median"}, {"position_nees_median"}, {"pose_time_offset_s"}},
+      {"hill", "slam/tumble", {"pose_nees"}, {"pose_nees"}, {"pose_time_offset_s"}},
+      {"hill", "slam/tumble_lag", {"pose_nees"}, {"pose_nees"}, {"pose_time_offset_s"}},
+      {"hill", "slam/tumble_live", {"pose_nees"}, {"pose_nees"}, {"pose_time_offset_s"}},
+  };
+  for (const Timed& one : kTimed) {
+    if (!one.halved.empty())
+      all.push_back({"covariance_halved", one.scenario, one.method, one.halved, nullptr, halve_covariances});
+    if (!one.doubled.empty())
+      all.push_back({"covariance_doubled", one.scenario, one.method, one.doubled, nullptr, double_covariances});
+    if (!one.shifted.empty())
+      all.push_back({"shift_1_ms", one.scenario, one.method, one.shifted, nullptr, shift_by_1_ms});
+  }
+}
+
+/// Returns the wrong sign of the lever arm in the input of methods of kind `rate`.
+void add_wrong_inputs(std::vector<Mutation>& all) {
+  all.push_back({"lever_arm_sign_given",
+                 "hill",
+                 "rate/tumble",
+                 {"rate_error_clipped_median_rad_s", "rate_error_free_median_rad_s", "rate_error_clipped_p99_rad_s",
+                  "rate_coverage_3sigma"},
+                 flip_lever_arms,
+                 nullptr});
+  all.push_back({"lever_arm_sign_given",
+                 "hill",
+                 "rate/tumble_lag",
+                 {"rate_error_clipped_median_rad_s"},
+                 flip_lever_arms,
+                 nullptr});
+}
+
+/// A Changed contains a fault of the returned estimate, and the metrics that must detect the fault.
+struct Changed {
+  std::string name, scenario, method;
+  void (*returned)(const sim::Recording&, Estimate&);
+  std::vector<std::string> metrics;
+};
+
+void add_changed(std::vector<Mutation>& all) {
+  const Changed kChanged[] = {
+      {"lever_arm_sign_of_poses",
+       "hill",
+       "slam/tumble",
+       flip_lever_arm_of_poses,
+       {"ate_m", "translation_error_end_m", "rpe_1m_m", "map_error_mean_m", "map_overlap"}},
+      {"half_map", "hill", "slam/tumble", lose_half_the_map, {"map_coverage"}},
+      {"broken_border", "hill", "slam/tumble", break_sweep_borders, {"sweep_jump_m_s"}},
+      {"turned_end", "hill", "slam/tumble", turn_the_end, {"rotation_error_end_rad"}},
+      {"map_elsewhere", "hill", "slam/tumble", move_the_map, {"map_failed"}},
+      {"map_twice", "hill", "slam/tumble", draw_map_twice, {"map_unique_share"}},
+      {"map_twice", "hill", "slam/tumble_lag", draw_map_twice, {"map_unique_share"}},
+      {"map_twice_turned", "hill", "slam/tumble", draw_map_twice_turned, {"map_overlap_0_10"}},
+      {"lost_bump", "bump", "position/tumble", lose_a_bump, {"position_end_error_share", "position_coverage_3sigma"}},
+      {"lost_bump", "bump", "position/tumble_live", lose_a_bump, {"position_end_error_share"}},
+      {"sunk", "bump", "position/tumble", sink_poses, {"position_height_error_max_m"}},
+      {"tilted", "bump", "attitude/tumble", tilt_attitudes, {"inclination_rmse_rad", "inclination_coverage_3sigma"}},
+      {"turning", "bump", "attitude/tumble", turn_attitudes, {"heading_rmse_rad"}},
+      {"lost_slip", "slip", "position/tumble", lose_slips, {"slip_recall"}},
+      {"lost_slip", "slip", "position/tumble_lag", lose_slips, {"slip_recall"}},
+      {"lost_slip", "slip", "position/tumble_live", lose_slips, {"slip_recall"}},
+      {"early_slip", "slip", "position/tumble", claim_slips_early, {"slip_precision"}},
+      {"early_slip", "slip", "position/tumble_live", claim_slips_early, {"slip_precision"}},
+  };
+  for (const Changed& one : kChanged)
+    all.push_back({one.name, one.scenario, one.method, one.metrics, nullptr, one.returned});
+}
+
 }  // namespace
 
 std::span<const Mutation> mutations() {
-  static const std::array all = {
-      Mutation{"lever_arm_sign_given",
-               "hill",
-               "rate/tumble",
-               {"rate_error_clipped_median_rad_s", "rate_error_free_median_rad_s", "rate_error_clipped_p99_rad_s",
-                "rate_coverage_3sigma"},
-               flip_lever_arms,
-               nullptr},
-      Mutation{"lever_arm_sign_of_poses",
-               "hill",
-               "slam/tumble",
-               {"ate_m", "translation_error_end_m", "rpe_1m_m", "map_error_mean_m", "map_overlap"},
-               nullptr,
-               flip_lever_arm_of_poses},
-      Mutation{"covariance_halved_rate", "hill", "rate/tumble", {"rate_nees_flight"}, nullptr, halve_covariances},
-      Mutation{"covariance_halved_slam", "hill", "slam/tumble", {"pose_nees"}, nullptr, halve_covariances},
-      Mutation{"covariance_halved_position",
-               "bump",
-               "position/tumble",
-               {"position_nees_median"},
-               nullptr,
-               halve_covariances},
-      Mutation{"covariance_doubled_rate",
-               "hill",
-               "rate/tumble",
-               {"rate_nees_flight", "rate_nees_impact"},
-               nullptr,
-               double_covariances},
-      Mutation{"covariance_doubled_slam", "hill", "slam/tumble", {"pose_nees"}, nullptr, double_covariances},
-      Mutation{"covariance_doubled_position",
-               "bump",
-               "position/tumble",
-               {"position_nees_median"},
-               nullptr,
-               double_covariances},
-      Mutation{"lost_bump",
-               "bump",
-               "position/tumble",
-               {"position_end_error_share", "position_coverage_3sigma"},
-               nullptr,
-               lose_a_bump},
-      Mutation{"shift_1_ms", "hill", "rate/tumble", {"rate_time_offset_s"}, nullptr, shift_by_1_ms},
-      Mutation{"shift_1_ms_live", "hill", "rate/tumble_lag", {"rate_time_offset_s"}, nullptr, shift_by_1_ms},
-      Mutation{"shift_1_ms_poses", "hill", "slam/tumble", {"pose_time_offset_s"}, nullptr, shift_by_1_ms},
-      Mutation{"lever_arm_sign_given_live",
-               "hill",
-               "rate/tumble_lag",
-               {"rate_error_clipped_median_rad_s"},
-               flip_lever_arms,
-               nullptr},
-      Mutation{"covariance_halved_live", "hill", "rate/tumble_lag", {"rate_nees_flight"}, nullptr, halve_covariances},
-      Mutation{"covariance_doubled_live", "hill", "rate/tumble_lag", {"rate_nees_flight"}, nullptr, double_covariances},
-      Mutation{"shift_1_ms_position",
-               "bump",
-               "position/tumble",
-               {"pose_time_offset_s", "ate_rad", "rpe_1m_rad"},
-               nullptr,
-               shift_by_1_ms},
-      Mutation{
-          "shift_1_ms_position_live", "bump", "position/tumble_live", {"pose_time_offset_s"}, nullptr, shift_by_1_ms},
-      Mutation{"covariance_halved_position_live",
-               "bump",
-               "position/tumble_live",
-               {"position_nees_median"},
-               nullptr,
-               halve_covariances},
-      Mutation{"lost_bump_live", "bump", "position/tumble_live", {"position_end_error_share"}, nullptr, lose_a_bump},
-      Mutation{"covariance_halved_sphere_attitude",
-               "bump",
-               "attitude/tumble",
-               {"inclination_nees_median"},
-               nullptr,
-               halve_covariances},
-      Mutation{"shift_1_ms_carried", "swing", "rate/tumble", {"rate_time_offset_s"}, nullptr, shift_by_1_ms},
-      Mutation{"covariance_halved_carried", "swing", "rate/tumble", {"rate_nees_flight"}, nullptr, halve_covariances},
-      Mutation{"covariance_doubled_carried", "swing", "rate/tumble", {"rate_nees_flight"}, nullptr, double_covariances},
-      Mutation{
-          "shift_1_ms_position_lag", "bump", "position/tumble_lag", {"pose_time_offset_s"}, nullptr, shift_by_1_ms},
-      Mutation{"covariance_halved_position_lag",
-               "bump",
-               "position/tumble_lag",
-               {"position_nees_median"},
-               nullptr,
-               halve_covariances},
-      Mutation{"shift_1_ms_attitude", "swing", "attitude/tumble", {"attitude_time_offset_s"}, nullptr, shift_by_1_ms},
-      Mutation{"covariance_halved_attitude",
-               "swing",
-               "attitude/tumble",
-               {"inclination_nees_median"},
-               nullptr,
-               halve_covariances},
-      Mutation{"covariance_doubled_attitude",
-               "swing",
-               "attitude/tumble",
-               {"inclination_nees_median"},
-               nullptr,
-               double_covariances},
-      Mutation{"covariance_halved_odometry_lag", "hill", "slam/tumble_lag", {"pose_nees"}, nullptr, halve_covariances},
-      Mutation{
-          "covariance_doubled_odometry_lag", "hill", "slam/tumble_lag", {"pose_nees"}, nullptr, double_covariances},
-      Mutation{"shift_1_ms_odometry_lag", "hill", "slam/tumble_lag", {"pose_time_offset_s"}, nullptr, shift_by_1_ms},
-      Mutation{"map_twice_odometry_lag", "hill", "slam/tumble_lag", {"map_unique_share"}, nullptr, draw_map_twice},
-      Mutation{
-          "covariance_halved_odometry_live", "hill", "slam/tumble_live", {"pose_nees"}, nullptr, halve_covariances},
-      Mutation{
-          "covariance_doubled_odometry_live", "hill", "slam/tumble_live", {"pose_nees"}, nullptr, double_covariances},
-      Mutation{"shift_1_ms_odometry_live", "hill", "slam/tumble_live", {"pose_time_offset_s"}, nullptr, shift_by_1_ms},
-      Mutation{"lost_slip", "slip", "position/tumble", {"slip_recall"}, nullptr, lose_slips},
-      Mutation{"early_slip", "slip", "position/tumble", {"slip_precision"}, nullptr, claim_slips_early},
-      Mutation{"lost_slip_lag", "slip", "position/tumble_lag", {"slip_recall"}, nullptr, lose_slips},
-      Mutation{"lost_slip_live", "slip", "position/tumble_live", {"slip_recall"}, nullptr, lose_slips},
-      Mutation{"early_slip_live", "slip", "position/tumble_live", {"slip_precision"}, nullptr, claim_slips_early},
-      Mutation{"shift_1_ms_roll", "roll", "position/tumble", {"pose_time_offset_s"}, nullptr, shift_by_1_ms},
-      Mutation{
-          "covariance_halved_roll", "roll", "position/tumble", {"position_nees_median"}, nullptr, halve_covariances},
-      Mutation{
-          "covariance_doubled_roll", "roll", "position/tumble", {"position_nees_median"}, nullptr, double_covariances},
-      Mutation{"half_map", "hill", "slam/tumble", {"map_coverage"}, nullptr, lose_half_the_map},
-      Mutation{"broken_border", "hill", "slam/tumble", {"sweep_jump_m_s"}, nullptr, break_sweep_borders},
-      Mutation{"turned_end", "hill", "slam/tumble", {"rotation_error_end_rad"}, nullptr, turn_the_end},
-      Mutation{"map_elsewhere", "hill", "slam/tumble", {"map_failed"}, nullptr, move_the_map},
-      Mutation{"tilted",
-               "bump",
-               "attitude/tumble",
-               {"inclination_rmse_rad", "inclination_coverage_3sigma"},
-               nullptr,
-               tilt_attitudes},
-      Mutation{"turning", "bump", "attitude/tumble", {"heading_rmse_rad"}, nullptr, turn_attitudes},
-      Mutation{"sunk", "bump", "position/tumble", {"position_height_error_max_m"}, nullptr, sink_poses},
-      Mutation{"map_twice", "hill", "slam/tumble", {"map_unique_share"}, nullptr, draw_map_twice},
-      Mutation{"map_twice_turned", "hill", "slam/tumble", {"map_overlap_0_10"}, nullptr, draw_map_twice_turned},
-  };
-  return all;
+  static const std::vector<Mutation> kAll = [] {
+    std::vector<Mutation> all;
+    add_timed(all);
+    add_wrong_inputs(all);
+    add_changed(all);
+    return all;
+  }();
+  return kAll;
 }
 
 }  // namespace tumble::scenarios::testing

@@ -11,11 +11,11 @@
 /// returns a changed result. The gate must reject each mutation.
 namespace tumble::scenarios::testing {
 
-/// A Mutation needs one line of registration and at least one of `given` and `returned`.
+/// A Mutation has at least one of `given` and `returned`. Names are unique per scenario and method.
 struct Mutation {
-  const char* name;
-  const char* scenario;
-  const char* method;                                           ///< for example "slam/tumble"
+  std::string name;
+  std::string scenario;
+  std::string method;                                           ///< for example "slam/tumble"
   std::vector<std::string> metrics;                             ///< the gate must reject the row of each metric
   void (*given)(sim::Sensors& sensors);                         ///< changes the input; null: unchanged
   void (*returned)(const sim::Recording&, Estimate& estimate);  ///< changes the output; null: unchanged

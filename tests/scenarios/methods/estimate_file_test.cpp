@@ -2,7 +2,6 @@
 #include "scenarios/methods/estimate_file.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <fstream>
@@ -14,38 +13,24 @@
 #include "scenarios/methods/synthetic_recording.hpp"
 #include "scenarios/recordings/table_file.hpp"
 #include "scenarios/scoring/score.hpp"
+#include "tests/complaint.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace tumble::scenarios {
 namespace {
 
-class EstimateFile : public ::testing::Test {
+class EstimateFile : public testing::TemporaryFolder {
  protected:
-  void SetUp() override {
-    folder_ =
-        std::filesystem::temp_directory_path() / ("tumble_estimate_" + std::to_string(getpid()) + "_" +
-                                                  ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   std::filesystem::path write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
+    TemporaryFolder::write(name, text);
     return folder_ / name;
   }
 
   std::string complaint(const std::filesystem::path& path) const {
     Kind kind;
     std::string method;
-    try {
-      read_estimate(path, kind, method, Frame::imu);
-    } catch (const BadInput& error) {
-      return error.what();
-    }
-    return "";
+    return test::complaint([&] { read_estimate(path, kind, method, Frame::imu); });
   }
-
-  std::filesystem::path folder_;
 };
 
 TEST_F(EstimateFile, ScoresOfWhatIsReadBackAreTheSame) {

@@ -265,7 +265,7 @@ TEST_F(ExternalMethod, DescriptionsAreCheckedBeforeAnythingRuns) {
   EXPECT_THAT(refused(describe("rate", "{output} {" + std::string(500'000, 'a') + "}")), HasSubstr("at most 4096"));
 }
 
-TEST_F(ExternalMethod, AVersionTellsProgramAndDescription) {
+TEST_F(ExternalMethod, AVersionContainsProgramAndDescription) {
   const std::string first = external_method(describe("rate", "{output}", "version: [echo, v7]\n")).info.version;
   const std::string second = external_method(describe("rate", "{output} ", "version: [echo, v7, b]\n")).info.version;
   EXPECT_THAT(first, HasSubstr("v7"));
@@ -275,7 +275,7 @@ TEST_F(ExternalMethod, AVersionTellsProgramAndDescription) {
 }
 
 // otherwise a sweep or a benchmark would continue with the rows of the old program
-TEST_F(ExternalMethod, AProgramThatWasMadeAnewIsAnotherVersion) {
+TEST_F(ExternalMethod, ARebuiltProgramIsAnotherVersion) {
   const auto version = [&] { return external_method(folder_ / "theirs.yaml").info.version; };
   for (const char* command : {"sh {folder}/mine.sh {output}", "{folder}/mine.sh>{output}"}) {
     write("mine.sh", "echo one\n");

@@ -4,32 +4,24 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <string>
 #include <vector>
+
+#include "tests/temporary_folder.hpp"
 
 namespace tumble::scenarios {
 namespace {
 
-class MapFile : public ::testing::Test {
- protected:
-  MapFile() { std::filesystem::create_directories(folder_); }
-  ~MapFile() override { std::filesystem::remove_all(folder_); }
+using MapFile = testing::TemporaryFolder;
 
-  static std::vector<MapPoint> some_map() {
-    std::vector<MapPoint> map(500);
-    for (std::size_t k = 0; k < map.size(); ++k) {
-      const float x = 0.37f * static_cast<float>(k);
-      map[k] = {{x, -1.0f / (1.0f + x), 1e-6f * x}, Eigen::Vector3f(std::sin(x), 0.0f, std::cos(x)), 0.001f * x};
-    }
-    map[7].normal_W.setZero();
-    return map;
+std::vector<MapPoint> some_map() {
+  std::vector<MapPoint> map(500);
+  for (std::size_t k = 0; k < map.size(); ++k) {
+    const float x = 0.37f * static_cast<float>(k);
+    map[k] = {{x, -1.0f / (1.0f + x), 1e-6f * x}, Eigen::Vector3f(std::sin(x), 0.0f, std::cos(x)), 0.001f * x};
   }
-
-  std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() /
-      ("tumble_map_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
-};
+  map[7].normal_W.setZero();
+  return map;
+}
 
 void expect_equal(const std::vector<MapPoint>& a, const std::vector<MapPoint>& b) {
   ASSERT_EQ(a.size(), b.size());

@@ -257,7 +257,7 @@ TEST(MethodAccuracy, SlamOracleEndsWhereTheTruthEnds) {
 // The plateaus of a pendulum resemble saturation without being clear: the method doubts them and does not call them
 // saturated. The smoother's rates replace the doubted readings: an attitude from the readings is wrong by 0.6 rad from
 // the first on.
-TEST(MethodAccuracy, AnAttitudeIsNotTurnedByReadingsThatAreDoubted) {
+TEST(MethodAccuracy, AnAttitudeIsNotRotatedBySuspectReadings) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "swing"), 91201, 1, Lidars::left_out);
   const auto rates = find_methods("rate/tumble").at(0)->run(draw.recording.sensors, {}, {}).rates;

@@ -32,8 +32,10 @@ class MethodContract : public ::testing::TestWithParam<Method> {
  protected:
   const Method& method() const { return GetParam(); }
 
+  /// Returns a copy of a recording that all tests share.
   sim::Recording recording() const {
-    return method().info.applies_to({"rig"}) ? testing::synthetic_rig(brief_motion()) : testing::synthetic_sphere();
+    static const sim::Recording rig = testing::synthetic_rig(brief_motion()), sphere = testing::synthetic_sphere();
+    return method().info.applies_to({"rig"}) ? rig : sphere;
   }
 
   Estimate run(const sim::Recording& recording) const {

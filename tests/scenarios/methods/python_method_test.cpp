@@ -230,7 +230,7 @@ TEST_F(PythonMethod, DescriptionsAndInterpretersAreCheckedBeforeAnythingRuns) {
   EXPECT_THAT(refused(folder_ / "both.yaml"), HasSubstr("function"));
 }
 
-TEST_F(PythonMethod, AVersionTellsInterpreterAndFile) {
+TEST_F(PythonMethod, AVersionContainsInterpreterAndFile) {
   const std::string first = external_method(function("rate", "return 1")).info.version;
   const std::string second = external_method(function("rate", "return 2")).info.version;
   EXPECT_THAT(first, AllOf(HasSubstr("Python 3"), HasSubstr("numpy"), HasSubstr("theirs.py")));

@@ -72,7 +72,7 @@ TEST(RateRecording, FurtherImusAreUsedAndTheReferenceIsNot) {
 }
 
 // the saturation level fluctuates: there is no plateau and no stated range, so only the flags show the saturation
-TEST(RateRecording, FlagsOfTheDeviceAreBelieved) {
+TEST(RateRecording, FlagsOfTheDeviceAreUsed) {
   sim::Recording recording = testing::synthetic_rig();
   sim::ImuRecord& imu = recording.sensors.imus.front();
   imu.stated_gyro_range_rad_s = 0.0;
@@ -102,7 +102,7 @@ TEST(RateRecording, FlagsOfTheDeviceAreBelieved) {
   }
 }
 
-TEST(RateRecording, AStatedRangeThatTheDataContradictIsTold) {
+TEST(RateRecording, AStatedRangeThatTheDataContradictIsReported) {
   sim::Recording recording = testing::synthetic_rig();
   EXPECT_EQ(estimated_rates("tumble", recording).health.at("rails_disagreeing"), 0.0);
   const double right = clipped_median("tumble", recording);
@@ -115,7 +115,7 @@ TEST(RateRecording, AStatedRangeThatTheDataContradictIsTold) {
   }
 }
 
-TEST(RateRecording, UnitsThatLookWrongAreTold) {
+TEST(RateRecording, UnitsThatLookWrongAreReported) {
   sim::Recording recording = testing::synthetic_rig();
   EXPECT_TRUE(estimated_rates("tumble", recording).faults.ok());
   sim::Recording degrees = recording, in_g = recording;

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "scenarios/errors.hpp"
+#include "tests/complaint.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace tumble::scenarios {
@@ -52,12 +53,7 @@ class RigCalibrationFile : public testing::TemporaryFolder {
     EXPECT_NE(at, std::string::npos) << from;
     if (at != std::string::npos) spoilt.replace(at, from.size(), to);
     std::ofstream(path()) << spoilt;
-    try {
-      read_rig_calibration(path());
-    } catch (const BadInput& error) {
-      return error.what();
-    }
-    return "";
+    return test::complaint([&] { read_rig_calibration(path()); });
   }
 };
 
@@ -101,7 +97,7 @@ TEST_F(RigCalibrationFile, ComplaintsNameTheKey) {
 
 // When two elements were saturated only together, nobody knows the level at which the plane cuts the row: the next run
 // would assume a saturation level that does not exist.
-TEST_F(RigCalibrationFile, PlanesWhoseLevelIsNotToldAreNotHandedOn) {
+TEST_F(RigCalibrationFile, PlanesWithAnUncertainLevelAreNotSaved) {
   SaturationPlane plane;
   plane.row = {1.0, 0.05, 0.0};
   plane.saturation_limit_rad_s = 10.2;
@@ -130,7 +126,7 @@ TEST_F(RigCalibrationFile, PlanesWhoseLevelIsNotToldAreNotHandedOn) {
 
 // A plane from a few readings, one of them a partial one, stated slopes to 5e-4 that were wrong by 0.02: the next run
 // on the device used them and was wrong by twice as much.
-TEST_F(RigCalibrationFile, SlopesOfUnsurePlanesAreDoubted) {
+TEST_F(RigCalibrationFile, SlopesOfUncertainPlanesHaveALargeCovariance) {
   SaturationPlane plane;
   plane.row = {1.0, 0.0244, 0.0107};
   plane.saturation_limit_rad_s = 10.21;

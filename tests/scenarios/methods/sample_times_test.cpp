@@ -48,7 +48,7 @@ TEST(SampleTimes, SensorsWithAClockOfTheirOwnAreGivenAsTheyAre) {
   EXPECT_EQ(estimate.health.count("stamps_mended_s"), 0u);
 }
 
-TEST(SampleTimes, StampsOfAHostAreMendedAndRatesBearThemAgain) {
+TEST(SampleTimes, StampsOfAHostAreFixedAndRatesHaveTheOriginalStamps) {
   const sim::Recording exact = testing::synthetic_rig(), stamped = stamped_by_a_host(exact);
   const std::vector<std::int64_t>& times_ns = exact.sensors.imus.front().time_ns;
   const std::vector<std::int64_t>& stamps_ns = stamped.sensors.imus.front().time_ns;

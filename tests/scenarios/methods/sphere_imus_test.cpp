@@ -81,7 +81,7 @@ TEST(SphereImus, UnitsWithStampsOfTheirOwnAreReadAtThePrimaryOnes) {
   EXPECT_GT((rate_at(1.0013) - rate_at(1.0)).norm() / 3.0, 1e-3);
 }
 
-TEST(SphereImus, ATimeOffsetOfOneUnitIsLearntAndTold) {
+TEST(SphereImus, ATimeOffsetOfOneUnitIsEstimatedAndReported) {
   constexpr double kLate_s = 2e-3;
   const sim::Sensors sensors = three(unit("imu_2", 0, 0.0), unit("imu_3", 0, kLate_s));
   MergedImus merged;

@@ -7,8 +7,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -72,55 +70,6 @@ TEST_P(SphereLog, AllThreeFormsGoTheWayOfRollingWithoutSeeingSlipEverywhere) {
     // 0.18, due to an impact and two repeated readings
     EXPECT_LT(highest_m, 0.3) << method << ": the floor is level";
   }
-}
-
-/// Writes lines as `rostopic echo -p` writes a sensor_msgs/Imu: the columns are identified by position, and the stamp
-/// is in seconds and nanoseconds.
-void write_by_column(const std::filesystem::path& from, const std::filesystem::path& to, double force_scale) {
-  std::ifstream in(from);
-  std::ofstream out(to);
-  std::string line;
-  std::getline(in, line);
-  std::vector<std::string> names;
-  std::stringstream header(line);
-  for (std::string cell; std::getline(header, cell, ',');) names.push_back(cell);
-  const auto column = [&](const std::string& name) {
-    return static_cast<std::size_t>(std::find(names.begin(), names.end(), "/orientation/" + name) - names.begin());
-  };
-  out << "sec,nsec,frame,ox,oy,oz,ow,c,wx,wy,wz,c,fx,fy,fz\n";
-  while (std::getline(in, line)) {
-    std::vector<std::string> cells;
-    std::stringstream stream(line);
-    for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
-    const std::string& stamp = cells.at(column("header/stamp"));
-    const std::size_t point = stamp.find('.');
-    out << stamp.substr(0, point) << ',' << stamp.substr(point + 1) << ",imu,0,0,0,1,0";
-    for (const char* axis : {"x", "y", "z"}) out << ',' << cells.at(column(std::string("angular_velocity/") + axis));
-    out << ",0";
-    for (const char* axis : {"x", "y", "z"}) {
-      char text[40];
-      std::snprintf(text, sizeof text, ",%.17g",
-                    force_scale * std::stod(cells.at(column(std::string("linear_acceleration/") + axis))));
-      out << text;
-    }
-    out << '\n';
-  }
-}
-
-TEST_P(SphereLog, EveryFormOfTheFileGivesTheSamePath) {
-  const auto folder = std::filesystem::path(::testing::TempDir()) / "sphere_log_forms";
-  std::filesystem::create_directories(folder);
-  write_by_column(path_, folder / "g.csv", 1.0);
-  write_by_column(path_, folder / "m_s2.csv", 9.80665);
-  const Estimate by_name = run("position/tumble_live", sphere(import_imu_csv(path_, {}, AccelUnit::g)));
-  const Estimate by_column = run("position/tumble_live", sphere(import_imu_csv(folder / "g.csv", {}, AccelUnit::g)));
-  const Estimate si = run("position/tumble_live", sphere(import_imu_csv(folder / "m_s2.csv", {}, AccelUnit::m_s2)));
-  std::filesystem::remove_all(folder);
-  ASSERT_EQ(by_column.poses.size(), by_name.poses.size());
-  ASSERT_EQ(si.poses.size(), by_name.poses.size());
-  ASSERT_FALSE(by_name.poses.empty());
-  EXPECT_EQ(by_column.poses.back().position_W_m, by_name.poses.back().position_W_m);
-  EXPECT_LT((si.poses.back().position_W_m - by_name.poses.back().position_W_m).norm(), 1e-6);  // rounding of the text
 }
 
 }  // namespace

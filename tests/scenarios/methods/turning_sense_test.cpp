@@ -104,7 +104,7 @@ TEST(TurningSense, AnotherFrameIsNamed) {
   EXPECT_THAT(turning_complaint(lidar, rig), HasSubstr("if the poses belonged to the frame lidar"));
 }
 
-TEST(TurningSense, PosesAreHeldToItToo) {
+TEST(TurningSense, PosesAreCheckedToo) {
   const sim::Sensors rig = sensors();
   Estimate estimate;
   for (const AttitudeState& each : attitudes(rig.imus.front().T_BI.linear(), Frame::imu, with_w_first).attitudes) {

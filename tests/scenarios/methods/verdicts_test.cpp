@@ -11,7 +11,7 @@
 #include "scenarios/methods/method.hpp"
 #include "scenarios/scoring/truth_track.hpp"
 #include "scenarios/sweep/evaluate.hpp"
-#include "tests/scenarios/methods/rates_before_doubt.hpp"
+#include "tests/scenarios/methods/rates_without_suspect_terms.hpp"
 #include "tests/scenarios/methods/wrong_inputs.hpp"
 #include "tests/tree.hpp"
 
@@ -99,7 +99,7 @@ TEST(Verdicts, AZeroOffsetOfAGyroThatStartsLateIsNoFault) {
 
 // The method corrects a part of a mounting error of 10 deg, and the final position is wrong by 0.7 m. The size of the
 // correction reveals the fault.
-TEST(Verdicts, SlamLiveTellsAMountingThatMovedBeyondWhatWasGiven) {
+TEST(Verdicts, SlamLiveReportsAMountingThatDiffersFromTheGivenOne) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "throw"), 87201, 1);
   const Method& method = *find_methods("slam/tumble_live").at(0);
@@ -111,7 +111,7 @@ TEST(Verdicts, SlamLiveTellsAMountingThatMovedBeyondWhatWasGiven) {
 
 // If all gyros have the same wrong scale, the scale correction of the filter makes the path wrong by more than a metre.
 // The forces of IMUs at different positions reveal the wrong gyro scale.
-TEST(Verdicts, PositionTellsGyrosOfAnotherScale) {
+TEST(Verdicts, PositionReportsGyrosOfAnotherScale) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "slip"), 16202, 1, Lidars::left_out);
   const auto tells = [&](const std::string& wrong) {
@@ -125,7 +125,7 @@ TEST(Verdicts, PositionTellsGyrosOfAnotherScale) {
 
 // In the first case, one axis is flipped, and its force component is too small for the other checks. In the second
 // case, all accelerometers are frozen, and the method rejects the run.
-TEST(Verdicts, PositionTellsAFlippedAxisAndRefusesForcesThatAllFroze) {
+TEST(Verdicts, PositionReportsAFlippedAxisAndRefusesForcesThatAllFroze) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "slide"), 99453, 1, Lidars::left_out);
   const Estimate good = run_wrong(draw, "position/tumble", "none");
@@ -281,7 +281,7 @@ TEST(Verdicts, AttitudesTellAWandWhoseGyroIsNamedOtherwise) {
 }
 
 // The scoring uses the covariances from before the findings increased them.
-TEST(Verdicts, CovariancesBeforeADoubtComeBack) {
+TEST(Verdicts, CovariancesWithoutSuspectTermsAreRestored) {
   const DataRoot data{test::source_dir()};
   SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 62001, 1, Lidars::left_out);
   const auto trace = [](const std::vector<AngularRateState>& rates) {
@@ -291,7 +291,7 @@ TEST(Verdicts, CovariancesBeforeADoubtComeBack) {
   };
   const auto of = [&](const std::string& wrong) {
     const Estimate estimate = run_wrong(draw, "rate/tumble", wrong);
-    const std::vector<AngularRateState> before = testing::rates_before_doubt(estimate);
+    const std::vector<AngularRateState> before = testing::rates_without_suspect_terms(estimate);
     EXPECT_EQ(before.size(), estimate.rates.size());
     double squares = 0.0, least = 1.0;
     for (const AngularRateState& rate : estimate.rates) squares += 3.0 * rate.w_WI_I_rad_s.squaredNorm();

@@ -74,7 +74,7 @@ TEST_F(CloudFile, WordsOfAnAsciiPlyAreNumbers) {
               HasSubstr("a.ply:12: the line has 4 numbers; it must have 5"));
 }
 
-TEST_F(CloudFile, AViewpointIsToldOrRefused) {
+TEST_F(CloudFile, AViewpointIsReportedOrRefused) {
   const auto with = [](const std::string& viewpoint) {
     std::string text = kPcd + "ascii\n1 2 3\n4 5 6\n";
     return text.replace(text.find("POINTS"), 0, "VIEWPOINT " + viewpoint + "\n");
@@ -86,7 +86,7 @@ TEST_F(CloudFile, AViewpointIsToldOrRefused) {
   EXPECT_THAT(complaint_of("a.pcd", with("0 0 0 1")), HasSubstr("VIEWPOINT has 4 numbers; it must have 7"));
 }
 
-TEST_F(CloudFile, SizesOfACompressedPcdAreHeldAgainstTheFile) {
+TEST_F(CloudFile, SizesOfACompressedPcdAreComparedWithTheFile) {
   const auto with = [&](std::uint32_t compressed, std::uint32_t plain) {
     return complaint_of("a.pcd",
                         kPcd + "binary_compressed\n" + bytes(compressed) + bytes(plain) + std::string(20, 'x'));
@@ -206,7 +206,7 @@ TEST_F(CloudFile, NoPointsAreNoError) {
   EXPECT_EQ(read("a.ply", "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nend_header\n").points, 0u);
 }
 
-TEST_F(CloudFile, WhatAHeaderPromisesIsHeldAgainstTheFile) {
+TEST_F(CloudFile, WhatAHeaderStatesIsComparedWithTheFile) {
   const std::string tail = "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
   const auto ply = [&](const std::string& count) {
     return "ply\nformat binary_little_endian 1.0\nelement vertex " + count + tail;

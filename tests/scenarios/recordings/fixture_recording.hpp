@@ -9,8 +9,8 @@
 #include <iterator>
 #include <string>
 
-#include "scenarios/errors.hpp"
 #include "scenarios/recordings/recording_file.hpp"
+#include "tests/complaint.hpp"
 
 namespace tumble::scenarios::fixture {
 
@@ -176,16 +176,7 @@ class Folder : public testing::Test {
   std::filesystem::path folder_;
 };
 
-/// Returns the message of the BadInput that `call` throws, or an empty string when it throws none.
-template <class Call>
-std::string complaint(Call&& call) {
-  try {
-    call();
-  } catch (const BadInput& error) {
-    return error.what();
-  }
-  return "";
-}
+using test::complaint;
 
 /// Returns the sensors of a short recording: three samples of one IMU.
 inline sim::Sensors small_sensors() {

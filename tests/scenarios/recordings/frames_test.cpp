@@ -334,7 +334,7 @@ TEST_P(Frames, WhatNoSensorAsksForMayMakeNoSense) {
     EXPECT_THAT(found.notes, Contains(HasSubstr(said)));
 }
 
-TEST_P(Frames, AFrameOnTwoOthersIsTold) {
+TEST_P(Frames, AFrameOnTwoOthersIsReported) {
   write_frames(*GetParam().writer(path_), {hung("imu", "body", {0.5, 0, 0}), hung("imu", "other", {0.1, 0, 0})});
   EXPECT_THAT(GetParam().read(path_, {}).notes,
               Contains(HasSubstr("'imu' has the parent 'body' and later the parent 'other'")));

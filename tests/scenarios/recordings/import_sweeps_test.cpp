@@ -45,7 +45,8 @@ class ImportSweeps : public fixture::Folder {
   Imported imported_;
 };
 
-// The test checks that both formats contain all that a lidar states, to the bit.
+// The test checks that both formats contain all that a lidar states, to the bit. The import reads both with PCL, which
+// did not write them.
 TEST_F(ImportSweeps, WhatExportWritesComesBackToTheBit) {
   const sim::Recording recording = fixture::recording();
   const sim::LidarRecord& given = recording.sensors.lidars[0];
@@ -113,7 +114,7 @@ TEST_F(ImportSweeps, PointsInMillimetresAreRefusedWithoutASheetToo) {
   EXPECT_EQ(complaint_of(), "");
 }
 
-TEST_F(ImportSweeps, AViewpointIsTold) {
+TEST_F(ImportSweeps, AViewpointIsReported) {
   const std::string pcd = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1\nHEIGHT 1\n";
   put("1.pcd", pcd + "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 1\nDATA ascii\n1 2 3\n");
   put("2.pcd", pcd + "VIEWPOINT 5 0 0 1 0 0 0\nPOINTS 1\nDATA ascii\n1 2 3\n");
@@ -184,7 +185,7 @@ TEST_F(ImportSweeps, SweepsStampedAtTheirEndBeginAtTheirFirstPoint) {
   EXPECT_EQ(lidar.offset_ns[0], 0u);
 }
 
-TEST_F(ImportSweeps, AbsoluteTimesOfPointsTellTheSweeps) {
+TEST_F(ImportSweeps, AbsoluteTimesOfPointsDetermineTheSweeps) {
   put("1.ply", sweep("double timestamp", {"1617333602.25", "1617333602.27", "1617333602.34"}));
   put("2.ply", sweep("double timestamp", {"1617333602.35", "1617333602.37", "1617333602.44"}));
   const sim::LidarRecord lidar = import();
@@ -257,7 +258,7 @@ TEST_F(ImportSweeps, EqualPointTimesMeanSweepsThatAreNotSkewed) {
   }
 }
 
-TEST_F(ImportSweeps, AUnitThatCannotBeToldIsAskedFor) {
+TEST_F(ImportSweeps, AnAmbiguousUnitIsRequested) {
   put("times.txt", "1.0\n1.1\n");
   for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("float time", {"0.00001", "0.00002", "0.00005"}));
   EXPECT_THAT(complaint_of(), HasSubstr("1.ply: the point times in field 'time' have a range of"));

@@ -182,7 +182,7 @@ class ImportOwnCsv : public ImportCsv {
   const std::vector<std::size_t> order_ = {14, 0, 10, 3, 4, 9, 5, 6, 7, 13, 8, 2, 11, 12, 1, 15};
 };
 
-TEST_F(ImportOwnCsv, NamesAreBelievedBeforePlaces) {
+TEST_F(ImportOwnCsv, NamesCountBeforePositions) {
   const Imported imported = import(reordered(text_, order_));
   EXPECT_EQ(imported.sensors.imus[0].gyro_rad_s, given_.gyro_rad_s);
   EXPECT_EQ(imported.sensors.imus[0].accel_m_s2, given_.accel_m_s2);
@@ -216,7 +216,7 @@ TEST_F(ImportOwnCsv, AFileWithoutHeaderKeepsItsFirstSample) {
 }
 
 // a body that turns slowly in gravity shows the unit of its gyro
-TEST_F(ImportCsv, UnitsOfTheGyroAreHeldAgainstGravity) {
+TEST_F(ImportCsv, UnitsOfTheGyroAreComparedWithGravity) {
   const auto turning = [](double scale, double sign) {
     std::string text = kHeader;
     for (int k = 0; k < 500; ++k) {

@@ -156,7 +156,7 @@ TEST(LidarRotation, AMountingThatIsTurnedIsGivenAsARotation) {
               HasSubstr("units, signs and axes agree"));
 }
 
-TEST(LidarRotation, AnotherClockIsTold) {
+TEST(LidarRotation, AnotherClockIsReported) {
   const auto shifted = [](std::int64_t by_ns) {
     return text_of([&](sim::ImuRecord& imu, sim::LidarRecord&) {
       for (std::int64_t& time : imu.time_ns) time -= by_ns;
@@ -167,7 +167,7 @@ TEST(LidarRotation, AnotherClockIsTold) {
   EXPECT_THAT(shifted(10'000'000), testing::Not(HasSubstr("caution")));
 }
 
-TEST(LidarRotation, WhatTellsNothingIsNotSpokenOf) {
+TEST(LidarRotation, WithoutEvidenceNothingIsReported) {
   const auto dead = [](sim::ImuRecord& imu, sim::LidarRecord&) {
     for (Eigen::Vector3d& rate : imu.gyro_rad_s) rate.setZero();
   };
@@ -184,7 +184,7 @@ TEST(LidarRotation, WhatTellsNothingIsNotSpokenOf) {
   EXPECT_EQ(text_of(late), "nothing told");
 }
 
-TEST(LidarRotation, SweepsOfARoomTellTheGyro) {
+TEST(LidarRotation, SweepsOfARoomCheckTheGyro) {
   Imported recording;
   recording.sensors.imus.push_back(gyro(4.0));
   recording.sensors.lidars.push_back(lidar_in_room(36));

@@ -155,7 +155,7 @@ TEST_F(LoggerTable, XsensCountsTenthsOfMilliseconds) {
   expect_the_readings(import_columns(text, "time=SampleTimeFine,gyro=Gyr_X,Gyr_Y,Gyr_Z,accel=Acc_X,Acc_Y,Acc_Z"));
 }
 
-TEST_F(LoggerTable, StatedUnitsAreBelieved) {
+TEST_F(LoggerTable, StatedUnitsAreUsed) {
   const Imported imported = import(
       table("t,gx (deg/s),gy (deg/s),gz (deg/s),ax [g],ay [g],az [g]", kSeconds, ",57.29577951308232,0,0,0,0,1"));
   EXPECT_NEAR(imported.sensors.imus[0].gyro_rad_s[0].x(), 1.0, 1e-12);

@@ -14,7 +14,7 @@ namespace {
 using fixture::info;
 using RoundTrip = fixture::Folder;
 
-// The digest covers every field; the comparisons of single fields below do not depend on it.
+// Digest.EveryFieldCounts shows that equal digests mean equal fields; the comparisons below do not depend on the digest
 TEST_F(RoundTrip, EveryFieldComesBackExactly) {
   const sim::Recording recording = fixture::recording();
   const std::filesystem::path path = folder_ / "a.h5";
@@ -23,77 +23,12 @@ TEST_F(RoundTrip, EveryFieldComesBackExactly) {
   const sim::Sensors sensors = read_sensors(path);
   const sim::Truth truth = read_truth(path);
   EXPECT_EQ(digest(sensors, &truth), digest(recording.sensors, &recording.truth));
-
-  EXPECT_EQ(sensors.robot, "sphere");
-  EXPECT_EQ(sensors.sphere_radius_m, 0.145);
-  EXPECT_EQ(sensors.gravity_m_s2, 9.81);
-  ASSERT_EQ(sensors.imus.size(), 2u);
-  const sim::ImuRecord& imu = sensors.imus[1];
-  const sim::ImuRecord& given = recording.sensors.imus[1];
-  EXPECT_EQ(imu.name, "imu_reference");
-  EXPECT_EQ(imu.device, given.device);
-  EXPECT_EQ(imu.period_ns, given.period_ns);
-  EXPECT_EQ(imu.stated_gyro_range_rad_s, given.stated_gyro_range_rad_s);
-  EXPECT_EQ(imu.stated_accel_range_m_s2, given.stated_accel_range_m_s2);
-  EXPECT_EQ(imu.gyro_noise_rad_s_sqrt_hz, given.gyro_noise_rad_s_sqrt_hz);
-  EXPECT_EQ(imu.accel_noise_m_s2_sqrt_hz, given.accel_noise_m_s2_sqrt_hz);
-  EXPECT_EQ(imu.T_BI.matrix(), given.T_BI.matrix());
-  EXPECT_EQ(imu.time_ns, given.time_ns);
-  EXPECT_EQ(imu.gyro_rad_s, given.gyro_rad_s);
-  EXPECT_EQ(imu.accel_m_s2, given.accel_m_s2);
-  EXPECT_EQ(imu.clip_flags, given.clip_flags);
-  EXPECT_EQ(imu.magnetic_field_t, given.magnetic_field_t);
-  EXPECT_EQ(imu.earth_field_W_t, given.earth_field_W_t);
-  ASSERT_EQ(sensors.lidars.size(), 1u);
-  const sim::LidarRecord& lidar = sensors.lidars[0];
-  const sim::LidarRecord& given_lidar = recording.sensors.lidars[0];
-  EXPECT_EQ(lidar.T_BL.matrix(), given_lidar.T_BL.matrix());
-  EXPECT_EQ(lidar.sweep_period_ns, given_lidar.sweep_period_ns);
-  EXPECT_EQ(lidar.sweep_start_ns, given_lidar.sweep_start_ns);
-  EXPECT_EQ(lidar.sweep_first, given_lidar.sweep_first);
-  EXPECT_EQ(lidar.position_L_m, given_lidar.position_L_m);
-  EXPECT_EQ(lidar.range_m, given_lidar.range_m);
-  EXPECT_EQ(lidar.intensity, given_lidar.intensity);
-  EXPECT_EQ(lidar.offset_ns, given_lidar.offset_ns);
-  EXPECT_EQ(lidar.ring, given_lidar.ring);
-}
-
-TEST_F(RoundTrip, EveryFieldOfTheTruthComesBackExactly) {
-  const sim::Recording recording = fixture::recording();
-  const std::filesystem::path path = folder_ / "a.h5";
-  write_recording(path, info(), recording.sensors, &recording.truth);
-  const sim::Truth truth = read_truth(path);
-  const sim::Truth& given = recording.truth;
-  EXPECT_EQ(truth.period_ns, given.period_ns);
-  EXPECT_EQ(truth.p_WB_m, given.p_WB_m);
-  ASSERT_EQ(truth.q_WB.size(), given.q_WB.size());
-  EXPECT_EQ(truth.q_WB[7].coeffs(), given.q_WB[7].coeffs());
-  EXPECT_EQ(truth.v_WB_m_s, given.v_WB_m_s);
-  EXPECT_EQ(truth.w_WB_B_rad_s, given.w_WB_B_rad_s);
-  EXPECT_EQ(truth.f_B_m_s2, given.f_B_m_s2);
-  EXPECT_EQ(truth.label, given.label);
-  EXPECT_EQ(truth.p_BG_m, given.p_BG_m);
-  EXPECT_EQ(truth.surfaces, given.surfaces);
-  ASSERT_EQ(truth.contacts.size(), given.contacts.size());
-  EXPECT_EQ(truth.contacts[5].time_ns, given.contacts[5].time_ns);
-  EXPECT_EQ(truth.contacts[5].point_W_m, given.contacts[5].point_W_m);
-  EXPECT_EQ(truth.contacts[5].normal_W, given.contacts[5].normal_W);
-  EXPECT_EQ(truth.contacts[5].slip_velocity_W_m_s, given.contacts[5].slip_velocity_W_m_s);
-  EXPECT_EQ(truth.contacts[5].normal_force_n, given.contacts[5].normal_force_n);
-  EXPECT_EQ(truth.contacts[5].surface_id, given.contacts[5].surface_id);
-  ASSERT_EQ(truth.imus.size(), 2u);
-  EXPECT_EQ(truth.imus[1].name, "imu_reference");
-  EXPECT_EQ(truth.imus[1].T_BI.matrix(), given.imus[1].T_BI.matrix());
-  EXPECT_EQ(truth.imus[1].rate_rad_s, given.imus[1].rate_rad_s);
-  EXPECT_EQ(truth.imus[1].specific_force_m_s2, given.imus[1].specific_force_m_s2);
-  EXPECT_EQ(truth.imus[1].gyro_unclipped_rad_s, given.imus[1].gyro_unclipped_rad_s);
-  EXPECT_EQ(truth.imus[1].accel_unclipped_m_s2, given.imus[1].accel_unclipped_m_s2);
-  EXPECT_EQ(truth.imus[1].gyro_bias_rad_s, given.imus[1].gyro_bias_rad_s);
-  EXPECT_EQ(truth.imus[1].accel_bias_m_s2, given.imus[1].accel_bias_m_s2);
-  EXPECT_EQ(truth.imus[1].magnetic_field_t, given.imus[1].magnetic_field_t);
-  ASSERT_EQ(truth.lidars.size(), 1u);
-  EXPECT_EQ(truth.lidars[0].hit_W_m, given.lidars[0].hit_W_m);
-  EXPECT_EQ(truth.lidars[0].surface_id, given.lidars[0].surface_id);
+  EXPECT_EQ(sensors.imus.at(1).T_BI.matrix(), recording.sensors.imus[1].T_BI.matrix());
+  EXPECT_EQ(sensors.imus[1].gyro_rad_s, recording.sensors.imus[1].gyro_rad_s);
+  EXPECT_EQ(sensors.lidars.at(0).position_L_m, recording.sensors.lidars[0].position_L_m);
+  EXPECT_EQ(truth.p_WB_m, recording.truth.p_WB_m);
+  EXPECT_EQ(truth.imus.at(1).rate_rad_s, recording.truth.imus[1].rate_rad_s);
+  EXPECT_EQ(truth.lidars.at(0).hit_W_m, recording.truth.lidars[0].hit_W_m);
 }
 
 TEST_F(RoundTrip, WhatIsKnownOfPointTimesComesBackAndTheUsualLeavesNoTrace) {

@@ -83,7 +83,7 @@ TEST_F(StoredPoints, AreReadFromARecordingAndGiveTheSameBag) {
               HasSubstr("damaged or was changed"));
 }
 
-TEST_F(StoredPoints, AreHeldAgainstTheirSweeps) {
+TEST_F(StoredPoints, AreComparedWithTheirSweeps) {
   Imported stored = read(folder_);
   const auto write = [&] { write_recording(folder_ / "a.h5", stored.info, stored.sensors, stored.points, nullptr); };
   stored.sensors.lidars[0].sweep_first.back() -= 1;

@@ -79,7 +79,7 @@ TEST(ReferenceClipping, CallsTheClippedSamplesAndNoOthers) {
 }
 
 // the negative controls are a motion that stays below the saturation level, and one that only reverses at its peak
-TEST(ReferenceClipping, AMotionWithoutARailHasNone) {
+TEST(ReferenceClipping, AMotionWithoutASaturationLimitHasNone) {
   for (const double peak : {3.0, 7.0}) {
     const Made recording = made(peak, 0.1);
     for (const ReferenceRail& rail : reference_rails(recording.reading, recording.reference)) EXPECT_FALSE(rail.found);

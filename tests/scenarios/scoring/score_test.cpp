@@ -246,7 +246,7 @@ TEST(PositionScores, TheNormalisedErrorSeesACovarianceThatIsHalved) {
   }
 }
 
-TEST(AttitudeScores, TheTiltIsHeldToItsCovarianceWhateverTheHeading) {
+TEST(AttitudeScores, TheTiltIsComparedWithItsCovarianceForAnyHeading) {
   constexpr double kTilt = 0.02;
   Estimate estimate = perfect_estimate(rig());
   EXPECT_FALSE(scores(Kind::attitude, estimate, rig()).contains("inclination_nees_median")) << "nothing is stated";

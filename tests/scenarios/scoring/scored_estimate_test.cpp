@@ -48,7 +48,7 @@ TEST(ScoredEstimate, KeepsNothingForAnotherEstimate) {
   EXPECT_EQ(ScoredEstimate(empty, input()).once(count_poses), 0u);
 }
 
-TEST(ScoredEstimate, WhatCannotBeMadeIsToldToEachWhoAsks) {
+TEST(ScoredEstimate, AFailureIsReportedToEachCaller) {
   const Estimate estimate;
   const ScoredEstimate scored(estimate, input());
   EXPECT_THROW(scored.once(refuse), BadInput);

@@ -88,7 +88,7 @@ TEST(TimeOffset, OfRatesIsWhatTheyAreLateBy) {
 }
 
 // in the motion there and back, saturation hides samples: they do not count, whatever the estimate reports for them
-TEST(TimeOffset, OfRatesIsToldByWhatIsNotClipped) {
+TEST(TimeOffset, OfRatesUsesUnclippedSamples) {
   Estimate estimate = perfect_estimate(moving_rig());
   const ClippingTruth truth(moving_rig().sensors, moving_rig().truth);
   std::size_t clipped = 0;

@@ -121,7 +121,7 @@ TEST(RotationAngle, IsExactForSmallAndLargeAngles) {
   }
 }
 
-TEST(ClippingTruth, NamesTheAxesThatTheRailTouched) {
+TEST(ClippingTruth, NamesTheSaturatedAxes) {
   sim::Recording recording = testing::synthetic_rig();
   const sim::ImuRecord& imu = recording.sensors.imus.front();
   const ClippingTruth truth(recording.sensors, recording.truth);

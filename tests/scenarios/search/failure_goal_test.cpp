@@ -8,7 +8,7 @@
 #include <limits>
 #include <string>
 
-#include "scenarios/errors.hpp"
+#include "tests/complaint.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -18,12 +18,7 @@ using ::testing::HasSubstr;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::string complaint(const std::string& text) {
-  try {
-    parse_goal(text, Kind::slam);
-  } catch (const BadInput& error) {
-    return error.what();
-  }
-  return "";
+  return test::complaint([&] { parse_goal(text, Kind::slam); });
 }
 
 TEST(FailureGoal, IsReadAndWritten) {

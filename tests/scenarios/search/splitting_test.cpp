@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/errors.hpp"
 #include "sim/random/stream.hpp"
+#include "tests/complaint.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -239,12 +239,7 @@ TEST(Splitting, StopsWithoutTheUnfinishedStep) {
 }
 
 std::string complaint(const SplittingOptions& options, double score = 0.0) {
-  try {
-    split(options, each([&](const SplittingPoint&) { return score; }));
-  } catch (const BadInput& error) {
-    return error.what();
-  }
-  return "";
+  return test::complaint([&] { split(options, each([&](const SplittingPoint&) { return score; })); });
 }
 
 TEST(Splitting, RejectsInvalidOptions) {

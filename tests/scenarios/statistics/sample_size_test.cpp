@@ -41,7 +41,7 @@ TEST(PairsForSignedRank, CountsThePairsOfDifferences) {
       << "draws on which nothing differs are needed besides";
 }
 
-TEST(PairsForSignedRank, TellsApartAsOftenAsItSays) {
+TEST(PairsForSignedRank, DistinguishesAsOftenAsItStates) {
   for (const double shift : {0.3, 0.5}) {
     sim::Stream stream(2, "test.power");
     const auto pairs = static_cast<std::size_t>(pairs_for_signed_rank(shifted(stream, 4000, shift), {}));
@@ -66,7 +66,7 @@ TEST(PairsForSignedRank, NeverFewerThanTheTestNeeds) {
 
 // Connor's formula (1987) is applied by hand: psi = 0.3, delta = 0.1 gives (1.96 sqrt 0.3 + 0.8416 sqrt 0.29)^2 / 0.01
 // = 233.1
-TEST(PairsForFailures, FollowTheFormulaAndTellApart) {
+TEST(PairsForFailures, FollowTheFormulaAndDistinguish) {
   EXPECT_EQ(pairs_for_failures(20, 10, 100, {}), 234.0);
   EXPECT_EQ(pairs_for_failures(10, 20, 100, {}), 234.0);
   EXPECT_EQ(pairs_for_failures(10, 10, 100, {}), kInfinity);

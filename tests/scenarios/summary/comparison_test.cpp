@@ -9,9 +9,9 @@
 #include <limits>
 #include <optional>
 
-#include "scenarios/errors.hpp"
 #include "scenarios/statistics/paired.hpp"
 #include "sim/random/stream.hpp"
+#include "tests/complaint.hpp"
 #include "tests/scenarios/summary/rate_error.hpp"
 
 namespace tumble::scenarios {
@@ -210,12 +210,7 @@ TEST(Comparison, VerdictsAreFailures) {
 TEST(Comparison, RefusesWhatIsNotThere) {
   const Summary summary = summary_of(kError, {{"raw", Values(9, 1.0)}, {"ours", Values(9, 1.0)}});
   const auto complaint = [&](const ComparisonOptions& options) {
-    try {
-      compare(summary, options);
-    } catch (const BadInput& error) {
-      return std::string(error.what());
-    }
-    return std::string();
+    return test::complaint([&] { compare(summary, options); });
   };
   ComparisonOptions options;
   options.methods = {"our"};

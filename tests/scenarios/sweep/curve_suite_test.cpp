@@ -5,10 +5,10 @@
 #include <map>
 #include <set>
 
-#include "scenarios/errors.hpp"
 #include "scenarios/sweep/results.hpp"
 #include "scenarios/sweep/small_catalogue.hpp"
 #include "scenarios/sweep/sweep.hpp"
+#include "tests/complaint.hpp"
 
 // the suites vary a number on the sphere, whose draws are short
 namespace tumble::scenarios {
@@ -28,12 +28,7 @@ class CurveSuiteTest : public testing::SmallCatalogue {
   }
 
   std::string complaint(const std::string& vary) const {
-    try {
-      suite(vary);
-    } catch (const BadInput& error) {
-      return error.what();
-    }
-    return "";
+    return test::complaint([&] { suite(vary); });
   }
 };
 

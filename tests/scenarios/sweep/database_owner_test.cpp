@@ -10,6 +10,7 @@
 #include <string>
 
 #include "scenarios/errors.hpp"
+#include "tests/complaint.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace tumble::scenarios {
@@ -22,12 +23,7 @@ class DatabaseOwnerTest : public testing::TemporaryFolder {
   std::filesystem::path database() const { return folder_ / "results.db"; }
   std::filesystem::path lock() const { return folder_ / "results.db.lock"; }
   std::string complaint(const std::filesystem::path& path) const {
-    try {
-      const DatabaseOwner owner(path);
-    } catch (const BadInput& error) {
-      return error.what();
-    }
-    return "";
+    return test::complaint([&] { const DatabaseOwner owner(path); });
   }
 };
 

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "scenarios/errors.hpp"
+#include "tests/complaint.hpp"
 #include "tests/tree.hpp"
 
 namespace tumble::scenarios {
@@ -24,12 +24,8 @@ std::size_t applicable_of(Kind kind, const std::string& scenario) {
 }
 
 std::string complaint(const std::string& method, const std::string& scenario) {
-  try {
-    require_applies(*find_methods(method).front(), load_scenario(DataRoot{test::source_dir()}, scenario));
-  } catch (const BadInput& error) {
-    return error.what();
-  }
-  return "";
+  return test::complaint(
+      [&] { require_applies(*find_methods(method).front(), load_scenario(DataRoot{test::source_dir()}, scenario)); });
 }
 
 // the wand and the pendulum of the catalogue have no lidar

@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "scenarios/errors.hpp"
+#include "tests/complaint.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace tumble::scenarios {
@@ -86,7 +87,7 @@ TEST(Gate, TheAcceptedRunPasses) {
   }
 }
 
-TEST(Gate, PairsTellAShiftThatIsSmallBesideTheDraws) {
+TEST(Gate, PairsDetectAShiftThatIsSmallNextToTheSpreadOfTheDraws) {
   EXPECT_THAT(fault_after(kError, scaled(kError, 1.05)), HasSubstr("worse in 16 of 16"));
   EXPECT_EQ(fault_after(kError, scaled(kError, 1.015)), "") << "within the margin";
   const std::vector<GateResult> better = held_after(scaled(kError, 0.9));
@@ -103,7 +104,7 @@ TEST(Gate, WhatGoesUpAndDownPasses) {
 
 // one of the sphere's IMUs is missing: the error is 10 to 50 % worse on each of three scenarios, and significant on
 // none of them
-TEST(Gate, AShiftThatNoScenarioTellsByItselfIsToldByAllTogether) {
+TEST(Gate, AShiftThatNoScenarioShowsAloneIsDetectedByAllTogether) {
   const auto both = [](double factor) {
     std::vector<Outcome> outcomes = accepted_outcomes();
     for (Outcome& outcome : outcomes) score_of(outcome, kError) *= outcome.seed <= 10 ? factor : 1.0 / 1.01;
@@ -126,12 +127,12 @@ TEST(Gate, AShiftThatNoScenarioTellsByItselfIsToldByAllTogether) {
   }
 }
 
-TEST(Gate, ACovarianceIsHeldOnBothSides) {
+TEST(Gate, ACovarianceHasTwoBounds) {
   EXPECT_THAT(fault_after(kNees, scaled(kNees, 2.0)), HasSubstr("higher in 16"));
   EXPECT_THAT(fault_after(kNees, scaled(kNees, 0.5)), HasSubstr("lower in 16"));
 }
 
-TEST(Gate, WhatHasASignIsHeldByItsDifferenceOnBothSides) {
+TEST(Gate, ASignedMetricHasTwoBoundsOnItsDifference) {
   const auto later = [](double by_s) { return [=](Outcome& outcome) { score_of(outcome, kOffset) += by_s; }; };
   EXPECT_THAT(fault_after(kOffset, later(1e-4)), HasSubstr("higher in 16"));
   EXPECT_THAT(fault_after(kOffset, later(-1e-4)), HasSubstr("lower in 16"));
@@ -209,12 +210,7 @@ class GateFiles : public testing::TemporaryFolder {
   std::string complaint(const std::string& policy, const std::string& run) const {
     write("bad.yaml", policy);
     write("bad.csv", run);
-    try {
-      load_gate(DataRoot{folder_}, (folder_ / "bad.yaml").string());
-    } catch (const BadInput& error) {
-      return error.what();
-    }
-    return "";
+    return test::complaint([&] { load_gate(DataRoot{folder_}, (folder_ / "bad.yaml").string()); });
   }
 };
 
@@ -258,18 +254,8 @@ TEST_F(GateFiles, SayWhatIsWrongAndWhere) {
               HasSubstr("0.7"));
   write("scenarios/gates/other.yaml", kPolicy);
   write("scenarios/gates/other.csv", good);
-  try {
-    load_gate(DataRoot{folder_}, "other");
-    FAIL() << "a gate of another suite";
-  } catch (const BadInput& error) {
-    EXPECT_THAT(error.what(), HasSubstr("must be 'other'"));
-  }
-  try {
-    load_gate(DataRoot{folder_}, "slip");
-    FAIL() << "a gate out of nothing";
-  } catch (const BadInput& error) {
-    EXPECT_THAT(error.what(), HasSubstr("--accept"));
-  }
+  EXPECT_THAT(test::complaint([&] { load_gate(DataRoot{folder_}, "other"); }), HasSubstr("must be 'other'"));
+  EXPECT_THAT(test::complaint([&] { load_gate(DataRoot{folder_}, "slip"); }), HasSubstr("--accept"));
 }
 
 }  // namespace

@@ -112,7 +112,7 @@ TEST(GivenErrors, OfTheRateAreConstantOverASegmentAndNowhereElse) {
   EXPECT_GT(after.stated_gyro_range_rad_s, largest);
 }
 
-TEST(GivenErrors, OfTheStatedRailReachMethodsThatAreToldIt) {
+TEST(GivenErrors, OfTheStatedSaturationLimitReachMethodsThatUseIt) {
   const SimulatedDraw draw = sample_draw();
   const Setting setting{"given.stated_rail_error", -0.1};
   EXPECT_NEAR(with_setting(draw, setting).recording.sensors.imus[0].stated_gyro_range_rad_s, 0.9 * kRail, 1e-12);

@@ -13,10 +13,10 @@
 #include <utility>
 #include <vector>
 
-#include "scenarios/errors.hpp"
 #include "scenarios/sweep/database_owner.hpp"
 #include "scenarios/sweep/results.hpp"
 #include "scenarios/sweep/sweep_notes.hpp"
+#include "tests/complaint.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace tumble::scenarios {
@@ -50,12 +50,7 @@ class MergeTest : public testing::TemporaryFolder {
     return folder_ / name;
   }
   std::string complaint(const Paths& in, bool mixed = false) {
-    try {
-      merge_results(out_, in, mixed);
-    } catch (const BadInput& error) {
-      return error.what();
-    }
-    return "";
+    return test::complaint([&] { merge_results(out_, in, mixed); });
   }
   std::vector<Outcome> merged() const { return Results(out_, Results::Mode::read_only).outcomes(); }
   std::size_t files() const {

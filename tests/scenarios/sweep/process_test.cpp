@@ -37,7 +37,7 @@ TEST(Process, HandsOverWhatTheChildWrites) {
   EXPECT_TRUE(process.wait().normal);
 }
 
-TEST(Process, TellsHowTheChildEnded) {
+TEST(Process, ReportsHowTheChildEnded) {
   Process throwing([](int) { throw std::runtime_error("no"); }, false);
   const Process::End thrown = throwing.wait();
   EXPECT_FALSE(thrown.normal);

@@ -7,11 +7,11 @@
 #include <cmath>
 #include <map>
 
-#include "scenarios/errors.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/sweep/results.hpp"
 #include "scenarios/sweep/sweep.hpp"
 #include "stand_ins/synthetic_repoimu.hpp"
+#include "tests/complaint.hpp"
 #include "tests/temporary_folder.hpp"
 #include "tests/tree.hpp"
 
@@ -74,12 +74,7 @@ class RecordedSweep : public testing::TemporaryFolder {
   }
 
   std::string complaint(const Suite& suite, const std::filesystem::path& database) const {
-    try {
-      sweep(DataRoot{folder_}, suite, database, {});
-    } catch (const BadInput& error) {
-      return error.what();
-    }
-    return "";
+    return test::complaint([&] { sweep(DataRoot{folder_}, suite, database, {}); });
   }
 };
 
@@ -134,12 +129,7 @@ TEST_F(RecordedSweep, ARecordingThatHasChangedIsRefused) {
 TEST_F(RecordedSweep, SuitesOfRecordingsHaveNoScenarios) {
   const auto refusal = [&](const std::string& rest) {
     write("scenarios/suites/real.yaml", "name: real\ndoc: d\n" + rest);
-    try {
-      load_suite(DataRoot{folder_}, "real");
-    } catch (const BadInput& error) {
-      return std::string(error.what());
-    }
-    return std::string();
+    return test::complaint([&] { load_suite(DataRoot{folder_}, "real"); });
   };
   EXPECT_EQ(refusal("recordings: [a.h5]\n"), "");
   EXPECT_THAT(refusal("recordings: [a.h5]\nseeds: {first: 1, last: 2}\n"),

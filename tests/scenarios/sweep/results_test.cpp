@@ -19,6 +19,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/provenance/build_id.hpp"
+#include "tests/complaint.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace tumble::scenarios {
@@ -57,12 +58,7 @@ class ResultsTest : public testing::TemporaryFolder {
     return {std::istreambuf_iterator<char>(file), {}};
   }
   std::string complaint(Results::Mode mode) const {
-    try {
-      Results results(path(), mode);
-    } catch (const BadInput& error) {
-      return error.what();
-    }
-    return "";
+    return test::complaint([&] { Results results(path(), mode); });
   }
 };
 
@@ -171,12 +167,7 @@ TEST_F(ResultsTest, AValueThatIsNoNumberIsNamed) {
   }
   const auto reading = [&](const char* change, const auto& read) -> std::string {
     SQLite::Database(path().string(), SQLite::OPEN_READWRITE).exec(change);
-    try {
-      read(Results(path(), Results::Mode::read_only));
-    } catch (const BadInput& error) {
-      return error.what();
-    }
-    return "";
+    return test::complaint([&] { read(Results(path(), Results::Mode::read_only)); });
   };
   const auto scores = [](const Results& results) { results.scores(); };
   const auto each = [](const Results& results) {

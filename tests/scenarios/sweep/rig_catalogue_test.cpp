@@ -24,7 +24,7 @@ namespace {
 constexpr std::uint64_t kClippedSeed = 1003;
 
 // scenarios about their sensors have separate suites; `stroll` is of peers/gentle.yaml, where no gyro is saturated
-TEST(HillSuite, HoldsWithThoseOfRailsAndFaultsEveryScenarioButTheSpheres) {
+TEST(HillSuite, ContainsWithRailsAndFaultsEveryScenarioExceptTheSpheres) {
   std::multiset<std::string> listed;
   for (const char* name : {"hill", "rails", "faults"}) {
     const Suite suite = load_suite(tree_data(), name);

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "scenarios/draw/scenario.hpp"
-#include "scenarios/errors.hpp"
 #include "scenarios/methods/method.hpp"
 #include "scenarios/sweep/sweep.hpp"
+#include "tests/complaint.hpp"
 #include "tests/temporary_folder.hpp"
 #include "tests/tree.hpp"
 
@@ -25,12 +25,7 @@ class SuiteTest : public testing::TemporaryFolder {
 
   std::string complaint(const std::string& text) const {
     write("scenarios/suites/test.yaml", text);
-    try {
-      load_suite(data(), "test");
-    } catch (const BadInput& error) {
-      return error.what();
-    }
-    return "";
+    return test::complaint([&] { load_suite(data(), "test"); });
   }
 };
 
@@ -75,15 +70,10 @@ TEST_F(SuiteTest, ComplaintsNameFileLineAndNearestName) {
   EXPECT_NE(complaint(head + "scenarios: [hill]\nseeds: {first: 1, last: 2}\ntimeout_s: -5\n").find("timeout_s"),
             std::string::npos);
   EXPECT_NE(complaint(head + "seeds: {first: 1, last: 2}\n"), "");
-  try {
-    load_suite(data(), "tset");
-    FAIL();
-  } catch (const BadInput& error) {
-    EXPECT_NE(std::string(error.what()).find("did you mean 'test'"), std::string::npos) << error.what();
-  }
+  EXPECT_THAT(test::complaint([&] { load_suite(data(), "tset"); }), ::testing::HasSubstr("did you mean 'test'"));
 }
 
-TEST_F(SuiteTest, AScenarioIsToldFromASuite) {
+TEST_F(SuiteTest, AScenarioIsDistinguishedFromASuite) {
   EXPECT_THAT(complaint("name: icy\ndoc: d\nduration_s: 4\nmotion: {type: push}\n"),
               ::testing::AllOf(::testing::HasSubstr("test.yaml:4: motion: this key belongs to a scenario"),
                                ::testing::HasSubstr("scenarios/catalogue")));

@@ -119,7 +119,7 @@ TEST(FieldContact, TheComparisonSeesAMicrometre) {
   EXPECT_GT(difference(contacts, *count, ground.engines()), 1e-7);
 }
 
-TEST(FieldContact, LeavesToTheEngineWhatItCannotTell) {
+TEST(FieldContact, LeavesToTheEngineWhatItCannotDecide) {
   Ground level, turned("0 5 0");
   Contacts contacts;
   const Eigen::Quaterniond upright = Eigen::Quaterniond::Identity();

@@ -48,7 +48,7 @@ TEST(Prism, ACorner) {
   expect_near(kLevel, {-0.1, -0.2, 0.2}, {-1.0, -2.0, 2.0}, {-0.1, -0.2, 0.2}, {0.0, 0.0, 0.0});
 }
 
-TEST(Prism, OfAnAxisAlongTheTopTheDistanceIsTold) {
+TEST(Prism, OfAnAxisAlongTheTopTheDistanceIsReported) {
   Closest closest;
   ASSERT_EQ(meet({-0.5, 0.2, 0.3}, {2.0, 0.2, 0.3}, kLevel, 0.5, closest), Meeting::near);
   EXPECT_NEAR(closest.distance_m, 0.3, 1e-12);

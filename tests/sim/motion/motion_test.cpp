@@ -85,7 +85,7 @@ TEST(Drop, FallsFreelyFromTheStatedHeight) {
   EXPECT_LT(truth.w_WB_B_rad_s[1500].norm(), 1e-6) << "nothing turns it in the air";
 }
 
-TEST(Drop, MayBeHeldAwayFromTheStart) {
+TEST(Drop, MayStartAwayFromTheStart) {
   Situation situation = moved_by("drop", 1.0);
   situation.motion.values.set("forward_m", 2.0);
   const Truth away = simulate(built(situation)).truth;
