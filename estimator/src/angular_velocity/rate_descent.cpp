@@ -172,7 +172,7 @@ GaussNewtonRateStep::SensorErrorDerivatives GaussNewtonRateStep::error_derivativ
 
 bool solve(const AngularRateSmoother::Params& params, const AngularRateModel& model,
            std::span<const AngularRateObservation> observations, RateSolution& solution, AngularRateReport& health) {
-  if (!run_gauss_newton(params, model, observations, params.expert.optimisation.initial_threshold_factor, solution,
+  if (!run_gauss_newton(params, model, observations, params.expert.optimisation.kInitialThresholdFactor, solution,
                         health))
     return false;
   double share = 1.0;
@@ -181,7 +181,7 @@ bool solve(const AngularRateSmoother::Params& params, const AngularRateModel& mo
     if (share >= kFlightShareExpected) break;
     RateSolution other{{}, {}, {}, GaussNewtonRateStep(observations)};
     AngularRateReport other_health = health;
-    const double threshold_factor = std::max(1.0, factor * params.expert.optimisation.initial_threshold_factor);
+    const double threshold_factor = std::max(1.0, factor * params.expert.optimisation.kInitialThresholdFactor);
     if (!run_gauss_newton(params, model, observations, threshold_factor, other, other_health)) continue;
     double other_share = 0.0;
     const double found = explained_force_fraction(observations, other.estimates, other_share);

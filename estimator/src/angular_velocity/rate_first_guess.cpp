@@ -20,7 +20,7 @@ constexpr double kVarianceUnknown = 100.0;  // variance of a clipped axis at the
 std::vector<AngularRateEstimate> first_guess(std::span<const AngularRateObservation> observations,
                                              const AngularRateModelParams& model, const AngularRateModel& derived,
                                              double gap_max_s) {
-  double smallest = model.rate_max_rad_s;
+  double smallest = model.kRateMax_rad_s;
   for (const AngularRateObservation& o : observations) {
     for (int j = 0; j < 3; ++j) {
       const double reading = std::abs(o.sample.angular_velocity_rad_s[j]);
@@ -44,7 +44,7 @@ std::vector<AngularRateEstimate> first_guess(std::span<const AngularRateObservat
     for (int j = 0; j < 3; ++j) {
       if ((o.clipping.unusable_gyro >> j & 1u) != 0) readings[k].variance_rad2_s2[j] = kVarianceUnknown;
       if ((o.unmeasured_axes() & o.clipping.gyro & 1u << j) == 0) continue;
-      const double limit = model.rate_max_rad_s;
+      const double limit = model.kRateMax_rad_s;
       readings[k].rate_rad_s[j] = std::clamp(recovered.rate_rad_s[j], -limit, limit);
       readings[k].variance_rad2_s2[j] = std::clamp(recovered.variance_rad2_s2[j], 0.25, kVarianceUnknown);
     }

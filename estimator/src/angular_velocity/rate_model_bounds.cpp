@@ -53,7 +53,7 @@ void AngularRateModel::search_flight_solutions(const AngularRateObservation& obs
     w += deficit_directions * H.llt().solve(g).cwiseMax(-kFlightSearchStepMax).cwiseMin(kFlightSearchStepMax);
     for (int j = 0; j < 3; ++j) {
       if ((unmeasured_axes & observation.clipping.gyro & 1 << j) == 0) continue;
-      const double side = std::copysign(1.0, reading[j]), high = std::max(std::abs(reading[j]), params_.rate_max_rad_s);
+      const double side = std::copysign(1.0, reading[j]), high = std::max(std::abs(reading[j]), params_.kRateMax_rad_s);
       const double along = rows.row(j).dot(w), held = rows.row(j).dot(reading);
       w += (side * std::clamp(side * along, std::abs(held), std::max(high, std::abs(held))) - along) *
            deficit_directions.col(j);
@@ -99,7 +99,7 @@ void AngularRateModel::update_bounds(const AngularRateObservation& observation, 
     const GaussianLikelihoodApproximation site = refined_bound_approximation(
         marginal, {estimate.lower_bound_precision[j], sign * estimate.lower_bound_information_mean[j]}, 0.0,
         params_.expert.kRailSigma_rad_s * params_.expert.kRailSigma_rad_s,
-        params_.rate_max_rad_s * params_.rate_max_rad_s, damping);
+        params_.kRateMax_rad_s * params_.kRateMax_rad_s, damping);
     estimate.lower_bound_precision[j] = site.precision;
     estimate.lower_bound_information_mean[j] = sign * site.information_mean;
   }

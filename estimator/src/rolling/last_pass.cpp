@@ -52,7 +52,7 @@ void FinalSmoothingPass::filter_forward(std::size_t segment, Checkpoint& at) {
   while (readings.next(reading)) {
     const ImuAverage& average = reading.average;
     const Eigen::Vector3d& rate = average.mean.angular_velocity_rad_s;
-    if (reading.is_whole && sums.node_interval_s >= params_.expert.node_s - 0.5 * average.length_s &&
+    if (reading.is_whole && sums.node_interval_s >= params_.expert.kNode_s - 0.5 * average.length_s &&
         first + node_records_.size() < end) {
       const ModePathNode& decided = mode_path_[first + node_records_.size()];
       FilterNodeRecord& record = node_records_.emplace_back();

@@ -165,10 +165,10 @@ bool RollingSmoother::State::operator==(const State& other) const {
 
 RollingSmoother::RollingSmoother(const Params& p) : params_(p), filter_(p.filter) {
   require_valid_fields(p);
-  require_in_interval("lag_s", p.lag_s, p.filter.expert.node_s, kWholeRecordingLag);
+  require_in_interval("lag_s", p.lag_s, p.filter.expert.kNode_s, kWholeRecordingLag);
   final_smoothing_params_ = scale_noise(p.filter, p.kFinalPassNoiseRatio);
-  lag_nodes_ = static_cast<std::size_t>(std::ceil(p.lag_s / p.filter.expert.node_s - 1e-9));
-  nodes_per_block_ = static_cast<std::size_t>(std::ceil(p.kBlock_s / p.filter.expert.node_s - 1e-9));
+  lag_nodes_ = static_cast<std::size_t>(std::ceil(p.lag_s / p.filter.expert.kNode_s - 1e-9));
+  nodes_per_block_ = static_cast<std::size_t>(std::ceil(p.kBlock_s / p.filter.expert.kNode_s - 1e-9));
 }
 
 std::size_t RollingSmoother::preallocated_samples() const {
@@ -221,7 +221,7 @@ void RollingSmoother::finish(std::span<const RollingMode> known, State& state, c
   rolling::RollingReadings readings(params_.filter, state.samples, start_cursor(state.samples.front()));
   rolling::RollingReading reading;
   while (readings.next(reading) && reading.is_whole && n < path.nodes.size()) {
-    if (node_s >= params_.filter.expert.node_s - 0.5 * reading.average.length_s) {
+    if (node_s >= params_.filter.expert.kNode_s - 0.5 * reading.average.length_s) {
       path.nodes[n++].mode = less_constrained_mode(mode, known[std::min(reading.first, known.size() - 1)]);
       mode = RollingMode::grip;
       node_s = 0.0;

@@ -23,7 +23,7 @@ struct AttitudeRestParams {
 struct AttitudeGapParams {
   /// Random walks of the rate and velocity of tumbling bodies during a gap. On hills, stairs and cliffs, the true
   /// random walks over 0.05 to 0.5 s are 3.0 to 11.4 rad/s and 2.4 to 4.1 m/s per sqrt(s) (docs/figures.md).
-  double rate_walk_rad_s_sqrts = 7.0;
+  static constexpr double kRateWalk_rad_s_sqrts = 7.0;
   static constexpr double kVelocityWalk_m_s_sqrts = 3.3;
   /// Standard deviations of the tilt, per axis. Coarse alignment starts above `lost_tilt_rad`, where the linearised
   /// filter is invalid, and ends below `aligned_tilt_rad`.
@@ -32,8 +32,6 @@ struct AttitudeGapParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.rate_walk_rad_s_sqrts,
-          {"gap_rate_walk_rad_s_sqrts", "rad/s/sqrt(s)", 0.0, 1e4, "random walk of the rate during a gap"});
     visit(p.lost_tilt_rad,
           {"gap_lost_tilt_rad", "rad", 1e-3, 1e4,
            "standard deviation of the tilt after a gap, above which TumbleAttitude initialises the tilt again"});
@@ -43,10 +41,6 @@ struct AttitudeGapParams {
 struct TumbleAttitudeExpertParams {
   static constexpr double kBiasWalk_rad_s_sqrts = 2e-6;  ///< random walk of the bias per sqrt(s)
   double recovered_tau_s = 0.05;                         ///< correlation time of the error of a recovered rate
-  double node_s = 0.04;                                  ///< time between two corrections
-  /// Averaging time of the readings. The thresholds of TumbleAttitude assume the default averaging time. An averaging
-  /// time of 0 disables averaging.
-  double reading_s = 4e-3;
   double gap_max_s = 1.0;
   RestDetector::Params rest_detector = {.rate_max_rad_s = 3.4907e-2,
                                         .rate_spread_rad_s = 3.4907e-2,
@@ -60,8 +54,6 @@ struct TumbleAttitudeExpertParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.recovered_tau_s, {"recovered_tau_s", "s", 1e-4, 1e4, "correlation time of the error of a recovered rate"});
-    visit(p.node_s, {"node_s", "s", 1e-4, 1.0, "time between two filter corrections"});
-    visit(p.reading_s, {"reading_s", "s", 0.0, 0.1, "duration over which readings are averaged; 0: no averaging"});
     visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap causes an error"});
     visit.group("rest_", p.rest_detector);
     visit.group("", p.at_rest);

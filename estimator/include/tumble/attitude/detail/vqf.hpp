@@ -15,8 +15,7 @@ namespace tumble {
 struct VqfParams {
   double tau_s = 3.0;  ///< time constant of the low-pass filter on the specific force
   bool rest_bias_estimation = true;
-  bool motion_bias_estimation = true;         ///< if both bias estimations are off, Vqf is the authors' basic filter
-  double bias_sigma_start_rad_s = 8.7266e-3;  ///< prior standard deviation of the gyro bias: 0.5 deg/s
+  bool motion_bias_estimation = true;  ///< if both bias estimations are off, Vqf is the authors' basic filter
   double gap_max_s = 1.0;
 
   /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
@@ -29,8 +28,6 @@ struct VqfParams {
           boolean_field("rest_bias_estimation", "1: estimate the gyro bias at rest", ParameterRank::common_use));
     visit(p.motion_bias_estimation, boolean_field("motion_bias_estimation", "1: also estimate the gyro bias in motion",
                                                   ParameterRank::common_use));
-    visit(p.bias_sigma_start_rad_s, {"bias_sigma_start_rad_s", "rad/s", 1e-9, 1.0,
-                                     "prior standard deviation of the gyro bias", ParameterRank::common_use});
     visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap causes an error"});
   }
 };

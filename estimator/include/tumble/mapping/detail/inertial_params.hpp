@@ -11,16 +11,16 @@ struct InertialNoiseParams {
   static constexpr double kSweepInterval_s = 0.1;  ///< time between two sweeps of most lidars
   double sigma_m = 0.003;
   double sigma_rad = 0.002;
-  double sigma_m_s = 0.01;
+  static constexpr double kSigma_m_s = 0.01;
   /// rotation error relative to the rotation angle
-  double rotation_noise_ratio = 0.001;
+  static constexpr double kRotationNoiseRatio = 0.001;
   /// velocity error relative to the integral of the specific force
-  double force_share = 0.03;
+  static constexpr double kForceShare = 0.03;
   /// Random walks of velocity and rate over a gap of the IMU: mapping.md (R43), (R44). For tumbling rigs and gaps of
   /// 0.05 to 0.5 s, the true random walks are 2.4 to 4.1 m/s and 3 to 11 rad/s per sqrt(s).
   double gap_velocity_walk_m_s_sqrt_s = 3.0;
   double gap_rate_walk_rad_s_sqrt_s = 9.0;
-  double rate_sigma_max_rad_s = 5.0;  ///< upper bound of the standard deviation in AngularRateState
+  static constexpr double kRateSigmaMax_rad_s = 5.0;  ///< upper bound of the standard deviation in AngularRateState
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -30,24 +30,11 @@ struct InertialNoiseParams {
     visit(p.sigma_rad,
           {"prior_sigma_rad", "rad", 1e-9, 1e3, "standard deviation of the attitude after 0.1 s of inertial prediction",
            ParameterRank::common_use});
-    visit(p.sigma_m_s,
-          {"prior_sigma_m_s", "m/s", 1e-9, 1e3, "standard deviation of the velocity after 0.1 s of inertial prediction",
-           ParameterRank::common_use});
-    visit(p.rotation_noise_ratio,
-          {"rotation_sigma_ratio", "1", 0.0, 1.0,
-           "standard deviation of the attitude after inertial prediction, as a share of the rotation",
-           ParameterRank::common_use});
-    visit(p.force_share,
-          {"force_sigma_ratio", "1", 0.0, 1.0,
-           "standard deviation of the velocity after inertial prediction, as a share of the integrated force",
-           ParameterRank::common_use});
     visit(p.gap_velocity_walk_m_s_sqrt_s,
           {"gap_velocity_walk_m_s_sqrt_s", "m/s/sqrt(s)", 0.0, 1e3, "random walk of the velocity during an IMU gap"});
     visit(p.gap_rate_walk_rad_s_sqrt_s,
           {"gap_rate_walk_rad_s_sqrt_s", "rad/s/sqrt(s)", 0.0, 1e3,
            "random walk of the rate during an IMU gap, about a linear interpolation between the rates at both ends"});
-    visit(p.rate_sigma_max_rad_s, {"rate_sigma_max_rad_s", "rad/s", 0.0, 100.0,
-                                   "upper limit of the standard deviation that the rate estimator reports"});
   }
 };
 
@@ -61,17 +48,13 @@ struct InertialNoiseParams {
 /// saturation deficit is continuous at the boundary.
 struct SaturatedImuParams {
   double accel_m_s2 = 1e5;
-  double rate_sigma_rad_s = 3.0;  ///< standard deviation of a clipped rate that was not recovered
+  static constexpr double kRateSigma_rad_s = 3.0;  ///< standard deviation of a clipped rate that was not recovered
   bool estimate_deficit = false;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.accel_m_s2,
           {"accel_rail_m_s2", "m/s^2", 1e-9, 1e5, "accelerometer readings from this value on count as saturated"});
-    visit(p.rate_sigma_rad_s,
-          {"clipped_sigma_rad_s", "rad/s", 0.0, 100.0,
-           "standard deviation of the rate about a clipped axis that the rate estimator did not recover",
-           ParameterRank::common_use});
     visit(p.estimate_deficit, boolean_field("estimate_saturation_deficit",
                                             "1: estimate the saturation deficit of clipped axes in the registration"));
   }

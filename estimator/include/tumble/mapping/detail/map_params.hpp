@@ -28,19 +28,11 @@ struct LocalMapParams {
 /// See docs/maths/mapping.md, heading "Reported covariance".
 struct WorldCovarianceParams {
   double tilt_sigma_rad = 0.002;  ///< standard deviation of the tilt at the start: accelerometer bias of 2 mg
-  /// standard deviation of the drift per sweep, relative to that of the pose in its least constrained direction
-  double drift_ratio = 0.1;
-  double drift_sigma_max_m = 3.0;  ///< upper bound of the standard deviation that drift_ratio multiplies
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.tilt_sigma_rad,
           {"tilt_sigma_rad", "rad", 0.0, 1.0, "reported standard deviation of the map's tilt after initial levelling"});
-    visit(p.drift_ratio, {"drift_ratio", "1", 0.0, 1.0,
-                          "standard deviation of the map's drift per sweep, as a share of the pose's standard "
-                          "deviation in its least constrained direction"});
-    visit(p.drift_sigma_max_m, {"drift_sigma_max_m", "m", 0.0, 1e3,
-                                "upper limit of the pose's standard deviation that drift_ratio multiplies"});
   }
 };
 

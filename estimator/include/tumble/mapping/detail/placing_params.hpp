@@ -19,7 +19,7 @@ struct MatchingParams {
   /// growth rate of a point's standard deviation since the start of the sweep
   double skew_sigma_m_s = 0.25;
   /// standard deviation of the pose from the sweep's points alone, above which a sweep is `degenerate`
-  double degenerate_sigma_m = 0.15;
+  static constexpr double kDegenerateSigma_m = 0.15;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -44,9 +44,6 @@ struct MatchingParams {
     visit(p.skew_sigma_m_s,
           {"skew_sigma_m_s", "m/s", 0.0, 1e3,
            "growth of a point's standard deviation with the time since the start of the sweep; 0: no growth"});
-    visit(p.degenerate_sigma_m,
-          {"degenerate_sigma_m", "m", 1e-6, 1e3,
-           "standard deviation of the pose from the sweep's points alone, above which the sweep counts as degenerate"});
   }
 };
 
@@ -57,18 +54,15 @@ struct TrackingParams {
   /// lidar rotates. The map excludes points that are too uncertain because of their range and the
   /// uncertain attitude.
   double extend_sigma_max_m = 0.1;
-  /// Maximum number of consecutive sweeps with points but without registration. After lost_sweeps_max sweeps,
+  /// Maximum number of consecutive sweeps with points but without registration. After kLostSweepsMax sweeps,
   /// LidarInertialOdometry continues by inertial prediction and reports `degenerate`.
-  int lost_sweeps_max = 30;
+  static constexpr int kLostSweepsMax = 30;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.extend_sigma_max_m, {"extend_sigma_max_m", "m", 0.0, 1e3,
                                  "a sweep with too few matches still extends the map if the standard deviation of its "
                                  "prior position is below this value"});
-    visit(p.lost_sweeps_max,
-          {"lost_sweeps_max", "1", 1, 1e6,
-           "number of consecutive unregistered sweeps after which mapping continues with inertial prediction"});
   }
 };
 

@@ -5,24 +5,18 @@
 
 namespace tumble {
 
-/// At rest, the rate differs from the bias and from its mean by at most rate_rad_s. The specific force at rest differs
-/// from gravity and from its mean by at most force_m_s2.
+/// At rest, the rate differs from the bias and from its mean by at most kRate_rad_s. The specific force at rest differs
+/// from gravity and from its mean by at most kForce_m_s2.
 struct StationaryBoundsParams {
   double levelling_max_s = 0.5;  ///< maximum duration of the initial rest that determines the tilt
-  double rate_rad_s = 0.05;
-  double force_m_s2 = 0.5;
+  static constexpr double kRate_rad_s = 0.05;
+  static constexpr double kForce_m_s2 = 0.5;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.levelling_max_s,
           {"rest_s", "s", 1e-9, 60.0, "maximum duration of the initial rest that determines the tilt",
            ParameterRank::common_use});
-    visit(p.rate_rad_s,
-          {"rest_rate_rad_s", "rad/s", 1e-6, 10.0,
-           "at rest: maximum difference between the rate and the bias, and between the rate and its mean, per axis"});
-    visit(p.force_m_s2, {"rest_force_m_s2", "m/s^2", 1e-6, 10.0,
-                         "at rest: maximum difference between the specific force and gravity, and between the specific "
-                         "force and its mean"});
   }
 };
 
