@@ -42,11 +42,11 @@ Settings<TumblingOdometry::Params> odometry_settings(double lag_s, std::vector<s
 }
 
 const Settings<TumblingOdometry::Params>& whole_settings() {
-  static const auto all = odometry_settings(
-      TumblingOdometry::kWholeRecording,
-      {"lag_s", "sweeps_max", "second_pass_*", "rate_accel_bias_sigma_m_s2", "rate_inertia_sigma", "rate_step_s",
-       "rate_initial_threshold_factor", "rate_bound_*", "rate_flight_run_min", "rate_rig_inflation*",
-       "rate_contact_inflation", "rate_contact_slopes", "rate_uncalibrated", "rate_carried_window_s"});
+  static const auto all =
+      odometry_settings(TumblingOdometry::kWholeRecording,
+                        {"lag_s", "sweeps_max", "second_pass_*", "rate_accel_bias_sigma_m_s2", "rate_inertia_sigma",
+                         "rate_step_s", "rate_bound_*", "rate_rig_inflation*", "rate_contact_inflation",
+                         "rate_contact_slopes", "rate_uncalibrated", "rate_carried_window_s"});
   return all;
 }
 

@@ -6,11 +6,14 @@
 #include <limits>
 #include <utility>
 
-#include "rate_first_guess.hpp"
+#include "tumble/angular_velocity/detail/saave.hpp"
+#include "wnoj_smoother.hpp"
 
 namespace tumble {
 
 namespace {
+
+using Eigen::Vector3d;
 
 // If few clipped samples count as flight, the optimisation restarts with the flight threshold times these factors.
 constexpr double kRestartThresholds[] = {16.0, 0.25};
@@ -19,6 +22,51 @@ constexpr double kFlightShareExpected = 0.5;
 // The iteration converges if each linear combination of unknowns changes by at most kStepDeviations of its standard
 // deviation: rate_smoother.md (R30).
 constexpr double kStepDeviations = 0.1;
+
+constexpr double kVarianceUnknown = 100.0;  // variance of a clipped axis at the start, (rad/s)^2
+
+// Computes initial rates with a smoother and the published rate recovery (SaturationAwareRateEstimator). Clipped
+// readings are lower bounds of the rates. The samples must be valid.
+std::vector<AngularRateEstimate> first_guess(std::span<const AngularRateObservation> observations,
+                                             const AngularRateModelParams& model, const AngularRateModel& derived,
+                                             double gap_max_s) {
+  double smallest = model.kRateMax_rad_s;
+  for (const AngularRateObservation& o : observations) {
+    for (int j = 0; j < 3; ++j) {
+      const double reading = std::abs(o.sample.angular_velocity_rad_s[j]);
+      if ((o.clipping.gyro >> j & 1u) != 0) smallest = std::min(smallest, std::max(reading, 0.01));
+    }
+  }
+  const SaturationAwareRateEstimator saave({.lever_arm_m = derived.prior_constants().lever_arm_m,
+                                            .saturation_point_rad_s = std::max(0.01, 0.9999 * smallest),
+                                            .gap_max_s = gap_max_s});
+  SaturationAwareRateEstimator::State state;
+  SaturationAwareRateEstimator::RecoveredRate recovered;
+  const double measured = derived.gyro_sigma_rad_s() * derived.gyro_sigma_rad_s();
+  std::vector<WnojSmoother::Measurement> readings(observations.size());
+  for (std::size_t k = 0; k < observations.size(); ++k) {
+    const AngularRateObservation& o = observations[k];
+    if (!saave.step(o.sample, state, recovered).ok()) {
+      state = {};
+      (void)saave.step(o.sample, state, recovered);
+    }
+    readings[k] = {o.sample.time_ns, o.sample.angular_velocity_rad_s, Vector3d::Constant(measured)};
+    for (int j = 0; j < 3; ++j) {
+      if ((o.clipping.unusable_gyro >> j & 1u) != 0) readings[k].variance_rad2_s2[j] = kVarianceUnknown;
+      if ((o.unmeasured_axes() & o.clipping.gyro & 1u << j) == 0) continue;
+      const double limit = model.kRateMax_rad_s;
+      readings[k].rate_rad_s[j] = std::clamp(recovered.rate_rad_s[j], -limit, limit);
+      readings[k].variance_rad2_s2[j] = std::clamp(recovered.variance_rad2_s2[j], 0.25, kVarianceUnknown);
+    }
+  }
+  std::vector<WnojSmoother::Smoothed> smoothed;
+  (void)WnojSmoother({}).smooth(readings, smoothed);
+  std::vector<AngularRateEstimate> out(observations.size());
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    out[k].knot = {smoothed[k].rate_rad_s, smoothed[k].acceleration_rad_s2};
+  }
+  return out;
+}
 
 // See rate_smoother.md (R16) to (R19).
 void compute_flight_weights(const AngularRateModel& model, std::span<const AngularRateObservation> observations,
@@ -172,7 +220,7 @@ GaussNewtonRateStep::SensorErrorDerivatives GaussNewtonRateStep::error_derivativ
 
 bool solve(const AngularRateSmoother::Params& params, const AngularRateModel& model,
            std::span<const AngularRateObservation> observations, RateSolution& solution, AngularRateReport& health) {
-  if (!run_gauss_newton(params, model, observations, params.expert.optimisation.initial_threshold_factor, solution,
+  if (!run_gauss_newton(params, model, observations, params.expert.optimisation.kInitialThresholdFactor, solution,
                         health))
     return false;
   double share = 1.0;
@@ -181,7 +229,7 @@ bool solve(const AngularRateSmoother::Params& params, const AngularRateModel& mo
     if (share >= kFlightShareExpected) break;
     RateSolution other{{}, {}, {}, GaussNewtonRateStep(observations)};
     AngularRateReport other_health = health;
-    const double threshold_factor = std::max(1.0, factor * params.expert.optimisation.initial_threshold_factor);
+    const double threshold_factor = std::max(1.0, factor * params.expert.optimisation.kInitialThresholdFactor);
     if (!run_gauss_newton(params, model, observations, threshold_factor, other, other_health)) continue;
     double other_share = 0.0;
     const double found = explained_force_fraction(observations, other.estimates, other_share);

@@ -215,7 +215,7 @@ AngularRateModel::ForceFactor AngularRateModel::force_factor(const AngularRateOb
                                                              const AngularRateEstimate& estimate,
                                                              const RigConstants& rig) const {
   const double flight2 = total_accel_variance(observation);
-  const double share = observation.unmeasured_axes() != 0 ? params_.expert.contact.force_share : 0.0;
+  const double share = observation.unmeasured_axes() != 0 ? params_.expert.contact.kForceShare : 0.0;
   const double contact2 =
       flight2 + share * share * estimate.contact_force_m_s2.squaredNorm() / independent_sample_fraction_;
   ForceFactor out;
@@ -276,9 +276,9 @@ void AngularRateModel::add_sample(const AngularRateObservation& observation, con
 
   add_auxiliary_imus(observation, estimate, rig, block);
 
-  const double rate_sigma = observation.at_rest ? params_.expert.kRestSigma_rad_s : params_.rate_max_rad_s;
+  const double rate_sigma = observation.at_rest ? params_.expert.kRestSigma_rad_s : params_.kRateMax_rad_s;
   const double rate_information = independent_sample_fraction_ / (rate_sigma * rate_sigma);
-  const double largest = params_.acceleration_max_rad_s2 * time_scale_s_;
+  const double largest = params_.kAccelerationMax_rad_s2 * time_scale_s_;
   const double acceleration_information = independent_sample_fraction_ / (largest * largest);
   for (int j = 0; j < 3; ++j) {
     block.diagonal(j, j) += rate_information;
@@ -294,7 +294,7 @@ Eigen::Matrix3d AngularRateModel::euler_equation_information(const AngularRateEs
   const double force = estimate.contact_force_m_s2.norm(), lever = params_.expert.contact.kLever_rad_m * force;
   const double across = independent_sample_fraction_ / (flight + lever * lever);
   if (!(force > 0.0)) return across * Eigen::Matrix3d::Identity();
-  const double twist = params_.expert.contact.twist_ratio * lever;
+  const double twist = params_.expert.contact.kTwistRatio * lever;
   const Vector3d n = estimate.contact_force_m_s2 / force;
   return across * Eigen::Matrix3d::Identity() +
          (independent_sample_fraction_ / (flight + twist * twist) - across) * n * n.transpose();

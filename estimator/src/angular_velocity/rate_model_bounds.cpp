@@ -4,10 +4,10 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "tumble/angular_velocity/detail/partial_saturation.hpp"
 #include "tumble/angular_velocity/detail/rate_model.hpp"
-#include "tumble/angular_velocity/detail/truncated_normal.hpp"
 
 namespace tumble {
 
@@ -20,6 +20,46 @@ constexpr double kStartPrecision = 0.25;
 
 constexpr int kFlightSearchSteps = 6;
 constexpr double kFlightSearchStepMax = 3.0, kFlightForceRatioMax = 0.25;
+
+struct GaussianMoments {
+  double mean = 0.0, variance = 1.0;
+};
+
+/// Gaussian factor of expectation propagation (Minka 2001), stored as precision and precision * mean.
+struct GaussianLikelihoodApproximation {
+  double precision = 0.0, information_mean = 0.0;
+};
+
+// Returns phi(z) / Phi(z), by an asymptotic series below z = -8, where phi and Phi may underflow.
+double inverse_mills_ratio(double z) {
+  if (z < -8.0) return -z / (1.0 - 1.0 / (z * z) + 3.0 / (z * z * z * z));
+  const double density = std::exp(-0.5 * z * z) * std::numbers::inv_sqrtpi / std::numbers::sqrt2;
+  return density / (0.5 * std::erfc(-z / std::numbers::sqrt2));
+}
+
+// Returns the moments of a normal distribution truncated below `bound`, which has the variance `bound_variance`:
+// rate_smoother.md (R23), (R24).
+GaussianMoments truncated_gaussian_moments(const GaussianMoments& from, double bound, double bound_variance) {
+  const double spread2 = from.variance + bound_variance, spread = std::sqrt(spread2);
+  const double z = (from.mean - bound) / spread, r = inverse_mills_ratio(z);
+  return {from.mean + from.variance * r / spread,
+          from.variance - from.variance * from.variance * r * (z + r) / spread2};
+}
+
+// Returns the Gaussian factor that gives `marginal` the moments of a distribution truncated at `bound`:
+// rate_smoother.md (R22), (R25). `now` is the current Gaussian factor, and `share` in (0, 1] is the weight of the new
+// one. The standard deviation of `marginal` without its current factor is limited to sqrt(`variance_max`).
+GaussianLikelihoodApproximation refined_bound_approximation(const GaussianMoments& marginal,
+                                                            const GaussianLikelihoodApproximation& now, double bound,
+                                                            double bound_variance, double variance_max, double share) {
+  const double precision = std::max(1.0 / marginal.variance - now.precision, 1.0 / variance_max);
+  const GaussianMoments cavity{(marginal.mean / marginal.variance - now.information_mean) / precision, 1.0 / precision};
+  const GaussianMoments wanted = truncated_gaussian_moments(cavity, bound, bound_variance);
+  const double found = std::max(0.0, 1.0 / wanted.variance - precision);
+  const double shift = wanted.mean / wanted.variance - precision * cavity.mean;
+  return {now.precision + share * (found - now.precision),
+          now.information_mean + share * (shift - now.information_mean)};
+}
 
 }  // namespace
 
@@ -53,7 +93,7 @@ void AngularRateModel::search_flight_solutions(const AngularRateObservation& obs
     w += deficit_directions * H.llt().solve(g).cwiseMax(-kFlightSearchStepMax).cwiseMin(kFlightSearchStepMax);
     for (int j = 0; j < 3; ++j) {
       if ((unmeasured_axes & observation.clipping.gyro & 1 << j) == 0) continue;
-      const double side = std::copysign(1.0, reading[j]), high = std::max(std::abs(reading[j]), params_.rate_max_rad_s);
+      const double side = std::copysign(1.0, reading[j]), high = std::max(std::abs(reading[j]), params_.kRateMax_rad_s);
       const double along = rows.row(j).dot(w), held = rows.row(j).dot(reading);
       w += (side * std::clamp(side * along, std::abs(held), std::max(high, std::abs(held))) - along) *
            deficit_directions.col(j);
@@ -99,7 +139,7 @@ void AngularRateModel::update_bounds(const AngularRateObservation& observation, 
     const GaussianLikelihoodApproximation site = refined_bound_approximation(
         marginal, {estimate.lower_bound_precision[j], sign * estimate.lower_bound_information_mean[j]}, 0.0,
         params_.expert.kRailSigma_rad_s * params_.expert.kRailSigma_rad_s,
-        params_.rate_max_rad_s * params_.rate_max_rad_s, damping);
+        params_.kRateMax_rad_s * params_.kRateMax_rad_s, damping);
     estimate.lower_bound_precision[j] = site.precision;
     estimate.lower_bound_information_mean[j] = sign * site.information_mean;
   }

@@ -96,7 +96,7 @@ std::vector<Eigen::Matrix3d> rate_covariances(const AngularRateSmoother::Params&
     const Eigen::Matrix3d covariance =
         arrow::rate_covariance(conditional, fit.solution.rig_covariance) +
         sensor_error_covariance(fit.error_derivatives.sample_error_jacobian[k], health.sensor_errors.covariance,
-                                params.model.rate_max_rad_s) +
+                                params.model.kRateMax_rad_s) +
         common_delay_covariance(shared_s2, readings.known_params, readings.observations, estimates, k);
     out[k] = fit.model.output_covariance(covariance, readings.observations[k], estimates[k]);
   });

@@ -141,7 +141,7 @@ void AngularRateStream::marginalise_leaving(State& state) const {
 void AngularRateStream::predict_covariance(State& state) const {
   Knot& newest = state.window.back();
   const Knot& before = state.window[state.window.size() - std::min<std::size_t>(2, state.window.size())];
-  const double turned = params_.model.acceleration_max_rad_s2 * seconds_between(before, newest);
+  const double turned = params_.model.kAccelerationMax_rad_s2 * seconds_between(before, newest);
   Vector3d sigma = Vector3d::Constant(model_.gyro_sigma_rad_s());
   for (int j = 0; j < 3; ++j) sigma[j] = (clipped_axes(newest.observation) >> j & 1) != 0 ? turned : sigma[j];
   newest.covariance_rad2_s2 = before.covariance_rad2_s2;
@@ -160,7 +160,7 @@ void AngularRateStream::marginalise(std::size_t first, State& state) const {
   model_.compute_flight_weight(oldest.observation, state.rig, RigConstants::Matrix::Zero(), 1.0, jump, oldest.estimate);
   // Short flights do not update the calibration, because 20 free calibration constants can fit any short contact.
   std::size_t run = state.consecutive_flight_samples;
-  const auto needed = static_cast<std::size_t>(params_.expert.flight_run_min);
+  const auto needed = params_.expert.kFlightRunMin;
   const auto flies = [](const Knot& knot) { return knot.estimate.flight_weight >= 0.5; };
   for (std::size_t k = first; k < state.window.size() && run < needed && flies(state.window[k]); ++k) ++run;
   const bool short_flight = run < needed;
@@ -219,7 +219,7 @@ void AngularRateStream::append_knot(const ImuSample& sample, std::span<const Aux
   knot.repeats_reading = repeated.repeats_reading && !knot.observation.at_rest;
   if (!knot.observation.at_rest) knot.repeated = repeated;
   knot.estimate.knot.rate_rad_s = sample.angular_velocity_rad_s;
-  knot.covariance_rad2_s2 = std::pow(params_.model.rate_max_rad_s, 2) * Eigen::Matrix3d::Identity();
+  knot.covariance_rad2_s2 = std::pow(params_.model.kRateMax_rad_s, 2) * Eigen::Matrix3d::Identity();
   state.window.push_back(knot);
   state.window.back().plateau_growth_rad_s = plateau_growth_of_readings(state.window);
   const std::size_t paired = pair_newest_force(state);
@@ -264,7 +264,7 @@ void AngularRateStream::predict_new_knot(Knot& knot, const Knot& previous, const
   if (!(squared > 0.0)) return;
   Vector3d rate = unclipped + std::sqrt(squared) * shape.normalized();
   clamp_to_bounds(knot.observation, rate);
-  const double largest = params_.model.rate_max_rad_s;
+  const double largest = params_.model.kRateMax_rad_s;
   centripetal.estimate.knot.rate_rad_s = rate.cwiseMin(largest).cwiseMax(-largest);
   model_.compute_flight_weight(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, knot.estimate);
   model_.compute_flight_weight(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, centripetal.estimate);
@@ -286,7 +286,7 @@ void AngularRateStream::compute_flight_weight(State& state) const {
     }
     const bool clipped = clipped_axes(knot.observation) != 0;
     const double threshold_factor =
-        clipped ? std::max(1.0, std::ldexp(params_.expert.initial_threshold_factor, -knot.knot_age_samples)) : 1.0;
+        clipped ? std::max(1.0, std::ldexp(params_.expert.kInitialThresholdFactor, -knot.knot_age_samples)) : 1.0;
     model_.compute_flight_weight(knot.observation, state.rig, state.rig_covariance, threshold_factor,
                                  std::min(before, after), knot.estimate);
     const bool soften = knot.knot_age_samples >= params_.expert.bound_hard_steps && knot.estimate.flight_weight < 0.5;

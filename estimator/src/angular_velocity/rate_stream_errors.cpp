@@ -117,7 +117,7 @@ Matrix3d AngularRateStream::sensor_error_rate_covariance(std::size_t k, const St
   if (!has_moved_states(knot)) return Matrix3d::Zero();
   const AngularRateStreamSensorErrors& device = state.sensor_errors.front();
   Matrix3d out =
-      rate_covariance_from_errors(device.sample_jacobian[k], device.posterior.covariance, params_.model.rate_max_rad_s);
+      rate_covariance_from_errors(device.sample_jacobian[k], device.posterior.covariance, params_.model.kRateMax_rad_s);
   const double shared_s2 = sensor_error_estimator_.common_delay_variance_s2(device.posterior);
   const Eigen::Vector3d& alpha = knot.estimate.knot.acceleration_rad_s2;
   const double struck = params_.model.expert.contact.kGain_rad_m * knot.estimate.contact_force_m_s2.norm();

@@ -9,7 +9,7 @@ namespace tumble {
 
 bool AngularRateStream::in_long_flight(std::size_t at, const State& state) const {
   const std::vector<Knot>& window = state.window;
-  const auto needed = static_cast<std::size_t>(params_.expert.flight_run_min);
+  const auto needed = params_.expert.kFlightRunMin;
   const auto flies = [&](std::size_t k) { return window[k].estimate.flight_weight >= 0.5; };
   if (!flies(at)) return false;
   std::size_t first = at, last = at;
@@ -28,7 +28,7 @@ double AngularRateStream::saturation_deficit_from_slopes_rad_s(std::size_t at, i
   std::size_t first = at, last = at;
   while (first > 0 && hidden(first - 1)) --first;
   while (last + 1 < window.size() && hidden(last + 1)) ++last;
-  const bool from_flight = state.consecutive_flight_samples >= static_cast<std::size_t>(params_.expert.flight_run_min);
+  const bool from_flight = state.consecutive_flight_samples >= params_.expert.kFlightRunMin;
   const double before = static_cast<double>(at - first) + 0.5 +
                         (first > 0 || from_flight ? 0.0 : state.samples_since_clipping_start[axis]);
   // An unfinished run of clipped readings is assumed to continue for at least as long as it has lasted.

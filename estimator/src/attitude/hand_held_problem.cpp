@@ -35,7 +35,7 @@ Motion::Params motion_params(const HandHeldSmoother::Params& p, double jerk) {
   out.hand_sigma_m_s2 = p.hand_sigma_m_s2, out.hand_tau_s = p.expert.hand_motion.kHandTau_s;
   out.velocity_m_s = p.velocity_m_s, out.velocity_tau_s = p.expert.hand_motion.kVelocityTau_s;
   out.position_m = p.position_m, out.position_tau_s = p.expert.hand_motion.kPositionTau_s,
-  out.position_leak_s = p.expert.hand_motion.position_leak_s;
+  out.position_leak_s = p.expert.hand_motion.kPositionLeak_s;
   return out;
 }
 

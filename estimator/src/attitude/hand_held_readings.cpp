@@ -9,6 +9,7 @@
 #include "../angular_velocity/sample_hold.hpp"
 #include "tumble/angular_velocity/detail/clipping_finder.hpp"
 #include "tumble/angular_velocity/detail/partial_saturation.hpp"
+#include "tumble/angular_velocity/detail/recording_check.hpp"
 #include "tumble/attitude/detail/vqf.hpp"
 
 namespace tumble {
@@ -52,15 +53,6 @@ constexpr double kLongWindow = 1.5;
 
 TimeNs nanoseconds(double s) {
   return static_cast<TimeNs>(std::llround(1e9 * s));
-}
-
-double median_step_or(std::span<const ImuSample> samples, double otherwise_s) {
-  if (samples.size() < 2) return otherwise_s;
-  std::vector<double> periods(samples.size() - 1);
-  for (std::size_t k = 1; k < samples.size(); ++k) periods[k - 1] = since_s(samples, k - 1, k);
-  const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);
-  std::nth_element(periods.begin(), middle, periods.end());
-  return *middle;
 }
 
 ClipSigns clip_signs_of(const SensingAxisClipSigns& clipped, std::size_t k) {
@@ -258,7 +250,7 @@ void add_force(const ImuSample& sample, const ClipSigns& signs, double t, NodeRe
 NodeData collect_node_data(const HandHeldSmoother::Params& params, std::span<const ImuSample> samples,
                            const SensingAxisClipSigns& clipped) {
   NodeData out;
-  const double period_s = median_step_or(samples, params.expert.node_s);
+  const double period_s = samples.size() < 2 ? params.expert.node_s : median_period_s(samples);
   const TimeNs origin_ns = samples.front().time_ns - nanoseconds(0.5 * period_s);
   out.samples = averaging_windows_of(samples, origin_ns, period_s);
   out.nodes.resize(static_cast<std::size_t>(std::llround(out.samples.window_centre_s.back() / params.expert.node_s)) +

@@ -19,7 +19,11 @@ namespace {
 constexpr double kRateToleranceRatio = 0.03;
 
 constexpr double kBiasSigma_rad_s = 0.01, kScaleSigma = 0.01;
-constexpr double kRotating_rad_s2 = 1.0;  // minimum angular acceleration for estimating a time offset
+constexpr double kOffsetSigma_s = 3e-3;  // prior standard deviation of each IMU's time offset
+// maximum differences from the median of all IMUs, beyond which an IMU is excluded
+constexpr double kRateTolerance_rad_s = 0.15, kForceTolerance_m_s2 = 3.0;
+constexpr double kHiddenForce_m_s2 = 3.0;  // largest force error attributed to saturation during a part of the window
+constexpr double kRotating_rad_s2 = 1.0;   // minimum angular acceleration for estimating a time offset
 constexpr double kCertainDeviations = 4.0;
 constexpr int kMinImusForRecovery = 3;          // minimum number of IMUs for recovering a rate from accelerometers
 constexpr double kUnsaturatedForceRatio = 0.8;  // accelerometer errors are estimated up to this fraction of the range
@@ -88,7 +92,7 @@ Status ImuMerge::step(std::span<const ImuSample> samples, State& state, std::opt
     for (Unit& unit : state.imus) {
       unit.covariance.diagonal().setConstant(kScaleSigma * kScaleSigma);
       unit.covariance.diagonal().head<3>().setConstant(kBiasSigma_rad_s * kBiasSigma_rad_s);
-      unit.covariance(kOffset, kOffset) = params_.offset_sigma_s * params_.offset_sigma_s;
+      unit.covariance(kOffset, kOffset) = kOffsetSigma_s * kOffsetSigma_s;
     }
   }
   accumulate_window(samples, dt_s, state);
@@ -184,14 +188,14 @@ ImuMerge::ImuMask ImuMerge::select_agreeing_imus(const Readings& readings, const
                                                  const Vectors& forces, double h, State& state) const {
   const Eigen::Vector3d middle_rate = median(rates, present), middle_force = median(forces, present);
   const auto units = std::count(present.begin(), present.end(), true);
-  const double rate_tolerance = params_.expert.outliers.rate_rad_s + kRateToleranceRatio * middle_rate.norm();
+  const double rate_tolerance = kRateTolerance_rad_s + kRateToleranceRatio * middle_rate.norm();
   ImuMask used{};
   for (std::size_t i = 0; i < used.size(); ++i) {
     if (!present[i]) continue;
     const double turned =
         (params_.T_mean_imu[i].translation() - mean_imu_position_m_).norm() * middle_rate.squaredNorm() * 2.0;
     const bool agrees = units < 3 || ((rates[i] - middle_rate).norm() < rate_tolerance &&
-                                      (forces[i] - middle_force).norm() < params_.expert.outliers.force_m_s2 + turned);
+                                      (forces[i] - middle_force).norm() < kForceTolerance_m_s2 + turned);
     // With three or more IMUs, AngularRateRecovery uses a clipped gyro as a lower bound.
     const int clipping = units < kMinImusForRecovery ? kClipAccel | kClipGyro : kClipAccel;
     used[i] = agrees && (readings[i].device_clip_flags & clipping) == 0;
@@ -288,8 +292,8 @@ void ImuMerge::exclude_partly_saturated(const Readings& samples, const ImuMask& 
   rigid.rate_rad_s = rate;
   rigid.acceleration_rad_s2 = (rate - state.rate_rad_s) / since_s;
   rigid.uncertainty_rad_s2 = kAccelerationSigmaRatio * (rigid.acceleration_rad_s2 - before).norm();
-  rigid.unsaturated_peak_max_m_s2 = params_.expert.outliers.subsample_saturation_ratio * params_.accel_range_m_s2;
-  rigid.tolerated_saturation_m_s2 = params_.expert.outliers.hidden_force_m_s2;
+  rigid.unsaturated_peak_max_m_s2 = params_.kSubsampleSaturationRatio * params_.accel_range_m_s2;
+  rigid.tolerated_saturation_m_s2 = kHiddenForce_m_s2;
   for (std::size_t k = 0; k < present.size(); ++k) {
     if (!present[k]) continue;
     const Eigen::Vector3d& force = samples[k].specific_force_m_s2;

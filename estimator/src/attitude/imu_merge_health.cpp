@@ -162,7 +162,7 @@ void ImuMerge::detect_disagreeing_units(const ImuMask& present, const Vectors& r
     const ImuAverage& window = state.imus[k].window;
     if (!present[k] || window.readings == 0) continue;
     railed |= window.rate_peak_rad_s >= kComparableRateRatio * params_.gyro_range_rad_s ||
-              window.force_peak_m_s2 >= params_.expert.outliers.subsample_saturation_ratio * params_.accel_range_m_s2;
+              window.force_peak_m_s2 >= params_.kSubsampleSaturationRatio * params_.accel_range_m_s2;
   }
   if (railed) return;
   const Eigen::Vector3d middle_rate = median(rates, present), middle_force = median(forces, present);

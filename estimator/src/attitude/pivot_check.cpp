@@ -2,19 +2,56 @@
 #include "tumble/attitude/detail/pivot_check.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include "pivot_sums.hpp"
 #include "tumble/angular_velocity/detail/rail_ratios.hpp"
-#include "tumble/attitude/detail/axis_labels.hpp"
 
 namespace tumble {
 
 namespace {
+
+/// AxisLabels assigns the axes of an accelerometer to the axes of the gyro in the same IMU. While the body rotates, the
+/// measured gravity rotates as the gyro predicts only if the axis labels are correct. The rotation of gravity cannot
+/// reveal that all three axes of the accelerometer are flipped. AxisLabels describes only rotations by multiples of a
+/// right angle.
+struct AxisLabels {
+  std::array<int, 3> axis = {0, 1, 2};              ///< index of the accelerometer reading along x, y, z of the gyro
+  std::array<double, 3> axis_signs = {1., 1., 1.};  ///< sign of each axis; the first sign is 1
+  bool all_rates_inverted = false;                  ///< all three rates are inverted
+
+  /// Returns the specific force in the axes of the gyro.
+  Eigen::Vector3d in_corrected_axes(const Eigen::Vector3d& force) const {
+    return {axis_signs[0] * force[axis[0]], axis_signs[1] * force[axis[1]], axis_signs[2] * force[axis[2]]};
+  }
+};
+
+constexpr int kAxisLabels = 48;
+
+constexpr std::array<std::array<int, 3>, 6> kOrders = {
+    {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
+
+constexpr std::array<AxisLabels, kAxisLabels> all_axis_labels() {
+  std::array<AxisLabels, kAxisLabels> out;
+  std::size_t k = 0;
+  for (const bool gyro_flipped : {false, true}) {
+    for (const std::array<int, 3>& order : kOrders) {
+      for (const double second : {1.0, -1.0}) {
+        for (const double third : {1.0, -1.0}) out[k++] = {order, {1.0, second, third}, gyro_flipped};
+      }
+    }
+  }
+  return out;
+}
+
+// Index 0 is the identity.
+constexpr std::array<AxisLabels, kAxisLabels> kAllAxisLabels = all_axis_labels();
 
 constexpr double kPivotReading_s =
     0.01;                           // averaging time of readings, so that the cost is independent of the sample rate
@@ -41,7 +78,7 @@ using Readings = std::array<Eigen::Matrix3d, kReadings>;
 Readings all_readings() {
   Readings out;
   for (std::size_t k = 0; k < kAxisLabels; ++k) {
-    const AxisLabels& labels = axis_labels()[k];
+    const AxisLabels& labels = kAllAxisLabels[k];
     Eigen::Matrix3d renaming;
     for (int axis = 0; axis < 3; ++axis) renaming.col(axis) = labels.in_corrected_axes(Eigen::Vector3d::Unit(axis));
     out[k] = (labels.all_rates_inverted ? -1.0 : 1.0) * renaming.determinant() * renaming.transpose();

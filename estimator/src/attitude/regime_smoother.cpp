@@ -148,7 +148,7 @@ std::vector<double> MotionRegimeSmoother::segment_hand_held_probability(
     std::span<const RegimeProbabilities> probabilities, const AngularRateReport& report,
     std::span<const AngularRateState> rates) const {
   std::vector<double> out(rates.size(), 0.0);
-  const TimeNs near_ns = static_cast<TimeNs>(1e9 * params_.segment_gap_max_s);
+  const TimeNs near_ns = static_cast<TimeNs>(1e9 * params_.kSegmentGapMax_s);
   for (std::size_t k = 0; k < rates.size();) {
     if (!unusable_axis_count(report, rates[k], k)) {
       ++k;
@@ -158,7 +158,7 @@ std::vector<double> MotionRegimeSmoother::segment_hand_held_probability(
     for (; k < rates.size() && rates[k].time_ns <= rates[last].time_ns + near_ns; ++k)
       if (unusable_axis_count(report, rates[k], k)) last = k;
     const TimeNs from_ns = rates[first].time_ns - near_ns, to_ns = rates[last].time_ns + near_ns;
-    std::size_t i = first, a = first, b = first;  // a to b: samples of the segment within segment_gap_max_s of sample i
+    std::size_t i = first, a = first, b = first;  // a to b: samples of the segment within kSegmentGapMax_s of sample i
     while (i > 0 && rates[i - 1].time_ns >= from_ns) --i;
     for (; i < rates.size() && rates[i].time_ns <= to_ns; ++i) {
       while (a < last && rates[a].time_ns < rates[i].time_ns - near_ns) ++a;

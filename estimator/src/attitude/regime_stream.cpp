@@ -73,7 +73,7 @@ MotionRegimeStream::State MotionRegimeStream::start() const {
   state.hand_held = hand_held_.start();
   state.clip_signs.reserve(state.rate.window.capacity());
   state.recent_probabilities.reserve(
-      static_cast<std::size_t>(std::ceil(params_.segment_gap_max_s / params_.rate.period_s)) + 2);
+      static_cast<std::size_t>(std::ceil(params_.kSegmentGapMax_s / params_.rate.period_s)) + 2);
   return state;
 }
 
@@ -167,7 +167,7 @@ bool MotionRegimeStream::calibration_is_unstable(const State& state) const {
 // Updates the probabilities of the motion regimes: forward recursion of carried.md (C38).
 void MotionRegimeStream::update_probabilities(const AngularRateState& rate, State& state) const {
   const double dt_s =
-      state.reported_sample_count == 0 ? params_.evidence.memory_s : seconds(rate.time_ns - state.reported_ns);
+      state.reported_sample_count == 0 ? MotionRegimeEvidence::kMemory_s : seconds(rate.time_ns - state.reported_ns);
   state.probabilities = next(state.probabilities, dt_s, state.rate.window, index_of(rate, state),
                              rate_.calibration(state.rate), calibration_is_unstable(state));
   const auto dropped = static_cast<double>(state.rate.calibration_reset_count - state.calibration_reset_count);
@@ -182,7 +182,7 @@ void MotionRegimeStream::update_probabilities(const AngularRateState& rate, Stat
 
 // Returns the weight of HandHeldRateStream in the reported rate: s in carried.md (C40).
 double MotionRegimeStream::hand_held_weight(const AngularRateState& rate, State& state) const {
-  const auto near_ns = static_cast<TimeNs>(std::llround(1e9 * params_.segment_gap_max_s));
+  const auto near_ns = static_cast<TimeNs>(std::llround(1e9 * params_.kSegmentGapMax_s));
   const std::vector<AngularRateStream::Knot>& window = state.rate.window;
   const std::size_t here = index_of(rate, state);
   if (clips(window[here])) state.clipped_ns = rate.time_ns;

@@ -16,7 +16,14 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
-constexpr double kContactMin_m_s2 = 1.0;
+constexpr double kContactMin_m_s2 = 1.0, kContactMax_m_s2 = 1000.0;  // smallest and largest contact force
+constexpr double kFlightForceSigma_m_s2 = 0.3;  // residual force in flight, from drag and the sensor's bandwidth
+constexpr double kFlightForceShare = 0.05;      // additional standard deviation, relative to the force of the rotation
+constexpr double kHandSigma_m_s2 = 5.0;         // standard deviation of a hand's acceleration
+constexpr double kHandDistance_m = 0.05;        // distance of the IMU from the hand
+constexpr double kRestRate_rad_s = 0.5;         // readings with a lower rate do not change the probabilities
+constexpr double kContacts_hz = 5.0;            // mean number of changes between flight and contact per second
+constexpr double kThrows_hz = 0.02;             // mean number of throws and catches per second
 
 double log_gaussian(double squared_norm, double variance) {
   return -1.5 * std::log(kTwoPi * variance) - 0.5 * squared_norm / variance;
@@ -44,9 +51,9 @@ double log_density_hand_held(double n, double g, double hand_variance, double gr
 // Contact is gentle rolling (prior fraction `kRolls`) or an impact with a force of any size: carried.md (C34).
 constexpr double kRolls = 0.5;
 
-double log_density_in_contact(double left, double n, double most, double g, double variance) {
+double log_density_in_contact(double left, double n, double g, double variance) {
   const double within = std::max(left, kContactMin_m_s2);
-  const double struck = 1.0 / (within * std::log(most / kContactMin_m_s2) * 2.0 * kTwoPi * within * within);
+  const double struck = 1.0 / (within * std::log(kContactMax_m_s2 / kContactMin_m_s2) * 2.0 * kTwoPi * within * within);
   return std::log((1.0 - kRolls) * struck + kRolls * std::exp(log_density_near_gravity(n, g, variance)));
 }
 
@@ -58,8 +65,8 @@ Vector3d angular_acceleration(std::span<const AngularRateState> rates, std::size
 }
 
 // See carried.md (C37).
-Matrix3d regime_transition_matrix(const MotionRegimeEvidence::Params& p, double dt_s) {
-  const double contacts = 1.0 - std::exp(-p.contacts_hz * dt_s), throws = 0.5 * (1.0 - std::exp(-p.throws_hz * dt_s));
+Matrix3d regime_transition_matrix(double dt_s) {
+  const double contacts = 1.0 - std::exp(-kContacts_hz * dt_s), throws = 0.5 * (1.0 - std::exp(-kThrows_hz * dt_s));
   Matrix3d out;
   out << 1.0 - contacts - throws, contacts, throws,  //
       contacts, 1.0 - contacts - throws, throws,     //
@@ -81,19 +88,18 @@ Vector3d MotionRegimeEvidence::likelihood(double dt_s, const ImuSample& sample, 
   const double arm_m = lever_arm_m.norm();
   const Vector3d turning = alpha.cross(lever_arm_m) + w.cross(w.cross(lever_arm_m));
   const double turn = w.squaredNorm() + alpha.norm(), rate_variance = rate.covariance_rad2_s2.trace();
-  const double flight_variance =
-      squared(params_.flight_force_sigma_m_s2) + squared(params_.flight_share) * turning.squaredNorm() +
-      turn * turn * lever_arm_variance_m2 + 4.0 * w.squaredNorm() * arm_m * arm_m * rate_variance;
-  const double hand_variance = squared(params_.hand_sigma_m_s2);
-  const double grip_variance = squared(params_.hand_distance_m * w.squaredNorm());
+  const double flight_variance = squared(kFlightForceSigma_m_s2) + squared(kFlightForceShare) * turning.squaredNorm() +
+                                 turn * turn * lever_arm_variance_m2 +
+                                 4.0 * w.squaredNorm() * arm_m * arm_m * rate_variance;
+  const double hand_variance = squared(kHandSigma_m_s2);
+  const double grip_variance = squared(kHandDistance_m * w.squaredNorm());
   const Vector3d& f = sample.specific_force_m_s2;
   const Vector3d left = f - turning;
   Vector3d logs(log_gaussian(left.squaredNorm(), flight_variance),
-                log_density_in_contact(left.norm(), f.norm(), params_.contact_force_max_m_s2, params_.gravity_m_s2,
-                                       hand_variance + grip_variance),
+                log_density_in_contact(left.norm(), f.norm(), params_.gravity_m_s2, hand_variance + grip_variance),
                 log_density_hand_held(f.norm(), params_.gravity_m_s2, hand_variance, grip_variance));
-  if (w.norm() < params_.rest_rate_rad_s) logs.setZero();
-  logs *= std::min(1.0, dt_s / params_.memory_s);
+  if (w.norm() < kRestRate_rad_s) logs.setZero();
+  logs *= std::min(1.0, dt_s / kMemory_s);
   return (logs.array() - logs.maxCoeff()).exp().cwiseMax(1e-300);
 }
 
@@ -102,8 +108,7 @@ RegimeProbabilities MotionRegimeEvidence::next(const RegimeProbabilities& before
                                                const AngularRateState& rate, const Vector3d& alpha,
                                                const Vector3d& lever_arm_m,
                                                const Matrix3d& lever_arm_covariance_m2) const {
-  const Vector3d predicted =
-      regime_transition_matrix(params_, dt_s) * Vector3d(before.flight, before.contact, before.hand_held);
+  const Vector3d predicted = regime_transition_matrix(dt_s) * Vector3d(before.flight, before.contact, before.hand_held);
   Vector3d after =
       predicted.cwiseProduct(likelihood(dt_s, sample, rate, alpha, lever_arm_m, lever_arm_covariance_m2.trace()));
   after /= after.sum();
@@ -123,11 +128,11 @@ Status MotionRegimeEvidence::find(std::span<const ImuSample> samples, std::span<
   const double arm_variance = lever_arm_covariance_m2.trace();
   std::vector<Vector3d> likelihood(count), forward(count);
   for (std::size_t k = 0; k < count; ++k) {
-    const double dt_s = k == 0 ? params_.memory_s : seconds(samples[k].time_ns - samples[k - 1].time_ns);
+    const double dt_s = k == 0 ? kMemory_s : seconds(samples[k].time_ns - samples[k - 1].time_ns);
     likelihood[k] =
         this->likelihood(dt_s, samples[k], rates[k], angular_acceleration(rates, k), lever_arm_m, arm_variance);
     const Vector3d before =
-        k == 0 ? Vector3d::Constant(1.0 / 3.0) : Vector3d(regime_transition_matrix(params_, dt_s) * forward[k - 1]);
+        k == 0 ? Vector3d::Constant(1.0 / 3.0) : Vector3d(regime_transition_matrix(dt_s) * forward[k - 1]);
     forward[k] = before.cwiseProduct(likelihood[k]);
     forward[k] /= forward[k].sum();
   }
@@ -138,7 +143,7 @@ Status MotionRegimeEvidence::find(std::span<const ImuSample> samples, std::span<
     both /= both.sum();
     out[k] = {both[0], both[1], both[2]};
     if (k == 0) break;
-    backward = regime_transition_matrix(params_, seconds(samples[k].time_ns - samples[k - 1].time_ns)) *
+    backward = regime_transition_matrix(seconds(samples[k].time_ns - samples[k - 1].time_ns)) *
                Vector3d(backward.cwiseProduct(likelihood[k]));  // the transition matrix is symmetric
     backward /= backward.sum();
   }

@@ -18,11 +18,17 @@ using Eigen::Vector2d;
 constexpr int kRate = 0, kAcceleration = 1;
 constexpr int kTurning = 2, kFixed = 4;               // of Modulation
 constexpr int kArm = 2, kForce = 4, kWorldForce = 6;  // of Centripetal
-constexpr double kReadingInterval_s = 0.01;           // time within which vibration is correlated
-constexpr double kScaleMemory_s = 0.5;                // averaging time of the variance ratio
-constexpr double kVarianceRatioMax = 1e3;             // bounds of the variance ratio
-constexpr double kReadingSigma_rad_s = 0.02;          // of an unsaturated reading
-constexpr double kRailSigma_rad_s = 0.1;              // of a lower bound
+constexpr double kJerk_rad_s3_sqrts = 50.0;           // root density of the angular jerk about the spin axis
+// Random walk of the rate across the spin axis, in world and body axes, and its standard deviation over 10 ms from
+// vibration. The measured residuals scale both.
+constexpr double kWalk_rad_s_sqrts = 1.0, kVibration_rad_s = 0.3;
+// size of the body: prior standard deviation of the lever arm from the spin axis to the IMU
+constexpr double kBodySize_m = 0.3;
+constexpr double kReadingInterval_s = 0.01;   // time within which vibration is correlated
+constexpr double kScaleMemory_s = 0.5;        // averaging time of the variance ratio
+constexpr double kVarianceRatioMax = 1e3;     // bounds of the variance ratio
+constexpr double kReadingSigma_rad_s = 0.02;  // of an unsaturated reading
+constexpr double kRailSigma_rad_s = 0.1;      // of a lower bound
 constexpr double kStartSigma_rad_s = 1.0, kStartSigma_rad_s2 = 10.0, kStartSaturatedRatio = 0.5;
 constexpr double kForceSigma_m_s2 = 0.3, kForceWalk_m_s2_sqrts = 0.1, kVibration_m_s2 = 0.5;
 // The air force is smooth. Larger residuals indicate contact or vibration, and contradict a spin in the air.
@@ -141,9 +147,8 @@ SpinPrediction<Modulation::kStates> Modulation::predict(const Filter& filter, do
   out.transition_matrix.setIdentity();
   out.x = filter.x;
   turn_part(filter, kTurning, related, dt_s, out);
-  predict_spin(filter, params.jerk_rad_s3_sqrts, dt_s, out);
-  out.covariance.diagonal().segment<4>(kTurning).array() +=
-      filter.variance_ratio * squared(params.walk_rad_s_sqrts) * dt_s;
+  predict_spin(filter, kJerk_rad_s3_sqrts, dt_s, out);
+  out.covariance.diagonal().segment<4>(kTurning).array() += filter.variance_ratio * squared(kWalk_rad_s_sqrts) * dt_s;
   return out;
 }
 
@@ -156,8 +161,7 @@ double Modulation::update(const SpinPrediction<kStates>& predicted, const SpinRe
     Eigen::Matrix<double, 2, kStates> H = Eigen::Matrix<double, 2, kStates>::Zero();
     H.block<2, 2>(0, kTurning).setIdentity();
     H.block<2, 2>(0, kFixed).setIdentity();
-    log_likelihood =
-        update_across<kStates>(H, reading.across - H * filter.x, params.vibration_rad_s, reading.dt_s, filter);
+    log_likelihood = update_across<kStates>(H, reading.across - H * filter.x, kVibration_rad_s, reading.dt_s, filter);
   }
   update_rate(reading, false, filter);
   return log_likelihood;
@@ -172,7 +176,7 @@ SpinReading Centripetal::reading(const ImuSample& sample, std::uint8_t saturated
 
 Centripetal::Filter Centripetal::start(const SpinReading& reading) const {
   Filter out = start_filter<kStates>(reading);
-  out.covariance.diagonal().segment<2>(kArm).setConstant(squared(params.body_size_m));
+  out.covariance.diagonal().segment<2>(kArm).setConstant(squared(kBodySize_m));
   out.covariance.diagonal().segment<2>(kForce).setConstant(squared(kForceSigma_m_s2));
   out.covariance.diagonal().segment<2>(kWorldForce).setConstant(squared(kWorldForceSigma_m_s2));
   return out;
@@ -183,7 +187,7 @@ SpinPrediction<Centripetal::kStates> Centripetal::predict(const Filter& filter, 
   out.transition_matrix.setIdentity();
   out.x = filter.x;
   turn_part(filter, kWorldForce, related, dt_s, out);
-  predict_spin(filter, kForceJerkRatio * params.jerk_rad_s3_sqrts, dt_s, out);
+  predict_spin(filter, kForceJerkRatio * kJerk_rad_s3_sqrts, dt_s, out);
   const double scale = filter.variance_ratio * dt_s;
   out.covariance.diagonal().segment<2>(kForce).array() += scale * squared(kForceWalk_m_s2_sqrts);
   out.covariance.diagonal().segment<2>(kWorldForce).array() += scale * squared(kWorldForceWalk_m_s2_sqrts);

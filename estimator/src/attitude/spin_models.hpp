@@ -33,7 +33,6 @@ struct SpinReading {
 struct Modulation {
   static constexpr int kStates = 6;
   using Filter = SpinFilter<kStates>;
-  const SpinTracker::Params& params;
 
   SpinReading reading(const ImuSample& sample, std::uint8_t saturated_axes, int axis, double dt_s) const;
   Filter start(const SpinReading& reading) const;
@@ -48,7 +47,6 @@ struct Modulation {
 struct Centripetal {
   static constexpr int kStates = 8;
   using Filter = SpinFilter<kStates>;
-  const SpinTracker::Params& params;
 
   SpinReading reading(const ImuSample& sample, std::uint8_t saturated_axes, int axis, double dt_s) const;
   Filter start(const SpinReading& reading) const;

@@ -15,6 +15,9 @@ namespace tumble {
 namespace {
 
 constexpr int kRate = 0;
+constexpr double kRateMin_rad_s = 6.0;   // minimum rate of a steady spin
+constexpr double kMemory_s = 0.2;        // readings within this time count as one independent observation
+constexpr double kChanges_hz = 0.02;     // assumed frequency of starts and ends of a steady spin
 constexpr double kGapMax_s = 0.5;        // the spin restarts after a longer gap
 constexpr double kAxisHysteresis = 1.2;  // ratio of two rates at which the spin axis changes
 constexpr double kStartProbability = 0.01;
@@ -24,8 +27,8 @@ constexpr double kProbabilityMax = 1.0 - 1e-12;
 constexpr double kLogRatioMax = 50.0;  // avoids overflow of the likelihood ratio of one sample
 
 // Returns the probability of a change between spin and other motion: carried.md (C49).
-double probability_of_change(double changes_hz, double dt_s) {
-  return 1.0 - std::exp(-changes_hz * dt_s);
+double probability_of_change(double dt_s) {
+  return 1.0 - std::exp(-kChanges_hz * dt_s);
 }
 
 /// RecordedSpin contains what smooth_spin() needs of one sample.
@@ -82,10 +85,9 @@ bool SpinTracker::select_spin_axis(const ImuSample& sample, State& state) const 
   Eigen::Index largest = 0;
   size.maxCoeff(&largest);
   const bool continues = state.axis >= 0 && seconds(sample.time_ns - state.time_ns) <= kGapMax_s &&
-                         size[state.axis] >= params_.rate_min_rad_s &&
-                         size[largest] <= kAxisHysteresis * size[state.axis];
+                         size[state.axis] >= kRateMin_rad_s && size[largest] <= kAxisHysteresis * size[state.axis];
   if (continues) return false;
-  state.axis = size[largest] >= params_.rate_min_rad_s ? static_cast<int>(largest) : -1;
+  state.axis = size[largest] >= kRateMin_rad_s ? static_cast<int>(largest) : -1;
   return state.axis >= 0;
 }
 
@@ -96,7 +98,7 @@ SpinRate SpinTracker::advance_spin_filter(const Model& model, const ImuSample& s
                                           const Recorder& record) const {
   const SpinReading reading = model.reading(sample, saturated_axes, axis, dt_s);
   RecordedSpin<Model::kStates> recorded;
-  recorded.spin_change_probability = probability_of_change(params_.changes_hz, dt_s);
+  recorded.spin_change_probability = probability_of_change(dt_s);
   if (first) {
     hypotheses.spin = hypotheses.independent_filter = model.start(reading);
     hypotheses.probability = hypotheses.measured_probability = kStartProbability;
@@ -105,8 +107,7 @@ SpinRate SpinTracker::advance_spin_filter(const Model& model, const ImuSample& s
     const double log_ratio = model.update(recorded.predicted, reading, 1.0, hypotheses.spin) -
                              model.update(model.predict(hypotheses.independent_filter, 0.0, dt_s), reading, 0.0,
                                           hypotheses.independent_filter);
-    double ratio =
-        std::exp(std::clamp(std::min(1.0, dt_s / params_.memory_s) * log_ratio, -kLogRatioMax, kLogRatioMax));
+    double ratio = std::exp(std::clamp(std::min(1.0, dt_s / kMemory_s) * log_ratio, -kLogRatioMax, kLogRatioMax));
     const double c = recorded.spin_change_probability;
     const double spins = hypotheses.probability * (1.0 - c) + (1.0 - hypotheses.probability) * c;
     hypotheses.probability = std::min(kProbabilityMax, spins * ratio / (spins * ratio + 1.0 - spins));
@@ -134,11 +135,10 @@ SpinRate SpinTracker::step(const ImuSample& sample, std::uint8_t saturated_axes,
   state.time_ns = sample.time_ns;
   if (state.axis < 0) return {};
   const auto ignore = [](const auto&) {};
-  return select_spin(advance_spin_filter(Modulation{params_}, sample, saturated_axes, dt_s, first, state.axis,
-                                         state.modulation, ignore),
-                     advance_spin_filter(Centripetal{params_}, sample, saturated_axes, dt_s, first, state.axis,
-                                         state.centripetal, ignore),
-                     further_imus);
+  return select_spin(
+      advance_spin_filter(Modulation{}, sample, saturated_axes, dt_s, first, state.axis, state.modulation, ignore),
+      advance_spin_filter(Centripetal{}, sample, saturated_axes, dt_s, first, state.axis, state.centripetal, ignore),
+      further_imus);
 }
 
 std::vector<SpinRate> SpinTracker::smooth(std::span<const ImuSample> samples,
@@ -161,11 +161,11 @@ std::vector<SpinRate> SpinTracker::smooth(std::span<const ImuSample> samples,
     if (state.axis < 0 || first) smooth_run(k);
     if (state.axis < 0) continue;
     modulation[k] =
-        advance_spin_filter(Modulation{params_}, samples[k], saturated_axes[k], dt_s, first, state.axis,
-                            state.modulation, [&](const auto& recorded) { modulation_run.push_back(recorded); });
+        advance_spin_filter(Modulation{}, samples[k], saturated_axes[k], dt_s, first, state.axis, state.modulation,
+                            [&](const auto& recorded) { modulation_run.push_back(recorded); });
     centripetal[k] =
-        advance_spin_filter(Centripetal{params_}, samples[k], saturated_axes[k], dt_s, first, state.axis,
-                            state.centripetal, [&](const auto& recorded) { centripetal_run.push_back(recorded); });
+        advance_spin_filter(Centripetal{}, samples[k], saturated_axes[k], dt_s, first, state.axis, state.centripetal,
+                            [&](const auto& recorded) { centripetal_run.push_back(recorded); });
   }
   smooth_run(samples.size());
   for (std::size_t k = 0; k < samples.size(); ++k) {

@@ -25,6 +25,8 @@ constexpr double kSlipQuiet_s = 0.2;
 constexpr double kSlipTimeout_s = 3.0;  // maximum duration of a slip
 // Minimum time between two samples that counts as a gap.
 constexpr double kGapMin_s = 0.05;
+constexpr double kNode_s = 0.04;     // time between two corrections
+constexpr double kReading_s = 4e-3;  // averaging time of the readings
 
 constexpr double kTiltSigmaStart_rad = 0.01;
 constexpr double kVelocitySigmaStart_m_s = 0.1;
@@ -100,7 +102,7 @@ Status TumbleAttitude::step(const ImuSample& sample, const Eigen::Matrix3d& rate
     state.average.add(sample, dt_s);
     state.recovered_covariance_rad2_s2 +=
         dt_s / state.average.length_s * (rate_covariance_rad2_s2 - state.recovered_covariance_rad2_s2);
-    if (state.average.full(params_.expert.reading_s, dt_s)) {
+    if (state.average.full(kReading_s, dt_s)) {
       process_averaged_reading(state);
     } else {
       const Eigen::Vector3d rate = state.average.mean.angular_velocity_rad_s - state.bias_rad_s;
@@ -131,7 +133,7 @@ void TumbleAttitude::process_averaged_reading(State& state) const {
                   rotates_within_gyro_bias(state);
   integrate(reading, length_s, state);
   add_recovered_rate_variance(length_s, state);
-  if (state.time_since_node_s >= params_.expert.node_s - 0.5 * length_s) end_node(state);
+  if (state.time_since_node_s >= kNode_s - 0.5 * length_s) end_node(state);
 }
 
 /// See attitude.md (A16).
@@ -185,7 +187,7 @@ void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& r
   if (!state.at_rest) {
     const AttitudeGapParams& gap = params_.expert.gap;
     const double turn =
-        squared(gap_s) / 12.0 * ((to - from).squaredNorm() / 3.0 + squared(gap.rate_walk_rad_s_sqrts) * gap_s);
+        squared(gap_s) / 12.0 * ((to - from).squaredNorm() / 3.0 + squared(gap.kRateWalk_rad_s_sqrts) * gap_s);
     state.recovered_angle_variance_rad2.array() += turn;
     state.covariance.diagonal().segment<2>(kVelocity).array() += squared(gap.kVelocityWalk_m_s_sqrts) * gap_s;
   }

@@ -13,6 +13,7 @@ namespace tumble {
 
 namespace {
 
+constexpr double kBiasSigmaStart_rad_s = 8.7266e-3;  // prior standard deviation of the bias: 0.5 deg/s
 // Standard deviation of the bias in motion: 0.1 deg/s.
 constexpr double kBiasSigmaMotion_rad_s = 1.7453e-3;
 // Standard deviation of the bias at rest: 0.03 deg/s.
@@ -57,8 +58,7 @@ Status Vqf::step(const ImuSample& sample, State& state) const {
   } else {
     if (const Status bad = inclination_from_force(sample.specific_force_m_s2, state.inclination_correction); !bad.ok())
       return bad;
-    state.bias_covariance_rad2_s2.diagonal().setConstant(params_.bias_sigma_start_rad_s *
-                                                         params_.bias_sigma_start_rad_s);
+    state.bias_covariance_rad2_s2.diagonal().setConstant(kBiasSigmaStart_rad_s * kBiasSigmaStart_rad_s);
   }
   if (dt_s > 0.0) {
     detect_rest(sample, dt_s, state);
@@ -109,7 +109,7 @@ void Vqf::estimate_bias(const Eigen::Vector3d& up_W, double dt_s, State& state) 
 
   Eigen::Matrix3d& P = state.bias_covariance_rad2_s2;
   const double growth = kForgottenSigma_rad_s * kForgottenSigma_rad_s * dt_s / kBiasForgetting_s;
-  const double start = params_.bias_sigma_start_rad_s * params_.bias_sigma_start_rad_s;
+  const double start = kBiasSigmaStart_rad_s * kBiasSigmaStart_rad_s;
   for (int axis = 0; axis < 3; ++axis) {
     if (P(axis, axis) < start) P(axis, axis) += growth;
   }

@@ -28,7 +28,7 @@ void bridge_gap(const InertialNoiseParams& params, const WindowRate& before, con
     part.w_WI_I_rad_s = left * before.rate_rad_s + gone * after.rate_rad_s;
     const Eigen::Array3d variance = (left * before.sigma_rad_s).array().square() +
                                     (gone * after.sigma_rad_s).array().square() + walk * walk * gone * left * span_s;
-    part.rate_sigma_rad_s = variance.sqrt().min(params.rate_sigma_max_rad_s);
+    part.rate_sigma_rad_s = variance.sqrt().min(params.kRateSigmaMax_rad_s);
     part.clipped_axes = kClipGyro;
     part.bridges_gap = true;
   }

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "tumble/mapping/detail/inertial_params.hpp"
+#include "tumble/mapping/detail/odometry_params.hpp"
 #include "tumble/mapping/detail/sweep_trajectory.hpp"
 
 namespace tumble::mapping {

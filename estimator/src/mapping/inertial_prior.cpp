@@ -54,8 +54,8 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
     turned += dt * R * variance.asDiagonal() * R.transpose();
   }
   u::variances(noise, u::velocity)
-      .setConstant(std::pow(params.expert.prior.sigma_m_s * span, 2) +
-                   std::pow(params.expert.prior.force_share * velocity_change_m_s, 2) + gap_m2_s2);
+      .setConstant(std::pow(params.expert.prior.kSigma_m_s * span, 2) +
+                   std::pow(params.expert.prior.kForceShare * velocity_change_m_s, 2) + gap_m2_s2);
   u::variances(noise, u::position).array() += gap_m2;
   // A robot at rest has zero velocity, so the velocity error does not affect the position.
   const auto rests = [&](const MotionSample& sample) {
@@ -63,7 +63,7 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
   };
   if (std::all_of(samples.begin(), samples.end(), rests)) return kRestNoiseRatio * kRestNoiseRatio * noise;
   u::sub_block(noise, u::attitude) += trajectory.duration_s() * turned;  // mapping.md (R42)
-  u::variances(noise, u::attitude).array() += std::pow(params.expert.prior.rotation_noise_ratio * rotated_rad, 2);
+  u::variances(noise, u::attitude).array() += std::pow(params.expert.prior.kRotationNoiseRatio * rotated_rad, 2);
   return noise;
 }
 
@@ -119,9 +119,9 @@ Eigen::Vector3d assumed_rate_sigma(const LidarInertialOdometry::Params& params, 
       rate.source == AngularRateSource::recovered_in_flight || rate.source == AngularRateSource::recovered_in_contact;
   for (int axis = 0; axis < 3; ++axis) {
     if (rate.clipped_axes >> axis & 1 && !recovered)
-      sigma[axis] = std::max(sigma[axis], params.expert.saturated_imu.rate_sigma_rad_s);
+      sigma[axis] = std::max(sigma[axis], params.expert.saturated_imu.kRateSigma_rad_s);
   }
-  return sigma.cwiseMin(params.expert.prior.rate_sigma_max_rad_s);
+  return sigma.cwiseMin(params.expert.prior.kRateSigmaMax_rad_s);
 }
 
 }  // namespace tumble::mapping

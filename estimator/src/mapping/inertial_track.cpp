@@ -32,11 +32,11 @@ std::uint8_t accel_saturated_axes(const Params& params, const ImuSample& sample)
 
 RestDetector::Params mapping_stationary_params(const LidarInertialOdometry::Params& params) {
   // The parameter `rate_rad_s` limits the norm of the rate, but the rest detector limits each axis.
-  return {.rate_max_rad_s = params.expert.stationary_bounds.rate_rad_s,
-          .rate_spread_rad_s = params.expert.stationary_bounds.rate_rad_s / std::numbers::sqrt3,
-          .force_min_m_s2 = std::max(params.expert.gravity_m_s2 - params.expert.stationary_bounds.force_m_s2, 0.0),
-          .force_max_m_s2 = params.expert.gravity_m_s2 + params.expert.stationary_bounds.force_m_s2,
-          .force_spread_m_s2 = params.expert.stationary_bounds.force_m_s2,
+  return {.rate_max_rad_s = params.expert.stationary_bounds.kRate_rad_s,
+          .rate_spread_rad_s = params.expert.stationary_bounds.kRate_rad_s / std::numbers::sqrt3,
+          .force_min_m_s2 = std::max(params.expert.gravity_m_s2 - params.expert.stationary_bounds.kForce_m_s2, 0.0),
+          .force_max_m_s2 = params.expert.gravity_m_s2 + params.expert.stationary_bounds.kForce_m_s2,
+          .force_spread_m_s2 = params.expert.stationary_bounds.kForce_m_s2,
           .rest_s = 0.0};
 }
 
@@ -72,7 +72,7 @@ void InertialTrack::store_sample(const Params& params, const ImuSample& sample, 
   if (after_gap && newest_rate_ && !next.at_rest)
     next.from_ns = std::max(from_ns, next.time_ns - (newest_rate_->time_ns - newest_rate_->from_ns));
   next.bridges_gap = after_gap && next.from_ns == from_ns;
-  if (next.bridges_gap) next.rate_sigma_rad_s.setConstant(params.expert.prior.rate_sigma_max_rad_s);
+  if (next.bridges_gap) next.rate_sigma_rad_s.setConstant(params.expert.prior.kRateSigmaMax_rad_s);
   second_newest_rate_ = newest_rate_;
   newest_rate_ = rate_of(next);
   if (after_gap && !next.bridges_gap) fill_gap(params);

@@ -215,4 +215,18 @@ std::vector<MapPoint> LidarInertialOdometry::map() const {
   return impl_->map.to_map_points(impl_->params);
 }
 
+const char* to_string(SweepVerdict verdict) {
+  switch (verdict) {
+    case SweepVerdict::first:
+      return "first";
+    case SweepVerdict::registered:
+      return "registered";
+    case SweepVerdict::degenerate:
+      return "degenerate";
+    case SweepVerdict::rejected:
+      return "rejected";
+  }
+  return "unknown";
+}
+
 }  // namespace tumble

@@ -192,7 +192,7 @@ bool LidarInertialOdometry::Impl::is_stationary(const mapping::InertialTrack& in
   if (!inertial.is_stationary_until(end_ns)) return false;
   const Eigen::Vector3d gained_m_s =
       motion.state(motion.duration_s()).v_WI_m_s - sweep_boundary.state_estimate.mean.state.v_WI_m_s;
-  return !(gained_m_s.norm() > params.expert.stationary_bounds.force_m_s2 * motion.duration_s());
+  return !(gained_m_s.norm() > params.expert.stationary_bounds.kForce_m_s2 * motion.duration_s());
 }
 
 void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, const MotionWindow& motion,

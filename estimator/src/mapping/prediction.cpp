@@ -219,7 +219,7 @@ void sweep_boundary_after(const Params& params, const StateEstimate& start, cons
   boundary.clipped_axis_sign = Eigen::Vector3d::Zero();
   if (aligned) boundary.clipped_axis_sign = trajectory.clipped_axes_at_end();
   boundary.all_directions_constrained =
-      aligned && alignment->least_constrained_sigma_m <= params.expert.matching.degenerate_sigma_m;
+      aligned && alignment->least_constrained_sigma_m <= params.expert.matching.kDegenerateSigma_m;
 }
 
 }  // namespace tumble::mapping

@@ -78,7 +78,7 @@ void Registration::Sums::add(const Sums& other) {
 
 /// Returns the variance from range noise and deskewing: first terms of mapping.md (R18).
 double Registration::point_variance_m2(const SweepPoint& point) const {
-  const double range = std::max(params_.range_sigma_m, params_.range_sigma_ratio * point.range_m);
+  const double range = std::max(params_.kRangeSigma_m, params_.kRangeSigmaRatio * point.range_m);
   const double skew = params_.skew_sigma_m_s * point.sweep_time_s;
   return range * range + skew * skew;
 }

@@ -146,7 +146,7 @@ RegistrationAttempt attempt_registration(const Params& params, const Relocalisat
 void judge_registration(const Params& params, const TrackingState& before, std::size_t points, bool prior_certain,
                         const RegistrationAttempt& attempt, SweepRegistration& out) {
   if (out.alignment) {
-    const bool holds = out.alignment->least_constrained_sigma_m <= params.expert.matching.degenerate_sigma_m;
+    const bool holds = out.alignment->least_constrained_sigma_m <= params.expert.matching.kDegenerateSigma_m;
     out.verdict = holds ? SweepVerdict::registered : SweepVerdict::degenerate;
     const bool fits = double(out.alignment->inliers) >= kConfirmInlierRatio * double(out.alignment->matches);
     const bool relocalisation_unconfirmed =
@@ -156,7 +156,7 @@ void judge_registration(const Params& params, const TrackingState& before, std::
     return;
   }
   const bool enough = points >= params.expert.matching.matches_min;
-  const bool given_up = failed_searches(before) + 1 >= params.expert.tracking.lost_sweeps_max;
+  const bool given_up = failed_searches(before) + 1 >= params.expert.tracking.kLostSweepsMax;
   out.outcome = RegistrationOutcome::failed;
   out.map_too_sparse = enough && attempt.too_few_matches;
   if (enough && ((attempt.too_few_matches && prior_certain) || given_up)) out.verdict = SweepVerdict::degenerate;

@@ -8,7 +8,7 @@ namespace tumble::mapping {
 
 SweepPoints::SweepPoints(const Params& params) {
   const Registration::Params registration = registration_params(params);
-  noise_ = {registration.range_sigma_m, registration.range_sigma_ratio};
+  noise_ = {registration.kRangeSigma_m, registration.kRangeSigmaRatio};
 }
 
 Status SweepPoints::select_returns(const Params& params, std::span<const LidarPoint> returns, TimeNs span_ns,

@@ -16,6 +16,9 @@ using Pose = WorldCovariance::Pose;
 // Successive sweeps share errors, so the position error grows in proportion to the distance (0.24 % in a hall with
 // pillars).
 constexpr double kScale = 0.003;
+// standard deviation of the drift per sweep, relative to that of the pose in its least constrained direction (at most
+// kDriftSigmaMax_m)
+constexpr double kDriftRatio = 0.1, kDriftSigmaMax_m = 3.0;
 
 /// See mapping.md (R57).
 Pose subtract_mounting(const Registration::Matrix& joint, const Pose& by_mounting) {
@@ -64,7 +67,7 @@ Pose WorldCovariance::in_world_frame(const Registration::Matrix& joint, const Ei
 /// See mapping.md (R61).
 void WorldCovariance::add_drift(double least_constrained_sigma_m,
                                 const Eigen::Matrix<double, 6, 1>& least_constrained_direction) {
-  const double sigma_m = params_.drift_ratio * std::min(least_constrained_sigma_m, params_.drift_sigma_max_m);
+  const double sigma_m = kDriftRatio * std::min(least_constrained_sigma_m, kDriftSigmaMax_m);
   const Eigen::Vector3d direction = least_constrained_direction.head<3>();
   drift_covariance_m2_ += (sigma_m * sigma_m) * direction * direction.transpose();
 }

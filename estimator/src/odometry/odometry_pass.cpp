@@ -18,11 +18,12 @@ std::size_t sample_count_in_duration(double time_s, const MotionRegimeStream::Pa
 
 /// If the rate of a clipped axis is too uncertain, the mapper receives the gyro's reading, which is a lower bound. With
 /// an uncertain calibration, a rate recovered at an impact may be wrong by tens of rad/s.
-AngularRateState limit_rate_covariance(const AngularRateState& rate, const ImuSample& sample, double sigma_max_rad_s) {
+AngularRateState limit_rate_covariance(const AngularRateState& rate, const ImuSample& sample) {
+  constexpr double kSigmaMax_rad_s = InertialNoiseParams::kRateSigmaMax_rad_s;
   AngularRateState out = rate;
   for (int axis = 0; axis < 3; ++axis) {
     if ((rate.clipped_axes >> axis & 1) == 0) continue;
-    if (rate.covariance_rad2_s2(axis, axis) <= sigma_max_rad_s * sigma_max_rad_s) continue;
+    if (rate.covariance_rad2_s2(axis, axis) <= kSigmaMax_rad_s * kSigmaMax_rad_s) continue;
     out.w_WI_I_rad_s[axis] = sample.angular_velocity_rad_s[axis];
     out.covariance_rad2_s2.row(axis).setZero();
     out.covariance_rad2_s2.col(axis).setZero();
@@ -74,7 +75,6 @@ OdometryPass::OdometryPass(const MotionRegimeStream::Params& rate, const LidarIn
       mapper_(mapping),
       scale_(mapping.expert.gravity_m_s2, sample_count_in_duration(kPreallocated_s, rate)),
       localisation_(mapping.expert.matching.distance_m),
-      rate_sigma_max_rad_s_(mapping.expert.prior.rate_sigma_max_rad_s),
       time_offset_s_(mapping.time_offset_s),
       rest_gravity_({.gravity_m_s2 = std::max(mapping.expert.gravity_m_s2, kMinGravity_m_s2)}) {
   pending_.samples.reserve(sample_count_in_duration(std::max(rate.rate.lag_s, kPreallocated_s), rate));
@@ -132,7 +132,7 @@ Status OdometryPass::newest(PoseState& pose, Eigen::Matrix3d* velocity_covarianc
                 [&](const AngularRateState& rate) { return last_mapped_ns_ && rate.time_ns <= *last_mapped_ns_; });
   for (AngularRateState& rate : rates) {
     samples.push_back(classified.at(rate.time_ns));
-    rate = limit_rate_covariance(rate, samples.back(), rate_sigma_max_rad_s_);
+    rate = limit_rate_covariance(rate, samples.back());
   }
   return mapper_.predict(samples, rates, pose, velocity_covariance_I_m2_s2);
 }
@@ -144,7 +144,7 @@ void OdometryPass::process_angular_rate(const AngularRateState& rate) {
   if (last_mapped_ns_ && rate.time_ns <= *last_mapped_ns_) return;
   last_mapped_ns_ = rate.time_ns;
   scale_.add(sample);
-  if (!mapper_.add_imu(sample, limit_rate_covariance(rate, sample, rate_sigma_max_rad_s_)).ok()) ++rejected_samples_;
+  if (!mapper_.add_imu(sample, limit_rate_covariance(rate, sample)).ok()) ++rejected_samples_;
 }
 
 void OdometryPass::flush_until(TimeNs time_ns) {

@@ -80,7 +80,7 @@ class OdometryPass {
   LidarInertialOdometry mapper_;
   LidarScaleEstimator scale_;
   Localisation localisation_;
-  double rate_sigma_max_rad_s_, time_offset_s_;
+  double time_offset_s_;
   WaitingInputQueue pending_;  ///< samples whose rates are not yet available
   std::optional<AngularRateState> smoothed_;
   std::optional<TimeNs> last_mapped_ns_;  ///< time of the last sample passed to the mapper

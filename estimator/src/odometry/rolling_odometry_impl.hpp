@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
 #include <cstddef>
@@ -11,7 +12,6 @@
 
 #include "imu_saturation_limits.hpp"
 #include "imu_time_alignment.hpp"
-#include "rolling_restart.hpp"
 #include "stamp_order.hpp"
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
 #include "tumble/attitude/detail/imu_merge.hpp"
@@ -23,6 +23,12 @@
 #include "tumble/rolling/detail/rolling_smoother.hpp"
 
 namespace tumble {
+
+/// start of a run of RollingOdometry after a gap or a step of the clock
+struct RollingRestart {
+  Eigen::Vector3d sphere_centre_W_m = Eigen::Vector3d::Zero();  ///< position of the sphere's centre
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+};
 
 /// Impl contains the state of RollingOdometry. The functions with names of the public API are documented there.
 struct RollingOdometry::Impl {

@@ -82,7 +82,7 @@ RollingSmoother::Params rolling_params(const RollingOdometry::Params& params, co
   out.filter.gyro_range_rad_s = merged.gyro_range_rad_s;
   out.filter.accel_range_m_s2 = merged.accel_range_m_s2;
   if (units >= kRecoveringUnits) out.filter.expert.saturation.recovered_rate_sigma_rad_s = kRecoveredSigma_rad_s;
-  out.lag_s = std::max(params.lag_s, out.filter.expert.node_s);
+  out.lag_s = std::max(params.lag_s, out.filter.expert.kNode_s);
   out.rate_max_hz = std::max(out.rate_max_hz, 1.1 * params.imus.front().data_sheet.rate_hz);
   if (out.known_distance_m > 0.0 && out.filter.radius_sigma_m == 0.0)
     out.filter.radius_sigma_m = kUnknownRadiusSigmaRatio * out.filter.radius_m;

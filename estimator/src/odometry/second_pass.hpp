@@ -53,7 +53,6 @@ class SecondMappingPass {
   void complete_second_pass(OdometryPass& first);
   void abandon_second_pass();
 
-  bool is_running() const { return replayed_pass_.has_value(); }
   bool is_applied() const { return is_applied_; }
 
  private:

@@ -14,7 +14,7 @@ FinalSmoothingPass::FinalSmoothingPass(const RollingParams& params, std::span<co
   horizontal_variance_m2_.reserve(path.size());
 }
 
-void FinalSmoothingPass::run_to_cut(const Checkpoint& start, std::size_t cut) {
+void FinalSmoothingPass::run_to_cut(const SmoothingCheckpoint& start, std::size_t cut) {
   cut_node_ = cut;
   end_checkpoint_ = start;
   std::size_t nodes = 0;
@@ -38,7 +38,7 @@ void FinalSmoothingPass::run_to_cut(const Checkpoint& start, std::size_t cut) {
 }
 
 /// Filters one segment. On return, `at` is the start of the next segment.
-void FinalSmoothingPass::filter_forward(std::size_t segment, Checkpoint& at) {
+void FinalSmoothingPass::filter_forward(std::size_t segment, SmoothingCheckpoint& at) {
   const std::size_t first = first_node_of(segment), end = std::min(first + length_, mode_path_.size());
   loaded_ = segment;
   node_records_.clear();
@@ -52,7 +52,7 @@ void FinalSmoothingPass::filter_forward(std::size_t segment, Checkpoint& at) {
   while (readings.next(reading)) {
     const ImuAverage& average = reading.average;
     const Eigen::Vector3d& rate = average.mean.angular_velocity_rad_s;
-    if (reading.is_whole && sums.node_interval_s >= params_.expert.node_s - 0.5 * average.length_s &&
+    if (reading.is_whole && sums.node_interval_s >= params_.expert.kNode_s - 0.5 * average.length_s &&
         first + node_records_.size() < end) {
       const ModePathNode& decided = mode_path_[first + node_records_.size()];
       FilterNodeRecord& record = node_records_.emplace_back();
@@ -115,7 +115,7 @@ void FinalSmoothingPass::report_smoothed(std::size_t until, const std::function<
 void FinalSmoothingPass::report_smoothed_segment(std::size_t segment, std::size_t until,
                                                  const std::function<void(const Smoothed&)>& take) const {
   const std::size_t first = first_node_of(segment);
-  const Checkpoint& start = segment_ends_[segment].start;
+  const SmoothingCheckpoint& start = segment_ends_[segment].start;
   for (const SampleMotion& point : points_) {
     if (point.node >= until) return;
     const std::size_t next = point.node - first;

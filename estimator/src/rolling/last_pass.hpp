@@ -22,10 +22,6 @@ class FinalSmoothingPass {
   static constexpr std::size_t kNodesPerSegment =
       128;  ///< number of nodes per segment; the backward pass needs 1.6 MiB
 
-  struct Checkpoint {
-    ModePathFilter filter;
-    RollingReadings::Cursor reading;
-  };
   struct Distance {
     double distance_m = 0.0, sigma_m = 0.0;
   };
@@ -44,12 +40,12 @@ class FinalSmoothingPass {
                      std::size_t segment = kNodesPerSegment);
 
   /// After run(), cut() returns the filter after the first `cut` nodes.
-  void run_to_cut(const Checkpoint& start, std::size_t cut);
+  void run_to_cut(const SmoothingCheckpoint& start, std::size_t cut);
 
   std::size_t nodes() const { return horizontal_variance_m2_.size(); }
   /// smoothed variance of the IMU's horizontal position, per node
   std::span<const double> horizontal_variance_m2() const { return horizontal_variance_m2_; }
-  const Checkpoint& cut_checkpoint() const { return cut_checkpoint_; }
+  const SmoothingCheckpoint& cut_checkpoint() const { return cut_checkpoint_; }
   const ModePathFilter& end_filter() const { return end_checkpoint_.filter; }
 
   /// Calls `take` with the smoothed estimate of each sample before the node `until`, in time order.
@@ -57,12 +53,12 @@ class FinalSmoothingPass {
 
  private:
   struct SegmentEnds {
-    Checkpoint start;
+    SmoothingCheckpoint start;
     Adjoint end;
   };
 
   std::size_t first_node_of(std::size_t segment) const { return segment * length_; }
-  void filter_forward(std::size_t segment, Checkpoint& at);
+  void filter_forward(std::size_t segment, SmoothingCheckpoint& at);
   void recompute_segment_filter(std::size_t segment);
   void load(std::size_t segment);
   void store_sample_point(TimeNs time_ns, const RollingNominalState& nominal, const Eigen::Vector3d& rate_I_rad_s,
@@ -78,9 +74,9 @@ class FinalSmoothingPass {
   std::vector<SegmentEnds> segment_ends_;
   std::vector<double> horizontal_variance_m2_;
   std::size_t cut_node_ = 0;
-  Checkpoint cut_checkpoint_, end_checkpoint_;
-  Checkpoint recomputation_checkpoint_;  ///< filter for a segment that is recomputed
-  Adjoint adjoint_;                      ///< state of the backward pass
+  SmoothingCheckpoint cut_checkpoint_, end_checkpoint_;
+  SmoothingCheckpoint recomputation_checkpoint_;  ///< filter for a segment that is recomputed
+  Adjoint adjoint_;                               ///< state of the backward pass
   // index of the segment (`length_` successive nodes) whose filter records are in `node_records_`
   std::size_t loaded_ = 0;
   std::vector<FilterNodeRecord> node_records_;

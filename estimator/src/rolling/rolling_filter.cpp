@@ -67,7 +67,7 @@ void RollingFilter::process_averaged_reading(State& state, Listener listener) co
   const ImuAverage reading = state.average;
   state.average = {};
   // The rate at a node's end is interpolated between two readings, so the next reading completes the node.
-  if (state.node_integrals.node_interval_s >= params_.expert.node_s - 0.5 * reading.length_s) {
+  if (state.node_integrals.node_interval_s >= params_.expert.kNode_s - 0.5 * reading.length_s) {
     complete_filter_node(reading.mean.angular_velocity_rad_s, state);
     listener.function(listener.target, state);
   }
@@ -84,7 +84,7 @@ void RollingFilter::bridge_gap(const ImuSample& sample, double gap_s, State& sta
     rolling::GapUncertainty uncertainty;
     const ImuAverage piece = rolling::gap_step_average(params_, before, sample, gap_s, k, uncertainty);
     const Eigen::Vector3d& rate = piece.mean.angular_velocity_rad_s;
-    if (state.node_integrals.node_interval_s >= params_.expert.node_s - 0.5 * piece.length_s) {
+    if (state.node_integrals.node_interval_s >= params_.expert.kNode_s - 0.5 * piece.length_s) {
       complete_filter_node(rate, state);
       listener.function(listener.target, state);
     }
@@ -148,7 +148,7 @@ void RollingFilter::detect_rest(State& state) const {
 
 /// A sphere at rest may rotate slowly about its contact point: rolling.md (R29).
 bool RollingFilter::spins_in_place(const State& state) const {
-  const double averaged = params_.expert.node_s / (2.0 * kSlowRateTau_s);
+  const double averaged = params_.expert.kNode_s / (2.0 * kSlowRateTau_s);
   const Hypothesis& best = state.hypotheses[0];
   const Eigen::Array3d variance = best.covariance.diagonal().segment<3>(rolling::kGyroBias).array() +
                                   squared(params_.expert.contact.kRestRateSigma_rad_s) * averaged;

@@ -18,6 +18,7 @@ namespace tumble {
 
 namespace {
 
+constexpr double kSpeedMax_m_s = 2.5;  // maximum speed of the sphere; grip at a higher speed is rejected
 // Mean velocity change per node by impacts that the model does not explain, while the sphere stays on the floor.
 constexpr double kUnexplainedImpact_m_s = 0.03;
 constexpr double kSlipBumpPerS = 0.2;                            // from slip to bump, and from bump to slip
@@ -144,7 +145,7 @@ std::span<const ModeCandidate> propose_mode_changes(const RollingParams& params,
                                                     const RollingFilter::State& state, Candidates& out) {
   const double node_s = state.node_integrals.node_interval_s;
   const bool in_gap = state.node_integrals.gap_s > 0.0;
-  const bool too_fast = c.rolling_speed_m_s > params.speed_max_m_s;
+  const bool too_fast = c.rolling_speed_m_s > kSpeedMax_m_s;
   const auto shortest = static_cast<std::int64_t>(std::ceil(params.expert.modes.kEventShortest_s / node_s - 1e-9));
   std::size_t total = 0;
   for (int parent = 0; parent < state.hypothesis_count; ++parent) {

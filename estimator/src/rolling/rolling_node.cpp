@@ -223,7 +223,7 @@ RollingNominalState extrapolate_nominal(const RollingParams& params, const ImuAv
 }
 
 int gap_step_count(const RollingParams& params, double gap_s) {
-  return std::max(1, static_cast<int>(std::lround(gap_s / params.expert.node_s)));
+  return std::max(1, static_cast<int>(std::lround(gap_s / params.expert.kNode_s)));
 }
 
 ImuAverage gap_step_average(const RollingParams& params, const ImuSample& before, const ImuSample& after, double gap_s,

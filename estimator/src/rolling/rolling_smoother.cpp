@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "last_pass.hpp"
 #include "tumble/attitude/strapdown.hpp"
@@ -42,8 +43,8 @@ double stated_distance_sigma(const RollingSmoother::Params& params) {
   return 1.0 / (params.kFinalPassNoiseRatio * params.kFinalPassNoiseRatio);
 }
 
-rolling::RollingReadings::Cursor start_cursor(const ImuSample& sample) {
-  rolling::RollingReadings::Cursor cursor;
+rolling::ReadingCursor start_cursor(const ImuSample& sample) {
+  rolling::ReadingCursor cursor;
   cursor.time_ns = sample.time_ns;
   cursor.last_rate_rad_s = sample.angular_velocity_rad_s;
   cursor.next = 1;
@@ -76,16 +77,9 @@ RollingSmoother::EstimateCallback append_estimates_to(std::vector<RollingEstimat
 
 /// The final pass starts at the last node whose estimates were reported, or at the first sample.
 void start_window(const RollingParams& filter, const RollingParams& path, const RollingSmoother::State& state,
-                  rolling::FinalSmoothingPass::Checkpoint& start) {
-  const RollingSmoother::FinalSmoothingState& last = state.committed_state;
-  start.filter.mode = last.mode;
-  if (last.started) {
-    start.filter.nominal = last.nominal;
-    start.filter.covariance = last.covariance;
-    start.reading = {last.last_time_ns,          last.last_rate_rad_s, 0,
-                     last.rate_before_gap_rad_s, last.gap_start_ns,    last.gap_step_index};
-    return;
-  }
+                  rolling::SmoothingCheckpoint& start) {
+  start = state.committed_state.checkpoint;
+  if (state.committed_state.started) return;
   const ImuSample& sample = state.samples[0];
   Eigen::Quaterniond q_WI = filter.q_WI_start.value_or(Eigen::Quaterniond::Identity());
   // The filter has already levelled with the force of this sample, so inclination_from_force() cannot fail.
@@ -153,10 +147,6 @@ RollingEstimate estimate_at(const RollingSmoother::Params& params, const rolling
 
 }  // namespace
 
-struct RollingSmoother::MostProbableModePath {
-  std::vector<rolling::ModePathNode> nodes;
-};
-
 bool RollingSmoother::State::operator==(const State& other) const {
   return live_filter == other.live_filter && committed_state == other.committed_state &&
          node_modes == other.node_modes && constants == other.constants && radius_sigma_m == other.radius_sigma_m &&
@@ -165,10 +155,10 @@ bool RollingSmoother::State::operator==(const State& other) const {
 
 RollingSmoother::RollingSmoother(const Params& p) : params_(p), filter_(p.filter) {
   require_valid_fields(p);
-  require_in_interval("lag_s", p.lag_s, p.filter.expert.node_s, kWholeRecordingLag);
+  require_in_interval("lag_s", p.lag_s, p.filter.expert.kNode_s, kWholeRecordingLag);
   final_smoothing_params_ = scale_noise(p.filter, p.kFinalPassNoiseRatio);
-  lag_nodes_ = static_cast<std::size_t>(std::ceil(p.lag_s / p.filter.expert.node_s - 1e-9));
-  nodes_per_block_ = static_cast<std::size_t>(std::ceil(p.kBlock_s / p.filter.expert.node_s - 1e-9));
+  lag_nodes_ = static_cast<std::size_t>(std::ceil(p.lag_s / p.filter.expert.kNode_s - 1e-9));
+  nodes_per_block_ = static_cast<std::size_t>(std::ceil(p.kBlock_s / p.filter.expert.kNode_s - 1e-9));
 }
 
 std::size_t RollingSmoother::preallocated_samples() const {
@@ -213,16 +203,16 @@ void RollingSmoother::finish(State& state, std::vector<RollingEstimate>& out) co
 }
 
 void RollingSmoother::finish(std::span<const RollingMode> known, State& state, const EstimateCallback& take) const {
-  MostProbableModePath path = most_probable_path(state);
+  ModePath path = most_probable_path(state);
   if (state.samples.empty()) return;
   std::size_t n = 0;
   double node_s = 0.0;
   RollingMode mode = RollingMode::grip;
   rolling::RollingReadings readings(params_.filter, state.samples, start_cursor(state.samples.front()));
   rolling::RollingReading reading;
-  while (readings.next(reading) && reading.is_whole && n < path.nodes.size()) {
-    if (node_s >= params_.filter.expert.node_s - 0.5 * reading.average.length_s) {
-      path.nodes[n++].mode = less_constrained_mode(mode, known[std::min(reading.first, known.size() - 1)]);
+  while (readings.next(reading) && reading.is_whole && n < path.size()) {
+    if (node_s >= params_.filter.expert.kNode_s - 0.5 * reading.average.length_s) {
+      path[n++].mode = less_constrained_mode(mode, known[std::min(reading.first, known.size() - 1)]);
       mode = RollingMode::grip;
       node_s = 0.0;
     }
@@ -230,19 +220,18 @@ void RollingSmoother::finish(std::span<const RollingMode> known, State& state, c
       mode = less_constrained_mode(mode, known[k]);
     node_s += reading.average.length_s;
   }
-  smooth_window(path, path.nodes.size() + 1, state, take);
+  smooth_window(path, path.size() + 1, state, take);
 }
 
 /// Returns the contact modes of the most probable hypothesis, back to the last node whose estimates were reported.
-RollingSmoother::MostProbableModePath RollingSmoother::most_probable_path(const State& state) const {
-  MostProbableModePath path;
-  path.nodes.resize(state.node_modes.size());
+RollingSmoother::ModePath RollingSmoother::most_probable_path(const State& state) const {
+  ModePath path(state.node_modes.size());
   const double constrain_after_s = std::min(rolling::kConstrainAfter_s, params_.filter.expert.rest_detector.rest_s);
   std::size_t which = 0;
   double lasts_s = 0.0;  // duration of the rest that contains the node
-  for (std::size_t n = path.nodes.size(); n-- > 0;) {
+  for (std::size_t n = path.size(); n-- > 0;) {
     const NodeModes& step = state.node_modes[n];
-    rolling::ModePathNode& node = path.nodes[n];
+    rolling::ModePathNode& node = path[n];
     lasts_s = step.rest_s > 0.0 ? std::max(lasts_s, step.rest_s) : 0.0;
     node.holds_constant_position = lasts_s > 0.0 && lasts_s >= constrain_after_s;
     node.mode = step.mode[which];
@@ -254,24 +243,24 @@ RollingSmoother::MostProbableModePath RollingSmoother::most_probable_path(const 
   return path;
 }
 
-void RollingSmoother::smooth_window(const MostProbableModePath& path, std::size_t emitted, State& state,
+void RollingSmoother::smooth_window(const ModePath& path, std::size_t emitted, State& state,
                                     const EstimateCallback& take) const {
   if (state.samples.empty()) return;
   std::optional<rolling::FinalSmoothingPass::Distance> distance;
-  if (emitted > path.nodes.size() && params_.known_distance_m > 0.0) {
+  if (emitted > path.size() && params_.known_distance_m > 0.0) {
     distance = {params_.known_distance_m, params_.known_distance_sigma_m};
   }
   const auto owned_pass =
-      std::make_unique<rolling::FinalSmoothingPass>(final_smoothing_params_, state.samples, path.nodes, distance);
+      std::make_unique<rolling::FinalSmoothingPass>(final_smoothing_params_, state.samples, path, distance);
   rolling::FinalSmoothingPass& pass = *owned_pass;
-  const auto start = std::make_unique<rolling::FinalSmoothingPass::Checkpoint>();
+  const auto start = std::make_unique<rolling::SmoothingCheckpoint>();
   start_window(params_.filter, final_smoothing_params_, state, *start);
   pass.run_to_cut(*start, emitted);
   state.constants = pass.end_filter().nominal;
   state.radius_sigma_m = std::sqrt(std::max(0.0, pass.end_filter().covariance(rolling::kRadius, rolling::kRadius)));
 
   const SlipAndBumpEvents events =
-      find_slip_and_bump_events(params_, path.nodes, pass.horizontal_variance_m2(), emitted, state.committed_state);
+      find_slip_and_bump_events(params_, path, pass.horizontal_variance_m2(), emitted, state.committed_state);
   pass.report_smoothed(emitted, [&](const rolling::FinalSmoothingPass::Smoothed& at) {
     RollingEstimate estimate = estimate_at(params_, at);
     if (at.node != nullptr) {
@@ -283,22 +272,15 @@ void RollingSmoother::smooth_window(const MostProbableModePath& path, std::size_
   });
 
   if (emitted <= pass.nodes()) {
-    const auto& [filter, cursor] = pass.cut_checkpoint();
     FinalSmoothingState& last = state.committed_state;  // the constant position of the last reported node remains
-    last.nominal = filter.nominal;
-    last.covariance = filter.covariance;
-    last.mode = filter.mode;
+    last.checkpoint = pass.cut_checkpoint();
+    const std::size_t used = std::exchange(last.checkpoint.reading.next, 0);
     last.slip_start_variance_m2 = events.committed_position_variance_m2;
-    last.last_time_ns = cursor.time_ns;
-    last.last_rate_rad_s = cursor.last_rate_rad_s;
-    last.rate_before_gap_rad_s = cursor.rate_before_gap_rad_s;
-    last.gap_start_ns = cursor.gap_start_ns;
-    last.gap_step_index = cursor.gap_step_index;
     last.started = true;
-    state.samples.erase(state.samples.begin(), state.samples.begin() + static_cast<std::ptrdiff_t>(cursor.next));
+    state.samples.erase(state.samples.begin(), state.samples.begin() + static_cast<std::ptrdiff_t>(used));
     state.node_modes.erase(state.node_modes.begin(), state.node_modes.begin() + static_cast<std::ptrdiff_t>(emitted));
   } else {
-    state.committed_state.gap_step_index = 0;  // the gap has ended
+    state.committed_state.checkpoint.reading.gap_step_index = 0;  // the gap has ended
     state.samples.clear();
     state.node_modes.clear();
   }

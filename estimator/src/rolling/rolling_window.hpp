@@ -7,6 +7,7 @@
 
 #include "rolling_node.hpp"
 #include "tumble/common/imu.hpp"
+#include "tumble/rolling/detail/rolling_smoother.hpp"
 
 namespace tumble::rolling {
 
@@ -57,21 +58,10 @@ struct RollingReading {
 /// without allocation.
 class RollingReadings {
  public:
-  /// Cursor is the position in the stored samples from which next() continues.
-  struct Cursor {
-    TimeNs time_ns = 0;  ///< end of the last reading
-    Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
-    std::size_t next = 0;
-    Eigen::Vector3d rate_before_gap_rad_s = Eigen::Vector3d::Zero();  ///< rate before the gap
-    TimeNs gap_start_ns = 0;
-    int gap_step_index = 0;
-    bool operator==(const Cursor&) const = default;
-  };
-
-  RollingReadings(const RollingParams& params, std::span<const ImuSample> samples, const Cursor& from)
+  RollingReadings(const RollingParams& params, std::span<const ImuSample> samples, const ReadingCursor& from)
       : params_(params), samples_(samples), cursor_(from) {}
 
-  const Cursor& cursor() const { return cursor_; }
+  const ReadingCursor& cursor() const { return cursor_; }
   bool next(RollingReading& out);
 
  private:
@@ -79,7 +69,7 @@ class RollingReadings {
 
   const RollingParams& params_;
   std::span<const ImuSample> samples_;
-  Cursor cursor_;
+  ReadingCursor cursor_;
 };
 
 struct SampleMotion {
@@ -88,12 +78,6 @@ struct SampleMotion {
   Eigen::Vector3d v_WI_m_s, p_WI_m;
   Eigen::Vector3d rate_I_rad_s;
   std::size_t node = 0;  ///< index of the first node that is completed after the sample
-};
-
-struct ModePathFilter {
-  RollingNominalState nominal;
-  Covariance covariance = Covariance::Zero();
-  RollingMode mode = RollingMode::grip;
 };
 
 Eigen::Matrix<double, kReported, kStates> output_covariance_rows(const Covariance& P);

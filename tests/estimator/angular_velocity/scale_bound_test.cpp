@@ -53,14 +53,14 @@ ScaleInformation scale_information(std::uint64_t seed, const Vector3d& moments) 
     const double share = p.expert.kAccelScaleError * recording.samples[k].specific_force_m_s2.norm();
     const double force2 = p.expert.flight.sigma_m_s2 * p.expert.flight.sigma_m_s2 + noise * noise + share * share;
     const double torque2 = std::pow(p.expert.flight.euler_sigma_rad_s2, 2) +
-                           std::pow(p.expert.contact.twist_ratio * p.expert.contact.kLever_rad_m * force, 2);
+                           std::pow(p.expert.contact.kTwistRatio * p.expert.contact.kLever_rad_m * force, 2);
     // contact contains no information about the inertia
     const Vector3d torque = estimates[k].flight_weight < 0.05
                                 ? Vector3d(J * a + 2.0 * knot.rate_rad_s.cross(Vector3d(J * knot.rate_rad_s)))
                                 : Vector3d(J * a - a);
     out.at_most += estimates[k].flight_weight * a.cross(solution.rig.lever_arm_m).squaredNorm() / force2 +
-                   torque.squaredNorm() / torque2 + std::pow(knot.rate_rad_s.norm() / p.rate_max_rad_s, 2) +
-                   std::pow(a.norm() / p.acceleration_max_rad_s2, 2);
+                   torque.squaredNorm() / torque2 + std::pow(knot.rate_rad_s.norm() / p.kRateMax_rad_s, 2) +
+                   std::pow(a.norm() / p.kAccelerationMax_rad_s2, 2);
     if (k + 1 == estimates.size()) continue;
     const double change = p.expert.contact.kGain_rad_m * std::max(force, estimates[k + 1].contact_force_m_s2.norm());
     const double jerk = p.expert.flight.kJerkPsd_rad2_s5 + change * change / 0.01;

@@ -177,7 +177,7 @@ TEST(Regimes, RefusesWhatDoesNotBelongTogether) {
   EXPECT_EQ(evidence.find(motion.samples, motion.rates, kLever_m, kLeverCovariance_m2, out).error_code,
             ErrorCode::out_of_range);
   EXPECT_TRUE(out.empty());
-  EXPECT_THROW(MotionRegimeEvidence({.throws_hz = 0.0}), InvalidParams);
+  EXPECT_THROW(MotionRegimeEvidence({.gravity_m_s2 = 0.0}), InvalidParams);
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ TEST(TumbleAttitude, ContractOfEveryFilter) {
 TEST(TumbleAttitude, RefusesBadParams) {
   EXPECT_THROW(TumbleAttitude({.gravity_m_s2 = 0.0}), InvalidParams);
   EXPECT_THROW(TumbleAttitude({.gyro_noise_rad_sqrts = -1.0}), InvalidParams);
-  EXPECT_THROW(TumbleAttitude({.expert = {.node_s = 2.0}}), InvalidParams);
+  EXPECT_THROW(TumbleAttitude({.expert = {.recovered_tau_s = 0.0}}), InvalidParams);
   EXPECT_THROW(TumbleAttitude({.velocity_m_sqrts = std::numeric_limits<double>::quiet_NaN()}), InvalidParams);
 }
 
@@ -305,7 +305,7 @@ TEST(TumbleAttitude, OverAGapTheRateGoesOnAndTheVarianceIsThatOfAWalk) {
   constexpr double kGap_s = 0.3;
   const BehindGap found = behind_gap({{3.0, -2.0, 1.0}, {3.0, -2.0, 1.0}}, kGap_s);
   EXPECT_LT(found.tilt_rad.norm(), 0.02);
-  const double walk = TumbleAttitude::Params{}.expert.gap.rate_walk_rad_s_sqrts;
+  const double walk = TumbleAttitude::Params{}.expert.gap.kRateWalk_rad_s_sqrts;
   EXPECT_NEAR(found.variance_rad2, walk * walk * kGap_s * kGap_s * kGap_s / 12.0, 0.1 * found.variance_rad2);
 }
 

@@ -41,9 +41,9 @@ class BelievedImu {
       rotated_rad += span_s / static_cast<double>(sweep.size()) * sample.angular_velocity_rad_s.norm();
     }
     const Eigen::Vector3d velocity_m_s =
-        std::hypot(params_.expert.prior.sigma_m_s, params_.expert.prior.force_share * pushed_m_s) * noise_.vector();
+        std::hypot(params_.expert.prior.kSigma_m_s, params_.expert.prior.kForceShare * pushed_m_s) * noise_.vector();
     const Eigen::Vector3d rotation_rad =
-        std::hypot(params_.expert.prior.sigma_rad, params_.expert.prior.rotation_noise_ratio * rotated_rad) *
+        std::hypot(params_.expert.prior.sigma_rad, params_.expert.prior.kRotationNoiseRatio * rotated_rad) *
         noise_.vector();
     for (ImuSample& sample : sweep) {
       sample.specific_force_m_s2 += velocity_m_s / span_s;

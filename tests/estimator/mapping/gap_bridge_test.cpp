@@ -50,7 +50,7 @@ TEST(GapBridge, GoesInALineFromReadingToReading) {
   // a long gap has no more parts, and no more uncertainty than the upper bound
   const auto many = bridge(params, window(from, 0.1, 95, 100), window(to, 0.3, 6100, 6105));
   EXPECT_LE(many.size(), 64u);
-  EXPECT_EQ(many[many.size() / 2].rate_sigma_rad_s, Eigen::Vector3d::Constant(params.rate_sigma_max_rad_s));
+  EXPECT_EQ(many[many.size() / 2].rate_sigma_rad_s, Eigen::Vector3d::Constant(params.kRateSigmaMax_rad_s));
   EXPECT_EQ(many.back().time_ns, 6100 * kMs_ns);
 }
 

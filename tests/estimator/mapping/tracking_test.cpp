@@ -111,8 +111,6 @@ SweepRegistration judged(const LidarInertialOdometry::Params& params, const Trac
 TEST(Tracking, VerdictsAreWhatTheAttemptAndThePriorAllow) {
   LidarInertialOdometry::Params params;
   params.expert.matching.matches_min = 100;
-  params.expert.tracking.lost_sweeps_max = 30;
-  params.expert.matching.degenerate_sigma_m = 0.15;
   const auto verdict = [&](const TrackingState& before, std::size_t points, bool trusted, DelayGrid tried) {
     return judged(params, before, points, trusted, std::move(tried)).verdict;
   };

@@ -63,10 +63,7 @@ TEST(WorldCovariance, AnErrorOfTheMountingIsNoneOfTheStart) {
 }
 
 TEST(WorldCovariance, DriftGrowsAlongTheUnconstrainedDirection) {
-  WorldCovarianceParams params = without_tilt();
-  params.drift_ratio = 0.1;
-  params.drift_sigma_max_m = 3.0;
-  WorldCovariance covariance(params, kStart, kLever_m);
+  WorldCovariance covariance(without_tilt(), kStart, kLever_m);
   Eigen::Matrix<double, 6, 1> along = Eigen::Matrix<double, 6, 1>::Zero();
   along[1] = 1.0;
   covariance.add_drift(2.0, along);

@@ -86,7 +86,7 @@ std::vector<double> told(std::span<const ImuSample> samples, std::span<const rol
   params.lever_arm_m = kLeverArm;
   params.radius_sigma_m = 1e-3;
   rolling::FinalSmoothingPass pass(params, samples, path, distance, segment);
-  rolling::FinalSmoothingPass::Checkpoint start;
+  rolling::SmoothingCheckpoint start;
   start.filter.nominal = rolling::start_nominal(params, Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero());
   rolling::set_prior(params, Eigen::Vector3d::Zero(), start.filter.covariance);
   start.reading.next = 1;

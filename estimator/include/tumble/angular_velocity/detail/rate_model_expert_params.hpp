@@ -31,20 +31,9 @@ struct ContactRateParams {
   /// Largest angular acceleration perpendicular to a contact force, per unit of specific force.
   static constexpr double kLever_rad_m = 5.0;
   /// Ratio of the angular accelerations about a contact force and perpendicular to the contact force.
-  double twist_ratio = 0.3;
-  /// standard deviation of the unknown contact force, relative to the specific force; 0: no assumption
-  double force_share = 1.0;
-
-  template <class Self, class Visitor>
-  static void fields(Self& p, Visitor& visit) {
-    visit(p.twist_ratio,
-          {"contact_twist_ratio", "1", 0.0, 1.0,
-           "angular acceleration about the axis of the contact force, as a share of the angular acceleration about "
-           "perpendicular axes"});
-    visit(p.force_share,
-          {"contact_force_sigma_ratio", "1", 0.0, 1e3,
-           "standard deviation of the unknown contact force, as a share of the specific force; 0: no assumption"});
-  }
+  static constexpr double kTwistRatio = 0.3;
+  /// standard deviation of the unknown contact force, relative to the specific force
+  static constexpr double kForceShare = 1.0;
 };
 
 struct AngularRateModelExpertParams {
@@ -64,7 +53,6 @@ struct AngularRateModelExpertParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit.group("", p.flight);
-    visit.group("", p.contact);
     visit.group("error_sizes_", p.error_priors);
   }
 };

@@ -42,8 +42,8 @@ struct AngularRateModelParams {
   SensorErrors errors = {};
   /// Largest possible angular rate and angular acceleration of the body, which limit the estimate while the gyro is
   /// clipped.
-  double rate_max_rad_s = 50.0;
-  double acceleration_max_rad_s2 = 5000.0;
+  static constexpr double kRateMax_rad_s = 50.0;
+  static constexpr double kAccelerationMax_rad_s2 = 5000.0;
 
   using Expert = AngularRateModelExpertParams;
   Expert expert = {};  ///< rarely changed parameters
@@ -71,12 +71,6 @@ struct AngularRateModelParams {
     visit(p.accel_noise_density, {"accel_noise_density", "m/s^2/sqrt(Hz)", 1e-9, 10.0,
                                   "noise density of the accelerometer; a larger value gives accelerometer readings "
                                   "less weight; default: 60 ug/sqrt(Hz)"});
-    visit(p.rate_max_rad_s,
-          {"rate_max_rad_s", "rad/s", 1.0, 1e4,
-           "maximum angular rate that this kind of body reaches; limits the estimates of clipped axes"});
-    visit(p.acceleration_max_rad_s2,
-          {"acceleration_max_rad_s2", "rad/s^2", 1.0, 1e7,
-           "maximum angular acceleration that this kind of body reaches; limits the estimates of clipped axes"});
     visit.group("", p.expert);
   }
 };

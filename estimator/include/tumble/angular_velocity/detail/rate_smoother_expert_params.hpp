@@ -9,9 +9,9 @@ namespace tumble {
 
 struct RateOptimisationParams {
   int iterations_max = 15;
-  double tolerance_rad_s = 2e-3;                  ///< converged if every rate changes by less than this
-  static constexpr double kStepMax_rad_s = 10.0;  ///< largest change of a rate in one iteration
-  double initial_threshold_factor = 8.0;          ///< factor on the contact threshold; halved in each iteration
+  double tolerance_rad_s = 2e-3;                          ///< converged if every rate changes by less than this
+  static constexpr double kStepMax_rad_s = 10.0;          ///< largest change of a rate in one iteration
+  static constexpr double kInitialThresholdFactor = 8.0;  ///< factor on the contact threshold; halved in each iteration
   /// number of additional iterations with truncated distributions, which make covariances in contact consistent
   int bound_iterations = 3;
   static constexpr double kBoundDamping = 0.5;  ///< weight of a new bound in each additional iteration
@@ -21,10 +21,6 @@ struct RateOptimisationParams {
     visit(p.iterations_max, {"iterations_max", "1", 1, 1000, "maximum number of iterations of one optimisation"});
     visit(p.tolerance_rad_s, {"tolerance_rad_s", "rad/s", 1e-12, 1.0,
                               "largest change of a rate in one iteration, below which the optimisation stops"});
-    visit(
-        p.initial_threshold_factor,
-        {"initial_threshold_factor", "1", 1.0, 1000.0,
-         "factor on the contact threshold (flight_threshold) in the first iteration, halved in each later iteration"});
     visit(p.bound_iterations, {"bound_iterations", "1", 0, 1000,
                                "number of iterations after convergence in which clipped rates in contact have "
                                "truncated normal distributions"});

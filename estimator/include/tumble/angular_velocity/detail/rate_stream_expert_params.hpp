@@ -42,11 +42,13 @@ struct AngularRateStreamExpertParams {
       {};  ///< if no range is stated, the range of AngularRateStreamParams::rails applies
   SaturationPlaneFinder::Params accel_saturation_planes = SaturationPlaneFinder::Params::defaults_for_accelerometer();
   RestDetector::Params rest_detector = {};
-  double initial_threshold_factor = 8.0;  ///< factor on a clipped sample's contact threshold; halved in each step
+  static constexpr double kInitialThresholdFactor =
+      8.0;  ///< factor on a clipped sample's contact threshold; halved in each step
   static constexpr double kStepMax_rad_s = 10.0;  ///< largest change of a sample's rate in one step
   int bound_hard_steps = 3;  ///< number of steps until the lower bounds of a sample in contact become soft
   static constexpr double kBoundDamping = 0.5;  ///< weight of a new lower bound in each step
-  int flight_run_min = 6;  ///< minimum number of consecutive flight samples that update the calibration
+  static constexpr std::size_t kFlightRunMin =
+      6;  ///< minimum number of consecutive flight samples that update the calibration
   CalibrationInflationParams inflation = {};
   /// prior probability of an uncalibrated device; 0: the device is assumed to match its data sheet
   double uncalibrated = 0.3;
@@ -56,14 +58,9 @@ struct AngularRateStreamExpertParams {
     visit.group("planes_", p.gyro_planes);
     visit.group("accel_planes_", p.accel_saturation_planes);
     visit.group("rests_", p.rest_detector);
-    visit(p.initial_threshold_factor,
-          {"initial_threshold_factor", "1", 1.0, 1000.0,
-           "factor on the contact threshold (flight_threshold) of a new clipped sample, halved in each step"});
     visit(p.bound_hard_steps,
           {"bound_hard_steps", "1", 0, 4096,
            "number of steps after which clipped rates in contact have truncated normal distributions"});
-    visit(p.flight_run_min,
-          {"flight_run_min", "1", 0, 4096, "minimum number of consecutive flight samples that update the calibration"});
     visit.group("", p.inflation);
     visit(p.uncalibrated,
           {"uncalibrated", "1", 0.0, 0.99, "prior probability that the IMU does not match its data sheet"});

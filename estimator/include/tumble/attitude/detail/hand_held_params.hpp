@@ -7,19 +7,17 @@
 namespace tumble {
 
 struct HandMotionModelParams {
-  static constexpr double kHandTau_s = 0.1;      ///< correlation time of the hand's acceleration
-  static constexpr double kVelocityTau_s = 0.3;  ///< correlation time of the hand's velocity
-  static constexpr double kPositionTau_s = 1.0;  ///< correlation time of the hand's position
-  double position_leak_s = 10.0;                 ///< time constant with which the hand's position returns to zero
-  double hand_noise_adaptation = 0.8;            ///< weight of the measured acceleration power: 0 (not used) to 1
-  static constexpr double kHandWindow_s = 2.0;   ///< averaging time of the measured acceleration power
+  static constexpr double kHandTau_s = 0.1;        ///< correlation time of the hand's acceleration
+  static constexpr double kVelocityTau_s = 0.3;    ///< correlation time of the hand's velocity
+  static constexpr double kPositionTau_s = 1.0;    ///< correlation time of the hand's position
+  static constexpr double kPositionLeak_s = 10.0;  ///< time constant with which the hand's position returns to zero
+  double hand_noise_adaptation = 0.8;              ///< weight of the measured acceleration power: 0 (not used) to 1
+  static constexpr double kHandWindow_s = 2.0;     ///< averaging time of the measured acceleration power
   static constexpr double kHandNoiseFloorRatio =
       1.0;  ///< minimum ratio of the adapted to the assumed power spectral density of the hand's acceleration
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.position_leak_s, {"position_leak_s", "s", 0.1, 1e4,
-                              "time constant with which the estimated position of the hand-held point decays to zero"});
     visit(p.hand_noise_adaptation,
           {"hand_noise_adaptation", "1", 0.0, 1.0,
            "share by which the assumed acceleration of the hand adapts to the measured acceleration; "

@@ -10,7 +10,6 @@
 
 #include "tumble/angular_velocity/detail/saturation_plane.hpp"
 #include "tumble/attitude/detail/force_errors.hpp"
-#include "tumble/attitude/detail/imu_merge_expert_params.hpp"
 #include "tumble/attitude/detail/imu_merge_state.hpp"
 #include "tumble/attitude/detail/multi_imu_sign_check.hpp"
 #include "tumble/attitude/detail/rate_recovery.hpp"
@@ -26,31 +25,26 @@ struct ImuMergeParams {
   /// pose of each IMU in the common axes C of the rigid body; the first `count` entries are used
   std::array<Eigen::Isometry3d, kImus> T_mean_imu{};
   int count = 1;
+  /// An accelerometer reading above this fraction of the range may be saturated during a part of its averaging window.
+  static constexpr double kSubsampleSaturationRatio = 0.15;
   static constexpr double kRateNoise_rad_s = 0.01;  ///< standard deviation of the mean rate over a window
   double window_s = 4e-3;                           ///< averaging time of the readings
-  double offset_sigma_s = 3e-3;   ///< prior standard deviation of each IMU's time offset; 0: synchronous clocks
-  double gyro_range_rad_s = 1e3;  ///< readings at or above this rate are saturated
+  double gyro_range_rad_s = 1e3;                    ///< readings at or above this rate are saturated
   double accel_range_m_s2 = 1e5;
   double gap_max_s = 1.0;
   /// sensing directions of each IMU, as found by SaturationPlaneFinder
   std::array<SensingDirections, kImus> gyro_sensing_directions{}, accel_sensing_directions{};
 
-  using Expert = ImuMergeExpertParams;
-  Expert expert = {};  ///< rarely changed parameters
-
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.count, {"count", "1", 1, kImus, "number of IMUs in use"});
     visit(p.window_s, {"window_s", "s", 0.0, 0.1, "duration over which readings are averaged before merging"});
-    visit(p.offset_sigma_s,
-          {"offset_sigma_s", "s", 0.0, 0.1, "prior standard deviation of an IMU's time offset; 0: no offset"});
     visit(p.gyro_range_rad_s, {"gyro_range_rad_s", "rad/s", 1e-12, 1e3,
                                "measuring range of the gyros; readings at or above this value count as saturated"});
     visit(p.accel_range_m_s2,
           {"accel_range_m_s2", "m/s^2", 1e-12, 1e5,
            "measuring range of the accelerometers; readings at or above this value count as saturated"});
     visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap causes an error"});
-    visit.group("", p.expert);
   }
 };
 

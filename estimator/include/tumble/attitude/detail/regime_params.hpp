@@ -12,7 +12,7 @@ struct MotionRegimeParams {
   MotionRegimeEvidence::Params evidence;
   SpinTracker::Params spin;
   double hand_held_probability_min = 0.02;  ///< minimum probability of hand-held motion for which its estimator runs
-  double segment_gap_max_s = 0.1;           ///< clipped samples closer together than this form one segment
+  static constexpr double kSegmentGapMax_s = 0.1;  ///< clipped samples closer together than this form one segment
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -21,8 +21,6 @@ struct MotionRegimeParams {
     visit(p.hand_held_probability_min,
           {"hand_held_probability_min", "1", 0.0, 1.0,
            "minimum probability of hand-held motion for which the estimator of hand-held motion runs"});
-    visit(p.segment_gap_max_s, {"segment_gap_max_s", "s", 0.0, 10.0,
-                                "clipped samples that are less than this time apart belong to one saturated interval"});
   }
 };
 

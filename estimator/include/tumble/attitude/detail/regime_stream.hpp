@@ -53,7 +53,7 @@ class MotionRegimeStream {
     double calibration_reset_rate =
         0.0;  ///< number of calibration resets of AngularRateStream, decaying with the time constant `rate.lag_s`
     bool hand_held_stream_running = false;  ///< true if HandHeldRateStream is running
-    /// probabilities of hand-held motion in the last `segment_gap_max_s`; the oldest entry is the smallest
+    /// probabilities of hand-held motion in the last `kSegmentGapMax_s`; the oldest entry is the smallest
     std::vector<ReportedRegimeProbability> recent_probabilities;
     TimeNs reported_ns = 0;            ///< time of the last reported sample
     std::optional<TimeNs> clipped_ns;  ///< last reported clipped sample

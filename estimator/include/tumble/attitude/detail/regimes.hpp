@@ -23,49 +23,19 @@ struct RegimeProbabilities {
 /// The residual force is the specific force minus the effect of rotation at the lever arm. The residual force is zero
 /// in free flight. In hand-held motion, the residual force is gravity plus a bounded acceleration in any direction. In
 /// contact, the residual force can have any magnitude. A Markov chain models the transitions between flight, contact
-/// and hand-held motion. Readings within `memory_s` count as one independent observation.
+/// and hand-held motion. Readings within kMemory_s count as one independent observation.
 ///
 /// MotionRegimeEvidence does not use the attitude. MotionRegimeEvidence does not model ropes, buoyancy, and aerodynamic
-/// forces above `flight_force_sigma_m_s2`.
+/// forces above 0.3 m/s^2.
 class MotionRegimeEvidence {
  public:
+  static constexpr double kMemory_s = 0.05;
   struct Params {
     double gravity_m_s2 = 9.80665;
-    double flight_force_sigma_m_s2 = 0.3;    ///< standard deviation of the residual force in flight
-    double flight_share = 0.05;              ///< additional standard deviation / force a x r + w x (w x r)
-    double hand_sigma_m_s2 = 5.0;            ///< standard deviation of a hand's acceleration
-    double hand_distance_m = 0.05;           ///< distance of the IMU from the hand
-    double contact_force_max_m_s2 = 1000.0;  ///< largest contact force; the smallest contact force is 1 m/s^2
-    double memory_s = 0.05;
-    double rest_rate_rad_s = 0.5;  ///< readings with a lower rate do not change the probabilities
-    double contacts_hz = 5.0;      ///< mean number of changes between flight and contact per second
-    double throws_hz = 0.02;       ///< mean number of throws and catches per second
 
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-300, 100.0, "strength of gravity"});
-      visit(p.flight_force_sigma_m_s2,
-            {"flight_force_sigma_m_s2", "m/s^2", 1e-3, 10.0,
-             "standard deviation of the force error of the flight model, caused by drag and sensor bandwidth"});
-      visit(p.flight_share,
-            {"flight_share", "1", 0.0, 1.0,
-             "additional standard deviation of the specific force in flight, as a share of the centripetal and "
-             "tangential force at the lever arm"});
-      visit(p.hand_sigma_m_s2, {"hand_sigma_m_s2", "m/s^2", 0.1, 100.0, "standard deviation of a hand's acceleration"});
-      visit(p.hand_distance_m,
-            {"hand_distance_m", "m", 0.0, 1.0, "standard deviation of the distance between hand and IMU"});
-      visit(p.contact_force_max_m_s2,
-            {"contact_force_max_m_s2", "m/s^2", 10.0, 1e6,
-             "maximum contact force; the model assumes contact forces between 1 m/s^2 and this value"});
-      visit(p.memory_s,
-            {"memory_s", "s", 1e-3, 10.0, "time within which readings count as one independent observation"});
-      visit(p.rest_rate_rad_s,
-            {"rest_rate_rad_s", "rad/s", 0.0, 100.0,
-             "readings with a lower rate do not change the probabilities of flight, contact and hand-held motion"});
-      visit(p.contacts_hz,
-            {"contacts_hz", "Hz", 1e-3, 100.0, "assumed frequency of changes between flight and contact"});
-      visit(p.throws_hz,
-            {"throws_hz", "Hz", 1e-9, 10.0, "assumed frequency of changes between hand-held and free motion"});
     }
   };
 

@@ -45,35 +45,13 @@ struct SpinFilter {
 class SpinTracker {
  public:
   struct Params {
-    double rate_min_rad_s = 6.0;
-    double jerk_rad_s3_sqrts = 50.0;
-    double walk_rad_s_sqrts = 1.0;
-    double vibration_rad_s = 0.3;
-    double memory_s = 0.2;
-    double changes_hz = 0.02;
     double probability_min = 0.1;
-    double body_size_m = 0.3;
 
     /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
-      visit(p.rate_min_rad_s, {"rate_min_rad_s", "rad/s", 0.1, 1e3, "minimum rate of a steady spin"});
-      visit(p.jerk_rad_s3_sqrts, {"jerk_rad_s3_sqrts", "rad/s^3 sqrt(s)", 1e-2, 1e6,
-                                  "root power spectral density of the angular jerk about the spin axis"});
-      visit(p.walk_rad_s_sqrts, {"walk_rad_s_sqrts", "rad/s/sqrt(s)", 1e-6, 1e3,
-                                 "random walk of the rate across the spin axis, in world and body axes; the measured "
-                                 "residuals scale this value"});
-      visit(p.vibration_rad_s, {"vibration_rad_s", "rad/s", 1e-6, 1e3,
-                                "standard deviation of the rate across the spin axis over 10 ms, caused by vibration; "
-                                "the measured residuals scale this value"});
-      visit(p.memory_s,
-            {"memory_s", "s", 1e-3, 10.0, "time within which readings count as one independent observation"});
-      visit(p.changes_hz, {"changes_hz", "Hz", 1e-9, 10.0, "assumed frequency of starts and ends of a steady spin"});
       visit(p.probability_min, {"probability_min", "1", 0.0, 1.0,
                                 "minimum probability of a steady spin that changes the rate of a saturated axis"});
-      visit(p.body_size_m,
-            {"body_size_m", "m", 1e-3, 100.0,
-             "size of the body: prior standard deviation of the lever arm from the spin axis to the IMU"});
     }
   };
   /// Hypotheses are a steady spin and readings without relation to the spin.

@@ -1,22 +1,61 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
 
-#include "tumble/attitude/detail/low_pass.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble {
 
+/// LowPass is a second-order Butterworth low-pass filter (bilinear transform, corner frequency sqrt(2) / (2 pi tau)).
+/// Until the time tau has passed, the output is the mean of all inputs.
+template <int Rows>
+struct LowPass {
+  using Vector = Eigen::Matrix<double, Rows, 1>;
+
+  Vector value = Vector::Zero();
+  Vector normalised_derivative = Vector::Zero();  ///< derivative divided by the corner's angular frequency
+  Vector input = Vector::Zero();                  ///< the last input
+  double averaged_duration_s = 0.0;
+  double samples = 0.0;
+
+  /// `dt_s` is the time since the previous input, and `warp` is the result of low_pass_prewarp().
+  void advance(const Vector& next, double tau_s, double dt_s, double warp) {
+    if (averaged_duration_s < tau_s) {
+      samples += 1.0;
+      averaged_duration_s += dt_s;
+      value += (next - value) / samples;
+    } else {
+      const double damping = std::numbers::sqrt2 * warp;
+      const Vector rise =
+          ((1.0 - damping - warp * warp) * normalised_derivative + warp * (input + next - 2.0 * value)) /
+          (1.0 + damping + warp * warp);
+      value += warp * (normalised_derivative + rise);
+      normalised_derivative = rise;
+    }
+    input = next;
+  }
+
+  bool operator==(const LowPass&) const = default;
+};
+
+/// Returns tan(pi * corner frequency * dt), bounded for sample periods much longer than tau.
+inline double low_pass_prewarp(double tau_s, double dt_s) {
+  return std::tan(std::min(dt_s / (std::numbers::sqrt2 * tau_s), 1.5));
+}
+
 /// VqfParams contains the parameters of Vqf, named as in the publication. The parameters for which the authors use one
 /// value for all devices are constants in the source.
 struct VqfParams {
   double tau_s = 3.0;  ///< time constant of the low-pass filter on the specific force
   bool rest_bias_estimation = true;
-  bool motion_bias_estimation = true;         ///< if both bias estimations are off, Vqf is the authors' basic filter
-  double bias_sigma_start_rad_s = 8.7266e-3;  ///< prior standard deviation of the gyro bias: 0.5 deg/s
+  bool motion_bias_estimation = true;  ///< if both bias estimations are off, Vqf is the authors' basic filter
   double gap_max_s = 1.0;
 
   /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
@@ -29,8 +68,6 @@ struct VqfParams {
           boolean_field("rest_bias_estimation", "1: estimate the gyro bias at rest", ParameterRank::common_use));
     visit(p.motion_bias_estimation, boolean_field("motion_bias_estimation", "1: also estimate the gyro bias in motion",
                                                   ParameterRank::common_use));
-    visit(p.bias_sigma_start_rad_s, {"bias_sigma_start_rad_s", "rad/s", 1e-9, 1.0,
-                                     "prior standard deviation of the gyro bias", ParameterRank::common_use});
     visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap causes an error"});
   }
 };

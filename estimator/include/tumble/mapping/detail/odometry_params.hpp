@@ -2,16 +2,194 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstddef>
 
 #include "tumble/common/parameters.hpp"
 #include "tumble/mapping/calibration.hpp"
 #include "tumble/mapping/detail/executor.hpp"
-#include "tumble/mapping/detail/inertial_params.hpp"
-#include "tumble/mapping/detail/map_params.hpp"
-#include "tumble/mapping/detail/placing_params.hpp"
-#include "tumble/mapping/detail/rest_params.hpp"
 
 namespace tumble {
+
+/// At rest, the rate differs from the bias and from its mean by at most kRate_rad_s. The specific force at rest differs
+/// from gravity and from its mean by at most kForce_m_s2.
+struct StationaryBoundsParams {
+  double levelling_max_s = 0.5;  ///< maximum duration of the initial rest that determines the tilt
+  static constexpr double kRate_rad_s = 0.05;
+  static constexpr double kForce_m_s2 = 0.5;
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.levelling_max_s,
+          {"rest_s", "s", 1e-9, 60.0, "maximum duration of the initial rest that determines the tilt",
+           ParameterRank::common_use});
+  }
+};
+
+struct OdometryStartParams {
+  /// standard deviation of the initial tilt in the registration; larger than in WorldCovarianceParams, for starts in
+  /// motion
+  static constexpr double kLevelSigma_rad = 0.01;
+  double bias_rest_s = 0.1;  ///< minimum duration of a rest that determines the gyro's bias
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.bias_rest_s,
+          {"bias_rest_s", "s", 0.0, 60.0, "minimum duration of an initial rest that calibrates the gyro bias"});
+  }
+};
+
+struct Standstill {
+  static constexpr double kSigma_m_s =
+      0.05;  ///< standard deviation of the velocity while the IMU measures only gravity
+  /// Maximum estimated speed of a robot that is treated as stationary while the IMU measures only gravity and no
+  /// surface constrains the pose. The zero velocity prevents slow drift in a world without features.
+  static constexpr double kCreepMax_m_s = 0.5;
+};
+
+/// Standard deviations of the errors of inertial integration over kSpan_s, in addition to the uncertainty in
+/// AngularRateState. Smaller standard deviations constrain the pose more strongly in a world with few features.
+struct InertialNoiseParams {
+  static constexpr double kSweepInterval_s = 0.1;  ///< time between two sweeps of most lidars
+  double sigma_m = 0.003;
+  double sigma_rad = 0.002;
+  static constexpr double kSigma_m_s = 0.01;
+  /// rotation error relative to the rotation angle
+  static constexpr double kRotationNoiseRatio = 0.001;
+  /// velocity error relative to the integral of the specific force
+  static constexpr double kForceShare = 0.03;
+  /// Random walks of velocity and rate over a gap of the IMU: mapping.md (R43), (R44). For tumbling rigs and gaps of
+  /// 0.05 to 0.5 s, the true random walks are 2.4 to 4.1 m/s and 3 to 11 rad/s per sqrt(s).
+  double gap_velocity_walk_m_s_sqrt_s = 3.0;
+  double gap_rate_walk_rad_s_sqrt_s = 9.0;
+  static constexpr double kRateSigmaMax_rad_s = 5.0;  ///< upper bound of the standard deviation in AngularRateState
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.sigma_m,
+          {"prior_sigma_m", "m", 1e-9, 1e3, "standard deviation of the position after 0.1 s of inertial prediction",
+           ParameterRank::common_use});
+    visit(p.sigma_rad,
+          {"prior_sigma_rad", "rad", 1e-9, 1e3, "standard deviation of the attitude after 0.1 s of inertial prediction",
+           ParameterRank::common_use});
+    visit(p.gap_velocity_walk_m_s_sqrt_s,
+          {"gap_velocity_walk_m_s_sqrt_s", "m/s/sqrt(s)", 0.0, 1e3, "random walk of the velocity during an IMU gap"});
+    visit(p.gap_rate_walk_rad_s_sqrt_s,
+          {"gap_rate_walk_rad_s_sqrt_s", "rad/s/sqrt(s)", 0.0, 1e3,
+           "random walk of the rate during an IMU gap, about a linear interpolation between the rates at both ends"});
+  }
+};
+
+/// SaturatedImuParams contains the parameters of a saturated IMU. Accelerometer readings are saturated if they are at
+/// or above `accel_m_s2` or if the device flags them.
+///
+/// If `estimate_deficit` is true, the registration estimates the saturation deficit of the rate on clipped axes, at
+/// SweepTrajectory::kKnots knots per sweep. The saturation deficit changes only clipped samples, in proportion to the
+/// reported uncertainty of the rate. The prior standard deviation of the saturation deficit is the reported
+/// uncertainty, but at least 1 rad/s, correlated over 0.3 s. If saturation lasts across the boundary of two sweeps, the
+/// saturation deficit is continuous at the boundary.
+struct SaturatedImuParams {
+  double accel_m_s2 = 1e5;
+  static constexpr double kRateSigma_rad_s = 3.0;  ///< standard deviation of a clipped rate that was not recovered
+  bool estimate_deficit = false;
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.accel_m_s2,
+          {"accel_rail_m_s2", "m/s^2", 1e-9, 1e5, "accelerometer readings from this value on count as saturated"});
+    visit(p.estimate_deficit, boolean_field("estimate_saturation_deficit",
+                                            "1: estimate the saturation deficit of clipped axes in the registration"));
+  }
+};
+
+struct MatchingParams {
+  int neighbours = 12;                    ///< number of nearest neighbours for a plane fit
+  double distance_m = 1.0;                ///< maximum distance of matched map points
+  std::size_t matches_min = 100;          ///< minimum number of matches; sweeps with fewer are rejected
+  std::size_t agreeing_matches_min = 30;  ///< minimum number of matches if the result agrees with the prior
+  /// see RegistrationStagesParams
+  int iterations_max = 30;
+  double correction_max_m = 15.0;   ///< a larger correction of the prior is rejected
+  double correction_max_rad = 1.1;  ///< a larger correction of the prior is rejected
+  /// growth rate of a point's standard deviation since the start of the sweep
+  double skew_sigma_m_s = 0.25;
+  /// standard deviation of the pose from the sweep's points alone, above which a sweep is `degenerate`
+  static constexpr double kDegenerateSigma_m = 0.15;
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.neighbours,
+          {"neighbours", "1", 3, 32, "number of map points used for each plane fit", ParameterRank::common_use});
+    visit(p.distance_m, {"match_distance_m", "m", 1e-3, 10.0,
+                         "maximum distance between a point and its matches in the map", ParameterRank::common_use});
+    visit(p.matches_min, {"matches_min", "1", 0, 1e9, "minimum number of matches for an accepted sweep"});
+    visit(p.agreeing_matches_min,
+          {"matches_agreeing_min", "1", 1, 1e9,
+           "minimum number of matches of an accepted sweep whose registration agrees with the predicted pose; applies "
+           "below matches_min"});
+    visit(p.iterations_max,
+          {"iterations_max", "1", 1, 200,
+           "maximum number of iterations of a registration; at most full_iterations of them use all points"});
+    visit(p.correction_max_m,
+          {"correction_max_m", "m", 0.0, 1e6,
+           "maximum correction of the predicted pose; a registration with a larger correction is rejected"});
+    visit(p.correction_max_rad,
+          {"correction_max_rad", "rad", 0.0, 3.15,
+           "maximum correction of the predicted pose; a registration with a larger correction is rejected"});
+    visit(p.skew_sigma_m_s,
+          {"skew_sigma_m_s", "m/s", 0.0, 1e3,
+           "growth of a point's standard deviation with the time since the start of the sweep; 0: no growth"});
+  }
+};
+
+/// TrackingParams contains the parameters for sweeps without a registration, and for tracking failure.
+struct TrackingParams {
+  /// A sweep with too few matches still extends the map, as `degenerate`, up to these standard deviations of its
+  /// inertial prediction. Such sweeps occur because a lidar at rest scans only rings, which give no planes until the
+  /// lidar rotates. The map excludes points that are too uncertain because of their range and the
+  /// uncertain attitude.
+  double extend_sigma_max_m = 0.1;
+  /// Maximum number of consecutive sweeps with points but without registration. After kLostSweepsMax sweeps,
+  /// LidarInertialOdometry continues by inertial prediction and reports `degenerate`.
+  static constexpr int kLostSweepsMax = 30;
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.extend_sigma_max_m, {"extend_sigma_max_m", "m", 0.0, 1e3,
+                                 "a sweep with too few matches still extends the map if the standard deviation of its "
+                                 "prior position is below this value"});
+  }
+};
+
+struct LocalMapParams {
+  static constexpr double kPruneRatio = 0.1;  ///< distant points are deleted after a motion of kPruneRatio * radius_m
+  double voxel_m = 0.5;                       ///< edge of a cell of the map's hash table
+  double spacing_m = 0.1;                     ///< edge of the cubes that contain at most one map point
+  double radius_m = 100.0;                    ///< points within this distance of the sensor are kept
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.voxel_m, {"map_voxel_m", "m", 0.01, 10.0, "edge length of a voxel of the map's hash table",
+                      ParameterRank::common_use});
+    visit(
+        p.spacing_m,
+        {"map_spacing_m", "m", 0.0, 10.0,
+         "edge length of the cube that stores at most one map point; a larger value makes the map smaller and coarser",
+         ParameterRank::common_use});
+    visit(p.radius_m, {"map_radius_m", "m", 0.0, 1e5,
+                       "radius around the sensor within which map points are kept, accurate to 10 %"});
+  }
+};
+
+/// See docs/maths/mapping.md, heading "Reported covariance".
+struct WorldCovarianceParams {
+  double tilt_sigma_rad = 0.002;  ///< standard deviation of the tilt at the start: accelerometer bias of 2 mg
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.tilt_sigma_rad,
+          {"tilt_sigma_rad", "rad", 0.0, 1.0, "reported standard deviation of the map's tilt after initial levelling"});
+  }
+};
 
 struct OdometryExpertParams {
   double gravity_m_s2 = 9.80665;

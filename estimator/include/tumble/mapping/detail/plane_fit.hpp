@@ -28,20 +28,6 @@ struct PlaneFitBounds {
   double rough_share = 0.1;  ///< neighbours are not a plane if l0 > rough_share * l1
   /// minimum number of neighbours off the most frequent scan line; excludes planes of a single lidar ring
   int off_line_neighbours_min = 2;
-
-  template <class Self, class Visitor>
-  static void fields(Self& p, Visitor& visit) {
-    visit(p.neighbours_min, {"neighbours_min", "1", 3, 32, "minimum number of map points for a plane"});
-    visit(p.collinear_ratio_max,
-          {"collinear_ratio_max", "1", 0.0, 1.0,
-           "minimum ratio of the middle to the largest eigenvalue of the neighbours' covariance; excludes lines"});
-    visit(p.rough_share, {"rough_share", "1", 0.0, 1.0,
-                          "maximum ratio of the smallest to the middle eigenvalue of the neighbours' covariance; "
-                          "excludes rough surfaces"});
-    visit(p.off_line_neighbours_min,
-          {"off_line_neighbours_min", "1", 0, 32,
-           "minimum number of neighbours that are not on the most frequent scan line of the lidar"});
-  }
 };
 
 /// Fits a least-squares plane to neighbouring map points. No memory is allocated.

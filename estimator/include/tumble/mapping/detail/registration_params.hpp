@@ -9,6 +9,7 @@
 
 namespace tumble {
 
+/// Parameters that the callers of Registration set, but not the users of a method.
 struct RegistrationExpertParams {
   double step_m = 5e-4;  ///< converged if a step is below `step_m` and `step_rad`
   double step_rad = 1e-4;
@@ -24,25 +25,6 @@ struct RegistrationExpertParams {
   /// minimum fraction of matches within three standard deviations
   double inlier_ratio_min = 0.6;
   PlaneFitBounds plane;
-
-  template <class Self, class Visitor>
-  static void fields(Self& p, Visitor& visit) {
-    visit(p.step_m, {"step_m", "m", 1e-12, 1.0, "position step below which the registration has converged"});
-    visit(p.step_rad, {"step_rad", "rad", 1e-12, 1.0, "rotation step below which the registration has converged"});
-    visit(p.step_s, {"step_s", "s", 1e-12, 1.0, "time-offset step below which the registration has converged"});
-    visit(p.rematch_m, {"rematch_m", "m", 0.0, 10.0, "distance that a point moves before its plane is searched again"});
-    visit(p.kernel_min_m, {"kernel_min_m", "m", 1e-6, 1e3, "minimum width of the robust kernel (Geman-McClure)"});
-    visit(p.correlation_discount,
-          {"correlation_discount", "1", 1e-6, 1.0,
-           "weight of the information of one point; below 1, because neighbouring returns are correlated"});
-    visit(p.agreeing_matches_needed, {"agreeing_matches_needed", "1", 1, 1e9,
-                                      "minimum number of matches of a registration that agrees with the predicted "
-                                      "pose"});
-    visit(p.inlier_ratio_min,
-          {"inlier_ratio_min", "1", 0.0, 1.0,
-           "minimum share of matches within three standard deviations in an accepted registration"});
-    visit.group("plane_", p.plane);
-  }
 };
 
 struct RegistrationParams {
@@ -50,8 +32,9 @@ struct RegistrationParams {
   int neighbours = 8;             ///< number of nearest neighbours for a plane fit
   double match_distance_m = 1.0;  ///< maximum distance of matched map points
   int iterations_max = 30;
-  double range_sigma_m = 0.02;  ///< standard deviation of the range: max(range_sigma_m, range_sigma_ratio * range)
-  double range_sigma_ratio = 0.0015;
+  static constexpr double kRangeSigma_m =
+      0.02;  ///< standard deviation of the range: max(kRangeSigma_m, kRangeSigmaRatio * range)
+  static constexpr double kRangeSigmaRatio = 0.0015;
   double skew_sigma_m_s = 0.25;   ///< growth rate of a point's standard deviation during the sweep; 0: none
   std::size_t matches_min = 100;  ///< minimum number of matches
   double correction_max_m = 15.0;
@@ -69,9 +52,6 @@ struct RegistrationParams {
           {"match_distance_m", "m", 1e-3, kMatchDistanceMax_m,
            "maximum distance between a point and its matches in the map", ParameterRank::common_use});
     visit(p.iterations_max, {"iterations_max", "1", 1, 200, "maximum number of iterations"});
-    visit(p.range_sigma_m, {"range_sigma_m", "m", 1e-6, 10.0, "minimum standard deviation of a range"});
-    visit(p.range_sigma_ratio,
-          {"range_sigma_ratio", "1", 0.0, 1.0, "standard deviation of a range, as a share of the range"});
     visit(p.skew_sigma_m_s,
           {"skew_sigma_m_s", "m/s", 0.0, 1e3,
            "growth of a point's standard deviation with the time since the start of the sweep; 0: no growth"});
@@ -82,7 +62,6 @@ struct RegistrationParams {
     visit(p.correction_max_rad,
           {"correction_max_rad", "rad", 0.0, 3.15,
            "maximum correction of the predicted pose; a registration with a larger correction is rejected"});
-    visit.group("", p.expert);
   }
 };
 

@@ -14,10 +14,10 @@
 namespace tumble {
 
 struct RollingExpertParams {
-  double node_s = 0.02;  ///< time between two measurement updates
+  static constexpr double kNode_s = 0.02;  ///< time between two measurement updates
   /// averaging time of the readings; 0: no averaging
   double reading_s = 4e-3;
-  /// The rest detector processes the mean reading of each time step `node_s`. With a rate limit of 0.02 instead of
+  /// The rest detector processes the mean reading of each time step `kNode_s`. With a rate limit of 0.02 instead of
   /// 0.0115 rad/s per axis, the drift of a sphere that comes to rest would be 1.5 times as large.
   RestDetector::Params rest_detector = {
       .rate_max_rad_s = 0.0115, .rate_spread_rad_s = 0.016, .force_spread_m_s2 = 0.15, .rest_s = 0.4, .memory_s = 0.1};
@@ -30,7 +30,6 @@ struct RollingExpertParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.node_s, {"node_s", "s", 1e-3, 0.1, "time between two measurement updates"});
     visit(p.reading_s, {"reading_s", "s", 0.0, 0.1, "duration over which readings are averaged; 0: no averaging"});
     visit.group("rest_", p.rest_detector);
     visit.group("", p.prior);
@@ -56,7 +55,6 @@ struct RollingParams {
   /// Calibration from an earlier run, which replaces the prior of the sensor errors, the lever arm and the radius. The
   /// prior variances of the biases are added to the calibrated variances, because biases change at every switch-on.
   std::shared_ptr<const RollingCalibration> calibration = {};
-  double speed_max_m_s = 2.5;  ///< maximum speed of the sphere; grip at a higher speed is rejected
 
   using Expert = RollingExpertParams;
   Expert expert = {};  ///< rarely changed parameters
@@ -75,8 +73,6 @@ struct RollingParams {
     visit(p.accel_range_m_s2,
           {"accel_range_m_s2", "m/s^2", 1e-12, 1e5,
            "measuring range of the accelerometer; readings at or above this value count as saturated"});
-    visit(p.speed_max_m_s, {"speed_max_m_s", "m/s", 1e-12, 1e3,
-                            "maximum rolling speed; the filter rejects the hypothesis of grip above this speed"});
     visit.group("", p.expert);
   }
 };

@@ -15,6 +15,38 @@
 
 namespace tumble {
 
+namespace rolling {
+
+/// contact modes of the most probable hypothesis at one node
+struct ModePathNode;
+
+/// Kalman filter along the most probable contact modes
+struct ModePathFilter {
+  RollingNominalState nominal;
+  RollingFilter::Covariance covariance = RollingFilter::Covariance::Zero();
+  RollingMode mode = RollingMode::grip;
+  bool operator==(const ModePathFilter&) const = default;
+};
+
+/// position in the stored samples from which RollingReadings continues
+struct ReadingCursor {
+  TimeNs time_ns = 0;  ///< end of the last reading
+  Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
+  std::size_t next = 0;
+  Eigen::Vector3d rate_before_gap_rad_s = Eigen::Vector3d::Zero();  ///< rate before the gap
+  TimeNs gap_start_ns = 0;
+  int gap_step_index = 0;
+  bool operator==(const ReadingCursor&) const = default;
+};
+
+struct SmoothingCheckpoint {
+  ModePathFilter filter;
+  ReadingCursor reading;
+  bool operator==(const SmoothingCheckpoint&) const = default;
+};
+
+}  // namespace rolling
+
 /// Smooths the poses of RollingFilter with later data, with a fixed lag or over the whole run. The contact modes are
 /// those of RollingFilter's most probable hypothesis at the time of smoothing, and are treated as certain. Source:
 /// modified Bryson-Fraser smoother (Bierman, Factorization Methods for Discrete Sequential Estimation, 1977).
@@ -66,19 +98,11 @@ class RollingSmoother {
   };
   /// state of the smoother at the last node with reported estimates
   struct FinalSmoothingState {
-    RollingNominalState nominal;
-    RollingFilter::Covariance covariance = RollingFilter::Covariance::Zero();
-    RollingMode mode = RollingMode::grip;
+    rolling::SmoothingCheckpoint checkpoint;
     double slip_start_variance_m2 = 0.0;  ///< position variance at the start of the event
     Eigen::Vector3d constrained_sphere_centre_W_m =
         Eigen::Vector3d::Zero();        ///< reported position while `position_constrained`
     bool position_constrained = false;  ///< the sphere is at rest and the reported position is constant
-    TimeNs last_time_ns = 0;
-    Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
-    // rate during a gap between samples, if the node is within a gap
-    Eigen::Vector3d rate_before_gap_rad_s = Eigen::Vector3d::Zero();
-    TimeNs gap_start_ns = 0;
-    int gap_step_index = 0;
     bool started = false;
     bool operator==(const FinalSmoothingState&) const = default;
   };
@@ -117,12 +141,11 @@ class RollingSmoother {
   void finish(std::span<const RollingMode> known, State& state, const EstimateCallback& take) const;
 
  private:
-  struct MostProbableModePath;
+  using ModePath = std::vector<rolling::ModePathNode>;
 
   std::size_t preallocated_samples() const;
-  MostProbableModePath most_probable_path(const State& state) const;
-  void smooth_window(const MostProbableModePath& path, std::size_t emitted, State& state,
-                     const EstimateCallback& take) const;
+  ModePath most_probable_path(const State& state) const;
+  void smooth_window(const ModePath& path, std::size_t emitted, State& state, const EstimateCallback& take) const;
 
   Params params_;
   RollingParams final_smoothing_params_;
