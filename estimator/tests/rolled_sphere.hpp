@@ -47,7 +47,7 @@ inline RollingOdometry::Params params_of(const std::vector<Eigen::Vector3d>& pos
   params.lag_s = 0.5;
   for (const Eigen::Vector3d& position_m : positions_m) {
     RollingOdometry::ImuSetup& unit = params.imus.emplace_back();
-    unit.data_sheet = sheets::phidget1044;
+    unit.data_sheet = sheets::phidget1044();
     unit.T_BI.translation() = position_m;
   }
   return params;

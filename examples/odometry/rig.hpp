@@ -7,8 +7,8 @@
 /// Returns the sensors and mounting of tumbling.cpp, for the other programs.
 inline tumble::TumblingOdometry::Params rig() {
   tumble::TumblingOdometry::Params params;
-  params.imu = tumble::sheets::mti30;
-  params.lidar = tumble::sheets::rs16;
+  params.imu = tumble::sheets::mti30();
+  params.lidar = tumble::sheets::rs16();
   params.lever_arm_I_m = {-0.022, -0.085, 0.055};
   params.T_IL.translation() << 0.02014, 0.08745, 0.0398;
   params.T_IL.linear() = Eigen::AngleAxisd(-0.5 * M_PI, Eigen::Vector3d::UnitZ()).toRotationMatrix();

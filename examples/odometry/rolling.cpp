@@ -11,7 +11,7 @@ int main() {
   params.radius_m = 0.145;
   params.lag_s = 0.5;  // take() gives poses 0.5 s late and smoothed; newest() has the live pose
   for (const Eigen::Vector3d& p_m : {Eigen::Vector3d(0.08, 0.0, 0.01), {-0.04, 0.069, 0.01}, {-0.04, -0.069, 0.01}}) {
-    params.imus.push_back({tumble::sheets::phidget1044});  // three IMUs and their positions in the sphere
+    params.imus.push_back({tumble::sheets::phidget1044()});  // three IMUs and their positions in the sphere
     params.imus.back().T_BI.translation() = p_m;
   }
   tumble::RollingOdometry odometry(params);

@@ -6,8 +6,8 @@
 
 int main() {
   tumble::TumblingOdometry::Params params;
-  params.imu = tumble::sheets::mti30;  // range, rate and noise of the IMU; or your own tumble::ImuDataSheet
-  params.lidar = tumble::sheets::rs16;
+  params.imu = tumble::sheets::mti30();  // range, rate and noise of the IMU; or your own tumble::ImuDataSheet
+  params.lidar = tumble::sheets::rs16();
   params.lever_arm_I_m = {-0.022, -0.085, 0.055};                 // centre of mass to IMU, within 1 cm
   params.T_IL = Eigen::Translation3d(0.02014, 0.08745, 0.0398) *  // lidar to IMU, within 1 cm and 0.5 degrees
                 Eigen::AngleAxisd(-M_PI_2, Eigen::Vector3d::UnitZ());

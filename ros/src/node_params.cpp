@@ -13,11 +13,12 @@ namespace tumble::ros {
 namespace {
 
 template <class Sheet>
-Sheet sheet_of(const char* parameter, const std::string& name, std::span<const std::pair<const char*, Sheet>> sheets) {
+Sheet sheet_of(const char* parameter, const std::string& name,
+               std::span<const std::pair<const char*, Sheet (*)()>> sheets) {
   if (name.empty()) return {};
   std::string known;
   for (const auto& [each, sheet] : sheets) {
-    if (name == each) return sheet;
+    if (name == each) return sheet();
     known += std::string(known.empty() ? "one of " : ", ") + each;
   }
   throw InvalidParams(std::string(parameter) + " '" + name + "'", std::numeric_limits<double>::quiet_NaN(), known);

@@ -48,7 +48,7 @@ TEST(NodeParams, ReadsPosesBoxesAndSheets) {
   EXPECT_TRUE(ros::box_of("own_body", {}).isEmpty());
   EXPECT_EQ(ros::box_of("own_body", std::vector<double>{-1, -2, -3, 1, 2, 3}).max(), Eigen::Vector3d(1, 2, 3));
   EXPECT_THROW(ros::box_of("own_body", std::vector<double>(5, 0.0)), InvalidParams);
-  EXPECT_EQ(ros::imu_sheet("mti30").gyro_range_rad_s, sheets::mti30.gyro_range_rad_s);
+  EXPECT_EQ(ros::imu_sheet("mti30").gyro_range_rad_s, sheets::mti30().gyro_range_rad_s);
   EXPECT_EQ(ros::imu_sheet("").rate_hz, ImuDataSheet{}.rate_hz);
   EXPECT_EQ(ros::lidar_sheet("rs16").range_min_m, 0.2);
   try {

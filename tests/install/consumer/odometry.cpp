@@ -6,7 +6,7 @@
 int main() {
   tumble::RollingOdometry::Params sphere;
   sphere.radius_m = 0.145;
-  sphere.imus.push_back({tumble::sheets::phidget1044});
+  sphere.imus.push_back({tumble::sheets::phidget1044()});
   tumble::RollingOdometry rolling(sphere);
   tumble::TumblingOdometry::Params rig;
   rig.lever_arm_I_m.setZero();  // the IMU is at the centre of mass

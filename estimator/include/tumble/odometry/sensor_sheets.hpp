@@ -53,72 +53,71 @@ struct LidarDataSheet {
 };
 
 /// Data sheets of the simulated sensors. The file models/sensors/NAME.yaml states the source of each number.
-/// The numbers are in the order of the members of ImuDataSheet and LidarDataSheet.
 namespace sheets {
 
 /// Xsens MTi-30, fifth generation (20 g); stated gyro range 450 deg/s.
-inline constexpr ImuDataSheet mti30{100.0, 7.853981634, 196.133, 5.23598776e-4, 5.88399e-4};
+ImuDataSheet mti30();
 /// VectorNav VN-100.
-inline constexpr ImuDataSheet vn100{100.0, 34.906585, 156.9064, 6.108652e-5, 1.372931e-3};
+ImuDataSheet vn100();
 /// PhidgetSpatial Precision 3/3/3 1044_0.
-inline constexpr ImuDataSheet phidget1044{250.0, 34.906585, 78.4532, 6.512629e-4, 1.736638e-3};
+ImuDataSheet phidget1044();
 /// InvenSense MPU-6050 at 500 deg/s and 16 g.
-inline constexpr ImuDataSheet mpu6050{100.0, 8.726646, 156.9064, 8.726646e-05, 0.00392266};
+ImuDataSheet mpu6050();
 /// Bosch BMI088 at 2000 deg/s and 24 g.
-inline constexpr ImuDataSheet bmi088{200.0, 34.90658504, 235.3596, 0.0002443461, 0.001716164};
+ImuDataSheet bmi088();
 /// InvenSense ICM-20948 at 2000 deg/s and 16 g.
-inline constexpr ImuDataSheet icm20948{200.0, 34.90658504, 156.9064, 0.0002617994, 0.002255529};
+ImuDataSheet icm20948();
 /// InvenSense ICM-42688-P at 2000 deg/s and 16 g.
-inline constexpr ImuDataSheet icm42688{200.0, 34.90658504, 156.9064, 4.886922e-05, 0.0006864655};
+ImuDataSheet icm42688();
 /// Xsens MTi-3.
-inline constexpr ImuDataSheet mti3{100.0, 34.90658504, 156.9064, 0.000122173, 0.001176798};
+ImuDataSheet mti3();
 /// STMicroelectronics LSM6DSO at 2000 deg/s and 16 g.
-inline constexpr ImuDataSheet lsm6dso{200.0, 34.90658504, 156.9064, 6.632251e-05, 0.001078731};
+ImuDataSheet lsm6dso();
 /// IMU inside an Ouster OS0 or OS1, in the default setting of 250 deg/s and 2 g.
-inline constexpr ImuDataSheet ouster_imu{100.0, 4.36332313, 19.6133, 0.0002617994, 0.002255529};
+ImuDataSheet ouster_imu();
 /// IMU inside a Livox Mid-360 at 2000 deg/s and 4 g.
-inline constexpr ImuDataSheet mid360_imu{200.0, 34.90658504, 39.2266, 7.853982e-05, 0.000980665};
+ImuDataSheet mid360_imu();
 /// InvenSense ICM-20601 at 2000 deg/s and 32 g.
-inline constexpr ImuDataSheet icm20601{100.0, 34.90658504, 313.8128, 0.0001745329, 0.002941995};
+ImuDataSheet icm20601();
 /// InvenSense ICM-20602 at 2000 deg/s and 16 g.
-inline constexpr ImuDataSheet icm20602{200.0, 34.90658504, 156.9064, 6.981317e-05, 0.000980665};
+ImuDataSheet icm20602();
 /// STMicroelectronics LSM6DSV320X at 4000 deg/s and 16 g.
-inline constexpr ImuDataSheet lsm6dsv320x{250.0, 69.81317008, 156.9064, 6.632251e-05, 0.000588399};
+ImuDataSheet lsm6dsv320x();
 /// Analog Devices ADIS16405 at 300 deg/s and 18 g.
-inline constexpr ImuDataSheet adis16405{500.0, 5.235987756, 176.5197, 0.0008726646, 0.003333333};
+ImuDataSheet adis16405();
 /// InvenSense IIM-42653 at 4000 deg/s and 32 g.
-inline constexpr ImuDataSheet iim42653{200.0, 69.81317008, 313.8128, 8.726646e-05, 0.0006374322};
+ImuDataSheet iim42653();
 
 /// Returns the data sheets of all IMUs with their names, for programs that select a data sheet by name.
-std::span<const std::pair<const char*, ImuDataSheet>> imus();
+std::span<const std::pair<const char*, ImuDataSheet (*)()>> imus();
 
 /// RoboSense RS-16.
-inline constexpr LidarDataSheet rs16{0.2, 150.0};
+LidarDataSheet rs16();
 /// Livox Mid-40.
-inline constexpr LidarDataSheet mid40{1.0, 260.0};
+LidarDataSheet mid40();
 /// Livox Mid-100.
-inline constexpr LidarDataSheet mid100{1.0, 260.0};
+LidarDataSheet mid100();
 /// Velodyne VLP-16.
-inline constexpr LidarDataSheet vlp16{0.4, 100.0};
+LidarDataSheet vlp16();
 /// Hesai XT16.
-inline constexpr LidarDataSheet xt16{0.05, 120.0};
+LidarDataSheet xt16();
 /// Hesai XT32.
-inline constexpr LidarDataSheet xt32{0.05, 120.0};
+LidarDataSheet xt32();
 /// RoboSense Helios with 32 beams.
-inline constexpr LidarDataSheet helios32{0.2, 150.0};
+LidarDataSheet helios32();
 /// Ouster OS0 with 64 rings.
-inline constexpr LidarDataSheet os0_64{0.3, 50.0};
+LidarDataSheet os0_64();
 /// Ouster OS0 with 128 rings.
-inline constexpr LidarDataSheet os0_128{0.3, 50.0};
+LidarDataSheet os0_128();
 /// Ouster OS1 with 64 rings.
-inline constexpr LidarDataSheet os1_64{0.3, 120.0};
+LidarDataSheet os1_64();
 /// Ouster OS1 with 128 rings.
-inline constexpr LidarDataSheet os1_128{0.3, 120.0};
+LidarDataSheet os1_128();
 /// Livox Mid-360.
-inline constexpr LidarDataSheet mid360{0.1, 70.0};
+LidarDataSheet mid360();
 
 /// Returns the data sheets of all lidars with their names.
-std::span<const std::pair<const char*, LidarDataSheet>> lidars();
+std::span<const std::pair<const char*, LidarDataSheet (*)()>> lidars();
 
 }  // namespace sheets
 
