@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <span>
 #include <string>
 
 #include "scenarios/recordings/hdf5_group.hpp"
@@ -19,26 +17,6 @@ class InputFile {
 
  private:
   Silence silence_;
-  Handle file_;
-  Group root_;
-};
-
-/// MemoryFile creates an HDF5 file in memory, because the HDF5 library cannot recover from a write to a full disk.
-class MemoryFile {
- public:
-  explicit MemoryFile(const std::string& name);
-  ~MemoryFile();
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
-
-  const Group& root() const { return root_; }
-  /// Closes all HDF5 objects and returns the bytes of the file, which are valid until MemoryFile is destroyed.
-  std::span<const std::byte> close();
-
- private:
-  Silence silence_;
-  std::string name_;
-  void* image_ = nullptr;  ///< set when the file closes
   Handle file_;
   Group root_;
 };

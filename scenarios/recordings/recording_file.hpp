@@ -43,9 +43,8 @@ std::string digest(const sim::Sensors& sensors, const std::vector<PointStore>& p
 std::string digest(const sim::Truth& truth);
 std::string digest(const StoredTruth& truth);
 
-/// Writes a recording as HDF5 (scenarios/recordings/FORMAT.md) to a temporary file, which is then renamed. The HDF5
-/// file is created in memory, which doubles the memory use. Throws BadInput if the folder is not writable or the disk
-/// is full; no partial file remains.
+/// Writes a recording as HDF5 (scenarios/recordings/FORMAT.md) to a temporary file, which is then renamed. Throws
+/// BadInput if the folder is not writable or the disk is full; no partial file remains.
 void write_recording(const std::filesystem::path& path, const RecordingInfo& info, const sim::Sensors& sensors,
                      const sim::Truth* truth);
 
