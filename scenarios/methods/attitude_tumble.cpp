@@ -116,15 +116,14 @@ Estimate run_attitude_tumble(const sim::Sensors& sensors, const sim::Values& par
 }  // namespace
 
 Method attitude_tumble() {
-  MethodInfo info;
-  info.name = "tumble";
-  info.kind = Kind::attitude;
-  info.doc =
-      "Estimates tilt and gyro bias from constraints on the velocity: bounded in motion, rolling without slip for a "
-      "sphere, zero at rest. Rates of clipped samples come from rate/tumble.";
-  info.ours = true;
-  info.settings = {&attitude_tumble_settings()};
-  return make_method(std::move(info), at_sample_times<run_attitude_tumble>);
+  return make_method({.name = "tumble",
+                      .kind = Kind::attitude,
+                      .doc = "Estimates tilt and gyro bias from constraints on the velocity: bounded in motion, "
+                             "rolling without slip for a "
+                             "sphere, zero at rest. Rates of clipped samples come from rate/tumble.",
+                      .ours = true,
+                      .settings = {&attitude_tumble_settings()}},
+                     at_sample_times<run_attitude_tumble>);
 }
 
 }  // namespace tumble::scenarios

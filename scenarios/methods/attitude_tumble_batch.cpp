@@ -8,7 +8,7 @@
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/method.hpp"
-#include "scenarios/methods/rate_baseline.hpp"
+#include "scenarios/methods/rate_baselines.hpp"
 #include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/report_rates.hpp"
@@ -119,15 +119,15 @@ Estimate run_attitude_tumble_batch(const sim::Sensors& sensors, const sim::Value
 }  // namespace
 
 Method attitude_tumble_batch() {
-  MethodInfo info;
-  info.name = "tumble_batch";
-  info.kind = Kind::attitude;
-  info.doc =
-      "Smooths the complete recording of a hand-held body. The smoother assumes bounded acceleration, velocity and "
-      "position, and uses clipped gyro readings as bounds. While the body moves freely, rates come from rate/tumble.";
-  info.ours = true;
-  info.settings = {&carried_settings()};
-  return make_method(std::move(info), at_sample_times<run_attitude_tumble_batch>);
+  return make_method({.name = "tumble_batch",
+                      .kind = Kind::attitude,
+                      .doc = "Smooths the complete recording of a hand-held body. The smoother assumes bounded "
+                             "acceleration, velocity and "
+                             "position, and uses clipped gyro readings as bounds. While the body moves freely, rates "
+                             "come from rate/tumble.",
+                      .ours = true,
+                      .settings = {&carried_settings()}},
+                     at_sample_times<run_attitude_tumble_batch>);
 }
 
 }  // namespace tumble::scenarios

@@ -50,16 +50,15 @@ Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const O
 }  // namespace
 
 Method attitude_tumble_lag() {
-  MethodInfo info;
-  info.name = "tumble_lag";
-  info.kind = Kind::attitude;
-  info.doc =
-      "Applies the filter of attitude/tumble to the rates of rate/tumble_lag. The method is causal and has the lag of "
-      "rate/tumble_lag.";
-  info.ours = true;
-  info.settings = {&attitude_tumble_settings()};
-  info.robots = {"rig", "pendulum"};
-  return make_method(std::move(info), at_sample_times<run>);
+  return make_method({.name = "tumble_lag",
+                      .kind = Kind::attitude,
+                      .doc = "Applies the filter of attitude/tumble to the rates of rate/tumble_lag. The method is "
+                             "causal and has the lag of "
+                             "rate/tumble_lag.",
+                      .ours = true,
+                      .settings = {&attitude_tumble_settings()},
+                      .robots = {"rig", "pendulum"}},
+                     at_sample_times<run>);
 }
 
 }  // namespace tumble::scenarios

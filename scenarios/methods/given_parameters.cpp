@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <utility>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/settings.hpp"
+#include "scenarios/text.hpp"
 
 namespace tumble::scenarios {
 
@@ -25,9 +25,7 @@ GivenParameter parsed(const std::string& text) {
   if (good) {
     out.method = text.substr(0, dot);
     out.name = text.substr(dot + 1, equals - dot - 1);
-    const char* const end = text.data() + text.size();
-    const auto [stop, error] = std::from_chars(text.data() + equals + 1, end, out.value);
-    good = error == std::errc() && stop == end;
+    good = read_number(std::string_view(text).substr(equals + 1), out.value);
   }
   if (!good)
     throw BadInput(fmt::format(

@@ -17,6 +17,13 @@ const char* to_string(Kind kind) {
   return "unknown";
 }
 
+std::optional<Kind> kind_named(std::string_view name) {
+  for (const Kind kind : kKinds) {
+    if (name == to_string(kind)) return kind;
+  }
+  return std::nullopt;
+}
+
 std::string full_name(Kind kind, const std::string& method) {
   return std::string(to_string(kind)) + "/" + method;
 }

@@ -5,8 +5,6 @@
 
 #include <array>
 #include <bit>
-#include <charconv>
-#include <cstring>
 #include <fstream>
 #include <span>
 #include <string>
@@ -43,11 +41,9 @@ std::size_t read_header(std::istream& file, const std::filesystem::path& path) {
     if (!std::getline(file, found))
       throw BadInput(fmt::format("{}: the header of the map file is truncated", path.string()));
     const std::string prefix = "element vertex ";
-    if (line.starts_with(prefix) && found.starts_with(prefix)) {
-      const char* end = found.data() + found.size();
-      const auto [stop, error] = std::from_chars(found.data() + prefix.size(), end, points);
-      if (error == std::errc() && stop == end) continue;
-    }
+    if (line.starts_with(prefix) && found.starts_with(prefix) &&
+        read_number(std::string_view(found).substr(prefix.size()), points))
+      continue;
     if (found != line)
       throw BadInput(fmt::format("{}: a line of the map file's header is '{}'; it must be '{}'", path.string(),
                                  shortened(found), line));

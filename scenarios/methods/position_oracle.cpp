@@ -9,7 +9,6 @@
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/robot_presets.hpp"
 #include "scenarios/methods/sample_times.hpp"
-#include "scenarios/methods/sphere_attitude.hpp"
 #include "tumble/odometry/detail/merge_recordings.hpp"
 #include "tumble/odometry/rolling_expert_params.hpp"
 #include "tumble/rolling/detail/rolling_smoother.hpp"
@@ -117,17 +116,16 @@ Estimate run_exact_attitude(const sim::Sensors& sensors, const sim::Values& para
 }  // namespace
 
 Method position_oracle() {
-  MethodInfo info;
-  info.name = "oracle";
-  info.kind = Kind::position;
-  info.doc =
-      "Gives an upper bound of the accuracy: our smoother receives the true attitude. Errors of the accelerometer and "
-      "of the contact state remain.";
-  info.ours = true;
-  info.settings = {&settings_with_attitude()};
-  info.needs_truth = true;
-  info.robots = {"sphere"};
-  return make_method(std::move(info), at_sample_times<run_exact_attitude>);
+  return make_method({.name = "oracle",
+                      .kind = Kind::position,
+                      .doc = "Gives an upper bound of the accuracy: our smoother receives the true attitude. Errors of "
+                             "the accelerometer and "
+                             "of the contact state remain.",
+                      .ours = true,
+                      .settings = {&settings_with_attitude()},
+                      .needs_truth = true,
+                      .robots = {"sphere"}},
+                     at_sample_times<run_exact_attitude>);
 }
 
 }  // namespace tumble::scenarios

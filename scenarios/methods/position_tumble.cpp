@@ -12,7 +12,6 @@
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/robot_presets.hpp"
 #include "scenarios/methods/settings.hpp"
-#include "scenarios/methods/sphere_attitude.hpp"
 #include "tumble/odometry/detail/imu_findings.hpp"
 #include "tumble/odometry/rolling_expert_params.hpp"
 
@@ -20,11 +19,11 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kLagS = 1.0;
+constexpr double kRollingLagS = 1.0;
 constexpr TimeNs kHealthPeriodNs = 100'000'000;       // time between two calls of health()
 constexpr double kSpinsM_s = 0.2, kSpinsShare = 0.3;  // speed differences of a slip
 
-Settings<RollingOdometry::Params> odometry_settings(double lag_s, std::vector<std::string> fixed) {
+Settings<RollingOdometry::Params> rolling_settings(double lag_s, std::vector<std::string> fixed) {
   RollingOdometry::Params params;
   params.radius_m = presets::kSphereRadius_m;
   params.lag_s = lag_s;
@@ -39,18 +38,18 @@ Settings<RollingOdometry::Params> odometry_settings(double lag_s, std::vector<st
                .fixed = std::move(fixed)});
 }
 
-const Settings<RollingOdometry::Params>& whole_settings() {
-  static const auto all = odometry_settings(RollingOdometry::kWholeRecording, {"lag_s"});
+const Settings<RollingOdometry::Params>& rolling_whole_settings() {
+  static const auto all = rolling_settings(RollingOdometry::kWholeRecording, {"lag_s"});
   return all;
 }
 
-const Settings<RollingOdometry::Params>& lag_settings() {
-  static const auto all = odometry_settings(kLagS, {"rolling_known_distance_*"});
+const Settings<RollingOdometry::Params>& rolling_lag_settings() {
+  static const auto all = rolling_settings(kRollingLagS, {"rolling_known_distance_*"});
   return all;
 }
 
-const Settings<RollingOdometry::Params>& live_settings() {
-  static const auto all = odometry_settings(0.0, {"lag_s", "rolling_known_distance_*"});
+const Settings<RollingOdometry::Params>& rolling_live_settings() {
+  static const auto all = rolling_settings(0.0, {"lag_s", "rolling_known_distance_*"});
   return all;
 }
 
@@ -61,18 +60,27 @@ bool spins(double radius_m, const RollingOdometry::Pose& pose) {
   return std::abs(rolling_m_s - speed_m_s) > std::max(kSpinsM_s, kSpinsShare * std::max(rolling_m_s, speed_m_s));
 }
 
+/// A moving contact point is `slide` if the centre of the sphere moves faster than the sphere rolls, and `slip` if the
+/// sphere rotates faster.
+sim::ContactLabel slip_or_slide(double radius_m, const RollingOdometry::Pose& pose) {
+  const Eigen::Vector3d rolling_m_s =
+      radius_m * (pose.pose.orientation_W * pose.angular_velocity_rad_s).cross(Eigen::Vector3d::UnitZ());
+  return rolling_m_s.norm() > pose.pose.velocity_W_m_s.head<2>().norm() ? sim::ContactLabel::slip
+                                                                        : sim::ContactLabel::slide;
+}
+
 sim::ContactLabel contact_label(double radius_m, const RollingOdometry::Pose& pose) {
   if (!may_slip(pose.mode)) return sim::ContactLabel::grip;
   if (pose.mode == RollingMode::bump && !spins(radius_m, pose)) return sim::ContactLabel::air;
-  return slip_or_slide(radius_m, pose.pose.orientation_W, pose.angular_velocity_rad_s, pose.pose.velocity_W_m_s);
+  return slip_or_slide(radius_m, pose);
 }
 
-void report_whole(const MergedImuRecording& whole, Estimate& estimate) {
+void report_lever_arm(const MergedImuRecording& whole, Estimate& estimate) {
   if (whole.recordings.lever_arm_agreement) estimate.health["imu_arm_share"] = *whole.recordings.lever_arm_agreement;
 }
 
-Status replay(const std::vector<ImuRecording>& recordings, RollingOdometry& odometry, double radius_m,
-              std::span<const std::string> names, Estimate& estimate) {
+Status replay_imus(const std::vector<ImuRecording>& recordings, RollingOdometry& odometry, double radius_m,
+                   std::span<const std::string> names, Estimate& estimate) {
   TimeNs checked_ns = 0;
   SensorHealth found;
   const auto collect = [&] {
@@ -103,15 +111,15 @@ Status replay(const std::vector<ImuRecording>& recordings, RollingOdometry& odom
   return status;
 }
 
-void report(const RollingOdometry& odometry, const RollingOdometry::Params& params, Estimate& estimate) {
+void report_counters(const RollingOdometry& odometry, const RollingOdometry::Params& params, Estimate& estimate) {
   if (odometry.restart_count() > 0) estimate.health["gaps"] = static_cast<double>(odometry.restart_count());
   if (odometry.rejected_readings() > 0)
     estimate.health["rejected_readings"] = static_cast<double>(odometry.rejected_readings());
   if (params.lag_s > 0.0) estimate.centre_B_m = odometry.calibration().sphere_centre_B_m;
 }
 
-Estimate run(const char* method, const Settings<RollingOdometry::Params>& settings, const sim::Sensors& sensors,
-             const sim::Values& parameters) {
+Estimate roll_along(const char* method, const Settings<RollingOdometry::Params>& settings, const sim::Sensors& sensors,
+                    const sim::Values& parameters) {
   Estimate estimate;
   estimate.frame = Frame::centre;
   require_sphere(method, sensors);
@@ -121,36 +129,35 @@ Estimate run(const char* method, const Settings<RollingOdometry::Params>& settin
   RollingOdometry::Params params = stated_params(sensors, units, settings.defaults());
   settings.apply(parameters, params);
   RollingOdometry odometry(params);
-  estimate.status = replay(units.recordings, odometry, params.radius_m, units.names, estimate);
+  estimate.status = replay_imus(units.recordings, odometry, params.radius_m, units.names, estimate);
   estimate.health["imus"] = static_cast<double>(params.imus.size());
-  if (odometry.recording() != nullptr) report_whole(*odometry.recording(), estimate);
+  if (odometry.recording() != nullptr) report_lever_arm(*odometry.recording(), estimate);
   report_beyond_range(units.beyond_range, estimate);
-  report(odometry, params, estimate);
+  report_counters(odometry, params, estimate);
   return estimate;
 }
 
-Estimate run_whole(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  return run("position/tumble", whole_settings(), sensors, parameters);
+Estimate roll_whole(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  return roll_along("position/tumble", rolling_whole_settings(), sensors, parameters);
 }
 
-Estimate run_lag(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  return run("position/tumble_lag", lag_settings(), sensors, parameters);
+Estimate roll_lag(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  return roll_along("position/tumble_lag", rolling_lag_settings(), sensors, parameters);
 }
 
-Estimate run_live(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  return run("position/tumble_live", live_settings(), sensors, parameters);
+Estimate roll_live(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  return roll_along("position/tumble_live", rolling_live_settings(), sensors, parameters);
 }
 
 Method position_method(std::string name, std::string doc, const Settings<RollingOdometry::Params>& settings,
-                       Estimate (*run)(const sim::Sensors&, const sim::Values&, const OracleInput&)) {
-  MethodInfo info;
-  info.name = std::move(name);
-  info.kind = Kind::position;
-  info.doc = std::move(doc);
-  info.ours = true;
-  info.settings = {&settings};
-  info.robots = {"sphere"};
-  return make_method(std::move(info), run);
+                       RunCore run) {
+  return make_method({.name = std::move(name),
+                      .kind = Kind::position,
+                      .doc = std::move(doc),
+                      .ours = true,
+                      .settings = {&settings},
+                      .robots = {"sphere"}},
+                     run);
 }
 
 }  // namespace
@@ -183,19 +190,19 @@ Method position_tumble() {
   return position_method("tumble",
                          "Runs RollingOdometry (public API) on the whole recording: an inertial smoother that uses "
                          "rolling as a velocity measurement, with the hypotheses grip, slip, bump and slope.",
-                         whole_settings(), run_whole);
+                         rolling_whole_settings(), roll_whole);
 }
 
 Method position_tumble_lag() {
   return position_method(
       "tumble_lag",
       "Runs RollingOdometry with a fixed lag: each pose also uses the data of the following lag_s seconds.",
-      lag_settings(), run_lag);
+      rolling_lag_settings(), roll_lag);
 }
 
 Method position_tumble_live() {
-  return position_method("tumble_live", "Runs RollingOdometry live: each pose uses only past data.", live_settings(),
-                         run_live);
+  return position_method("tumble_live", "Runs RollingOdometry live: each pose uses only past data.",
+                         rolling_live_settings(), roll_live);
 }
 
 }  // namespace tumble::scenarios

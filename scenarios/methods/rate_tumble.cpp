@@ -10,7 +10,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/imu_check.hpp"
-#include "scenarios/methods/rate_baseline.hpp"
+#include "scenarios/methods/rate_baselines.hpp"
 #include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/methods/report_rates.hpp"
 #include "scenarios/methods/sample_times.hpp"
@@ -96,28 +96,21 @@ Method calibrating_method(const Method& method, RigCalibrationUse& learning) {
     throw BadInput(fmt::format("method '{}' does not calibrate the rig; use 'rate/tumble' or 'rate/tumble_lag'", name));
   }
   Method out = method;
-  out.run = [name, batch, info = method.info, &learning](const sim::Sensors& sensors, const sim::Values& given,
-                                                         const OracleInput&) {
-    const CalibratedRig* const start = learning.given ? &*learning.given : nullptr;
-    std::optional<CalibratedRig> rig;
-    try {
-      const sim::Values parameters = resolve_settings("method " + name, given, info.settings);
-      const auto run = batch ? run_rate_tumble : run_rate_tumble_lag;
-      Estimate estimate = run(sensors, parameters, start, &rig);
-      bool of_this_rig = true;
-      if (start != nullptr && estimate.status.ok()) {
-        std::optional<CalibratedRig> fresh;
-        run(sensors, parameters, nullptr, &fresh);
-        of_this_rig = may_be_of_this_rig(*start, fresh, estimate);
-      }
-      if (rig && of_this_rig) (batch ? learning.of_batch : learning.of_stream) = rig;
-      return estimate;
-    } catch (const sim::InvalidSituation& error) {
-      throw BadInput(error.what());
-    } catch (const InvalidParams& error) {
-      throw BadInput("method " + name + ": " + error.what());
-    }
-  };
+  out.run = with_settings(
+      method.info, [batch, &learning](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+        const CalibratedRig* const start = learning.given ? &*learning.given : nullptr;
+        std::optional<CalibratedRig> rig;
+        const auto run = batch ? run_rate_tumble : run_rate_tumble_lag;
+        Estimate estimate = run(sensors, parameters, start, &rig);
+        bool of_this_rig = true;
+        if (start != nullptr && estimate.status.ok()) {
+          std::optional<CalibratedRig> fresh;
+          run(sensors, parameters, nullptr, &fresh);
+          of_this_rig = may_be_of_this_rig(*start, fresh, estimate);
+        }
+        if (rig && of_this_rig) (batch ? learning.of_batch : learning.of_stream) = rig;
+        return estimate;
+      });
   return out;
 }
 
@@ -177,23 +170,22 @@ Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& paramet
 }
 
 Method rate_tumble() {
-  MethodInfo info;
-  info.name = "tumble";
-  info.kind = Kind::rate;
-  info.doc =
-      "Smooths the rates of the whole recording with bounds from clipped readings, the specific force at the lever arm "
-      "in free flight, and Euler's equation. The method also calibrates the rig (lever arm, biases, inertia "
-      "ratios, gyro axis directions). The method uses all IMUs on the body except the comparison IMU "
-      "'imu_reference'. During hand-held motion, the method runs the hand-held smoother.";
-  info.ours = true;
-  info.source = "ours: extends Deschenes et al., Saturation-Aware Angular Velocity Estimation, ICRA 2024";
-  info.settings = {&rate_tumble_settings()};
-  info.robots = {"rig", "pendulum", "sphere"};
-  info.calibrates_rig = true;
-  return make_method(std::move(info),
-                     [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-                       return run_rate_tumble(sensors, parameters, nullptr, nullptr);
-                     });
+  return make_method(
+      {.name = "tumble",
+       .kind = Kind::rate,
+       .doc = "Smooths the rates of the whole recording with bounds from clipped readings, the specific force at the "
+              "lever arm "
+              "in free flight, and Euler's equation. The method also calibrates the rig (lever arm, biases, inertia "
+              "ratios, gyro axis directions). The method uses all IMUs on the body except the comparison IMU "
+              "'imu_reference'. During hand-held motion, the method runs the hand-held smoother.",
+       .ours = true,
+       .source = "ours: extends Deschenes et al., Saturation-Aware Angular Velocity Estimation, ICRA 2024",
+       .settings = {&rate_tumble_settings()},
+       .robots = {"rig", "pendulum", "sphere"},
+       .calibrates_rig = true},
+      [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+        return run_rate_tumble(sensors, parameters, nullptr, nullptr);
+      });
 }
 
 }  // namespace tumble::scenarios

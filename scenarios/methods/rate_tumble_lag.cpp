@@ -123,16 +123,14 @@ Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& par
 }
 
 Method rate_tumble_lag() {
-  MethodInfo info;
-  info.name = "tumble_lag";
-  info.kind = Kind::rate;
-  info.doc =
-      "Runs the smoother of rate/tumble as a stream, with the same factors in a sliding window and with a fixed lag.";
-  info.ours = true;
-  info.settings = {&rate_tumble_lag_settings()};
-  info.robots = {"rig", "pendulum", "sphere"};
-  info.calibrates_rig = true;
-  return make_method(std::move(info),
+  return make_method({.name = "tumble_lag",
+                      .kind = Kind::rate,
+                      .doc = "Runs the smoother of rate/tumble as a stream, with the same factors in a sliding window "
+                             "and with a fixed lag.",
+                      .ours = true,
+                      .settings = {&rate_tumble_lag_settings()},
+                      .robots = {"rig", "pendulum", "sphere"},
+                      .calibrates_rig = true},
                      [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
                        return run_rate_tumble_lag(sensors, parameters, nullptr, nullptr);
                      });

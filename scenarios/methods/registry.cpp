@@ -11,7 +11,6 @@
 #include "scenarios/methods/external_method.hpp"
 #include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/methods/settings.hpp"
-#include "scenarios/methods/slam_registry.hpp"
 
 namespace tumble::scenarios {
 
@@ -97,27 +96,31 @@ std::string MethodInfo::why_not(const Subject& subject) const {
   return {};
 }
 
-Method make_method(MethodInfo info, RunCore run) {
-  if (info.ours && info.source.empty()) info.source = "ours";
-  const std::string name = full_name(info);
-  const std::vector<const SettingsTable*> settings = info.settings;
-  const auto parameters =
-      std::make_shared<const std::vector<sim::Parameter>>(joined_rows(settings, info.parameters_first));
-  info.parameters = *parameters;
-  const bool needs_truth = info.needs_truth;
-  RunMethod wrapped = [name, settings, parameters, needs_truth, run](
-                          const sim::Sensors& sensors, const sim::Values& given, const OracleInput& oracle) {
-    if (needs_truth && oracle.truth == nullptr) {
-      throw BadInput(fmt::format("method {} needs the truth, but this recording has none", name));
-    }
+RunMethod with_settings(const MethodInfo& info, RunMethod run) {
+  return [place = "method " + full_name(info), settings = info.settings, run = std::move(run)](
+             const sim::Sensors& sensors, const sim::Values& given, const OracleInput& oracle) {
     try {
-      const sim::Values resolved = resolve_settings("method " + name, given, settings);
-      return run(sensors, resolved, {.truth = needs_truth ? oracle.truth : nullptr, .on_sweep = oracle.on_sweep});
+      return run(sensors, resolve_settings(place, given, settings), oracle);
     } catch (const sim::InvalidSituation& error) {
       throw BadInput(error.what());
     } catch (const InvalidParams& error) {
-      throw BadInput("method " + name + ": " + error.what());
+      throw BadInput(place + ": " + error.what());
     }
+  };
+}
+
+Method make_method(MethodInfo info, RunCore run) {
+  if (info.ours && info.source.empty()) info.source = "ours";
+  const auto parameters =
+      std::make_shared<const std::vector<sim::Parameter>>(joined_rows(info.settings, info.parameters_first));
+  info.parameters = *parameters;
+  RunMethod wrapped = [name = full_name(info), parameters, needs_truth = info.needs_truth,
+                       resolved = with_settings(info, run)](const sim::Sensors& sensors, const sim::Values& given,
+                                                            const OracleInput& oracle) {
+    if (needs_truth && oracle.truth == nullptr) {
+      throw BadInput(fmt::format("method {} needs the truth, but this recording has none", name));
+    }
+    return resolved(sensors, given, {.truth = needs_truth ? oracle.truth : nullptr, .on_sweep = oracle.on_sweep});
   };
   return {std::move(info), std::move(wrapped)};
 }
@@ -158,6 +161,20 @@ std::vector<MethodPointer> find_methods_within(std::span<const std::string> name
     }
   }
   return found;
+}
+
+std::vector<const SettingsTable*> stages_after(std::vector<const SettingsTable*> own, const Method& position) {
+  own.insert(own.end(), position.info.settings.begin(), position.info.settings.end());
+  return own;
+}
+
+sim::Values values_of(const Method& position, const sim::Values& parameters) {
+  sim::Values own;
+  for (const sim::Parameter& each : position.info.parameters) {
+    const std::string name(each.name);
+    if (parameters.has(name)) own.set(name, parameters.at(name));
+  }
+  return own;
 }
 
 void count_sources(std::span<const AngularRateState> rates, std::map<std::string, double>& health) {

@@ -3,13 +3,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <optional>
 
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/robot_presets.hpp"
-#include "scenarios/methods/slam_registry.hpp"
 #include "scenarios/methods/sweep_log.hpp"
 #include "tumble/angular_velocity/detail/rest_detector.hpp"
 #include "tumble/attitude/strapdown.hpp"

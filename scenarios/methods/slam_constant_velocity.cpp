@@ -2,7 +2,6 @@
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/rigid_chain.hpp"
-#include "scenarios/methods/slam_registry.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble::scenarios {
@@ -90,14 +89,17 @@ Estimate run_slam_constant_velocity(const sim::Sensors& sensors, const sim::Valu
 }  // namespace
 
 Method slam_constant_velocity() {
-  return rig_slam({.name = "constant_velocity",
-                   .doc = "Uses the lidar only: predicts the pose with constant velocity, deskews the sweep once, and "
-                          "registers the sweep point to plane as a rigid body. The rate of a tumble changes too much "
-                          "between two sweeps for this method. Without point times, the method does not deskew. The "
-                          "adaptive threshold and the point-to-point distance of KISS-ICP are not modelled.",
-                   .source = "similar to KISS-ICP, Vizzo et al., RA-L 2023",
-                   .settings = {&rigid_settings()}},
-                  run_slam_constant_velocity);
+  return make_method(
+      {.name = "constant_velocity",
+       .kind = Kind::slam,
+       .doc = "Uses the lidar only: predicts the pose with constant velocity, deskews the sweep once, and "
+              "registers the sweep point to plane as a rigid body. The rate of a tumble changes too much "
+              "between two sweeps for this method. Without point times, the method does not deskew. The "
+              "adaptive threshold and the point-to-point distance of KISS-ICP are not modelled.",
+       .source = "similar to KISS-ICP, Vizzo et al., RA-L 2023",
+       .settings = {&rigid_settings()},
+       .robots = {"rig"}},
+      run_slam_constant_velocity);
 }
 
 }  // namespace tumble::scenarios

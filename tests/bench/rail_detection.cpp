@@ -6,14 +6,13 @@
 // reports as saturated, and how many of all reported elements lost anything. It also prints what ClippingFinder reports
 // for the unsaturated readings of the same motion. The program is no test.
 #include <Eigen/Dense>
-#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <string>
 #include <vector>
 
 #include "scenarios/methods/bridge.hpp"
-#include "scenarios/methods/rate_baseline.hpp"
+#include "scenarios/methods/rate_baselines.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "tumble/angular_velocity/detail/clipping_finder.hpp"
 

@@ -10,7 +10,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/prior_map_file.hpp"
-#include "scenarios/methods/slam_registry.hpp"
+#include "scenarios/methods/registry.hpp"
 
 namespace tumble::tools {
 
