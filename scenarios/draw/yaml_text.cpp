@@ -4,12 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/text.hpp"
 
 namespace tumble::scenarios {
 
@@ -17,9 +16,7 @@ std::string yaml_number(double value, const std::string& place) {
   if (std::isnan(value))
     throw BadInput(fmt::format("{}: the value is NaN, which a scenario file cannot contain", place));
   if (std::isinf(value)) return value > 0.0 ? ".inf" : "-.inf";
-  std::array<char, 32> text;
-  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
-  return std::string(text.data(), end);
+  return exact_text(value);
 }
 
 std::string yaml_word(const std::string& text) {

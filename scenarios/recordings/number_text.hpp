@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <charconv>
 #include <cstdint>
 #include <cstdio>
 #include <optional>
@@ -21,13 +20,6 @@ std::optional<std::int64_t> parse_time_ns(std::string_view text, int decimals);
 /// Parses a stamp since 1970: decimal seconds, an integer of 13, 16 or 19 digits (ms, us, ns), or a date in UTC
 /// ("2011-09-26 13:02:25.964389445").
 std::optional<std::int64_t> parse_stamp_ns(std::string_view text);
-
-template <class Number>
-void append_number(std::string& text, Number value) {
-  std::array<char, 32> digits;
-  const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
-  text.append(digits.data(), end);
-}
 
 inline std::string rounded(double value) {
   std::array<char, 32> text{};

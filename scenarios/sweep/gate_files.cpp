@@ -18,14 +18,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::array kKinds = {Kind::rate, Kind::attitude, Kind::position, Kind::slam};
 constexpr std::size_t kKeyCells = 4;  // scenario, kind, method, metric
 constexpr const char* kStatusRow = "status";
-
-std::string number_text(double value) {
-  std::array<char, 32> digits;
-  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
-}
 
 std::vector<std::string> cells_of(const std::string& line) {
   std::vector<std::string> cells(1);
@@ -65,11 +59,9 @@ std::vector<std::uint64_t> read_seeds(const GateLine& line) {
 }
 
 Kind read_kind(const GateLine& line) {
+  if (const auto kind = kind_named(line.cells[1])) return *kind;
   std::vector<std::string> known;
-  for (const Kind kind : kKinds) {
-    if (line.cells[1] == to_string(kind)) return kind;
-    known.emplace_back(to_string(kind));
-  }
+  for (const Kind kind : kKinds) known.emplace_back(to_string(kind));
   line.fail("unknown kind '" + line.cells[1] + "'" + suggestion(line.cells[1], known));
 }
 
@@ -137,8 +129,8 @@ void read_row(const GateLine& line, std::span<const MethodPointer> described, Ga
 double within(const YamlNode& node, double low, double high) {
   const double value = node.number();
   if (!(value >= low && value <= high)) {
-    node.fail(fmt::format("this limit of the accuracy gate is {}; it must be within [{}, {}]", number_text(value),
-                          number_text(low), number_text(high)));
+    node.fail(fmt::format("this limit of the accuracy gate is {}; it must be within [{}, {}]", exact_text(value),
+                          exact_text(low), exact_text(high)));
   }
   return value;
 }
@@ -196,9 +188,9 @@ std::string to_yaml(const Gate& gate) {
          "each "
          "number.\n"
          "suite: " +
-         gate.suite + "\nrisk: " + number_text(gate.policy.risk) + "\nmargin: " + number_text(gate.policy.margin) +
-         "\nshare_margin: " + number_text(gate.policy.share_margin) +
-         "\ntime_margin_s: " + number_text(gate.policy.time_margin_s) + "\nworst: " + number_text(gate.policy.worst) +
+         gate.suite + "\nrisk: " + exact_text(gate.policy.risk) + "\nmargin: " + exact_text(gate.policy.margin) +
+         "\nshare_margin: " + exact_text(gate.policy.share_margin) +
+         "\ntime_margin_s: " + exact_text(gate.policy.time_margin_s) + "\nworst: " + exact_text(gate.policy.worst) +
          "\n";
 }
 
@@ -216,7 +208,7 @@ std::string to_csv(const GateRun& run) {
     text += "\n";
     for (const auto& [metric, values] : method.values) {
       text += key + metric;
-      for (const double value : values) text += "," + (std::isfinite(value) ? number_text(value) : std::string());
+      for (const double value : values) text += "," + (std::isfinite(value) ? exact_text(value) : std::string());
       text += "\n";
     }
   }

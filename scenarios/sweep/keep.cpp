@@ -63,8 +63,7 @@ class Worst {
 
 std::set<DrawName> worst_draws(const Results& results, std::size_t count) {
   std::map<Kind, std::string> metric_of;
-  for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam})
-    metric_of[kind] = ranking_metric(kind);
+  for (const Kind kind : kKinds) metric_of[kind] = ranking_metric(kind);
   std::map<std::tuple<std::string, Kind, std::string>, Worst> worst;
   Names names;
   results.each(Rows::plain, names, [&](const OutcomeView& row) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <SQLiteCpp/VariadicBind.h>
 
 #include <bit>
 #include <filesystem>
@@ -101,8 +102,7 @@ struct Results::Impl {
 
   void write_note(const std::string& key, const std::string& text) {
     SQLite::Statement insert(database, "INSERT OR REPLACE INTO notes VALUES (?, ?)");
-    insert.bind(1, key);
-    insert.bind(2, text);
+    SQLite::bind(insert, key, text);
     insert.exec();
   }
 

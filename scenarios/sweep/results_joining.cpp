@@ -9,11 +9,11 @@
 #include <string>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/recordings/number_text.hpp"
 #include "scenarios/scoring/cost.hpp"
 #include "scenarios/sweep/results_database.hpp"
 #include "scenarios/sweep/rows_into.hpp"
 #include "scenarios/sweep/stored_value.hpp"
+#include "scenarios/text.hpp"
 
 namespace tumble::scenarios {
 
@@ -120,18 +120,6 @@ class Joining {
     return changed;
   }
 
-  OutcomeStatus status(const char* name) const {
-    if (const auto known = outcome_status_named(name)) return *known;
-    throw BadInput(path_.string() + ": unknown status '" + name + "'");
-  }
-
-  void require_kind(const std::string& name) const {
-    for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
-      if (name == to_string(kind)) return;
-    }
-    throw BadInput(path_.string() + ": unknown kind '" + name + "'");
-  }
-
   bool insert(const ShardRow& row) {
     insert_.bindNoCopy(1, row.scenario);
     insert_.bind(2, row.seed);
@@ -147,8 +135,8 @@ class Joining {
   }
 
   bool take(const ShardRow& row, std::int64_t& id) {
-    require_kind(row.kind);
-    const OutcomeStatus own = status(row.status);
+    (void)stored_kind(row.kind, path_);
+    const OutcomeStatus own = stored_status(row.status, path_);
     if (insert(row)) {
       ++counts_.added;
     } else if (replaces_held(row, own)) {
@@ -181,7 +169,7 @@ class Joining {
     const std::string status_text = held_.getColumn(1).getString(), recording = held_.getColumn(2).getString(),
                       estimate = held_.getColumn(3).getString();
     held_.reset();
-    const OutcomeStatus known = status(status_text.c_str());
+    const OutcomeStatus known = stored_status(status_text, path_);
     if (outranks(own, known)) {
       for (SQLite::Statement* remove : {&remove_scores_, &remove_}) {
         remove->bind(1, id);
@@ -219,18 +207,12 @@ class Joining {
     each_score(row, [&](const char* metric, double value) {
       if (is_cost(metric)) return;
       const auto found = known.find(metric);
-      if (found == known.end()) differ(row, metric, value_text(value), "none");
+      if (found == known.end()) differ(row, metric, exact_text(value), "none");
       if (value != found->second && !(std::isnan(value) && std::isnan(found->second)))
-        differ(row, metric, value_text(value), value_text(found->second));
+        differ(row, metric, exact_text(value), exact_text(found->second));
       known.erase(found);
     });
-    if (!known.empty()) differ(row, known.begin()->first, "none", value_text(known.begin()->second));
-  }
-
-  static std::string value_text(double value) {
-    std::string text;
-    append_number(text, value);
-    return text;
+    if (!known.empty()) differ(row, known.begin()->first, "none", exact_text(known.begin()->second));
   }
 
   [[noreturn]] void differ(const ShardRow& row, const std::string& metric, const std::string& here,

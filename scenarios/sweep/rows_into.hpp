@@ -4,7 +4,6 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <set>
 #include <string>
@@ -12,13 +11,6 @@
 #include <vector>
 
 namespace tumble::scenarios {
-
-inline void bind_number(double value, SQLite::Statement& to, int index) {
-  if (std::isnan(value))
-    to.bind(index);
-  else
-    to.bind(index, value);
-}
 
 class Kept {
  public:
@@ -45,7 +37,7 @@ struct ScoreValue {
   void bind(SQLite::Statement& to, int before) const {
     to.bind(before + 1, outcome);
     to.bindNoCopy(before + 2, *metric);
-    bind_number(value, to, before + 3);
+    to.bind(before + 3, value);
   }
 };
 
@@ -63,7 +55,7 @@ struct DrawValue {
     to.bindNoCopy(before + 1, *scenario);
     to.bind(before + 2, seed);
     to.bindNoCopy(before + 3, *metric);
-    bind_number(value, to, before + 4);
+    to.bind(before + 4, value);
     to.bindNoCopy(before + 5, *varied);
     to.bind(before + 6, setting);
   }

@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
 #include <cmath>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/sweep/sweep_notes.hpp"
+#include "scenarios/text.hpp"
 
 namespace tumble::scenarios {
 
@@ -63,10 +63,9 @@ Setting setting_from(const std::string& text) {
   Setting setting;
   if (equals != std::string::npos) setting.key = text.substr(0, equals);
   std::erase(setting.key, ' ');
-  const char* const begin = text.data() + (equals == std::string::npos ? text.size() : equals + 1);
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(begin, end, setting.value);
-  if (setting.key.empty() || begin == end || error != std::errc() || stop != end || !std::isfinite(setting.value))
+  const bool read =
+      equals != std::string::npos && read_number(std::string_view(text).substr(equals + 1), setting.value);
+  if (setting.key.empty() || !read || !std::isfinite(setting.value))
     throw BadInput(
         fmt::format("'{}' must have the form KEY=NUMBER, for example world.rock_count=10; keys that vary together are "
                     "joined with '+'",
@@ -75,9 +74,7 @@ Setting setting_from(const std::string& text) {
 }
 
 std::string to_text(const Setting& setting) {
-  std::array<char, 32> text;
-  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), setting.value);
-  return setting.key + "=" + std::string(text.data(), end);
+  return setting.key + "=" + exact_text(setting.value);
 }
 
 }  // namespace tumble::scenarios

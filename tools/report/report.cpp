@@ -89,7 +89,7 @@ std::vector<Fact> commands(const scenarios::Results& results, const ReportOption
 
 std::vector<Figure> errors_of_all_draws(const Summary& summary, const Palette& palette) {
   std::vector<Figure> figures;
-  for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
+  for (const Kind kind : scenarios::kKinds) {
     for (const std::string& name : scenarios::headline_metrics(kind)) {
       const scenarios::MetricInfo& info = scenarios::metric_info(name);
       if (info.unit != scenarios::Unit::verdict)

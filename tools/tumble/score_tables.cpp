@@ -46,7 +46,7 @@ Table kind_table(const std::string& title, const std::vector<const Outcome*>& ou
 std::vector<Table> score_tables(const std::string& title, std::span<const Outcome> outcomes,
                                 const std::string& status) {
   std::vector<Table> tables;
-  for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
+  for (const Kind kind : scenarios::kKinds) {
     std::vector<const Outcome*> selected;
     for (const Outcome& outcome : outcomes) {
       if (outcome.kind == kind) selected.push_back(&outcome);

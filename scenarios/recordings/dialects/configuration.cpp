@@ -6,13 +6,13 @@
 #include <stdexcept>
 
 #include "scenarios/recordings/dialects/dialect.hpp"
-#include "scenarios/recordings/number_text.hpp"
+#include "scenarios/text.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
-using Numbers = std::vector<double>;
+using NumberList = std::vector<double>;
 
 /// ROS 2 requires a decimal point for a double, and YAML 1.1 requires a decimal point before an exponent.
 std::string decimal(double value) {
@@ -23,35 +23,35 @@ std::string decimal(double value) {
   return exponent == std::string::npos ? text + ".0" : text.insert(exponent, ".0");
 }
 
-std::string text_of(const Numbers& values, bool json) {
+std::string text_of(const NumberList& values, bool json) {
   std::string text;
   for (const double value : values)
     text += (text.empty() ? "" : json ? ",\n      " : ", ") + (json ? nlohmann::json(value).dump() : decimal(value));
   return values.size() == 1 || json ? text : "[" + text + "]";
 }
 
-Numbers position(const Eigen::Isometry3d& T) {
+NumberList position(const Eigen::Isometry3d& T) {
   return {T.translation().x(), T.translation().y(), T.translation().z()};
 }
 
-Numbers rotation(const Eigen::Isometry3d& T) {
+NumberList rotation(const Eigen::Isometry3d& T) {
   const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> R = T.linear();
   return {R.data(), R.data() + R.size()};
 }
 
-Numbers quaternion(const Eigen::Isometry3d& T) {
+NumberList quaternion(const Eigen::Isometry3d& T) {
   const Eigen::Quaterniond q = Eigen::Quaterniond(T.linear()).normalized();
   return {q.x(), q.y(), q.z(), q.w()};
 }
 
-Numbers joined(Numbers a, const Numbers& b) {
+NumberList joined(NumberList a, const NumberList& b) {
   a.insert(a.end(), b.begin(), b.end());
   return a;
 }
 
-void add_imu(const ImuFacts& imu, std::map<std::string, Numbers>& out) {
+void add_imu(const ImuFacts& imu, std::map<std::string, NumberList>& out) {
   constexpr double kRestMin_s = 0.1, kRestMax_s = 3.0;  // DLIO averages over up to 3 s
-  const auto variance = [&](double density) { return Numbers{density * density / imu.period_s}; };
+  const auto variance = [&](double density) { return NumberList{density * density / imu.period_s}; };
   out["imu_period_s"] = {imu.period_s};
   out["rest_s"] = {std::clamp(imu.still_at_start_s, kRestMin_s, kRestMax_s)};
   out["accel_noise"] = {imu.accel_noise_m_s2_sqrt_hz};
@@ -65,16 +65,16 @@ void add_imu(const ImuFacts& imu, std::map<std::string, Numbers>& out) {
   out["gyro_rail_rad_s"] = {std::max(imu.stated_gyro_range_rad_s, imu.largest_gyro_rad_s)};
 }
 
-std::map<std::string, Numbers> numbers_of(const SensorFacts& facts) {
+std::map<std::string, NumberList> numbers_of(const SensorFacts& facts) {
   const LidarFacts& lidar = *facts.lidar;
   const Eigen::Isometry3d T_IL = facts.T_IL(), T_LI = T_IL.inverse(Eigen::Isometry);
-  std::map<std::string, Numbers> out = {{"gravity_m_s2", {facts.gravity_m_s2}},
-                                        {"own_body_m", {lidar.own_body_m}},
-                                        {"farthest_m", {std::max(1.0, std::ceil(lidar.farthest_m))}},
-                                        {"sweep_period_s", {lidar.period_s}},
-                                        {"q_BI", joined(quaternion(facts.T_BI), position(facts.T_BI))},
-                                        {"q_BL", joined(quaternion(facts.T_BL), position(facts.T_BL))},
-                                        {"T_LI", joined(position(T_LI), quaternion(T_LI))}};
+  std::map<std::string, NumberList> out = {{"gravity_m_s2", {facts.gravity_m_s2}},
+                                           {"own_body_m", {lidar.own_body_m}},
+                                           {"farthest_m", {std::max(1.0, std::ceil(lidar.farthest_m))}},
+                                           {"sweep_period_s", {lidar.period_s}},
+                                           {"q_BI", joined(quaternion(facts.T_BI), position(facts.T_BI))},
+                                           {"q_BL", joined(quaternion(facts.T_BL), position(facts.T_BL))},
+                                           {"T_LI", joined(position(T_LI), quaternion(T_LI))}};
   for (const auto& [frames, T] :
        std::map<std::string, Eigen::Isometry3d>{{"BI", facts.T_BI}, {"BL", facts.T_BL}, {"IL", T_IL}, {"LI", T_LI}}) {
     out["p_" + frames] = position(T);
@@ -104,7 +104,7 @@ std::map<std::string, std::string> words_of(const Dialect& dialect, const Sensor
 }  // namespace
 
 std::vector<ConfigurationFile> configuration_of(const Dialect& dialect, const SensorFacts& facts) {
-  const std::map<std::string, Numbers> numbers = numbers_of(facts);
+  const std::map<std::string, NumberList> numbers = numbers_of(facts);
   std::map<std::string, std::string> words = words_of(dialect, facts);
   std::vector<ConfigurationFile> out;
   for (const ConfigurationFile& file : dialect.files) {
