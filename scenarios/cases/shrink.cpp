@@ -14,7 +14,6 @@
 #include "scenarios/cases/complication.hpp"
 #include "scenarios/cases/delta_debugging.hpp"
 #include "scenarios/cases/same_failure.hpp"
-#include "scenarios/draw/fixed_number.hpp"
 #include "scenarios/draw/fixed_scenario.hpp"
 #include "scenarios/errors.hpp"
 #include "scenarios/sweep/draw_process.hpp"

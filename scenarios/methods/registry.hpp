@@ -67,4 +67,7 @@ sim::Values values_of(const Method& position, const sim::Values& parameters);
 
 void count_sources(std::span<const AngularRateState> rates, std::map<std::string, double>& health);
 
+/// Parses parameters of methods such as "rate/tumble_lag.lag_s=0.5"; the kind "rate/" is optional.
+std::vector<Method> with_parameters(std::span<const MethodPointer> methods, std::span<const std::string> texts);
+
 }  // namespace tumble::scenarios

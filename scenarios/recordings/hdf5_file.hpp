@@ -6,7 +6,6 @@
 #include <string>
 
 #include "scenarios/recordings/hdf5_group.hpp"
-#include "scenarios/recordings/hdf5_layout.hpp"
 
 namespace tumble::scenarios::hdf5 {
 
@@ -39,5 +38,9 @@ class DiskFile {
   Handle file_;
   Group root_;
 };
+
+/// Opens every object and attribute of an HDF5 file in a child process, because HDF5 1.10 may crash on damaged files.
+/// The cost of opening all objects is O(number of objects); dataset contents are not read.
+void require_survivable(const std::filesystem::path& path);
 
 }  // namespace tumble::scenarios::hdf5

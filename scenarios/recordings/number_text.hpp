@@ -35,4 +35,8 @@ inline void append_seconds(std::string& text, std::int64_t time_ns) {
   text += std::to_string(size / 1000000000) + "." + std::string(9 - nanoseconds.size(), '0') + nanoseconds;
 }
 
+inline constexpr std::int64_t kSecond_ns = 1'000'000'000;
+/// The largest time stamp, 9 000 000 000 s (year 2255), fits in 64 bits of nanoseconds.
+inline constexpr std::int64_t kSecondsMax = 9'000'000'000;
+
 }  // namespace tumble::scenarios

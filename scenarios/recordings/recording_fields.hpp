@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "scenarios/recordings/hdf5_file.hpp"
-#include "scenarios/recordings/point_store.hpp"
+#include "scenarios/recordings/stored_truth.hpp"
 #include "sim/recording.hpp"
 
 /// Writer, reader and digest visit the same list of fields, so none of them can omit a field.

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/recordings/point_store.hpp"
 #include "scenarios/recordings/stored_truth.hpp"
 #include "sim/recording.hpp"
 
@@ -61,5 +60,8 @@ sim::Sensors read_sensors(const std::filesystem::path& path, const std::filesyst
 sim::Truth read_truth(const std::filesystem::path& path);
 /// Stores the rows of the truth on disk in the folder `scratch`, so memory contains one MiB of the truth.
 StoredTruth read_truth(const std::filesystem::path& path, const std::filesystem::path& scratch);
+
+/// Throws BadInput unless `path` is a regular file that may be HDF5 by its first 16 bytes and its extension.
+void require_recording_file(const std::filesystem::path& path);
 
 }  // namespace tumble::scenarios

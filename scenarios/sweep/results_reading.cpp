@@ -10,7 +10,6 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/sweep/results_database.hpp"
-#include "scenarios/sweep/stored_value.hpp"
 
 namespace tumble::scenarios {
 

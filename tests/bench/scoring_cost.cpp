@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/provenance/text_digest.hpp"
+#include "scenarios/provenance/data_digest.hpp"
 #include "scenarios/statistics/statistics.hpp"
 #include "scenarios/sweep/evaluate.hpp"
 #include "sim/lidar/surface.hpp"

@@ -11,9 +11,9 @@
 #include "scenarios/summary/comparison.hpp"
 #include "scenarios/summary/example_choice.hpp"
 #include "scenarios/summary/motion_map.hpp"
-#include "scenarios/sweep/sweep_notes.hpp"
+#include "scenarios/sweep/run_again.hpp"
 #include "tools/html/html.hpp"
-#include "tools/report/certificate_html.hpp"
+#include "tools/report/cost_html.hpp"
 
 namespace tumble::tools {
 

@@ -12,7 +12,7 @@
 #include <string_view>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/recordings/clouds/sweep_stamps.hpp"
+#include "scenarios/recordings/clouds/import_sweeps.hpp"
 #include "scenarios/recordings/upper_median.hpp"
 #include "tumble_ros/point_fields.hpp"
 

@@ -12,7 +12,6 @@
 #include "scenarios/recordings/number_text.hpp"
 #include "scenarios/recordings/tables/logger_columns.hpp"
 #include "scenarios/recordings/upper_median.hpp"
-#include "scenarios/recordings/whole_seconds.hpp"
 
 namespace tumble::scenarios {
 

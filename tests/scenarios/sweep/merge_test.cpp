@@ -16,7 +16,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/sweep/database_owner.hpp"
 #include "scenarios/sweep/results.hpp"
-#include "scenarios/sweep/sweep_notes.hpp"
+#include "scenarios/sweep/run_again.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace tumble::scenarios {

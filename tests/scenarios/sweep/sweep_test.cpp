@@ -10,7 +10,6 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/sweep/evaluate.hpp"
 #include "scenarios/sweep/results.hpp"
-#include "scenarios/sweep/run_situation.hpp"
 #include "scenarios/sweep/small_catalogue.hpp"
 
 // the test runs a whole sweep on the sphere, whose draws are short and have no map to score

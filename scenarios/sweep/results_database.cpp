@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/sweep/results_schema.hpp"
+#include "scenarios/sweep/results_database.hpp"
 
 #include <SQLiteCpp/SQLiteCpp.h>
 

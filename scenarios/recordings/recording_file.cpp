@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/recordings/foreign_file.hpp"
+#include "scenarios/recordings/recording_file.hpp"
 
 #include <fmt/format.h>
 
