@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstddef>
 #include <string>
@@ -14,6 +15,20 @@ template <typename Number>
 bool read_number(std::string_view text, Number& value) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc() && end == text.data() + text.size();
+}
+
+/// Appends the shortest text that gives the same number when read.
+template <typename Number>
+void append_number(std::string& text, Number value) {
+  std::array<char, 32> digits;
+  text.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
+}
+
+template <typename Number>
+std::string exact_text(Number value) {
+  std::string text;
+  append_number(text, value);
+  return text;
 }
 
 inline std::string shortened(std::string_view text, std::size_t most = 120) {

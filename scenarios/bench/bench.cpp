@@ -6,10 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/provenance/text_digest.hpp"
+#include "scenarios/provenance/data_digest.hpp"
 #include "scenarios/scoring/metric.hpp"
 #include "scenarios/statistics/statistics.hpp"
 

@@ -33,12 +33,6 @@ ordered_json to_json(const BenchDraw& draw) {
           {"values", std::move(values)}};
 }
 
-Kind kind_named(const std::string& name) {
-  for (int k = 0; k <= static_cast<int>(Kind::slam); ++k)
-    if (name == to_string(static_cast<Kind>(k))) return static_cast<Kind>(k);
-  throw BadInput("unknown kind '" + name + "'");
-}
-
 BenchDraw draw_from(const ordered_json& node) {
   BenchDraw draw;
   draw.scenario = node.at("scenario").get<std::string>();
@@ -66,7 +60,9 @@ BenchResult result_from(const ordered_json& node) {
   const auto text = [&](const char* key) { return node.at(key).get<std::string>(); };
   result.suite = text("suite");
   result.suite_digest = text("suite_digest");
-  result.kind = kind_named(text("kind"));
+  const auto kind = kind_named(text("kind"));
+  if (!kind) throw BadInput("unknown kind '" + text("kind") + "'");
+  result.kind = *kind;
   result.method = text("method");
   result.version = text("version");
   result.source = text("source");

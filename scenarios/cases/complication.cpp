@@ -8,7 +8,7 @@
 #include <span>
 #include <string_view>
 
-#include "scenarios/draw/fixed_number.hpp"
+#include "scenarios/draw/fixed_scenario.hpp"
 
 namespace tumble::scenarios {
 

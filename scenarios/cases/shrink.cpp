@@ -14,7 +14,6 @@
 #include "scenarios/cases/complication.hpp"
 #include "scenarios/cases/delta_debugging.hpp"
 #include "scenarios/cases/same_failure.hpp"
-#include "scenarios/draw/fixed_number.hpp"
 #include "scenarios/draw/fixed_scenario.hpp"
 #include "scenarios/errors.hpp"
 #include "scenarios/sweep/draw_process.hpp"
@@ -35,9 +34,9 @@ std::string text_of(double value) {
   return text.str();
 }
 
-class Run {
+class ShrinkRun {
  public:
-  Run(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, Kind kind)
+  ShrinkRun(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, Kind kind)
       : draw_(simulate_draw(data, scenario, seed, 1, kind == Kind::rate ? Lidars::left_out : Lidars::simulated)) {
     if (kind == Kind::slam) surface_.emplace(*draw_.built);
   }
@@ -79,7 +78,7 @@ class Shrinking {
       : data_(data), seed_(seed), method_(method), options_(options) {
     shrunk_.scenario = fixed_as(scenario, draw(data, scenario, seed));
     shrunk_.scenario.named_case.reset();
-    const Run run(data, shrunk_.scenario, seed, method.info.kind);
+    const ShrinkRun run(data, shrunk_.scenario, seed, method.info.kind);
     shrunk_.drawn = shrunk_.left = run.outcome(method, options.timeout_s);
     failure_.emplace(options.failure, shrunk_.drawn);
     shrunk_.failure = failure_->describe();
@@ -102,7 +101,7 @@ class Shrinking {
   }
 
  private:
-  void find_cure(const Run& run) {
+  void find_cure(const ShrinkRun& run) {
     const std::span<const TrueInput> single = true_inputs().first(true_inputs().size() - 1);
     const auto cure = std::find_if(single.begin(), single.end(),
                                    [&](const TrueInput& input) { return run.is_cured(input, method_, options_); });
@@ -111,7 +110,7 @@ class Shrinking {
     shrunk_.cure = cure->name;
   }
 
-  std::string other_cause(const Run& run) const {
+  std::string other_cause(const ShrinkRun& run) const {
     if (shrunk_.controlled && options_.failure.holds(run.outcome(*options_.control, options_.timeout_s)))
       return fmt::format("the failure does not come from the method, because the control method {} also fails",
                          options_.control->info.name);
@@ -126,7 +125,7 @@ class Shrinking {
     bool fails = false;
     Outcome outcome;
     try {
-      const Run run(data_, simpler, seed_, method_.info.kind);
+      const ShrinkRun run(data_, simpler, seed_, method_.info.kind);
       outcome = run.outcome(method_, options_.timeout_s);
       fails = failure_->holds(outcome);
       if (const std::string other = fails ? other_cause(run) : ""; !other.empty()) {

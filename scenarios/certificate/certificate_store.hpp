@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "scenarios/certificate/certificate.hpp"
 
@@ -20,5 +21,11 @@ class CertificateStore {
  private:
   std::filesystem::path file_;
 };
+
+/// The JSON format is {"build", "verdict": "pass" | "fail", "entries": [{row, subject, law, unit, value, low, high,
+/// verdict, note}]}; non-finite numbers become null.
+std::string to_json(const Certificate& certificate);
+
+Certificate certificate_from_json(const std::string& text, const std::string& place);
 
 }  // namespace tumble::scenarios

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
+#include <limits>
 
 #include "scenarios/certificate/rows.hpp"
 #include "scenarios/certificate/set_up.hpp"
+#include "sim/imu/imu_simulation.hpp"
 
 namespace tumble::scenarios {
 
@@ -30,6 +32,46 @@ std::vector<CertificateEntry> certify_free_flight(const CertificateInput& input,
       {"free_flight_momentum", "rig",
        "a body without torque keeps its angular momentum in the world frame: maximum relative change in 5 s", "1",
        momentum_drift, 0.0, 1e-5, ""}};
+}
+
+std::vector<CertificateEntry> certify_flight_force(const CertificateInput& input, const FlightForceSetup& setup) {
+  sim::Trial trial(build(input, bare_room("rig")));
+  trial.set_state(thrown(setup.rate_rad_s));
+  const sim::Truth truth = fly(trial, setup.duration_s);
+
+  sim::SensorSpec ideal;
+  ideal.name = "imu";
+  ideal.kind = "imu";
+  ideal.values.set("output_rate_hz", 1.0 / trial.step_s());
+  ideal.values = sim::resolve("certificate.imu", ideal.values, sim::imu_parameters());
+  Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
+  T_BI.translation().x() = setup.lever_arm_m;
+  sim::ImuRecord record;
+  sim::ImuTruth imu_truth;
+  sim::simulate_imu(truth, ideal, T_BI, trial.gravity_m_s2(), 1, record, imu_truth);
+
+  double largest_m_s2 = 0.0;
+  for (const Eigen::Vector3d& f : record.accel_m_s2) largest_m_s2 = larger(largest_m_s2, f.norm());
+  return {{"flight_specific_force", "rig",
+           "an ideal accelerometer at the centre of mass reads zero in free flight: maximum reading", "m/s^2",
+           largest_m_s2, 0.0, 1e-6, ""}};
+}
+
+std::vector<CertificateEntry> certify_free_fall(const CertificateInput& input, const FreeFallSetup& setup) {
+  sim::Trial trial(build(input, bare_room("sphere")));
+  sim::BodyState start;
+  start.p_WB_m.z() = trial.sphere_radius_m() + setup.height_m - trial.p_BG_m().z();
+  trial.set_state(start);
+  const double expected_s = std::sqrt(2.0 * setup.stated_height_m / trial.gravity_m_s2());
+  double touched_s = std::numeric_limits<double>::quiet_NaN();
+  while (std::isnan(touched_s) && trial.state().time_s < 10.0 * expected_s + 1.0) {
+    trial.step();
+    if (!trial.contacts().empty()) touched_s = trial.state().time_s;
+  }
+  return {{"free_fall_time", "sphere",
+           "a fall from height h takes sqrt(2 h / g): time of the first contact minus this time, in steps of the "
+           "physics engine",
+           "1", (touched_s - expected_s) / trial.step_s(), -0.01, 1.01, ""}};
 }
 
 }  // namespace tumble::scenarios

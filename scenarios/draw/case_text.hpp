@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "scenarios/draw/named_case.hpp"
+#include "scenarios/draw/scenario.hpp"
 #include "scenarios/draw/strict_yaml.hpp"
 
 namespace tumble::scenarios {

@@ -3,8 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "scenarios/draw/case_text.hpp"
 #include "scenarios/draw/drawn_numbers.hpp"
+#include "scenarios/draw/registry.hpp"
+#include "scenarios/draw/scenario_text.hpp"
+#include "scenarios/draw/strict_yaml.hpp"
 #include "scenarios/draw/yaml_text.hpp"
 #include "scenarios/errors.hpp"
 
@@ -71,6 +76,78 @@ std::string to_yaml(const Scenario& scenario) {
   out += "sensors:\n";
   for (const Scenario::Sensor& sensor : scenario.sensors) out += sensor_text(sensor);
   return out + streams_text(scenario.streams);
+}
+
+namespace {
+
+using Numbers = std::map<std::string, Distribution>;
+
+[[noreturn]] void fail(const Scenario& scenario, const std::string& key, const std::string& what) {
+  throw BadInput("'" + key + "' of scenario " + scenario.name + ": " + what);
+}
+
+Distribution constant(const Scenario& scenario, const std::string& key, double value, const sim::Parameter& parameter) {
+  if (!(value >= parameter.low && value <= parameter.high)) {
+    fail(scenario, key,
+         fmt::format("the new value is {:g} {}; it must be within [{:g}, {:g}]", value, parameter.unit, parameter.low,
+                     parameter.high));
+  }
+  return {Distribution::Shape::constant, {value}, 0};
+}
+
+void fix(const Scenario& scenario, const std::string& key, const std::string& name, double value,
+         std::span<const sim::Parameter> known, Numbers& numbers) {
+  const sim::Parameter* const parameter = find_parameter(known, name);
+  if (parameter == nullptr) fail(scenario, key, "unknown number '" + name + "'" + suggestion(name, names_of(known)));
+  numbers[name] = constant(scenario, key, value, *parameter);
+}
+
+void fix(const Scenario& scenario, const std::string& key, const std::string& name, double value,
+         std::span<const sim::ComponentType> types, Scenario::Part& part) {
+  fix(scenario, key, name, value, find_type(types, part.type)->parameters, part.numbers);
+}
+
+void fix_of_sensor(Scenario& scenario, const std::string& key, const std::string& rest, double value,
+                   const Registry& registry) {
+  const std::size_t dot = rest.find('.');
+  const std::string name = rest.substr(0, dot);
+  std::vector<std::string> names;
+  for (const Scenario::Sensor& sensor : scenario.sensors) names.push_back(sensor.name);
+  const auto at = std::find(names.begin(), names.end(), name);
+  if (at == names.end()) fail(scenario, key, "unknown sensor '" + name + "'" + suggestion(name, names));
+  if (dot == std::string::npos)
+    fail(scenario, key, "the key names a sensor without a parameter; write 'sensors.SENSOR.PARAMETER'");
+  Scenario::Sensor& sensor = scenario.sensors[static_cast<std::size_t>(at - names.begin())];
+  const std::string number = rest.substr(dot + 1);
+  const std::string mount = "mount_error.";
+  if (number.starts_with(mount)) {
+    fix(scenario, key, number.substr(mount.size()), value, registry.mount_error, sensor.mount_error);
+  } else {
+    fix(scenario, key, number, value, find_type(registry.sensors, sensor.kind)->parameters, sensor.numbers);
+  }
+}
+
+}  // namespace
+
+void fix_number(Scenario& scenario, const std::string& key, double value) {
+  static const std::vector<std::string> kPlaces = {"duration_s", "world", "robot", "motion", "sensors"};
+  const Registry registry = Registry::of_simulation();
+  const std::size_t dot = key.find('.');
+  const std::string place = key.substr(0, dot), rest = dot == std::string::npos ? "" : key.substr(dot + 1);
+  if (key == "duration_s") {
+    scenario.duration_s = constant(scenario, key, value, duration_parameter());
+  } else if (place == "world") {
+    fix(scenario, key, rest, value, registry.worlds, scenario.world);
+  } else if (place == "robot") {
+    fix(scenario, key, rest, value, registry.robots, scenario.robot);
+  } else if (place == "motion") {
+    fix(scenario, key, rest, value, registry.motions, scenario.motion);
+  } else if (place == "sensors") {
+    fix_of_sensor(scenario, key, rest, value, registry);
+  } else {
+    fail(scenario, key,
+         fmt::format("the scenario has no number with the key '{}'{}", place, suggestion(place, kPlaces)));
+  }
 }
 
 }  // namespace tumble::scenarios

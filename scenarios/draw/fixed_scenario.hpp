@@ -13,4 +13,6 @@ Scenario fixed_as(Scenario scenario, const sim::Situation& situation);
 
 std::string to_yaml(const Scenario& scenario);
 
+void fix_number(Scenario& scenario, const std::string& key, double value);
+
 }  // namespace tumble::scenarios

@@ -7,7 +7,7 @@
 
 #include "scenarios/draw/scenario_text.hpp"
 #include "scenarios/draw/strict_yaml.hpp"
-#include "scenarios/draw/yaml_folder.hpp"
+#include "scenarios/draw/yaml_text.hpp"
 #include "scenarios/errors.hpp"
 
 namespace tumble::scenarios {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -10,10 +9,31 @@
 
 #include "scenarios/data_root.hpp"
 #include "scenarios/draw/distribution.hpp"
-#include "scenarios/draw/named_case.hpp"
 #include "sim/situation.hpp"
 
 namespace tumble::scenarios {
+
+struct Expectation {
+  std::string method;                ///< "slam/tumble"
+  bool fails = false;                ///< true: the method is expected to fail
+  std::string metric;                ///< checked in addition to the status
+  std::optional<double> worse_than;  ///< the check fails above this value
+  std::string status;                ///< status of the method on the accepted run
+  std::optional<double> drawn;       ///< value of the metric before shrinking
+  std::optional<double> value;       ///< on the accepted run
+  bool operator==(const Expectation&) const = default;
+};
+
+/// NamedCase describes a simulated run on which a method failed, and the results that are expected: the key `case` in a
+/// file of scenarios/regressions.
+struct NamedCase {
+  std::string scenario;    ///< scenario of the original run
+  std::uint64_t seed = 0;  ///< for values that the file omits
+  std::string version;     ///< version of the program that simplified the run
+  std::string command;     ///< command that simplified the run
+  std::vector<Expectation> expected;
+  bool operator==(const NamedCase&) const = default;
+};
 
 struct Scenario {
   struct Part {

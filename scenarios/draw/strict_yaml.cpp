@@ -17,6 +17,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/regular_file.hpp"
+#include "scenarios/text.hpp"
 #include "sim/parameters.hpp"
 
 namespace tumble::scenarios {
@@ -166,9 +167,7 @@ double YamlNode::parse_number(bool infinity_allowed) const {
 std::uint64_t YamlNode::unsigned_integer() const {
   const std::string written = text();
   std::uint64_t value = 0;
-  const char* const end = written.data() + written.size();
-  const auto [stop, error] = std::from_chars(written.data(), end, value);
-  if (error != std::errc() || stop != end)
+  if (!read_number(written, value))
     fail(fmt::format("the value of this key must be an integer from 0 to 2^64-1; it is '{}'", written));
   return value;
 }

@@ -4,12 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
-#include <charconv>
 #include <cmath>
+#include <system_error>
 
+#include "scenarios/draw/strict_yaml.hpp"
 #include "scenarios/errors.hpp"
+#include "scenarios/text.hpp"
 
 namespace tumble::scenarios {
 
@@ -17,9 +18,7 @@ std::string yaml_number(double value, const std::string& place) {
   if (std::isnan(value))
     throw BadInput(fmt::format("{}: the value is NaN, which a scenario file cannot contain", place));
   if (std::isinf(value)) return value > 0.0 ? ".inf" : "-.inf";
-  std::array<char, 32> text;
-  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
-  return std::string(text.data(), end);
+  return exact_text(value);
 }
 
 std::string yaml_word(const std::string& text) {
@@ -47,6 +46,26 @@ std::string streams_text(const std::map<std::string, std::uint64_t>& streams) {
   std::string out = streams.empty() ? "" : "streams:\n";
   for (const auto& [name, seed] : streams) out += "  " + yaml_word(name) + ": " + std::to_string(seed) + "\n";
   return out;
+}
+
+std::vector<std::string> yaml_stems(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::directory_iterator entries(folder, error);
+  if (error) throw BadInput(folder.string() + ": " + error.message());
+  std::vector<std::string> names;
+  for (const auto& entry : entries) {
+    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::filesystem::path find_yaml(const std::filesystem::path& folder, const std::string& what, const std::string& name) {
+  const std::vector<std::string> names = yaml_stems(folder);
+  if (!std::binary_search(names.begin(), names.end(), name)) {
+    throw BadInput("unknown " + what + " '" + name + "'" + suggestion(name, names));
+  }
+  return folder / (name + ".yaml");
 }
 
 }  // namespace tumble::scenarios

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 namespace tumble::scenarios {
 
@@ -13,5 +15,9 @@ std::string yaml_word(const std::string& text);
 
 /// Returns the key `streams` with the seeds of random streams. Returns an empty text without seeds.
 std::string streams_text(const std::map<std::string, std::uint64_t>& streams);
+
+std::vector<std::string> yaml_stems(const std::filesystem::path& folder);
+
+std::filesystem::path find_yaml(const std::filesystem::path& folder, const std::string& what, const std::string& name);
 
 }  // namespace tumble::scenarios

@@ -21,7 +21,7 @@ constexpr std::uintmax_t kBase = 10'000;       // rows or points allowed for any
 constexpr std::uintmax_t kPerReading = 4;      // additional rows or points per input reading
 constexpr std::uintmax_t kBytesPerRow = 1024;  // a sweep's row of 37 numbers
 constexpr std::uintmax_t kBytesPerPoint = 32;  // x y z nx ny nz sigma, header
-constexpr std::int64_t kMargin_ns = 10'000'000'000;
+constexpr std::int64_t kTimeMargin_ns = 10'000'000'000;
 constexpr double kPositionMax_m = 1e7;
 constexpr double kRateMax_rad_s = 1e6;
 constexpr double kAnswerNormTolerance = 1e-2;
@@ -122,12 +122,12 @@ void AnswerBounds::require_size(const std::filesystem::path& file, std::uintmax_
 }
 
 void AnswerBounds::require_time(std::int64_t time_ns, const std::string& where) const {
-  if (time_ns >= first_ns_ - kMargin_ns && time_ns <= last_ns_ + kMargin_ns) return;
+  if (time_ns >= first_ns_ - kTimeMargin_ns && time_ns <= last_ns_ + kTimeMargin_ns) return;
   const auto seconds = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-9; };
   throw BadInput(fmt::format(
       "{}: the time stamp is {:.9g} s; it must be within {:.9g} and {:.9g} s (the time of the recording with a "
       "margin of 10 s)",
-      where, seconds(time_ns), seconds(first_ns_ - kMargin_ns), seconds(last_ns_ + kMargin_ns)));
+      where, seconds(time_ns), seconds(first_ns_ - kTimeMargin_ns), seconds(last_ns_ + kTimeMargin_ns)));
 }
 
 void AnswerBounds::require_unit(std::span<const double> stamps_s, const char* unit, const Place& place) const {
@@ -135,8 +135,8 @@ void AnswerBounds::require_unit(std::span<const double> stamps_s, const char* un
   const auto [least, most] = std::ranges::minmax(stamps_s);
   const double times = (most - least) / length_s_;
   const auto outside = std::ranges::find_if(stamps_s, [this](double stamp_s) {
-    return stamp_s < 1e-9 * static_cast<double>(first_ns_ - kMargin_ns) ||
-           stamp_s > 1e-9 * static_cast<double>(last_ns_ + kMargin_ns);
+    return stamp_s < 1e-9 * static_cast<double>(first_ns_ - kTimeMargin_ns) ||
+           stamp_s > 1e-9 * static_cast<double>(last_ns_ + kTimeMargin_ns);
   });
   const bool far = outside != stamps_s.end() && times > kUnitsApart, near = times < 1.0 / kUnitsApart;
   if (!far && !near) return;

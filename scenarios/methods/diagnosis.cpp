@@ -9,7 +9,7 @@
 
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/findings.hpp"
-#include "scenarios/methods/rate_baseline.hpp"
+#include "scenarios/methods/rate_baselines.hpp"
 #include "scenarios/recordings/number_text.hpp"
 #include "tumble/angular_velocity/detail/clipping_finder.hpp"
 #include "tumble/angular_velocity/detail/rest_detector.hpp"

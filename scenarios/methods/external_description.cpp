@@ -158,8 +158,7 @@ void read_python(const std::map<std::string, YamlNode>& fields, ExternalDescript
 std::vector<Kind> kinds_found(const std::string& text, const std::regex& pattern) {
   std::vector<Kind> found;
   for (std::sregex_iterator it(text.begin(), text.end(), pattern), end; it != end; ++it)
-    for (int k = 0; k <= static_cast<int>(Kind::slam); ++k)
-      if ((*it)[2] == to_string(static_cast<Kind>(k))) found.push_back(static_cast<Kind>(k));
+    if (const auto kind = kind_named((*it)[2].str())) found.push_back(*kind);
   return found;
 }
 

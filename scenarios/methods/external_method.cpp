@@ -1,24 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/external_method.hpp"
 
+#include <fmt/format.h>
+#include <xxhash.h>
+
 #include <algorithm>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <system_error>
 #include <utility>
 
+#include "scenarios/draw/strict_yaml.hpp"
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/command_run.hpp"
 #include "scenarios/methods/external_description.hpp"
 #include "scenarios/methods/external_result.hpp"
 #include "scenarios/methods/python_method.hpp"
-#include "scenarios/methods/sensors_text.hpp"
 #include "scenarios/processes/command.hpp"
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/export.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
-#include "scenarios/recordings/scratch_folder.hpp"
+#include "scenarios/recordings/scratch_file.hpp"
 
 namespace tumble::scenarios {
 
@@ -155,6 +158,112 @@ Method external_method(const std::filesystem::path& file, double time_limit_s) {
               throw NoAnswer(NoAnswer::Why::machine, error.what());
             }
           }};
+}
+
+namespace {
+
+constexpr double kVersionLimit_s = 30.0;
+constexpr std::size_t kFirstLineMax = 120;
+
+}  // namespace
+
+std::string without_trailing_folder(std::string text, const std::filesystem::path& folder) {
+  const std::string whole = folder.string();
+  for (std::size_t at = 0; !whole.empty() && (at = text.find(whole, at)) != std::string::npos;) {
+    const bool within = at + whole.size() < text.size() && text[at + whole.size()] == '/';
+    text.replace(at, whole.size() + (within ? 1 : 0), within ? "" : ".");
+  }
+  return text;
+}
+
+std::string with_output_tail(const std::string& what, const CommandEnd& end) {
+  return end.output_tail.empty() ? what
+                                 : fmt::format("{}; the last output of the command is: {}", what, end.output_tail);
+}
+
+void require_done(const CommandEnd& end) {
+  if (end.how == CommandEnd::How::done) return;
+  if (end.how == CommandEnd::How::timed_out)
+    throw NoAnswer(
+        NoAnswer::Why::timed_out,
+        with_output_tail(
+            fmt::format("{}; to change the limit, set the key time_limit_s in the method's description", end.reason),
+            end));
+  throw NoAnswer(NoAnswer::Why::crashed, with_output_tail(end.reason, end));
+}
+
+std::string reported_version(Command command, const std::string& place) {
+  command.time_limit_s = kVersionLimit_s;
+  const CommandEnd end = run_command(command);
+  if (end.how != CommandEnd::How::done) throw BadInput(place + with_output_tail(end.reason, end));
+  const std::string said = read_text_file(command.transcript);
+  if (said.empty())
+    throw BadInput(
+        fmt::format("{}the version command printed nothing; it must print a text that identifies this version", place));
+  return fmt::format("{}; the digest of the complete output is {:016x}",
+                     said.substr(0, std::min(said.find('\n'), kFirstLineMax)), XXH3_64bits(said.data(), said.size()));
+}
+
+namespace {
+
+using nlohmann::json;
+
+json mounting(const Eigen::Isometry3d& T) {
+  const Eigen::Quaterniond q(T.rotation());
+  const Eigen::Vector3d p = T.translation();
+  return {{"translation_m", {p.x(), p.y(), p.z()}}, {"quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
+}
+
+json imu(const sim::ImuRecord& record) {
+  return {{"name", record.name},
+          {"device", record.device},
+          {"period_ns", record.period_ns},
+          {"samples", record.time_ns.size()},
+          {"stated_gyro_range_rad_s", record.stated_gyro_range_rad_s},
+          {"stated_accel_range_m_s2", record.stated_accel_range_m_s2},
+          {"gyro_noise_rad_s_sqrt_hz", record.gyro_noise_rad_s_sqrt_hz},
+          {"accel_noise_m_s2_sqrt_hz", record.accel_noise_m_s2_sqrt_hz},
+          {"T_BI", mounting(record.T_BI)}};
+}
+
+json lidar(const sim::LidarRecord& record) {
+  return {{"name", record.name},
+          {"device", record.device},
+          {"sweep_period_ns", record.sweep_period_ns},
+          {"sweeps", record.sweep_start_ns.size()},
+          {"T_BL", mounting(record.T_BL)}};
+}
+
+json series(const sim::SeriesRecord& record) {
+  json quantities = json::array();
+  for (const sim::Quantity& quantity : record.quantities)
+    quantities.push_back({{"name", quantity.name}, {"unit", quantity.unit}, {"noise", quantity.noise}});
+  json constants = json::object();
+  for (const sim::Constant& constant : record.constants) constants[constant.name] = constant.value;
+  return {{"name", record.name},
+          {"kind", record.kind},
+          {"device", record.device},
+          {"period_ns", record.period_ns},
+          {"samples", record.time_ns.size()},
+          {"quantities", quantities},
+          {"constants", constants},
+          {"T_BX", mounting(record.T_BX)}};
+}
+
+}  // namespace
+
+std::string sensors_text(const sim::Sensors& sensors) {
+  json imus = json::array(), lidars = json::array(), others = json::array();
+  for (const sim::ImuRecord& record : sensors.imus) imus.push_back(imu(record));
+  for (const sim::LidarRecord& record : sensors.lidars) lidars.push_back(lidar(record));
+  for (const sim::SeriesRecord& record : sensors.series) others.push_back(series(record));
+  const json all = {{"robot", sensors.robot},
+                    {"sphere_radius_m", sensors.sphere_radius_m},
+                    {"gravity_m_s2", sensors.gravity_m_s2},
+                    {"imus", imus},
+                    {"lidars", lidars},
+                    {"series", others}};
+  return all.dump(2) + "\n";
 }
 
 }  // namespace tumble::scenarios

@@ -11,6 +11,8 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/method.hpp"
+#include "scenarios/processes/command.hpp"
+#include "sim/recording.hpp"
 
 namespace tumble::scenarios {
 
@@ -50,5 +52,30 @@ Method external_method(const std::filesystem::path& file,
 bool is_method_file(const std::string& name);
 
 std::vector<MethodPointer> find_methods_within(std::span<const std::string> names, double time_limit_s);
+
+std::string without_trailing_folder(std::string text, const std::filesystem::path& folder);
+
+std::string with_output_tail(const std::string& what, const CommandEnd& end);
+
+template <class Work>
+auto without_folder(const std::filesystem::path& scratch, Work&& work) {
+  try {
+    return work();
+  } catch (const NoAnswer& error) {
+    throw NoAnswer(error.why(), without_trailing_folder(error.what(), scratch), error.transcript());
+  } catch (const BadInput& error) {
+    throw BadInput(without_trailing_folder(error.what(), scratch));
+  }
+}
+
+void require_done(const CommandEnd& end);
+
+/// The version command of an external method runs for at most 30 s.
+std::string reported_version(Command command, const std::string& place);
+
+/// The JSON text contains gravity, the sphere's radius, each IMU with sample rate, ranges, noise densities and mounting
+/// T_BI, and each lidar with period and mounting T_BL. A mounting is the calibrated, not the true pose, as
+/// "translation_m" [x, y, z] and "quaternion_xyzw".
+std::string sensors_text(const sim::Sensors& sensors);
 
 }  // namespace tumble::scenarios

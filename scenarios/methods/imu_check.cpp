@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/imu_check.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
 #include "scenarios/methods/bridge.hpp"
 
 namespace tumble::scenarios {
@@ -52,6 +56,67 @@ std::vector<std::string> imu_notes(const Imported& recording) {
     if (!note.empty()) out.push_back(imu.name + ": " + note);
   }
   return out;
+}
+
+namespace {
+
+constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
+
+void report_level(std::size_t axis, double level_rad_s, std::map<std::string, double>& health) {
+  health[std::string("learnt_gyro_rail_") + kAxes[axis] + "_rad_s"] = level_rad_s;
+}
+
+void report_smoother(const AngularRateReport& report, std::map<std::string, double>& health) {
+  health["iterations"] = report.iterations;
+  health["converged"] = report.converged ? 1.0 : 0.0;
+  health["calibration_mahalanobis"] = report.calibration_mahalanobis;
+  health["calibration_at_prior"] = report.calibration_at_prior ? 1.0 : 0.0;
+  health["readings_missing"] = static_cast<double>(report.missing_readings);
+  health["rails_disagreeing"] = static_cast<double>(
+      std::count(report.contradicts_stated_range.begin(), report.contradicts_stated_range.end(), true));
+  health["accel_delay_s"] = report.sensor_errors.errors.accel_delay_s;
+  health["device_calibrated"] = report.data_sheet_probability;
+  health["triads_together"] = report.synchronous_triads_probability;
+  health["error_rounds"] = report.correction_iterations;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    health[std::string("learnt_lever_arm_") + kAxes[axis] + "_m"] =
+        report.calibration.constants.lever_arm_m[static_cast<Eigen::Index>(axis)];
+    if (report.saturation_limit_observed[axis]) report_level(axis, *report.saturation_limits[axis], health);
+  }
+}
+
+}  // namespace
+
+void report_rails(const SaturationLevels& rails, std::map<std::string, double>& health) {
+  const SaturationPlanes in_use = rails.saturation_planes_in_use();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double level_rad_s = rails.axis_limit_state.channels[axis].plateau_limit;
+    if (in_use.sensing_axis[axis]) {
+      report_level(axis, in_use.sensing_axis[axis]->saturation_limit_rad_s, health);
+    } else if (level_rad_s > 0.0) {
+      report_level(axis, level_rad_s, health);
+    }
+  }
+}
+
+std::optional<double> carried_share(const MotionRegimeSmoother::Report& report) {
+  return report.regimes_estimated ? std::optional(report.probabilities.hand_held) : std::nullopt;
+}
+
+void report_rates(const MotionRegimeSmoother::Report& report, Estimate& result) {
+  report_smoother(report.rate, result.health);
+  if (!report.regimes_estimated) return;
+  result.health["regime_carried_asked"] = report.hand_held_smoother_ran ? 1.0 : 0.0;
+  if (report.hand_held_smoother_ran) result.health["carried_converged"] = report.hand_held.converged ? 1.0 : 0.0;
+}
+
+void report_gaps(std::span<const ImuSample> samples, Estimate& estimate) {
+  const auto is_gap = [](const ImuSample& before, const ImuSample& after) {
+    return seconds(after.time_ns - before.time_ns) > bridge::kGapMaxS;
+  };
+  std::size_t gaps = 0;
+  for (std::size_t k = 1; k < samples.size(); ++k) gaps += is_gap(samples[k - 1], samples[k]) ? 1 : 0;
+  if (gaps > 0) estimate.health["gaps"] = static_cast<double>(gaps);
 }
 
 }  // namespace tumble::scenarios

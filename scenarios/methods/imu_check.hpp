@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -8,6 +9,8 @@
 
 #include "scenarios/methods/method.hpp"
 #include "scenarios/recordings/import.hpp"
+#include "tumble/angular_velocity/detail/clipping_finder.hpp"
+#include "tumble/attitude/detail/regime_smoother.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/odometry/detail/imu_findings.hpp"
 
@@ -28,5 +31,14 @@ void inflate_rates(const ImuHealthReport& findings, std::span<const ImuSample> s
 /// Returns a caution about units, signs or axes of the readings, or an empty text.
 std::string imu_note(const sim::ImuRecord& imu, double gravity_m_s2);
 std::vector<std::string> imu_notes(const Imported& recording);
+
+void report_rates(const MotionRegimeSmoother::Report& report, Estimate& result);
+
+/// Saturation limits that were copied from another axis or from a data sheet are not reported.
+void report_rails(const SaturationLevels& rails, std::map<std::string, double>& health);
+
+std::optional<double> carried_share(const MotionRegimeSmoother::Report& report);
+
+void report_gaps(std::span<const ImuSample> samples, Estimate& estimate);
 
 }  // namespace tumble::scenarios

@@ -28,7 +28,7 @@ constexpr double kAgrees = 0.3;
 /// A correction of the gyro's units, axes or delay is reported only if the correction reduces the rotation error by
 /// these factors.
 constexpr double kConclusive = 0.5, kDelayConclusive = 0.6;
-constexpr double kDegreesPerRadian = 57.29577951308232;
+constexpr double kDegreesOfRadian = 57.29577951308232;
 constexpr double kDelayMost_s = 0.5, kDelayStep_s = 0.01, kDelaySaid_s = 0.03;
 constexpr std::int64_t kGap_ns = 100'000'000;
 constexpr double kInverted = 0.2;
@@ -143,7 +143,7 @@ void fit_unit(const Pairs& pairs, double delay_s, RotationAgreement& best, doubl
   RotationAgreement at;
   at.pairs = pairs.seen.size();
   at.delay_s = delay_s;
-  for (const double unit : {1.0, kDegreesPerRadian, 1.0 / kDegreesPerRadian}) {
+  for (const double unit : {1.0, kDegreesOfRadian, 1.0 / kDegreesOfRadian}) {
     const double error =
         pairs.share([&](std::size_t k) { return std::abs(pairs.seen[k].norm() - unit * pairs.said[k].norm()); });
     if (error < at.unit_error) at.unit = unit, at.unit_error = error;

@@ -3,19 +3,22 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Core>
 #include <array>
 #include <bit>
-#include <charconv>
-#include <cstring>
 #include <fstream>
+#include <iterator>
 #include <span>
 #include <string>
 #include <utility>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/clouds/cloud_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/regular_file.hpp"
 #include "scenarios/text.hpp"
+#include "tumble/mapping/prior_map.hpp"
+#include "tumble/odometry/tumbling_odometry.hpp"
 
 namespace tumble::scenarios {
 
@@ -43,11 +46,9 @@ std::size_t read_header(std::istream& file, const std::filesystem::path& path) {
     if (!std::getline(file, found))
       throw BadInput(fmt::format("{}: the header of the map file is truncated", path.string()));
     const std::string prefix = "element vertex ";
-    if (line.starts_with(prefix) && found.starts_with(prefix)) {
-      const char* end = found.data() + found.size();
-      const auto [stop, error] = std::from_chars(found.data() + prefix.size(), end, points);
-      if (error == std::errc() && stop == end) continue;
-    }
+    if (line.starts_with(prefix) && found.starts_with(prefix) &&
+        read_number(std::string_view(found).substr(prefix.size()), points))
+      continue;
     if (found != line)
       throw BadInput(fmt::format("{}: a line of the map file's header is '{}'; it must be '{}'", path.string(),
                                  shortened(found), line));
@@ -104,6 +105,62 @@ std::vector<MapPoint> read_map(const std::filesystem::path& path) {
     point.sigma_m = row[6];
   }
   return map;
+}
+
+namespace {
+
+struct VectorColumns {
+  const std::vector<double>*x = nullptr, *y = nullptr, *z = nullptr;
+
+  explicit operator bool() const { return x && y && z; }
+  Eigen::Vector3f operator()(std::size_t k) const { return Eigen::Vector3d((*x)[k], (*y)[k], (*z)[k]).cast<float>(); }
+};
+
+VectorColumns find(const Cloud& cloud, const std::string& prefix) {
+  return {cloud.find(prefix + "x"), cloud.find(prefix + "y"), cloud.find(prefix + "z")};
+}
+
+std::vector<MapPoint> from_cloud(const std::filesystem::path& path) {
+  const Cloud cloud = read_cloud(path);
+  const VectorColumns position = find(cloud, "");
+  if (!position) throw BadInput(fmt::format("{}: the map file has no columns x y z", path.string()));
+  VectorColumns normal = find(cloud, "n");
+  if (!normal) normal = find(cloud, "normal_");
+  if (!normal) {
+    std::vector<Eigen::Vector3f> positions(cloud.points);
+    for (std::size_t k = 0; k < cloud.points; ++k) positions[k] = position(k);
+    return to_map_points(positions);
+  }
+  const std::vector<double>* sigma = cloud.find("sigma");
+  std::vector<MapPoint> points;
+  for (std::size_t k = 0; k < cloud.points; ++k) {
+    MapPoint point{position(k), normal(k), sigma ? static_cast<float>((*sigma)[k]) : 0.02f};
+    if (!point.position_W_m.allFinite()) continue;
+    if (!point.normal_W.allFinite()) point.normal_W.setZero();
+    points.push_back(point);
+  }
+  return points;
+}
+
+}  // namespace
+
+void write_prior_map(const std::filesystem::path& path, std::span<const MapPoint> points) {
+  OutputFile file(path);
+  file.write(save_map(points));
+  file.move_into_place();
+}
+
+std::vector<MapPoint> read_prior_map(const std::filesystem::path& path) {
+  const std::string extension = path.extension().string();
+  if (extension == ".pcd" || extension == ".ply") return from_cloud(path);
+  std::ifstream file = open_regular_file(path);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  std::vector<MapPoint> points;
+  const Status status = load_map(std::as_bytes(std::span(text)), points);
+  if (!status.ok())
+    throw BadInput(fmt::format("{}: the map cannot be read: {}; a map must be a .tumblemap, .pcd or .ply file",
+                               path.string(), status.message()));
+  return points;
 }
 
 }  // namespace tumble::scenarios

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -8,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scenarios/methods/findings.hpp"
@@ -22,7 +24,9 @@
 namespace tumble::scenarios {
 
 enum class Kind { rate, attitude, position, slam };
+inline constexpr std::array kKinds = {Kind::rate, Kind::attitude, Kind::position, Kind::slam};
 const char* to_string(Kind kind);
+std::optional<Kind> kind_named(std::string_view name);
 std::string full_name(Kind kind, const std::string& method);
 
 enum class Frame { imu, lidar, body, centre };
@@ -70,14 +74,14 @@ struct Subject {
 struct MethodInfo {
   std::string name;
   Kind kind = Kind::rate;
-  std::string doc;                             ///< description, in one sentence
-  bool ours = false;                           ///< developed in this project
-  std::string source;                          ///< paper, or "ours"
-  std::vector<const SettingsTable*> settings;  ///< settings that define `parameters`
-  std::span<const sim::Parameter> parameters;
+  std::string doc = {};                             ///< description, in one sentence
+  bool ours = false;                                ///< developed in this project
+  std::string source = {};                          ///< paper, or "ours"
+  std::vector<const SettingsTable*> settings = {};  ///< settings that define `parameters`
+  std::span<const sim::Parameter> parameters = {};
   std::size_t parameters_first = 0;  ///< common ones come first in `parameters`
   bool needs_truth = false;
-  std::vector<std::string> robots;  ///< "rig", "sphere"; empty: all
+  std::vector<std::string> robots = {};  ///< "rig", "sphere"; empty: all
   std::string why_not(const Subject& subject) const;
   bool applies_to(const Subject& subject) const { return why_not(subject).empty(); }
   /// true: the method is the reference method of its kind, without treatment of saturation or slip.
@@ -85,7 +89,7 @@ struct MethodInfo {
   /// true: the method can start from a saved calibration of the rig (lever arm, biases, inertia ratios), and saves its
   /// new calibration.
   bool calibrates_rig = false;
-  std::string version;  ///< for external methods
+  std::string version = {};  ///< for external methods
 };
 
 std::string full_name(const MethodInfo& info);

@@ -3,7 +3,7 @@
 
 The program starts this script for a method that is a Python function (EXTERNAL.md). The script only needs numpy. SENSORS and ANSWER are
 file descriptors of shared memory, which contains the length of a JSON text (8 bytes, little endian), the text, and arrays from the next
-multiple of 64 bytes (python_exchange.hpp).
+multiple of 64 bytes (python_method.hpp).
 """
 import importlib.util
 import json

@@ -9,9 +9,10 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/external_method.hpp"
+#include "scenarios/methods/method.hpp"
 #include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/methods/settings.hpp"
-#include "scenarios/methods/slam_registry.hpp"
+#include "scenarios/text.hpp"
 
 namespace tumble::scenarios {
 
@@ -97,27 +98,31 @@ std::string MethodInfo::why_not(const Subject& subject) const {
   return {};
 }
 
-Method make_method(MethodInfo info, RunCore run) {
-  if (info.ours && info.source.empty()) info.source = "ours";
-  const std::string name = full_name(info);
-  const std::vector<const SettingsTable*> settings = info.settings;
-  const auto parameters =
-      std::make_shared<const std::vector<sim::Parameter>>(joined_rows(settings, info.parameters_first));
-  info.parameters = *parameters;
-  const bool needs_truth = info.needs_truth;
-  RunMethod wrapped = [name, settings, parameters, needs_truth, run](
-                          const sim::Sensors& sensors, const sim::Values& given, const OracleInput& oracle) {
-    if (needs_truth && oracle.truth == nullptr) {
-      throw BadInput(fmt::format("method {} needs the truth, but this recording has none", name));
-    }
+RunMethod with_settings(const MethodInfo& info, RunMethod run) {
+  return [place = "method " + full_name(info), settings = info.settings, run = std::move(run)](
+             const sim::Sensors& sensors, const sim::Values& given, const OracleInput& oracle) {
     try {
-      const sim::Values resolved = resolve_settings("method " + name, given, settings);
-      return run(sensors, resolved, {.truth = needs_truth ? oracle.truth : nullptr, .on_sweep = oracle.on_sweep});
+      return run(sensors, resolve_settings(place, given, settings), oracle);
     } catch (const sim::InvalidSituation& error) {
       throw BadInput(error.what());
     } catch (const InvalidParams& error) {
-      throw BadInput("method " + name + ": " + error.what());
+      throw BadInput(place + ": " + error.what());
     }
+  };
+}
+
+Method make_method(MethodInfo info, RunCore run) {
+  if (info.ours && info.source.empty()) info.source = "ours";
+  const auto parameters =
+      std::make_shared<const std::vector<sim::Parameter>>(joined_rows(info.settings, info.parameters_first));
+  info.parameters = *parameters;
+  RunMethod wrapped = [name = full_name(info), parameters, needs_truth = info.needs_truth,
+                       resolved = with_settings(info, run)](const sim::Sensors& sensors, const sim::Values& given,
+                                                            const OracleInput& oracle) {
+    if (needs_truth && oracle.truth == nullptr) {
+      throw BadInput(fmt::format("method {} needs the truth, but this recording has none", name));
+    }
+    return resolved(sensors, given, {.truth = needs_truth ? oracle.truth : nullptr, .on_sweep = oracle.on_sweep});
   };
   return {std::move(info), std::move(wrapped)};
 }
@@ -160,8 +165,124 @@ std::vector<MethodPointer> find_methods_within(std::span<const std::string> name
   return found;
 }
 
+std::vector<const SettingsTable*> stages_after(std::vector<const SettingsTable*> own, const Method& position) {
+  own.insert(own.end(), position.info.settings.begin(), position.info.settings.end());
+  return own;
+}
+
+sim::Values values_of(const Method& position, const sim::Values& parameters) {
+  sim::Values own;
+  for (const sim::Parameter& each : position.info.parameters) {
+    const std::string name(each.name);
+    if (parameters.has(name)) own.set(name, parameters.at(name));
+  }
+  return own;
+}
+
 void count_sources(std::span<const AngularRateState> rates, std::map<std::string, double>& health) {
   for (const AngularRateState& rate : rates) health[std::string("samples_") + to_string(rate.source)] += 1.0;
+}
+
+const char* to_string(Kind kind) {
+  switch (kind) {
+    case Kind::rate:
+      return "rate";
+    case Kind::attitude:
+      return "attitude";
+    case Kind::position:
+      return "position";
+    case Kind::slam:
+      return "slam";
+  }
+  return "unknown";
+}
+
+std::optional<Kind> kind_named(std::string_view name) {
+  for (const Kind kind : kKinds) {
+    if (name == to_string(kind)) return kind;
+  }
+  return std::nullopt;
+}
+
+std::string full_name(Kind kind, const std::string& method) {
+  return std::string(to_string(kind)) + "/" + method;
+}
+
+const char* to_string(Frame frame) {
+  switch (frame) {
+    case Frame::imu:
+      return "imu";
+    case Frame::lidar:
+      return "lidar";
+    case Frame::body:
+      return "body";
+    case Frame::centre:
+      return "centre";
+  }
+  return "unknown";
+}
+
+namespace {
+
+struct GivenParameter {
+  std::string text, method, name;
+  double value = 0.0;
+};
+
+GivenParameter parsed(const std::string& text) {
+  const std::size_t dot = text.find('.'), equals = text.find('=');
+  GivenParameter out{text, "", "", 0.0};
+  bool good = dot != std::string::npos && equals != std::string::npos && 0 < dot && dot + 1 < equals;
+  if (good) {
+    out.method = text.substr(0, dot);
+    out.name = text.substr(dot + 1, equals - dot - 1);
+    good = read_number(std::string_view(text).substr(equals + 1), out.value);
+  }
+  if (!good)
+    throw BadInput(fmt::format(
+        "the parameter '{}' must have the form METHOD.PARAMETER=NUMBER, for example rate/tumble_lag.lag_s=0.5", text));
+  return out;
+}
+
+Method with(const Method& method, const sim::Values& chosen) {
+  Method out = method;
+  out.run = [run = method.run, chosen](const sim::Sensors& sensors, const sim::Values& given,
+                                       const OracleInput& oracle) {
+    sim::Values all = chosen;
+    for (const auto& [name, value] : given.all()) all.set(name, value);
+    Estimate estimate = run(sensors, all, oracle);
+    estimate.parameters = chosen.all();
+    return estimate;
+  };
+  return out;
+}
+
+}  // namespace
+
+std::vector<Method> with_parameters(std::span<const MethodPointer> methods, std::span<const std::string> texts) {
+  std::vector<sim::Values> chosen(methods.size());
+  for (const std::string& text : texts) {
+    const GivenParameter given = parsed(text);
+    bool concerned = false;
+    for (std::size_t k = 0; k < methods.size(); ++k) {
+      const MethodInfo& info = methods[k]->info;
+      if (given.method != info.name && given.method != full_name(info)) continue;
+      concerned = true;
+      if (chosen[k].has(given.name)) throw BadInput("'" + text + "': " + given.name + " is given twice");
+      chosen[k].set(given.name, given.value);
+      try {
+        (void)resolve_settings("method " + full_name(info), chosen[k], info.settings);
+      } catch (const sim::InvalidSituation& error) {
+        throw BadInput(error.what());
+      }
+    }
+    if (!concerned)
+      throw BadInput(
+          fmt::format("'{}': the parameter belongs to no method of this run; add the method '{}'", text, given.method));
+  }
+  std::vector<Method> out;
+  for (std::size_t k = 0; k < methods.size(); ++k) out.push_back(with(*methods[k], chosen[k]));
+  return out;
 }
 
 }  // namespace tumble::scenarios

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <functional>
 #include <initializer_list>
 #include <map>
 #include <optional>
@@ -11,15 +10,19 @@
 
 #include "scenarios/methods/method.hpp"
 #include "tumble/common/imu.hpp"
-#include "tumble/mapping/further_readings.hpp"
+#include "tumble/mapping/prior_map.hpp"
 
-/// A new method needs a file KIND_NAME.cpp that defines `Method KIND_NAME()`, a declaration in this header, a line in
-/// registry.cpp, and a line in CMakeLists.txt.
+/// A new method needs a source that defines `Method KIND_NAME()`, a declaration in this header, a line in registry.cpp,
+/// and a line in CMakeLists.txt.
 namespace tumble::scenarios {
 
 using RunCore = Estimate (*)(const sim::Sensors&, const sim::Values& parameters, const OracleInput& oracle);
 
 Method make_method(MethodInfo info, RunCore run);
+
+/// The returned function resolves the given parameter values by the settings of `info` before it calls `run`; invalid
+/// parameters throw BadInput.
+RunMethod with_settings(const MethodInfo& info, RunMethod run);
 
 Method rate_raw();
 Method rate_interpolate();
@@ -48,31 +51,23 @@ Method slam_poses_rolling();
 Method slam_poses_autogain_fusion();
 Method slam_poses_tumble();
 Method slam_rolling_prior();
+Method slam_published();
+Method slam_constant_velocity();
+Method slam_tumble_lag();
+Method slam_tumble_live();
 
-Status raw_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<AngularRateState>& out);
-Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std::vector<AngularRateState>& out);
+/// Returns a copy of slam/tumble_lag or slam/tumble_live that localises in a prior map (TumblingOdometry::use_map), or
+/// nothing for other methods. The health value `prior_map_sweep` is the number of the sweep at which the run was
+/// localised in the prior map, or 0. The poses of sweeps before the localisation in the prior map are in a local frame.
+std::optional<Method> localised_in(const Method& method, std::shared_ptr<const PriorMap> map);
+
+/// Settings and parameter values of a method that runs a position method first.
+std::vector<const SettingsTable*> stages_after(std::vector<const SettingsTable*> own, const Method& position);
+sim::Values values_of(const Method& position, const sim::Values& parameters);
 
 void count_sources(std::span<const AngularRateState> rates, std::map<std::string, double>& health);
 
-struct KnownMotion {
-  /// Motion of the IMU between two times, or nothing if the odometer does not cover both times.
-  std::function<std::optional<OdometerReading>(TimeNs from_ns, TimeNs to_ns)> between;
-  double correction_max_m = 1.0;  ///< larger corrections are rejected
-  double correction_max_rad = 1.0;
-};
-
-struct SlamChain {
-  /// true: a first pass over the recording estimates lidar mounting, clock offset and gravity, and a second pass starts
-  /// with this calibration.
-  bool calibration = false;
-  const KnownMotion* along = nullptr;  ///< odometer
-  std::function<void(std::size_t done, std::size_t all)> on_sweep = {};
-};
-
-struct SlamStage;
-
-/// Returns true if the run ends with a known pose in its map.
-bool run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples, const SlamStage& stage,
-                    const SlamChain& chain, Estimate& estimate);
+/// Parses parameters of methods such as "rate/tumble_lag.lag_s=0.5"; the kind "rate/" is optional.
+std::vector<Method> with_parameters(std::span<const MethodPointer> methods, std::span<const std::string> texts);
 
 }  // namespace tumble::scenarios

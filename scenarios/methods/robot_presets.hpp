@@ -7,11 +7,15 @@
 namespace tumble::scenarios::presets {
 
 /// Vector from the rig's centre of mass to the MTi-30, in IMU axes, from `models/rig.xml`.
-Eigen::Vector3d rig_lever_arm_m();
+inline Eigen::Vector3d rig_lever_arm_m() {
+  return {-0.022, -0.085, 0.055};
+}
 
 /// Bounding box of the rig's own cage, in lidar axes, with a margin of some centimetres. Lidar points inside the
 /// bounding box are reflections from the rig.
-Eigen::AlignedBox3d rig_body_L();
+inline Eigen::AlignedBox3d rig_body_L() {
+  return {Eigen::Vector3d(-0.5, -0.4, -0.27), Eigen::Vector3d(0.5, 0.4, 0.23)};
+}
 
 /// SaturationAwareRateEstimator's method treats gyro readings above this rate as saturated; the rate is slightly below
 /// the saturation limit of the MTi-30.

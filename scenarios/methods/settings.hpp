@@ -129,4 +129,11 @@ class Settings : public SettingsTable {
   Params defaults_;
 };
 
+/// Returns the settings whose defaults are those of `Params`.
+template <class Params>
+const Settings<Params>& default_settings() {
+  static const Settings<Params> all(Params{});
+  return all;
+}
+
 }  // namespace tumble::scenarios

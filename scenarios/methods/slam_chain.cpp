@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/methods/slam_chain.hpp"
+
 #include <utility>
 #include <vector>
 
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/imu_check.hpp"
-#include "scenarios/methods/rate_baseline.hpp"
+#include "scenarios/methods/rate_baselines.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/robot_presets.hpp"
-#include "scenarios/methods/slam_conclusion.hpp"
-#include "scenarios/methods/slam_registry.hpp"
-#include "scenarios/methods/slam_settings.hpp"
 #include "scenarios/methods/sweep_log.hpp"
 #include "tumble/mapping/detail/lidar_scale.hpp"
 #include "tumble/mapping/detail/registration_params.hpp"
@@ -52,20 +51,6 @@ bool append_sweeps(std::vector<MappedSweep>& sweeps, Estimate& estimate) {
 }
 
 }  // namespace
-
-Method rig_slam(RigSlam what, RunCore run) {
-  MethodInfo info;
-  info.name = std::move(what.name);
-  info.kind = Kind::slam;
-  info.doc = std::move(what.doc);
-  info.ours = what.ours;
-  info.source = std::move(what.source);
-  info.settings = std::move(what.settings);
-  info.needs_truth = what.needs_truth;
-  info.baseline = what.baseline;
-  info.robots = {"rig"};
-  return make_method(std::move(info), run);
-}
 
 Estimate begin_with_rates(const sim::Sensors& sensors, std::vector<ImuSample>& samples,
                           const std::function<Status(Estimate&)>& rates) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
 #include "scenarios/methods/bridge.hpp"
-#include "scenarios/methods/position_stage.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/sweep_log.hpp"
 #include "tumble/mapping/detail/voxel_map.hpp"
@@ -28,16 +29,9 @@ const Settings<MapParams>& map_settings() {
   return all;
 }
 
-const Method& rolling() {
-  static const Method method = position_rolling();
-  return method;
-}
-const Method& autogain_fusion() {
-  static const Method method = position_autogain_fusion();
-  return method;
-}
-const Method& tumble() {
-  static const Method method = position_tumble();
+template <Method (*kPosition)()>
+const Method& position_method() {
+  static const Method method = kPosition();
   return method;
 }
 
@@ -108,47 +102,39 @@ Estimate map_from_poses(const Method& position, const sim::Sensors& sensors, con
   return estimate;
 }
 
-Estimate run_poses_rolling(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  return map_from_poses(rolling(), sensors, parameters);
-}
-Estimate run_poses_autogain_fusion(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  return map_from_poses(autogain_fusion(), sensors, parameters);
-}
-Estimate run_poses_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-  return map_from_poses(tumble(), sensors, parameters);
+template <Method (*kPosition)()>
+Estimate run(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  return map_from_poses(position_method<kPosition>(), sensors, parameters);
 }
 
-Method posed(MethodInfo info, const Method& position, RunCore run) {
+template <Method (*kPosition)()>
+Method posed(MethodInfo info) {
   info.kind = Kind::slam;
-  info.settings = stages_after({&map_settings()}, position);
+  info.settings = stages_after({&map_settings()}, position_method<kPosition>());
   info.robots = {"sphere"};
-  return make_method(std::move(info), run);
+  return make_method(std::move(info), run<kPosition>);
 }
 
 }  // namespace
 
 Method slam_poses_rolling() {
-  MethodInfo info;
-  info.name = "poses_rolling";
-  info.doc = "Builds the map with the poses of position/rolling, without registration.";
-  info.source = "textbook rolling constraint";
-  return posed(std::move(info), rolling(), run_poses_rolling);
+  return posed<position_rolling>({.name = "poses_rolling",
+                                  .doc = "Builds the map with the poses of position/rolling, without registration.",
+                                  .source = "textbook rolling constraint"});
 }
 
 Method slam_poses_autogain_fusion() {
-  MethodInfo info;
-  info.name = "poses_autogain_fusion";
-  info.doc = "Builds the map with the poses of position/autogain_fusion (MFI 2021 paper), without registration.";
-  info.source = "Zevering et al., IMU-based pose-estimation for spherical robots, IEEE MFI 2021";
-  return posed(std::move(info), autogain_fusion(), run_poses_autogain_fusion);
+  return posed<position_autogain_fusion>(
+      {.name = "poses_autogain_fusion",
+       .doc = "Builds the map with the poses of position/autogain_fusion (MFI 2021 paper), without registration.",
+       .source = "Zevering et al., IMU-based pose-estimation for spherical robots, IEEE MFI 2021"});
 }
 
 Method slam_poses_tumble() {
-  MethodInfo info;
-  info.name = "poses_tumble";
-  info.doc = "Builds the map with the poses of position/tumble (our method), without registration.";
-  info.ours = true;
-  return posed(std::move(info), tumble(), run_poses_tumble);
+  return posed<position_tumble>(
+      {.name = "poses_tumble",
+       .doc = "Builds the map with the poses of position/tumble (our method), without registration.",
+       .ours = true});
 }
 
 }  // namespace tumble::scenarios

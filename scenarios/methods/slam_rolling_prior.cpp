@@ -5,11 +5,10 @@
 #include <optional>
 
 #include "scenarios/methods/bridge.hpp"
-#include "scenarios/methods/position_stage.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/sample_times.hpp"
-#include "scenarios/methods/slam_settings.hpp"
-#include "scenarios/methods/sphere_attitude.hpp"
+#include "scenarios/methods/slam_chain.hpp"
+#include "scenarios/methods/sphere_imus.hpp"
 
 namespace tumble::scenarios {
 
@@ -245,16 +244,15 @@ Estimate run_rolling_prior(const sim::Sensors& sensors, const sim::Values& param
 }  // namespace
 
 Method slam_rolling_prior() {
-  MethodInfo info;
-  info.name = "rolling_prior";
-  info.kind = Kind::slam;
-  info.doc =
-      "Registers the sweeps of a sphere in the same way as the sweeps of the rig. The poses of position/tumble (our "
-      "method) predict the motion between two sweeps.";
-  info.ours = true;
-  info.settings = stages_after({&prior_settings(), &along_settings()}, followed());
-  info.robots = {"sphere"};
-  return make_method(std::move(info), at_sample_times<run_rolling_prior>);
+  return make_method({.name = "rolling_prior",
+                      .kind = Kind::slam,
+                      .doc = "Registers the sweeps of a sphere in the same way as the sweeps of the rig. The poses of "
+                             "position/tumble (our "
+                             "method) predict the motion between two sweeps.",
+                      .ours = true,
+                      .settings = stages_after({&prior_settings(), &along_settings()}, followed()),
+                      .robots = {"sphere"}},
+                     at_sample_times<run_rolling_prior>);
 }
 
 }  // namespace tumble::scenarios

@@ -11,11 +11,8 @@
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/registry.hpp"
-#include "scenarios/methods/report_rates.hpp"
 #include "scenarios/methods/robot_presets.hpp"
 #include "scenarios/methods/settings.hpp"
-#include "scenarios/methods/slam_conclusion.hpp"
-#include "scenarios/methods/slam_registry.hpp"
 #include "scenarios/methods/sweep_log.hpp"
 #include "tumble/odometry/detail/recording_estimate.hpp"
 #include "tumble/odometry/tumbling_expert_params.hpp"
@@ -64,7 +61,7 @@ TumblingOdometry::Params stated_params(const sim::Sensors& sensors, TumblingOdom
   return params;
 }
 
-enum class Output {
+enum class SlamOutput {
   live,   ///< live pose at each IMU sample
   lag,    ///< final trajectory after a fixed lag
   whole,  ///< final trajectory from the whole recording
@@ -74,12 +71,12 @@ using SweepProgress = TumblingOdometry::SweepProgress;
 
 class Collector {
  public:
-  Collector(Output output, std::string imu, Estimate& estimate)
+  Collector(SlamOutput output, std::string imu, Estimate& estimate)
       : output_(output), estimate_(estimate), names_{std::move(imu)} {}
 
   void observe(const TumblingOdometry& odometry) {
     PoseState pose;
-    if (output_ != Output::live || !odometry.newest(pose).ok()) return;
+    if (output_ != SlamOutput::live || !odometry.newest(pose).ok()) return;
     if (live_.empty() || pose.time_ns > live_.back().time_ns) live_.push_back(pose);
   }
   void take(TumblingOdometry& odometry) {
@@ -96,10 +93,10 @@ class Collector {
     }
   }
   void conclude(const TumblingOdometry& odometry) {
-    if (output_ != Output::whole) {
+    if (output_ != SlamOutput::whole) {
       for (std::vector<PoseState>& open : odometry.mapper().window_trajectories()) apply_next(std::move(open));
     }
-    if (output_ == Output::live) replace_by_live();
+    if (output_ == SlamOutput::live) replace_by_live();
     found_.merge_current_findings(odometry.health());
     add_findings(found_, names_, estimate_);
     scenarios::conclude(odometry.mapper(), estimate_);
@@ -123,7 +120,7 @@ class Collector {
     }
   }
 
-  Output output_;
+  SlamOutput output_;
   Estimate& estimate_;
   std::vector<std::string> names_;
   SensorHealth found_;
@@ -196,7 +193,7 @@ void report_prior_map(Estimate& estimate) {
   estimate.health["prior_map_sweep"] = localised ? static_cast<double>(first - estimate.sweeps.begin()) : 0.0;
 }
 
-Estimate run(Output output, const Settings<TumblingOdometry::Params>& settings, const sim::Sensors& sensors,
+Estimate run(SlamOutput output, const Settings<TumblingOdometry::Params>& settings, const sim::Sensors& sensors,
              const sim::Values& parameters, const SweepProgress& on_sweep, const PriorMap* map = nullptr) {
   Estimate estimate;
   estimate.frame = Frame::imu;
@@ -215,52 +212,56 @@ Estimate run(Output output, const Settings<TumblingOdometry::Params>& settings, 
   if (map != nullptr) estimate.status = odometry.use_map(*map);
   if (!estimate.status.ok()) return estimate;
   Collector collector(output, sensors.imus.front().name, estimate);
-  estimate.status = replay(sensors, samples, output == Output::whole, odometry, collector, on_sweep, estimate);
+  estimate.status = replay(sensors, samples, output == SlamOutput::whole, odometry, collector, on_sweep, estimate);
   if (odometry.recording()) report_whole(*odometry.recording(), sensors, estimate);
   if (!estimate.status.ok()) return estimate;
   const std::size_t left_out = sensors.imus.front().time_ns.size() - samples.size();
   const std::size_t rejected = left_out + odometry.rejected_readings();
-  if (output != Output::whole || rejected > 0) estimate.health["rejected_readings"] = static_cast<double>(rejected);
+  if (output != SlamOutput::whole || rejected > 0) estimate.health["rejected_readings"] = static_cast<double>(rejected);
   if (odometry.sweeps_before_first_imu() > 0)
     estimate.health["sweeps_before_imu"] = static_cast<double>(odometry.sweeps_before_first_imu());
-  if (output != Output::whole || odometry.restart_count() > 0)
+  if (output != SlamOutput::whole || odometry.restart_count() > 0)
     estimate.health["gaps"] = static_cast<double>(odometry.restart_count());
-  if (output != Output::whole) report_stream(odometry, estimate);
+  if (output != SlamOutput::whole) report_stream(odometry, estimate);
   collector.conclude(odometry);
   if (map != nullptr) report_prior_map(estimate);
   return estimate;
 }
 
 Estimate run_whole(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& input) {
-  return run(Output::whole, whole_settings(), sensors, parameters, input.on_sweep);
+  return run(SlamOutput::whole, whole_settings(), sensors, parameters, input.on_sweep);
 }
 
 Estimate run_lag(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& input) {
-  return run(Output::lag, lag_settings(), sensors, parameters, input.on_sweep);
+  return run(SlamOutput::lag, lag_settings(), sensors, parameters, input.on_sweep);
 }
 
 Estimate run_live(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& input) {
-  return run(Output::live, lag_settings(), sensors, parameters, input.on_sweep);
+  return run(SlamOutput::live, lag_settings(), sensors, parameters, input.on_sweep);
 }
 
 }  // namespace
 
 Method slam_tumble() {
-  return rig_slam(
+  return make_method(
       {.name = "tumble",
+       .kind = Kind::slam,
        .doc = "Runs TumblingOdometry (public API) on the whole recording, and repeats the mapping until the "
               "calibration has converged.",
        .ours = true,
-       .settings = {&whole_settings()}},
+       .settings = {&whole_settings()},
+       .robots = {"rig"}},
       run_whole);
 }
 
 Method slam_tumble_lag() {
-  return rig_slam(
+  return make_method(
       {.name = "tumble_lag",
+       .kind = Kind::slam,
        .doc = "Runs TumblingOdometry (public API) in one causal pass; the final pose of a sweep follows 0.3 s later.",
        .ours = true,
-       .settings = {&lag_settings()}},
+       .settings = {&lag_settings()},
+       .robots = {"rig"}},
       run_lag);
 }
 
@@ -268,27 +269,23 @@ std::optional<Method> localised_in(const Method& method, std::shared_ptr<const P
   const bool live = method.info.name == "tumble_live";
   if (method.info.kind != Kind::slam || (!live && method.info.name != "tumble_lag")) return std::nullopt;
   Method out = method;
-  out.run = [info = method.info, output = live ? Output::live : Output::lag, map = std::move(map)](
-                const sim::Sensors& sensors, const sim::Values& given, const OracleInput& input) {
-    const std::string name = "method " + full_name(info);
-    try {
-      return run(output, lag_settings(), sensors, resolve_settings(name, given, info.settings), input.on_sweep,
-                 map.get());
-    } catch (const sim::InvalidSituation& error) {
-      throw BadInput(error.what());
-    } catch (const InvalidParams& error) {
-      throw BadInput(name + ": " + error.what());
-    }
-  };
+  out.run = with_settings(method.info,
+                          [output = live ? SlamOutput::live : SlamOutput::lag, map = std::move(map)](
+                              const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& input) {
+                            return run(output, lag_settings(), sensors, parameters, input.on_sweep, map.get());
+                          });
   return out;
 }
 
 Method slam_tumble_live() {
-  return rig_slam({.name = "tumble_live",
-                   .doc = "Runs TumblingOdometry (public API) live: the pose at each IMU sample uses past data only.",
-                   .ours = true,
-                   .settings = {&lag_settings()}},
-                  run_live);
+  return make_method(
+      {.name = "tumble_live",
+       .kind = Kind::slam,
+       .doc = "Runs TumblingOdometry (public API) live: the pose at each IMU sample uses past data only.",
+       .ours = true,
+       .settings = {&lag_settings()},
+       .robots = {"rig"}},
+      run_live);
 }
 
 }  // namespace tumble::scenarios

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/sphere_imus.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
+#include "scenarios/errors.hpp"
 #include "scenarios/methods/bridge.hpp"
 
 namespace tumble::scenarios {
@@ -31,6 +34,13 @@ std::vector<ImuSample> readings_of(const sim::ImuRecord& record, Status& status,
 }
 
 }  // namespace
+
+void require_sphere(const char* method, const sim::Sensors& sensors) {
+  if (!(sensors.sphere_radius_m > 0.0)) {
+    throw BadInput(fmt::format(
+        "the method {} needs a recording of a sphere, but this recording states sphere_radius_m = 0", method));
+  }
+}
 
 void report_beyond_range(int readings, Estimate& estimate) {
   if (readings > 0) estimate.health["readings_beyond_range"] = readings;

@@ -24,6 +24,8 @@ struct MergedImus {
   int beyond_range = 0;
 };
 
+void require_sphere(const char* method, const sim::Sensors& sensors);
+
 void report_beyond_range(int readings, Estimate& estimate);
 
 Status merge_imus(const sim::Sensors& sensors, MergedImus& out);

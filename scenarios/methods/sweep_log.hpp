@@ -31,4 +31,9 @@ struct SweepMapper {
 
 bool run_over_sweeps(const sim::LidarRecord& lidar, const SweepMapper& mapper, Estimate& estimate);
 
+void apply_smoothed(std::vector<PoseState> smoothed, SweepReport& sweep);
+
+/// Returns true if the run is complete and its final pose in the map is plausible.
+bool conclude(const LidarInertialOdometry& odometry, Estimate& estimate);
+
 }  // namespace tumble::scenarios

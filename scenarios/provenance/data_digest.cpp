@@ -7,7 +7,7 @@
 #include <sstream>
 #include <vector>
 
-#include "scenarios/provenance/text_digest.hpp"
+#include "scenarios/provenance/hasher.hpp"
 
 namespace tumble::scenarios {
 
@@ -30,6 +30,12 @@ std::string data_digest(const DataRoot& data) {
     texts.push_back(text.str());
   }
   return digest_of_texts(texts);
+}
+
+std::string digest_of_texts(std::span<const std::string> texts) {
+  Hasher hasher;
+  for (const std::string& text : texts) hasher.text(text);
+  return hasher.hex();
 }
 
 }  // namespace tumble::scenarios

@@ -97,21 +97,16 @@ std::string digest(const StoredTruth& truth) {
   return hasher.hex();
 }
 
-std::string digest(const sim::Sensors& sensors, const sim::Truth* truth) {
+std::string digest(const sim::Sensors& sensors, const std::vector<PointStore>& points, const sim::Truth* truth) {
   FieldHasher hasher;
   hasher.text("sensors");
-  sensors_fields(hasher, sensors);
+  stored_fields(hasher, sensors, points);
   if (truth != nullptr) hash_truth(hasher, *truth);
   return hasher.hex();
 }
 
-std::string digest(const sim::Sensors& sensors, const std::vector<PointStore>& points, const sim::Truth* truth) {
-  const std::vector<StoredLidarView> lidars = views_of(sensors, points);
-  FieldHasher hasher;
-  hasher.text("sensors");
-  sensors_fields(hasher, sensors, lidars);
-  if (truth != nullptr) hash_truth(hasher, *truth);
-  return hasher.hex();
+std::string digest(const sim::Sensors& sensors, const sim::Truth* truth) {
+  return digest(sensors, {}, truth);
 }
 
 std::string digest(const sim::Truth& truth) {

@@ -20,23 +20,23 @@ namespace {
 
 using std::filesystem::path;
 
-using Notes = std::vector<std::string>;
+using ExportNotes = std::vector<std::string>;
 
-Notes joined(Notes first, const Notes& second) {
+ExportNotes joined(ExportNotes first, const ExportNotes& second) {
   first.insert(first.end(), second.begin(), second.end());
   return first;
 }
 
 struct Format {
   const char* name;
-  Notes (*write)(const path& recording, const path& out, const ExportChoices& choices);
+  ExportNotes (*write)(const path& recording, const path& out, const ExportChoices& choices);
 };
 
 std::int64_t origin_of_export(const path& recording) {
   return export_origin_ns(read_info(recording).origin_ns);
 }
 
-Notes write_csv(const path& recording, const path& out, const ExportChoices&) {
+ExportNotes write_csv(const path& recording, const path& out, const ExportChoices&) {
   const sim::Sensors sensors = read_sensors(recording);
   std::optional<sim::Truth> truth;
   if (read_info(recording).has_truth) truth = read_truth(recording);
@@ -46,7 +46,7 @@ Notes write_csv(const path& recording, const path& out, const ExportChoices&) {
 }
 
 template <void (*kExport)(const sim::Sensors&, const BagWriting&, const path&)>
-Notes write_bag(const path& recording, const path& out, const ExportChoices& choices) {
+ExportNotes write_bag(const path& recording, const path& out, const ExportChoices& choices) {
   const path scratch = scratch_folder_of(out);
   std::optional<StoredTruth> truth;
   if (choices.truth) truth = read_truth(recording, scratch);
@@ -58,7 +58,7 @@ Notes write_bag(const path& recording, const path& out, const ExportChoices& cho
   if (choices.more) choices.more(sensors, writing);
   kExport(sensors, writing, out);
   ExportNames names = export_names(sensors);
-  Notes left_out;
+  ExportNotes left_out;
   for (const sim::SeriesRecord& series : sensors.series)
     left_out.push_back(
         fmt::format("sensor '{}' of kind '{}' is left out, because ROS bags have no message type for this kind",
@@ -66,18 +66,18 @@ Notes write_bag(const path& recording, const path& out, const ExportChoices& cho
   return joined(joined(std::move(names.imus.notes), names.lidars.notes), left_out);
 }
 
-Notes write_tum(const path& recording, const path& out, const ExportChoices& choices) {
+ExportNotes write_tum(const path& recording, const path& out, const ExportChoices& choices) {
   export_tum(read_truth(recording, scratch_folder_of(out)), out, origin_of_export(recording), choices.frame);
   return {};
 }
 
-Notes write_kitti(const path& recording, const path& out, const ExportChoices& choices) {
+ExportNotes write_kitti(const path& recording, const path& out, const ExportChoices& choices) {
   export_kitti(read_truth(recording), out, choices.frame);
   return {};
 }
 
 template <void (*kExport)(const sim::Sensors&, const path&, std::int64_t)>
-Notes write_sweeps(const path& recording, const path& out, const ExportChoices&) {
+ExportNotes write_sweeps(const path& recording, const path& out, const ExportChoices&) {
   const sim::Sensors sensors = read_sensors(recording);
   kExport(sensors, out, origin_of_export(recording));
   return export_names(sensors).lidars.notes;
@@ -124,8 +124,8 @@ void require_own_kind(const std::string& format, const path& out) {
       out.string(), format, fmt::join(own->second, " or ")));
 }
 
-Notes export_recording(const path& recording, const std::string& format, const path& out,
-                       const ExportChoices& choices) {
+ExportNotes export_recording(const path& recording, const std::string& format, const path& out,
+                             const ExportChoices& choices) {
   for (const Format& each : kFormats) {
     if (format == each.name) return each.write(recording, out, choices);
   }

@@ -26,4 +26,8 @@ ExportNames export_names(const sim::Truth& truth);
 
 std::string free_name(const std::string& name, std::set<std::string>& taken);
 
+inline bool has_timed_points(const sim::LidarRecord& lidar) {
+  return lidar.point_times == sim::PointTimes::measured;
+}
+
 }  // namespace tumble::scenarios

@@ -6,15 +6,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <system_error>
 #include <utility>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/recordings/foreign_file.hpp"
-#include "scenarios/recordings/hdf5_survey.hpp"
+#include "scenarios/processes/process.hpp"
+#include "scenarios/recordings/recording_file.hpp"
 
 namespace tumble::scenarios::hdf5 {
 
@@ -33,69 +32,25 @@ Handle open_file(const std::filesystem::path& path) {
   throw BadInput(fmt::format("{}: the file is truncated, damaged or not an HDF5 file{}", path.string(), reason));
 }
 
-/// This callback keeps the memory of the HDF5 driver when the file closes, because H5Fget_file_image of HDF5 1.10
-/// returns an outdated superblock checksum.
-H5FD_file_image_callbacks_t keep_image_in(void** user) {
-  H5FD_file_image_callbacks_t calls{};
-  calls.image_malloc = [](std::size_t size, H5FD_file_image_op_t, void*) { return std::malloc(size); };
-  calls.image_memcpy = [](void* to, const void* from, std::size_t size, H5FD_file_image_op_t, void*) {
-    return std::memcpy(to, from, size);
-  };
-  calls.image_realloc = [](void* old, std::size_t size, H5FD_file_image_op_t, void*) {
-    return std::realloc(old, size);
-  };
-  calls.image_free = [](void* memory, H5FD_file_image_op_t when, void* keeper) -> herr_t {
-    if (when != H5FD_FILE_IMAGE_OP_FILE_CLOSE) {
-      std::free(memory);
-    } else {
-      std::free(std::exchange(*static_cast<void**>(keeper), memory));
-    }
-    return 0;
-  };
-  calls.udata_copy = [](void* keeper) { return keeper; };
-  calls.udata_free = [](void*) -> herr_t { return 0; };
-  calls.udata = user;
-  return calls;
-}
-
-/// Superblock version 3 of HDF5 stores the file length at byte 28; the memory block of the driver is longer.
+/// Superblock version 3 of HDF5 stores the file length at byte 28; the reserved file is longer.
 std::uint64_t stated_length(const void* image) {
   std::uint64_t length = 0;
   std::memcpy(&length, static_cast<const char*>(image) + 28, sizeof(length));
   return length;
 }
 
-Handle create_file(const std::string& name, const std::string& label, const Handle& access) {
-  if (H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG) < 0 ||
-      H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110) < 0) {
-    throw BadInput(fmt::format("{}: the file cannot be prepared for writing{}", name, last_error()));
-  }
-  const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+Handle create_file(const std::string& name, const std::filesystem::path& path, std::uint64_t most_bytes) {
+  const auto require = [&](bool done) {
+    if (!done) throw BadInput(fmt::format("{}: the file cannot be prepared for writing{}", name, last_error()));
+  };
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose), creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  require(H5Pset_fapl_sec2(access.get()) >= 0 && H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG) >= 0 &&
+          H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110) >= 0);
   H5Pset_obj_track_times(creation.get(), false);  // equal recordings give equal files
-  Handle file(H5Fcreate(label.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose);
-  if (!file.valid()) throw BadInput(fmt::format("{}: the file cannot be prepared for writing{}", name, last_error()));
-  return file;
-}
-
-Handle create_in_memory(const std::string& name, void** image) {
-  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  constexpr std::size_t kGrowth = std::size_t{16} << 20;
-  H5FD_file_image_callbacks_t calls = keep_image_in(image);
-  if (H5Pset_fapl_core(access.get(), kGrowth, false) < 0 || H5Pset_file_image_callbacks(access.get(), &calls) < 0) {
-    throw BadInput(fmt::format("{}: the file cannot be prepared for writing{}", name, last_error()));
-  }
-  // No file may have this name, because HDF5 would read the file into memory.
-  return create_file(name, name + " in memory", access);
-}
-
-Handle create_on_disk(const std::string& name, const std::filesystem::path& path, std::uint64_t most_bytes) {
-  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  if (H5Pset_fapl_sec2(access.get()) < 0)
-    throw BadInput(fmt::format("{}: the file cannot be prepared for writing{}", name, last_error()));
-  Handle file = create_file(name, path.string(), access);
+  Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose);
+  require(file.valid());
   void* descriptor = nullptr;
-  if (H5Fget_vfd_handle(file.get(), H5P_DEFAULT, &descriptor) < 0)
-    throw BadInput(fmt::format("{}: the file cannot be prepared for writing{}", name, last_error()));
+  require(H5Fget_vfd_handle(file.get(), H5P_DEFAULT, &descriptor) >= 0);
   const int error = posix_fallocate(*static_cast<int*>(descriptor), 0, static_cast<off_t>(most_bytes));
   if (error != 0) throw BadInput(name + ": cannot be written: " + std::generic_category().message(error));
   return file;
@@ -181,25 +136,8 @@ bool Group::has_attribute(const std::string& name) const {
 InputFile::InputFile(const std::filesystem::path& path)
     : file_(open_file(path)), root_(root_of(file_, path.string())) {}
 
-MemoryFile::MemoryFile(const std::string& name)
-    : name_(name), file_(create_in_memory(name, &image_)), root_(root_of(file_, name)) {}
-
-MemoryFile::~MemoryFile() {
-  root_ = Group();
-  file_ = Handle();
-  std::free(image_);
-}
-
-std::span<const std::byte> MemoryFile::close() {
-  root_ = Group();
-  file_ = Handle();
-  if (image_ == nullptr)
-    throw BadInput(fmt::format("{}: the HDF5 library failed to assemble the file in memory", name_));
-  return {static_cast<const std::byte*>(image_), stated_length(image_)};
-}
-
 DiskFile::DiskFile(const std::string& name, const std::filesystem::path& path, std::uint64_t most_bytes)
-    : name_(name), path_(path), file_(create_on_disk(name, path, most_bytes)), root_(root_of(file_, name)) {}
+    : name_(name), path_(path), file_(create_file(name, path, most_bytes)), root_(root_of(file_, name)) {}
 
 DiskFile::~DiskFile() {
   root_ = Group();
@@ -219,6 +157,45 @@ void DiskFile::close() {
   // length.
   if (!Handle(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose).valid())
     throw BadInput(fmt::format("{}: the HDF5 library cannot open the file that it wrote{}", name_, last_error()));
+}
+
+namespace {
+
+herr_t survey_attribute(hid_t object, const char* name, const H5A_info_t*, void*) {
+  const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
+  if (!attribute.valid()) return 0;
+  const Handle type(H5Aget_type(attribute.get()), H5Tclose);
+  const Handle space(H5Aget_space(attribute.get()), H5Sclose);
+  H5Aget_storage_size(attribute.get());
+  return 0;
+}
+
+herr_t survey_object(hid_t root, const char* name, const H5O_info_t* info, void*) {
+  const Handle object(H5Oopen(root, name, H5P_DEFAULT), H5Oclose);
+  if (!object.valid()) return 0;
+  H5Aiterate2(object.get(), H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, survey_attribute, nullptr);
+  if (info->type != H5O_TYPE_DATASET) return 0;
+  const Handle type(H5Dget_type(object.get()), H5Tclose);
+  const Handle space(H5Dget_space(object.get()), H5Sclose);
+  H5Dget_storage_size(object.get());
+  return 0;
+}
+
+void survey(const std::filesystem::path& path) {
+  const Silence silence;
+  const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  if (file.valid()) H5Ovisit2(file.get(), H5_INDEX_NAME, H5_ITER_NATIVE, survey_object, nullptr, H5O_INFO_BASIC);
+}
+
+}  // namespace
+
+void require_survivable(const std::filesystem::path& path) {
+  Process child([&](int) { survey(path); }, false);
+  const Process::End end = child.wait();
+  if (!end.normal) {
+    throw BadInput(
+        fmt::format("{}: the file is damaged: the HDF5 library cannot read it ({})", path.string(), end.describe()));
+  }
 }
 
 }  // namespace tumble::scenarios::hdf5

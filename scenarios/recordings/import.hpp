@@ -24,10 +24,10 @@ struct Imported {
 enum class AccelUnit { m_s2, g };
 enum class GyroUnit { rad_s, deg_s };
 
-/// Reads the samples of one IMU from a text table with commas, semicolons, tabs or blanks (tables/logged_table.hpp).
+/// Reads the samples of one IMU from a text table with commas, semicolons, tabs or blanks (tables/csv_text.hpp).
 /// If the rows of several IMUs alternate, a column with the numbers of the IMUs separates the IMUs. The first IMU is
-/// the primary IMU. The positions of the further IMUs are estimated from the readings (tables/imu_position.hpp); an IMU
-/// of unknown position is left out, with a note.
+/// the primary IMU. The positions of the further IMUs are estimated from the readings (tables/import_imu_csv.cpp); an
+/// IMU of unknown position is left out, with a note.
 ///
 /// The header line identifies the columns by one of these naming schemes:
 /// - names that export_csv writes, or their short forms (sec nsec wx.. fx.. or ax..),
@@ -73,8 +73,8 @@ struct SweepSource {
   SweepReading reading;
 };
 
-/// Reads the sweeps of a lidar from one file per sweep, in natural order of the file names (sweep_stamps.hpp). The
-/// stamp of a sweep comes from the file `times`, or else from the file name, from absolute point times, or from
+/// Reads the sweeps of a lidar from one file per sweep, in natural order of the file names (clouds/import_sweeps.hpp).
+/// The stamp of a sweep comes from the file `times`, or else from the file name, from absolute point times, or from
 /// `steady_ns`. Time 0 of the recording is the start of the first sweep, or the zero of the clock if it is less than a
 /// second earlier.
 ///

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cstdlib>
 
-#include "scenarios/recordings/whole_seconds.hpp"
 #include "scenarios/text.hpp"
 
 namespace tumble::scenarios {

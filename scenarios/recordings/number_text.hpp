@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <charconv>
 #include <cstdint>
 #include <cstdio>
 #include <optional>
@@ -22,13 +21,6 @@ std::optional<std::int64_t> parse_time_ns(std::string_view text, int decimals);
 /// ("2011-09-26 13:02:25.964389445").
 std::optional<std::int64_t> parse_stamp_ns(std::string_view text);
 
-template <class Number>
-void append_number(std::string& text, Number value) {
-  std::array<char, 32> digits;
-  const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
-  text.append(digits.data(), end);
-}
-
 inline std::string rounded(double value) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.3g", value);
@@ -42,5 +34,9 @@ inline void append_seconds(std::string& text, std::int64_t time_ns) {
   text += time_ns < 0 ? "-" : "";
   text += std::to_string(size / 1000000000) + "." + std::string(9 - nanoseconds.size(), '0') + nanoseconds;
 }
+
+inline constexpr std::int64_t kSecond_ns = 1'000'000'000;
+/// The largest time stamp, 9 000 000 000 s (year 2255), fits in 64 bits of nanoseconds.
+inline constexpr std::int64_t kSecondsMax = 9'000'000'000;
 
 }  // namespace tumble::scenarios

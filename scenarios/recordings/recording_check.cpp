@@ -15,7 +15,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-using Lengths = std::initializer_list<std::pair<const char*, std::size_t>>;
+using FieldLengths = std::initializer_list<std::pair<const char*, std::size_t>>;
 
 /// This tolerance of the quaternion norm accepts rotations with few digits, but rejects a wrong order of quaternion
 /// components.
@@ -26,7 +26,7 @@ std::string in(const std::string& place, const std::string& problem) {
   return problem.empty() ? "" : place + ": " + problem;
 }
 
-std::string length_problem(const Lengths& lengths) {
+std::string length_problem(const FieldLengths& lengths) {
   const auto& [first_name, first] = *lengths.begin();
   for (const auto& [name, length] : lengths) {
     if (length == first) continue;

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/recordings/point_store.hpp"
 #include "scenarios/recordings/stored_truth.hpp"
 #include "sim/recording.hpp"
 

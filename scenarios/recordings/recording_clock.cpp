@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/recordings/whole_seconds.hpp"
+#include "scenarios/recordings/number_text.hpp"
 
 namespace tumble::scenarios {
 

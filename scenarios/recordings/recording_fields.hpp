@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "scenarios/recordings/hdf5_file.hpp"
-#include "scenarios/recordings/point_store.hpp"
+#include "scenarios/recordings/stored_truth.hpp"
 #include "sim/recording.hpp"
 
 /// Writer, reader and digest visit the same list of fields, so none of them can omit a field.
@@ -26,8 +26,6 @@ struct StoredLidarView {
   const sim::LidarRecord& sweeps;
   const PointStore& points;
 };
-std::vector<StoredLidarView> views_of(const sim::Sensors& sensors, const std::vector<PointStore>& points);
-
 inline constexpr const char* kXyz = "x y z";
 
 inline constexpr std::array<const char*, 3> kPointTimes = {"measured", "not_skewed", "unknown"};
@@ -114,6 +112,15 @@ void sensors_fields(Archive& archive, Sensors& sensors, Lidars& lidars) {
 template <class Archive, class Sensors>
 void sensors_fields(Archive& archive, Sensors& sensors) {
   sensors_fields(archive, sensors, sensors.lidars);
+}
+
+/// The points of the lidars are in `points` on disk, or in `sensors` if `points` is empty.
+template <class Archive>
+void stored_fields(Archive& archive, const sim::Sensors& sensors, const std::vector<PointStore>& points) {
+  if (points.empty()) return sensors_fields(archive, sensors);
+  std::vector<StoredLidarView> lidars;
+  for (std::size_t i = 0; i < sensors.lidars.size(); ++i) lidars.push_back({sensors.lidars[i], points.at(i)});
+  sensors_fields(archive, sensors, lidars);
 }
 
 }  // namespace tumble::scenarios

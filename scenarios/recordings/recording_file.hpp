@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/recordings/point_store.hpp"
 #include "scenarios/recordings/stored_truth.hpp"
 #include "sim/recording.hpp"
 
@@ -43,9 +42,8 @@ std::string digest(const sim::Sensors& sensors, const std::vector<PointStore>& p
 std::string digest(const sim::Truth& truth);
 std::string digest(const StoredTruth& truth);
 
-/// Writes a recording as HDF5 (scenarios/recordings/FORMAT.md) to a temporary file, which is then renamed. The HDF5
-/// file is created in memory, which doubles the memory use. Throws BadInput if the folder is not writable or the disk
-/// is full; no partial file remains.
+/// Writes a recording as HDF5 (scenarios/recordings/FORMAT.md) to a temporary file, which is then renamed. Throws
+/// BadInput if the folder is not writable or the disk is full; no partial file remains.
 void write_recording(const std::filesystem::path& path, const RecordingInfo& info, const sim::Sensors& sensors,
                      const sim::Truth* truth);
 
@@ -62,5 +60,8 @@ sim::Sensors read_sensors(const std::filesystem::path& path, const std::filesyst
 sim::Truth read_truth(const std::filesystem::path& path);
 /// Stores the rows of the truth on disk in the folder `scratch`, so memory contains one MiB of the truth.
 StoredTruth read_truth(const std::filesystem::path& path, const std::filesystem::path& scratch);
+
+/// Throws BadInput unless `path` is a regular file that may be HDF5 by its first 16 bytes and its extension.
+void require_recording_file(const std::filesystem::path& path);
 
 }  // namespace tumble::scenarios

@@ -2,10 +2,10 @@
 #include "scenarios/recordings/scratch_file.hpp"
 
 #include <fcntl.h>
+#include <stdlib.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdlib>
 #include <string>
 #include <system_error>
 
@@ -60,6 +60,20 @@ void ScratchFile::read(std::uint64_t at, std::span<std::byte> bytes) const {
     bytes = bytes.subspan(static_cast<std::size_t>(got));
     at += static_cast<std::uint64_t>(got);
   }
+}
+
+ScratchFolder::ScratchFolder(const std::string& use) {
+  const SignalsWait until_listed;
+  std::string name = (std::filesystem::temp_directory_path() / ("tumble-" + use + "-XXXXXX")).string();
+  if (mkdtemp(name.data()) == nullptr)
+    throw std::filesystem::filesystem_error("cannot create a temporary folder", name, {errno, std::generic_category()});
+  path_ = name;
+  on_signal_.emplace(path_, Unfinished::Kind::folder);
+}
+
+ScratchFolder::~ScratchFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
 }
 
 }  // namespace tumble::scenarios

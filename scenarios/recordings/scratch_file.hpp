@@ -7,8 +7,11 @@
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
+
+#include "scenarios/recordings/unfinished.hpp"
 
 namespace tumble::scenarios {
 
@@ -76,6 +79,20 @@ class ColumnFile {
 
  private:
   std::optional<ScratchFile> file_;
+};
+
+/// ScratchFolder is removed with the object, even if a signal ends the program.
+class ScratchFolder {
+ public:
+  explicit ScratchFolder(const std::string& use);
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+  std::optional<Unfinished> on_signal_;
 };
 
 }  // namespace tumble::scenarios

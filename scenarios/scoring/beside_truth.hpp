@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "scenarios/scoring/clipping.hpp"
-#include "scenarios/scoring/scored_estimate.hpp"
+#include "scenarios/scoring/score.hpp"
 #include "scenarios/scoring/truth_track.hpp"
 
 namespace tumble::scenarios {

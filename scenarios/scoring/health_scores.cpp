@@ -52,7 +52,7 @@ Errors rate_errors(const ScoredEstimate& scored) {
   return out;
 }
 
-Errors attitude_errors(const ScoredEstimate& scored) {
+Errors tilt_errors(const ScoredEstimate& scored) {
   const TruthTrack& truth = truth_track(scored);
   Errors out;
   for (const AttitudeState& attitude : scored.estimate().attitudes) {
@@ -88,7 +88,7 @@ std::optional<bool> is_wrong(const ScoredEstimate& scored) {
   if constexpr (kind == Kind::rate) return are_wrong(rate_errors(scored), kWrongRateShare);
   if constexpr (kind == Kind::attitude) {
     const bool reported = has_finding(HealthFinding::Kind::attitude_unknown, scored.estimate());
-    return are_wrong(attitude_errors(scored), reported ? HUGE_VAL : kWrongTilt_rad);
+    return are_wrong(tilt_errors(scored), reported ? HUGE_VAL : kWrongTilt_rad);
   }
   return pose_is_wrong(scored, kind);
 }

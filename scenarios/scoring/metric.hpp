@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scenarios/methods/method.hpp"
@@ -60,5 +61,9 @@ double worst_value(const MetricInfo& metric);
 
 std::vector<std::string> headline_metrics(Kind kind);
 std::vector<std::string> held_metrics(Kind kind);
+
+const MetricInfo& estimate_cost();
+
+bool is_cost(std::string_view name);
 
 }  // namespace tumble::scenarios

@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kNearExtreme = 0.95, kAtPlane = 0.02;
-constexpr double kBeyondShare = 0.02, kBeyondErrors = 4.0;
+constexpr double kBeyondErrorsShare = 0.02, kBeyondErrors = 4.0;
 constexpr std::size_t kLeastSamples = 5;
 constexpr double kSlopePrior = 0.03, kSpread_rad_s = 0.02;
 
@@ -53,7 +53,7 @@ ReferenceRail find_rail(const Side& side, std::span<const Eigen::Vector3d> readi
     extreme = std::max(extreme, side.sign * reading[k][side.axis]);
     if (reference[k].allFinite()) errors.push_back(std::abs(reading[k][side.axis] - reference[k][side.axis]));
   }
-  const double beyond = std::max(kBeyondShare * extreme, kBeyondErrors * upper_median(std::move(errors)));
+  const double beyond = std::max(kBeyondErrorsShare * extreme, kBeyondErrors * upper_median(std::move(errors)));
   std::vector<Eigen::Vector3d> held;
   std::size_t near = 0;
   for (std::size_t k = 0; k < reading.size(); ++k) {

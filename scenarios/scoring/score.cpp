@@ -163,4 +163,9 @@ bool trajectory_holds(const ScoredEstimate& scored) {
   return poses_hold(scored);
 }
 
+ScoredEstimate::ScoredEstimate(const Estimate& estimate, const ScoringInput& input)
+    : estimate_(&estimate), input_(input) {
+  if (input.sensors == nullptr || input.truth == nullptr) throw BadInput("scoring needs both sensor data and truth");
+}
+
 }  // namespace tumble::scenarios

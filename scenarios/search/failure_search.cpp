@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "scenarios/draw/distribution.hpp"
-#include "scenarios/draw/fixed_number.hpp"
+#include "scenarios/draw/fixed_scenario.hpp"
 #include "scenarios/errors.hpp"
 #include "scenarios/processes/process.hpp"
 #include "scenarios/processes/process_pool.hpp"

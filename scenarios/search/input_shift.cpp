@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "scenarios/draw/distribution.hpp"
-#include "scenarios/statistics/many_tests.hpp"
+#include "scenarios/statistics/paired.hpp"
 #include "scenarios/statistics/statistics.hpp"
 
 namespace tumble::scenarios {

@@ -7,6 +7,7 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -98,6 +99,21 @@ double paired_failures_test(std::int64_t only_first, std::int64_t only_second) {
   if (n == 0.0) return 1.0;
   const boost::math::binomial fair(n, 0.5);
   return std::min(1.0, 2.0 * cdf(fair, static_cast<double>(std::min(only_first, only_second))));
+}
+
+std::vector<double> holm(std::span<const double> chances) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < chances.size(); ++i) {
+    if (!std::isnan(chances[i])) order.push_back(i);
+  }
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return chances[a] < chances[b]; });
+  std::vector<double> corrected(chances.begin(), chances.end());
+  double largest = 0.0;
+  for (std::size_t rank = 0; rank < order.size(); ++rank) {
+    largest = std::max(largest, static_cast<double>(order.size() - rank) * chances[order[rank]]);
+    corrected[order[rank]] = std::min(1.0, largest);
+  }
+  return corrected;
 }
 
 }  // namespace tumble::scenarios

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace tumble::scenarios {
 
@@ -23,5 +24,10 @@ double sign_test(std::span<const double> differences);
 /// form), equation (S7) of statistics.md. Only the first method failed on `only_first` simulated runs, and only the
 /// second method on `only_second` runs.
 double paired_failures_test(std::int64_t only_first, std::int64_t only_second);
+
+/// Corrects p-values for multiple tests, for any dependence between the tests (Holm, Scandinavian Journal of Statistics
+/// 6:65, 1979; equation (S8) of statistics.md). After the correction of the p-values, the probability of any false
+/// rejection is at most the chosen risk.
+std::vector<double> holm(std::span<const double> chances);
 
 }  // namespace tumble::scenarios

@@ -5,14 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <utility>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/not_finite.hpp"
 #include "scenarios/statistics/bootstrap.hpp"
-#include "scenarios/statistics/many_tests.hpp"
 #include "scenarios/statistics/paired.hpp"
 #include "scenarios/statistics/sample_size.hpp"
 #include "scenarios/summary/selection.hpp"

@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "scenarios/provenance/text_digest.hpp"
+#include "scenarios/provenance/data_digest.hpp"
 
 namespace tumble::scenarios {
 

@@ -3,14 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <set>
 
 #include "scenarios/not_finite.hpp"
 #include "scenarios/scoring/metric.hpp"
 #include "scenarios/statistics/bootstrap.hpp"
-#include "scenarios/statistics/many_tests.hpp"
 #include "scenarios/statistics/paired.hpp"
 
 namespace tumble::scenarios {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <set>
 
-#include "scenarios/statistics/many_tests.hpp"
+#include "scenarios/statistics/paired.hpp"
 #include "scenarios/summary/selection.hpp"
 
 namespace tumble::scenarios {

@@ -9,9 +9,26 @@
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/sweep/evaluate.hpp"
 #include "scenarios/sweep/keep.hpp"
-#include "scenarios/sweep/unfinished_folder.hpp"
 
 namespace tumble::scenarios {
+
+inline constexpr const char* kUnfinished = ".unfinished";
+
+/// UnfinishedFolder is an incomplete folder, WITHIN/.unfinished/NAME, which the destructor removes unless the folder
+/// was moved to its final path.
+class UnfinishedFolder {
+ public:
+  UnfinishedFolder(const std::filesystem::path& place, const std::filesystem::path& within);
+  ~UnfinishedFolder();
+  UnfinishedFolder(const UnfinishedFolder&) = delete;
+  UnfinishedFolder& operator=(const UnfinishedFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+  void move_into_place();
+
+ private:
+  std::filesystem::path place_, path_;
+  bool moved_ = false;
+};
 
 inline constexpr const char* kDrawCommand = "command";
 

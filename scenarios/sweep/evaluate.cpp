@@ -2,10 +2,11 @@
 #include "scenarios/sweep/evaluate.hpp"
 
 #include <fmt/format.h>
-
 #include <sys/resource.h>
 #include <time.h>
 
+#include <algorithm>
+#include <cmath>
 #include <exception>
 #include <iterator>
 #include <new>
@@ -14,7 +15,11 @@
 #include "scenarios/draw/without_lidars.hpp"
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/external_method.hpp"
+#include "scenarios/provenance/data_digest.hpp"
 #include "scenarios/recordings/recording_file.hpp"
+#include "scenarios/scoring/clipping.hpp"
+#include "scenarios/scoring/motion_summary.hpp"
+#include "scenarios/sweep/variation.hpp"
 #include "scenarios/text.hpp"
 #include "sim/simulate.hpp"
 
@@ -181,6 +186,105 @@ double process_cpu_s() {
   return static_cast<double>(now.tv_sec + children.ru_utime.tv_sec + children.ru_stime.tv_sec) +
          1e-9 * static_cast<double>(now.tv_nsec) +
          1e-6 * static_cast<double>(children.ru_utime.tv_usec + children.ru_stime.tv_usec);
+}
+
+RunResult run_situation(const DataRoot& data, const Scenario& scenario, std::uint64_t seed,
+                        std::span<const MethodPointer> methods, int threads, Lidars lidars, const Setting& setting) {
+  SimulatedDraw draw = simulate_draw(data, with_setting(scenario, setting), seed, threads, lidars);
+  std::optional<SimulatedDraw> original;  // for scoring modified sensor data
+  if (reach(setting) == Reach::input) {
+    SimulatedDraw given = with_setting(draw, setting);
+    original = scored_by(draw, given);
+    draw = std::move(given);
+  }
+  RunResult result;
+  result.methods = applicable(methods, subject_of(scenario));
+  const bool maps = std::any_of(result.methods.begin(), result.methods.end(),
+                                [](const MethodPointer& method) { return method->info.kind == Kind::slam; });
+  if (maps) result.surface = std::make_shared<const sim::Surface>(*draw.built);
+  for (const MethodPointer& method : result.methods) {
+    Outcome outcome;
+    outcome.setting = setting;
+    Estimate estimate = run_method(with_setting(*method, setting), draw, outcome);
+    assess(*method, original ? *original : draw, result.surface.get(), estimate, outcome);
+    result.estimates.push_back(std::move(estimate));
+    result.outcomes.push_back(std::move(outcome));
+  }
+  result.scenario = std::move(draw.scenario);
+  result.seed = draw.seed;
+  result.built = std::move(draw.built);
+  result.recording = std::move(draw.recording);
+  result.recording_digest =
+      original ? digest(result.recording.sensors, &result.recording.truth) : std::move(draw.recording_digest);
+  result.simulate_cpu_s = draw.simulate_cpu_s;
+  return result;
+}
+
+std::string run_digest(const RunResult& result) {
+  std::vector<std::string> parts = {result.recording_digest};
+  for (std::size_t k = 0; k < result.methods.size(); ++k) {
+    parts.push_back(full_name(result.methods[k]->info));
+    parts.push_back(digest(result.estimates[k]));
+  }
+  return digest_of_texts(parts);
+}
+
+namespace {
+
+double share(std::size_t part, std::size_t whole) {
+  return whole == 0 ? std::nan("") : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+double duration_s(const sim::ImuRecord& imu) {
+  return imu.time_ns.empty() ? 0.0 : 1e-9 * static_cast<double>(imu.time_ns.back() - imu.time_ns.front());
+}
+
+}  // namespace
+
+DrawValues motion_values(const std::string& scenario, std::uint64_t seed, const sim::Recording& recording) {
+  DrawValues draw{scenario, seed, {}};
+  if (recording.sensors.imus.empty()) return draw;
+  const MotionSummary motion = summarise_motion(recording.sensors, recording.truth);
+  draw.values = {{"motion_duration_s", duration_s(recording.sensors.imus.front())},
+                 {"motion_moving_s", motion.moving_s},
+                 {"motion_path_m", motion.path_m},
+                 {"motion_peak_rate_rad_s", motion.peak_rate_rad_s},
+                 {"motion_peak_accel_m_s2", motion.peak_accel_m_s2},
+                 {"motion_flight_share", motion.flight_share},
+                 {"motion_impacts", static_cast<double>(motion.impacts)},
+                 {"motion_clips", motion.clipped_samples > 0 ? 1.0 : 0.0},
+                 {"motion_clipped_share", share(motion.clipped_samples, motion.samples)},
+                 {"motion_clipped_samples", static_cast<double>(motion.clipped_samples)},
+                 {"motion_clip_depth_max_rad_s", motion.clip_depth_max_rad_s},
+                 {"motion_clip_length_max_s", motion.clip_length_max_s},
+                 {"motion_several_axes_share", share(motion.several_axes_samples, motion.clipped_samples)},
+                 {"motion_cross_axis_share", share(motion.cross_axis_samples, motion.clipped_samples)},
+                 {"motion_accel_clipped_share", share(motion.accel_clipped_samples, motion.samples)}};
+  return draw;
+}
+
+DrawValues recorded_motion_values(const std::string& scenario, std::uint64_t seed, const sim::Recording& recording) {
+  DrawValues draw{scenario, seed, {}};
+  if (recording.sensors.imus.empty()) return draw;
+  double peak_rad_s = 0.0;
+  for (const Eigen::Vector3d& w : recording.sensors.imus.front().gyro_rad_s)
+    peak_rad_s = std::max(peak_rad_s, w.norm());
+  draw.values = {{"motion_duration_s", duration_s(recording.sensors.imus.front())},
+                 {"motion_peak_rate_rad_s", peak_rad_s}};
+  if (recording.truth.imus.empty() || recording.truth.imus.front().rate_rad_s.empty()) return draw;
+  const ClippingTruth clipping(recording.sensors, recording.truth);
+  std::size_t clipped = 0;
+  double depth_rad_s = 0.0;
+  for (std::size_t i = 0; i < clipping.size(); ++i) {
+    if (clipping.clipped_axes(i) == 0) continue;
+    ++clipped;
+    depth_rad_s = std::max(depth_rad_s, clipping.depth_rad_s(i));
+  }
+  draw.values.push_back({"motion_clips", clipped > 0 ? 1.0 : 0.0});
+  draw.values.push_back({"motion_clipped_share", share(clipped, clipping.known_samples())});
+  draw.values.push_back({"motion_clipped_samples", static_cast<double>(clipped)});
+  draw.values.push_back({"motion_clip_depth_max_rad_s", depth_rad_s});
+  return draw;
 }
 
 }  // namespace tumble::scenarios

@@ -6,24 +6,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <sstream>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/not_finite.hpp"
+#include "scenarios/recordings/number_text.hpp"
 #include "scenarios/statistics/paired.hpp"
 #include "scenarios/statistics/statistics.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
-
-std::string three_digits(double value) {
-  std::ostringstream text;
-  text.precision(3);
-  text << value;
-  return text.str();
-}
 
 bool by_difference(const MetricInfo& info) {
   return info.compared == Compared::by_difference;
@@ -95,7 +87,7 @@ void hold_worst_draw(const MetricInfo& info, const std::vector<GatePair>& pairs,
   if (!(badness(info, now.now) > policy.worst * badness(info, before.before) + slack)) return;
   result.seed = now.seed;
   result.fault = fmt::format("the worst value is {} (seed {}), but the worst value of the accepted results is {}",
-                             three_digits(now.now), now.seed, three_digits(before.before));
+                             rounded(now.now), now.seed, rounded(before.before));
 }
 
 /// For a two-sided metric, the p-value is twice the smaller one-sided p-value, so that each metric counts as one

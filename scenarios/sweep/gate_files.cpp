@@ -6,9 +6,10 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <tuple>
 
 #include "scenarios/draw/strict_yaml.hpp"
-#include "scenarios/draw/yaml_folder.hpp"
+#include "scenarios/draw/yaml_text.hpp"
 #include "scenarios/errors.hpp"
 #include "scenarios/scoring/score.hpp"
 #include "scenarios/sweep/gate.hpp"
@@ -18,14 +19,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::array kKinds = {Kind::rate, Kind::attitude, Kind::position, Kind::slam};
 constexpr std::size_t kKeyCells = 4;  // scenario, kind, method, metric
 constexpr const char* kStatusRow = "status";
-
-std::string number_text(double value) {
-  std::array<char, 32> digits;
-  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
-}
 
 std::vector<std::string> cells_of(const std::string& line) {
   std::vector<std::string> cells(1);
@@ -65,11 +60,9 @@ std::vector<std::uint64_t> read_seeds(const GateLine& line) {
 }
 
 Kind read_kind(const GateLine& line) {
+  if (const auto kind = kind_named(line.cells[1])) return *kind;
   std::vector<std::string> known;
-  for (const Kind kind : kKinds) {
-    if (line.cells[1] == to_string(kind)) return kind;
-    known.emplace_back(to_string(kind));
-  }
+  for (const Kind kind : kKinds) known.emplace_back(to_string(kind));
   line.fail("unknown kind '" + line.cells[1] + "'" + suggestion(line.cells[1], known));
 }
 
@@ -137,8 +130,8 @@ void read_row(const GateLine& line, std::span<const MethodPointer> described, Ga
 double within(const YamlNode& node, double low, double high) {
   const double value = node.number();
   if (!(value >= low && value <= high)) {
-    node.fail(fmt::format("this limit of the accuracy gate is {}; it must be within [{}, {}]", number_text(value),
-                          number_text(low), number_text(high)));
+    node.fail(fmt::format("this limit of the accuracy gate is {}; it must be within [{}, {}]", exact_text(value),
+                          exact_text(low), exact_text(high)));
   }
   return value;
 }
@@ -196,9 +189,9 @@ std::string to_yaml(const Gate& gate) {
          "each "
          "number.\n"
          "suite: " +
-         gate.suite + "\nrisk: " + number_text(gate.policy.risk) + "\nmargin: " + number_text(gate.policy.margin) +
-         "\nshare_margin: " + number_text(gate.policy.share_margin) +
-         "\ntime_margin_s: " + number_text(gate.policy.time_margin_s) + "\nworst: " + number_text(gate.policy.worst) +
+         gate.suite + "\nrisk: " + exact_text(gate.policy.risk) + "\nmargin: " + exact_text(gate.policy.margin) +
+         "\nshare_margin: " + exact_text(gate.policy.share_margin) +
+         "\ntime_margin_s: " + exact_text(gate.policy.time_margin_s) + "\nworst: " + exact_text(gate.policy.worst) +
          "\n";
 }
 
@@ -216,11 +209,72 @@ std::string to_csv(const GateRun& run) {
     text += "\n";
     for (const auto& [metric, values] : method.values) {
       text += key + metric;
-      for (const double value : values) text += "," + (std::isfinite(value) ? number_text(value) : std::string());
+      for (const double value : values) text += "," + (std::isfinite(value) ? exact_text(value) : std::string());
       text += "\n";
     }
   }
   return text;
+}
+
+namespace {
+
+constexpr std::uint64_t kDrawsMax = 1000;  // the exact tests take cubic time
+
+MethodRun& method_run(const Outcome& outcome, GateRun& run) {
+  for (MethodRun& each : run.methods) {
+    if (each.scenario == outcome.scenario && each.kind == outcome.kind && each.method == outcome.method) return each;
+  }
+  run.methods.push_back({outcome.scenario, outcome.kind, outcome.method, {}, {}});
+  run.methods.back().status.resize(run.seeds.size());
+  return run.methods.back();
+}
+
+void add(const Outcome& outcome, GateRun& run) {
+  const auto seed = std::lower_bound(run.seeds.begin(), run.seeds.end(), outcome.seed);
+  if (seed == run.seeds.end() || *seed != outcome.seed || !outcome.setting.is_plain()) return;
+  const auto draw = static_cast<std::size_t>(seed - run.seeds.begin());
+  MethodRun& method = method_run(outcome, run);
+  method.status[draw] = outcome.status;
+  if (outcome.status != OutcomeStatus::ok) return;
+  const std::vector<std::string> held = held_metrics(outcome.kind);
+  for (const Score& score : outcome.scores) {
+    if (std::find(held.begin(), held.end(), score.metric) == held.end()) continue;
+    std::vector<double>& values = method.values[score.metric];
+    values.resize(run.seeds.size(), std::numeric_limits<double>::quiet_NaN());
+    values[draw] = score.value;
+  }
+}
+
+}  // namespace
+
+GateRun gate_run(std::span<const Outcome> outcomes, std::uint64_t first, std::uint64_t last) {
+  if (last < first || last - first >= kDrawsMax) {
+    throw BadInput(
+        fmt::format("'tumble gate' compares 1 to {} seeds, but the given range is {} to {}", kDrawsMax, first, last));
+  }
+  GateRun run;
+  for (std::uint64_t seed = first; seed <= last; ++seed) run.seeds.push_back(seed);
+  for (const Outcome& outcome : outcomes) add(outcome, run);
+  std::sort(run.methods.begin(), run.methods.end(), [](const MethodRun& a, const MethodRun& b) {
+    return std::tie(a.scenario, a.kind, a.method) < std::tie(b.scenario, b.kind, b.method);
+  });
+  return run;
+}
+
+GateRun gate_run(const Results& results, std::uint64_t first, std::uint64_t last) {
+  std::vector<Outcome> outcomes = results.outcomes();
+  std::size_t at = 0;
+  for (const ScoreRow& row : results.scores()) {
+    if (row.kind.empty()) continue;  // rejected run
+    const auto is_of = [&](const Outcome& outcome) {
+      return outcome.scenario == row.scenario && outcome.seed == row.seed && row.kind == to_string(outcome.kind) &&
+             outcome.method == row.method;
+    };
+    while (at < outcomes.size() && !is_of(outcomes[at])) ++at;
+    if (at == outcomes.size()) break;
+    outcomes[at].scores.push_back({row.metric, row.value});
+  }
+  return gate_run(outcomes, first, last);
 }
 
 }  // namespace tumble::scenarios

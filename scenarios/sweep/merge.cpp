@@ -14,7 +14,6 @@
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/sweep/keep.hpp"
 #include "scenarios/sweep/run_again.hpp"
-#include "scenarios/sweep/sweep_notes.hpp"
 
 namespace tumble::scenarios {
 

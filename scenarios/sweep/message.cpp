@@ -4,8 +4,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
-
-#include "scenarios/sweep/setting_json.hpp"
+#include <string>
 
 namespace tumble::scenarios {
 
@@ -104,6 +103,14 @@ std::optional<Message> from_line(const std::string& line) {
   } catch (const std::invalid_argument&) {
     return std::nullopt;
   }
+}
+
+nlohmann::json to_json(const Setting& setting) {
+  return nlohmann::json::array({setting.key, setting.value});
+}
+
+Setting setting_from(const nlohmann::json& pair) {
+  return {pair.at(0).get<std::string>(), pair.at(1).get<double>()};
 }
 
 }  // namespace tumble::scenarios

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
@@ -21,5 +22,8 @@ struct Message {
 std::string to_line(const Message& message);
 
 std::optional<Message> from_line(const std::string& line);
+
+nlohmann::json to_json(const Setting& setting);
+Setting setting_from(const nlohmann::json& pair);
 
 }  // namespace tumble::scenarios

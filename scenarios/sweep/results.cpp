@@ -4,7 +4,6 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
 
-#include <cmath>
 #include <string_view>
 #include <system_error>
 
@@ -14,50 +13,28 @@
 
 namespace tumble::scenarios {
 
-namespace {
-
-void bind_value(SQLite::Statement& statement, int index, double value) {
-  if (std::isnan(value))
-    statement.bind(index);
-  else
-    statement.bind(index, value);
-}
-
-}  // namespace
-
+// SQLite stores NaN as null.
 void Results::Impl::store(const std::string& kind, const Outcome& outcome) {
   Transaction transaction(*this);
   if (!kind.empty()) {
     SQLite::Statement drawn(database,
                             "DELETE FROM outcomes WHERE scenario = ? AND seed = ? AND kind = '' AND method = '' "
                             "AND varied = ? AND setting = ?");
-    drawn.bind(1, outcome.scenario);
-    drawn.bind(2, stored_seed(outcome.seed));
-    drawn.bind(3, outcome.setting.key);
-    drawn.bind(4, outcome.setting.value);
+    SQLite::bind(drawn, outcome.scenario, stored_seed(outcome.seed), outcome.setting.key, outcome.setting.value);
     drawn.exec();
   }
   SQLite::Statement insert(database,
                            "INSERT OR REPLACE INTO outcomes (scenario, seed, kind, method, status, message, "
                            "recording_digest, estimate_digest, varied, setting) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
-  insert.bind(1, outcome.scenario);
-  insert.bind(2, stored_seed(outcome.seed));
-  insert.bind(3, kind);
-  insert.bind(4, outcome.method);
-  insert.bind(5, std::string(to_string(outcome.status)));
-  insert.bind(6, outcome.message);
-  insert.bind(7, outcome.recording_digest);
-  insert.bind(8, outcome.estimate_digest);
-  insert.bind(9, outcome.setting.key);
-  insert.bind(10, outcome.setting.value);
+  SQLite::bind(insert, outcome.scenario, stored_seed(outcome.seed), kind, outcome.method, to_string(outcome.status),
+               outcome.message, outcome.recording_digest, outcome.estimate_digest, outcome.setting.key,
+               outcome.setting.value);
   insert.exec();
   const std::int64_t id = database.getLastInsertRowid();
   SQLite::Statement value(database, "INSERT OR REPLACE INTO score_values VALUES (?, ?, ?)");
   for (const Score& score : outcome.scores) {
     if (score.metric.empty()) continue;
-    value.bind(1, id);
-    value.bind(2, score.metric);
-    bind_value(value, 3, score.value);
+    SQLite::bind(value, id, score.metric, score.value);
     value.exec();
     value.reset();
   }
@@ -104,12 +81,8 @@ void Results::store(const DrawValues& draw) {
     Impl::Transaction transaction(*impl_);
     SQLite::Statement insert(impl_->database, "INSERT OR REPLACE INTO draw_values VALUES (?, ?, ?, ?, ?, ?)");
     for (const Score& score : draw.values) {
-      insert.bind(1, draw.scenario);
-      insert.bind(2, stored_seed(draw.seed));
-      insert.bind(3, score.metric);
-      bind_value(insert, 4, score.value);
-      insert.bind(5, draw.setting.key);
-      insert.bind(6, draw.setting.value);
+      SQLite::bind(insert, draw.scenario, stored_seed(draw.seed), score.metric, score.value, draw.setting.key,
+                   draw.setting.value);
       insert.exec();
       insert.reset();
     }
@@ -126,16 +99,8 @@ void Results::store(const Certificate& certificate) {
     SQLite::Statement insert(impl_->database, "INSERT INTO certificates VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     for (std::size_t i = 0; i < certificate.entries.size(); ++i) {
       const CertificateEntry& entry = certificate.entries[i];
-      insert.bind(1, certificate.build);
-      insert.bind(2, static_cast<std::int64_t>(i));
-      insert.bind(3, entry.row);
-      insert.bind(4, entry.subject);
-      insert.bind(5, entry.law);
-      insert.bind(6, entry.unit);
-      bind_value(insert, 7, entry.value);
-      bind_value(insert, 8, entry.low);
-      bind_value(insert, 9, entry.high);
-      insert.bind(10, entry.note);
+      SQLite::bind(insert, certificate.build, static_cast<std::int64_t>(i), entry.row, entry.subject, entry.law,
+                   entry.unit, entry.value, entry.low, entry.high, entry.note);
       insert.exec();
       insert.reset();
     }

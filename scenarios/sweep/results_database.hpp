@@ -2,18 +2,35 @@
 #pragma once
 
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <SQLiteCpp/VariadicBind.h>
 
 #include <bit>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/methods/method.hpp"
 #include "scenarios/provenance/build_id.hpp"
+#include "scenarios/scoring/outcome_status.hpp"
 #include "scenarios/sweep/results.hpp"
-#include "scenarios/sweep/results_schema.hpp"
+
+namespace SQLite {
+class Database;
+}
 
 namespace tumble::scenarios {
+
+/// Application id in the SQLite header ("TMBL"), by which the program recognises its databases
+inline constexpr int kApplicationId = 0x544d424c;
+inline constexpr int kSchemaVersion = 4;
+/// Older schema version that differs from the current version only in the allowed statuses
+inline constexpr int kReadableVersion = 3;
+
+extern const char* const kSchema;
+
+std::string missing_of_schema(const SQLite::Database& database);
 
 inline constexpr int kBusyTimeoutMs = 20000;
 inline constexpr int kSqliteBusy = 5;  // as in sqlite3.h
@@ -101,8 +118,7 @@ struct Results::Impl {
 
   void write_note(const std::string& key, const std::string& text) {
     SQLite::Statement insert(database, "INSERT OR REPLACE INTO notes VALUES (?, ?)");
-    insert.bind(1, key);
-    insert.bind(2, text);
+    SQLite::bind(insert, key, text);
     insert.exec();
   }
 
@@ -114,5 +130,25 @@ struct Results::Impl {
 
   void store(const std::string& kind, const Outcome& outcome);
 };
+
+/// A null in the results database becomes NaN; text or a blob, which SQLite would convert to 0, throws BadInput.
+template <typename Row>
+double stored_value(const SQLite::Column& column, const std::filesystem::path& path, const Row& row) {
+  const int type = column.getType();
+  if (type == SQLite::FLOAT || type == SQLite::INTEGER) return column.getDouble();
+  if (type == SQLite::Null) return std::numeric_limits<double>::quiet_NaN();
+  throw BadInput(path.string() + ": " + row() + ": is " + (type == SQLite::TEXT ? "text" : "a blob") +
+                 "; it must be a number or null");
+}
+
+inline Kind stored_kind(const std::string& name, const std::filesystem::path& path) {
+  if (const auto kind = kind_named(name)) return *kind;
+  throw BadInput(path.string() + ": unknown kind '" + name + "'");
+}
+
+inline OutcomeStatus stored_status(const std::string& name, const std::filesystem::path& path) {
+  if (const auto status = outcome_status_named(name)) return *status;
+  throw BadInput(path.string() + ": unknown status '" + name + "'");
+}
 
 }  // namespace tumble::scenarios

@@ -1,23 +1,112 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <fmt/format.h>
-
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <fmt/format.h>
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <map>
+#include <set>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/recordings/number_text.hpp"
-#include "scenarios/scoring/cost.hpp"
+#include "scenarios/scoring/metric.hpp"
 #include "scenarios/sweep/results_database.hpp"
-#include "scenarios/sweep/rows_into.hpp"
-#include "scenarios/sweep/stored_value.hpp"
+#include "scenarios/text.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
+
+class Kept {
+ public:
+  const std::string& operator()(std::string_view text) {
+    auto& last = last_[text.size() % last_.size()];
+    if (last != nullptr && *last == text) return *last;
+    auto found = texts_.find(text);
+    if (found == texts_.end()) found = texts_.emplace(text).first;
+    return *(last = &*found);
+  }
+
+ private:
+  std::set<std::string, std::less<>> texts_;
+  std::array<const std::string*, 64> last_{};
+};
+
+struct ScoreValue {
+  std::int64_t outcome;
+  const std::string* metric;
+  double value;
+
+  static constexpr const char *kTable = "score_values", *kPlaces = "(?, ?, ?)";
+  static constexpr int kColumns = 3;
+  void bind(SQLite::Statement& to, int before) const {
+    to.bind(before + 1, outcome);
+    to.bindNoCopy(before + 2, *metric);
+    to.bind(before + 3, value);
+  }
+};
+
+struct DrawValue {
+  const std::string* scenario;
+  std::int64_t seed;
+  const std::string* metric;
+  double value;
+  const std::string* varied;
+  double setting;
+
+  static constexpr const char *kTable = "draw_values", *kPlaces = "(?, ?, ?, ?, ?, ?)";
+  static constexpr int kColumns = 6;
+  void bind(SQLite::Statement& to, int before) const {
+    to.bindNoCopy(before + 1, *scenario);
+    to.bind(before + 2, seed);
+    to.bindNoCopy(before + 3, *metric);
+    to.bind(before + 4, value);
+    to.bindNoCopy(before + 5, *varied);
+    to.bind(before + 6, setting);
+  }
+};
+
+template <typename Row>
+class RowsInto {
+ public:
+  explicit RowsInto(SQLite::Database& into) : one_(into, text(1)), many_(into, text(kMany)) {}
+
+  void add(const Row& row) {
+    rows_.push_back(row);
+    if (rows_.size() == kMany) flush();
+  }
+  void flush() {
+    if (rows_.size() == kMany) {
+      for (std::size_t i = 0; i < kMany; ++i) rows_[i].bind(many_, static_cast<int>(i) * Row::kColumns);
+      run(many_);
+    } else {
+      for (const Row& row : rows_) {
+        row.bind(one_, 0);
+        run(one_);
+      }
+    }
+    rows_.clear();
+  }
+
+ private:
+  static constexpr std::size_t kMany = 64;
+
+  static std::string text(std::size_t rows) {
+    std::string text = std::string("INSERT OR REPLACE INTO ") + Row::kTable + " VALUES " + Row::kPlaces;
+    for (std::size_t i = 1; i < rows; ++i) text.append(", ").append(Row::kPlaces);
+    return text;
+  }
+  static void run(SQLite::Statement& statement) {
+    statement.exec();
+    statement.reset();
+  }
+
+  std::vector<Row> rows_;
+  SQLite::Statement one_, many_;
+};
 
 constexpr const char* kDraw = " WHERE scenario = ? AND seed = ? AND varied = ? AND setting = ? AND kind ";
 
@@ -120,18 +209,6 @@ class Joining {
     return changed;
   }
 
-  OutcomeStatus status(const char* name) const {
-    if (const auto known = outcome_status_named(name)) return *known;
-    throw BadInput(path_.string() + ": unknown status '" + name + "'");
-  }
-
-  void require_kind(const std::string& name) const {
-    for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
-      if (name == to_string(kind)) return;
-    }
-    throw BadInput(path_.string() + ": unknown kind '" + name + "'");
-  }
-
   bool insert(const ShardRow& row) {
     insert_.bindNoCopy(1, row.scenario);
     insert_.bind(2, row.seed);
@@ -147,8 +224,8 @@ class Joining {
   }
 
   bool take(const ShardRow& row, std::int64_t& id) {
-    require_kind(row.kind);
-    const OutcomeStatus own = status(row.status);
+    (void)stored_kind(row.kind, path_);
+    const OutcomeStatus own = stored_status(row.status, path_);
     if (insert(row)) {
       ++counts_.added;
     } else if (replaces_held(row, own)) {
@@ -181,7 +258,7 @@ class Joining {
     const std::string status_text = held_.getColumn(1).getString(), recording = held_.getColumn(2).getString(),
                       estimate = held_.getColumn(3).getString();
     held_.reset();
-    const OutcomeStatus known = status(status_text.c_str());
+    const OutcomeStatus known = stored_status(status_text, path_);
     if (outranks(own, known)) {
       for (SQLite::Statement* remove : {&remove_scores_, &remove_}) {
         remove->bind(1, id);
@@ -219,18 +296,12 @@ class Joining {
     each_score(row, [&](const char* metric, double value) {
       if (is_cost(metric)) return;
       const auto found = known.find(metric);
-      if (found == known.end()) differ(row, metric, value_text(value), "none");
+      if (found == known.end()) differ(row, metric, exact_text(value), "none");
       if (value != found->second && !(std::isnan(value) && std::isnan(found->second)))
-        differ(row, metric, value_text(value), value_text(found->second));
+        differ(row, metric, exact_text(value), exact_text(found->second));
       known.erase(found);
     });
-    if (!known.empty()) differ(row, known.begin()->first, "none", value_text(known.begin()->second));
-  }
-
-  static std::string value_text(double value) {
-    std::string text;
-    append_number(text, value);
-    return text;
+    if (!known.empty()) differ(row, known.begin()->first, "none", exact_text(known.begin()->second));
   }
 
   [[noreturn]] void differ(const ShardRow& row, const std::string& metric, const std::string& here,

@@ -10,7 +10,6 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/sweep/results_database.hpp"
-#include "scenarios/sweep/stored_value.hpp"
 
 namespace tumble::scenarios {
 
@@ -18,18 +17,6 @@ namespace {
 
 std::string draw_text(const std::string& scenario, std::uint64_t seed) {
   return scenario + ", seed " + std::to_string(seed);
-}
-
-Kind kind_named(const std::string& name, const std::filesystem::path& path) {
-  for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
-    if (name == to_string(kind)) return kind;
-  }
-  throw BadInput(path.string() + ": unknown kind '" + name + "'");
-}
-
-OutcomeStatus status_named(const std::string& name, const std::filesystem::path& path) {
-  if (const auto status = outcome_status_named(name)) return *status;
-  throw BadInput(path.string() + ": unknown status '" + name + "'");
 }
 
 const char* picked(Rows rows) {
@@ -57,9 +44,9 @@ std::vector<Outcome> read_outcomes(SQLite::Statement& select, const std::filesys
     Outcome row;
     row.scenario = select.getColumn(0).getString();
     row.seed = read_seed(select.getColumn(1).getInt64());
-    row.kind = kind_named(select.getColumn(2).getString(), path);
+    row.kind = stored_kind(select.getColumn(2).getString(), path);
     row.method = select.getColumn(3).getString();
-    row.status = status_named(select.getColumn(4).getString(), path);
+    row.status = stored_status(select.getColumn(4).getString(), path);
     row.message = select.getColumn(5).getString();
     row.recording_digest = select.getColumn(6).getString();
     row.estimate_digest = select.getColumn(7).getString();
@@ -108,7 +95,7 @@ std::vector<ScoreRow> Results::scores(Rows rows) const {
                       read_seed(select.getColumn(1).getInt64()),
                       select.getColumn(2).getString(),
                       select.getColumn(3).getString(),
-                      status_named(select.getColumn(4).getString(), impl_->path),
+                      stored_status(select.getColumn(4).getString(), impl_->path),
                       select.getColumn(5).isNull() ? std::string() : select.getColumn(5).getString(),
                       0.0,
                       {select.getColumn(7).getString(), select.getColumn(8).getDouble()}};
@@ -153,8 +140,8 @@ void Results::each(Rows rows, Names& names, const std::function<void(const Outco
              })});
       }
       visit({text(outcomes, 1), read_seed(outcomes.getColumn(2).getInt64()),
-             kind_named(outcomes.getColumn(3).getString(), impl_->path), text(outcomes, 4),
-             status_named(outcomes.getColumn(5).getString(), impl_->path), text(outcomes, 6),
+             stored_kind(outcomes.getColumn(3).getString(), impl_->path), text(outcomes, 4),
+             stored_status(outcomes.getColumn(5).getString(), impl_->path), text(outcomes, 6),
              outcomes.getColumn(7).getDouble(), values});
     }
   });

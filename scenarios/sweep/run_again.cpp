@@ -3,12 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
-#include <charconv>
+#include <cctype>
 #include <cmath>
+#include <sstream>
+#include <string_view>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/sweep/sweep_notes.hpp"
+#include "scenarios/text.hpp"
 
 namespace tumble::scenarios {
 
@@ -63,10 +66,9 @@ Setting setting_from(const std::string& text) {
   Setting setting;
   if (equals != std::string::npos) setting.key = text.substr(0, equals);
   std::erase(setting.key, ' ');
-  const char* const begin = text.data() + (equals == std::string::npos ? text.size() : equals + 1);
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(begin, end, setting.value);
-  if (setting.key.empty() || begin == end || error != std::errc() || stop != end || !std::isfinite(setting.value))
+  const bool read =
+      equals != std::string::npos && read_number(std::string_view(text).substr(equals + 1), setting.value);
+  if (setting.key.empty() || !read || !std::isfinite(setting.value))
     throw BadInput(
         fmt::format("'{}' must have the form KEY=NUMBER, for example world.rock_count=10; keys that vary together are "
                     "joined with '+'",
@@ -75,9 +77,38 @@ Setting setting_from(const std::string& text) {
 }
 
 std::string to_text(const Setting& setting) {
-  std::array<char, 32> text;
-  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), setting.value);
-  return setting.key + "=" + std::string(text.data(), end);
+  return setting.key + "=" + exact_text(setting.value);
+}
+
+std::vector<std::string> commands_of(const std::string& note) {
+  std::vector<std::string> out;
+  std::istringstream lines(note);
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.empty()) out.push_back(line);
+  }
+  return out;
+}
+
+std::string with_commands(const std::string& note, const std::string& more) {
+  std::vector<std::string> known = commands_of(note);
+  std::string out = note;
+  for (std::string& line : commands_of(more)) {
+    if (std::find(known.begin(), known.end(), line) != known.end()) continue;
+    out += (out.empty() ? "" : "\n") + line;
+    known.push_back(std::move(line));
+  }
+  return out;
+}
+
+std::string shell_word(const std::string& text) {
+  constexpr std::string_view kPlain = "_-./:=,+@%";
+  const auto plain = [&](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || kPlain.find(c) != std::string_view::npos;
+  };
+  if (!text.empty() && std::all_of(text.begin(), text.end(), plain)) return text;
+  std::string out = "'";
+  for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
 }
 
 }  // namespace tumble::scenarios

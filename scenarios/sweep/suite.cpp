@@ -9,7 +9,7 @@
 
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/draw/strict_yaml.hpp"
-#include "scenarios/draw/yaml_folder.hpp"
+#include "scenarios/draw/yaml_text.hpp"
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/external_method.hpp"
 #include "scenarios/scoring/score.hpp"

@@ -14,7 +14,7 @@
 #include "scenarios/methods/external_description.hpp"
 #include "scenarios/methods/external_method.hpp"
 #include "scenarios/provenance/data_digest.hpp"
-#include "scenarios/recordings/scratch_folder.hpp"
+#include "scenarios/recordings/scratch_file.hpp"
 #include "scenarios/sweep/draw_worker.hpp"
 #include "scenarios/sweep/results.hpp"
 #include "scenarios/sweep/run_again.hpp"

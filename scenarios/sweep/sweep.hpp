@@ -16,7 +16,7 @@
 #include "scenarios/sweep/database_owner.hpp"
 #include "scenarios/sweep/keep.hpp"
 #include "scenarios/sweep/results.hpp"
-#include "scenarios/sweep/sweep_notes.hpp"
+#include "scenarios/sweep/run_again.hpp"
 #include "scenarios/sweep/variation.hpp"
 
 namespace tumble::scenarios {

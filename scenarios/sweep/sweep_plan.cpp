@@ -8,8 +8,8 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/external_method.hpp"
+#include "scenarios/sweep/message.hpp"
 #include "scenarios/sweep/run_again.hpp"
-#include "scenarios/sweep/setting_json.hpp"
 
 namespace tumble::scenarios {
 

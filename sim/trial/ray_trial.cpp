@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kReach_m = 1e4;
+constexpr double kRayReach_m = 1e4;
 /// If two surfaces have coincident faces (the end of a wall within a door's reveal), a ray may hit either surface.
 constexpr double kCoincident_m = 1e-4;
 
@@ -88,7 +88,7 @@ void set_ray(RayPacket& packet, int lane, const Vector3d& origin_m, const Vector
   packet.direction_x[lane] = static_cast<float>(direction.x());
   packet.direction_y[lane] = static_cast<float>(direction.y());
   packet.direction_z[lane] = static_cast<float>(direction.z());
-  packet.range[lane] = static_cast<float>(kReach_m);
+  packet.range[lane] = static_cast<float>(kRayReach_m);
   packet.surface_id[lane] = kNothing;
 }
 

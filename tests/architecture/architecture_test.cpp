@@ -72,7 +72,7 @@ const std::vector<Rule>& rules() {
       // the report page is a function of results and of files next to them, so it may not simulate, estimate or draw
       {"tools/report",
        {"^sim/", "^tumble/", "^scenarios/(draw|methods|recordings|processes)/",
-        "^scenarios/sweep/(sweep|draw_process|evaluate|run_situation|recorded_draw)\\.hpp", "^tools/tumble/",
+        "^scenarios/sweep/(sweep|draw_process|evaluate|recorded_draw)\\.hpp", "^tools/tumble/",
         "^tools/pictures/(?!colours)", "^tools/examples/(?!example\\.hpp)"}},
   };
   return all;
@@ -188,7 +188,7 @@ TEST(Architecture, CheckerRefusesForbiddenIncludes) {
   EXPECT_NE(broken_rule("sim/imu/x.cpp", "yaml-cpp/yaml.h"), "");
   EXPECT_NE(broken_rule("tools/tumble/x.cpp", "embree3/rtcore.h"), "");
   EXPECT_NE(broken_rule("scenarios/draw/x.cpp", "sim/compose.hpp"), "");
-  for (const char* include : {"scenarios/sweep/run_situation.hpp", "scenarios/methods/method.hpp", "sim/recording.hpp",
+  for (const char* include : {"scenarios/sweep/evaluate.hpp", "scenarios/methods/method.hpp", "sim/recording.hpp",
                               "tools/examples/make_example.hpp", "tools/pictures/pictures.hpp"})
     EXPECT_NE(broken_rule("tools/report/page.cpp", include), "") << include;
   EXPECT_EQ(broken_rule("tools/report/page.cpp", "tools/examples/example.hpp"), "");

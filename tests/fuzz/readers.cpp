@@ -17,7 +17,7 @@
 #include "scenarios/methods/rig_calibration_file.hpp"
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/clouds/cloud_file.hpp"
-#include "scenarios/recordings/clouds/sweep_stamps.hpp"
+#include "scenarios/recordings/clouds/import_sweeps.hpp"
 #include "scenarios/recordings/import.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/recordings/trajectories/reference.hpp"

@@ -9,7 +9,7 @@
 #include <array>
 
 #include "scenarios/draw/scenario.hpp"
-#include "scenarios/sweep/run_situation.hpp"
+#include "scenarios/sweep/evaluate.hpp"
 #include "tests/temporary_folder.hpp"
 #include "tests/tree.hpp"
 #include "tools/examples/make_example.hpp"

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "tools/report/certificate_html.hpp"
+#include "tools/report/cost_html.hpp"
 
 namespace tumble::tools {
 namespace {

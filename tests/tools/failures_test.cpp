@@ -8,7 +8,6 @@
 #include <fstream>
 
 #include "scenarios/sweep/run_again.hpp"
-#include "scenarios/sweep/sweep_notes.hpp"
 #include "tests/tools/results_fixture.hpp"
 
 namespace tumble::tools {

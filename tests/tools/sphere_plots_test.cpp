@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/examples/sphere_plots.hpp"
+#include "tools/examples/draw_plots.hpp"
 
 #include <gtest/gtest.h>
 

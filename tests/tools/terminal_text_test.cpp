@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/tumble/terminal_text.hpp"
+#include "tools/tumble/session.hpp"
 
 #include <gtest/gtest.h>
 

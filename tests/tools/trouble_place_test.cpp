@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/tumble/trouble_place.hpp"
+#include "tools/tumble/chosen_method.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/sweep/run_situation.hpp"
+#include "scenarios/sweep/evaluate.hpp"
 #include "tools/examples/example.hpp"
 #include "tools/pictures/paths.hpp"
 
@@ -26,5 +26,10 @@ double significant(double value);
 Plot rate_plot(const scenarios::RunResult& run);
 
 Plot path_plot(const scenarios::RunResult& run, const RunPaths& paths);
+
+Plot sphere_track_plot(const scenarios::RunResult& run);
+Plot sphere_speed_plot(const scenarios::RunResult& run);
+Plot sphere_height_plot(const scenarios::RunResult& run);
+Plot sphere_standstill_plot(const scenarios::RunResult& run);
 
 }  // namespace tumble::tools

@@ -8,7 +8,6 @@
 #include "scenarios/sweep/evaluate.hpp"
 #include "sim/render/renderer.hpp"
 #include "tools/examples/draw_plots.hpp"
-#include "tools/examples/sphere_plots.hpp"
 #include "tools/pictures/map_pictures.hpp"
 #include "tools/pictures/moving.hpp"
 #include "tools/pictures/pictures.hpp"

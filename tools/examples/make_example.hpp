@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <span>
-
 #include "scenarios/data_root.hpp"
-#include "scenarios/sweep/run_situation.hpp"
+#include "scenarios/sweep/evaluate.hpp"
 #include "tools/examples/example.hpp"
 
 namespace tumble::tools {

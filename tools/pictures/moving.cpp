@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "scenarios/errors.hpp"
-#include "tools/pictures/staging.hpp"
+#include "tools/pictures/pictures.hpp"
 #include "tools/pictures/webp.hpp"
 
 namespace tumble::tools {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "scenarios/sweep/run_situation.hpp"
+#include "scenarios/sweep/evaluate.hpp"
 #include "tools/pictures/colours.hpp"
 #include "tools/replay/replay.hpp"
 

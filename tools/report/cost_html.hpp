@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/certificate/certificate.hpp"
 #include "scenarios/summary/summary.hpp"
 #include "scenarios/sweep/outcome.hpp"
 
@@ -21,5 +22,9 @@ struct CostRow {
 std::vector<CostRow> cost_rows(const scenarios::Summary& summary, std::span<const scenarios::DrawValues> draws);
 
 std::string costs_html(const std::vector<CostRow>& rows);
+
+std::string certificate_summary(const scenarios::Certificate& certificate);
+
+std::string certificates_html(std::span<const scenarios::Certificate> certificates);
 
 }  // namespace tumble::tools

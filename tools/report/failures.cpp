@@ -8,7 +8,6 @@
 #include "scenarios/summary/example_choice.hpp"
 #include "scenarios/sweep/keep.hpp"
 #include "scenarios/sweep/run_again.hpp"
-#include "scenarios/sweep/sweep_notes.hpp"
 
 namespace tumble::tools {
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "tools/html/html.hpp"
-#include "tools/report/differences_html.hpp"
 #include "tools/report/example_html.hpp"
+#include "tools/report/score_html.hpp"
 
 namespace tumble::tools {
 

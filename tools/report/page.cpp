@@ -8,12 +8,10 @@
 
 #include "report/embedded.hpp"
 #include "tools/html/html.hpp"
-#include "tools/report/certificate_html.hpp"
-#include "tools/report/differences_html.hpp"
+#include "tools/report/cost_html.hpp"
 #include "tools/report/example_html.hpp"
 #include "tools/report/failures_html.hpp"
 #include "tools/report/front.hpp"
-#include "tools/report/motion_figure.hpp"
 #include "tools/report/score_html.hpp"
 #include "tools/report/sensitivity_html.hpp"
 

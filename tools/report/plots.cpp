@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "scenarios/scoring/cost.hpp"
+#include "scenarios/scoring/metric.hpp"
 #include "tools/pictures/colours.hpp"
 
 namespace tumble::tools {

@@ -11,9 +11,9 @@
 #include "scenarios/summary/comparison.hpp"
 #include "scenarios/summary/example_choice.hpp"
 #include "scenarios/summary/motion_map.hpp"
-#include "scenarios/sweep/sweep_notes.hpp"
+#include "scenarios/sweep/run_again.hpp"
 #include "tools/html/html.hpp"
-#include "tools/report/certificate_html.hpp"
+#include "tools/report/cost_html.hpp"
 
 namespace tumble::tools {
 
@@ -89,7 +89,7 @@ std::vector<Fact> commands(const scenarios::Results& results, const ReportOption
 
 std::vector<Figure> errors_of_all_draws(const Summary& summary, const Palette& palette) {
   std::vector<Figure> figures;
-  for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
+  for (const Kind kind : scenarios::kKinds) {
     for (const std::string& name : scenarios::headline_metrics(kind)) {
       const scenarios::MetricInfo& info = scenarios::metric_info(name);
       if (info.unit != scenarios::Unit::verdict)

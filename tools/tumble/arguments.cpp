@@ -9,7 +9,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/external_description.hpp"
 #include "scenarios/methods/external_method.hpp"
-#include "scenarios/recordings/foreign_file.hpp"
+#include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/scoring/score.hpp"
 #include "scenarios/sweep/sweep.hpp"

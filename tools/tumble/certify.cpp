@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/certificate/certificate.hpp"
-#include "scenarios/certificate/certificate_text.hpp"
+#include "scenarios/certificate/certificate_store.hpp"
 #include "tools/tables/certificate_table.hpp"
 #include "tools/tumble/interrupt.hpp"
 #include "tools/tumble/verbs.hpp"

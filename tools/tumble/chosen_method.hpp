@@ -6,6 +6,8 @@
 #include <string>
 
 #include "scenarios/methods/method.hpp"
+#include "sim/recording.hpp"
+#include "tumble/common/status.hpp"
 
 namespace tumble::tools {
 
@@ -16,5 +18,7 @@ scenarios::Estimate run_method(const scenarios::Method& method, const sim::Senso
                                std::function<void(std::size_t done, std::size_t all)> on_sweep = {});
 
 std::string failure_reason(const Status& status, const sim::Sensors& sensors);
+
+std::string trouble_place(const Status& status, const sim::Sensors& sensors);
 
 }  // namespace tumble::tools

@@ -14,7 +14,7 @@
 #include "scenarios/errors.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/asked.hpp"
-#include "tools/tumble/intervals.hpp"
+#include "tools/tumble/score_tables.hpp"
 #include "tools/tumble/verbs.hpp"
 
 namespace tumble::tools {

@@ -14,7 +14,7 @@
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/sweep/certified_results.hpp"
 #include "scenarios/sweep/run_again.hpp"
-#include "tools/report/certificate_html.hpp"
+#include "tools/report/cost_html.hpp"
 #include "tools/tables/certificate_table.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/gate_cases.hpp"

@@ -9,8 +9,8 @@
 #include <optional>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/prior_map_file.hpp"
-#include "scenarios/methods/slam_registry.hpp"
+#include "scenarios/methods/map_file.hpp"
+#include "scenarios/methods/registry.hpp"
 
 namespace tumble::tools {
 

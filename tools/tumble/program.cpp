@@ -18,7 +18,7 @@
 #include "sim/parameters.hpp"
 #include "sim/simulate.hpp"
 #include "tools/tumble/arguments.hpp"
-#include "tools/tumble/terminal_text.hpp"
+#include "tools/tumble/session.hpp"
 #include "tools/tumble/verbs.hpp"
 
 namespace tumble::tools {

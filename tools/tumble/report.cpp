@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <list>
@@ -14,7 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "scenarios/certificate/certificate_text.hpp"
+#include "scenarios/certificate/certificate_store.hpp"
 #include "scenarios/errors.hpp"
 #include "scenarios/provenance/data_digest.hpp"
 #include "scenarios/recordings/replace_file.hpp"
@@ -24,8 +23,8 @@
 #include "tools/report/distributions.hpp"
 #include "tools/report/sensitivity_html.hpp"
 #include "tools/tumble/arguments.hpp"
-#include "tools/tumble/intervals.hpp"
 #include "tools/tumble/numbers_of_draws.hpp"
+#include "tools/tumble/score_tables.hpp"
 #include "tools/tumble/verbs.hpp"
 
 namespace tumble::tools {

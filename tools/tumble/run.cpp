@@ -9,11 +9,11 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/methods/findings.hpp"
-#include "scenarios/methods/given_parameters.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
+#include "scenarios/sweep/evaluate.hpp"
 #include "scenarios/sweep/run_again.hpp"
-#include "scenarios/sweep/run_situation.hpp"
 #include "scenarios/sweep/variation.hpp"
 #include "tools/pictures/pictures.hpp"
 #include "tools/replay/page.hpp"
@@ -68,7 +68,7 @@ const scenarios::MethodInfo* baseline_of(scenarios::Kind kind) {
 RunOptions first_run(RunOptions options, const scenarios::Scenario& scenario) {
   using scenarios::Kind;
   const scenarios::Subject subject = scenarios::subject_of(scenario);
-  for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
+  for (const Kind kind : scenarios::kKinds) {
     const scenarios::MethodInfo* const baseline = baseline_of(kind);
     const scenarios::MethodInfo* const ours = first_of(kind, [](const auto& info) { return info.ours; });
     if (baseline == nullptr || ours == nullptr || !baseline->applies_to(subject) || !ours->applies_to(subject))

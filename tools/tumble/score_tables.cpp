@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/scoring/binned_metric.hpp"
+#include "tools/tables/table.hpp"
 
 namespace tumble::tools {
 
@@ -46,7 +47,7 @@ Table kind_table(const std::string& title, const std::vector<const Outcome*>& ou
 std::vector<Table> score_tables(const std::string& title, std::span<const Outcome> outcomes,
                                 const std::string& status) {
   std::vector<Table> tables;
-  for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
+  for (const Kind kind : scenarios::kKinds) {
     std::vector<const Outcome*> selected;
     for (const Outcome& outcome : outcomes) {
       if (outcome.kind == kind) selected.push_back(&outcome);
@@ -89,6 +90,19 @@ std::string overall_status(std::span<const Outcome> outcomes) {
     if (outcome.status != scenarios::OutcomeStatus::ok) return to_string(outcome.status);
   }
   return "ok";
+}
+
+std::string interval_text(const scenarios::Interval& interval) {
+  if (!std::isfinite(interval.low) && !std::isfinite(interval.high)) return "[-]";
+  return "[" + number_text(interval.low) + ", " + number_text(interval.high) + "]";
+}
+
+nlohmann::json finite(double value) {
+  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
+}
+
+nlohmann::json interval_json(const scenarios::Interval& interval) {
+  return {{"value", finite(interval.value)}, {"low", finite(interval.low)}, {"high", finite(interval.high)}};
 }
 
 }  // namespace tumble::tools

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/statistics/statistics.hpp"
 #include "scenarios/sweep/outcome.hpp"
 #include "tools/tables/table.hpp"
 
@@ -19,5 +20,9 @@ nlohmann::json score_rows(std::span<const scenarios::Outcome> outcomes);
 nlohmann::json outcome_rows(std::span<const scenarios::Outcome> outcomes);
 
 std::string overall_status(std::span<const scenarios::Outcome> outcomes);
+
+std::string interval_text(const scenarios::Interval& interval);
+nlohmann::json finite(double value);
+nlohmann::json interval_json(const scenarios::Interval& interval);
 
 }  // namespace tumble::tools

@@ -4,14 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/provenance/data_digest.hpp"
-#include "tools/tumble/intervals.hpp"
 #include "tools/tumble/numbers_of_draws.hpp"
+#include "tools/tumble/score_tables.hpp"
 #include "tools/tumble/verbs.hpp"
 
 namespace tumble::tools {

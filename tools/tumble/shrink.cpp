@@ -13,10 +13,10 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/sweep/evaluate.hpp"
+#include "scenarios/sweep/run_again.hpp"
 #include "scenarios/sweep/sweep.hpp"
-#include "scenarios/sweep/sweep_notes.hpp"
 #include "tools/tumble/arguments.hpp"
-#include "tools/tumble/intervals.hpp"
+#include "tools/tumble/score_tables.hpp"
 #include "tools/tumble/verbs.hpp"
 
 namespace tumble::tools {

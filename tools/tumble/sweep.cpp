@@ -12,7 +12,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/sweep/results.hpp"
-#include "scenarios/sweep/sweep_notes.hpp"
+#include "scenarios/sweep/run_again.hpp"
 #include "tools/examples/leave_examples.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/asked.hpp"

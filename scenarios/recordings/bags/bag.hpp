@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "scenarios/not_finite.hpp"
-#include "scenarios/recordings/bags/bag_layout.hpp"
+#include "scenarios/recordings/bags/bag_storage.hpp"
 #include "scenarios/recordings/import.hpp"
 #include "scenarios/recordings/stored_truth.hpp"
 #include "sim/recording.hpp"

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "scenarios/recordings/bags/bag_stamps.hpp"
+#include "scenarios/recordings/bags/bag_messages.hpp"
 #include "scenarios/recordings/tables/imu_readings.hpp"
 
 namespace tumble::scenarios {

@@ -8,7 +8,9 @@
 
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/bags/opened_bag.hpp"
+#include "scenarios/recordings/bags/ros_messages.hpp"
 #include "scenarios/recordings/bags/sensor_places.hpp"
+#include "scenarios/recordings/clouds/cloud_file.hpp"
 #include "scenarios/recordings/left_out.hpp"
 
 namespace tumble::scenarios {
@@ -31,5 +33,16 @@ CloudHeaders read_headers(const OpenedBag& bag, const std::string& topic, const 
 
 BuiltSweeps read_lidar(const OpenedBag& bag, SensorMountings& places, const std::string& topic,
                        const CloudHeaders& headers, const BagReading& reading, std::vector<std::string>& notes);
+
+/// The messages of livox_ros_driver, livox_ros_driver2 and livox_interfaces have the same fields.
+bool is_livox_type(const std::string& type);
+
+Cloud cloud_of(const ros::PointCloud2& message, const std::string& where);
+
+Cloud cloud_of(const ros::LivoxCustomMsg& message, const std::string& where);
+
+/// Point clouds with equal digests are duplicate messages.
+std::uint64_t content_of(const ros::PointCloud2& message);
+std::uint64_t content_of(const ros::LivoxCustomMsg& message);
 
 }  // namespace tumble::scenarios

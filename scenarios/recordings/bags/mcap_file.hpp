@@ -10,7 +10,6 @@
 #include <string_view>
 #include <vector>
 
-#include "scenarios/recordings/bags/mcap_bytes.hpp"
 #include "scenarios/recordings/bags/mcap_records.hpp"
 
 /// The MCAP reader checks every length, position, time and checksum before use.

@@ -8,10 +8,9 @@
 #include <vector>
 
 #include "scenarios/recordings/bags/bag_storage.hpp"
-#include "scenarios/recordings/bags/mcap_bytes.hpp"
 #include "scenarios/recordings/bags/mcap_records.hpp"
 #include "scenarios/recordings/bags/packed.hpp"
-#include "scenarios/recordings/bags/ros2_definitions.hpp"
+#include "scenarios/recordings/bags/ros2_metadata.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 
 namespace tumble::scenarios {

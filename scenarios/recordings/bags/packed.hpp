@@ -2,8 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "scenarios/recordings/bags/bag_storage.hpp"
 
 namespace tumble::scenarios {
 
@@ -15,5 +21,14 @@ std::string unpacked_zstd(std::string_view packed, std::uint64_t bytes);
 
 /// Returns the CRC-32 of zlib (IEEE 802.3, reflected), continued from the checksum `before`.
 std::uint32_t crc32_of(std::string_view bytes, std::uint32_t before = 0);
+
+/// Decompresses files such as "bag_0.db3.zstd" to a temporary folder, which is removed with the reader, even if a
+/// signal ends the program. Throws BadInput if the data are damaged, disk space is missing, or the output exceeds both
+/// 64 MiB and 200 times the file's size.
+std::unique_ptr<BagReader> open_packed_files(
+    const std::vector<std::filesystem::path>& files,
+    const std::function<std::unique_ptr<BagReader>(const std::vector<std::filesystem::path>&)>& open);
+
+std::unique_ptr<BagReader> with_packed_messages(std::unique_ptr<BagReader> bag, std::string place);
 
 }  // namespace tumble::scenarios

@@ -11,7 +11,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
-#include "scenarios/recordings/bags/ros1_ops.hpp"
+#include "scenarios/recordings/bags/ros1_chunks.hpp"
 #include "scenarios/regular_file.hpp"
 
 namespace tumble::scenarios {

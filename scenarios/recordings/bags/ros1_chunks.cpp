@@ -10,7 +10,6 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/bags/packed.hpp"
-#include "scenarios/recordings/bags/ros1_ops.hpp"
 
 namespace tumble::scenarios {
 

@@ -27,3 +27,9 @@ void copy_ros1_bag(const std::filesystem::path& from, const std::filesystem::pat
 void unpack_lz4(Ros1Chunk& chunk);
 
 }  // namespace tumble::scenarios
+
+namespace tumble::scenarios::ros1 {
+
+enum Op : std::uint8_t { kMessage = 2, kFile = 3, kIndex = 4, kChunk = 5, kChunkInfo = 6, kConnection = 7 };
+
+}  // namespace tumble::scenarios::ros1

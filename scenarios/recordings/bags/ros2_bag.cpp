@@ -6,18 +6,15 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cstring>
 #include <map>
 #include <optional>
 #include <set>
-#include <sstream>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
-#include "scenarios/recordings/bags/packed_bag.hpp"
-#include "scenarios/recordings/bags/ros2_definitions.hpp"
+#include "scenarios/recordings/bags/packed.hpp"
 #include "scenarios/recordings/bags/ros2_metadata.hpp"
-#include "scenarios/recordings/clouds/sweep_stamps.hpp"
+#include "scenarios/recordings/clouds/import_sweeps.hpp"
 #include "scenarios/recordings/lower_extension.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/regular_file.hpp"

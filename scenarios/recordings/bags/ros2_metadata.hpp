@@ -25,4 +25,13 @@ struct Ros2Summary {
 
 std::string ros2_metadata(const Ros2Summary& bag);
 
+std::string ros2_type(const std::string& type);
+std::string ros1_type(std::string type);
+
+std::string ros2_definition(const std::string& type);
+
+/// Quality of service of a topic as YAML for rosbag2; /tf_static is transient local, so that new subscribers receive
+/// the transforms.
+std::string ros2_qos(const std::string& topic);
+
 }  // namespace tumble::scenarios

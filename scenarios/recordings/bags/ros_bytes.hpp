@@ -8,7 +8,6 @@
 #include <variant>
 
 #include "scenarios/recordings/bags/cdr_archives.hpp"
-#include "scenarios/recordings/bags/ros1_archives.hpp"
 #include "scenarios/recordings/bags/ros_fields.hpp"
 
 namespace tumble::scenarios::ros {

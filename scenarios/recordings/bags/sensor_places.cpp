@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/bags/sensor_places.hpp"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <sstream>
+
+#include "scenarios/errors.hpp"
 
 namespace tumble::scenarios {
 
@@ -85,6 +87,86 @@ std::optional<Eigen::Isometry3d> SensorMountings::of(const std::string& frame) c
   const Placed* const beside = neighbour(frame);
   if (beside == nullptr) return std::nullopt;
   return beside->T_BA * *frames_.pose(beside->frame, frame, where_);
+}
+
+namespace {
+
+constexpr double kFrameFar_m = 1000.0, kFrameNormTolerance = 0.01;
+
+}  // namespace
+
+std::string without_slash(const std::string& frame) {
+  return frame.starts_with('/') ? frame.substr(1) : frame;
+}
+
+void StaticFrames::add(const ros::TransformStamped& transform, const std::string& where) {
+  const std::string parent = without_slash(transform.header.frame_id), child = without_slash(transform.child_frame_id);
+  const std::string what = fmt::format("{}: the transform of '{}' in '{}'", where, child, parent);
+  const auto p = Eigen::Vector3d::Map(transform.translation.data());
+  Eigen::Quaterniond q;
+  q.coeffs() = Eigen::Vector4d::Map(transform.rotation_xyzw.data());
+  FrameLink hung{parent, Eigen::Isometry3d::Identity(), ""};
+  if (!(p.cwiseAbs().maxCoeff() <= kFrameFar_m) || !p.allFinite()) {
+    hung.problem = fmt::format("{}: the translation must be finite and at most 1 km", what);
+  } else if (!(std::abs(q.norm() - 1.0) <= kFrameNormTolerance)) {
+    hung.problem =
+        fmt::format("{}: the rotation quaternion has norm {}; its norm must be 1", what, std::to_string(q.norm()));
+  } else if (parent == child) {
+    hung.problem = fmt::format("{}: the frame is its own parent, but must have another parent", what);
+  } else {
+    hung.T_parent.linear() = q.normalized().toRotationMatrix();
+    hung.T_parent.translation() = p;
+  }
+  if (!hung.problem.empty())
+    remarks_.push_back(fmt::format("caution: the import ignores an invalid transform: {}", hung.problem));
+  if (const auto before = frames_.find(child); before != frames_.end() && before->second.parent != parent) {
+    remarks_.push_back(
+        fmt::format("caution: frame '{}' has the parent '{}' and later the parent '{}'; a frame may have only one "
+                    "parent, so the later parent is used ({})",
+                    child, before->second.parent, parent, where));
+  }
+  frames_.insert_or_assign(child, std::move(hung));
+}
+
+void StaticFrames::require_no_cycle(const std::string& where) const {
+  for (const auto& [frame, on] : frames_) path_to_root(frame, where);
+}
+
+std::string StaticFrames::body() const {
+  for (const char* name : {"body", "base_link"}) {
+    const auto on_it = [&](const auto& each) { return each.second.parent == name; };
+    if (frames_.contains(name) || std::any_of(frames_.begin(), frames_.end(), on_it)) return name;
+  }
+  return "";
+}
+
+std::vector<StaticFrames::FrameLink> StaticFrames::path_to_root(const std::string& frame,
+                                                                const std::string& where) const {
+  std::vector<FrameLink> out = {{frame, Eigen::Isometry3d::Identity(), ""}};
+  for (std::size_t steps = 0; steps <= frames_.size(); ++steps) {
+    const auto found = frames_.find(out.back().parent);
+    if (found == frames_.end() || found->second.parent == found->first) return out;
+    const auto& [parent, T_parent, problem] = found->second;
+    const FrameLink& below = out.back();
+    out.push_back({parent, T_parent * below.T_parent, below.problem.empty() ? problem : below.problem});
+  }
+  throw BadInput(fmt::format("{}: the frame '{}' and its parent frames form a loop; a tree of frames must have no loop",
+                             where, frame));
+}
+
+std::optional<Eigen::Isometry3d> StaticFrames::pose(const std::string& frame_A, const std::string& frame_B,
+                                                    const std::string& where) const {
+  const std::vector<FrameLink> A = path_to_root(without_slash(frame_A), where),
+                               B = path_to_root(without_slash(frame_B), where);
+  for (const FrameLink& a : A) {
+    const auto b = std::find_if(B.begin(), B.end(), [&](const FrameLink& each) { return each.parent == a.parent; });
+    if (b == B.end()) continue;
+    for (const std::string& problem : {a.problem, b->problem}) {
+      if (!problem.empty()) throw BadInput(problem);
+    }
+    return a.T_parent.inverse() * b->T_parent;
+  }
+  return std::nullopt;
 }
 
 }  // namespace tumble::scenarios

@@ -11,7 +11,7 @@
 #include <type_traits>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/recordings/timed_points.hpp"
+#include "scenarios/recordings/export_names.hpp"
 
 namespace tumble::scenarios {
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "scenarios/recordings/bags/bag_layout.hpp"
+#include "scenarios/recordings/bags/bag_storage.hpp"
 #include "scenarios/recordings/bags/ros_messages.hpp"
 #include "sim/recording.hpp"
 

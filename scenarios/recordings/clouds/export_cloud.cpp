@@ -7,7 +7,6 @@
 #include "scenarios/recordings/export_names.hpp"
 #include "scenarios/recordings/number_text.hpp"
 #include "scenarios/recordings/replace_file.hpp"
-#include "scenarios/recordings/timed_points.hpp"
 
 namespace tumble::scenarios {
 

@@ -9,8 +9,8 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/clouds/sweep_builder.hpp"
-#include "scenarios/recordings/number_text.hpp"
 #include "scenarios/recordings/upper_median.hpp"
+#include "scenarios/text.hpp"
 #include "sim/parameters.hpp"
 #include "tumble_ros/point_fields.hpp"
 

@@ -12,7 +12,7 @@
 #include <string_view>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/recordings/clouds/sweep_stamps.hpp"
+#include "scenarios/recordings/clouds/import_sweeps.hpp"
 #include "scenarios/recordings/upper_median.hpp"
 #include "tumble_ros/point_fields.hpp"
 
@@ -24,10 +24,10 @@ namespace {
 constexpr std::ptrdiff_t kProbe = 10;
 constexpr double kByteIntensity = 255.0;
 constexpr double kPointFar_m = 1e6;
-constexpr double kBeyond = 2.0;         // in ranges of the data sheet
-constexpr double kFarthest_m = 500.0;   // above that of robot lidars
-constexpr std::size_t kBackwards = 20;  // falling over rising point times
-constexpr double kOverlapMost = 1.05;   // sweep period over sweep interval
+constexpr double kBeyond = 2.0;             // in ranges of the data sheet
+constexpr double kFarthestPoint_m = 500.0;  // above that of robot lidars
+constexpr std::size_t kBackwards = 20;      // falling over rising point times
+constexpr double kOverlapMost = 1.05;       // sweep period over sweep interval
 constexpr std::int64_t kOffsetMax_ns = 1000000000;
 
 using tumble::ros::kRingNames, tumble::ros::kIntensityNames;
@@ -300,7 +300,7 @@ void SweepBuilder::scale_intensity(std::vector<std::string>& notes) {
 }
 
 double SweepBuilder::range_max_m() const {
-  return reading_.range_max_m > 0.0 ? reading_.range_max_m : kFarthest_m;
+  return reading_.range_max_m > 0.0 ? reading_.range_max_m : kFarthestPoint_m;
 }
 
 void SweepBuilder::require_range(const std::string& where) const {

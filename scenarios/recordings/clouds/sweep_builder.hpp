@@ -10,7 +10,7 @@
 
 #include "scenarios/recordings/clouds/cloud_file.hpp"
 #include "scenarios/recordings/left_out.hpp"
-#include "scenarios/recordings/point_store.hpp"
+#include "scenarios/recordings/stored_truth.hpp"
 #include "sim/recording.hpp"
 
 namespace tumble::scenarios {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/recordings/bags/bag_layout.hpp"
+#include "scenarios/recordings/bags/bag_storage.hpp"
 #include "scenarios/recordings/dialects/sensor_facts.hpp"
 
 /// A dialect is the recording format that a published estimator expects: a bag, and templates of the configuration

@@ -5,11 +5,11 @@
 
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/dialects/dialect.hpp"
-#include "scenarios/recordings/dialects/manifest.hpp"
 #include "scenarios/recordings/export.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
@@ -18,6 +18,136 @@
 namespace tumble::scenarios {
 
 namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json pose(const Eigen::Isometry3d& T) {
+  const Eigen::Quaterniond q = Eigen::Quaterniond(T.linear()).normalized();
+  const Eigen::Vector3d p = T.translation();
+  return {{"p_m", {p.x(), p.y(), p.z()}}, {"q_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
+}
+
+const char* word(NumberType type) {
+  switch (type) {
+    case NumberType::uint8:
+      return "uint8";
+    case NumberType::uint16:
+      return "uint16";
+    case NumberType::uint32:
+      return "uint32";
+    case NumberType::float32:
+      return "float32";
+    case NumberType::float64:
+      break;
+  }
+  return "float64";
+}
+
+std::string unit(const PointColumn& column) {
+  switch (column.quantity) {
+    case PointQuantity::x_m:
+    case PointQuantity::y_m:
+    case PointQuantity::z_m:
+      return "m; positions are in the lidar's frame and not deskewed";
+    case PointQuantity::intensity:
+      return column.scale == 1.0 ? "0 to 1" : "0 to 255";
+    case PointQuantity::ring:
+      return "number of the point's ring from bottom to top, or of its scan line";
+    case PointQuantity::time:
+      break;
+  }
+  const std::string count = column.scale == 1.0 ? "ns" : "s";
+  return count + (column.absolute ? ", counted from 1970" : ", counted from the time stamp of the message header");
+}
+
+Json fields_of(const SweepLayout& sweeps, bool timed) {
+  Json out = Json::array();
+  if (sweeps.livox) {
+    return {
+        {{"name", "offset_time"},
+         {"type", "uint32"},
+         {"unit", "ns after timebase; timebase equals the header's time stamp"}},
+        {{"name", "x y z"}, {"type", "float32"}, {"unit", "m; positions are in the lidar's frame and not deskewed"}},
+        {{"name", "reflectivity"}, {"type", "uint8"}, {"unit", "0 to 255"}},
+        {{"name", "tag"}, {"type", "uint8"}, {"unit", "every tag is 0: a single return with full confidence"}},
+        {{"name", "line"},
+         {"type", "uint8"},
+         {"unit", "number of the point's ring from bottom to top, or of its scan line"}}};
+  }
+  for (const PointColumn& column : sweeps.columns) {
+    if (column.quantity == PointQuantity::time && !timed) continue;
+    out.push_back({{"name", column.name}, {"type", word(column.type)}, {"unit", unit(column)}});
+  }
+  return out;
+}
+
+Json imu_of(const ImuFacts& imu, const ReaderNames& names) {
+  return {{"topic", names.imu_topic},
+          {"frame", names.imu_frame},
+          {"type", "sensor_msgs/Imu"},
+          {"device", imu.device},
+          {"samples", imu.samples},
+          {"rate_hz", 1.0 / imu.period_s},
+          {"gyro_unit", "rad/s"},
+          {"accel_unit", "m/s^2"},
+          {"accel_at_rest", "the upward axis reads +gravity"},
+          {"attitude", "none: identity, covariance -1"},
+          {"stamp", "the time stamp of a sample is the end of its averaging window"},
+          {"gyro_noise_rad_s_sqrt_hz", imu.gyro_noise_rad_s_sqrt_hz},
+          {"accel_noise_m_s2_sqrt_hz", imu.accel_noise_m_s2_sqrt_hz},
+          {"stated_gyro_range_rad_s", imu.stated_gyro_range_rad_s},
+          {"largest_gyro_rad_s", imu.largest_gyro_rad_s},
+          {"stated_accel_range_m_s2", imu.stated_accel_range_m_s2},
+          {"largest_accel_m_s2", imu.largest_accel_m_s2},
+          {"still_at_start_s", imu.still_at_start_s}};
+}
+
+Json lidar_of(const LidarFacts& lidar, const ReaderNames& names, const SweepLayout& sweeps) {
+  return {{"topic", names.points_topic},
+          {"frame", names.lidar_frame},
+          {"type", sweeps.livox ? "livox_ros_driver/CustomMsg" : "sensor_msgs/PointCloud2"},
+          {"device", lidar.device},
+          {"sweeps", lidar.sweeps},
+          {"points", lidar.points},
+          {"rate_hz", 1.0 / lidar.period_s},
+          {"stamp", "the time stamp is the start of the sweep; the bag stores a sweep at the time of its last point"},
+          {"order", "points are sorted by time; missing returns are left out"},
+          {"fields", fields_of(sweeps, lidar.timed)},
+          {"rings", lidar.rings},
+          {"columns", lidar.columns},
+          {"nearest_m", lidar.nearest_m},
+          {"farthest_m", lidar.farthest_m},
+          {"own_body_within_m", lidar.own_body_m}};
+}
+
+std::string manifest_of(const Dialect& dialect, const SensorFacts& facts, const RecordingInfo& info,
+                        std::int64_t origin_ns, const std::vector<std::string>& configuration, bool with_truth) {
+  const ReaderNames names = dialect.names(facts);
+  Json out = {{"format", "tumble export"}, {"format_version", 1}, {"for", dialect.name}};
+  out["recording"] = {{"scenario", info.scenario},
+                      {"seed", info.seed},
+                      {"digest", info.digest},
+                      {"attribution", info.attribution},
+                      {"tumble_version", info.tumble_version}};
+  out["bag"] = {{"path", dialect.bag_name}, {"format", dialect.bag_format}, {"origin_ns", origin_ns}};
+  if (facts.imu) out["imu"] = imu_of(*facts.imu, names);
+  out["lidar"] = lidar_of(*facts.lidar, names, dialect.sweeps(facts));
+  out["gravity_m_s2"] = facts.gravity_m_s2;
+  out["frames"] = {{"body", names.body_frame}, {"fixed", names.fixed_frame}};
+  out["extrinsics"] = {{"T_body_lidar", pose(facts.T_BL)}};
+  if (facts.imu) {
+    out["extrinsics"]["T_body_imu"] = pose(facts.T_BI);
+    out["extrinsics"]["T_imu_lidar"] = pose(facts.T_IL());
+  }
+  if (with_truth) out["truth"] = {{"path", "truth.tum"}, {"of", names.body_frame}, {"clock", "clock of the bag"}};
+  out["configuration"] = configuration;
+  out["run"] = dialect.run;
+  out["notes"] = dialect.notes;
+  for (const Source& source : dialect.sources) {
+    out["sources"].push_back({{"repository", source.repository}, {"path", source.path}, {"commit", source.commit}});
+  }
+  return out.dump(2) + "\n";
+}
 
 using std::filesystem::path;
 

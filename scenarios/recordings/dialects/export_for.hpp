@@ -5,6 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/recordings/dialects/dialect.hpp"
+#include "scenarios/recordings/recording_file.hpp"
+
 namespace tumble::scenarios {
 
 std::vector<std::string> peer_dialects();

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/recordings/point_store.hpp"
+#include "scenarios/recordings/stored_truth.hpp"
 #include "sim/recording.hpp"
 
 namespace tumble::scenarios {

@@ -6,7 +6,7 @@
 #include "scenarios/recordings/export_names.hpp"
 #include "scenarios/recordings/number_text.hpp"
 #include "scenarios/recordings/replace_file.hpp"
-#include "scenarios/recordings/whole_seconds.hpp"
+#include "scenarios/text.hpp"
 
 namespace tumble::scenarios {
 

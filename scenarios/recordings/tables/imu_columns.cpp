@@ -12,7 +12,6 @@
 #include "scenarios/recordings/number_text.hpp"
 #include "scenarios/recordings/tables/logger_columns.hpp"
 #include "scenarios/recordings/upper_median.hpp"
-#include "scenarios/recordings/whole_seconds.hpp"
 
 namespace tumble::scenarios {
 
@@ -20,7 +19,7 @@ namespace {
 
 constexpr std::size_t kColumnsByPlace = 15;
 
-const std::array<std::string, 3> kAxes = {"x", "y", "z"};
+const std::array<std::string, 3> kAxisNames = {"x", "y", "z"};
 
 const std::vector<std::string> kExported = {"stamp_s",  "stamp_ns", "frame_id", "qx",
                                             "qy",       "qz",       "qw",       "orientation_covariance",
@@ -103,7 +102,7 @@ std::optional<ImuColumns> flattened(const CsvLine& header) {
   if (!find_header_stamp(header, layout)) return std::nullopt;
   RequiredColumns columns(header);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::string rate = "angular_velocity/" + kAxes[axis], force = "linear_acceleration/" + kAxes[axis];
+    const std::string rate = "angular_velocity/" + kAxisNames[axis], force = "linear_acceleration/" + kAxisNames[axis];
     columns.take(find_ending(header, rate), rate, layout.rate[axis]);
     columns.take(find_ending(header, force), force, layout.force[axis]);
   }
@@ -116,9 +115,9 @@ std::optional<ImuColumns> named(const CsvLine& header) {
   columns.take(find_any(header, {"stamp_s", "sec", "secs", "s"}), "stamp_s", layout.stamp);
   columns.take(find_any(header, {"stamp_ns", "nsec", "nsecs", "ns"}), "stamp_ns", layout.stamp_ns);
   for (std::size_t i = 0; i < 3; ++i) {
-    const std::string rate = "w" + kAxes[i], force = "f" + kAxes[i];
+    const std::string rate = "w" + kAxisNames[i], force = "f" + kAxisNames[i];
     columns.take(find_any(header, {rate + "_rad_s", rate}), rate + "_rad_s", layout.rate[i]);
-    columns.take(find_any(header, {force + "_m_s2", force, "a" + kAxes[i]}), force + "_m_s2", layout.force[i]);
+    columns.take(find_any(header, {force + "_m_s2", force, "a" + kAxisNames[i]}), force + "_m_s2", layout.force[i]);
   }
   return columns.complete() ? std::optional(layout) : std::nullopt;
 }

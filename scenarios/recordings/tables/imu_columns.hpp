@@ -4,13 +4,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "scenarios/recordings/import.hpp"
-#include "scenarios/recordings/tables/logged_table.hpp"
+#include "scenarios/recordings/tables/csv_text.hpp"
 
 namespace tumble::scenarios {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/recordings/clouds/sweep_stamps.hpp"
+#include "scenarios/recordings/clouds/import_sweeps.hpp"
 #include "scenarios/recordings/number_text.hpp"
 #include "scenarios/recordings/repairable.hpp"
 #include "scenarios/recordings/rounded_stamps.hpp"

@@ -11,9 +11,8 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/number_text.hpp"
-#include "scenarios/recordings/tables/logged_table.hpp"
+#include "scenarios/recordings/tables/csv_text.hpp"
 #include "scenarios/recordings/trajectories/reference.hpp"
-#include "scenarios/recordings/whole_seconds.hpp"
 
 namespace tumble::scenarios {
 

@@ -12,6 +12,7 @@
 #include "scenarios/recordings/export_names.hpp"
 #include "scenarios/recordings/number_text.hpp"
 #include "scenarios/recordings/replace_file.hpp"
+#include "scenarios/text.hpp"
 
 namespace tumble::scenarios {
 

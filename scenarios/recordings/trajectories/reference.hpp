@@ -45,7 +45,7 @@ std::vector<ReferencePose> read_kitti_poses(const std::filesystem::path& file,
 
 bool is_pose_table(const std::filesystem::path& file);
 
-/// Reads a table of poses with the separators of IMU tables (tables/logged_table.hpp), one pose per line. The names in
+/// Reads a table of poses with the separators of IMU tables (tables/csv_text.hpp), one pose per line. The names in
 /// the header identify the columns, in any order:
 /// - ground truth of EuRoC and TUM VI ("#timestamp [ns],p_RS_R_x [m],...,q_RS_w [],..."),
 /// - messages nav_msgs/Odometry, PoseStamped, TransformStamped ("header.stamp.sec", "pose.pose.position.x",

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 
-#include "scenarios/draw/fixed_number.hpp"
 #include "scenarios/draw/fixed_scenario.hpp"
 #include "scenarios/errors.hpp"
 #include "tests/scenarios/tree_data.hpp"

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <fstream>
 
-#include "scenarios/certificate/certificate_text.hpp"
 #include "scenarios/errors.hpp"
 #include "scenarios/provenance/build_id.hpp"
 #include "scenarios/sweep/certified_results.hpp"

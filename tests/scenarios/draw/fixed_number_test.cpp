@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/draw/fixed_number.hpp"
+#include "scenarios/draw/fixed_scenario.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

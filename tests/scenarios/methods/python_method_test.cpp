@@ -7,11 +7,9 @@
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
-#include <fstream>
 #include <span>
 #include <string>
 
-#include "scenarios/methods/python_exchange.hpp"
 #include "tests/scenarios/methods/external_runs.hpp"
 
 namespace tumble::scenarios {

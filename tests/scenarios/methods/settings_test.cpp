@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/given_parameters.hpp"
 #include "scenarios/methods/method.hpp"
+#include "scenarios/methods/registry.hpp"
 
 namespace tumble::scenarios {
 namespace {

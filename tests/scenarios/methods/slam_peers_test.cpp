@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "scenarios/methods/method.hpp"
-#include "scenarios/methods/rigid_chain.hpp"
+#include "scenarios/methods/slam_constant_velocity.hpp"
 #include "scenarios/methods/synthetic_recording.hpp"
 #include "scenarios/scoring/score.hpp"
 #include "scenarios/sweep/triage.hpp"

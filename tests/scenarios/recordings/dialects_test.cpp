@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/recordings/bags/bag.hpp"
-#include "scenarios/recordings/bags/bag_clouds.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
+#include "scenarios/recordings/bags/bag_sweeps.hpp"
 #include "scenarios/recordings/dialects/dialect.hpp"
 #include "scenarios/recordings/dialects/export_for.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"

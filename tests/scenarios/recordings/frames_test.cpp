@@ -9,7 +9,7 @@
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/bags/bag_messages.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
-#include "scenarios/recordings/bags/static_frames.hpp"
+#include "scenarios/recordings/bags/sensor_places.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"
 
 namespace tumble::scenarios {

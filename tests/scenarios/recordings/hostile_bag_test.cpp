@@ -11,7 +11,7 @@
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
 #include "scenarios/recordings/bags/ros1_chunks.hpp"
-#include "scenarios/recordings/bags/ros2_definitions.hpp"
+#include "scenarios/recordings/bags/ros2_metadata.hpp"
 #include "scenarios/recordings/export.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"
 

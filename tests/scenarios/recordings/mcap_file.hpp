@@ -11,10 +11,9 @@
 #include <vector>
 
 #include "scenarios/recordings/bags/bag_messages.hpp"
-#include "scenarios/recordings/bags/mcap_bytes.hpp"
 #include "scenarios/recordings/bags/mcap_records.hpp"
 #include "scenarios/recordings/bags/packed.hpp"
-#include "scenarios/recordings/bags/ros2_definitions.hpp"
+#include "scenarios/recordings/bags/ros2_metadata.hpp"
 #include "scenarios/recordings/bags/ros_bytes.hpp"
 
 /// The functions here write MCAP files as other programs do, and malformed ones: the same messages of one IMU in every

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "scenarios/recordings/clouds/sweep_stamps.hpp"
+#include "scenarios/recordings/clouds/import_sweeps.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"
 #include "scenarios/recordings/import.hpp"
 #include "stand_ins/stand_ins.hpp"

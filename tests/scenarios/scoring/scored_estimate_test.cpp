@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/scoring/scored_estimate.hpp"
+#include "scenarios/scoring/score.hpp"
 
 #include <gtest/gtest.h>
 

@@ -14,7 +14,6 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/draw/fixed_number.hpp"
 #include "scenarios/draw/fixed_scenario.hpp"
 #include "scenarios/draw/scenario_text.hpp"
 #include "scenarios/errors.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/statistics/many_tests.hpp"
+#include "scenarios/statistics/paired.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/sweep/given_errors.hpp"
+#include "scenarios/sweep/variation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,6 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/synthetic_recording.hpp"
 #include "scenarios/scoring/clipping.hpp"
-#include "scenarios/sweep/variation.hpp"
 #include "tests/tree.hpp"
 
 namespace tumble::scenarios {

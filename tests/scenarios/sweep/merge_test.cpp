@@ -15,7 +15,7 @@
 
 #include "scenarios/sweep/database_owner.hpp"
 #include "scenarios/sweep/results.hpp"
-#include "scenarios/sweep/sweep_notes.hpp"
+#include "scenarios/sweep/run_again.hpp"
 #include "tests/complaint.hpp"
 #include "tests/temporary_folder.hpp"
 

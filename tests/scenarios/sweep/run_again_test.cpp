@@ -7,10 +7,9 @@
 #include <map>
 #include <set>
 
-#include "scenarios/draw/fixed_number.hpp"
 #include "scenarios/draw/fixed_scenario.hpp"
 #include "scenarios/errors.hpp"
-#include "scenarios/sweep/run_situation.hpp"
+#include "scenarios/sweep/evaluate.hpp"
 #include "scenarios/sweep/sweep.hpp"
 #include "scenarios/sweep/variation.hpp"
 #include "tests/scenarios/tree_data.hpp"

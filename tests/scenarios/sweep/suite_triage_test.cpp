@@ -12,7 +12,6 @@
 #include <functional>
 #include <vector>
 
-#include "scenarios/draw/fixed_number.hpp"
 #include "scenarios/draw/fixed_scenario.hpp"
 #include "scenarios/errors.hpp"
 #include "tests/scenarios/tree_data.hpp"

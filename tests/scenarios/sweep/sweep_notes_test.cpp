@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/sweep/sweep_notes.hpp"
+#include "scenarios/sweep/run_again.hpp"
 
 #include <gtest/gtest.h>
 

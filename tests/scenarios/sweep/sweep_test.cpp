@@ -11,7 +11,6 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/sweep/evaluate.hpp"
 #include "scenarios/sweep/results.hpp"
-#include "scenarios/sweep/run_situation.hpp"
 #include "scenarios/sweep/small_catalogue.hpp"
 #include "tests/complaint.hpp"
 

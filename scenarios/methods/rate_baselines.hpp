@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "scenarios/methods/settings.hpp"
+#include "sim/recording.hpp"
+#include "tumble/angular_velocity/detail/saave.hpp"
+#include "tumble/angular_velocity/detail/saturation_limit_detector.hpp"
+#include "tumble/angular_velocity/rate_state.hpp"
+#include "tumble/common/imu.hpp"
+#include "tumble/common/status.hpp"
+
+namespace tumble::scenarios {
+
+/// The initial saturation limits are the measurement ranges of the IMU's data sheet, where 0 means unknown.
+SaturationLimitDetector::Params stated_rails(const sim::ImuRecord& record);
+
+Status raw_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<AngularRateState>& out);
+Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std::vector<AngularRateState>& out);
+
+/// Settings of rate/saave for a method with the other parameters `others`.
+Settings<SaturationAwareRateEstimator::Params> other_saave_settings(std::span<const sim::Parameter> others);
+
+/// On error, `out` is empty.
+Status saave_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples,
+                   const Settings<SaturationAwareRateEstimator::Params>& settings, const sim::Values& parameters,
+                   std::vector<AngularRateState>& out);
+
+}  // namespace tumble::scenarios
