@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "scenarios/draw/scenario.hpp"
-#include "scenarios/provenance/text_digest.hpp"
+#include "scenarios/provenance/data_digest.hpp"
 #include "scenarios/sweep/evaluate.hpp"
 #include "tests/tree.hpp"
 
