@@ -77,7 +77,7 @@ TEST(Verdicts, SlamThatLagsFindsALidarOfAnotherScale) {
 }
 
 // A person moves the rig slowly, so velocity and rotation change little.
-TEST(Verdicts, SlamThatLagsFindsFaultsInSlowMotion) {
+TEST(VerdictsSoak, SlamThatLagsFindsFaultsInSlowMotion) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "stroll"), 650001, 1);
   const auto says = [&](const char* wrong) { return run_wrong(draw, "slam/tumble_lag", wrong).faults; };
