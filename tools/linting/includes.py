@@ -48,7 +48,7 @@ _HEADERS = {
     "mutex": "lock_guard mutex",
     "new": "bad_alloc",
     "numbers": "numbers",
-    "numeric": "accumulate inner_product iota",
+    "numeric": "accumulate inner_product iota midpoint",
     "optional": "nullopt optional",
     "random": "chi_squared_distribution exponential_distribution mt19937 mt19937_64 normal_distribution uniform_real_distribution",
     "regex": "regex regex_replace regex_search smatch sregex_iterator",
