@@ -175,7 +175,7 @@ def imu_merge_rigid_body():
 def statistics_sequence():
     """Plots the limits of the confidence sequence (S15) for 5 % risk, beyond which the share of positive pairs differs from one half."""
     risk, pairs = 0.05, 400
-    normal, count, needed = NormalDist(), range(10, pairs + 1), []
+    normal, count, needed = NormalDist(), range(10, pairs + 1, 5), []
     for n in count:
         k = math.ceil(n / 2)
         while k < n and (n + 1) * math.comb(n, k) * 0.5**n > risk:
