@@ -23,8 +23,8 @@ std::optional<std::int64_t> clock_shift_ns(const StampSpan& moved, const StampSp
 
 std::string clock_note(const std::string& what, std::int64_t shift_ns);
 
-/// Returns the source's time stamp of time 0 of a recording: the first stamp, or the zero of the clock if it is less
-/// than a second earlier. The zero of a clock is 0 or kExportOrigin_ns, the origin of exported files.
+/// Returns the time stamp of the source that becomes time 0 of a recording: 0 or kExportOrigin_ns (the origin of
+/// exported files) if the first stamp is less than a second later, else the first stamp.
 std::int64_t origin_of(std::int64_t first_ns);
 
 void start_clock(Imported& recording);

@@ -371,7 +371,7 @@ includes noise of the optical tracker.
 - The column *published fusion* shows the position filter with the sphere's radius of 0.145 m. The column *published
   fusion, radius 0.29 m* uses the sphere's diameter as radius, like the code of the MFI paper.
 - While the velocity from the accelerometer is near zero, the position filter halves the rolling velocity. The doubled
-  radius partly cancels the halving.
+  radius partly cancels this error.
 
 ![three paths with slip, from above](sphere_slip.png)
 

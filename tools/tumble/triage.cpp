@@ -159,7 +159,7 @@ std::string line_of(const DrawTriage& draw) {
   for (const scenarios::TriageRow& row : draw.rows) {
     if (!row.fails) cures += (cures.empty() ? "" : ", ") + row.input;
   }
-  return cures.empty() ? fmt::format("{}fails, and no true value of a single input prevents the failure", name)
+  return cures.empty() ? fmt::format("{}fails; replacing one input by its true value never prevents the failure", name)
                        : fmt::format("{}fails; the true values of these inputs prevent the failure: {}", name, cures);
 }
 

@@ -19,8 +19,8 @@ constexpr int kRate = 0, kAcceleration = 1;
 constexpr int kTurning = 2, kFixed = 4;               // of Modulation
 constexpr int kArm = 2, kForce = 4, kWorldForce = 6;  // of Centripetal
 constexpr double kJerk_rad_s3_sqrts = 50.0;           // root density of the angular jerk about the spin axis
-// Random walk of the rate across the spin axis, in world and body axes, and its standard deviation over 10 ms from
-// vibration. The measured residuals scale both.
+// The rate across the spin axis changes by a random walk, in world and in body axes. Vibration adds an error with this
+// standard deviation over 10 ms. The measured residuals scale both numbers.
 constexpr double kWalk_rad_s_sqrts = 1.0, kVibration_rad_s = 0.3;
 // size of the body: prior standard deviation of the lever arm from the spin axis to the IMU
 constexpr double kBodySize_m = 0.3;

@@ -125,8 +125,8 @@ Status RollingOdometry::Impl::add_time_aligned_readings(bool ended) {
   return first;
 }
 
-/// Processes the samples that the outlier filters delayed, if the next samples decide which readings are outliers. All
-/// readings wait for the IMU whose readings are decided last.
+/// The outlier filters delay suspect samples, until the next samples show which readings are outliers. The function
+/// then processes the delayed samples of all IMUs together.
 Status RollingOdometry::Impl::add_delayed_samples(std::span<const ImuSample> next) {
   bool open = false;
   for (std::size_t k = 0; k < next.size(); ++k) open = is_delayed_after(next, k) || open;

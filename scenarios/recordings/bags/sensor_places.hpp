@@ -49,7 +49,8 @@ class SensorMountings {
   SensorMountings(StaticFrames frames, std::string where) : frames_(std::move(frames)), where_(std::move(where)) {}
 
   /// Sets the mounting T_BA of a sensor A from /tf_static, unless the user has set T_BA; a difference is then reported.
-  /// Without a body frame in the bag, T_BA follows from a sensor of an earlier call that /tf_static connects to A.
+  /// If the bag has no body frame, the function computes T_BA from the mounting of another sensor: the sensor was
+  /// placed earlier, and /tf_static contains the pose between the two sensors.
   void place(const std::string& topic, const std::string& frame, const char* option, bool given,
              Eigen::Isometry3d& T_BA, std::vector<std::string>& notes);
 

@@ -75,7 +75,7 @@ std::vector<std::size_t> bins_of(const NumberSample& sample) {
 using NumberHistogram = std::array<double, kNumberBins + 1>;
 
 /// Returns the total variation distance between the histograms of one column and of all numbers. The distance is
-/// averaged over the columns, and reduced by its expectation for equal distributions.
+/// averaged over the columns. The mean distance of random samples of equal distributions is subtracted.
 double columns_differ(const NumberSample& sample, const std::vector<std::size_t>& bins, std::size_t columns) {
   std::vector<NumberHistogram> counts(columns, NumberHistogram{});
   NumberHistogram all{};

@@ -38,8 +38,8 @@ struct LidarImuCalibrationPrior {
   double mount_sigma_rad = 0.0, mount_sigma_m = 0.0, time_offset_sigma_s = 0.0;
 
   /// Returns the distance between an estimated calibration and the stated calibration in standard deviations:
-  /// mapping.md (R69). The result is the maximum over rotation, translation and time offset, or infinite if `estimated`
-  /// changes an exact value.
+  /// mapping.md (R69). The result is the largest of the distances of rotation, translation and time offset. It is
+  /// infinite if a value with standard deviation 0 differs.
   double distance_in_sigmas(const LidarImuCalibration& estimated) const;
   /// Returns `out_of_range` if deviations() is above kDistanceMax_sigmas, because the stated calibration is probably
   /// wrong.

@@ -190,9 +190,10 @@ class RollingOdometry {
   /// yet returned are not saved.
   std::vector<std::byte> save() const;
   /// Starts a new run from saved bytes, like a new object. The saved calibration and saturation limits replace the
-  /// prior of the parameters, also after a later reset(). The saved biases get the uncertainty of the prior, because
-  /// biases change at every switch-on. The new run starts at the saved pose, with the saved covariance of this pose.
-  /// All poses of the new run have the flag `uncertain`. If the sphere may have moved, call reset(pose) after load().
+  /// initial values in the parameters, also after a later reset(). The saved biases get the initial uncertainty,
+  /// because biases change at every switch-on. The new run starts at the saved pose, with the saved covariance of this
+  /// pose. All poses of the new run have the flag `uncertain`. If the sphere may have moved, call reset(pose) after
+  /// load().
   ///
   /// `last_pose` receives the saved pose with its time in the clock of the saved run, or is empty. On error, the object
   /// is unchanged, and the returned status names the field, the saved value and the bound. The error is

@@ -124,7 +124,7 @@ class TumblingOdometry {
   /// unchanged. Returns `ok` or an error of add_velocity(); `out_of_range` also means that the covariance is not
   /// symmetric and positive definite.
   Status add_position(const PositionReading& position);
-  /// The sweeps are in time order; the result is empty if no registered sweep waits.
+  /// Returns the next registered sweep in time order; empty if all registered sweeps were taken.
   std::optional<Sweep> take();
   /// Registers all sweeps that the IMU samples cover. Call finish() at the end of a run or during a halt. After
   /// finish(), take() returns the registered sweeps. After finish(), mapper().window_trajectories() returns the final
