@@ -63,11 +63,11 @@ Simulated simulate(double p, int trials, int sequences) {
 
 // the tolerance is four standard errors of the simulation
 TEST(ProbabilityAtAnyTime, KeepsItsRiskAlthoughEveryTrialIsTested) {
-  EXPECT_LT(simulate(0.5, 400, 1000).excluded, 0.05 + 4.0 * std::sqrt(0.05 * 0.95 / 1000));
+  EXPECT_LT(simulate(0.5, 200, 400).excluded, 0.05 + 4.0 * std::sqrt(0.05 * 0.95 / 400));
 }
 
 TEST(ProbabilityAtAnyTime, ExcludesEqualityAfterFewTrials) {
-  const Simulated uneven = simulate(0.75, 400, 300);
+  const Simulated uneven = simulate(0.75, 400, 200);
   EXPECT_EQ(uneven.excluded, 1.0);
   EXPECT_LT(uneven.mean_trials, 40.0);
 }
