@@ -37,6 +37,9 @@ struct MetricInfo {
   Place place = Place::detail;
   double target = kNoTarget;  ///< target of a two-sided metric
   Compared compared = Compared::by_ratio;
+
+  /// Returns true for verdicts on the run. Verdicts on the health have no sense: a wrong estimate is not a failed run.
+  bool marks_failure() const { return unit == Unit::verdict && sense == Sense::lower; }
 };
 
 const MetricInfo& metric_info(const std::string& name);

@@ -87,10 +87,7 @@ class Collecting {
     if (is_new) {
       const std::vector<std::string> headlines = headline_metrics(kind);
       const bool headline = std::find(headlines.begin(), headlines.end(), *metric) != headlines.end();
-      const MetricInfo& info = metric_info(*metric);
-      // verdicts on the health have no sense: a wrong estimate is not a failed run
-      const bool verdict = info.unit == Unit::verdict && info.sense == Sense::lower;
-      place->second = {headline || parse_binned(*metric), verdict};
+      place->second = {headline || parse_binned(*metric), metric_info(*metric).marks_failure()};
     }
     return place->second;
   }

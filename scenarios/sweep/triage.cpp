@@ -26,8 +26,7 @@ TriageRow row_of(const std::string& input, const std::string& doc, Outcome outco
 }  // namespace
 
 bool is_failed_verdict(const Score& score) {
-  const MetricInfo& info = metric_info(score.metric);
-  return info.unit == Unit::verdict && info.sense == Sense::lower && score.value != 0.0;
+  return metric_info(score.metric).marks_failure() && score.value != 0.0;
 }
 
 bool Failure::holds(const Outcome& outcome) const {

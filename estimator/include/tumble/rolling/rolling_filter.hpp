@@ -54,7 +54,7 @@ class RollingFilter {
     Eigen::Vector3d sphere_centre_W_m = Eigen::Vector3d::Zero();
     Eigen::Vector3d sphere_velocity_W_m_s = Eigen::Vector3d::Zero();
     Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
-    /// position covariance over all hypotheses, at the last time step (`kNode_s`)
+    /// position covariance over all hypotheses, at the last time step (20 ms)
     Eigen::Matrix3d position_covariance_m2 = Eigen::Matrix3d::Zero();
     Eigen::Vector3d contact_velocity_m_s =
         Eigen::Vector3d::Zero();  ///< contact velocity at the last time step, in world axes
@@ -90,12 +90,12 @@ class RollingFilter {
 
   /// The first sample sets the tilt from its specific force, with yaw 0, and the sphere's centre to the origin, at
   /// rest. The sphere should be at rest for one second after the first sample. On error, the state is unchanged. Cost:
-  /// about kHypotheses * kStates^2 * 40 operations per `kNode_s`, no allocation.
+  /// about kHypotheses * kStates^2 * 40 operations per time step of 20 ms, no allocation.
   Status step(const ImuSample& sample, State& state) const {
     return step(sample, state, [](const State&) {});
   }
 
-  /// Calls `closed(state)` after each completed node (time step of `kNode_s`).
+  /// Calls `closed(state)` after each completed node (time step of 20 ms).
   template <typename Closed>
   Status step(const ImuSample& sample, State& state, Closed closed) const {
     return step_with_listener(sample, state,
