@@ -114,7 +114,7 @@ void sensors_fields(Archive& archive, Sensors& sensors) {
   sensors_fields(archive, sensors, sensors.lidars);
 }
 
-/// The points of the lidars are in `points` on disk, or in `sensors` if `points` is empty.
+/// The points of the lidars are in `points` (temporary files) or, if `points` is empty, in `sensors` (memory).
 template <class Archive>
 void stored_fields(Archive& archive, const sim::Sensors& sensors, const std::vector<PointStore>& points) {
   if (points.empty()) return sensors_fields(archive, sensors);

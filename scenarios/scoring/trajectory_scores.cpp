@@ -79,12 +79,14 @@ bool rpe_rad(const ScoredEstimate& scored, double& value) {
 
 std::vector<Metric> trajectory_metrics(Kind kind) {
   return {
-      {{"ate_m", Unit::m, "rms position error; estimate and truth are aligned in position and yaw only at the start",
+      {{"ate_m", Unit::m,
+        "rms position error; position and yaw of the estimate are aligned with the truth at the start only",
         Sense::lower, Place::held},
        kind,
        ate},
       {{"ate_rad", Unit::rad,
-        "rms rotation error, from 0 to pi; estimate and truth are aligned in position and yaw only at the start; "
+        "rms rotation error, from 0 to pi; position and yaw of the estimate are aligned with the truth at the start "
+        "only; "
         "includes the error of late time stamps",
         Sense::lower, Place::held},
        kind,

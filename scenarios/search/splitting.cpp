@@ -288,8 +288,9 @@ Interval SplittingEstimate::of_failure(std::span<const std::size_t> families,
   if (log_probability_ == 0.0)
     return share_interval(static_cast<std::int64_t>(failing.size()), static_cast<std::int64_t>(population_));
   if (2 * failing.size() >= population_) return interval(failing, kRisk);
-  // If fewer than half of the draws fail, the estimate is not log-normal. Two intervals then share the error risk; the
-  // interval of the failing fraction counts all copies of one initial draw as one draw.
+  // If fewer than half of the population fails, the estimated probability is not log-normal. The interval is then the
+  // product of two intervals, each with a half of the error risk; the interval of the failing fraction counts all
+  // copies of one initial draw as one draw.
   const Interval level = interval(families, 0.5 * kRisk);
   const auto n = static_cast<double>(sizes_of(families).size());
   const double share = static_cast<double>(failing.size()) / static_cast<double>(population_), count = share * n;

@@ -51,7 +51,7 @@ struct ScoredPoint {
   std::size_t family = 0;  ///< index of the initial draw that was copied and changed to this draw
 };
 
-/// SplittingLevel describes the population after all members up to a score were replaced.
+/// SplittingLevel describes the population after copies replaced all members with at most this score.
 struct SplittingLevel {
   double score = 0.0;        ///< each member of the population exceeds this score
   Interval probability{};    ///< probability that a random draw exceeds the score

@@ -22,8 +22,8 @@ struct InputWorth {
   std::int64_t broken = 0;             ///< failures only with the true input
   Interval cured_share{};              ///< `cured` / `failed`, 95 % interval
   std::int64_t better = 0, worse = 0;  ///< runs with a better or worse metric
-  /// Median decrease of how_bad() by the true input, with its bias-corrected bootstrap interval (BCa). A run that is
-  /// not ok has the worst value.
+  /// Median decrease of how_bad() if the method gets the true input, with its bias-corrected bootstrap interval (BCa).
+  /// A run that is not ok has the worst value.
   Interval improvement{};
   double chance = 1.0;     ///< two-sided signed-rank test
   double corrected = 1.0;  ///< `chance` after Holm's correction

@@ -12,8 +12,8 @@ namespace tumble::sim {
 /// Throws SimulationFailure like Physics::step, and if the robot does not come to rest before the start or never moves.
 Truth record_truth(engine::World& world, Motion& motion, double duration_s);
 
-/// Returns the mean specific force at a body-fixed point P over one step, in body axes at half of the rotation. The
-/// integral of specific force and gravity is exactly the velocity change of the point P.
+/// Returns the mean specific force at a body-fixed point P over one step, in the body axes halfway through the step's
+/// rotation. The integral of specific force and gravity is exactly the velocity change of the point P.
 Eigen::Vector3d specific_force_B(const BodyState& before, const BodyState& after, const Eigen::Vector3d& p_BP_m,
                                  double gravity_m_s2);
 

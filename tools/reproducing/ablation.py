@@ -111,27 +111,28 @@ def coverage_change(row):
     return abs(row.get("coverage_on", 0.0) - row.get("coverage_off", 0.0))
 
 
-def shown(row):
-    cells = [f"{row['scenario']} {row['method'].split('/')[1]}", f"median {interval(row, 'median')}", f"tail {interval(row, 'tail')}"]
-    if row["failed_on"] != row["failed_off"]:
-        cells.append(f"failed {row['failed_on']} → {row['failed_off']}")
-    if coverage_change(row) >= 1.0:
-        cells.append(f"3σ {row['coverage_on']:.0f} → {row['coverage_off']:.0f}")
-    return "; ".join(cells)
+def before_and_after(row, name, last=""):
+    on, off = (round(row.get(f"{name}_{state}", 0.0)) for state in ("on", "off"))
+    return f"{on} → {off}{last}" if on != off else ""
+
+
+def cells(row):
+    return [row["scenario"], row["method"].split("/")[1], interval(row, "median"), interval(row, "tail"), before_and_after(row, "failed"),
+            before_and_after(row, "coverage", " %")]
 
 
 def page(described, rows):
-    table = Table(["mechanism", "source lines", "largest change", "changed"])
+    table = Table(["mechanism", "source lines", "scenario", "method", "median", "tail", "failed runs", "within 3σ", "changed"])
     without_effect = []
     for name, mechanism in described["mechanisms"].items():
         own = [row for row in rows if row["mechanism"] == name]
         changed = [row for row in own if matters(row)]
         if own and all(row["equal"] == row["runs"] and coverage_change(row) < 1.0 for row in own):
-            without_effect.append(mechanism["title"])
+            without_effect.append("- " + mechanism["does"])
         elif own:
             size = lambda row: (abs(row["failed_off"] - row["failed_on"]), max(abs(row[s]) for s in QUANTILES), coverage_change(row))
-            table.add(mechanism["title"], str(lines_of(mechanism) or "–"), shown(max(changed or own, key=size)), f"{len(changed)}/{len(own)}")
-    equal = f"\nAll errors are equal without: {'; '.join(without_effect)}.\n" if without_effect else ""
+            table.add(mechanism["does"], str(lines_of(mechanism) or "–"), *cells(max(changed or own, key=size)), f"{len(changed)}/{len(own)}")
+    equal = "\nThese mechanisms change no error of these runs:\n\n" + "\n".join(without_effect) + "\n" if without_effect else ""
     return described["text"].strip() + "\n\n" + table.text() + equal + "\nCommand: `tools/reproduce ablation`.\n"
 
 

@@ -83,9 +83,6 @@ RunOptions first_run(RunOptions options, const scenarios::Scenario& scenario) {
 void say_what_next(const Session& session, const RunOptions& options, const scenarios::RunResult& result,
                    bool in_catalogue) {
   const std::string folder = options.folder.string();
-  session.note(fmt::format(
-      "the results are in {}/: recording.h5, situation.yaml, estimates/, snapshots/scene.png and film.png, replay.html",
-      folder));
   session.note("next:");
   const auto say = [&](const std::string& command, const char* what) {
     session.note(fmt::format("  {:<78}  {}", command, what));
@@ -224,6 +221,11 @@ int run(const Session& session, const RunOptions& given) {
   say_troubles(session, result);
   if (const std::string caution = learnt.caution(result.recording.sensors); !caution.empty()) session.note(caution);
   if (const std::string moving = end_in_motion(result.recording.truth); !moving.empty()) session.note(moving);
+  if (folder)
+    session.note(
+        fmt::format("the results are in {}/: recording.h5, situation.yaml, estimates/, snapshots/scene.png and "
+                    "film.png, replay.html",
+                    options.folder.string()));
   if (first) say_what_next(session, options, result, !given.scenario.ends_with(".yaml"));
   return kDone;
 }

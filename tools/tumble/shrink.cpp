@@ -135,7 +135,8 @@ void require_whole(const ShrinkVerbOptions& options) {
 }
 
 std::string control_text(const Shrunk& shrunk, const scenarios::ShrinkOptions& options) {
-  if (!options.control) return "no control method (--control) confirms that the failure comes from the method";
+  if (!options.control)
+    return "no control method was stated (--control), so the recording itself may cause the failure";
   const std::string& name = options.control->info.name;
   return shrunk.controlled ? fmt::format("the control method {} does not fail on the smaller simulated run", name)
                            : fmt::format(

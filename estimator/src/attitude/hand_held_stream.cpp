@@ -149,7 +149,7 @@ void HandHeldRateStream::append_reading(const ImuSample& sample, const RepeatDet
   ++state.samples;
 }
 
-// Returns whether a sensing direction or the clipping of an earlier sample has changed.
+// Returns whether the direction of a sensing element, or the clipping of an earlier sample, has changed.
 bool HandHeldRateStream::update_clip_signs(const SensingAxisClipSigns& known, State& state) const {
   bool changed = state.sensing_directions != known.sensing_directions;
   state.sensing_directions = known.sensing_directions;
@@ -227,8 +227,8 @@ Node HandHeldRateStream::first_node(const State& state) const {
   return out;
 }
 
-// Each unsaturated sensing element measures one component of the rate. For clipped sensing elements, the predicted rate
-// is at or beyond the saturation level.
+// Each unsaturated sensing element measures one component of the rate. For a clipped sensing element, the predicted
+// component is moved to at least the saturation level.
 void HandHeldRateStream::predict(const Node& before, const Eigen::Matrix3d& rows, Knot& knot) const {
   const double h = params_.body.expert.node_s;
   Node& node = knot.node;

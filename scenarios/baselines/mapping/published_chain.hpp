@@ -88,7 +88,7 @@ class PublishedChain {
 
   bool covers(const Sweep& sweep) const;
   /// `covers(sweep)` must be true, and each sweep must be later than all earlier sweeps. Returns `empty`, `degenerate`
-  /// (all points have one time) or `insufficient_data` (points in range) if the sweep cannot be registered.
+  /// (all points have one time) or `insufficient_data` (too few points in range) if the sweep cannot be registered.
   Status add(const Sweep& sweep, SweepReport& report);
   std::vector<MapPoint> map() const;
 

@@ -29,7 +29,8 @@ struct LidarImuCalibration {
 /// kDistanceMax_sigmas.
 Status distance_verdict(double deviations);
 
-/// Calibration that the caller states, with one standard deviation per axis for rotation, translation and time offset.
+/// Calibration that the caller states, with a standard deviation of the time offset, and standard deviations of
+/// rotation and translation per axis.
 /// A standard deviation of 0 marks an exact part of the calibration.
 struct LidarImuCalibrationPrior {
   static constexpr double kDistanceMax_sigmas = 5.0;  ///< largest plausible result of deviations()
@@ -48,7 +49,7 @@ struct LidarImuCalibrationPrior {
 
 }  // namespace tumble
 
-/// Descriptions of the parameters for the accuracy of the lidar's mounting and time offset.
+/// Describes the parameters that state the accuracy of the lidar's mounting and time offset.
 namespace tumble::calibration_fields {
 
 inline constexpr Field kMountSigma_rad{

@@ -114,11 +114,11 @@ class RollingOdometry {
   ~RollingOdometry();
 
   /// Processes simultaneous readings of all IMUs, with the time stamp of the first IMU. SampleClock corrects time
-  /// stamps with jitter. Pass NaN for an IMU without a reading. OutlierFilter rejects outliers of each IMU, and may
-  /// delay the samples of all IMUs by one to five. newest() is then older. On error, the state is unchanged. The
-  /// errors are `insufficient_data` (wrong number of IMUs, or no reading), `time_order`, `degenerate` (no gravity in
-  /// the first sample), `gap` and `out_of_range`. `out_of_range` means that the run has finished, the time stamp
-  /// exceeds kStampMax_ns, or the only IMU with readings has a frozen axis.
+  /// stamps with jitter. Pass NaN for an IMU without a reading. OutlierFilter rejects outliers of each IMU; while
+  /// it waits, up to five samples of all IMUs are held back, and newest() is older by as many sample periods. On error,
+  /// the state is unchanged. The errors are `insufficient_data` (wrong number of IMUs, or no reading), `time_order`,
+  /// `degenerate` (no gravity in the first sample), `gap` and `out_of_range`. `out_of_range` means that the run has
+  /// finished, the time stamp exceeds kStampMax_ns, or the only IMU with readings has a frozen axis.
   ///
   /// A single wrong time stamp causes the loss of one sample. After a gap of more than a second between two samples,
   /// add_imus() rejects the first sample with `gap`, and restarts with the second sample. If the clock steps back,

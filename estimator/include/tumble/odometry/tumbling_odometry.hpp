@@ -101,8 +101,8 @@ class TumblingOdometry {
   /// copied. Points from before the end of the last sweep are dropped, because time stamps of sweeps may overlap by
   /// jitter. On error, the state is unchanged. `time_order` means that the end is before the start, or that half of the
   /// sweep is before the end of the last sweep. `out_of_range` means that a point is outside the sweep, or that the end
-  /// is a second after the newest IMU sample. `out_of_range` also means that a time stamp exceeds 97 years or that too
-  /// many sweeps wait.
+  /// is a second after the newest IMU sample. `out_of_range` also means that a time stamp exceeds kStampMax_ns, or that
+  /// too many sweeps wait for IMU samples.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
   /// Processes a sweep of one of several lidars: 0 is the first lidar, k is `further_lidars[k - 1]`. The points of a
   /// further lidar are registered together with the simultaneous sweep of the first lidar. The points of a further
@@ -118,11 +118,11 @@ class TumblingOdometry {
   /// standard deviation, a time stamp more than a second ahead of the newest sample, or 1024 waiting readings.
   Status add_velocity(const VelocityReading& velocity);
   Status add_motion(const MotionReading& motion);
-  /// Processes a position reading, for example from GPS or a beacon. Position readings do not change poses and map, but
-  /// determine Sweep::position_frame, in which poses do not drift. Position readings may arrive in any order, but
-  /// before the registration of their sweep. Position readings also work with kWholeRecording. On error, the state is
-  /// unchanged. Returns `ok` or an error of add_velocity(); `out_of_range` also means that the covariance is not
-  /// symmetric and positive definite.
+  /// Processes a position reading, for example from GPS or a beacon. Position readings do not change poses and map.
+  /// They determine Sweep::position_frame, a frame in which poses do not drift. Position readings may arrive in any
+  /// order, but before the registration of their sweep. Position readings also work with kWholeRecording. On error, the
+  /// state is unchanged. Returns `ok` or an error of add_velocity(); `out_of_range` also means that the covariance is
+  /// not symmetric and positive definite.
   Status add_position(const PositionReading& position);
   /// Returns the next registered sweep in time order; empty if all registered sweeps were taken.
   std::optional<Sweep> take();
@@ -149,8 +149,8 @@ class TumblingOdometry {
   /// registered sweep. Returns `empty` before the first sweep. newest() allocates memory. Cost: O(samples since the
   /// last sweep). `velocity_covariance_I_m2_s2` (optional) is the covariance of the velocity error in IMU axes.
   Status newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2 = nullptr) const;
-  /// Reports the suspected faults of the sensors and of the estimate. Estimation continues after any finding, and a
-  /// health finding ends when its fault ends (at the latest a minute later). The checks are
+  /// Reports the suspected faults of the sensors and of the estimate. Estimation continues after any finding. A finding
+  /// ends at most one minute after its fault. The checks are
   /// AngularRateStream::health(), ImuPlausibility, RestGravity, LidarScale, LidarInertialOdometry::check_vertical() and
   /// localised(), Localisation and LidarImuCalibrationPrior. With kWholeRecording, finish() checks the whole recording
   /// (detail/imu_findings.hpp), and before finish() there is no finding. Cost: a few hundred operations; health().ok()

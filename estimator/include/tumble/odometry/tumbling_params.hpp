@@ -34,7 +34,7 @@ struct TumblingParams {
   Eigen::Vector3d lever_arm_I_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   double lever_arm_sigma_m = 0.01;
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
-  /// Standard deviations of T_IL and of the lidar's time offset, which are estimated; 0: exact.
+  /// Standard deviations of T_IL and of the lidar's time offset. Both are estimated; 0: exact, not estimated.
   double mount_sigma_rad = 0.01;
   double mount_sigma_m = 0.006;
   double time_offset_sigma_s = 0.003;

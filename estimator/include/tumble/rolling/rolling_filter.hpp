@@ -54,7 +54,7 @@ class RollingFilter {
     Eigen::Vector3d sphere_centre_W_m = Eigen::Vector3d::Zero();
     Eigen::Vector3d sphere_velocity_W_m_s = Eigen::Vector3d::Zero();
     Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
-    /// position covariance over all hypotheses, at the last time step (20 ms)
+    /// position covariance at the last time step of 20 ms, including the spread of the hypotheses
     Eigen::Matrix3d position_covariance_m2 = Eigen::Matrix3d::Zero();
     Eigen::Vector3d contact_velocity_m_s =
         Eigen::Vector3d::Zero();  ///< contact velocity at the last time step, in world axes
