@@ -56,7 +56,7 @@ def test_rate_of_who_carries_what(twirl, estimates):
     """Tests hand-held motion, for which HandHeldSmoother is used."""
     expected = estimates("rate/tumble", "twirl")
     own = tumble.rate(twirl.imus[0], twirl.gravity_m_s2)
-    assert expected.health["regime_carried_asked"] == 1.0
+    assert expected.health["hand_held_smoother_ran"] == 1.0
     assert same(own.rate, expected.rates.rate) and same_covariance(own, expected.rates) and same(own.source, expected.rates.source)
 
 
@@ -65,10 +65,10 @@ def test_rate_smoother(hill, estimates):
     own, report = tumble.AngularRateSmoother(
         lever_arm_m=imu.lever_arm_m, gyro_range_rad_s=imu.gyro_range_rad_s, accel_range_m_s2=imu.accel_range_m_s2,
         gyro_noise_density=imu.gyro_noise_rad_s_sqrt_hz, accel_noise_density=imu.accel_noise_m_s2_sqrt_hz).estimate(*imu.samples)
-    assert estimates("rate/tumble").health["regime_carried_asked"] == 0.0, "a tumble is not hand-held, so the rates are those of AngularRateSmoother"
+    assert estimates("rate/tumble").health["hand_held_smoother_ran"] == 0.0, "a tumble is not hand-held, so the rates are those of AngularRateSmoother"
     assert same(own.rate, expected.rate) and same_covariance(own, expected)
     assert report.samples == len(imu) and report.clipped == np.count_nonzero(own.clipped_axes) > 0
-    assert estimates("rate/tumble").health["learnt_lever_arm_x_m"] == report.calibration.lever_arm_m[0]
+    assert estimates("rate/tumble").health["lever_arm_x_m"] == report.calibration.lever_arm_m[0]
 
 
 def test_vqf(hill, estimates):

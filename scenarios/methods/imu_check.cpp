@@ -63,7 +63,7 @@ namespace {
 constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
 
 void report_level(std::size_t axis, double level_rad_s, std::map<std::string, double>& health) {
-  health[std::string("learnt_gyro_rail_") + kAxes[axis] + "_rad_s"] = level_rad_s;
+  health[std::string("gyro_limit_") + kAxes[axis] + "_rad_s"] = level_rad_s;
 }
 
 void report_smoother(const AngularRateReport& report, std::map<std::string, double>& health) {
@@ -72,14 +72,11 @@ void report_smoother(const AngularRateReport& report, std::map<std::string, doub
   health["calibration_mahalanobis"] = report.calibration_mahalanobis;
   health["calibration_at_prior"] = report.calibration_at_prior ? 1.0 : 0.0;
   health["readings_missing"] = static_cast<double>(report.missing_readings);
-  health["rails_disagreeing"] = static_cast<double>(
+  health["gyro_axes_beyond_stated_range"] = static_cast<double>(
       std::count(report.contradicts_stated_range.begin(), report.contradicts_stated_range.end(), true));
   health["accel_delay_s"] = report.sensor_errors.errors.accel_delay_s;
-  health["device_calibrated"] = report.data_sheet_probability;
-  health["triads_together"] = report.synchronous_triads_probability;
-  health["error_rounds"] = report.correction_iterations;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    health[std::string("learnt_lever_arm_") + kAxes[axis] + "_m"] =
+    health[std::string("lever_arm_") + kAxes[axis] + "_m"] =
         report.calibration.constants.lever_arm_m[static_cast<Eigen::Index>(axis)];
     if (report.saturation_limit_observed[axis]) report_level(axis, *report.saturation_limits[axis], health);
   }
@@ -106,8 +103,8 @@ std::optional<double> carried_share(const MotionRegimeSmoother::Report& report) 
 void report_rates(const MotionRegimeSmoother::Report& report, Estimate& result) {
   report_smoother(report.rate, result.health);
   if (!report.regimes_estimated) return;
-  result.health["regime_carried_asked"] = report.hand_held_smoother_ran ? 1.0 : 0.0;
-  if (report.hand_held_smoother_ran) result.health["carried_converged"] = report.hand_held.converged ? 1.0 : 0.0;
+  result.health["hand_held_smoother_ran"] = report.hand_held_smoother_ran ? 1.0 : 0.0;
+  if (report.hand_held_smoother_ran) result.health["hand_held_converged"] = report.hand_held.converged ? 1.0 : 0.0;
 }
 
 void report_gaps(std::span<const ImuSample> samples, Estimate& estimate) {

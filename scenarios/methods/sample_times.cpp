@@ -67,7 +67,7 @@ Estimate with_sample_times(const sim::Sensors& sensors, const std::function<Esti
   for (std::size_t i = 0; i < times.size(); ++i) timed.imus[i].time_ns = std::move(times[i].times_ns);
   Estimate estimate = run(timed);
   restore_stamps(timed.imus.front(), sensors.imus.front(), estimate.rates);
-  estimate.health["stamps_mended_s"] = corrected_jitter_s;
+  estimate.health["time_stamps_corrected_s"] = corrected_jitter_s;
   return estimate;
 }
 

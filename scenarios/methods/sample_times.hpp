@@ -9,7 +9,7 @@
 namespace tumble::scenarios {
 
 /// The estimated rates have the original time stamps; poses and attitudes have the corrected times. The health value
-/// `stamps_mended_s` is the largest correction of a time stamp [s].
+/// `time_stamps_corrected_s` is the largest correction of a time stamp [s].
 Estimate with_sample_times(const sim::Sensors& sensors, const std::function<Estimate(const sim::Sensors&)>& run);
 
 Estimate without_outliers(const sim::Sensors& sensors, const std::function<Estimate(const sim::Sensors&)>& run);

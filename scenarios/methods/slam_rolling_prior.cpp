@@ -233,7 +233,7 @@ Estimate run_rolling_prior(const sim::Sensors& sensors, const sim::Values& param
                          off_m > std::max(params.corrected_sigmas * radius->sigma_m, params.corrected_share * radius_m);
   if (corrected) rolled = roll(sensors, parameters, radius->m);
   estimate = register_along(rolled, sensors, samples, parameters, false);
-  if (corrected) estimate.health["radius_mended"] = 1.0;
+  if (corrected) estimate.health["radius_corrected"] = 1.0;
   if (radius) {
     estimate.health["radius_m"] = radius->m;
     estimate.health["radius_sigma_m"] = radius->sigma_m;

@@ -257,7 +257,7 @@ TEST(RateLearnt, SaturationLimitsOfHandHeldMotionAreUsedInTheNextRun) {
   recording.sensors.imus.resize(1);
   const auto rails = [](const Estimate& estimate) {
     return std::count_if(estimate.health.begin(), estimate.health.end(),
-                         [](const auto& row) { return row.first.starts_with("learnt_gyro_rail_"); });
+                         [](const auto& row) { return row.first.starts_with("gyro_limit_"); });
   };
   const Estimate alone = run_rate_tumble(recording.sensors, defaults(), nullptr, nullptr),
                  knowing = run_rate_tumble(recording.sensors, defaults(), &*rig, nullptr);
@@ -272,9 +272,9 @@ TEST(RateLearnt, EachMethodReportsTheSaturationLimitsThatItFound) {
   const test::WandRail rail;
   for (const char* const name : {"rate/tumble", "rate/tumble_lag", "attitude/tumble"}) {
     const auto health = find_methods(name).front()->run(twirled, {}, {}).health;
-    ASSERT_TRUE(health.contains("learnt_gyro_rail_x_rad_s")) << name;
-    EXPECT_NEAR(health.at("learnt_gyro_rail_x_rad_s"), rail.distance_rad_s, 0.01) << name;
-    for (const char* const key : {"learnt_gyro_rail_y_rad_s", "learnt_gyro_rail_z_rad_s"})
+    ASSERT_TRUE(health.contains("gyro_limit_x_rad_s")) << name;
+    EXPECT_NEAR(health.at("gyro_limit_x_rad_s"), rail.distance_rad_s, 0.01) << name;
+    for (const char* const key : {"gyro_limit_y_rad_s", "gyro_limit_z_rad_s"})
       EXPECT_FALSE(health.contains(key)) << name << ' ' << key << ": no rail was seen there";
   }
 }

@@ -104,13 +104,13 @@ TEST(RateRecording, FlagsOfTheDeviceAreUsed) {
 
 TEST(RateRecording, AStatedRangeThatTheDataContradictIsReported) {
   sim::Recording recording = testing::synthetic_rig();
-  EXPECT_EQ(estimated_rates("tumble", recording).health.at("rails_disagreeing"), 0.0);
+  EXPECT_EQ(estimated_rates("tumble", recording).health.at("gyro_axes_beyond_stated_range"), 0.0);
   const double right = clipped_median("tumble", recording);
   for (const double stated : {7.854, 14.0}) {
     recording.sensors.imus.front().stated_gyro_range_rad_s = stated;
     const Estimate estimate = estimated_rates("tumble", recording);
-    EXPECT_GE(estimate.health.at("rails_disagreeing"), 1.0) << stated;
-    EXPECT_EQ(estimate.health.at("learnt_gyro_rail_x_rad_s"), 10.5) << stated;
+    EXPECT_GE(estimate.health.at("gyro_axes_beyond_stated_range"), 1.0) << stated;
+    EXPECT_EQ(estimate.health.at("gyro_limit_x_rad_s"), 10.5) << stated;
     EXPECT_EQ(clipped_median("tumble", recording), right) << stated;  // the plateau is sufficient
   }
 }

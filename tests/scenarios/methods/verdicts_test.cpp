@@ -142,7 +142,7 @@ TEST(Verdicts, PositionDoesNotBlameGyrosForPlaces) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "bump"), 99470, 1, Lidars::left_out);
   const Estimate good = run_wrong(draw, "position/tumble", "none");
-  EXPECT_GT(std::abs(good.health.at("imu_arm_share") - 1.0), 0.06);
+  EXPECT_GT(std::abs(good.health.at("lever_arm_agreement") - 1.0), 0.06);
   EXPECT_TRUE(good.faults.ok()) << good.faults.message();
   EXPECT_TRUE(has_finding(HealthFinding::Kind::gyro_scale, run_wrong(draw, "position/tumble", "gyro_scale_5_percent")));
 }
