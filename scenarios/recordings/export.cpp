@@ -42,7 +42,10 @@ ExportNotes write_csv(const path& recording, const path& out, const ExportChoice
   if (read_info(recording).has_truth) truth = read_truth(recording);
   export_csv(sensors, truth ? &*truth : nullptr, out, origin_of_export(recording));
   ExportNames names = export_names(sensors);
-  return joined(std::move(names.imus.notes), names.series.notes);
+  ExportNotes left_out;
+  if (!sensors.lidars.empty())
+    left_out.emplace_back("the sweeps of the lidar are left out; export them with --format pcd or --format ply");
+  return joined(joined(std::move(names.imus.notes), names.series.notes), left_out);
 }
 
 template <void (*kExport)(const sim::Sensors&, const BagWriting&, const path&)>

@@ -29,7 +29,8 @@ from tumble import _tumble
 from play import POINTS, messages
 
 HERE = pathlib.Path(__file__).parent
-SHEETS = {"imu_sheet": "mti30", "lidar_sheet": "rs16"}
+SHEETS = {"imu_sheet": "mti30", "lidar_sheet": "rs16"}  # of EXAMPLE
+EXAMPLE = pathlib.Path(__file__).parents[2] / "ros/config/robot.yaml"
 
 
 def stamp_of(message) -> int:
@@ -115,7 +116,7 @@ class Received:
 
 def start_node(kind: str, parameters: dict, log: pathlib.Path) -> subprocess.Popen:
     words = [word for key, value in parameters.items() for word in ("-p", f"{key}:={json.dumps(value) if isinstance(value, list) else value}")]
-    command = ["taskset", "-c", "0", sys.executable, "-m", "tumble.ros", kind, "--ros-args", *words]
+    command = ["taskset", "-c", "0", sys.executable, "-m", "tumble.ros", kind, "--ros-args", *(["--params-file", str(EXAMPLE)] if kind == "tumbling" else []), *words]
     with log.open("w") as file:
         return subprocess.Popen(command, stdout=file, stderr=subprocess.STDOUT)
 
@@ -196,7 +197,7 @@ def tumble_problems(node, path: pathlib.Path, folder: pathlib.Path) -> list[str]
     """Plays the rig twice, with SIGKILL between the plays."""
     name, recording, problems = "/tumbling_odometry", tumble.read(path, truth=False), []
     box = [x for corner in tumble.processing.RIG_BODY_L for x in corner]
-    parameters = {**SHEETS, "lever_arm_m": list(map(float, recording.imus[0].lever_arm_m)), "own_body": box, "T_base_imu": [0.0] * 6 + [1.0],
+    parameters = {"lever_arm_m": list(map(float, recording.imus[0].lever_arm_m)), "own_body": box, "T_base_imu": [0.0] * 6 + [1.0],
                   "T_base_lidar": pose_numbers(recording.T_IL), "tf": "none", "map_file": str(folder / "map.tumblemap"),
                   "calibration_file": str(folder / "calibration.yaml")}
     expected = Expected().tumble(recording, parameters)

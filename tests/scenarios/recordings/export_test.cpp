@@ -143,7 +143,8 @@ TEST_F(Export, NoFileOfASensorIsWrittenOverAnother) {
   EXPECT_THAT(
       export_recording(folder_ / "a.h5", "csv", folder_ / "csv"),
       ElementsAre("name conflict in the export: 'truth' is reserved for another topic or frame, so the sensor IMU 0 is "
-                  "exported as 'truth_2'"));
+                  "exported as 'truth_2'",
+                  "the sweeps of the lidar are left out; export them with --format pcd or --format ply"));
   const auto lines = [&](const char* file) {
     const std::string text = fixture::bytes_of(folder_ / "csv" / file);
     return std::count(text.begin(), text.end(), '\n');
