@@ -117,7 +117,7 @@ void leave_files(const fs::path& folder, const scenarios::RunResult& result) {
 
 void leave_pictures(const fs::path& folder, const scenarios::RunResult& result) {
   Scene scene{&result.built.value(), &result.recording.sensors, &result.recording.truth, {}};
-  for (std::size_t i = 0; i < result.estimates.size(); ++i) {
+  for (const std::size_t i : shown_methods(result)) {  // as in the replay, so that both have the same colours
     Path path = estimated_path(result.estimates[i], result.recording.sensors, result.recording.truth);
     path.name = full_name(result.methods[i]->info);
     if (!path.empty()) scene.estimates.push_back(std::move(path));
