@@ -1,61 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "scenarios/methods/findings.hpp"
+#include "scenarios/estimates/estimate.hpp"
 #include "sim/parameters.hpp"
 #include "sim/recording.hpp"
-#include "tumble/angular_velocity/rate_state.hpp"
-#include "tumble/common/pose.hpp"
-#include "tumble/common/status.hpp"
-#include "tumble/mapping/lidar.hpp"
-#include "tumble/mapping/lidar_inertial_odometry.hpp"
 
 namespace tumble::scenarios {
-
-enum class Kind { rate, attitude, position, slam };
-inline constexpr std::array kKinds = {Kind::rate, Kind::attitude, Kind::position, Kind::slam};
-const char* to_string(Kind kind);
-std::optional<Kind> kind_named(std::string_view name);
-std::string full_name(Kind kind, const std::string& method);
-
-enum class Frame { imu, lidar, body, centre };
-const char* to_string(Frame frame);
-
-struct Estimate {
-  Status status;                         ///< error of the whole run, or `ok`
-  Frame frame = Frame::imu;              ///< frame of `attitudes` and `poses`
-  std::vector<AngularRateState> rates;   ///< kind slam: rates used for deskewing
-  std::vector<AttitudeState> attitudes;  ///< for kind attitude
-  std::vector<PoseState> poses;          ///< kinds position and slam, IMU times
-  /// Contact mode at each pose, or an empty vector if the method does not estimate contact modes. The contact mode
-  /// `air` means no contact, or contact with unknown motion (a bump).
-  std::vector<sim::ContactLabel> contacts;
-  /// True for poses in a slip event with uncertain displacement, or an empty vector if the method does not estimate
-  /// slip.
-  std::vector<bool> uncertain;
-  /// Position of the sphere's centre relative to the centre of mass, in body axes [m].
-  Eigen::Vector3d centre_B_m = Eigen::Vector3d::Zero();
-  std::vector<LidarInertialOdometry::SweepReport> sweeps;  ///< for kind slam, one per sweep
-  std::vector<std::int64_t> sweep_end_ns;                  ///< parallel to `sweeps`
-  std::vector<MapPoint> map;                               ///< for kind slam
-  SensorHealth faults;                                     ///< suspected faults of sensors and estimate
-  /// Part of the covariance of each of `rates` that is due to health findings; empty without a health finding.
-  std::vector<Eigen::Matrix3d> suspect_rad2_s2;
-  std::map<std::string, double> health;      ///< named counters: "rejected_samples", "sweeps_rejected"
-  std::map<std::string, double> parameters;  ///< parameters that the user set by name
-  std::string transcript;                    ///< output of an external program; not scored
-};
 
 /// Only methods with `needs_truth` receive the true state and the readings before clipping.
 struct OracleInput {

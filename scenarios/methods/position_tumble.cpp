@@ -104,7 +104,8 @@ void append_pose(const RollingOdometry::Pose& pose, double radius_m, Estimate& e
 }
 
 void report_lever_arm(const MergedImuRecording& whole, Estimate& estimate) {
-  if (whole.recordings.lever_arm_agreement) estimate.health["lever_arm_agreement"] = *whole.recordings.lever_arm_agreement;
+  if (whole.recordings.lever_arm_agreement)
+    estimate.health["lever_arm_agreement"] = *whole.recordings.lever_arm_agreement;
 }
 
 Status replay_imus(const std::vector<ImuRecording>& recordings, RollingOdometry& odometry, double radius_m,

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/external_method.hpp"
+#include "scenarios/external/external_method.hpp"
 #include "scenarios/methods/method.hpp"
 #include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/methods/settings.hpp"
@@ -181,45 +181,6 @@ sim::Values values_of(const Method& position, const sim::Values& parameters) {
 
 void count_sources(std::span<const AngularRateState> rates, std::map<std::string, double>& health) {
   for (const AngularRateState& rate : rates) health[std::string("samples_") + to_string(rate.source)] += 1.0;
-}
-
-const char* to_string(Kind kind) {
-  switch (kind) {
-    case Kind::rate:
-      return "rate";
-    case Kind::attitude:
-      return "attitude";
-    case Kind::position:
-      return "position";
-    case Kind::slam:
-      return "slam";
-  }
-  return "unknown";
-}
-
-std::optional<Kind> kind_named(std::string_view name) {
-  for (const Kind kind : kKinds) {
-    if (name == to_string(kind)) return kind;
-  }
-  return std::nullopt;
-}
-
-std::string full_name(Kind kind, const std::string& method) {
-  return std::string(to_string(kind)) + "/" + method;
-}
-
-const char* to_string(Frame frame) {
-  switch (frame) {
-    case Frame::imu:
-      return "imu";
-    case Frame::lidar:
-      return "lidar";
-    case Frame::body:
-      return "body";
-    case Frame::centre:
-      return "centre";
-  }
-  return "unknown";
 }
 
 namespace {

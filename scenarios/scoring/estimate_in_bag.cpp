@@ -9,8 +9,8 @@
 #include <set>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/estimate_clock.hpp"
-#include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/estimates/estimate_clock.hpp"
+#include "scenarios/estimates/estimate_file.hpp"
 #include "scenarios/recordings/export_names.hpp"
 #include "scenarios/recordings/recording_clock.hpp"
 #include "scenarios/recordings/recording_file.hpp"

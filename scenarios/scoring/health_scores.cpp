@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "scenarios/methods/findings.hpp"
+#include "scenarios/estimates/findings.hpp"
 #include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/families.hpp"
 #include "scenarios/statistics/statistics.hpp"

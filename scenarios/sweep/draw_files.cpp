@@ -4,7 +4,7 @@
 #include <system_error>
 
 #include "scenarios/draw/scenario.hpp"
-#include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/estimates/estimate_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/text.hpp"
 

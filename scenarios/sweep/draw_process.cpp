@@ -16,7 +16,7 @@
 #include <system_error>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/estimates/estimate_file.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/recordings/scratch_file.hpp"
 #include "scenarios/sweep/evaluate.hpp"

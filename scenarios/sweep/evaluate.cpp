@@ -14,7 +14,7 @@
 
 #include "scenarios/draw/without_lidars.hpp"
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/external_method.hpp"
+#include "scenarios/external/external_method.hpp"
 #include "scenarios/provenance/data_digest.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/scoring/clipping.hpp"

@@ -11,8 +11,8 @@
 #include <system_error>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/external_description.hpp"
-#include "scenarios/methods/external_method.hpp"
+#include "scenarios/external/external_description.hpp"
+#include "scenarios/external/external_method.hpp"
 #include "scenarios/provenance/data_digest.hpp"
 #include "scenarios/recordings/scratch_file.hpp"
 #include "scenarios/sweep/draw_worker.hpp"

@@ -71,7 +71,7 @@ const std::vector<Rule>& rules() {
         "^iostream$", "^fstream$", "^thread$"}},
       // the report page is a function of results and of files next to them, so it may not simulate, estimate or draw
       {"tools/report",
-       {"^sim/", "^tumble/", "^scenarios/(draw|methods|recordings|processes)/",
+       {"^sim/", "^tumble/", "^scenarios/(draw|estimates|external|methods|diagnosis|recordings|processes)/",
         "^scenarios/sweep/(sweep|draw_process|evaluate|recorded_draw)\\.hpp", "^tools/tumble/",
         "^tools/pictures/(?!colours)", "^tools/examples/(?!example\\.hpp)"}},
   };

@@ -47,7 +47,7 @@ std::string text_of_source(const std::string& file) {
 
 // An entry that is written without a failed check would not be reported.
 TEST(Health, RowsOfFindingsAreWrittenByFindingsAlone) {
-  const std::string own = "scenarios/methods/findings.cpp";
+  const std::string own = "scenarios/estimates/findings.cpp";
   for (const char* row : {"\"imu_implausible\"", "\"localised\""}) {
     for (const std::string& file : harness_sources())
       EXPECT_EQ(text_of_source(file).find(row) != std::string::npos, file == own) << file << ": " << row;

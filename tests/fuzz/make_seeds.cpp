@@ -13,8 +13,8 @@
 
 #include "scenarios/bench/bench_result.hpp"
 #include "scenarios/draw/scenario.hpp"
-#include "scenarios/methods/estimate_file.hpp"
-#include "scenarios/methods/map_file.hpp"
+#include "scenarios/estimates/estimate_file.hpp"
+#include "scenarios/estimates/map_file.hpp"
 #include "scenarios/methods/rig_calibration_file.hpp"
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/clouds/cloud_file.hpp"

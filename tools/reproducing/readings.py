@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reads recordings (scenarios/recordings/FORMAT.md) and estimates (scenarios/methods/ESTIMATE.md) as numpy arrays.
+"""Reads recordings (scenarios/recordings/FORMAT.md) and estimates (scenarios/estimates/ESTIMATE.md) as numpy arrays.
 
 Frames as in docs/design.md: W world, B body, I the first IMU, A the frame of an estimate. Quaternions are x y z w.
 """

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/external/external_method.hpp"
 #include "scenarios/methods/bridge.hpp"
-#include "scenarios/methods/external_method.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/mapping/detail/odometry_params.hpp"
 

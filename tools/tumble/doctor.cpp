@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "scenarios/diagnosis/diagnosis.hpp"
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/diagnosis.hpp"
 #include "tools/tumble/chosen_method.hpp"
 #include "tools/tumble/importing.hpp"
 #include "tools/tumble/verbs.hpp"

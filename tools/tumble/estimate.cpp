@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/estimate_file.hpp"
-#include "scenarios/methods/findings.hpp"
-#include "scenarios/methods/map_file.hpp"
+#include "scenarios/estimates/estimate_file.hpp"
+#include "scenarios/estimates/findings.hpp"
+#include "scenarios/estimates/map_file.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/recordings/recording_check.hpp"
 #include "scenarios/recordings/recording_file.hpp"

@@ -10,8 +10,8 @@
 #include <set>
 #include <utility>
 
+#include "scenarios/diagnosis/probable_devices.hpp"
 #include "scenarios/draw/data_sheet.hpp"
-#include "scenarios/methods/probable_devices.hpp"
 #include "scenarios/recordings/number_text.hpp"
 #include "scenarios/recordings/upper_median.hpp"
 #include "scenarios/standard_gravity.hpp"

@@ -10,7 +10,7 @@
 #include <optional>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/external_method.hpp"
+#include "scenarios/external/external_method.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/sweep/certified_results.hpp"
 #include "scenarios/sweep/run_again.hpp"

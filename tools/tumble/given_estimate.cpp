@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/estimate_clock.hpp"
-#include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/estimates/estimate_clock.hpp"
+#include "scenarios/estimates/estimate_file.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "tools/tumble/arguments.hpp"
 

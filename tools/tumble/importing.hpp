@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/methods/lidar_rotation.hpp"
+#include "scenarios/diagnosis/lidar_rotation.hpp"
 #include "scenarios/recordings/import.hpp"
 #include "scenarios/recordings/repairable.hpp"
 #include "tools/tumble/import_options.hpp"

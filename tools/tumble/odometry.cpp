@@ -9,11 +9,11 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "scenarios/diagnosis/diagnosis.hpp"
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/diagnosis.hpp"
-#include "scenarios/methods/estimate_file.hpp"
-#include "scenarios/methods/findings.hpp"
-#include "scenarios/methods/map_file.hpp"
+#include "scenarios/estimates/estimate_file.hpp"
+#include "scenarios/estimates/findings.hpp"
+#include "scenarios/estimates/map_file.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/robot_presets.hpp"
 #include "scenarios/recordings/replace_file.hpp"

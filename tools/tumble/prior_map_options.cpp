@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/map_file.hpp"
+#include "scenarios/estimates/map_file.hpp"
 #include "scenarios/methods/registry.hpp"
 
 namespace tumble::tools {

@@ -8,7 +8,7 @@
 
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/estimates/estimate_file.hpp"
 #include "scenarios/processes/process.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/estimates/estimate_file.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "sim/lidar/surface.hpp"

@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/estimate_file.hpp"
-#include "scenarios/methods/findings.hpp"
+#include "scenarios/estimates/estimate_file.hpp"
+#include "scenarios/estimates/findings.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"

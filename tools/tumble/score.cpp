@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/estimate_file.hpp"
-#include "scenarios/methods/turning_sense.hpp"
+#include "scenarios/estimates/estimate_file.hpp"
+#include "scenarios/external/turning_sense.hpp"
 #include "scenarios/recordings/recording_check.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/scoring/score.hpp"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reads and writes estimates: poses in TUM format, and the folders that the program writes (scenarios/methods/ESTIMATE.md)."""
+"""Reads and writes estimates: poses in TUM format, and the folders that the program writes (scenarios/estimates/ESTIMATE.md)."""
 from __future__ import annotations
 
 import json

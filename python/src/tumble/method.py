@@ -88,7 +88,7 @@ def describe_method(path: str | os.PathLike[str], name: str, kind: str, script: 
                     robots: Sequence[str] = (), time_limit_s: float = 600.0) -> pathlib.Path:
     """Writes the file that describes `script`, which calls `serve`, as a method named KIND/NAME. The program runs it with this interpreter.
 
-    scenarios/methods/EXTERNAL.md lists all keys of such files.
+    scenarios/external/EXTERNAL.md lists all keys of such files.
     """
     if kind not in KINDS:
         raise TumbleError(f"kind is '{kind}'; it must be one of {', '.join(KINDS)}", "unknown", "kind", kind, KINDS)

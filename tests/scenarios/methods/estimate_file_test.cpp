@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/estimates/estimate_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/map_file.hpp"
+#include "scenarios/estimates/map_file.hpp"
 #include "scenarios/methods/synthetic_recording.hpp"
 #include "scenarios/recordings/table_file.hpp"
 #include "scenarios/scoring/score.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test checks an external command as a method: what the command receives, what it leaves, and every way in which it
 // may end.
-#include "scenarios/methods/external_method.hpp"
+#include "scenarios/external/external_method.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/external_method.hpp"
+#include "scenarios/external/external_method.hpp"
 #include "tests/scenarios/methods/synthetic_recording.hpp"
 #include "tests/temporary_folder.hpp"
 

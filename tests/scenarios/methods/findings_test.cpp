@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/methods/findings.hpp"
+#include "scenarios/estimates/findings.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test checks a Python function as a method: what it receives, what it may return, and every way in which it may
 // fail.
-#include "scenarios/methods/python_method.hpp"
+#include "scenarios/external/python_method.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

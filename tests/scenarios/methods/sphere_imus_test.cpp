@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/methods/findings.hpp"
+#include "scenarios/estimates/findings.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble::scenarios {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/methods/turning_sense.hpp"
+#include "scenarios/external/turning_sense.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

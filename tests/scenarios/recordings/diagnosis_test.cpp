@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/methods/diagnosis.hpp"
+#include "scenarios/diagnosis/diagnosis.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "scenarios/methods/probable_devices.hpp"
+#include "scenarios/diagnosis/probable_devices.hpp"
 #include "tests/tree.hpp"
 
 namespace tumble::scenarios {

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/estimates/estimate_file.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"
 
 namespace tumble::scenarios {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test checks what a lidar that turns in a room reveals about a gyro with wrong units, axes, mountings and clocks.
-#include "scenarios/methods/lidar_rotation.hpp"
+#include "scenarios/diagnosis/lidar_rotation.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <string>
 
-#include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/estimates/estimate_file.hpp"
 #include "scenarios/methods/rig_calibration_file.hpp"
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"

@@ -3,7 +3,7 @@
 // estimate.
 #include <gtest/gtest.h>
 
-#include "scenarios/methods/findings.hpp"
+#include "scenarios/estimates/findings.hpp"
 #include "scenarios/scoring/perfect_estimate.hpp"
 #include "scenarios/sweep/evaluate.hpp"
 #include "tests/scenarios/scoring/rig.hpp"

@@ -10,7 +10,7 @@
 
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/draw/strict_yaml.hpp"
-#include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/estimates/estimate_file.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/sweep/draw_files.hpp"
 #include "scenarios/sweep/merge.hpp"

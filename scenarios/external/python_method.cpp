@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/methods/python_method.hpp"
+#include "scenarios/external/python_method.hpp"
 
 #include <fmt/format.h>
 #include <xxhash.h>
@@ -15,10 +15,10 @@
 
 #include "scenarios/draw/strict_yaml.hpp"
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/answer_bounds.hpp"
-#include "scenarios/methods/external_method.hpp"
-#include "scenarios/methods/python_runner.hpp"
-#include "scenarios/methods/turning_sense.hpp"
+#include "scenarios/external/answer_bounds.hpp"
+#include "scenarios/external/external_method.hpp"
+#include "scenarios/external/python_runner.hpp"
+#include "scenarios/external/turning_sense.hpp"
 #include "scenarios/recordings/scratch_file.hpp"
 
 namespace tumble::scenarios {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/methods/external_description.hpp"
+#include "scenarios/external/external_description.hpp"
 
 #include <fmt/format.h>
 #include <xxhash.h>

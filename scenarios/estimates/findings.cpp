@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/methods/findings.hpp"
+#include "scenarios/estimates/findings.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "scenarios/methods/json_members.hpp"
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/estimate.hpp"
+#include "scenarios/estimates/json_members.hpp"
 #include "tumble/odometry/detail/merge_recordings.hpp"
 
 namespace tumble::scenarios {

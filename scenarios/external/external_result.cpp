@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/methods/external_result.hpp"
+#include "scenarios/external/external_result.hpp"
 
 #include <fmt/format.h>
 
@@ -12,9 +12,9 @@
 #include <utility>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/answer_bounds.hpp"
-#include "scenarios/methods/estimate_file.hpp"
-#include "scenarios/methods/turning_sense.hpp"
+#include "scenarios/estimates/estimate_file.hpp"
+#include "scenarios/external/answer_bounds.hpp"
+#include "scenarios/external/turning_sense.hpp"
 #include "scenarios/recordings/clouds/cloud_file.hpp"
 #include "scenarios/recordings/number_text.hpp"
 #include "scenarios/recordings/recording_file.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/methods/answer_bounds.hpp"
+#include "scenarios/external/answer_bounds.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/methods/probable_devices.hpp"
+#include "scenarios/diagnosis/probable_devices.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/methods/lidar_rotation.hpp"
+#include "scenarios/diagnosis/lidar_rotation.hpp"
 
 #include <fmt/format.h>
 

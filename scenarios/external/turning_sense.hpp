@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/estimate.hpp"
 
 /// A pose file does not specify its frame, quaternion convention or clock, so the gyro serves to detect errors in them.
 namespace tumble::scenarios {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "scenarios/methods/external_description.hpp"
+#include "scenarios/external/external_description.hpp"
 #include "scenarios/methods/method.hpp"
 
 namespace tumble::scenarios {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/methods/diagnosis.hpp"
+#include "scenarios/diagnosis/diagnosis.hpp"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "scenarios/estimates/findings.hpp"
 #include "scenarios/methods/bridge.hpp"
-#include "scenarios/methods/findings.hpp"
 #include "scenarios/methods/rate_baselines.hpp"
 #include "scenarios/recordings/number_text.hpp"
 #include "tumble/angular_velocity/detail/clipping_finder.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/estimate.hpp"
 #include "sim/recording.hpp"
 
 namespace tumble::scenarios {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/methods/covariance_file.hpp"
+#include "scenarios/estimates/covariance_file.hpp"
 
 #include <fmt/format.h>
 

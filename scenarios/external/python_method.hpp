@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "scenarios/methods/external_description.hpp"
+#include "scenarios/external/external_description.hpp"
 #include "scenarios/methods/method.hpp"
 #include "scenarios/processes/shared_memory.hpp"
 

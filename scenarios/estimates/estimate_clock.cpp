@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/methods/estimate_clock.hpp"
+#include "scenarios/estimates/estimate_clock.hpp"
 
 #include <optional>
 

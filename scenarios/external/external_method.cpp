@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/methods/external_method.hpp"
+#include "scenarios/external/external_method.hpp"
 
 #include <fmt/format.h>
 #include <xxhash.h>
@@ -13,9 +13,9 @@
 
 #include "scenarios/draw/strict_yaml.hpp"
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/external_description.hpp"
-#include "scenarios/methods/external_result.hpp"
-#include "scenarios/methods/python_method.hpp"
+#include "scenarios/external/external_description.hpp"
+#include "scenarios/external/external_result.hpp"
+#include "scenarios/external/python_method.hpp"
 #include "scenarios/processes/command.hpp"
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/export.hpp"

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/estimate.hpp"
 
 namespace tumble::scenarios {
 

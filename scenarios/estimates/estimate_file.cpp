@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/estimates/estimate_file.hpp"
 
 #include <fmt/format.h>
 
@@ -10,10 +10,10 @@
 #include <stdexcept>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/covariance_file.hpp"
-#include "scenarios/methods/findings.hpp"
-#include "scenarios/methods/json_members.hpp"
-#include "scenarios/methods/map_file.hpp"
+#include "scenarios/estimates/covariance_file.hpp"
+#include "scenarios/estimates/findings.hpp"
+#include "scenarios/estimates/json_members.hpp"
+#include "scenarios/estimates/map_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/recordings/table_file.hpp"
 #include "scenarios/recordings/trajectories/reference.hpp"

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/estimate.hpp"
 #include "scenarios/recordings/recording_clock.hpp"
 
 namespace tumble::scenarios {

@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/estimate.hpp"
 
 namespace tumble::scenarios {
 
