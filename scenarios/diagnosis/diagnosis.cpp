@@ -205,7 +205,7 @@ std::vector<RecordingFinding> findings_in_estimate(const Estimate& estimate, std
     out.push_back({"odometry",
                    fmt::format("the odometry registered only {} of {} sweeps with the map ({}, minimum {})", registered,
                                sweeps, percent_text(share), percent_text(kRegisteredShareMin)),
-                   "check the lidar pose in the option --T-body-lidar, and the other faults in this list"});
+                   "check the options --T-body-lidar, --gyro-unit and --accel-unit, and the other faults in this list"});
   for (const HealthFinding& finding : estimate.faults.findings) {
     const bool mounting = finding.kind == HealthFinding::Kind::lidar_calibration;
     out.push_back({"odometry", report_text(finding),
