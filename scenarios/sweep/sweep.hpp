@@ -76,6 +76,8 @@ struct SweepOptions {
   /// If true, lidars that no method of a task reads are not simulated; estimates and scores are unchanged, but the
   /// digest of the recording differs.
   bool recordings_unseen = false;
+  /// Selects the methods of each scenario; empty: all methods of the suite that apply.
+  std::function<bool(const std::string& scenario, const MethodInfo& method)> selects;
 };
 
 void require_sound(const Suite& suite, const SweepOptions& options);

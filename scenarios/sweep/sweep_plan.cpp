@@ -36,6 +36,8 @@ SweepPlan::SweepPlan(const DataRoot& data, const Suite& suite, const SweepOption
   for (const std::string& name : suite.scenarios) {
     Planned planned{name, load_scenario(data, name), {}};
     planned.methods = applicable(methods_, subject_of(planned.scenario));
+    if (options.selects)
+      std::erase_if(planned.methods, [&](const auto& method) { return !options.selects(name, method->info); });
     scenarios_.push_back(std::move(planned));
   }
   if (!suite.recordings.empty()) {

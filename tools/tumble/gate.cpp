@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -82,6 +83,18 @@ void keep_accepted(const scenarios::Gate& gate, const GateOptions& options,
   }
   for (const std::string& name : names) require_known("scenario of suite " + suite.name, name, suite.scenarios);
   suite.scenarios = names;
+}
+
+/// Only the given methods, and methods with accepted results of the scenario, can be compared.
+std::function<bool(const std::string&, const scenarios::MethodInfo&)> comparable(
+    const scenarios::Gate& gate, const std::vector<scenarios::MethodPointer>& given) {
+  return [&](const std::string& scenario, const scenarios::MethodInfo& info) {
+    const auto is_given = [&](const scenarios::MethodPointer& method) { return method->info.name == info.name; };
+    const auto is_accepted = [&](const scenarios::MethodRun& run) {
+      return run.scenario == scenario && run.kind == info.kind && run.method == info.name;
+    };
+    return std::any_of(given.begin(), given.end(), is_given) || std::ranges::any_of(gate.accepted.methods, is_accepted);
+  };
 }
 
 scenarios::GateRun of_suite(scenarios::GateRun run, const scenarios::Suite& suite) {
@@ -211,6 +224,7 @@ int run_gate(const Session& session, const GateOptions& options) {
   how.jobs = options.jobs;
   how.stop = &interrupt.raised();
   how.recordings_unseen = options.database.empty();
+  if (known && !options.accept) how.selects = comparable(*known, given);
   const scenarios::SweepProgress progress = sweep_with_progress(session, data, suite, owner, how);
   if (progress.draws_done < progress.draws_total) return say_stopped(progress);
 
