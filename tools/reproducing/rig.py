@@ -310,7 +310,7 @@ accelerometer. `tools/reproduce papers --only rig` writes this page from {draws}
   sweep to the last, as in the ICRA paper.
 - The map overlap is the share of map points within 0.25 m of the true surface. A map fails if its overlap is below
   85 %, as in the ICRA paper.
-- In medians and means, a failed run counts with the largest error and a map overlap of 0. The ICRA paper limits
+- In medians and means, a failed run counts with an infinite error and a map overlap of 0. The ICRA paper limits
   rotation errors to 90°, but our rotation errors reach 180°.
 
 ## What is reproduced

@@ -360,8 +360,8 @@ includes noise of the optical tracker.
 ## The L-shaped path of 1 m × 1 m with slip and with slide
 
 {ways}
-- In the column *MFI paper*, the first of two lengths comes from rotation alone. The second length, or a single value,
-  comes from the position filter.
+- In the column *MFI paper*, the first of two lengths comes from rotation alone, and the second from the position
+  filter. A single value comes from the position filter.
 - In the scenario `slip_l` (figure 7 of the MFI paper), the sphere spins 1.5 to 2.8 times faster on slippery patches
   than without slip.
 - In the scenario `slide_l` (figure 8 of the MFI paper), a hand slows the rotation on slippery patches to at most 0.7

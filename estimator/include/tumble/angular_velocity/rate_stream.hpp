@@ -23,13 +23,15 @@
 
 namespace tumble {
 
-/// Estimates angular velocity through gyro saturation, sample by sample, with a fixed lag. AngularRateStream uses the
-/// measurement models of AngularRateSmoother over a sliding window of fixed length, with one Gauss-Newton step per
-/// sample or per 5 ms. The equations are in docs/maths/rate_stream.md.
+/// Estimates angular velocity sample by sample with a fixed lag, also while the gyro is saturated. AngularRateStream
+/// uses the measurement models of AngularRateSmoother over a sliding window of fixed length. By default,
+/// AngularRateStream makes one Gauss-Newton step per sample; at 400 Hz and above, one step covers the samples of up to
+/// 5 ms. The equations are in docs/maths/rate_stream.md.
 ///
 /// AngularRateStream detects saturation limits from the readings, and classifies the samples in the window again after
-/// each detection. The rate error is 1.1 times the error of AngularRateSmoother with the calibration of an earlier run,
-/// and 1.6 times without. The limitations of AngularRateSmoother also apply to AngularRateStream.
+/// each detection. If AngularRateStream starts with the calibration of an earlier run, its rate error is 1.1 times the
+/// rate error of AngularRateSmoother. Without this calibration, the rate error is 1.6 times the rate error of
+/// AngularRateSmoother. The limitations of AngularRateSmoother also apply to AngularRateStream.
 ///
 /// Cost: O(window) per step. AngularRateStream allocates memory only in start().
 class AngularRateStream {
@@ -59,8 +61,8 @@ class AngularRateStream {
   /// Appends the estimates of the samples in the window to `out`, oldest first, for the end of a run.
   void flush(const State& state, std::vector<AngularRateState>& out) const;
 
-  /// Reports current faults of the IMU: frozen axes (FrozenAxes), and forces in flight that fit an inverted
-  /// accelerometer (FlightSignCheck).
+  /// Reports current faults of the IMU: frozen axes (FrozenAxes), and a wrong sign of the accelerometer, which
+  /// FlightSignCheck detects from the specific force in free flight.
   SensorHealth health(const State& state) const;
 
   RigCalibration calibration(const State& state) const { return {state.rig, inflated_calibration_covariance(state)}; }

@@ -17,8 +17,9 @@ struct RigConstants {
   Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< vector from the centre of mass to the IMU, in IMU axes
   Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();  ///< bias: reading minus true value
   Eigen::Vector3d accel_bias_m_s2 = Eigen::Vector3d::Zero();  ///< bias: reading minus true value
-  /// Ratios of the moments of inertia about the centre of mass in IMU axes, without scale: coordinates in an
-  /// orthonormal basis of the traceless symmetric matrices; zero for equal principal moments.
+  /// Coordinates of the inertia matrix about the centre of mass, in IMU axes, scaled to trace 3. The inertia matrix is
+  /// the identity matrix plus the sum of inertia[i] * inertia_basis_matrix(i). If the principal moments are equal, all
+  /// five coordinates are zero.
   Eigen::Matrix<double, 5, 1> inertia = Eigen::Matrix<double, 5, 1>::Zero();
   /// Cross-axis sensitivities of the gyro's sensing elements, before the device's compensation. The sensing direction
   /// of element j is 1 on axis j, elements[2j] on axis (j+1) % 3 and elements[2j+1] on axis (j+2) % 3. The cross-axis

@@ -31,7 +31,8 @@ class HeapValue {
   std::unique_ptr<T> value_;
 };
 
-// not inline, so that an `extern template` suppresses the instantiation with an incomplete type
+// The following functions are not inline, because an `extern template` declaration does not prevent the instantiation
+// of inline functions. The instantiation fails in files in which T is incomplete.
 template <class T>
 HeapValue<T>::HeapValue() : value_(std::make_unique<T>()) {}
 template <class T>

@@ -25,7 +25,7 @@ struct LidarImuCalibration {
   Eigen::Matrix<double, kErrorCount, 1> minus(const LidarImuCalibration& other) const;
 };
 
-/// `deviations` is the result of LidarImuCalibrationPrior::deviations(). Returns `out_of_range` above
+/// `deviations` is the result of LidarImuCalibrationPrior::distance_in_sigmas(). Returns `out_of_range` above
 /// kDistanceMax_sigmas.
 Status distance_verdict(double deviations);
 
@@ -33,17 +33,17 @@ Status distance_verdict(double deviations);
 /// rotation and translation per axis.
 /// A standard deviation of 0 marks an exact part of the calibration.
 struct LidarImuCalibrationPrior {
-  static constexpr double kDistanceMax_sigmas = 5.0;  ///< largest plausible result of deviations()
+  static constexpr double kDistanceMax_sigmas = 5.0;  ///< largest plausible result of distance_in_sigmas()
 
   LidarImuCalibration calibration;
   double mount_sigma_rad = 0.0, mount_sigma_m = 0.0, time_offset_sigma_s = 0.0;
 
-  /// Returns the distance between an estimated calibration and the stated calibration in standard deviations:
-  /// mapping.md (R69). The result is the largest of the distances of rotation, translation and time offset. It is
-  /// infinite if a value with standard deviation 0 differs.
+  /// Returns how many stated standard deviations an estimated calibration is from the stated calibration, by equation
+  /// (R69) of mapping.md. The result is the largest of the distances of rotation, translation and time offset. The
+  /// result is infinite if a value with standard deviation 0 differs.
   double distance_in_sigmas(const LidarImuCalibration& estimated) const;
-  /// Returns `out_of_range` if deviations() is above kDistanceMax_sigmas, because the stated calibration is probably
-  /// wrong.
+  /// Returns `out_of_range` if distance_in_sigmas() is above kDistanceMax_sigmas, because the stated calibration is
+  /// probably wrong.
   Status verdict(const LidarImuCalibration& estimated) const;
 };
 

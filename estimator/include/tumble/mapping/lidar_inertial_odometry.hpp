@@ -25,8 +25,9 @@ namespace tumble {
 /// distances, and then inserted into the map. The equations are in docs/maths/mapping.md.
 ///
 /// The z axis of the world frame points upwards, along the specific force at rest. The earliest sweep with
-/// `matches_min` points starts the map. The first IMU sample defines origin and yaw of the world, or the first sweep if
-/// the map starts more than half a second later.
+/// `matches_min` points starts the map. The pose of the IMU at the first IMU sample defines origin and yaw of the world
+/// frame. If the map starts more than half a second after the first IMU sample, or after sweeps with too few points,
+/// the pose of the IMU at the start of the map defines origin and yaw.
 ///
 /// Pass IMU samples in time order, and each sweep after the IMU samples that cover the sweep. LidarInertialOdometry
 /// starts no threads, uses no files and prints nothing.
@@ -62,8 +63,9 @@ class LidarInertialOdometry {
     double sigma_rad = 0.0;                                        ///< standard deviation of the corrected tilt
   };
   /// Returns the tilt at the start, computed from the direction of gravity in the map, for a second run over the same
-  /// data. start_tilt() is empty after a start at rest, or if the motion determines gravity less accurately than the
-  /// start.
+  /// data. start_tilt() is empty after a start at rest, before the map starts, and after localisation in a prior map.
+  /// If the standard deviation of the computed tilt is more than half the standard deviation of the initial tilt,
+  /// start_tilt() returns the argument of set_start_tilt(), or an empty value if set_start_tilt() was not called.
   std::optional<StartTilt> start_tilt() const;
   /// Call set_start_tilt() before the first sweep.
   void set_start_tilt(const StartTilt& tilt);
@@ -71,20 +73,22 @@ class LidarInertialOdometry {
   /// Sets the map of an earlier run, in which the robot is then localised. Call use_map() before the first sweep.
   ///
   /// Before localisation, poses are in a local frame, and localised() returns `degenerate`. After localisation, poses
-  /// and covariances are in the frame of the prior map, and SweepReport::in_prior_map is true. If `map.T_MI` is set,
-  /// use_map() also calls set_start_pose(). The whole prior map is kept, also beyond map_radius_m. Returns `ok`, an
-  /// error of check_prior_map(), or `time_order` after the first sweep. On error, the state is unchanged.
+  /// and covariances are in the frame of the prior map, and SweepReport::in_prior_map is true. If `map.T_prior_map_imu`
+  /// is set, use_map() also calls set_start_pose(). The whole prior map is kept, also beyond map_radius_m. Returns
+  /// `ok`, an error of check_prior_map(), or `time_order` after the first sweep. On error, the state is unchanged.
   Status use_map(PriorMap map);
-  /// Copies the prior map, if any, and its parameters from another object. The localisation restarts from the pose of
-  /// set_start_pose(), or else from the pose in the prior map.
+  /// Copies the prior map, if any, and its parameters from another object, and restarts the localisation. The
+  /// localisation searches near the pose of set_start_pose(). If set_start_pose() was not called, the localisation
+  /// searches near PriorMap::T_prior_map_imu.
   void use_map_of_pass(const LidarInertialOdometry& other);
   /// Returns `degenerate` if a prior map is set but the robot is not yet localised.
   Status localised() const;
   /// null without a prior map
   const PriorMap* prior_map() const;
 
-  /// `rate` is the estimated angular velocity of the sample. Returns `non_finite`, `time_order`, or `out_of_range` if
-  /// `rate` has another time stamp; on error, the state is unchanged.
+  /// `rate` is the estimated angular velocity of the sample. Returns `non_finite` if a number is not finite, or
+  /// `time_order` if the sample is not later than the last sample. Returns `out_of_range` if the time stamps of
+  /// `sample` and `rate` differ, or exceed kStampMax_ns. On error, the state is unchanged.
   Status add_imu(const ImuSample& sample, const AngularRateState& rate);
 
   /// Sets the velocity that an odometer measured at the start of the next sweep, in IMU axes, with one standard
@@ -92,9 +96,10 @@ class LidarInertialOdometry {
   /// sweep. Returns `non_finite` if a number is not finite, or `out_of_range` if the standard deviation is not above 0.
   /// On error, the state is unchanged.
   Status add_velocity(const Eigen::Vector3d& v_WI_I_m_s, double sigma_m_s);
-  /// Sets an odometer's reading between the end of the last sweep and the end of the next sweep, with a margin of 20
-  /// ms. The odometer reading is fused with the inertial prediction, weighted by their covariances. A new odometer
-  /// reading replaces an earlier reading and the velocity of add_velocity().
+  /// Sets an odometer reading for the prediction of the next sweep. The time stamps of the reading must be between the
+  /// end of the last sweep and the end of the next sweep, or at most 20 ms outside; other readings are ignored. The
+  /// odometer reading is fused with the inertial prediction, weighted by their covariances. A new odometer reading
+  /// replaces an earlier reading and the velocity of add_velocity().
   Status add_reading(const OdometerReading& reading);
   /// Excludes the accelerometer, but not the gyro, from the prediction of the next sweep, and drops earlier odometer
   /// readings for this sweep.
@@ -121,8 +126,8 @@ class LidarInertialOdometry {
   /// Returns the current calibration. Calibration values that are not estimated have covariance 0.
   LidarImuCalibration calibration() const;
   LidarImuCalibration::Covariance calibration_covariance() const;
-  /// Returns the calibration's prior covariance for the next registration, with which a second run over the recording
-  /// should start.
+  /// Returns the covariance with which the next registration weights the current calibration as its prior. A second run
+  /// over the recording that starts from calibration() should start with this covariance.
   LidarImuCalibration::Covariance calibration_prior_covariance() const;
 
   /// Returns `out_of_range` while the standard deviation of gravity's direction exceeds 0.02 rad, for example after a

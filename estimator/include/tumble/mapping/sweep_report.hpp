@@ -33,9 +33,9 @@ struct SweepReport {
   double eigenvalue_ratio = 0.0;  ///< smallest divided by largest eigenvalue of the scaled normal matrix
   /// standard deviation of the pose in the least constrained direction, from this sweep's points alone; 0: not aligned
   double least_constrained_sigma_m = 0.0;
-  /// Normalised innovation: correction of pose and velocity in standard deviations of the inertial prediction, divided
-  /// by sqrt(9). The mean innovation is at most 1 if the covariances are correct; 0 means that the sweep was not
-  /// aligned.
+  /// Normalised innovation sqrt(d' P^-1 d / 9). The nine components of d are the corrections of the predicted position,
+  /// attitude and velocity, and P is the covariance of the inertial prediction. The mean innovation is at most 1 if the
+  /// covariances are correct; 0 means that the sweep was not aligned.
   double innovation = 0.0;
   /// Standard deviation of the position relative to the map around the robot. The covariance of `pose` also includes
   /// the map's drift and tilt, which grow with the travelled distance.
@@ -45,8 +45,8 @@ struct SweepReport {
   /// True if the sweep relocalised the robot at an unpredicted pose, and two further sweeps have not yet confirmed this
   /// pose. A contradicting sweep reverts the relocalisation.
   bool relocalisation_unconfirmed = false;
-  /// Unit vector of position and attitude in world axes, along which the lidar constrains the pose least. The attitude
-  /// is multiplied by the root-mean-square distance of the points from the IMU.
+  /// Unit vector of position and attitude in world axes, along which the lidar constrains the pose least. To have the
+  /// same unit as position, attitude is multiplied by the root-mean-square distance of the points from the IMU.
   Eigen::Matrix<double, 6, 1> least_constrained_direction = Eigen::Matrix<double, 6, 1>::Zero();
   Eigen::Vector3d mean_saturation_deficit_rad_s =
       Eigen::Vector3d::Zero();        ///< mean correction of the clipped gyro axes

@@ -101,7 +101,8 @@ class RollingOdometry {
     Eigen::Matrix3d velocity_covariance_B_m2_s2 = Eigen::Matrix3d::Zero();
     RollingMode mode = RollingMode::grip;
     bool at_rest = false;
-    /// An event (RollingModeParams::event_sigma_growth_m) or a restart made the position uncertain.
+    /// True after a restart, and during a slip or bump that increases the standard deviation of the position by more
+    /// than RollingModeParams::event_sigma_growth_m.
     bool uncertain = false;
   };
 
@@ -114,11 +115,12 @@ class RollingOdometry {
   ~RollingOdometry();
 
   /// Processes simultaneous readings of all IMUs, with the time stamp of the first IMU. SampleClock corrects time
-  /// stamps with jitter. Pass NaN for an IMU without a reading. OutlierFilter rejects outliers of each IMU; while
-  /// it waits, up to five samples of all IMUs are held back, and newest() is older by as many sample periods. On error,
-  /// the state is unchanged. The errors are `insufficient_data` (wrong number of IMUs, or no reading), `time_order`,
-  /// `degenerate` (no gravity in the first sample), `gap` and `out_of_range`. `out_of_range` means that the run has
-  /// finished, the time stamp exceeds kStampMax_ns, or the only IMU with readings has a frozen axis.
+  /// stamps with jitter. Pass NaN for an IMU without a reading. OutlierFilter rejects outliers of each IMU. While
+  /// OutlierFilter checks a sudden change of a reading, up to five samples of all IMUs wait, and newest() returns the
+  /// pose before these samples. On error, the state is unchanged. The errors are `insufficient_data` (wrong number of
+  /// IMUs, or no reading), `time_order`, `degenerate` (no gravity in the first sample), `gap` and `out_of_range`.
+  /// `out_of_range` means that the run has finished, the time stamp exceeds kStampMax_ns, or the only IMU with readings
+  /// has a frozen axis.
   ///
   /// A single wrong time stamp causes the loss of one sample. After a gap of more than a second between two samples,
   /// add_imus() rejects the first sample with `gap`, and restarts with the second sample. If the clock steps back,
@@ -129,10 +131,10 @@ class RollingOdometry {
   /// Processes a sample of a sphere with one IMU. Returns `ok` or an error of add_imus().
   Status add_imu(const ImuSample& sample) { return add_imus({&sample, 1}); }
 
-  /// Processes a sample of one IMU whose samples are not simultaneous with those of the other IMUs. The IMUs are
-  /// resampled to common times, at most 0.05 s late. An IMU without readings counts as absent. Returns `ok`, an error
-  /// of add_imus(), or `out_of_range` for an invalid IMU number. After a clock steps back, add_imu() rejects samples
-  /// until reset().
+  /// Processes a sample of one IMU whose samples are not simultaneous with those of the other IMUs. RollingOdometry
+  /// resamples the readings of all IMUs to common times, which delays the poses by at most 0.05 s. An IMU without
+  /// readings counts as absent. Returns `ok`, an error of add_imus(), or `out_of_range` for an invalid IMU number.
+  /// After a clock steps back, add_imu() rejects samples until reset().
   Status add_imu(std::size_t unit, const ImuSample& sample);
 
   /// The pose uses all data so far, and is empty before the first sample.

@@ -34,11 +34,12 @@ struct LidarScale;
 ///
 /// Three poses of increasing accuracy are reported. newest() predicts the IMU's pose at the newest sample by inertial
 /// integration from the last registered sweep. take() returns a sweep registered to the map (`report.pose`), at most
-/// `lag_s` after the sweep's end. The report of the following sweep contains the final pose (`report.smoothed`), at
-/// most 0.3 s after the sweep's end at ten sweeps per second. Time stamps of poses are in the IMU's clock. The earliest
-/// sweep with enough points starts the map, and poses are reported only after the map has started. Start with at least
-/// half a second at rest, which determines the tilt. If the gyro's zero offset at rest exceeds 0.05 rad/s,
-/// TumblingOdometry subtracts the offset and restarts, which needs a second at rest.
+/// `lag_s` after the sweep's end. The final pose of a sweep is in the report of the following sweep
+/// (`report.smoothed`). At ten sweeps per second and the default `lag_s`, the final pose is available at most 0.3 s
+/// after the end of its sweep. Time stamps of poses are in the IMU's clock. The earliest sweep with enough points
+/// starts the map, and poses are reported only after the map has started. Start with at least half a second at rest,
+/// which determines the tilt. If the gyro's zero offset at rest exceeds 0.05 rad/s, TumblingOdometry subtracts the
+/// offset and restarts, which needs a second at rest.
 ///
 /// Some seconds after motion starts, SecondMappingPass processes the first seconds of motion again with the calibration
 /// estimated so far. TumblingOdometry then continues with the map and pose of SecondMappingPass; poses that were
@@ -48,14 +49,16 @@ struct LidarScale;
 /// With `lag_s` = kWholeRecording, add_imu() and add_sweep() store the data, and finish() estimates rates, poses and
 /// map from the whole recording. finish() estimates the rates with MotionRegimeSmoother, checks the IMU, and repeats
 /// the mapping until the lidar's calibration has converged. With kWholeRecording, there are no live poses, and take()
-/// returns all sweeps after finish(). A step of the clock ends the recording, but a gap in the data does not. finish()
-/// needs more stack and memory than other functions.
+/// returns all sweeps after finish(). If the clock steps back, add_imu() rejects samples with `time_order` until the
+/// time stamps exceed the newest accepted time stamp. After a gap in the data, the recording continues. finish() needs
+/// more stack and memory than other functions.
 ///
 /// An IMU sample costs one step of MotionRegimeStream, and sometimes the registration of a sweep. After start-up,
 /// add_imu() allocates memory only if the sample completes a sweep. While SecondMappingPass runs, a sweep costs up to
 /// four registrations. The end of SecondMappingPass costs five additional registrations. The bounded memory depends on
-/// lag, map radius, `sweeps_max` and the buffer of SecondMappingPass. The map also stores 12 bytes per sweep until the
-/// robot has moved ten metres. A call needs at most 64 KiB of stack.
+/// lag, map radius, `sweeps_max` and the buffer of SecondMappingPass. The map also stores the sensor position of each
+/// sweep (12 bytes). Without a prior map, the sensor positions of sweeps without remaining map points are deleted each
+/// time the robot has moved by a tenth of the map radius (by default ten metres). A call needs at most 64 KiB of stack.
 ///
 /// TumblingOdometry starts no threads, uses no files and prints nothing. A copy of a TumblingOdometry contains the
 /// complete state, so the copy can process the following data. The limitations of MotionRegimeStream and
@@ -89,27 +92,28 @@ class TumblingOdometry {
   /// map and localises the robot again. The argument of reset(pose) is a pose in the prior map. Returns `ok` or an
   /// error of LidarInertialOdometry::use_map().
   Status use_map(PriorMap map);
-  /// Processes an IMU sample, and registers the sweeps whose rates become available. Time stamps must increase.
-  /// Returns `non_finite`, `out_of_range`, `time_order` or `gap` if the sample is rejected. A single wrong time stamp
-  /// causes the loss of one sample. After a gap of more than a second, add_imu() rejects the first sample with `gap`,
-  /// and the second sample restarts the rate estimation with the current calibration. Inertial integration bridges
-  /// the gap. If the clock steps back, add_imu() rejects samples with `time_order` for 0.2 s. The run then restarts
-  /// at the newest pose, like reset(pose). OutlierFilter rejects outliers and may delay one to five samples. newest()
-  /// is then older.
+  /// Processes an IMU sample, and registers the sweeps whose rates become available. Time stamps must increase. Returns
+  /// `non_finite`, `out_of_range`, `time_order` or `gap` if the sample is rejected. A single wrong time stamp causes
+  /// the loss of one sample. After a gap of more than a second, add_imu() rejects the first sample with `gap`, and the
+  /// second sample restarts the rate estimation with the current calibration. Inertial integration bridges the gap. If
+  /// the clock steps back, add_imu() rejects samples with `time_order` for 0.2 s. The run then restarts at the newest
+  /// pose, like reset(pose). OutlierFilter rejects outliers. While OutlierFilter checks a sudden change of the
+  /// readings, one to five samples wait, and newest() returns the pose before these samples.
   Status add_imu(const ImuSample& sample);
-  /// Processes a sweep of points fired in [start_ns, end_ns], at any time after the sweep's last point. The points are
-  /// copied. Points from before the end of the last sweep are dropped, because time stamps of sweeps may overlap by
-  /// jitter. On error, the state is unchanged. `time_order` means that the end is before the start, or that half of the
-  /// sweep is before the end of the last sweep. `out_of_range` means that a point is outside the sweep, or that the end
-  /// is a second after the newest IMU sample. `out_of_range` also means that a time stamp exceeds kStampMax_ns, or that
-  /// too many sweeps wait for IMU samples.
+  /// Processes a sweep of points fired in [start_ns, end_ns]. Call add_sweep() after the last point of the sweep; later
+  /// IMU samples may be added first. The points are copied. Points from before the end of the last sweep are dropped,
+  /// because time stamps of sweeps may overlap by jitter. On error, the state is unchanged. `time_order` means that the
+  /// end is before the start, or that half of the sweep is before the end of the last sweep. `out_of_range` means that
+  /// a point fired outside [start_ns, end_ns], or that `end_ns` is more than a second after the newest IMU sample.
+  /// `out_of_range` also means that a time stamp exceeds kStampMax_ns, or that too many sweeps wait for IMU samples.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
   /// Processes a sweep of one of several lidars: 0 is the first lidar, k is `further_lidars[k - 1]`. The points of a
   /// further lidar are registered together with the simultaneous sweep of the first lidar. The points of a further
   /// lidar must arrive within `lag_s` after the end of the first lidar's sweep. A lag of two sweep periods is long
-  /// enough. The lidars need no synchronisation. Limitation: the ranges and the own-body box of the first lidar also
-  /// apply to the points of further lidars, in axes of the first lidar. Returns `ok`, an error of add_sweep() for the
-  /// first lidar, or `out_of_range` for an unknown lidar.
+  /// enough. The lidars need no synchronisation. Limitation: the points of further lidars are transformed to the frame
+  /// of the first lidar. In this frame, points outside the range limits or inside the own-body box of the first lidar
+  /// are also dropped. Returns `ok`, an error of add_sweep() for the first lidar, or `out_of_range` for an unknown
+  /// lidar.
   Status add_sweep(std::size_t lidar, TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
   /// Processes an odometer reading (mapping/further_readings.hpp). An odometer reading must arrive before the
   /// registration of its sweep, which is `lag_s` after the end of the sweep. If a sweep has several odometer readings,
@@ -133,10 +137,10 @@ class TumblingOdometry {
   ///
   /// With kWholeRecording, finish() processes the whole recording, and later samples and sweeps are rejected until
   /// reset(). take() then returns all sweeps with their final poses in `report.pose` and `report.trajectory`. Returns
-  /// `ok`, an error of AngularRateSmoother::estimate() such as `insufficient_data`, or the error of a sample in the
-  /// mapper. Without kWholeRecording, finish() returns `ok`. finish() calls `on_sweep` before each sweep, with the
-  /// number of processed sweeps and the number of all sweeps, for a progress display. Each pass over the recording
-  /// starts again at 0 processed sweeps.
+  /// `ok`, an error of AngularRateSmoother::estimate() such as `insufficient_data`, or the error with which the mapper
+  /// rejected a sample (LidarInertialOdometry::add_imu()). Without kWholeRecording, finish() returns `ok`. finish()
+  /// calls `on_sweep` before each sweep, with the number of processed sweeps and the number of all sweeps, for a
+  /// progress display. Each pass over the recording starts again at 0 processed sweeps.
   Status finish(const SweepProgress& on_sweep = {});
   /// Starts a new run with a new map, at the origin and at rest. After reset(), take() still returns the remaining
   /// sweeps of the old run, and counters keep their values.
@@ -159,7 +163,8 @@ class TumblingOdometry {
   /// Returns the estimated scale of the lidar's ranges relative to the IMU, as far as the motion determines the scale
   /// (mapping/detail/lidar_scale.hpp).
   const LidarScale& sweep_scale() const;
-  /// Returns the newest Sweep::position_frame, for newest(); empty with kWholeRecording.
+  /// Returns the newest Sweep::position_frame, which transforms the pose of newest() to the frame of the position
+  /// readings. Returns an empty value with kWholeRecording.
   const std::optional<PositionFrame>& position_frame() const;
   /// Returns the time of the newest accepted IMU sample.
   std::optional<TimeNs> newest_ns() const;
@@ -182,7 +187,7 @@ class TumblingOdometry {
   /// The following counters are 0 in normal operation. The function rejected_samples() counts IMU samples that the
   /// mapper rejected. The function dropped_sweeps() counts sweeps that take() did not return in time. The function
   /// sweeps_before_first_imu() counts sweeps that ended before the first IMU sample. The function
-  /// unused_odometer_readings() counts odometer readings that span two sweeps.
+  /// unused_odometer_readings() counts motion readings that start in one sweep and end in another sweep.
   std::size_t rejected_samples() const;
   std::size_t dropped_sweeps() const;
   std::size_t sweeps_before_first_imu() const;

@@ -28,9 +28,9 @@ struct TumblingParams {
   static constexpr double kWholeRecording = 1e9;  ///< value of `lag_s`; see TumblingOdometry
 
   ImuDataSheet imu;
-  /// Lever arm from the body's centre of mass to the IMU, in IMU axes, and its standard deviation per axis. The lever
-  /// arm relates rates to forces; its error is estimated. The lever arm has no default, because zero would mean an IMU
-  /// at the centre of mass.
+  /// Lever arm from the body's centre of mass to the IMU, in IMU axes, and its standard deviation per axis. In free
+  /// flight, the lever arm relates the angular rate to the measured specific force. TumblingOdometry estimates the
+  /// error of the stated lever arm. The lever arm has no default, because zero would mean an IMU at the centre of mass.
   Eigen::Vector3d lever_arm_I_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   double lever_arm_sigma_m = 0.01;
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
