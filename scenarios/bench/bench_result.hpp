@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "scenarios/data_root.hpp"
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
 #include "scenarios/scoring/outcome_status.hpp"
 
 namespace tumble::scenarios {

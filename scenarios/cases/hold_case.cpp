@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/methods/registry.hpp"
 
 namespace tumble::scenarios {
 

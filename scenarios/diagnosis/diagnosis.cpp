@@ -202,10 +202,11 @@ std::vector<RecordingFinding> findings_in_estimate(const Estimate& estimate, std
       std::ranges::count_if(estimate.sweeps, [](const auto& sweep) { return sweep.verdict != SweepVerdict::rejected; });
   const double share = sweeps > 0 ? static_cast<double>(registered) / static_cast<double>(sweeps) : 0.0;
   if (share < kRegisteredShareMin)
-    out.push_back({"odometry",
-                   fmt::format("the odometry registered only {} of {} sweeps with the map ({}, minimum {})", registered,
-                               sweeps, percent_text(share), percent_text(kRegisteredShareMin)),
-                   "check the options --T-body-lidar, --gyro-unit and --accel-unit, and the other faults in this list"});
+    out.push_back(
+        {"odometry",
+         fmt::format("the odometry registered only {} of {} sweeps with the map ({}, minimum {})", registered, sweeps,
+                     percent_text(share), percent_text(kRegisteredShareMin)),
+         "check the options --T-body-lidar, --gyro-unit and --accel-unit, and the other faults in this list"});
   for (const HealthFinding& finding : estimate.faults.findings) {
     const bool mounting = finding.kind == HealthFinding::Kind::lidar_calibration;
     out.push_back({"odometry", report_text(finding),

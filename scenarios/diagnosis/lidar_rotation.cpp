@@ -8,8 +8,9 @@
 #include <cmath>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/estimates/method.hpp"
 #include "scenarios/methods/bridge.hpp"
-#include "scenarios/methods/method.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "scenarios/recordings/number_text.hpp"
 #include "scenarios/recordings/repairable.hpp"
 #include "scenarios/recordings/upper_median.hpp"

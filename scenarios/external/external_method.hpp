@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
 #include "scenarios/processes/command.hpp"
 #include "sim/recording.hpp"
 
@@ -48,10 +48,6 @@ class RefusedAnswer : public BadInput {
 /// The time limit of an external method is the smaller one of the description's limit and `time_limit_s`.
 Method external_method(const std::filesystem::path& file,
                        double time_limit_s = std::numeric_limits<double>::infinity());
-
-bool is_method_file(const std::string& name);
-
-std::vector<MethodPointer> find_methods_within(std::span<const std::string> names, double time_limit_s);
 
 std::string without_trailing_folder(std::string text, const std::filesystem::path& folder);
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "scenarios/estimates/method.hpp"
 #include "scenarios/external/external_description.hpp"
-#include "scenarios/methods/method.hpp"
 
 namespace tumble::scenarios {
 

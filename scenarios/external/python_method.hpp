@@ -3,8 +3,8 @@
 
 #include <string>
 
+#include "scenarios/estimates/method.hpp"
 #include "scenarios/external/external_description.hpp"
-#include "scenarios/methods/method.hpp"
 #include "scenarios/processes/shared_memory.hpp"
 
 /// The Python function runs in a separate interpreter that only needs numpy (EXTERNAL.md).

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "scenarios/estimates/method.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/imu_check.hpp"
-#include "scenarios/methods/method.hpp"
 #include "scenarios/methods/rate_baselines.hpp"
 #include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/methods/registry.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
 #include "scenarios/recordings/import.hpp"
 #include "tumble/angular_velocity/detail/clipping_finder.hpp"
 #include "tumble/attitude/detail/regime_smoother.hpp"

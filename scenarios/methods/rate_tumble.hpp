@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
 #include "scenarios/methods/rig_calibration_file.hpp"
 #include "scenarios/methods/settings.hpp"
 #include "sim/parameters.hpp"

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/estimates/method.hpp"
 #include "scenarios/external/external_method.hpp"
-#include "scenarios/methods/method.hpp"
 #include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/methods/settings.hpp"
 #include "scenarios/text.hpp"
@@ -86,18 +86,6 @@ std::vector<MethodPointer> find_within(const std::string& name, double time_limi
 
 }  // namespace
 
-std::string full_name(const MethodInfo& info) {
-  return full_name(info.kind, info.name);
-}
-
-std::string MethodInfo::why_not(const Subject& subject) const {
-  const bool known = !robots.empty() && !subject.robot.empty();
-  if (known && std::find(robots.begin(), robots.end(), subject.robot) == robots.end())
-    return fmt::format("does not support the robot '{}'", subject.robot);
-  if (kind == Kind::slam && !subject.has_lidar) return "needs a lidar, but the recording has none";
-  return {};
-}
-
 RunMethod with_settings(const MethodInfo& info, RunMethod run) {
   return [place = "method " + full_name(info), settings = info.settings, run = std::move(run)](
              const sim::Sensors& sensors, const sim::Values& given, const OracleInput& oracle) {
@@ -130,10 +118,6 @@ Method make_method(MethodInfo info, RunCore run) {
 std::span<const Method> methods() {
   static const std::vector<Method> all = all_methods();
   return all;
-}
-
-MethodPointer unowned(const Method& method) {
-  return {std::shared_ptr<void>(), &method};
 }
 
 bool is_method_file(const std::string& name) {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/mapping/prior_map.hpp"
 
@@ -23,6 +23,15 @@ Method make_method(MethodInfo info, RunCore run);
 /// The returned function resolves the given parameter values by the settings of `info` before it calls `run`; invalid
 /// parameters throw BadInput.
 RunMethod with_settings(const MethodInfo& info, RunMethod run);
+
+std::span<const Method> methods();
+
+/// The name may be that of several methods ("saave"), one method ("rate/oracle"), or an external method (NAME.yaml).
+std::vector<MethodPointer> find_methods(const std::string& name);
+std::vector<MethodPointer> find_methods(std::span<const std::string> names);
+bool is_method_file(const std::string& name);
+
+std::vector<MethodPointer> find_methods_within(std::span<const std::string> names, double time_limit_s);
 
 Method rate_raw();
 Method rate_interpolate();

@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
 #include "scenarios/methods/registry.hpp"
 
 namespace tumble::scenarios {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
 #include "scenarios/methods/settings.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/mapping/further_readings.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "scenarios/baselines/mapping/rigid_odometry.hpp"
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
 #include "scenarios/methods/settings.hpp"
 #include "sim/parameters.hpp"
 #include "tumble/common/imu.hpp"

@@ -4,8 +4,8 @@
 #include <functional>
 #include <span>
 
+#include "scenarios/estimates/method.hpp"
 #include "scenarios/methods/bridge.hpp"
-#include "scenarios/methods/method.hpp"
 
 namespace tumble::scenarios {
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
 
 namespace tumble::scenarios {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
 #include "scenarios/scoring/metric.hpp"
 #include "scenarios/scoring/outcome_status.hpp"
 #include "sim/lidar/surface.hpp"

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
 #include "scenarios/scoring/outcome_status.hpp"
 
 namespace tumble::scenarios {

@@ -12,7 +12,7 @@
 #include "scenarios/data_root.hpp"
 #include "scenarios/draw/drawn_numbers.hpp"
 #include "scenarios/draw/scenario.hpp"
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
 #include "scenarios/search/failure_goal.hpp"
 #include "scenarios/search/input_shift.hpp"
 #include "scenarios/search/splitting.hpp"

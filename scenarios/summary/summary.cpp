@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "scenarios/methods/registry.hpp"
 #include "scenarios/scoring/binned_metric.hpp"
 #include "scenarios/scoring/score.hpp"
 

@@ -11,6 +11,7 @@
 #include "scenarios/draw/strict_yaml.hpp"
 #include "scenarios/draw/yaml_text.hpp"
 #include "scenarios/errors.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "scenarios/scoring/score.hpp"
 #include "scenarios/sweep/gate.hpp"
 #include "scenarios/text.hpp"

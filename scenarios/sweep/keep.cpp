@@ -13,6 +13,7 @@
 #include <tuple>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "scenarios/scoring/metric.hpp"
 #include "scenarios/sweep/draw_files.hpp"
 #include "scenarios/text.hpp"

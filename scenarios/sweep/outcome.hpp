@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
 #include "scenarios/scoring/score.hpp"
 
 namespace tumble::scenarios {

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
 #include "scenarios/provenance/build_id.hpp"
 #include "scenarios/scoring/outcome_status.hpp"
 #include "scenarios/sweep/results.hpp"

@@ -11,7 +11,7 @@
 #include "scenarios/draw/strict_yaml.hpp"
 #include "scenarios/draw/yaml_text.hpp"
 #include "scenarios/errors.hpp"
-#include "scenarios/external/external_method.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "scenarios/scoring/score.hpp"
 #include "scenarios/sweep/sweep.hpp"
 

@@ -12,7 +12,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/external/external_description.hpp"
-#include "scenarios/external/external_method.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "scenarios/provenance/data_digest.hpp"
 #include "scenarios/recordings/scratch_file.hpp"
 #include "scenarios/sweep/draw_worker.hpp"

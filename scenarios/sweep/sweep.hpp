@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "scenarios/data_root.hpp"
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/sweep/database_owner.hpp"
 #include "scenarios/sweep/keep.hpp"

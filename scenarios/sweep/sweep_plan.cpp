@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/external/external_method.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "scenarios/sweep/message.hpp"
 #include "scenarios/sweep/run_again.hpp"
 

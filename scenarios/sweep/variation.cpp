@@ -13,6 +13,7 @@
 #include "scenarios/draw/registry.hpp"
 #include "scenarios/draw/strict_yaml.hpp"
 #include "scenarios/errors.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/settings.hpp"
 #include "scenarios/scoring/clipping.hpp"
 #include "sim/random/stream.hpp"

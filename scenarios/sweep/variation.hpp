@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "scenarios/draw/scenario.hpp"
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
 #include "scenarios/sweep/evaluate.hpp"
 #include "scenarios/sweep/outcome.hpp"
 

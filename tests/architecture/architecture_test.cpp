@@ -180,7 +180,7 @@ TEST(Architecture, CheckerRefusesForbiddenIncludes) {
   EXPECT_EQ(broken_rule("ros/src/x.cpp", "tumble/tumble.hpp"), "");
   EXPECT_NE(broken_rule("python/evalio/bindings/x.cpp", "tumble/tumble.hpp"), "");
   EXPECT_EQ(broken_rule("python/evalio/bindings/x.cpp", "evalio/pipeline.h"), "");
-  EXPECT_NE(broken_rule("scenarios/baselines/attitude/x.cpp", "scenarios/methods/method.hpp"), "");
+  EXPECT_NE(broken_rule("scenarios/baselines/attitude/x.cpp", "scenarios/estimates/method.hpp"), "");
   EXPECT_NE(broken_rule("scenarios/baselines/attitude/x.cpp", "sim/recording.hpp"), "");
   EXPECT_EQ(broken_rule("scenarios/baselines/attitude/x.cpp", "scenarios/baselines/attitude/madgwick_step.hpp"), "");
   EXPECT_NE(broken_rule("scenarios/draw/x.cpp", "sim/engine/model.hpp"), "");
@@ -188,7 +188,7 @@ TEST(Architecture, CheckerRefusesForbiddenIncludes) {
   EXPECT_NE(broken_rule("sim/imu/x.cpp", "yaml-cpp/yaml.h"), "");
   EXPECT_NE(broken_rule("tools/tumble/x.cpp", "embree3/rtcore.h"), "");
   EXPECT_NE(broken_rule("scenarios/draw/x.cpp", "sim/compose.hpp"), "");
-  for (const char* include : {"scenarios/sweep/evaluate.hpp", "scenarios/methods/method.hpp", "sim/recording.hpp",
+  for (const char* include : {"scenarios/sweep/evaluate.hpp", "scenarios/estimates/method.hpp", "sim/recording.hpp",
                               "tools/examples/make_example.hpp", "tools/pictures/pictures.hpp"})
     EXPECT_NE(broken_rule("tools/report/page.cpp", include), "") << include;
   EXPECT_EQ(broken_rule("tools/report/page.cpp", "tools/examples/example.hpp"), "");

@@ -18,7 +18,8 @@
 
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "scenarios/scoring/score.hpp"
 #include "scenarios/sweep/evaluate.hpp"
 #include "sim/lidar/surface.hpp"

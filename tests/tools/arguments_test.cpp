@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 
 namespace tumble::tools {

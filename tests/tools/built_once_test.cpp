@@ -9,6 +9,7 @@
 #include <array>
 
 #include "scenarios/draw/scenario.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "scenarios/sweep/evaluate.hpp"
 #include "tests/temporary_folder.hpp"
 #include "tests/tree.hpp"

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "tests/temporary_folder.hpp"
 #include "tools/examples/draw_plots.hpp"
 #include "tools/report/plots.hpp"

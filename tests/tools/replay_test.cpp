@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "tests/tools/replays.hpp"
 #include "tools/replay/motion.hpp"
 #include "tools/replay/points.hpp"

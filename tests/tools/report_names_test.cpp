@@ -10,7 +10,8 @@
 #include <string>
 
 #include "scenarios/draw/scenario.hpp"
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "scenarios/scoring/score.hpp"
 #include "tests/tree.hpp"
 

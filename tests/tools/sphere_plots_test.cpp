@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/methods/registry.hpp"
 #include "tools/examples/draw_plots.hpp"
 
 #include <gtest/gtest.h>

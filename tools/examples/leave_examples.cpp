@@ -10,7 +10,7 @@
 #include <system_error>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/external/external_method.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "scenarios/processes/process.hpp"
 #include "scenarios/summary/example_choice.hpp"
 #include "tools/examples/make_example.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
 #include "sim/lidar/surface.hpp"
 #include "sim/recording.hpp"
 #include "sim/render/renderer.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
 #include "sim/recording.hpp"
 
 namespace tumble::tools {

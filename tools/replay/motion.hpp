@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
 #include "sim/recording.hpp"
 
 namespace tumble::tools {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
 #include "sim/lidar/surface.hpp"
 #include "sim/recording.hpp"
 #include "sim/render/world_mesh.hpp"

@@ -8,7 +8,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/external/external_description.hpp"
-#include "scenarios/external/external_method.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/scoring/score.hpp"

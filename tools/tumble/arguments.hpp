@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "scenarios/draw/scenario.hpp"
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
 #include "tools/tumble/session.hpp"
 
 namespace tumble::tools {

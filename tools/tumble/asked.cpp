@@ -10,6 +10,7 @@
 
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/errors.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "scenarios/text.hpp"
 #include "tools/tumble/arguments.hpp"
 

@@ -17,7 +17,8 @@
 
 #include "scenarios/bench/bench.hpp"
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "scenarios/provenance/build_id.hpp"
 #include "scenarios/provenance/data_digest.hpp"
 #include "scenarios/recordings/replace_file.hpp"

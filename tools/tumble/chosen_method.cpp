@@ -12,6 +12,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/external/external_method.hpp"
 #include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/mapping/detail/odometry_params.hpp"
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
 #include "sim/recording.hpp"
 #include "tumble/common/status.hpp"
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/gate.hpp"
+#include "scenarios/methods/registry.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -11,7 +12,6 @@
 #include <optional>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/external/external_method.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/sweep/certified_results.hpp"
 #include "scenarios/sweep/run_again.hpp"

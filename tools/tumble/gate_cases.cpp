@@ -11,6 +11,7 @@
 #include "scenarios/cases/hold_case.hpp"
 #include "scenarios/draw/fixed_scenario.hpp"
 #include "scenarios/errors.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "tools/tumble/gate_database.hpp"
 #include "tools/tumble/interrupt.hpp"

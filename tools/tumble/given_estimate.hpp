@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
 #include "sim/recording.hpp"
 
 namespace tumble::tools {

@@ -7,6 +7,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/regular_file.hpp"
 

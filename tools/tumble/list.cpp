@@ -5,7 +5,8 @@
 
 #include "scenarios/draw/data_sheet.hpp"
 #include "scenarios/draw/scenario.hpp"
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "scenarios/scoring/score.hpp"
 #include "scenarios/sweep/sweep.hpp"
 #include "sim/situation.hpp"

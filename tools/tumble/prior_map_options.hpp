@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
 #include "tools/tumble/verb_options.hpp"
 
 namespace tumble::tools {

@@ -12,6 +12,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/estimates/estimate_file.hpp"
 #include "scenarios/external/turning_sense.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "scenarios/recordings/recording_check.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/scoring/score.hpp"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/cases/shrink.hpp"
+#include "scenarios/methods/registry.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
 
 /// A mutation is a fault that somebody might build into a method by mistake: the method runs with a changed input or
 /// returns a changed result. The gate must reject each mutation.

@@ -5,6 +5,7 @@
 // 2^-10, on both sides) detect less than all 143 rows on all 18 draws (2 * 143 * 2^-18). The whole gate rejects every
 // shift that is rejected here.
 #include "scenarios/gate/mutations.hpp"
+#include "scenarios/methods/registry.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/estimates/estimate_file.hpp"
+#include "scenarios/methods/registry.hpp"
 
 #include <gtest/gtest.h>
 

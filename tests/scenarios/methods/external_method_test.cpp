@@ -2,6 +2,7 @@
 // The test checks an external command as a method: what the command receives, what it leaves, and every way in which it
 // may end.
 #include "scenarios/external/external_method.hpp"
+#include "scenarios/methods/registry.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
 
 namespace tumble::scenarios {
 namespace {

@@ -10,7 +10,8 @@
 #include <vector>
 
 #include "scenarios/draw/scenario.hpp"
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/synthetic_recording.hpp"
 #include "scenarios/scoring/score.hpp"
 #include "scenarios/sweep/evaluate.hpp"

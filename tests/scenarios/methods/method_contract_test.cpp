@@ -6,7 +6,8 @@
 #include <ostream>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/synthetic_recording.hpp"
 #include "scenarios/sweep/outcome.hpp"
 

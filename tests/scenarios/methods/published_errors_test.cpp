@@ -5,7 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/synthetic_recording.hpp"
 
 // the test runs known errors of the published chain: they are reproduced where slam/published has a switch for them,

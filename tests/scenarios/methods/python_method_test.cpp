@@ -2,6 +2,7 @@
 // The test checks a Python function as a method: what it receives, what it may return, and every way in which it may
 // fail.
 #include "scenarios/external/python_method.hpp"
+#include "scenarios/methods/registry.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
 
 namespace tumble::scenarios::testing {
 

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
 #include "scenarios/methods/registry.hpp"
 
 namespace tumble::scenarios {

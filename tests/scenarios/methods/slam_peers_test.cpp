@@ -3,7 +3,8 @@
 
 #include <algorithm>
 
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/slam_constant_velocity.hpp"
 #include "scenarios/methods/synthetic_recording.hpp"
 #include "scenarios/scoring/score.hpp"

@@ -10,7 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "scenarios/recordings/import.hpp"
 #include "stand_ins/stand_ins.hpp"
 

@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "scenarios/draw/scenario.hpp"
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "scenarios/scoring/truth_track.hpp"
 #include "scenarios/sweep/evaluate.hpp"
 #include "tests/scenarios/methods/rates_without_suspect_terms.hpp"

@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
 #include "sim/recording.hpp"
 
 namespace tumble::scenarios::testing {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "scenarios/estimates/findings.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "scenarios/scoring/perfect_estimate.hpp"
 #include "scenarios/sweep/evaluate.hpp"
 #include "tests/scenarios/scoring/rig.hpp"

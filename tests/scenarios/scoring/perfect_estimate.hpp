@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
 #include "scenarios/methods/synthetic_recording.hpp"
 #include "scenarios/scoring/score.hpp"
 #include "scenarios/scoring/truth_track.hpp"

@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "scenarios/draw/scenario.hpp"
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "scenarios/sweep/sweep.hpp"
 #include "tests/complaint.hpp"
 #include "tests/temporary_folder.hpp"

@@ -60,13 +60,6 @@ struct Method {
 
 using MethodPointer = std::shared_ptr<const Method>;
 
-std::span<const Method> methods();
-
-/// The name may be that of several methods ("saave"), one method ("rate/oracle"), or an external method (NAME.yaml).
-std::vector<MethodPointer> find_methods(const std::string& name);
-
-std::vector<MethodPointer> find_methods(std::span<const std::string> names);
-
 MethodPointer unowned(const Method& method);
 
 }  // namespace tumble::scenarios
