@@ -4,7 +4,8 @@
 #include <cstdio>
 #include <exception>
 
-#include "scenarios/methods/method.hpp"
+#include "scenarios/estimates/method.hpp"
+#include "scenarios/methods/registry.hpp"
 #include "scenarios/recordings/bags/bag.hpp"
 
 int main(int count, char** arguments) try {

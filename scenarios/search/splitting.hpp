@@ -79,9 +79,9 @@ struct SplittingResult {
 /// the draws exceed the bound.
 ///
 /// The step size of the Metropolis moves increases if more than 40 % of the moves are accepted. Each copy makes enough
-/// moves that 90 % of the copies accept a new seed. The 95 % interval considers that copies of one initial draw depend
-/// on each other. Equal options give equal results for deterministic scores. Scores may be infinite, but not NaN.
-/// Throws BadInput for invalid options or NaN scores.
+/// moves that 90 % of the copies would accept a new seed if every move drew one. The 95 % interval considers that
+/// copies of one initial draw depend on each other. Equal options give equal results for deterministic scores. Scores
+/// may be infinite, but not NaN. Throws BadInput for invalid options or NaN scores.
 SplittingResult split(const SplittingOptions& options, const ScorePoints& score);
 
 /// SplittingEstimate accumulates the probability of a level in adaptive multilevel splitting, and the variance of its

@@ -17,7 +17,7 @@ namespace tumble {
 /// process noise Q = q [dt^3/3, dt^2/2; dt^2/2, dt]. The square-root information form stays accurate even if variances
 /// differ by many orders of magnitude.
 ///
-/// The neglected commutators of SO(3) change the angular acceleration by about dt^2 |w x alpha| / 4.
+/// The neglected commutators of SO(3) change the rate by about dt^2 |w x alpha| / 4 per sample.
 class WnojSmoother {
  public:
   struct Params {

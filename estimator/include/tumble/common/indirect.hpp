@@ -6,8 +6,8 @@
 
 namespace tumble {
 
-/// HeapValue stores a value on the heap. A copy of an HeapValue copies the value, and a constant HeapValue gives access
-/// to a constant value, like std::indirect of C++26. T may be an incomplete type where an HeapValue is a member. The
+/// HeapValue stores a value on the heap. A copy of a HeapValue copies the value, and a constant HeapValue gives access
+/// to a constant value, like std::indirect of C++26. T may be an incomplete type where a HeapValue is a member. The
 /// source file that uses the following functions, or instantiates them explicitly, needs the complete type. A
 /// moved-from HeapValue has no value until it is assigned.
 template <class T>

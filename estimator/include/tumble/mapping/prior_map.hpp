@@ -17,7 +17,7 @@ struct PriorMap {
   /// Start pose of the IMU in the map frame M, if known; only position and heading are used. If the start pose is
   /// unknown, the run may start anywhere in the map.
   std::optional<Eigen::Isometry3d> T_prior_map_imu = std::nullopt;
-  double sigma_m = 0.0;    ///< standard deviation of the position of T_MI per axis; 0: exact
+  double sigma_m = 0.0;    ///< standard deviation of the position of T_prior_map_imu per axis; 0: exact
   double sigma_rad = 0.0;  ///< standard deviation of the heading of T_MI; 0: exact
   bool extend =
       true;  ///< true: sweeps extend the map and remove points that they see through; false: the map is constant

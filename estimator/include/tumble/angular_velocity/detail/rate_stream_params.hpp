@@ -22,7 +22,7 @@ struct AngularRateStreamParams {
   double recovered_sigma_rad_s = 0.5;        ///< see AngularRateSmootherParams
   double calibration_mahalanobis_max = 1.5;  ///< maximum distance from the prior; a larger one resets the calibration
   double gap_max_s = 1.0;                    ///< longest time between samples
-  double step_s = 0.005;                     ///< minimum time between Gauss-Newton steps; 0: with each sample
+  double step_s = 0.005;  ///< a Gauss-Newton step follows as many samples as fit into this time; 0: each sample
 
   /// Sensor errors from an earlier run, used unchanged instead of model.errors. If empty, AngularRateStream corrects
   /// the readings by model.errors and estimates the remaining uncertainty.
