@@ -18,7 +18,7 @@ struct PriorMap {
   /// unknown, the run may start anywhere in the map.
   std::optional<Eigen::Isometry3d> T_prior_map_imu = std::nullopt;
   double sigma_m = 0.0;    ///< standard deviation of the position of T_prior_map_imu per axis; 0: exact
-  double sigma_rad = 0.0;  ///< standard deviation of the heading of T_MI; 0: exact
+  double sigma_rad = 0.0;  ///< standard deviation of the heading of T_prior_map_imu; 0: exact
   bool extend =
       true;  ///< true: sweeps extend the map and remove points that they see through; false: the map is constant
 };

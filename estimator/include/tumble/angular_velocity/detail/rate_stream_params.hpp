@@ -53,8 +53,8 @@ struct AngularRateStreamParams {
     visit(p.gap_max_s,
           {"gap_max_s", "s", 1e-6, 3600.0, "maximum time between two samples; a longer gap causes an error"});
     visit(p.step_s, {"step_s", "s", 0.0, 0.1,
-                     "minimum time between two Gauss-Newton steps; a larger value costs less computing time; 0: one "
-                     "step per sample"});
+                     "time between two Gauss-Newton steps, rounded down to whole samples; a larger value costs less "
+                     "computing time; 0: one step per sample"});
     visit.group("", p.expert);
   }
 };
