@@ -9,6 +9,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <system_error>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/estimates/method.hpp"
@@ -62,9 +63,22 @@ struct Results::Impl {
     std::optional<SQLite::Transaction> own_;
   };
 
+  /// A process that is killed during a transaction leaves a journal. Only a connection that may write can roll back the
+  /// transaction. If that fails, the read-only connection reports the error.
+  static const std::filesystem::path& rolled_back(const std::filesystem::path& file, Mode mode) {
+    std::error_code ignored;
+    if (mode != Mode::read_only || !std::filesystem::exists(file.string() + "-journal", ignored)) return file;
+    try {
+      SQLite::Database(file.string(), SQLite::OPEN_NOMUTEX | SQLite::OPEN_READWRITE, kBusyTimeoutMs)
+          .execAndGet("SELECT count(*) FROM sqlite_master");
+    } catch (const SQLite::Exception&) {
+    }
+    return file;
+  }
+
   Impl(const std::filesystem::path& file, Mode mode)
       : path(file),
-        database(file.string(),
+        database(rolled_back(file, mode).string(),
                  SQLite::OPEN_NOMUTEX |
                      (mode == Mode::read_only ? SQLite::OPEN_READONLY : SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE),
                  kBusyTimeoutMs) {

@@ -69,7 +69,8 @@ constexpr double kScaleStep = 0.05;
 constexpr std::size_t kHalf = kAxisLabels, kTwice = kAxisLabels + 1;  // indices of the gyro scales 1/2 and 2
 constexpr std::size_t kLower = kAxisLabels + 2, kUpper = kAxisLabels + 3, kReadings = kAxisLabels + 4;
 constexpr std::size_t kCompared = kLower;  // number of hypotheses that differ clearly from the unchanged rates
-// A segment favours a gyro hypothesis if the logarithm of its squared velocity residual is smaller by this amount.
+// A segment favours a gyro hypothesis if the hypothesis has a smaller velocity residual than the unchanged rates. The
+// logarithms of the two squared residuals must differ by more than this limit.
 constexpr double kClearLogRatio = 0.4;
 
 using Readings = std::array<Eigen::Matrix3d, kReadings>;
@@ -187,8 +188,8 @@ PivotMotionCheck PivotMotionCheck::of(std::span<const ImuSample> samples, double
   std::array<Segments, 2> series = {Segments(gravity_m_s2, readings), Segments(gravity_m_s2, readings)};
   double mean_s = 0.0, since_s = 0.0;
   Eigen::Vector3d turned = Eigen::Vector3d::Zero(), gained = Eigen::Vector3d::Zero();
-  const auto is_at_rail = [](const Eigen::Vector3d& reading, double range) {
-    return range > 0.0 && reading.cwiseAbs().maxCoeff() >= (1.0 - kNearRailRatio) * range;
+  const auto is_at_rail = [](const Eigen::Vector3d& measured, double range) {
+    return range > 0.0 && measured.cwiseAbs().maxCoeff() >= (1.0 - kNearRailRatio) * range;
   };
   for (std::size_t k = 1; k < samples.size(); ++k) {
     const Eigen::Vector3d &rate = samples[k].angular_velocity_rad_s, &force = samples[k].specific_force_m_s2;

@@ -161,11 +161,11 @@ bool MappedRecording::calibration_is_off() const {
 }
 
 void MappedRecording::add_findings(const LidarScale& scale, SensorHealth& health) const {
-  using Kind = HealthFinding::Kind;
-  health.add(Kind::lidar_scale, scale.verdict(), "lidar");
-  health.add(Kind::vertical_unknown, mapper.check_vertical(), "");
-  health.add(Kind::tracking_lost, localisation.verdict(), "");
-  if (calibration_is_off()) health.add(Kind::lidar_calibration, distance_verdict(calibration_deviations), "lidar");
+  health.add(HealthFinding::Kind::lidar_scale, scale.verdict(), "lidar");
+  health.add(HealthFinding::Kind::vertical_unknown, mapper.check_vertical(), "");
+  health.add(HealthFinding::Kind::tracking_lost, localisation.verdict(), "");
+  if (calibration_is_off())
+    health.add(HealthFinding::Kind::lidar_calibration, distance_verdict(calibration_deviations), "lidar");
 }
 
 MappedRecording map_in_one_pass(const MappingInput& input, const LidarInertialOdometry::Params& params) {

@@ -333,5 +333,28 @@ TEST_F(ResultsTest, WhatHasBeenStoredSurvivesAKill) {
   EXPECT_EQ(results.scores().size(), 2 * results.outcomes().size());
 }
 
+// a copy of the files during a large transaction is what a killed writer leaves
+TEST_F(ResultsTest, ReadersRollBackTheTransactionOfAKilledWriter) {
+  Results(path(), Results::Mode::create_or_append).store(sample_outcome(1));
+  const std::filesystem::path killed = folder_ / "killed.db";
+  {
+    SQLite::Database writer(path().string(), SQLite::OPEN_READWRITE);
+    writer.exec("PRAGMA cache_size = 1");  // changed pages are written before the end of the transaction
+    SQLite::Transaction transaction(writer);
+    SQLite::Statement insert(writer, "INSERT INTO notes VALUES (?, ?)");
+    for (int k = 0; k < 200; ++k) {
+      insert.bind(1, "key " + std::to_string(k));
+      insert.bind(2, std::string(1000, 'x'));
+      insert.exec();
+      insert.reset();
+    }
+    std::filesystem::copy_file(path(), killed);
+    std::filesystem::copy_file(path().string() + "-journal", killed.string() + "-journal");
+  }
+  const Results results(killed, Results::Mode::read_only);
+  EXPECT_EQ(results.note("key 0"), "");
+  EXPECT_TRUE(holds(results, "hill", 1, Kind::slam, "icp"));
+}
+
 }  // namespace
 }  // namespace tumble::scenarios
