@@ -55,8 +55,9 @@ int count_pairs(const mjModel& model) {
   return moving * (all - moving);
 }
 
-/// Returns true if contacts have the same order with and without MuJoCo's bounding-volume tree. The robot must have one
-/// geom, because the tree sorts the geoms of a contact by type number.
+/// Returns true if MuJoCo finds the contacts in the same order with and without its bounding-volume tree. With the
+/// tree, MuJoCo sorts the two geoms of a contact by type number. The orders are therefore comparable only if the robot
+/// has a single geom.
 bool sorts_as_asked(const mjModel& model) {
   int robot = -1;
   for (int i = 0; i < model.ngeom; ++i) {

@@ -19,8 +19,8 @@ struct ProbableDevice {
 std::optional<ProbableDevice> probable_lidar(const sim::LidarRecord& lidar, std::span<const DataSheet> sheets);
 
 /// An IMU matches a data sheet if its name contains the name of the device, or the maker of a lidar with a built-in IMU
-/// (`ouster`, `livox`). A data sheet is rejected if the readings exceed its range by more than real saturation limits
-/// can.
+/// (`ouster`, `livox`). A data sheet is rejected if the ratio of the readings to its range exceeds
+/// bridge::kStatedRangesMax, which real saturation limits do not reach.
 std::optional<ProbableDevice> probable_imu(const sim::ImuRecord& imu, std::span<const DataSheet> sheets);
 
 void apply_sheet(const DataSheet& sheet, sim::ImuRecord& imu);

@@ -13,7 +13,7 @@ std::string yaml_number(double value, const std::string& place);
 
 std::string yaml_word(const std::string& text);
 
-/// Returns the key `streams` with the seeds of random streams. Returns an empty text without seeds.
+/// Returns the key `streams` with the seeds of random streams. If `streams` is empty, the returned text is empty.
 std::string streams_text(const std::map<std::string, std::uint64_t>& streams);
 
 std::vector<std::string> yaml_stems(const std::filesystem::path& folder);

@@ -32,8 +32,10 @@ class AnswerBounds {
   void require_rates(const std::vector<AngularRateState>& rates, const Place& place) const;
   void require_poses(const std::vector<PoseState>& poses, const Place& place) const;
   void require_attitudes(const std::vector<AttitudeState>& attitudes, const Place& place) const;
-  /// Throws BadInput if ten or more time stamps differ from the duration of the recording by a factor above 100, which
-  /// indicates a wrong time unit.
+  /// Throws BadInput if the time stamps seem to have a wrong unit. For ten or more time stamps, the function compares
+  /// the time span from the smallest to the largest stamp with the duration of the recording. A ratio above 100 or
+  /// below 1/100 indicates a wrong unit. If the ratio is above 100 but fits no other unit, the function accepts the
+  /// stamps, because a few stamps are probably wrong.
   void require_unit(std::span<const double> stamps_s, const char* unit, const Place& place) const;
   void require_unit(const Estimate& estimate, const char* unit, const Place& place) const;
   void require_slam(const Estimate& estimate) const;

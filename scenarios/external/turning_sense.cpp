@@ -48,7 +48,8 @@ std::string text_of(const TurningFit& fit, const std::string& frame) {
   return out + (out.empty() ? "the poses" : " and the poses") + " belonged to the frame " + frame;
 }
 
-/// The frame of the estimate comes first, because check_turning ignores a later frame with an equal mounting.
+/// Returns the frames that check_turning() tests, with the frame of the estimate as the first element. If two frames
+/// have equal mountings, check_turning() ignores the later frame.
 std::vector<CandidateFrame> candidates(const Estimate& estimate, const sim::Sensors& sensors) {
   std::vector<CandidateFrame> frames;
   if (sensors.imus.empty()) return frames;

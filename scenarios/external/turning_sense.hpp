@@ -11,8 +11,9 @@ namespace tumble::scenarios {
 /// Returns a message if the quaternions of the poses have w first, are inverse rotations (world in sensor), or refer to
 /// another frame than `estimate.frame`; otherwise an empty text.
 ///
-/// The message requires that rotations of poses and gyro differ by more than 50 %, and that a correction reduces the
-/// difference below 15 %. A rotation about a single axis does not reveal all errors.
+/// The function returns a message only if both conditions are met: the rotations of the poses differ from the rotations
+/// of the gyro by more than 50 %, and a correction reduces this difference below 15 %. A rotation about a single axis
+/// does not reveal all errors.
 std::string turning_complaint(const Estimate& estimate, const sim::Sensors& sensors);
 
 /// Returns a message if the time stamps of the poses have a constant error of 0.15 to 5 s.

@@ -59,8 +59,8 @@ TumbleAttitude::Params stated(const sim::Sensors& sensors) {
   return params;
 }
 
-/// The attitude of a sphere comes from the merged readings of all IMUs in body axes; the rolling motion measures the
-/// velocity.
+/// For a sphere, the filter estimates the attitude from the merged readings of all IMUs in body axes. The velocity of
+/// the rolling motion, computed from angular velocity and radius, is the velocity measurement of the filter.
 Estimate run_sphere(const sim::Sensors& sensors, const sim::Values& parameters) {
   Estimate estimate;
   estimate.frame = Frame::body;

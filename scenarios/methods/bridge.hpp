@@ -30,8 +30,9 @@ namespace tumble::scenarios::bridge {
 
 inline constexpr double kGapMaxS = 1.0, kAnyGapS = std::numeric_limits<double>::infinity();
 
-/// Real saturation limits exceed the stated range of a device (MTi-30: by a factor of 1.4), and a tilted saturation
-/// limit allows even larger readings.
+/// Maximum ratio of a reading to the stated range of a device. The saturation limit of a real device may exceed its
+/// stated range (MTi-30: by a factor of 1.4). A tilted saturation limit depends on all three outputs, so a single
+/// output may be even larger.
 inline constexpr double kStatedRangesMax = OutlierFilter::kMaxReadingToRangeRatio;
 
 inline constexpr double kWildShareMax = 0.01;

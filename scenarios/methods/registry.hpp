@@ -20,8 +20,8 @@ using RunCore = Estimate (*)(const sim::Sensors&, const sim::Values& parameters,
 
 Method make_method(MethodInfo info, RunCore run);
 
-/// The returned function resolves the given parameter values by the settings of `info` before it calls `run`; invalid
-/// parameters throw BadInput.
+/// Returns a function that checks and completes the given parameter values with the settings of `info`, and then calls
+/// `run`. The returned function throws BadInput if a parameter is invalid.
 RunMethod with_settings(const MethodInfo& info, RunMethod run);
 
 std::span<const Method> methods();

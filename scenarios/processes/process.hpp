@@ -32,7 +32,8 @@ class Process {
   int read_end() const { return fd_; }
   bool write_text(const std::string& text);
   bool read_available(std::string& buffer);
-  /// Returns false if the child process still runs at the deadline, a time of now_s().
+  /// Waits for the end of the child process. Returns false if the child process is still running at `deadline_s`, a
+  /// time on the clock of now_s().
   bool ends_before(double deadline_s);
   void kill();
   End wait();

@@ -25,7 +25,8 @@ struct Running {
   std::string said;
 };
 
-/// Returns false if the operating system starts no further process until a running process ends.
+/// Returns false if the operating system cannot start a further process while other processes are running. The caller
+/// can then try again after a process has ended.
 bool begin(std::list<Running>& running, std::size_t index, double deadline_s, const std::function<void(int)>& work) {
   try {
     running.push_back({index, deadline_s, Process(work, true), {}});

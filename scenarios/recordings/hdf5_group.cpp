@@ -164,7 +164,8 @@ void Group::read_rows(const Handle& dataset, const std::string& name, void* data
 
 namespace {
 
-/// A damaged text length without a limit could exhaust the memory.
+/// Maximum length of a text [bytes]. In a damaged file, the stored text length may be so large that reading the text
+/// would exhaust the memory.
 constexpr std::size_t kLongestText = std::size_t{16} << 20;
 
 /// The HDF5 library rejects text types of length 0.

@@ -53,7 +53,9 @@ enum class GyroUnit { rad_s, deg_s };
 ///
 /// - The median specific force is 3 to 30 m/s^2, and the period is 20 us to 2 s.
 /// - At most 1 % of the rates exceed twice the device's range (100 rad/s if unknown).
-/// - Gravity rotates neither 57 times faster nor 57 times slower than the gyro (deg/s in place of rad/s).
+/// - The accelerometer measures how far gravity rotates in its axes. This rotation must not be 57 times larger or 57
+///   times smaller than the rotation that the gyro measures. A factor of 57 indicates that deg/s and rad/s are
+///   confused.
 Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord& device,
                         AccelUnit unit = AccelUnit::m_s2, GyroUnit gyro_unit = GyroUnit::rad_s,
                         const std::string& columns = "");

@@ -56,9 +56,9 @@ class LeftOut {
 };
 
 /// Selects time stamps such that the kept stamps increase and the fewest possible stamps are dropped (longest
-/// increasing subsequence). With at least ten stamps, a first or last stamp is also dropped if its distance from the
-/// others exceeds their duration. Several stamps at one end are dropped only if their gap to the other stamps also
-/// exceeds a day. The cost for N stamps is O(N log N), or O(N) if all increase.
+/// increasing subsequence). With at least ten stamps, the first or last stamp is also dropped if its gap to the other
+/// stamps exceeds the time span of the other stamps. Several stamps at one end are dropped only if their gap to the
+/// other stamps also exceeds a day. The cost for N stamps is O(N log N), or O(N) if all increase.
 std::vector<bool> stamps_in_order(std::span<const std::int64_t> stamps_ns);
 
 /// If `rows` and `kept` differ in size, the sensor does not measure this quantity, and `rows` is unchanged.

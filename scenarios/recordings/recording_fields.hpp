@@ -11,8 +11,8 @@
 
 /// Writer, reader and digest visit the same list of fields, so none of them can omit a field.
 ///
-/// A field that a later version added is neither stored nor hashed while it is empty, zero or "measured", so older
-/// files keep their digests.
+/// A later version of the file format may add a field. Such a field is neither stored nor hashed while it has its
+/// default value: empty, zero, or "measured" for the point times. Older files therefore keep their digests.
 namespace tumble::scenarios {
 
 /// Data are stored as `plain` (without compression) if deflate would save little space (FORMAT.md).

@@ -32,8 +32,8 @@ class TableWriter {
   bool row_empty_ = true;
 };
 
-/// Empty lines and lines that start with '#' are skipped. If the separator is a blank, tabs, commas and semicolons also
-/// separate cells.
+/// Empty lines and lines that start with '#' are skipped. If `separator` is a blank, cells may also be separated by
+/// tabs, commas and semicolons.
 struct Table {
   struct Row {
     int line;

@@ -35,8 +35,9 @@ bool quantile_exceeds(double limit, std::vector<double> values, double share) {
   return quantile(values, share) > limit;
 }
 
-/// Health findings increase the covariances. The score subtracts the increase, because errors that a finding reports
-/// would otherwise be consistent with the covariance.
+/// A health finding increases the reported covariance of the rates. rate_errors() subtracts this increase from the
+/// covariance. With the increase, a large error would be consistent with the covariance, so the estimate would not
+/// count as wrong.
 Errors rate_errors(const ScoredEstimate& scored) {
   const std::vector<Eigen::Matrix3d>& suspect = scored.estimate().suspect_rad2_s2;
   const std::vector<PairedRate>& pairs = paired_rates(scored);

@@ -23,8 +23,8 @@ const char* symbol(Unit unit);
 /// signed values).
 enum class Compared { by_ratio, by_difference };
 
-/// Place states where a metric appears. Gates compare `held` and `headline` metrics, and the report page starts with
-/// `headline` metrics. `tumble report --all` prints all metrics.
+/// Place states where a metric appears. A gate (sweep/gate.hpp) compares new with accepted results in the metrics
+/// `held` and `headline`. The report page starts with `headline` metrics. `tumble report --all` prints all metrics.
 enum class Place { detail, held, headline };
 
 inline constexpr double kNoTarget = std::numeric_limits<double>::quiet_NaN();
@@ -38,7 +38,8 @@ struct MetricInfo {
   double target = kNoTarget;  ///< target of a two-sided metric
   Compared compared = Compared::by_ratio;
 
-  /// Returns true for verdicts on the run. Verdicts on the health have no sense: a wrong estimate is not a failed run.
+  /// Returns true if the value 1 of this metric marks a failed run. Verdicts on the health report have the sense
+  /// `none`, because a wrong estimate is not a failed run.
   bool marks_failure() const { return unit == Unit::verdict && sense == Sense::lower; }
 };
 

@@ -77,8 +77,9 @@ bool in_contact(const ScoredEstimate& scored, std::int64_t time_ns) {
   return false;
 }
 
-// NormalisedErrors contains squared rate errors divided by their reported variances. Clipped axes are in `all`, and in
-// `flight` or `impact` (contact). Unclipped axes that a clipped sensing element disturbs are in `cross_axis`.
+// NormalisedErrors contains squared rate errors divided by their reported variances. The error of a clipped axis is in
+// `all`. The error is also in `impact` if the robot is in contact, otherwise in `flight`. Unclipped axes that a clipped
+// sensing element disturbs are in `cross_axis`.
 struct NormalisedErrors {
   std::vector<double> all, flight, impact, cross_axis;
 };

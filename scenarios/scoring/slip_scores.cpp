@@ -10,9 +10,11 @@
 #include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/families.hpp"
 
-/// A slip event is a time interval with the contact labels slip and slide. A slip event may contain up to kBridge_ns of
-/// grip, and up to kHop_ns of air in total, because an unbalanced spinning sphere hops. A true slip event is scored if
-/// it lasts at least kShortest_ns and the contact speed reaches kLeastSpeed_m_s; weaker events cause no position error.
+/// A slip event is a time interval in which every sample has the contact label slip or the contact label slide, except
+/// for short interruptions. The interruptions are allowed because an unbalanced spinning sphere hops. An interruption
+/// contains at most kBridge_ns of the label grip. Its total duration (grip and air) is at most kHop_ns. A true slip
+/// event is scored if it lasts at least kShortest_ns and the contact speed reaches kLeastSpeed_m_s; weaker events cause
+/// no position error.
 ///
 /// An estimated slip event is correct if true events, widened by kMargin_ns, cover at least half of it. A true slip
 /// event is detected if correct estimated events cover at least half of it.

@@ -15,7 +15,8 @@ namespace tumble::scenarios {
 /// error is below 13 um and 1 urad.
 class TruthTrack {
  public:
-  /// At rest, the body's speed and rate are below kRestSpeedMS and kRestRateRadS, for kRestWindowS before and after.
+  /// The body is at rest at a time if its speed and rate are below kRestSpeedMS and kRestRateRadS during the
+  /// kRestWindowS before and after this time.
   static constexpr double kRestWindowS = 0.1;
   static constexpr double kRestSpeedMS = 0.03;
   static constexpr double kRestRateRadS = 0.05;
@@ -76,8 +77,8 @@ double twist_about_z_rad(const Eigen::Quaterniond& q);
 /// Returns the angle of a rotation, in [0, pi], accurately for small angles and near pi.
 double rotation_angle_rad(const Eigen::Quaterniond& q);
 
-/// Horizontal part of the attitude error phi with q_true = Exp(phi) q, after alignment of the heading, in the
-/// estimate's world.
+/// Returns the horizontal part of the attitude error phi, in the world frame of the estimate. The heading of `q_true`
+/// is first aligned with the heading of `q_estimate`; then q_true = Exp(phi) q_estimate.
 Eigen::Vector2d tilt_error_rad(const Eigen::Quaterniond& q_estimate, const Eigen::Quaterniond& q_true);
 
 struct PairedTrack {

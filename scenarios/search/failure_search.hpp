@@ -59,8 +59,8 @@ struct SearchResult {
 /// Returns the names of the random streams of a scenario, as in sim::Situation: the world and each sensor.
 std::vector<std::string> stream_names(const Scenario& scenario);
 
-/// Replaces each random parameter of the scenario by its value at the standard normal number of `point` (number_at),
-/// and sets the seed of each random stream.
+/// Sets each random parameter of the scenario to the quantile of its distribution that belongs to a standard normal
+/// number of `point` (number_at). Sets the seed of each random stream to a seed of `point`.
 Scenario scenario_at(const Scenario& scenario, std::span<const DrawnNumber> numbers, const SplittingPoint& point);
 
 /// Estimates the probability of a failure by adaptive multilevel splitting over all random parameters of the scenario

@@ -152,7 +152,8 @@ class Splitting {
     for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[stream_.bits() % i]);
   }
 
-  /// Makes Metropolis moves of the new copies `moved` to scores above `level`; returns false if the search was stopped.
+  /// Applies Metropolis moves to the new copies, whose indices are in `moved`. A move is accepted if the score of the
+  /// new draw is above `level`. Returns false if the search was stopped.
   bool move(const std::vector<std::size_t>& moved, double level) {
     std::size_t taken = 0, reseeded = 0, taken_reseeded = 0;
     for (std::size_t k = 0; k < rate_.moves; ++k) {
@@ -265,8 +266,9 @@ void SplittingEstimate::advance(std::size_t removed, std::span<const std::size_t
   if (left > 1.0) log_correction_ += std::log((left - 1.0) * n * n / (left * (n * n - siblings)));
 }
 
-/// Equation (S30) of statistics.md. Half of the variance is added only to the logarithm of the upper limit, because the
-/// median of a log-normal distribution is below its mean.
+/// Equation (S30) of statistics.md. The estimate is log-normal, and the median of a log-normal distribution is below
+/// its mean. To correct this, half of the variance is added to the logarithm of the upper limit. The lower limit has no
+/// such correction.
 Interval SplittingEstimate::interval(std::span<const std::size_t> members, double risk) const {
   const auto n = static_cast<double>(population_), own = static_cast<double>(members.size());
   const double share = own / n, log_value = log_probability_ + std::log(share);
@@ -289,8 +291,8 @@ Interval SplittingEstimate::of_failure(std::span<const std::size_t> families,
     return share_interval(static_cast<std::int64_t>(failing.size()), static_cast<std::int64_t>(population_));
   if (2 * failing.size() >= population_) return interval(failing, kRisk);
   // If fewer than half of the population fails, the estimated probability is not log-normal. The interval is then the
-  // product of two intervals, each with a half of the error risk; the interval of the failing fraction counts all
-  // copies of one initial draw as one draw.
+  // product of two intervals, each with half of the error risk: the interval of the level probability, and the interval
+  // of the failing fraction of the population. The second interval counts all copies of one initial draw as one draw.
   const Interval level = interval(families, 0.5 * kRisk);
   const auto n = static_cast<double>(sizes_of(families).size());
   const double share = static_cast<double>(failing.size()) / static_cast<double>(population_), count = share * n;

@@ -19,7 +19,7 @@ struct SplittingPoint {
   std::vector<double> normals;
   std::vector<std::uint64_t> seeds;
 
-  /// Returns a number that changes with each seed.
+  /// Returns a single number for all seeds: if one seed changes, the number changes.
   std::uint64_t seed() const;
 };
 
@@ -51,7 +51,8 @@ struct ScoredPoint {
   std::size_t family = 0;  ///< index of the initial draw that was copied and changed to this draw
 };
 
-/// SplittingLevel describes the population after copies replaced all members with at most this score.
+/// SplittingLevel describes the population after one step of the search. In this step, copies of other draws have
+/// replaced all draws with a score of at most `score`.
 struct SplittingLevel {
   double score = 0.0;        ///< each member of the population exceeds this score
   Interval probability{};    ///< probability that a random draw exceeds the score
@@ -78,10 +79,11 @@ struct SplittingResult {
 /// the fractions that remain in each step and the final fraction above the bound. The search ends if three quarters of
 /// the draws exceed the bound.
 ///
-/// The step size of the Metropolis moves increases if more than 40 % of the moves are accepted. Each copy makes enough
-/// moves that 90 % of the copies would accept a new seed if every move drew one. The 95 % interval considers that
-/// copies of one initial draw depend on each other. Equal options give equal results for deterministic scores. Scores
-/// may be infinite, but not NaN. Throws BadInput for invalid options or NaN scores.
+/// The step size of the Metropolis moves increases if more than 40 % of the moves are accepted. The number of moves per
+/// copy follows from the acceptance rate of the moves with a new seed. If every move drew a new seed, 90 % of the
+/// copies would accept at least one move. The 95 % interval considers that copies of one initial draw depend on each
+/// other. Equal options give equal results for deterministic scores. Scores may be infinite, but not NaN. Throws
+/// BadInput for invalid options or NaN scores.
 SplittingResult split(const SplittingOptions& options, const ScorePoints& score);
 
 /// SplittingEstimate accumulates the probability of a level in adaptive multilevel splitting, and the variance of its

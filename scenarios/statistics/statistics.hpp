@@ -18,7 +18,7 @@ double quantile(std::span<const double> values, double share);
 std::optional<double> quantile_of_all(std::span<const double> values, double share);
 bool quantile_of(std::span<const double> values, double share, double& value);
 
-/// Returns the value below which a standard normal random number is with the probability `share`, in (0, 1).
+/// Returns the quantile of the standard normal distribution for the probability `share`, in (0, 1).
 double normal_quantile(double share);
 
 template <class Row>

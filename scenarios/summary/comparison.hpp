@@ -50,8 +50,8 @@ struct MetricComparison {
   std::string metric;
   std::int64_t pairs = 0, better = 0, worse = 0;
   double median = 0.0, against_median = 0.0;
-  /// Median of the paired differences, method minus reference, with its BCa interval (bias-corrected bootstrap); for a
-  /// metric with a target, of the distances from the target.
+  /// Median of the paired differences, method minus reference, with its BCa interval (bias-corrected bootstrap). If the
+  /// metric has a target, the differences are those of the distances from the target.
   Interval difference{};
   double sign_chance = 1.0, rank_chance = 1.0;  ///< two-sided p-values
   double corrected = 1.0;                       ///< `rank_chance` after Holm's correction
@@ -79,7 +79,8 @@ struct Comparison {
   std::vector<FailureComparison> failures;
 };
 
-/// Metrics without a better direction (costs) are compared only if the caller names them; `finding` remains undecided.
+/// Compares the methods. A metric without a sense (for example a cost, for which neither lower nor higher is better) is
+/// compared only if the caller names it. The `finding` of such a metric remains undecided.
 Comparison compare(const Summary& summary, const ComparisonOptions& options);
 
 }  // namespace tumble::scenarios

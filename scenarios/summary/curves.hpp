@@ -38,8 +38,13 @@ struct Curve {
   std::vector<std::string> bins = {};
 };
 
-/// A curve shows a metric against a varied parameter, the bins of a binned metric, or the clipping of whole runs (at
-/// least three bins). A run counts as failed if its status is not `ok` or its map failed.
+/// A curve shows a metric as a function of one of these quantities:
+///
+/// - a varied parameter
+/// - the bins of a binned metric
+/// - a measure of the gyro clipping of a run, if the runs fill at least three bins of this measure
+///
+/// A run counts as failed if its status is not `ok` or its map failed.
 std::vector<Curve> find_curves(const Results& results);
 std::vector<Curve> find_curves(const Results& results, std::span<const DrawValues> draws, Summary& summary);
 

@@ -49,8 +49,8 @@ constexpr std::array kQuantities = {
              kNone, Over::share_of_draws},
 };
 
-/// Samples within a run are correlated, so the weighted mean has the interval of the ratio estimator of a cluster
-/// sample (Cochran, Sampling Techniques, 1977, section 9A.2).
+/// Samples within a run are correlated. The confidence interval of the weighted mean is therefore computed with the
+/// ratio estimator for cluster samples, where each run is a cluster (Cochran, Sampling Techniques, 1977, section 9A.2).
 Interval pooled(std::span<const DrawValues* const> draws, const std::string& metric) {
   std::vector<std::pair<double, double>> weighted;  // clipped samples, fraction
   double samples = 0.0, hits = 0.0, square = 0.0;

@@ -83,7 +83,8 @@ bool read_until(Process& process, double deadline_s, std::string& buffer) {
   }
 }
 
-/// An external method of a kind other than rate receives all sensor data, so it counts as a reader of lidars.
+/// Returns true if the method needs lidar data. An external method receives all sensor data, unless its kind is `rate`.
+/// An external method of another kind therefore counts as a reader of lidars.
 bool reads_lidars(const MethodInfo& info) {
   return info.kind == Kind::slam || (info.kind != Kind::rate && !info.version.empty());
 }

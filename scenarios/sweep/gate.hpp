@@ -61,7 +61,8 @@ struct Gate {
 };
 
 std::vector<std::string> gate_names(const DataRoot& data);
-/// The files of the gate may contain results of the external methods in `described`.
+/// Reads a gate from its files. The files may contain results of external methods only if `described` contains these
+/// methods.
 Gate load_gate(const DataRoot& data, const std::string& name, std::span<const MethodPointer> described = {});
 std::string to_yaml(const Gate& gate);
 std::string to_csv(const GateRun& run);

@@ -17,8 +17,8 @@ namespace {
 
 using nlohmann::json;
 
-// An external command receives this fraction of a method's time limit, so the parent process can end the command before
-// its own deadline.
+// The time limit of an external command is this fraction of the method's time limit. The process that starts the
+// command can therefore end the command before this process reaches the method's time limit.
 constexpr double kOwnShare = 0.9;
 
 }  // namespace

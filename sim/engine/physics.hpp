@@ -15,7 +15,8 @@ namespace tumble::sim::engine {
 /// A warning of MuJoCo ends the run, because lost contacts or invalid numbers would falsify the data.
 class Physics {
  public:
-  /// Until its destruction, Physics modifies the model of `world`, which must outlive this object.
+  /// Each step() may change the floor friction and the bounding-volume tree in the model of `world`. `world` must
+  /// outlive this object. The destructor restores the bounding-volume tree.
   explicit Physics(World& world);
 
   double step_s() const { return world_.model->opt.timestep; }

@@ -11,14 +11,16 @@ namespace tumble::sim {
 
 /// Elements models the sensing elements of a triad (gyroscope or accelerometer), each with its own axis, scale, zero
 /// offset and saturation level. The three sensing elements measure s = M u + o, with signal u in device axes,
-/// misalignment matrix M and zero offset o. The device limits s to the saturation levels, c(s), and reports the reading
-/// M^-1 (c(s) - o).
+/// misalignment matrix M and zero offset o. The saturation function c limits each component of s to the saturation
+/// level of its sensing element. The device reports the reading M^-1 (c(s) - o).
 ///
 /// - While only one sensing element is saturated, the readings of the triad are on a plane, perpendicular to the axis
 ///   of the sensing element.
-/// - A saturated sensing element also changes the readings of the other axes, in proportion to its saturation deficit.
+/// - The saturation deficit is the signal of a sensing element minus its saturation level. A saturated sensing element
+///   also changes the readings of the other axes, in proportion to its saturation deficit.
 ///
-/// The planes of the saturated readings of two real gyros have slopes of up to 0.05 and offsets of up to 0.14 rad/s
+/// Saturated readings of two real gyros are on planes with slopes of up to 0.05 relative to the other two axes. The
+/// midpoints between upper and lower saturation limit are offset from zero by up to 0.14 rad/s
 /// (scenarios/certificate/real_rails.cpp). Elements assumes that the device knows M and o exactly, and that o does not
 /// drift within a recording.
 class Elements {

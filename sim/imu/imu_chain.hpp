@@ -24,9 +24,10 @@ struct TriadReading {
 /// noise of the active range, sensing elements with saturation, compensation of the elements, quantum, digital
 /// low-pass, mean over the window.
 ///
-/// If a triad rotates, the mean of the readings differs from the increment of the motion (coning, sculling), so
-/// TriadChain adds the mean of the errors to the ideal reading of the window. If a sensing element saturated in the
-/// averaging window, its reading is the mean of the signal after all stages. A second chain with equal stages and
+/// If a triad rotates, the mean of its readings over the window differs from the increment of the motion divided by the
+/// window length (coning, sculling). The ideal reading is this increment per time. TriadChain therefore averages only
+/// the sensor errors over the window, and adds the mean error to the ideal reading. If a sensing element saturated in
+/// the averaging window, its reading is the mean of the signal after all stages. A second chain with equal stages and
 /// noise, but without saturation, computes the unclipped reading.
 class TriadChain {
  public:

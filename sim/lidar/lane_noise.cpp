@@ -35,7 +35,8 @@ struct Words {
   }
 }
 
-/// Small random numbers keep the relative precision of float, which the logarithm needs.
+/// Converts a random word to a number in (0, 1]. Results near 0 have the full relative precision of float, because the
+/// logarithm of a number near 0 needs this precision.
 float unit_of(std::uint32_t word) {
   return (static_cast<float>(static_cast<std::int32_t>(word >> 1)) + 0.5f) * 0x1p-31f;
 }

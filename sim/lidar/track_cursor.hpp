@@ -14,8 +14,8 @@ namespace tumble::sim {
 using Pose34 = Eigen::Matrix<double, 3, 4>;
 
 /// TrackCursor interpolates the true pose of a lidar between the samples of the body's motion: position linearly,
-/// attitude at a constant rate about a fixed axis. With samples 0.5 ms apart, the interpolation error is a dt^2 / 8 =
-/// 3e-8 s^2 times the acceleration a: 13 um at 400 m/s^2.
+/// attitude at a constant rate about a fixed axis. For samples at an interval dt = 0.5 ms, the interpolation error of
+/// the position is the acceleration times dt^2 / 8 = 3e-8 s^2. At 400 m/s^2, this error is 13 um.
 class TrackCursor {
  public:
   /// at() interpolates the attitude by Rodrigues' formula. With the cross-product matrix K of the body's rotation over

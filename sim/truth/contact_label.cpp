@@ -14,7 +14,11 @@ struct Sums {
   double weight = 0.0, slip = 0.0, overspin = 0.0;
 };
 
-/// Slip speed of one contact, and speed of the rotation minus speed of the centre, both weighted by the normal force.
+/// Returns two speeds of a contact, both weighted by the normal force:
+///
+/// - `slip`: the speed at which the contact point slides
+/// - `overspin`: the speed of the contact point relative to the centre of mass, minus the tangential speed of the
+///   centre
 Sums weigh(const Truth& truth, const ContactTruth& contact) {
   const std::size_t k = static_cast<std::size_t>(contact.time_ns / truth.period_ns);
   const Eigen::Vector3d w_W = truth.q_WB[k] * truth.w_WB_B_rad_s[k];

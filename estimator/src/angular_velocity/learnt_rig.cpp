@@ -19,7 +19,8 @@ constexpr double kNextRunInflation = 4.0;
 // In six runs of one hand-held device, a gyro's cross-axis sensitivity ranged from 0.017 to 0.021.
 constexpr double kElementDrift = 2e-3;
 constexpr double kSlopeDrift = 2e-3;
-// At a maximum of the motion, readings can resemble a plane of saturated readings.
+// Saturation planes with smaller log odds are not saved for the next run. Near a maximum of rate or force, unsaturated
+// readings can by chance be close to one plane.
 constexpr double kCertainLogOdds = 10.0;
 // smallest standard deviation of a cross-axis sensitivity: rails.md (R59)
 constexpr double kSlopeSigmaMin = 3e-4;

@@ -18,9 +18,11 @@ constexpr double kDeficitSigmaRatio = 0.5, kDepthSigmaRatio = 0.25, kDepthMax = 
 PartialSaturation partial_saturation(double reading_rad_s, double neighbour_rad_s, double rail_rad_s,
                                      double noise_rad_s) {
   const double depth = rail_rad_s - reading_rad_s, slope = reading_rad_s - neighbour_rad_s;
-  // Noise that is added before clipping lowers a fully saturated reading by less than a tenth of the noise.
+  // The device clips the sum of rate and noise. Noise therefore lowers a fully saturated reading by less than a tenth
+  // of the noise's standard deviation.
   if (!(depth > 0.1 * noise_rad_s)) return {};
-  // On a tilted plane of saturated readings, even fully saturated readings may change slowly.
+  // If the device compensates misalignment after clipping, the other axes slowly change a fully saturated reading. A
+  // slope below the noise therefore does not indicate partial saturation.
   if (!(slope > noise_rad_s)) return {};
   double share = 0.0;  // rails.md (R71)
   if (slope > 2.0 * depth) {

@@ -196,7 +196,8 @@ double AngularRateModel::gyro_information(const AngularRateObservation& observat
                                           const AngularRateEstimate& estimate, int axis) const {
   if (observation.gyro_repeats) return 0.0;
   if (observation.gyro_age_s > 0.0) {
-    // A contact force may change the rate between a gyro reading and its time stamp: rate_smoother.md (R7).
+    // A gyro reading measures the rate `gyro_age_s` before its time stamp. A contact force may change the rate during
+    // this time: rate_smoother.md (R7).
     const double change =
         params_.expert.contact.kGain_rad_m * estimate.contact_force_m_s2.norm() * observation.gyro_age_s;
     const double lost = (observation.partly_saturated_axes() >> axis & 1u) != 0
@@ -210,7 +211,8 @@ double AngularRateModel::gyro_information(const AngularRateObservation& observat
   return 1.0 / (lost * lost + impact * impact);
 }
 
-// In contact, the contact force has mean zero and the estimated force as standard deviation: rate_smoother.md (R20).
+// In contact, the contact force is modelled as an additional error of the measured specific force. The mean of this
+// error is zero, and its standard deviation is proportional to the estimated contact force: rate_smoother.md (R20).
 AngularRateModel::ForceFactor AngularRateModel::force_factor(const AngularRateObservation& observation,
                                                              const AngularRateEstimate& estimate,
                                                              const RigConstants& rig) const {

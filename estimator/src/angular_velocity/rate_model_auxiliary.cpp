@@ -9,7 +9,8 @@ namespace tumble {
 namespace {
 
 using Eigen::Vector3d;
-// derivative of a reading by the rate and by the angular acceleration times time_scale_s_
+// derivative of a reading with respect to two vectors: the rate, and the product of time_scale_s_ and the angular
+// acceleration
 using AuxiliaryRow = Eigen::Matrix<double, 1, 6>;
 
 void add_row(const AuxiliaryRow& row, double residual, double sigma, arrow::Block& block) {

@@ -48,7 +48,7 @@ GaussianMoments truncated_gaussian_moments(const GaussianMoments& from, double b
 
 // Returns the Gaussian factor that gives `marginal` the moments of a distribution truncated at `bound`:
 // rate_smoother.md (R22), (R25). `now` is the current Gaussian factor, and `share` in (0, 1] is the weight of the new
-// one. The standard deviation of `marginal` without its current factor is limited to sqrt(`variance_max`).
+// one. `variance_max` limits the variance of the cavity distribution, which is `marginal` divided by the factor `now`.
 GaussianLikelihoodApproximation refined_bound_approximation(const GaussianMoments& marginal,
                                                             const GaussianLikelihoodApproximation& now, double bound,
                                                             double bound_variance, double variance_max, double share) {
@@ -70,7 +70,8 @@ void AngularRateModel::search_flight_solutions(const AngularRateObservation& obs
   const Vector3d reading = corrected_rate(observation, estimate);
   AngularRateEstimate flight_estimate = estimate;
   const Eigen::Matrix3d J = rig.inertia_matrix();
-  // The device compensates misalignment, so the saturation deficit of one element changes all axes: rails.md (R51).
+  // Each output axis combines several sensing elements, because the device compensates their misalignment. If one
+  // element clips, its missing rate therefore changes all output axes: rails.md (R51).
   Eigen::Matrix3d rows;
   for (int j = 0; j < 3; ++j) rows.row(j) = rig.sensing_direction(j);
   const Eigen::Matrix3d deficit_directions = rows.inverse();

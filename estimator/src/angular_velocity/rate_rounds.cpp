@@ -54,7 +54,8 @@ bool differ_significantly(const SensorErrors& a, const SensorErrors& b) {
          std::abs(a.accel_filter_time_variance_s2 - b.accel_filter_time_variance_s2) > kFilterTimeVariance_s2;
 }
 
-// The lever arm of one correct device in a thousand has a larger Mahalanobis distance from its prior.
+// Limit of the Mahalanobis distance between lever arm and prior, rate_smoother.md (R32). With a correct prior, one
+// device in a thousand exceeds this limit.
 constexpr double kDeviceMahalanobisMax = 2.33;
 
 // All calibration constants except the gyro's sensing directions are held at their prior.

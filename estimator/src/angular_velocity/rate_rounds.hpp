@@ -16,9 +16,10 @@ struct AngularRateFit {
   GaussNewtonRateStep::SensorErrorDerivatives error_derivatives;
 };
 
-/// Optimises repeatedly, each time with readings corrected by the last estimated sensor errors. If the calibration
-/// changes by more than its standard deviations, contact was classified as flight, and the optimisation restarts with
-/// another accelerometer delay. If the restart also fails, the calibration is held at its prior.
+/// Optimises repeatedly, each time with readings corrected by the last estimated sensor errors. If the estimated
+/// calibration is too far from its prior, rate_smoother.md (R32), contact was probably classified as flight. The
+/// optimisation then restarts without the sensor errors of an earlier run, and next with another accelerometer delay.
+/// If all restarts fail, the calibration is held at its prior.
 Status fit_rounds(const AngularRateSmoother::Params& params, const AngularRateModelParams& known,
                   std::span<const ImuSample> samples, std::span<const Clipping> clippings,
                   std::span<AngularRateObservation> observations, AngularRateFit& fit, AngularRateReport& health);

@@ -268,7 +268,8 @@ void AngularRateStream::predict_new_knot(Knot& knot, const Knot& previous, const
   centripetal.estimate.knot.rate_rad_s = rate.cwiseMin(largest).cwiseMax(-largest);
   model_.compute_flight_weight(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, knot.estimate);
   model_.compute_flight_weight(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, centripetal.estimate);
-  // After an impact, the body rotates without torque, so the angular acceleration does not continue.
+  // An impact changes the angular acceleration abruptly, so the previous angular acceleration may be wrong.
+  // search_flight_solutions() therefore computes the angular acceleration of a rotation without torque.
   model_.search_flight_solutions(knot.observation, state.rig, centripetal.estimate);
   model_.compute_flight_weight(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, centripetal.estimate);
   if (centripetal.estimate.flight_weight > knot.estimate.flight_weight) knot.estimate = centripetal.estimate;

@@ -27,8 +27,9 @@ using rails::PlaneInlierGate;
 using rails::PlaneSlopePrior;
 using rails::SaturationPlaneSide;
 
-// Initial standard deviations of the saturated readings about their plane, relative to the thickness of the searched
-// layer. The plane is fitted with both values. The small value suits layers with few partly saturated readings.
+// Initial standard deviations of the distances between saturated readings and their plane, as fractions of
+// ExtremeReading::slab_thickness. The plane is fitted once with each initial value. The small value suits sets of
+// readings with few partly saturated readings.
 constexpr double kInitialSigmaRatios[] = {0.5, 0.02};
 constexpr double kElementLevelRatio = 0.04;
 constexpr double kNearElementLogOdds = 5.0, kNearStatedLogOdds = 3.0, kOppositeSignLogOdds = 5.0,

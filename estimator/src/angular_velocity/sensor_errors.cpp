@@ -79,7 +79,8 @@ Hypothesis posterior(const Matrix& information, const Matrix& earlier_runs, cons
   Vector sharpened = scaled_h;
   all.solve_vector(sharpened);
   out.log_odds = log_prior + 0.5 * scaled_h.dot(sharpened) - all.half_log_determinant();
-  // The estimated scale and misalignment stay zero, because errors of the free-flight equations have the same effect.
+  // The estimated errors of scale and misalignment stay zero (heuristic). Errors of the free-flight equations have
+  // similar effects on the residuals, so residuals may have either cause.
   Vector mean = Vector::Zero();
   mean.tail<kRest>() = scaled_h.tail<kRest>();
   dense::Cholesky(sharp.bottomRightCorner<kRest, kRest>()).solve_vector(mean.tail<kRest>());

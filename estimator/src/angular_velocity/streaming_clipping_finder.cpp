@@ -22,7 +22,8 @@ constexpr std::size_t kLatestReadings = 48;
 // The search for saturation repeats when the number of large readings has grown by the fraction 1 /
 // kSearchGrowthDivisor.
 constexpr std::size_t kSearchGrowthDivisor = 8;
-// minimum reading of gyro and accelerometer near saturation, as a fraction of the smallest possible saturation level
+// Only readings of at least this magnitude count as near saturation, for gyro and accelerometer. The magnitude is a
+// fraction of the smallest possible saturation level.
 constexpr double kLowReadingRatios[] = {0.5, 0.9};
 
 std::array<std::optional<double>, 6> saturation_limits_of(const SaturationLimitDetector& axis_aligned_rails,

@@ -167,8 +167,8 @@ double add_gyro(const NodeReadings& readings, const Matrix3d& rows, const Readin
     const SensingAxisSums& e = readings.gyro[static_cast<std::size_t>(i)];
     const GyroSensingAxisRow& element = elements[static_cast<std::size_t>(i)];
     if (e.count > 0.0) {
-      // All readings of a node share the tilt error of their plane (SaturationPlane), so averaging does not reduce this
-      // error.
+      // While another sensing element clips, an error of the sensing directions causes the same error in all readings
+      // of a node. Averaging does not reduce this error.
       const double tilt = noise.deficit_error_ratio * clipped_axis_deficit(readings, elements, i);
       cost += add_unclipped_readings(
           e, element,

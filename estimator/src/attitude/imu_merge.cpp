@@ -28,7 +28,8 @@ constexpr double kCertainDeviations = 4.0;
 constexpr int kMinImusForRecovery = 3;          // minimum number of IMUs for recovering a rate from accelerometers
 constexpr double kUnsaturatedForceRatio = 0.8;  // accelerometer errors are estimated up to this fraction of the range
 constexpr int kOffset = ImuMerge::kErrorCount - 1;
-// With this lever arm effect, an accelerometer bias of 0.05 m/s^2 changes lever_arm_agreement() by 0.05.
+// lever_arm_agreement() needs at least this sum of squared lever arm effects. A constant lever arm effect of 1 m/s^2
+// reaches the sum in 1 s. An accelerometer bias of 0.05 m/s^2 then changes lever_arm_agreement() by at most 0.05.
 constexpr double kArmSquareMin_m2_s3 = 1.0;
 constexpr double kRepeated_s = 0.03;
 constexpr double kWindowMax_s = 0.05;  // maximum window for a central difference

@@ -25,7 +25,8 @@ void update_rate_state(const Row& row, double innovation, double variance, Angul
   state.x += scalar_update(row, innovation, variance, state.error_covariance);
 }
 
-// If a sensing element clips, the readings are components along the sensing directions, rails.md (R52).
+// SaturatedReading contains the reading of one gyro or accelerometer. If a sensing element clips, `reading` contains
+// the components along the sensing directions instead of the output axes: rails.md (R52).
 struct SaturatedReading {
   Eigen::Matrix3d sensing_directions_mean_frame;
   Eigen::Vector3d reading, cross_axis_slope_sigma = Eigen::Vector3d::Zero();

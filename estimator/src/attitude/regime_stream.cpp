@@ -42,8 +42,8 @@ AngularRateState mixed_rate(const AngularRateState& rate, const AngularRateState
   return out;
 }
 
-// The rates give the angular acceleration, because the value from AngularRateStream depends on the specific force under
-// test: carried.md (C44).
+// Computes the angular acceleration from rate differences: carried.md (C44). The angular acceleration of
+// AngularRateStream is not used, because it depends on the specific force that the regime test compares with the rate.
 Eigen::Vector3d angular_acceleration(std::span<const AngularRateStream::Knot> window, std::size_t k) {
   const auto between_s = [&](std::size_t from, std::size_t to) {
     return seconds(window[to].observation.sample.time_ns - window[from].observation.sample.time_ns);
@@ -141,7 +141,8 @@ RegimeProbabilities MotionRegimeStream::next(const RegimeProbabilities& before, 
                                              std::span<const AngularRateStream::Knot> window, std::size_t k,
                                              const RigCalibration& rig, bool unstable) const {
   const AngularRateStream::Knot& knot = window[k];
-  // While the calibration is unstable, it was fitted to contact forces, so rate and force agree in any motion.
+  // An unstable calibration was probably fitted to contact forces. With such a calibration, rate and force agree in any
+  // motion, so a clipped sample does not change the probabilities.
   if (unstable && knot.observation.unmeasured_axes() != 0) return before;
   AngularRateState rate;
   rate.w_WI_I_rad_s = knot.estimate.knot.rate_rad_s;

@@ -19,8 +19,10 @@ constexpr int kRate = 0, kAcceleration = 1;
 constexpr int kTurning = 2, kFixed = 4;               // of Modulation
 constexpr int kArm = 2, kForce = 4, kWorldForce = 6;  // of Centripetal
 constexpr double kJerk_rad_s3_sqrts = 50.0;           // root density of the angular jerk about the spin axis
-// The rate across the spin axis changes by a random walk, in world and in body axes. Vibration adds an error with this
-// standard deviation over 10 ms. The measured residuals scale both numbers.
+// The rate across the spin axis is the sum of a world part and a body part: carried.md (C45). Each part changes as a
+// random walk with the root density kWalk_rad_s_sqrts. Vibration adds an error with the standard deviation
+// kVibration_rad_s to the readings. This error is correlated over kReadingInterval_s. SpinFilter::variance_ratio scales
+// the variances of random walk and vibration: carried.md (C47).
 constexpr double kWalk_rad_s_sqrts = 1.0, kVibration_rad_s = 0.3;
 // size of the body: prior standard deviation of the lever arm from the spin axis to the IMU
 constexpr double kBodySize_m = 0.3;
@@ -33,7 +35,7 @@ constexpr double kStartSigma_rad_s = 1.0, kStartSigma_rad_s2 = 10.0, kStartSatur
 constexpr double kForceSigma_m_s2 = 0.3, kForceWalk_m_s2_sqrts = 0.1, kVibration_m_s2 = 0.5;
 // The air force is smooth. Larger residuals indicate contact or vibration, and contradict a spin in the air.
 constexpr double kSmoothVarianceRatioMax = 20.0, kContradiction = 1e3;
-// Angular jerk relative to that of Modulation: the air changes the spin slowly.
+// ratio of the angular jerk in Centripetal to the angular jerk in Modulation; a spin in the air changes slowly
 constexpr double kForceJerkRatio = 0.3;
 constexpr double kWorldForceSigma_m_s2 = 3.0, kWorldForceWalk_m_s2_sqrts = 1.0;
 
@@ -81,9 +83,9 @@ void predict_spin(const SpinFilter<N>& filter, double jerk_rad_s3_sqrts, double 
   out.covariance(kAcceleration, kAcceleration) += jerk;
 }
 
-// Turns the components `part` of the state by the angle -ratio * (angle of the spin), with the derivatives
-// `out.transition_matrix`. In the axes of the body, a vector that is constant in the world turns by minus the angle of
-// the spin.
+// Rotates the two state components from index `part` on by the angle -related * (rotation angle of the spin). Writes
+// the derivatives of the rotated components to `out.transition_matrix`. In the axes of the body, a vector that is
+// constant in the world turns by minus the angle of the spin.
 template <int N>
 void turn_part(const SpinFilter<N>& filter, int part, double related, double dt_s, SpinPrediction<N>& out) {
   const auto& x = filter.x;
@@ -112,8 +114,9 @@ double update_across(const Eigen::Matrix<double, 2, N>& H, const Vector2d& innov
   return -0.5 * (squared_norm + std::log(S.determinant()));
 }
 
-// A saturated reading is a lower bound, which moves only a smaller estimate. After an overflow, the reading has the
-// wrong sign and no information. If `keeps_variance` is true, a bound does not reduce the variance.
+// A saturated reading is a lower bound of the rate's magnitude. The bound changes the estimate only if the estimated
+// magnitude is below the bound. After an overflow, the reading has the wrong sign and no information. If
+// `keeps_variance` is true, a bound does not reduce the variance.
 template <int N>
 void update_rate(const SpinReading& reading, bool keeps_variance, SpinFilter<N>& filter) {
   const double innovation = reading.rate_rad_s - filter.x[kRate];

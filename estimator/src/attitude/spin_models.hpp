@@ -9,7 +9,8 @@
 namespace tumble {
 
 // Measurement models of a steady spin. The first two states of each model are the rate and the angular acceleration
-// about the spin axis. `related` is 1 for a steady spin, and 0 for the filter that assumes no relation to the spin.
+// about the spin axis. `related` is 1 in the filter for a steady spin, where the world part of the state turns with the
+// spin. `related` is 0 in the filter for motion without a steady spin, where the world part does not turn.
 
 template <int N>
 struct SpinPrediction {
@@ -27,9 +28,10 @@ struct SpinReading {
   double dt_s = 0.0;
 };
 
-/// Modulation models the rate across the spin axis, equations (C45) and (C46) of carried.md. After rate and angular
-/// acceleration, the states are the parts that are constant in the world (two components) and in the body (two
-/// components), in body axes.
+/// Modulation models the rate across the spin axis, equations (C45) and (C46) of carried.md. The states are:
+/// - the rate and the angular acceleration about the spin axis,
+/// - the world part of the rate across the spin axis: constant in world axes, two components in body axes,
+/// - the body part of the rate across the spin axis: constant in body axes, two components.
 struct Modulation {
   static constexpr int kStates = 6;
   using Filter = SpinFilter<kStates>;
@@ -41,9 +43,12 @@ struct Modulation {
                 Filter& filter) const;
 };
 
-/// Centripetal models the specific force across the spin axis, equations (C50) and (C51) of carried.md. After rate and
-/// angular acceleration, the states are two components each, across the spin axis in body axes: the lever arm, the
-/// external force that is constant in the body, and the external force that is constant in the world.
+/// Centripetal models the specific force across the spin axis, equations (C50) and (C51) of carried.md. The states are
+/// the rate, the angular acceleration, and three vectors. Each vector has two components across the spin axis, in body
+/// axes:
+/// - the lever arm,
+/// - the external force that is constant in the body,
+/// - the external force that is constant in the world.
 struct Centripetal {
   static constexpr int kStates = 8;
   using Filter = SpinFilter<kStates>;

@@ -111,8 +111,8 @@ SpinRate SpinTracker::advance_spin_filter(const Model& model, const ImuSample& s
     const double c = recorded.spin_change_probability;
     const double spins = hypotheses.probability * (1.0 - c) + (1.0 - hypotheses.probability) * c;
     hypotheses.probability = std::min(kProbabilityMax, spins * ratio / (spins * ratio + 1.0 - spins));
-    // The rate of a saturated spin is free, so that any modulation agrees with some rate. Saturated samples can
-    // therefore contradict a spin, but not confirm it.
+    // If the gyro axis of the spin is saturated, the readings do not limit the spin rate from above. Any modulation
+    // frequency then agrees with some spin rate. Saturated samples can therefore contradict a spin, but not confirm it.
     if (!reading.saturated) {
       hypotheses.measured_probability = hypotheses.probability;
     } else if (hypotheses.probability > hypotheses.measured_probability) {

@@ -223,7 +223,8 @@ double TumbleAttitude::body_velocity_variance_m2_s2(double power_m2_s2, const St
 void TumbleAttitude::align(const Eigen::Quaterniond& corrected, State& state) const {
   CoarseAlignment& alignment = state.alignment;
   alignment.integrated_force_W_m_s = corrected * alignment.integrated_force_W_m_s;
-  // The velocity variance is assumed, because a wrong tilt after a data gap falsifies the filtered velocity.
+  // The variance of the velocity does not come from the filtered velocity, because a wrong tilt after a data gap causes
+  // errors of the filtered velocity.
   const double velocity = body_velocity_variance_m2_s2(alignment.start_velocity_variance_m2_s2, state);
   const double variance = alignment.variance_rad2(velocity, params_.gravity_m_s2);
   if (variance > squared(params_.expert.gap.kAlignedTilt_rad)) {

@@ -121,7 +121,8 @@ void Vqf::estimate_bias(const Eigen::Vector3d& up_W, double dt_s, State& state) 
     noise.setConstant(steady_state_noise(kBiasSigmaRest_rad_s, growth));
   } else if (params_.motion_bias_estimation) {
     H = Eigen::Map<const Eigen::Matrix3d>(state.R_WI.value.data());
-    // The low-passed bias estimate plus the rate at which levelling corrects the vertical measures the gyro bias.
+    // The sum of two terms measures the gyro bias: the low-passed bias estimate, and the rate at which levelling
+    // rotates the vertical.
     const Eigen::Vector2d low_passed = state.bias_W_rad_s.value;
     innovation = Eigen::Vector3d(low_passed.x() - up_W.y() / dt_s, low_passed.y() + up_W.x() / dt_s, 0.0) - H * b;
     const double motion = steady_state_noise(kBiasSigmaMotion_rad_s, growth);

@@ -148,7 +148,8 @@ void SampleClock::start_line_fit(State& state) const {
   state.outliers = 0;
 }
 
-/// See sample_clock.md (S1), (S2), (S3). The line fit restarts if the number of samples in a step is uncertain.
+/// See sample_clock.md (S1), (S2), (S3). The line fit restarts if the number of sample periods between the last two
+/// time stamps is uncertain.
 void SampleClock::update_line(double step_ns, TimeNs stamp_ns, State& state) const {
   const double passed_ns = step_ns - state.fit_residual_ns;
   const double number = std::max(1.0, std::round(passed_ns / state.period_ns));

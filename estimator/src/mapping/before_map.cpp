@@ -138,7 +138,8 @@ StateEstimate estimate_at_first_sweep(const Params& params, const StateEstimate&
   u::variances(start.covariance, u::tilt)
       .setConstant(params.expert.start.kLevelSigma_rad * params.expert.start.kLevelSigma_rad);
   StateEstimate out = estimate_at_start(params, start);
-  // rows: errors of velocity and gravity in the map frame; columns: errors of position, attitude and velocity before
+  // rows: errors of velocity and gravity in the map frame; columns: errors of position, attitude and velocity in
+  // `reckoned`
   Eigen::Matrix<double, 6, 9> T = Eigen::Matrix<double, 6, 9>::Zero();
   T.block<3, 3>(0, 3) = so3::hat(start.v_WI_m_s);
   T.block<3, 3>(0, 6).setIdentity();

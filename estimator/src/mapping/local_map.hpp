@@ -47,9 +47,10 @@ class LocalMap {
   void move(const SweepTrajectory& trajectory, const Eigen::Isometry3d& T_IL, double later_s,
             std::span<const InsertedPoint> inserted);
 
-  /// Replaces the map by a prior map. Each prior point gets one of six distant sensor positions on the axes, which
-  /// preserves the sign of its normal. If `T_MW` is given, the points of the local map are added, transformed to the
-  /// prior map's frame.
+  /// Replaces the map by a prior map. Each prior point is stored as seen from a distant sensor position, on the side to
+  /// which its normal points. The six possible sensor positions are on the positive and negative map axes. Normals that
+  /// are later estimated from the map therefore keep their sign. If `T_MW` is given, the points of the local map are
+  /// added, transformed to the prior map's frame.
   void start_from_map_points(const Params& params, std::span<const MapPoint> points, const Eigen::Isometry3f* T_MW);
 
   /// Returns the number of sweeps that have added points to the map.

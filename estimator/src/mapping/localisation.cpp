@@ -17,8 +17,8 @@ constexpr double kContradictionChi2Min = 32.9;
 
 // Wrong point times or a wrong mounting distort sweeps, so that few points fit the map and the registered poses are
 // noisy. Over the scenarios without a fault, the mean inlier ratio is 0.37 to 0.77. The mean innovation is below 0.15
-// with a good IMU, and up to 0.35 with a low-cost IMU. With reversed point times and slow motion, they are 0.13 and
-// 0.3.
+// with a good IMU, and up to 0.35 with a low-cost IMU. With reversed point times and slow motion, the mean inlier ratio
+// is 0.13 and the mean innovation is 0.3.
 constexpr double kInlierRatioMin = 0.2, kMeanInnovationMax = 0.2;
 constexpr std::size_t kMeanSweepsMin = 20, kMeanSweepsMax = 50;
 

@@ -19,7 +19,8 @@ constexpr int kNeighbours = 2;                     // number of neighbours on ea
 constexpr float kReachSteps = kNeighbours + 0.5f;  // angular steps; beams further apart are not neighbours
 constexpr float kStepMax = 0.05f;                  // rad; the rings of 16-channel lidars are 0.035 rad apart
 constexpr float kDeviations = 3.0f;
-// No neighbour confirms 0.05 % of the returns at rest, 0.3 to 0.7 % in motion, and 1.6 % for a thrown rig.
+// The fraction of returns that no neighbour confirms is 0.05 % at rest, 0.3 to 0.7 % in motion, and 1.6 % for a thrown
+// rig.
 constexpr float kClearAirFraction = 0.02f;
 
 float squared(float x) {
@@ -131,7 +132,7 @@ void LoneReturns::measure_beam_steps() {
   }
 }
 
-/// Returns 1 without successive beams on a ring.
+/// Returns the median squared sine of the angle between successive beams of a ring, or 1 if no ring has two beams.
 float LoneReturns::median_step2() {
   if (sorted_squared_beam_steps_.empty()) return 1.0f;
   const auto middle =

@@ -16,9 +16,12 @@ struct RangeNoise {
 
 /// LoneReturns detects returns that no neighbouring beam confirms, for example from dust, rain, snow, grass or birds.
 ///
-/// Neighbours on the same ring confirm a return with the same range, on a common surface, or on the line between two
-/// neighbours: mapping.md (R13), (R14), (R15). LoneReturns keeps all returns of a sweep that has no more lone returns
-/// than clear air causes.
+/// A return is confirmed in three cases:
+/// - A neighbour on the same ring has the same range: mapping.md (R13).
+/// - The return and the adjacent beam on the ring are on a common surface: mapping.md (R14).
+/// - The return is on the line between a neighbour before it and a neighbour after it on the ring: mapping.md (R15).
+///
+/// If few returns of a sweep are unconfirmed, the air is clear. LoneReturns then keeps all returns of the sweep.
 class LoneReturns {
  public:
   /// Removes the lone returns from `points`, and returns their number. Cost: O(points). The order of the remaining

@@ -18,14 +18,14 @@ namespace {
 
 // A sweep with too few matches extends the map if the standard deviation of its attitude is below this limit.
 constexpr double kExtendSigmaMax_rad = 0.1;
-// Minimum prior standard deviation of the saturation deficit of a clipped axis.
+// Minimum prior standard deviation of the missing gyro rate (saturation deficit) of a clipped axis.
 constexpr double kDeficitSigmaMin_rad_s = 1.0;
-// Correlation time of the saturation deficit.
+// Correlation time of the missing gyro rate (saturation deficit).
 constexpr double kDeficitTime_s = 0.3;
 // Maximum growth factor of the missing gyro rate (saturation deficit) from one sweep to the next.
 constexpr double kDeficitCarryMax = 3.0;
-// Independent standard deviation at each of the three times of the saturation deficit, relative to its total standard
-// deviation.
+// The missing gyro rate is estimated at start, middle and end of each sweep. Each of the three values has an
+// independent error, whose standard deviation is this fraction of the standard deviation of the missing rate.
 constexpr double kKnotSigmaRatio = 0.05;
 // Standard deviation of the velocity during the initial rest.
 constexpr double kStartSigma_m_s = 0.01;

@@ -48,7 +48,7 @@ class PriorMapScene {
   /// map: O(surface area of the map), about a second for a map of 100 m.
   ///
   /// @param sensor_W_m  sensor position in the local frame
-  /// @param attempt     number of the search; determines the surface point that is moved to surfaces of the prior map
+  /// @param attempt     number of the search; selects the point of `points` that is placed on surfaces of the prior map
   /// @param region      limits of the search; null: the whole map
   /// @param tried       receives the number of poses that the search compared
   std::vector<FramePose> find_candidate_poses(const std::vector<SurfacePoint>& points,

@@ -220,8 +220,8 @@ void Registration::accumulate(std::span<const SweepPoint> points, const SweepTra
 }
 
 /// SurfaceNormalNoise is the part of the normal matrix due to noise of the surface normals: mapping.md (R28), (R29).
-/// SurfaceNormalNoise covers all free unknowns, because noise would seem to determine combinations that surfaces cannot
-/// determine.
+/// Noise of the normals adds false information, also in directions of motion that the surfaces do not constrain.
+/// SurfaceNormalNoise therefore covers all free unknowns.
 struct Registration::SurfaceNormalNoise {
   const Unknowns& unknowns;
   using Products = mapping::OuterProducts<kUnknowns, 2 * static_cast<int>(kPointsPerPartialSum)>;

@@ -15,7 +15,8 @@ namespace {
 // A relocalisation is confirmed if at least this fraction of the sweep's residuals is within three standard deviations,
 // and contradicted if not. Normally distributed residuals give 0.997.
 constexpr double kConfirmInlierRatio = 0.9;
-// Maximum number of repeated registrations with a larger missing gyro rate, per sweep.
+// Maximum number of repetitions of a failed registration, per sweep. Each repetition starts with a larger missing gyro
+// rate (saturation deficit).
 constexpr int kDeficitTriesMax = 5;
 // Smallest increase of the missing gyro rate (saturation deficit) in a repeated registration.
 constexpr double kDeficitTry_rad_s = 3.0;
@@ -31,7 +32,8 @@ constexpr double kDeficitSigmas = 5.0;  // largest tried increase, in standard d
 constexpr int kStartsPerRound = 12;  // number of initial poses per round: six axes, two directions
 constexpr double kStartSigmas = 1.5;
 constexpr double kShiftMin_m = 0.3, kRotationMin_rad = 0.1;  // closer starting poses converge to one pose
-// distance and rotation of the starting poses from the prior; each round adds both
+// Maximum distance and rotation between starting pose and predicted pose in the first round: mapping.md (R66). In round
+// n, both limits are n times as large.
 constexpr double kShift_m = 1.0, kRotation_rad = 0.3;
 constexpr int kRounds = 3;
 

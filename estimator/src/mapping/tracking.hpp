@@ -9,7 +9,10 @@ namespace tumble::mapping {
 
 struct WaitingForStart {};
 
-/// Sweeps in the state Tracking may be unregistered, with a certain prediction or after too many failed searches.
+/// Tracking is the state after a sweep that was not rejected. A sweep with enough points but without
+/// registration is not rejected in two cases:
+/// - The sweep has too few matches with the map, and the standard deviation of the predicted pose is small.
+/// - The maximum number of successive failed searches is reached.
 struct Tracking {
   int failed_searches = 0;  ///< consecutive sweeps with points but without registration
 };

@@ -9,7 +9,7 @@ namespace tumble {
 
 namespace {
 
-// number of stored readings per sensor, enough for some seconds of readings near the largest readings
+// maximum number of stored readings per sensor; sufficient for some seconds of motion near the largest rate or force
 constexpr int kReadings = 512;
 constexpr double kStatedMax_rad_s = 1000.0;  // maximum stated range that SaturationLimitDetector uses
 

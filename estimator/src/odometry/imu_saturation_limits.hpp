@@ -32,7 +32,7 @@ class ImuSaturationLimits {
   /// At most ImuMerge::kImus data sheets. Throws InvalidParams if a stated range is out of bounds.
   explicit ImuSaturationLimits(std::span<const ImuDataSheet> sheets);
 
-  /// Sets the saturation limits and planes of an IMU as known from an earlier run.
+  /// Sets the saturation limits and the saturation planes (SaturationPlane) of an IMU to the results of an earlier run.
   void start_from_saturation_levels(std::size_t unit, const SaturationLevels& rails);
 
   /// Returns the state before the first samples, with all memory that observe_readings() needs: 110 KiB per IMU.
@@ -42,8 +42,8 @@ class ImuSaturationLimits {
   /// finite are copied unchanged.
   void flag_clipped(std::span<const ImuSample> samples, const State& state, Samples& out) const;
 
-  /// The samples must be unflagged. Cost: O(1), except for rare searches for planes of saturated readings. No memory is
-  /// allocated.
+  /// The samples must be unflagged. Cost: O(1), except for rare searches for saturation planes (SaturationPlane). No
+  /// memory is allocated.
   void observe_readings(std::span<const ImuSample> samples, State& state) const;
 
  private:

@@ -17,7 +17,7 @@ ImuSample absent_sample(TimeNs time_ns) {
   return sample;
 }
 
-/// Returns the newest time stamp of an IMU, or without readings the first time stamp of all IMUs.
+/// Returns the newest time stamp of an IMU. If the IMU has no readings, returns the first time stamp of all IMUs.
 TimeNs newest_ns(std::size_t unit, const ImuTimeAlignment::State& state) {
   const std::vector<ImuSample>& readings = state.readings[unit];
   return readings.empty() ? *state.first_ns : readings.back().time_ns;

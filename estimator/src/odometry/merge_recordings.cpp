@@ -18,8 +18,9 @@ namespace {
 using Kind = HealthFinding::Kind;
 
 constexpr double kSilentReported_s = 0.5;  // minimum duration without readings that is reported
-// Without an observed plane of saturated readings, a sensing element is assumed to be aligned with its axis. With a
-// standard deviation of 0.03 for the cross-axis sensitivity, three clipped IMUs could not determine the rate.
+// If no saturation plane (SaturationPlane) of a sensing element was observed, the element is assumed to be aligned with
+// its axis. With a standard deviation of 0.03 for the cross-axis sensitivity, three clipped IMUs could not determine
+// the rate.
 constexpr double kUnknownSlope = 0.0;
 
 struct ImuReadingSets {

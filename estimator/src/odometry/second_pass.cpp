@@ -21,7 +21,8 @@ constexpr std::size_t kSweepsPerExtraRejection =
 // The estimated calibration is not used if more than one in kSweepsPerRejection sweeps was rejected.
 constexpr std::size_t kSweepsPerRejection = 5;
 
-/// `inflation` is a factor on the covariances of the detected planes of saturated readings.
+/// `inflation` multiplies the covariance of each known saturation plane. A saturation plane contains the readings of a
+/// saturated sensing axis.
 void start_from_saturation_levels(const SaturationLevels& known, double inflation, AngularRateStream::Params& params) {
   params.expert.gyro_planes.known_limits = known.gyro_planes;
   params.expert.accel_saturation_planes.known_limits = known.accel_saturation_planes;

@@ -22,9 +22,9 @@ namespace tumble {
 /// `sweeps` buffered sweeps per new sweep. When the second pass ends, its map and pose replace those of the first pass.
 /// The result is discarded if tracking failed in the second pass, or if the second pass rejected clearly more sweeps.
 ///
-/// If tracking of the first pass has failed for `lost_s`, the whole buffer is processed immediately, once. Another
-/// second pass still follows after `after_s` of motion. SecondMappingPass does not change earlier poses: the reported
-/// pose jumps by the error of the first pass.
+/// If tracking of the first pass has failed for `lost_s`, an early second pass processes the whole buffer immediately.
+/// The early second pass takes place at most once. The regular second pass after `after_s` of motion follows in
+/// addition. SecondMappingPass does not change earlier poses: the reported pose jumps by the error of the first pass.
 ///
 /// SecondMappingPass stores samples and sweeps of `rest_s` at rest and of at most 10 s of motion. The second pass
 /// also needs memory for a second map. If a jolt ends the rest long before the tumble, the second pass starts too

@@ -25,7 +25,8 @@
 
 namespace tumble {
 
-/// Impl contains the state of TumblingOdometry. The functions with names of the public API are documented there.
+/// Impl contains the state of TumblingOdometry. The public header documents each function of Impl that has the name of
+/// a public function.
 struct TumblingOdometry::Impl {
   explicit Impl(const Params& params);
 

@@ -13,10 +13,10 @@ namespace tumble::rolling {
 
 /// FinalSmoothingPass runs a Kalman filter with known contact modes forward, and a smoother backward.
 ///
-/// The backward pass needs more than 10 KiB per node, so FinalSmoothingPass divides the nodes into segments.
-/// FinalSmoothingPass stores only the filter at each segment's start and the adjoint at its end, and recomputes other
-/// data bit for bit. A window of one segment needs one run of the filter, a longer window needs three. A
-/// FinalSmoothingPass is too large for the stack (four filters of 13 KiB).
+/// The backward pass needs more than 10 KiB per node, so FinalSmoothingPass divides the nodes into segments. For each
+/// segment, FinalSmoothingPass stores only the state of the filter at the start, and the adjoint variables of the
+/// backward pass at the end. All other data are recomputed bit for bit. A window of one segment needs one run of the
+/// filter, a longer window needs three. A FinalSmoothingPass is too large for the stack (four filters of 13 KiB).
 class FinalSmoothingPass {
  public:
   static constexpr std::size_t kNodesPerSegment =

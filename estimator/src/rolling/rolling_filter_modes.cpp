@@ -29,14 +29,16 @@ constexpr double kPruneLogWeight = -120.0;  // minimum log weight of a hypothesi
 constexpr double kRestLogLikelihoodMin =
     -60.0;                             // smallest log likelihood at rest; limits the effect of a single bad node
 constexpr double kModeAgeMax_s = 1.0;  // maximum age of a mode; older modes count as equally old
-// During slip, the change of the contact velocity per node is a mixture of three Gaussians. kPlateau_m_s is below the
-// noise of the contact velocity in the mode grip, so that slip at constant velocity does not count as grip.
+// During slip, the change of the contact velocity per node is a mixture of three Gaussians. The first standard
+// deviation, kPlateau_m_s, is smaller than the noise of the contact velocity in the mode grip. A slip at constant
+// velocity therefore has a high likelihood in the mode slip, and does not count as grip.
 constexpr double kPlateau_m_s = 0.004, kSteady_m_s = 0.01, kJump_m_s = 0.08, kPlateauFraction = 0.4,
                  kSteadyFraction = 0.35;
 constexpr double kRollOverSigma_m_s = 0.03, kHitSigma_m_s = 0.3, kRollOverFraction = 0.7;
 constexpr std::int64_t kAgesApart = 4;
 // A slip with constant spin looks like grip until its end, when a hundred hypotheses have higher weights than the
-// correct one. This number of places is reserved for hypotheses without the last mode change of the best hypothesis.
+// correct one. This number of places is reserved for hypotheses that disagree with the last mode change of the best
+// hypothesis: their current mode started at an earlier node.
 constexpr std::size_t kMinDissentingHypotheses = 6;
 constexpr double kRoughCost = 0.2;
 // The foot of a ramp is a bump, so a slope is more probable after a bump.
@@ -90,7 +92,8 @@ double log_likelihood_stationary(const rolling::Contact& c, const RollingFilter:
   Eigen::LLT<Eigen::Matrix3d> factor;
   double log_det = 0.0, cost = 0.0;
   if (mode == RollingMode::uneven) {
-    // The likelihood is normalised with the smaller variance of grip, so that a rough floor has no penalty per node.
+    // The mode uneven has a larger variance than grip, which would reduce the likelihood of every node on a rough
+    // floor. The normalisation therefore uses the variance of grip. Only the constant cost kRoughCost per node remains.
     log_det = log_det_with(rolling::contact_variance(params, c, RollingMode::grip), factor);
     cost = kRoughCost;
   }
@@ -173,8 +176,8 @@ std::span<const ModeCandidate> propose_mode_changes(const RollingParams& params,
   return {out.data(), total};
 }
 
-/// Rounds the first node of a contact mode, more coarsely with age, so that hypotheses with similar starts count as
-/// equal.
+/// Rounds the number of the node at which a contact mode started. The rounding step increases with the age of the mode,
+/// so that hypotheses with similar mode starts count as equal.
 std::int64_t mode_beginning_node(std::int64_t mode_start_node, std::int64_t node, double node_s) {
   const auto mode_age_max_nodes = static_cast<std::int64_t>(kModeAgeMax_s / node_s);
   const std::int64_t age = std::min(node - mode_start_node, mode_age_max_nodes);

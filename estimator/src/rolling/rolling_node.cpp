@@ -12,7 +12,7 @@ namespace tumble::rolling {
 
 namespace {
 
-// Random walks: rolling radius on a rough floor, slope, accelerometer bias, velocity (grows with the squared rate).
+// Random walks of the radius (rough floor), slope, accelerometer bias, and velocity (times the squared angular rate).
 constexpr double kRoughRadiusWalk_m_sqrts = 1e-4, kSlopeWalk_sqrts = 0.02, kAccelBiasWalk_m_s2_sqrts = 2e-3,
                  kVelocityWalkPerRate2_sqrts = 4e-5;
 constexpr double kImpactSigmaRatio = 0.06;  // timing and direction of an impact, relative to its velocity change

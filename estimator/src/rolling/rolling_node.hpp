@@ -36,7 +36,8 @@ struct Contact {
   Eigen::Vector3d normal_height_derivative_W;  ///< derivative of u with respect to the normal's third component
   Eigen::Vector2d floor_slope;                 ///< slope of the floor on the nominal trajectory
 
-  /// The contact velocity is linear in the error state `x`, except for the unit length of the normal.
+  /// Returns the contact velocity for the error state `x`. The contact velocity is linear in `x`, except for one term:
+  /// the third component of the floor normal is a nonlinear function of the slope, because the normal has unit length.
   Eigen::Vector3d velocity(const Vector& x) const;
 };
 

@@ -13,8 +13,8 @@ namespace tumble::baselines {
 
 namespace {
 
-/// Rotation about two axes moves the sphere along the third axis. Each axis is scaled by the larger rotation factor of
-/// the two other axes (Zevering et al. 2021, eq 8).
+/// A sphere moves along an axis only if it rotates about another axis. The velocity along each axis is therefore
+/// multiplied by the larger one of the rotation factors of the two other axes (Zevering et al. 2021, eq 8).
 Eigen::Vector3d coupling(const Eigen::Vector3d& factor) {
   return {std::max(factor.y(), factor.z()), std::max(factor.x(), factor.z()), std::max(factor.x(), factor.y())};
 }

@@ -82,7 +82,8 @@ void export_ros2_mcap(const sim::Sensors& sensors, const BagWriting& writing, co
 /// record stamps, a sweep starts one period before its stamp, because a sweep is recorded at its end.
 enum class StampSource { header, record };
 
-/// ReferenceOf selects the frame to which the reference poses belong; `named` is the frame that the messages name.
+/// ReferenceOf selects the moving frame whose poses the reference topic contains: the body, the lidar, or the frame
+/// that the messages name (`named`).
 enum class ReferenceOf { named, body, lidar };
 
 struct BagReading {

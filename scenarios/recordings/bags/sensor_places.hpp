@@ -49,8 +49,9 @@ class SensorMountings {
   SensorMountings(StaticFrames frames, std::string where) : frames_(std::move(frames)), where_(std::move(where)) {}
 
   /// Sets the mounting T_BA of a sensor A from /tf_static, unless the user has set T_BA; a difference is then reported.
-  /// If the bag has no body frame, the function computes T_BA from the mounting of another sensor: the sensor was
-  /// placed earlier, and /tf_static contains the pose between the two sensors.
+  /// If /tf_static contains no pose of A on the body, the function computes T_BA from the mounting of another sensor.
+  /// That sensor must have been placed by an earlier call, and /tf_static must contain the pose between the two
+  /// sensors.
   void place(const std::string& topic, const std::string& frame, const char* option, bool given,
              Eigen::Isometry3d& T_BA, std::vector<std::string>& notes);
 

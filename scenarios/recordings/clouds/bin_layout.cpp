@@ -20,8 +20,8 @@ constexpr std::array<std::size_t, 6> kDoubles = {3, 4, 5, 6, 7, 8};
 constexpr std::size_t kSections = 4, kInRow = 6000;
 constexpr std::size_t kPerColumnMin = 25;
 constexpr std::size_t kNumberBins = 16;
-/// Valid coordinates [m] and intensities are 0 or have magnitudes from 1e-20 to 1e7; the sine of 180 degrees times a
-/// range is about 1e-16.
+/// Valid coordinates [m] and intensities are 0 or have magnitudes from 1e-20 to 1e7. Values near 1e-16 are valid: the
+/// computed sine of 180 degrees is about 1e-16, and coordinates contain such sines times a range.
 constexpr double kLargest = 1e7, kSmallest = 1e-20, kOddShareMax = 0.01;
 /// If a valid KITTI sweep is read with 3 to 12 columns instead of 4, columns_differ() increases by at most 0.08.
 constexpr double kMultipleDiffers = 1.5;
@@ -74,8 +74,9 @@ std::vector<std::size_t> bins_of(const NumberSample& sample) {
 
 using NumberHistogram = std::array<double, kNumberBins + 1>;
 
-/// Returns the total variation distance between the histograms of one column and of all numbers. The distance is
-/// averaged over the columns. The mean distance of random samples of equal distributions is subtracted.
+/// Returns the total variation distance between the histograms of one column and of all numbers, averaged over the
+/// columns. Even if all columns have the same distribution, random samples have a positive mean distance. This mean
+/// distance is subtracted.
 double columns_differ(const NumberSample& sample, const std::vector<std::size_t>& bins, std::size_t columns) {
   std::vector<NumberHistogram> counts(columns, NumberHistogram{});
   NumberHistogram all{};

@@ -73,7 +73,8 @@ class HeaderLines {
     }
   }
 
-  /// PCL does not check the compressed and the uncompressed size before compressed points.
+  /// Checks the two sizes that the file stores in front of the compressed points: the number of compressed bytes and
+  /// the number of uncompressed bytes. PCL does not check these sizes.
   void require_sizes(const CloudHeader& header) {
     std::array<std::uint32_t, 2> sizes{};
     if (!stream_.read(reinterpret_cast<char*>(sizes.data()), sizeof(sizes)))

@@ -23,8 +23,8 @@ namespace {
 constexpr double kSpanMin = 0.02, kSpanMax = 1.5, kShortSpanMin = kSpanMax / 1000.0;
 /// Times since 1970 in seconds exceed 1e8 if they are later than 1973.
 constexpr double kEpochMin_s = 1e8;
-/// A sweep with fewer than 100 points may cover a short part of the sweep period, so its times do not contradict a time
-/// unit.
+/// A sweep with fewer than 100 points may cover only a short part of the sweep period. A short time span of such a
+/// sweep is therefore no evidence against a time unit.
 constexpr double kPointsThatSpan = 100.0;
 
 /// With at least five clouds, point times are absolute if two clouds start more than two periods from time zero.

@@ -47,9 +47,9 @@ double csv_number(const CsvLine& line, std::size_t index, const std::string& col
 
 bool is_number(std::string_view field);
 
-/// Empty lines, comments and an empty field after the last separator of a line are skipped. The header of a table is
-/// the first line that is no comment and contains fewer numbers than other texts. If samples directly follow comments,
-/// the last comment is the header if it has as many fields as a sample ("#timestamp [ns],w_RS_S_x [rad s^-1],...").
+/// Empty lines, comments and an empty field after the last separator of a line are skipped. The first line that is not
+/// a comment is the header if fewer than half of its fields are numbers. If samples directly follow comments, the last
+/// comment is the header if it has as many fields as a sample ("#timestamp [ns],w_RS_S_x [rad s^-1],...").
 class LoggedTable {
  public:
   explicit LoggedTable(const std::filesystem::path& path);

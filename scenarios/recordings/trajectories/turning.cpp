@@ -26,8 +26,8 @@ constexpr std::uint8_t kGyroClipped = 0b111;
 constexpr double kCoarse_s = 0.02, kFine_s = 0.002;
 /// A delay of 0.3 s is detectable if it at least doubles the rotation difference between gyro and attitudes.
 constexpr double kShown_s = 0.3, kShows = 2.0, kShowsBy = 0.02;
-/// Gravity tests the quaternion convention only if the attitudes as stated agree with the gyro within 30 % of the
-/// rotation.
+/// The direction of gravity can indicate a wrong quaternion convention. This test requires that the attitudes, in the
+/// stated convention, agree with the gyro: their rotations may differ by at most 30 %.
 constexpr double kAgreesAsStated = 0.3;
 constexpr double kNoFit = std::numeric_limits<double>::infinity();
 
