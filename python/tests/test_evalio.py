@@ -192,7 +192,7 @@ def test_more_rings_than_evalio_holds():
 
 @pytest.mark.parametrize("name, value, word", [("TUMBLE_EVALIO_SEEDS", "1-8", "FIRST..LAST"), ("TUMBLE_EVALIO_SEEDS", "8..1", "FIRST..LAST"),
                                                ("TUMBLE_EVALIO_FILES", "/a/x.h5:/b/x.h5", "two files"),
-                                               ("TUMBLE_EVALIO_FILES", "/a/hill_1.h5", "draw of a scenario")])
+                                               ("TUMBLE_EVALIO_FILES", "/a/hill_1.h5", "the names of draws")])
 def test_settings_that_are_wrong(name, value, word):
     status, said = in_evalio("import evalio", **{name: value})
     assert status != 0 and word in said and name in said, said

@@ -29,6 +29,8 @@ constexpr double kLostStep = 1.5;
 /// The estimators initialise attitude and gyro bias in the first second of a recording.
 constexpr double kStart_s = 1.0;
 constexpr double kRegisteredShareMin = 0.8;
+/// A gyro that saturates below this fraction of its stated range probably has another range.
+constexpr double kOfRangeMin = 0.7;
 
 double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
   return 1e-9 * static_cast<double>(to_ns - from_ns);
@@ -106,14 +108,17 @@ void add_saturation(const sim::ImuRecord& imu, std::vector<RecordingFinding>& ou
   const auto range = [](double stated, const char* unit) {
     return stated > 0.0 ? fmt::format(" (stated range: {} {})", rounded(stated), unit) : std::string();
   };
-  if (found.gyro_share > 0.0)
+  if (found.gyro_share > 0.0) {
+    const bool below = found.gyro_rad_s < kOfRangeMin * imu.stated_gyro_range_rad_s;
     out.push_back({imu.name,
                    fmt::format("the gyro is saturated in {} of the samples, at {} rad/s and more{}",
                                percent_text(found.gyro_share), rounded(found.gyro_rad_s),
                                range(imu.stated_gyro_range_rad_s, "rad/s")),
-                   "set a larger gyro range in the IMU's driver, if possible; 'tumble odometry' estimates the rates "
-                   "beyond the range",
+                   below ? "check --device: the gyro saturates far below the range of its data sheet"
+                         : "set a larger gyro range in the IMU's driver, if possible; 'tumble odometry' estimates the "
+                           "rates beyond the range",
                    false});
+  }
   if (found.accel_share > 0.0)
     out.push_back({imu.name,
                    fmt::format("the accelerometer is saturated in {} of the samples, at {} m/s^2 and more{}",
@@ -206,7 +211,8 @@ std::vector<RecordingFinding> findings_in_estimate(const Estimate& estimate, std
         {"odometry",
          fmt::format("the odometry registered only {} of {} sweeps with the map ({}, minimum {})", registered, sweeps,
                      percent_text(share), percent_text(kRegisteredShareMin)),
-         "check the options --T-body-lidar, --gyro-unit and --accel-unit, and the other faults in this list"});
+         "check the options --T-body-lidar, --lever-arm, --gyro-unit and --accel-unit, and the other faults in this "
+         "list"});
   for (const HealthFinding& finding : estimate.faults.findings) {
     const bool mounting = finding.kind == HealthFinding::Kind::lidar_calibration;
     out.push_back({"odometry", report_text(finding),

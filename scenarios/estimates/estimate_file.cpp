@@ -286,6 +286,7 @@ json header_of(const std::string& method, Kind kind, const Estimate& estimate, c
            {{"trouble", to_string(estimate.status.error_code)},
             {"field", estimate.status.field},
             {"message", estimate.status.message()}}},
+          {"usable", estimate.status.ok() && !estimate.faults.invalidates_estimate()},
           {"health", health},
           {"findings", findings},
           {"parameters", json(estimate.parameters)},

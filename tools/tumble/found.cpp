@@ -65,7 +65,7 @@ class Found {
     add("IMU",
         fmt::format("'{}': {} readings at {}{}", imu.name, imu.time_ns.size(), rate_text(imu.period_ns),
                     others(imus().size())),
-        imus().size() > 1 && recording_.options.imu_topics.empty() ? kAssumed : kStated, "--imu-topic");
+        source_of(imus().size(), recording_.options.imu_topics), "--imu-topic");
     add_imu_sheet(imu);
     add_units(imu);
     add_gravity(imu);
@@ -78,7 +78,7 @@ class Found {
         fmt::format("'{}': {} sweeps at {}, {} points, {} ring{}{}", lidar.name, lidar.sweep_start_ns.size(),
                     rate_text(lidar.sweep_period_ns), lidar.position_L_m.size(), rings.size(),
                     rings.size() == 1 ? "" : "s", others(lidars().size())),
-        lidars().size() > 1 && recording_.options.lidar_topics.empty() ? kAssumed : kStated, "--lidar-topic");
+        source_of(lidars().size(), recording_.options.lidar_topics), "--lidar-topic");
     add_lidar_sheet(lidar);
     add("point times", point_times(lidar), recording_.options.time_unit.empty() ? kMeasured : kStated,
         "--time-field, --time-unit, --not-skewed");
@@ -127,6 +127,10 @@ class Found {
 
   void add(std::string item, std::string found, std::string sure, std::string option) {
     items_.push_back({std::move(item), std::move(found), std::move(sure), std::move(option)});
+  }
+
+  static const char* source_of(std::size_t count, const std::vector<std::string>& topics) {
+    return !topics.empty() ? kStated : count > 1 ? kAssumed : kMeasured;
   }
 
   static std::string others(std::size_t count) { return count > 1 ? fmt::format(", first of {}", count) : ""; }

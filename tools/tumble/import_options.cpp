@@ -165,7 +165,7 @@ void declare_sensors(VerbOptions& verb, ImportOptions& options) {
            "names the columns of IMU readings in a CSV file: time=NAME,gyro=X,Y,Z,accel=X,Y,Z with names from the "
            "header, or with positions counted from 0 [default: common names]");
   verb.add("--lever-arm", options.lever_arm_m,
-           "sets the lever arm X Y Z from the robot's centre of mass to the IMU in body axes, m [default: from "
+           "sets the lever arm X Y Z from the robot's centre of mass to the first IMU in body axes, m [default: from "
            "/tf_static, else 0 0 0]. Without /tf_static, the body axes are the IMU's axes")
       .words(3);
   verb.add("--imu-topic", options.imu_topics,

@@ -239,6 +239,7 @@ std::string format_of(const ImportOptions& options) {
   if (ending == ".hdf5" || ending == ".h5") return "recording";
   if (exists && (ending.empty() || ending == ".txt")) return format_of_text(options.path);
   if (ending == ".tum" || ending == ".txt" || ending == ".kitti") return scenarios::pose_format(options.path);
+  if (!exists) throw BadInput(options.path.string() + ": the file does not exist");
   throw BadInput(fmt::format(
       "{}: the file name does not reveal the format; give --format (csv, kitti, mcap, rosbag1, rosbag2 or tum)",
       options.path.string()));

@@ -218,11 +218,12 @@ int run_odometry(const Session& session, const OdometryOptions& options) {
         fmt::format("written: {} (trajectory.tum, map.ply, map.pcd, map.tumblemap, estimate.json, replay.html)",
                     options.folder.string()));
     if (outcome.status != scenarios::OutcomeStatus::diverged) return kDone;
-    session.note(fmt::format("do not use this estimate; 'tumble doctor {}' searches for the cause",
-                             options.input.path.string()));
+    session.note(
+        fmt::format("do not use this estimate; 'tumble doctor {}' with the same options searches for the cause",
+                    options.input.path.string()));
     return kCheckFailed;
   }
-  throw BadInput(fmt::format("{}: {} failed: {}; 'tumble doctor {}' searches for the cause",
+  throw BadInput(fmt::format("{}: {} failed: {}; 'tumble doctor {}' with the same options searches for the cause",
                              options.input.path.string(), full_name(info), failure_reason(estimate.status, sensors),
                              options.input.path.string()));
 }

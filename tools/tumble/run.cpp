@@ -226,6 +226,7 @@ int run(const Session& session, const RunOptions& given) {
         fmt::format("the results are in {}/: recording.h5, situation.yaml, estimates/, snapshots/scene.png and "
                     "film.png, replay.html",
                     options.folder.string()));
+  session.note("'tumble list metrics' explains the metrics");
   if (first) say_what_next(session, options, result, !given.scenario.ends_with(".yaml"));
   return kDone;
 }

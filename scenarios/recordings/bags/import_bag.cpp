@@ -206,7 +206,9 @@ void add_imus(const OpenedBag& bag, SensorMountings& places, const BagReading& r
   const std::vector<std::string> topics = bag.chosen(reading.imu_topics, is_imu_type, kImu);
   const TopicsOfKind imus(topics, !reading.imu_topics.empty(), reading.leave_out_topics, "--imu-topic");
   imus.read(out.notes, [&](const std::string& topic) {
-    sim::ImuRecord imu = read_imu(bag, places, topic, reading, out.notes);
+    BagReading own = reading;
+    if (!out.sensors.imus.empty()) own.imu.T_BI.setIdentity(), own.imu_placed = false;  // of the first IMU only
+    sim::ImuRecord imu = read_imu(bag, places, topic, own, out.notes);
     if (imu.time_ns.empty())
       out.notes.push_back(topic + kNoMessage);
     else

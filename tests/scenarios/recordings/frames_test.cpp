@@ -282,17 +282,19 @@ TEST_P(Frames, AStatedZeroIsAMounting) {
   EXPECT_THAT(GetParam().read(path_, reading).notes, testing::Not(missing));
 }
 
-// --lever-arm states a position only; without the rotation, tracking fails
-TEST_P(Frames, AStatedLeverArmKeepsTheOrientationOfTheImu) {
+// --lever-arm states the position of the first IMU; without the rotation of /tf_static, tracking fails
+TEST_P(Frames, AStatedLeverArmKeepsTheOrientationOfTheImuAndTheOtherImus) {
   const Eigen::Matrix3d mounted = Eigen::AngleAxisd(2.0, Eigen::Vector3d::UnitX()).toRotationMatrix();
   recording_.sensors.imus[0].T_BI.linear() = mounted;
   GetParam().write(recording_.sensors, {}, path_);
   BagReading reading;
   reading.imu_placed = true;
   reading.imu.T_BI.translation() = Eigen::Vector3d(0.1, 0.2, 0.3);
-  const Eigen::Isometry3d placed = GetParam().read(path_, reading).sensors.imus[0].T_BI;
-  EXPECT_TRUE(placed.linear().isApprox(mounted, 1e-12));
-  EXPECT_EQ(placed.translation(), Eigen::Vector3d(0.1, 0.2, 0.3));
+  const std::vector<sim::ImuRecord> imus = GetParam().read(path_, reading).sensors.imus;
+  ASSERT_EQ(imus.size(), 2u);
+  EXPECT_TRUE(imus[0].T_BI.linear().isApprox(mounted, 1e-12));
+  EXPECT_EQ(imus[0].T_BI.translation(), Eigen::Vector3d(0.1, 0.2, 0.3));
+  EXPECT_TRUE(imus[1].T_BI.isApprox(recording_.sensors.imus[1].T_BI, 1e-12));
 }
 
 // zeros of an estimate mean unknown; zeros of the truth are values
