@@ -8,7 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "scenarios/diagnosis/probable_devices.hpp"
 #include "scenarios/draw/data_sheet.hpp"
