@@ -107,7 +107,7 @@ INSTANTIATE_TEST_SUITE_P(
               {"export", "/dev/null", "--format", "tum", "-o", "x"},
               "/dev/null: is a device"},
         Wrong{"a folder of TUM's poses", {"import", "/proc", "--format", "tum", "-o", "x.h5"}, "/proc: is a folder"},
-        Wrong{"import without format", {"import", "absent.dat", "-o", "x.h5"}, "--format"},
+        Wrong{"import of no file", {"import", "absent.dat", "-o", "x.h5"}, "absent.dat: the file does not exist"},
         Wrong{"device of an import", {"import", "absent.csv", "--device", "mti300", "-o", "x.h5"}, "mti30"},
         Wrong{"shrink without a name",
               {"shrink", "hill", "--seed", "1", "--method", "rate/raw", "-o", "A b.yaml"},

@@ -43,6 +43,9 @@ TEST_F(ImportFormat, TheContentCountsWithoutAnEndingOrAgainstIt) {
   write("poses.txt", "# poses\n1 0 0 0 0 0 0 1\n");
   EXPECT_EQ(format("xsens.txt"), "csv");
   EXPECT_EQ(format("poses.txt"), "tum");
+  write("run.dat", "1 2 3\n");
+  EXPECT_THAT(format("run.dat"), ::testing::HasSubstr("the file name does not reveal the format; give --format"));
+  EXPECT_THAT(format("absent.dat"), ::testing::HasSubstr("the file does not exist"));
 }
 
 TEST_F(ImportFormat, AFolderOfBagsIsOneBagInParts) {
