@@ -31,6 +31,13 @@ inline thread_local AllocationCounter allocations;
   counter.peak_bytes = std::max(counter.peak_bytes, counter.bytes);
   return memory;
 }
+[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {  // std::stable_sort uses it
+  try {
+    return operator new(size);
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
+}
 [[gnu::noinline]] void operator delete(void* memory) noexcept {
   tumble::test::allocations.bytes -= malloc_usable_size(memory);
   std::free(memory);
