@@ -46,7 +46,7 @@ _HEADERS = {
     "map": "map multimap",
     "memory": "construct_at destroy_at make_shared make_unique shared_ptr unique_ptr",
     "mutex": "lock_guard mutex",
-    "new": "bad_alloc",
+    "new": "bad_alloc nothrow_t",
     "numbers": "numbers",
     "numeric": "accumulate inner_product iota midpoint",
     "optional": "nullopt optional",
