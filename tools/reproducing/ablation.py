@@ -112,8 +112,8 @@ def coverage_change(row):
 
 
 def before_and_after(row, name, last=""):
-    on, off = (round(row.get(f"{name}_{state}", 0.0)) for state in ("on", "off"))
-    return f"{on} → {off}{last}" if on != off else ""
+    on, off = (row.get(f"{name}_{state}", 0.0) for state in ("on", "off"))
+    return f"{on:.0f} → {off:.0f}{last}" if abs(on - off) >= 1.0 else ""  # also empty for NaN
 
 
 def cells(row):

@@ -89,7 +89,7 @@ void keep_accepted(const scenarios::Gate& gate, const GateOptions& options,
 std::function<bool(const std::string&, const scenarios::MethodInfo&)> comparable(
     const scenarios::Gate& gate, const std::vector<scenarios::MethodPointer>& given) {
   return [&](const std::string& scenario, const scenarios::MethodInfo& info) {
-    const auto is_given = [&](const scenarios::MethodPointer& method) { return method->info.name == info.name; };
+    const auto is_given = [&](const auto& method) { return full_name(method->info) == full_name(info); };
     const auto is_accepted = [&](const scenarios::MethodRun& run) {
       return run.scenario == scenario && run.kind == info.kind && run.method == info.name;
     };
