@@ -7,7 +7,7 @@
 
 #include "rolled_sphere.hpp"
 #include "thrown_body.hpp"
-#include "tumble/odometry/tumbling_expert_params.hpp"
+#include "tumble/odometry/expert_params.hpp"
 #include "tumble/tumble.hpp"
 
 // Every allocation of this program is counted; not inlined, so that the compiler does not take the pair for mismatched.

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/clipping_finder.hpp"
-#include "tumble/angular_velocity/rig_constants.hpp"
+#include "tumble/angular_velocity/types.hpp"
 #include "tumble/attitude/detail/imu_merge.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/tumble.hpp"

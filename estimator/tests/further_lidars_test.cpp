@@ -9,7 +9,7 @@
 
 #include "thrown_body.hpp"
 #include "thrown_params.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 namespace further_lidars {

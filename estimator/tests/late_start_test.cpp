@@ -12,7 +12,7 @@
 #include "live_readings.hpp"
 #include "thrown_body.hpp"
 #include "thrown_params.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 #include "tumble/tumble.hpp"
 
 namespace tumble {

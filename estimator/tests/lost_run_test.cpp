@@ -7,7 +7,7 @@
 
 #include "thrown_body.hpp"
 #include "thrown_params.hpp"
-#include "tumble/odometry/tumbling_expert_params.hpp"
+#include "tumble/odometry/expert_params.hpp"
 #include "tumble/tumble.hpp"
 
 namespace tumble {

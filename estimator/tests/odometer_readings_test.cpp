@@ -14,7 +14,7 @@
 #include "odometry/second_pass.hpp"
 #include "thrown_body.hpp"
 #include "thrown_params.hpp"
-#include "tumble/odometry/tumbling_expert_params.hpp"
+#include "tumble/odometry/expert_params.hpp"
 #include "tumble/tumble.hpp"
 
 namespace tumble {

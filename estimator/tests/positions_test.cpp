@@ -13,7 +13,7 @@
 #include "odometry/position_alignment.hpp"
 #include "thrown_body.hpp"
 #include "thrown_params.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 namespace position_readings {

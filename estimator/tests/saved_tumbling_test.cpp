@@ -10,9 +10,9 @@
 #include "thrown_body.hpp"
 #include "thrown_params.hpp"
 #include "tumble/angular_velocity/detail/clipping_finder.hpp"
-#include "tumble/angular_velocity/rig_constants.hpp"
+#include "tumble/angular_velocity/types.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
-#include "tumble/odometry/tumbling_expert_params.hpp"
+#include "tumble/odometry/expert_params.hpp"
 #include "tumble/tumble.hpp"
 
 namespace tumble {

@@ -12,8 +12,7 @@
 #include "rolled_sphere.hpp"
 #include "thrown_body.hpp"
 #include "thrown_params.hpp"
-#include "tumble/odometry/rolling_expert_params.hpp"
-#include "tumble/odometry/tumbling_expert_params.hpp"
+#include "tumble/odometry/expert_params.hpp"
 #include "tumble/tumble.hpp"
 
 namespace tumble {

@@ -4,8 +4,8 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "tumble/common/imu.hpp"
-#include "tumble/mapping/lidar.hpp"
+#include "tumble/common/types.hpp"
+#include "tumble/mapping/types.hpp"
 
 /// A body with an IMU and a lidar that lies still, is thrown through a room while it spins beyond its gyro's rail, is
 /// caught and lies still again: all in closed form, made without anything of the library's estimators.

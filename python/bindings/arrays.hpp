@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "tumble/common/imu.hpp"
-#include "tumble/mapping/lidar.hpp"
+#include "tumble/common/types.hpp"
+#include "tumble/mapping/types.hpp"
 
 /// arrays.hpp converts between numpy arrays and the library's messages. Input arrays are checked for type and shape,
 /// and copied into messages. Output arrays are read-only views that keep the object alive whose memory they show.

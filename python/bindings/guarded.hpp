@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "tumble/common/time.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::python {
 

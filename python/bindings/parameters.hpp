@@ -8,7 +8,6 @@
 #include <type_traits>
 #include <vector>
 
-#include "tumble/common/fields_by_name.hpp"
 #include "tumble/common/parameters.hpp"
 
 /// parameters.hpp exposes the fields of a `Params` structure as Python keywords. The field descriptions come from

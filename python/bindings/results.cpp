@@ -14,7 +14,7 @@
 #include "saving.hpp"
 #include "trouble.hpp"
 #include "tumble/common/sensor_health.hpp"
-#include "tumble/mapping/prior_map.hpp"
+#include "tumble/mapping/types.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
 
 namespace tumble::python {

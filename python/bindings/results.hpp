@@ -5,9 +5,9 @@
 
 #include <vector>
 
-#include "tumble/angular_velocity/rate_state.hpp"
-#include "tumble/common/pose.hpp"
-#include "tumble/mapping/lidar.hpp"
+#include "tumble/angular_velocity/types.hpp"
+#include "tumble/common/types.hpp"
+#include "tumble/mapping/types.hpp"
 #include "tumble/rolling/detail/rolling_smoother.hpp"
 
 /// results.hpp binds result classes that store rows. Each class exposes its columns as views of the rows.

@@ -14,7 +14,7 @@
 #include "saving.hpp"
 #include "streams.hpp"
 #include "tumble/attitude/detail/imu_merge.hpp"
-#include "tumble/odometry/rolling_expert_params.hpp"
+#include "tumble/odometry/expert_params.hpp"
 #include "tumble/odometry/rolling_odometry.hpp"
 #include "tumble/rolling/detail/rolling_smoother.hpp"
 #include "tumble/rolling/rolling_filter.hpp"

@@ -11,7 +11,7 @@
 
 #include "guarded.hpp"
 #include "trouble.hpp"
-#include "tumble/common/pose.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::python {
 

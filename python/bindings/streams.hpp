@@ -12,7 +12,7 @@
 
 #include "guarded.hpp"
 #include "trouble.hpp"
-#include "tumble/common/imu.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::python {
 

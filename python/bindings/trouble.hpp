@@ -8,9 +8,8 @@
 #include <span>
 #include <string>
 
-#include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
-#include "tumble/common/time.hpp"
+#include "tumble/common/types.hpp"
 
 /// trouble.hpp converts errors of the library to tumble.TumbleError, with error code, field, value and bound.
 namespace tumble::python {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/odometry/tumbling_expert_params.hpp"
+#include "tumble/odometry/expert_params.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
 
 #include <nanobind/nanobind.h>

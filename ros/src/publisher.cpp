@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::ros {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble_ros/tumbling_adapter.hpp"
-#include "tumble/angular_velocity/rig_constants.hpp"
-#include "tumble/odometry/tumbling_expert_params.hpp"
+#include "tumble/angular_velocity/types.hpp"
+#include "tumble/odometry/expert_params.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -14,7 +14,7 @@
 #include "scenarios/recordings/number_text.hpp"
 #include "scenarios/recordings/repairable.hpp"
 #include "scenarios/recordings/upper_median.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::scenarios {
 

@@ -11,11 +11,11 @@
 
 #include "scenarios/estimates/findings.hpp"
 #include "sim/recording.hpp"
-#include "tumble/angular_velocity/rate_state.hpp"
-#include "tumble/common/pose.hpp"
+#include "tumble/angular_velocity/types.hpp"
 #include "tumble/common/status.hpp"
-#include "tumble/mapping/lidar.hpp"
+#include "tumble/common/types.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
+#include "tumble/mapping/types.hpp"
 
 namespace tumble::scenarios {
 

@@ -17,7 +17,7 @@
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/regular_file.hpp"
 #include "scenarios/text.hpp"
-#include "tumble/mapping/prior_map.hpp"
+#include "tumble/mapping/types.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
 
 namespace tumble::scenarios {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "tumble/mapping/lidar.hpp"
+#include "tumble/mapping/types.hpp"
 
 namespace tumble::scenarios {
 

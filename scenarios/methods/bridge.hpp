@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "sim/recording.hpp"
-#include "tumble/angular_velocity/rate_state.hpp"
+#include "tumble/angular_velocity/types.hpp"
 #include "tumble/common/detail/outlier_filter.hpp"
-#include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
-#include "tumble/mapping/lidar.hpp"
+#include "tumble/common/types.hpp"
+#include "tumble/mapping/types.hpp"
 #include "tumble/odometry/sensor_sheets.hpp"
 
 /// The libraries `sim` and `estimator` have these conventions:

@@ -11,7 +11,7 @@
 #include "scenarios/recordings/import.hpp"
 #include "tumble/angular_velocity/detail/clipping_finder.hpp"
 #include "tumble/attitude/detail/regime_smoother.hpp"
-#include "tumble/common/imu.hpp"
+#include "tumble/common/types.hpp"
 #include "tumble/odometry/detail/imu_findings.hpp"
 
 namespace tumble::scenarios {

@@ -15,7 +15,7 @@
 #include "scenarios/methods/settings.hpp"
 #include "tumble/odometry/detail/imu_findings.hpp"
 #include "tumble/odometry/detail/merge_recordings.hpp"
-#include "tumble/odometry/rolling_expert_params.hpp"
+#include "tumble/odometry/expert_params.hpp"
 #include "tumble/rolling/detail/rolling_smoother.hpp"
 
 namespace tumble::scenarios {

@@ -8,9 +8,9 @@
 #include "sim/recording.hpp"
 #include "tumble/angular_velocity/detail/saave.hpp"
 #include "tumble/angular_velocity/detail/saturation_limit_detector.hpp"
-#include "tumble/angular_velocity/rate_state.hpp"
-#include "tumble/common/imu.hpp"
+#include "tumble/angular_velocity/types.hpp"
 #include "tumble/common/status.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::scenarios {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "scenarios/estimates/method.hpp"
-#include "tumble/common/imu.hpp"
-#include "tumble/mapping/prior_map.hpp"
+#include "tumble/common/types.hpp"
+#include "tumble/mapping/types.hpp"
 
 /// A new method needs a source that defines `Method KIND_NAME()`, a declaration in this header, a line in registry.cpp,
 /// and a line in CMakeLists.txt.

@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "sim/parameters.hpp"
-#include "tumble/common/fields_by_name.hpp"
 #include "tumble/common/parameters.hpp"
 
 /// Settings converts the fields of a library class's `Params` struct to parameters of a method that a user can set by

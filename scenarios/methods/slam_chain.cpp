@@ -14,7 +14,7 @@
 #include "tumble/mapping/detail/registration_params.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/odometry/detail/mapping_passes.hpp"
-#include "tumble/odometry/tumbling_expert_params.hpp"
+#include "tumble/odometry/expert_params.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
 
 namespace tumble::scenarios {

@@ -9,9 +9,9 @@
 
 #include "scenarios/estimates/method.hpp"
 #include "scenarios/methods/settings.hpp"
-#include "tumble/common/imu.hpp"
-#include "tumble/mapping/further_readings.hpp"
+#include "tumble/common/types.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
+#include "tumble/mapping/types.hpp"
 
 namespace tumble::scenarios {
 

@@ -11,7 +11,7 @@
 #include "scenarios/methods/sweep_log.hpp"
 #include "tumble/angular_velocity/detail/rest_detector.hpp"
 #include "tumble/attitude/strapdown.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::scenarios {
 

@@ -8,7 +8,7 @@
 #include "scenarios/estimates/method.hpp"
 #include "scenarios/methods/settings.hpp"
 #include "sim/parameters.hpp"
-#include "tumble/common/imu.hpp"
+#include "tumble/common/types.hpp"
 
 /// Methods that register each sweep as a rigid body differ only in their trajectory model, which predicts the motion
 /// within a sweep.

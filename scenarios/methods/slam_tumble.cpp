@@ -15,7 +15,7 @@
 #include "scenarios/methods/settings.hpp"
 #include "scenarios/methods/sweep_log.hpp"
 #include "tumble/odometry/detail/recording_estimate.hpp"
-#include "tumble/odometry/tumbling_expert_params.hpp"
+#include "tumble/odometry/expert_params.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
 
 namespace tumble::scenarios {

@@ -8,7 +8,7 @@
 #include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/families.hpp"
 #include "scenarios/scoring/registered_sweeps.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::scenarios {
 

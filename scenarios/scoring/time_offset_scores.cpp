@@ -3,7 +3,7 @@
 
 #include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/families.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::scenarios {
 

@@ -12,7 +12,7 @@
 #include <random>
 
 #include "estimator/tests/thrown_body.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

@@ -11,7 +11,7 @@
 
 #include "stand_ins/stand_ins.hpp"
 #include "tests/tree.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::testing {
 

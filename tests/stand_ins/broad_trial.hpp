@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tumble/common/imu.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::testing {
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::test {
 

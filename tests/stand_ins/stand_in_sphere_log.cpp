@@ -10,7 +10,7 @@
 #include "stand_ins/known_motion.hpp"
 #include "stand_ins/stand_ins.hpp"
 #include "stand_ins/writers.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::test {
 

@@ -13,7 +13,7 @@
 #include "scenarios/external/external_method.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
-#include "tumble/common/imu.hpp"
+#include "tumble/common/types.hpp"
 #include "tumble/mapping/detail/odometry_params.hpp"
 
 namespace tumble::tools {

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "tumble/angular_velocity/detail/rest_detector.hpp"
-#include "tumble/common/imu.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/saturation_plane.hpp"
-#include "tumble/common/imu.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

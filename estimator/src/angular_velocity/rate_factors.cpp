@@ -5,7 +5,7 @@
 #include <Eigen/LU>
 #include <numbers>
 
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

@@ -8,7 +8,7 @@
 
 #include "sample_hold_bounds.hpp"
 #include "tumble/angular_velocity/detail/triad.hpp"
-#include "tumble/common/imu.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

@@ -11,7 +11,7 @@
 
 #include "sample_hold.hpp"
 #include "tumble/angular_velocity/detail/recording_check.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

@@ -6,7 +6,7 @@
 
 #include "tumble/angular_velocity/detail/impact_sums.hpp"
 #include "tumble/angular_velocity/detail/saturation_limit_detector.hpp"
-#include "tumble/common/imu.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

@@ -7,7 +7,7 @@
 
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
-#include "tumble/common/time.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

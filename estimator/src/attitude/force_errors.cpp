@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "tumble/common/detail/squared.hpp"
-#include "tumble/common/so3.hpp"
 #include "tumble/common/status.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::hand_held {
 

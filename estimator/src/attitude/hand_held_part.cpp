@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "hand_held_problem.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::hand_held {
 

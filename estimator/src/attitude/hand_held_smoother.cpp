@@ -10,7 +10,7 @@
 #include "hand_held_problem.hpp"
 #include "revolution_hypotheses.hpp"
 #include "tumble/common/detail/sample_check.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

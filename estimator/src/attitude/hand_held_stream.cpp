@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "hand_held_problem.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

@@ -9,7 +9,7 @@
 #include "rigid_forces.hpp"
 #include "tumble/attitude/detail/timing.hpp"
 #include "tumble/common/detail/scalar_update.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "tumble/attitude/detail/timing.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

@@ -7,8 +7,8 @@
 
 #include "tumble/common/detail/scalar_update.hpp"
 #include "tumble/common/detail/squared.hpp"
-#include "tumble/common/so3.hpp"
 #include "tumble/common/status.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

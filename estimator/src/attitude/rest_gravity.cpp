@@ -6,7 +6,7 @@
 
 #include "tumble/angular_velocity/detail/rail_ratios.hpp"
 #include "tumble/attitude/detail/timing.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

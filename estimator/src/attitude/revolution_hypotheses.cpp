@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::hand_held {
 

@@ -9,7 +9,7 @@
 #include "tumble/attitude/strapdown.hpp"
 #include "tumble/common/detail/scalar_update.hpp"
 #include "tumble/common/detail/squared.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

@@ -4,7 +4,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 #include "unknowns.hpp"
 
 namespace tumble::mapping {

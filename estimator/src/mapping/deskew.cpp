@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "tumble/common/time.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

@@ -2,7 +2,7 @@
 #include "frame_change.hpp"
 
 #include "../common/symmetric.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 #include "unknowns.hpp"
 
 namespace tumble::mapping {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "tumble/common/imu.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::mapping {
 

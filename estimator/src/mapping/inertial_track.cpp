@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "mapper_rest.hpp"
-#include "tumble/common/imu.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::mapping {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "gap_bridge.hpp"
-#include "tumble/common/time.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tumble/common/imu.hpp"
+#include "tumble/common/types.hpp"
 #include "tumble/mapping/detail/sweep_unknowns.hpp"
 
 namespace tumble {

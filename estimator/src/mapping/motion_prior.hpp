@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <variant>
 
-#include "tumble/mapping/further_readings.hpp"
+#include "tumble/mapping/types.hpp"
 
 namespace tumble::mapping {
 

@@ -4,10 +4,10 @@
 #include <Eigen/Core>
 #include <cstddef>
 
-#include "tumble/mapping/calibration.hpp"
 #include "tumble/mapping/detail/deskew.hpp"
 #include "tumble/mapping/detail/sweep_trajectory.hpp"
 #include "tumble/mapping/detail/sweep_unknowns.hpp"
+#include "tumble/mapping/types.hpp"
 
 namespace tumble::mapping {
 

@@ -9,7 +9,7 @@
 #include "../common/dense.hpp"
 #include "../common/symmetric.hpp"
 #include "inertial_prior.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 #include "unknowns.hpp"
 
 namespace tumble::mapping {

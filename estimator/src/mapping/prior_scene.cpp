@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 #include "tumble/mapping/detail/plane_fit.hpp"
 #include "voxel_cube.hpp"
 

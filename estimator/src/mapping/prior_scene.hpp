@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "tumble/mapping/detail/voxel_map.hpp"
-#include "tumble/mapping/prior_map.hpp"
+#include "tumble/mapping/types.hpp"
 
 /// See mapping.md, "Localisation in a prior map".
 namespace tumble::mapping {

@@ -6,7 +6,7 @@
 
 #include "../common/symmetric.hpp"
 #include "prediction.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 #include "unknowns.hpp"
 
 namespace tumble::mapping {

@@ -10,7 +10,7 @@
 #include "../common/dense.hpp"
 #include "registration_sums.hpp"
 #include "state_estimate.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 #include "unknowns.hpp"
 
 namespace tumble {

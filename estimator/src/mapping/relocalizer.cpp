@@ -5,7 +5,7 @@
 #include <cmath>
 #include <memory>
 
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 #include "unknowns.hpp"
 
 namespace tumble::mapping {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "rotation_series.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 #include "unknowns.hpp"
 
 namespace tumble {

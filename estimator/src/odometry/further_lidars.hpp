@@ -9,7 +9,7 @@
 
 #include "tumble/common/status.hpp"
 #include "tumble/odometry/detail/waiting_input.hpp"
-#include "tumble/odometry/tumbling_params.hpp"
+#include "tumble/odometry/tumbling_odometry.hpp"
 
 namespace tumble {
 

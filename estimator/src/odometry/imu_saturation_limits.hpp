@@ -9,8 +9,8 @@
 
 #include "tumble/angular_velocity/detail/streaming_clipping_finder.hpp"
 #include "tumble/attitude/detail/imu_merge.hpp"
-#include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
+#include "tumble/common/types.hpp"
 #include "tumble/odometry/sensor_sheets.hpp"
 
 namespace tumble {

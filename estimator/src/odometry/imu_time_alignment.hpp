@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "tumble/attitude/detail/imu_merge.hpp"
-#include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

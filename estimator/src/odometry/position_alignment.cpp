@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "../common/dense.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

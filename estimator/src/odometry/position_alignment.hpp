@@ -6,10 +6,9 @@
 #include <deque>
 #include <optional>
 
-#include "tumble/common/pose.hpp"
 #include "tumble/common/status.hpp"
-#include "tumble/mapping/further_readings.hpp"
-#include "tumble/mapping/sweep_report.hpp"
+#include "tumble/common/types.hpp"
+#include "tumble/mapping/types.hpp"
 
 namespace tumble {
 

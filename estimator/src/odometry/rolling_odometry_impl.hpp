@@ -18,7 +18,7 @@
 #include "tumble/common/detail/outlier_filter.hpp"
 #include "tumble/common/sample_clock.hpp"
 #include "tumble/odometry/detail/imu_findings.hpp"
-#include "tumble/odometry/rolling_expert_params.hpp"
+#include "tumble/odometry/expert_params.hpp"
 #include "tumble/odometry/rolling_odometry.hpp"
 #include "tumble/rolling/detail/rolling_smoother.hpp"
 

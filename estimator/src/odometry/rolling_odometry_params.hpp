@@ -6,7 +6,7 @@
 
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
 #include "tumble/common/detail/outlier_filter.hpp"
-#include "tumble/odometry/rolling_expert_params.hpp"
+#include "tumble/odometry/expert_params.hpp"
 
 namespace tumble::odometry {
 

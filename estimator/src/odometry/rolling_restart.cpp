@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "rolling_odometry_impl.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "tumble/common/parameters.hpp"
-#include "tumble/common/pose.hpp"
 #include "tumble/common/status.hpp"
+#include "tumble/common/types.hpp"
 
 /// saved_bytes.hpp writes and reads saved runs and saved maps. All numbers are little-endian.
 ///

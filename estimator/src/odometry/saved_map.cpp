@@ -2,7 +2,7 @@
 #include "tumble/odometry/tumbling_odometry.hpp"
 
 #include "saved_bytes.hpp"
-#include "tumble/mapping/prior_map.hpp"
+#include "tumble/mapping/types.hpp"
 
 namespace tumble {
 

@@ -10,7 +10,7 @@
 
 #include "odometry_pass.hpp"
 #include "tumble/angular_velocity/detail/rest_detector.hpp"
-#include "tumble/odometry/tumbling_expert_params.hpp"
+#include "tumble/odometry/expert_params.hpp"
 
 namespace tumble {
 

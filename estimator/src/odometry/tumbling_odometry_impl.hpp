@@ -20,7 +20,7 @@
 #include "tumble/common/sample_clock.hpp"
 #include "tumble/odometry/detail/recording_estimate.hpp"
 #include "tumble/odometry/detail/waiting_input.hpp"
-#include "tumble/odometry/tumbling_expert_params.hpp"
+#include "tumble/odometry/expert_params.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
 
 namespace tumble {

@@ -4,7 +4,7 @@
 #include "tumble/attitude/detail/regime_smoother.hpp"
 #include "tumble/common/detail/outlier_filter.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
-#include "tumble/odometry/tumbling_expert_params.hpp"
+#include "tumble/odometry/expert_params.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
 
 namespace tumble::odometry {

@@ -6,7 +6,7 @@
 
 #include "../common/symmetric.hpp"
 #include "tumble/common/detail/scalar_update.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::rolling {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rolling_node.hpp"
 #include "tumble/common/parameters.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 #include "tumble/rolling/detail/rolling_params.hpp"
 
 namespace tumble::rolling {

@@ -8,7 +8,7 @@
 
 #include "last_pass.hpp"
 #include "tumble/attitude/strapdown.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

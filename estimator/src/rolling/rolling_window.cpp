@@ -6,7 +6,7 @@
 #include "../common/symmetric.hpp"
 #include "lost_heading.hpp"
 #include "node_rows.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::rolling {
 

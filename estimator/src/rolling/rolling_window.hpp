@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "rolling_node.hpp"
-#include "tumble/common/imu.hpp"
+#include "tumble/common/types.hpp"
 #include "tumble/rolling/detail/rolling_smoother.hpp"
 
 namespace tumble::rolling {

@@ -7,9 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "tumble/common/fields_by_name.hpp"
-#include "tumble/odometry/rolling_expert_params.hpp"
-#include "tumble/odometry/tumbling_expert_params.hpp"
+#include "tumble/common/parameters.hpp"
+#include "tumble/odometry/expert_params.hpp"
 #include "tumble/tumble.hpp"
 
 /// node_params.hpp defines the parameters of the nodes. The C++ nodes and the Python node declare their parameters from

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "tumble/common/status.hpp"
-#include "tumble/common/time.hpp"
-#include "tumble/mapping/lidar.hpp"
+#include "tumble/common/types.hpp"
+#include "tumble/mapping/types.hpp"
 #include "tumble_ros/point_fields.hpp"
 
 namespace tumble::ros {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "tumble/common/status.hpp"
-#include "tumble/common/time.hpp"
+#include "tumble/common/types.hpp"
 
 /// point_fields.hpp reads the bytes and field names of point clouds from lidar drivers. The nodes and the import of
 /// bags use these functions, so nodes and import accept the same formats.

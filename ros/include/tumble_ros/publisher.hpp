@@ -6,10 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "tumble/angular_velocity/rate_state.hpp"
-#include "tumble/common/pose.hpp"
-#include "tumble/common/time.hpp"
-#include "tumble/mapping/lidar.hpp"
+#include "tumble/angular_velocity/types.hpp"
+#include "tumble/common/types.hpp"
+#include "tumble/mapping/types.hpp"
 
 namespace tumble::ros {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "tumble/common/status.hpp"
-#include "tumble/common/time.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::ros {
 

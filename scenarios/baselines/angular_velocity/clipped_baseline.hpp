@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/clipping_finder.hpp"
-#include "tumble/angular_velocity/rate_state.hpp"
-#include "tumble/common/imu.hpp"
+#include "tumble/angular_velocity/types.hpp"
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::baselines {
 

@@ -9,7 +9,7 @@
 #include "tumble/attitude/detail/tilt.hpp"
 #include "tumble/attitude/detail/timing.hpp"
 #include "tumble/attitude/strapdown.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::baselines {
 

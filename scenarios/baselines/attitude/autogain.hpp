@@ -4,9 +4,9 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 
-#include "tumble/common/imu.hpp"
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::baselines {
 

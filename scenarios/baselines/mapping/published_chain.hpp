@@ -11,8 +11,8 @@
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/mapping/detail/voxel_map.hpp"
-#include "tumble/mapping/lidar.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
+#include "tumble/mapping/types.hpp"
 
 namespace tumble::baselines {
 

@@ -11,8 +11,8 @@
 #include "tumble/mapping/detail/registration.hpp"
 #include "tumble/mapping/detail/sweep_trajectory.hpp"
 #include "tumble/mapping/detail/voxel_map.hpp"
-#include "tumble/mapping/lidar.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
+#include "tumble/mapping/types.hpp"
 
 namespace tumble::baselines {
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tumble/common/so3.hpp"
 #include "tumble/common/status.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::baselines {
 

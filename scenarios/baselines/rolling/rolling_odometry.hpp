@@ -4,8 +4,8 @@
 #include <Eigen/Geometry>
 
 #include "tumble/common/parameters.hpp"
-#include "tumble/common/pose.hpp"
 #include "tumble/common/status.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::baselines {
 

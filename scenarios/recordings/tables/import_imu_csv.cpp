@@ -25,7 +25,7 @@
 #include "scenarios/recordings/trajectories/reference.hpp"
 #include "scenarios/recordings/upper_median.hpp"
 #include "sim/sensors.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::scenarios {
 

@@ -10,8 +10,7 @@
 #include <optional>
 
 #include "scenarios/recordings/upper_median.hpp"
-#include "tumble/common/so3.hpp"
-#include "tumble/common/time.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::scenarios {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "tests/estimator/mapping/synthetic_room.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 #include "tumble/mapping/detail/registration.hpp"
 
 namespace {

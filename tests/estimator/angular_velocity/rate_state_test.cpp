@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/rate_state.hpp"
+#include "tumble/angular_velocity/types.hpp"
 
 #include <gtest/gtest.h>
 

@@ -13,7 +13,7 @@
 #include "oracles/gaussian.hpp"
 #include "tumble/angular_velocity/detail/rate_model.hpp"
 #include "tumble/angular_velocity/detail/rate_smoother.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 #include "tumble_recording.hpp"
 
 namespace tumble {

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "tumble/angular_velocity/rate_state.hpp"
-#include "tumble/common/imu.hpp"
+#include "tumble/angular_velocity/types.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

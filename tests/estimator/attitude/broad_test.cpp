@@ -16,7 +16,7 @@
 #include "tumble/attitude/detail/imu_plausibility.hpp"
 #include "tumble/attitude/detail/tumble_attitude.hpp"
 #include "tumble/attitude/detail/vqf.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 namespace {

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "tumble/attitude/detail/tumble_attitude.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 namespace {

@@ -8,9 +8,8 @@
 #include <limits>
 #include <vector>
 
-#include "tumble/common/imu.hpp"
-#include "tumble/common/so3.hpp"
 #include "tumble/common/status.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::testing {
 

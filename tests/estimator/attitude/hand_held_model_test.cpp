@@ -8,7 +8,7 @@
 #include <functional>
 
 #include "oracles/gaussian.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::hand_held {
 namespace {

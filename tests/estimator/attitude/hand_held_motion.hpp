@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tumble/attitude/detail/hand_held_smoother.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 /// hand_held_motion.hpp is a hand-held body in closed form, similar to a twirled wand: Exp(a(t) x) Exp(b(t) y) with a
 /// spin a about its long axis, far beyond the gyro's saturation level for tenths of a second, and a slow tilt b; the

@@ -18,7 +18,7 @@
 #include "stand_ins/broad_trial.hpp"
 #include "stand_ins/stand_ins.hpp"
 #include "tumble/attitude/detail/hand_held_smoother.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "estimator/attitude/filter_contract.hpp"
 #include "tumble/attitude/detail/imu_merge.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 namespace {

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "estimator/attitude/filter_contract.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "oracles/gaussian.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 namespace {

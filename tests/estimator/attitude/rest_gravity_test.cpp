@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "oracles/gaussian.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 namespace {

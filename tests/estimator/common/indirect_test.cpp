@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/common/indirect.hpp"
+#include "tumble/common/parameters.hpp"
 
 #include <gtest/gtest.h>
 

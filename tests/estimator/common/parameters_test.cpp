@@ -10,8 +10,6 @@
 #include <type_traits>
 #include <vector>
 
-#include "tumble/common/fields_by_name.hpp"
-
 namespace tumble {
 namespace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 #include <gtest/gtest.h>
 

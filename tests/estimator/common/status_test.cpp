@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "tumble/common/detail/sample_check.hpp"
-#include "tumble/common/imu.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 namespace {

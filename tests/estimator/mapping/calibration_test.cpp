@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Compares the distance of a calibration from the stated one with a closed form.
-#include "tumble/mapping/calibration.hpp"
+#include "tumble/mapping/types.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 
 #include "oracles/gaussian.hpp"
 #include "tests/estimator/mapping/synthetic_room.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
 // compares the reported covariance with true errors, over tumbles with different spin, path and accelerometer bias

@@ -11,7 +11,7 @@
 
 #include "oracles/gaussian.hpp"
 #include "tests/estimator/mapping/room_tumble.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::mapping {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "tests/estimator/mapping/room_tumble.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 namespace {

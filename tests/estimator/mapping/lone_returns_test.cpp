@@ -8,7 +8,7 @@
 #include <set>
 
 #include "tests/estimator/mapping/room_tumble.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests localisation in the map of an earlier run.
-#include "tumble/mapping/prior_map.hpp"
+#include "tumble/mapping/types.hpp"
 
 #include <gtest/gtest.h>
 

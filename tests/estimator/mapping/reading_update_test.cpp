@@ -13,7 +13,7 @@
 
 #include "estimator/src/mapping/prediction.hpp"
 #include "estimator/src/mapping/unknowns.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::mapping {
 namespace {

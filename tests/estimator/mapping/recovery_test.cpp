@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "tests/estimator/mapping/room_rig.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
 // tests wrong calibration at the start, and tracking failure with recovery

@@ -7,7 +7,7 @@
 
 #include "tests/estimator/mapping/room_map.hpp"
 #include "tests/estimator/mapping/synthetic_room.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 namespace {

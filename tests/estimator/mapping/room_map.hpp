@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "tests/estimator/mapping/synthetic_room.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 #include "tumble/mapping/detail/registration.hpp"
 
 /// room_map.hpp provides the maps and priors of the registration tests.

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "tests/estimator/mapping/synthetic_room.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
 /// room_rig.hpp runs the mapper in a synthetic room, sweep by sweep.

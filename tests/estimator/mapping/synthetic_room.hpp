@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "tumble/angular_velocity/rate_state.hpp"
-#include "tumble/common/imu.hpp"
+#include "tumble/angular_velocity/types.hpp"
+#include "tumble/common/types.hpp"
 #include "tumble/mapping/detail/sweep_trajectory.hpp"
-#include "tumble/mapping/lidar.hpp"
+#include "tumble/mapping/types.hpp"
 
 /// synthetic_room.hpp provides an analytic world, motion and sensors, independent of the mapping code.
 namespace tumble::test {

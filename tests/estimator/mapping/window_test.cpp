@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "tests/estimator/mapping/synthetic_room.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
 // sweeps refined together with later ones, the trajectory at any time, and the caller's threads

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "estimator/src/mapping/unknowns.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::mapping {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "tests/estimator/mapping/synthetic_room.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
 

@@ -6,8 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "tumble/common/imu.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::testing {
 

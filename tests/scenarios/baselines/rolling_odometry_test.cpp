@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::baselines {
 namespace {

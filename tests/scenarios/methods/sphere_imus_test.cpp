@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "scenarios/estimates/findings.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::scenarios {
 namespace {

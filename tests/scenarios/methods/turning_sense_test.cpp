@@ -8,7 +8,7 @@
 #include <functional>
 
 #include "tests/scenarios/methods/synthetic_recording.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::scenarios {
 namespace {

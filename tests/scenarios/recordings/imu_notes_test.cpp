@@ -8,7 +8,7 @@
 #include <cmath>
 #include <functional>
 
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::scenarios {
 namespace {

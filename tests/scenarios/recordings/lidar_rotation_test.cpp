@@ -9,7 +9,7 @@
 #include <functional>
 
 #include "scenarios/errors.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::scenarios {
 namespace {

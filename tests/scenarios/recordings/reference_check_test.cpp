@@ -9,7 +9,7 @@
 #include "scenarios/recordings/fixture_recording.hpp"
 #include "scenarios/recordings/import.hpp"
 #include "scenarios/recordings/recording_clock.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::scenarios {
 namespace {

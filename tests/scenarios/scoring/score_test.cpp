@@ -13,7 +13,7 @@
 #include "scenarios/scoring/clipping.hpp"
 #include "scenarios/scoring/perfect_estimate.hpp"
 #include "tests/scenarios/scoring/rig.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::scenarios {
 namespace {

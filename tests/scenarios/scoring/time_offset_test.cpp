@@ -8,7 +8,7 @@
 
 #include "scenarios/scoring/clipping.hpp"
 #include "scenarios/scoring/perfect_estimate.hpp"
-#include "tumble/common/so3.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble::scenarios {
 namespace {

@@ -16,10 +16,10 @@
 #include "tumble/angular_velocity/detail/rate_stream_state.hpp"
 #include "tumble/angular_velocity/detail/rest_detector.hpp"
 #include "tumble/angular_velocity/detail/streaming_clipping_finder.hpp"
-#include "tumble/angular_velocity/rate_state.hpp"
-#include "tumble/common/imu.hpp"
+#include "tumble/angular_velocity/types.hpp"
 #include "tumble/common/sensor_health.hpp"
 #include "tumble/common/status.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

@@ -2,11 +2,17 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
 #include <type_traits>
+#include <utility>
 
 #include "tumble/common/status.hpp"
 
@@ -99,5 +105,96 @@ void require_valid_fields(const Params& params) {
   Params::fields(params, visitor);
   detail::throw_if_out_of_bounds(found);
 }
+
+namespace detail {
+
+/// Prepends the prefixes of nested groups to each parameter's name.
+template <class Each>
+class PrefixedNameVisitor {
+ public:
+  explicit PrefixedNameVisitor(Each& each) : callback_(each) {}
+
+  template <class T>
+  void operator()(T& value, const Field& field) {
+    callback_(prefix_ + field.name, value, field);
+  }
+  template <class Params>
+  void group(const char* prefix, Params& params) {
+    const std::string outer = prefix_;
+    prefix_ += prefix;
+    std::remove_cv_t<Params>::fields(params, *this);
+    prefix_ = outer;
+  }
+
+ private:
+  Each& callback_;
+  std::string prefix_;
+};
+
+}  // namespace detail
+
+/// Calls `each(name, value, field)` for each parameter in the struct `params`, in order of declaration. `name` is a
+/// std::string that starts with the prefixes of the parameter's groups.
+template <class Params, class Each>
+void visit_by_name(Params& params, Each each) {
+  detail::PrefixedNameVisitor<Each> visitor(each);
+  std::remove_cv_t<Params>::fields(params, visitor);
+}
+
+/// Returns true if `name` equals one of `patterns`. A pattern that ends in '*' matches every name with that prefix.
+template <class Text>
+bool matches_any(std::string_view name, std::span<const Text> patterns) {
+  return std::any_of(patterns.begin(), patterns.end(), [&](std::string_view pattern) {
+    if (!pattern.ends_with('*')) return name == pattern;
+    return name.starts_with(pattern.substr(0, pattern.size() - 1));
+  });
+}
+
+/// HeapValue stores a value on the heap. A copy of a HeapValue copies the value, and a constant HeapValue gives access
+/// to a constant value, like std::indirect of C++26. T may be an incomplete type where a HeapValue is a member. The
+/// source file that uses the following functions, or instantiates them explicitly, needs the complete type. A
+/// moved-from HeapValue has no value until it is assigned.
+template <class T>
+class HeapValue {
+ public:
+  /// Constructs the value without arguments.
+  HeapValue();
+  explicit HeapValue(std::unique_ptr<T> value);
+  HeapValue(const HeapValue& other);
+  HeapValue(HeapValue&& other) noexcept;
+  HeapValue& operator=(const HeapValue& other);
+  HeapValue& operator=(HeapValue&& other) noexcept;
+  ~HeapValue();
+
+  T& operator*() { return *value_; }
+  const T& operator*() const { return *value_; }
+  T* operator->() { return value_.get(); }
+  const T* operator->() const { return value_.get(); }
+
+ private:
+  std::unique_ptr<T> value_;
+};
+
+// The following functions are not inline, because an `extern template` declaration does not prevent the instantiation
+// of inline functions. The instantiation fails in files in which T is incomplete.
+template <class T>
+HeapValue<T>::HeapValue() : value_(std::make_unique<T>()) {}
+template <class T>
+HeapValue<T>::HeapValue(std::unique_ptr<T> value) : value_(std::move(value)) {}
+template <class T>
+HeapValue<T>::HeapValue(const HeapValue& other) : value_(std::make_unique<T>(*other.value_)) {}
+template <class T>
+HeapValue<T>::HeapValue(HeapValue&& other) noexcept : value_(std::move(other.value_)) {}
+template <class T>
+HeapValue<T>& HeapValue<T>::operator=(const HeapValue& other) {
+  return *this = HeapValue(other);
+}
+template <class T>
+HeapValue<T>& HeapValue<T>::operator=(HeapValue&& other) noexcept {
+  value_ = std::move(other.value_);
+  return *this;
+}
+template <class T>
+HeapValue<T>::~HeapValue() = default;
 
 }  // namespace tumble

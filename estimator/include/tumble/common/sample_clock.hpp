@@ -6,10 +6,9 @@
 #include <optional>
 #include <span>
 
-#include "tumble/common/imu.hpp"
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
-#include "tumble/common/time.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

@@ -5,8 +5,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "tumble/common/same_compiler_settings.hpp"  // IWYU pragma: keep
-
 namespace tumble {
 
 enum class ErrorCode : std::uint8_t {

@@ -7,16 +7,11 @@
 #include <span>
 #include <vector>
 
-#include "tumble/angular_velocity/rate_state.hpp"
-#include "tumble/common/imu.hpp"
-#include "tumble/common/pose.hpp"
+#include "tumble/angular_velocity/types.hpp"
 #include "tumble/common/status.hpp"
-#include "tumble/mapping/calibration.hpp"
+#include "tumble/common/types.hpp"
 #include "tumble/mapping/detail/odometry_params.hpp"
-#include "tumble/mapping/further_readings.hpp"
-#include "tumble/mapping/lidar.hpp"
-#include "tumble/mapping/prior_map.hpp"
-#include "tumble/mapping/sweep_report.hpp"
+#include "tumble/mapping/types.hpp"
 
 namespace tumble {
 

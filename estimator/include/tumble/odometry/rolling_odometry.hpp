@@ -8,12 +8,10 @@
 #include <span>
 #include <vector>
 
-#include "tumble/common/imu.hpp"
-#include "tumble/common/indirect.hpp"
 #include "tumble/common/parameters.hpp"
-#include "tumble/common/pose.hpp"
 #include "tumble/common/sensor_health.hpp"
 #include "tumble/common/status.hpp"
+#include "tumble/common/types.hpp"
 #include "tumble/odometry/sensor_sheets.hpp"
 #include "tumble/rolling/rolling_mode.hpp"
 
@@ -59,7 +57,7 @@ class RollingOdometry {
     double lag_s = 0.0;
 
     using Expert = RollingOdometryExpertParams;
-    HeapValue<Expert> expert;  ///< rarely changed parameters, odometry/rolling_expert_params.hpp
+    HeapValue<Expert> expert;  ///< rarely changed parameters, odometry/expert_params.hpp
 
     /// Names of parameters that are computed from other parameters and from data sheets; user values are ignored.
     static std::span<const char* const> derived_fields();
@@ -69,7 +67,7 @@ class RollingOdometry {
     void widen_priors_for_unknown_imus();
 
     /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning. A caller needs
-    /// odometry/rolling_expert_params.hpp.
+    /// odometry/expert_params.hpp.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.radius_m, {"radius_m", "m", 1e-3, 100.0, "radius of the sphere", ParameterRank::common_use});

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "tumble/mapping/lidar.hpp"
+#include "tumble/mapping/types.hpp"
 
 namespace tumble {
 

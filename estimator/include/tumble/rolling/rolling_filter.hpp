@@ -6,8 +6,8 @@
 #include <cstdint>
 
 #include "tumble/common/detail/imu_average.hpp"
-#include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
+#include "tumble/common/types.hpp"
 #include "tumble/rolling/detail/rolling_model.hpp"
 #include "tumble/rolling/detail/rolling_params.hpp"
 

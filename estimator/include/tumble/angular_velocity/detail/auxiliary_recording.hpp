@@ -6,8 +6,8 @@
 
 #include "tumble/angular_velocity/detail/rate_model_params.hpp"
 #include "tumble/angular_velocity/detail/saturation_limit_detector.hpp"
-#include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

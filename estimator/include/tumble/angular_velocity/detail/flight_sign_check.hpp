@@ -6,9 +6,9 @@
 #include <cstddef>
 
 #include "tumble/common/detail/imu_average.hpp"
-#include "tumble/common/imu.hpp"
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/triad.hpp"
-#include "tumble/common/imu.hpp"
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/sensor_health.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/rate_stream_state.hpp"
-#include "tumble/common/imu.hpp"
+#include "tumble/common/types.hpp"
 
 /// Interpolates the readings of a gyro that updates more slowly than its log, by a cubic polynomial: rate_stream.md
 /// (R96).

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "tumble/angular_velocity/rig_constants.hpp"
+#include "tumble/angular_velocity/types.hpp"
 
 namespace tumble {
 

@@ -9,8 +9,7 @@
 #include "tumble/angular_velocity/detail/rate_model_params.hpp"
 #include "tumble/angular_velocity/detail/rate_observation.hpp"
 #include "tumble/angular_velocity/detail/sensor_errors.hpp"
-#include "tumble/angular_velocity/rate_state.hpp"
-#include "tumble/angular_velocity/rig_constants.hpp"
+#include "tumble/angular_velocity/types.hpp"
 
 namespace tumble {
 

@@ -10,7 +10,7 @@
 #include "tumble/angular_velocity/detail/auxiliary_imu.hpp"
 #include "tumble/angular_velocity/detail/rate_model_expert_params.hpp"
 #include "tumble/angular_velocity/detail/sensor_errors.hpp"
-#include "tumble/angular_velocity/rig_constants.hpp"
+#include "tumble/angular_velocity/types.hpp"
 #include "tumble/common/parameters.hpp"
 
 namespace tumble {

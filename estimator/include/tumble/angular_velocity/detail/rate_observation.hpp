@@ -11,7 +11,7 @@
 #include "tumble/angular_velocity/detail/rate_model_params.hpp"
 #include "tumble/angular_velocity/detail/saturation_limit_detector.hpp"
 #include "tumble/angular_velocity/detail/saturation_plane.hpp"
-#include "tumble/common/imu.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

@@ -14,10 +14,10 @@
 #include "tumble/angular_velocity/detail/saturation_limit_detector.hpp"
 #include "tumble/angular_velocity/detail/saturation_plane.hpp"
 #include "tumble/angular_velocity/detail/sensor_errors.hpp"
-#include "tumble/angular_velocity/rate_state.hpp"
-#include "tumble/common/imu.hpp"
+#include "tumble/angular_velocity/types.hpp"
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

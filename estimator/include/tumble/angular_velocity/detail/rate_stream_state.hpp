@@ -19,9 +19,8 @@
 #include "tumble/angular_velocity/detail/saturation_limit_detector.hpp"
 #include "tumble/angular_velocity/detail/sensor_errors.hpp"
 #include "tumble/angular_velocity/detail/streaming_clipping_finder.hpp"
-#include "tumble/angular_velocity/rate_state.hpp"
-#include "tumble/angular_velocity/rig_constants.hpp"
-#include "tumble/common/time.hpp"
+#include "tumble/angular_velocity/types.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <span>
 
-#include "tumble/common/imu.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "tumble/angular_velocity/detail/triad.hpp"
-#include "tumble/common/imu.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "tumble/common/imu.hpp"
 #include "tumble/common/parameters.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-#include "tumble/common/imu.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-#include "tumble/common/same_compiler_settings.hpp"  // IWYU pragma: keep
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

@@ -8,8 +8,8 @@
 
 #include "tumble/angular_velocity/detail/saturation_plane.hpp"
 #include "tumble/angular_velocity/detail/triad.hpp"
-#include "tumble/common/imu.hpp"
 #include "tumble/common/parameters.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

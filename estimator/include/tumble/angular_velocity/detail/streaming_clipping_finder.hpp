@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/clipping_finder.hpp"
-#include "tumble/common/imu.hpp"
 #include "tumble/common/parameters.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

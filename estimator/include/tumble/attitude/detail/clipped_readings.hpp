@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/clipping_finder.hpp"
-#include "tumble/angular_velocity/rate_state.hpp"
+#include "tumble/angular_velocity/types.hpp"
 #include "tumble/attitude/detail/hand_held_smoother.hpp"
-#include "tumble/common/imu.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

@@ -8,12 +8,11 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/saturation_limit_detector.hpp"
-#include "tumble/angular_velocity/rate_state.hpp"
+#include "tumble/angular_velocity/types.hpp"
 #include "tumble/attitude/detail/hand_held_model.hpp"
 #include "tumble/attitude/detail/hand_held_params.hpp"
-#include "tumble/common/imu.hpp"
-#include "tumble/common/pose.hpp"
 #include "tumble/common/status.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

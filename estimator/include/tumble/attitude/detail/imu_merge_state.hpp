@@ -9,7 +9,7 @@
 #include "tumble/attitude/detail/multi_imu_sign_check.hpp"
 #include "tumble/attitude/detail/rate_recovery.hpp"
 #include "tumble/common/detail/imu_average.hpp"
-#include "tumble/common/time.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

@@ -5,8 +5,8 @@
 #include <limits>
 #include <span>
 
-#include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

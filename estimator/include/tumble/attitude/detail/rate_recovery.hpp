@@ -7,7 +7,7 @@
 #include <span>
 
 #include "tumble/angular_velocity/detail/saturation_plane.hpp"
-#include "tumble/common/imu.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

@@ -6,10 +6,9 @@
 #include "tumble/angular_velocity/detail/rest_detector.hpp"
 #include "tumble/attitude/detail/coarse_alignment.hpp"
 #include "tumble/common/detail/imu_average.hpp"
-#include "tumble/common/imu.hpp"
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
-#include "tumble/common/time.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "tumble/common/imu.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "tumble/common/imu.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

@@ -7,10 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "tumble/mapping/calibration.hpp"
 #include "tumble/mapping/detail/spatial_hash.hpp"
 #include "tumble/mapping/detail/sweep_trajectory.hpp"
-#include "tumble/mapping/lidar.hpp"
+#include "tumble/mapping/types.hpp"
 
 namespace tumble {
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <functional>
 
-#include "tumble/common/same_compiler_settings.hpp"  // IWYU pragma: keep
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

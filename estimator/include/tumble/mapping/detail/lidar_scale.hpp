@@ -8,10 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "tumble/common/imu.hpp"
-#include "tumble/common/pose.hpp"
 #include "tumble/common/status.hpp"
-#include "tumble/mapping/sweep_report.hpp"
+#include "tumble/common/types.hpp"
+#include "tumble/mapping/types.hpp"
 
 namespace tumble {
 

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "tumble/common/status.hpp"
-#include "tumble/common/time.hpp"
-#include "tumble/mapping/sweep_report.hpp"
+#include "tumble/common/types.hpp"
+#include "tumble/mapping/types.hpp"
 
 namespace tumble {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "tumble/mapping/detail/voxel_map.hpp"
-#include "tumble/mapping/lidar.hpp"
+#include "tumble/mapping/types.hpp"
 
 namespace tumble::mapping {
 

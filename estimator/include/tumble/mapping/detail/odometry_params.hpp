@@ -5,8 +5,8 @@
 #include <cstddef>
 
 #include "tumble/common/parameters.hpp"
-#include "tumble/mapping/calibration.hpp"
 #include "tumble/mapping/detail/executor.hpp"
+#include "tumble/mapping/types.hpp"
 
 namespace tumble {
 

@@ -4,9 +4,9 @@
 #include <span>
 
 #include "tumble/common/status.hpp"
-#include "tumble/common/time.hpp"
+#include "tumble/common/types.hpp"
 #include "tumble/mapping/detail/deskew.hpp"
-#include "tumble/mapping/lidar.hpp"
+#include "tumble/mapping/types.hpp"
 
 namespace tumble::mapping {
 

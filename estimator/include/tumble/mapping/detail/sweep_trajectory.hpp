@@ -9,9 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "tumble/common/pose.hpp"
 #include "tumble/common/status.hpp"
-#include "tumble/common/time.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
 

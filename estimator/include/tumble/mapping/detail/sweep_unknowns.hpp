@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "tumble/mapping/calibration.hpp"
 #include "tumble/mapping/detail/sweep_trajectory.hpp"
+#include "tumble/mapping/types.hpp"
 
 namespace tumble {
 

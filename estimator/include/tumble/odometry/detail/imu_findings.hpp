@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
-#include "tumble/angular_velocity/rate_state.hpp"
+#include "tumble/angular_velocity/types.hpp"
 #include "tumble/attitude/detail/imu_merge.hpp"
 #include "tumble/attitude/detail/imu_plausibility.hpp"
 #include "tumble/attitude/detail/rest_gravity.hpp"
-#include "tumble/common/imu.hpp"
 #include "tumble/common/sensor_health.hpp"
+#include "tumble/common/types.hpp"
 #include "tumble/odometry/detail/merge_recordings.hpp"
 
 namespace tumble {

@@ -11,8 +11,8 @@
 #include "tumble/common/sensor_health.hpp"
 #include "tumble/mapping/detail/lidar_scale.hpp"
 #include "tumble/mapping/detail/localisation.hpp"
-#include "tumble/mapping/further_readings.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
+#include "tumble/mapping/types.hpp"
 #include "tumble/odometry/detail/waiting_input.hpp"
 
 namespace tumble {

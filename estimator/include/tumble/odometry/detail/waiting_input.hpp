@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "tumble/mapping/detail/sweep_trajectory.hpp"
-#include "tumble/mapping/further_readings.hpp"
-#include "tumble/mapping/lidar.hpp"
+#include "tumble/mapping/types.hpp"
 
 namespace tumble {
 

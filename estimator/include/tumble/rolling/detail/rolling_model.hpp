@@ -3,7 +3,7 @@
 
 #include <Eigen/Geometry>
 
-#include "tumble/common/time.hpp"
+#include "tumble/common/types.hpp"
 #include "tumble/rolling/rolling_mode.hpp"
 
 namespace tumble {

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "tumble/common/imu.hpp"
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
+#include "tumble/common/types.hpp"
 #include "tumble/rolling/rolling_filter.hpp"
 
 namespace tumble {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/rig_constants.hpp"
+#include "tumble/angular_velocity/types.hpp"
 
 #include <algorithm>
 #include <array>
@@ -87,6 +87,20 @@ Status check_calibration(const RigCalibration& calibration) {
   const RigConstants::Matrix symmetric = 0.5 * (P + P.transpose());
   if (symmetric.allFinite() && dense::Cholesky(symmetric).ok()) return {};
   return {ErrorCode::degenerate, "calibration covariance", symmetric.trace(), 0.0};
+}
+
+const char* to_string(AngularRateSource source) {
+  switch (source) {
+    case AngularRateSource::measured:
+      return "measured";
+    case AngularRateSource::recovered_in_flight:
+      return "recovered_in_flight";
+    case AngularRateSource::recovered_in_contact:
+      return "recovered_in_contact";
+    case AngularRateSource::lower_bound_only:
+      return "lower_bound_only";
+  }
+  return "unknown";
 }
 
 }  // namespace tumble

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <cstdint>
+
+#include "tumble/common/status.hpp"
+
+namespace tumble {
+
+/// integer nanoseconds since the start of the recording
+using TimeNs = std::int64_t;
+
+/// Largest magnitude of a time stamp that the odometry classes accept: 97 years. Twice the difference of two accepted
+/// time stamps fits into 64 bits.
+inline constexpr TimeNs kStampMax_ns = 3'070'000'000'000'000'000;
+
+/// The relative error of seconds() is at most 2^-53 for durations below 104 days.
+constexpr double seconds(TimeNs span_ns) {
+  return static_cast<double>(span_ns) * 1e-9;
+}
+
+enum ClipFlag : std::uint8_t {
+  kClipGyroX = 1,
+  kClipGyroY = 2,
+  kClipGyroZ = 4,
+  kClipAccelX = 8,
+  kClipAccelY = 16,
+  kClipAccelZ = 32,
+};
+inline constexpr std::uint8_t kClipGyro = kClipGyroX | kClipGyroY | kClipGyroZ;
+inline constexpr std::uint8_t kClipAccel = kClipAccelX | kClipAccelY | kClipAccelZ;
+
+/// One reading of an inertial measurement unit (IMU), in the IMU's own axes I. The angular rate and the specific force
+/// are means over a time window that ends at `time_ns`.
+struct ImuSample {
+  TimeNs time_ns = 0;
+  Eigen::Vector3d angular_velocity_rad_s = Eigen::Vector3d::Zero();  ///< measured angular velocity w_WI_I
+  Eigen::Vector3d specific_force_m_s2 =
+      Eigen::Vector3d::Zero();         ///< measured f_I: acceleration minus gravity; +9.8 upwards at rest
+  std::uint8_t device_clip_flags = 0;  ///< ClipFlag bits; 0 if the device reports no clipping
+};
+
+inline bool is_finite(const ImuSample& sample) {
+  return sample.angular_velocity_rad_s.allFinite() && sample.specific_force_m_s2.allFinite();
+}
+
+/// Returns `non_finite` for NaN and infinity, `out_of_range` for a magnitude above 1e6, and otherwise `ok`.
+Status check_sample(const ImuSample& sample);
+
+/// Returns `time_order` if `time_ns` is not later than `previous_ns`. Returns `gap`, with the gap in seconds, if the
+/// time stamps are more than `gap_max_s` apart.
+Status check_stamp_order(TimeNs time_ns, TimeNs previous_ns, double gap_max_s);
+
+/// attitude of a sensor or body A in the world frame W at one time
+struct AttitudeState {
+  TimeNs time_ns = 0;
+  Eigen::Quaterniond orientation_W = Eigen::Quaterniond::Identity();
+  /// covariance of the attitude error phi in world axes, with q_true = Exp(phi) * q_WA; zero if not estimated
+  Eigen::Matrix3d covariance_rad2 = Eigen::Matrix3d::Zero();
+};
+
+/// pose and velocity of a frame A in the world frame W at one time
+struct PoseState {
+  TimeNs time_ns = 0;
+  Eigen::Vector3d position_W_m = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond orientation_W = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d velocity_W_m_s = Eigen::Vector3d::Zero();
+  /// Covariance of the position error [m] and the attitude error phi [rad], both in world axes; zero if not estimated.
+  /// The attitude error is defined by q_true = Exp(phi) * q_WA.
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+};
+
+}  // namespace tumble
+
+namespace tumble::so3 {
+
+/// Returns the skew-symmetric matrix [v]x with [v]x w = v x w.
+Eigen::Matrix3d hat(const Eigen::Vector3d& v);
+
+/// Returns the unit quaternion of a rotation by |phi| radians about the vector phi.
+Eigen::Quaterniond exp(const Eigen::Vector3d& phi);
+
+/// Returns the shortest rotation vector (length at most pi) of a unit quaternion. For a half turn, the first non-zero
+/// component of the rotation vector is positive.
+Eigen::Vector3d logarithm(const Eigen::Quaterniond& q);
+
+/// Returns the left Jacobian J_l(phi) of SO(3), defined by Exp(phi + d) = Exp(J_l d) Exp(phi) to first order in d.
+Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& phi);
+
+/// Returns the inverse of the left Jacobian of SO(3), which is finite for |phi| < 2 pi.
+Eigen::Matrix3d left_jacobian_inverse(const Eigen::Vector3d& phi);
+
+/// Returns the smallest rotation that turns the unit vector `from` into the unit vector `to`.
+Eigen::Quaterniond shortest_arc(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+
+}  // namespace tumble::so3
+
+/// A program and the compiled library must use the same memory layout for Eigen's matrices and the standard library's
+/// containers. A program with another layout, for example through EIGEN_MAX_STATIC_ALIGN_BYTES or _GLIBCXX_DEBUG, does
+/// not link. The linker then reports CompilerSettingsCheck<...>::linked as missing.
+namespace tumble::detail {
+
+#ifdef _GLIBCXX_DEBUG
+inline constexpr bool kCheckedContainers = true;
+#else
+inline constexpr bool kCheckedContainers = false;
+#endif
+
+#ifdef EIGEN_DEFAULT_TO_ROW_MAJOR
+inline constexpr bool kRowMajor = true;
+#else
+inline constexpr bool kRowMajor = false;
+#endif
+
+template <int eigen_static_alignment, bool eigen_malloc_is_aligned, bool eigen_row_major, std::size_t eigen_index_bytes,
+          bool checked_containers>
+struct CompilerSettingsCheck {
+  static const char link_time_check;
+};
+
+using CompiledHere = CompilerSettingsCheck<EIGEN_MAX_STATIC_ALIGN_BYTES, EIGEN_MALLOC_ALREADY_ALIGNED != 0, kRowMajor,
+                                           sizeof(Eigen::Index), kCheckedContainers>;
+
+template <>
+const char CompiledHere::link_time_check;  // a declaration; src/common/same_compiler_settings.cpp has the definition
+
+/// This reference to `link_time_check` makes the linker check each source file.
+[[gnu::used]] static const char* const kSameCompilerSettings = &CompiledHere::link_time_check;
+
+}  // namespace tumble::detail

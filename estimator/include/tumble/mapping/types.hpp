@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "tumble/common/parameters.hpp"
+#include "tumble/common/status.hpp"
+#include "tumble/common/types.hpp"
+
+namespace tumble {
+
+/// lidar return in lidar axes L at the time when the laser fired, not deskewed
+struct LidarPoint {
+  Eigen::Vector3f position_L_m = Eigen::Vector3f::Zero();
+  float intensity = 0.0f;       ///< 0 to 1
+  std::uint32_t offset_ns = 0;  ///< firing time after the start of the sweep
+  std::uint16_t ring = 0;       ///< number of the laser, from bottom to top, or of the scan line
+};
+
+/// point of the map, in world axes
+struct MapPoint {
+  Eigen::Vector3f position_W_m = Eigen::Vector3f::Zero();
+  Eigen::Vector3f normal_W = Eigen::Vector3f::Zero();  ///< unit normal; zero if no plane could be fitted
+  float sigma_m = 0.0f;                                ///< standard deviation of the position
+};
+
+/// Calibration between lidar, IMU and world, which the registration refines during the motion. The error vector
+/// contains rotation of T_IL, translation of T_IL, time offset and gravity, in this order. The rotation error phi is a
+/// left perturbation in IMU axes: R_true = Exp(phi) R.
+struct LidarImuCalibration {
+  static constexpr int kErrorCount = 10;
+  using Covariance = Eigen::Matrix<double, kErrorCount, kErrorCount>;
+
+  Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
+  double time_offset_s = 0.0;                              ///< IMU clock minus lidar clock
+  Eigen::Vector3d gravity_W_m_s2 = Eigen::Vector3d(0.0, 0.0, -9.80665);
+
+  void add(const Eigen::Matrix<double, kErrorCount, 1>& error);
+  /// Returns the error vector that transforms `other` to this calibration, to first order in the rotation difference.
+  Eigen::Matrix<double, kErrorCount, 1> minus(const LidarImuCalibration& other) const;
+};
+
+/// `deviations` is the result of LidarImuCalibrationPrior::distance_in_sigmas(). Returns `out_of_range` above
+/// kDistanceMax_sigmas.
+Status distance_verdict(double deviations);
+
+/// Calibration that the caller states, with a standard deviation of the time offset, and standard deviations of
+/// rotation and translation per axis.
+/// A standard deviation of 0 marks an exact part of the calibration.
+struct LidarImuCalibrationPrior {
+  static constexpr double kDistanceMax_sigmas = 5.0;  ///< largest plausible result of distance_in_sigmas()
+
+  LidarImuCalibration calibration;
+  double mount_sigma_rad = 0.0, mount_sigma_m = 0.0, time_offset_sigma_s = 0.0;
+
+  /// Returns how many stated standard deviations an estimated calibration is from the stated calibration, by equation
+  /// (R69) of mapping.md. The result is the largest of the distances of rotation, translation and time offset. The
+  /// result is infinite if a value with standard deviation 0 differs.
+  double distance_in_sigmas(const LidarImuCalibration& estimated) const;
+  /// Returns `out_of_range` if distance_in_sigmas() is above kDistanceMax_sigmas, because the stated calibration is
+  /// probably wrong.
+  Status verdict(const LidarImuCalibration& estimated) const;
+};
+
+/// Describes the parameters that state the accuracy of the lidar's mounting and time offset.
+namespace calibration_fields {
+
+inline constexpr Field kMountSigma_rad{
+    "mount_sigma_rad",
+    "rad",
+    0.0,
+    1.0,
+    "prior standard deviation of the lidar's orientation relative to the IMU; 0: exact, no estimate",
+    ParameterRank::common_use};
+inline constexpr Field kMountSigma_m{
+    "mount_sigma_m",
+    "m",
+    0.0,
+    1.0,
+    "prior standard deviation of the lidar's position relative to the IMU; 0: exact, no estimate",
+    ParameterRank::common_use};
+inline constexpr Field kTimeOffsetSigma_s{
+    "time_offset_sigma_s",
+    "s",
+    0.0,
+    0.02,
+    "prior standard deviation of the time offset between lidar and IMU; 0: no offset, no estimate",
+    ParameterRank::common_use};
+
+}  // namespace calibration_fields
+
+/// Odometer readings describe the motion of the robot within a sweep, measured by wheels, legs, a camera or a radar.
+/// Times of odometer readings are in the IMU's clock. The errors of an odometer reading are assumed independent of all
+/// other errors. Wheel slip beyond the stated uncertainty corrupts the estimate.
+
+struct VelocityReading {
+  TimeNs time_ns = 0;
+  Eigen::Vector3d v_WI_I_m_s = Eigen::Vector3d::Zero();  ///< velocity in IMU axes at the reading's time
+  double sigma_m_s = 0.0;                                ///< standard deviation of each axis
+};
+
+/// Motion of the IMU I between two times. For IMU poses T_OI in a drifting odometer frame O, the motion is
+/// T_OI(from)^-1 T_OI(to).
+struct MotionReading {
+  TimeNs from_ns = 0;
+  TimeNs to_ns = 0;
+  Eigen::Isometry3d relative_pose = Eigen::Isometry3d::Identity();
+  /// Covariance of the position error [m] and the attitude error phi [rad], both in IMU axes at `from_ns`, with R_true
+  /// = Exp(phi) R. Set a large variance for components that the odometer does not measure.
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+};
+
+using OdometerReading = std::variant<VelocityReading, MotionReading>;
+
+/// Returns `non_finite` if a number is not finite. Returns `out_of_range` if a standard deviation is not above 0, a
+/// covariance is not positive definite, or a rotation is invalid. Returns `time_order` if a motion does not end after
+/// its start.
+Status check_reading(const OdometerReading& reading);
+TimeNs reading_start_ns(const OdometerReading& reading);
+TimeNs reading_end_ns(const OdometerReading& reading);
+
+/// PositionReading is the position of an antenna or tag A on the robot, in a position frame P with z up, for example
+/// from GPS (as local east, north, up) or from beacons. PositionAlignment assumes that the errors of the readings are
+/// independent. If the errors are correlated over time, state a larger covariance.
+struct PositionReading {
+  TimeNs time_ns = 0;  ///< in the IMU's clock
+  Eigen::Vector3d antenna_position_P_m = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< in the frame P; the mean variance of the axes is used
+  Eigen::Vector3d antenna_lever_arm_I_m = Eigen::Vector3d::Zero();  ///< position of the antenna or tag A in IMU axes
+};
+
+/// PositionFrame is the estimated transform from the odometry frame W of the poses to the position frame P of the
+/// position readings. The transform includes the drift of the odometry, so poses in the position frame do not drift.
+struct PositionFrame {
+  Eigen::Isometry3d T_readings_world = Eigen::Isometry3d::Identity();  ///< the rotation is about the vertical
+  Eigen::Vector3d reference_point_W_m = Eigen::Vector3d::Zero();
+  /// Covariance of the error of T_PW, in axes of the position frame P: translation at `reference_point_W_m` [m], and
+  /// rotation about the vertical through this point [rad].
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
+
+  /// Converts a pose from the odometry frame W to the position frame P. The covariance of position and heading comes
+  /// from `covariance`, and the covariance of the tilt from `in_W`.
+  PoseState transform(const PoseState& in_W) const;
+};
+
+/// Map of an earlier run, in which a new run localises the robot. The map frame M has the axis z up.
+struct PriorMap {
+  std::vector<MapPoint> points = {};  ///< points with normals, in the map frame M; to_map_points() computes normals
+  /// Start pose of the IMU in the map frame M, if known; only position and heading are used. If the start pose is
+  /// unknown, the run may start anywhere in the map.
+  std::optional<Eigen::Isometry3d> T_prior_map_imu = std::nullopt;
+  double sigma_m = 0.0;    ///< standard deviation of the position of T_prior_map_imu per axis; 0: exact
+  double sigma_rad = 0.0;  ///< standard deviation of the heading of T_prior_map_imu; 0: exact
+  bool extend =
+      true;  ///< true: sweeps extend the map and remove points that they see through; false: the map is constant
+};
+
+/// Returns `non_finite`, or `out_of_range` for a negative standard deviation, a normal that is neither zero nor a unit
+/// vector, or a position beyond 50 km.
+Status check_map_points(std::span<const MapPoint> points);
+/// Returns `ok`, an error of check_map_points(), or `insufficient_data` if fewer than 100 points have a normal.
+Status check_prior_map(const PriorMap& map);
+
+/// Converts positions, for example of a PCD or PLY file, to map points with normals. At most one point per cube of 0.1
+/// m remains, and positions that are not finite are dropped. The sign of a normal is arbitrary, and `sigma_m` is the
+/// standard deviation of each position. Cost: O(points).
+std::vector<MapPoint> to_map_points(std::span<const Eigen::Vector3f> positions_M_m, float sigma_m = 0.02f);
+
+/// Source of a sweep's pose: registration or inertial prediction. A `degenerate` sweep with eigenvalue_ratio 0 uses the
+/// prediction in every direction.
+enum class SweepVerdict : std::uint8_t {
+  first,       ///< the sweep started the map
+  registered,  ///< aligned with the map in all six directions
+  degenerate,  ///< aligned where surfaces constrain the pose, predicted elsewhere
+  rejected,    ///< too few matches or too large a correction: pose is predicted
+};
+const char* to_string(SweepVerdict verdict);
+
+struct SweepReport {
+  SweepVerdict verdict = SweepVerdict::rejected;
+  PoseState pose;  ///< pose and velocity of the IMU at the end of the sweep, with covariance
+  /// covariance of the velocity in IMU axes at the end of the sweep [m^2/s^2]
+  Eigen::Matrix3d velocity_covariance_I_m2_s2 = Eigen::Matrix3d::Zero();
+  std::vector<PoseState> trajectory;  ///< IMU poses within the sweep, corrected by the registration
+  /// Final poses of the oldest sweep that the fixed-lag smoother refines; empty until `window_sweeps` sweeps have
+  /// arrived. With the default `window_sweeps` of 2, the oldest sweep is the previous sweep.
+  std::vector<PoseState> smoothed;
+  double inlier_ratio = 0.0;      ///< fraction of the registered points that are inliers
+  double eigenvalue_ratio = 0.0;  ///< smallest divided by largest eigenvalue of the scaled normal matrix
+  /// standard deviation of the pose in the least constrained direction, from this sweep's points alone; 0: not aligned
+  double least_constrained_sigma_m = 0.0;
+  /// Normalised innovation sqrt(d' P^-1 d / 9). The nine components of d are the corrections of the predicted position,
+  /// attitude and velocity, and P is the covariance of the inertial prediction. The mean innovation is at most 1 if the
+  /// covariances are correct; 0 means that the sweep was not aligned.
+  double innovation = 0.0;
+  /// Standard deviation of the position relative to the map around the robot. The covariance of `pose` also includes
+  /// the map's drift and tilt, which grow with the travelled distance.
+  double map_sigma_m = 0.0;
+  int iterations = 0;
+  int consecutive_rejected_sweeps = 0;  ///< consecutive rejected sweeps, including the current sweep
+  /// True if the sweep relocalised the robot at an unpredicted pose, and two further sweeps have not yet confirmed this
+  /// pose. A contradicting sweep reverts the relocalisation.
+  bool relocalisation_unconfirmed = false;
+  /// Unit vector of position and attitude in world axes, along which the lidar constrains the pose least. To have the
+  /// same unit as position, attitude is multiplied by the root-mean-square distance of the points from the IMU.
+  Eigen::Matrix<double, 6, 1> least_constrained_direction = Eigen::Matrix<double, 6, 1>::Zero();
+  Eigen::Vector3d mean_saturation_deficit_rad_s =
+      Eigen::Vector3d::Zero();        ///< mean correction of the clipped gyro axes
+  std::size_t points_used = 0;        ///< finite returns in range that do not hit the robot
+  std::size_t isolated_points = 0;    ///< unused returns that no neighbouring beam confirms
+  std::size_t points_registered = 0;  ///< usable points after sampling, one per voxel
+  std::size_t map_points_added = 0;
+  /// true if the poses are in the frame of the prior map
+  bool in_prior_map = false;
+};
+
+}  // namespace tumble
