@@ -34,7 +34,7 @@ struct ImuTruth {
   std::vector<Eigen::Vector3d> gyro_bias_rad_s;  ///< bias at each sample
   std::vector<Eigen::Vector3d> accel_bias_m_s2;
   /// Directions of the three sensing elements: rows of the misalignment matrix M (sim/imu/elements.hpp). Saturation
-  /// acts along these directions. Empty if the elements are aligned
+  /// acts along these directions. Empty if the sensing elements are aligned with the output axes
   std::vector<Eigen::Vector3d> gyro_elements, accel_elements;
   Eigen::Vector3d gyro_element_offset_rad_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d accel_element_offset_m_s2 = Eigen::Vector3d::Zero();

@@ -78,8 +78,9 @@ BenchResult collect_bench_result(const Results& results, const Suite& suite, con
     key.method = method.name;
     const std::optional<Outcome> outcome = results.find(key);
     if (!outcome)
-      throw BadInput(fmt::format("the simulated run {} has no result of method {}; run the bench of this method again",
-                                 name_of(draw), method.name));
+      throw BadInput(
+          fmt::format("the simulated run {} has no result of method {}; run 'tumble bench' for this method again",
+                      name_of(draw), method.name));
     draw.recording = outcome->recording_digest;
     draw.status = outcome->status;
   }
@@ -99,8 +100,9 @@ BenchResult collect_bench_result(const Results& results, const Suite& suite, con
 void add_published(std::span<const BenchResult> published, Results& results) {
   results.in_one_transaction([&] {
     for (const BenchResult& result : published) {
-      const std::string origin = fmt::format(
-          "this method was not run here: this is a published result of build {} from {}", result.build, result.date);
+      const std::string origin =
+          fmt::format("tumble did not run this method; the scores are the published result of build {} from {}",
+                      result.build, result.date);
       results.set_note(method_note(result.kind, result.method), origin);
       for (const BenchDraw& draw : result.draws) {
         Outcome outcome;
@@ -124,16 +126,17 @@ void require_of_suite(const BenchResult& result, const Suite& suite) {
   const std::string whose = full_name(result.kind, result.method);
   if (result.suite != suite.name || result.suite_digest != digest)
     throw BadInput(
-        fmt::format("{} belongs to suite {} (digest {}); it must belong to suite {} (digest {}), because results of "
-                    "two suites cannot be compared",
+        fmt::format("the result of method {} belongs to suite {} (digest {}), but must belong to suite {} (digest {}), "
+                    "because results of two suites cannot be compared",
                     whose, result.suite, result.suite_digest, suite.name, digest));
   const std::vector<BenchDraw> draws = draws_of(suite);
   if (result.draws.size() != draws.size())
-    throw BadInput(fmt::format("{} contains {} simulated runs; it must contain {}, one per run of the bench suite",
-                               whose, result.draws.size(), draws.size()));
+    throw BadInput(fmt::format(
+        "the result of method {} contains {} simulated runs; it must contain {}, one for each run of the bench suite",
+        whose, result.draws.size(), draws.size()));
   for (const BenchDraw& draw : draws)
     if (result.find(draw) == nullptr)
-      throw BadInput(fmt::format("{} has no result of simulated run {}", whose, name_of(draw)));
+      throw BadInput(fmt::format("method {} has no result of simulated run {}", whose, name_of(draw)));
 }
 
 std::string other_recording(const BenchResult& a, const BenchResult& b) {

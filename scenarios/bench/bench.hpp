@@ -18,7 +18,7 @@ std::string bench_suite_digest(const Suite& suite);
 
 BenchResult collect_bench_result(const Results& results, const Suite& suite, const MethodInfo& method);
 
-/// Adds published results of a bench suite to a results database; computing times are omitted, because only times from
+/// Adds published results of a bench suite to a results database, without computing times. Only computing times from
 /// one machine are comparable.
 void add_published(std::span<const BenchResult> published, Results& results);
 
@@ -26,8 +26,9 @@ void require_of_suite(const BenchResult& result, const Suite& suite);
 
 std::string other_recording(const BenchResult& a, const BenchResult& b);
 
-/// Failed runs and runs without a value of the metric rank worst in the median. A simulated run is skipped if another
-/// method completed the run without a value of the metric, for example because no reading was clipped.
+/// In the median, failed runs and runs without a value of the metric count as the worst values. A simulated run is
+/// skipped if another method completed the run without a value of the metric, for example because no reading was
+/// clipped.
 struct BenchCell {
   std::size_t draws = 0, lost = 0;
   double median = 0.0;  ///< infinite if half failed; NaN if no runs
@@ -36,7 +37,7 @@ struct BenchCell {
 BenchCell bench_cell(const BenchResult& result, const std::string& metric, const std::string& group,
                      std::span<const BenchResult> beside);
 
-/// Only simulated runs on which `result` and `baseline` both have a value count.
+/// BenchWins counts only simulated runs for which both `result` and `baseline` have a value.
 struct BenchWins {
   std::size_t better = 0, draws = 0;
 };

@@ -128,7 +128,7 @@ std::span<const ComplicationLine> of_imu() {
        {{"gyro_scale_error"}, {"gyro_misalignment_rad"}, {"accel_scale_error"}, {"accel_misalignment_rad"}}},
       {"g-sensitivity", {{"gyro_g_sensitivity_s_m"}, {"gyro_g_sensitivity_spread_s_m"}}},
       {"low-pass", {{"gyro_bandwidth_hz"}, {"accel_bandwidth_hz"}, {"digital_bandwidth_hz"}}},
-      {"averaging window, sample and hold, quantisation",
+      {"averaging, sample-and-hold and quantisation of the readings",
        {{"gyro_window_s"},
         {"accel_window_s"},
         {"gyro_update_hz"},

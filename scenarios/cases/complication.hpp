@@ -18,7 +18,7 @@ struct Complication {
   bool whole = false;                                   ///< `amount` is an integer count
 };
 
-/// Returns all details of a scenario that can be removed; a detail whose parameters already have ideal values is
+/// Returns all details of a scenario that can be removed. A detail whose parameters already have ideal values is
 /// omitted.
 std::vector<Complication> complications(const Scenario& scenario);
 

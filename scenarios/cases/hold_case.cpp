@@ -37,11 +37,12 @@ std::string doc_of(const Shrunk& shrunk, const std::string& method, const std::s
       needed += (needed.empty() ? "" : ", ") + line.what;
   }
   std::string doc = fmt::format(
-      "The method {} fails ({}) on a simplified form of the simulated run with seed {} of scenario {}. Removing any of "
-      "these parts removes the failure: {}",
+      "The method {} fails ({}) on a simplified form of the simulated run with seed {} of scenario {}. The failure "
+      "disappears if one of these parts is removed: {}",
       method, shrunk.failure, seed, scenario, needed.empty() ? "none" : needed);
   if (not_tried > 0)
-    doc = fmt::format("{}. The removal of other parts of the scenario was not tried (number: {})", doc, not_tried);
+    doc = fmt::format("{}. The removal of other parts of the scenario was not tested (number of parts: {})", doc,
+                      not_tried);
   return doc + ".";
 }
 
@@ -128,9 +129,9 @@ void require_known(const Scenario& scenario) {
     const std::string place = scenario.file + ": expect: ";
     const std::vector<MethodPointer> found = find_methods(expected.method);
     if (found.size() != 1)
-      throw BadInput(
-          fmt::format("{}'{}' must be the name of exactly one method; write it with its kind, for example 'slam/NAME'",
-                      place, expected.method));
+      throw BadInput(fmt::format(
+          "{}'{}' must be the name of exactly one method; write the kind before the name, for example 'slam/NAME'",
+          place, expected.method));
     if (!outcome_status_named(expected.status)) throw BadInput(place + "unknown status '" + expected.status + "'");
     const auto known = metrics();
     const auto is_it = [&](const Metric& metric) {
@@ -138,7 +139,7 @@ void require_known(const Scenario& scenario) {
     };
     if (!expected.metric.empty() && std::none_of(known.begin(), known.end(), is_it))
       throw BadInput(
-          fmt::format("{}'{}' is not a metric of the method's kind, {}; 'tumble list metrics' lists the metrics", place,
+          fmt::format("{}'{}' is not a metric of methods of kind {}; 'tumble list metrics' lists the metrics", place,
                       expected.metric, to_string(found.front()->info.kind)));
   }
 }

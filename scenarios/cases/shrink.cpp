@@ -115,8 +115,9 @@ class Shrinking {
       return fmt::format("the failure does not come from the method, because the control method {} also fails",
                          options_.control->info.name);
     if (cure_ != nullptr && !run.is_cured(*cure_, method_, options_))
-      return fmt::format("the failure has another cause, because replacing the input {} by its truth does not cure it",
-                         cure_->name);
+      return fmt::format(
+          "the failure has another cause, because the method also fails with the true values of the input {}",
+          cure_->name);
     return "";
   }
 

@@ -19,7 +19,7 @@ struct ShrinkTrial {
 
 struct ShrinkOptions {
   Failure failure;
-  /// Reference method of the same kind, which must succeed on each simplified run, so that the simplification excludes
+  /// Reference method of the same kind, which must succeed on each simplified run. The reference method excludes
   /// scenarios that no method can solve.
   MethodPointer control;
   int budget = 60;           ///< number of simulated runs, at least 1
@@ -45,7 +45,7 @@ struct Shrunk {
   int runs = 0;
   bool complete = false;    ///< no single complication can be removed
   bool controlled = false;  ///< the control succeeded on all accepted runs
-  /// Name of the input that causes the failure (empty: none): if the input has its true value, the method succeeds.
+  /// Name of the input that causes the failure (empty: none). With the true value of this input, the method succeeds.
   std::string cure;
 };
 

@@ -21,7 +21,7 @@ struct SensedTriad {
 SensedTriad sensed_rates(const sim::ImuRecord& record, const sim::ImuTruth& truth, double rail_rad_s);
 SensedTriad sensed_forces(const sim::ImuRecord& record, const sim::ImuTruth& truth, double rail_m_s2);
 
-/// ClippedPlane is the plane that contains the saturated readings of a sensing element; the slopes are its
+/// ClippedPlane is the plane that contains the saturated readings of a sensing element. The slopes are the element's
 /// sensitivities to the two other axes, in cyclic order.
 struct ClippedPlane {
   double first_slope, second_slope;  // [1]

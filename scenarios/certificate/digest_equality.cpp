@@ -66,12 +66,16 @@ std::vector<CertificateEntry> certify_digests(const CertificateInput& input, con
   order += digest_of(input, first_again, 1) != first_forward ? 1 : 0;
   std::vector<CertificateEntry> entries = {
       entry("digest_threads", setup.scenario,
-            "runs with 2 and 4 threads give the same bits as runs with 1 thread: number of different digests", threads),
+            "recordings with 2 and 4 threads equal the recording with 1 thread; the value is the number of digests "
+            "that differ",
+            threads),
       entry("digest_order", setup.scenario + ", " + setup.other_scenario,
-            "simulated runs in reverse order give the same bits: number of different digests", order)};
+            "simulated runs in reverse order give equal recordings; the value is the number of digests that differ",
+            order)};
 
-  CertificateEntry restart = entry("digest_restart", setup.other_scenario,
-                                   "a restarted program gives the same bits: number of different digests", 0);
+  CertificateEntry restart =
+      entry("digest_restart", setup.other_scenario,
+            "a restarted program gives an equal recording; the value is the number of digests that differ", 0);
   try {
     const sim::Situation whole = draw(input.data, load_scenario(input.data, setup.other_scenario), setup.seed);
     const std::string again = digest_after_restart(input, setup.other_scenario, setup.restart_seed);

@@ -26,12 +26,13 @@ std::vector<CertificateEntry> certify_free_flight(const CertificateInput& input,
     energy_drift = larger(energy_drift, std::abs(energy_j(now) / energy_j(start) - 1.0));
     momentum_drift = larger(momentum_drift, (momentum_W(now) - momentum_W(start)).norm() / momentum_W(start).norm());
   }
-  return {
-      {"free_flight_energy", "rig", "a body without torque keeps its rotational energy: maximum relative change in 5 s",
-       "1", energy_drift, 0.0, 1e-8, ""},
-      {"free_flight_momentum", "rig",
-       "a body without torque keeps its angular momentum in the world frame: maximum relative change in 5 s", "1",
-       momentum_drift, 0.0, 1e-5, ""}};
+  return {{"free_flight_energy", "rig",
+           "a body without torque keeps its rotational energy; the value is the maximum relative change in 5 s", "1",
+           energy_drift, 0.0, 1e-8, ""},
+          {"free_flight_momentum", "rig",
+           "a body without torque keeps its angular momentum in the world frame; the value is the maximum relative "
+           "change in 5 s",
+           "1", momentum_drift, 0.0, 1e-5, ""}};
 }
 
 std::vector<CertificateEntry> certify_flight_force(const CertificateInput& input, const FlightForceSetup& setup) {
@@ -53,8 +54,8 @@ std::vector<CertificateEntry> certify_flight_force(const CertificateInput& input
   double largest_m_s2 = 0.0;
   for (const Eigen::Vector3d& f : record.accel_m_s2) largest_m_s2 = larger(largest_m_s2, f.norm());
   return {{"flight_specific_force", "rig",
-           "an ideal accelerometer at the centre of mass reads zero in free flight: maximum reading", "m/s^2",
-           largest_m_s2, 0.0, 1e-6, ""}};
+           "an ideal accelerometer at the centre of mass reads zero in free flight; the value is the maximum reading",
+           "m/s^2", largest_m_s2, 0.0, 1e-6, ""}};
 }
 
 std::vector<CertificateEntry> certify_free_fall(const CertificateInput& input, const FreeFallSetup& setup) {
@@ -69,8 +70,8 @@ std::vector<CertificateEntry> certify_free_fall(const CertificateInput& input, c
     if (!trial.contacts().empty()) touched_s = trial.state().time_s;
   }
   return {{"free_fall_time", "sphere",
-           "a fall from height h takes sqrt(2 h / g): time of the first contact minus this time, in steps of the "
-           "physics engine",
+           "a fall from height h takes the time sqrt(2 h / g); the value is the simulated time minus this time, in "
+           "steps of the physics engine",
            "1", (touched_s - expected_s) / trial.step_s(), -0.01, 1.01, ""}};
 }
 

@@ -68,12 +68,12 @@ std::vector<CertificateEntry> certify_impact(const CertificateInput& input, cons
     exponent += std::log(soft / hard) / std::log(setup.soft_s / setup.hard_s) / attitudes().size();
   }
   return {{"impact_peak_step", "rig",
-           "the peak force of the first impact does not depend on the time step: maximum relative change if the time "
-           "step is divided by four",
+           "the peak force of the first impact does not depend on the time step; the value is the maximum relative "
+           "change if the time step is divided by four",
            "1", step_change, 0.0, 0.05, ""},
           {"impact_peak_softness", "rig",
-           "the peak force of an impact is inversely proportional to the contact's time constant, as for a spring: "
-           "exponent (expected: -1), mean of four landings",
+           "the peak force of an impact is inversely proportional to the contact's time constant, as for a spring; the "
+           "value is the mean exponent of four landings (expected: -1)",
            "1", exponent, -1.3, -0.7, ""}};
 }
 

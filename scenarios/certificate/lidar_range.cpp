@@ -81,15 +81,15 @@ std::vector<CertificateEntry> certify_lidar_range(const CertificateInput& input,
   for (const auto& [robot, device] : {std::pair{"rig", "rs16"}, std::pair{"sphere", "mid100"}}) {
     const sim::Recording recording = sim::simulate(build(input, moving_lidar(input, robot, device)));
     const RangeErrors errors = against_planes(recording, setup.added_range_m);
-    CertificateEntry entry{
-        "lidar_range_analytic",
-        device,
-        "each point of a moving lidar without noise is on the plane that the beam hit: maximum distance",
-        "m",
-        errors.largest_m,
-        0.0,
-        1e-3,
-        ""};
+    CertificateEntry entry{"lidar_range_analytic",
+                           device,
+                           "each point of a moving lidar without noise is on the plane that the beam hit; the value is "
+                           "the maximum distance from the plane",
+                           "m",
+                           errors.largest_m,
+                           0.0,
+                           1e-3,
+                           ""};
     if (errors.points < 10000) {
       entry.value = std::nan("");
       entry.note = "only " + std::to_string(errors.points) + " points";
@@ -114,19 +114,23 @@ std::map<std::string, std::string> scenario_of_each_world(const DataRoot& data) 
 }  // namespace
 
 std::vector<CertificateEntry> certify_lidar_rays(const CertificateInput& input, const LidarRaysSetup& setup) {
-  // A ray at an edge may hit either adjacent surface, so this fraction of the rays may differ from the closed form.
+  // A ray at an edge may hit either adjacent surface, so this fraction of the rays may differ from the closed-form
+  // range.
   constexpr double kOtherSurface = 1e-3;
   std::vector<CertificateEntry> entries;
   for (const auto& [world, name] : scenario_of_each_world(input.data)) {
     const Scenario scenario = load_scenario(input.data, name);
     const sim::BuiltSituation built(draw(input.data, scenario, 1), input.data.models());
     const sim::RayDisagreement d = sim::compare_rays(built, {setup.rays, 1, setup.mirror_shift_m, setup.surface_shift});
-    entries.push_back({"lidar_range_engine", name, "lidar ranges equal the ranges of mj_ray: maximum difference", "m",
+    entries.push_back({"lidar_range_engine", name,
+                       "lidar ranges equal the ranges of MuJoCo's mj_ray; the value is the maximum difference", "m",
                        d.largest_difference_m, 0.0, 1e-3,
                        d.hits > 0 ? "" : "this comparison has no value, because no ray hit a surface"});
     entries.push_back({"lidar_surface_engine", name,
-                       "each lidar return belongs to an existing surface: share of rays without a surface", "1",
-                       static_cast<double>(d.other_surface) / static_cast<double>(d.rays), 0.0, kOtherSurface, ""});
+                       "each lidar ray hits the same surface as MuJoCo's mj_ray; the value is the share of rays with "
+                       "different surfaces",
+                       "1", static_cast<double>(d.other_surface) / static_cast<double>(d.rays), 0.0, kOtherSurface,
+                       ""});
   }
   return entries;
 }

@@ -130,7 +130,7 @@ CertificateEntry energy(const CertificateInput& input, const PendulumSetup& setu
   }
   return {"pendulum_energy",
           "pendulum",
-          "a pendulum without friction keeps its energy: maximum change in 5 s, relative to the energy above rest",
+          "a pendulum without friction keeps its energy; the value is the maximum relative change in 5 s",
           "1",
           drift,
           0.0,
@@ -170,7 +170,8 @@ CertificateEntry periods(const CertificateInput& input, const PendulumSetup& set
   }
   return {"pendulum_period",
           "pendulum",
-          "the periods of the three small oscillations equal their closed form: maximum relative difference",
+          "the periods of the three modes of small oscillation equal the analytic solution; the value is the maximum "
+          "relative difference",
           "1",
           worst,
           0.0,
@@ -229,7 +230,8 @@ CertificateEntry force(const CertificateInput& input, const PendulumSetup& setup
   }
   return {"pendulum_specific_force",
           "pendulum",
-          "an ideal accelerometer on the lowest segment agrees with Lagrange's equations: maximum difference",
+          "an ideal accelerometer on the lowest segment agrees with Lagrange's equations; the value is the maximum "
+          "difference",
           "m/s^2",
           largest_m_s2,
           0.0,

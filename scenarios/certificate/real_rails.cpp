@@ -7,7 +7,7 @@
 // 3.
 //
 // The plane of the wand's y axis (limit 7.2 rad/s) is fitted to the RepoIMU recording Test06, trial 1. The simulated
-// plane must agree within three standard errors of this single fit.
+// plane must agree with the plane of the wand's y axis within three standard errors of this single fit.
 //
 // The plane of the pendulum's z axis (limit 10.29 rad/s) is fitted to the RepoIMU recordings Test02a and Test07, trial
 // 3.
@@ -79,16 +79,17 @@ void show_plane(const DataSheet& sheet, const MeasuredPlane& plane, const RealRa
     entries.push_back({row, subject, law, unit, value, measured.low, measured.high, note});
   };
   const char* slope =
-      "saturated readings of a simulated gyro are on a plane with the slope to another axis that a real gyro has";
+      "the tilted saturation limit of a simulated gyro has the same slope towards another axis as the limit of a real "
+      "gyro";
   add("real_rail_slope", name + ", " + axis_name(plane.element + 1), slope, "1", fitted.first_slope, plane.first_slope);
   add("real_rail_slope", name + ", " + axis_name(plane.element + 2), slope, "1", fitted.second_slope,
       plane.second_slope);
   add("real_rail_distance", name,
-      "saturated readings of a simulated gyro are on a plane with the distance from zero that a real gyro has", "rad/s",
-      fitted.distance, plane.distance_rad_s);
+      "the tilted saturation limit of a simulated gyro has the same distance from zero as the limit of a real gyro",
+      "rad/s", fitted.distance, plane.distance_rad_s);
   add("real_rail_offset", name,
-      "the midpoint between upper and lower saturation limit of a simulated gyro equals that of a real gyro", "rad/s",
-      fitted.offset, plane.offset_rad_s);
+      "the midpoint between upper and lower saturation limit of a simulated gyro equals the midpoint of a real gyro",
+      "rad/s", fitted.offset, plane.offset_rad_s);
 }
 
 struct DrawnPlanes {
@@ -132,16 +133,14 @@ std::vector<CertificateEntry> certify_real_rails(const CertificateInput& input, 
     const DataSheet sheet = load_data_sheet(input.data, name);
     if (sheet.sensor_kind != "imu") continue;
     const DrawnPlanes drawn = drawn_planes(sheet, setup);
-    entries.push_back(
-        {"real_rail_slope_drawn", name + " gyro",
-         "tilt of the saturation limits: largest slope of a real gyro / standard deviation of the slopes of "
-         "simulated gyros",
-         "1", slope / drawn.slope, 0.0, kCut, ""});
-    entries.push_back(
-        {"real_rail_offset_drawn", name + " gyro",
-         "midpoint of upper and lower saturation limit: largest value of a real gyro / standard deviation over "
-         "simulated gyros",
-         "1", offset_rad_s / drawn.offset_rad_s, 0.0, kCut, ""});
+    entries.push_back({"real_rail_slope_drawn", name + " gyro",
+                       "largest slope of the saturation limits of a real gyro, divided by the standard deviation of "
+                       "the slopes of simulated gyros",
+                       "1", slope / drawn.slope, 0.0, kCut, ""});
+    entries.push_back({"real_rail_offset_drawn", name + " gyro",
+                       "largest midpoint between the saturation limits of a real gyro, divided by the standard "
+                       "deviation of the midpoints of simulated gyros",
+                       "1", offset_rad_s / drawn.offset_rad_s, 0.0, kCut, ""});
   }
   return entries;
 }

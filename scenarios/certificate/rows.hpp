@@ -11,7 +11,7 @@
 /// A member named `stated_*` changes the expected result of a check, so that a test can make the check fail.
 namespace tumble::scenarios {
 
-/// The free-flight check throws the rig with a rotation near its unstable axis; kinetic energy and angular momentum
+/// The free-flight check throws the rig with a rotation near its unstable axis. Kinetic energy and angular momentum
 /// must be constant.
 struct FreeFlightSetup {
   double duration_s = 5.0;
@@ -42,8 +42,8 @@ struct RollingSetup {
 };
 std::vector<CertificateEntry> certify_rolling(const CertificateInput& input, const RollingSetup& setup = {});
 
-/// A sphere that starts to slide at speed v0 must stop slipping after the time v0 / (mu g (1 + m r^2 / I)), with
-/// friction coefficient mu, mass m and moment of inertia I.
+/// A sphere that starts to slide at speed v0 must stop slipping after the time v0 / (mu g (1 + m r^2 / I)). The symbols
+/// are friction coefficient mu, gravity g, mass m, radius r and moment of inertia I.
 struct SlipToGripSetup {
   double speed_m_s = 1.0;
   double friction = 0.1;
@@ -52,8 +52,8 @@ struct SlipToGripSetup {
 std::vector<CertificateEntry> certify_slip_to_grip(const CertificateInput& input, const SlipToGripSetup& setup = {});
 
 /// The impact check drops the rig on its corners and computes the first peak of the specific force, averaged over 2 ms.
-/// The impact check also reports the exponent of the peak as a function of the contact time constant; an ideal spring
-/// has the exponent -1.
+/// The impact check also reports the exponent of the power law between the peak and the contact time constant. An ideal
+/// spring has the exponent -1.
 struct ImpactSetup {
   double height_m = 1.0;
   double step_s = 0.0;                  ///< 0: the simulation's step
@@ -83,8 +83,8 @@ struct ImuNoiseSetup {
 };
 std::vector<CertificateEntry> certify_imu_noise(const CertificateInput& input, const ImuNoiseSetup& setup = {});
 
-/// The saturation check fits planes to the clipped readings of IMUs with tilted sensing elements, and compares the
-/// planes with the simulated ones.
+/// The saturation check fits planes to the clipped readings of IMUs with tilted sensing elements, and compares these
+/// planes with the simulated saturation planes.
 struct TiltedRailSetup {
   double misalignment = 0.02;  ///< standard deviation
   double assumed_tilt = 0.0;
@@ -92,7 +92,7 @@ struct TiltedRailSetup {
 };
 std::vector<CertificateEntry> certify_tilted_rail(const CertificateInput& input, const TiltedRailSetup& setup = {});
 
-/// The real-gyro check compares the saturation limits of two real gyros with those of simulated gyros.
+/// The real-gyro check compares the saturation limits of two real gyros with the saturation limits of simulated gyros.
 struct RealRailsSetup {
   double tilt_factor = 1.0;         ///< on the slopes; 0: aligned elements
   double added_tilt = 0.0;          ///< added to each slope

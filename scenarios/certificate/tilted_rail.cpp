@@ -69,17 +69,17 @@ std::vector<CertificateEntry> certify_tilted_rail(const CertificateInput& input,
   for (const auto& [subject, errors] : {std::pair{"mti30 gyro", gyro}, std::pair{"mti30 accel", accel}}) {
     const bool enough = errors.samples >= kFewestClipped && errors.samples < kMany;
     const std::string note =
-        enough ? "" : "fewer than 10 samples per sign in which only this sensing element is saturated";
+        enough ? ""
+               : "too few samples: for each sign, at least 10 samples must saturate this sensing element and no other";
     const double none = std::nan("");
-    entries.push_back(
-        {"tilted_rail_slope", subject,
-         "the saturated readings of a sensing element are on its simulated plane: maximum error of the slopes", "1",
-         enough ? errors.slope : none, 0.0, 1e-9, note});
-    entries.push_back(
-        {"tilted_rail_distance", subject,
-         "the saturated readings of a sensing element are on its simulated plane: maximum error of distance "
-         "and offset, relative to the saturation limit",
-         "1", enough ? errors.distance_share : none, 0.0, 1e-9, note});
+    entries.push_back({"tilted_rail_slope", subject,
+                       "the saturated readings of a sensing element are on its simulated tilted saturation limit; the "
+                       "value is the maximum error of the slopes",
+                       "1", enough ? errors.slope : none, 0.0, 1e-9, note});
+    entries.push_back({"tilted_rail_distance", subject,
+                       "the saturated readings of a sensing element are on its simulated tilted saturation limit; the "
+                       "value is the maximum error of distance and offset, relative to the limit",
+                       "1", enough ? errors.distance_share : none, 0.0, 1e-9, note});
   }
   return entries;
 }

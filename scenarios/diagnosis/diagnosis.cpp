@@ -19,9 +19,9 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Largest accepted time [s] between the starts of IMU and lidar; a slowly booting driver exceeds this limit.
+/// Largest accepted time [s] between the starts of IMU and lidar. A slowly booting driver exceeds this limit.
 constexpr double kApart_s = 0.5;
-/// A single lost reading costs no accuracy; many lost readings indicate a fault of the bus, the driver or the recorder.
+/// A single lost reading costs no accuracy. Many lost readings indicate a fault of the bus, the driver or the recorder.
 constexpr double kLostShareMax = 0.005;
 constexpr std::int64_t kLeastLost = 2;
 /// A reading is lost if the time step between two readings exceeds 1.5 sample periods.
@@ -95,10 +95,10 @@ std::optional<RecordingFinding> moving_start(const sim::ImuRecord& imu) {
   const RestDetector::Params limits;
   return RecordingFinding{
       imu.name,
-      fmt::format(
-          "the robot moves during the first second: rates vary by {} rad/s (limit {}), forces by {} m/s^2 (limit {})",
-          rounded(rate_rad_s), rounded(limits.rate_spread_rad_s), rounded(force_m_s2),
-          rounded(limits.force_spread_m_s2)),
+      fmt::format("the robot moves during the first second: angular rates vary by {} rad/s (limit {}), specific forces "
+                  "by {} m/s^2 (limit {})",
+                  rounded(rate_rad_s), rounded(limits.rate_spread_rad_s), rounded(force_m_s2),
+                  rounded(limits.force_spread_m_s2)),
       "keep the robot still for 1 s after the start of the recording; otherwise the initial attitude and gyro bias are "
       "less accurate"};
 }
@@ -110,21 +110,23 @@ void add_saturation(const sim::ImuRecord& imu, std::vector<RecordingFinding>& ou
   };
   if (found.gyro_share > 0.0) {
     const bool below = found.gyro_rad_s < kOfRangeMin * imu.stated_gyro_range_rad_s;
-    out.push_back({imu.name,
-                   fmt::format("the gyro is saturated in {} of the samples, at {} rad/s and more{}",
-                               percent_text(found.gyro_share), rounded(found.gyro_rad_s),
-                               range(imu.stated_gyro_range_rad_s, "rad/s")),
-                   below ? "check --device: the gyro saturates far below the range of its data sheet"
-                         : "set a larger gyro range in the IMU's driver, if possible; 'tumble odometry' estimates the "
-                           "rates beyond the range",
-                   false});
+    out.push_back(
+        {imu.name,
+         fmt::format("the gyro is saturated in {} of the samples; its smallest saturated reading is {} rad/s{}",
+                     percent_text(found.gyro_share), rounded(found.gyro_rad_s),
+                     range(imu.stated_gyro_range_rad_s, "rad/s")),
+         below ? "check --device: the gyro saturates far below the range of its data sheet"
+               : "set a larger gyro range in the IMU's driver, if possible; 'tumble odometry' estimates the "
+                 "rates beyond the range",
+         false});
   }
   if (found.accel_share > 0.0)
-    out.push_back({imu.name,
-                   fmt::format("the accelerometer is saturated in {} of the samples, at {} m/s^2 and more{}",
-                               percent_text(found.accel_share), rounded(found.accel_m_s2),
-                               range(imu.stated_accel_range_m_s2, "m/s^2")),
-                   "set a larger accelerometer range in the IMU's driver", false});
+    out.push_back(
+        {imu.name,
+         fmt::format(
+             "the accelerometer is saturated in {} of the samples; its smallest saturated reading is {} m/s^2{}",
+             percent_text(found.accel_share), rounded(found.accel_m_s2), range(imu.stated_accel_range_m_s2, "m/s^2")),
+         "set a larger accelerometer range in the IMU's driver", false});
 }
 
 }  // namespace
@@ -209,14 +211,15 @@ std::vector<RecordingFinding> findings_in_estimate(const Estimate& estimate, std
   if (share < kRegisteredShareMin)
     out.push_back(
         {"odometry",
-         fmt::format("the odometry registered only {} of {} sweeps with the map ({}, minimum {})", registered, sweeps,
-                     percent_text(share), percent_text(kRegisteredShareMin)),
+         fmt::format("the odometry registered only {} of {} sweeps to the map (share {}, minimum {})", registered,
+                     sweeps, percent_text(share), percent_text(kRegisteredShareMin)),
          "check the options --T-body-lidar, --lever-arm, --gyro-unit and --accel-unit, and the other faults in this "
          "list"});
   for (const HealthFinding& finding : estimate.faults.findings) {
     const bool mounting = finding.kind == HealthFinding::Kind::lidar_calibration;
     out.push_back({"odometry", report_text(finding),
-                   mounting ? "--T-body-lidar with the measured pose of the lidar" : "", is_current(finding)});
+                   mounting ? "set --T-body-lidar to the measured pose of the lidar on the body" : "",
+                   is_current(finding)});
   }
   return out;
 }

@@ -23,11 +23,11 @@ namespace {
 constexpr std::size_t kSpans = 10, kSweepsOfSpan = 12;
 constexpr double kSlowest_rad_s = 0.1, kFastest_rad_s = 2.0;
 constexpr std::size_t kLeastPairs = 12;
-/// Largest accepted difference between the rotations of lidar and gyro, relative to the median rotation. Correct
-/// recordings have a difference of about 0.1.
+/// Largest accepted difference between the rotations of lidar and gyro, relative to the median rotation. In correct
+/// recordings, the rotations of lidar and gyro differ by about 0.1 of the median rotation.
 constexpr double kAgrees = 0.3;
-/// A correction of the gyro's units, axes or delay is reported only if the correction reduces the rotation error by
-/// these factors.
+/// A correction of the gyro's axes or delay is reported only if its rotation error is below these fractions of the
+/// error with other axes or without delay.
 constexpr double kConclusive = 0.5, kDelayConclusive = 0.6;
 constexpr double kDegreesOfRadian = 57.29577951308232;
 constexpr double kDelayMost_s = 0.5, kDelayStep_s = 0.01, kDelaySaid_s = 0.03;
@@ -199,8 +199,8 @@ std::string unit_text(const std::string& where, const RotationAgreement& found, 
 std::string delay_text(const RotationAgreement& found) {
   if (std::abs(found.delay_s) < kDelaySaid_s) return "";
   return fmt::format(
-      "caution: the lidar's rotation follows the gyro's rotation {}{}; check that both use one clock and that sweep "
-      "stamps are start times. Result after removal of this delay: ",
+      "caution: the lidar measures rotations {}{} than the gyro; check that both sensors use one clock and that sweep "
+      "stamps are start times. Without this time offset: ",
       rounded(std::abs(found.delay_s)), found.delay_s > 0.0 ? " s later" : " s earlier");
 }
 
@@ -311,7 +311,8 @@ std::string pose_text(const sim::LidarRecord& lidar, const Eigen::Isometry3d& be
   const Eigen::Vector3d p = better_BL.translation();
   return fmt::format("{} (set '--T-body-lidar {} {} {} {} {} {} {}')",
                      is_inverse(lidar.T_BL.linear(), better_BL.linear())
-                         ? "; the stated pose may be the pose of the body in the lidar frame"
+                         ? "; the stated pose may be inverted: the pose of the body in the lidar frame instead of the "
+                           "pose of the lidar in the body frame"
                          : "",
                      rounded(p.x()), rounded(p.y()), rounded(p.z()), rounded(q.x()), rounded(q.y()), rounded(q.z()),
                      rounded(q.w()));

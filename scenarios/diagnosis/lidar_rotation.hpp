@@ -22,7 +22,7 @@ struct SeenRotation {
 
 /// The rotations between consecutive sweeps come from the lidar alone, by the method `slam/constant_velocity`. At most
 /// ten segments of a dozen sweeps, spread over the recording, are processed, each with a separate map. Only pairs of
-/// registered sweeps with rates of 0.1 to 2 rad/s are kept: slower rotations are mostly noise, and faster rotations
+/// registered sweeps with rates of 0.1 to 2 rad/s are kept. Slower rotations are mostly noise, and faster rotations
 /// distort the sweeps. The cost is about 10 ms per sweep.
 std::vector<SeenRotation> seen_rotations(const sim::LidarRecord& lidar, const PointStore* aside);
 
@@ -50,13 +50,13 @@ struct RotationAgreement {
   double turned_error = 1.0;
 };
 
-/// Returns nothing for fewer than a dozen pairs of sweeps, or if no unit, axes or mounting makes gyro and lidar agree
-/// within 30 %.
+/// Returns nothing for fewer than a dozen pairs of sweeps. Also returns nothing if no combination of unit, axes and
+/// mounting makes gyro and lidar agree within 30 %.
 std::optional<RotationAgreement> rotation_agreement(const sim::ImuRecord& imu, const sim::LidarRecord& lidar,
                                                     std::span<const SeenRotation> seen);
 
-/// Returns a note that lidar and gyro agree, or a warning with a better interpretation of the gyro; empty if
-/// undetermined.
+/// Returns a note that lidar and gyro agree, or a warning with a better interpretation of the gyro. If the agreement is
+/// undetermined, the text is empty.
 std::string agreement_text(const std::string& where, const RotationAgreement& agreement, GyroUnit unit);
 
 struct LidarRotationCheck {

@@ -113,8 +113,10 @@ std::optional<ProbableDevice> probable_lidar(const sim::LidarRecord& lidar, std:
     for (std::size_t k = 0; k < seen.size(); ++k) off = std::max(off, std::abs(seen[k] - stated[k]));
     if (off >= best_off) continue;
     best_off = off;
-    best = ProbableDevice{sheet.device, fmt::format("{} rings are within {} deg of the beams of this device",
-                                                    seen.size(), rounded(off / kDegree_rad))};
+    best = ProbableDevice{
+        sheet.device,
+        fmt::format("the elevation angles of {} rings differ from the beams of this device by at most {} deg",
+                    seen.size(), rounded(off / kDegree_rad))};
   }
   return best ? best : by_name(lidar.name, sheets, "lidar");
 }

@@ -18,9 +18,9 @@ struct ProbableDevice {
 /// sheet matches the rings, the name of the lidar must contain the name of the device ("livox_mid360").
 std::optional<ProbableDevice> probable_lidar(const sim::LidarRecord& lidar, std::span<const DataSheet> sheets);
 
-/// An IMU matches a data sheet if its name contains the name of the device, or the maker of a lidar with a built-in IMU
-/// (`ouster`, `livox`). A data sheet is rejected if the ratio of the readings to its range exceeds
-/// bridge::kStatedRangesMax, which real saturation limits do not reach.
+/// An IMU matches a data sheet if the IMU's name contains the name of the device. The name may also contain the maker
+/// of a lidar with a built-in IMU (`ouster`, `livox`). A data sheet is rejected if the readings exceed its range by
+/// more than the factor bridge::kStatedRangesMax. Real saturation limits do not reach this factor.
 std::optional<ProbableDevice> probable_imu(const sim::ImuRecord& imu, std::span<const DataSheet> sheets);
 
 void apply_sheet(const DataSheet& sheet, sim::ImuRecord& imu);

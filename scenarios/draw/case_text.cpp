@@ -31,7 +31,7 @@ Expectation expectation_from(const YamlNode& node) {
   const auto number = [&](const std::string& key, std::optional<double>& value) {
     if (!fields.contains(key)) return;
     if (out.metric.empty())
-      fields.at(key).fail("this key needs the key 'metric' next to it, which names the metric of this value");
+      fields.at(key).fail("this value needs the key 'metric' in the same entry, which names the metric of the value");
     value = fields.at(key).number();
   };
   number("worse_than", out.worse_than);

@@ -21,8 +21,8 @@ void require_every_number(const DataSheet& sheet, const std::string& file, const
     const auto is_it = [&](const DataSheet::Entry& entry) { return entry.name == parameter.name; };
     if (std::none_of(sheet.entries.begin(), sheet.entries.end(), is_it)) {
       throw BadInput(
-          fmt::format("{}: the number '{}' is missing; a data sheet of kind '{}' must state each of its numbers ({})",
-                      file, parameter.name, sheet.sensor_kind, parameter.doc));
+          fmt::format("{}: the number '{}' is missing; a data sheet of kind '{}' must state this number ({})", file,
+                      parameter.name, sheet.sensor_kind, parameter.doc));
     }
   }
 }

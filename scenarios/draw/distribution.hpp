@@ -8,7 +8,8 @@
 
 namespace tumble::scenarios {
 
-/// Each random parameter has a separate random stream, so a new parameter does not change the values of the others.
+/// Each random parameter has a separate random stream, so a new parameter does not change the values of the other
+/// parameters.
 struct Distribution {
   enum class Shape { constant, uniform, normal, log_uniform, choice };
   Shape shape = Shape::constant;

@@ -7,8 +7,8 @@
 
 namespace tumble::scenarios {
 
-/// Returns a copy of `scenario` with the parameter values of `situation`, so that later changes of data sheets and
-/// defaults do not affect the simulated run.
+/// Returns a copy of `scenario` with the parameter values of `situation`. Later changes of data sheets and defaults do
+/// not affect runs of this copy.
 Scenario fixed_as(Scenario scenario, const sim::Situation& situation);
 
 std::string to_yaml(const Scenario& scenario);

@@ -24,8 +24,8 @@ struct Expectation {
   bool operator==(const Expectation&) const = default;
 };
 
-/// NamedCase describes a simulated run on which a method failed, and the results that are expected: the key `case` in a
-/// file of scenarios/regressions.
+/// NamedCase describes a simulated run on which a method failed, and the expected results. A file of
+/// scenarios/regressions contains a NamedCase under the key `case`.
 struct NamedCase {
   std::string scenario;    ///< scenario of the original run
   std::uint64_t seed = 0;  ///< for values that the file omits

@@ -27,8 +27,8 @@ namespace {
 constexpr std::uintmax_t kLargestFile = 4u << 20;
 constexpr std::size_t kIdentifierMax = 100;
 
-/// Some invalid texts cause an endless loop in the YAML parser; each parser event consumes a byte, so a count above the
-/// text length detects the loop.
+/// Some invalid texts cause an endless loop of events in the YAML parser. Counter detects such a loop if the number of
+/// events exceeds four per byte of text, plus 64.
 class Counter : public YAML::EventHandler {
  public:
   Counter(const std::string& text, const std::string& file) : most_(4 * text.size() + 64), file_(file) {}
@@ -133,7 +133,9 @@ std::string YamlNode::identifier() const {
   const auto lower = [](char c) { return c >= 'a' && c <= 'z'; };
   const auto allowed = [&](char c) { return lower(c) || (c >= '0' && c <= '9') || c == '_'; };
   if (!lower(name[0]) || !std::all_of(name.begin(), name.end(), allowed)) {
-    fail(fmt::format("the name '{}' must be a lower-case letter followed by letters, digits and underscores", name));
+    fail(fmt::format(
+        "the name '{}' must begin with a lower-case letter and contain only lower-case letters, digits and underscores",
+        name));
   }
   if (name.size() > kIdentifierMax) {
     fail(fmt::format("the name has {} characters; it must have at most {}", name.size(), kIdentifierMax));
@@ -157,7 +159,8 @@ double YamlNode::parse_number(bool infinity_allowed) const {
   double value = 0.0;
   const char* const end = written.data() + written.size();
   const auto [stop, error] = std::from_chars(written.data(), end, value);
-  if (error == std::errc::result_out_of_range) fail(fmt::format("the number '{}' is too large for a double", written));
+  if (error == std::errc::result_out_of_range)
+    fail(fmt::format("the number '{}' is outside the range of a double", written));
   if (error != std::errc() || stop != end)
     fail(fmt::format("the value of this key must be a number; it is '{}'", written));
   if (!std::isfinite(value)) fail(fmt::format("the value of this key must be finite; it is '{}'", written));

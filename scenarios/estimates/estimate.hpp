@@ -35,7 +35,7 @@ struct Estimate {
   std::vector<AttitudeState> attitudes;  ///< for kind attitude
   std::vector<PoseState> poses;          ///< kinds position and slam, IMU times
   /// Contact mode at each pose, or an empty vector if the method does not estimate contact modes. The contact mode
-  /// `air` means no contact, or contact with unknown motion (a bump).
+  /// `air` means no contact, or a bump (the contact point rises or falls) without slip.
   std::vector<sim::ContactLabel> contacts;
   /// True for poses in a slip event with uncertain displacement, or an empty vector if the method does not estimate
   /// slip.
@@ -46,7 +46,7 @@ struct Estimate {
   std::vector<std::int64_t> sweep_end_ns;                  ///< parallel to `sweeps`
   std::vector<MapPoint> map;                               ///< for kind slam
   SensorHealth faults;                                     ///< suspected faults of sensors and estimate
-  /// Part of the covariance of each of `rates` that is due to health findings; empty without a health finding.
+  /// Covariance that health findings add to the covariance of each rate; empty if there is no health finding.
   std::vector<Eigen::Matrix3d> suspect_rad2_s2;
   std::map<std::string, double> health;      ///< named counters: "rejected_samples", "sweeps_rejected"
   std::map<std::string, double> parameters;  ///< parameters that the user set by name

@@ -8,7 +8,8 @@
 
 namespace tumble::scenarios {
 
-/// An estimate of another program may use the clock of the recording, of the original file, or of exported files.
+/// Shifts the time stamps of an estimate to the clock of the recording, if the stamps are in the clock of the original
+/// file or of exported files.
 void move_to_clock(std::int64_t origin_ns, const StampSpan& span, Estimate& estimate);
 
 }  // namespace tumble::scenarios

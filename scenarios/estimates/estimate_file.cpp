@@ -343,7 +343,7 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
   write_position_covariances(folder / "position_covariance.csv", estimate.poses);
   if (!estimate.uncertain.empty() && estimate.uncertain.size() != estimate.contacts.size()) {
     throw std::invalid_argument(
-        fmt::format("the estimate has {} flags of uncertainty for {} contacts; their numbers must be equal",
+        fmt::format("the estimate has {} 'uncertain' flags for {} contacts; their numbers must be equal",
                     estimate.uncertain.size(), estimate.contacts.size()));
   }
   if (!estimate.contacts.empty() && estimate.contacts.size() != estimate.poses.size()) {

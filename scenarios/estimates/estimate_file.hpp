@@ -16,8 +16,8 @@ inline constexpr const char* kEstimateFiles[] = {"estimate.json",           "rat
 
 /// ESTIMATE.md describes the columns of the files of an estimate.
 ///
-/// Reading restores all scored values bit-exactly, except that TUM quaternions are normalised. Velocities are not
-/// stored, nor are covariances of poses other than the position covariance.
+/// read_estimate() restores all scored values bit-exactly, except that TUM quaternions are normalised. The files
+/// contain no velocities and, for poses, only the position part of the covariance.
 ///
 /// Throws std::invalid_argument if `contacts` or a non-empty `uncertain` differs in length from `poses`.
 void write_estimate(const std::filesystem::path& folder, const std::string& method, Kind kind, const Estimate& estimate,
@@ -25,9 +25,10 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
 
 std::string estimated_sensors(const std::filesystem::path& path);
 
-/// Reads the folder of an estimate, or a single file of another program: TUM, or a table of poses (read_pose_table). An
-/// estimate from a single file has the kind `position` and the frame `tum_frame`. Numbers in a single file must be
-/// finite, whereas the folder of an estimate may contain NaN from a diverged method.
+/// Reads the folder of an estimate, or a single pose file of another program: a TUM file, or another table of poses
+/// (read_pose_table). An estimate from a single file has the kind `position`, and `tum_frame` states the frame of its
+/// poses. Numbers in a single file must be finite, whereas the folder of an estimate may contain NaN from a diverged
+/// method.
 Estimate read_estimate(const std::filesystem::path& path, Kind& kind, std::string& method, Frame tum_frame);
 
 }  // namespace tumble::scenarios

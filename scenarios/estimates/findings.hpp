@@ -23,8 +23,7 @@ bool has_implausible_readings(const Estimate& estimate);
 /// The health entry `localised` becomes false if a health finding contradicts the pose in the map.
 bool report_localised(Estimate& estimate);
 
-/// A health finding is current at the end of the run if the fault has not ended, or if the fault makes all later poses
-/// wrong.
+/// Returns true if the fault has not ended at the end of the run, or if the fault makes the estimate unusable.
 bool is_current(const HealthFinding& finding);
 std::string report_text(const HealthFinding& finding);
 

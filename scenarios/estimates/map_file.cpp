@@ -25,7 +25,7 @@ namespace tumble::scenarios {
 namespace {
 
 static_assert(std::endian::native == std::endian::little,
-              "this code writes maps in the byte order of a little-endian processor");
+              "map files are little-endian, so this code needs a little-endian processor");
 
 constexpr std::array<const char*, 7> kProperties = {"x", "y", "z", "nx", "ny", "nz", "sigma"};
 using Row = std::array<float, kProperties.size()>;
@@ -91,8 +91,9 @@ std::vector<MapPoint> read_map(const std::filesystem::path& path) {
   file.seekg(0, std::ios::end);
   const auto bytes = static_cast<std::uintmax_t>(file.tellg() - data);
   if (bytes / sizeof(Row) != points || bytes % sizeof(Row) != 0) {
-    throw BadInput(fmt::format("{}: the map file is truncated: it has only {} bytes of data for {} points",
-                               path.string(), bytes, points));
+    throw BadInput(
+        fmt::format("{}: the map file is truncated or has extra bytes: it has {} bytes of data for {} points",
+                    path.string(), bytes, points));
   }
   file.seekg(data);
   std::vector<MapPoint> map(points);

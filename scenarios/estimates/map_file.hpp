@@ -9,10 +9,10 @@
 
 namespace tumble::scenarios {
 
-/// Binary little-endian PLY with the float32 columns x y z nx ny nz sigma.
+/// Writes a binary little-endian PLY file with the float32 columns x, y, z, nx, ny, nz and sigma.
 void write_map(const std::filesystem::path& path, std::span<const MapPoint> map);
 
-/// Binary PCD 0.7 with the float32 columns x y z normal_x normal_y normal_z sigma.
+/// Writes a binary PCD 0.7 file with the float32 columns x, y, z, normal_x, normal_y, normal_z and sigma.
 void write_map_pcd(const std::filesystem::path& path, std::span<const MapPoint> map);
 
 std::vector<MapPoint> read_map(const std::filesystem::path& path);
@@ -21,8 +21,8 @@ inline constexpr const char* kPriorMapName = "map.tumblemap";
 
 void write_prior_map(const std::filesystem::path& path, std::span<const MapPoint> points);
 
-/// If the file has no columns nx ny nz or normal_x normal_y normal_z, the normals are fitted to the points. The column
-/// `sigma` contains the standard deviation of each point [m].
+/// If the file has no columns for normals (nx ny nz or normal_x normal_y normal_z), the normals are fitted to the
+/// points. The column `sigma` contains the standard deviation of each point [m].
 std::vector<MapPoint> read_prior_map(const std::filesystem::path& path);
 
 }  // namespace tumble::scenarios

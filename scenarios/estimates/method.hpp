@@ -16,7 +16,8 @@ namespace tumble::scenarios {
 /// Only methods with `needs_truth` receive the true state and the readings before clipping.
 struct OracleInput {
   const sim::Truth* truth = nullptr;
-  /// A slam method calls this function after each lidar sweep, with the numbers of processed and of all sweeps.
+  /// A slam method calls this function after each lidar sweep, with the number of processed sweeps and the number of
+  /// all sweeps.
   std::function<void(std::size_t done, std::size_t all)> on_sweep = {};
 };
 
@@ -40,7 +41,7 @@ struct MethodInfo {
   std::vector<std::string> robots = {};  ///< "rig", "sphere"; empty: all
   std::string why_not(const Subject& subject) const;
   bool applies_to(const Subject& subject) const { return why_not(subject).empty(); }
-  /// true: the method is the reference method of its kind, without treatment of saturation or slip.
+  /// true: the method is the baseline for methods of its kind, and does not handle saturation or slip.
   bool baseline = false;
   /// true: the method can start from a saved calibration of the rig (lever arm, biases, inertia ratios), and saves its
   /// new calibration.
@@ -50,7 +51,7 @@ struct MethodInfo {
 
 std::string full_name(const MethodInfo& info);
 
-/// Equal inputs must give bit-identical results.
+/// A method must return bit-identical results for equal inputs.
 using RunMethod = std::function<Estimate(const sim::Sensors&, const sim::Values& parameters, const OracleInput&)>;
 
 struct Method {

@@ -74,8 +74,8 @@ void require_covariance(const Eigen::Matrix<double, N, N>& C, const std::string&
       const double most = std::sqrt(C(i, i)) * std::sqrt(C(j, j));
       if (std::abs(C(i, j)) > (1.0 + kCorrelationTolerance) * most)
         throw BadInput(
-            fmt::format("{}: the covariance of two components is {:g}, with the variances {:g} and {:g}; its magnitude "
-                        "must be at most {:g}",
+            fmt::format("{}: two components have the covariance {:g} and the variances {:g} and {:g}; the magnitude of "
+                        "the covariance must be at most {:g}",
                         where, C(i, j), C(i, i), C(j, j), most));
     }
   }
@@ -124,10 +124,10 @@ void AnswerBounds::require_size(const std::filesystem::path& file, std::uintmax_
 void AnswerBounds::require_time(std::int64_t time_ns, const std::string& where) const {
   if (time_ns >= first_ns_ - kTimeMargin_ns && time_ns <= last_ns_ + kTimeMargin_ns) return;
   const auto seconds = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-9; };
-  throw BadInput(fmt::format(
-      "{}: the time stamp is {:.9g} s; it must be within {:.9g} and {:.9g} s (the time of the recording with a "
-      "margin of 10 s)",
-      where, seconds(time_ns), seconds(first_ns_ - kTimeMargin_ns), seconds(last_ns_ + kTimeMargin_ns)));
+  throw BadInput(
+      fmt::format("{}: the time stamp is {:.9g} s; it must be between {:.9g} and {:.9g} s (the time of the recording "
+                  "with a margin of 10 s)",
+                  where, seconds(time_ns), seconds(first_ns_ - kTimeMargin_ns), seconds(last_ns_ + kTimeMargin_ns)));
 }
 
 void AnswerBounds::require_unit(std::span<const double> stamps_s, const char* unit, const Place& place) const {

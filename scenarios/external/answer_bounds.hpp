@@ -11,16 +11,17 @@
 
 namespace tumble::scenarios {
 
-/// AnswerBounds checks the result of an external program. Large files are rejected before they are read.
+/// AnswerBounds checks the result of an external program. Result files that are too large are rejected before they are
+/// read.
 class AnswerBounds {
  public:
   using Place = std::function<std::string(std::size_t row)>;
 
   explicit AnswerBounds(const sim::Sensors& sensors);
 
-  /// A table may have 10 000 rows plus 4 rows per IMU sample and per lidar sweep, and 1 KiB per row.
+  /// Returns the size limit of a table: 1 KiB per row, with 10 000 rows plus 4 rows per IMU sample and per lidar sweep.
   std::uintmax_t table_bytes() const;
-  /// A map may have 10 000 points plus 4 points per lidar point, and 32 bytes per point.
+  /// Returns the size limit of a map: 32 bytes per point, with 10 000 points plus 4 points per lidar point.
   std::uintmax_t map_bytes() const;
 
   void require_size(const std::filesystem::path& file, std::uintmax_t bytes) const;
@@ -33,9 +34,9 @@ class AnswerBounds {
   void require_poses(const std::vector<PoseState>& poses, const Place& place) const;
   void require_attitudes(const std::vector<AttitudeState>& attitudes, const Place& place) const;
   /// Throws BadInput if the time stamps seem to have a wrong unit. For ten or more time stamps, the function compares
-  /// the time span from the smallest to the largest stamp with the duration of the recording. A ratio above 100 or
-  /// below 1/100 indicates a wrong unit. If the ratio is above 100 but fits no other unit, the function accepts the
-  /// stamps, because a few stamps are probably wrong.
+  /// the time span from the smallest to the largest stamp with the duration of the recording. A wrong unit is assumed
+  /// if span and duration differ by a factor above 100. If a large span fits no other unit, the function accepts the
+  /// stamps, because probably only a few stamps are wrong.
   void require_unit(std::span<const double> stamps_s, const char* unit, const Place& place) const;
   void require_unit(const Estimate& estimate, const char* unit, const Place& place) const;
   void require_slam(const Estimate& estimate) const;

@@ -45,7 +45,7 @@ class RefusedAnswer : public BadInput {
 /// An external command runs in a separate process with limits of time and memory. External programs never receive the
 /// true motion.
 ///
-/// The time limit of an external method is the smaller one of the description's limit and `time_limit_s`.
+/// The time limit of an external method is the limit in its description or `time_limit_s`, whichever is smaller.
 Method external_method(const std::filesystem::path& file,
                        double time_limit_s = std::numeric_limits<double>::infinity());
 
@@ -69,9 +69,9 @@ void require_done(const CommandEnd& end);
 /// The version command of an external method runs for at most 30 s.
 std::string reported_version(Command command, const std::string& place);
 
-/// The JSON text contains gravity, the sphere's radius, each IMU with sample rate, ranges, noise densities and mounting
-/// T_BI, and each lidar with period and mounting T_BL. A mounting is the calibrated, not the true pose, as
-/// "translation_m" [x, y, z] and "quaternion_xyzw".
+/// The JSON text contains gravity, the sphere's radius, and the properties of each IMU and lidar. An IMU has sample
+/// rate, ranges, noise densities and mounting T_BI; a lidar has period and mounting T_BL. The mounting of a sensor is
+/// the calibrated pose (not the true pose), as "translation_m" [x, y, z] and "quaternion_xyzw".
 std::string sensors_text(const sim::Sensors& sensors);
 
 }  // namespace tumble::scenarios

@@ -86,7 +86,7 @@ std::vector<double> stamps_of(const std::filesystem::path& file) {
     stamps_s.push_back(stamp_s);
   }
   constexpr double kOrigin_s = 1e-9 * static_cast<double>(kExportOrigin_ns);
-  // Large time stamps are seconds in the clock of exported bags, so the origin of the exported clock is subtracted.
+  // Time stamps near kOrigin_s are in the clock of exported bags, so kOrigin_s is subtracted.
   if (!stamps_s.empty() && stamps_s.front() > kOrigin_s / 2 && stamps_s.back() < kOrigin_s * 2)
     for (double& stamp_s : stamps_s) stamp_s -= kOrigin_s;
   return stamps_s;
@@ -159,7 +159,8 @@ std::vector<MapPoint> read_points(const std::filesystem::path& file) {
   const auto given = [](const auto& columns) {
     return std::ranges::all_of(columns, [](const auto* each) { return each != nullptr; });
   };
-  if (!given(place)) throw BadInput(fmt::format("{}: the columns x, y and z are missing", file.filename().string()));
+  if (!given(place))
+    throw BadInput(fmt::format("{}: the file must have the columns x, y and z", file.filename().string()));
   std::vector<MapPoint> points(cloud.points);
   for (std::size_t k = 0; k < points.size(); ++k) {
     const auto vector = [k](const auto& columns) -> Eigen::Vector3f {

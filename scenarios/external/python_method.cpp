@@ -250,7 +250,7 @@ class Answer {
 
  private:
   [[noreturn]] static void fail() {
-    throw BadInput("the result in shared memory is damaged; check whether the Python function wrote into the result");
+    throw BadInput("the result in shared memory is damaged; the Python function may have written into this memory");
   }
 
   std::string bytes_;
@@ -289,8 +289,8 @@ std::vector<PoseState> read_poses(const Answer& answer) {
     poses[k].position_W_m = row_of(positions, k);
     const Eigen::Quaterniond q{Eigen::Map<const Eigen::Vector4d>(&quaternions[4 * k])};
     if (!(std::abs(q.coeffs().stableNorm() - 1.0) <= kQuaternionTolerance) || (k > 0 && times_ns[k] <= times_ns[k - 1]))
-      throw BadInput(
-          fmt::format("pose {} of the result has a quaternion without norm 1, or a time that does not increase", k));
+      throw BadInput(fmt::format(
+          "pose {} of the result has a quaternion whose norm is not 1, or a time that does not increase", k));
     poses[k].orientation_W = q.normalized();
   }
   return poses;

@@ -13,8 +13,8 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kTurnsOtherwise = 0.5, kTurnsAsSaid = 0.15;
-/// Largest relative rotation difference between estimate and gyro that is accepted after the correction of a delay (as
-/// in reference_check.cpp).
+/// Largest accepted rotation difference between estimate and gyro after the correction of a delay, as a fraction of the
+/// rotation. The file reference_check.cpp has the same limit.
 constexpr double kTurnsOnceCorrected = 0.3;
 
 std::vector<TimedAttitude> attitudes_of(const Estimate& estimate) {
@@ -48,8 +48,8 @@ std::string text_of(const TurningFit& fit, const std::string& frame) {
   return out + (out.empty() ? "the poses" : " and the poses") + " belonged to the frame " + frame;
 }
 
-/// Returns the frames that check_turning() tests, with the frame of the estimate as the first element. If two frames
-/// have equal mountings, check_turning() ignores the later frame.
+/// Returns the frames that check_turning() tests, with the frame of the estimate as the first element. If several
+/// frames have equal mountings, check_turning() uses only the first of these frames.
 std::vector<CandidateFrame> candidates(const Estimate& estimate, const sim::Sensors& sensors) {
   std::vector<CandidateFrame> frames;
   if (sensors.imus.empty()) return frames;

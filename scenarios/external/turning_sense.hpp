@@ -5,15 +5,21 @@
 
 #include "scenarios/estimates/estimate.hpp"
 
-/// A pose file does not specify its frame, quaternion convention or clock, so the gyro serves to detect errors in them.
+/// A pose file does not specify its frame, quaternion convention or clock. A comparison with the gyro detects errors in
+/// these three properties.
 namespace tumble::scenarios {
 
-/// Returns a message if the quaternions of the poses have w first, are inverse rotations (world in sensor), or refer to
-/// another frame than `estimate.frame`; otherwise an empty text.
+/// Returns a message if the rotations of the poses contradict the gyro for one of the following reasons, otherwise an
+/// empty text:
+/// - The quaternions have w first.
+/// - The quaternions are inverse rotations (world in sensor axes).
+/// - The poses belong to another frame than `estimate.frame`.
 ///
-/// The function returns a message only if both conditions are met: the rotations of the poses differ from the rotations
-/// of the gyro by more than 50 %, and a correction reduces this difference below 15 %. A rotation about a single axis
-/// does not reveal all errors.
+/// The function returns a message only if both conditions are met:
+/// - The rotations of the poses differ from the rotations of the gyro by more than 50 %.
+/// - A correction of the frame or the quaternion convention reduces the difference below 15 %.
+///
+/// A rotation about a single axis does not reveal every wrong frame or quaternion convention.
 std::string turning_complaint(const Estimate& estimate, const sim::Sensors& sensors);
 
 /// Returns a message if the time stamps of the poses have a constant error of 0.15 to 5 s.

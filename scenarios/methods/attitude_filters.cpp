@@ -68,13 +68,12 @@ Method attitude_autogain() {
       "Zevering et al., IMU-based pose-estimation for spherical robots, IEEE MFI 2021, eqs 2-5");
 }
 
-/// The default parameters are the authors' values.
+/// The default parameters of VQF are the values of its authors.
 Method attitude_vqf() {
-  return attitude_filter<Vqf>(
-      "vqf",
-      "Low-passes the specific force in a nearly inertial frame and estimates the gyro bias at rest and in motion, "
-      "without a magnetometer.",
-      "D. Laidig, T. Seel, VQF, Information Fusion 91, 2023");
+  return attitude_filter<Vqf>("vqf",
+                              "Applies a low-pass filter to the specific force in a nearly inertial frame, and "
+                              "estimates the gyro bias at rest and in motion, without a magnetometer.",
+                              "D. Laidig, T. Seel, VQF, Information Fusion 91, 2023");
 }
 
 }  // namespace tumble::scenarios

@@ -31,8 +31,8 @@ const Settings<TumbleAttitude::Params>& attitude_tumble_settings() {
   return all;
 }
 
-/// The inclination counts as unknown while its double standard deviation exceeds 1 rad, for example after an IMU gap in
-/// a tumble.
+/// The inclination counts as unknown while twice its standard deviation exceeds 1 rad, for example after an IMU gap
+/// during a tumble.
 void report_unknown_attitude(Estimate& estimate) {
   constexpr double kUnknown_rad = 0.5;
   double unknown_s = 0.0;
@@ -49,7 +49,8 @@ void report_unknown_attitude(Estimate& estimate) {
   SensorHealth health;
   if (unknown_s > 0.0)
     health.add({HealthFinding::Kind::attitude_unknown, "", "",
-                "time in s with an attitude standard deviation above 0.5 rad", unknown_s, 0.0, since_ns, ended});
+                "time in s during which the reported tilt standard deviation exceeds 0.5 rad", unknown_s, 0.0, since_ns,
+                ended});
   add_findings(health, {}, estimate);
 }
 
@@ -59,8 +60,8 @@ TumbleAttitude::Params stated(const sim::Sensors& sensors) {
   return params;
 }
 
-/// For a sphere, the filter estimates the attitude from the merged readings of all IMUs in body axes. The velocity of
-/// the rolling motion, computed from angular velocity and radius, is the velocity measurement of the filter.
+/// For a sphere, the filter estimates the attitude from the merged readings of all IMUs in body axes. The filter uses
+/// the rolling velocity, computed from angular velocity and radius, as velocity measurement.
 Estimate run_sphere(const sim::Sensors& sensors, const sim::Values& parameters) {
   Estimate estimate;
   estimate.frame = Frame::body;
@@ -124,9 +125,9 @@ Estimate run_attitude_tumble(const sim::Sensors& sensors, const sim::Values& par
 Method attitude_tumble() {
   return make_method({.name = "tumble",
                       .kind = Kind::attitude,
-                      .doc = "Estimates tilt and gyro bias from constraints on the velocity: bounded in motion, "
-                             "rolling without slip for a "
-                             "sphere, zero at rest. Rates of clipped samples come from rate/tumble.",
+                      .doc = "Estimates tilt and gyro bias from velocity constraints: the velocity is bounded in "
+                             "motion and zero at rest, and a sphere rolls without slip. For the other robots, "
+                             "rate/tumble replaces clipped and suspect rates.",
                       .ours = true,
                       .settings = {&attitude_tumble_settings()}},
                      at_sample_times<run_attitude_tumble>);
@@ -224,7 +225,8 @@ Status run_carried(const sim::Sensors& sensors, const sim::Values& parameters, s
   return status;
 }
 
-/// In clipped intervals with hand-held motion, the hand-held smoother gives better rates than the rate smoother.
+/// From this probability of hand-held motion on, HandHeldSmoother also estimates the rates, because its rates are more
+/// accurate in clipped intervals.
 constexpr double kCarried = 0.5;
 
 Status run_thrown(const sim::Sensors& sensors, const sim::Values& parameters, const std::vector<ImuSample>& samples,
@@ -283,9 +285,8 @@ Method attitude_tumble_batch() {
   return make_method({.name = "tumble_batch",
                       .kind = Kind::attitude,
                       .doc = "Smooths the complete recording of a hand-held body. The smoother assumes bounded "
-                             "acceleration, velocity and "
-                             "position, and uses clipped gyro readings as bounds. While the body moves freely, rates "
-                             "come from rate/tumble.",
+                             "acceleration, velocity and position, and uses clipped gyro readings as bounds. If the "
+                             "body is not hand-held, the rates of clipped samples come from rate/tumble.",
                       .ours = true,
                       .settings = {&carried_settings()}},
                      at_sample_times<run_attitude_tumble_batch>);

@@ -30,8 +30,8 @@ std::uint8_t clip_flags(std::uint8_t sim_bits) {
   return flags;
 }
 
-// Largest ratio between the measured and the stated sample period. A wrong unit of the time stamps gives a ratio of
-// 1000 or 1/1000.
+// The measured and the stated sample period may differ by at most this factor. If the time stamps have a wrong unit,
+// the two periods differ by a factor of 1000.
 constexpr double kPeriodsMax = 20.0;
 
 Status check_period(const sim::ImuRecord& record, std::span<const ImuSample> samples) {
@@ -39,8 +39,8 @@ Status check_period(const sim::ImuRecord& record, std::span<const ImuSample> sam
   const double step_s = median_period_s(samples), stated_s = seconds(record.period_ns);
   if (step_s > stated_s / kPeriodsMax && step_s < stated_s * kPeriodsMax) return {};
   return {ErrorCode::out_of_range,
-          "median step of imu time_ns in s (the step must be within a factor of 20 of the stated period)", step_s,
-          step_s < stated_s ? stated_s / kPeriodsMax : stated_s * kPeriodsMax};
+          "median time step of the IMU in s (the step must differ from the stated period by less than a factor of 20)",
+          step_s, step_s < stated_s ? stated_s / kPeriodsMax : stated_s * kPeriodsMax};
 }
 
 std::vector<ImuSample> samples_of(const sim::ImuRecord& record) {
@@ -124,7 +124,7 @@ Status check_range(const sim::ImuRecord& record, const Eigen::Vector3d& gyro_rad
                              "angular_velocity_rad_s (the rate must be within twice the stated range; check the unit)");
   if (!gyro.ok()) return gyro;
   return beyond(accel_m_s2, record.stated_accel_range_m_s2,
-                "specific_force_m_s2 (the force must be within twice the stated range; check the unit)");
+                "specific_force_m_s2 (the specific force must be within twice the stated range; check the unit)");
 }
 
 std::vector<bool> find_inliers(const sim::ImuRecord& record) {

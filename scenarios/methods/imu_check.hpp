@@ -28,13 +28,14 @@ ImuHealthReport check_imu(const sim::Sensors& sensors, std::span<const ImuSample
 /// readings.
 void inflate_rates(const ImuHealthReport& findings, std::span<const ImuSample> samples, Estimate& estimate);
 
-/// Returns a caution about units, signs or axes of the readings, or an empty text.
+/// Returns a warning if units, signs or axes of the readings seem wrong, otherwise an empty text.
 std::string imu_note(const sim::ImuRecord& imu, double gravity_m_s2);
 std::vector<std::string> imu_notes(const Imported& recording);
 
 void report_rates(const MotionRegimeSmoother::Report& report, Estimate& result);
 
-/// Saturation limits that were copied from another axis or from a data sheet are not reported.
+/// Adds the estimated saturation limits to `health`, without limits that were copied from another axis or from a data
+/// sheet.
 void report_rails(const SaturationLevels& rails, std::map<std::string, double>& health);
 
 std::optional<double> carried_share(const MotionRegimeSmoother::Report& report);

@@ -123,22 +123,23 @@ Estimate run_position_autogain_fusion(const sim::Sensors& sensors, const sim::Va
 }  // namespace
 
 Method position_rolling() {
-  return make_method({.name = "rolling",
-                      .kind = Kind::position,
-                      .doc = "Assumes rolling without slip on a level plane: removes the gyro bias at rest, integrates "
-                             "the gyro, and computes the velocity as v = r w x n.",
-                      .source = "textbook rolling constraint",
-                      .settings = {&default_settings<RestParams>(), &position_rolling_settings()},
-                      .robots = {"sphere"}},
-                     run_position_rolling);
+  return make_method(
+      {.name = "rolling",
+       .kind = Kind::position,
+       .doc = "Assumes rolling without slip on a level plane: removes the gyro bias measured at rest, integrates the "
+              "gyro, and computes the velocity r w x n (r: radius, w: rate, n: plane normal).",
+       .source = "textbook rolling constraint",
+       .settings = {&default_settings<RestParams>(), &position_rolling_settings()},
+       .robots = {"sphere"}},
+      run_position_rolling);
 }
 
 Method position_autogain_fusion() {
   return make_method(
       {.name = "autogain_fusion",
        .kind = Kind::position,
-       .doc = "Averages the rolling velocity and a limited integral of the acceleration, and uses the attitude of "
-              "attitude/autogain.",
+       .doc = "Averages the rolling velocity and the integrated acceleration, whose magnitude is limited. The attitude "
+              "comes from attitude/autogain.",
        .source = "Zevering et al., IMU-based pose-estimation for spherical robots, IEEE MFI 2021, eqs 2-13",
        .settings = {&default_settings<baselines::Autogain::Params>(), &fusion_settings()},
        .robots = {"sphere"}},

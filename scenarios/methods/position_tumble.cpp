@@ -63,8 +63,8 @@ bool spins(double radius_m, const RollingOdometry::Pose& pose) {
   return std::abs(rolling_m_s - speed_m_s) > std::max(kSpinsM_s, kSpinsShare * std::max(rolling_m_s, speed_m_s));
 }
 
-/// A moving contact point is `slide` if the centre of the sphere moves faster than the sphere rolls, and `slip` if the
-/// sphere rotates faster.
+/// A moving contact point is `slip` if the rolling speed of the sphere exceeds the speed of its centre, otherwise
+/// `slide`.
 sim::ContactLabel slip_or_slide(double radius_m, const RollingOdometry::Pose& pose) {
   const Eigen::Vector3d rolling_m_s =
       radius_m * (pose.pose.orientation_W * pose.angular_velocity_rad_s).cross(Eigen::Vector3d::UnitZ());
@@ -193,8 +193,8 @@ Method position_method(std::string name, std::string doc, const Settings<Rolling
 
 Method position_tumble() {
   return position_method("tumble",
-                         "Runs RollingOdometry (public API) on the whole recording: an inertial smoother that uses "
-                         "rolling as a velocity measurement, with the hypotheses grip, slip, bump and slope.",
+                         "Runs RollingOdometry (public API) on the whole recording. This inertial smoother uses "
+                         "rolling as a velocity measurement and distinguishes grip, slip, bumps and slopes.",
                          rolling_whole_settings(), roll_whole);
 }
 
@@ -313,9 +313,8 @@ Estimate run_exact_attitude(const sim::Sensors& sensors, const sim::Values& para
 Method position_oracle() {
   return make_method({.name = "oracle",
                       .kind = Kind::position,
-                      .doc = "Gives an upper bound of the accuracy: our smoother receives the true attitude. Errors of "
-                             "the accelerometer and "
-                             "of the contact state remain.",
+                      .doc = "Gives an upper bound of the accuracy: the smoother of position/tumble receives the true "
+                             "attitude. Errors of the accelerometer and of the contact state remain.",
                       .ours = true,
                       .settings = {&settings_with_attitude()},
                       .needs_truth = true,

@@ -100,7 +100,8 @@ Status raw_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples
 
 Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std::vector<AngularRateState>& out) {
   out.clear();
-  // If the clipped readings are invalid, every other method fails, so this oracle must fail too.
+  // If the clipped readings are invalid, all other methods fail, so this oracle must fail too, although it uses the
+  // unclipped readings.
   std::vector<ImuSample> samples;
   Status status = bridge::primary_imu_samples(sensors, samples);
   if (!status.ok()) return status;
@@ -129,20 +130,21 @@ Method rate_raw() {
   return make_method({.name = "raw",
                       .kind = Kind::rate,
                       .doc = "Returns the gyro readings of the primary IMU unchanged, including clipped readings; the "
-                             "variance is the noise of the data sheet.",
+                             "variance is the noise variance of the data sheet.",
                       .source = "baseline without a method",
                       .baseline = true},
                      run_rate_raw);
 }
 
 Method rate_interpolate() {
-  return make_method({.name = "interpolate",
-                      .kind = Kind::rate,
-                      .doc = "Interpolates each clipped gap with a cubic that has the values and slopes of both ends "
-                             "and stays beyond the saturation limit. The method is made for short gaps without impact.",
-                      .source = "textbook: cubic interpolation",
-                      .settings = {&rate_interpolate_settings()}},
-                     run_rate_interpolate);
+  return make_method(
+      {.name = "interpolate",
+       .kind = Kind::rate,
+       .doc = "Interpolates each clipped interval with a cubic that has the values and slopes of both ends and stays "
+              "beyond the saturation limit. The method is designed for short intervals without impact.",
+       .source = "textbook: cubic interpolation",
+       .settings = {&rate_interpolate_settings()}},
+      run_rate_interpolate);
 }
 
 Method rate_saave() {

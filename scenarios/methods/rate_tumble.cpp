@@ -176,11 +176,10 @@ Method rate_tumble() {
   return make_method(
       {.name = "tumble",
        .kind = Kind::rate,
-       .doc = "Smooths the rates of the whole recording with bounds from clipped readings, the specific force at the "
-              "lever arm "
-              "in free flight, and Euler's equation. The method also calibrates the rig (lever arm, biases, inertia "
-              "ratios, gyro axis directions). The method uses all IMUs on the body except the comparison IMU "
-              "'imu_reference'. During hand-held motion, the method runs the hand-held smoother.",
+       .doc = "Smooths the rates of the whole recording. The smoother uses bounds from clipped readings, the specific "
+              "force at the lever arm in free flight, and Euler's equation. The method also calibrates the rig (lever "
+              "arm, biases, inertia ratios, gyro axis directions). The method uses all IMUs on the body except the "
+              "comparison IMU 'imu_reference'. During hand-held motion, the method runs the hand-held smoother.",
        .ours = true,
        .source = "ours: extends Deschenes et al., Saturation-Aware Angular Velocity Estimation, ICRA 2024",
        .settings = {&rate_tumble_settings()},
@@ -299,17 +298,17 @@ Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& par
 }
 
 Method rate_tumble_lag() {
-  return make_method({.name = "tumble_lag",
-                      .kind = Kind::rate,
-                      .doc = "Runs the smoother of rate/tumble as a stream, with the same factors in a sliding window "
-                             "and with a fixed lag.",
-                      .ours = true,
-                      .settings = {&rate_tumble_lag_settings()},
-                      .robots = {"rig", "pendulum", "sphere"},
-                      .calibrates_rig = true},
-                     [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-                       return run_rate_tumble_lag(sensors, parameters, nullptr, nullptr);
-                     });
+  return make_method(
+      {.name = "tumble_lag",
+       .kind = Kind::rate,
+       .doc = "Runs the smoother of rate/tumble as a stream: the same factors in a sliding window, with a fixed lag.",
+       .ours = true,
+       .settings = {&rate_tumble_lag_settings()},
+       .robots = {"rig", "pendulum", "sphere"},
+       .calibrates_rig = true},
+      [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+        return run_rate_tumble_lag(sensors, parameters, nullptr, nullptr);
+      });
 }
 
 }  // namespace tumble::scenarios

@@ -52,14 +52,15 @@ Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& par
 struct RigCalibrationUse {
   std::optional<CalibratedRig> given;  ///< empty: start without calibration
   std::optional<CalibratedRig> of_batch, of_stream;
-  /// The calibration of the smoother over the whole recording has priority, unless it contains only saturation limits
-  /// and the streaming method estimated more.
+  /// Returns the calibration `of_batch` (smoother over the whole recording) or, without it, `of_stream` (streaming
+  /// method). If `of_batch` contains only saturation limits and `of_stream` contains more, the function returns
+  /// `of_stream`.
   const CalibratedRig* found() const;
 };
 
-/// The returned method starts with the rig calibration in `learning` and updates it; `learning` must outlive the
-/// method. If `learning` contains a rig calibration, the method also runs without this calibration; if the two results
-/// differ, the new calibration is not saved.
+/// The returned method starts with the rig calibration in `learning`, and stores the new calibration there. The object
+/// `learning` must outlive the method. If `learning` contains a rig calibration, the method also runs without this
+/// calibration; if the two results differ, the new calibration is not saved.
 Method calibrating_method(const Method& method, RigCalibrationUse& learning);
 
 Method rate_tumble_lag();

@@ -14,9 +14,9 @@ Estimate with_sample_times(const sim::Sensors& sensors, const std::function<Esti
 
 Estimate without_outliers(const sim::Sensors& sensors, const std::function<Estimate(const sim::Sensors&)>& run);
 
-/// All methods of this project correct sample times and remove outliers in this function, except those that call the
-/// public API. Methods from the literature receive the original time stamps. No sample is removed for a method that
-/// receives the truth, because the truth must have one value per sample.
+/// Except for methods that call the public API, all methods of this project run inside at_sample_times(), which
+/// corrects sample times and removes outliers. Methods from the literature receive the original time stamps. No sample
+/// is removed for a method that receives the truth, because the truth must have one value per sample.
 template <RunCore run>
 Estimate at_sample_times(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& oracle) {
   const auto timed = [&](const sim::Sensors& kept) {

@@ -40,9 +40,11 @@ void visit_numbers(Params& params, Each each) {
 }  // namespace detail
 
 struct SettingsOptions {
-  /// Names of fields whose values come from the recording unless the user sets them; a name may end in `*`.
+  /// Names of fields whose values come from the recording unless the user sets them; a name may end in the wildcard
+  /// `*`.
   std::vector<std::string> stated = {};
-  /// Names of fields that users cannot set, because they follow from other parameters; a name may end in `*`.
+  /// Names of fields that users cannot set, because the fields follow from other parameters; a name may end in the
+  /// wildcard `*`.
   std::vector<std::string> fixed = {};
   std::vector<std::string> first = {};
   /// A field with the same name as a parameter of another stage gets `prefix` before its name.
@@ -128,7 +130,7 @@ class Settings : public SettingsTable {
   Params defaults_;
 };
 
-/// Returns the settings whose defaults are those of `Params`.
+/// Returns settings with the default values of `Params`.
 template <class Params>
 const Settings<Params>& default_settings() {
   static const Settings<Params> all(Params{});

@@ -107,10 +107,10 @@ Method slam_published() {
   return make_method(
       {.name = "published",
        .kind = Kind::slam,
-       .doc = "Runs the mapping method of the ICRA 2024 paper with the constants of its launch files: rates of "
-              "rate/saave, Madgwick attitude, accelerometer odometry corrected by the registration, time "
-              "weighting, and trimmed point-to-plane registration. Parameters switch the known faults of "
-              "the method on and off. The complete map stays in memory.",
+       .doc = "Runs the mapping method of the ICRA 2024 paper with the constants of its launch files. The rates come "
+              "from rate/saave and the attitude from Madgwick's filter. Trimmed point-to-plane registration with time "
+              "weighting corrects the accelerometer odometry. Parameters switch the known faults of the method on and "
+              "off. The complete map stays in memory.",
        .source = "Deschenes et al., ICRA 2024, and launch files of its authors",
        .settings = {&published_settings(), &published_rate_settings()},
        .robots = {"rig"}},
@@ -120,7 +120,7 @@ Method slam_published() {
 Method slam_icp_raw() {
   return make_method({.name = "icp_raw",
                       .kind = Kind::slam,
-                      .doc = "Runs slam/icp with the unchanged readings of the clipped gyro.",
+                      .doc = "Runs slam/published with the raw gyro readings, including clipped readings.",
                       .source = "baseline of Deschenes et al., ICRA 2024",
                       .settings = {&published_settings()},
                       .robots = {"rig"},
@@ -129,14 +129,14 @@ Method slam_icp_raw() {
 }
 
 Method slam_icp() {
-  return make_method(
-      {.name = "icp",
-       .kind = Kind::slam,
-       .doc = "Deskews each sweep with the rates of rate/saave and registers the sweep point to plane to a voxel map.",
-       .source = "based on Deschenes et al., ICRA 2024, with our own registration",
-       .settings = {&icp_settings(), &icp_rate_settings()},
-       .robots = {"rig"}},
-      run_slam_icp);
+  return make_method({.name = "icp",
+                      .kind = Kind::slam,
+                      .doc = "Deskews each sweep with the rates of rate/saave and registers the sweep to a voxel map "
+                             "by point-to-plane ICP.",
+                      .source = "based on Deschenes et al., ICRA 2024, with our own registration",
+                      .settings = {&icp_settings(), &icp_rate_settings()},
+                      .robots = {"rig"}},
+                     run_slam_icp);
 }
 
 Method slam_oracle() {

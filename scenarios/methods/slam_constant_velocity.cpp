@@ -101,10 +101,10 @@ Method slam_constant_velocity() {
   return make_method(
       {.name = "constant_velocity",
        .kind = Kind::slam,
-       .doc = "Uses the lidar only: predicts the pose with constant velocity, deskews the sweep once, and "
-              "registers the sweep point to plane as a rigid body. The rate of a tumble changes too much "
-              "between two sweeps for this method. Without point times, the method does not deskew. The "
-              "adaptive threshold and the point-to-point distance of KISS-ICP are not modelled.",
+       .doc = "Uses the lidar only: predicts the pose with constant velocity, deskews each sweep once, and registers "
+              "the rigid sweep by point-to-plane ICP. During tumbling, the rate changes too much between two sweeps "
+              "for this method. Without point times, the method does not deskew. The method lacks the adaptive "
+              "threshold and the point-to-point distance of KISS-ICP.",
        .source = "similar to KISS-ICP, Vizzo et al., RA-L 2023",
        .settings = {&rigid_settings()},
        .robots = {"rig"}},

@@ -31,31 +31,30 @@ struct AlongParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.grip_sigma_ratio,
           {"along_grip_sigma_share", "1", 1e-6, 1.0,
-           "standard deviation of the rolling velocity while gripping, as a share of the velocity (scale error)"});
+           "standard deviation of the rolling velocity while the sphere grips, as a share of the speed"});
     visit(p.still_sigma_m_s, {"along_still_sigma_m_s", "m/s", 1e-9, 10.0,
-                              "minimum standard deviation of the rolling velocity; also the value at rest"});
+                              "standard deviation of the rolling velocity at rest, and minimum in motion"});
     visit(p.loose_sigma_share, {"along_loose_sigma_share", "1", 1e-6, 10.0,
-                                "standard deviation of the velocity during a slip event, or while the radius is "
-                                "uncertain, as a share of the velocity"});
-    visit(
-        p.loose_sigma_m_s,
-        {"along_loose_sigma_m_s", "m/s", 1e-9, 10.0,
-         "minimum standard deviation of the velocity in motion during a slip event, or while the radius is uncertain"});
-    visit(p.rotation_sigma_rad, {"along_rotation_sigma_rad", "rad", 1e-9, 1.0,
-                                 "standard deviation of the rotation between the ends of two sweeps, per axis"});
+                                "standard deviation of the rolling velocity while the sphere does not grip or the "
+                                "radius is uncertain, as a share of the speed"});
+    visit(p.loose_sigma_m_s, {"along_loose_sigma_m_s", "m/s", 1e-9, 10.0,
+                              "minimum standard deviation of the velocity of a moving sphere while it does not grip or "
+                              "the radius is uncertain"});
+    visit(p.rotation_sigma_rad,
+          {"along_rotation_sigma_rad", "rad", 1e-9, 1.0,
+           "standard deviation of the rotation between the ends of two consecutive sweeps, per axis"});
     visit(p.moving_m_s, {"along_moving_m_s", "m/s", 1e-6, 10.0, "minimum speed at which the sphere counts as moving"});
     visit(p.correction_m,
-          {"along_correction_m", "m", 1e-6, 100.0,
-           "maximum accepted position correction by registration; the rolling error per sweep is below 1 mm"});
+          {"along_correction_m", "m", 1e-6, 100.0, "maximum accepted position correction by registration"});
     visit(p.correction_rad,
           {"along_correction_rad", "rad", 1e-6, 3.0, "maximum accepted rotation correction by registration"});
     visit(p.loose_correction_m, {"along_loose_correction_m", "m", 0.0, 100.0,
                                  "additional position correction that is accepted while the radius is uncertain"});
     visit(p.segment_m, {"along_segment_m", "m", 0.01, 100.0,
                         "length of the rolled path over which the lidar measures the radius of the sphere"});
-    visit(p.segment_sigma_m, {"along_segment_sigma_m", "m", 1e-6, 10.0,
-                              "minimum standard deviation of the length of the rolled path; errors of the "
-                              "registered positions of the sphere's centre cause it"});
+    visit(p.segment_sigma_m,
+          {"along_segment_sigma_m", "m", 1e-6, 10.0,
+           "minimum standard deviation of the path length that the lidar measures, caused by registration errors"});
     visit(p.corrected_sigmas, {"along_corrected_sigmas", "1", 0.0, 1e3,
                                "the radius measured by the lidar is used if it differs from the stated radius by more "
                                "than this many standard deviations"});
@@ -246,9 +245,8 @@ Estimate run_rolling_prior(const sim::Sensors& sensors, const sim::Values& param
 Method slam_rolling_prior() {
   return make_method({.name = "rolling_prior",
                       .kind = Kind::slam,
-                      .doc = "Registers the sweeps of a sphere in the same way as the sweeps of the rig. The poses of "
-                             "position/tumble (our "
-                             "method) predict the motion between two sweeps.",
+                      .doc = "Registers the sweeps of a sphere with the same algorithm as the sweeps of the rig. The "
+                             "poses of position/tumble (our method) predict the motion between two sweeps.",
                       .ours = true,
                       .settings = stages_after({&prior_settings(), &along_settings()}, followed()),
                       .robots = {"sphere"}},

@@ -255,14 +255,14 @@ Method slam_tumble() {
 }
 
 Method slam_tumble_lag() {
-  return make_method(
-      {.name = "tumble_lag",
-       .kind = Kind::slam,
-       .doc = "Runs TumblingOdometry (public API) in one causal pass; the final pose of a sweep follows 0.3 s later.",
-       .ours = true,
-       .settings = {&lag_settings()},
-       .robots = {"rig"}},
-      run_lag);
+  return make_method({.name = "tumble_lag",
+                      .kind = Kind::slam,
+                      .doc = "Runs TumblingOdometry (public API) in one causal pass; the final pose of a sweep is "
+                             "available at most 0.3 s later.",
+                      .ours = true,
+                      .settings = {&lag_settings()},
+                      .robots = {"rig"}},
+                     run_lag);
 }
 
 std::optional<Method> localised_in(const Method& method, std::shared_ptr<const PriorMap> map) {

@@ -25,8 +25,8 @@ struct Running {
   std::string said;
 };
 
-/// Returns false if the operating system cannot start a further process while other processes are running. The caller
-/// can then try again after a process has ended.
+/// Returns false if the operating system refuses to start a process while other processes of the pool are running. The
+/// caller can try again after one of the running processes has ended.
 bool begin(std::list<Running>& running, std::size_t index, double deadline_s, const std::function<void(int)>& work) {
   try {
     running.push_back({index, deadline_s, Process(work, true), {}});

@@ -7,8 +7,8 @@
 
 namespace tumble::scenarios {
 
-/// SharedMemory is anonymous shared memory, which a program inherits as a file descriptor and which is freed when its
-/// last user ends.
+/// SharedMemory is anonymous shared memory, which a child program inherits as a file descriptor. The memory is freed
+/// when the last process that uses it ends.
 class SharedMemory {
  public:
   explicit SharedMemory(const char* name);

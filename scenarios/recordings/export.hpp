@@ -43,7 +43,7 @@ std::vector<std::string> export_recording(const std::filesystem::path& recording
 Eigen::Isometry3d true_mounting(const sim::Truth& truth, const std::string& frame);
 
 /// Writes the true poses T_WA to a TUM file: one line "t x y z qx qy qz qw" per physics sample, with t in seconds,
-/// rounded to nanoseconds. Times with an unknown pose are omitted.
+/// rounded to nanoseconds. The TUM file omits times with an unknown pose.
 void export_tum(const sim::Truth& truth, const std::filesystem::path& file, std::int64_t origin_ns = 0,
                 const std::string& frame = "body");
 void export_tum(const StoredTruth& truth, const std::filesystem::path& file, std::int64_t origin_ns = 0,

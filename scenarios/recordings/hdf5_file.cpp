@@ -32,8 +32,8 @@ Handle open_file(const std::filesystem::path& path) {
   throw BadInput(fmt::format("{}: the file is truncated, damaged or not an HDF5 file{}", path.string(), reason));
 }
 
-/// Returns the length of the HDF5 data, which superblock version 3 stores at byte 28. The file on disk is longer,
-/// because create_file() reserves disk space in advance.
+/// Returns the length of the HDF5 data, which superblock version 3 stores at byte 28. The file on disk is longer than
+/// the HDF5 data, because create_file() reserves disk space in advance.
 std::uint64_t stated_length(const void* image) {
   std::uint64_t length = 0;
   std::memcpy(&length, static_cast<const char*>(image) + 28, sizeof(length));

@@ -141,7 +141,7 @@ std::size_t Group::count_rows(const Handle& dataset, const std::string& name, st
   const bool same_dimensions = H5Sget_simple_extent_ndims(space.get()) == wanted;
   if (same_dimensions) H5Sget_simple_extent_dims(space.get(), extent.data(), nullptr);
   if (!same_dimensions || extent[1] != columns) {
-    fail(name, fmt::format("the dataset must have the shape N{}",
+    fail(name, fmt::format("the dataset must have the shape N{} (N: any number of rows)",
                            (columns == 1 ? std::string() : " x " + std::to_string(columns))));
   }
   const std::uint64_t row_bytes = columns * size_of(scalar);

@@ -89,7 +89,7 @@ hid_t memory_type(Scalar scalar);
 
 std::string last_error();
 
-/// Every error of Group is a BadInput with file and place; the HDF5 library prints nothing.
+/// Every error in Group throws BadInput with the file and the location in the file; the HDF5 library prints nothing.
 
 class Group {
  public:

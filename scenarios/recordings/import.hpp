@@ -44,18 +44,19 @@ enum class GyroUnit { rad_s, deg_s };
 /// @return          Times count from the first stamp; the period is the median step. Stamps rounded to milliseconds are
 /// moved to the true period of the IMU, with a note (rounded_stamps.hpp).
 ///
-/// A line is skipped, with a note, if it has an invalid or non-finite number, a wrong number of columns, readings that
-/// are all 0, or a stamp that does not increase (left_out.hpp).
+/// A line is skipped, with a note, in each of these cases (left_out.hpp):
+/// - The line has an invalid or non-finite number, or a wrong number of columns.
+/// - The readings are all 0.
+/// - The stamp does not increase.
 ///
 /// Throws BadInput with file and line for unknown, repeated or missing columns, an unexpected unit, a truncated last
 /// line, more than 5 % of faulty lines, or fewer than two samples. Throws BadInput if the readings violate one of these
 /// limits:
 ///
-/// - The median specific force is 3 to 30 m/s^2, and the period is 20 us to 2 s.
+/// - The median specific force is 3 to 30 m/s^2, and the sample period is 20 us to 2 s.
 /// - At most 1 % of the rates exceed twice the device's range (100 rad/s if unknown).
-/// - The accelerometer measures how far gravity rotates in its axes. This rotation must not be 57 times larger or 57
-///   times smaller than the rotation that the gyro measures. A factor of 57 indicates that deg/s and rad/s are
-///   confused.
+/// - The rotation that the gyro measures agrees with the rotation of gravity in the accelerometer axes. If the two
+///   rotations differ by a factor of 57, deg/s and rad/s are confused.
 Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord& device,
                         AccelUnit unit = AccelUnit::m_s2, GyroUnit gyro_unit = GyroUnit::rad_s,
                         const std::string& columns = "");
@@ -76,9 +77,9 @@ struct SweepSource {
 };
 
 /// Reads the sweeps of a lidar from one file per sweep, in natural order of the file names (clouds/import_sweeps.hpp).
-/// The stamp of a sweep comes from the file `times`, or else from the file name, from absolute point times, or from
-/// `steady_ns`. Time 0 of the recording is the start of the first sweep, or the zero of the clock if it is less than a
-/// second earlier.
+/// The stamp of a sweep comes from the first available source: the file `times`, the file name, absolute point times,
+/// or the constant sweep period `steady_ns`. Time 0 of the recording is the start of the first sweep. If the first
+/// sweep starts less than a second after the zero of the clock, time 0 is the zero of the clock.
 ///
 /// Throws BadInput if more than 5 % of the files are faulty; fewer faulty files are skipped with a note.
 Imported import_sweeps(const SweepSource& source);
@@ -98,7 +99,8 @@ Imported import_trajectory(const ReferenceSource& source);
 /// in the clock of the recording's source (`origin_ns`). A KITTI file must have one pose per sweep.
 void attach_reference(Imported& recording, const ReferenceSource& source);
 
-/// Adds IMUs that use the same clock as `recording`; time 0 of the result is the earlier time 0 of both.
+/// Adds IMUs that use the same clock as `recording`. If the IMU recording starts earlier, its time 0 becomes time 0 of
+/// the result.
 void attach_imus(Imported& recording, Imported imu);
 
 }  // namespace tumble::scenarios

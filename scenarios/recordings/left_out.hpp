@@ -61,7 +61,7 @@ class LeftOut {
 /// other stamps also exceeds a day. The cost for N stamps is O(N log N), or O(N) if all increase.
 std::vector<bool> stamps_in_order(std::span<const std::int64_t> stamps_ns);
 
-/// If `rows` and `kept` differ in size, the sensor does not measure this quantity, and `rows` is unchanged.
+/// If `rows` and `kept` differ in size, the sensor does not measure the quantity in `rows`, and `rows` stays unchanged.
 template <class Row>
 void keep_rows(const std::vector<bool>& kept, std::vector<Row>& rows) {
   if (rows.size() != kept.size()) return;

@@ -116,8 +116,8 @@ std::vector<sim::ContactTruth> from_columns(const ContactColumns& columns, const
 void require_format(const hdf5::Group& root) {
   if (!root.has_attribute("format") || root.text_attribute("format") != kRecordingFormat) {
     root.fail("format",
-              fmt::format("the file is not a recording of tumble: the attribute 'format' must be '{}'. For an "
-                          "HDF5 file of BROAD, call tumble.read_broad and tumble.write of the Python package",
+              fmt::format("the file is not a recording of tumble: the attribute 'format' must be '{}'. For an HDF5 "
+                          "file of the BROAD data set, call tumble.read_broad and tumble.write of the Python package",
                           kRecordingFormat));
   }
   const std::int64_t version = root.int_attribute("format_version");

@@ -247,7 +247,7 @@ std::string imu_truth_problem(const Imu& imu) {
 }
 
 std::string surface_problem(std::int32_t id, std::size_t surfaces) {
-  // Surface -1 is unknown; surface -2 is the robot's cage.
+  // The surface id -1 means an unknown surface; the id -2 means the robot's cage.
   if (id >= -2 && id < static_cast<std::int64_t>(surfaces)) return "";
   return fmt::format("surface_id {} has no name, because 'surfaces' has only {} names", id, surfaces);
 }

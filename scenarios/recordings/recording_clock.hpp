@@ -23,9 +23,10 @@ std::optional<std::int64_t> clock_shift_ns(const StampSpan& moved, const StampSp
 
 std::string clock_note(const std::string& what, std::int64_t shift_ns);
 
-/// Returns the time stamp of the source that becomes time 0 of a recording. If the first stamp is at least 0 and below
-/// 1 s, the function returns 0. If the first stamp is less than a second after kExportOrigin_ns (the origin of exported
-/// files), the function returns kExportOrigin_ns. Otherwise, the function returns the first stamp.
+/// Returns the time stamp of the source that becomes time 0 of a recording:
+/// - 0 if the first stamp is at least 0 and below 1 s
+/// - kExportOrigin_ns (the origin of exported files) if the first stamp is less than a second after kExportOrigin_ns
+/// - the first stamp in all other cases
 std::int64_t origin_of(std::int64_t first_ns);
 
 void start_clock(Imported& recording);

@@ -11,8 +11,9 @@
 
 /// Writer, reader and digest visit the same list of fields, so none of them can omit a field.
 ///
-/// A later version of the file format may add a field. Such a field is neither stored nor hashed while it has its
-/// default value: empty, zero, or "measured" for the point times. Older files therefore keep their digests.
+/// A later version of the file format may add a field. Added fields are neither stored nor hashed while they have their
+/// default values, so older files keep their digests. The default value of an added field is empty, zero, or "measured"
+/// for the point times.
 namespace tumble::scenarios {
 
 /// Data are stored as `plain` (without compression) if deflate would save little space (FORMAT.md).

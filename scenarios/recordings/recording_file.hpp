@@ -47,7 +47,8 @@ std::string digest(const StoredTruth& truth);
 void write_recording(const std::filesystem::path& path, const RecordingInfo& info, const sim::Sensors& sensors,
                      const sim::Truth* truth);
 
-/// Writes a recording whose points are on disk; the file is bit-identical to that for points in memory.
+/// Writes a recording whose points are on disk. The file is bit-identical to a file that is written from points in
+/// memory.
 void write_recording(const std::filesystem::path& path, const RecordingInfo& info, const sim::Sensors& sensors,
                      const std::vector<PointStore>& points, const sim::Truth* truth);
 
@@ -61,7 +62,8 @@ sim::Truth read_truth(const std::filesystem::path& path);
 /// Stores the rows of the truth on disk in the folder `scratch`, so memory contains one MiB of the truth.
 StoredTruth read_truth(const std::filesystem::path& path, const std::filesystem::path& scratch);
 
-/// Throws BadInput unless `path` is a regular file that may be HDF5 by its first 16 bytes and its extension.
+/// Throws BadInput if `path` is not a regular file, or if its first 16 bytes or its extension indicate another format
+/// than HDF5.
 void require_recording_file(const std::filesystem::path& path);
 
 }  // namespace tumble::scenarios

@@ -17,7 +17,7 @@ namespace tumble::scenarios {
 
 std::filesystem::path scratch_folder_of(const std::filesystem::path& output);
 
-/// ScratchFile is an unnamed temporary file that disappears with the object or the process.
+/// ScratchFile is an unnamed temporary file, which exists until the object is destroyed or the process ends.
 class ScratchFile {
  public:
   explicit ScratchFile(std::filesystem::path folder);
@@ -81,7 +81,8 @@ class ColumnFile {
   std::optional<ScratchFile> file_;
 };
 
-/// ScratchFolder is removed with the object, even if a signal ends the program.
+/// ScratchFolder is a temporary folder, which is removed when the object is destroyed or when a signal ends the
+/// program.
 class ScratchFolder {
  public:
   explicit ScratchFolder(const std::string& use);

@@ -21,8 +21,8 @@ class Unfinished {
   int place_ = -1;
 };
 
-/// SignalsWait delays signals such as SIGINT during its lifetime. Between the creation of a file and the construction
-/// of its Unfinished object, a signal would otherwise leave the file on the disk.
+/// SignalsWait delays signals such as SIGINT during its lifetime. Without SignalsWait, a signal between the creation of
+/// a file and the construction of its Unfinished object would leave the file on the disk.
 class SignalsWait {
  public:
   SignalsWait();

@@ -87,7 +87,7 @@ void add_bin(const char* axis, const std::string& words, std::vector<Metric>& al
   all.push_back(
       {{name("rate_error_median_rad_s"), Unit::rad_s, words, Sense::lower}, Kind::rate, error_in_bin<kAxis, kBin, 50>});
   all.push_back({{name("rate_error_p99_rad_s"), Unit::rad_s,
-                  "99th percentile of the rate error (norm) over clipped samples", Sense::lower},
+                  "99th percentile of the rate error (norm) over the clipped samples of one bin", Sense::lower},
                  Kind::rate,
                  error_in_bin<kAxis, kBin, 99>});
 }
@@ -114,17 +114,18 @@ std::vector<MetricInfo> binned_rate_quantities() {
 
 std::vector<Metric> binned_rate_metrics() {
   std::vector<Metric> all;
-  add_bins<BinAxis::depth>(
-      "clip_depth_rad_s",
-      "median rate error (norm) over clipped samples; the name states the range of the largest saturation deficit", all,
-      std::make_index_sequence<kDepthEdges.size() - 1>());
-  add_bins<BinAxis::length>(
-      "clip_length_s",
-      "median rate error (norm) over clipped samples; the name states the range of the segment's length", all,
-      std::make_index_sequence<kLengthEdges.size() - 1>());
+  add_bins<BinAxis::depth>("clip_depth_rad_s",
+                           "median rate error (norm) over clipped samples; the metric's name states the range of the "
+                           "largest saturation deficit",
+                           all, std::make_index_sequence<kDepthEdges.size() - 1>());
+  add_bins<BinAxis::length>("clip_length_s",
+                            "median rate error (norm) over clipped samples; the metric's name states the range of the "
+                            "length of the clipped segment",
+                            all, std::make_index_sequence<kLengthEdges.size() - 1>());
   add_bins<BinAxis::count>(
-      "clipped_axes", "median rate error (norm) over clipped samples; the name states the number of clipped gyro axes",
-      all, std::make_index_sequence<kCountEdges.size() - 1>());
+      "clipped_axes",
+      "median rate error (norm) over clipped samples; the metric's name states the number of clipped gyro axes", all,
+      std::make_index_sequence<kCountEdges.size() - 1>());
   return all;
 }
 

@@ -128,18 +128,18 @@ std::vector<std::size_t> registered_sweeps(const Estimate& estimate) {
 std::vector<Metric> end_pose_metrics() {
   return {
       {{"translation_error_end_m", Unit::m,
-        "error of the translation from the sixth registered sweep to the last sweep that the IMU covers; without "
-        "sweeps, from the first to the last pose",
+        "translation error at the last sweep with IMU readings, relative to the sixth registered sweep. Without "
+        "sweeps: at the last pose, relative to the first pose",
         Sense::lower, Place::headline},
        Kind::slam,
        translation_error_end},
       {{"rotation_error_end_rad", Unit::rad,
-        "error of the rotation from the sixth registered sweep to the last sweep that the IMU covers, from 0 to pi",
+        "rotation error (0 to pi) at the last sweep with IMU readings, relative to the sixth registered sweep",
         Sense::lower, Place::headline},
        Kind::slam,
        rotation_error_end},
       {{"pose_nees", Unit::number,
-        "normalised squared error (NEES) of the last sweep's pose, per degree of freedom; the expected value is 1",
+        "normalised squared error (NEES) of the pose of the last sweep, per degree of freedom; the expected value is 1",
         Sense::two_sided, Place::held, 1.0},
        Kind::slam,
        pose_nees},

@@ -52,8 +52,7 @@ Alignment alignment_of(const Estimate& estimate, const StoredTruth* truth) {
     if (track.covers(after_ns)) return Alignment::at(pose, track.pose(after_ns));
   }
   throw BadInput(
-      "the times of the truth and of the estimate's poses do not overlap; check that truth and estimate use the same "
-      "clock");
+      "no pose of the estimate is within the duration of the truth; check that truth and estimate use the same clock");
 }
 
 Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
@@ -158,7 +157,7 @@ BagTrack in_bag(const std::string& name, const Estimate& estimate, const sim::Se
                 const std::vector<PointStore>* points, const StoredTruth* truth) {
   if (estimate.poses.empty())
     throw BadInput(
-        "the estimate contains no poses, but a bag needs poses; choose an estimate of a position or slam method");
+        "the estimate contains no poses that a bag could store; choose an estimate of a position or slam method");
   const Eigen::Isometry3d T_AB = mounting_of(estimate, sensors, truth).inverse();
   const Alignment alignment = alignment_of(estimate, truth);
   BagTrack out;

@@ -35,9 +35,8 @@ bool quantile_exceeds(double limit, std::vector<double> values, double share) {
   return quantile(values, share) > limit;
 }
 
-/// A health finding increases the reported covariance of the rates. rate_errors() subtracts this increase from the
-/// covariance. With the increase, a large error would be consistent with the covariance, so the estimate would not
-/// count as wrong.
+/// A health finding increases the reported covariance of the rates. rate_errors() subtracts this increase, so that a
+/// health finding cannot make a wrong estimate consistent with its covariance.
 Errors rate_errors(const ScoredEstimate& scored) {
   const std::vector<Eigen::Matrix3d>& suspect = scored.estimate().suspect_rad2_s2;
   const std::vector<PairedRate>& pairs = paired_rates(scored);
@@ -120,20 +119,24 @@ bool silently_wrong(const ScoredEstimate& scored, double& value) {
 template <Kind kind>
 void add(std::vector<Metric>& out) {
   out.push_back({{"health_wrong", Unit::verdict,
-                  "1 if the estimate is wrong. For rates and attitudes: a tenth of the errors in motion exceed five "
-                  "reported standard deviations, or half of the errors exceed a fifth of the true rate or 0.5 rad of "
-                  "tilt. For poses: the error of the last pose exceeds five reported standard deviations",
+                  "1 if the estimate is wrong. Rates or attitudes are wrong if 10 % of the errors in motion exceed "
+                  "five reported standard deviations. Rates are also wrong if the median relative error exceeds 20 %, "
+                  "and attitudes if the median tilt error exceeds 0.5 rad. Poses are wrong if the error of the last "
+                  "pose exceeds five reported standard deviations",
                   Sense::none},
                  kind,
                  wrong<kind>});
   out.push_back({{"health_reported", Unit::verdict,
-                  "1 if the method reports that its readings or its estimate should not be used", Sense::none},
+                  "1 if the method reports that the sensor readings are implausible or that the estimate is invalid",
+                  Sense::none},
                  kind,
                  reported});
-  out.push_back({{"health_silently_wrong", Unit::verdict,
-                  "1 if the estimate is wrong and the method does not report this", Sense::none},
-                 kind,
-                 silently_wrong<kind>});
+  out.push_back(
+      {{"health_silently_wrong", Unit::verdict,
+        "1 if the estimate is wrong (health_wrong is 1) and the method reports no fault (health_reported is 0)",
+        Sense::none},
+       kind,
+       silently_wrong<kind>});
 }
 
 }  // namespace

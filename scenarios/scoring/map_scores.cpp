@@ -20,7 +20,7 @@ constexpr float kSamePointM = 1e-3f;     // cell of duplicate points
 constexpr double kSeenRangeM = 100.0;    // farther surfaces are not required
 
 static_assert(kErrorLimitM > kToleranceM && kErrorLimitM > kFineToleranceM,
-              "kErrorLimitM must exceed kToleranceM and kFineToleranceM");
+              "the upper bound of a distance must exceed both distance tolerances");
 
 std::vector<Eigen::Vector3f> map_in_world(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
@@ -126,8 +126,9 @@ std::vector<Metric> map_metrics() {
         Place::held, kNoTarget, Compared::by_difference},
        Kind::slam,
        fine_overlap},
-      {{"map_coverage", Unit::share, "share of the visible true surface (cells of 0.1 m) within 0.25 m of a map point",
-        Sense::higher, Place::held, kNoTarget, Compared::by_difference},
+      {{"map_coverage", Unit::share,
+        "share of the true surface cells (0.1 m) hit by the lidar that have a map point within 0.25 m", Sense::higher,
+        Place::held, kNoTarget, Compared::by_difference},
        Kind::slam,
        map_coverage},
       {{"map_error_mean_m", Unit::m,
@@ -142,8 +143,8 @@ std::vector<Metric> map_metrics() {
        Kind::slam,
        unique_share},
       {{"map_failed", Unit::verdict,
-        "1 if more than 15 % of the map points are farther than 0.25 m from the true surface, if the map covers less "
-        "than half of the visible surface, or if there were sweeps but no map; otherwise 0",
+        "1 if the map is missing, covers less than half of the surface that the lidar hit, or has more than 15 % of "
+        "its points farther than 0.25 m from the true surface; otherwise 0",
         Sense::lower, Place::held},
        Kind::slam,
        failed},

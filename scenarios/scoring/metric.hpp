@@ -15,7 +15,8 @@ namespace tumble::scenarios {
 /// of the reference).
 enum class Sense { lower, higher, two_sided, none };
 
-/// A `verdict` is 0, or 1 for a failure; a `time_offset` is signed, stored in seconds and displayed in milliseconds.
+/// A `verdict` is 1 for a failure, otherwise 0. A `time_offset` has a sign; it is stored in seconds and displayed in
+/// milliseconds.
 enum class Unit { number, share, verdict, rad, rad_s, m, m_s, m_s2, s, time_offset, mib };
 const char* symbol(Unit unit);
 
@@ -23,8 +24,9 @@ const char* symbol(Unit unit);
 /// signed values).
 enum class Compared { by_ratio, by_difference };
 
-/// Place states where a metric appears. A gate (sweep/gate.hpp) compares new with accepted results in the metrics
-/// `held` and `headline`. The report page starts with `headline` metrics. `tumble report --all` prints all metrics.
+/// Place states where a metric appears. A gate (sweep/gate.hpp) compares new with accepted results in metrics with the
+/// place `held` or `headline`. The report page starts with the metrics that have the place `headline`. `tumble report
+/// --all` prints all metrics.
 enum class Place { detail, held, headline };
 
 inline constexpr double kNoTarget = std::numeric_limits<double>::quiet_NaN();

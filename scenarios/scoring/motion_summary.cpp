@@ -62,7 +62,9 @@ MotionSummary summarise_motion(const sim::Sensors& sensors, const sim::Truth& tr
   const ClippingTruth clipping(sensors, truth);
   if (truth.period_ns <= 0 || truth.label.size() != truth.p_WB_m.size() ||
       truth.f_B_m_s2.size() != truth.p_WB_m.size()) {
-    throw BadInput("the truth of the recording is damaged: its physics quantities have different numbers of samples");
+    throw BadInput(
+        "the truth of the recording is damaged: its sampling period is not positive, or its positions, contact labels "
+        "and specific forces differ in number");
   }
   MotionSummary out;
   for (std::size_t k = 1; k < truth.p_WB_m.size(); ++k) out.path_m += (truth.p_WB_m[k] - truth.p_WB_m[k - 1]).norm();

@@ -7,9 +7,10 @@
 
 namespace tumble::scenarios {
 
-/// The method causes `ok`, `diverged` (score.hpp, `verdict`), `failed` (it returned an error), `crashed` and `timeout`.
-/// The machine causes `killed`: a signal from outside, no memory, or no process. `rejected` means that the scenario
-/// cannot be simulated with this seed.
+/// The method determines the statuses `ok`, `diverged` (score.hpp, `verdict`), `failed` (the method returned an error),
+/// `crashed` and `timeout`. The status `killed` has a cause outside the method: a signal from another process, a lack
+/// of memory, or a process that could not be started. `rejected` means that the scenario cannot be simulated with this
+/// seed.
 enum class OutcomeStatus { ok, diverged, failed, crashed, timeout, killed, rejected };
 
 std::span<const OutcomeStatus> outcome_statuses();

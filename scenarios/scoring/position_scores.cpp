@@ -40,7 +40,7 @@ bool height_error_max(const ScoredEstimate& scored, double& value) {
   value = 0.0;
   for (const PairedPose& pose : poses) {
     const double error = std::abs(pose.estimate.position_W_m.z() - pose.truth.position_W_m.z());
-    // A NaN error also satisfies this condition; std::max would ignore NaN.
+    // The negated comparison is also true for a NaN error, whereas std::max would ignore NaN.
     if (!(error <= value)) value = error;
     if (std::isnan(value)) break;
   }
@@ -101,7 +101,7 @@ std::vector<Metric> position_metrics() {
         "position error at the end; estimate and truth are aligned in position and yaw at the start", Sense::lower},
        Kind::position,
        end_error},
-      {{"position_end_error_share", Unit::share, "position error at the end, as a share of the length of the true path",
+      {{"position_end_error_share", Unit::share, "position error at the end, divided by the length of the true path",
         Sense::lower, Place::headline},
        Kind::position,
        end_error_share},
@@ -114,8 +114,8 @@ std::vector<Metric> position_metrics() {
        Kind::position,
        position_coverage_3sigma},
       {{"position_nees_median", Unit::number,
-        "consistency of the position covariance: median of the squared error divided by the reported variance, "
-        "relative to a normal distribution; the ideal is 1",
+        "median ratio of squared position error to reported variance, divided by the median for a normal distribution; "
+        "the ideal is 1",
         Sense::two_sided, Place::held, 1.0},
        Kind::position,
        nees_median},

@@ -78,8 +78,8 @@ bool in_contact(const ScoredEstimate& scored, std::int64_t time_ns) {
 }
 
 // NormalisedErrors contains squared rate errors divided by their reported variances. The error of a clipped axis is in
-// `all`. The error is also in `impact` if the robot is in contact, otherwise in `flight`. Unclipped axes that a clipped
-// sensing element disturbs are in `cross_axis`.
+// `all`. The error of a clipped axis is also in `impact` if the robot is in contact, otherwise in `flight`. The errors
+// of unclipped axes that a clipped sensing element disturbs are in `cross_axis`.
 struct NormalisedErrors {
   std::vector<double> all, flight, impact, cross_axis;
 };
@@ -157,8 +157,7 @@ std::vector<Metric> rate_metrics() {
        Kind::rate,
        clipped_max},
       {{"rate_error_segment_max_rad_s", Unit::rad_s,
-        "norm of the mean rate error over a segment of consecutive clipped samples; maximum over all segments; this "
-        "error displaces the map",
+        "mean rate error (norm) over a segment of consecutive clipped samples; maximum over all segments",
         Sense::lower},
        Kind::rate,
        segment_max},
@@ -180,13 +179,13 @@ std::vector<Metric> rate_metrics() {
        Kind::rate,
        coverage_3sigma_cross_axis},
       {{"rate_nees_flight", Unit::number,
-        "mean of the squared rate error divided by the reported variance, for clipped axes without contact; the ideal "
+        "mean ratio of squared rate error to reported variance, for clipped axes in samples without contact; the ideal "
         "is 1",
         Sense::two_sided, Place::held, 1.0},
        Kind::rate,
        nees_flight},
       {{"rate_nees_impact", Unit::number,
-        "mean of the squared rate error divided by the reported variance, for clipped axes with contact; the ideal is "
+        "mean ratio of squared rate error to reported variance, for clipped axes in samples with contact; the ideal is "
         "1",
         Sense::two_sided, Place::held, 1.0},
        Kind::rate,

@@ -21,12 +21,13 @@ struct ReferenceRail {
 /// influence on the result.
 ///
 /// Gyro readings within 5 % of the largest reading of their axis and sign may be saturated. The reference confirms the
-/// saturation if the reference rate exceeds the gyro reading by 2 % of the largest reading, and by four times the
-/// median difference between gyro and reference. A saturation limit exists if both conditions are met: the reference
-/// confirms at least five readings, and the reference confirms at least half of the possibly saturated readings.
+/// saturation of a reading if the reference rate exceeds the reading by two limits: 2 % of the largest reading, and
+/// four times the median difference between gyro and reference. A saturation limit exists if the reference confirms the
+/// saturation of at least five readings and of at least half of the possibly saturated readings.
 ///
-/// A plane is fitted to the confirmed readings by least squares. The prior of the slopes is 0 +- 0.03, and the readings
-/// are assumed to scatter by 0.02 rad/s. The plane is fitted again to the readings within 2 % of the plane.
+/// The saturation plane is fitted by least squares to the readings whose saturation the reference confirms. The slopes
+/// of the plane have the prior 0 +- 0.03, and the readings are assumed to scatter by 0.02 rad/s about the plane. A
+/// second fit of the plane uses only the readings within 2 % of the first plane.
 std::array<ReferenceRail, 6> reference_rails(std::span<const Eigen::Vector3d> reading,
                                              std::span<const Eigen::Vector3d> reference);
 

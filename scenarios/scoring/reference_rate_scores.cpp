@@ -12,7 +12,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// A sample is certainly unclipped if every axis is below kFarShare times its extreme reading.
+/// A sample is certainly unclipped if the reading of every axis is below kFarShare times the extreme reading of this
+/// axis.
 constexpr double kFarShare = 0.9, kRotating_rad_s = 0.5;
 
 double error_norm(const Eigen::Vector3d& estimate, const Eigen::Vector3d& reference) {
@@ -169,7 +170,7 @@ std::vector<Metric> reference_rate_metrics() {
       "difference between the magnitudes of the rates of reference and gyro, in motion without clipping", all);
   all.push_back(
       {{"rate_reference_coverage_3sigma", Unit::share,
-        "share of clipped axes whose error is within three standard deviations of method and reference combined",
+        "share of clipped axes whose rate error is within three combined standard deviations of method and reference",
         Sense::two_sided, Place::detail, kNormal3Sigma, Compared::by_difference},
        Kind::rate,
        reference_coverage});

@@ -11,10 +11,10 @@
 #include "scenarios/scoring/families.hpp"
 
 /// A slip event is a time interval in which every sample has the contact label slip or the contact label slide, except
-/// for short interruptions. The interruptions are allowed because an unbalanced spinning sphere hops. An interruption
-/// contains at most kBridge_ns of the label grip. Its total duration (grip and air) is at most kHop_ns. A true slip
-/// event is scored if it lasts at least kShortest_ns and the contact speed reaches kLeastSpeed_m_s; weaker events cause
-/// no position error.
+/// for short interruptions. Interruptions of a slip event are allowed because an unbalanced spinning sphere hops. An
+/// interruption contains at most kBridge_ns of the label grip, and lasts at most kHop_ns in total (grip and air). A
+/// true slip event is scored if it lasts at least kShortest_ns and the contact speed reaches kLeastSpeed_m_s; weaker
+/// events cause no position error.
 ///
 /// An estimated slip event is correct if true events, widened by kMargin_ns, cover at least half of it. A true slip
 /// event is detected if correct estimated events cover at least half of it.
@@ -227,18 +227,20 @@ std::vector<Metric> slip_metrics() {
        Kind::position,
        recall},
       {{"slip_delay_s", Unit::s,
-        "median delay from the true start of a detected slip event to its report; earlier reports count as 0",
+        "median delay from the true start of a detected slip event to the start that the method reports; reports "
+        "before the true start count as 0",
         Sense::lower},
        Kind::position,
        delay},
       {{"slip_flag_recall", Unit::share,
-        "share of the true slip and slide events with a position error above 0.1 m during which the reported standard "
-        "deviation grows by at least 0.03 m",
+        "share of the true slip and slide events in which the reported horizontal variance grows by more than 0.0009 "
+        "m^2; counts only events that change the horizontal position error by more than 0.1 m",
         Sense::higher, Place::detail, kNoTarget, Compared::by_difference},
        Kind::position,
        flag_recall},
       {{"slip_flagged_share", Unit::share,
-        "share of the true slip and slide events during which the reported standard deviation grows by at least 0.03 m",
+        "share of the true slip and slide events in which the reported horizontal variance grows by more than 0.0009 "
+        "m^2",
         Sense::none},
        Kind::position,
        flagged_share},

@@ -70,7 +70,8 @@ std::vector<Metric> sweep_border_metrics() {
        Kind::slam,
        jump_m_s},
       {{"sweep_jump_rad_s", Unit::rad_s,
-        "rms jump of the rate (from the attitudes) at sweep boundaries, after subtraction of the true change of rate",
+        "rms jump of the estimated rate (derived from the attitudes) at sweep boundaries, after subtraction of the "
+        "true change of rate",
         Sense::lower},
        Kind::slam,
        jump_rad_s},

@@ -85,9 +85,8 @@ std::vector<Metric> trajectory_metrics(Kind kind) {
        kind,
        ate},
       {{"ate_rad", Unit::rad,
-        "rms rotation error, from 0 to pi; position and yaw of the estimate are aligned with the truth at the start "
-        "only; "
-        "includes the error of late time stamps",
+        "rms rotation error, from 0 to pi, including the effect of wrong time stamps; position and yaw of the estimate "
+        "are aligned with the truth at the start only",
         Sense::lower, Place::held},
        kind,
        ate_rotation},

@@ -66,15 +66,15 @@ FailureGoal parse_goal(const std::string& text, Kind kind) {
   if (sign == std::string::npos || trimmed(text.substr(0, sign)).empty() ||
       !read_number(trimmed(text.substr(sign + 1)), goal.limit) || std::isnan(goal.limit))
     throw BadInput(
-        fmt::format("the failure is '{}'; write 'METRIC > VALUE' with a number in SI units, or 'METRIC > inf' for "
-                    "failed runs (status not ok) only",
+        fmt::format("--failure is '{}'; write 'METRIC > VALUE' with a number in SI units. With 'METRIC > inf', only "
+                    "runs whose status is not ok fail",
                     shortened(text)));
   goal.metric = trimmed(text.substr(0, sign));
   require_metric(goal.metric, kind);
   const char worse = is_higher_better(goal.metric) ? '<' : '>';
   if (text[sign] != worse)
-    throw BadInput(fmt::format("the failure is '{}'; write '{} {} {}', because {} values of this metric are worse",
-                               text, goal.metric, worse, goal.limit, worse == '<' ? "lower" : "higher"));
+    throw BadInput(fmt::format("--failure is '{}'; write '{} {} {}', because {} values of this metric are worse", text,
+                               goal.metric, worse, goal.limit, worse == '<' ? "lower" : "higher"));
   return goal;
 }
 

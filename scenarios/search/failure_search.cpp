@@ -149,8 +149,8 @@ class Evaluator {
     failures_ += is_failure(run) ? 1 : 0;
     if (run.status == OutcomeStatus::killed)
       throw BadInput(
-          fmt::format("the operating system killed run {} of the search, so the run shows nothing about the "
-                      "method: {}; run again with more memory or fewer jobs",
+          fmt::format("the operating system killed run {} of the search, so the run cannot show whether the method "
+                      "fails: {}; run again with more memory or fewer jobs",
                       index, outcome.message));
   }
 

@@ -59,16 +59,21 @@ struct SearchResult {
 /// Returns the names of the random streams of a scenario, as in sim::Situation: the world and each sensor.
 std::vector<std::string> stream_names(const Scenario& scenario);
 
-/// Sets each random parameter of the scenario to the quantile of its distribution that belongs to a standard normal
-/// number of `point` (number_at). Sets the seed of each random stream to a seed of `point`.
+/// Converts the standard normal numbers of `point` to values of the scenario's random parameters, by the quantiles of
+/// their distributions (number_at). Sets the seeds of the random streams to the seeds of `point`.
 Scenario scenario_at(const Scenario& scenario, std::span<const DrawnNumber> numbers, const SplittingPoint& point);
 
 /// Estimates the probability of a failure by adaptive multilevel splitting over all random parameters of the scenario
 /// and the seed of each random stream (splitting.hpp). Each run is simulated and estimated in a separate process, and
-/// stored in `results`. A search whose runs are in `results` continues. The result is equal for any number of jobs.
+/// stored in `results`. If `results` contains runs of the same search, the search continues after these runs. The
+/// result does not depend on the number of jobs.
 ///
-/// Throws BadInput for invalid options, for a scenario without random parameters, if the method cannot process the
-/// scenario, if `results` contains another search on this scenario and method, or if the operating system killed a run.
+/// Throws BadInput in each of these cases:
+/// - The options are invalid.
+/// - The scenario has no random parameters.
+/// - The method cannot process the scenario.
+/// - `results` contains another search on this scenario and method.
+/// - The operating system killed a run.
 SearchResult search_failures(const DataRoot& data, const Scenario& scenario, const Method& method,
                              const FailureGoal& goal, Results& results, const SearchOptions& options);
 

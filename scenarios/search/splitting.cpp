@@ -135,8 +135,8 @@ class Splitting {
     return true;
   }
 
-  /// Replaces the lowest members by copies of remaining members. Each remaining member is copied once before any is
-  /// copied twice.
+  /// Replaces the members of the population with the lowest scores by copies of the remaining members. Each remaining
+  /// member is copied once before any member is copied twice.
   void copy(const std::vector<std::size_t>& lowest, std::vector<std::size_t> remaining) {
     std::vector<std::size_t> copies(remaining.size(), 1);
     for (std::size_t i = 0; i < lowest.size(); ++i) {
@@ -262,13 +262,13 @@ void SplittingEstimate::advance(std::size_t removed, std::span<const std::size_t
   log_probability_ += std::log(left / n);
   double siblings = 0.0;
   for (const std::size_t count : copies) siblings += static_cast<double>(count * count);
-  // If only one draw remains, all later draws descend from it, and interval() returns the limits 0 and 1.
+  // If only one draw remains, all later draws descend from this draw, and interval() returns the limits 0 and 1.
   if (left > 1.0) log_correction_ += std::log((left - 1.0) * n * n / (left * (n * n - siblings)));
 }
 
-/// Equation (S30) of statistics.md. The estimate is log-normal, and the median of a log-normal distribution is below
-/// its mean. To correct this, half of the variance is added to the logarithm of the upper limit. The lower limit has no
-/// such correction.
+/// Computes the confidence interval by equation (S30) of statistics.md. The estimate is log-normal, and the median of a
+/// log-normal distribution is below its mean. To correct the confidence interval, half of the variance is added to the
+/// logarithm of its upper limit. The lower limit of the confidence interval is not corrected.
 Interval SplittingEstimate::interval(std::span<const std::size_t> members, double risk) const {
   const auto n = static_cast<double>(population_), own = static_cast<double>(members.size());
   const double share = own / n, log_value = log_probability_ + std::log(share);
@@ -290,9 +290,10 @@ Interval SplittingEstimate::of_failure(std::span<const std::size_t> families,
   if (log_probability_ == 0.0)
     return share_interval(static_cast<std::int64_t>(failing.size()), static_cast<std::int64_t>(population_));
   if (2 * failing.size() >= population_) return interval(failing, kRisk);
-  // If fewer than half of the population fails, the estimated probability is not log-normal. The interval is then the
-  // product of two intervals, each with half of the error risk: the interval of the level probability, and the interval
-  // of the failing fraction of the population. The second interval counts all copies of one initial draw as one draw.
+  // If fewer than half of the population fails, the estimated probability is not log-normal, so two confidence
+  // intervals are multiplied. One interval is for the level probability, and one for the failing fraction of the
+  // population; each has half of the error risk. The interval of the failing fraction counts all copies of one initial
+  // draw as one draw.
   const Interval level = interval(families, 0.5 * kRisk);
   const auto n = static_cast<double>(sizes_of(families).size());
   const double share = static_cast<double>(failing.size()) / static_cast<double>(population_), count = share * n;

@@ -23,7 +23,8 @@ struct SplittingPoint {
   std::uint64_t seed() const;
 };
 
-/// ScorePoints returns one score per draw. To stop the search, ScorePoints returns fewer scores, which are ignored.
+/// ScorePoints returns one score per draw. If ScorePoints returns fewer scores than draws, the search stops and ignores
+/// these scores.
 using ScorePoints = std::function<std::vector<double>(std::span<const SplittingPoint>)>;
 
 /// Move changes the standard normal numbers of a draw at random, by a step size in (0, 1]. If `normals` are standard
@@ -51,8 +52,8 @@ struct ScoredPoint {
   std::size_t family = 0;  ///< index of the initial draw that was copied and changed to this draw
 };
 
-/// SplittingLevel describes the population after one step of the search. In this step, copies of other draws have
-/// replaced all draws with a score of at most `score`.
+/// SplittingLevel describes the population after one step of the search. A step of the search replaces all draws with a
+/// score of at most `score` by copies of other draws.
 struct SplittingLevel {
   double score = 0.0;        ///< each member of the population exceeds this score
   Interval probability{};    ///< probability that a random draw exceeds the score
@@ -79,11 +80,10 @@ struct SplittingResult {
 /// the fractions that remain in each step and the final fraction above the bound. The search ends if three quarters of
 /// the draws exceed the bound.
 ///
-/// The step size of the Metropolis moves increases if more than 40 % of the moves are accepted. The number of moves per
-/// copy follows from the acceptance rate of the moves with a new seed. If every move drew a new seed, 90 % of the
-/// copies would accept at least one move. The 95 % interval considers that copies of one initial draw depend on each
-/// other. Equal options give equal results for deterministic scores. Scores may be infinite, but not NaN. Throws
-/// BadInput for invalid options or NaN scores.
+/// The step size of the Metropolis moves increases if more than 40 % of the moves are accepted. Each copy makes enough
+/// moves that at least 90 % of the copies would accept a move if every move drew a new seed. The 95 % interval takes
+/// into account that copies of one initial draw depend on each other. Equal options give equal results for
+/// deterministic scores. Scores may be infinite, but not NaN. Throws BadInput for invalid options or NaN scores.
 SplittingResult split(const SplittingOptions& options, const ScorePoints& score);
 
 /// SplittingEstimate accumulates the probability of a level in adaptive multilevel splitting, and the variance of its

@@ -10,9 +10,10 @@ namespace tumble::scenarios {
 inline constexpr std::size_t kExactPairsMax = 100;
 
 /// Returns the one-sided p-value of the signed-rank test (Wilcoxon, Biometrics Bulletin 1, 1945), equation (S5) of
-/// statistics.md; small if the differences tend to be positive. For up to `kExactPairsMax` differences, the p-value is
-/// exact, in O(n^3) time and O(n^2) memory. Above `kExactPairsMax` differences, the p-value is a normal approximation,
-/// corrected for ties and continuity, equation (S6). Infinite differences (one method failed) get the highest ranks.
+/// statistics.md. The p-value is small if the differences tend to be positive. For up to `kExactPairsMax` differences,
+/// the p-value is exact, in O(n^3) time and O(n^2) memory. Above `kExactPairsMax` differences, the p-value is a normal
+/// approximation, corrected for ties and continuity, equation (S6). Infinite differences (one method failed) get the
+/// highest ranks.
 double signed_rank_chance(std::span<const double> differences);
 
 double signed_rank_test(std::span<const double> differences);

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <span>
 
-/// Each function computes how many pairs a test needs to detect an effect as large as the observed one; if the observed
-/// effect is due to chance, the number is too small.
+/// Each function computes how many pairs a test needs to detect an effect of the observed size. If the observed effect
+/// is due to chance, the computed number of pairs is too small.
 namespace tumble::scenarios {
 
 struct Plan {

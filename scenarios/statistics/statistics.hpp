@@ -35,7 +35,7 @@ Interval median_interval(std::span<const double> values);
 /// Returns the fraction of successes with its exact confidence interval (Clopper and Pearson).
 Interval share_interval(std::int64_t count, std::int64_t total);
 
-/// Appends `worst` once for each failed run; a NaN in `worst` appends nothing.
+/// Appends `worst` once for each failed run; if `worst` is NaN, appends nothing.
 std::vector<double> with_failures(std::vector<double> values, std::size_t failed, double worst);
 
 }  // namespace tumble::scenarios

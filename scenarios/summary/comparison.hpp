@@ -80,7 +80,7 @@ struct Comparison {
 };
 
 /// Compares the methods. A metric without a sense (for example a cost, for which neither lower nor higher is better) is
-/// compared only if the caller names it. The `finding` of such a metric remains undecided.
+/// compared only if the caller names it. For a metric without a sense, the `finding` remains undecided.
 Comparison compare(const Summary& summary, const ComparisonOptions& options);
 
 }  // namespace tumble::scenarios

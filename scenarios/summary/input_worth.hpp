@@ -9,7 +9,7 @@
 #include "scenarios/statistics/statistics.hpp"
 #include "scenarios/sweep/suite_triage.hpp"
 
-/// The functions determine which input of a method, replaced by its true value, improves the method most
+/// The functions compute how much a method improves if one of its inputs is replaced by the true value
 /// (docs/maths/statistics.md).
 namespace tumble::scenarios {
 

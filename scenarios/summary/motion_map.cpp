@@ -84,7 +84,7 @@ std::vector<MotionPoint> thinned(const std::vector<MotionPoint>& points) {
 /// The ICRA 2024 paper by Deschênes et al. reports rates and forces of the rig; the CRV 2021 paper reports an angular
 /// acceleration and forces.
 std::vector<PublishedExtreme> published() {
-  return {{"rig, 32 tumbles down a hill",
+  return {{"rig that tumbled down a hill 32 times",
            "Deschênes and others, ICRA 2024: up to 18.6 rad/s and 157.8 m/s² (the accelerometer has a range of 16 g)",
            18.6, 157.8},
           {"collisions of a rig", "Deschênes and others, CRV 2021: up to 200 m/s²; the paper does not state rates",

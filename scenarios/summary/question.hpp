@@ -37,8 +37,8 @@ struct Answer {
 
 void require_sound(const Question& question);
 
-/// Stores the question (is one method better?) in the results database before the first run.
-/// Throws BadInput if the database contains another question, or runs without a question.
+/// Stores the question (is one method better than another?) in the results database before the first run. Throws
+/// BadInput if the database contains a different question, or contains runs but no question.
 void claim(Results& results, const Question& question, const std::filesystem::path& database);
 
 /// All simulated runs up to the seed `last_seed` must be complete; later runs have no effect.

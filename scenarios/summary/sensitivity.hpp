@@ -21,8 +21,8 @@ inline constexpr double kInfluenceRisk = 0.05;
 using NumbersOfDraws = std::map<std::string, std::vector<RankedValue>>;
 
 NumbersOfDraws numbers_of_draws(const Summary& summary, const Scenario& scenario);
-/// A motion value, for example the peak rate, is an effect of the random parameters; its dependence with a score may
-/// have a common cause.
+/// Motion values, for example the peak rate, are effects of the random parameters, so their correlation with a score
+/// may have a common cause.
 NumbersOfDraws numbers_of_motion(std::span<const DrawValues> draws, const std::string& scenario);
 
 struct Influence {

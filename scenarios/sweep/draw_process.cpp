@@ -83,8 +83,8 @@ bool read_until(Process& process, double deadline_s, std::string& buffer) {
   }
 }
 
-/// Returns true if the method needs lidar data. An external method receives all sensor data, unless its kind is `rate`.
-/// An external method of another kind therefore counts as a reader of lidars.
+/// Returns true if the method needs lidar data. External methods of other kinds than `rate` receive all sensor data, so
+/// these external methods count as methods that need lidar data.
 bool reads_lidars(const MethodInfo& info) {
   return info.kind == Kind::slam || (info.kind != Kind::rate && !info.version.empty());
 }

@@ -34,8 +34,8 @@ void serve(const WorkerTerms& terms, int tasks, int fd) {
     if (line->empty()) return;
     run_draw(terms.data, terms.plan.from_line(*line), terms.timeout_s, fd, terms.recordings_unseen);
     malloc_trim(0);  // an idle worker must free memory
-    // The final message of a worker's task follows all destructors; if the worker dies before this message, the task
-    // fails.
+    // The worker writes the final message of a task after all destructors, so a task without a final message has
+    // failed.
     write_all(fd, to_line({}));
   }
 }

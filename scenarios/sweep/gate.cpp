@@ -125,8 +125,8 @@ GateResult hold_metric(const GatePairs& found, const MethodRun& before, const Me
   hold_middle(found.pairs, info, policy, tests, result);
   if (!found.lost.empty()) {
     result.seed = found.lost.front();
-    result.fault =
-        fmt::format("the metric has no value, but has a value in the accepted results, at seed {}", found.lost.front());
+    result.fault = fmt::format("the metric has a value in the accepted results, but no value in this run at seed {}",
+                               found.lost.front());
     if (found.lost.size() > 1) result.fault += " and " + std::to_string(found.lost.size() - 1) + " more";
   } else if (result.passes()) {
     hold_worst_draw(info, found.pairs, policy, result);
@@ -218,10 +218,10 @@ std::vector<GateResult> hold_to_gate(const GateRun& run, const Gate& gate) {
     throw BadInput(
         fmt::format("suite {} has no accepted results; run 'tumble gate SUITE --accept' to create them", gate.suite));
   if (run.seeds != gate.accepted.seeds) {
-    throw BadInput(fmt::format(
-        "the accepted results of suite {} contain {} simulated runs with other seeds than the {} simulated "
-        "runs of this comparison; use the same seeds, or run 'tumble gate {} --accept' to accept the new results",
-        gate.suite, gate.accepted.seeds.size(), run.seeds.size(), gate.suite));
+    throw BadInput(
+        fmt::format("the accepted results of suite {} have other seeds ({} simulated runs) than this comparison ({} "
+                    "simulated runs); use the same seeds, or run 'tumble gate {} --accept' to accept the new results",
+                    gate.suite, gate.accepted.seeds.size(), run.seeds.size(), gate.suite));
   }
   std::vector<Pooled> all = pooled_metrics(gate.accepted);
   std::size_t tests = all.size();

@@ -75,8 +75,7 @@ void require_method(const GateLine& line, const MethodRun& run, std::span<const 
   try {
     find_methods(full_name(run.kind, run.method));
   } catch (const BadInput& error) {
-    line.fail(
-        fmt::format("{} (to use a method that a file describes, give the file: --method FILE.yaml)", error.what()));
+    line.fail(fmt::format("{}; if a file describes this method, set --method FILE.yaml", error.what()));
   }
 }
 
@@ -186,9 +185,8 @@ Gate load_gate(const DataRoot& data, const std::string& name, std::span<const Me
 
 std::string to_yaml(const Gate& gate) {
   return "# SPDX-License-Identifier: BSD-3-Clause\n"
-         "# Limits of the comparison of a run with the accepted run, draw by draw. scenarios/sweep/gate.hpp defines "
-         "each "
-         "number.\n"
+         "# Limits for the comparison of each simulated run with its accepted result. scenarios/sweep/gate.hpp defines "
+         "each number.\n"
          "suite: " +
          gate.suite + "\nrisk: " + exact_text(gate.policy.risk) + "\nmargin: " + exact_text(gate.policy.margin) +
          "\nshare_margin: " + exact_text(gate.policy.share_margin) +

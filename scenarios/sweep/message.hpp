@@ -9,7 +9,7 @@
 
 namespace tumble::scenarios {
 
-/// At most one member is set; a message without members means that the run is complete.
+/// At most one member of a message is set; a message without members means that the run is complete.
 struct Message {
   std::optional<Outcome> outcome;
   std::optional<RejectedDraw> rejected;
@@ -18,7 +18,7 @@ struct Message {
   bool is_last() const { return !outcome && !rejected && !draw && !not_kept; }
 };
 
-/// Finite numbers are restored bit-exactly by from_line; others become NaN.
+/// The function from_line() restores finite numbers bit-exactly; other numbers become NaN.
 std::string to_line(const Message& message);
 
 std::optional<Message> from_line(const std::string& line);

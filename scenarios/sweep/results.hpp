@@ -64,7 +64,7 @@ class Results {
  public:
   enum class Mode { create_or_append, join, read_only };
   /// Throws BadInput if the file is no results database, has an incomplete schema, or was written by another build. The
-  /// mode `read_only` accepts other builds.
+  /// mode `read_only` accepts databases of other builds.
   Results(const std::filesystem::path& path, Mode mode);
   ~Results();
   Results(Results&&) noexcept;

@@ -116,7 +116,7 @@ void read_classes(const DataRoot& data, const YamlNode& node, Suite& suite) {
       scenarios.fail("this class of simulated runs is empty; each class needs at least one simulated run");
     suite.classes.push_back(std::move(each));
   }
-  if (seen.empty()) node.fail("this key is empty; the suite needs at least one simulated run");
+  if (seen.empty()) node.fail("this key lists no simulated run; the suite needs at least one simulated run");
   const auto by_seed = [](const auto& a, const auto& b) { return a.second < b.second; };
   suite.first_seed = std::min_element(seen.begin(), seen.end(), by_seed)->second;
   suite.last_seed = std::max_element(seen.begin(), seen.end(), by_seed)->second;

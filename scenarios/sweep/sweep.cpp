@@ -57,8 +57,8 @@ void claim_methods(Results& results, std::span<const MethodPointer> methods) {
     const std::string known = results.note(key);
     if (!known.empty() && known != method->info.version)
       throw BadInput(
-          fmt::format("the database contains rows of another version of {} ('{}'; version of this run: '{}'); choose "
-                      "another file or another method name",
+          fmt::format("the database contains results of another version of {} ('{}'; version of this run: '{}'); "
+                      "choose another file or another method name",
                       key, known, method->info.version));
     results.set_note(key, method->info.version);
   }

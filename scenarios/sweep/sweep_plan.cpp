@@ -17,8 +17,8 @@ namespace {
 
 using nlohmann::json;
 
-// The time limit of an external command is this fraction of the method's time limit. The process that starts the
-// command can therefore end the command before this process reaches the method's time limit.
+// The time limit of an external command is this fraction of the method's time limit. The process that starts an
+// external command must end the command before this process reaches the method's time limit.
 constexpr double kOwnShare = 0.9;
 
 }  // namespace
@@ -67,8 +67,8 @@ void SweepPlan::require_same_recordings(const Results& results) const {
     for (const Outcome& row : results.outcomes_of(each.recording.name, kRecordingSeed)) {
       if (row.recording_digest.empty() || row.recording_digest == each.recording.digest) continue;
       throw BadInput(
-          fmt::format("{}: the recording has the digest {}, but the results belong to a recording with the digest {}; "
-                      "name another database",
+          fmt::format("{}: the recording has the digest {}, but the results in the database belong to a recording with "
+                      "the digest {}; choose another database",
                       each.recording.path.string(), each.recording.digest, row.recording_digest));
     }
   }

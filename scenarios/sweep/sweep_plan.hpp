@@ -27,7 +27,7 @@ class SweepPlan {
   void require_same_recordings(const Results& results) const;
   void note_recordings(Results& results) const;
 
-  /// Recordings come first, then scenarios with seeds as the outer loop, so a stopped sweep covers all scenarios and
+  /// Recordings come first. For scenarios, the outer loop is over seeds, so a stopped sweep covers all scenarios and
   /// all values of varied parameters.
   bool at_end() const { return next_.recording == recordings_.size() && next_.past_seeds; }
   void advance();

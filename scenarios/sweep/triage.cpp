@@ -248,7 +248,8 @@ std::span<const TrueInput> true_inputs() {
       TrueInput{"stamps_exact", "replaces the time stamps of the IMU by the true times", exact_stamps},
       TrueInput{"lidar_ranges_exact", "replaces the lidar ranges by the true ranges", exact_ranges},
       TrueInput{"lidar_unbent",
-                "replaces the sweeps by sweeps without skew (all points within a microsecond); the range errors remain",
+                "replaces the sweeps by sweeps without motion distortion (all points within a microsecond); the range "
+                "errors remain",
                 unbent_sweeps},
       TrueInput{"series_exact", "removes the errors of all sensors other than IMU and lidar", exact_series},
       TrueInput{"all", "replaces all inputs of the method by their true values at once", everything},

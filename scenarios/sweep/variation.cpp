@@ -256,8 +256,8 @@ void state_no_rail(sim::ImuRecord& imu) {
   for (std::uint8_t& flags : imu.clip_flags) flags = static_cast<std::uint8_t>(flags & ~kGyroClipFlags);
 }
 
-/// Simulates a rate method with a constant error: replaces each clipped reading by the unclipped reading plus an error,
-/// which is constant in each clipping interval.
+/// Simulates a rate method with a constant error: each clipped reading becomes the unclipped reading plus an error,
+/// which is constant within a clipping interval.
 void rate_error(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const ClippingTruth clipping(sensors, truth);
   sim::ImuRecord& imu = primary(sensors, truth);
@@ -306,8 +306,9 @@ std::span<const GivenError> given_errors() {
                  false,
                  radius},
       GivenError{{"rate_error_rad_s", 0.0, 0.0, 1000.0, "rad/s",
-                  "clipped readings are replaced by unclipped readings with an error of this magnitude, which is "
-                  "constant over each clipped segment; methods receive these readings as valid"},
+                  "error that replaces clipping: each clipped gyro reading becomes the unclipped reading plus an error "
+                  "of this magnitude. The error is constant over each clipped segment, and methods receive these "
+                  "readings as valid"},
                  false,
                  rate_error},
       GivenError{{"stated_rail_error", 0.0, -0.9, 9.0, "1",

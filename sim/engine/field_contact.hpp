@@ -15,7 +15,7 @@ namespace tumble::sim::engine {
 std::optional<int> field_contacts(const mjModel& model, const mjData& data, int field, int capsule,
                                   mjPreContact* contacts);
 
-/// The new collision function replaces that of MuJoCo in a table that the whole process shares.
+/// Replaces MuJoCo's collision function for height fields and capsules in a table that the whole process shares.
 void find_field_contacts_by_geometry();
 
 }  // namespace tumble::sim::engine

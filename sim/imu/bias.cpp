@@ -15,8 +15,9 @@ namespace {
 constexpr double kRatio = 10.0;
 
 /// Returns the standard deviation sigma of each Gauss-Markov process. The sum of the processes approximates flicker
-/// noise, because successive correlation times have the ratio kRatio. This sum has the spectrum sigma^2 / (f ln kRatio)
-/// at frequency f. Flicker noise with the Allan deviation `floor` has the spectrum floor^2 / (2 f ln 2).
+/// noise, because successive correlation times have the ratio kRatio. At frequency f, the sum of the processes has the
+/// spectrum sigma^2 / (f ln kRatio). Flicker noise with the Allan deviation `floor` has the spectrum
+/// floor^2 / (2 f ln 2).
 double sigma_of_one(double floor) {
   return floor * std::sqrt(std::log(kRatio) / (2.0 * std::numbers::ln2));
 }

@@ -11,8 +11,9 @@ namespace tumble::sim {
 
 /// Elements models the sensing elements of a triad (gyroscope or accelerometer), each with its own axis, scale, zero
 /// offset and saturation level. The three sensing elements measure s = M u + o, with signal u in device axes,
-/// misalignment matrix M and zero offset o. The saturation function c limits each component of s to the saturation
-/// level of its sensing element. The device reports the reading M^-1 (c(s) - o).
+/// misalignment matrix M and zero offset o. The saturation function c limits the signal of each sensing element to its
+/// saturation level. From the limited signals c(s), the device computes the reading M^-1 (c(s) - o), which corrects
+/// misalignment and offset.
 ///
 /// - While only one sensing element is saturated, the readings of the triad are on a plane, perpendicular to the axis
 ///   of the sensing element.
@@ -21,8 +22,8 @@ namespace tumble::sim {
 ///
 /// Saturated readings of two real gyros are on planes with slopes of up to 0.05 relative to the other two axes. The
 /// midpoints between upper and lower saturation limit are offset from zero by up to 0.14 rad/s
-/// (scenarios/certificate/real_rails.cpp). Elements assumes that the device knows M and o exactly, and that o does not
-/// drift within a recording.
+/// (scenarios/certificate/real_rails.cpp). Elements assumes that the device has the exact misalignment matrix and zero
+/// offset, and that the zero offset does not drift within a recording.
 class Elements {
  public:
   struct Params {

@@ -25,10 +25,10 @@ struct TriadReading {
 /// low-pass, mean over the window.
 ///
 /// If a triad rotates, the mean of its readings over the window differs from the increment of the motion divided by the
-/// window length (coning, sculling). The ideal reading is this increment per time. TriadChain therefore averages only
-/// the sensor errors over the window, and adds the mean error to the ideal reading. If a sensing element saturated in
-/// the averaging window, its reading is the mean of the signal after all stages. A second chain with equal stages and
-/// noise, but without saturation, computes the unclipped reading.
+/// window length (coning, sculling). The ideal reading is the increment of the motion divided by the window length.
+/// TriadChain averages only the sensor errors over the window, and adds the mean error to the ideal reading. If a
+/// sensing element saturated in the averaging window, its reading is the mean of the signal after all stages. A second
+/// chain with equal stages and noise, but without saturation, computes the unclipped reading.
 class TriadChain {
  public:
   /// `prefix` and `unit` select the parameters: "gyro" and "rad_s", or "accel" and "m_s2".

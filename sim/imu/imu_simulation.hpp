@@ -18,7 +18,8 @@ struct GivenElements {
 
 /// The ideal rate of an averaging window is the rotation between the attitudes at the window's ends, divided by the
 /// duration. The ideal specific force is the mean acceleration of the sensor minus gravity, in the axes halfway between
-/// these attitudes. The integral of the ideal readings is the true motion at any output rate, also through impacts.
+/// the attitudes at the window's ends. The integral of the ideal readings is the true motion at any output rate, also
+/// through impacts.
 ///
 /// The unclipped readings in ImuTruth have the same noise as the readings, but no saturation. The IMU model excludes
 /// temperature, vibration rectification and bending of the mount.
@@ -28,8 +29,8 @@ struct GivenElements {
 void simulate_imu(const Truth& truth, const SensorSpec& sensor, const Eigen::Isometry3d& T_BI, double gravity_m_s2,
                   std::uint64_t seed, ImuRecord& record, ImuTruth& imu_truth, const GivenElements& given = {});
 
-/// The error chain runs at `chain_rate_hz` instead of the physics rate; an hour at 500 Hz takes about a second. The
-/// bandwidths of the device must be 0 or below half of `chain_rate_hz`.
+/// The error chain runs at `chain_rate_hz` instead of the physics rate; the simulation of an hour at 500 Hz takes about
+/// a second. The bandwidths of the device must be 0 or below half of `chain_rate_hz`.
 void simulate_imu_at_rest(const SensorSpec& sensor, double duration_s, double chain_rate_hz, double gravity_m_s2,
                           std::uint64_t seed, ImuRecord& record, ImuTruth& imu_truth);
 

@@ -93,9 +93,9 @@ class ColumnPattern final : public BeamPattern {
 };
 
 /// RosettePattern is the firing pattern of a rosette lidar with one or several units, in which two prisms that rotate
-/// at constant rates deflect the beam. The lateral deflection of the beam is the sum of three rotating vectors. The
-/// first and second vectors rotate with the two prisms, at the rates w1 and w2. The rate of the third vector is
-/// 2 w1 - w2. The ring number is the number of the lidar unit, from right (negative yaw) to left.
+/// at constant rates deflect the beam. The lateral deflection of the beam is the sum of three rotating vectors, with
+/// the rates w1 and w2 of the two prisms and the rate 2 w1 - w2. The ring number is the number of the lidar unit, from
+/// right (negative yaw) to left.
 class RosettePattern final : public BeamPattern {
  public:
   explicit RosettePattern(const Values& values);

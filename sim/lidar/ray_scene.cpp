@@ -36,8 +36,8 @@ constexpr const char* kDevice =
     "start_threads=0,set_affinity=0,isa=avx2,frequency_level=simd256,ignore_config_files=1";
 constexpr int kKernelLanes = 8;
 static_assert(kKernelLanes == kShapeLanes && NearestHits::kNone == RTC_INVALID_GEOMETRY_ID);
-/// Embree searches each ray up to kReach times the smallest range that RayScene has computed so far. RayScene
-/// recomputes the range to each face that Embree reports in this search.
+/// RayScene recomputes the range to each face that Embree reports. Embree searches a ray only up to kReach times the
+/// smallest recomputed range so far.
 constexpr float kReach = 1.0f + 4e-6f;
 
 struct MeshLabel {

@@ -44,8 +44,8 @@ struct LocalRays {
   }
 }
 
-/// The slab method (Kay and Kajiya, SIGGRAPH 1986): a ray hits the last slab that it enters or, from inside, the first
-/// slab that it leaves.
+/// By the slab method (Kay and Kajiya, SIGGRAPH 1986), a ray hits the last slab that it enters or, from inside, the
+/// first slab that it leaves.
 [[gnu::target("avx2")]] void cast_on_box(const Shape& shape, const LocalRays& rays, ShapeHits& hits) {
   alignas(64) double enter[kShapeLanes], enter_axis[kShapeLanes], enter_sign[kShapeLanes];
   alignas(64) double leave[kShapeLanes], leave_axis[kShapeLanes], leave_sign[kShapeLanes], misses[kShapeLanes];

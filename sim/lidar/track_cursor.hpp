@@ -14,8 +14,8 @@ namespace tumble::sim {
 using Pose34 = Eigen::Matrix<double, 3, 4>;
 
 /// TrackCursor interpolates the true pose of a lidar between the samples of the body's motion: position linearly,
-/// attitude at a constant rate about a fixed axis. For samples at an interval dt = 0.5 ms, the interpolation error of
-/// the position is the acceleration times dt^2 / 8 = 3e-8 s^2. At 400 m/s^2, this error is 13 um.
+/// attitude at a constant rate about a fixed axis. For samples at an interval dt, the interpolation error of the
+/// position is the acceleration times dt^2 / 8: 13 um for dt = 0.5 ms and 400 m/s^2.
 class TrackCursor {
  public:
   /// at() interpolates the attitude by Rodrigues' formula. With the cross-product matrix K of the body's rotation over
@@ -31,8 +31,8 @@ class TrackCursor {
     double share(std::int64_t time_ns) const { return static_cast<double>(time_ns - start_ns) * per_ns; }
   };
 
-  /// Below the squared angle kSmall2, the series of sin(a)/a and (1 - cos(a))/a^2 are accurate to 1e-16; 0.02 rad is 40
-  /// rad/s over 0.5 ms.
+  /// For squared angles below kSmall2, the series of sin(a)/a and (1 - cos(a))/a^2 are accurate to 1e-16. An angle of
+  /// 0.02 rad is the rotation at 40 rad/s within 0.5 ms.
   static constexpr double kSmall2 = 4e-4;
   static double sinc_of_small(double angle2) {
     return 1.0 - angle2 / 6.0 * (1.0 - angle2 / 20.0 * (1.0 - angle2 / 42.0));

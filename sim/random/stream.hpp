@@ -8,7 +8,8 @@
 namespace tumble::sim {
 
 /// The stream is counter-based (Philox 4x32-10, Salmon et al., SC 2011): each number depends only on its index, not on
-/// threads and order. Stream implements its distributions, because those of standard libraries differ.
+/// threads and order. Stream contains its own distributions of random numbers, because standard libraries implement
+/// distributions differently.
 class Stream {
  public:
   Stream(std::uint64_t seed, std::string_view name);

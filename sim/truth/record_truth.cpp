@@ -74,8 +74,8 @@ Truth record_truth(engine::World& world, Motion& motion, double duration_s) {
   if (distance_m < kLeastDistance_m)
     throw SimulationFailure("the robot did not move until the end of the simulation at " + std::to_string(duration_s) +
                             " s");
-  // Each specific force belongs to the end of a simulation step. No step ends at time 0, when the robot is at rest. The
-  // truth at time 0 therefore contains the specific force of the first step.
+  // Each specific force belongs to the end of a simulation step. No step ends at time 0, so the truth at time 0
+  // contains the specific force of the first step.
   truth.f_B_m_s2.insert(truth.f_B_m_s2.begin(), truth.f_B_m_s2.front());
   truth.label = label_contacts(truth);
   return truth;

@@ -20,8 +20,8 @@ Eigen::Vector3d specific_force_B(const BodyState& before, const BodyState& after
 /// The mean rate has no discretisation error if the body turns by less than pi in the step.
 Eigen::Vector3d mean_rate_B(const BodyState& before, const BodyState& after);
 
-/// Labels every physics sample by the contacts within 10 ms, because contacts are interrupted: at low friction, a third
-/// of the steps has no contact.
+/// Labels every physics sample by the contacts within 10 ms before and after the sample, because contacts are
+/// interrupted. At low friction, a third of the steps has no contact.
 /// - `air`: no contact.
 /// - `grip`: mean slip speed, weighted by normal force, below 0.02 m/s.
 /// - `slip`: the rotation is too fast for the motion of the geometric centre.

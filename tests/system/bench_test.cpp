@@ -110,7 +110,8 @@ TEST_F(Bench, ForeignMethodsAreComparedWithOurs) {
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("theirs"));
   EXPECT_THAT(ended.out, Not(HasSubstr("not compared")));
-  EXPECT_THAT(ended.err, HasSubstr("next: tumble report " + path("bench_compared.db") + " -o report.html"));
+  EXPECT_THAT(ended.err, HasSubstr("this command writes a report page: tumble report " + path("bench_compared.db") +
+                                   " -o report.html"));
   expect_page_of(path("bench_compared.db"));
   ended = beside("\"recording\":\"", "\"recording\":\"0");
   EXPECT_EQ(ended.status, 0) << ended.err;

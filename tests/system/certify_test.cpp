@@ -17,7 +17,7 @@ TEST(Certify, PrintsRowsWithBoundAndVerdict) {
   for (const char* word : {"free_fall_time", "flight_specific_force", "<= 1e-06", "m/s^2", "pass"}) {
     EXPECT_THAT(ended.out, HasSubstr(word));
   }
-  EXPECT_THAT(ended.err, HasSubstr("compares the duration of a free fall with its closed form"));
+  EXPECT_THAT(ended.err, HasSubstr("compares the duration of a free fall with the analytic solution"));
   EXPECT_EQ(run_program({"certify", "--row", "free_fall", "--quiet"}).err, "");
 }
 

@@ -73,12 +73,12 @@ struct Fault {
 };
 
 const Fault kFaults[] = {
-    {"accelerometer in g", "the accelerometer is read in g", "--accel-unit",
+    {"accelerometer in g", "reads the accelerometer in g", "--accel-unit",
      [](sim::ImuRecord& imu, sim::LidarRecord&) { scale(imu.accel_m_s2, 1.0 / 9.80665); }},
     {"gyro in deg/s", "the rates may be in deg/s", "--gyro-unit deg/s",
      [](sim::ImuRecord& imu, sim::LidarRecord&) { scale(imu.gyro_rad_s, 57.29577951308232); }},
-    {"inverted pose of the lidar", "the stated pose may be the pose of the body in the lidar frame", "--T-body-lidar",
-     [](sim::ImuRecord&, sim::LidarRecord& lidar) { lidar.T_BL = lidar.T_BL.inverse(); }},
+    {"inverted pose of the lidar", "the stated pose may be inverted: the pose of the body in the lidar frame",
+     "--T-body-lidar", [](sim::ImuRecord&, sim::LidarRecord& lidar) { lidar.T_BL = lidar.T_BL.inverse(); }},
     {"lidar turned by 90 deg", "Check the signs and order of the axes, and the mounting", "--T-body-lidar",
      [](sim::ImuRecord&, sim::LidarRecord& lidar) {
        lidar.T_BL.rotate(Eigen::AngleAxisd(1.5707963267948966, Eigen::Vector3d::UnitX()));
@@ -98,7 +98,7 @@ const Fault kFaults[] = {
        };
        drop_sweeps(lidar, late);
      }},
-    {"clock of the lidar 0.2 s late", "the lidar's rotation follows the gyro's", "",
+    {"clock of the lidar 0.2 s late", "the lidar measures rotations", "",
      [](sim::ImuRecord&, sim::LidarRecord& lidar) {
        for (std::int64_t& start : lidar.sweep_start_ns) start += 200'000'000;
      }},

@@ -229,7 +229,7 @@ TEST(Sweep, NamedDrawsAreNoSeedsInARow) {
   refused({"triage", suite.string(), "--method", "rate/raw", "--seeds", "1..2"}, "--seeds");
   refused({"sweep", suite.string(), "--db", database, "--scenario", "roll"}, "--scenario");
   refused({"gate", suite.string(), "--against", (folder / "g.yaml").string(), "--accept"},
-          "a gate needs a range of seeds");
+          "'tumble gate' needs a range of seeds");
 }
 
 TEST(Sweep, RefusesWhatItCannotKeepOrAsk) {

@@ -82,10 +82,10 @@ TEST(DistributionFigures, SayWhereTheyAreThinned) {
   std::vector<scenarios::DrawValues> many;
   for (std::uint64_t seed = 1; seed <= kBoxPoints; ++seed)
     many.push_back({"hill", seed, {{"motion_peak_rate_rad_s", 10.0}}});
-  EXPECT_THAT(distribution_figures(motion_spreads(many)).at(0).caption, Not(HasSubstr("more simulated runs")));
+  EXPECT_THAT(distribution_figures(motion_spreads(many)).at(0).caption, Not(HasSubstr("The plot shows at most")));
   many.push_back({"hill", kBoxPoints + 1, {{"motion_peak_rate_rad_s", 10.0}}});
   EXPECT_THAT(distribution_figures(motion_spreads(many)).at(0).caption,
-              HasSubstr("For scenarios with more simulated runs, the plot shows only 1000"));
+              HasSubstr("The plot shows at most 1000 simulated runs per scenario"));
 }
 
 TEST(DistributionsHtml, ShowsThePublishedFiguresAndIsEmptyWithoutDraws) {

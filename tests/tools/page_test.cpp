@@ -134,9 +134,9 @@ TEST(Page, SaysWhichOfTheTwoFailed) {
 TEST(Page, CountsMethodsThatNeedNoTruth) {
   PageContent content;
   content.summary = page_summary("hill");
-  EXPECT_THAT(page_html(content, ""), HasSubstr("This page compares 2 methods that estimate"));
+  EXPECT_THAT(page_html(content, ""), HasSubstr("This page compares 2 estimators"));
   content.summary.sections[0].methods[1].needs_truth = true;
-  EXPECT_THAT(page_html(content, ""), HasSubstr("This page compares 1 method that estimates"));
+  EXPECT_THAT(page_html(content, ""), HasSubstr("This page compares 1 estimator for"));
 }
 
 TEST(Page, ShowsADrawOfTheseResultsBeforeOneThatMoves) {

@@ -39,16 +39,17 @@ std::string place_in(const sim::Sensors& sensors) {
 TEST(TroublePlace, NamesTheReading) {
   sim::Sensors sensors = sound();
   for (std::size_t k = 42; k < 48; ++k) sensors.imus[1].gyro_rad_s[k].y() = std::nan("");
-  EXPECT_EQ(place_in(sensors), "reading 42 of right, at 0.420 s");
+  EXPECT_EQ(place_in(sensors), "the affected reading is number 42 of right, at 0.420 s");
   sensors = sound();
   for (std::size_t k = 7; k < 13; ++k) sensors.imus[1].accel_m_s2[k].z() = 1e200;
-  EXPECT_EQ(place_in(sensors), "reading 7 of right, at 0.070 s");
+  EXPECT_EQ(place_in(sensors), "the affected reading is number 7 of right, at 0.070 s");
   sensors = sound();
   sensors.imus[1].gyro_rad_s[98].x() = sensors.imus[1].gyro_rad_s[99].x() = 21.0;
-  EXPECT_EQ(place_in(sensors), "reading 98 of right, at 0.980 s") << "beyond twice the stated range, and it lasts";
+  EXPECT_EQ(place_in(sensors), "the affected reading is number 98 of right, at 0.980 s")
+      << "beyond twice the stated range, and it lasts";
   sensors = sound();
   for (std::size_t k = 3; k < 9; ++k) sensors.imus[1].time_ns[k] = sensors.imus[1].time_ns[2];
-  EXPECT_EQ(place_in(sensors), "reading 3 of right, at 0.020 s");
+  EXPECT_EQ(place_in(sensors), "the affected reading is number 3 of right, at 0.020 s");
 }
 
 TEST(TroublePlace, NamesTheLongestGap) {
@@ -68,7 +69,7 @@ TEST(TroublePlace, NamesTheSizeOfSweepsWithoutMap) {
 }
 
 TEST(TroublePlace, OfWhatIsNoReadingIsNone) {
-  EXPECT_EQ(trouble_place({ErrorCode::out_of_range, "median step of imu time_ns", 1.0, 2.0}, sound()), "");
+  EXPECT_EQ(trouble_place({ErrorCode::out_of_range, "median time step of the IMU in s", 1.0, 2.0}, sound()), "");
   EXPECT_EQ(trouble_place({ErrorCode::non_finite, "specific_force_m_s2", 1.0, 2.0}, sound()), "") << "none has it";
 }
 

@@ -102,7 +102,7 @@ std::vector<std::size_t> drawn_of(const std::vector<bool>& first) {
 
 std::string RunPaths::left_out_text() const {
   return left_out == 0 ? ""
-                       : fmt::format(" There are too few colours for {} more estimates, which are left out.", left_out);
+                       : fmt::format(" {} more estimates are omitted, because there are too few colours.", left_out);
 }
 
 RunPaths paths_of(const scenarios::RunResult& run) {
@@ -363,7 +363,7 @@ Plot sphere_height_plot(const scenarios::RunResult& run) {
 Plot sphere_standstill_plot(const scenarios::RunResult& run) {
   Plot plot = plot_of(
       "standstill",
-      "The plot shows the tilt at standstill relative to the mean of each method. The tilt reveals jitter and drift.",
+      "The plot shows the tilt at standstill, minus the mean tilt of the same line. Jitter and drift become visible.",
       "time [s]", "tilt [°]");
   plot.over_time = true;
   const sim::Recording& recording = run.recording;

@@ -67,8 +67,9 @@ void add_moving(const Scene& scene, Example& example) {
   options.quality = 45.0f;
   const Span span = liveliest_span(*scene.truth, kMoving_s);
   example.moving = moving_picture(scene, span, options);
-  example.moving_caption = fmt::format("{:.1f} s of the simulated run at half speed, where the robot turns fastest",
-                                       1e-9 * static_cast<double>(span.end_ns - span.begin_ns));
+  example.moving_caption =
+      fmt::format("the {:.1f} s of the simulated run in which the robot turns fastest, at half speed",
+                  1e-9 * static_cast<double>(span.end_ns - span.begin_ns));
 }
 
 Scene scene_of(const scenarios::RunResult& run, const RunPaths& paths) {

@@ -24,7 +24,8 @@ class WebpPicture {
  public:
   explicit WebpPicture(const sim::Picture& picture) {
     if (WebPPictureInit(&picture_) == 0)
-      throw std::runtime_error("the loaded library libwebp has another version than the headers of this program");
+      throw std::runtime_error(
+          "the loaded library libwebp has another version than the headers that this program was compiled with");
     picture_.use_argb = 1;
     picture_.width = picture.width;
     picture_.height = picture.height;
@@ -53,7 +54,8 @@ WebpAnimation::WebpAnimation(int width, int height, float quality) : impl_(std::
   impl_->height = height;
   WebPAnimEncoderOptions options;
   if (WebPAnimEncoderOptionsInit(&options) == 0 || WebPConfigInit(&impl_->config) == 0)
-    throw std::runtime_error("the loaded library libwebp has another version than the headers of this program");
+    throw std::runtime_error(
+        "the loaded library libwebp has another version than the headers that this program was compiled with");
   // Encoding with one thread and no time limit gives equal bytes for equal pictures.
   impl_->config.thread_level = 0;
   impl_->config.quality = quality;

@@ -130,7 +130,7 @@ std::string tally_text(const Tally& tally) {
   std::string out = fmt::format("{} is the best method, and significantly better than the baseline, in {} of {}",
                                 tally.leader, tally.leader_won, contests_text(tally.contests));
   if (tally.won > tally.leader_won)
-    out += fmt::format("; other methods are better in {}", tally.won - tally.leader_won);
+    out += fmt::format("; other methods are better than the baseline in {}", tally.won - tally.leader_won);
   return out;
 }
 

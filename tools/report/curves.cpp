@@ -196,13 +196,14 @@ std::string caption_of(const Curve& curve) {
   const std::string axis = curve.axis + (doc.empty() ? "" : " (" + doc + ")");
   switch (curve.source) {
     case Curve::Source::set:
-      return fmt::format("{}{} against {}, with each value applied to every simulated run.", what, curve.metric, axis);
+      return fmt::format("{}the plot shows {} against {}. Each value is applied to every simulated run.", what,
+                         curve.metric, axis);
     case Curve::Source::samples:
-      return fmt::format("{}{} over the clipped samples of a simulated run that lie in each bin of {}.", what,
-                         curve.metric, axis);
+      return fmt::format("{}the plot shows {}, computed from the clipped samples of a simulated run in each bin of {}.",
+                         what, curve.metric, axis);
     case Curve::Source::draws:
-      return fmt::format("{}{} against {} of the simulated run, in bins with equal numbers of runs.", what,
-                         curve.metric, axis);
+      return fmt::format("{}the plot shows {} against {} of the simulated run. All bins have equal numbers of runs.",
+                         what, curve.metric, axis);
   }
   return what;
 }

@@ -21,9 +21,8 @@ using nlohmann::json;
 std::string thinned_text(std::span<const Spread> spreads) {
   const auto is_thinned = [](const Spread& spread) { return spread.of_draws && spread.values.size() > kBoxPoints; };
   if (std::none_of(spreads.begin(), spreads.end(), is_thinned)) return "";
-  return fmt::format(
-      " For scenarios with more simulated runs, the plot shows only {} runs, evenly spaced in the sorted values.",
-      kBoxPoints);
+  return fmt::format(" The plot shows at most {} simulated runs per scenario, evenly spaced in the sorted values.",
+                     kBoxPoints);
 }
 
 json shaded(const Spread& spread) {

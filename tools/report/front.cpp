@@ -177,12 +177,11 @@ std::string front_html(const PageContent& content) {
   if (!content.summary.sections.empty()) {
     out += "<h1>" + escaped(tally_text(tally(results))) + "</h1>\n";
     const std::size_t methods = method_count(content.summary);
-    out += fmt::format(
-        "<p class=\"lead\">This page compares {} the motion of a tumbling or rolling robot from its sensors. {}",
-        methods == 1 ? "1 method that estimates" : fmt::format("{} methods that estimate", methods),
-        escaped(data_text(content)));
+    out +=
+        fmt::format("<p class=\"lead\">This page compares {} for the motion of tumbling or rolling robots. {}",
+                    methods == 1 ? "1 estimator" : fmt::format("{} estimators", methods), escaped(data_text(content)));
     if (!results.empty())
-      out += fmt::format(" A contest compares methods for one task on one {}: {}.",
+      out += fmt::format(" A contest compares methods for one task on one {}. The tasks are: {}.",
                          content.recorded ? "recording" : "scenario", tasks_text(results));
     out += "</p>\n";
   }

@@ -200,7 +200,8 @@ PageContent report_content(ReportInput input, const ReportOptions& options) {
   content.commands = commands(results, options, content);
   content.certificates = results.certificates();
   if (content.certificates.empty() && !content.recorded)
-    content.warnings.push_back("These results contain no checks of the simulation (certificate) for their build.");
+    content.warnings.push_back(
+        "These results contain no certificate, so the agreement of the simulation with physics is unknown.");
   for (const scenarios::Certificate& certificate : content.certificates) {
     content.versions.emplace_back("certificate", certificate_summary(certificate));
     if (!certificate.passes()) content.warnings.push_back("The certificate of build " + certificate.build + " fails.");

@@ -288,7 +288,7 @@ SCALE_PX = 26
 PAGE = """# The tumbling rig: the ICRA paper next to our simulation
 
 The authors of *Saturation-Aware Angular Velocity Estimation* (Deschênes et al., ICRA 2024) push a lidar rig down a hill
-until its gyro saturates. Their method Saave recovers the rate about one saturated axis per sample from the
+until its gyro saturates. The paper's method Saave recovers the rate about one saturated axis per sample from the
 accelerometer. `tools/reproduce papers --only rig` writes this page from {draws} simulated runs of the scenario `hill`
 (seeds {first} to {last}).
 
@@ -296,10 +296,10 @@ accelerometer. `tools/reproduce papers --only rig` writes this page from {draws}
 - In the column *ICRA paper*, the first of two numbers is for the raw gyro, and the second for Saave.
 - The column *raw gyro* shows the clipped readings (`rate/raw`), and the mapping of the ICRA paper with these readings
   (`slam/icp_raw`).
-- The column *published* shows the rates of Saave (`rate/saave`), and the same mapping with these rates
-  (`slam/published`). The constants come from launch files of the ICRA paper's authors.
+- The column *published* shows the rates of Saave (`rate/saave`), and the mapping of the ICRA paper with
+  these rates (`slam/published`). The mapping uses constants from launch files of the ICRA paper's authors.
 - Saave treats gyro readings above a saturation threshold of 10.45 rad/s as clipped. In {unseen} of our clipped samples,
-  no axis exceeds this threshold, because the simulated gyros have different saturation limits. The column *published,
+  no axis exceeds 10.45 rad/s, because the simulated gyros have different saturation limits. The column *published,
   threshold 10.0 rad/s* shows Saave with `{threshold}`.
 - The column *ours, whole recording* shows `rate/tumble` and `slam/tumble`. The last column shows `rate/tumble_lag` (0.2
   s lag) and `slam/tumble_lag` (0.3 s lag).
@@ -317,8 +317,8 @@ accelerometer. `tools/reproduce papers --only rig` writes this page from {draws}
 
 - With an exact centre of mass, one clipped gyro axis and a saturation threshold of 10.0 rad/s, Saave reduces the rate
   error nearly as much as in the ICRA paper.
-- Mapping with Saave reduces the median localisation errors at least as much as in the ICRA paper. On the runs most
-  similar to the ICRA paper, the map overlap also rises.
+- Mapping with Saave reduces the median localisation errors at least as much as in the ICRA paper. Saave also increases
+  the map overlap on the runs most similar to the ICRA paper.
 - Mapping with Saave sometimes fails in our simulation, whose fastest motions exceed the motions of the ICRA paper.
 
 ## What differs from the ICRA paper
@@ -355,8 +355,8 @@ samples), and with two or three ({more}). In the rows *inexact*, the assumed cen
 
 The figure shows a failed run as an error of 10 m and 180°.
 
-The table covers only the {alike_draws} of {draws} simulated runs that are most similar to the ICRA paper: at most 2 %
-of their clipped samples have two or three clipped sensing elements.
+The table covers only the {alike_draws} of {draws} simulated runs that are most similar to the ICRA paper. A run is
+similar if at most 2 % of its clipped samples have two or three clipped sensing elements.
 
 {alike}
 ## Map outliers
@@ -367,7 +367,7 @@ of their clipped samples have two or three clipped sensing elements.
 
 ![angular speed against acceleration](rig_density.png)
 
-A rectangle marks the highest values of other data sets according to the ICRA paper: 4.7 rad/s and 30.7 m/s². For each
-interval of 5 m/s², two lines show the highest angular speeds in the public data sets BROAD (Laidig et al.,
+A rectangle marks the highest values of other data sets according to the ICRA paper: 4.7 rad/s and 30.7 m/s². Two
+lines show the highest angular speed per 5 m/s² of acceleration in the public data sets BROAD (Laidig et al.,
 Data 2021, CC BY 4.0) and AirbrakesV2 (MIT).
 """

@@ -309,8 +309,9 @@ def draw_map(maps: dict[int, dict[str, np.ndarray]], path: pathlib.Path) -> None
 PAGE = """# The rolling sphere: the MFI paper next to our simulation
 
 The authors of *IMU-Based Pose-Estimation for Spherical Robots with Limited Resources* (Zevering et al., IEEE MFI 2021)
-roll a sphere with a diameter of 29 cm by hand. Their attitude filter Autogain switches between Madgwick's filter and a
-complementary filter. Their position filter fuses the rolling velocity with the integrated acceleration.
+roll a sphere with a diameter of 29 cm by hand. The paper's attitude filter Autogain switches between Madgwick's
+filter and a complementary filter. The paper's position filter fuses the rolling velocity with the integrated
+acceleration.
 `tools/reproduce papers --only sphere` writes this page from {draws} simulated runs of each scenario (seeds {first} to
 {last}). The numbers for figures of the MFI paper come from data files of its authors.
 
@@ -320,8 +321,8 @@ complementary filter. Their position filter fuses the rolling velocity with the 
   filter, in the MFI paper and in our simulation.
 - At the pace of the MFI paper (scenario `slow_roll`), Autogain and Madgwick's filter have similar attitude errors, but
   the attitude error of Autogain changes more slowly.
-- In the faster scenario `roll`, Autogain has nearly the errors of Madgwick's filter, because Autogain applies only
-  Madgwick's correction above 2.1 rad/s.
+- In the faster scenario `roll`, Autogain has nearly the errors of Madgwick's filter, because above 2.1 rad/s,
+  Autogain applies only Madgwick's correction.
 
 ## What differs from the MFI paper
 
@@ -349,19 +350,20 @@ and 0.229° at 10 ms. Madgwick's filter alternates between two attitudes: succes
 ## Autogain against Madgwick: distance to the reference and its derivative
 
 The *distance* is the angle between estimated and true attitude (figures 5 and 6 of the MFI paper). A *step* is the
-change of the distance from sample to sample at 120 Hz. A *second difference* is the change between successive steps.
+change of the attitude error between samples at 120 Hz. A *second difference* is the change between successive steps.
+
 Each cell is a median over the simulated runs. The mean angular rate is {slow} rad/s in `slow_roll`, {fast} rad/s in
-`roll`, and 0.56 rad/s in a log of the MFI paper's authors. The total variation of the distance in the MFI paper
-includes noise of the optical tracker.
+`roll`, and 0.56 rad/s in a log of the MFI paper's authors. In the MFI paper, the total variation of the attitude
+error includes noise of the optical tracker.
 
 {distance}
-![distance to the truth in the first run of slow_roll](sphere_distance.png)
+![attitude error in the first run of slow_roll](sphere_distance.png)
 
 ## The L-shaped path of 1 m × 1 m with slip and with slide
 
 {ways}
 - In the column *MFI paper*, the first of two lengths comes from rotation alone, and the second from the position
-  filter. A single value comes from the position filter.
+  filter. A cell with one value shows the position filter.
 - In the scenario `slip_l` (figure 7 of the MFI paper), the sphere spins 1.5 to 2.8 times faster on slippery patches
   than without slip.
 - In the scenario `slide_l` (figure 8 of the MFI paper), a hand slows the rotation on slippery patches to at most 0.7
@@ -371,7 +373,7 @@ includes noise of the optical tracker.
 - The column *published fusion* shows the position filter with the sphere's radius of 0.145 m. The column *published
   fusion, radius 0.29 m* uses the sphere's diameter as radius, like the code of the MFI paper.
 - While the velocity from the accelerometer is near zero, the position filter halves the rolling velocity. The doubled
-  radius partly cancels this error.
+  radius partly compensates for the halved velocity.
 
 ![three paths with slip, from above](sphere_slip.png)
 

@@ -74,9 +74,9 @@ const BenchResult* baseline_of(const std::vector<MethodRow>& rows) {
 
 std::string cell_text(const BenchCell& cell) {
   if (cell.draws == 0) return "";
-  if (std::isinf(cell.median)) return fmt::format("failed ({} of {})", cell.lost, cell.draws);
+  if (std::isinf(cell.median)) return fmt::format("failed (on {} of {} runs)", cell.lost, cell.draws);
   const std::string median = number_text(cell.median);
-  return cell.lost == 0 ? median : fmt::format("{} (failed {} of {})", median, cell.lost, cell.draws);
+  return cell.lost == 0 ? median : fmt::format("{} (failed on {} of {} runs)", median, cell.lost, cell.draws);
 }
 
 Table metric_table(const scenarios::Suite& suite, const std::string& metric, const std::vector<MethodRow>& rows,
@@ -105,8 +105,9 @@ Table metric_table(const scenarios::Suite& suite, const std::string& metric, con
 
 Table origin_table(const scenarios::Suite& suite, const std::vector<MethodRow>& rows,
                    const std::vector<BenchResult>& all) {
-  Table table(fmt::format("origin of the results; {} {}", suite.name, scenarios::bench_suite_digest(suite)),
-              {"method", "ok", "not ok", "CPU s per draw", "date", "version", "build"});
+  Table table(
+      fmt::format("origin of the results of suite {} (digest {})", suite.name, scenarios::bench_suite_digest(suite)),
+      {"method", "ok", "not ok", "CPU s per draw", "date", "version", "build"});
   for (const MethodRow& row : rows) {
     std::map<std::string, int> counts;
     for (const scenarios::BenchDraw& draw : row.result->draws) ++counts[to_string(draw.status)];
@@ -326,7 +327,7 @@ int bench(const Session& session, const BenchOptions& options) {
   print(session, bench_tables(suite, page, results.outcomes()), lines);
   if (options.lines.empty() && !session.json)
     session.note("to publish the results, use '-o FILE.jsonl': the file contains one line of JSON per method");
-  session.note(fmt::format("next: tumble report {} -o report.html",
+  session.note(fmt::format("this command writes a report page: tumble report {} -o report.html",
                            scenarios::shell_word(database_to_report(database, results, page).string())));
   return kDone;
 }

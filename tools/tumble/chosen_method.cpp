@@ -33,7 +33,7 @@ scenarios::MethodPointer chosen_method(const std::string& name, const scenarios:
   std::string refused;
   for (const scenarios::MethodPointer& method : scenarios::find_methods(name)) {
     if (method->info.needs_truth) {
-      refused = fmt::format("method '{}' needs the truth, which this verb never reads; use 'tumble run' instead",
+      refused = fmt::format("method '{}' needs the truth, which this command never reads; use 'tumble run' instead",
                             full_name(method->info));
     } else if (const std::string why = method->info.why_not(subject); !why.empty()) {
       refused = "method '" + full_name(method->info) + "': it " + why;
@@ -94,7 +94,8 @@ std::string place_of_reading(ErrorCode error_code, const sim::Sensors& sensors) 
   for (const sim::ImuRecord& imu : sensors.imus) {
     for (std::size_t k = 0; k < imu.time_ns.size(); ++k) {
       if (has_trouble(error_code, imu, k))
-        return fmt::format("reading {} of {}, at {:.3f} s", k, imu.name, recording_time_s(imu.time_ns[k]));
+        return fmt::format("the affected reading is number {} of {}, at {:.3f} s", k, imu.name,
+                           recording_time_s(imu.time_ns[k]));
     }
   }
   return "";

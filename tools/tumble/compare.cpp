@@ -209,10 +209,11 @@ int compare(const Session& session, const CompareOptions& options) {
                                 [&](const FailureComparison& row) { return cells_of(row, apart); }))
     tables.push_back(std::move(table));
   session.print(tables, to_json(comparison, asked.margin.has_value()));
-  session.note(fmt::format(
-      "the probability of any wrong conclusion is at most {0:g} in the {1} comparisons of metrics, and at most {0:g} "
-      "in the {2} comparisons of failures, by Holm's correction of the p-values (docs/maths/statistics.md)",
-      options.risk, comparison.metrics.size(), comparison.failures.size()));
+  session.note(
+      fmt::format("the probability of at least one wrong conclusion is at most {0:g} in the {1} comparisons of "
+                  "metrics, and at most {0:g} in the {2} comparisons of failures. The p-values are corrected with "
+                  "Holm's method (docs/maths/statistics.md)",
+                  options.risk, comparison.metrics.size(), comparison.failures.size()));
   return kDone;
 }
 
@@ -235,7 +236,7 @@ Action declare_compare(VerbOptions& verb, const Session& session) {
   verb.add("--margin", options->margin,
            "sets the margin: a smaller loss counts as 'not worse'. Write a number in the metric's unit, or a "
            "percentage of the other method's value, for example 10%");
-  verb.add("--risk", options->risk, "sets the accepted probability of any wrong conclusion in a table")
+  verb.add("--risk", options->risk, "sets the maximum probability that a table contains a wrong conclusion")
       .within(1e-6, 0.5)
       .shows_default();
   verb.add("--power", options->power,

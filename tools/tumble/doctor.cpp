@@ -84,7 +84,8 @@ Action declare_doctor(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<ImportOptions>();
   declare_sensors(verb, *options);
   verb.footer(
-      "Exit status: 0 no fault found (perhaps notes, for example on saturation), 1 at least one fault, 2 wrong use.");
+      "Exit status: 0 no fault found, 1 at least one fault, 2 wrong use. Notes, for example on saturation, are not "
+      "faults.");
   return [&session, options] { return run_doctor(session, *options); };
 }
 

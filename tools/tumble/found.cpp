@@ -93,8 +93,8 @@ class Found {
     const bool arm_stated = !options.lever_arm_m.empty() || !arm_m.isZero(0.0);
     add("lever arm of the IMU",
         arm_stated ? fmt::format("{} m from the centre of mass", vector_text(arm_m))
-                   : "assumed 0: the IMU is at the centre of mass. A wrong lever arm can cause a tracking failure "
-                     "while the gyro clips, and is harmless otherwise",
+                   : "the IMU is assumed at the centre of mass (lever arm 0). A wrong lever arm can cause a tracking "
+                     "failure while the gyro clips, and is harmless otherwise",
         arm_stated ? kStated : kAssumed, "--lever-arm X Y Z");
     sim::LidarRecord& lidar = lidars().front();
     const bool pose_stated =
@@ -103,20 +103,20 @@ class Found {
     if (const auto& better = recording_.rotation.better_BL) {
       lidar.T_BL = *better;
       return add("pose of the lidar",
-                 fmt::format("{}: the lidar's attitude is estimated from the rotations of lidar and gyro, and its "
-                             "position is assumed 0",
+                 fmt::format("{}: the lidar's attitude is estimated from the rotations of lidar and gyro, and the "
+                             "lidar's position is assumed 0",
                              pose_text(lidar.T_BL)),
                  kMeasured, kPoseOption);
     }
     add("pose of the lidar",
-        "the lidar is assumed at the origin and in the axes of the body; mapping calibrates its pose. Tracking may "
-        "fail if the error exceeds 1 deg or 5 cm",
+        "the lidar frame is assumed equal to the body frame; mapping calibrates the lidar's pose. Tracking may fail if "
+        "the assumed pose is wrong by more than 1 deg or 5 cm",
         kAssumed, kPoseOption);
   }
 
   void add_own_body(const Eigen::AlignedBox3d& box, bool stated) {
     add("robot's own returns",
-        fmt::format("lidar returns from the robot itself are removed: inside a box from {} to {} m in lidar axes",
+        fmt::format("lidar returns inside a box around the robot are removed: from {} to {} m in lidar axes",
                     vector_text(box.min()), vector_text(box.max())),
         stated ? kStated : kAssumed, "--own-body X Y Z X Y Z (two opposite corners)");
   }
@@ -159,7 +159,7 @@ class Found {
     if (!lidar.device.empty()) return add("data sheet of the lidar", lidar.device, kStated, option);
     const auto device = scenarios::probable_lidar(lidar, sheets_);
     if (!device)
-      return add("data sheet of the lidar", "no known device matches; the data sheet is not required", kAssumed,
+      return add("data sheet of the lidar", "no known lidar matches; odometry works without a data sheet", kAssumed,
                  option);
     lidar.device = device->device;
     add("data sheet of the lidar", device->device + ": " + device->evidence,
@@ -172,7 +172,7 @@ class Found {
     const std::string evidence = agreement && agreement->unit == 1.0
                                      ? fmt::format("the gyro's rotation equals the lidar's rotation within {} %",
                                                    rounded(100.0 * agreement->unit_error))
-                                     : "this motion does not allow a check against the lidar";
+                                     : "the rotations of gyro and lidar cannot be compared in this recording";
     add("unit of the gyro", fmt::format("{}: {}", options.gyro_unit.empty() ? "rad/s" : options.gyro_unit, evidence),
         agreement                                              ? kMeasured
         : options.gyro_unit.empty() || repaired("--gyro-unit") ? kAssumed
@@ -182,22 +182,22 @@ class Found {
     for (const Eigen::Vector3d& force : imu.accel_m_s2) norms.push_back(force.norm());
     const double middle = scenarios::upper_median(std::move(norms));
     add("unit of the accelerometer",
-        fmt::format("{}: the median force is {} m/s^2", options.accel_unit.empty() ? "m/s^2" : options.accel_unit,
-                    rounded(middle)),
+        fmt::format("{}: the median specific force is {} m/s^2",
+                    options.accel_unit.empty() ? "m/s^2" : options.accel_unit, rounded(middle)),
         kMeasured, "--accel-unit");
   }
 
   void add_gravity(const sim::ImuRecord& imu) {
     const Eigen::Vector3d force = imu.accel_m_s2.empty() ? Eigen::Vector3d::Zero() : imu.accel_m_s2.front();
     add("gravity",
-        fmt::format("{} m/s^2; the first reading measures {} m/s^2 along {}",
+        fmt::format("{} m/s^2; the first accelerometer reading is {} m/s^2 along {}",
                     rounded(recording_.content.sensors.gravity_m_s2), rounded(force.norm()),
                     vector_text(force.normalized())),
         kMeasured, "no option is needed, because the IMU may have any orientation");
   }
 
   static std::string point_times(const sim::LidarRecord& lidar) {
-    if (lidar.point_times == sim::PointTimes::unknown) return "no point times: sweeps are not deskewed";
+    if (lidar.point_times == sim::PointTimes::unknown) return "the points have no times, so sweeps are not deskewed";
     if (lidar.point_times == sim::PointTimes::not_skewed) return "one instant per sweep";
     const auto last = lidar.offset_ns.empty() ? lidar.offset_ns.end() : std::ranges::max_element(lidar.offset_ns);
     const double longest_s = last == lidar.offset_ns.end() ? 0.0 : 1e-9 * static_cast<double>(*last);
@@ -208,13 +208,14 @@ class Found {
     const auto& agreement = recording_.rotation.primary;
     if (!agreement)
       return add("clock of the lidar",
-                 "the lidar's time stamps are unchanged; mapping calibrates their offset to the IMU", kAssumed,
-                 "--stamps");
+                 "the lidar's time stamps are unchanged; mapping calibrates the offset of the lidar's clock to the "
+                 "IMU's clock",
+                 kAssumed, "--stamps");
     add("clock of the lidar",
         agreement->delay_s == 0.0
             ? std::string(
                   "the lidar's clock agrees with the IMU's clock within about 10 ms; mapping calibrates the offset")
-            : fmt::format("the lidar's rotation follows the gyro's rotation {} s {}",
+            : fmt::format("the lidar measures the same rotation {} s {} than the gyro",
                           rounded(std::abs(agreement->delay_s)), agreement->delay_s > 0.0 ? "later" : "earlier"),
         kMeasured, "--stamps");
   }

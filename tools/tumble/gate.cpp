@@ -54,8 +54,8 @@ std::vector<scenarios::MethodPointer> given_methods(const GateOptions& options) 
   for (const std::string& name : options.methods) {
     if (!options.accept && !scenarios::is_method_file(name))
       throw scenarios::BadInput(
-          fmt::format("--method {}: give a FILE.yaml that describes an external method. The accepted results determine "
-                      "which methods of this build run; --accept adds methods",
+          fmt::format("--method {}: give a FILE.yaml that describes an external method, or add --accept. Without "
+                      "--accept, the accepted results determine which methods of this build run",
                       name));
   }
   return scenarios::find_methods(options.methods);
@@ -184,8 +184,8 @@ std::string certificate_text(const Session& session, const scenarios::DataRoot& 
   scenarios::Results results(database, scenarios::Results::Mode::create_or_append);
   const auto certificate = scenarios::known_certificate(results, scenarios::CertificateStore(session.cache(), data));
   return certificate ? certificate_summary(*certificate)
-                     : "not measured for this build on this machine; 'tumble certify' or 'tumble sweep' measures the "
-                       "agreement of the simulation with physics";
+                     : "the agreement of this build's simulation with physics was not measured on this machine; "
+                       "'tumble certify' or 'tumble sweep' measures the agreement";
 }
 
 int run_case_gate(const Session& session, const scenarios::DataRoot& data, const GateOptions& options) {
@@ -201,11 +201,13 @@ int run_gate(const Session& session, const GateOptions& options) {
   if (names_cases(data, options.suite)) return run_case_gate(session, data, options);
   scenarios::Suite suite = scenarios::load_suite(data, options.suite);
   if (!suite.recordings.empty())
-    throw scenarios::BadInput(
-        fmt::format("suite '{}' contains recordings; a gate needs simulated runs of scenarios", suite.name));
+    throw scenarios::BadInput(fmt::format(
+        "suite '{}' contains recordings, but 'tumble gate' needs simulated runs of scenarios; choose another suite",
+        suite.name));
   if (!suite.classes.empty())
-    throw scenarios::BadInput(
-        fmt::format("suite '{}' lists its simulated runs; a gate needs a range of seeds", suite.name));
+    throw scenarios::BadInput(fmt::format(
+        "suite '{}' lists its simulated runs, but 'tumble gate' needs a range of seeds; choose another suite",
+        suite.name));
   if (!options.accepted.empty() && options.accepted.extension() != ".yaml")
     throw scenarios::BadInput(
         fmt::format("--against {}: the accepted results must be in a FILE.yaml", options.accepted.string()));
@@ -255,16 +257,16 @@ int run_gate(const Session& session, const GateOptions& options) {
 Action declare_gate(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<GateOptions>();
   verb.add("SUITE", options->suite,
-           "runs the fixed seeds of a suite or scenario, or a stored failure (a named case). 'regressions' runs all "
-           "named cases")
+           "runs the fixed seeds of this suite or scenario, or this named case (a stored failure). 'regressions' runs "
+           "all named cases")
       .required()
       .check(a_suite_or_cases(session));
   verb.add("--against", options->accepted,
            "compares with the accepted results in this FILE.yaml, which needs a FILE.csv in the same folder [default: "
            "scenarios/gates/SUITE.yaml]");
   verb.add("--method", options->methods,
-           "also checks the external method in this FILE.yaml. With --accept, the accuracy gate also stores results of "
-           "this method (external, or of this build). Repeat the option for more methods")
+           "also checks the external method in this FILE.yaml. With --accept, adds this method (external, or of this "
+           "build) to the accepted results. Repeat the option for more methods")
       .one_at_a_time();
   verb.add("--jobs", options->jobs, "runs this number of processes in parallel [default: number of processors]")
       .whole(1, 1024)

@@ -52,10 +52,9 @@ Reached reached(const scenarios::Results& results, const scenarios::Scenario& na
     }
   }
   if (out.size() != named.named_case->expected.size())
-    throw scenarios::BadInput(
-        fmt::format("named case {} has missing results, because its run cannot be simulated; correct or delete the "
-                    "file of the case",
-                    named.name));
+    throw scenarios::BadInput(fmt::format(
+        "the run of named case {} cannot be simulated, so results are missing; correct or delete the file of the case",
+        named.name));
   return out;
 }
 

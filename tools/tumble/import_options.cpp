@@ -100,7 +100,8 @@ void declare_lidar(VerbOptions& verb, ImportOptions& options) {
            "the IMU [default: from /tf_static, else identity]")
       .words(7);
   verb.add("--stem", options.stem,
-           "selects the sweeps of one lidar in the folder by the part of their file names before the number");
+           "selects the sweeps whose file names start with this text, followed by a number, for a folder with several "
+           "lidars");
   verb.add(
       "--times", options.times,
       "reads the time stamps of the sweeps or poses from this file, one per line, in s or as a date in UTC [default: "

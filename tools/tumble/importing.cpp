@@ -166,8 +166,9 @@ std::string format_of_folder(const std::filesystem::path& folder) {
     found = format->second;
   }
   if (found.empty() && std::filesystem::exists(folder / "recording.h5"))
-    throw BadInput(fmt::format("{}: this folder is an output of 'tumble run'; state its recording: {}", folder.string(),
-                               (folder / "recording.h5").string()));
+    throw BadInput(
+        fmt::format("{}: this folder is an output of 'tumble run'; give the recording in the folder instead: {}",
+                    folder.string(), (folder / "recording.h5").string()));
   if (found.empty() && tables) return "csv";
   if (found.empty())
     throw BadInput(fmt::format("{}: this folder contains no .ply, .pcd, .vtk, .bin, .bag, .mcap, .db3 or .csv file",

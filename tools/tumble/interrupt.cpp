@@ -9,7 +9,7 @@ namespace {
 
 // A signal handler may only use static storage.
 std::atomic<bool> raised_by_signal{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not lock");
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler needs a lock-free atomic variable");
 
 struct sigaction interrupt_before = {}, terminate_before = {}, hang_up_before = {};
 

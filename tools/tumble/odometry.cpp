@@ -54,7 +54,7 @@ Eigen::AlignedBox3d own_body(const OdometryOptions& options) {
 
 std::string method_name(const OdometryOptions& options) {
   if (options.live && !options.method.empty())
-    throw BadInput("--live and --method exclude each other; --live is --method slam/tumble_live");
+    throw BadInput("--live and --method exclude each other; --live means --method slam/tumble_live");
   if (!options.method.empty()) return options.method;
   if (options.live) return "slam/tumble_live";
   return options.prior_map.map.empty() ? "slam/tumble" : "slam/tumble_lag";
@@ -149,7 +149,7 @@ Table summary_table(const nlohmann::json& summary) {
   Table table("result", {"duration", "path", "sweeps registered", "samples clipped", "health", "speed"});
   table.add_row({fmt::format("{:.1f} s", summary["duration_s"].get<double>()),
                  fmt::format("{:.1f} m", summary["path_m"].get<double>()),
-                 fmt::format("{} of {}, {} degenerate", summary["sweeps_registered"].get<long>(),
+                 fmt::format("{} of {} ({} degenerate)", summary["sweeps_registered"].get<long>(),
                              summary["sweeps"].get<std::size_t>(), summary["sweeps_degenerate"].get<long>()),
                  fmt::format("{:.1f} %", 100.0 * summary["clipped_share"].get<double>()),
                  summary["health"].get<std::string>(),
@@ -171,7 +171,8 @@ void write_replay(const std::filesystem::path& page, const OpenRecording& record
 
 void print_notes(const Session& session, const OpenRecording& recording, const Estimate& estimate) {
   for (const Repair& repair : recording.repairs)
-    session.note(fmt::format("the option {} {} was set: {}", repair.option.name, repair.option.value, repair.cause));
+    session.note(
+        fmt::format("the program set the option {} {}: {}", repair.option.name, repair.option.value, repair.cause));
   for (const scenarios::RecordingFinding& each : scenarios::findings_in_notes(recording.content.notes))
     session.note(each.where + ": " + each.evidence);
   for (const HealthFinding& each : estimate.faults.findings) session.note(scenarios::report_text(each));

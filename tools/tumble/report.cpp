@@ -50,8 +50,8 @@ std::string wins_text(const Wins& wins) {
 
 Table score_table(const Section& section, bool all) {
   Table table(
-      fmt::format("{}: scores of {} methods (each is paired with {})", section.scenario, to_string(section.kind),
-                  section.baseline),
+      fmt::format("{}: scores of {} methods; each method is compared with {}", section.scenario,
+                  to_string(section.kind), section.baseline),
       {"metric", "method", "draws", "median", "95 % interval", "worst 5 %", "better in", "not ok", "at most (95 %)"});
   table.align_right_from(2);
   for (const std::string& name : all ? section.metrics : scenarios::headline_metrics(section.kind)) {
@@ -135,7 +135,7 @@ void add_sensitivity(const Session& session, const std::string& data_found, Repo
     numbers = numbers_of_motions(input.draws, some);
     input.sensitivity_note =
         "The random parameters of these simulated runs are unknown, because the results come from other models and "
-        "scenarios. The page therefore lists the influence of the motions. ";
+        "scenarios. The page therefore lists the influence of the motions (for example the largest rate) instead. ";
   }
   scenarios::SensitivityOptions options;
   for (const Section& section : input.summary->sections) {
@@ -148,12 +148,13 @@ void add_sensitivity(const Session& session, const std::string& data_found, Repo
   const std::string needed = draws_needed_text(input.summary->draws);
   input.sensitivity_note += needed;
   if (input.sensitivity.empty() && needed.empty())
-    input.sensitivity_note += "All known parameters of a scenario are equal in all simulated runs. ";
+    input.sensitivity_note +=
+        "All known parameters of a scenario are equal in all simulated runs, so the page shows no influence of "
+        "parameters. ";
   for (const auto& [scenario, draws] : input.summary->draws) {
     if (draws <= static_cast<std::int64_t>(kSensitivityDraws)) continue;
-    input.sensitivity_note +=
-        fmt::format("For scenarios with more simulated runs, the analysis uses only {} runs, with evenly spaced seeds.",
-                    kSensitivityDraws);
+    input.sensitivity_note += fmt::format(
+        "The analysis uses at most {} simulated runs per scenario, with evenly spaced seeds.", kSensitivityDraws);
     break;
   }
 }
@@ -232,8 +233,8 @@ Action declare_report(VerbOptions& verb, const Session& session) {
            "writes this badge, FILE.svg, which shows the suite and in how many scenarios a method is better than the "
            "baseline method");
   verb.add_flag("--all", options->all,
-                "prints all metrics, also as functions of the depth and the length of clipping [default: only the most "
-                "important metrics]");
+                "prints all metrics, including metrics per range of clipping depth and clipping duration [default: "
+                "only the most important metrics]");
   return [&session, options] { return report(session, *options); };
 }
 

@@ -242,7 +242,7 @@ Action declare_run(VerbOptions& verb, const Session& session) {
            "sets the seed of the simulated run [default: 1; for a named case, the seed of the case]");
   verb.add("--method", options->methods,
            "runs this method, for example 'saave' or 'rate/saave'; repeat the option for more methods [default: all "
-           "methods that apply; with only a scenario and a seed, the baseline method and our method of each kind]")
+           "methods that apply; with only a scenario and a seed, 'tumble' and the baseline method of each kind]")
       .one_at_a_time();  // one word per --method
   verb.add("--set", options->parameters,
            "sets a parameter of a method: METHOD.PARAMETER=NUMBER, for example rate/tumble_lag.lag_s=0.5; repeat the "
@@ -263,9 +263,8 @@ Action declare_run(VerbOptions& verb, const Session& session) {
            "starts 'rate/tumble' and 'rate/tumble_lag' from the calibration of the rig in this FILE.json, if the file "
            "exists; at the end writes the calibration of this run to the file");
   verb.footer(
-      "With only a scenario and a seed, the program runs our methods and the baselines and writes everything to a "
-      "folder "
-      "with the scenario's name.");
+      "With only a scenario and a seed, the program runs 'tumble' and the baseline method of each kind, and writes all "
+      "results to a folder with the scenario's name.");
   return [&session, options] { return run(session, *options); };
 }
 

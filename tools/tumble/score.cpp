@@ -124,7 +124,7 @@ std::string alignment_text(const Standing& standing) {
 }
 
 std::string cover_text(const Standing& standing) {
-  return fmt::format("{:.1f} % of the recording's time, {:.3f} s to {:.3f} s of {:.3f} s, with {} of {} poses",
+  return fmt::format("{:.1f} % of the recording's time ({:.3f} s to {:.3f} s of {:.3f} s) with {} of {} poses",
                      100.0 * standing.share(), standing.first_s, standing.last_s, standing.end_s, standing.compared,
                      standing.poses);
 }

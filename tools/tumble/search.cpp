@@ -65,7 +65,7 @@ Table probability_table(const ShownSearch& shown) {
   const scenarios::SearchResult& result = shown.result;
   Table table(fmt::format("{}: probability that {} fails ({})", shown.scenario, shown.method, shown.goal.text()),
               {"probability", "95 % interval", "bound reached", "runs", "failures found", "not simulated",
-               "independent runs for this interval"});
+               "independent runs for an equally narrow interval"});
   const Interval& p = result.splitting.probability;
   table.add_row({number_text(p.value), interval_text(p), result.splitting.complete ? "yes" : "no",
                  std::to_string(result.splitting.draws.size()), std::to_string(result.failures),
@@ -270,7 +270,7 @@ void say_result(const Session& session, const ShownSearch& shown) {
         "failure probability may be too narrow",
         shown.scenario));
   if (!shown.draws.empty())
-    session.note("to simplify a listed run, give the file, seed and method of its command to 'tumble shrink'");
+    session.note("to simplify a listed run, give the file, seed and method in the run's command to 'tumble shrink'");
 }
 
 int search(const Session& session, const SearchVerbOptions& options) {
@@ -321,10 +321,9 @@ Action declare_search(VerbOptions& verb, const Session& session) {
            "all]")
       .one_at_a_time();
   verb.add("--method", options->method, "names the method whose failures are searched").required();
-  verb.add(
-      "--failure", options->failure,
-      "defines a failure: 'METRIC > VALUE' in SI units, or 'METRIC < VALUE' if lower values are worse. A run whose "
-      "status is not ok also fails; with the value inf, only such a run fails");
+  verb.add("--failure", options->failure,
+           "defines a failure: 'METRIC > VALUE' in SI units, or 'METRIC < VALUE' if lower values are worse. A run "
+           "whose status is not ok also fails; with the value inf, only runs whose status is not ok fail");
   verb.add("--worst", options->worst,
            "searches for the simulated run with the worst value of this metric, and estimates no failure probability");
   verb.add("--budget", options->budget, "limits the number of simulated runs of each scenario")

@@ -283,7 +283,8 @@ Action declare_sweep(VerbOptions& verb, const Session& session) {
       .whole(1, 1024)
       .shows_default();
   verb.add("--shard", options->shard, "runs the i-th of n parts of the seeds; write i/n, for example 2/8").filled();
-  verb.add("--again", options->again, "repeats stored runs with these statuses, for example crashed,timeout,killed")
+  verb.add("--again", options->again,
+           "repeats stored runs that have one of these statuses, for example crashed,timeout,killed")
       .separated_by(',')
       .one_at_a_time();
   verb.add("--examples", options->examples,
@@ -307,11 +308,11 @@ Action declare_sweep(VerbOptions& verb, const Session& session) {
       .shows_default();
   verb.add("--until", options->until,
            "stops when the simulated runs show whether method A is better than B by more than the margin: "
-           "A:B:METRIC[:MARGIN]. The margin is in the metric's unit, or a percentage of B's value such as 10%. More "
-           "--seeds continue a sweep without answer")
+           "A:B:METRIC[:MARGIN]. The margin is in the metric's unit, or a percentage of B's value such as 10%. If a "
+           "sweep ends without an answer, run again with more --seeds")
       .filled();
   verb.add("--risk", options->risk,
-           "sets the accepted probability that --until gives an answer although neither method is better")
+           "sets the maximum probability that --until names a better method although neither method is better")
       .within(1e-6, 0.5)
       .shows_default();
   verb.add("--data", options->recordings,

@@ -348,12 +348,11 @@ Action declare_triage(VerbOptions& verb, const Session& session) {
       .shows_default();
   verb.add("--method", options->method, "names the method that fails").required();
   verb.add("--metric", options->metric,
-           "lists this metric; with --limit the metric also decides about failure [default: the first metric of the "
+           "lists this metric; with --limit, this metric also defines a failure [default: the first metric of the "
            "method's kind]");
-  verb.add(
-      "--limit", options->limit,
-      "sets the limit of the metric of --metric in SI units; a run beyond the limit fails [default: a run fails only "
-      "by its status or the metric map_failed]");
+  verb.add("--limit", options->limit,
+           "sets the limit of --metric in SI units; a run with a worse value fails [default: a run fails only by its "
+           "status or by the metric map_failed]");
   return [&session, options] { return run_triage(session, *options); };
 }
 

@@ -40,8 +40,8 @@ bool corrected_covariance(const SensorErrorInformation& evidence, const Vector& 
   constexpr int kRest = SensorErrors::kSize - SensorErrors::kGSensitivity;
   constexpr double kSensorErrorEvidenceWeight = SensorErrorUncertainty::kSensorErrorEvidenceWeight;
   set_normal_equations(evidence, deviation, kSensorErrorEvidenceWeight, work.normal_matrix);
-  // The estimated errors of scale and misalignment stay zero (heuristic). Errors of the free-flight equations have
-  // similar effects on the residuals, so residuals may have either cause.
+  // Estimated scale and misalignment errors are kept at zero (heuristic). Errors of the free-flight equations change
+  // the residuals in a similar way as scale and misalignment errors.
   Vector mean = Vector::Zero();
   const Eigen::Matrix<double, kRest, kRest> rest = work.normal_matrix.bottomRightCorner<kRest, kRest>();
   mean.tail<kRest>() =

@@ -14,16 +14,16 @@ namespace {
 constexpr double kDeterminedSlopeSigma = 2e-3, kNegligibleSlope = 3e-3;
 constexpr double kUnequalLevelsRatio = 1e-4;
 constexpr double kUprightSigma = 1e-5, kSlopeSigmaMin = 3e-4;
-// A reading next to a saturated reading is partly saturated if |level - reading| < kEdgeStepRatio |reading - other
-// neighbour|.
+// kEdgeStepRatio limits the distance between a partly saturated reading and the saturation level. The limit is a
+// fraction of the reading's distance from its neighbour on the unsaturated side.
 constexpr double kEdgeStepRatio = 0.5;
 
 int half_range_side(const ImuSample& sample, Triad triad, std::size_t j) {
   return triad_reading_of(sample, triad)[static_cast<Eigen::Index>(j)] < 0.0 ? -1 : 1;
 }
 
-// A reading counts as saturated in two cases: the device's clip flag is set, or the reading is at or beyond one of the
-// two saturation planes (SaturationPlane) of the sensing element, rails.md (R55).
+// A reading counts as saturated if the device's clip flag is set. A reading also counts as saturated at or beyond one
+// of the two saturation planes (SaturationPlane) of its sensing element: rails.md (R55).
 bool is_at_saturation_limit(const ImuSample& sample, Triad triad, const SaturationPlane& rail, std::size_t j) {
   const Eigen::Vector3d& reading = triad_reading_of(sample, triad);
   return (sample.device_clip_flags >> (first_channel(triad) + j) & 1u) != 0 || rail.is_saturated(reading, -1) ||
@@ -77,8 +77,8 @@ bool are_upright(std::span<const Eigen::Vector3d> readings, const SaturationPlan
     const double plateau = rails.channels[first_channel(triad) + j].plateau_limit;
     if (rail && has_unequal_limits(*rail)) return false;
     if (rail && plateau > 0.0) {
-      // If the device compensates misalignment after clipping, the other axes change the clipped readings of this axis.
-      // Most of the clipped readings then differ from each other.
+      // If the device compensates misalignment after clipping, the other axes change the clipped readings of this axis,
+      // so most of these readings differ.
       const auto equal = std::count_if(readings.begin(), readings.end(), [&](const Eigen::Vector3d& y) {
         return std::abs(std::abs(y[static_cast<Eigen::Index>(j)]) - plateau) <= kEqualReadingsRatio * plateau;
       });

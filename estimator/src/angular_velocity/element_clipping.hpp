@@ -21,8 +21,8 @@ inline std::size_t first_channel(Triad triad) {
   return 3 * index_of(triad);
 }
 
-/// Returns four SaturationPlaneFinders, two for the gyro and two for the accelerometer. The first finder of each sensor
-/// uses the range from the data sheet, and the second finder ignores this range.
+/// Returns four SaturationPlaneFinders, two for the gyro and two for the accelerometer. For each sensor, the first
+/// SaturationPlaneFinder uses the range from the data sheet, and the second SaturationPlaneFinder ignores this range.
 std::array<std::array<SaturationPlaneFinder, 2>, 2> make_plane_finders(const ClippingFinder::Params& params);
 
 bool stated_range_contradicted(const SaturationLimitDetector& axis_aligned_rails,
@@ -32,8 +32,8 @@ bool stated_range_contradicted(const SaturationLimitDetector& axis_aligned_rails
 bool are_upright(std::span<const Eigen::Vector3d> readings, const SaturationPlanes& planes,
                  const SaturationLimitDetector::State& rails, Triad triad);
 
-/// Removes the saturation plane (SaturationPlane) of each axis with a plateau, which is a sequence of equal extreme
-/// readings.
+/// Returns `planes` without the saturation plane (SaturationPlane) of each axis with a plateau, which is a sequence of
+/// equal extreme readings.
 SaturationPlanes without_planes_from_plateaus(const SaturationPlanes& planes,
                                               const SaturationLimitDetector::State& rails, Triad triad);
 

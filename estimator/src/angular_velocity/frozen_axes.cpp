@@ -16,7 +16,8 @@ constexpr std::array<const char*, 6> kQuantities = {
     "time in s for which accel y repeats one reading", "time in s for which accel z repeats one reading"};
 
 constexpr double kAxisFrozen_s = 0.5;  // longest time for which a working axis repeats one reading while the body moves
-// An axis is frozen if it repeats one reading at least this many times longer than ever before.
+// An axis counts as frozen if it repeats one reading at least kMinRepetitionRatio times as long as in its longest
+// earlier repetition.
 constexpr double kMinRepetitionRatio = 10.0;
 constexpr double kPossibleRailRatio = 0.9;  // fraction of the stated range above which a reading may be saturated
 constexpr double kExtremeRatio = 0.5;       // the same fraction for the extreme reading of an axis

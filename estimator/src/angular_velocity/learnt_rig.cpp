@@ -19,8 +19,8 @@ constexpr double kNextRunInflation = 4.0;
 // In six runs of one hand-held device, a gyro's cross-axis sensitivity ranged from 0.017 to 0.021.
 constexpr double kElementDrift = 2e-3;
 constexpr double kSlopeDrift = 2e-3;
-// Saturation planes with smaller log odds are not saved for the next run. Near a maximum of rate or force, unsaturated
-// readings can by chance be close to one plane.
+// Saturation planes with log odds below kCertainLogOdds are not saved for the next run. Near a maximum of rate or
+// force, unsaturated readings can by chance be close to one plane.
 constexpr double kCertainLogOdds = 10.0;
 // smallest standard deviation of a cross-axis sensitivity: rails.md (R59)
 constexpr double kSlopeSigmaMin = 3e-4;
@@ -33,11 +33,11 @@ std::optional<double> lowest_saturation_limit(const CalibratedRig& rig, std::siz
   return out;
 }
 
-// Saturation levels are stable to 0.05 %, but the sensor's bias shifts saturated readings.
+// The saturation level of a sensor is stable to 0.05 %, but the bias of the sensor shifts its saturated readings.
 constexpr double kLevelToleranceRatio = 2e-3;
 
-// If two sensing elements only clip together, the readings determine neither their cross-axis sensitivity nor their
-// saturation level.
+// If two sensing elements always clip at the same time, the readings determine neither their cross-axis sensitivity nor
+// their saturation level.
 bool is_level_known(const SaturationPlane& plane, int sign) {
   const Eigen::Vector4d cut(0.0, 0.0, sign, 1.0);
   const double variance = cut.dot(plane.covariance * cut),

@@ -22,7 +22,7 @@ PartialSaturation partial_saturation(double reading_rad_s, double neighbour_rad_
   // of the noise's standard deviation.
   if (!(depth > 0.1 * noise_rad_s)) return {};
   // If the device compensates misalignment after clipping, the other axes slowly change a fully saturated reading. A
-  // slope below the noise therefore does not indicate partial saturation.
+  // slope of the readings below the noise therefore does not indicate partial saturation.
   if (!(slope > noise_rad_s)) return {};
   double share = 0.0;  // rails.md (R71)
   if (slope > 2.0 * depth) {

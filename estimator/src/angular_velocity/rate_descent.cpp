@@ -15,12 +15,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-// If few clipped samples count as flight, the optimisation restarts with the flight threshold times these factors.
+// If few clipped samples count as flight, the optimisation restarts with the flight threshold multiplied by these
+// factors.
 constexpr double kRestartThresholds[] = {16.0, 0.25};
 constexpr double kFlightShareExpected = 0.5;
 
-// The iteration converges if each linear combination of unknowns changes by at most kStepDeviations of its standard
-// deviation: rate_smoother.md (R30).
+// The iteration has converged if each linear combination of unknowns changes by at most kStepDeviations times its
+// standard deviation: rate_smoother.md (R30).
 constexpr double kStepDeviations = 0.1;
 
 constexpr double kVarianceUnknown = 100.0;  // variance of a clipped axis at the start, (rad/s)^2
@@ -130,8 +131,8 @@ bool run_gauss_newton(const AngularRateSmoother::Params& params, const AngularRa
   return true;
 }
 
-// Returns how well free flight explains the samples: rate_smoother.md (R31). `share` receives the fraction of flight
-// samples among the samples with a clipped axis.
+// Returns the sum of the square roots of all flight weights, which measures the agreement with free flight:
+// rate_smoother.md (R31). `share` receives the fraction of flight samples among the samples with a clipped axis.
 double explained_force_fraction(std::span<const AngularRateObservation> observations,
                                 std::span<const AngularRateEstimate> estimates, double& share) {
   double sum = 0.0, unmeasured_axes = 0.0, flight = 0.0;

@@ -18,12 +18,12 @@ class GaussNewtonRateStep {
   bool factorise(const AngularRateModel& model, std::span<const AngularRateEstimate> estimates,
                  const RigConstants& rig);
   /// Adds the last step, scaled so that no angular rate changes by more than step_max. Returns the largest change of an
-  /// angular rate in the unscaled step.
+  /// angular rate in the step before scaling.
   double apply(const AngularRateModel& model, double step_max, std::span<AngularRateEstimate> estimates,
                RigConstants& rig) const;
 
-  /// Calls use(k, conditional) for each sample k from last to first, with the distribution of its rate and angular
-  /// acceleration for known calibration constants.
+  /// Calls use(k, conditional) for each sample k from last to first. `conditional` is the distribution of the sample's
+  /// rate and angular acceleration for known calibration constants.
   template <typename Use>
   void for_each_state_given_next(Use use) const {
     arrow::Conditional conditional;
@@ -45,7 +45,7 @@ class GaussNewtonRateStep {
                                            const RigConstants& rig) const;
 
   const RigConstants::Matrix& rig_covariance() const { return rig_covariance_; }
-  /// Returns the squared length of the step, in standard deviations of the estimate: rate_smoother.md (R30).
+  /// Returns the squared length of the last step, in standard deviations of the estimate: rate_smoother.md (R30).
   double newton_decrement() const;
 
  private:
@@ -64,8 +64,8 @@ struct RateSolution {
 };
 
 /// Returns false if the normal equations are not positive definite. If most clipped samples are classified as contact,
-/// solve() repeats the optimisation with other contact thresholds, because a wrong initial lever arm may lead to a
-/// local minimum.
+/// solve() repeats the optimisation with other contact thresholds. A wrong initial lever arm may have led to a local
+/// minimum.
 bool solve(const AngularRateSmoother::Params& params, const AngularRateModel& model,
            std::span<const AngularRateObservation> observations, RateSolution& solution, AngularRateReport& health);
 

@@ -196,8 +196,8 @@ double AngularRateModel::gyro_information(const AngularRateObservation& observat
                                           const AngularRateEstimate& estimate, int axis) const {
   if (observation.gyro_repeats) return 0.0;
   if (observation.gyro_age_s > 0.0) {
-    // A gyro reading measures the rate `gyro_age_s` before its time stamp. A contact force may change the rate during
-    // this time: rate_smoother.md (R7).
+    // A gyro reading measures the rate `gyro_age_s` before its time stamp. During `gyro_age_s`, a contact force may
+    // change the rate: rate_smoother.md (R7).
     const double change =
         params_.expert.contact.kGain_rad_m * estimate.contact_force_m_s2.norm() * observation.gyro_age_s;
     const double lost = (observation.partly_saturated_axes() >> axis & 1u) != 0
@@ -211,8 +211,9 @@ double AngularRateModel::gyro_information(const AngularRateObservation& observat
   return 1.0 / (lost * lost + impact * impact);
 }
 
-// In contact, the contact force is modelled as an additional error of the measured specific force. The mean of this
-// error is zero, and its standard deviation is proportional to the estimated contact force: rate_smoother.md (R20).
+// In contact, the contact force is modelled as an additional error of the measured specific force. The additional error
+// in contact has zero mean, and its standard deviation is proportional to the estimated contact force: rate_smoother.md
+// (R20).
 AngularRateModel::ForceFactor AngularRateModel::force_factor(const AngularRateObservation& observation,
                                                              const AngularRateEstimate& estimate,
                                                              const RigConstants& rig) const {
@@ -290,7 +291,7 @@ void AngularRateModel::add_sample(const AngularRateObservation& observation, con
   }
 }
 
-// A force through one point of the body exerts no torque about its own direction: rate_smoother.md (R21).
+// A force through one point of the body exerts no torque about the direction of the force: rate_smoother.md (R21).
 Eigen::Matrix3d AngularRateModel::euler_equation_information(const AngularRateEstimate& estimate) const {
   const double flight = params_.expert.flight.euler_sigma_rad_s2 * params_.expert.flight.euler_sigma_rad_s2;
   const double force = estimate.contact_force_m_s2.norm(), lever = params_.expert.contact.kLever_rad_m * force;
@@ -309,7 +310,7 @@ void AngularRateModel::add_motion_model(const AngularRateEstimate& from, const A
   const double change =
       params_.expert.contact.kGain_rad_m * std::max(from.contact_force_m_s2.norm(), to.contact_force_m_s2.norm());
   const double psd = params_.expert.flight.kJerkPsd_rad2_s5 + independent_sample_fraction_ * change * change / dt_s;
-  // inverse of the scaled process noise covariance Q = psd [dt^3/3, dt^2 h/2; dt^2 h/2, dt h^2]: rate_smoother.md (R4)
+  // inverse of the scaled process noise covariance in rate_smoother.md (R4)
   const double a = 12.0 / (psd * dt_s * dt_s * dt_s), b = -6.0 / (psd * dt_s * dt_s * h),
                c = 4.0 / (psd * dt_s * h * h);
   for (int j = 0; j < 3; ++j) {

@@ -30,15 +30,16 @@ struct GaussianLikelihoodApproximation {
   double precision = 0.0, information_mean = 0.0;
 };
 
-// Returns phi(z) / Phi(z), by an asymptotic series below z = -8, where phi and Phi may underflow.
+// Returns phi(z) / Phi(z) for the density phi and the distribution function Phi of the standard normal distribution.
+// Below z = -8, where phi and Phi may underflow, the function uses an asymptotic series.
 double inverse_mills_ratio(double z) {
   if (z < -8.0) return -z / (1.0 - 1.0 / (z * z) + 3.0 / (z * z * z * z));
   const double density = std::exp(-0.5 * z * z) * std::numbers::inv_sqrtpi / std::numbers::sqrt2;
   return density / (0.5 * std::erfc(-z / std::numbers::sqrt2));
 }
 
-// Returns the moments of a normal distribution truncated below `bound`, which has the variance `bound_variance`:
-// rate_smoother.md (R23), (R24).
+// Returns the moments of a normal distribution truncated below an uncertain bound with the mean `bound` and the
+// variance `bound_variance`: rate_smoother.md (R23), (R24).
 GaussianMoments truncated_gaussian_moments(const GaussianMoments& from, double bound, double bound_variance) {
   const double spread2 = from.variance + bound_variance, spread = std::sqrt(spread2);
   const double z = (from.mean - bound) / spread, r = inverse_mills_ratio(z);
@@ -48,7 +49,8 @@ GaussianMoments truncated_gaussian_moments(const GaussianMoments& from, double b
 
 // Returns the Gaussian factor that gives `marginal` the moments of a distribution truncated at `bound`:
 // rate_smoother.md (R22), (R25). `now` is the current Gaussian factor, and `share` in (0, 1] is the weight of the new
-// one. `variance_max` limits the variance of the cavity distribution, which is `marginal` divided by the factor `now`.
+// Gaussian factor. `variance_max` limits the variance of the cavity distribution, which is `marginal` divided by the
+// factor `now`.
 GaussianLikelihoodApproximation refined_bound_approximation(const GaussianMoments& marginal,
                                                             const GaussianLikelihoodApproximation& now, double bound,
                                                             double bound_variance, double variance_max, double share) {
@@ -70,8 +72,8 @@ void AngularRateModel::search_flight_solutions(const AngularRateObservation& obs
   const Vector3d reading = corrected_rate(observation, estimate);
   AngularRateEstimate flight_estimate = estimate;
   const Eigen::Matrix3d J = rig.inertia_matrix();
-  // Each output axis combines several sensing elements, because the device compensates their misalignment. If one
-  // element clips, its missing rate therefore changes all output axes: rails.md (R51).
+  // Each output axis combines several sensing elements, because the device compensates their misalignment. The
+  // saturation deficit of one clipped element therefore changes all output axes: rails.md (R51).
   Eigen::Matrix3d rows;
   for (int j = 0; j < 3; ++j) rows.row(j) = rig.sensing_direction(j);
   const Eigen::Matrix3d deficit_directions = rows.inverse();

@@ -7,8 +7,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Below this flight weight, the force residual does not change the calibration: a contact force could strongly change
-// uncertain calibration constants.
+// Below this flight weight, the force residual does not change the calibration, because a contact force could cause a
+// large error of the calibration.
 constexpr double kRigWeightMin = 0.05;
 
 }  // namespace

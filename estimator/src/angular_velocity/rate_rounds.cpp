@@ -12,7 +12,7 @@ namespace tumble {
 
 namespace {
 
-// At the ends of the recording, the last available reading repeats.
+// Beyond the ends of the recording, the first or last specific force is used.
 void shift_force_by_delay(std::span<const ImuSample> samples, std::span<const Clipping> clippings, std::ptrdiff_t shift,
                           std::span<const double> accel_age_s, std::span<AngularRateObservation> observations) {
   const auto last = static_cast<std::ptrdiff_t>(samples.size()) - 1;
@@ -55,7 +55,7 @@ bool differ_significantly(const SensorErrors& a, const SensorErrors& b) {
 }
 
 // Limit of the Mahalanobis distance between lever arm and prior, rate_smoother.md (R32). With a correct prior, one
-// device in a thousand exceeds this limit.
+// device in a thousand exceeds this Mahalanobis distance.
 constexpr double kDeviceMahalanobisMax = 2.33;
 
 // All calibration constants except the gyro's sensing directions are held at their prior.
@@ -114,7 +114,8 @@ Status optimise_or_fix_rig_prior(const AngularRateSmoother::Params& params, cons
 
 constexpr double kGuessSigmasMax = 2.0;
 
-// See rate_smoother.md (R38). The delay from impacts is independent of the free-flight equations, which use no impacts.
+// See rate_smoother.md (R38). The accelerometer delay estimated from impacts is independent of the free-flight
+// equations, because these equations use no impacts.
 void add_impact_delay(const TriadDelay& guess, SensorErrorInformation& evidence) {
   if (!(guess.sigma_s > 0.0)) return;
   const double information = 1.0 / (guess.sigma_s * guess.sigma_s);
@@ -146,7 +147,7 @@ SensorErrorInformation calibration_evidence_at(const SensorErrors& given, KnownS
   return evidence_from_earlier_runs(learnt, sizes);
 }
 
-// `learnt` is the estimate of an earlier run, relative to the sensor errors `given` by the user.
+// `learnt` is the information about the sensor errors from an earlier run, relative to the errors `given` by the user.
 SensorErrorFit fit_errors_at(const SensorErrors& given, SensorErrorInformation evidence, const SensorErrorPriors& sizes,
                              const SensorErrorInformation& learnt) {
   evidence.linearisation_point = SensorErrors::from(evidence.linearisation_point.vector() - given.vector());
@@ -347,7 +348,8 @@ Status fit_rounds(const AngularRateSmoother::Params& params, const AngularRateMo
   health.sensor_errors = rounds_state.sensor_error_fit.fitted_errors;
   if (health.calibration_at_prior) return {};
   health.calibration.constants = fit.solution.rig;
-  // The estimated calibration depends on the uncertain sensor errors, so its covariance includes their uncertainty.
+  // The estimated calibration depends on the sensor errors, so the covariance of the calibration includes the
+  // uncertainty of the sensor errors.
   const SensorErrors::Matrix device_covariance = fit_sensor_errors({}, stated).fitted_errors.covariance;
   health.calibration.covariance += fit.error_derivatives.calibration_error_jacobian * device_covariance *
                                    fit.error_derivatives.calibration_error_jacobian.transpose();

@@ -10,8 +10,8 @@
 namespace tumble {
 
 /// Computes angular rates and covariances at the times of the gyro's readings. The covariances include the uncertainty
-/// of sensor errors, calibration, and the common delay of gyro and accelerometer (rate_smoother.md). If the gyro is
-/// slower than its log, interpolated readings replace less accurate estimates.
+/// of sensor errors, calibration, and the common delay of gyro and accelerometer (rate_smoother.md). If the log repeats
+/// gyro readings, interpolated readings replace less accurate estimates.
 std::vector<AngularRateState> rate_states_of_recording(const AngularRateSmoother::Params& params,
                                                        std::span<const ImuSample> samples,
                                                        const AngularRateReadings& readings, const AngularRateFit& fit,

@@ -29,7 +29,8 @@ bool repeats_readings(const AngularRateStream::State& state) {
          state.repetition_state.for_triad(Triad::accelerometer).is_slower_than_samples();
 }
 
-// The norm of the specific force is assumed linear between readings and constant outside.
+// The norm of the specific force is assumed linear between readings, and constant before the first and after the last
+// reading.
 class ForceNormIntegral {
  public:
   ForceNormIntegral(const std::vector<AngularRateStream::Knot>& window, std::size_t middle, std::size_t first) {

@@ -99,8 +99,8 @@ void AngularRateStream::add_sensor_error_covariance(const arrow::BorderVector& r
   AngularRateStreamDelay& delay = device.accel_delay_state;
   if (delay.delay_found) {
     if (const TriadDelay& guess = delay.impact_delay; guess.sigma_s > 0.0) {
-      // SensorErrorUncertainty multiplies all information by kSensorErrorEvidenceWeight. The division cancels this
-      // factor for the delay that impacts determine.
+      // SensorErrorUncertainty multiplies all information by kSensorErrorEvidenceWeight. Dividing by
+      // kSensorErrorEvidenceWeight cancels this factor for the delay estimated from impacts.
       const double information =
           1.0 / (SensorErrorUncertainty::kSensorErrorEvidenceWeight * guess.sigma_s * guess.sigma_s);
       window_error_evidence.information(SensorErrors::kDelay, SensorErrors::kDelay) += information;

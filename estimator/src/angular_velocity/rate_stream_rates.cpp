@@ -57,7 +57,7 @@ Eigen::Matrix3d AngularRateStream::suspected_error_covariance(std::size_t at, co
   return out;
 }
 
-// If the log repeats readings, a rate also depends on the neighbouring readings.
+// If the log repeats readings, the rate of a sample also depends on the next new reading.
 bool AngularRateStream::may_be_partly_saturated(std::size_t at, const State& state) const {
   const std::vector<Knot>& window = state.window;
   if (window[at].possibly_clipped_axes != 0) return true;

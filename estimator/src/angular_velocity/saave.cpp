@@ -18,7 +18,7 @@ std::uint8_t axes_above_bound(const Eigen::Vector3d& rate, double bound) {
   return axes;
 }
 
-// Returns |w|^2, see saave.md (S1), (S2), or NaN if the IMU is on the rotation axis.
+// Returns the squared angular rate, or NaN if the IMU is on the rotation axis: saave.md (S1), (S2).
 double squared_rate(const Eigen::Vector3d& lever_arm, const Eigen::Vector3d& axis, const Eigen::Vector3d& force) {
   const Eigen::Vector3d to_axis = lever_arm.dot(axis) * axis - lever_arm;
   const double r = to_axis.norm();

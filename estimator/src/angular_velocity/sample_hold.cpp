@@ -55,7 +55,7 @@ ClockPhaseSegment best_clock_phases(double period, std::span<const std::size_t> 
     misses[p] = count_missed_repetitions(clock, moving, repeats, std::min(most, out.missed_repetitions));
     out.missed_repetitions = std::min(out.missed_repetitions, misses[p]);
   }
-  // The clock phase is periodic, so a run of equally good phases may cross phase 0.
+  // The clock phase is periodic, so an interval of equally good phases may contain phase 0.
   int run = 0;
   for (int p = 0; p < 2 * kPhases; ++p) {
     run = misses[static_cast<std::size_t>(p % kPhases)] == out.missed_repetitions ? std::min(run + 1, kPhases) : 0;
@@ -66,7 +66,8 @@ ClockPhaseSegment best_clock_phases(double period, std::span<const std::size_t> 
   return out;
 }
 
-// If several clocks predict the repetitions equally well, the result is the middle of their periods and phases.
+// If several candidate clocks predict the repetitions equally well, the function returns the middle of their periods
+// and phases.
 Clock best_matching_clock(const Clock& first, double reach, int periods, std::span<const std::size_t> moving,
                           const std::vector<bool>& repeats, double& found) {
   ClockPhaseSegment best{moving.size()};

@@ -12,7 +12,8 @@
 
 namespace tumble {
 
-/// RepeatedReadings describes a gyro or accelerometer that is slower than its log (sample and hold).
+/// RepeatedReadings describes a gyro or accelerometer whose sample rate is lower than the rate of the log (sample and
+/// hold).
 struct RepeatedReadings {
   double period_s = 0.0;                 ///< time between two readings
   double regular_clock_fraction = 0.0;   ///< fraction of samples whose repetitions a regular clock predicts
@@ -35,7 +36,7 @@ struct Neighbours {
   const ImuSample *previous_sample = nullptr, *next_sample = nullptr;
 };
 /// Returns for each sample the nearest earlier and later samples with a different reading. All samples of a run of
-/// equal readings (repetition, rest, saturation) have the same neighbours.
+/// equal readings (repetition, rest, saturation) get the same earlier and later sample.
 std::vector<Neighbours> neighbouring_readings(std::span<const ImuSample> samples, Triad triad);
 
 }  // namespace tumble

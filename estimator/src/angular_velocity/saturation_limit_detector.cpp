@@ -19,8 +19,8 @@ constexpr double kGyroPlateauMin_rad_s = 0.02;
 constexpr double kAccelPlateauMin_m_s2 = 15.0;  // above gravity
 // minimum jump at the start or end of a low plateau, in steps of the sensor's resolution
 constexpr double kJumpMinDigits = 8.0;
-// Readings above (1 - kClipEnterRatio) times the saturation limit are clipped; their neighbours are clipped above
-// (1 - kClipLeaveRatio) times the limit.
+// A reading above (1 - kClipEnterRatio) times the saturation limit is clipped. Next to a clipped reading, a reading
+// above (1 - kClipLeaveRatio) times the saturation limit is also clipped.
 constexpr double kClipEnterRatio = 0.003, kClipLeaveRatio = 0.02;
 constexpr double kRangeContradictionRatio = 0.02;  // minimum relative difference that contradicts the stated range
 

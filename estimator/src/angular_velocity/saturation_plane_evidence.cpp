@@ -22,7 +22,7 @@ constexpr double kBendRatioMin = 3.0;
 constexpr double kLevelRangeFraction = 0.2;
 constexpr std::size_t kNoiseWindow = 9;
 constexpr double kNoiseQuantile = 0.2;
-// A kink is a change of slope on the clipped axis alone, where a saturation starts or ends.
+// A kink is a change of slope on the clipped axis alone, at the start or end of a saturation.
 constexpr double kMaxKinkLogLikelihood = 2.5;
 constexpr double kMotionSigmasMin = 10.0;
 constexpr double kThinLogLikelihoodMin = 8.0;
@@ -105,7 +105,7 @@ std::optional<CurvatureAtSegment> curvature_at_segment(const DistinctReadings& r
 }
 
 // Returns the log likelihood of saturation from the change of slope where the saturation starts or ends: rails.md
-// (R64). An impact changes the slope on all axes.
+// (R64). An impact changes the slope of the readings on all axes.
 double end_kink_evidence(const DistinctReadings& readings, const SaturationPlaneCandidate& facet, const Segment& s,
                          bool after) {
   const std::vector<Vector3d>& rates = readings.rates;

@@ -28,13 +28,14 @@ using rails::PlaneSlopePrior;
 using rails::SaturationPlaneSide;
 
 // Initial standard deviations of the distances between saturated readings and their plane, as fractions of
-// ExtremeReading::slab_thickness. The plane is fitted once with each initial value. The small value suits sets of
-// readings with few partly saturated readings.
+// ExtremeReading::slab_thickness. The plane is fitted once with each of the two standard deviations. The smaller
+// standard deviation suits sets of readings with few partly saturated readings.
 constexpr double kInitialSigmaRatios[] = {0.5, 0.02};
 constexpr double kElementLevelRatio = 0.04;
 constexpr double kNearElementLogOdds = 5.0, kNearStatedLogOdds = 3.0, kOppositeSignLogOdds = 5.0,
                  kImpossibleLogOdds = -100.0;
-// A saturation level far from the level of an earlier run loses few log odds, since the device may have been replaced.
+// A saturation level far from the level of an earlier run reduces the log odds only by kFarFromKnownLogOdds, since the
+// device may have been replaced.
 constexpr double kNearKnownLogOdds = 6.0, kKnownLevelSigmaRatio = 0.003, kFarFromKnownLogOdds = -3.0;
 // standard deviation of the change of a cross-axis sensitivity between two runs
 constexpr double kKnownSlopeSigma = 2e-3;

@@ -79,8 +79,8 @@ Hypothesis posterior(const Matrix& information, const Matrix& earlier_runs, cons
   Vector sharpened = scaled_h;
   all.solve_vector(sharpened);
   out.log_odds = log_prior + 0.5 * scaled_h.dot(sharpened) - all.half_log_determinant();
-  // The estimated errors of scale and misalignment stay zero (heuristic). Errors of the free-flight equations have
-  // similar effects on the residuals, so residuals may have either cause.
+  // Estimated scale and misalignment errors are kept at zero (heuristic). Errors of the free-flight equations change
+  // the residuals in a similar way as scale and misalignment errors.
   Vector mean = Vector::Zero();
   mean.tail<kRest>() = scaled_h.tail<kRest>();
   dense::Cholesky(sharp.bottomRightCorner<kRest, kRest>()).solve_vector(mean.tail<kRest>());
@@ -153,7 +153,7 @@ void discount_unobservable(double share, SensorErrorInformation& evidence) {
     unobservable(3 * j + k, 2 + i) = unobservable(SensorErrors::kAccel + 3 * j + k, 2 + i) = 0.5;
     unobservable(3 * k + j, 2 + i) = unobservable(SensorErrors::kAccel + 3 * k + j, 2 + i) = -0.5;
   }
-  // Reduces the information along the unobservable directions. No full matrix is stored, because the thread of a
+  // Reduces the information along the unobservable directions. No full matrix is stored, because the thread that runs
   // AngularRateStream may have a small stack.
   Eigen::Matrix<double, 5, SensorErrors::kSize> said = unobservable.transpose().lazyProduct(evidence.information);
   evidence.information.noalias() -= (1.0 - share) * unobservable.lazyProduct(said);

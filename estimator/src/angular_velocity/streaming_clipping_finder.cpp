@@ -22,8 +22,8 @@ constexpr std::size_t kLatestReadings = 48;
 // The search for saturation repeats when the number of large readings has grown by the fraction 1 /
 // kSearchGrowthDivisor.
 constexpr std::size_t kSearchGrowthDivisor = 8;
-// Only readings of at least this magnitude count as near saturation, for gyro and accelerometer. The magnitude is a
-// fraction of the smallest possible saturation level.
+// Only readings above these fractions (gyro, accelerometer) of the smallest possible saturation level count as near
+// saturation.
 constexpr double kLowReadingRatios[] = {0.5, 0.9};
 
 std::array<std::optional<double>, 6> saturation_limits_of(const SaturationLimitDetector& axis_aligned_rails,
@@ -62,7 +62,8 @@ bool StreamingClippingFinder::is_near(const Vector3d& reading, Triad triad, cons
   return false;
 }
 
-// Above readings_max_ readings, those far from the largest readings are dropped first, then the oldest.
+// If readings_max_ readings are stored, the function deletes readings far from the largest readings first, and then the
+// oldest readings.
 void StreamingClippingFinder::store_distinct_reading(const Vector3d& reading, Triad triad,
                                                      DistinctReadingMemory& memory) const {
   std::vector<Vector3d>& readings = memory.readings;

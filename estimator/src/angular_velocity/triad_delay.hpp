@@ -16,9 +16,10 @@ namespace tumble {
 /// The delay from impacts maximises the correlation (at least 0.6) between the square roots of angular acceleration and
 /// force. The standard deviation of the delay from impacts is 0.15 sensor periods.
 ///
-/// The delay from flight best fits the model force = alpha x t + w x (w x t) + bias (lever arm t, rate w). A robust fit
-/// (Geman-McClure) estimates lever arm (prior `lever_arm_m`, 0.02 m) and bias for each tested delay. The delay is 0 if
-/// fewer than 20 unclipped readings exceed 2 rad/s, or if no delay fits clearly better than 0.
+/// The delay from flight minimises the residual of the rigid-body model force = alpha x t + w x (w x t) + bias. In this
+/// model, alpha is the angular acceleration, t is the lever arm, and w is the rate. A robust fit (Geman-McClure)
+/// estimates lever arm (prior `lever_arm_m`, 0.02 m) and bias for each tested delay. The delay is 0 if fewer than 20
+/// unclipped readings exceed 2 rad/s, or if no other delay fits clearly better than 0.
 TriadDelay guess_triad_delay(std::span<const ImuSample> samples, std::span<const Clipping> clippings,
                              const Eigen::Vector3d& lever_arm_m);
 

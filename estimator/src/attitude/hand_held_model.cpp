@@ -24,7 +24,8 @@ using BorderRow = Eigen::Matrix<double, 1, kBorderSize>;
 using ForceState = Eigen::Matrix<double, 3, 12>;
 using ForceBorder = Eigen::Matrix<double, 3, kBorderSize>;
 
-// Returns phi(u)/Phi(u), see carried.md (C14), by an asymptotic series below u = -12, where phi and Phi may underflow.
+// Returns phi(u)/Phi(u) for the density phi and the distribution function Phi of the standard normal distribution:
+// carried.md (C14). Below u = -12, where phi and Phi may underflow, the function uses an asymptotic series.
 double normal_hazard_function(double u) {
   if (u < -12.0) return -u - 1.0 / u * (1.0 - 2.0 / (u * u));
   const double density = std::exp(-0.5 * u * u) / std::sqrt(2.0 * std::numbers::pi);
@@ -168,7 +169,7 @@ double add_gyro(const NodeReadings& readings, const Matrix3d& rows, const Readin
     const GyroSensingAxisRow& element = elements[static_cast<std::size_t>(i)];
     if (e.count > 0.0) {
       // While another sensing element clips, an error of the sensing directions causes the same error in all readings
-      // of a node. Averaging does not reduce this error.
+      // of a node, which averaging does not reduce.
       const double tilt = noise.deficit_error_ratio * clipped_axis_deficit(readings, elements, i);
       cost += add_unclipped_readings(
           e, element,

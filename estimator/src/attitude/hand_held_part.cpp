@@ -11,7 +11,8 @@ namespace tumble::hand_held {
 
 namespace {
 
-// A change of the cost by 0.2 corresponds to odds of 1.1.
+// The iteration has converged if the cost changes by less than kCostChange. A change of the cost by kCostChange
+// multiplies the odds between two solutions by 1.1.
 constexpr double kCostChange = 0.2;
 constexpr int kStepsMax = 30;  // maximum number of iterations
 

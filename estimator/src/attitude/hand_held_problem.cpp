@@ -55,8 +55,8 @@ ReadingNoise reading_noise(const HandHeldSmoother::Params& p, double period_s) {
 
 namespace {
 
-// The reported covariance neglects the lower bounds from saturated readings. Mean and middle rate of an averaging
-// window of length P differ with variance q P^3/320 (jerk density q): carried.md (C26).
+// The reported covariance neglects the lower bounds from saturated readings. Over an averaging window of length P, the
+// difference between mean rate and middle rate has the variance q P^3/320 (jerk density q): carried.md (C26).
 ReadingNoise noise_from_data_sheet(const HandHeldSmoother::Params& params, ReadingNoise noise, double period_s) {
   noise.bound = 0.0;
   noise.window_rate_sigma_rad_s = params.jerk_rad_s3_sqrts * std::sqrt(period_s * period_s * period_s / 320.0);

@@ -10,7 +10,7 @@
 
 namespace tumble::hand_held {
 
-/// `jerk` is a factor on the root density of the angular jerk.
+/// `jerk` multiplies the root of the spectral density of the angular jerk.
 Motion::Params motion_params(const HandHeldSmoother::Params& params, double jerk = 1.0);
 ReadingNoise reading_noise(const HandHeldSmoother::Params& params, double period_s);
 double add_node(const NodeReadings& readings, const Eigen::Matrix3d& rows, const ReadingNoise& noise,
@@ -21,7 +21,7 @@ double add_constants_prior(const HandHeldSmoother::Params& params, const Constan
 /// Returns the difference between the states of two nodes, as a step for Node::move.
 System::StateVector node_difference(const Node& from, const Node& to);
 
-/// Message replaces all earlier or all later nodes by a prior on one node, linearised at the state
+/// NodeMessage replaces all earlier or all later nodes by a prior on one node, linearised at the state
 /// `linearisation_node`.
 struct NodeMessage {
   Node linearisation_node;
@@ -30,7 +30,8 @@ struct NodeMessage {
   double add(const Node& node, System::StateBlock& block) const;
 };
 
-/// Part is the range of nodes [first, last] of a problem, with all other nodes summarised as priors on its ends.
+/// ProblemSegment is the range of nodes [first, last] of a problem. Priors on the first and the last node summarise all
+/// other nodes.
 struct ProblemSegment {
   std::size_t first = 0, last = 0;
   NodeMessage message_from_before = {}, message_from_after = {};
@@ -40,7 +41,7 @@ class HandHeldProblem {
  public:
   HandHeldProblem(const HandHeldSmoother::Params& params, const Eigen::Matrix3d& rows, const NodeData& collected,
                   std::vector<Node> nodes);
-  /// condense_other_nodes() must have set `part.before` and `part.message_from_after`.
+  /// condense_other_nodes() must have set `part.message_from_before` and `part.message_from_after`.
   HandHeldProblem(const HandHeldProblem& whole, const ProblemSegment& part);
 
   /// Returns `diverged` if the normal equations are not positive definite.

@@ -47,8 +47,8 @@ double since_s(std::span<const ImuSample> samples, std::size_t from, std::size_t
 }
 
 constexpr double kMinClockAgreement = 0.9;
-// In recordings of pendulums, averaging windows of 20 ms were partly saturated; windows of 10 ms of hand-held wands
-// were not.
+// In recordings of pendulums, averaging windows of 20 ms were partly saturated. In recordings of hand-held wands,
+// averaging windows of 10 ms were not partly saturated.
 constexpr double kLongWindow = 1.5;
 
 TimeNs nanoseconds(double s) {
@@ -114,7 +114,8 @@ ClippedSegment clipped_segment(std::span<const ClipSigns> signs, std::size_t ele
     if (sign == 0 || (sign != ClipSigns::kMissingSign && out.saturated_side != 0 && sign != out.saturated_side)) break;
     if (sign != ClipSigns::kMissingSign) out.saturated_side = sign;
   }
-  // If all readings of a segment are unusable, the rate is assumed to be beyond the saturation level.
+  // If all readings of a segment are unusable, the rate is assumed to be beyond the saturation level, with the sign of
+  // the previous reading.
   if (out.saturated_side == 0) out.saturated_side = raw[begin == 0 ? begin : begin - 1] < 0.0 ? -1 : 1;
   return out;
 }

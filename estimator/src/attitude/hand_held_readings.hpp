@@ -8,7 +8,7 @@
 
 namespace tumble::hand_held {
 
-/// If the determinant of the sensing directions is below kRowsMin, they do not span three dimensions.
+/// Sensing directions with a determinant below kRowsMin are assumed not to span three dimensions.
 inline constexpr double kRowsMin = 0.1;
 /// standard deviation of a repeated reading's time, in samples: 1/sqrt(12) for a uniform distribution
 inline constexpr double kAge_samples = 0.29;
@@ -21,7 +21,7 @@ struct AveragingWindows {
   std::vector<std::size_t> node_of;  ///< nearest node to the centre of each window
 };
 
-/// The times of repeated readings are corrected, and each reading is contained once.
+/// TimedReadings contains each reading of the log once, with corrected times of repeated readings.
 struct TimedReadings {
   std::vector<ImuSample> samples;     ///< stamped at the end of their windows
   std::vector<ClipSigns> clip_signs;  ///< one per sample
@@ -48,8 +48,8 @@ NodeData collect_node_data(const HandHeldSmoother::Params& params, std::span<con
 inline constexpr double kLongest = 1.5;  ///< longest averaging window, in sample periods
 
 /// Estimates the root of the spectral density of angular jerk [rad/s^3 sqrt(s)] near each time step (node) of the
-/// smoother: carried.md (C24), (C25). Cost: O(N). If the readings near a node do not determine the jerk, the result is
-/// 0.
+/// smoother: carried.md (C24), (C25). Cost: O(N). If the readings near a time step do not determine the jerk, the
+/// result for this time step is 0.
 std::vector<double> estimate_jerk(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s,
                                   double node_s, std::size_t nodes);
 
@@ -65,8 +65,8 @@ inline constexpr int kFreeNodes = 5;
 
 bool clips(const NodeReadings& readings);
 
-/// An accelerometer reading's time is uniformly distributed over the second half of its period: sigma 1/(4 sqrt(3))
-/// periods.
+/// The time of an accelerometer reading is uniformly distributed over the second half of its period, with a standard
+/// deviation of 1/(4 sqrt(3)) periods.
 inline constexpr double kWindowCentreSigmaRatio = 0.144;
 
 /// Adds a gyro reading that is `t` seconds later than the time step `node`.

@@ -28,13 +28,14 @@ constexpr double kCertainDeviations = 4.0;
 constexpr int kMinImusForRecovery = 3;          // minimum number of IMUs for recovering a rate from accelerometers
 constexpr double kUnsaturatedForceRatio = 0.8;  // accelerometer errors are estimated up to this fraction of the range
 constexpr int kOffset = ImuMerge::kErrorCount - 1;
-// lever_arm_agreement() needs at least this sum of squared lever arm effects. A constant lever arm effect of 1 m/s^2
-// reaches the sum in 1 s. An accelerometer bias of 0.05 m/s^2 then changes lever_arm_agreement() by at most 0.05.
+// lever_arm_agreement() returns a value only if the sum of squared lever arm effects reaches kArmSquareMin_m2_s3. A
+// constant lever arm effect of 1 m/s^2 contributes 1 m^2/s^3 per second to the sum. At the minimum sum, an
+// accelerometer bias of 0.05 m/s^2 changes lever_arm_agreement() by at most 0.05.
 constexpr double kArmSquareMin_m2_s3 = 1.0;
 constexpr double kRepeated_s = 0.03;
 constexpr double kWindowMax_s = 0.05;  // maximum window for a central difference
 
-// After an impact, a contradicting accelerometer is excluded for this time, because impacts come in groups.
+// After an impact, a contradicting accelerometer is excluded for kSuspect_s, because impacts come in groups.
 constexpr double kSuspect_s = 0.04;
 // standard deviation of an angular acceleration, as a fraction of its change since the last window
 constexpr double kAccelerationSigmaRatio = 0.3;
@@ -202,7 +203,7 @@ ImuMerge::ImuMask ImuMerge::select_agreeing_imus(const Readings& readings, const
     used[i] = agrees && (readings[i].device_clip_flags & clipping) == 0;
   }
   const auto kept = std::count(used.begin(), used.end(), true);
-  // Without a majority, it is unknown which IMUs are right.
+  // If no majority of the IMUs agrees, the correct IMUs cannot be identified, and all available IMUs are used.
   if (units < kMinImusForRecovery ? kept == 0 : 2 * kept <= units && kept < units) used = present;
   const bool apart = state.window_count > 0 && h > 0.0;  // derivatives from the last window exist
   if (units >= kMinImusForRecovery && apart && middle_rate.cwiseAbs().maxCoeff() < params_.gyro_range_rad_s) {

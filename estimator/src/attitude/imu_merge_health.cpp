@@ -10,7 +10,7 @@ namespace tumble {
 namespace {
 
 // An IMU counts as frozen if it repeats one reading for kUnitFrozen_s, while other IMUs change or gravity rotates. A
-// sensor with a lower sample rate than the log repeats readings for a shorter time.
+// sensor with a lower sample rate than the log repeats each reading for less than kUnitFrozen_s.
 constexpr double kUnitFrozen_s = 0.1, kOthersRate_rad_s = 0.03, kOthersForce_m_s2 = 0.3, kGravityRotation_rad = 1.0;
 constexpr double kUnfreeze_s = 0.5;
 // The tolerance of the rate grows with the rate, because of scale errors.
@@ -28,7 +28,7 @@ constexpr double kAxisContributionMin =
     0.02;  // another axis counts as clipped if a clipped axis contributes more than this fraction to it
 
 /// Returns the component of the measured rotation perpendicular to the repeated specific force. The specific force is
-/// mostly gravity, so this rotation should change the reading of the accelerometer.
+/// mostly gravity, so the returned rotation should change the reading of the accelerometer.
 double rotation_across_force_rad(const ImuMerge::Repetition& hold) {
   return hold.turned_rad.cross(hold.repeated_reading.stableNormalized()).norm();
 }

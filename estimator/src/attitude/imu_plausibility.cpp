@@ -22,9 +22,10 @@ constexpr double kRotationMin_rad2 = 0.5, kRotationMin_rad = 0.15;  // minimum r
 // A push, or the centripetal force in flight, may rotate the measured force for a few windows of 0.2 s.
 constexpr double kRotatedWindowsMin = 5.0;
 // A scale error of the gyro is reported only if a scaled gyro rotation explains the rotation of the measured force much
-// better. The unexplained rotation with scaling is then at most this fraction of the unexplained rotation without
-// scaling: imu_merge.md (I21). Pushes of the body often cause a regression slope between 0 and 1, imu_merge.md (I20).
-// For a slope between 0 and 1, the limit is therefore the smaller kReducedResidualMax.
+// better. The unexplained rotation with scaling must be at most kScaledResidualMax times the unexplained rotation
+// without scaling: imu_merge.md (I21). In the regression of the force's rotation on the gyro's rotation, pushes of the
+// body often cause a slope between 0 and 1: imu_merge.md (I20). For a regression slope between 0 and 1, the stricter
+// limit kReducedResidualMax applies.
 constexpr double kScaledResidualMax = 0.75, kReducedResidualMax = 0.33;
 constexpr double kSlow_rad_s = 0.4;  // zero offset of a gyro, and rocking on the ground while pushes tilt the force
 constexpr double kFrozen_s = 1.0, kRepetitionRatio = 10.0;
@@ -101,8 +102,8 @@ void ImuPlausibility::process_averaged_reading(State& state) const {
     state.moving_force_duration_s += length_s;
   if (state.window_started) {
     // Each force is a mean over an averaging interval. The rotation between two mean forces is the rotation from the
-    // middle of the first interval to the middle of the last interval. The rotation between the ends of both intervals
-    // approximates this rotation.
+    // middle of the first interval to the middle of the last interval. The gyro rotation from the end of the first
+    // interval to the end of the last interval approximates the rotation between the mean forces.
     state.gyro_rotation_in_window = (state.gyro_rotation_in_window * so3::exp(turned)).normalized();
     state.length_s += length_s;
     const double start = state.window_start_force_m_s2.norm();
@@ -190,8 +191,9 @@ double ImuPlausibility::rotation_agreement(const State& state) const {
 bool ImuPlausibility::fits_better(const State& state) const {
   const double slope = force_to_gyro_rotation_ratio(state), agreement = rotation_agreement(state);
   const double left = state.force_rotation_square_sum_rad2 * (1.0 - agreement * agreement);
-  // Pushes of the body often reduce the regression slope, but rarely invert it or increase it by half. If the gyro
-  // measures slow rotation only, pushes dominate the rotation of the force, and the slope can have any value.
+  // Pushes of the body often change the ratio of force rotation to gyro rotation, but rarely to values below 0 or above
+  // 1.5. If the gyro measures slow rotation only, pushes dominate the rotation of the force, and the ratio can have any
+  // value.
   const double slow_rad = kSlow_rad_s * kGravityWindow_s;
   const bool pushed = (slope > 0.0 && slope < 1.0) ||
                       state.gyro_rotation_square_sum_rad2 < state.rotated_window_count * slow_rad * slow_rad;

@@ -60,7 +60,7 @@ constexpr double kSegmentRotationMin_rad = 1.0;  // less rotation in a segment d
 constexpr double kExplained_m_s = 0.3;           // rms velocity of the pivot below which rates explain a segment
 constexpr double kPivotNoise_m_s = 0.03;  // rms velocity due to noise: below it, two alternatives fit equally well
 constexpr double kSegmentGapMax_s = 0.1;  // an unmeasured impact may hide in a longer gap
-// The segments overlap by half, so that six segments are three independent ones.
+// The segments overlap by half, so six segments contain as much information as three independent segments.
 constexpr double kEvidenceMin = 5.0, kMeanEvidenceMin = 0.6, kBetterSegmentsMin = 6.0, kBetterWorseRatioMin = 4.0;
 constexpr double kPivotDistanceMax_m = 0.25;  // a pivot further away is a rod, whose length the scale would absorb
 constexpr double kScaleErrorMin = 0.025, kScaleErrorMinSigmas = 5.0;
@@ -70,7 +70,8 @@ constexpr std::size_t kHalf = kAxisLabels, kTwice = kAxisLabels + 1;  // indices
 constexpr std::size_t kLower = kAxisLabels + 2, kUpper = kAxisLabels + 3, kReadings = kAxisLabels + 4;
 constexpr std::size_t kCompared = kLower;  // number of hypotheses that differ clearly from the unchanged rates
 // A segment favours a gyro hypothesis if the hypothesis has a smaller velocity residual than the unchanged rates. The
-// logarithms of the two squared residuals must differ by more than this limit.
+// logarithms of the squared residuals with the hypothesis and with the unchanged rates must differ by more than
+// kClearLogRatio.
 constexpr double kClearLogRatio = 0.4;
 
 using Readings = std::array<Eigen::Matrix3d, kReadings>;
@@ -91,7 +92,7 @@ Readings all_readings() {
   return out;
 }
 
-/// `step` is the Newton step from gyro scale 1, and `weight` is the second derivative of the squared residual.
+/// `scale_step` is the Newton step from gyro scale 1, and `weight` is the second derivative of the squared residual.
 struct GyroScaleVote {
   double scale_step, weight;
 };
@@ -184,7 +185,8 @@ void conclude_gyro_scale(const std::vector<GyroScaleVote>& votes, PivotMotionChe
 PivotMotionCheck PivotMotionCheck::of(std::span<const ImuSample> samples, double gravity_m_s2, double gyro_range_rad_s,
                                       double accel_range_m_s2) {
   static const Readings readings = all_readings();
-  // The second series is shifted by half a segment, so that an impact between two segments is inside another segment.
+  // The second series of segments is shifted by half a segment. An impact between two segments of one series is inside
+  // a segment of the other series.
   std::array<Segments, 2> series = {Segments(gravity_m_s2, readings), Segments(gravity_m_s2, readings)};
   double mean_s = 0.0, since_s = 0.0;
   Eigen::Vector3d turned = Eigen::Vector3d::Zero(), gained = Eigen::Vector3d::Zero();

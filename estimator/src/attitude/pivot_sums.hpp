@@ -19,7 +19,7 @@ struct PivotMotionFit {
 
 class PivotMotionSums {
  public:
-  /// `at_s` is the time from the start of the first reading to the middle of this reading. Cost: O(1).
+  /// `at_s` is the time from the start of the first reading to the middle of the added reading. Cost: O(1).
   void add(double at_s, double dt_s, const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2) {
     const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * rate_rad_s);
     const Eigen::Quaterniond middle = rotation_ * half;

@@ -103,7 +103,8 @@ AngularRateRecovery::SaturatedSensors AngularRateRecovery::find_saturated_sensor
     }
     clipped += force;
   }
-  // While all gyros are unsaturated, the mean of the unsaturated accelerometers is more accurate than this filter.
+  // While all gyros are unsaturated, the mean of the unsaturated accelerometers is more accurate than
+  // AngularRateRecovery.
   out.force = clipped > 0 && (out.rate || 2 * clipped > received);
   return out;
 }

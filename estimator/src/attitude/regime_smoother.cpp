@@ -120,7 +120,7 @@ void MotionRegimeSmoother::join_hand_held_rates(std::span<const ImuSample> sampl
 }
 
 /// Replaces the rates by the rates of HandHeldSmoother. Gaps divide the recording into parts, and each part is
-/// estimated separately. `report` describes the last part with a successful estimate.
+/// estimated separately. `report` describes the last part of the recording with a successful estimate.
 bool MotionRegimeSmoother::estimate_hand_held(std::span<const ImuSample> samples, const ClippedReadings& known,
                                               std::vector<AngularRateState>& rates,
                                               HandHeldSmoother::Report& report) const {

@@ -141,8 +141,8 @@ RegimeProbabilities MotionRegimeStream::next(const RegimeProbabilities& before, 
                                              std::span<const AngularRateStream::Knot> window, std::size_t k,
                                              const RigCalibration& rig, bool unstable) const {
   const AngularRateStream::Knot& knot = window[k];
-  // An unstable calibration was probably fitted to contact forces. With such a calibration, rate and force agree in any
-  // motion, so a clipped sample does not change the probabilities.
+  // An unstable calibration was probably fitted to contact forces. With an unstable calibration, rate and force agree
+  // in any motion, so a clipped sample does not change the probabilities.
   if (unstable && knot.observation.unmeasured_axes() != 0) return before;
   AngularRateState rate;
   rate.w_WI_I_rad_s = knot.estimate.knot.rate_rad_s;
@@ -199,7 +199,7 @@ double MotionRegimeStream::hand_held_weight(const AngularRateState& rate, State&
   if (!after && !before) return 0.0;
   double out = state.recent_probabilities.empty() ? 1.0 : state.recent_probabilities.front().hand_held;
   if (out < params_.hand_held_probability_min || !before) return out;
-  // Later samples update only a copy of the probabilities, because the rates of these samples are not final.
+  // Samples after the reported sample update only a copy of the probabilities, because their rates are not final.
   RegimeProbabilities probabilities = state.probabilities;
   const RigCalibration rig = rate_.calibration(state.rate);
   const bool unstable = calibration_is_unstable(state);

@@ -37,8 +37,8 @@ double log_density_near_gravity(double n, double g, double variance) {
   return log_gaussian(n * n + g * g, variance) + log_sinh_x;
 }
 
-// One in three samples of hand-held motion has a five times larger standard deviation of the specific force: carried.md
-// (C33).
+// For one third of the hand-held samples, the specific force has a five times larger standard deviation than for the
+// other samples: carried.md (C33).
 constexpr double kRoughly = 3.0, kRougher = 5.0;
 
 double log_density_hand_held(double n, double g, double hand_variance, double grip_variance) {
@@ -150,7 +150,7 @@ Status MotionRegimeEvidence::find(std::span<const ImuSample> samples, std::span<
   return {};
 }
 
-// See carried.md (C39). `share` is the probability of `second`.
+// See carried.md (C39). `share` is the probability of the rate state `second`.
 AngularRateState mix_rate_states(const AngularRateState& first, const AngularRateState& second, double share) {
   AngularRateState out = share > 0.5 ? second : first;
   const Vector3d apart = second.w_WI_I_rad_s - first.w_WI_I_rad_s;

@@ -12,7 +12,7 @@ namespace tumble {
 
 namespace {
 
-// The limits of the rest detector accept any unit of the specific force and any plausible gyro bias.
+// The limits of the rest detector are wide enough for any unit of the specific force and any plausible gyro bias.
 constexpr RestDetector::Params kRests{.rate_max_rad_s = 0.15, .force_min_m_s2 = 0.3};
 constexpr double kMagnitudeErrorMax = 0.15;  // covers 80 mg of bias and 3 % of scale
 // The tolerance of the angle between measured and expected gravity covers gyro bias and pushes at rest.

@@ -195,7 +195,7 @@ std::vector<ProblemSegment> with_neighbouring_nodes(const HandHeldProblem& probl
   return out;
 }
 
-/// `fallen` marks segments whose number of revolutions an earlier round has changed.
+/// `fallen` marks segments whose number of revolutions was changed in an earlier round.
 std::vector<TestedRevolutionSegment> test_revolution_segments(const HandHeldProblem& problem,
                                                               std::span<const Segment> segments,
                                                               std::span<const ProblemSegment> parts,

@@ -10,9 +10,9 @@ namespace tumble::hand_held {
 inline constexpr double kAngleShare = 1.0 / 3.0;
 inline constexpr double kLogOdds = 6.9;  ///< alternatives with odds below 1 to 1000 are ignored
 
-/// Returns the minimum cost of one additional revolution within the duration T = `span_s`: carried.md (C28). Rate and
-/// angular acceleration at both ends do not change. The angular jerk is modelled as white noise with the root density
-/// `jerk_rad_s3_sqrts` [rad/s^3 sqrt(s)].
+/// Returns the minimum cost of one additional revolution within the duration T = `span_s`: carried.md (C28). The
+/// additional revolution does not change rate and angular acceleration at the start and end of the duration. The
+/// angular jerk is modelled as white noise with the root density `jerk_rad_s3_sqrts` [rad/s^3 sqrt(s)].
 double revolution_cost(double span_s, double jerk_rad_s3_sqrts);
 
 /// Tests for each clipped gyro segment whether the body made one revolution more or less than in the solution. Cost:

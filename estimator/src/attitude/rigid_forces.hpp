@@ -43,7 +43,7 @@ struct RigidBodyImuForces {
            e.norm() <= tolerated_saturation_m_s2 + uncertainty_rad_s2 * d.norm();
   }
 
-  /// If several IMUs agree with equally many others, the function returns the IMU whose force changed least.
+  /// If several IMUs agree with the same number of other IMUs, the function returns the IMU whose force changed least.
   AgreeingImuForces largest_agreeing_set() const {
     AgreeingImuForces best;
     for (std::size_t k = 0; k < kImuCount; ++k) {

@@ -19,10 +19,11 @@ constexpr int kRate = 0, kAcceleration = 1;
 constexpr int kTurning = 2, kFixed = 4;               // of Modulation
 constexpr int kArm = 2, kForce = 4, kWorldForce = 6;  // of Centripetal
 constexpr double kJerk_rad_s3_sqrts = 50.0;           // root density of the angular jerk about the spin axis
-// The rate across the spin axis is the sum of a world part and a body part: carried.md (C45). Each part changes as a
-// random walk with the root density kWalk_rad_s_sqrts. Vibration adds an error with the standard deviation
-// kVibration_rad_s to the readings. This error is correlated over kReadingInterval_s. SpinFilter::variance_ratio scales
-// the variances of random walk and vibration: carried.md (C47).
+// The rate perpendicular to the spin axis is the sum of a world part (constant in world axes) and a body part (constant
+// in body axes): carried.md (C45). World part and body part change as random walks with the root density
+// kWalk_rad_s_sqrts. Vibration adds an error with the standard deviation kVibration_rad_s to the readings. The
+// vibration error is correlated over kReadingInterval_s. SpinFilter::variance_ratio scales the variances of random walk
+// and vibration: carried.md (C47).
 constexpr double kWalk_rad_s_sqrts = 1.0, kVibration_rad_s = 0.3;
 // size of the body: prior standard deviation of the lever arm from the spin axis to the IMU
 constexpr double kBodySize_m = 0.3;
@@ -33,13 +34,15 @@ constexpr double kReadingSigma_rad_s = 0.02;  // of an unsaturated reading
 constexpr double kRailSigma_rad_s = 0.1;      // of a lower bound
 constexpr double kStartSigma_rad_s = 1.0, kStartSigma_rad_s2 = 10.0, kStartSaturatedRatio = 0.5;
 constexpr double kForceSigma_m_s2 = 0.3, kForceWalk_m_s2_sqrts = 0.1, kVibration_m_s2 = 0.5;
-// The air force is smooth. Larger residuals indicate contact or vibration, and contradict a spin in the air.
+// The air force is smooth. A variance ratio of the residuals above kSmoothVarianceRatioMax indicates contact or
+// vibration, and contradicts a spin in the air.
 constexpr double kSmoothVarianceRatioMax = 20.0, kContradiction = 1e3;
 // ratio of the angular jerk in Centripetal to the angular jerk in Modulation; a spin in the air changes slowly
 constexpr double kForceJerkRatio = 0.3;
 constexpr double kWorldForceSigma_m_s2 = 3.0, kWorldForceWalk_m_s2_sqrts = 1.0;
 
-// Returns the two axes across the spin axis, in the order of a right-handed frame.
+// Returns the components of `v` along the two axes perpendicular to the spin axis, in the order of a right-handed
+// frame.
 Vector2d across(const Eigen::Vector3d& v, int axis) {
   return {v[(axis + 1) % 3], v[(axis + 2) % 3]};
 }
@@ -83,9 +86,9 @@ void predict_spin(const SpinFilter<N>& filter, double jerk_rad_s3_sqrts, double 
   out.covariance(kAcceleration, kAcceleration) += jerk;
 }
 
-// Rotates the two state components from index `part` on by the angle -related * (rotation angle of the spin). Writes
-// the derivatives of the rotated components to `out.transition_matrix`. In the axes of the body, a vector that is
-// constant in the world turns by minus the angle of the spin.
+// Rotates the state components `part` and `part` + 1 by -related times the rotation angle of the spin. Writes the
+// derivatives of the rotated components to `out.transition_matrix`. In the axes of the body, a vector that is constant
+// in the world turns by minus the angle of the spin.
 template <int N>
 void turn_part(const SpinFilter<N>& filter, int part, double related, double dt_s, SpinPrediction<N>& out) {
   const auto& x = filter.x;
@@ -99,7 +102,8 @@ void turn_part(const SpinFilter<N>& filter, int part, double related, double dt_
   out.x.template segment<2>(part) = turn * x.template segment<2>(part);
 }
 
-// Updates a filter with the readings across the spin axis. Returns their log likelihood: (C47), (C48) of carried.md.
+// Updates a filter with the readings perpendicular to the spin axis. Returns the log likelihood of these readings:
+// carried.md (C47), (C48).
 template <int N>
 double update_across(const Eigen::Matrix<double, 2, N>& H, const Vector2d& innovation, double sigma, double dt_s,
                      SpinFilter<N>& filter) {
@@ -114,9 +118,9 @@ double update_across(const Eigen::Matrix<double, 2, N>& H, const Vector2d& innov
   return -0.5 * (squared_norm + std::log(S.determinant()));
 }
 
-// A saturated reading is a lower bound of the rate's magnitude. The bound changes the estimate only if the estimated
-// magnitude is below the bound. After an overflow, the reading has the wrong sign and no information. If
-// `keeps_variance` is true, a bound does not reduce the variance.
+// A saturated reading is a lower bound of the rate's magnitude. A saturated reading changes the estimate only if the
+// estimated magnitude is below the reading. After an overflow, the reading has the wrong sign and no information. If
+// `keeps_variance` is true, a saturated reading does not reduce the variance.
 template <int N>
 void update_rate(const SpinReading& reading, bool keeps_variance, SpinFilter<N>& filter) {
   const double innovation = reading.rate_rad_s - filter.x[kRate];

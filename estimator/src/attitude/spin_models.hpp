@@ -8,9 +8,10 @@
 
 namespace tumble {
 
-// Measurement models of a steady spin. The first two states of each model are the rate and the angular acceleration
-// about the spin axis. `related` is 1 in the filter for a steady spin, where the world part of the state turns with the
-// spin. `related` is 0 in the filter for motion without a steady spin, where the world part does not turn.
+// This file contains two measurement models of a steady spin: Modulation and Centripetal. The first two states of each
+// model are the rate and the angular acceleration about the spin axis. In the filter for a steady spin, `related` is 1,
+// and the filter rotates the state's world-fixed vectors by the spin angle. In the filter for motion without a steady
+// spin, `related` is 0, and the filter does not rotate the state's world-fixed vectors.
 
 template <int N>
 struct SpinPrediction {
@@ -18,8 +19,8 @@ struct SpinPrediction {
   Eigen::Matrix<double, N, N> covariance, transition_matrix;
 };
 
-/// SpinReading is one sample about a spin axis: the readings of the two axes across the spin axis, in the order of a
-/// right-handed frame.
+/// SpinReading is one sample about a spin axis. The readings of the two axes perpendicular to the spin axis are in the
+/// order of a right-handed frame.
 struct SpinReading {
   double rate_rad_s = 0.0;
   bool saturated = false;
@@ -28,10 +29,10 @@ struct SpinReading {
   double dt_s = 0.0;
 };
 
-/// Modulation models the rate across the spin axis, equations (C45) and (C46) of carried.md. The states are:
+/// Modulation models the rate perpendicular to the spin axis, equations (C45) and (C46) of carried.md. The states are:
 /// - the rate and the angular acceleration about the spin axis,
-/// - the world part of the rate across the spin axis: constant in world axes, two components in body axes,
-/// - the body part of the rate across the spin axis: constant in body axes, two components.
+/// - the world part of the rate perpendicular to the spin axis: constant in world axes, two components in body axes,
+/// - the body part of the rate perpendicular to the spin axis: constant in body axes, two components.
 struct Modulation {
   static constexpr int kStates = 6;
   using Filter = SpinFilter<kStates>;
@@ -43,9 +44,9 @@ struct Modulation {
                 Filter& filter) const;
 };
 
-/// Centripetal models the specific force across the spin axis, equations (C50) and (C51) of carried.md. The states are
-/// the rate, the angular acceleration, and three vectors. Each vector has two components across the spin axis, in body
-/// axes:
+/// Centripetal models the specific force perpendicular to the spin axis, equations (C50) and (C51) of carried.md. The
+/// states are the rate, the angular acceleration, and three vectors. Each vector has two components perpendicular to
+/// the spin axis, in body axes:
 /// - the lever arm,
 /// - the external force that is constant in the body,
 /// - the external force that is constant in the world.

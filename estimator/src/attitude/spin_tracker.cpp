@@ -31,7 +31,7 @@ double probability_of_change(double dt_s) {
   return 1.0 - std::exp(-kChanges_hz * dt_s);
 }
 
-/// RecordedSpin contains what smooth_spin() needs of one sample.
+/// RecordedSpin contains the data of one sample that smooth_spin() needs.
 template <int N>
 struct RecordedSpin {
   SpinPrediction<N> predicted;
@@ -64,8 +64,8 @@ void smooth_spin(std::span<const RecordedSpin<N>> run, std::span<SpinRate> out) 
   }
 }
 
-// Returns the estimate of the more probable model. With further IMUs, the rates already depend on all specific forces,
-// so the model of one IMU's specific force is not used.
+// Returns the estimate of the more probable spin model, `modulation` or `force`. With further IMUs, the rates already
+// depend on all specific forces, so the model of one IMU's specific force is not used.
 SpinRate select_spin(const SpinRate& modulation, const SpinRate& force, bool further_imus) {
   const bool by_force = !further_imus && force.probability > modulation.probability;
   SpinRate out = by_force ? force : modulation;
@@ -91,7 +91,8 @@ bool SpinTracker::select_spin_axis(const ImuSample& sample, State& state) const 
   return state.axis >= 0;
 }
 
-// Continues one model of a spin by one sample. `record` receives what smooth_spin() needs.
+// Predicts and updates the filters of one spin model with one sample. `record` receives the data that smooth_spin()
+// needs.
 template <class Model, class Recorder>
 SpinRate SpinTracker::advance_spin_filter(const Model& model, const ImuSample& sample, std::uint8_t saturated_axes,
                                           double dt_s, bool first, int axis, Hypotheses<Model::kStates>& hypotheses,
@@ -111,8 +112,9 @@ SpinRate SpinTracker::advance_spin_filter(const Model& model, const ImuSample& s
     const double c = recorded.spin_change_probability;
     const double spins = hypotheses.probability * (1.0 - c) + (1.0 - hypotheses.probability) * c;
     hypotheses.probability = std::min(kProbabilityMax, spins * ratio / (spins * ratio + 1.0 - spins));
-    // If the gyro axis of the spin is saturated, the readings do not limit the spin rate from above. Any modulation
-    // frequency then agrees with some spin rate. Saturated samples can therefore contradict a spin, but not confirm it.
+    // If the gyro axis of the spin is saturated, the readings do not limit the spin rate from above. While the gyro
+    // axis is saturated, any modulation frequency therefore agrees with some spin rate. Samples with a saturated gyro
+    // axis can contradict a spin, but not confirm a spin.
     if (!reading.saturated) {
       hypotheses.measured_probability = hypotheses.probability;
     } else if (hypotheses.probability > hypotheses.measured_probability) {

@@ -18,7 +18,7 @@ namespace {
 constexpr double kRollingVelocitySigma_m_s = 0.03;  // when rolling without slip, per node
 
 constexpr double kAccelerationNoise_m_s_sqrts = 0.01;  // velocity random walk
-// Velocity residual above which slip starts; slip ends below half of this value.
+// Velocity residual above which slip starts. Slip ends below half of this velocity residual.
 constexpr double kSlipVelocity_m_s = 0.12;
 // Duration of small velocity residuals after which slip ends.
 constexpr double kSlipQuiet_s = 0.2;
@@ -223,8 +223,8 @@ double TumbleAttitude::body_velocity_variance_m2_s2(double power_m2_s2, const St
 void TumbleAttitude::align(const Eigen::Quaterniond& corrected, State& state) const {
   CoarseAlignment& alignment = state.alignment;
   alignment.integrated_force_W_m_s = corrected * alignment.integrated_force_W_m_s;
-  // The variance of the velocity does not come from the filtered velocity, because a wrong tilt after a data gap causes
-  // errors of the filtered velocity.
+  // The variance of the velocity is not computed from the filtered velocity, because a wrong tilt after a data gap
+  // falsifies the filtered velocity.
   const double velocity = body_velocity_variance_m2_s2(alignment.start_velocity_variance_m2_s2, state);
   const double variance = alignment.variance_rad2(velocity, params_.gravity_m_s2);
   if (variance > squared(params_.expert.gap.kAlignedTilt_rad)) {

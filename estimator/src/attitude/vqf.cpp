@@ -26,17 +26,17 @@ constexpr double kRestTau_s = 0.5;
 constexpr double kBiasForgetting_s = 100.0;
 constexpr double kBiasClip_rad_s = 3.4907e-2;  // largest accepted bias: 2 deg/s
 constexpr double kRestTime_s = 1.5;
-// Maximum difference of gyro and low-passed gyro at rest: 2 deg/s.
+// Maximum difference between angular rate and low-passed angular rate at rest: 2 deg/s.
 constexpr double kRestRate_rad_s = 3.4907e-2;
-// Maximum difference of force and low-passed force at rest.
+// Maximum difference between specific force and low-passed specific force at rest.
 constexpr double kRestForce_m_s2 = 0.5;
 
 constexpr double kNoDirection_m_s2 = 1e-6;
 /// growth of the bias' standard deviation within the forgetting time (0.1 deg/s in the VQF publication)
 constexpr double kForgottenSigma_rad_s = 1.7453292519943295e-3;
 
-/// Returns the measurement variance for which a scalar bias filter with random walk `growth` per step converges to
-/// sigma^2.
+/// Returns the measurement variance for which the variance of a scalar bias filter converges to sigma^2. `growth` is
+/// the increase of the bias variance per step.
 double steady_state_noise(double sigma, double growth) {
   const double variance = sigma * sigma;
   return variance * variance / growth + variance;

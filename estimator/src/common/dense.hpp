@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 
 /// Decompositions of fixed-size Eigen matrices would double the compile time, so the functions accept matrices of all
-/// sizes. The factorisations equal Eigen's bit for bit; the eigenvalues are equal up to rounding. Each decomposition
-/// allocates memory.
+/// sizes. The factorisations are bit-identical to Eigen's factorisations. The eigenvalues equal Eigen's eigenvalues up
+/// to rounding. Each decomposition allocates memory.
 namespace tumble::dense {
 
 using Symmetric = Eigen::Ref<const Eigen::MatrixXd>;  ///< only the lower triangle is read
@@ -32,7 +32,7 @@ class Cholesky {
   bool ok_ = false;
 };
 
-/// Solves A X = B in place for a semidefinite A, by pivoted Cholesky factorisation without roots (LDLT).
+/// Solves A X = B in place for a semidefinite A, by pivoted square-root-free Cholesky factorisation (LDLT).
 void solve_semidefinite(const Symmetric& A, Eigen::Ref<Eigen::MatrixXd> B);
 void solve_semidefinite_vector(const Symmetric& A, Eigen::Ref<Eigen::VectorXd> b);
 

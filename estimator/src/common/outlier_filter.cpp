@@ -22,9 +22,9 @@ constexpr double kLever_m = 10.0;                     // largest force of a robo
 constexpr double kRateJumpMax_rad_s = 50.0;           // largest plausible jump of the rate in a single sample
 constexpr double kVelocityJumpMax_m_s = 20.0;         // largest plausible jump of the velocity in a single sample
 constexpr double kNear_s = 0.1;                       // maximum time between compared neighbours
-// If the step between the time stamps of two samples is longer than this, the second time stamp may be an outlier. The
-// filter then delays the second sample until the next sample arrives. If the next time stamp is not later, the filter
-// rejects the delayed sample.
+// If two successive time stamps differ by more than kStampStepMax_periods sample periods, the second time stamp may be
+// an outlier. The filter delays the second sample of such a pair until the next sample arrives. If the next time stamp
+// is not later than the delayed sample's time stamp, the filter rejects the delayed sample.
 constexpr double kStampStepMax_periods = 1.75;
 
 // A reading may be saturated if it exceeds kAtRange times the stated range, or if it is large and repeated.

@@ -26,7 +26,7 @@ constexpr bool known_squares = known_matrices<Matrices...>&& known<decltype(Matr
 template <int rows, int columns = 1>
 using Real = Eigen::Matrix<double, rows, columns>;
 
-// These vectors and matrices are only declared, because the expressions below are never evaluated.
+// The vectors and matrices in this file are only declared, because the expressions with them are never evaluated.
 extern const Eigen::Vector3d a, b;
 extern Eigen::Vector3d c;
 extern const Eigen::Matrix3d R;

@@ -15,7 +15,8 @@ constexpr double kOutlier = 4.0;  // largest error of an accepted stamp, in stan
 constexpr double kStray = 0.4;    // error of a stamp, in periods, above which the sample number is uncertain
 constexpr std::size_t kConsecutiveOutliersMax = 8;
 constexpr double kPeriodJitterMax = 0.25;  // maximum jitter in periods; random stamps have 0.29
-// With a larger correlation of successive residuals, the line fitted to the time stamps does not follow the clock.
+// If successive residuals have a larger correlation than kErrorCorrelationMax, the line fitted to the time stamps does
+// not follow the clock.
 constexpr double kErrorCorrelationMax = 0.5;
 constexpr double kStepMin_periods = 0.25;      // minimum time between two samples, in periods
 constexpr double kSampleNumberSigmaMax = 0.1;  // maximum uncertainty of the sample number after a gap, in periods

@@ -41,7 +41,7 @@ Registration::Params coarse_params(const LidarInertialOdometry::Params& params) 
   return out;
 }
 
-/// Selects every n-th point, at most `count` points.
+/// Selects every n-th point, so that at most `count` points remain.
 void select_evenly(std::span<const SweepPoint> points, std::size_t count, std::vector<SweepPoint>& out) {
   out.clear();
   const std::size_t every = std::max<std::size_t>(1, (points.size() + count - 1) / count);

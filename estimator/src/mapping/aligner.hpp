@@ -22,7 +22,8 @@ class SweepAligner {
  public:
   explicit SweepAligner(const LidarInertialOdometry::Params& params);
 
-  /// Registers a sweep with all points and few iterations, and continues with fewer points if it does not converge.
+  /// Registers a sweep with all points and few iterations. If the registration does not converge, the function
+  /// continues with fewer points.
   void align_with_all_points(const Registration::Prior& prior, const RegistrationScene& scene,
                              SweepTrajectory& trajectory, Registration::Result& found);
   /// Registers a sweep with a subset of its points until convergence, then with all points.

@@ -45,8 +45,8 @@ Motion world_frame_jacobian(const Eigen::Matrix3d& turn, const Eigen::Vector3d& 
   return T;
 }
 
-/// Applies a Kalman update with the measured velocity 0. C is the covariance that weights the prediction, and E the
-/// covariance of its actual errors.
+/// Applies a Kalman update with the measured velocity 0. C is the covariance that determines the Kalman gain, and E is
+/// the covariance of the actual errors of `state`.
 void bound_speed(double sigma_m_s, MotionState& state, Motion& C, Motion& E) {
   const Eigen::Matrix3d R = sigma_m_s * sigma_m_s * Eigen::Matrix3d::Identity();
   const Eigen::Matrix3d S = u::sub_block(C, u::velocity) + R;

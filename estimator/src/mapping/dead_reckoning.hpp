@@ -11,7 +11,7 @@ namespace tumble::mapping {
 
 /// After an unconfirmed relocalisation, DeadReckoning continues the pose from before the relocalisation with the IMU
 /// alone. If a later sweep contradicts the relocalisation, odometry and DeadReckoning swap their poses. The rejected
-/// pose remains a starting pose of the search.
+/// pose remains a starting pose of the search after a tracking failure.
 struct DeadReckoning {
   SweepBoundary sweep_boundary;
   LagWindow window;

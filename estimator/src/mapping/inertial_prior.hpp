@@ -11,7 +11,8 @@ namespace tumble::mapping {
 
 /// Returns the covariance that inertial integration over one sweep adds to the errors of position, attitude and
 /// velocity. Rate errors come mainly from saturation, so rate errors are assumed constant over the sweep. Clipped axes
-/// in the bit mask `deficit_axes` add no noise, because the registration estimates their missing rate.
+/// in the bit mask `deficit_axes` add no noise, because the registration estimates the saturation deficit of these
+/// axes.
 Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& params,
                                            const SweepTrajectory& trajectory, std::span<const MotionSample> samples,
                                            unsigned deficit_axes);

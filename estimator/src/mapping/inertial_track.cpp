@@ -132,8 +132,8 @@ bool InertialTrack::starts_at_rest(double lasted_s) const {
   const auto rests = [&](const MotionSample& sample) {
     return sample.at_rest || seconds(sample.from_ns - samples_.front().from_ns) >= lasted_s;
   };
-  // A nonzero gyro bias indicates that the motion started with a long enough rest. The first samples of this rest may
-  // already be deleted from samples_.
+  // A nonzero gyro bias indicates that the run started with a sufficiently long rest. The first samples of the initial
+  // rest may already be deleted from samples_.
   return !initial_rest_.gyro_bias_rad_s.isZero(0.0) || std::all_of(samples_.begin(), samples_.end(), rests);
 }
 

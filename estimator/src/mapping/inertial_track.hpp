@@ -42,7 +42,7 @@ class InertialTrack {
   void prune_until(TimeNs end_ns);
 
  private:
-  /// The initial rest ends with the first motion, but its gyro bias remains in use.
+  /// The initial rest ends with the first motion, but the gyro bias of the initial rest remains in use.
   struct InitialRest {
     bool still_stationary = true;
     std::optional<TimeNs> first_ns;               ///< first sample of the recording

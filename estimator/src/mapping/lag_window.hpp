@@ -33,7 +33,7 @@ class LagWindow {
   LagWindow() = default;
   explicit LagWindow(int sweeps) : length_(static_cast<std::size_t>(sweeps)) {}
 
-  /// A full lag window first drops its oldest sweep.
+  /// If the lag window is full, append_sweep() drops the oldest sweep before appending a new sweep.
   WindowSweep& append_sweep();
   /// The oldest sweep of a full lag window has its final estimate.
   bool is_full() const { return sweeps_.size() == length_; }
@@ -41,7 +41,8 @@ class LagWindow {
   void smooth();
   /// Moves the map points of all sweeps except the newest to their smoothed positions.
   void move_inserted_sweeps(LocalMap& map) const;
-  /// The point indices of the map have changed, so smoothing can no longer move the inserted points.
+  /// Call clear_inserted() after a change of the map's point indices. Smoothing no longer moves the points that were
+  /// inserted before the call.
   void clear_inserted();
 
   /// Calls `change` for each sweep, oldest first.

@@ -163,8 +163,8 @@ LidarScale fit(const Changes& changes) {
     }
     out.scale = together / squared;
     if (i + 1 < kIterations) continue;
-    // The factor n / (n - 1) for n disjoint velocity changes corrects the variance, because the scale is estimated from
-    // the same changes.
+    // The variance is multiplied by n / (n - 1) for n disjoint velocity changes, because the scale is estimated from
+    // the same velocity changes.
     const double residual = score_variance(changes, residuals) * disjoint / (disjoint - 1.0);
     out.sigma = std::sqrt(residual + kBias_m_s2 * kBias_m_s2 * by_bias.squaredNorm()) / squared;
   }

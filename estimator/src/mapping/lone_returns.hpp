@@ -21,7 +21,7 @@ struct RangeNoise {
 /// - The return and the adjacent beam on the ring are on a common surface: mapping.md (R14).
 /// - The return is on the line between a neighbour before it and a neighbour after it on the ring: mapping.md (R15).
 ///
-/// If few returns of a sweep are unconfirmed, the air is clear. LoneReturns then keeps all returns of the sweep.
+/// If few returns of a sweep are unconfirmed, LoneReturns keeps all returns of the sweep, because the air is clear.
 class LoneReturns {
  public:
   /// Removes the lone returns from `points`, and returns their number. Cost: O(points). The order of the remaining

@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kSameLineCosine = 0.9988;  // cosine of 0.05 rad, which is less than the angle between two rings
 constexpr int kRingBits = 16;
-// minimum number of sweeps with beams through the position of a map point before the point counts as removed; a single
-// sweep may be wrong near the edge of a surface
+// A map point counts as removed if at least this number of sweeps had beams through its position. A single sweep may be
+// wrong near the edge of a surface.
 constexpr std::uint8_t kSeenThrough = 2;
 
 }  // namespace

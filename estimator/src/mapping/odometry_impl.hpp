@@ -77,7 +77,7 @@ struct LidarInertialOdometry::Impl {
                              mapping::LagWindow* into) const;
   void revert_to_inertial_pose();
   /// Returns the state of a relocalisation that later sweeps contradicted, or null. The search after a tracking failure
-  /// also starts from this state.
+  /// also starts from the returned state.
   const MotionState* rejected_relocalisation() const;
   void add_map_drift(const mapping::UpdatedSweep& sweep, const SweepReport& report);
   void prune_until(TimeNs end_ns);

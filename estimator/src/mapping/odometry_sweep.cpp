@@ -320,8 +320,8 @@ void LidarInertialOdometry::Impl::propagate_alternative_pose(const MotionWindow&
   if (!continue_by_inertia(motion, rests, alternative->sweep_boundary, &alternative->window).ok()) alternative.reset();
 }
 
-/// Propagates the state over a sweep without using lidar points. If `into` is not null, the sweep also enters the lag
-/// window `into`.
+/// Propagates the state over a sweep without using lidar points. If `into` is not null, the sweep is also appended to
+/// the lag window `into`.
 Status LidarInertialOdometry::Impl::continue_by_inertia(const MotionWindow& motion, bool rests,
                                                         mapping::SweepBoundary& at, mapping::LagWindow* into) const {
   const Registration::Estimate& before = at.state_estimate.mean;

@@ -16,8 +16,8 @@ class PointMotion {
   PointMotion(const SweepTrajectory& trajectory, const LidarImuCalibration& calibration, const SweepPoint& point,
               std::size_t& hint);
 
-  /// Computes the derivative of the lidar point's position along `direction_W` by the 28 unknowns of the registration:
-  /// mapping.md (R17).
+  /// Computes the derivative of the lidar point's position along `direction_W` with respect to the 28 unknowns of the
+  /// registration: mapping.md (R17).
   void derivative_along_normal(const Eigen::Vector3d& direction_W, RegistrationUnknowns::Vector& derivative) const;
 
   /// Returns the lever arm vector u of SweepTrajectory::gravity_free_position_m, in W.

@@ -18,14 +18,14 @@ namespace {
 
 // A sweep with too few matches extends the map if the standard deviation of its attitude is below this limit.
 constexpr double kExtendSigmaMax_rad = 0.1;
-// Minimum prior standard deviation of the missing gyro rate (saturation deficit) of a clipped axis.
+// Minimum prior standard deviation of the saturation deficit of a clipped gyro axis.
 constexpr double kDeficitSigmaMin_rad_s = 1.0;
-// Correlation time of the missing gyro rate (saturation deficit).
+// Correlation time of the gyro's saturation deficit.
 constexpr double kDeficitTime_s = 0.3;
-// Maximum growth factor of the missing gyro rate (saturation deficit) from one sweep to the next.
+// Maximum growth factor of the gyro's saturation deficit from one sweep to the next.
 constexpr double kDeficitCarryMax = 3.0;
-// The missing gyro rate is estimated at start, middle and end of each sweep. Each of the three values has an
-// independent error, whose standard deviation is this fraction of the standard deviation of the missing rate.
+// The saturation deficit of the gyro is estimated at start, middle and end of each sweep. The errors at start, middle
+// and end are independent, with kKnotSigmaRatio times the standard deviation of the saturation deficit.
 constexpr double kKnotSigmaRatio = 0.05;
 // Standard deviation of the velocity during the initial rest.
 constexpr double kStartSigma_m_s = 0.01;
@@ -35,7 +35,8 @@ constexpr int kRestingSweepsMin = 3;
 namespace u = unknowns;
 using Params = LidarInertialOdometry::Params;
 
-/// The missing gyro rate at the end of a sweep continues in the next sweep, and decays exponentially: mapping.md (R48).
+/// The saturation deficit of the gyro at the end of a sweep continues in the next sweep, and decays exponentially:
+/// mapping.md (R48).
 void propagate_saturation_deficit(const Params& params, const SweepBoundary& boundary,
                                   const SweepTrajectory& trajectory, Prediction& next) {
   constexpr int kLast = SweepTrajectory::kKnots - 1;
@@ -67,8 +68,8 @@ double saturation_deficit_sigma(const MotionWindow& window, const SweepTrajector
   return sigma;
 }
 
-/// The missing gyro rate is a first-order Gauss-Markov process: mapping.md (R46), (R47). If the saturation continues
-/// from the last sweep, mapping.md (R49) gives the covariance.
+/// The saturation deficit of the gyro is modelled as a first-order Gauss-Markov process: mapping.md (R46), (R47). If
+/// the saturation continues from the last sweep, mapping.md (R49) gives the covariance.
 void add_saturation_deficit_noise(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory,
                                   Prediction& next) {
   if (!params.expert.saturated_imu.estimate_deficit) return;

@@ -12,8 +12,9 @@ struct SweepBoundary {
   StateEstimate state_estimate;
   /// derivative of the unknowns at the end of the last sweep with respect to the unknowns at its start
   Registration::Matrix end_by_start_jacobian = Registration::Matrix::Identity();
-  /// Magnitude of the factor s_j of each gyro axis at the end of the last sweep, mapping.md (R8): standard deviation of
-  /// the rate, divided by the largest standard deviation of the axis while clipped. 0 for an axis that is not clipped.
+  /// Magnitude of the factor s_j of each gyro axis at the end of the last sweep: mapping.md (R8). The magnitude is the
+  /// standard deviation of the rate, divided by the largest standard deviation of the axis while clipped. For an
+  /// unclipped axis, the value is 0.
   Eigen::Vector3d clipped_axis_sign = Eigen::Vector3d::Zero();
   Eigen::Matrix3d clipped_velocity_variance_m2_s2 =
       Eigen::Matrix3d::Zero();              ///< variance of the velocity due to the accelerometer's saturation, in W
@@ -61,8 +62,8 @@ StateEstimate posterior(const Prediction& prediction, const Registration::Result
 double innovation(const Prediction& prediction, const Registration::Estimate& aligned);
 
 /// See mapping.md (R67). A registered pose is expected if its difference from the prediction is within the predicted
-/// covariance and the matching distance. If the registered position differs by more than the matching distance, returns
-/// may match wrong surfaces by chance.
+/// covariance and the matching distance. If the registered position differs from the prediction by more than the
+/// matching distance, returns may match wrong surfaces by chance.
 bool agrees_with_prediction(const LidarInertialOdometry::Params& params, const Prediction& prediction,
                             const Registration::Estimate& aligned, double innovation);
 

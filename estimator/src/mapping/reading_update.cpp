@@ -89,7 +89,8 @@ class SweepMotion {
   const MotionWindow& window_;
 };
 
-/// `by_moment` is the derivative of the predicted odometer reading by position, attitude and velocity at its time.
+/// `by_moment` is the derivative of the predicted odometer reading with respect to position, attitude and velocity at
+/// the time `moment`.
 template <int Size>
 void add(const MotionJacobian<Size>& by_moment, const MotionInstant& moment, PredictedReading& out) {
   const Eigen::Matrix<double, Size, kUnknowns> jacobian_start = by_moment * moment.jacobian_start;

@@ -100,7 +100,7 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, NearestNei
   if (match.plane_searched) {
     const float moved2 = (positions_[point] - match.search_position_W_m).squaredNorm();
     if (moved2 <= rematch2) return;
-    // The search radius includes all neighbours of the previous search, so the nearest neighbours are found.
+    // The search radius includes all neighbours of the previous search, so the search finds the nearest neighbours.
     radius_m = std::min(radius_m, kRounding * (match.farthest_neighbour_m + std::sqrt(moved2)));
   }
   match.plane_searched = true;
@@ -167,8 +167,8 @@ double Registration::kernel_width_m() {
 void Registration::accumulate_block(std::span<const SweepPoint> points, std::size_t block,
                                     const SweepTrajectory& trajectory, const LidarImuCalibration& calibration,
                                     const Unknowns& unknowns, double kernel_m, Products& products, Sums& sum) {
-  // Each matched point has one column: its distance and the derivatives, multiplied by the square root of the match's
-  // weight.
+  // Each matched point has one column, which contains the point's distance from the plane and the derivatives of the
+  // distance. The column is multiplied by the square root of the match's weight.
   auto& rows = products.columns;
   Eigen::Matrix<double, static_cast<int>(kPointsPerPartialSum), 1> weighted;
   const bool rigid = !unknowns.deficit_free && !unknowns.calibration_free;

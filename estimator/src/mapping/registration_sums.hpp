@@ -13,12 +13,12 @@ struct Registration::Unknowns {
   int count = 0;
   bool deficit_free = false, calibration_free = false;
 
-  /// The motion is always free; any other unknown is free if its prior variance is above 0.
+  /// The unknowns of the motion are always free. Any other unknown is free if its prior variance is above 0.
   explicit Unknowns(const Matrix& covariance);
 
-  /// In the normal equations H, g for all unknowns, the rows of fixed unknowns are 0.
+  /// Expands the normal equations to all unknowns: in H and g, the rows of fixed unknowns are 0.
   void expand_to_all_unknowns(const Sums& sum, Matrix& H, Vector& g) const;
-  /// The normal equations are changed such that the solution is 0 for the fixed unknowns.
+  /// Changes the normal equations such that the solution is 0 for the fixed unknowns.
   void fix_constrained_unknowns(Matrix& H, Vector& g) const;
   void clear_fixed_blocks(Matrix& M) const;
   void clear_fixed(Matrix& covariance) const;

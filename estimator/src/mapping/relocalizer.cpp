@@ -12,20 +12,20 @@ namespace tumble::mapping {
 
 namespace {
 
-// A relocalisation is confirmed if at least this fraction of the sweep's residuals is within three standard deviations,
-// and contradicted if not. Normally distributed residuals give 0.997.
+// A relocalisation is confirmed if at least this fraction of the sweep's residuals is within three standard deviations.
+// Otherwise, the sweep contradicts the relocalisation. Normally distributed residuals give 0.997.
 constexpr double kConfirmInlierRatio = 0.9;
-// Maximum number of repetitions of a failed registration, per sweep. Each repetition starts with a larger missing gyro
-// rate (saturation deficit).
+// Maximum number of repetitions of a failed registration, per sweep. Each repetition starts with a larger saturation
+// deficit of the gyro.
 constexpr int kDeficitTriesMax = 5;
-// Smallest increase of the missing gyro rate (saturation deficit) in a repeated registration.
+// Smallest increase of the gyro's saturation deficit in a repeated registration.
 constexpr double kDeficitTry_rad_s = 3.0;
 // Number of starting poses per sweep after a tracking failure, including the predicted pose.
 constexpr int kStartsPerSweep = 3;
 
 using Params = LidarInertialOdometry::Params;
 
-// Repeated registrations start from these increases of the missing gyro rate, as multiples of kDeficitTry_rad_s.
+// Repeated registrations start with the gyro's saturation deficit increased by these multiples of kDeficitTry_rad_s.
 constexpr double kDeficitTries[] = {1.0, 2.0, 3.0, 5.0};
 constexpr double kDeficitSigmas = 5.0;  // largest tried increase, in standard deviations
 
@@ -33,7 +33,7 @@ constexpr int kStartsPerRound = 12;  // number of initial poses per round: six a
 constexpr double kStartSigmas = 1.5;
 constexpr double kShiftMin_m = 0.3, kRotationMin_rad = 0.1;  // closer starting poses converge to one pose
 // Maximum distance and rotation between starting pose and predicted pose in the first round: mapping.md (R66). In round
-// n, both limits are n times as large.
+// n, the maximum distance and the maximum rotation are n times as large.
 constexpr double kShift_m = 1.0, kRotation_rad = 0.3;
 constexpr int kRounds = 3;
 
@@ -46,7 +46,7 @@ bool is_sufficient_fit(const Registration::Result& found) {
   return double(found.inliers) >= kConfirmInlierRatio * double(found.matches);
 }
 
-/// If the registration fails and a gyro axis is clipped, the registration is repeated with larger missing gyro rates.
+/// If the registration fails and a gyro axis is clipped, the registration is repeated with larger saturation deficits.
 /// Saturation within one sweep may rotate the initial pose by a radian.
 void track_sweep(const Params& params, const Registration::Prior& prior, const RegistrationScene& scene,
                  SweepAligner& aligner, SweepTrajectory& trajectory, Registration::Result& found) {

@@ -41,8 +41,8 @@ struct SweepRegistration {
 void judge_registration(const LidarInertialOdometry::Params& params, const TrackingState& before, std::size_t points,
                         bool prior_certain, const RegistrationAttempt& attempt, SweepRegistration& placed);
 
-/// Initial pose number 0 is the predicted pose; all others are shifted or rotated along one axis, closest first:
-/// mapping.md (R66).
+/// Initial pose number 0 is the predicted pose. All other initial poses are shifted or rotated along one axis, closest
+/// first: mapping.md (R66).
 void displace_starting_pose(int index, Registration::Prior& prior);
 
 }  // namespace tumble::mapping

@@ -10,7 +10,8 @@ namespace tumble::mapping {
 using Matrix = Registration::Matrix;
 
 /// See mapping.md (R54), (R55). The first lidar pose defines the map frame. The mounting gives the initial IMU pose and
-/// the direction of gravity relative to the lidar. A mounting error therefore causes errors of both in the map frame.
+/// the direction of gravity relative to the lidar. A mounting error therefore causes errors of the initial IMU pose and
+/// of gravity's direction in the map frame.
 StateEstimate estimate_at_start(const LidarInertialOdometry::Params& params, const MotionState& levelled) {
   namespace u = unknowns;
   StateEstimate state_estimate;
@@ -73,9 +74,9 @@ Eigen::Matrix3d velocity_covariance_I(const MotionState& state, const MotionErro
   return J * errors * J.transpose();
 }
 
-/// The number of rows of each matrix block is a multiple of the SIMD packet size. Each sum therefore adds its terms in
-/// the same order as in propagate_covariance(). The rows of the transition matrix F for mounting and other constants
-/// are rows of the identity: mapping.md (R11).
+/// The number of rows of each matrix block is a multiple of the SIMD packet size. Matrix products of such blocks add
+/// their terms in the same order as in propagate_covariance(). The rows of the transition matrix F for mounting and
+/// other constants are rows of the identity: mapping.md (R11).
 Matrix propagate_pose_and_mounting(const Matrix& F, const Matrix& errors) {
   constexpr int kSize = 8, kMounting = 16;
   static_assert(kMounting >= Registration::kMotionSize && kMounting <= Registration::kFirstCalibrationUnknown &&

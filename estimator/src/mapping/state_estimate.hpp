@@ -28,8 +28,8 @@ Registration::Matrix unknowns_at(const SweepTrajectory& trajectory, double t_s);
 /// keep matrices on the heap.
 void propagate_covariance(const Registration::Matrix& F, const Registration::Matrix& P, Registration::Matrix& out);
 
-/// Returns the blocks of pose and mounting of the covariance `errors`, propagated by the transition matrix F. These
-/// blocks equal propagate_covariance() bit for bit, at a third of the cost.
+/// Returns the blocks of pose and mounting of the covariance `errors`, propagated by the transition matrix F. The
+/// returned blocks are bit-identical to the blocks from propagate_covariance(), at a third of the computing time.
 Registration::Matrix propagate_pose_and_mounting(const Registration::Matrix& F, const Registration::Matrix& errors);
 
 /// covariance of the errors of position, attitude and velocity in frame W

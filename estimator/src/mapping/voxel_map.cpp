@@ -43,7 +43,7 @@ void squared_axis_distances(float fraction, float voxel_m, int reach, float* dis
 using Floats [[gnu::vector_size(16)]] = float;
 using Ints [[gnu::vector_size(16)]] = std::int32_t;
 
-/// Returns a bit mask of the values up to `limit`, without branches.
+/// Returns a bit mask with one bit per value, without branches. A bit is set if the value is at most `limit`.
 inline std::uint32_t values_within_limit(float limit, const Floats (&values)[4]) {
   constexpr Ints kFirst = {1, 2, 4, 8};
   const Floats limits = {limit, limit, limit, limit};
@@ -78,8 +78,8 @@ inline Eigen::Vector3i VoxelMap::VoxelGroup::of(const Eigen::Vector3i& cell) {
   return {cell.x() >> kBits, cell.y() >> kBits, cell.z() >> kBits};
 }
 
-/// Iterates over rows of cells near a cell, and returns the occupied cells of each row. The hash table finds each group
-/// (8 x 8 x 8 cells) at most once.
+/// Iterates over rows of cells near a cell, and returns the occupied cells of each row. Each group of 8 x 8 x 8 cells
+/// is looked up in the hash table at most once.
 class VoxelMap::NeighbourVoxelRows {
  public:
   NeighbourVoxelRows(const VoxelMap& map, const Eigen::Vector3i& cell, int reach)

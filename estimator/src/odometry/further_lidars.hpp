@@ -13,9 +13,9 @@
 
 namespace tumble {
 
-/// Adds the points of further lidars to the sweeps of the first lidar. The class transforms each point to axes of the
-/// first lidar, and adds it to the sweep that contains the point's time. A copy of a FurtherLidars contains the
-/// complete state.
+/// Adds the points of further lidars to the sweeps of the first lidar. FurtherLidars transforms each point to axes of
+/// the first lidar, and adds the point to the sweep that contains the point's time. A copy of a FurtherLidars object
+/// contains the complete state.
 class FurtherLidars {
  public:
   FurtherLidars() = default;
@@ -30,7 +30,8 @@ class FurtherLidars {
   /// Adds the stored points whose times are within a sweep to the sweep, and drops earlier points. Cost: O(stored
   /// points).
   void merge_into(WaitingSweep& sweep);
-  /// Returns the number of unused points: the points arrived late, or the first lidar had no sweep at their time.
+  /// Returns the number of unused points. A point is unused if it arrived late, or if the first lidar had no sweep at
+  /// the point's time.
   std::size_t unused_points() const { return unused_points_; }
 
  private:

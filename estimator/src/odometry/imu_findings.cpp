@@ -20,9 +20,9 @@ using Kind = HealthFinding::Kind;
 constexpr const char* kImu = "imu";
 constexpr double kSlopeTolerance = 0.02, kSlopeAgreementMin = 0.99;
 // A body counts as hand-held if at least this fraction of its samples is classified as hand-held. In recordings of
-// hand-held motion, this fraction was at least 0.91. In recordings of throws with correctly labelled sensor axes, this
-// fraction was at most 0.25. In recordings of throws with wrongly labelled sensor axes, this fraction was mostly below
-// 0.6.
+// hand-held motion, at least 91 % of the samples were classified as hand-held. In recordings of throws with correctly
+// labelled sensor axes, at most 25 % of the samples were classified as hand-held. In recordings of throws with wrongly
+// labelled sensor axes, mostly less than 60 % of the samples were classified as hand-held.
 constexpr double kRepeatedFraction = 0.8;
 
 double rate_max_so_far_rad_s(std::span<const ImuSample> samples) {

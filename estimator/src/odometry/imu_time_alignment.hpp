@@ -16,9 +16,10 @@ namespace tumble {
 ///
 /// The common times are the time stamps of the reference IMU, which is initially the first IMU. If the reference IMU
 /// has no reading for kSilentMax_s while another IMU has, the next IMU with readings becomes the reference. The
-/// readings of the other IMUs are interpolated linearly (ImuInterpolation). An IMU without a reading within
-/// kSilentMax_s before and after a common time is absent at that time. The alignment is causal, and its output is at
-/// most kSilentMax_s late. A common time is complete when each IMU has a later reading or is silent for kSilentMax_s.
+/// readings of all IMUs except the reference IMU are interpolated linearly (ImuInterpolation). An IMU without a reading
+/// within kSilentMax_s before and after a common time is absent at that time. The alignment is causal, and its output
+/// is at most kSilentMax_s late. A common time is complete when each IMU has a later reading or is silent for
+/// kSilentMax_s.
 ///
 /// Cost: O(1) per reading. The stored readings cover kSilentMax_s.
 class ImuTimeAlignment {

@@ -14,7 +14,7 @@ namespace {
 constexpr int kExtraPassesMax = 3;
 constexpr std::size_t kSweepsPerRejection = 5;
 
-/// Cuts the last sweep at the end of the IMU data, if at least half of the sweep remains. Without this cut, a small
+/// Cuts the last sweep at the end of the IMU data, if at least half of the sweep remains. Without cutting, a small
 /// clock offset between lidar and IMU would make the last sweep unusable.
 bool shorten_sweep(TimeNs end_ns, WaitingSweep& sweep) {
   if (end_ns >= sweep.end_ns) return true;

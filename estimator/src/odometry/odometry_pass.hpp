@@ -33,7 +33,7 @@ class OdometryPass {
   /// Throws InvalidParams if a parameter is out of bounds.
   OdometryPass(const MotionRegimeStream::Params& rate, const LidarInertialOdometry::Params& mapping);
 
-  /// Passes the newest smoothed rate to the mapper. This rate is lag_s older than `sample`.
+  /// Passes the newest smoothed rate to the mapper. The smoothed rate is lag_s older than `sample`.
   Status add_imu(const ImuSample& sample);
   /// See LidarInertialOdometry::set_start_pose().
   void set_start_pose(const Eigen::Isometry3d& T_WI) { mapper_.set_start_pose(T_WI); }
@@ -58,8 +58,8 @@ class OdometryPass {
   void flush_until(TimeNs time_ns);
   /// Restarts the rate estimation with other parameters; the mapper continues.
   void start_rate_estimation(const MotionRegimeStream::Params& rate);
-  /// Replaces the mapper by the mapper of `other`. The rate estimation of this pass continues. Do not use `other`
-  /// afterwards.
+  /// Replaces the mapper by the mapper of `other`. The rate estimation of this OdometryPass continues unchanged. Do not
+  /// use `other` afterwards.
   void adopt_map(OdometryPass&& other);
 
   const MotionRegimeStream& rates() const { return rates_; }

@@ -125,8 +125,8 @@ Status RollingOdometry::Impl::add_time_aligned_readings(bool ended) {
   return first;
 }
 
-/// The outlier filters delay suspect samples, until the next samples show which readings are outliers. The function
-/// then processes the delayed samples of all IMUs together.
+/// The outlier filters delay suspect samples, until the next samples show which readings are outliers. When the outlier
+/// filters of all IMUs have decided, the function processes the delayed samples of all IMUs together.
 Status RollingOdometry::Impl::add_delayed_samples(std::span<const ImuSample> next) {
   bool open = false;
   for (std::size_t k = 0; k < next.size(); ++k) open = is_delayed_after(next, k) || open;
@@ -140,7 +140,7 @@ Status RollingOdometry::Impl::add_delayed_samples(std::span<const ImuSample> nex
   return {};
 }
 
-/// Returns whether readings of a unit remain delayed. Marks the rejected readings of the unit as absent.
+/// Returns whether readings of the IMU `unit` remain delayed. Marks the rejected readings of the IMU `unit` as absent.
 bool RollingOdometry::Impl::is_delayed_after(std::span<const ImuSample> next, std::size_t unit) {
   OutlierFilter::State& state = outlier_filter_state_[unit];
   if (state.delayed_count == 0) return false;

@@ -30,8 +30,8 @@ struct RollingRestart {
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
-/// Impl contains the state of RollingOdometry. The public header documents each function of Impl that has the name of a
-/// public function.
+/// Impl contains the state of RollingOdometry. Functions of Impl with the name of a public function are documented in
+/// the public header.
 struct RollingOdometry::Impl {
   using Frozen = std::array<FrozenAxes::State, ImuMerge::kImus>;
   using Outliers = std::array<OutlierFilter::State, ImuMerge::kImus>;

@@ -19,8 +19,9 @@ namespace tumble {
 /// The first pass maps the start of a tumble while lever arm, mounting and time offset are still uncertain.
 /// SecondMappingPass buffers samples and sweeps from the end of the initial rest. After `after_s` of motion, the buffer
 /// is processed with the current calibration, and with rates smoothed with a lag of `lag_s`. The second pass processes
-/// `sweeps` buffered sweeps per new sweep. When the second pass ends, its map and pose replace those of the first pass.
-/// The result is discarded if tracking failed in the second pass, or if the second pass rejected clearly more sweeps.
+/// `sweeps` buffered sweeps per new sweep. When the second pass ends, its map and pose replace the map and pose of the
+/// first pass. The result is discarded if tracking failed in the second pass. The result is also discarded if the
+/// second pass rejected clearly more sweeps than the first pass.
 ///
 /// If tracking of the first pass has failed for `lost_s`, an early second pass processes the whole buffer immediately.
 /// The early second pass takes place at most once. The regular second pass after `after_s` of motion follows in

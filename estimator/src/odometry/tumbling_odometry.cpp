@@ -211,8 +211,8 @@ void TumblingOdometry::Impl::register_sweep(TimeNs start_ns, TimeNs end_ns, std:
 
 /// Returns whether a sweep that ends at `end_ns` must be registered now, because its latency would exceed lag_s when
 /// the next sample arrives. The covering sample is the first sample at or after the end of the sweep. After a data gap,
-/// the covering sample may be much later than the end of the sweep. The sweep then waits until the covering sample is
-/// older than lag_s - 1.5 sample periods.
+/// the covering sample may be much later than the end of the sweep. After a data gap, a sweep therefore waits until the
+/// covering sample is older than lag_s - 1.5 sample periods.
 bool TumblingOdometry::Impl::is_due(TimeNs end_ns) const {
   const std::optional<TimeNs> covering_ns = odometry_pass_.covering_ns(end_ns);
   if (!covering_ns) return false;

@@ -25,8 +25,8 @@
 
 namespace tumble {
 
-/// Impl contains the state of TumblingOdometry. The public header documents each function of Impl that has the name of
-/// a public function.
+/// Impl contains the state of TumblingOdometry. Functions of Impl with the name of a public function are documented in
+/// the public header.
 struct TumblingOdometry::Impl {
   explicit Impl(const Params& params);
 

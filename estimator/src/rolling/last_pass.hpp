@@ -15,8 +15,9 @@ namespace tumble::rolling {
 ///
 /// The backward pass needs more than 10 KiB per node, so FinalSmoothingPass divides the nodes into segments. For each
 /// segment, FinalSmoothingPass stores only the state of the filter at the start, and the adjoint variables of the
-/// backward pass at the end. All other data are recomputed bit for bit. A window of one segment needs one run of the
-/// filter, a longer window needs three. A FinalSmoothingPass is too large for the stack (four filters of 13 KiB).
+/// backward pass at the end. During the backward pass, all other data of a segment are recomputed with bit-identical
+/// results. The filter runs once for a window of one segment, and three times for a longer window. A FinalSmoothingPass
+/// is too large for the stack (four filters of 13 KiB).
 class FinalSmoothingPass {
  public:
   static constexpr std::size_t kNodesPerSegment =
@@ -34,7 +35,7 @@ class FinalSmoothingPass {
   };
 
   /// All arguments must outlive the pass. A known `distance` from the start acts as a measurement after the last
-  /// sample. `segment` is the number of nodes whose records are stored at a time.
+  /// sample. `segment` is the number of nodes whose records are stored at the same time.
   FinalSmoothingPass(const RollingParams& params, std::span<const ImuSample> samples,
                      std::span<const ModePathNode> path, std::optional<Distance> distance,
                      std::size_t segment = kNodesPerSegment);

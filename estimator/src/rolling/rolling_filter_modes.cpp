@@ -31,14 +31,14 @@ constexpr double kRestLogLikelihoodMin =
 constexpr double kModeAgeMax_s = 1.0;  // maximum age of a mode; older modes count as equally old
 // During slip, the change of the contact velocity per node is a mixture of three Gaussians. The first standard
 // deviation, kPlateau_m_s, is smaller than the noise of the contact velocity in the mode grip. A slip at constant
-// velocity therefore has a high likelihood in the mode slip, and does not count as grip.
+// velocity therefore has a higher likelihood in the mode slip than in the mode grip.
 constexpr double kPlateau_m_s = 0.004, kSteady_m_s = 0.01, kJump_m_s = 0.08, kPlateauFraction = 0.4,
                  kSteadyFraction = 0.35;
 constexpr double kRollOverSigma_m_s = 0.03, kHitSigma_m_s = 0.3, kRollOverFraction = 0.7;
 constexpr std::int64_t kAgesApart = 4;
-// A slip with constant spin looks like grip until its end, when a hundred hypotheses have higher weights than the
-// correct one. This number of places is reserved for hypotheses that disagree with the last mode change of the best
-// hypothesis: their current mode started at an earlier node.
+// A slip with constant spin looks like grip until the slip ends. At the end of such a slip, about a hundred wrong
+// hypotheses have higher weights than the correct hypothesis. kMinDissentingHypotheses places are therefore reserved
+// for hypotheses whose current mode started before the current mode of the best hypothesis.
 constexpr std::size_t kMinDissentingHypotheses = 6;
 constexpr double kRoughCost = 0.2;
 // The foot of a ramp is a bump, so a slope is more probable after a bump.
@@ -93,7 +93,8 @@ double log_likelihood_stationary(const rolling::Contact& c, const RollingFilter:
   double log_det = 0.0, cost = 0.0;
   if (mode == RollingMode::uneven) {
     // The mode uneven has a larger variance than grip, which would reduce the likelihood of every node on a rough
-    // floor. The normalisation therefore uses the variance of grip. Only the constant cost kRoughCost per node remains.
+    // floor. The normalisation of the likelihood therefore uses the variance of grip. Instead, each node in the mode
+    // uneven has the constant cost kRoughCost.
     log_det = log_det_with(rolling::contact_variance(params, c, RollingMode::grip), factor);
     cost = kRoughCost;
   }
@@ -219,7 +220,7 @@ void rearrange_hypotheses(const Origins& from, std::size_t count, std::span<Roll
     waits[k] = from[k] != k;
     readers[from[k]] += waits[k] ? 1 : 0;
   }
-  // Hypothesis k may be overwritten only after hypothesis k has been copied.
+  // Hypothesis k may be overwritten only after all required copies of hypothesis k have been made.
   for (std::size_t first = 0; first < count; ++first) {
     for (std::size_t k = first; k < count && waits[k] && readers[k] == 0; k = from[k]) {
       all[k] = all[from[k]];
@@ -227,7 +228,7 @@ void rearrange_hypotheses(const Origins& from, std::size_t count, std::span<Roll
       --readers[from[k]];
     }
   }
-  // The remaining hypotheses replace each other in cycles.
+  // The remaining hypotheses form cycles, in which each hypothesis replaces another hypothesis of the cycle.
   for (std::size_t first = 0; first < count; ++first) {
     if (!waits[first]) continue;
     const RollingFilter::Hypothesis kept = all[first];

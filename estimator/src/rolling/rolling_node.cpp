@@ -12,7 +12,8 @@ namespace tumble::rolling {
 
 namespace {
 
-// Random walks of the radius (rough floor), slope, accelerometer bias, and velocity (times the squared angular rate).
+// Root densities of the random walks of radius (rough floor), slope, accelerometer bias and velocity. The root density
+// of the velocity is multiplied by the squared angular rate.
 constexpr double kRoughRadiusWalk_m_sqrts = 1e-4, kSlopeWalk_sqrts = 0.02, kAccelBiasWalk_m_s2_sqrts = 2e-3,
                  kVelocityWalkPerRate2_sqrts = 4e-5;
 constexpr double kImpactSigmaRatio = 0.06;  // timing and direction of an impact, relative to its velocity change
@@ -89,7 +90,7 @@ RollingNominalState start_nominal(const RollingParams& params, const Eigen::Quat
   return nominal;
 }
 
-/// The prior covariance has the order of rolling.md (R1).
+/// The rows of the prior covariance have the order of the error state in rolling.md (R1).
 void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s, Covariance& P) {
   P.setZero();
   auto prior = P.diagonal();
@@ -154,8 +155,8 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   const Eigen::Vector3d w = w_raw - nominal.gyro_bias_rad_s - nominal.gyro_scale * w_raw;
   Eigen::Vector3d f =
       f_raw - nominal.accel_bias_m_s2 - nominal.accel_scale * f_raw - nominal.accel_delay_s * w.cross(f_raw);
-  // Averaging over the time dt at the rate w reduces the specific force across the rotation axis by the fraction (|w|
-  // dt)^2 / 24: rolling.md (R4).
+  // Averaging over the time dt at the rate w reduces the specific force perpendicular to the rotation axis by the
+  // fraction (|w| dt)^2 / 24: rolling.md (R4).
   f -= dt_s * dt_s / 24.0 * w.cross(w.cross(f));
   const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * w);
   const Eigen::Quaterniond q_mid = nominal.q_WI * half;
@@ -236,7 +237,8 @@ ImuAverage gap_step_average(const RollingParams& params, const ImuSample& before
   sample.device_clip_flags = 0;  // flags of the reading after the gap do not apply within the gap
   const double turning = std::max(before.angular_velocity_rad_s.norm(), after.angular_velocity_rad_s.norm());
   const double acceleration = kGapStill_rad_s2 + kGapAcceleration_rad_s2 * std::min(1.0, turning / kGapRate_rad_s);
-  // A parabolic rate deviation with second derivative a over a data gap T is the rotation a T^3 / 12: rolling.md (R31).
+  // A parabolic deviation of the rate, with the second derivative a over a data gap T, causes the rotation error a T^3
+  // / 12: rolling.md (R31).
   const double mean_force_tilt_rad =
       acceleration * gap_s * gap_s * gap_s / 12.0 + kGapTimeSigmaRatio * change.norm() * gap_s;
   uncertainty.rotation_variance_rad2 = mean_force_tilt_rad * mean_force_tilt_rad / pieces;

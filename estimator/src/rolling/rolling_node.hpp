@@ -25,8 +25,8 @@ using Moving = Eigen::Matrix<double, 9, kStates>;
 /// The reported position of a sphere is constant if its speed has been below kConstrainSpeed_m_s for kConstrainAfter_s.
 inline constexpr double kConstrainAfter_s = 0.1, kConstrainSpeed_m_s = 0.02;
 
-/// Contact is the velocity u of the contact point on the nominal trajectory, with its derivative H with respect to the
-/// error state.
+/// Contact is the velocity u of the contact point on the nominal trajectory, and the derivative of u with respect to
+/// the error state.
 struct Contact {
   Eigen::Vector3d contact_velocity_W_m_s;
   Eigen::Matrix<double, 3, kStates> measurement_jacobian;
@@ -36,12 +36,14 @@ struct Contact {
   Eigen::Vector3d normal_height_derivative_W;  ///< derivative of u with respect to the normal's third component
   Eigen::Vector2d floor_slope;                 ///< slope of the floor on the nominal trajectory
 
-  /// Returns the contact velocity for the error state `x`. The contact velocity is linear in `x`, except for one term:
-  /// the third component of the floor normal is a nonlinear function of the slope, because the normal has unit length.
+  /// Returns the contact velocity for the error state `x`. The contact velocity is linear in `x`, except for the third
+  /// component of the floor normal. The third component depends nonlinearly on the slope, because the normal has unit
+  /// length.
   Eigen::Vector3d velocity(const Vector& x) const;
 };
 
-/// Returns the variance of the contact velocity. In the mode `slip`, only the vertical component is valid.
+/// Returns the variance of the contact velocity. In the mode `slip`, only the variance of the vertical component is
+/// valid.
 Eigen::Vector3d contact_variance(const RollingParams& params, const Contact& c, RollingMode mode);
 
 bool starts_in_motion(const Eigen::Vector3d& rate_I_rad_s);

@@ -44,7 +44,7 @@ struct FilterNodeRecord {
   Eigen::Matrix<double, kReported, kReported> smoothed_covariance;
 };
 
-/// Reading is one input of the live filter: an average of IMU readings, or a piece of a gap.
+/// RollingReading is one input of the live filter: an average of IMU readings, or a piece of a gap.
 struct RollingReading {
   ImuAverage average;
   GapUncertainty uncertainty;
@@ -54,8 +54,8 @@ struct RollingReading {
   TimeNs end_ns = 0;
 };
 
-/// Readings iterates over stored samples, and returns the inputs that the live filter received. next() costs O(1)
-/// without allocation.
+/// RollingReadings iterates over stored samples, and returns the inputs that the live filter received. next() costs
+/// O(1) without allocation.
 class RollingReadings {
  public:
   RollingReadings(const RollingParams& params, std::span<const ImuSample> samples, const ReadingCursor& from)
@@ -106,7 +106,8 @@ struct Adjoint {
 };
 
 /// Smooths the states of consecutive nodes by the modified Bryson-Frazier smoother. On entry, `adjoint` contains the
-/// information of all measurements after the last node; on return, also of the measurements at these nodes.
+/// information from all measurements after the last node. On return, `adjoint` also contains the information from the
+/// measurements at `nodes`.
 void backward_pass(Adjoint& adjoint, std::span<FilterNodeRecord> nodes);
 
 }  // namespace tumble::rolling

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kCodeFullRate_rad_s = 2.0;
 constexpr double kCodeDeadZone = 0.1;
-/// At gimbal lock, where |sin(pitch)| exceeds this value, roll and yaw cannot be separated, so the filter skips the
+/// At gimbal lock (|sin(pitch)| above kGimbalLock), roll and yaw cannot be separated, so the filter skips the
 /// complementary step.
 constexpr double kGimbalLock = 0.999;
 

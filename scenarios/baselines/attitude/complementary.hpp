@@ -9,9 +9,10 @@
 
 namespace tumble::baselines {
 
-/// Complementary integrates the gyro, then applies the fraction 1 - exp(-dt / tau) of the smallest rotation that aligns
-/// the specific force with the vertical (equation (A2) of attitude.md). An acceleration that lasts longer than the time
-/// constant tau causes an attitude error. Complementary does not estimate the gyro bias.
+/// Complementary integrates the gyro, then rotates the attitude towards the measured vertical: attitude.md (A2). The
+/// correction is the fraction 1 - exp(-dt / tau) of the smallest rotation that aligns the specific force with the
+/// vertical. An acceleration that lasts longer than the time constant tau causes an attitude error. Complementary does
+/// not estimate the gyro bias.
 class Complementary {
  public:
   struct Params {

@@ -16,8 +16,8 @@
 
 namespace tumble::baselines {
 
-/// PublishedChain estimates trajectory and map from given angular rates with the published mapping chain (Deschenes et
-/// al., ICRA 2024) and the constants of its launch files.
+/// PublishedChain estimates trajectory and map from given angular rates. The method is the published mapping chain
+/// (Deschenes et al., ICRA 2024), with the constants of its launch files.
 class PublishedChain {
  public:
   struct Params {

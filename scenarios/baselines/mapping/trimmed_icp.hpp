@@ -26,8 +26,8 @@ class TrimmedIcp {
     double trim_min = 0.5;       ///< smallest fraction of the matches to keep
     double trim_max = 0.7;
     double trim_lambda = 2.35;
-    /// If true, the fraction of kept matches refers to all match slots, including slots without a match, as in the code
-    /// of the ICRA 2024 paper.
+    /// If true, the fraction of kept matches refers to all match slots, including empty slots, as in the code of the
+    /// ICRA 2024 paper.
     bool count_unmatched_slots = false;
     int iterations_max = 40;
     double step_m = 0.01;  ///< converged below both bounds
@@ -79,8 +79,8 @@ class TrimmedIcp {
   /// A registration that reaches `iterations_max` iterations counts as success.
   Result align(std::span<const Point> points, const Eigen::Isometry3d& prior, const VoxelMap& map);
 
-  /// Returns how many of the sorted squared distances between matched points the registration keeps (parameter
-  /// `trim_lambda`).
+  /// Returns the number of matches that the registration keeps, from the squared distances of the matches in ascending
+  /// order (parameter `trim_lambda`).
   static std::size_t trim(std::span<const float> sorted_d2, std::size_t slots, const Params& params);
 
   /// Clears the cached normals of the map points; required after each change of the map.

@@ -10,9 +10,9 @@
 
 namespace tumble::baselines {
 
-/// AutogainFusion estimates the position of a rolling sphere on a flat floor from the rolling velocity and the
-/// integrated acceleration (Zevering et al., IEEE MFI 2021, eqs 6-13). The limit on the integrated acceleration
-/// shortens the estimated path of a sphere without slip by up to one half.
+/// AutogainFusion estimates the position of a rolling sphere on a flat floor (Zevering et al., IEEE MFI 2021, eqs
+/// 6-13). AutogainFusion combines the rolling velocity with the integrated acceleration. The limit on the integrated
+/// acceleration shortens the estimated path of a sphere without slip by up to one half.
 class AutogainFusion {
  public:
   struct Params {

@@ -10,8 +10,9 @@
 namespace tumble::baselines {
 
 /// RollingOdometry computes the position of a rolling sphere's centre from the angular velocity, by the trapezoid rule.
-/// On a plane with unit normal n, the centre of a sphere of radius r and angular velocity w has the velocity r w x n
-/// (equation (R15) of rolling.md). The computed position is wrong during slip, sliding and changes of the floor height.
+/// A sphere of radius r rolls with the angular velocity w on a plane with the unit normal n. The velocity of the
+/// sphere's centre is r w x n: rolling.md (R15). The computed position is wrong during slip, sliding and changes of the
+/// floor height.
 class RollingOdometry {
  public:
   struct Params {

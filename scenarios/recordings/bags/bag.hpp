@@ -32,7 +32,8 @@ struct BagTrack {
     Eigen::Vector3d p_WB_m = Eigen::Vector3d::Zero();
     Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();
     Eigen::Vector3d v_WB_B_m_s = kUnknown, w_WB_B_rad_s = kUnknown;
-    /// Covariance of position and attitude error in world axes, as in PoseState; a block of zeros is unknown.
+    /// Covariance of position and attitude error in world axes, as in PoseState; a block of zeros means an unknown
+    /// covariance.
     Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
     bool exact = false;  ///< true: zero covariance means exact
     inline static const Eigen::Vector3d kUnknown = Eigen::Vector3d::Constant(kNaN);
@@ -40,7 +41,8 @@ struct BagTrack {
   std::string name;  ///< letters, digits and _
   std::vector<Pose> poses;
   std::vector<std::int64_t> cloud_time_ns = {};  ///< times of point clouds along the track
-  /// Creates the point cloud with this index when it is written; a cloud without points is not written.
+  /// Returns the point cloud with the given index. The exporter calls this function when it writes the cloud, and omits
+  /// clouds without points.
   std::function<BagCloud(const BagTrack&, std::size_t)> cloud = {};
 };
 
@@ -57,21 +59,22 @@ struct BagWriting {
 /// The bag formats have these versions:
 ///
 /// - The ROS 1 format is version 2.0, written by librosbag.
-/// - The ROS 2 format is a folder with metadata.yaml (version 5) and a SQLite file (schema 4, as since Iron).
+/// - The ROS 2 format is a folder with metadata.yaml (version 5) and a SQLite file (schema 4, as in ROS 2 Iron and
+///   later).
 /// - The MCAP format is a file with profile ros2 (mcap.dev/spec), with indexed LZ4 chunks of 1 MiB and all checksums.
 ///
 /// All bags contain these topics:
 ///
 /// - "/NAME" is a sensor_msgs/Imu without attitude, with the white noise of the data sheet as covariance. NAME is the
-///   exported name of the sensor (export_names); the topic of the primary IMU is the first topic of its type.
+///   exported name of the sensor (export_names). The topic of the primary IMU comes before the topics of other IMUs.
 /// - "/NAME/points" is a sensor_msgs/PointCloud2, stamped at the start of the sweep, with the fields of Velodyne
-///   drivers: x y z intensity ring time. The field time contains float32 seconds after the stamp (4 ns resolution
-///   within 0.1 s), and offset_ns contains the same time in whole nanoseconds. Points without times have no fields time
-///   and offset_ns.
+///   drivers: x y z intensity ring time. The field `time` contains the time of a point in float32 seconds after the
+///   stamp (4 ns resolution within 0.1 s). The field `offset_ns` contains the same time in whole nanoseconds. If the
+///   points have no times, both fields are missing.
 /// - "/truth" is a nav_msgs/Odometry of "body" in "world", at most every 5 ms. "/TRACK" and "/TRACK/points" contain
 ///   estimates. Unknown values have the variance -1, as in sensor_msgs/Imu; an unknown twist is zero.
 /// - "/tf_static" contains the pose of each sensor in "body", from the calibration that the estimator uses.
-/// - "/tf" contains the pose of "body" in "world" from the truth, or else from the first track.
+/// - "/tf" contains the pose of "body" in "world" from the truth or, if there is no truth, from the first track.
 /// - "/clock" is a rosgraph_msgs/Clock, published with the first message after every 10 ms.
 void export_ros1_bag(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& file);
 void export_ros2_bag(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& folder);
@@ -106,16 +109,15 @@ struct BagReading {
 /// bag is a folder or a file, in SQLite or MCAP format, plain or Zstandard-compressed per file or message. An MCAP file
 /// contains messages of ROS 2 (cdr) or ROS 1, in plain, LZ4 or Zstandard chunks, with or without index.
 ///
-/// The importer checks the units of the IMU against gravity, and converts a specific force in g with a note. A
-/// duplicate message (equal stamp and content) is read once. Single faulty messages are skipped with a note
+/// The importer checks the units of the IMU against gravity, and converts specific forces from g to m/s^2, with a note.
+/// A duplicate message (equal stamp and content) is read once. Single faulty messages are skipped with a note
 /// (left_out.hpp).
 ///
 /// If the caller chooses no topics, point clouds in the frames "world", "map" or "odom" are skipped, because they are
 /// not raw sensor data. If the caller chooses no topics, lidars whose points have times come first.
 ///
-/// Sensor poses that the caller does not set come from /tf_static: in "body" or "base_link", or relative to another
-/// sensor. With `sweeps.scratch`, memory contains only one sweep and the IMU data; otherwise, memory contains all
-/// points.
+/// Sensor poses that the caller does not set come from /tf_static, relative to "body", "base_link" or another sensor.
+/// If `sweeps.scratch` is set, memory contains only one sweep and the IMU data; otherwise, memory contains all points.
 ///
 /// Throws BadInput with file and location for damaged or truncated data, a missing topic, a wrong type, more than 5 %
 /// of faulty messages, or a cycle of frames.

@@ -15,8 +15,8 @@ AccelUnit take_in_g(const std::string& topic, const BagReading& reading, sim::Im
   if (reading.accel_unit || !is_in_g(imu)) return reading.accel_unit.value_or(AccelUnit::m_s2);
   for (Eigen::Vector3d& force : imu.accel_m_s2) force *= scale_of(AccelUnit::g);
   notes.push_back(
-      fmt::format("{}: caution: sensor_msgs/Imu requires m/s^2, but the specific force at rest is about 1, so "
-                  "the accelerometer is read in g (set '--accel-unit m/s^2' to read m/s^2)",
+      fmt::format("{}: caution: sensor_msgs/Imu requires m/s^2, but the specific force at rest is about 1. The import "
+                  "therefore reads the accelerometer in g (set '--accel-unit m/s^2' to read m/s^2)",
                   topic));
   return AccelUnit::g;
 }
@@ -72,7 +72,7 @@ sim::ImuRecord read_imu(const OpenedBag& bag, SensorMountings& places, const std
        {lost, bursts, evened, gaps_text(imu), units, stamps.remark(), repeats_text(repeated)}) {
     if (!remark.empty()) notes.push_back(topic + ": " + remark);
   }
-  // --lever-arm states the position of the IMU, and not its orientation
+  // The option --lever-arm states only the position of the IMU, so the orientation comes from /tf_static.
   if (const auto stated = places.of(frame); stated && reading.imu_placed && imu.T_BI.linear().isIdentity())
     imu.T_BI.linear() = stated->linear();
   places.place(topic, frame, "--lever-arm", reading.imu_placed, imu.T_BI, notes);

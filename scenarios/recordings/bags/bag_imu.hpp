@@ -10,7 +10,8 @@
 
 namespace tumble::scenarios {
 
-/// A topic without messages gives no readings, or BadInput if the caller chose the topics.
+/// If the topic has no messages, the function returns a record without readings, or throws BadInput if the caller chose
+/// the topics.
 sim::ImuRecord read_imu(const OpenedBag& bag, SensorMountings& places, const std::string& topic,
                         const BagReading& reading, std::vector<std::string>& notes);
 

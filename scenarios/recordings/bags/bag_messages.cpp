@@ -215,8 +215,8 @@ std::string BagStamps::remark() const {
       "{}the record stamps of the messages are {} to {} later than the header stamps{}; this import uses the stamps of "
       "the {}",
       other_clock() || changes ? "caution: " : "", seconds_text(least_ns), seconds_text(most_ns),
-      other_clock() ? "; the clocks may differ"
-      : changes     ? "; one of the clocks may drift"
+      other_clock() ? "; the clocks of sensor and recorder may differ"
+      : changes     ? "; the clock of the sensor or of the recorder may drift"
                     : "",
       taken);
 }

@@ -31,8 +31,8 @@ void read_clouds(const OpenedBag& bag, const std::string& topic, LeftOut& left_o
   bag.read<ros::PointCloud2>(topic, take, &left_out);
 }
 
-/// A point cannot be measured after its message was recorded, so later point times indicate that the times do not count
-/// from the stamp.
+/// Adds a caution to `notes` if point times are later than the record stamps, because a point cannot be measured after
+/// its message was recorded.
 void note_points_to_come(const std::string& topic, const BuiltSweeps& built, const std::vector<std::int64_t>& records,
                          std::vector<std::string>& notes) {
   std::vector<double> ahead_s;
@@ -167,9 +167,10 @@ Cloud cloud_of(const ros::PointCloud2& message, const std::string& where) {
   const Status status = check_layout(view);
   if (status.error_code == ErrorCode::empty) return out;
   if (!status.ok()) {
-    throw BadInput(fmt::format(
-        "{}: the cloud of {} x {} points with {} bytes each does not fit its data of {} bytes, or is not supported: {}",
-        where, view.height, view.width, view.point_step, view.data.size(), status.message()));
+    throw BadInput(
+        fmt::format("{}: the cloud of {} x {} points with {} bytes each does not match its {} bytes of data, or has an "
+                    "unsupported layout: {}",
+                    where, view.height, view.width, view.point_step, view.data.size(), status.message()));
   }
   out.points = std::size_t{view.width} * view.height;
   for (const tumble::ros::PointField& field : fields) {

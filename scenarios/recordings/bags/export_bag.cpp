@@ -192,7 +192,7 @@ class Export {
         return write_pose(pose_of(*writing_.truth, event.index), "truth", body_, stamp);
       case Event::pose: {
         const BagTrack& track = writing_.tracks[event.of];
-        // Without a truth, the first track gives the pose of the body frame.
+        // If the recording has no truth, the poses of the first track become the poses of the body frame.
         const bool body = event.of == 0 && writing_.truth == nullptr;
         return write_pose(track.poses[event.index], track.name, body ? body_ : track.name, stamp);
       }

@@ -95,7 +95,7 @@ Eigen::Isometry3d pose_of_reference(const std::string& topic, const std::string&
 }
 
 /// The poses of the topic `reading.reference_topic` replace the truth. By default, the frame of the reference poses is
-/// the child_frame_id of the messages, if the bag contains its transform.
+/// the child_frame_id of the messages, if the bag contains the transform of this frame.
 void attach_reference(const OpenedBag& bag, const SensorMountings& places, const BagReading& reading, Imported& out) {
   const std::string& topic = reading.reference_topic;
   NamedPoses found = reference_poses(bag, topic, reading.stamps);
@@ -107,7 +107,7 @@ constexpr const char* kImu = "sensor_msgs/Imu";
 constexpr const char* kCloud = "sensor_msgs/PointCloud2";
 constexpr const char *kTransforms = "tf2_msgs/TFMessage", *kOldTransforms = "tf/tfMessage";
 constexpr const char* kStaticTopic = "/tf_static";
-constexpr const char* kNoMessage = ": empty topic left out";
+constexpr const char* kNoMessage = ": the topic has no messages and is left out";
 bool is_imu_type(const std::string& type) {
   return type == kImu;
 }

@@ -67,7 +67,7 @@ Record File::record_in(std::string_view records, std::uint64_t place, std::uint6
   Record out;
   out.at = place;
   if (take.left.size() < kHeadBytes)
-    fail(at + place, "the file ends within the head of a record: it is damaged or truncated");
+    fail(at + place, "the file ends within the header of a record: it is damaged or truncated");
   std::uint64_t size = 0;
   take(out.op), take(size);
   if (size > take.left.size()) {
@@ -190,9 +190,9 @@ void File::take_indexed(std::vector<ChunkIndex> chunks) {
     const std::uint64_t at = each.chunk_start_offset;
     if (at < free || at > data_end_ || each.chunk_length > data_end_ - at ||
         each.message_index_length > data_end_ - at - each.chunk_length) {
-      fail(footer_.summary_start,
-           fmt::format("the index names a chunk of {} at byte {}; the chunk must be between bytes {} and {}",
-                       in_bytes(each.chunk_length), at, free, data_end_));
+      fail(footer_.summary_start, fmt::format("the chunk index names a chunk of {} at byte {}; the chunk must be "
+                                              "between bytes {} and {}: the file is damaged",
+                                              in_bytes(each.chunk_length), at, free, data_end_));
     }
     free = at + each.chunk_length + each.message_index_length;
     for (const auto& [channel, place] : each.message_index_offsets) {
@@ -243,7 +243,7 @@ std::optional<MessageIndex> File::index_of(const Segment& segment, std::uint16_t
   const std::uint64_t at = segment.chunk->message_index_offsets.at(channel);
   const std::uint64_t end = segment.at + segment.bytes + segment.chunk->message_index_length;
   if (end - at < kHeadBytes)
-    fail(at, "the message index of a chunk ends within the head of a record: the file is damaged");
+    fail(at, "the message index of a chunk ends within the header of a record: the file is damaged");
   const std::string bytes = text(at, std::min(end - at, kBytesMax));
   const Record record = record_in(bytes, 0, at);
   if (record.op != kMessageIndex)
@@ -286,7 +286,7 @@ ChunkIndex File::head_of_chunk(std::uint64_t at, std::uint64_t bytes, std::uint3
                          chunk.compression.substr(0, 40)));
   }
   if (chunk.compression.empty() && chunk.uncompressed_size != chunk.records_size) {
-    fail(at, fmt::format("an uncompressed chunk of {} states a size of {}: the file is damaged",
+    fail(at, fmt::format("an uncompressed chunk has {}, but states a size of {} bytes: the file is damaged",
                          in_bytes(chunk.records_size), chunk.uncompressed_size));
   }
   if (crc != nullptr) *crc = chunk.uncompressed_crc;

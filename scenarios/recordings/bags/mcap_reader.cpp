@@ -16,7 +16,7 @@ namespace mcap {
 
 namespace {
 
-/// A message waits in memory while a later chunk may contain an earlier message.
+/// A message is buffered in memory until no later chunk can contain an earlier message.
 constexpr std::uint64_t kWaitingMax = 1u << 30;
 
 bool is_cdr(const Channel& channel, const Schema& schema) {
@@ -84,9 +84,9 @@ class TopicWalk {
     std::sort(index->entries.begin(), index->entries.end());
     std::sort(found.begin(), found.end());
     if (index->entries == found) return;
-    file_.fail(segment.at,
-               fmt::format("the chunk index names {} messages of channel {}, but the chunk has {}: the file is damaged",
-                           index->entries.size(), channel, found.size()));
+    file_.fail(segment.at, fmt::format("the message index of a chunk lists {} messages of channel {}, but the chunk "
+                                       "contains {}, or their times or positions differ: the file is damaged",
+                                       index->entries.size(), channel, found.size()));
   }
 
   void hold(const Segment& segment, std::uint64_t time_ns, std::string_view bytes) {
@@ -221,7 +221,7 @@ void File::scan() {
     const std::string head = text(at, std::min(kHeadBytes, data_end_ - at));
     std::uint8_t op = 0;
     std::uint64_t size = 0;
-    if (head.size() < kHeadBytes) fail(at, "the file ends within the head of a record: it is damaged or truncated");
+    if (head.size() < kHeadBytes) fail(at, "the file ends within the header of a record: it is damaged or truncated");
     Take take(head);
     take(op), take(size);
     const std::uint64_t left = data_end_ - at - kHeadBytes;

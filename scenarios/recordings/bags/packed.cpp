@@ -44,8 +44,8 @@ class Room {
     return std::move(out_);
   }
   [[noreturn]] void stuck(const char* what, bool no_more_input) const {
-    throw BadInput(fmt::format("the decompressed {} frame {} the stated size of {} bytes; the data are damaged", what,
-                               no_more_input ? "ends before" : "is longer than", promised_));
+    throw BadInput(fmt::format("the decompressed {} frame has {}: its stated size is {} bytes; the data are damaged",
+                               what, no_more_input ? "too few bytes" : "too many bytes", promised_));
   }
 
  private:
@@ -146,8 +146,8 @@ void unpack(const path& file, const path& to) {
       bytes += out.pos;
       if (bytes > most)
         fail(
-            fmt::format("the unpacked bag has more than {} bytes, and {} has too little space; set TMPDIR to another "
-                        "folder, or check that the file is a compressed bag",
+            fmt::format("the unpacked bag has more than {} bytes: {} has too little space, or the file is not a "
+                        "compressed bag; set TMPDIR to another folder, or check the file",
                         most, to.parent_path().string()));
       unpacked.write(given.data(), static_cast<std::streamsize>(out.pos));
       full = out.pos == out.size;
@@ -198,10 +198,10 @@ class UnpackedMessages : public BagReader {
     const std::string where = fmt::format("{}: message {} of {}: ", place_, number, topic);
     const unsigned long long size = ZSTD_getFrameContentSize(bytes.data(), bytes.size());
     if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN || size > most_of(bytes.size()))
-      throw BadInput(fmt::format(
-          "{}the content of the message is not a valid Zstandard frame; its stated size must be at most 64 MiB and at "
-          "most 200 times the compressed size",
-          where));
+      throw BadInput(
+          fmt::format("{}the content of the message is not a valid Zstandard frame; its stated size must be at most 64 "
+                      "MiB plus 200 times the compressed size",
+                      where));
     try {
       const std::string plain = unpacked_zstd({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, size);
       return {plain.begin(), plain.end()};

@@ -22,9 +22,9 @@ std::string unpacked_zstd(std::string_view packed, std::uint64_t bytes);
 /// Returns the CRC-32 of zlib (IEEE 802.3, reflected), continued from the checksum `before`.
 std::uint32_t crc32_of(std::string_view bytes, std::uint32_t before = 0);
 
-/// Decompresses files such as "bag_0.db3.zstd" to a temporary folder, which is removed with the reader, even if a
-/// signal ends the program. Throws BadInput if the data are damaged, disk space is missing, or the output exceeds both
-/// 64 MiB and 200 times the file's size.
+/// Decompresses files such as "bag_0.db3.zstd" to a temporary folder. The temporary folder is removed when the reader
+/// is destroyed or when a signal ends the program. Throws BadInput if the data are damaged, disk space is missing, or
+/// the output exceeds both 64 MiB and 200 times the file's size.
 std::unique_ptr<BagReader> open_packed_files(
     const std::vector<std::filesystem::path>& files,
     const std::function<std::unique_ptr<BagReader>(const std::vector<std::filesystem::path>&)>& open);

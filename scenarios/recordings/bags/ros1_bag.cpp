@@ -117,7 +117,7 @@ TypedBytes typed(const ros::Odometry& message) {
 TypedBytes typed(const ros::TransformStamped& message) {
   return typed_as<geometry_msgs::TransformStamped>(message);
 }
-// The build lacks headers of three message types, so their MD5 checksums are constants.
+// The build lacks the headers of three message types, so the MD5 checksums of these types are constants.
 TypedBytes typed(const ros::TFMessage& message) {
   const std::string inner = ::ros::message_traits::Definition<geometry_msgs::TransformStamped>::value();
   return {ros::type_of(message), "94810edda583a504dfda3829e70d7eec",
@@ -285,7 +285,8 @@ class Ros1BagReader : public BagReader {
   void open_unpacked(const std::filesystem::path& file) {
     const std::filesystem::path folder = std::filesystem::temp_directory_path();
     require_room(file, folder);
-    // The decompressed file is unlinked once it is open, so it disappears with the reader or the process.
+    // The decompressed file is unlinked once it is open, so the file vanishes when the reader closes it or the process
+    // ends.
     const OutputFile unpacked(folder / "tumble_unpacked.bag");
     copy_ros1_bag(file, unpacked.unfinished(), [](Ros1Chunk& chunk) {
       if (chunk.compression == "lz4") unpack_lz4(chunk);

@@ -75,7 +75,7 @@ class Walk {
 
   std::uint32_t length(std::uint64_t at, std::uint64_t end, const char* what, std::uint32_t most) {
     if (end - at < sizeof(std::uint32_t))
-      fail(at, fmt::format("the file ends within the length of {}; the bag may be truncated", what));
+      fail(at, fmt::format("the file ends within the length field of {}; the bag may be truncated", what));
     std::uint32_t value = 0;
     std::memcpy(&value, text(at, sizeof(value)).data(), sizeof(value));
     const std::uint64_t left = end - at - sizeof(value);
@@ -171,8 +171,9 @@ class Walk {
       fail(record.at,
            fmt::format("the compression '{}' of a chunk is not supported; supported: none, bz2 and lz4", compression));
     if (size != record.data_bytes) {
-      fail(record.at, fmt::format("an uncompressed chunk of {} bytes states a size of {}: the file is damaged",
-                                  record.data_bytes, size));
+      fail(record.at,
+           fmt::format("an uncompressed chunk has {} bytes, but states a size of {} bytes: the file is damaged",
+                       record.data_bytes, size));
     }
     messages_.emplace();
     for (std::uint64_t at = record.data_at; at < record.end();) {

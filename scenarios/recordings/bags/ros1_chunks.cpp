@@ -202,7 +202,7 @@ void copy_ros1_bag(const std::filesystem::path& from, const std::filesystem::pat
   const auto index = first ? places.find(first->number<std::uint64_t>("index_pos")) : places.end();
   if (index == places.end())
     records.fail(kMagicBytes,
-                 "no record starts at the position of the index that the bag header states: the file is damaged");
+                 "the bag header states the position of the index, but no record starts there: the file is damaged");
   copy.overwrite(first_at + 4 + first->find("index_pos")->first, bytes_of(index->second));
   copy.finish();
 }

@@ -191,7 +191,7 @@ StoredBag parts_in(const path& folder) {
   add_unlisted(folder, out);
   if (out.files.size() < parts.size())
     fail_at(folder,
-            "the folder has no metadata.yaml, and the names of its bags differ by more than a number; create "
+            "the folder has no metadata.yaml, and the names of its bag files differ in more than a number; create "
             "metadata.yaml with 'ros2 bag reindex', or import one bag at a time");
   out.note =
       "caution: the folder of the bag has no metadata.yaml; the import reads all its bag files as parts of one "

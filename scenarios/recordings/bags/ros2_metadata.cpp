@@ -181,7 +181,8 @@ std::string ros2_definition(const std::string& type) {
 std::string ros2_qos(const std::string& topic) {
   if (topic != "/tf_static") return "";
   const std::string forever = "\n    sec: 9223372036\n    nsec: 854775807\n";
-  // In rmw, 1 means keep last (history), reliable, transient local (durability), or automatic (liveliness).
+  // In the enumerations of rmw, the value 1 means keep last (history), reliable, transient local (durability), or
+  // automatic (liveliness).
   return "- history: 1\n  depth: 1\n  reliability: 1\n  durability: 1\n  deadline:" + forever +
          "  lifespan:" + forever + "  liveliness: 1\n  liveliness_lease_duration:" + forever +
          "  avoid_ros_namespace_conventions: false";

@@ -109,7 +109,7 @@ inline const char* type_of(const TFMessage&) {
 inline const char* type_of(const Clock&) {
   return "rosgraph_msgs/Clock";
 }
-/// A ROS 2 bag has this message type, and a ROS 1 bag has the type kLivoxRos1.
+/// In ROS 2 bags, LivoxCustomMsg has this type name; in ROS 1 bags, its type name is kLivoxRos1.
 inline const char* type_of(const LivoxCustomMsg&) {
   return "livox_ros_driver2/CustomMsg";
 }

@@ -48,7 +48,7 @@ void SensorMountings::place(const std::string& topic, const std::string& frame, 
     } else {
       notes.push_back(
           fmt::format("{}: neither /tf_static nor {} states the sensor's pose on the body; the import assumes that the "
-                      "sensor is at the centre of mass, along the body's axes",
+                      "sensor is at the centre of mass and has the body's axes",
                       topic, option));
     }
   }
@@ -73,7 +73,8 @@ void SensorMountings::mounting_in_body(const std::string& topic, const Eigen::Is
 
 const SensorMountings::Placed* SensorMountings::neighbour(const std::string& frame) const {
   for (const Placed& each : placed_) {
-    // Drivers give all sensors of a device one frame, so equal frames do not determine the pose between two sensors.
+    // Drivers give all sensors of a device the same frame name, so equal frame names do not determine the pose between
+    // two sensors.
     if (each.frame != frame && frames_.pose(each.frame, frame, where_)) return &each;
   }
   return nullptr;
@@ -101,7 +102,7 @@ std::string without_slash(const std::string& frame) {
 
 void StaticFrames::add(const ros::TransformStamped& transform, const std::string& where) {
   const std::string parent = without_slash(transform.header.frame_id), child = without_slash(transform.child_frame_id);
-  const std::string what = fmt::format("{}: the transform of '{}' in '{}'", where, child, parent);
+  const std::string what = fmt::format("{}: the transform of frame '{}' relative to frame '{}'", where, child, parent);
   const auto p = Eigen::Vector3d::Map(transform.translation.data());
   Eigen::Quaterniond q;
   q.coeffs() = Eigen::Vector4d::Map(transform.rotation_xyzw.data());

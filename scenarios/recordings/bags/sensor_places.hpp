@@ -16,10 +16,10 @@ std::string without_slash(const std::string& frame);
 /// The tree of sensor frames comes from /tf_static; each frame has at most one parent.
 class StaticFrames {
  public:
-  /// The last transform of a repeated frame is used; a changed parent gives a note. A transform is invalid if it has
-  /// non-finite values, a translation above 1 km, its own frame as parent, or a quaternion whose norm differs from 1 by
-  /// more than 1 %. An invalid transform causes an exception only when it is used, because bags contain frames
-  /// unrelated to the sensors.
+  /// If a frame occurs in several transforms, the last transform is used. If the parent of a frame changes, remarks()
+  /// contains a note. A transform is invalid if it has non-finite values, a translation above 1 km, its own frame as
+  /// parent, or a quaternion whose norm differs from 1 by more than 1 %. An invalid transform causes an exception only
+  /// when it is used, because bags contain frames unrelated to the sensors.
   void add(const ros::TransformStamped& transform, const std::string& where);
 
   void require_no_cycle(const std::string& where) const;
@@ -48,10 +48,10 @@ class SensorMountings {
  public:
   SensorMountings(StaticFrames frames, std::string where) : frames_(std::move(frames)), where_(std::move(where)) {}
 
-  /// Sets the mounting T_BA of a sensor A from /tf_static, unless the user has set T_BA; a difference is then reported.
-  /// If /tf_static contains no pose of A on the body, the function computes T_BA from the mounting of another sensor.
-  /// That sensor must have been placed by an earlier call, and /tf_static must contain the pose between the two
-  /// sensors.
+  /// Sets the mounting T_BA of a sensor A from /tf_static, unless the user has set T_BA. If the user's value differs
+  /// from /tf_static, the function adds a caution to `notes`. If /tf_static contains no pose of A on the body, the
+  /// function computes T_BA from the mounting of another sensor. For this computation, an earlier call must have placed
+  /// the other sensor, and /tf_static must contain the pose between the two sensors.
   void place(const std::string& topic, const std::string& frame, const char* option, bool given,
              Eigen::Isometry3d& T_BA, std::vector<std::string>& notes);
 

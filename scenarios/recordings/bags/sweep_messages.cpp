@@ -144,7 +144,7 @@ ros::LivoxCustomMsg livox_of(const sim::LidarRecord& lidar, const std::vector<st
       throw BadInput(fmt::format(
           "point {} of lidar '{}' is not finite; a Livox CustomMsg cannot store a missing return", k, lidar.name));
     }
-    // Tag 0 means a single return with full confidence.
+    // The tag 0 of a Livox point means a single return with full confidence.
     out.points.push_back({lidar.offset_ns[k], p.x(), p.y(), p.z(), as<std::uint8_t>(lidar.intensity[k] * kFull), 0,
                           static_cast<std::uint8_t>(lidar.ring[k])});
   }

@@ -74,9 +74,9 @@ std::vector<std::size_t> bins_of(const NumberSample& sample) {
 
 using NumberHistogram = std::array<double, kNumberBins + 1>;
 
-/// Returns the total variation distance between the histograms of one column and of all numbers, averaged over the
-/// columns. Even if all columns have the same distribution, random samples have a positive mean distance. This mean
-/// distance is subtracted.
+/// Returns the total variation distance between the histogram of a column and the histogram of all numbers, averaged
+/// over the columns. Even if all columns have the same distribution, random samples have a positive mean distance. The
+/// function subtracts the mean distance of random samples.
 double columns_differ(const NumberSample& sample, const std::vector<std::size_t>& bins, std::size_t columns) {
   std::vector<NumberHistogram> counts(columns, NumberHistogram{});
   NumberHistogram all{};
@@ -148,7 +148,7 @@ std::string contradiction_to_kitti(std::span<const char> bytes) {
   if (!(other.differ > kClearlyMore * as_kitti + kClearlyMoreBy)) return "";
   return fmt::format(
       "the numbers match {} columns of float32 better than the expected 4 (x y z intensity): the distributions of the "
-      "columns differ by {:.2f} (0: equal, 1: disjoint), but only by {:.2f} with 4 columns",
+      "columns differ by {:.2f}, but only by {:.2f} with 4 columns (0: equal, 1: disjoint)",
       other.columns, other.differ, as_kitti);
 }
 

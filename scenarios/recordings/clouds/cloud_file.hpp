@@ -24,8 +24,8 @@ inline constexpr std::uint64_t kCloudPointsMax = std::uint64_t{1} << 26;
 /// header is compared with the file size before memory is allocated.
 ///
 /// @param bin_columns Columns of a .bin file in order, "x,y,z,intensity,ring". Each column is float32, or has a NumPy
-/// type after a colon ("x:f8"); the name "_" skips bytes. If `bin_columns` is empty, the columns are x y z intensity
-/// (KITTI), unless the content contradicts this layout (bin_layout.hpp).
+/// type after a colon ("x:f8"); columns with the name "_" are skipped. If `bin_columns` is empty, the columns are x y z
+/// intensity (KITTI), unless the content contradicts this layout (bin_layout.hpp).
 ///
 /// Throws BadInput with file and location if the file is missing or damaged, or has another format, impossible columns,
 /// or more than 2^26 points.

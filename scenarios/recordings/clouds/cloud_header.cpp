@@ -74,7 +74,7 @@ class HeaderLines {
   }
 
   /// Checks the two sizes that the file stores in front of the compressed points: the number of compressed bytes and
-  /// the number of uncompressed bytes. PCL does not check these sizes.
+  /// the number of uncompressed bytes. PCL does not check the sizes of compressed points.
   void require_sizes(const CloudHeader& header) {
     std::array<std::uint32_t, 2> sizes{};
     if (!stream_.read(reinterpret_cast<char*>(sizes.data()), sizeof(sizes)))
@@ -101,7 +101,7 @@ class HeaderLines {
       if (line.empty() || first.starts_with("#")) continue;
       const auto begins = [&](const char* word) { return first.starts_with(word); };
       if (std::any_of(words.begin(), words.end(), begins))
-        fail("the first points look like a line of the header, so PCL would misread the file");
+        fail("the first line of point data looks like a header line, so PCL would misread the file");
       return;
     }
   }
@@ -181,7 +181,7 @@ std::string viewpoint_of(const HeaderLines& lines, const Words& words) {
   for (std::size_t i = 0; i < kOwn.size(); ++i) {
     double value = 0.0;
     if (!read_number(words[i], value) || !std::isfinite(value))
-      lines.fail(fmt::format("VIEWPOINT's number {} is '{}'; it must be finite", i + 1, words[i]));
+      lines.fail(fmt::format("VIEWPOINT's number {} is '{}'; it must be a finite number", i + 1, words[i]));
     own = own && value == kOwn[i];
     written += (i > 0 ? " " : "") + words[i];
   }
@@ -212,7 +212,8 @@ CloudHeader read_ply_header(const std::filesystem::path& path) {
       lines.fail("unknown header line '" + words[0] + "'");
     }
   }
-  if (header.fields == 0) lines.fail("there is no 'element vertex' with properties, so the file has no points");
+  if (header.fields == 0)
+    lines.fail("the PLY header has no 'element vertex' with properties, so the file has no points");
   if (text) header.point_bytes = 0;
   header.ascii = text;
   header.numbers = header.fields;

@@ -13,7 +13,7 @@ namespace tumble::scenarios {
 namespace {
 
 static_assert(std::endian::native == std::endian::little,
-              "this code writes PLY and PCD files in the byte order of a little-endian processor");
+              "the exported PLY and PCD files are little-endian, so this code needs a little-endian processor");
 
 std::string ply_header(std::size_t points, bool timed) {
   return "ply\nformat binary_little_endian 1.0\ncomment one lidar sweep, lidar axes, metres, not deskewed\nelement "

@@ -16,9 +16,11 @@ std::vector<std::filesystem::path> sweep_files(const std::filesystem::path& fold
 /// The stem is the part before the last numbers of a file name: "lidar" in "lidar_000012".
 std::string stem_of(const std::filesystem::path& file);
 
-/// A time stamp at the end of a file name is seconds and nanoseconds ("1617333602.223639727",
-/// "cloud_1617333602_223639727"), or a number of 13, 16 or 19 digits since 1970 (ms, us, ns). Returns nothing if the
-/// file names contain only numbers like "000012".
+/// A time stamp at the end of a file name has one of these forms:
+/// - seconds and nanoseconds: "1617333602.223639727" or "cloud_1617333602_223639727"
+/// - a time since 1970 with 13 digits (ms), 16 digits (us) or 19 digits (ns)
+///
+/// Returns nothing if the file names contain only numbers like "000012".
 std::vector<std::int64_t> stamps_in_names(const std::vector<std::filesystem::path>& files);
 
 /// A time stamp is decimal seconds, an integer of 13, 16 or 19 digits (ms, us, ns), or a date in UTC, as in KITTI's raw

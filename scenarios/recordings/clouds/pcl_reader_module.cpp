@@ -18,5 +18,6 @@ extern "C" bool tumble_pcl_read(const char* path, tumble::scenarios::PclFormat f
   }
 }
 
-static_assert(std::is_same_v<decltype(tumble_pcl_read), tumble::scenarios::PclRead>,
-              "the signature must equal PclRead, which the program calls");
+static_assert(
+    std::is_same_v<decltype(tumble_pcl_read), tumble::scenarios::PclRead>,
+    "tumble_pcl_read must have the type PclRead, because the program calls this function by the type PclRead");

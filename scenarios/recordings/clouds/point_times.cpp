@@ -21,10 +21,10 @@ namespace {
 /// The point times of a sweep must cover a fraction of the sweep period between 0.02 (a sector of 7 degrees) and 1.5
 /// (some overlap). Time units differ by factors of 1000, so the times of a sweep fit at most one unit.
 constexpr double kSpanMin = 0.02, kSpanMax = 1.5, kShortSpanMin = kSpanMax / 1000.0;
-/// Times since 1970 in seconds exceed 1e8 if they are later than 1973.
+/// Times after 1973, in seconds since 1970, exceed 1e8.
 constexpr double kEpochMin_s = 1e8;
-/// A sweep with fewer than 100 points may cover only a short part of the sweep period. A short time span of such a
-/// sweep is therefore no evidence against a time unit.
+/// A sweep with fewer than 100 points may cover only a short part of the sweep period, so a short time span does not
+/// contradict the stated time unit.
 constexpr double kPointsThatSpan = 100.0;
 
 /// With at least five clouds, point times are absolute if two clouds start more than two periods from time zero.
@@ -117,11 +117,10 @@ double unit_by_size(double span, double largest, double period_ns, const std::st
                     "(--times), or the duration of one sweep (--sweep-period)",
                     where, field, range));
   }
-  throw BadInput(fmt::format(
-      "{}: the point times in field '{}' have a range of {} in a sweep. This range must be 0.15 to 150 % of the sweep "
-      "period, but is not in any of the units s, ms, us and ns; the sweep period is {} ms. State the unit "
-      "(--time-unit)",
-      where, field, range, period));
+  throw BadInput(
+      fmt::format("{}: the point times in field '{}' have a range of {} in a sweep. In none of the units s, ms, us and "
+                  "ns is this range 0.15 to 150 % of the sweep period ({} ms). State the unit (--time-unit)",
+                  where, field, range, period));
 }
 
 }  // namespace

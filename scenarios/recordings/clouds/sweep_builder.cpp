@@ -69,7 +69,7 @@ std::string in_ns(std::int64_t time_ns) {
 std::string said(const PointTimeRule& rule) {
   const char* unit = rule.unit_ns == 1e9 ? "s" : rule.unit_ns == 1e6 ? "ms" : rule.unit_ns == 1e3 ? "us" : "ns";
   return rule.absolute
-             ? fmt::format("the point times come from field '{}', in {} of the lidar's clock", rule.field, unit)
+             ? fmt::format("the point times come from field '{}', in {} on the lidar's clock", rule.field, unit)
              : fmt::format("the point times come from field '{}', in {} after the sweep's time stamp", rule.field,
                            unit);
 }
@@ -177,7 +177,7 @@ void SweepBuilder::read(Waiting& sweep) {
   if (store_) store_->take(record_);
 }
 
-/// Points with wrong times are removed from `kept`; many wrong times throw BadInput.
+/// Points with wrong times are removed from `kept`; too many wrong times throw BadInput.
 std::vector<std::int64_t> SweepBuilder::point_times(const Waiting& sweep, std::vector<std::size_t>& kept) {
   if (rule_->field.empty() || kept.empty()) {
     if (!sweep.stamp_ns)
@@ -217,7 +217,7 @@ std::vector<std::int64_t> SweepBuilder::point_times(const Waiting& sweep, std::v
               ? fmt::format(
                     "{}: the time of point {} is {} after the middle of the sweep; it must be within {} of the middle",
                     sweep.where, kept[k], in_ns(*times_ns[k] - middle_ns), in_ns(bound_ns))
-              : fmt::format("{}: the time of point {} is {}; it must be finite and within 146 years", sweep.where,
+              : fmt::format("{}: the time of point {} is {}; it must be finite and at most 146 years", sweep.where,
                             kept[k], std::to_string((*numbers)[kept[k]]));
     }
   }
@@ -296,7 +296,7 @@ void SweepBuilder::scale_intensity(std::vector<std::string>& notes) {
   const auto scale = [&](float& each) { each = static_cast<float>(each / full); };
   if (store_) store_->intensity.change(scale);
   std::for_each(record_.intensity.begin(), record_.intensity.end(), scale);
-  notes.push_back(fmt::format("the intensities exceed 1 and are divided by {}", std::to_string(full)));
+  notes.push_back(fmt::format("the intensities exceed 1, so the import divides them by {}", std::to_string(full)));
 }
 
 double SweepBuilder::range_max_m() const {
@@ -340,7 +340,7 @@ void SweepBuilder::note_dropped_points(std::vector<std::string>& notes) const {
         "{} points are treated as missing returns (not finite, farther than 1000 km, or at the origin)", misses_));
   if (skipped_ > 0)
     notes.push_back(fmt::format("{} sweeps have neither points nor a time stamp and are left out", skipped_));
-  if (dark_ > 0) notes.push_back(fmt::format("{} points have no intensity; the import stores 0", dark_));
+  if (dark_ > 0) notes.push_back(fmt::format("{} points have no valid intensity; the import stores 0", dark_));
   if (viewpoints_ > 0)
     notes.push_back(
         fmt::format("{} sweeps have a VIEWPOINT, which the import ignores: it reads the points as coordinates in the "

@@ -36,9 +36,9 @@ struct PointTimeRule {
 
 /// The field of the point times has one of these names (any case): t time timestamp timestamps time_stamp offset_time
 /// time_offset offset_ns. The suffix _s, _ms, _us or _ns of a field name determines the unit of the point times.
-/// Without a suffix, the unit follows from the duration of a sweep, which must be 0.15 to 150 % of `period_ns`. If the
-/// sweep period is unknown (0), the size of times since 1970 determines the unit. If all times of a sweep are equal,
-/// the points have no times.
+/// Without a suffix, the unit follows from the time span of a sweep, which must be 0.15 to 150 % of `period_ns`. If the
+/// sweep period is unknown (0), the size of times since 1970 determines the unit. If all points of each sweep have
+/// equal times, the points count as points without times.
 ///
 /// A stated unit is rejected if only another unit fits the sweep period and the sweeps have at least 100 points.
 PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t period_ns, const SweepReading& reading,
@@ -55,8 +55,8 @@ struct BuiltSweeps {
 /// SweepBuilder buffers the first ten clouds to determine the unit of the point times.
 ///
 /// A point counts as a ray without return if it is not finite, farther than 1000 km, or at the origin. Intensities
-/// above 1 are divided by 255, or by their maximum if it exceeds 255. A sweep starts at its time stamp, or at its first
-/// point if this point is earlier than the stamp or more than a period later.
+/// above 1 are divided by 255, or by their maximum if it exceeds 255. A sweep starts at its time stamp. If the first
+/// point is earlier than the stamp, or more than a period later, the sweep starts at the first point.
 ///
 /// A cloud is skipped if it lacks a field, has an invalid ring, starts before the previous sweep, or has most points
 /// beyond twice the lidar's range. If absolute point times and stamps come from different clocks, the stamp is assumed
@@ -72,8 +72,8 @@ class SweepBuilder {
 
   LeftOut& left_out() { return left_out_; }
 
-  /// If the device has no period, the sweep period is the median step of the stamps, or the largest point offset if
-  /// this is larger.
+  /// If the device description has no sweep period, the period becomes the median step of the stamps or the largest
+  /// point offset, whichever is larger.
   BuiltSweeps finish(const std::string& where, std::vector<std::string>& notes);
 
  private:

@@ -118,8 +118,7 @@ ImuPosition estimate_imu_position(const sim::ImuRecord& first, const sim::ImuRec
   }
   if (rate_difference > kRateDifferenceMax) {
     out.problem = fmt::format(
-        "the rates of both gyros differ by {} % (median); they may differ by {} %. The axes of "
-        "the IMUs may differ",
+        "the rates of both gyros differ by {} % (median); the maximum is {} %. The IMUs may have different axes",
         rounded(100.0 * rate_difference), rounded(100.0 * kRateDifferenceMax));
     return out;
   }
@@ -254,11 +253,11 @@ void add_further_imu(const Read& read, const std::vector<std::string>& imus, std
       const Eigen::Vector3d& p = position.position_m;
       imu.T_BI.translation() += imu.T_BI.linear() * p;
       out.sensors.imus.push_back(std::move(imu));
-      out.notes.push_back(fmt::format(
-          "IMU {} is at {} {} {} m from IMU {} with a standard deviation of {} m, estimated from {} samples. "
-          "The import assumes the same axes",
-          imus[i], rounded(p.x()), rounded(p.y()), rounded(p.z()), imus.front(), rounded(position.sigma_m.maxCoeff()),
-          position.samples));
+      out.notes.push_back(
+          fmt::format("IMU {} is at {} {} {} m from IMU {} with a standard deviation of {} m, estimated from {} "
+                      "samples. The import assumes that both IMUs have the same axes",
+                      imus[i], rounded(p.x()), rounded(p.y()), rounded(p.z()), imus.front(),
+                      rounded(position.sigma_m.maxCoeff()), position.samples));
     }
   } catch (const BadInput& error) {
     problem = error.what();

@@ -182,9 +182,9 @@ ImuColumns imu_columns(const LoggedTable& table) {
     return *columns;
   }
   fail(first,
-       "the header contains no known column name: stamp_s, stamp_ns, wx_rad_s, ..., fx_m_s2, ... (as written by "
-       "'export'), .../header/stamp, .../angular_velocity/x, ..., or logger names (time, gyro_x, ..., accel_x, ...). "
-       "Name the columns: --columns time=NAME,gyro=X,Y,Z,accel=X,Y,Z");
+       "the header contains no known column name. Known names: stamp_s, stamp_ns, wx_rad_s, ..., fx_m_s2, ... (as "
+       "written by 'export'), .../header/stamp, .../angular_velocity/x, ..., and logger names (time, gyro_x, ..., "
+       "accel_x, ...). Name the columns: --columns time=NAME,gyro=X,Y,Z,accel=X,Y,Z");
 }
 
 std::int64_t stamp_ns(const CsvLine& line, const ImuColumns& columns) {

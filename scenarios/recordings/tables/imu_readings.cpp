@@ -196,7 +196,8 @@ GravityRotation gravity_rotation(const sim::ImuRecord& imu, RotationWindows wind
     const bool whole = near(end) && end >= begin + 4 && (length_s >= kRotationWindow_s || turned()) &&
                        length_s < 1.5 * kRotationWindow_s;
     if (whole) {
-      // Means over the first and the last quarter of the readings reduce the noise of the force change.
+      // To reduce noise, the force change is the difference between the means of the last and the first quarter of the
+      // readings.
       const std::size_t quarter = std::max<std::size_t>(1, (end - begin) / 4);
       Eigen::Vector3d first = Eigen::Vector3d::Zero(), last = Eigen::Vector3d::Zero(), middle = Eigen::Vector3d::Zero();
       for (std::size_t k = 0; k < quarter; ++k) first += imu.accel_m_s2[begin + k], last += imu.accel_m_s2[end - k];

@@ -29,8 +29,8 @@ std::string leave_out_faulty(const ReadingText& where, const ReadingText& disord
 /// outside 20 us to 2 s.
 void finish_readings(const std::string& where, AccelUnit unit, sim::ImuRecord& imu);
 
-/// Returns true if the accelerometer probably reads in g: the median norm is 0.9 to 1.1. A fifth of the norms must be
-/// within 2 % of the median.
+/// Returns true if the accelerometer probably reads in g. The median norm of the readings must be 0.9 to 1.1, and at
+/// least a fifth of the norms must be within 2 % of the median.
 bool is_in_g(const sim::ImuRecord& imu);
 
 std::string even_out_stamps(sim::ImuRecord& imu);
@@ -39,9 +39,9 @@ std::string gaps_text(const sim::ImuRecord& imu);
 
 /// RotationWindows selects the time windows in which the rotation of the measured gravity is compared with the gyro. A
 /// window of kind `even` lasts 0.2 s. A window of kind `brisk` ends earlier if the specific force has changed by a
-/// quarter of gravity. A window counts if the specific force has the size of gravity within 10 %, and changes by 2 to
-/// 40 % of gravity. The change of the specific force is compared with the product -(rotation vector) x force; `ratio`
-/// is 1 for correct units.
+/// quarter of gravity. A window is used if its specific force has the size of gravity within 10 %, and changes by 2 to
+/// 40 % of gravity. The value `ratio` compares the change of the specific force with the product -(rotation vector) x
+/// force; `ratio` is 1 for correct units.
 enum class RotationWindows { even, brisk };
 struct GravityRotation {
   int windows = 0;

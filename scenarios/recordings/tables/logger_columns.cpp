@@ -267,11 +267,11 @@ std::size_t column_of(const LoggedTable& table, const std::string& name) {
   if (count == 1) return static_cast<std::size_t>(std::find(fields.begin(), fields.end(), name) - fields.begin());
   std::size_t position = 0;
   if (count == 0 && read_number(name, position) && position < fields.size()) return position;
-  throw BadInput(
-      fmt::format("{}: --columns names '{}', but {} of the {} columns have this name, and one must have it. {}{}",
-                  table.header().where, name, count, fields.size(),
-                  table.has_header() ? "Names: " : "Without names, write the number of a column, from 0",
-                  table.has_header() ? fmt::format("{}", fmt::join(fields, " ")) : ""));
+  throw BadInput(fmt::format(
+      "{}: --columns names '{}', but {} of the {} columns have this name; exactly one column must have it. {}{}",
+      table.header().where, name, count, fields.size(),
+      table.has_header() ? "Names: " : "The table has no column names; write the number of the column, counted from 0",
+      table.has_header() ? fmt::format("{}", fmt::join(fields, " ")) : ""));
 }
 
 void require_count(const std::string& quantity, std::size_t count, std::size_t least, std::size_t most) {

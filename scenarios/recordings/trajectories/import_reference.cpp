@@ -205,11 +205,11 @@ std::string pose_format(const std::filesystem::path& file) {
   for (std::string word; words >> word; ++count) others += parse_number(word, number) ? 0 : 1;
   if (count == 8 && others == 0) return "tum";
   if (count == 12 && others == 0) return "kitti";
-  throw BadInput(fmt::format(
-      "{}: its first line has {} numbers{}; it must have 8 (TUM: t x y z qx qy qz qw) or 12 (KITTI: rows of "
-      "a matrix), or the header of a table of poses with the names of time, position and quaternion "
-      "(timestamp,x,y,z,qx,qy,qz,qw)",
-      file.string(), count - others, others == 0 ? "" : fmt::format(" and {} other words", others)));
+  throw BadInput(
+      fmt::format("{}: the first line has {} numbers{}; it must have 8 (TUM: t x y z qx qy qz qw) or 12 (KITTI: rows "
+                  "of a matrix), or be the header of a table of poses with the names of time, position and quaternion "
+                  "(timestamp,x,y,z,qx,qy,qz,qw)",
+                  file.string(), count - others, others == 0 ? "" : fmt::format(" and {} other words", others)));
 }
 
 std::vector<ReferencePose> read_tum_poses(const std::filesystem::path& file, bool sorted) {
@@ -329,7 +329,7 @@ sim::Truth reference_truth(const std::vector<ReferencePose>& poses, std::int64_t
         poses.front().time_ns, poses.back().time_ns, end_ns));
   }
   if (last_ns > kLongestReference_ns) {
-    throw BadInput(fmt::format("the reference lasts {} ns; it must be at most one day", last_ns));
+    throw BadInput(fmt::format("the reference lasts {} ns; it may last at most one day", last_ns));
   }
   const std::vector<std::int64_t> times = times_of(poses);
   sim::Truth truth;
@@ -342,7 +342,7 @@ sim::Truth reference_truth(const std::vector<ReferencePose>& poses, std::int64_t
   }
   const auto known = [](const Eigen::Quaterniond& q) { return q.coeffs().allFinite(); };
   if (std::none_of(truth.q_WB.begin(), truth.q_WB.end(), known)) {
-    throw BadInput("the poses of the reference are too far apart in time for a comparison with the gyro");
+    throw BadInput("the poses of the reference are too far apart in time, so no pose can be interpolated");
   }
   differentiate(truth, static_cast<std::size_t>(std::max<std::int64_t>(kReach_ns / truth.period_ns, 1)));
   return truth;

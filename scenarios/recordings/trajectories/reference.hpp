@@ -58,10 +58,11 @@ std::vector<ReferencePose> read_pose_table(const std::filesystem::path& file, bo
 std::size_t count_kitti_poses(const std::filesystem::path& file);
 
 /// The stamps of `poses` must increase in the recording's clock; they may start before time 0. If the times of all
-/// poses are multiples of one time step of at least 0.1 ms, the truth uses this time step with unchanged poses. In
-/// other cases, the truth has steps of 1 ms, or longer steps if it would have more than two million samples. Between
-/// poses at most 2.5 median steps apart, position is interpolated linearly and attitude by slerp; in larger gaps, both
-/// are unknown. The truth from reference poses ends with the last pose or at `end_ns`, whichever is earlier.
+/// poses are multiples of one time step of at least 0.1 ms, the truth uses this time step with unchanged poses. Without
+/// a common time step, the truth has steps of 1 ms, or longer steps to limit the truth to two million samples. Between
+/// poses at most 2.5 median steps apart, position is interpolated linearly and attitude by slerp; in larger gaps,
+/// position and attitude are unknown. The truth from reference poses ends with the last pose or at `end_ns`, whichever
+/// is earlier.
 sim::Truth reference_truth(const std::vector<ReferencePose>& poses, std::int64_t end_ns);
 
 }  // namespace tumble::scenarios

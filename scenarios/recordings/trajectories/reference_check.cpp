@@ -12,11 +12,11 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Reference and gyro contradict each other if their rotations differ by more than half of the rotation; they agree
-/// below 30 %.
+/// The rotations of reference and gyro contradict each other if they differ by more than 50 %, and agree if they differ
+/// by less than 30 %.
 constexpr double kContradicts = 0.5, kReferenceAgrees = 0.3;
 /// A wrong quaternion convention is reported only if reference and gyro differ by more than 15 % of the rotation. The
-/// correct convention must reduce the difference below 40 % of its value.
+/// correct convention must reduce the difference to less than 40 % of the original difference.
 constexpr double kExplained = 0.15, kExplanationLeaves = 0.4;
 /// The filters of an IMU cause a delay of about 0.02 s.
 constexpr double kDelayNoted_s = 0.03;
@@ -58,18 +58,17 @@ std::string caution(const TurningCheck& check, const std::string& frame, const s
                            fmt::format("; these rotations should differ by at most {}; ", share_text(kContradicts));
   const TurningFit& reading = check.reading.undelayed;
   if (reading.difference < kReferenceAgrees && reading.written == QuaternionConvention::as_stated) {
-    return text + fmt::format("the rotations would differ by {} if the poses belonged to the {}{}",
+    return text + fmt::format("the rotations would differ by only {} if the poses belonged to the {}{}",
                               share_text(reading.difference), frame,
                               frame == "IMU" ? "" : ": give --reference-frame " + frame);
   }
   const MountingFit& mounting = check.mounting.undelayed;
   if (mounting.difference < kReferenceAgrees) {
     const Eigen::Quaterniond& q = mounting.q_AI;
-    return text +
-           fmt::format(
-               "the rotations would differ by {} if the IMU were rotated in the frame of the poses by the quaternion "
-               "x y z w {:.4f} {:.4f} {:.4f} {:.4f}; check the mounting",
-               share_text(mounting.difference), q.x(), q.y(), q.z(), q.w());
+    return text + fmt::format(
+                      "the rotations would differ by only {} if the IMU were rotated in the frame of the poses by the "
+                      "quaternion x y z w {:.4f} {:.4f} {:.4f} {:.4f}; check the mounting",
+                      share_text(mounting.difference), q.x(), q.y(), q.z(), q.w());
   }
   return text + fmt::format(
                     "no other order or direction of the quaternions, no other frame and no delay within {:.0f} s "
@@ -133,14 +132,14 @@ std::string check_reference(const std::vector<ReferencePose>& poses, const Eigen
   const TurningCheck check = check_turning(attitudes, frames, imu, kDelaySearched_s);
   if (check.pairs == 0)
     return fmt::format(
-        "the reference is not checked against a gyro: too few pairs of poses of the reference (0.05 to 1 s apart) "
-        "rotate by at least 0.02 rad while the gyro of '{}' is not saturated",
+        "the reference is not checked against a gyro: in too few pairs of poses (0.05 to 1 s apart), the reference "
+        "rotates by at least 0.02 rad and the gyro of '{}' is not saturated",
         imu.name);
   if (check.upright) {
     throw BadInput(
-        fmt::format("{}: the force that '{}' measures should point up on average, but differs from the vertical of the "
-                    "reference by more than 60 degrees. The rotations of the reference agree with the gyro, but they "
-                    "agree equally well with another order or direction of the quaternions{}",
+        fmt::format("{}: the mean specific force of '{}' should point up, but differs from the vertical of the "
+                    "reference by more than 60 degrees. The rotations of the reference agree with the gyro, but "
+                    "another order or direction of the quaternions agrees equally well{}",
                     where, imu.name, remedy(check.upright->written, 0.0)));
   }
   require_reading_as_stated(check, imu.name, where);

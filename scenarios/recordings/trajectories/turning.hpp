@@ -12,8 +12,8 @@
 
 #include "sim/recording.hpp"
 
-/// A pose file does not state the frame of its poses, its quaternion convention or its clock; a comparison with a gyro
-/// determines them.
+/// A pose file does not state the frame of its poses, its quaternion convention or its clock. A comparison with a gyro
+/// determines these three properties.
 namespace tumble::scenarios {
 
 struct TimedAttitude {
@@ -58,8 +58,8 @@ struct TurningCheck {
   DelayedFit<MountingFit> mounting;
   bool clock_known = false;  ///< a delay of 0.3 s is detectable
   bool order_known = false;  ///< wrong quaternion conventions are detectable
-  /// Alternative quaternion convention that agrees equally well with the gyro, and in which gravity is vertical, unlike
-  /// in the written convention.
+  /// Another quaternion convention that agrees with the gyro about equally well, if gravity is vertical only in this
+  /// other convention.
   std::optional<TurningFit> upright;
 };
 

@@ -184,7 +184,7 @@ TEST_F(ExternalMethod, AMapIsAnyPlyWithPlaces) {
       pose + head + "property float z\\nproperty float sigma\\nend_header\\n1 2 3 0.5\\n4 5 6 0.25\\n' > {map}"));
   EXPECT_EQ(more.map.at(1).sigma_m, 0.25f);
   EXPECT_THAT(refused(describe("slam", pose + head + "end_header\\n1 2\\n4 5\\n' > {map}")),
-              HasSubstr("columns x, y and z are missing"));
+              HasSubstr("must have the columns x, y and z"));
   EXPECT_THAT(refused(describe("slam", pose + head + "property float z\\nend_header\\n1 2 3\\n4 nan 6\\n' > {map}")),
               HasSubstr("map"));
 }
@@ -200,7 +200,7 @@ TEST_F(ExternalMethod, NonsenseIsRefusedWithLineValueAndBound) {
   EXPECT_THAT(left("0.2 1e300 0 0 0 0 0 1"),
               HasSubstr("poses.tum:3: the position is (1e+300, 0, 0) m; it must be finite and within 1e+07 m"));
   EXPECT_THAT(left("1000000 0 0 0 0 0 0 1"),
-              HasSubstr("poses.tum:3: the time stamp is 1000000 s; it must be within -10 and"));
+              HasSubstr("poses.tum:3: the time stamp is 1000000 s; it must be between -10 and"));
   EXPECT_THAT(left("1000000 0 0 0 0 0 0 1", "attitude"), HasSubstr("poses.tum:3: the time stamp is 1000000 s"));
   EXPECT_THAT(refused(describe("position", "printf '%s\\n' '-1000000000 0 0 0 0 0 0 1' > {output}")),
               HasSubstr("poses.tum:1: the time stamp is -1e+09 s"));
@@ -241,9 +241,8 @@ TEST_F(ExternalMethod, WhatIsNoCovarianceIsRefused) {
   };
   EXPECT_THAT(refused(with("1,0,0,-2,0,1")),
               HasSubstr("rates.csv:2: the covariance has a variance of -2; variances must be at least 0"));
-  EXPECT_THAT(
-      refused(with("1,3,0,4,0,1")),
-      HasSubstr("the covariance of two components is 3, with the variances 1 and 4; its magnitude must be at most 2"));
+  EXPECT_THAT(refused(with("1,3,0,4,0,1")), HasSubstr("two components have the covariance 3 and the variances 1 and 4; "
+                                                      "the magnitude of the covariance must be at most 2"));
   EXPECT_EQ(run(with("1,2,0,4,0,1")).rates[0].covariance_rad2_s2(0, 1), 2.0);
 }
 

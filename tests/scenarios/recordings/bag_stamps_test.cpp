@@ -76,7 +76,7 @@ TEST_P(Stamps, HeadersCountAndTheirDistanceToTheRecordsIsSaid) {
 TEST_P(Stamps, AnotherClockIsACaution) {
   EXPECT_THAT(written(since_boot, since_boot).notes,
               Contains(AllOf(HasSubstr("/imu: caution: the record stamps of the messages"),
-                             HasSubstr("the clocks may differ"))));
+                             HasSubstr("the clocks of sensor and recorder may differ"))));
   const auto ahead = [](std::int64_t record_ns) { return record_ns + 20 * kMs_ns; };
   EXPECT_THAT(written(ahead, sweep_before).notes,
               Contains(HasSubstr("/imu: caution: the record stamps of the messages are -0.02 s")));
@@ -85,7 +85,7 @@ TEST_P(Stamps, AnotherClockIsACaution) {
   };
   EXPECT_THAT(written(drifting, sweep_before).notes,
               Contains(AllOf(HasSubstr("/imu: caution: the record stamps of the messages"),
-                             HasSubstr("one of the clocks may drift"))));
+                             HasSubstr("the clock of the sensor or of the recorder may drift"))));
   EXPECT_THAT(written(same, same).notes, Not(Contains(HasSubstr("caution"))));
 }
 

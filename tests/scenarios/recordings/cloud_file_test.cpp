@@ -82,7 +82,7 @@ TEST_F(CloudFile, AViewpointIsReportedOrRefused) {
   EXPECT_EQ(read("a.pcd", with("0 0 0 1 0 0 0")).viewpoint, "");
   EXPECT_EQ(read("a.pcd", with("1 2 3 0 0 0 1")).viewpoint, "1 2 3 0 0 0 1");
   EXPECT_THAT(complaint_of("a.pcd", with("nan 0 0 1 0 0 0")),
-              HasSubstr("VIEWPOINT's number 1 is 'nan'; it must be finite"));
+              HasSubstr("VIEWPOINT's number 1 is 'nan'; it must be a finite number"));
   EXPECT_THAT(complaint_of("a.pcd", with("0 0 0 1")), HasSubstr("VIEWPOINT has 4 numbers; it must have 7"));
 }
 

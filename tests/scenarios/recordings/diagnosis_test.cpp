@@ -71,7 +71,7 @@ TEST(Diagnosis, LateSensorsLossAndMotionAreFound) {
   sim::Sensors moving = at_rest(0.0, 4.0);
   for (std::size_t k = 0; k < 400; ++k) moving.imus[0].gyro_rad_s[k].z() = std::sin(0.1 * static_cast<double>(k));
   EXPECT_THAT(evidence_of(moving),
-              ElementsAre(testing::StartsWith("imu: the robot moves during the first second: rates vary")));
+              ElementsAre(testing::StartsWith("imu: the robot moves during the first second: angular rates vary")));
   sim::Sensors untimed = at_rest(0.0, 4.0);
   untimed.lidars[0].point_times = sim::PointTimes::unknown;
   EXPECT_THAT(evidence_of(untimed), ElementsAre(testing::HasSubstr("the points have no times")));

@@ -332,8 +332,8 @@ TEST_P(Frames, WhatNoSensorAsksForMayMakeNoSense) {
   const Imported found = GetParam().read(path_, {});
   EXPECT_EQ(found.sensors.imus.at(0).T_BI.translation(), Eigen::Vector3d(0.5, 0, 0));
   for (const char* said :
-       {"the transform of 'map' in 'utm': the translation must be finite and at most 1 km",
-        "'camera': the frame is its own parent", "'lamp' in 'body': the rotation quaternion has norm"})
+       {"the transform of frame 'map' relative to frame 'utm': the translation must be finite and at most 1 km",
+        "'camera': the frame is its own parent", "'lamp' relative to frame 'body': the rotation quaternion has norm"})
     EXPECT_THAT(found.notes, Contains(HasSubstr(said)));
 }
 
@@ -354,7 +354,7 @@ TEST_P(Frames, ThatMakeNoSenseAreRefused) {
       {{hung("imu", "mast", {0, 0, 0}), hung("mast", "imu", {0, 0, 0})},
        "and its parent frames form a loop"},  // no body
       {{hung("imu", "body", {kNan, 0, 0})},
-       "the transform of 'imu' in 'body': the translation must be finite and at most 1 km"},
+       "the transform of frame 'imu' relative to frame 'body': the translation must be finite and at most 1 km"},
       {{hung("imu", "body", {0, 2000, 0})}, "the translation must be finite and at most 1 km"},
       {{hung("imu", "body", {0, 0, 0}, Eigen::Quaterniond(0, 0, 0, 0))},
        "the rotation quaternion has norm 0.000000; its norm must be 1"},

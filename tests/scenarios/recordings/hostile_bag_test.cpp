@@ -151,7 +151,7 @@ TEST_F(HostileBag, DamagedRos2BagsAreOneLine) {
   std::filesystem::remove(bag / "metadata.yaml");
   EXPECT_EQ(complaint(), "");
   fixture::put(bag / "other_0.db3", database);
-  EXPECT_THAT(complaint(), HasSubstr("no metadata.yaml, and the names of its bags differ by more than a number"));
+  EXPECT_THAT(complaint(), HasSubstr("no metadata.yaml, and the names of its bag files differ in more than a number"));
   std::filesystem::remove(bag / "other_0.db3"), std::filesystem::remove(bag / "bag_0.db3");
   EXPECT_THAT(complaint(), HasSubstr("no metadata.yaml, so it is not a ROS 2 bag"));
 }
@@ -182,7 +182,7 @@ TEST_F(HostileBag, TopicsWithoutMessagesAreLeftOutUnlessNamed) {
     database.exec(std::string("DELETE FROM messages WHERE topic_id = (SELECT id FROM topics WHERE name = '") + topic +
                   "')");
     const Imported imported = import_ros2_bag(bag, {});
-    EXPECT_THAT(imported.notes, testing::Contains(topic + std::string(": empty topic left out")));
+    EXPECT_THAT(imported.notes, testing::Contains(topic + std::string(": the topic has no messages and is left out")));
     EXPECT_EQ(imported.sensors.lidars.size(), topic == std::string("/imu") ? 1u : 0u);
     BagReading named;
     (topic == std::string("/imu") ? named.imu_topics : named.lidar_topics) = {topic};
@@ -232,7 +232,7 @@ TEST_F(HostileBag, AMessageThatPromisesTooMuchAllocatesNothing) {
         field_count
             ? HasSubstr("message 0 of /lidar/points: the message states 4294967280 entries of 13 bytes")
             : HasSubstr(
-                  "message 0 of /lidar/points: the cloud of 1 x 4294967280 points with 26 bytes each does not fit"));
+                  "message 0 of /lidar/points: the cloud of 1 x 4294967280 points with 26 bytes each does not match"));
   }
 }
 

@@ -207,7 +207,7 @@ TEST_F(ImportSweeps, MissesAreLeftOutAndIntensityIsScaled) {
   EXPECT_THAT(lidar.intensity, ElementsAre(0.2f, 1.0f, 0.0f, 0.0f, 0.0f));
   EXPECT_THAT(lidar.ring, ElementsAre(3, 15, 0, 0, 0));
   EXPECT_THAT(imported_.notes, testing::Contains(HasSubstr("2 points are treated as missing returns")));
-  EXPECT_THAT(imported_.notes, testing::Contains(HasSubstr("3 points have no intensity")));
+  EXPECT_THAT(imported_.notes, testing::Contains(HasSubstr("3 points have no valid intensity")));
   EXPECT_THAT(imported_.notes, testing::Contains("ignored fields: normal_x"));
 }
 
@@ -260,7 +260,7 @@ TEST_F(ImportSweeps, AnAmbiguousUnitIsRequested) {
   put("times.txt", "1.0\n1.1\n");
   for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("float time", {"0.00001", "0.00002", "0.00005"}));
   EXPECT_THAT(complaint_of(), HasSubstr("1.ply: the point times in field 'time' have a range of"));
-  EXPECT_THAT(complaint_of(), HasSubstr("the sweep period is 100 ms. State the unit (--time-unit)"));
+  EXPECT_THAT(complaint_of(), HasSubstr("0.15 to 150 % of the sweep period (100 ms). State the unit (--time-unit)"));
   source_.reading.time_unit = "s";
   EXPECT_EQ(complaint_of(), "");
   source_.reading.time_unit = "minutes";

@@ -173,9 +173,11 @@ TEST(Gate, AMetricThatAnOkOutcomeHadMayNotGo) {
   const Change drop = [](Outcome& outcome) {
     if (outcome.seed == 3) std::erase_if(outcome.scores, [](const Score& score) { return score.metric == kNees; });
   };
-  EXPECT_EQ(fault_after(kNees, drop), "the metric has no value, but has a value in the accepted results, at seed 3");
-  EXPECT_THAT(fault_after(kNees, [](Outcome& o) { score_of(o, kNees) = std::nan(""); }),
-              ::testing::StartsWith("the metric has no value, but has a value in the accepted results, at seed"));
+  EXPECT_EQ(fault_after(kNees, drop),
+            "the metric has a value in the accepted results, but no value in this run at seed 3");
+  EXPECT_THAT(
+      fault_after(kNees, [](Outcome& o) { score_of(o, kNees) = std::nan(""); }),
+      ::testing::StartsWith("the metric has a value in the accepted results, but no value in this run at seed"));
 }
 
 TEST(Gate, AFailureThatWasAcceptedMayStayOrGo) {

@@ -112,7 +112,7 @@ TEST_F(RecordedSweep, EachRecordingIsADraw) {
 TEST_F(RecordedSweep, ARecordingThatHasChangedIsRefused) {
   sweep(DataRoot{folder_}, suite(), folder_ / "a.db", {});
   record("wand_b", 21.0, false);
-  EXPECT_THAT(complaint(suite(), folder_ / "a.db"), HasSubstr("name another database"));
+  EXPECT_THAT(complaint(suite(), folder_ / "a.db"), HasSubstr("choose another database"));
   EXPECT_EQ(complaint(suite(), folder_ / "c.db"), "");
   Suite elsewhere = suite();
   elsewhere.recordings_folder = folder_ / "nowhere";
