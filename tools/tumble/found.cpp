@@ -169,10 +169,12 @@ class Found {
   void add_units(const sim::ImuRecord& imu) {
     const ImportOptions& options = recording_.options;
     const auto& agreement = recording_.rotation.primary;
-    const std::string evidence = agreement && agreement->unit == 1.0
-                                     ? fmt::format("the gyro's rotation equals the lidar's rotation within {} %",
-                                                   rounded(100.0 * agreement->unit_error))
-                                     : "the rotations of gyro and lidar cannot be compared in this recording";
+    const std::string evidence =
+        !agreement               ? "the rotations of gyro and lidar cannot be compared in this recording"
+        : agreement->unit == 1.0 ? fmt::format("the gyro's rotation equals the lidar's rotation within {} %",
+                                               rounded(100.0 * agreement->unit_error))
+                                 : "probably wrong, because the lidar's rotation equals the gyro's rotation times " +
+                                       rounded(agreement->unit);
     add("unit of the gyro", fmt::format("{}: {}", options.gyro_unit.empty() ? "rad/s" : options.gyro_unit, evidence),
         agreement                                              ? kMeasured
         : options.gyro_unit.empty() || repaired("--gyro-unit") ? kAssumed

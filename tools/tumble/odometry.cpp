@@ -170,6 +170,11 @@ void write_replay(const std::filesystem::path& page, const OpenRecording& record
 }
 
 void print_notes(const Session& session, const OpenRecording& recording, const Estimate& estimate) {
+  if (std::ranges::any_of(estimate.sweeps,
+                          [](const auto& sweep) { return sweep.verdict == SweepVerdict::degenerate; }))
+    session.note(
+        "in a degenerate sweep, the lidar determines the pose in some directions only; in the other directions, the "
+        "pose is predicted from the IMU and its covariance is larger");
   for (const Repair& repair : recording.repairs)
     session.note(
         fmt::format("the program set the option {} {}: {}", repair.option.name, repair.option.value, repair.cause));
