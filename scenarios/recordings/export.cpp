@@ -64,7 +64,7 @@ ExportNotes write_bag(const path& recording, const path& out, const ExportChoice
   ExportNotes left_out;
   for (const sim::SeriesRecord& series : sensors.series)
     left_out.push_back(
-        fmt::format("sensor '{}' of kind '{}' is left out, because ROS bags have no message type for this kind",
+        fmt::format("sensor '{}' of kind '{}' is left out, because exported bags contain IMUs, lidars and poses only",
                     series.name, series.kind));
   return joined(joined(std::move(names.imus.notes), names.lidars.notes), left_out);
 }

@@ -109,7 +109,7 @@ def describe_method(path: str | os.PathLike[str], name: str, kind: str, script: 
 def _require_description(name: str, script: str | os.PathLike[str], robots: Sequence[str], time_limit_s: float) -> None:
     """Raises the errors that the program would report when it reads the file."""
     if not isinstance(name, str) or not re.fullmatch(r"[a-z][a-z0-9_]{0,99}", name):
-        raise refusal("out_of_range", "name", repr(name), "a lower-case letter followed by letters, digits and underscores, at most 100 characters")
+        raise refusal("out_of_range", "name", repr(name), "a lower-case letter followed by lower-case letters, digits and underscores, at most 100 characters")
     if not pathlib.Path(path_of("script", script)).is_file():
         raise refusal("file", "script", os.fspath(script), "a file")
     if number_from("time_limit_s", time_limit_s, 0.0) == 0.0 or time_limit_s > TIME_MAX_S:
