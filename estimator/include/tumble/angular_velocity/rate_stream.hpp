@@ -25,13 +25,14 @@ namespace tumble {
 
 /// Estimates angular velocity sample by sample with a fixed lag, also while the gyro is saturated. AngularRateStream
 /// uses the measurement models of AngularRateSmoother over a sliding window of fixed length. By default,
-/// AngularRateStream makes one Gauss-Newton step per sample; at 400 Hz and above, one step covers the samples of up to
-/// 5 ms. The equations are in docs/maths/rate_stream.md.
+/// AngularRateStream makes one Gauss-Newton step per sample. At sample rates of 400 Hz and above, one Gauss-Newton step
+/// covers the samples of up to 5 ms. The equations are in docs/maths/rate_stream.md.
 ///
-/// AngularRateStream detects saturation limits from the readings, and classifies the samples in the window again after
-/// each detection. If AngularRateStream starts with the calibration of an earlier run, its rate error is 1.1 times the
-/// rate error of AngularRateSmoother. Without this calibration, the rate error is 1.6 times the rate error of
-/// AngularRateSmoother. The limitations of AngularRateSmoother also apply to AngularRateStream.
+/// AngularRateStream detects saturation limits from the readings. After each detection, AngularRateStream classifies
+/// the samples in the window again as clipped or unclipped. If AngularRateStream starts with the calibration of an
+/// earlier run, its rate error is 1.1 times the rate error of AngularRateSmoother. Without the calibration of an
+/// earlier run, the rate error is 1.6 times the rate error of AngularRateSmoother. The limitations of
+/// AngularRateSmoother also apply to AngularRateStream.
 ///
 /// Cost: O(window) per step. AngularRateStream allocates memory only in start().
 class AngularRateStream {
@@ -45,24 +46,24 @@ class AngularRateStream {
 
   State start() const;
 
-  /// `out` is the estimate of the sample that is `lag_s` old, and is empty while the window fills. On error
+  /// `out` receives the estimate of the sample that is `lag_s` old. While the window fills, `out` is empty. On error
   /// (`non_finite`, `time_order`, `gap`), the state is unchanged and `out` is empty.
   Status push(const ImuSample& sample, State& state, std::optional<AngularRateState>& out) const {
     return push(sample, {}, state, out);
   }
-  /// `auxiliary_imus` must be empty or contain one reading, at the time of the sample, per entry of
-  /// AngularRateModelParams::auxiliary_imus; otherwise push() returns `insufficient_data`.
+  /// `auxiliary_imus` contains one reading for each auxiliary IMU of AngularRateModelParams::auxiliary_imus, at the
+  /// time of the sample, or is empty. If the number of readings is wrong, push() returns `insufficient_data`.
   Status push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
               std::optional<AngularRateState>& out) const;
 
   /// Returns the provisional estimate of the newest sample, or an empty result before the first sample.
   std::optional<AngularRateState> newest(const State& state) const;
 
-  /// Appends the estimates of the samples in the window to `out`, oldest first, for the end of a run.
+  /// Appends the estimates of the samples in the window to `out`, oldest first. Call flush() at the end of a run.
   void flush(const State& state, std::vector<AngularRateState>& out) const;
 
-  /// Reports current faults of the IMU: frozen axes (FrozenAxes), and a wrong sign of the accelerometer, which
-  /// FlightSignCheck detects from the specific force in free flight.
+  /// Reports current faults of the IMU. FrozenAxes detects frozen axes. FlightSignCheck detects a wrong sign of the
+  /// accelerometer from the specific force in free flight.
   SensorHealth health(const State& state) const;
 
   RigCalibration calibration(const State& state) const { return {state.rig, inflated_calibration_covariance(state)}; }

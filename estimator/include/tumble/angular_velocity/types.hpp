@@ -37,19 +37,19 @@ struct RigConstants {
   Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< vector from the centre of mass to the IMU, in IMU axes
   Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();  ///< bias: reading minus true value
   Eigen::Vector3d accel_bias_m_s2 = Eigen::Vector3d::Zero();  ///< bias: reading minus true value
-  /// Coordinates of the inertia matrix about the centre of mass, in IMU axes, scaled to trace 3. The inertia matrix is
-  /// the identity matrix plus the sum of inertia[i] * inertia_basis_matrix(i). If the principal moments are equal, all
-  /// five coordinates are zero.
+  /// Coordinates of the body's inertia matrix about the centre of mass, in IMU axes. The inertia matrix is scaled to
+  /// trace 3, and is the identity matrix plus the sum of inertia[i] * inertia_basis_matrix(i). If the principal moments
+  /// are equal, all five coordinates are zero.
   Eigen::Matrix<double, 5, 1> inertia = Eigen::Matrix<double, 5, 1>::Zero();
   /// Cross-axis sensitivities of the gyro's sensing elements, before the device's compensation. The sensing direction
-  /// of element j is 1 on axis j, elements[2j] on axis (j+1) % 3 and elements[2j+1] on axis (j+2) % 3. The cross-axis
-  /// sensitivities are observable only while a sensing element clips.
+  /// of element j has the components 1 on axis j, gyro_misalignment[2j] on axis (j+1) % 3 and gyro_misalignment[2j+1]
+  /// on axis (j+2) % 3. The cross-axis sensitivities are observable only while a sensing element clips.
   Eigen::Matrix<double, 6, 1> gyro_misalignment = Eigen::Matrix<double, 6, 1>::Zero();
 
   Eigen::Vector3d sensing_direction(int j) const;
   /// Returns the inertia matrix, scaled to trace 3.
   Eigen::Matrix3d inertia_matrix() const;
-  /// Converts a symmetric inertia matrix of any positive scale to the ratios `inertia`.
+  /// Converts a symmetric inertia matrix of any positive scale to the coordinates `inertia`.
   static Eigen::Matrix<double, 5, 1> inertia_basis_coordinates(const Eigen::Matrix3d& inertia);
   static const Eigen::Matrix3d& inertia_basis_matrix(int i);
 
@@ -58,16 +58,16 @@ struct RigConstants {
   bool operator==(const RigConstants&) const = default;
 };
 
-/// Rig constants that one run estimated, with their covariance; a later run can use them as prior.
+/// RigCalibration contains the rig constants that one run estimated, with their covariance. A later run can use a
+/// RigCalibration as prior.
 struct RigCalibration {
   RigConstants constants;
   RigConstants::Matrix covariance = RigConstants::Matrix::Identity();
 };
 
-/// Returns `out_of_range` if a rig constant exceeds RigConstants::kMaxConstantMagnitude.
+/// Returns `out_of_range` if the magnitude of a rig constant exceeds RigConstants::kMaxConstantMagnitude.
 Status check_rig_constants(const RigConstants& rig);
-/// Returns `out_of_range` for an implausible rig constant, and `degenerate` for a covariance that is not positive
-/// definite.
+/// Returns `ok`, an error of check_rig_constants(), or `degenerate` if the covariance is not positive definite.
 Status check_calibration(const RigCalibration& calibration);
 
 }  // namespace tumble

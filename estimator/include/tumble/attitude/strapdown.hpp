@@ -10,8 +10,8 @@
 namespace tumble {
 
 /// Integrates the gyro to an attitude, starting with the tilt that the accelerometer measures. Strapdown assumes a
-/// constant rate in body axes during each sample. The attitude drifts, because Strapdown ignores gyro biases and later
-/// force readings.
+/// constant rate in body axes between two samples. The attitude drifts, because Strapdown ignores gyro biases, and uses
+/// only the first force reading.
 class Strapdown {
  public:
   struct Params {
@@ -43,7 +43,7 @@ class Strapdown {
 };
 
 /// Computes the attitude with yaw 0 from the specific force at rest, given in sensor axes [m/s^2]. Returns `degenerate`
-/// if the specific force is below 1e-6 m/s^2.
+/// if the magnitude of the specific force is below 1e-6 m/s^2.
 Status inclination_from_force(const Eigen::Vector3d& specific_force_m_s2, Eigen::Quaterniond& q_WI);
 
 }  // namespace tumble

@@ -19,10 +19,10 @@
 /// Each `Params` struct describes its parameters once, in a static member function template `fields`. Range checks,
 /// tables and file readers call `fields` with a visitor.
 ///
-/// The signature is `template <class Self, class Visitor> static void fields(Self& p, Visitor& visit)`, and `Self` may
-/// be const. `fields` calls `visit(p.member, Field)` for each number, boolean, enumeration and Vector3d of the struct.
-/// `fields` calls `visit.group("prefix_", p.member)` for each nested `Params` struct. Poses, planes and calibrations
-/// are not visited, because users do not enter them as plain numbers.
+/// The declaration is `template <class Self, class Visitor> static void fields(Self& p, Visitor& visit)`. `Self` may be
+/// a const type. `fields` calls `visit(p.member, Field)` for each number, boolean, enumeration and Vector3d of the
+/// struct. `fields` calls `visit.group("prefix_", p.member)` for each nested `Params` struct. `fields` skips members
+/// that users do not enter as plain numbers, for example poses and calibrations.
 namespace tumble {
 
 /// Most users adapt only the parameters of rank `common_use`.
@@ -44,13 +44,13 @@ inline Field boolean_field(const char* name, const char* meaning, ParameterRank 
 /// bound for parameters without a limit: the largest finite number
 inline constexpr double kUnbounded = std::numeric_limits<double>::max();
 
-/// arithmetic and enumeration types, which a visitor receives as numbers
+/// Number is the concept of arithmetic and enumeration types. A visitor handles parameters of these types as numbers.
 template <class T>
 concept Number = std::is_arithmetic_v<std::remove_cvref_t<T>> || std::is_enum_v<std::remove_cvref_t<T>>;
 
 namespace detail {
 
-/// `names` contains the prefixes of the invalid parameter's groups, followed by its name.
+/// `names` contains the prefixes of the invalid parameter's groups, followed by the parameter's name.
 struct OutOfBoundsParameter {
   std::array<const char*, 8> names{};
   std::size_t prefix_count = 0;
@@ -88,8 +88,8 @@ void throw_if_out_of_bounds(const OutOfBoundsParameter& found);
 
 }  // namespace detail
 
-/// Returns `out_of_range` with the name, value and bound of the first invalid parameter of `params`, or `ok`. The
-/// returned name of a nested parameter lacks the prefix of its group. No memory is allocated.
+/// Returns `ok`, or `out_of_range` with the name, value and violated bound of the first invalid parameter of `params`.
+/// For a parameter of a nested group, the returned name lacks the group's prefix. No memory is allocated.
 template <class Params>
 Status check_fields(const Params& params) {
   detail::OutOfBoundsParameter found;
@@ -108,7 +108,7 @@ void require_valid_fields(const Params& params) {
 
 namespace detail {
 
-/// Prepends the prefixes of nested groups to each parameter's name.
+/// PrefixedNameVisitor prepends the prefixes of all enclosing groups to each parameter's name.
 template <class Each>
 class PrefixedNameVisitor {
  public:
@@ -134,14 +134,15 @@ class PrefixedNameVisitor {
 }  // namespace detail
 
 /// Calls `each(name, value, field)` for each parameter in the struct `params`, in order of declaration. `name` is a
-/// std::string that starts with the prefixes of the parameter's groups.
+/// std::string: the prefixes of the parameter's groups, followed by the parameter's name.
 template <class Params, class Each>
 void visit_by_name(Params& params, Each each) {
   detail::PrefixedNameVisitor<Each> visitor(each);
   std::remove_cv_t<Params>::fields(params, visitor);
 }
 
-/// Returns true if `name` equals one of `patterns`. A pattern that ends in '*' matches every name with that prefix.
+/// Returns true if `name` matches one of `patterns`. A pattern that ends in '*' matches every name that starts with the
+/// text before the '*'. Any other pattern matches only the equal name.
 template <class Text>
 bool matches_any(std::string_view name, std::span<const Text> patterns) {
   return std::any_of(patterns.begin(), patterns.end(), [&](std::string_view pattern) {
@@ -150,10 +151,11 @@ bool matches_any(std::string_view name, std::span<const Text> patterns) {
   });
 }
 
-/// HeapValue stores a value on the heap. A copy of a HeapValue copies the value, and a constant HeapValue gives access
-/// to a constant value, like std::indirect of C++26. T may be an incomplete type where a HeapValue is a member. The
-/// source file that uses the following functions, or instantiates them explicitly, needs the complete type. A
-/// moved-from HeapValue has no value until it is assigned.
+/// HeapValue stores a value on the heap. Like std::indirect of C++26, a copy of a HeapValue contains a copy of the
+/// value, and a constant HeapValue gives access to a constant value. A class can have a member HeapValue<T> for an
+/// incomplete type T, if the header declares `extern template class HeapValue<T>`. Only the source file that
+/// instantiates HeapValue<T> explicitly then needs the complete type T. A moved-from HeapValue has no value until a new
+/// value is assigned.
 template <class T>
 class HeapValue {
  public:
@@ -176,7 +178,8 @@ class HeapValue {
 };
 
 // The following functions are not inline, because an `extern template` declaration does not prevent the instantiation
-// of inline functions. The instantiation fails in files in which T is incomplete.
+// of inline functions. In a source file with an incomplete type T, the compiler cannot instantiate the functions of
+// HeapValue<T>.
 template <class T>
 HeapValue<T>::HeapValue() : value_(std::make_unique<T>()) {}
 template <class T>

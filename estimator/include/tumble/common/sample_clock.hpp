@@ -18,12 +18,12 @@ namespace tumble {
 /// SampleClock fits a line to the time stamps as a function of the sample number, with exponentially decreasing weights
 /// of older time stamps. Source: fading-memory polynomial filter of first degree (Morrison, Introduction to Sequential
 /// Smoothing and Prediction, 1969, ch. 13). The error of an estimated time is 1.1 sqrt(T / memory_s) times the jitter
-/// of the time stamps, for the sample period T. An estimated time differs from the time stamp by at most half a period.
-/// A constant delay of the host is not observable.
+/// of the time stamps, for the sample period T. An estimated time differs from the time stamp by at most half a sample
+/// period. SampleClock cannot observe, and does not correct, a constant delay of the host.
 ///
-/// SampleClock does not change the first 32 time stamps, time stamps with a jitter outside of [jitter_min, jitter_max],
-/// and time stamps with correlated errors. Set `jitter_max` to 0 if a host computer triggers the samples at irregular
-/// times and assigns exact time stamps.
+/// SampleClock does not change the first 31 time stamps. SampleClock also leaves time stamps unchanged while their
+/// jitter is outside of [kJitterMin, jitter_max] sample periods, or while their errors are correlated. Set `jitter_max`
+/// to 0 if a host computer triggers the samples at irregular times and assigns exact time stamps.
 class SampleClock {
  public:
   struct Params {
@@ -62,7 +62,7 @@ class SampleClock {
 
   /// Estimates `time_ns`, the time at which the sensor took the sample with the time stamp `stamp_ns`. Estimated times
   /// increase strictly. Returns `time_order` and leaves the state unchanged if the time stamp is not later than the
-  /// previous one. Cost: O(1), no allocation.
+  /// previous time stamp. Cost: O(1), no allocation.
   Status push(TimeNs stamp_ns, State& state, TimeNs& time_ns) const;
 
   /// Returns the standard deviation of the time stamps about the fitted line [s]; empty before the first fit.
@@ -76,8 +76,8 @@ class SampleClock {
   Params params_;
 };
 
-/// Replaces the time stamps of a recording with the sample times that SampleClock estimates. The output
-/// `corrected_jitter_s` is the largest corrected jitter [s], or 0 if all time stamps are unchanged. Returns
+/// Replaces the time stamps of a recording with the sample times that SampleClock estimates. `corrected_jitter_s`
+/// receives the largest jitter of the corrected time stamps [s], or 0 if no time stamp was corrected. Returns
 /// `time_order` and leaves `stamps_ns` unchanged if the time stamps do not increase. Cost: O(N).
 Status correct_stamps(const SampleClock& clock, std::span<TimeNs> stamps_ns, double& corrected_jitter_s);
 

@@ -11,7 +11,8 @@
 
 namespace tumble {
 
-/// One suspected fault of a sensor or of the estimate, reported by health() of an odometry class.
+/// HealthFinding is one suspected fault of a sensor or of the estimate. The odometry classes report findings with
+/// health().
 struct HealthFinding {
   enum class Kind : std::uint8_t {
     frozen_axis,               ///< one axis of a gyro or an accelerometer repeats one reading
@@ -41,10 +42,11 @@ struct HealthFinding {
   double value = 0.0;                   ///< value of the quantity
   double bound = 0.0;                   ///< violated limit
   std::optional<TimeNs> since_ns = {};  ///< start of the fault; empty if the check does not determine the start
-  /// the fault is over; health() of a live run reports only current faults
+  /// true if the fault has ended; health() of a live run reports only current faults
   bool ended = false;
 
-  /// Returns a margin between 0 (value at its bound) and 1 (value far beyond its bound), which is not a probability.
+  /// Returns how far the value is beyond its bound, from 0 (at the bound) to 1 (far beyond the bound). The result is
+  /// not a probability.
   double confidence() const;
   Status status() const { return {ErrorCode::out_of_range, quantity, value, bound}; }
   /// Returns true if the fault makes the estimate unusable.

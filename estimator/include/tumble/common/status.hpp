@@ -33,7 +33,7 @@ struct Status {
   std::string message() const;
 };
 
-/// Exception of a constructor whose parameter is out of its documented bounds.
+/// Constructors throw InvalidParams if a parameter is out of its documented bounds.
 class InvalidParams : public std::invalid_argument {
  public:
   InvalidParams(const std::string& field, double value, const std::string& bound);

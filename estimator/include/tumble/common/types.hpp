@@ -13,11 +13,11 @@ namespace tumble {
 /// integer nanoseconds since the start of the recording
 using TimeNs = std::int64_t;
 
-/// Largest magnitude of a time stamp that the odometry classes accept: 97 years. Twice the difference of two accepted
-/// time stamps fits into 64 bits.
+/// Largest magnitude of a time stamp that the odometry classes accept: 97 years. A sum or difference of up to three
+/// accepted time stamps fits into TimeNs.
 inline constexpr TimeNs kStampMax_ns = 3'070'000'000'000'000'000;
 
-/// The relative error of seconds() is at most 2^-53 for durations below 104 days.
+/// The relative error of seconds() is at most 2^-52 for durations below 104 days.
 constexpr double seconds(TimeNs span_ns) {
   return static_cast<double>(span_ns) * 1e-9;
 }
@@ -47,7 +47,8 @@ inline bool is_finite(const ImuSample& sample) {
   return sample.angular_velocity_rad_s.allFinite() && sample.specific_force_m_s2.allFinite();
 }
 
-/// Returns `non_finite` for NaN and infinity, `out_of_range` for a magnitude above 1e6, and otherwise `ok`.
+/// Returns `non_finite` if a component is NaN or infinite, `out_of_range` if the magnitude of a component exceeds 1e6,
+/// and otherwise `ok`.
 Status check_sample(const ImuSample& sample);
 
 /// Returns `time_order` if `time_ns` is not later than `previous_ns`. Returns `gap`, with the gap in seconds, if the
@@ -93,14 +94,15 @@ Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& phi);
 /// Returns the inverse of the left Jacobian of SO(3), which is finite for |phi| < 2 pi.
 Eigen::Matrix3d left_jacobian_inverse(const Eigen::Vector3d& phi);
 
-/// Returns the smallest rotation that turns the unit vector `from` into the unit vector `to`.
+/// Returns the rotation by the smallest angle that turns the unit vector `from` into the unit vector `to`.
 Eigen::Quaterniond shortest_arc(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
 }  // namespace tumble::so3
 
 /// A program and the compiled library must use the same memory layout for Eigen's matrices and the standard library's
-/// containers. A program with another layout, for example through EIGEN_MAX_STATIC_ALIGN_BYTES or _GLIBCXX_DEBUG, does
-/// not link. The linker then reports CompilerSettingsCheck<...>::linked as missing.
+/// containers. A program with a different layout, for example because of EIGEN_MAX_STATIC_ALIGN_BYTES or
+/// _GLIBCXX_DEBUG, does not link. The linker of such a program reports that CompilerSettingsCheck<...>::link_time_check
+/// is undefined.
 namespace tumble::detail {
 
 #ifdef _GLIBCXX_DEBUG
@@ -125,9 +127,10 @@ using CompiledHere = CompilerSettingsCheck<EIGEN_MAX_STATIC_ALIGN_BYTES, EIGEN_M
                                            sizeof(Eigen::Index), kCheckedContainers>;
 
 template <>
-const char CompiledHere::link_time_check;  // a declaration; src/common/same_compiler_settings.cpp has the definition
+const char CompiledHere::link_time_check;  // a declaration; src/common/types.cpp has the definition
 
-/// This reference to `link_time_check` makes the linker check each source file.
+/// This reference to `link_time_check` makes the linker compare the memory layout of each source file with the
+/// library's layout.
 [[gnu::used]] static const char* const kSameCompilerSettings = &CompiledHere::link_time_check;
 
 }  // namespace tumble::detail

@@ -31,9 +31,10 @@ struct MapPoint {
   float sigma_m = 0.0f;                                ///< standard deviation of the position
 };
 
-/// Calibration between lidar, IMU and world, which the registration refines during the motion. The error vector
-/// contains rotation of T_IL, translation of T_IL, time offset and gravity, in this order. The rotation error phi is a
-/// left perturbation in IMU axes: R_true = Exp(phi) R.
+/// LidarImuCalibration contains the lidar's mounting on the IMU, the time offset between IMU and lidar, and gravity.
+/// The registration refines the calibration during the motion. The error vector contains rotation of T_IL, translation
+/// of T_IL, time offset and gravity, in this order. The rotation error phi is a left perturbation in IMU axes: R_true =
+/// Exp(phi) R.
 struct LidarImuCalibration {
   static constexpr int kErrorCount = 10;
   using Covariance = Eigen::Matrix<double, kErrorCount, kErrorCount>;
@@ -43,7 +44,7 @@ struct LidarImuCalibration {
   Eigen::Vector3d gravity_W_m_s2 = Eigen::Vector3d(0.0, 0.0, -9.80665);
 
   void add(const Eigen::Matrix<double, kErrorCount, 1>& error);
-  /// Returns the error vector that transforms `other` to this calibration, to first order in the rotation difference.
+  /// Returns the error vector for which `other.add(error)` equals this calibration.
   Eigen::Matrix<double, kErrorCount, 1> minus(const LidarImuCalibration& other) const;
 };
 
@@ -51,18 +52,17 @@ struct LidarImuCalibration {
 /// kDistanceMax_sigmas.
 Status distance_verdict(double deviations);
 
-/// Calibration that the caller states, with a standard deviation of the time offset, and standard deviations of
-/// rotation and translation per axis.
-/// A standard deviation of 0 marks an exact part of the calibration.
+/// LidarImuCalibrationPrior is the calibration that the caller states, with standard deviations of rotation (per axis),
+/// translation (per axis) and time offset. A standard deviation of 0 means that the stated value is exact.
 struct LidarImuCalibrationPrior {
   static constexpr double kDistanceMax_sigmas = 5.0;  ///< largest plausible result of distance_in_sigmas()
 
   LidarImuCalibration calibration;
   double mount_sigma_rad = 0.0, mount_sigma_m = 0.0, time_offset_sigma_s = 0.0;
 
-  /// Returns how many stated standard deviations an estimated calibration is from the stated calibration, by equation
-  /// (R69) of mapping.md. The result is the largest of the distances of rotation, translation and time offset. The
-  /// result is infinite if a value with standard deviation 0 differs.
+  /// Returns the distance between an estimated calibration and the stated calibration, in stated standard deviations:
+  /// mapping.md (R69). The result is the largest of three distances: rotation, translation and time offset. The result
+  /// is infinite if an estimated value differs from a stated value with standard deviation 0.
   double distance_in_sigmas(const LidarImuCalibration& estimated) const;
   /// Returns `out_of_range` if distance_in_sigmas() is above kDistanceMax_sigmas, because the stated calibration is
   /// probably wrong.
@@ -106,8 +106,8 @@ struct VelocityReading {
   double sigma_m_s = 0.0;                                ///< standard deviation of each axis
 };
 
-/// Motion of the IMU I between two times. For IMU poses T_OI in a drifting odometer frame O, the motion is
-/// T_OI(from)^-1 T_OI(to).
+/// MotionReading is the measured motion of the IMU I from `from_ns` to `to_ns`. For IMU poses T_OI in a drifting
+/// odometer frame O, the motion is T_OI(from)^-1 T_OI(to).
 struct MotionReading {
   TimeNs from_ns = 0;
   TimeNs to_ns = 0;
@@ -120,15 +120,15 @@ struct MotionReading {
 using OdometerReading = std::variant<VelocityReading, MotionReading>;
 
 /// Returns `non_finite` if a number is not finite. Returns `out_of_range` if a standard deviation is not above 0, a
-/// covariance is not positive definite, or a rotation is invalid. Returns `time_order` if a motion does not end after
-/// its start.
+/// covariance is not positive definite, or a rotation matrix is not orthonormal. Returns `time_order` if a motion does
+/// not end after its start.
 Status check_reading(const OdometerReading& reading);
 TimeNs reading_start_ns(const OdometerReading& reading);
 TimeNs reading_end_ns(const OdometerReading& reading);
 
 /// PositionReading is the position of an antenna or tag A on the robot, in a position frame P with z up, for example
 /// from GPS (as local east, north, up) or from beacons. PositionAlignment assumes that the errors of the readings are
-/// independent. If the errors are correlated over time, state a larger covariance.
+/// independent. If the errors of successive readings are correlated, state a larger covariance.
 struct PositionReading {
   TimeNs time_ns = 0;  ///< in the IMU's clock
   Eigen::Vector3d antenna_position_P_m = Eigen::Vector3d::Zero();
@@ -137,20 +137,21 @@ struct PositionReading {
 };
 
 /// PositionFrame is the estimated transform from the odometry frame W of the poses to the position frame P of the
-/// position readings. The transform includes the drift of the odometry, so poses in the position frame do not drift.
+/// position readings. The transform compensates the drift of the odometry, so poses in the position frame do not drift.
 struct PositionFrame {
   Eigen::Isometry3d T_readings_world = Eigen::Isometry3d::Identity();  ///< the rotation is about the vertical
   Eigen::Vector3d reference_point_W_m = Eigen::Vector3d::Zero();
-  /// Covariance of the error of T_PW, in axes of the position frame P: translation at `reference_point_W_m` [m], and
-  /// rotation about the vertical through this point [rad].
+  /// Covariance of the transform's error in axes of the position frame P. The components of the error are the
+  /// translation of `reference_point_W_m` [m], and the rotation about the vertical through this point [rad].
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
 
-  /// Converts a pose from the odometry frame W to the position frame P. The covariance of position and heading comes
-  /// from `covariance`, and the covariance of the tilt from `in_W`.
+  /// Converts a pose from the odometry frame W to the position frame P. In the result, the covariance of position and
+  /// heading comes from PositionFrame::covariance, and the covariance of the tilt from `in_W`.
   PoseState transform(const PoseState& in_W) const;
 };
 
-/// Map of an earlier run, in which a new run localises the robot. The map frame M has the axis z up.
+/// PriorMap is a map of an earlier run. A new run localises the robot in the prior map. The z axis of the map frame M
+/// points upwards.
 struct PriorMap {
   std::vector<MapPoint> points = {};  ///< points with normals, in the map frame M; to_map_points() computes normals
   /// Start pose of the IMU in the map frame M, if known; only position and heading are used. If the start pose is
@@ -162,19 +163,20 @@ struct PriorMap {
       true;  ///< true: sweeps extend the map and remove points that they see through; false: the map is constant
 };
 
-/// Returns `non_finite`, or `out_of_range` for a negative standard deviation, a normal that is neither zero nor a unit
-/// vector, or a position beyond 50 km.
+/// Returns `non_finite` if a number is NaN or infinite. Returns `out_of_range` for a negative standard deviation, a
+/// normal that is neither zero nor a unit vector, or a coordinate beyond 50 km. Otherwise returns `ok`.
 Status check_map_points(std::span<const MapPoint> points);
-/// Returns `ok`, an error of check_map_points(), or `insufficient_data` if fewer than 100 points have a normal.
+/// Returns `ok`, an error of check_map_points(), or `insufficient_data` if fewer than 100 points have a normal. Returns
+/// `non_finite` or `out_of_range` if the start pose or a standard deviation is invalid.
 Status check_prior_map(const PriorMap& map);
 
-/// Converts positions, for example of a PCD or PLY file, to map points with normals. At most one point per cube of 0.1
-/// m remains, and positions that are not finite are dropped. The sign of a normal is arbitrary, and `sigma_m` is the
-/// standard deviation of each position. Cost: O(points).
+/// Converts positions, for example of a PCD or PLY file, to map points with normals. to_map_points() keeps at most one
+/// point per cube of 0.1 m, and drops positions that are NaN or infinite. The sign of a normal is arbitrary. `sigma_m`
+/// is the standard deviation of each position. Cost: O(points).
 std::vector<MapPoint> to_map_points(std::span<const Eigen::Vector3f> positions_M_m, float sigma_m = 0.02f);
 
-/// Source of a sweep's pose: registration or inertial prediction. A `degenerate` sweep with eigenvalue_ratio 0 uses the
-/// prediction in every direction.
+/// SweepVerdict states whether a sweep's pose comes from the registration or from the inertial prediction. If a
+/// `degenerate` sweep has an eigenvalue_ratio of 0, the whole pose comes from the inertial prediction.
 enum class SweepVerdict : std::uint8_t {
   first,       ///< the sweep started the map
   registered,  ///< aligned with the map in all six directions
@@ -190,26 +192,28 @@ struct SweepReport {
   Eigen::Matrix3d velocity_covariance_I_m2_s2 = Eigen::Matrix3d::Zero();
   std::vector<PoseState> trajectory;  ///< IMU poses within the sweep, corrected by the registration
   /// Final poses of the oldest sweep that the fixed-lag smoother refines; empty until `window_sweeps` sweeps have
-  /// arrived. With the default `window_sweeps` of 2, the oldest sweep is the previous sweep.
+  /// arrived. With the default `window_sweeps` of 2, `smoothed` contains the poses of the previous sweep.
   std::vector<PoseState> smoothed;
   double inlier_ratio = 0.0;      ///< fraction of the registered points that are inliers
   double eigenvalue_ratio = 0.0;  ///< smallest divided by largest eigenvalue of the scaled normal matrix
-  /// standard deviation of the pose in the least constrained direction, from this sweep's points alone; 0: not aligned
+  /// standard deviation of the pose in the least constrained direction, from this sweep's points alone; 0: the sweep
+  /// was not aligned
   double least_constrained_sigma_m = 0.0;
-  /// Normalised innovation sqrt(d' P^-1 d / 9). The nine components of d are the corrections of the predicted position,
-  /// attitude and velocity, and P is the covariance of the inertial prediction. The mean innovation is at most 1 if the
-  /// covariances are correct; 0 means that the sweep was not aligned.
+  /// Normalised innovation sqrt(d' P^-1 d / 9), for the nine corrections d of the predicted position, attitude and
+  /// velocity. P is the covariance of the predicted position, attitude and velocity. If the covariances are correct,
+  /// the mean innovation is at most 1. An innovation of 0 means that the sweep was not aligned.
   double innovation = 0.0;
-  /// Standard deviation of the position relative to the map around the robot. The covariance of `pose` also includes
-  /// the map's drift and tilt, which grow with the travelled distance.
+  /// Standard deviation of the position relative to the nearby map points. The covariance of `pose` also includes the
+  /// map's drift and tilt, which grow with the travelled distance.
   double map_sigma_m = 0.0;
   int iterations = 0;
   int consecutive_rejected_sweeps = 0;  ///< consecutive rejected sweeps, including the current sweep
-  /// True if the sweep relocalised the robot at an unpredicted pose, and two further sweeps have not yet confirmed this
-  /// pose. A contradicting sweep reverts the relocalisation.
+  /// True from a relocalisation away from the predicted pose until two further sweeps confirm the relocalisation. If a
+  /// sweep contradicts the relocalisation, the run returns to the inertially predicted pose.
   bool relocalisation_unconfirmed = false;
-  /// Unit vector of position and attitude in world axes, along which the lidar constrains the pose least. To have the
-  /// same unit as position, attitude is multiplied by the root-mean-square distance of the points from the IMU.
+  /// Direction in which the lidar constrains the pose least: unit vector of three position and three attitude
+  /// components, in world axes. An attitude component is the angle times the root-mean-square distance of the points
+  /// from the IMU, so that all components have the same unit.
   Eigen::Matrix<double, 6, 1> least_constrained_direction = Eigen::Matrix<double, 6, 1>::Zero();
   Eigen::Vector3d mean_saturation_deficit_rad_s =
       Eigen::Vector3d::Zero();        ///< mean correction of the clipped gyro axes

@@ -15,14 +15,15 @@
 
 namespace tumble {
 
-/// SecondMappingPassParams contains the parameters of the second pass over the first seconds of motion; see
+/// SecondMappingPassParams contains the parameters of the second mapping pass over the first seconds of motion; see
 /// TumblingOdometry.
 struct SecondMappingPassParams {
   double after_s = 3.0;    ///< duration of motion before the second pass starts; 0: none
   double lost_s = 0.4;     ///< duration of tracking failure that starts a second pass; 0: never
   double lag_s = 0.5;      ///< lag of the rates of the second pass
   std::size_t sweeps = 3;  ///< number of buffered sweeps per new sweep, at least two
-  /// Factor on the calibration's variance, because the second pass uses the readings again.
+  /// Factor by which the variance of the estimated calibration is multiplied, because the second pass uses the same
+  /// readings again.
   double inflation = 4.0;
   double rest_s = 1.0;  ///< duration of the initial rest that is buffered
 
@@ -46,15 +47,16 @@ struct SecondMappingPassParams {
 };
 
 /// TumblingExpertParams contains the rarely changed parameters of TumblingOdometry. If TumblingParams contains the same
-/// parameter, TumblingOdometry uses the value in TumblingParams. The parameter gravity_m_s2 applies to the estimation
-/// of rates and of the map.
+/// parameter, TumblingOdometry uses the value in TumblingParams. The estimation of rates and the mapping both use the
+/// parameter gravity_m_s2.
 struct TumblingExpertParams {
   double gravity_m_s2 = 9.80665;
   /// Maximum number of sweeps that wait for IMU samples, in addition to the sweeps of the last `lag_s`.
-  /// TumblingOdometry also stores at most sweeps_max sweeps that wait for take(), and then drops the oldest sweep.
+  /// TumblingOdometry also stores at most sweeps_max registered sweeps until take() returns them. If more sweeps wait
+  /// for take(), TumblingOdometry drops the oldest sweep.
   std::size_t sweeps_max = 16;
   /// Parameters of the rate estimation. By default, the prior probability that the IMU does not match its data sheet is
-  /// 0.003. The covariance of each rate includes the uncertainty of the calibration.
+  /// 0.003. The covariance of each estimated rate includes the uncertainty of the IMU's calibration.
   MotionRegimeStream::Params rate = default_rate_params();
   /// Parameters of the mapping. By default, gravity's direction and the saturation deficit (true rate minus clipped
   /// reading) are unknowns of the registration.
@@ -65,7 +67,8 @@ struct TumblingExpertParams {
   static OdometryParams mapping_defaults();
   static MotionRegimeStream::Params default_rate_params();
   /// Returns the names of parameters that TumblingOdometry computes from other parameters. A name that ends in '*'
-  /// stands for all names with that prefix. TumblingOdometry ignores user values of computed parameters.
+  /// stands for all names that start with the text before the '*'. TumblingOdometry ignores user values of computed
+  /// parameters.
   static std::span<const char* const> derived_fields();
 
   template <class Self, class Visitor>
@@ -97,7 +100,7 @@ struct RollingOdometryExpertParams {
 };
 
 /// Returns the parameters with which RollingSmoother processes merged readings, for programs that use RollingSmoother
-/// alone.
+/// without RollingOdometry.
 RollingSmoother::Params rolling_smoother_params(const RollingOdometry::Params& params, const MergedRecordings& merged);
 
 }  // namespace tumble

@@ -24,32 +24,33 @@ extern template class HeapValue<RollingOdometryExpertParams>;
 
 /// Estimates the pose of a rolling sphere from one to four IMUs, through grip, slip, bumps and slopes. The reported
 /// poses are live, smoothed with the data of the following `lag_s`, or smoothed with the whole recording.
-/// ImuSaturationLimits flags readings that a device clips without reporting saturation, ImuMerge fuses the IMUs, and
-/// RollingSmoother (with its RollingFilter) estimates the motion. With kWholeRecording, merge_recordings() flags and
-/// fuses the readings.
+/// ImuSaturationLimits flags readings that a device clips without reporting saturation. ImuMerge fuses the IMUs.
+/// RollingSmoother (with its RollingFilter) estimates the motion. With kWholeRecording, merge_recordings() flags
+/// clipped readings and fuses the IMUs.
 ///
 /// The z axis of the world frame points upwards. The first sample defines origin and yaw of the world frame; the origin
 /// is the sphere's centre. The sphere should be at rest for one second at the start.
 ///
-/// The state of RollingOdometry takes half a megabyte, plus 0.1 MB per IMU and 11 KiB per 0.02 s of lag.
-/// RollingOdometry computes poses in blocks of RollingSmoother::Params::block_s. After start-up, add_imus() allocates
-/// memory only at the end of a block, and for poses that take() has not yet returned. A call needs at most 64 KiB of
-/// stack. RollingOdometry starts no threads, uses no files and prints nothing. A copy of a RollingOdometry contains the
-/// complete state. The limitations of ImuMerge, RollingFilter and RollingSmoother apply to RollingOdometry.
+/// The state of RollingOdometry takes half a megabyte, plus 0.1 MB per IMU and 11 KiB per 0.02 s of lag. If `lag_s` is
+/// above 0, RollingOdometry computes poses in blocks of RollingSmoother::Params::kBlock_s. After start-up, add_imus()
+/// allocates memory only at the end of a block, and for poses that take() has not yet returned. A call needs at most 64
+/// KiB of stack. RollingOdometry starts no threads, uses no files and prints nothing. A copy of a RollingOdometry
+/// contains the complete state. The limitations of ImuMerge, RollingFilter and RollingSmoother apply to
+/// RollingOdometry.
 class RollingOdometry {
  public:
   static constexpr double kWholeRecording = 1e9;  ///< value of Params::lag_s
 
   struct ImuSetup {
     ImuDataSheet data_sheet;
-    /// pose of the IMU relative to the sphere's centre: x_B = T_BI x_I
+    /// pose of the IMU in sphere axes, relative to the stated centre of the sphere: x_B = T_BI x_I
     Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
   };
   struct Params {
     double radius_m = 0.0;       ///< required; has no default
     std::vector<ImuSetup> imus;  ///< 1 to 4 IMUs; required
-    /// Standard deviation of the sphere's true centre relative to the stated centre, from which the poses T_BI of the
-    /// IMUs are measured. RollingOdometry estimates the true centre.
+    /// Standard deviation of the sphere's true centre relative to the stated centre. The poses T_BI of the IMUs are
+    /// relative to the stated centre. RollingOdometry estimates the true centre.
     double centre_sigma_m = 6e-3;
     double gravity_m_s2 = 9.80665;
     /// Lag of the poses that take() returns; 0: live poses. With kWholeRecording, add_imus() stores the readings,
@@ -59,11 +60,13 @@ class RollingOdometry {
     using Expert = RollingOdometryExpertParams;
     HeapValue<Expert> expert;  ///< rarely changed parameters, odometry/expert_params.hpp
 
-    /// Names of parameters that are computed from other parameters and from data sheets; user values are ignored.
+    /// Returns the names of parameters that RollingOdometry computes from other parameters and from data sheets.
+    /// RollingOdometry ignores user values of computed parameters.
     static std::span<const char* const> derived_fields();
 
-    /// Widens the priors for IMUs without data sheet and calibration, mounted anywhere in the sphere. The floor is also
-    /// assumed level, because the accelerometer bias of an uncalibrated IMU resembles a slope.
+    /// Increases the prior standard deviations for uncalibrated IMUs without data sheet, at unknown positions in the
+    /// sphere. The floor is then assumed level, because the accelerometer bias of an uncalibrated IMU resembles a
+    /// slope.
     void widen_priors_for_unknown_imus();
 
     /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning. A caller needs
@@ -87,15 +90,16 @@ class RollingOdometry {
   struct Calibration {
     Eigen::Vector3d sphere_centre_B_m =
         Eigen::Vector3d::Zero();  ///< true centre of the sphere, relative to the stated centre
-    /// radius and its standard deviation; 0: the radius is fixed (expert.rolling.filter.radius_sigma_m)
+    /// Estimated radius of the sphere, and its standard deviation. The standard deviation is 0 for live poses, and if
+    /// the radius is not estimated (expert.rolling.filter.radius_sigma_m is 0).
     double radius_m = 0.0, radius_sigma_m = 0.0;
   };
   struct Pose {
     PoseState pose;  ///< pose of the sphere's centre; live poses have no attitude covariance
     /// angular velocity of the sphere, in sphere axes
     Eigen::Vector3d angular_velocity_rad_s = Eigen::Vector3d::Zero();
-    /// Covariance of the velocity of the sphere's centre, in sphere axes. With a lag, the covariance omits the
-    /// uncertainty of the contact mode.
+    /// Covariance of the velocity of the sphere's centre, in sphere axes. If `lag_s` is above 0, the covariance omits
+    /// the uncertainty of the contact mode.
     Eigen::Matrix3d velocity_covariance_B_m2_s2 = Eigen::Matrix3d::Zero();
     RollingMode mode = RollingMode::grip;
     bool at_rest = false;
@@ -112,39 +116,40 @@ class RollingOdometry {
   RollingOdometry& operator=(RollingOdometry&&) noexcept;
   ~RollingOdometry();
 
-  /// Processes simultaneous readings of all IMUs, with the time stamp of the first IMU. SampleClock corrects time
-  /// stamps with jitter. Pass NaN for an IMU without a reading. OutlierFilter rejects outliers of each IMU. While
-  /// OutlierFilter checks a sudden change of a reading, up to five samples of all IMUs wait, and newest() returns the
-  /// pose before these samples. On error, the state is unchanged. The errors are `insufficient_data` (wrong number of
-  /// IMUs, or no reading), `time_order`, `degenerate` (no gravity in the first sample), `gap` and `out_of_range`.
-  /// `out_of_range` means that the run has finished, the time stamp exceeds kStampMax_ns, or the only IMU with readings
-  /// has a frozen axis.
+  /// Processes simultaneous readings of all IMUs. All readings get the time stamp of the first IMU's reading.
+  /// SampleClock corrects time stamps with jitter. Pass NaN for an IMU without a reading. OutlierFilter rejects
+  /// outliers among the readings of each IMU. While OutlierFilter checks a sudden change of a reading, up to five
+  /// samples of all IMUs wait, and newest() returns the pose before these samples. On error, the state is unchanged.
+  /// The errors are `insufficient_data` (wrong number of IMUs, or no reading), `time_order`, `degenerate` (no gravity
+  /// in the first sample), `gap` and `out_of_range`. `out_of_range` means that the run has finished, the time stamp
+  /// exceeds kStampMax_ns, or the only IMU with readings has a frozen axis.
   ///
-  /// A single wrong time stamp causes the loss of one sample. After a gap of more than a second between two samples,
-  /// add_imus() rejects the first sample with `gap`, and restarts with the second sample. If the clock steps back,
-  /// add_imus() rejects samples with `time_order` for 0.2 s, and then restarts. A restart finishes the poses so far and
-  /// continues at the newest pose, like reset(pose). Poses after a restart have the flag `uncertain`, and their
-  /// covariance includes the unknown motion during the gap.
+  /// A single wrong time stamp causes the loss of only one sample. After a gap of more than a second, add_imus()
+  /// rejects the first sample after the gap with `gap`, and restarts with the next sample. If the clock steps back,
+  /// add_imus() rejects samples with `time_order` for 0.2 s, and then restarts. A restart completes the poses of the
+  /// old run, and starts a new run at the newest pose, like reset(pose). Poses after a restart have the flag
+  /// `uncertain`, and their covariance includes the unknown motion during the gap.
   Status add_imus(std::span<const ImuSample> samples);
   /// Processes a sample of a sphere with one IMU. Returns `ok` or an error of add_imus().
   Status add_imu(const ImuSample& sample) { return add_imus({&sample, 1}); }
 
-  /// Processes a sample of one IMU whose samples are not simultaneous with those of the other IMUs. RollingOdometry
-  /// resamples the readings of all IMUs to common times, which delays the poses by at most 0.05 s. An IMU without
-  /// readings counts as absent. Returns `ok`, an error of add_imus(), or `out_of_range` for an invalid IMU number.
-  /// After a clock steps back, add_imu() rejects samples until reset().
+  /// Processes a sample of the IMU with the index `unit`, if the samples of the IMUs are not simultaneous.
+  /// RollingOdometry resamples the readings of all IMUs to common times, which delays the poses by at most 0.05 s.
+  /// RollingOdometry treats an IMU without readings as absent. Returns `ok`, an error of add_imus(), or `out_of_range`
+  /// for an invalid IMU number. If the clock of an IMU steps back, add_imu() rejects samples of this IMU until their
+  /// time stamps exceed the newest accepted time stamp, or until reset().
   Status add_imu(std::size_t unit, const ImuSample& sample);
 
-  /// The pose uses all data so far, and is empty before the first sample.
+  /// Returns the newest pose, estimated from all data so far, or an empty value before the first sample.
   std::optional<Pose> newest() const;
 
-  /// Returns the next pose in time order, once. If `lag_s` is 0, the poses are live; otherwise the poses are smoothed
-  /// and `lag_s` old.
+  /// Returns the oldest pose that take() has not yet returned; empty if there is no such pose. If `lag_s` is 0, the
+  /// poses are live; otherwise the poses are smoothed and `lag_s` old.
   std::optional<Pose> take();
 
   /// Ends the estimation and smooths the remaining poses. After finish(), add_imus() rejects samples until reset().
-  /// Returns `ok`, or the first error of the remaining samples. With kWholeRecording, returns `ok` or an error of
-  /// merge_recordings().
+  /// Returns `ok`, or the first error of the remaining samples. With kWholeRecording, finish() returns `ok`, an error
+  /// of merge_recordings(), or an error of RollingSmoother::step().
   Status finish();
 
   /// Starts a new run at the origin and at rest. After reset(), take() still returns the remaining poses of the old
@@ -154,13 +159,13 @@ class RollingOdometry {
   /// rest determines the tilt. Covariances are relative to `T_WG`.
   void reset(const Eigen::Isometry3d& T_WG);
 
-  /// Reports the present suspected faults of the IMUs. The readings of a frozen IMU are ignored. If all IMUs with
-  /// readings are frozen, add_imus() rejects the sample. With kWholeRecording, finish() checks the whole recording, and
-  /// before finish() there is no finding.
+  /// Reports the current suspected faults of the IMUs. RollingOdometry ignores the readings of an IMU with a frozen
+  /// axis. If all IMUs with readings have a frozen axis, add_imus() rejects the sample. With kWholeRecording, finish()
+  /// checks the whole recording, and health() reports no finding before finish().
   SensorHealth health() const;
 
-  /// Returns the merged IMUs of a whole recording with their findings (detail/imu_findings.hpp). Returns null before
-  /// finish() and without kWholeRecording.
+  /// Returns the merged readings and the health findings of a whole recording (detail/imu_findings.hpp). Returns null
+  /// before finish(), or if `lag_s` is not kWholeRecording.
   const MergedImuRecording* recording() const;
 
   /// If `lag_s` is above 0, centre and radius are the estimates at the newest smoothed pose.
@@ -172,8 +177,8 @@ class RollingOdometry {
   /// Returns true if the sphere was already moving at the first samples.
   bool started_in_motion() const;
 
-  /// Returns the state of ImuMerge (attitude/detail/imu_merge.hpp), which contains the frozen, disagreeing and delayed
-  /// IMUs.
+  /// Returns the state of ImuMerge (attitude/detail/imu_merge.hpp). The state shows which IMUs are frozen, disagree
+  /// with the other IMUs, or have a time offset.
   const ImuMergeState& imus() const;
 
   /// Returns the number of readings of all IMUs that OutlierFilter rejected.
@@ -185,21 +190,21 @@ class RollingOdometry {
 
   /// Saves calibration, saturation limits of each IMU, and newest pose as bytes with a checksum, for load() after a
   /// reboot. The calibration contains biases, scales and delay of the merged IMU, and centre and radius of the sphere,
-  /// with covariance. The saved bytes are equal on every machine. The saved bytes do not contain velocity, contact
-  /// mode, differences between the IMUs, health findings and counters. Recorded readings and poses that take() has not
-  /// yet returned are not saved.
+  /// with covariance. The saved bytes are equal on every machine. The saved bytes contain no velocity, contact mode,
+  /// differences between the IMUs, health findings or counters. save() also omits recorded readings, and poses that
+  /// take() has not yet returned.
   std::vector<std::byte> save() const;
-  /// Starts a new run from saved bytes, like a new object. The saved calibration and saturation limits replace the
-  /// initial values in the parameters, also after a later reset(). The saved biases get the initial uncertainty,
-  /// because biases change at every switch-on. The new run starts at the saved pose, with the saved covariance of this
-  /// pose. All poses of the new run have the flag `uncertain`. If the sphere may have moved, call reset(pose) after
-  /// load().
+  /// Starts a new run from the bytes that save() returned, and discards the previous state of the object. The saved
+  /// calibration and saturation limits replace the initial values in the parameters, also after a later reset(). The
+  /// saved biases get the initial uncertainty, because biases change at every switch-on. The new run starts at the
+  /// saved pose, with the saved covariance of this pose. All poses of the new run have the flag `uncertain`. If the
+  /// sphere may have moved since save(), call reset(pose) after load().
   ///
-  /// `last_pose` receives the saved pose with its time in the clock of the saved run, or is empty. On error, the object
-  /// is unchanged, and the returned status names the field, the saved value and the bound. The error is
-  /// `insufficient_data` (truncated bytes), `non_finite` or `out_of_range`. load() rejects damaged bytes, and bytes
-  /// that another version or a TumblingOdometry saved. load() also rejects a saved run with another radius or other
-  /// IMUs.
+  /// `last_pose` receives the saved pose with its time in the clock of the saved run. If no pose was saved, `last_pose`
+  /// is empty. On error, the object is unchanged, and the returned status names the field, the saved value and the
+  /// bound. The error is `insufficient_data` (truncated bytes), `non_finite` or `out_of_range`. load() rejects damaged
+  /// bytes, and bytes that another version or a TumblingOdometry saved. load() also rejects a saved run with another
+  /// radius or other IMUs.
   Status load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose = nullptr);
 
   struct Impl;  ///< private implementation

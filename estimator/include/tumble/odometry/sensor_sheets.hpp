@@ -8,9 +8,9 @@
 
 namespace tumble {
 
-/// A range of 0 means that the range is unknown. The estimators detect saturation limits from the readings, with or
-/// without a stated range. Data sheets state the range of a gyro in degrees per second, between 250 and 4000. A gyro
-/// range above 100 rad/s (5730 deg/s) is rejected, because the range is probably in degrees per second.
+/// A gyro or accelerometer range of 0 means that the range is unknown. The estimators detect saturation limits from the
+/// readings, with or without a stated range. Manufacturers usually state gyro ranges of 250 to 4000 deg/s. A value of
+/// `gyro_range_rad_s` above 100 rad/s (5730 deg/s) is rejected, because the value is probably in degrees per second.
 struct ImuDataSheet {
   double rate_hz = 100.0;
   double gyro_range_rad_s = 0.0;
@@ -32,12 +32,13 @@ struct ImuDataSheet {
   }
 };
 
-/// Returns the largest reading that is certainly unsaturated, for a range from a data sheet. Returns infinity if the
-/// range is unknown (0). The margin of 2 % covers the scale correction that a device's calibration applies to its
-/// saturation limit.
+/// Returns the largest reading that is certainly unsaturated: 98 % of a range from a data sheet. Returns infinity if
+/// the range is unknown (0). The margin of 2 % is necessary, because the calibration in a device also scales saturated
+/// readings.
 double range_below_saturation(double stated_range);
 
-/// LidarDataSheet contains the data sheet of a lidar. The estimators drop lidar returns outside of the stated range.
+/// LidarDataSheet contains the range limits in the data sheet of a lidar. The estimators drop lidar returns outside of
+/// the stated limits.
 struct LidarDataSheet {
   double range_min_m = 0.3;
   double range_max_m = 100.0;
@@ -52,40 +53,41 @@ struct LidarDataSheet {
   }
 };
 
-/// Data sheets of the simulated sensors. The file models/sensors/NAME.yaml states the source of each number.
+/// The functions of this namespace return the data sheets of the simulated sensors. The file models/sensors/NAME.yaml
+/// states the source of each number of the sensor NAME.
 namespace sheets {
 
-/// Xsens MTi-30, fifth generation (20 g); stated gyro range 450 deg/s.
+/// Xsens MTi-30 of the fifth generation, with ranges of 450 deg/s and 20 g.
 ImuDataSheet mti30();
 /// VectorNav VN-100.
 ImuDataSheet vn100();
 /// PhidgetSpatial Precision 3/3/3 1044_0.
 ImuDataSheet phidget1044();
-/// InvenSense MPU-6050 at 500 deg/s and 16 g.
+/// InvenSense MPU-6050 with ranges of 500 deg/s and 16 g.
 ImuDataSheet mpu6050();
-/// Bosch BMI088 at 2000 deg/s and 24 g.
+/// Bosch BMI088 with ranges of 2000 deg/s and 24 g.
 ImuDataSheet bmi088();
-/// InvenSense ICM-20948 at 2000 deg/s and 16 g.
+/// InvenSense ICM-20948 with ranges of 2000 deg/s and 16 g.
 ImuDataSheet icm20948();
-/// InvenSense ICM-42688-P at 2000 deg/s and 16 g.
+/// InvenSense ICM-42688-P with ranges of 2000 deg/s and 16 g.
 ImuDataSheet icm42688();
 /// Xsens MTi-3.
 ImuDataSheet mti3();
-/// STMicroelectronics LSM6DSO at 2000 deg/s and 16 g.
+/// STMicroelectronics LSM6DSO with ranges of 2000 deg/s and 16 g.
 ImuDataSheet lsm6dso();
-/// IMU inside an Ouster OS0 or OS1, in the default setting of 250 deg/s and 2 g.
+/// IMU inside an Ouster OS0 or OS1, with the default ranges of 250 deg/s and 2 g.
 ImuDataSheet ouster_imu();
-/// IMU inside a Livox Mid-360 at 2000 deg/s and 4 g.
+/// IMU inside a Livox Mid-360 with ranges of 2000 deg/s and 4 g.
 ImuDataSheet mid360_imu();
-/// InvenSense ICM-20601 at 2000 deg/s and 32 g.
+/// InvenSense ICM-20601 with ranges of 2000 deg/s and 32 g.
 ImuDataSheet icm20601();
-/// InvenSense ICM-20602 at 2000 deg/s and 16 g.
+/// InvenSense ICM-20602 with ranges of 2000 deg/s and 16 g.
 ImuDataSheet icm20602();
-/// STMicroelectronics LSM6DSV320X at 4000 deg/s and 16 g.
+/// STMicroelectronics LSM6DSV320X with ranges of 4000 deg/s and 16 g.
 ImuDataSheet lsm6dsv320x();
-/// Analog Devices ADIS16405 at 300 deg/s and 18 g.
+/// Analog Devices ADIS16405 with ranges of 300 deg/s and 18 g.
 ImuDataSheet adis16405();
-/// InvenSense IIM-42653 at 4000 deg/s and 32 g.
+/// InvenSense IIM-42653 with ranges of 4000 deg/s and 32 g.
 ImuDataSheet iim42653();
 
 /// Returns the data sheets of all IMUs with their names, for programs that select a data sheet by name.

@@ -22,8 +22,9 @@ namespace tumble {
 struct TumblingExpertParams;
 extern template class HeapValue<TumblingExpertParams>;
 
-/// FurtherLidar is a lidar in addition to the lidar of TumblingParams. The mounting relative to the first lidar and the
-/// clock offset must be exact, because TumblingOdometry estimates only the mounting of the first lidar.
+/// FurtherLidar is a lidar in addition to the lidar of TumblingParams. Relative to the first lidar, the stated mounting
+/// and clock offset of a further lidar must be exact. TumblingOdometry estimates only the mounting and clock offset of
+/// the first lidar.
 struct FurtherLidar {
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
   LidarDataSheet data_sheet;
@@ -41,13 +42,14 @@ struct TumblingParams {
   Eigen::Vector3d lever_arm_I_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   double lever_arm_sigma_m = 0.01;
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
-  /// Standard deviations of T_IL and of the lidar's time offset. Both are estimated; 0: exact, not estimated.
+  /// Standard deviations of T_IL and of the lidar's time offset. TumblingOdometry estimates a value if its standard
+  /// deviation is above 0. A standard deviation of 0 means that the stated value is exact.
   double mount_sigma_rad = 0.01;
   double mount_sigma_m = 0.006;
   double time_offset_sigma_s = 0.003;
   LidarDataSheet lidar;
   /// Box in lidar axes that contains the robot; lidar returns inside the box are dropped. The default, an empty Eigen
-  /// box, keeps all returns. A box with swapped corners is rejected.
+  /// box, keeps all returns. The constructor rejects a box with swapped corners.
   Eigen::AlignedBox3d own_body_L;
   std::vector<FurtherLidar> further_lidars;  ///< lidars in addition to the first; see TumblingOdometry::add_sweep()
   /// Delay of reported rates and sweeps: at least two samples and at most 10 s, or kWholeRecording.
@@ -98,31 +100,31 @@ struct LidarScale;
 /// (`report.smoothed`). At ten sweeps per second and the default `lag_s`, the final pose is available at most 0.3 s
 /// after the end of its sweep. Time stamps of poses are in the IMU's clock. The earliest sweep with enough points
 /// starts the map, and poses are reported only after the map has started. Start with at least half a second at rest,
-/// which determines the tilt. If the gyro's zero offset at rest exceeds 0.05 rad/s, TumblingOdometry subtracts the
-/// offset and restarts, which needs a second at rest.
+/// which determines the tilt. A gyro with a zero offset above 0.05 rad/s needs a full second at rest, because
+/// TumblingOdometry then subtracts the offset and restarts.
 ///
 /// Some seconds after motion starts, SecondMappingPass processes the first seconds of motion again with the calibration
-/// estimated so far. TumblingOdometry then continues with the map and pose of SecondMappingPass; poses that were
-/// already reported are not changed. If no sweep arrives for a second, inertial integration continues, and take()
-/// returns a sweep without points.
+/// estimated so far. If the second pass succeeds, TumblingOdometry continues with the map and pose of
+/// SecondMappingPass. Poses that were already reported do not change. If no sweep arrives for a second, inertial
+/// integration continues, and take() returns a sweep without points.
 ///
 /// With `lag_s` = kWholeRecording, add_imu() and add_sweep() store the data, and finish() estimates rates, poses and
 /// map from the whole recording. finish() estimates the rates with MotionRegimeSmoother, checks the IMU, and repeats
 /// the mapping until the lidar's calibration has converged. With kWholeRecording, there are no live poses, and take()
-/// returns all sweeps after finish(). If the clock steps back, add_imu() rejects samples with `time_order` until the
-/// time stamps exceed the newest accepted time stamp. After a gap in the data, the recording continues. finish() needs
-/// more stack and memory than other functions.
+/// returns all sweeps after finish(). With kWholeRecording, if the clock steps back, add_imu() rejects samples with
+/// `time_order` until the time stamps exceed the newest accepted time stamp. With kWholeRecording, the recording
+/// continues after a gap in the data. finish() needs more stack and memory than other functions.
 ///
 /// An IMU sample costs one step of MotionRegimeStream, and sometimes the registration of a sweep. After start-up,
 /// add_imu() allocates memory only if the sample completes a sweep. While SecondMappingPass runs, a sweep costs up to
-/// four registrations. The end of SecondMappingPass costs five additional registrations. The bounded memory depends on
-/// lag, map radius, `sweeps_max` and the buffer of SecondMappingPass. The map also stores the sensor position of each
-/// sweep (12 bytes). Without a prior map, the sensor positions of sweeps without remaining map points are deleted each
-/// time the robot has moved by a tenth of the map radius (by default ten metres). A call needs at most 64 KiB of stack.
+/// four registrations. The end of SecondMappingPass costs five additional registrations. The memory of TumblingOdometry
+/// is bounded, depending on lag, map radius, `sweeps_max` and the buffer of SecondMappingPass. The map also stores the
+/// sensor position of each sweep (12 bytes). The map regularly deletes the sensor positions of sweeps without remaining
+/// map points, unless the robot is localised in a prior map. A call needs at most 64 KiB of stack.
 ///
 /// TumblingOdometry starts no threads, uses no files and prints nothing. A copy of a TumblingOdometry contains the
-/// complete state, so the copy can process the following data. The limitations of MotionRegimeStream and
-/// LidarInertialOdometry apply to TumblingOdometry.
+/// complete state, so the copy can continue the run. The limitations of MotionRegimeStream and LidarInertialOdometry
+/// apply to TumblingOdometry.
 class TumblingOdometry {
  public:
   using Params = TumblingParams;
@@ -132,8 +134,8 @@ class TumblingOdometry {
   struct Sweep {
     Status status;  ///< status of add_sweep(); `report.trajectory` is empty without a pose
     SweepReport report;
-    /// Transform from the world to the frame of the position readings, estimated from readings up to the sweep's end;
-    /// empty if the readings do not determine the transform.
+    /// Transform from the world to the frame of the position readings, estimated from readings up to the sweep's end.
+    /// The transform is empty if the readings do not determine the transform.
     std::optional<PositionFrame> position_frame;
   };
 
@@ -146,61 +148,63 @@ class TumblingOdometry {
   TumblingOdometry& operator=(TumblingOdometry&&) noexcept;
   ~TumblingOdometry();
 
-  /// Sets the map of an earlier run, in which the robot is then localised. Call use_map() before the first sweep. Until
-  /// the robot is localised, poses are in a local frame, and health() reports the missing localisation. After
-  /// localisation, `report.in_prior_map` is true, and poses are in the frame of the prior map. reset() keeps the prior
-  /// map and localises the robot again. The argument of reset(pose) is a pose in the prior map. Returns `ok` or an
-  /// error of LidarInertialOdometry::use_map().
+  /// Sets the map of an earlier run as prior map, and starts the localisation of the robot in the prior map. Call
+  /// use_map() before the first sweep. Until the robot is localised, poses are not in the frame of the prior map, and
+  /// health() reports the missing localisation. After localisation, `report.in_prior_map` is true, and poses are in the
+  /// frame of the prior map. reset() keeps the prior map and localises the robot again. If a prior map is set, the
+  /// argument of reset(pose) is a pose in the frame of the prior map. Returns `ok` or an error of
+  /// LidarInertialOdometry::use_map().
   Status use_map(PriorMap map);
   /// Processes an IMU sample, and registers the sweeps whose rates become available. Time stamps must increase. Returns
   /// `non_finite`, `out_of_range`, `time_order` or `gap` if the sample is rejected. A single wrong time stamp causes
-  /// the loss of one sample. After a gap of more than a second, add_imu() rejects the first sample with `gap`, and the
-  /// second sample restarts the rate estimation with the current calibration. Inertial integration bridges the gap. If
-  /// the clock steps back, add_imu() rejects samples with `time_order` for 0.2 s. The run then restarts at the newest
-  /// pose, like reset(pose). OutlierFilter rejects outliers. While OutlierFilter checks a sudden change of the
-  /// readings, one to five samples wait, and newest() returns the pose before these samples.
+  /// the loss of only one sample. After a gap of more than a second, add_imu() rejects the first sample after the gap
+  /// with `gap`. The next sample restarts the rate estimation with the current calibration. Inertial integration
+  /// bridges the gap. If the clock steps back, add_imu() rejects samples with `time_order` for 0.2 s, and then restarts
+  /// the run at the newest pose, like reset(pose). OutlierFilter rejects outliers among the readings. While
+  /// OutlierFilter checks a sudden change of the readings, one to five samples wait, and newest() returns the pose
+  /// before these samples.
   Status add_imu(const ImuSample& sample);
   /// Processes a sweep of points fired in [start_ns, end_ns]. Call add_sweep() after the last point of the sweep; later
-  /// IMU samples may be added first. The points are copied. Points from before the end of the last sweep are dropped,
-  /// because time stamps of sweeps may overlap by jitter. On error, the state is unchanged. `time_order` means that the
-  /// end is before the start, or that half of the sweep is before the end of the last sweep. `out_of_range` means that
-  /// a point fired outside [start_ns, end_ns], or that `end_ns` is more than a second after the newest IMU sample.
-  /// `out_of_range` also means that a time stamp exceeds kStampMax_ns, or that too many sweeps wait for IMU samples.
+  /// IMU samples may be added first. The points are copied. add_sweep() drops points that were fired before the end of
+  /// the last sweep, because jitter can make the time stamps of sweeps overlap. On error, the state is unchanged.
+  /// `time_order` means that `end_ns` is before `start_ns`, or that more than half of the sweep is before the end of
+  /// the last sweep. `out_of_range` means that a point was fired outside [start_ns, end_ns], or that `end_ns` is more
+  /// than a second after the newest IMU sample. `out_of_range` also means that a time stamp exceeds kStampMax_ns, or
+  /// that too many sweeps wait for IMU samples.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
-  /// Processes a sweep of one of several lidars: 0 is the first lidar, k is `further_lidars[k - 1]`. The points of a
-  /// further lidar are registered together with the simultaneous sweep of the first lidar. The points of a further
-  /// lidar must arrive within `lag_s` after the end of the first lidar's sweep. A lag of two sweep periods is long
-  /// enough. The lidars need no synchronisation. Limitation: the points of further lidars are transformed to the frame
-  /// of the first lidar. In this frame, points outside the range limits or inside the own-body box of the first lidar
-  /// are also dropped. Returns `ok`, an error of add_sweep() for the first lidar, or `out_of_range` for an unknown
-  /// lidar.
+  /// Processes a sweep of one of several lidars. For the first lidar, `lidar` is 0; for `further_lidars[k - 1]`,
+  /// `lidar` is k. The points of a further lidar are registered together with the simultaneous sweep of the first
+  /// lidar. The points of a further lidar must arrive within `lag_s` after the end of the first lidar's sweep. A
+  /// `lag_s` of two sweep periods is long enough for lidars without synchronisation. Limitation: the range limits and
+  /// the box `own_body_L` of the first lidar also apply to the points of further lidars. Returns `ok`, an error of
+  /// add_sweep() for the first lidar, or `out_of_range` for an unknown lidar.
   Status add_sweep(std::size_t lidar, TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
-  /// Processes an odometer reading (mapping/types.hpp). An odometer reading must arrive before the
-  /// registration of its sweep, which is `lag_s` after the end of the sweep. If a sweep has several odometer readings,
-  /// only the last reading is used. On error, the state is unchanged. Returns `empty` (no IMU sample yet),
-  /// `non_finite`, `time_order` (the sweep is already registered) or `out_of_range`. `out_of_range` means an invalid
-  /// standard deviation, a time stamp more than a second ahead of the newest sample, or 1024 waiting readings.
+  /// Processes an odometer reading (mapping/types.hpp). An odometer reading must arrive before its sweep is registered,
+  /// which happens `lag_s` after the end of the sweep. If several odometer readings belong to one sweep,
+  /// TumblingOdometry uses only the last reading. On error, the state is unchanged. Returns `empty` (no IMU sample
+  /// yet), `non_finite`, `time_order` (the sweep is already registered) or `out_of_range`. `out_of_range` means an
+  /// invalid standard deviation, a time stamp more than a second ahead of the newest sample, or 1024 waiting readings.
   Status add_velocity(const VelocityReading& velocity);
   Status add_motion(const MotionReading& motion);
-  /// Processes a position reading, for example from GPS or a beacon. Position readings do not change poses and map.
-  /// They determine Sweep::position_frame, a frame in which poses do not drift. Position readings may arrive in any
-  /// order, but before the registration of their sweep. Position readings also work with kWholeRecording. On error, the
-  /// state is unchanged. Returns `ok` or an error of add_velocity(); `out_of_range` also means that the covariance is
-  /// not symmetric and positive definite.
+  /// Processes a position reading, for example from GPS or a beacon. Position readings do not change the poses or the
+  /// map. Position readings determine Sweep::position_frame, which transforms poses to a frame without drift. Position
+  /// readings may arrive in any order, but each reading must arrive before the sweep at the reading's time is
+  /// registered. Position readings also work with kWholeRecording. On error, the state is unchanged. Returns `ok` or an
+  /// error of add_velocity(); `out_of_range` also means that the covariance is not symmetric and positive definite.
   Status add_position(const PositionReading& position);
-  /// Returns the next registered sweep in time order; empty if all registered sweeps were taken.
+  /// Returns the oldest registered sweep that take() has not yet returned; empty if there is no such sweep.
   std::optional<Sweep> take();
-  /// Registers all sweeps that the IMU samples cover. Call finish() at the end of a run or during a halt. After
+  /// Registers all waiting sweeps that the IMU samples cover. Call finish() at the end of a run or during a halt. After
   /// finish(), take() returns the registered sweeps. After finish(), mapper().window_trajectories() returns the final
-  /// poses of the sweeps in the window. If more samples are added after finish(), the rate estimation restarts with the
-  /// current calibration.
+  /// poses of the last sweeps, which no `report.smoothed` contains. If more samples are added after finish(), the rate
+  /// estimation restarts with the current calibration.
   ///
   /// With kWholeRecording, finish() processes the whole recording, and later samples and sweeps are rejected until
   /// reset(). take() then returns all sweeps with their final poses in `report.pose` and `report.trajectory`. Returns
-  /// `ok`, an error of AngularRateSmoother::estimate() such as `insufficient_data`, or the error with which the mapper
-  /// rejected a sample (LidarInertialOdometry::add_imu()). Without kWholeRecording, finish() returns `ok`. finish()
-  /// calls `on_sweep` before each sweep, with the number of processed sweeps and the number of all sweeps, for a
-  /// progress display. Each pass over the recording starts again at 0 processed sweeps.
+  /// `ok`, an error of AngularRateSmoother::estimate() such as `insufficient_data`, or an error of the mapper
+  /// (LidarInertialOdometry). Without kWholeRecording, finish() returns `ok`. For a progress display, finish() calls
+  /// `on_sweep` before each sweep, with the numbers of processed sweeps and of all sweeps. At the start of each pass
+  /// over the recording, the number of processed sweeps is 0.
   Status finish(const SweepProgress& on_sweep = {});
   /// Starts a new run with a new map, at the origin and at rest. After reset(), take() still returns the remaining
   /// sweeps of the old run, and counters keep their values.
@@ -210,28 +214,28 @@ class TumblingOdometry {
   void reset(const Eigen::Isometry3d& T_WI);
 
   /// Predicts pose and velocity of the IMU at its newest sample, with covariance, by inertial integration from the last
-  /// registered sweep. Returns `empty` before the first sweep. newest() allocates memory. Cost: O(samples since the
+  /// registered sweep. Returns `empty` before the map has started. newest() allocates memory. Cost: O(samples since the
   /// last sweep). `velocity_covariance_I_m2_s2` (optional) is the covariance of the velocity error in IMU axes.
   Status newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2 = nullptr) const;
-  /// Reports the suspected faults of the sensors and of the estimate. Estimation continues after any finding. A finding
-  /// ends at most one minute after its fault. The checks are
+  /// Reports the suspected faults of the sensors and of the estimate. Estimation continues after any finding. health()
+  /// stops reporting a finding at most one minute after the fault has ended. The checks are
   /// AngularRateStream::health(), ImuPlausibility, RestGravity, LidarScale, LidarInertialOdometry::check_vertical() and
   /// localised(), Localisation and LidarImuCalibrationPrior. With kWholeRecording, finish() checks the whole recording
-  /// (detail/imu_findings.hpp), and before finish() there is no finding. Cost: a few hundred operations; health().ok()
-  /// allocates nothing without a finding.
+  /// (detail/imu_findings.hpp), and health() reports no finding before finish(). Cost: a few hundred operations.
+  /// Without a finding, health() allocates no memory.
   SensorHealth health() const;
-  /// Returns the estimated scale of the lidar's ranges relative to the IMU, as far as the motion determines the scale
-  /// (mapping/detail/lidar_scale.hpp).
+  /// Returns the ratio of displacements measured by the lidar to displacements measured by the IMU, with its standard
+  /// deviation (mapping/detail/lidar_scale.hpp).
   const LidarScale& sweep_scale() const;
   /// Returns the newest Sweep::position_frame, which transforms the pose of newest() to the frame of the position
   /// readings. Returns an empty value with kWholeRecording.
   const std::optional<PositionFrame>& position_frame() const;
   /// Returns the time of the newest accepted IMU sample.
   std::optional<TimeNs> newest_ns() const;
-  /// Returns the rate of the newest IMU sample, if any. While the gyro is saturated, the rate of the newest sample is
-  /// provisional.
+  /// Returns the rate of the newest IMU sample, or an empty value before the first sample. While the gyro is saturated,
+  /// the rate of the newest sample is provisional.
   std::optional<AngularRateState> newest_rate() const;
-  /// Returns the latest smoothed rate, which is about `lag_s` old. Returns an empty value during the first `lag_s` of a
+  /// Returns the newest smoothed rate, which is about `lag_s` old. Returns an empty value during the first `lag_s` of a
   /// run.
   const std::optional<AngularRateState>& smoothed_rate() const;
   /// Returns the estimated calibration of the IMU on the body (angular_velocity/types.hpp): lever arm, biases,
@@ -252,38 +256,40 @@ class TumblingOdometry {
   std::size_t dropped_sweeps() const;
   std::size_t sweeps_before_first_imu() const;
   std::size_t unused_odometer_readings() const;
-  /// Returns the number of unused points of further lidars: the points arrived late, or the first lidar had no sweep.
+  /// Returns the number of unused points of further lidars. Points are unused if they arrived late, or if the first
+  /// lidar had no sweep at the same time.
   std::size_t unused_points() const;
   /// Returns the jitter of the IMU's time stamps about a regular clock [s] while SampleClock corrects them, and
   /// otherwise an empty value.
   std::optional<double> estimated_jitter_s() const;
   /// Returns the mapper (mapping/lidar_inertial_odometry.hpp), which provides the map and the calibration of the lidar.
   const LidarInertialOdometry& mapper() const;
-  /// Returns the rates of all samples, the checks and the mapping passes of a whole recording
-  /// (detail/recording_estimate.hpp). Returns null before finish() and without kWholeRecording.
+  /// Returns the rates of all samples, the results of the checks, and the results of the mapping for a whole recording
+  /// (detail/recording_estimate.hpp). Returns null before finish(), or if `lag_s` is not kWholeRecording.
   const WholeRecordingEstimate* recording() const;
 
   /// Saves calibration, saturation limits, map and newest pose as bytes with a checksum, for load() after a reboot. The
   /// calibration consists of rig(), the detected delay and errors of the IMU, and the lidar's mounting and time offset,
-  /// each with its uncertainty. The map has the format of save_map(). The saved bytes are equal on every machine. A run
-  /// that is not yet localised in the map of use_map() saves this map.
+  /// each with its uncertainty. The saved map has the format of save_map(). The saved bytes are equal on every machine.
+  /// Before the robot is localised in a prior map, save() saves the prior map.
   ///
-  /// The saved bytes do not contain velocity, filter states, health findings, counters, readings of further sensors,
-  /// and the buffer of SecondMappingPass. Sweeps that wait for IMU samples or for take() are not saved. With
+  /// The saved bytes contain no velocity, filter states, health findings, counters, odometer readings, position
+  /// readings, or buffer of SecondMappingPass. save() also omits sweeps that wait for IMU samples or for take(). With
   /// kWholeRecording, the saved bytes contain the results of finish(), without the recorded data.
   std::vector<std::byte> save() const;
-  /// Starts a new run from saved bytes, like a new object. The saved calibration replaces the calibration of the
-  /// parameters, also after a later reset(). The saved biases get the uncertainty of the prior, because biases change
-  /// at every switch-on. If at least 100 points of the saved map have normals, load() calls use_map() with the saved
-  /// map. The new run starts at the saved pose and localises the robot around this pose. Until the robot is localised,
-  /// health() reports the missing localisation. If the robot may have moved by more than a metre, call reset(pose)
-  /// after load(). With kWholeRecording, the new run starts at the saved pose with a new map.
+  /// Starts a new run from the bytes that save() returned, and discards the previous state of the object. The saved
+  /// calibration replaces the calibration in the parameters, also after a later reset(). The saved biases get the
+  /// uncertainty of the prior, because biases change at every switch-on. If at least 100 points of the saved map have
+  /// normals, load() calls use_map() with the saved map. The new run starts at the saved pose and localises the robot
+  /// around this pose. Until the robot is localised, health() reports the missing localisation. If the robot may have
+  /// moved by more than a metre since save(), call reset(pose) after load(). With kWholeRecording, the new run starts
+  /// at the saved pose with a new map.
   ///
-  /// `last_pose` receives the saved pose with its time in the clock of the saved run, or is empty. On error, the object
-  /// is unchanged, and the returned status names the field, the saved value and the bound. The error is
-  /// `insufficient_data` (truncated bytes), `non_finite`, `degenerate` or `out_of_range`. load() rejects damaged bytes,
-  /// and bytes that another version or a RollingOdometry saved. load() also rejects a saved run with another stated
-  /// lever arm or lidar mounting.
+  /// `last_pose` receives the saved pose with its time in the clock of the saved run. If no pose was saved, `last_pose`
+  /// is empty. On error, the object is unchanged, and the returned status names the field, the saved value and the
+  /// bound. The error is `insufficient_data` (truncated bytes), `non_finite`, `degenerate` or `out_of_range`. load()
+  /// rejects damaged bytes, and bytes that another version or a RollingOdometry saved. load() also rejects a saved run
+  /// with another stated lever arm or lidar mounting.
   Status load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose = nullptr);
 
   struct Impl;  ///< private implementation
@@ -292,15 +298,15 @@ class TumblingOdometry {
   HeapValue<Impl> impl_;
 };
 
-/// Saves a map: position, normal and standard deviation of each point, in the order of `points`. The saved bytes also
-/// contain the version of the format, the number of points and a checksum, and are equal on every machine. A point
-/// needs 28 bytes. Cost: O(points).
+/// Converts map points to bytes: position, normal and standard deviation of each point, in the order of `points`. The
+/// saved bytes also contain the version of the format, the number of points and a checksum, and are equal on every
+/// machine. A point needs 28 bytes. Cost: O(points).
 std::vector<std::byte> save_map(std::span<const MapPoint> points);
 
-/// Loads a map that save_map() saved, for LidarInertialOdometry::use_map(). On error, `points` is unchanged, and the
-/// returned status names the field, the value and the bound. The error `insufficient_data` means truncated bytes. The
-/// errors `non_finite` and `out_of_range` mean another kind of data, another version, damaged bytes, or points that
-/// check_prior_map() rejects.
+/// Reads map points from the bytes that save_map() returned, for LidarInertialOdometry::use_map(). On error, `points`
+/// is unchanged, and the returned status names the field, the value and the bound. The error `insufficient_data` means
+/// truncated bytes. The errors `non_finite` and `out_of_range` mean that the bytes are damaged, contain no map, have
+/// another format version, or contain points that check_map_points() rejects.
 Status load_map(std::span<const std::byte> bytes, std::vector<MapPoint>& points);
 
 }  // namespace tumble

@@ -17,18 +17,19 @@ namespace tumble {
 /// floor.
 ///
 /// While the sphere grips the floor, the rolling constraint acts as a velocity measurement. The velocity measurements
-/// determine tilt and sensor errors, so that the calibrated IMU can be integrated through several seconds without grip.
-/// Each hypothesis about the past contact modes (grip, slip, bump, incline, rough floor) has a separate error-state
-/// Kalman filter. The equations are in docs/maths/rolling.md.
+/// determine tilt and sensor errors. RollingFilter can then integrate the calibrated IMU through several seconds
+/// without grip. Each hypothesis about the past contact modes (grip, slip, bump, incline, rough floor) has a separate
+/// error-state Kalman filter. The equations are in docs/maths/rolling.md.
 ///
 /// While the sphere is at rest, the reported position is constant, unless another hypothesis becomes the most probable
-/// one. Corrections of the position at rest are applied when motion resumes.
+/// one. Position corrections that RollingFilter computes at rest change the reported position when motion resumes.
 ///
-/// In a gap of up to gap_max_s between samples, the rate is interpolated, the specific force is unknown, and the
-/// covariance grows. While the gyro is saturated, the rolling constraint is not used, and the covariance of the
-/// position grows.
+/// RollingFilter bridges gaps of up to gap_max_s between samples. In a gap, the rate is interpolated, the specific
+/// force is unknown, and the covariance grows. While the gyro is saturated, the rolling constraint is not used, and the
+/// covariance of the position grows.
 ///
-/// RollingFilter assumes a rigid, unmoving floor. The heading drifts. The state needs 430 KiB of memory.
+/// RollingFilter assumes a rigid, unmoving floor. The heading drifts. The state of RollingFilter needs 430 KiB of
+/// memory.
 class RollingFilter {
  public:
   static constexpr int kStates = 40;
@@ -88,9 +89,10 @@ class RollingFilter {
 
   explicit RollingFilter(const Params& params);
 
-  /// The first sample sets the tilt from its specific force, with yaw 0, and the sphere's centre to the origin, at
-  /// rest. The sphere should be at rest for one second after the first sample. On error, the state is unchanged. Cost:
-  /// about kHypotheses * kStates^2 * 40 operations per time step of 20 ms, no allocation.
+  /// The specific force of the first sample determines the initial tilt; the initial yaw is 0. The sphere starts with
+  /// its centre at the origin, at rest, or rolling without slip if the first rate is large. The sphere should be at
+  /// rest for one second after the first sample. On error, the state is unchanged. Cost: about 40 kHypotheses kStates^2
+  /// operations per time step of 20 ms, no allocation.
   Status step(const ImuSample& sample, State& state) const {
     return step(sample, state, [](const State&) {});
   }
@@ -102,7 +104,7 @@ class RollingFilter {
                               Listener{&closed, [](void* to, const State& at) { (*static_cast<Closed*>(to))(at); }});
   }
 
-  /// The covariance of the returned estimate contains only the position block.
+  /// In the pose covariance of the returned estimate, only the position block is not zero.
   static RollingEstimate estimate(const State& state);
 
   static RollingCalibration calibration(const State& state);
