@@ -48,7 +48,7 @@ struct MappedRecording {
   LidarInertialOdometry mapper;
   Localisation localisation;  ///< tracking failures over all sweeps
   int mapping_pass_count = 1;
-  /// distance between the last calibration and the stated calibration (LidarImuCalibrationPrior::deviations)
+  /// distance between the last calibration and the stated calibration (LidarImuCalibrationPrior::distance_in_sigmas)
   double calibration_deviations = 0.0;
   bool calibration_converged = false;
 

@@ -31,7 +31,7 @@ struct WholeRecordingEstimate {
   SensorHealth health;               ///< findings about IMU, lidar and estimate
   MappedRecording mapped_recording;  ///< mapper and passes; TumblingOdometry::take() returns the sweeps
   LidarScale scale;                  ///< scale of the lidar's ranges
-  double corrected_jitter_s = 0.0;   ///< largest correction of a time stamp
+  double corrected_jitter_s = 0.0;   ///< largest corrected jitter of the time stamps
 };
 
 }  // namespace tumble

@@ -124,7 +124,7 @@ class RollingSmoother {
   /// Appends the estimates that are older than `lag_s` to `out`. On error, the state is unchanged.
   ///
   /// The first call allocates the memory for the samples of the last `lag_s`. Later calls allocate memory only for
-  /// `out` and for smoothing, at the last sample of a block of `block_s`. Smoothing temporarily needs 14 KiB per node
+  /// `out` and for smoothing, at the last sample of a block of `kBlock_s`. Smoothing temporarily needs 14 KiB per node
   /// of lag and block, or 4 MiB plus 0.3 KiB per node if there are many nodes. The memory of the state grows with the
   /// duration (64 bytes per sample, 152 per node) with kWholeRecordingLag, above rate_max_hz, or beyond a million
   /// samples in `lag_s`.
