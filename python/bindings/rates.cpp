@@ -71,7 +71,7 @@ const std::vector<const char*> kDerivedRegimeParameters = {"carried_period_s", "
 MotionRegimeStream::Params regime_params(const nb::kwargs& given) {
   MotionRegimeStream::Params params =
       params_of<MotionRegimeStream>("MotionRegimeStream", given, kDerivedRegimeParameters);
-  params.hand_held.body.expert.gap_max_s = params.rate.gap_max_s;
+  params.hand_held.body.expert.gap_max_s = params.rate.kGapMax_s;
   return params;
 }
 

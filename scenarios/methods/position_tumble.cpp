@@ -31,9 +31,8 @@ Settings<RollingOdometry::Params> rolling_settings(double lag_s, std::vector<std
   params.radius_m = presets::kSphereRadius_m;
   params.lag_s = lag_s;
   fixed.insert(fixed.end(),
-               {"merge_count", "merge_gyro_range_rad_s", "merge_accel_range_m_s2", "rolling_radius_m",
-                "rolling_gravity_m_s2", "rolling_lever_arm_*", "rolling_gyro_range_rad_s", "rolling_accel_range_m_s2",
-                "rolling_recovered_rate_sigma_rad_s", "rolling_lag_s", "rolling_rate_max_hz"});
+               {"rolling_radius_m", "rolling_gravity_m_s2", "rolling_lever_arm_*", "rolling_gyro_range_rad_s",
+                "rolling_accel_range_m_s2", "rolling_lag_s", "rolling_rate_max_hz"});
   return Settings<RollingOdometry::Params>(
       params, {.stated = {"radius_m", "gravity_m_s2", "centre_sigma_m", "rolling_gyro_bias_sigma_rad_s",
                           "rolling_accel_bias_sigma_m_s2", "rolling_tilt_sigma_rad", "rolling_accel_scale_sigma",
@@ -238,9 +237,9 @@ Settings<RollingSmoother::Params> oracle_settings(std::vector<std::string> fixed
   fixed.insert(fixed.end(), {"lag_s", "rate_max_hz", "known_distance_*"});
   return Settings<RollingSmoother::Params>(
       params, {.stated = {"radius_m", "gravity_m_s2", "lever_arm_x_m", "lever_arm_y_m", "lever_arm_z_m",
-                          "gyro_range_rad_s", "accel_range_m_s2", "recovered_rate_sigma_rad_s", "gyro_bias_sigma_rad_s",
-                          "accel_bias_sigma_m_s2", "tilt_sigma_rad", "accel_scale_sigma", "gyro_scale_sigma",
-                          "accel_delay_sigma_s", "lever_arm_sigma_m", "incline_begins_per_s"},
+                          "gyro_range_rad_s", "accel_range_m_s2", "gyro_bias_sigma_rad_s", "accel_bias_sigma_m_s2",
+                          "tilt_sigma_rad", "accel_scale_sigma", "gyro_scale_sigma", "accel_delay_sigma_s",
+                          "lever_arm_sigma_m", "incline_begins_per_s"},
                .fixed = std::move(fixed)});
 }
 

@@ -218,7 +218,7 @@ MotionRegimeStream::Params stream_params(const sim::Sensors& sensors, const sim:
   params.evidence.gravity_m_s2 = params.hand_held.body.gravity_m_s2 = sensors.gravity_m_s2;
   rate_tumble_lag_settings().apply(parameters, params);
   rate.lag_s = std::max(rate.lag_s, 2.0 * rate.period_s);
-  params.hand_held.body.expert.gap_max_s = rate.gap_max_s;
+  params.hand_held.body.expert.gap_max_s = rate.kGapMax_s;
   if (given == nullptr) return params;
 
   apply_saved_calibration(*given, rate);
@@ -259,7 +259,7 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   std::vector<AuxiliaryReading> beside(auxiliary_imus.size());
   for (std::size_t k = 0; k < samples.size(); ++k) {
     for (std::size_t i = 0; i < beside.size(); ++i) beside[i] = auxiliary_imus[i][k];
-    if (k > 0 && seconds(samples[k].time_ns - samples[k - 1].time_ns) > params.rate.gap_max_s) {
+    if (k > 0 && seconds(samples[k].time_ns - samples[k - 1].time_ns) > params.rate.kGapMax_s) {
       joined.flush(all, estimate.rates);
       restart_after_gap(params, joined, all);
     }

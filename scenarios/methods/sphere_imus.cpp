@@ -72,15 +72,12 @@ Status merge_imus(const sim::Sensors& sensors, MergedImus& out) {
   if (Status status = sphere_imus(sensors, units); !status.ok()) return status;
   out.names = units.names;
   out.beyond_range = units.beyond_range;
-  ImuMerge::Params params;
-  params.gap_max_s = bridge::kGapMaxS;
+  ImuMerge::Setup setup;
   for (const ImuRecording& unit : units.recordings) {
-    params.gyro_range_rad_s =
-        std::min(params.gyro_range_rad_s, range_below_saturation(unit.data_sheet.gyro_range_rad_s));
-    params.accel_range_m_s2 =
-        std::min(params.accel_range_m_s2, range_below_saturation(unit.data_sheet.accel_range_m_s2));
+    setup.gyro_range_rad_s = std::min(setup.gyro_range_rad_s, range_below_saturation(unit.data_sheet.gyro_range_rad_s));
+    setup.accel_range_m_s2 = std::min(setup.accel_range_m_s2, range_below_saturation(unit.data_sheet.accel_range_m_s2));
   }
-  return merge_recordings(units.recordings, params, out.merged);
+  return merge_recordings(units.recordings, setup, out.merged);
 }
 
 }  // namespace tumble::scenarios

@@ -34,7 +34,7 @@ TEST(NodeParams, AreThoseThatHaveAnEffect) {
   for (const char* name : {"radius_m", "lag_s", "gravity_m_s2"}) EXPECT_TRUE(rolling.contains(name)) << name;
   for (const char* name : {"rate_lag_s", "mapping_gravity_m_s2", "mapping_range_max_m"})
     EXPECT_FALSE(tumbling.contains(name)) << name << " is derived";
-  EXPECT_FALSE(rolling.contains("merge_count"));
+  EXPECT_FALSE(rolling.contains("rolling_radius_m")) << "is derived";
   EXPECT_FALSE(rolling.contains("map_period_s"));
 }
 

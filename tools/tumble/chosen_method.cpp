@@ -109,7 +109,7 @@ std::string size_of_sweeps(const sim::Sensors& sensors) {
   const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
   std::nth_element(sizes.begin(), middle, sizes.end());
   return fmt::format("the sweeps of {} have {} points (median); a map needs sweeps with at least {} points",
-                     sensors.lidars.front().name, *middle, OdometryParams{}.expert.matching.matches_min);
+                     sensors.lidars.front().name, *middle, MatchingParams::kMatchesMin);
 }
 
 }  // namespace

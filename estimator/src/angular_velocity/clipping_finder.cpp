@@ -53,10 +53,10 @@ std::uint8_t ConfirmedSaturation::flags(const ImuSample& sample, const Clipping&
   return static_cast<std::uint8_t>(out);
 }
 
-ClippingFinder::ClippingFinder(const Params& params)
+ClippingFinder::ClippingFinder(const Params& params, bool use_tilted_planes)
     : axis_limit_detector_(params.axis_limit_params),
       plane_finders_(make_plane_finders(params)),
-      use_tilted_planes_(params.tilted) {}
+      use_tilted_planes_(use_tilted_planes) {}
 
 SaturationPlanes ClippingFinder::find_planes(std::span<const ImuSample> samples, Triad triad,
                                              const SaturationLimitDetector::State& axis_aligned_rails,

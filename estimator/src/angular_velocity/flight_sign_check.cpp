@@ -8,12 +8,14 @@
 #include <cstddef>
 
 #include "tumble/angular_velocity/detail/rail_ratios.hpp"
+#include "tumble/common/parameters.hpp"
 
 namespace tumble {
 
 namespace {
 
 constexpr double kFlightReading_s = 0.01;  // averaging time of readings, so that the sample rate does not matter
+constexpr double kLeverArmMax_m = 1e3;     // maximum coordinate of a stated lever arm
 constexpr double kForceMin_m_s2 = 2.5;     // a smaller force of the rotation is mostly noise and bias
 constexpr double kTolerance = 0.25;        // tolerance of the agreement, as a fraction of the force of free flight
 constexpr double kRun_s = 0.02;            // minimum duration of agreement, which excludes chance on the ground
@@ -65,8 +67,8 @@ FlightSignCheck::AveragedReading convert_reading(const FlightSignCheck::Averaged
 
 /// See imu_merge.md (I31).
 bool agrees_with_flight(const MirroredAxes& sense, const std::array<FlightSignCheck::AveragedReading, 3>& readings,
-                        const FlightSignCheck::Params& params) {
-  const Eigen::Vector3d& t = params.lever_arm_m;
+                        const FlightSignCheck::Setup& setup) {
+  const Eigen::Vector3d& t = setup.lever_arm_m;
   const FlightSignCheck::AveragedReading first = convert_reading(readings[0], sense, t),
                                          middle = convert_reading(readings[1], sense, t),
                                          last = convert_reading(readings[2], sense, t);
@@ -85,8 +87,10 @@ bool is_alternative_tested(std::size_t sense, FlightSignCheck::BodyMotionType bo
 
 }  // namespace
 
-FlightSignCheck::FlightSignCheck(const Params& params) : params_(params) {
-  require_valid_fields(params);
+FlightSignCheck::FlightSignCheck(const Setup& setup) : setup_(setup) {
+  for (const double coordinate_m : setup.lever_arm_m)
+    require_in_interval("lever_arm_m", coordinate_m, -kLeverArmMax_m, kLeverArmMax_m);
+  require_in_interval("gyro_range_rad_s", setup.gyro_range_rad_s, 0.0, kUnbounded);
 }
 
 void FlightSignCheck::step(const ImuSample& sample, State& state) const {
@@ -112,13 +116,13 @@ void FlightSignCheck::step(const ImuSample& sample, State& state) const {
 FlightSignCheck::AveragedReading FlightSignCheck::reading_of(const ImuSample& mean, double rate_peak_rad_s) const {
   AveragedReading out{mean.time_ns, mean.angular_velocity_rad_s, mean.specific_force_m_s2, Eigen::Vector3d::Zero(),
                       true};
-  const double rail = params_.gyro_range_rad_s == 0.0 ? kUnbounded : (1.0 - kNearRailRatio) * params_.gyro_range_rad_s;
+  const double rail = setup_.gyro_range_rad_s == 0.0 ? kUnbounded : (1.0 - kNearRailRatio) * setup_.gyro_range_rad_s;
   for (int axis = 0; axis < 3; ++axis) {
     const bool flagged = (mean.device_clip_flags & (kClipGyroX << axis)) != 0;
     if (flagged || std::abs(out.rate_rad_s[axis]) >= rail)
       out.saturation_sign[axis] = out.rate_rad_s[axis] < 0.0 ? -1.0 : 1.0;
   }
-  const bool by_the_force = params_.motion_type == BodyMotionType::always_thrown && !out.saturation_sign.isZero(0.0);
+  const bool by_the_force = setup_.motion_type == BodyMotionType::always_thrown && !out.saturation_sign.isZero(0.0);
   out.is_unsaturated = by_the_force || (rate_peak_rad_s < rail && out.saturation_sign.isZero(0.0));
   return out;
 }
@@ -132,8 +136,8 @@ void FlightSignCheck::process_reading(const AveragedReading& now, State& state) 
   }
   const double dt_s = seconds(now.time_ns - first.time_ns);
   for (std::size_t sense = 0; sense < kMirroredAlternatives; ++sense) {
-    if (!is_alternative_tested(sense, params_.motion_type)) continue;
-    if (!agrees_with_flight(kAlternativeSensors[sense], {first, middle, now}, params_)) {
+    if (!is_alternative_tested(sense, setup_.motion_type)) continue;
+    if (!agrees_with_flight(kAlternativeSensors[sense], {first, middle, now}, setup_)) {
       state.current_flight_duration_s[sense] = 0.0;
       continue;
     }
@@ -151,7 +155,7 @@ Status FlightSignCheck::current_verdict(const State& state) const {
 }
 
 Status FlightSignCheck::verdict(const State& state) const {
-  const double ratio = params_.motion_type == BodyMotionType::always_thrown ? kThrownRatioMin : kAlternativeRatioMin;
+  const double ratio = setup_.motion_type == BodyMotionType::always_thrown ? kThrownRatioMin : kAlternativeRatioMin;
   const double bound_s = std::max(kAlternativeMin_s, ratio * state.flight_duration_s[0]);
   const auto longest = std::max_element(state.flight_duration_s.begin() + 1, state.flight_duration_s.end());
   if (*longest <= bound_s) return {};

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <tuple>
 
+#include "tumble/common/parameters.hpp"
+#include "tumble/common/status.hpp"
+
 namespace tumble {
 
 namespace {
@@ -53,8 +56,9 @@ void start_repeated_reading(std::size_t channel, const std::array<double, 6>& no
 
 }  // namespace
 
-FrozenAxes::FrozenAxes(const Params& params) : params_(params) {
-  require_valid_fields(params);
+FrozenAxes::FrozenAxes(const ImuRanges& imu_ranges) : imu_ranges_(imu_ranges) {
+  require_in_interval("gyro_range_rad_s", imu_ranges.gyro_range_rad_s, 0.0, kUnbounded);
+  require_in_interval("accel_range_m_s2", imu_ranges.accel_range_m_s2, 0.0, kUnbounded);
 }
 
 void FrozenAxes::step(const ImuSample& sample, State& state) const {
@@ -108,7 +112,7 @@ void FrozenAxes::track_repeated_reading(std::size_t channel, const std::array<do
 }
 
 bool FrozenAxes::is_at_saturation_limit(std::size_t channel, const Axis& axis) const {
-  const double stated = is_gyro(channel) ? params_.gyro_range_rad_s : params_.accel_range_m_s2;
+  const double stated = is_gyro(channel) ? imu_ranges_.gyro_range_rad_s : imu_ranges_.accel_range_m_s2;
   const double size = std::abs(axis.reading);
   if (stated > 0.0 && size >= kPossibleRailRatio * stated) return true;
   if (axis.flagged_by_device && size >= kExtremeRatio * stated) return true;

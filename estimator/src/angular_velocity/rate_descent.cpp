@@ -29,8 +29,7 @@ constexpr double kVarianceUnknown = 100.0;  // variance of a clipped axis at the
 // Computes initial rates with a smoother and the published rate recovery (SaturationAwareRateEstimator). Clipped
 // readings are lower bounds of the rates. The samples must be valid.
 std::vector<AngularRateEstimate> first_guess(std::span<const AngularRateObservation> observations,
-                                             const AngularRateModelParams& model, const AngularRateModel& derived,
-                                             double gap_max_s) {
+                                             const AngularRateModelParams& model, const AngularRateModel& derived) {
   double smallest = model.kRateMax_rad_s;
   for (const AngularRateObservation& o : observations) {
     for (int j = 0; j < 3; ++j) {
@@ -39,8 +38,7 @@ std::vector<AngularRateEstimate> first_guess(std::span<const AngularRateObservat
     }
   }
   const SaturationAwareRateEstimator saave({.lever_arm_m = derived.prior_constants().lever_arm_m,
-                                            .saturation_point_rad_s = std::max(0.01, 0.9999 * smallest),
-                                            .gap_max_s = gap_max_s});
+                                            .saturation_point_rad_s = std::max(0.01, 0.9999 * smallest)});
   SaturationAwareRateEstimator::State state;
   SaturationAwareRateEstimator::RecoveredRate recovered;
   const double measured = derived.gyro_sigma_rad_s() * derived.gyro_sigma_rad_s();
@@ -91,7 +89,7 @@ void compute_flight_weights(const AngularRateModel& model, std::span<const Angul
 bool run_gauss_newton(const AngularRateSmoother::Params& params, const AngularRateModel& model,
                       std::span<const AngularRateObservation> observations, double threshold_factor,
                       RateSolution& solution, AngularRateReport& health) {
-  solution.estimates = first_guess(observations, params.model, model, params.gap_max_s);
+  solution.estimates = first_guess(observations, params.model, model);
   solution.rig = model.prior_constants();
   solution.rig_covariance = model.prior_covariance();
   std::vector<AngularRateEstimate>& estimates = solution.estimates;

@@ -364,7 +364,8 @@ arrow::StateVector AngularRateModel::scaled_difference(const Eigen::Matrix<doubl
 }
 
 AngularRateSource rate_source_of(const AngularRateObservation& o, const AngularRateEstimate& e,
-                                 const Eigen::Matrix3d& covariance, double sigma) {
+                                 const Eigen::Matrix3d& covariance) {
+  constexpr double kRecoveredSigma_rad_s = 0.5;
   const int clipped = o.clipping.gyro | o.clipping.unusable_gyro;
   // A reading that may be saturated is a lower bound of the rate.
   if (clipped == 0)
@@ -374,7 +375,8 @@ AngularRateSource rate_source_of(const AngularRateObservation& o, const AngularR
   for (int j = 0; j < 3; ++j) {
     if ((clipped >> j & 1) != 0) largest = std::max(largest, covariance(j, j));
   }
-  return largest <= sigma * sigma ? AngularRateSource::recovered_in_contact : AngularRateSource::lower_bound_only;
+  return largest <= kRecoveredSigma_rad_s * kRecoveredSigma_rad_s ? AngularRateSource::recovered_in_contact
+                                                                  : AngularRateSource::lower_bound_only;
 }
 
 }  // namespace tumble

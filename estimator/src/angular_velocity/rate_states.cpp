@@ -144,7 +144,7 @@ std::vector<AngularRateState> rate_states_of_recording(const AngularRateSmoother
     }
     state.time_ns = samples[k].time_ns;
     state.clipped_axes = o.clipping.gyro | o.clipping.unusable_gyro;
-    state.source = rate_source_of(o, estimate, state.covariance_rad2_s2, params.recovered_sigma_rad_s);
+    state.source = rate_source_of(o, estimate, state.covariance_rad2_s2);
     if (near[k] != 0 && state.source == AngularRateSource::measured) state.source = AngularRateSource::lower_bound_only;
     count(state, o, health);
     in_flight += estimate.flight_weight >= 0.5;

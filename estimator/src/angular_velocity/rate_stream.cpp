@@ -19,7 +19,7 @@ int clipped_axes(const AngularRateObservation& o) {
   return o.unmeasured_axes();
 }
 
-FrozenAxes::Params frozen_axes_params(const SaturationLimitDetector::Params& rails) {
+FrozenAxes::ImuRanges stated_ranges(const SaturationLimitDetector::Params& rails) {
   return {.gyro_range_rad_s = rails.stated_gyro_range_rad_s.value_or(0.0),
           .accel_range_m_s2 = rails.stated_accel_range_m_s2.value_or(0.0)};
 }
@@ -65,7 +65,7 @@ AngularRateStream::AngularRateStream(const Params& params)
       clipping_finder_(
           {.clipping = {params.saturation_detector, params.expert.gyro_planes, params.expert.accel_saturation_planes}}),
       rest_detector_(params.expert.rest_detector),
-      frozen_axes_(frozen_axes_params(params.saturation_detector)),
+      frozen_axes_(stated_ranges(params.saturation_detector)),
       flight_axis_sign_check_({.lever_arm_m = params.model.nominal.lever_arm_m,
                                .gyro_range_rad_s = params.saturation_detector.stated_gyro_range_rad_s.value_or(0.0)}),
       model_(model_params_with_corrections(params), params.period_s),
@@ -111,7 +111,7 @@ Status AngularRateStream::push(const ImuSample& sample, std::span<const Auxiliar
   if (Status status = check_sample(sample); !status.ok()) return status;
   if (!state.window.empty()) {
     Status status =
-        check_stamp_order(sample.time_ns, state.window.back().observation.sample.time_ns, params_.gap_max_s);
+        check_stamp_order(sample.time_ns, state.window.back().observation.sample.time_ns, params_.kGapMax_s);
     if (!status.ok()) return status;
   }
   const bool due = ++state.samples_since_step >= samples_per_step_;

@@ -115,7 +115,7 @@ AngularRateState AngularRateStream::rate_state_of_knot(std::size_t at, const Sta
   }
   out.covariance_rad2_s2.diagonal() += frozen_axes_.rate_variance_rad2_s2(out.time_ns, state.frozen_axes);
   out.clipped_axes = knot.observation.clipping.gyro | knot.observation.clipping.unusable_gyro;
-  out.source = rate_source_of(knot.observation, knot.estimate, covariance, params_.recovered_sigma_rad_s);
+  out.source = rate_source_of(knot.observation, knot.estimate, covariance);
   if (out.source == AngularRateSource::measured && may_be_partly_saturated(at, state))
     out.source = AngularRateSource::lower_bound_only;
   return out;

@@ -9,6 +9,11 @@ namespace tumble {
 
 RestDetector::RestDetector(const Params& params) : params_(params) {
   require_valid_fields(params);
+  const CallerSettings& settings = params.caller_settings;
+  require_in_interval("force_min_m_s2", settings.force_min_m_s2, 0.0, 100.0);
+  require_in_interval("force_max_m_s2", settings.force_max_m_s2, 0.0, 1e6);
+  require_in_interval("reading_s", settings.reading_s, 0.0, 1.0);
+  require_in_interval("memory_s", settings.memory_s, 1e-3, 1e6);
 }
 
 Eigen::Vector3d RestDetector::State::mean_rate_rad_s() const {
@@ -28,7 +33,8 @@ bool RestDetector::detect_stationary(const ImuSample& sample, State& state, cons
   state.pending_rate_rad_s += sample.angular_velocity_rad_s;
   state.pending_force_m_s2 += sample.specific_force_m_s2;
   const double half_s = 0.5 * seconds(sample.time_ns - state.last_ns);
-  const bool whole = !state.started || seconds(sample.time_ns - state.last_reading_ns) >= params_.reading_s - half_s;
+  const bool whole =
+      !state.started || seconds(sample.time_ns - state.last_reading_ns) >= params_.caller_settings.reading_s - half_s;
   state.started = true;
   state.last_ns = sample.time_ns;
   if (!whole) return state.is_stationary;
@@ -54,7 +60,7 @@ bool RestDetector::detect_stationary_from_mean(const Eigen::Vector3d& rate_rad_s
   }
   const double force = force_m_s2.norm();
   if ((rate_rad_s - bias_rad_s).cwiseAbs().maxCoeff() > params_.rate_max_rad_s + params_.rate_spread_rad_s ||
-      force < params_.force_min_m_s2 || force > params_.force_max_m_s2) {
+      force < params_.caller_settings.force_min_m_s2 || force > params_.caller_settings.force_max_m_s2) {
     state.weight = 0.0;
     state.small_rate_since_ns = 0;
     return false;
@@ -63,9 +69,9 @@ bool RestDetector::detect_stationary_from_mean(const Eigen::Vector3d& rate_rad_s
     state.first_ns = from_ns;
     state.rate_sum_rad_s.setZero();
     state.force_sum_m_s2.setZero();
-  } else if (seconds(to_ns - state.first_ns) > params_.memory_s) {
+  } else if (seconds(to_ns - state.first_ns) > params_.caller_settings.memory_s) {
     // Exponential weights average rate and force over about memory_s seconds.
-    const double keep = 1.0 - std::min(1.0, step_s / params_.memory_s);
+    const double keep = 1.0 - std::min(1.0, step_s / params_.caller_settings.memory_s);
     state.weight *= keep;
     state.rate_sum_rad_s *= keep;
     state.force_sum_m_s2 *= keep;

@@ -34,7 +34,7 @@ SaturationAwareRateEstimator::SaturationAwareRateEstimator(const Params& params)
 Status SaturationAwareRateEstimator::step(const ImuSample& sample, State& state, RecoveredRate& out) const {
   if (Status status = check_sample(sample); !status.ok()) return status;
   if (state.started) {
-    Status status = check_stamp_order(sample.time_ns, state.last_time_ns, params_.gap_max_s);
+    Status status = check_stamp_order(sample.time_ns, state.last_time_ns, params_.kGapMax_s);
     if (!status.ok()) return status;
   }
   state.started = true;

@@ -35,10 +35,11 @@ std::array<std::optional<double>, 6> saturation_limits_of(const SaturationLimitD
 
 }  // namespace
 
-StreamingClippingFinder::StreamingClippingFinder(const Params& params)
-    : axis_limit_detector_(params.clipping.axis_limit_params), plane_finders_(make_plane_finders(params.clipping)) {
+StreamingClippingFinder::StreamingClippingFinder(const Params& params, std::size_t readings_max)
+    : axis_limit_detector_(params.clipping.axis_limit_params),
+      plane_finders_(make_plane_finders(params.clipping)),
+      readings_max_(readings_max) {
   require_valid_fields(params);
-  readings_max_ = static_cast<std::size_t>(params.readings_max);
 }
 
 StreamingClippingFinder::State StreamingClippingFinder::start() const {

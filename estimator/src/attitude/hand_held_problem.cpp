@@ -31,10 +31,10 @@ Motion::Params motion_params(const HandHeldSmoother::Params& p, double jerk) {
   Motion::Params out;
   out.step_s = p.expert.node_s;
   out.jerk_rad_s3_sqrts = jerk * p.jerk_rad_s3_sqrts;
-  out.rotation_error_sqrts = p.expert.readings.kRotationError_sqrts;
+  out.rotation_error_sqrts = HandHeldSensorParams::kRotationError_sqrts;
   out.hand_sigma_m_s2 = p.hand_sigma_m_s2, out.hand_tau_s = p.expert.hand_motion.kHandTau_s;
-  out.velocity_m_s = p.velocity_m_s, out.velocity_tau_s = p.expert.hand_motion.kVelocityTau_s;
-  out.position_m = p.position_m, out.position_tau_s = p.expert.hand_motion.kPositionTau_s,
+  out.velocity_m_s = p.expert.hand_motion.kVelocity_m_s, out.velocity_tau_s = p.expert.hand_motion.kVelocityTau_s;
+  out.position_m = p.expert.hand_motion.kPosition_m, out.position_tau_s = p.expert.hand_motion.kPositionTau_s,
   out.position_leak_s = p.expert.hand_motion.kPositionLeak_s;
   return out;
 }
@@ -43,10 +43,10 @@ ReadingNoise reading_noise(const HandHeldSmoother::Params& p, double period_s) {
   const double root_rate = 1.0 / std::sqrt(period_s);
   ReadingNoise out;
   out.gyro_rad_s = p.gyro_noise_density * root_rate;
-  out.deficit_error_ratio = p.expert.readings.kDeficitErrorRatio;
-  out.saturation_limit_sigma_rad_s = p.expert.readings.kRailSigma_rad_s;
+  out.deficit_error_ratio = HandHeldSensorParams::kDeficitErrorRatio;
+  out.saturation_limit_sigma_rad_s = HandHeldSensorParams::kRailSigma_rad_s;
   out.accel_m_s2 = p.accel_noise_density * root_rate;
-  out.force_noise_ratio = p.expert.readings.kAccelErrorRatio;
+  out.force_noise_ratio = HandHeldSensorParams::kAccelErrorRatio;
   out.stationary_rate_sigma_rad_s = kRestSigma_rad_s;
   out.stationary_velocity_sigma_m_s = kRestSigma_m_s;
   out.stationary_acceleration_sigma_m_s2 = kRestSigma_m_s2;

@@ -186,7 +186,7 @@ void correct_partial_saturation(double noise_rad_s, const Eigen::Matrix3d& rows,
 // Recovered rates have correlated errors: carried.md (C15).
 void recovered_readings(const HandHeldSmoother::Params& params, const SensingAxisClipSigns& clipped,
                         GyroReadings& rates) {
-  const double nodes = std::sqrt(2.0 * params.expert.readings.kRecoveredTau_s / params.expert.node_s);
+  const double nodes = std::sqrt(2.0 * HandHeldSensorParams::kRecoveredTau_s / params.expert.node_s);
   for (std::size_t k = 0; k < clipped.recovered_covariance_rad2_s2.size(); ++k) {
     const Eigen::Matrix3d along =
         clipped.sensing_directions * clipped.recovered_covariance_rad2_s2[k] * clipped.sensing_directions.transpose();

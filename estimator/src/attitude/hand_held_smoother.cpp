@@ -56,9 +56,9 @@ AngularRateSource source(const AngularRateState& rate, double recovered_sigma) {
 
 /// The gyro's scale error increases the attitude covariance in proportion to the rotation since the last rest:
 /// carried.md (C27).
-void add_rotation_covariance(const HandHeldSmoother::Params& params, const hand_held::NodeData& collected,
-                             const std::vector<AngularRateState>& rates, std::vector<AttitudeState>& attitudes) {
-  const double share = params.expert.readings.recovered_scale_sigma;
+void add_rotation_covariance(const hand_held::NodeData& collected, const std::vector<AngularRateState>& rates,
+                             std::vector<AttitudeState>& attitudes) {
+  const double share = HandHeldSensorParams::kRecoveredScaleSigma;
   const auto turned_on = [&](std::size_t k, Eigen::Vector3d& turned) {
     if (collected.nodes[collected.samples.node_of[k]].is_stationary) return turned.setZero(), void();
     turned += seconds(rates[k].time_ns - rates[k - 1].time_ns) * rates[k].w_WI_I_rad_s;
@@ -114,13 +114,13 @@ Status HandHeldSmoother::estimate(std::span<const ImuSample> samples, const Sens
     rates[k].w_WI_I_rad_s = node.w_WI_I_rad_s + centre * node.angular_acceleration_rad_s2;
     rates[k].covariance_rad2_s2 = covariance.block<3, 3>(hand_held::kRate, hand_held::kRate);
     rates[k].clipped_axes = clipped_axes(collected.rates, k);
-    rates[k].source = source(rates[k], params_.expert.readings.kRecoveredSigma_rad_s);
+    rates[k].source = source(rates[k], HandHeldSensorParams::kRecoveredSigma_rad_s);
     const Eigen::Vector3d turn = end * node.w_WI_I_rad_s + 0.5 * end * end * node.angular_acceleration_rad_s2;
     attitudes[k].orientation_W = node.q_WI * so3::exp(turn);
     const Eigen::Matrix3d R = node.q_WI.toRotationMatrix();
     attitudes[k].covariance_rad2 = R * covariance.topLeftCorner<3, 3>() * R.transpose();
   }
-  if (!clipped.recovered_covariance_rad2_s2.empty()) add_rotation_covariance(params_, collected, rates, attitudes);
+  if (!clipped.recovered_covariance_rad2_s2.empty()) add_rotation_covariance(collected, rates, attitudes);
   return {};
 }
 

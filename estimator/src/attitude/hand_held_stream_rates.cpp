@@ -69,8 +69,7 @@ AngularRateState HandHeldRateStream::rate_state_of_reading(const Reading& readin
   out.clipped_axes = clipped_axes(reading.clip_signs);
   if (out.clipped_axes == 0) return out;
   const double variance = covariance.selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff();
-  const double recovered =
-      params_.body.expert.readings.kRecoveredSigma_rad_s * params_.body.expert.readings.kRecoveredSigma_rad_s;
+  const double recovered = HandHeldSensorParams::kRecoveredSigma_rad_s * HandHeldSensorParams::kRecoveredSigma_rad_s;
   out.source = variance < recovered ? AngularRateSource::recovered_in_contact : AngularRateSource::lower_bound_only;
   return out;
 }

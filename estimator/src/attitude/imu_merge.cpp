@@ -42,53 +42,56 @@ constexpr double kAccelerationSigmaRatio = 0.3;
 
 }  // namespace
 
-ForceErrors::Params ImuMerge::force_params(const Params& p) {
+ForceErrors::Params ImuMerge::force_params(const Setup& setup) {
   ForceErrors::Params out;
-  out.count = std::clamp(p.count, 1, kImus);
+  out.count = std::clamp(setup.count, 1, kImus);
   for (std::size_t k = 0; k < static_cast<std::size_t>(out.count); ++k)
-    out.imu_positions_m[k] = p.T_mean_imu[k].translation();
+    out.imu_positions_m[k] = setup.T_mean_imu[k].translation();
   return out;
 }
 
-AngularRateRecovery::Params ImuMerge::rate_recovery_params(const Params& p) {
+AngularRateRecovery::Params ImuMerge::rate_recovery_params(const Setup& setup) {
   AngularRateRecovery::Params out;
-  out.count = p.count;
-  out.gyro_range_rad_s = p.gyro_range_rad_s;
-  out.accel_range_m_s2 = p.accel_range_m_s2;
+  out.count = setup.count;
+  out.gyro_range_rad_s = setup.gyro_range_rad_s;
+  out.accel_range_m_s2 = setup.accel_range_m_s2;
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  const auto count = static_cast<std::size_t>(std::clamp(p.count, 0, kImus));
-  for (std::size_t k = 0; k < count; ++k) mean += p.T_mean_imu[k].translation() / p.count;
+  const auto count = static_cast<std::size_t>(std::clamp(setup.count, 0, kImus));
+  for (std::size_t k = 0; k < count; ++k) mean += setup.T_mean_imu[k].translation() / setup.count;
   for (std::size_t k = 0; k < count; ++k) {
-    out.T_mean_imu[k] = p.T_mean_imu[k];
+    out.T_mean_imu[k] = setup.T_mean_imu[k];
     out.T_mean_imu[k].translation() -= mean;
-    out.gyro_sensing_directions[k] = p.gyro_sensing_directions[k];
-    out.accel_sensing_directions[k] = p.accel_sensing_directions[k];
+    out.gyro_sensing_directions[k] = setup.gyro_sensing_directions[k];
+    out.accel_sensing_directions[k] = setup.accel_sensing_directions[k];
   }
   return out;
 }
 
-ImuMerge::ImuMerge(const Params& p) : params_(p), forces_(force_params(p)), rate_recovery_(rate_recovery_params(p)) {
-  require_valid_fields(p);
-  for (int k = 0; k < p.count; ++k) {
-    const Eigen::Isometry3d& T = p.T_mean_imu[static_cast<std::size_t>(k)];
+ImuMerge::ImuMerge(const Setup& setup)
+    : setup_(setup), forces_(force_params(setup)), rate_recovery_(rate_recovery_params(setup)) {
+  require_in_interval("count", setup.count, 1.0, kImus);
+  require_in_interval("gyro_range_rad_s", setup.gyro_range_rad_s, 1e-12, 1e3);
+  require_in_interval("accel_range_m_s2", setup.accel_range_m_s2, 1e-12, 1e5);
+  for (int k = 0; k < setup.count; ++k) {
+    const Eigen::Isometry3d& T = setup.T_mean_imu[static_cast<std::size_t>(k)];
     require_in_interval("T_CI", T.translation().norm(), 0.0, 1e3);
     require_in_interval("T_CI", (T.linear() * T.linear().transpose() - Eigen::Matrix3d::Identity()).norm(), 0.0, 1e-6);
-    mean_imu_position_m_ += T.translation() / p.count;
+    mean_imu_position_m_ += T.translation() / setup.count;
   }
 }
 
 Status ImuMerge::step(std::span<const ImuSample> samples, State& state, std::optional<ImuSample>& merged) const {
   merged.reset();
-  if (samples.size() != static_cast<std::size_t>(params_.count)) {
+  if (samples.size() != static_cast<std::size_t>(setup_.count)) {
     return {ErrorCode::insufficient_data, "samples", static_cast<double>(samples.size()),
-            static_cast<double>(params_.count)};
+            static_cast<double>(setup_.count)};
   }
   const bool received =
       std::any_of(samples.begin(), samples.end(), [](const ImuSample& s) { return check_sample(s).ok(); });
   if (!received) return check_sample(samples[0]);
   double dt_s = 0.0;
   if (state.sample_count > 0) {
-    const Status bad = elapsed_time_since_last(samples[0].time_ns, state.last_time_ns, params_.gap_max_s, dt_s);
+    const Status bad = elapsed_time_since_last(samples[0].time_ns, state.last_time_ns, Setup::kGapMax_s, dt_s);
     if (!bad.ok()) return bad;
   } else {
     for (Unit& unit : state.imus) {
@@ -98,7 +101,7 @@ Status ImuMerge::step(std::span<const ImuSample> samples, State& state, std::opt
     }
   }
   accumulate_window(samples, dt_s, state);
-  const bool full = state.sample_count == 0 || state.window_s >= params_.window_s - 0.5 * dt_s;
+  const bool full = state.sample_count == 0 || state.window_s >= Setup::kWindow_s - 0.5 * dt_s;
   state.last_time_ns = samples[0].time_ns;
   ++state.sample_count;
   if (full) merged = merge(state);
@@ -106,7 +109,7 @@ Status ImuMerge::step(std::span<const ImuSample> samples, State& state, std::opt
 }
 
 void ImuMerge::accumulate_window(std::span<const ImuSample> samples, double dt_s, State& state) const {
-  const double weight_s = state.sample_count > 0 ? dt_s : params_.window_s;
+  const double weight_s = state.sample_count > 0 ? dt_s : Setup::kWindow_s;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     Unit& unit = state.imus[k];
     if (!check_sample(samples[k]).ok()) {
@@ -116,8 +119,8 @@ void ImuMerge::accumulate_window(std::span<const ImuSample> samples, double dt_s
     ImuSample sample = samples[k];
     for (int axis = 0; axis < 3; ++axis) {
       int flags = sample.device_clip_flags;
-      if (std::abs(sample.angular_velocity_rad_s[axis]) >= params_.gyro_range_rad_s) flags |= kClipGyroX << axis;
-      if (std::abs(sample.specific_force_m_s2[axis]) >= params_.accel_range_m_s2) flags |= kClipAccelX << axis;
+      if (std::abs(sample.angular_velocity_rad_s[axis]) >= setup_.gyro_range_rad_s) flags |= kClipGyroX << axis;
+      if (std::abs(sample.specific_force_m_s2[axis]) >= setup_.accel_range_m_s2) flags |= kClipAccelX << axis;
       sample.device_clip_flags = static_cast<std::uint8_t>(flags);
     }
     unit.window.add(sample, weight_s);
@@ -126,7 +129,7 @@ void ImuMerge::accumulate_window(std::span<const ImuSample> samples, double dt_s
 }
 
 ImuSample ImuMerge::merge(State& state) const {
-  const auto count = static_cast<std::size_t>(params_.count);
+  const auto count = static_cast<std::size_t>(setup_.count);
   const double h = state.window_s;
   const TimeNs time_ns = state.last_time_ns;
   Readings readings{};
@@ -138,7 +141,7 @@ ImuSample ImuMerge::merge(State& state) const {
     finite[k] = state.imus[k].window.readings > 0;
     if (!finite[k]) continue;
     readings[k] = state.imus[k].window.mean;
-    const Eigen::Matrix3d R_CI = params_.T_mean_imu[k].linear();
+    const Eigen::Matrix3d R_CI = setup_.T_mean_imu[k].linear();
     raw_rates[k] = R_CI * readings[k].angular_velocity_rad_s;
     raw_forces[k] = R_CI * readings[k].specific_force_m_s2;
   }
@@ -166,10 +169,10 @@ ImuSample ImuMerge::merge(State& state) const {
   ImuSample merged = mean_of_selected_imus(rates, forces, used, h, state);
   merged.device_clip_flags = combined_flags(readings, used);
   const bool railed = (combined_flags(readings, present) & kClipGyro) != 0;
-  const bool silent = !std::all_of(finite.begin(), finite.begin() + params_.count, [](bool one) { return one; });
+  const bool silent = !std::all_of(finite.begin(), finite.begin() + setup_.count, [](bool one) { return one; });
   state.unclipped_windows = railed || silent ? 0 : std::min(state.unclipped_windows + 1, kAngularAccelerationWindows);
   merged.time_ns = time_ns;
-  const bool all_used = std::count(used.begin(), used.end(), true) == params_.count;
+  const bool all_used = std::count(used.begin(), used.end(), true) == setup_.count;
   close_comparison_windows(present, raw_rates, raw_forces, all_used, merged, state);
 
   if (std::count(present.begin(), present.end(), true) >= kMinImusForRecovery) {
@@ -178,7 +181,7 @@ ImuSample ImuMerge::merge(State& state) const {
     state.rate_recovery.running = false;  // a prediction across a gap in the data is invalid
   }
   const auto suspect = [](const Unit& unit) { return unit.exclusion_left_s > 0.0; };
-  if (2 * std::count_if(state.imus.begin(), state.imus.begin() + params_.count, suspect) > params_.count) {
+  if (2 * std::count_if(state.imus.begin(), state.imus.begin() + setup_.count, suspect) > setup_.count) {
     merged.device_clip_flags =
         static_cast<std::uint8_t>(merged.device_clip_flags | kClipAccelX | kClipAccelY | kClipAccelZ);
   }
@@ -195,7 +198,7 @@ ImuMerge::ImuMask ImuMerge::select_agreeing_imus(const Readings& readings, const
   for (std::size_t i = 0; i < used.size(); ++i) {
     if (!present[i]) continue;
     const double turned =
-        (params_.T_mean_imu[i].translation() - mean_imu_position_m_).norm() * middle_rate.squaredNorm() * 2.0;
+        (setup_.T_mean_imu[i].translation() - mean_imu_position_m_).norm() * middle_rate.squaredNorm() * 2.0;
     const bool agrees = units < 3 || ((rates[i] - middle_rate).norm() < rate_tolerance &&
                                       (forces[i] - middle_force).norm() < kForceTolerance_m_s2 + turned);
     // With three or more IMUs, AngularRateRecovery uses a clipped gyro as a lower bound.
@@ -206,10 +209,10 @@ ImuMerge::ImuMask ImuMerge::select_agreeing_imus(const Readings& readings, const
   // If no majority of the IMUs agrees, the correct IMUs cannot be identified, and all available IMUs are used.
   if (units < kMinImusForRecovery ? kept == 0 : 2 * kept <= units && kept < units) used = present;
   const bool apart = state.window_count > 0 && h > 0.0;  // derivatives from the last window exist
-  if (units >= kMinImusForRecovery && apart && middle_rate.cwiseAbs().maxCoeff() < params_.gyro_range_rad_s) {
+  if (units >= kMinImusForRecovery && apart && middle_rate.cwiseAbs().maxCoeff() < setup_.gyro_range_rad_s) {
     exclude_partly_saturated(readings, present, forces, middle_rate, h, state, used);
   }
-  for (std::size_t i = 0; i < static_cast<std::size_t>(params_.count); ++i)
+  for (std::size_t i = 0; i < static_cast<std::size_t>(setup_.count); ++i)
     state.imus[i].excluded_window_count += !used[i];
   return used;
 }
@@ -223,10 +226,10 @@ ImuSample ImuMerge::mean_of_selected_imus(const Vectors& rates, const Vectors& f
     if (!used[i]) continue;
     rate += rates[i] / kept;
     force += forces[i] / kept;
-    position += params_.T_mean_imu[i].translation() / kept;
-    if (kept < params_.count) position += ForceErrors::position_error_m(static_cast<int>(i), state.forces) / kept;
+    position += setup_.T_mean_imu[i].translation() / kept;
+    if (kept < setup_.count) position += ForceErrors::position_error_m(static_cast<int>(i), state.forces) / kept;
   }
-  if (kept < params_.count) {
+  if (kept < setup_.count) {
     const Eigen::Vector3d d = mean_imu_position_m_ - position;
     const double since_s = 0.5 * (h + state.length_s);
     if (state.window_count > 0 && h > 0.0) force += ((rate - state.rate_rad_s) / since_s).cross(d);
@@ -246,21 +249,21 @@ std::optional<double> ImuMerge::lever_arm_agreement(const State& state) {
 
 void ImuMerge::close_comparison_windows(const ImuMask& present, const Vectors& rates, const Vectors& forces,
                                         bool all_used, const ImuSample& merged, State& state) const {
-  const double length_s = state.window_count > 0 ? state.window_s : params_.window_s;
+  const double length_s = state.window_count > 0 ? state.window_s : Setup::kWindow_s;
   const bool follows = state.window_count > 1 && length_s < kWindowMax_s;
   // An IMU that repeats its reading may be frozen. If all IMUs repeat their readings, the rate is constant and no IMU
   // is frozen.
-  const auto end = state.imus.begin() + params_.count;
+  const auto end = state.imus.begin() + setup_.count;
   const auto any_repeats = [&](Repetition Unit::*hold) {
     const auto holding = std::count_if(state.imus.begin(), end,
                                        [&](const Unit& unit) { return (unit.*hold).repeated_s >= kRepeated_s; });
-    return holding > 0 && holding < params_.count;
+    return holding > 0 && holding < setup_.count;
   };
   const bool repeated = any_repeats(&Unit::repeated_rate) || any_repeats(&Unit::repeated_force);
   const bool free = state.unclipped_windows == kAngularAccelerationWindows;
-  if (all_used && !repeated && params_.count > 1 && follows && free) calibrate(rates, state);
+  if (all_used && !repeated && setup_.count > 1 && follows && free) calibrate(rates, state);
   detect_disagreeing_units(present, rates, forces, merged.time_ns, state);
-  for (std::size_t k = 0; k < static_cast<std::size_t>(params_.count); ++k) {
+  for (std::size_t k = 0; k < static_cast<std::size_t>(setup_.count); ++k) {
     Unit& unit = state.imus[k];
     if (unit.window.readings > 0) {
       unit.last_rate_rad_s = rates[k];
@@ -269,7 +272,7 @@ void ImuMerge::close_comparison_windows(const ImuMask& present, const Vectors& r
       const Eigen::Vector3d& rate = merged.angular_velocity_rad_s;
       unit.last_rate_rad_s = rate;
       unit.last_force_m_s2 = merged.specific_force_m_s2 +
-                             rate.cross(rate.cross(params_.T_mean_imu[k].translation() - mean_imu_position_m_));
+                             rate.cross(rate.cross(setup_.T_mean_imu[k].translation() - mean_imu_position_m_));
     }
     unit.window = {};
   }
@@ -294,15 +297,15 @@ void ImuMerge::exclude_partly_saturated(const Readings& samples, const ImuMask& 
   rigid.rate_rad_s = rate;
   rigid.acceleration_rad_s2 = (rate - state.rate_rad_s) / since_s;
   rigid.uncertainty_rad_s2 = kAccelerationSigmaRatio * (rigid.acceleration_rad_s2 - before).norm();
-  rigid.unsaturated_peak_max_m_s2 = params_.kSubsampleSaturationRatio * params_.accel_range_m_s2;
+  rigid.unsaturated_peak_max_m_s2 = Setup::kSubsampleSaturationRatio * setup_.accel_range_m_s2;
   rigid.tolerated_saturation_m_s2 = kHiddenForce_m_s2;
   for (std::size_t k = 0; k < present.size(); ++k) {
     if (!present[k]) continue;
     const Eigen::Vector3d& force = samples[k].specific_force_m_s2;
     rigid.position_m[k] =
-        params_.T_mean_imu[k].translation() + ForceErrors::position_error_m(static_cast<int>(k), state.forces);
+        setup_.T_mean_imu[k].translation() + ForceErrors::position_error_m(static_cast<int>(k), state.forces);
     rigid.peak_m_s2[k] = force.cwiseAbs().maxCoeff();
-    rigid.force_change_m_s2[k] = (params_.T_mean_imu[k].linear() * force - state.imus[k].last_force_m_s2).norm();
+    rigid.force_change_m_s2[k] = (setup_.T_mean_imu[k].linear() * force - state.imus[k].last_force_m_s2).norm();
   }
   RigidBodyImuForces::AgreeingImuForces agreed = rigid.largest_agreeing_set();
   if (agreed.agreeing_imu_count == 0) {
@@ -317,29 +320,29 @@ void ImuMerge::exclude_partly_saturated(const Readings& samples, const ImuMask& 
     exclusion_left_s = fits ? std::max(0.0, exclusion_left_s - h) : kSuspect_s;
     used[k] = used[k] && exclusion_left_s == 0.0;
   }
-  if (std::none_of(used.begin(), used.begin() + params_.count, [](bool one) { return one; })) used[agreed.imu] = true;
+  if (std::none_of(used.begin(), used.begin() + setup_.count, [](bool one) { return one; })) used[agreed.imu] = true;
 }
 
 void ImuMerge::recover_saturated_rate(const Readings& readings, const ImuMask& present, double h, State& state,
                                       ImuSample& merged) const {
   Readings corrected = readings;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(params_.count); ++k) {
+  for (std::size_t k = 0; k < static_cast<std::size_t>(setup_.count); ++k) {
     if (!present[k]) {
       corrected[k].angular_velocity_rad_s.setConstant(std::numeric_limits<double>::quiet_NaN());
       continue;
     }
     if ((readings[k].device_clip_flags & kClipAccel) != 0) continue;
-    const Eigen::Matrix3d R_CI = params_.T_mean_imu[k].linear();
+    const Eigen::Matrix3d R_CI = setup_.T_mean_imu[k].linear();
     const Eigen::Vector3d force = R_CI * readings[k].specific_force_m_s2;
     corrected[k].specific_force_m_s2 =
         R_CI.transpose() * ForceErrors::corrected(static_cast<int>(k), force, state.forces);
   }
-  rate_recovery_.step({corrected.data(), static_cast<std::size_t>(params_.count)}, h, state.rate_recovery, merged);
+  rate_recovery_.step({corrected.data(), static_cast<std::size_t>(setup_.count)}, h, state.rate_recovery, merged);
 }
 
 /// See imu_merge.md (I3), (I8).
 void ImuMerge::calibrate(const Vectors& rates, State& state) const {
-  const auto count = static_cast<std::size_t>(params_.count);
+  const auto count = static_cast<std::size_t>(setup_.count);
   Eigen::Vector3d now = Eigen::Vector3d::Zero(), mean = Eigen::Vector3d::Zero();
   for (std::size_t k = 0; k < count; ++k) {
     now += rates[k] / static_cast<double>(count);
@@ -355,19 +358,19 @@ void ImuMerge::calibrate(const Vectors& rates, State& state) const {
     mean_force += forces[k] / static_cast<double>(count);
     peak = std::max(peak, forces[k].cwiseAbs().maxCoeff());
   }
-  if (peak < kUnsaturatedForceRatio * params_.accel_range_m_s2) {
+  if (peak < kUnsaturatedForceRatio * setup_.accel_range_m_s2) {
     forces_.calibrate({forces.data(), count}, mean, acceleration, state.length_s, state.forces);
   }
   const Eigen::Matrix3d jacobian_position = so3::hat(acceleration) + so3::hat(mean) * so3::hat(mean);
   for (std::size_t k = 0; k < count; ++k) {
-    const Eigen::Vector3d from_mean_m = params_.T_mean_imu[k].translation() - mean_imu_position_m_,
+    const Eigen::Vector3d from_mean_m = setup_.T_mean_imu[k].translation() - mean_imu_position_m_,
                           by_rotation = jacobian_position * from_mean_m;
     state.imu_sign_check.add(forces[k] - mean_force, from_mean_m, mean, acceleration, state.length_s);
     state.lever_arm_correlation += state.length_s * by_rotation.dot(forces[k]);  // the mean force cancels
     state.lever_arm_effect_power += state.length_s * by_rotation.squaredNorm();
   }
   if (acceleration.norm() < kRotating_rad_s2) return;
-  const double variance = params_.kRateNoise_rad_s * params_.kRateNoise_rad_s;
+  const double variance = Setup::kRateNoise_rad_s * Setup::kRateNoise_rad_s;
   for (std::size_t k = 0; k < count; ++k) {
     Unit& unit = state.imus[k];
     const Eigen::Vector3d residual = unit.last_rate_rad_s - mean;

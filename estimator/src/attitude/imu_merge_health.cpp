@@ -41,7 +41,7 @@ std::uint8_t ImuMerge::combined_flags(const Readings& readings, const ImuMask& w
   for (std::size_t k = 0; k < which.size(); ++k) {
     const unsigned flags = readings[k].device_clip_flags;
     if (!which[k] || flags == 0) continue;
-    const Eigen::Matrix3d R_CI = params_.T_mean_imu[k].linear();
+    const Eigen::Matrix3d R_CI = setup_.T_mean_imu[k].linear();
     for (int axis = 0; axis < 3; ++axis) {
       for (int own = 0; own < 3; ++own) {
         if (std::abs(R_CI(axis, own)) <= kAxisContributionMin) continue;
@@ -92,8 +92,8 @@ void ImuMerge::detect_frozen_units(const ImuMask& present, const Vectors& rates,
     Unit& unit = state.imus[k];
     const bool rate_same = watch(rates[k], middle_rate, unit.repeated_rate);
     const bool force_same = watch(forces[k], middle_force, unit.repeated_force);
-    const bool railed = rates[k].cwiseAbs().maxCoeff() >= params_.gyro_range_rad_s ||
-                        forces[k].cwiseAbs().maxCoeff() >= params_.accel_range_m_s2;
+    const bool railed = rates[k].cwiseAbs().maxCoeff() >= setup_.gyro_range_rad_s ||
+                        forces[k].cwiseAbs().maxCoeff() >= setup_.accel_range_m_s2;
     const bool rate_frozen = unit.repeated_rate.repeated_s >= kUnitFrozen_s &&
                              (middle_rate - unit.repeated_rate.other_imus_reading).norm() > kOthersRate_rad_s;
     const bool force_frozen = unit.repeated_force.repeated_s >= kUnitFrozen_s &&
@@ -158,13 +158,13 @@ void ImuMerge::add_findings(const std::optional<MultiImuSignCheck::DetectedMirro
 void ImuMerge::detect_disagreeing_units(const ImuMask& present, const Vectors& rates, const Vectors& forces,
                                         TimeNs time_ns, State& state) const {
   if (std::count(present.begin(), present.end(), true) < kMinImusForFault) return;
-  const double h = state.window_count > 0 ? state.window_s : params_.window_s, share = -std::expm1(-h / kMisfitTau_s);
+  const double h = state.window_count > 0 ? state.window_s : Setup::kWindow_s, share = -std::expm1(-h / kMisfitTau_s);
   bool railed = false;
   for (std::size_t k = 0; k < present.size(); ++k) {
     const ImuAverage& window = state.imus[k].window;
     if (!present[k] || window.readings == 0) continue;
-    railed |= window.rate_peak_rad_s >= kComparableRateRatio * params_.gyro_range_rad_s ||
-              window.force_peak_m_s2 >= params_.kSubsampleSaturationRatio * params_.accel_range_m_s2;
+    railed |= window.rate_peak_rad_s >= kComparableRateRatio * setup_.gyro_range_rad_s ||
+              window.force_peak_m_s2 >= Setup::kSubsampleSaturationRatio * setup_.accel_range_m_s2;
   }
   if (railed) return;
   const Eigen::Vector3d middle_rate = median(rates, present), middle_force = median(forces, present);
@@ -173,7 +173,7 @@ void ImuMerge::detect_disagreeing_units(const ImuMask& present, const Vectors& r
     if (!present[k] || state.imus[k].window.readings == 0) continue;
     Unit& unit = state.imus[k];
     const double turned =
-        (params_.T_mean_imu[k].translation() - mean_imu_position_m_).norm() * 2.0 * middle_rate.squaredNorm();
+        (setup_.T_mean_imu[k].translation() - mean_imu_position_m_).norm() * 2.0 * middle_rate.squaredNorm();
     const double force = std::max(0.0, (forces[k] - middle_force).norm() - turned);
     unit.rate_difference_to_others_rad_s +=
         share * ((rates[k] - middle_rate).norm() - unit.rate_difference_to_others_rad_s);

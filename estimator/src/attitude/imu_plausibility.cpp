@@ -61,8 +61,9 @@ void add_repeated_reading(const Eigen::Vector3d& reading, double dt_s, ImuPlausi
 
 }  // namespace
 
-ImuPlausibility::ImuPlausibility(const Params& p) : params_(p) {
-  require_valid_fields(p);
+ImuPlausibility::ImuPlausibility(const Setup& setup) : setup_(setup) {
+  require_in_interval("gravity_m_s2", setup.gravity_m_s2, 1e-12, 100.0);
+  require_in_interval("gyro_range_rad_s", setup.gyro_range_rad_s, 1e-3, 1e6);
 }
 
 void ImuPlausibility::step(const ImuSample& sample, State& state) const {
@@ -80,7 +81,7 @@ void ImuPlausibility::step(const ImuSample& sample, State& state) const {
       state.average = {};
       state.in_range = true;
     } else {
-      state.in_range = state.in_range && sample.angular_velocity_rad_s.cwiseAbs().maxCoeff() < params_.gyro_range_rad_s;
+      state.in_range = state.in_range && sample.angular_velocity_rad_s.cwiseAbs().maxCoeff() < setup_.gyro_range_rad_s;
       state.average.add(sample, dt_s);
       if (state.average.full(kForceReading_s, dt_s)) process_averaged_reading(state);
     }
@@ -98,7 +99,7 @@ void ImuPlausibility::process_averaged_reading(State& state) const {
   const Eigen::Vector3d turned = state.average.length_s * state.average.mean.angular_velocity_rad_s;
   const double length_s = state.average.length_s;
   state.average = {};
-  if (std::abs(force.norm() - params_.gravity_m_s2) > kNonRestForceRatio * params_.gravity_m_s2)
+  if (std::abs(force.norm() - setup_.gravity_m_s2) > kNonRestForceRatio * setup_.gravity_m_s2)
     state.moving_force_duration_s += length_s;
   if (state.window_started) {
     // Each force is a mean over an averaging interval. The rotation between two mean forces is the rotation from the
@@ -121,14 +122,14 @@ void ImuPlausibility::process_averaged_reading(State& state) const {
     state.length_s = 0.0;
     state.window_started = true;
     state.in_range = true;
-    state.force_is_constant = force.norm() >= kDirectionForceRatioMin * params_.gravity_m_s2;
+    state.force_is_constant = force.norm() >= kDirectionForceRatioMin * setup_.gravity_m_s2;
   }
 }
 
 /// See imu_merge.md (I19).
 void ImuPlausibility::compare_rotations(const Eigen::Vector3d& force_m_s2, State& state) const {
   const auto near_gravity = [&](const Eigen::Vector3d& force) {
-    return std::abs(force.norm() - params_.gravity_m_s2) <= kGravityNear * params_.gravity_m_s2;
+    return std::abs(force.norm() - setup_.gravity_m_s2) <= kGravityNear * setup_.gravity_m_s2;
   };
   if (!near_gravity(state.window_start_force_m_s2) || !near_gravity(force_m_s2)) return;
   const Eigen::Vector3d from = state.window_start_force_m_s2.normalized(), to = force_m_s2.normalized();

@@ -42,7 +42,7 @@ Status estimate_rates(std::span<const ImuSample> samples, std::span<const Auxili
                       MotionRegimeSmoother::Report& report) {
   MotionRegimeSmoother::Params all = params;
   std::vector<std::vector<AuxiliaryReading>> readings;
-  const Status status = align(auxiliary_imus, samples, params.rate.gap_max_s, all.rate.model, readings);
+  const Status status = align(auxiliary_imus, samples, params.rate.kGapMax_s, all.rate.model, readings);
   return status.ok() ? MotionRegimeSmoother(all).estimate(samples, readings, rates, report) : status;
 }
 

@@ -6,6 +6,7 @@
 
 #include "tumble/angular_velocity/detail/rail_ratios.hpp"
 #include "tumble/attitude/detail/timing.hpp"
+#include "tumble/common/parameters.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble {
@@ -13,7 +14,7 @@ namespace tumble {
 namespace {
 
 // The limits of the rest detector are wide enough for any unit of the specific force and any plausible gyro bias.
-constexpr RestDetector::Params kRests{.rate_max_rad_s = 0.15, .force_min_m_s2 = 0.3};
+constexpr RestDetector::Params kRests{.rate_max_rad_s = 0.15, .caller_settings = {.force_min_m_s2 = 0.3}};
 constexpr double kMagnitudeErrorMax = 0.15;  // covers 80 mg of bias and 3 % of scale
 // The tolerance of the angle between measured and expected gravity covers gyro bias and pushes at rest.
 constexpr double kAngleMax_sigmas = 5.0, kAngleToleranceMin_rad = 0.3, kAngleToleranceMax_rad = 0.6;
@@ -26,8 +27,8 @@ constexpr double kWrongUnitRatio = 3.0;  // minimum factor for naming a wrong un
 
 RestDetector::Params without_force_limits() {
   RestDetector::Params rests = kRests;
-  rests.force_max_m_s2 = rests.force_min_m_s2;
-  rests.force_min_m_s2 = 0.0;
+  rests.caller_settings.force_max_m_s2 = rests.caller_settings.force_min_m_s2;
+  rests.caller_settings.force_min_m_s2 = 0.0;
   return rests;
 }
 
@@ -36,8 +37,8 @@ RestDetector::Params without_force_limits() {
 RestDetector::Params params_for_large_units() {
   constexpr double kLarger = 100.0;
   RestDetector::Params rests = kRests;
-  rests.force_min_m_s2 = kLarger;
-  rests.force_max_m_s2 = 1e6;
+  rests.caller_settings.force_min_m_s2 = kLarger;
+  rests.caller_settings.force_max_m_s2 = 1e6;
   rests.force_spread_m_s2 = std::min(kLarger * rests.force_spread_m_s2, 1e6);
   return rests;
 }
@@ -49,12 +50,10 @@ double allowed_rad(double sigma_rad) {
 
 }  // namespace
 
-RestGravity::RestGravity(const Params& params)
-    : params_(params),
-      detector_(kRests),
-      weightless_(without_force_limits()),
-      above_gravity_(params_for_large_units()) {
-  require_valid_fields(params);
+RestGravity::RestGravity(const Setup& setup)
+    : setup_(setup), detector_(kRests), weightless_(without_force_limits()), above_gravity_(params_for_large_units()) {
+  require_in_interval("gravity_m_s2", setup.gravity_m_s2, 1e-12, 100.0);
+  require_in_interval("accel_range_m_s2", setup.accel_range_m_s2, 0.0, kUnbounded);
 }
 
 RestGravity::Step RestGravity::detect_stationary_periods(const ImuSample& sample, GravityMagnitudeState& state) const {
@@ -115,7 +114,7 @@ void RestGravity::integrate_rotation(const ImuSample& sample, const AngularRateS
   state.angle_since_last_rest_rad += dt_s * rate.w_WI_I_rad_s.norm();
   state.span_s += dt_s;
   const double peak = force.cwiseAbs().maxCoeff();
-  const bool at_range = params_.accel_range_m_s2 > 0.0 && peak >= (1.0 - kNearRailRatio) * params_.accel_range_m_s2;
+  const bool at_range = setup_.accel_range_m_s2 > 0.0 && peak >= (1.0 - kNearRailRatio) * setup_.accel_range_m_s2;
   if (at_range || (sample.device_clip_flags & kClipAccel) != 0) state.integrated_saturation_deficit_m_s += dt_s * peak;
 }
 
@@ -148,7 +147,7 @@ void RestGravity::finish_rest_pair(State& state) const {
 }
 
 double RestGravity::gravity_magnitude_error_ratio(const GravityMagnitudeState& state) const {
-  if (state.rest_s >= kRested_s) return state.stationary_force_integral_m_s / state.rest_s / params_.gravity_m_s2;
+  if (state.rest_s >= kRested_s) return state.stationary_force_integral_m_s / state.rest_s / setup_.gravity_m_s2;
   return state.weightless_s >= kRested_s ? 0.0 : 1.0;
 }
 

@@ -17,7 +17,15 @@ namespace {
 
 constexpr double kRollingVelocitySigma_m_s = 0.03;  // when rolling without slip, per node
 
+constexpr double kGyroNoise_rad_sqrts = 1e-3;   // angle random walk, including unmodelled errors
+constexpr double kRateError_sqrts = 4e-3;       // angle random walk per rad/s of rate, from scale and timing errors
+constexpr double kBiasWalk_rad_s_sqrts = 2e-6;  // random walk of the bias
 constexpr double kAccelerationNoise_m_s_sqrts = 0.01;  // velocity random walk
+constexpr double kVelocity_m_sqrts = 1.0;              // standard deviation of the mean velocity over 1 s of motion
+constexpr double kDisplacement_m_sqrts = 0.3;          // standard deviation of the mean displacement over 1 s
+constexpr double kDisplacementTau_s = 10.0;            // time constant with which the displacement decays to zero
+// Correlation time of the body's velocity and displacement, and averaging time of their magnitudes.
+constexpr double kMotionTau_s = 3.0;
 // Velocity residual above which slip starts. Slip ends below half of this velocity residual.
 constexpr double kSlipVelocity_m_s = 0.12;
 // Duration of small velocity residuals after which slip ends.
@@ -25,9 +33,26 @@ constexpr double kSlipQuiet_s = 0.2;
 constexpr double kSlipTimeout_s = 3.0;  // maximum duration of a slip
 // Minimum time between two samples that counts as a gap.
 constexpr double kGapMin_s = 0.05;
-constexpr double kNode_s = 0.04;     // time between two corrections
-constexpr double kReading_s = 4e-3;  // averaging time of the readings
+constexpr double kNode_s = 0.04;         // time between two corrections
+constexpr double kReading_s = 4e-3;      // averaging time of the readings
+constexpr double kSampleGapMax_s = 1.0;  // a longer time between two samples causes an error
+// Standard deviations of the tilt, per axis. Coarse alignment starts above kLostTilt_rad, where the linearised filter
+// is invalid, and ends below kAlignedTilt_rad.
+constexpr double kLostTilt_rad = 0.3, kAlignedTilt_rad = 0.4;
 
+constexpr RestDetector::Params kRestDetector = {
+    .rate_max_rad_s = 3.4907e-2,
+    .rate_spread_rad_s = 3.4907e-2,
+    .force_spread_m_s2 = 0.5,
+    .rest_s = 1.0,
+    .caller_settings = {.reading_s = 0.0,  // the readings are already averaged
+                        .memory_s = 1.0}};
+constexpr double kRestVelocitySigma_m_s = 0.005;   // standard deviation of the velocity at rest, per node
+constexpr double kRestRateSigma_rad_sqrts = 2e-3;  // standard deviation of the rate measured at rest, mean over 1 s
+// Maximum difference between mean rate and bias at rest, in standard deviations of the difference.
+constexpr double kRestRateSigmas = 3.0;
+
+constexpr double kGyroBiasSigmaStart_rad_s = 8.7266e-3;  // prior standard deviation of the gyro bias: 0.5 deg/s
 constexpr double kTiltSigmaStart_rad = 0.01;
 constexpr double kVelocitySigmaStart_m_s = 0.1;
 constexpr double kDisplacementSigmaStart_m = 0.1;
@@ -71,7 +96,7 @@ Status check_covariance(const Eigen::Matrix3d& covariance_rad2_s2) {
 
 }  // namespace
 
-TumbleAttitude::TumbleAttitude(const Params& p) : params_(p), rest_detector_(p.expert.rest_detector) {
+TumbleAttitude::TumbleAttitude(const Params& p) : params_(p), rest_detector_(kRestDetector) {
   require_valid_fields(p);
   require_in_interval("lever_arm_m", p.lever_arm_m.norm(), 0.0, 10.0);
 }
@@ -85,7 +110,7 @@ Status TumbleAttitude::step(const ImuSample& sample, const Eigen::Matrix3d& rate
     start(state);
   } else {
     double dt_s = 0.0;
-    if (const Status bad = elapsed_time_since_last(sample.time_ns, state.last_time_ns, params_.expert.gap_max_s, dt_s);
+    if (const Status bad = elapsed_time_since_last(sample.time_ns, state.last_time_ns, kSampleGapMax_s, dt_s);
         !bad.ok())
       return bad;
     if (dt_s > kGapMin_s) {
@@ -140,13 +165,13 @@ void TumbleAttitude::process_averaged_reading(State& state) const {
 bool TumbleAttitude::rotates_within_gyro_bias(const State& state) const {
   const Eigen::Array3d off_rad_s = (state.stationary_state.mean_rate_rad_s() - state.bias_rad_s).array();
   const Eigen::Array3d variance = state.covariance.diagonal().segment<3>(kBias).array() +
-                                  squared(params_.expert.at_rest.kRateSigma_rad_sqrts);  // variance of a mean over 1 s
-  return (off_rad_s.square() <= squared(params_.expert.at_rest.rate_sigmas) * variance).all();
+                                  squared(kRestRateSigma_rad_sqrts);  // variance of a mean over 1 s
+  return (off_rad_s.square() <= squared(kRestRateSigmas) * variance).all();
 }
 
 void TumbleAttitude::start(State& state) const {
   state.covariance.diagonal().segment<2>(kTilt).setConstant(squared(kTiltSigmaStart_rad));
-  state.covariance.diagonal().segment<3>(kBias).setConstant(squared(params_.bias_sigma_start_rad_s));
+  state.covariance.diagonal().segment<3>(kBias).setConstant(squared(kGyroBiasSigmaStart_rad_s));
   state.covariance.diagonal().segment<2>(kVelocity).setConstant(squared(kVelocitySigmaStart_m_s));
   state.covariance.diagonal().segment<2>(kDisplacement).setConstant(squared(kDisplacementSigmaStart_m));
   state.started = true;
@@ -185,11 +210,10 @@ void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& r
   state.recovered_covariance_rad2_s2 = rate_covariance_rad2_s2;
   add_recovered_rate_variance(gap_s, state);
   if (!state.at_rest) {
-    const AttitudeGapParams& gap = params_.expert.gap;
     const double turn =
-        squared(gap_s) / 12.0 * ((to - from).squaredNorm() / 3.0 + squared(gap.kRateWalk_rad_s_sqrts) * gap_s);
+        squared(gap_s) / 12.0 * ((to - from).squaredNorm() / 3.0 + squared(Params::kGapRateWalk_rad_s_sqrts) * gap_s);
     state.recovered_angle_variance_rad2.array() += turn;
-    state.covariance.diagonal().segment<2>(kVelocity).array() += squared(gap.kVelocityWalk_m_s_sqrts) * gap_s;
+    state.covariance.diagonal().segment<2>(kVelocity).array() += squared(Params::kGapVelocityWalk_m_s_sqrts) * gap_s;
   }
   predict_node(state);
   // A sphere that gripped before the gap is assumed to roll without slip after the gap.
@@ -199,7 +223,7 @@ void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& r
   state.alignment = {};
   correct_with_mean_force(state);
   clear_node(state);
-  if (tilt > squared(params_.expert.gap.lost_tilt_rad))
+  if (tilt > squared(kLostTilt_rad))
     state.alignment.start_alignment(body_velocity_variance_m2_s2(state.velocity_variance_m2_s2, state), tilt);
 }
 
@@ -213,8 +237,8 @@ void TumbleAttitude::end_node(State& state) const {
 }
 
 double TumbleAttitude::body_velocity_variance_m2_s2(double power_m2_s2, const State& state) const {
-  if (state.at_rest) return squared(params_.expert.at_rest.kVelocitySigma_m_s);
-  const double assumed = squared(params_.velocity_m_sqrts) / params_.motion_tau_s;
+  if (state.at_rest) return squared(kRestVelocitySigma_m_s);
+  const double assumed = squared(kVelocity_m_sqrts) / kMotionTau_s;
   const double turning = 0.5 * squared(params_.radius_m) * state.rate_rad_s.squaredNorm();
   return std::max({assumed, power_m2_s2, turning});
 }
@@ -227,7 +251,7 @@ void TumbleAttitude::align(const Eigen::Quaterniond& corrected, State& state) co
   // falsifies the filtered velocity.
   const double velocity = body_velocity_variance_m2_s2(alignment.start_velocity_variance_m2_s2, state);
   const double variance = alignment.variance_rad2(velocity, params_.gravity_m_s2);
-  if (variance > squared(params_.expert.gap.kAlignedTilt_rad)) {
+  if (variance > squared(kAlignedTilt_rad)) {
     // When the body comes to rest, the coarse alignment restarts and uses only later data.
     if (state.at_rest && alignment.start_velocity_variance_m2_s2 > velocity)
       alignment.start_alignment(velocity, alignment.tilt_rad2());
@@ -249,7 +273,7 @@ void TumbleAttitude::restart(const Eigen::Quaterniond& levelling, double tilt_ra
   state.covariance.diagonal().segment<2>(kTilt).setConstant(tilt_rad2);
   state.covariance.block<3, 3>(kBias, kBias) = bias;
   state.covariance.diagonal().segment<2>(kVelocity).setConstant(velocity_m2_s2);
-  const double displacement = squared(params_.displacement_m_sqrts) / params_.motion_tau_s;
+  const double displacement = squared(kDisplacement_m_sqrts) / kMotionTau_s;
   state.covariance.diagonal().segment<2>(kDisplacement).setConstant(displacement);
   state.covariance(kHeading, kHeading) = heading;
   state.v_W_m_s = state.at_rest ? Eigen::Vector2d::Zero().eval() : velocity_from_rotation(state);
@@ -269,7 +293,7 @@ void TumbleAttitude::add_recovered_rate_variance(double dt_s, State& state) cons
         dt_s * Eigen::Vector2d(std::sqrt(variance.head<2>().mean()), std::sqrt(variance.z()));
     state.recovered_angle_variance_rad2 += step_rad.cwiseProduct(2.0 * state.recovered_angle_sigma_sum_rad + step_rad);
     state.recovered_angle_sigma_sum_rad =
-        std::exp(-dt_s / params_.expert.recovered_tau_s) * state.recovered_angle_sigma_sum_rad + step_rad;
+        std::exp(-dt_s / Params::kRecoveredTau_s) * state.recovered_angle_sigma_sum_rad + step_rad;
   }
   state.recovered_covariance_rad2_s2.setZero();
 }
@@ -277,7 +301,7 @@ void TumbleAttitude::add_recovered_rate_variance(double dt_s, State& state) cons
 /// Predicts one filter step: attitude.md (A6), (A7), (A8), (A9).
 void TumbleAttitude::predict_node(State& state) const {
   const double h = state.time_since_node_s;
-  const double keep = std::exp(-h / params_.kDisplacementTau_s);
+  const double keep = std::exp(-h / kDisplacementTau_s);
   const Eigen::Vector2d gained = state.force_integral_W_m_s.head<2>();  // gravity has no horizontal component
   state.displacement_W_m = keep * state.displacement_W_m + h * (state.v_W_m_s + 0.5 * gained);
   state.v_W_m_s += gained;
@@ -294,13 +318,13 @@ void TumbleAttitude::predict_node(State& state) const {
   F.block<2, 2>(kDisplacement, kDisplacement) = keep * Eigen::Matrix2d::Identity();
   state.covariance = (F * state.covariance * F.transpose()).eval();
 
-  const double turn = squared(params_.gyro_noise_rad_sqrts) * h +
-                      squared(params_.rate_error_sqrts) * state.squared_rate_integral_rad2_s;
+  const double turn =
+      squared(kGyroNoise_rad_sqrts) * h + squared(kRateError_sqrts) * state.squared_rate_integral_rad2_s;
   state.covariance.diagonal().segment<2>(kTilt).array() += turn + state.recovered_angle_variance_rad2[0];
   if (state.alignment.running)
     state.alignment.tilt_variance_growth_rad2 += turn + state.recovered_angle_variance_rad2[0];
   state.covariance(kHeading, kHeading) += state.at_rest ? 0.0 : turn + state.recovered_angle_variance_rad2[1];
-  state.covariance.diagonal().segment<3>(kBias).array() += squared(params_.expert.kBiasWalk_rad_s_sqrts) * h;
+  state.covariance.diagonal().segment<3>(kBias).array() += squared(kBiasWalk_rad_s_sqrts) * h;
   state.covariance.diagonal().segment<2>(kVelocity).array() += squared(kAccelerationNoise_m_s_sqrts) * h;
 }
 
@@ -325,23 +349,23 @@ bool TumbleAttitude::detect_slip(const Eigen::Vector2d& misfit_m_s, State& state
 double TumbleAttitude::body_motion_variance(const Eigen::Vector2d& misfit, int index, double sigma_sqrts, double power,
                                             const State& state) const {
   const double seen = 0.5 * (misfit.squaredNorm() - state.covariance.block<2, 2>(index, index).trace());
-  const double decayed_power = std::exp(-state.time_since_node_s / params_.motion_tau_s) * power;
-  return std::max({squared(sigma_sqrts) / params_.motion_tau_s, seen, decayed_power});
+  const double decayed_power = std::exp(-state.time_since_node_s / kMotionTau_s) * power;
+  return std::max({squared(sigma_sqrts) / kMotionTau_s, seen, decayed_power});
 }
 
 /// See attitude.md (A12), (A14).
 void TumbleAttitude::correct_body_motion(const Eigen::Vector2d& turned_m_s, State& state) const {
-  const double memories = params_.motion_tau_s / state.time_since_node_s;
+  const double memories = kMotionTau_s / state.time_since_node_s;
   if (!state.at_rest) {
     const Eigen::Vector2d misfit = turned_m_s - state.v_W_m_s;
     double& power = state.velocity_variance_m2_s2;
-    power = body_motion_variance(misfit, kVelocity, params_.velocity_m_sqrts, power, state);
+    power = body_motion_variance(misfit, kVelocity, kVelocity_m_sqrts, power, state);
     for (int axis = 0; axis < 2; ++axis) {
       update(kVelocity + axis, turned_m_s[axis] - state.v_W_m_s[axis], power * memories, state);
     }
   }
   double& power = state.displacement_variance_m2;
-  power = body_motion_variance(-state.displacement_W_m, kDisplacement, params_.displacement_m_sqrts, power, state);
+  power = body_motion_variance(-state.displacement_W_m, kDisplacement, kDisplacement_m_sqrts, power, state);
   for (int axis = 0; axis < 2; ++axis) {
     update(kDisplacement + axis, -state.displacement_W_m[axis], power * memories, state);
   }
@@ -362,7 +386,7 @@ void TumbleAttitude::correct_with_mean_force(State& state) const {
   if (state.at_rest) {
     if (rolls) detect_slip(turned - state.v_W_m_s, state);
     for (int axis = 0; axis < 2; ++axis) {
-      update(kVelocity + axis, -state.v_W_m_s[axis], squared(params_.expert.at_rest.kVelocitySigma_m_s), state);
+      update(kVelocity + axis, -state.v_W_m_s[axis], squared(kRestVelocitySigma_m_s), state);
     }
   } else if (rolls && !detect_slip(turned - state.v_W_m_s, state)) {
     for (int axis = 0; axis < 2; ++axis) {
@@ -373,8 +397,8 @@ void TumbleAttitude::correct_with_mean_force(State& state) const {
   if (state.at_rest) {
     const Eigen::Vector3d mean_rate_rad_s = state.stationary_state.mean_rate_rad_s();
     for (int axis = 0; axis < 3; ++axis) {
-      update(kBias + axis, mean_rate_rad_s[axis] - state.bias_rad_s[axis],
-             squared(params_.expert.at_rest.kRateSigma_rad_sqrts) / h, state);
+      update(kBias + axis, mean_rate_rad_s[axis] - state.bias_rad_s[axis], squared(kRestRateSigma_rad_sqrts) / h,
+             state);
     }
   }
   state.covariance = (0.5 * (state.covariance + state.covariance.transpose())).eval();

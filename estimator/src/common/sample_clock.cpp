@@ -169,7 +169,7 @@ void SampleClock::update_line(double step_ns, TimeNs stamp_ns, State& state) con
     return;
   }
   const double limited_ns = std::clamp(prediction_error_ns, -kOutlier * jitter_ns, kOutlier * jitter_ns);
-  const double forget_fraction = std::min(0.5, 1e-9 * number * state.period_ns / params_.memory_s);
+  const double forget_fraction = std::min(0.5, 1e-9 * number * state.period_ns / params_.kMemory_s);
   state.mean_square_error_ns2 += forget_fraction * (limited_ns * limited_ns - state.mean_square_error_ns2);
   state.successive_error_product_ns2 +=
       forget_fraction * (limited_ns * state.prediction_error_ns - state.successive_error_product_ns2);

@@ -10,7 +10,7 @@ namespace {
 
 // Stages of a registration: all points of the sweep, every n-th point until convergence, and a coarse stage for
 // starting poses far from the prior.
-constexpr int kFullIterations = 8, kCoarseIterations = 15;
+constexpr int kFullIterations = 8, kSubsampledIterations = 30, kCoarseIterations = 15;
 constexpr std::size_t kSubsamplePoints = 1000, kCoarsePoints = 300, kCoarseMatchesMin = 50;
 constexpr double kCoarseKernelMin_m = 0.5;  // minimum width of the robust kernel
 constexpr double kCoarseRematch_m = 0.2;    // motion of a point after which its plane is searched again
@@ -19,7 +19,7 @@ constexpr double kCoarseInlierRatioMin = 0.2;  // minimum fraction of matches wi
 
 Registration::Params full_registration_params(const LidarInertialOdometry::Params& params) {
   Registration::Params out = registration_params(params);
-  out.iterations_max = std::min(params.expert.matching.iterations_max, kFullIterations);
+  out.expert.iterations_max = kFullIterations;
   return out;
 }
 
@@ -27,17 +27,17 @@ constexpr double kCoarseReach = 2.0;
 
 /// The result of a coarse registration only needs to be near the solution.
 Registration::Params coarse_params(const LidarInertialOdometry::Params& params) {
-  const MatchingParams& matching = params.expert.matching;
   Registration::Params out = registration_params(params);
-  out.match_distance_m = std::min(kCoarseReach * matching.distance_m, Registration::Params::kMatchDistanceMax_m);
-  out.iterations_max = std::min(matching.iterations_max, kCoarseIterations);
-  out.matches_min = std::min(matching.matches_min, kCoarseMatchesMin);
+  out.match_distance_m =
+      std::min(kCoarseReach * params.expert.matching.distance_m, Registration::Params::kMatchDistanceMax_m);
+  out.expert.iterations_max = kCoarseIterations;
+  out.expert.matches_min = kCoarseMatchesMin;
   out.expert.kernel_min_m = kCoarseKernelMin_m;
   out.expert.rematch_m = kCoarseRematch_m;
   out.expert.step_m = kCoarseStep_m;
   out.expert.step_rad = kCoarseStep_rad;
   out.expert.inlier_ratio_min = kCoarseInlierRatioMin;
-  out.expert.agreeing_matches_needed = out.matches_min;  // a coarse start has no prior that it could agree with
+  out.expert.agreeing_matches_needed = kCoarseMatchesMin;  // a coarse start has no prior that it could agree with
   return out;
 }
 
@@ -99,14 +99,13 @@ void SweepAligner::align_coarse_to_fine(const Registration::Prior& start, const 
 
 Registration::Params registration_params(const LidarInertialOdometry::Params& params) {
   Registration::Params out;
-  out.neighbours = params.expert.matching.neighbours;
-  out.expert.plane.neighbours_min = std::min(out.expert.plane.neighbours_min, params.expert.matching.neighbours);
+  out.neighbours = MatchingParams::kNeighbours;
   out.match_distance_m = params.expert.matching.distance_m;
-  out.iterations_max = params.expert.matching.iterations_max;
+  out.expert.iterations_max = kSubsampledIterations;
   out.skew_sigma_m_s = params.expert.matching.skew_sigma_m_s;
-  out.correction_max_m = params.expert.matching.correction_max_m;
-  out.correction_max_rad = params.expert.matching.correction_max_rad;
-  out.matches_min = params.expert.matching.matches_min;
+  out.expert.correction_max_m = params.expert.matching.correction_max_m;
+  out.expert.correction_max_rad = params.expert.matching.correction_max_rad;
+  out.expert.matches_min = MatchingParams::kMatchesMin;
   out.expert.agreeing_matches_needed = params.expert.matching.agreeing_matches_min;
   out.parallel_for = params.parallel_for;
   return out;

@@ -67,7 +67,7 @@ StateEstimate estimate_before_map(const Params& params, const MotionState& level
   calibration.T_IL = params.T_IL;
   calibration.gravity_W_m_s2 = Eigen::Vector3d(0.0, 0.0, -params.expert.gravity_m_s2);
   Motion error = levelled.covariance;
-  const double level = params.expert.start.kLevelSigma_rad, world = params.expert.world_covariance.tilt_sigma_rad;
+  const double level = OdometryStart::kLevelSigma_rad, world = params.expert.world_covariance.tilt_sigma_rad;
   if (u::variances(error, u::tilt).maxCoeff() <= level * level) u::variances(error, u::tilt).setConstant(world * world);
   return state_estimate_of_motion(levelled, calibration, levelled.covariance, error);
 }
@@ -135,8 +135,7 @@ StateEstimate reset_origin_and_yaw(const StateEstimate& reckoned, double step_s)
 StateEstimate estimate_at_first_sweep(const Params& params, const StateEstimate& reckoned) {
   MotionState start = reckoned.mean.state;
   start.covariance.setZero();
-  u::variances(start.covariance, u::tilt)
-      .setConstant(params.expert.start.kLevelSigma_rad * params.expert.start.kLevelSigma_rad);
+  u::variances(start.covariance, u::tilt).setConstant(OdometryStart::kLevelSigma_rad * OdometryStart::kLevelSigma_rad);
   StateEstimate out = estimate_at_start(params, start);
   // rows: errors of velocity and gravity in the map frame; columns: errors of position, attitude and velocity in
   // `reckoned`

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "tumble/common/types.hpp"
+#include "tumble/mapping/detail/odometry_params.hpp"
 
 namespace tumble::mapping {
 
@@ -15,11 +16,10 @@ constexpr TimeNs kStepsMax = 64;
 }  // namespace
 
 /// See mapping.md (R44).
-void bridge_gap(const InertialNoiseParams& params, const WindowRate& before, const WindowRate& after,
-                std::vector<MotionSample>& samples) {
+void bridge_gap(const WindowRate& before, const WindowRate& after, std::vector<MotionSample>& samples) {
   const TimeNs from_ns = before.time_ns, to_ns = after.from_ns;
   const TimeNs step_ns = std::max(kStep_ns, (to_ns - from_ns) / kStepsMax + 1);
-  const double span_s = seconds(to_ns - from_ns), walk = params.gap_rate_walk_rad_s_sqrt_s;
+  const double span_s = seconds(to_ns - from_ns), walk = InertialNoiseParams::kGapRateWalk_rad_s_sqrt_s;
   for (TimeNs at_ns = from_ns; at_ns < to_ns; at_ns += step_ns) {
     MotionSample& part = samples.emplace_back();
     part.from_ns = at_ns;
@@ -28,7 +28,7 @@ void bridge_gap(const InertialNoiseParams& params, const WindowRate& before, con
     part.w_WI_I_rad_s = left * before.rate_rad_s + gone * after.rate_rad_s;
     const Eigen::Array3d variance = (left * before.sigma_rad_s).array().square() +
                                     (gone * after.sigma_rad_s).array().square() + walk * walk * gone * left * span_s;
-    part.rate_sigma_rad_s = variance.sqrt().min(params.kRateSigmaMax_rad_s);
+    part.rate_sigma_rad_s = variance.sqrt().min(InertialNoiseParams::kRateSigmaMax_rad_s);
     part.clipped_axes = kClipGyro;
     part.bridges_gap = true;
   }

@@ -4,7 +4,6 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "tumble/mapping/detail/odometry_params.hpp"
 #include "tumble/mapping/detail/sweep_trajectory.hpp"
 
 namespace tumble::mapping {
@@ -23,7 +22,6 @@ struct WindowRate {
 /// Fills the gap from the end of `before` to the start of `after` with linearly interpolated rates: mapping.md (R44).
 /// All axes count as clipped, so that the registration also estimates the interpolation error. Each sample appended in
 /// a gap is 10 ms long, or longer in gaps beyond 0.64 s.
-void bridge_gap(const InertialNoiseParams& params, const WindowRate& before, const WindowRate& after,
-                std::vector<MotionSample>& samples);
+void bridge_gap(const WindowRate& before, const WindowRate& after, std::vector<MotionSample>& samples);
 
 }  // namespace tumble::mapping

@@ -35,7 +35,7 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
   std::size_t hint = 0;
   Eigen::Matrix3d turned = Eigen::Matrix3d::Zero();
   double rotated_rad = 0.0, velocity_change_m_s = 0.0, gap_m2_s2 = 0.0, gap_m2 = 0.0, gap_m2_s = 0.0;
-  const double gap_m2_s3 = std::pow(params.expert.prior.gap_velocity_walk_m_s_sqrt_s, 2);
+  const double gap_m2_s3 = std::pow(params.expert.prior.kGapVelocityWalk_m_s_sqrt_s, 2);
   for (const MotionSample& sample : samples) {
     const double from = std::max(seconds(sample.from_ns - start_ns), 0.0);
     const double to = std::min(seconds(sample.time_ns - start_ns), trajectory.duration_s());
@@ -84,31 +84,26 @@ Eigen::Matrix3d velocity_variance_from_clipping(const SweepTrajectory& trajector
   return kSaturatedForceSigma_m_s2 * kSaturatedForceSigma_m_s2 * lasted * lasted.transpose();
 }
 
-Status start_at_rest(const LidarInertialOdometry::Params& params, std::span<const MotionSample> samples,
-                     MotionState& state) {
+Status start_at_rest(std::span<const MotionSample> samples, MotionState& state) {
   if (samples.empty()) return {ErrorCode::insufficient_data, "imu samples", 0.0, 1.0};
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   double count = 0.0;
   for (const MotionSample& sample : samples) {
-    if (seconds(sample.time_ns - samples.front().from_ns) > params.expert.stationary_bounds.levelling_max_s &&
-        count > 0.0)
-      break;
+    if (seconds(sample.time_ns - samples.front().from_ns) > StationaryBounds::kLevellingMax_s && count > 0.0) break;
     force += sample.f_I_m_s2;
     count += 1.0;
   }
-  if (Status status = level_at_rest(params, force / count, state); !status.ok()) return status;
+  if (Status status = level_at_rest(force / count, state); !status.ok()) return status;
   state.time_ns = samples.front().from_ns;
   return {};
 }
 
-Status level_at_rest(const LidarInertialOdometry::Params& params, const Eigen::Vector3d& force_I_m_s2,
-                     MotionState& state) {
+Status level_at_rest(const Eigen::Vector3d& force_I_m_s2, MotionState& state) {
   const double force_m_s2 = force_I_m_s2.norm();
   if (!(force_m_s2 >= 1.0)) return {ErrorCode::degenerate, "specific_force_m_s2", force_m_s2, 1.0};
   state = MotionState{};
   if (Status status = inclination_from_force(force_I_m_s2, state.q_WI); !status.ok()) return status;
-  u::variances(state.covariance, u::tilt)
-      .setConstant(params.expert.start.kLevelSigma_rad * params.expert.start.kLevelSigma_rad);
+  u::variances(state.covariance, u::tilt).setConstant(OdometryStart::kLevelSigma_rad * OdometryStart::kLevelSigma_rad);
   u::variances(state.covariance, u::velocity).setConstant(kStartSpeedSigma_m_s * kStartSpeedSigma_m_s);
   return {};
 }

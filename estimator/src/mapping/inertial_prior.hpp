@@ -23,12 +23,10 @@ Eigen::Matrix3d velocity_variance_from_clipping(const SweepTrajectory& trajector
                                                 std::span<const MotionSample> samples);
 
 /// Computes the state of an IMU at rest, at the origin of W with yaw 0, at the start of the first averaging window. The
-/// mean specific force of the first `rest.levelling_max_s` seconds levels the attitude. Returns `degenerate` if the
-/// mean specific force is below 1 m/s^2.
-Status start_at_rest(const LidarInertialOdometry::Params& params, std::span<const MotionSample> samples,
-                     MotionState& state);
-Status level_at_rest(const LidarInertialOdometry::Params& params, const Eigen::Vector3d& force_I_m_s2,
-                     MotionState& state);
+/// mean specific force of the first 0.5 s levels the attitude. Returns `degenerate` if the mean specific force is below
+/// 1 m/s^2.
+Status start_at_rest(std::span<const MotionSample> samples, MotionState& state);
+Status level_at_rest(const Eigen::Vector3d& force_I_m_s2, MotionState& state);
 
 /// Returns the standard deviation of the rate, at most the mapper's rate_sigma_max_rad_s.
 Eigen::Vector3d assumed_rate_sigma(const LidarInertialOdometry::Params& params, const AngularRateState& rate);

@@ -32,12 +32,13 @@ std::uint8_t accel_saturated_axes(const Params& params, const ImuSample& sample)
 
 RestDetector::Params mapping_stationary_params(const LidarInertialOdometry::Params& params) {
   // The parameter `rate_rad_s` limits the norm of the rate, but the rest detector limits each axis.
-  return {.rate_max_rad_s = params.expert.stationary_bounds.kRate_rad_s,
-          .rate_spread_rad_s = params.expert.stationary_bounds.kRate_rad_s / std::numbers::sqrt3,
-          .force_min_m_s2 = std::max(params.expert.gravity_m_s2 - params.expert.stationary_bounds.kForce_m_s2, 0.0),
-          .force_max_m_s2 = params.expert.gravity_m_s2 + params.expert.stationary_bounds.kForce_m_s2,
-          .force_spread_m_s2 = params.expert.stationary_bounds.kForce_m_s2,
-          .rest_s = 0.0};
+  return {
+      .rate_max_rad_s = StationaryBounds::kRate_rad_s,
+      .rate_spread_rad_s = StationaryBounds::kRate_rad_s / std::numbers::sqrt3,
+      .force_spread_m_s2 = StationaryBounds::kForce_m_s2,
+      .rest_s = 0.0,
+      .caller_settings = {.force_min_m_s2 = std::max(params.expert.gravity_m_s2 - StationaryBounds::kForce_m_s2, 0.0),
+                          .force_max_m_s2 = params.expert.gravity_m_s2 + StationaryBounds::kForce_m_s2}};
 }
 
 InertialTrack::InertialTrack(const Params& params) : rest_detector_(mapping_stationary_params(params)) {}
@@ -61,7 +62,7 @@ void InertialTrack::store_sample(const Params& params, const ImuSample& sample, 
   MotionSample next;
   next.from_ns = from_ns;
   next.time_ns = sample.time_ns;
-  update_rest(params, sample, rate, next);
+  update_rest(sample, rate, next);
   if (!next.at_rest) next.w_WI_I_rad_s = rate.w_WI_I_rad_s - initial_rest_.gyro_bias_rad_s;
   next.f_I_m_s2 = sample.specific_force_m_s2;
   next.rate_sigma_rad_s = assumed_rate_sigma(params, rate);
@@ -75,20 +76,19 @@ void InertialTrack::store_sample(const Params& params, const ImuSample& sample, 
   if (next.bridges_gap) next.rate_sigma_rad_s.setConstant(params.expert.prior.kRateSigmaMax_rad_s);
   second_newest_rate_ = newest_rate_;
   newest_rate_ = rate_of(next);
-  if (after_gap && !next.bridges_gap) fill_gap(params);
+  if (after_gap && !next.bridges_gap) fill_gap();
   samples_.push_back(next);
 }
 
-void InertialTrack::fill_gap(const Params& params) {
+void InertialTrack::fill_gap() {
   const std::size_t first = samples_.size();
-  bridge_gap(params.expert.prior, *second_newest_rate_, *newest_rate_, samples_);
+  bridge_gap(*second_newest_rate_, *newest_rate_, samples_);
   if (pending_rates_rad_s_.empty()) return;
   for (const MotionSample& part : std::span(samples_).subspan(first))
     pending_rates_rad_s_.insert(pending_rates_rad_s_.end() - 1, part.w_WI_I_rad_s);
 }
 
-void InertialTrack::update_rest(const Params& params, const ImuSample& sample, const AngularRateState& rate,
-                                MotionSample& next) {
+void InertialTrack::update_rest(const ImuSample& sample, const AngularRateState& rate, MotionSample& next) {
   ImuSample received = sample;
   received.angular_velocity_rad_s = rate.w_WI_I_rad_s;
   const bool clipped = (rate.clipped_axes & kClipGyro) != 0;
@@ -100,11 +100,10 @@ void InertialTrack::update_rest(const Params& params, const ImuSample& sample, c
   if (initial_rest_.still_stationary) {
     if (!initial_rest_.first_ns) initial_rest_.first_ns = initial_rest_.initial_rest_start_ns = sample.time_ns;
     // The mean reading at the start of a rest is as noisy as single readings, so noise may interrupt the detected rest.
-    if (next.rest_start_ns && seconds(*next.rest_start_ns - *initial_rest_.first_ns) < params.expert.start.bias_rest_s)
+    if (next.rest_start_ns && seconds(*next.rest_start_ns - *initial_rest_.first_ns) < OdometryStart::kBiasRest_s)
       initial_rest_.initial_rest_start_ns = next.rest_start_ns;
     initial_rest_.still_stationary = next.rest_start_ns == initial_rest_.initial_rest_start_ns;
-    if (initial_rest_.still_stationary &&
-        seconds(stationary_state_.small_rate_since_ns) >= params.expert.start.bias_rest_s)
+    if (initial_rest_.still_stationary && seconds(stationary_state_.small_rate_since_ns) >= OdometryStart::kBiasRest_s)
       initial_rest_.gyro_bias_rad_s = stationary_state_.mean_rate_rad_s();
   }
   next.at_rest = initial_rest_.still_stationary;

@@ -50,9 +50,9 @@ class InertialTrack {
     Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();
   };
 
-  void update_rest(const Params& params, const ImuSample& sample, const AngularRateState& rate, MotionSample& next);
+  void update_rest(const ImuSample& sample, const AngularRateState& rate, MotionSample& next);
   void revoke_rest(std::optional<TimeNs> rest_start_ns);
-  void fill_gap(const Params& params);
+  void fill_gap();
 
   std::vector<MotionSample> samples_;
   std::optional<TimeNs> sweep_boundary_ns_;  // end of the last sweep

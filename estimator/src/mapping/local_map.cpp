@@ -144,8 +144,7 @@ void LocalMap::remove_sweeps_since(std::uint32_t first_sweep) {
 }
 
 std::vector<MapPoint> LocalMap::to_map_points(const Params& params) const {
-  return mapping::to_map_points(map_, seen_from_W_m_, params.expert.matching.neighbours,
-                                params.expert.matching.distance_m);
+  return mapping::to_map_points(map_, seen_from_W_m_, MatchingParams::kNeighbours, params.expert.matching.distance_m);
 }
 
 }  // namespace tumble::mapping

@@ -6,7 +6,7 @@
 
 namespace tumble::mapping {
 
-/// At rest, the mean rate is within `kRate_rad_s` of the gyro bias on each axis (StationaryBoundsParams). At rest, the
+/// At rest, the mean rate is within `kRate_rad_s` of the gyro bias on each axis (StationaryBounds). At rest, the
 /// specific force is within `kForce_m_s2` of gravity.
 RestDetector::Params mapping_stationary_params(const LidarInertialOdometry::Params& params);
 

@@ -104,7 +104,7 @@ Status LidarInertialOdometry::Impl::initialise_inclination() {
   MotionState levelled;
   if (Status status = level_start(levelled); !status.ok()) return status;
   if (start_pose) levelled = mapping::transformed_to_pose(*start_pose, levelled);
-  if (!inertial_track.starts_at_rest(params.expert.start.bias_rest_s)) {
+  if (!inertial_track.starts_at_rest(OdometryStart::kBiasRest_s)) {
     StateEstimate in_motion = mapping::estimate_before_map(params, levelled);
     if (start_tilt) in_motion = mapping::with_start_tilt(*start_tilt, in_motion);
     world_covariance = mapping::world_at_first_sweep(params, in_motion);
@@ -118,8 +118,8 @@ Status LidarInertialOdometry::Impl::initialise_inclination() {
 }
 
 Status LidarInertialOdometry::Impl::level_start(MotionState& levelled) const {
-  const Status status = mapping::start_at_rest(params, inertial_track.samples(), levelled);
-  if (status.ok() && !inertial_track.starts_at_rest(params.expert.start.bias_rest_s))
+  const Status status = mapping::start_at_rest(inertial_track.samples(), levelled);
+  if (status.ok() && !inertial_track.starts_at_rest(OdometryStart::kBiasRest_s))
     mapping::add_motion_covariance(levelled);
   return status;
 }
@@ -133,7 +133,7 @@ Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, st
   report.points_used = counts.usable_points;
   report.isolated_points = counts.isolated;
   const std::size_t points = selected.ok() ? sweep_scratch.points.all().size() : 0;
-  const bool usable = points >= params.expert.matching.matches_min;
+  const bool usable = points >= MatchingParams::kMatchesMin;
   if (usable && !inertial_track.sweep_boundary_ns() &&
       seconds(start_ns - sweep_boundary.time_ns()) <= kFirstSweepDelayMax_s)
     return {};
@@ -152,7 +152,7 @@ Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, st
   if (Status status = dead_reckon(end_ns); !status.ok()) return status;
   motion_prior = mapping::InertialPrior{};
   if (!selected.ok()) return selected;
-  return {ErrorCode::insufficient_data, "points", double(points), double(params.expert.matching.matches_min)};
+  return {ErrorCode::insufficient_data, "points", double(points), double(MatchingParams::kMatchesMin)};
 }
 
 /// While the IMU is at rest, the measured gravity levels the attitude.
@@ -163,8 +163,8 @@ Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
     sweep_boundary.state_estimate = mapping::estimate_before_map(params, levelled);
   }
   if (const std::optional<Eigen::Vector3d> force =
-          inertial_track.resting_force(end_ns, params.expert.stationary_bounds.levelling_max_s)) {
-    if (Status status = mapping::level_at_rest(params, *force, levelled); !status.ok()) return status;
+          inertial_track.resting_force(end_ns, StationaryBounds::kLevellingMax_s)) {
+    if (Status status = mapping::level_at_rest(*force, levelled); !status.ok()) return status;
     levelled.time_ns = end_ns;
     if (!inertial_track.has_not_moved()) {
       mapping::unknowns::variances(levelled.covariance, mapping::unknowns::velocity)
@@ -192,14 +192,14 @@ bool LidarInertialOdometry::Impl::is_stationary(const mapping::InertialTrack& in
   if (!inertial.is_stationary_until(end_ns)) return false;
   const Eigen::Vector3d gained_m_s =
       motion.state(motion.duration_s()).v_WI_m_s - sweep_boundary.state_estimate.mean.state.v_WI_m_s;
-  return !(gained_m_s.norm() > params.expert.stationary_bounds.kForce_m_s2 * motion.duration_s());
+  return !(gained_m_s.norm() > StationaryBounds::kForce_m_s2 * motion.duration_s());
 }
 
 void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, const MotionWindow& motion,
                                                   mapping::SweepPoints& points, SweepTrajectory& trajectory,
                                                   SweepReport& report, SweepRegistration& placed) {
   if (map.empty()) {
-    if (points.all().size() >= params.expert.matching.matches_min) placed.verdict = SweepVerdict::first;
+    if (points.all().size() >= MatchingParams::kMatchesMin) placed.verdict = SweepVerdict::first;
     return;
   }
   const bool prior_certain = mapping::prior_is_certain(params, sweep_boundary, motion, trajectory);
@@ -221,7 +221,7 @@ void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, 
     report.least_constrained_sigma_m = aligned.least_constrained_sigma_m;
     report.mean_saturation_deficit_rad_s = aligned.mean.saturation_deficit_rad_s.rowwise().mean();
   }
-  mapping::judge_registration(params, tracking, scene.points.size(), prior_certain, attempt, placed);
+  mapping::judge_registration(tracking, scene.points.size(), prior_certain, attempt, placed);
 }
 
 StateEstimate LidarInertialOdometry::Impl::update(const MotionWindow& motion, const SweepRegistration& placed,

@@ -158,7 +158,7 @@ bool prior_is_certain(const Params& params, const SweepBoundary& boundary, const
   const Eigen::Matrix<double, 9, 9> P =
       boundary.state_estimate.mean.state.covariance + inertial_noise(params, trajectory, window.samples, 0);
   return u::variances(P, u::position).maxCoeff() <=
-             params.expert.tracking.extend_sigma_max_m * params.expert.tracking.extend_sigma_max_m &&
+             TrackingLimits::kExtendSigmaMax_m * TrackingLimits::kExtendSigmaMax_m &&
          u::variances(P, u::attitude).maxCoeff() <= kExtendSigmaMax_rad * kExtendSigmaMax_rad;
 }
 

@@ -118,8 +118,8 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
                            Result& result) {
   const std::unique_ptr<RegistrationProblem> posed(new RegistrationProblem{prior, samples, end_ns, points, map});
   RegistrationProblem& problem = *posed;
-  problem.matches_needed =
-      std::max(params_.matches_min, static_cast<std::size_t>(kMatchRatioMin * static_cast<double>(points.size())));
+  problem.matches_needed = std::max(params_.expert.matches_min,
+                                    static_cast<std::size_t>(kMatchRatioMin * static_cast<double>(points.size())));
   std::destroy_at(&result);  // reconstructed in place, because a Result needs 22 KiB
   std::construct_at(&result);
   result.mean = prior.mean;
@@ -133,7 +133,8 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
   if (Status status = problem.build_trajectory(at.now, trajectory); !status.ok()) return status;
 
   matches_.assign(points.size(), Match{});
-  while (at.verdict == RegistrationVerdict::converged && !at.converged && result.iterations < params_.iterations_max) {
+  while (at.verdict == RegistrationVerdict::converged && !at.converged &&
+         result.iterations < params_.expert.iterations_max) {
     ++result.iterations;
     if (Status status = iterate(problem, at, trajectory, result); !status.ok()) return status;
   }
@@ -176,7 +177,8 @@ Status Registration::iterate(const RegistrationProblem& problem, IterationState&
   at.converged = is_converged_step(step, trajectory.duration_s(), params_);
   result.correction_m = (at.now.state.p_WI_m - mean.state.p_WI_m).norm();
   result.correction_rad = so3::logarithm(at.now.state.q_WI * mean.state.q_WI.conjugate()).norm();
-  if (result.correction_m > params_.correction_max_m || result.correction_rad > params_.correction_max_rad)
+  if (result.correction_m > params_.expert.correction_max_m ||
+      result.correction_rad > params_.expert.correction_max_rad)
     at.verdict = RegistrationVerdict::diverged;
   return {};
 }

@@ -145,10 +145,10 @@ RegistrationAttempt attempt_registration(const Params& params, const Relocalisat
   return out;
 }
 
-void judge_registration(const Params& params, const TrackingState& before, std::size_t points, bool prior_certain,
+void judge_registration(const TrackingState& before, std::size_t points, bool prior_certain,
                         const RegistrationAttempt& attempt, SweepRegistration& out) {
   if (out.alignment) {
-    const bool holds = out.alignment->least_constrained_sigma_m <= params.expert.matching.kDegenerateSigma_m;
+    const bool holds = out.alignment->least_constrained_sigma_m <= MatchingParams::kDegenerateSigma_m;
     out.verdict = holds ? SweepVerdict::registered : SweepVerdict::degenerate;
     const bool fits = double(out.alignment->inliers) >= kConfirmInlierRatio * double(out.alignment->matches);
     const bool relocalisation_unconfirmed =
@@ -157,8 +157,8 @@ void judge_registration(const Params& params, const TrackingState& before, std::
                                              : RegistrationOutcome::alignment_found;
     return;
   }
-  const bool enough = points >= params.expert.matching.matches_min;
-  const bool given_up = failed_searches(before) + 1 >= params.expert.tracking.kLostSweepsMax;
+  const bool enough = points >= MatchingParams::kMatchesMin;
+  const bool given_up = failed_searches(before) + 1 >= TrackingLimits::kLostSweepsMax;
   out.outcome = RegistrationOutcome::failed;
   out.map_too_sparse = enough && attempt.too_few_matches;
   if (enough && ((attempt.too_few_matches && prior_certain) || given_up)) out.verdict = SweepVerdict::degenerate;

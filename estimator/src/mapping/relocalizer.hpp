@@ -38,8 +38,8 @@ struct SweepRegistration {
 };
 
 /// The verdict is `degenerate` if the map has too few points, or after enough failed searches.
-void judge_registration(const LidarInertialOdometry::Params& params, const TrackingState& before, std::size_t points,
-                        bool prior_certain, const RegistrationAttempt& attempt, SweepRegistration& placed);
+void judge_registration(const TrackingState& before, std::size_t points, bool prior_certain,
+                        const RegistrationAttempt& attempt, SweepRegistration& placed);
 
 /// Initial pose number 0 is the predicted pose. All other initial poses are shifted or rotated along one axis, closest
 /// first: mapping.md (R66).

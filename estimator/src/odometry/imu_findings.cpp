@@ -44,7 +44,7 @@ Status check_force_at_rest(const ImuDescription& imu, std::span<const ImuSample>
 
 /// Returns whether the gyro agrees with the measured rotation of gravity.
 bool check_readings(const ImuDescription& imu, std::span<const ImuSample> samples, SensorHealth& health) {
-  const ImuPlausibility plausibility(plausibility_params(imu.gravity_m_s2, imu.is_merged ? 0.0 : imu.gyro_range_rad_s));
+  const ImuPlausibility plausibility(plausibility_setup(imu.gravity_m_s2, imu.is_merged ? 0.0 : imu.gyro_range_rad_s));
   ImuPlausibility::State state;
   for (const ImuSample& sample : samples) plausibility.step(sample, state);
   add_findings(plausibility, state, kImu, health);
@@ -81,11 +81,11 @@ void check_stationary_gravity(const ImuDescription& imu, std::span<const ImuSamp
 
 }  // namespace
 
-ImuPlausibility::Params plausibility_params(double gravity_m_s2, double gyro_range_rad_s) {
-  ImuPlausibility::Params params;
-  params.gravity_m_s2 = std::max(gravity_m_s2, 1e-3);
-  if (gyro_range_rad_s > 0.0) params.gyro_range_rad_s = range_below_saturation(gyro_range_rad_s);
-  return params;
+ImuPlausibility::Setup plausibility_setup(double gravity_m_s2, double gyro_range_rad_s) {
+  ImuPlausibility::Setup setup;
+  setup.gravity_m_s2 = std::max(gravity_m_s2, 1e-3);
+  if (gyro_range_rad_s > 0.0) setup.gyro_range_rad_s = range_below_saturation(gyro_range_rad_s);
+  return setup;
 }
 
 void add_findings(const ImuPlausibility& plausibility, const ImuPlausibility::State& state, const std::string& sensor,

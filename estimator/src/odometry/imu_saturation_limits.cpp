@@ -10,12 +10,11 @@ namespace tumble {
 namespace {
 
 // maximum number of stored readings per sensor; sufficient for some seconds of motion near the largest rate or force
-constexpr int kReadings = 512;
+constexpr std::size_t kReadings = 512;
 constexpr double kStatedMax_rad_s = 1000.0;  // maximum stated range that SaturationLimitDetector uses
 
 StreamingClippingFinder::Params clipping_finder_params(const ImuDataSheet& sheet) {
   StreamingClippingFinder::Params out;
-  out.readings_max = kReadings;
   if (sheet.gyro_range_rad_s > 0.0 && sheet.gyro_range_rad_s <= kStatedMax_rad_s)
     out.clipping.axis_limit_params.stated_gyro_range_rad_s = sheet.gyro_range_rad_s;
   if (sheet.accel_range_m_s2 > 0.0) out.clipping.axis_limit_params.stated_accel_range_m_s2 = sheet.accel_range_m_s2;
@@ -26,14 +25,14 @@ StreamingClippingFinder::Params clipping_finder_params(const ImuDataSheet& sheet
 
 ImuSaturationLimits::ImuSaturationLimits(std::span<const ImuDataSheet> sheets) {
   for (const ImuDataSheet& sheet : sheets)
-    imus_.push_back({StreamingClippingFinder(clipping_finder_params(sheet)), sheet});
+    imus_.push_back({StreamingClippingFinder(clipping_finder_params(sheet), kReadings), sheet});
 }
 
 void ImuSaturationLimits::start_from_saturation_levels(std::size_t unit, const SaturationLevels& rails) {
   StreamingClippingFinder::Params params = clipping_finder_params(imus_[unit].data_sheet);
   odometry::start_from_saturation_levels(rails, params.clipping.axis_limit_params, params.clipping.gyro_planes,
                                          params.clipping.accel_saturation_planes);
-  imus_[unit].clipping_finder = StreamingClippingFinder(params);
+  imus_[unit].clipping_finder = StreamingClippingFinder(params, kReadings);
 }
 
 ImuSaturationLimits::State ImuSaturationLimits::start() const {

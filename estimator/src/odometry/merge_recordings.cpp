@@ -94,22 +94,20 @@ Status prepare_imu_readings(std::span<const ImuRecording> recordings, ImuReading
   return align(units.samples);
 }
 
-void set_imu_params(const ImuReadingSets& units, ImuMerge::Params& params) {
-  params.count = static_cast<int>(units.index.size());
-  std::copy(units.T_BI.begin(), units.T_BI.end(), params.T_mean_imu.begin());
+void set_imus(const ImuReadingSets& units, ImuMerge::Setup& setup) {
+  setup.count = static_cast<int>(units.index.size());
+  std::copy(units.T_BI.begin(), units.T_BI.end(), setup.T_mean_imu.begin());
   std::copy(units.gyro_sensing_directions.begin(), units.gyro_sensing_directions.end(),
-            params.gyro_sensing_directions.begin());
+            setup.gyro_sensing_directions.begin());
   std::copy(units.accel_sensing_directions.begin(), units.accel_sensing_directions.end(),
-            params.accel_sensing_directions.begin());
+            setup.accel_sensing_directions.begin());
 }
 
 /// TimeWithoutGaps removes gaps from time stamps, so that ImuMerge keeps its calibration.
 class TimeWithoutGaps {
  public:
-  explicit TimeWithoutGaps(double gap_max_s) : gap_max_s_(gap_max_s) {}
-
   std::pair<TimeNs, bool> next(TimeNs time_ns) {
-    const bool after_gap = started_ && seconds(time_ns - last_ns_) > gap_max_s_;
+    const bool after_gap = started_ && seconds(time_ns - last_ns_) > ImuMerge::Setup::kGapMax_s;
     if (after_gap) {
       const TimeNs removed_ns = time_ns - last_ns_ - step_ns_;
       gaps_.push_back({time_ns - removed_ns - removed_duration_ns(), removed_ns + removed_duration_ns()});
@@ -134,7 +132,6 @@ class TimeWithoutGaps {
   };
   TimeNs removed_duration_ns() const { return gaps_.empty() ? 0 : gaps_.back().removed_duration_ns; }
 
-  double gap_max_s_;
   std::vector<Gap> gaps_;
   bool started_ = false;
   TimeNs last_ns_ = 0, step_ns_ = 1;
@@ -148,11 +145,11 @@ void reset_motion_state(ImuMerge::State& state) {
   state.window_count = 0;
 }
 
-Status merge_imu_readings(const ImuMerge& merge, double gap_max_s, const ImuReadingSets& units, ImuMerge::State& state,
+Status merge_imu_readings(const ImuMerge& merge, const ImuReadingSets& units, ImuMerge::State& state,
                           std::vector<ImuSample>& out) {
   std::vector<ImuSample> now(units.samples.size());
   std::optional<ImuSample> merged;
-  TimeWithoutGaps time(gap_max_s);
+  TimeWithoutGaps time;
   out.clear();
   for (std::size_t k = 0; k < units.samples[0].size(); ++k) {
     for (std::size_t unit = 0; unit < now.size(); ++unit) now[unit] = units.samples[unit][k];
@@ -277,24 +274,22 @@ std::string imu_name(std::size_t unit, std::size_t units) {
   return units > 1 ? "imu_" + std::to_string(unit + 1) : "imu";
 }
 
-Status merge_recordings(std::span<const ImuRecording> recordings, ImuMerge::Params params, MergedRecordings& out) {
+Status merge_recordings(std::span<const ImuRecording> recordings, ImuMerge::Setup setup, MergedRecordings& out) {
   out = {};
   ImuReadingSets units;
   if (Status status = prepare_imu_readings(recordings, units); !status.ok()) return status;
   report_silent_imus(units, out.faults);
   if (Status status = exclude_frozen(units, out.faults); !status.ok()) return status;
-  set_imu_params(units, params);
+  set_imus(units, setup);
   auto state = std::make_unique<ImuMerge::State>();
-  const ImuMerge first(params);
-  if (Status status = merge_imu_readings(first, params.gap_max_s, units, *state, out.samples); !status.ok())
-    return status;
+  const ImuMerge first(setup);
+  if (Status status = merge_imu_readings(first, units, *state, out.samples); !status.ok()) return status;
   const bool faulty = exclude_faulty_imus(*state, units, out.faults);
-  set_imu_params(units, params);
-  const ImuMerge merge(params);
+  set_imus(units, setup);
+  const ImuMerge merge(setup);
   if (faulty) {
     *state = {};
-    if (Status status = merge_imu_readings(merge, params.gap_max_s, units, *state, out.samples); !status.ok())
-      return status;
+    if (Status status = merge_imu_readings(merge, units, *state, out.samples); !status.ok()) return status;
   }
   report_calibration(merge, *state, units, out);
   return {};

@@ -10,7 +10,7 @@
 
 namespace tumble {
 
-using odometry::outlier_filters_of, odometry::merge_params, odometry::rolling_params, odometry::data_sheets_of,
+using odometry::outlier_filters_of, odometry::merge_setup, odometry::rolling_params, odometry::data_sheets_of,
     odometry::frozen_axis_detectors;
 
 namespace {
@@ -42,11 +42,11 @@ RollingOdometry::Pose as_pose(const RollingEstimate& estimate) {
 
 }  // namespace
 
-RollingOdometry::Impl::Impl(const Params& params) : Impl(params, merge_params(params)) {}
+RollingOdometry::Impl::Impl(const Params& params) : Impl(params, merge_setup(params)) {}
 
-RollingOdometry::Impl::Impl(const Params& params, const ImuMerge::Params& merged)
+RollingOdometry::Impl::Impl(const Params& params, const ImuMerge::Setup& merged)
     : params_(params),
-      stamp_order_(params.expert->rolling.filter.expert.gap.gap_max_s),
+      stamp_order_(RollingGapParams::kGapMax_s),
       sample_clock_(params.expert->stamps),
       imu_merge_(merged),
       smoother_(rolling_params(params, merged, params.imus.size(), imu_merge_.mean_imu_position_m())),
@@ -56,7 +56,7 @@ RollingOdometry::Impl::Impl(const Params& params, const ImuMerge::Params& merged
       outlier_filters_(outlier_filters_of(params)),
       frozen_axis_detectors_(frozen_axis_detectors(params)),
       merged_imu_checks_{RestGravity({.gravity_m_s2 = params.gravity_m_s2}),
-                         ImuPlausibility(plausibility_params(params.gravity_m_s2, 0.0))},
+                         ImuPlausibility(plausibility_setup(params.gravity_m_s2, 0.0))},
       is_live_(params.lag_s <= 0.0) {}
 
 Status RollingOdometry::Impl::add_imus(std::span<const ImuSample> samples) {

@@ -37,7 +37,7 @@ struct RollingOdometry::Impl {
   using Outliers = std::array<OutlierFilter::State, ImuMerge::kImus>;
 
   explicit Impl(const Params& params);
-  Impl(const Params& params, const ImuMerge::Params& merged);
+  Impl(const Params& params, const ImuMerge::Setup& merged);
 
   Status add_imus(std::span<const ImuSample> samples);
   Status add_imu(std::size_t unit, const ImuSample& sample);

@@ -25,17 +25,9 @@ void require_stated_params(RollingOdometry::Params params) {
 }  // namespace
 
 std::span<const char* const> RollingOdometry::Params::derived_fields() {
-  static constexpr const char* kNames[] = {"merge_count",
-                                           "merge_gyro_range_rad_s",
-                                           "merge_accel_range_m_s2",
-                                           "rolling_radius_m",
-                                           "rolling_gravity_m_s2",
-                                           "rolling_lever_arm_m",
-                                           "rolling_lever_arm_sigma_m",
-                                           "rolling_gyro_range_rad_s",
-                                           "rolling_accel_range_m_s2",
-                                           "rolling_recovered_rate_sigma_rad_s",
-                                           "rolling_lag_s"};
+  static constexpr const char* kNames[] = {
+      "rolling_radius_m",         "rolling_gravity_m_s2",     "rolling_lever_arm_m", "rolling_lever_arm_sigma_m",
+      "rolling_gyro_range_rad_s", "rolling_accel_range_m_s2", "rolling_lag_s"};
   return kNames;
 }
 
@@ -55,10 +47,10 @@ void RollingOdometry::Params::widen_priors_for_unknown_imus() {
 
 namespace odometry {
 
-ImuMerge::Params merge_params(const RollingOdometry::Params& params) {
+ImuMerge::Setup merge_setup(const RollingOdometry::Params& params) {
   require_stated_params(params);
   require_in_interval("units", static_cast<double>(params.imus.size()), 1.0, ImuMerge::kImus);
-  ImuMerge::Params out = params.expert->merge;
+  ImuMerge::Setup out;
   out.count = static_cast<int>(params.imus.size());
   for (std::size_t k = 0; k < params.imus.size(); ++k) {
     const RollingOdometry::ImuSetup& unit = params.imus[k];
@@ -72,7 +64,7 @@ ImuMerge::Params merge_params(const RollingOdometry::Params& params) {
   return out;
 }
 
-RollingSmoother::Params rolling_params(const RollingOdometry::Params& params, const ImuMerge::Params& merged,
+RollingSmoother::Params rolling_params(const RollingOdometry::Params& params, const ImuMerge::Setup& merged,
                                        std::size_t units, const Eigen::Vector3d& lever_arm_m) {
   RollingSmoother::Params out = params.expert->rolling;
   out.filter.radius_m = params.radius_m;
@@ -98,8 +90,8 @@ std::vector<ImuDataSheet> data_sheets_of(const RollingOdometry::Params& params) 
 std::vector<FrozenAxes> frozen_axis_detectors(const RollingOdometry::Params& params) {
   std::vector<FrozenAxes> out;
   for (const RollingOdometry::ImuSetup& unit : params.imus) {
-    out.emplace_back(FrozenAxes::Params{.gyro_range_rad_s = unit.data_sheet.gyro_range_rad_s,
-                                        .accel_range_m_s2 = unit.data_sheet.accel_range_m_s2});
+    out.emplace_back(FrozenAxes::ImuRanges{.gyro_range_rad_s = unit.data_sheet.gyro_range_rad_s,
+                                           .accel_range_m_s2 = unit.data_sheet.accel_range_m_s2});
   }
   return out;
 }

@@ -5,16 +5,17 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
+#include "tumble/attitude/detail/imu_merge.hpp"
 #include "tumble/common/detail/outlier_filter.hpp"
 #include "tumble/odometry/expert_params.hpp"
 
 namespace tumble::odometry {
 
 /// Throws InvalidParams if a parameter of RollingOdometry is out of bounds.
-ImuMerge::Params merge_params(const RollingOdometry::Params& params);
+ImuMerge::Setup merge_setup(const RollingOdometry::Params& params);
 
 /// `lever_arm_m` is the position of the virtual IMU that combines all `units` IMUs.
-RollingSmoother::Params rolling_params(const RollingOdometry::Params& params, const ImuMerge::Params& merged,
+RollingSmoother::Params rolling_params(const RollingOdometry::Params& params, const ImuMerge::Setup& merged,
                                        std::size_t units, const Eigen::Vector3d& lever_arm_m);
 
 std::vector<ImuDataSheet> data_sheets_of(const RollingOdometry::Params& params);

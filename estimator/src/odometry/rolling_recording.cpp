@@ -11,7 +11,7 @@ namespace tumble {
 static_assert(RollingOdometry::kWholeRecording == RollingSmoother::kWholeRecordingLag, "both classes use one value");
 
 RollingSmoother::Params rolling_smoother_params(const RollingOdometry::Params& params, const MergedRecordings& merged) {
-  return odometry::rolling_params(params, odometry::merge_params(params), merged.imus.size(), merged.lever_arm_m);
+  return odometry::rolling_params(params, odometry::merge_setup(params), merged.imus.size(), merged.lever_arm_m);
 }
 
 /// Stores a reading until finish(). Non-finite readings are ignored.
@@ -41,7 +41,7 @@ Status RollingOdometry::Impl::finish_whole_recording() {
   }
   const auto whole = std::make_shared<MergedImuRecording>();
   MergedRecordings& merged = whole->recordings;
-  const Status merge_status = merge_recordings(recordings, odometry::merge_params(params_), merged);
+  const Status merge_status = merge_recordings(recordings, odometry::merge_setup(params_), merged);
   whole->health = merged.faults;
   whole_recording_result_ = whole;
   if (!merge_status.ok()) return merge_status;
@@ -49,7 +49,7 @@ Status RollingOdometry::Impl::finish_whole_recording() {
   smoother_ = RollingSmoother(rolling_smoother_params(params_, merged));
   for (const ImuSample& sample : merged.samples) {
     const TimeNs last_ns = state_->live_filter.started ? state_->live_filter.last_time_ns : sample.time_ns;
-    if (seconds(sample.time_ns - last_ns) > params_.expert->rolling.filter.expert.gap.gap_max_s)
+    if (seconds(sample.time_ns - last_ns) > RollingGapParams::kGapMax_s)
       restart_at_newest(seconds(sample.time_ns - last_ns));
     if (Status status = smoother_.step(sample, *state_, finished_results_); !status.ok()) return status;
     initialise_pose();

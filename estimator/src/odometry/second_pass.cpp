@@ -15,21 +15,25 @@ namespace {
 // Duration of motion after which the second pass is abandoned.
 constexpr double kAbandonAfter_s = 10.0;
 
+constexpr double kRest_s = 1.0;             // duration of the initial rest that is buffered
+constexpr std::size_t kSweepsPerSweep = 3;  // buffered sweeps that the second pass processes per new sweep
+// Factor on the calibration's variance, because the second pass uses the readings again.
+constexpr double kInflation = 4.0;
 constexpr double kBufferLead_s = 0.1;  // buffered time before the first sweep, because the clocks may differ
 constexpr std::size_t kSweepsPerExtraRejection =
     20;  // rejections by second pass <= rejections by first pass + sweeps / kSweepsPerExtraRejection
 // The estimated calibration is not used if more than one in kSweepsPerRejection sweeps was rejected.
 constexpr std::size_t kSweepsPerRejection = 5;
 
-/// `inflation` multiplies the covariance of each known saturation plane. A saturation plane contains the readings of a
-/// saturated sensing axis.
-void start_from_saturation_levels(const SaturationLevels& known, double inflation, AngularRateStream::Params& params) {
+/// Multiplies the covariance of each known saturation plane by kInflation. A saturation plane contains the readings of
+/// a saturated sensing axis.
+void start_from_saturation_levels(const SaturationLevels& known, AngularRateStream::Params& params) {
   params.expert.gyro_planes.known_limits = known.gyro_planes;
   params.expert.accel_saturation_planes.known_limits = known.accel_saturation_planes;
   for (SaturationPlanes* const planes :
        {&params.expert.gyro_planes.known_limits, &params.expert.accel_saturation_planes.known_limits}) {
     for (std::optional<SaturationPlane>& plane : planes->sensing_axis) {
-      if (plane) plane->covariance *= inflation;
+      if (plane) plane->covariance *= kInflation;
     }
   }
 }
@@ -45,7 +49,7 @@ SecondMappingPass::SecondMappingPass(const Params& params, const MotionRegimeStr
       rest_detector_(mapping::mapping_stationary_params(mapping)) {
   require_valid_fields(params);
   if (!enabled_) return;
-  const double most_s = params.rest_s + kBufferLead_s + kAbandonAfter_s;
+  const double most_s = kRest_s + kBufferLead_s + kAbandonAfter_s;
   samples_.samples.reserve(static_cast<std::size_t>(std::ceil(most_s / rate.rate.period_s)) + 16);
 }
 
@@ -63,7 +67,7 @@ void SecondMappingPass::store_input(const ImuSample& sample) {
       !rest_detector_.detect_stationary(sample, stationary_state_, rate_.rate.model.nominal.gyro_bias_rad_s))
     motion_start_ns_ = sample.time_ns;
   if (!motion_start_ns_) {
-    const TimeNs from_ns = sample.time_ns - static_cast<TimeNs>(1e9 * params_.rest_s);
+    const TimeNs from_ns = sample.time_ns - static_cast<TimeNs>(1e9 * kRest_s);
     while (!sweeps_.empty() && sweeps_.front().start_ns < from_ns) sweeps_.pop_front();
     samples_.drop_until(from_ns - static_cast<TimeNs>(1e9 * kBufferLead_s));
   } else if (seconds(sample.time_ns - buffer_start_ns()) > kAbandonAfter_s) {
@@ -107,8 +111,8 @@ MotionRegimeStream::Params SecondMappingPass::calibrated_rate(const OdometryPass
   MotionRegimeStream::Params out = rate_params_with_delay();
   const AngularRateStream::State& state = first.rate_stream_state().rate;
   out.rate.model.calibration = first.rates().rate().calibration(state);
-  out.rate.model.calibration->covariance *= params_.inflation;
-  start_from_saturation_levels(state.clipping_state.known_limits, params_.inflation, out.rate);
+  out.rate.model.calibration->covariance *= kInflation;
+  start_from_saturation_levels(state.clipping_state.known_limits, out.rate);
   return out;
 }
 
@@ -141,7 +145,7 @@ bool SecondMappingPass::start_second_pass(const OdometryPass& first) {
 
 void SecondMappingPass::replay_next_input(OdometryPass& first) {
   if (!replayed_pass_ && (!is_due() || !start_second_pass(first))) return;
-  run_second_pass(first, params_.sweeps);
+  run_second_pass(first, kSweepsPerSweep);
 }
 
 void SecondMappingPass::complete_second_pass(OdometryPass& first) {

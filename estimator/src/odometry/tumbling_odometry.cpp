@@ -45,10 +45,10 @@ constexpr double kSweepsMax_hz = 20.0;  // maximum sweep rate of a lidar, for th
 TumblingOdometry::Impl::Impl(const Params& params)
     : params_(params),
       stated_calibration_(params.calibration_prior()),
-      stamp_order_(params.expert->rate.rate.gap_max_s),
+      stamp_order_(params.expert->rate.rate.kGapMax_s),
       outlier_filter_(outlier_params(params)),
       sample_clock_(params.expert->stamps),
-      plausibility_(plausibility_params(params.expert->gravity_m_s2, params.imu.gyro_range_rad_s)),
+      plausibility_(plausibility_setup(params.expert->gravity_m_s2, params.imu.gyro_range_rad_s)),
       odometry_pass_(rate_stream_params(params), mapper_params(params)),
       second_mapping_pass_(params.expert->second_mapping_pass, rate_stream_params(params), mapper_params(params)),
       further_lidars_(params.further_lidars, params.T_IL) {}

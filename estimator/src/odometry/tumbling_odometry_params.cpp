@@ -64,7 +64,7 @@ MotionRegimeStream::Params rate_stream_params(const TumblingOdometry::Params& pa
   const bool whole = params.lag_s >= TumblingOdometry::kWholeRecording;  // rates_ is unused for a whole recording
   out.rate.lag_s = std::max(whole ? TumblingParams{}.lag_s : params.lag_s, 2.0 * out.rate.period_s);
   out.evidence.gravity_m_s2 = out.hand_held.body.gravity_m_s2 = params.expert->gravity_m_s2;
-  out.hand_held.body.expert.gap_max_s = out.rate.gap_max_s;
+  out.hand_held.body.expert.gap_max_s = out.rate.kGapMax_s;
   return out;
 }
 
@@ -72,7 +72,7 @@ OutlierFilter::ImuRanges outlier_params(const TumblingOdometry::Params& params) 
   return {.gyro_range_rad_s = params.imu.gyro_range_rad_s,
           .accel_range_m_s2 = params.imu.accel_range_m_s2,
           .period_s = 1.0 / params.imu.rate_hz,
-          .gap_max_s = params.expert->rate.rate.gap_max_s};
+          .gap_max_s = params.expert->rate.rate.kGapMax_s};
 }
 
 LidarInertialOdometry::Params mapper_params(const TumblingOdometry::Params& params) {
@@ -98,10 +98,8 @@ MotionRegimeSmoother::Params recording_rate_params(const TumblingOdometry::Param
   out.rate.model.accel_bias_sigma_m_s2 = whole.accel_bias_sigma_m_s2;
   out.rate.model.inertia_sigma = whole.inertia_sigma;
   out.rate.saturation_detector = stream.rate.saturation_detector;
-  out.rate.recovered_sigma_rad_s = stream.rate.recovered_sigma_rad_s;
   out.rate.calibration_mahalanobis_max = stream.rate.calibration_mahalanobis_max;
   if (stream.rate.calibrated_errors) out.rate.calibrated_errors = *stream.rate.calibrated_errors;
-  out.rate.gap_max_s = stream.rate.gap_max_s;
   out.rate.expert.gyro_planes = stream.rate.expert.gyro_planes;
   out.rate.expert.accel_saturation_planes = stream.rate.expert.accel_saturation_planes;
   out.rate.expert.rest_detector = stream.rate.expert.rest_detector;

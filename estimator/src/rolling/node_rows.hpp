@@ -12,11 +12,10 @@ namespace tumble::rolling {
 /// The contact point is at rest, or moves along the floor during slip: rolling.md (R17), (R20). An unknown velocity of
 /// the sphere is assumed to be small.
 template <class EstimateCallback>
-void contact_measurement_rows(const RollingParams& params, const Contact& c, RollingMode mode, double node_s,
-                              const Eigen::Vector3d& v_WI_m_s, const Vector& x, const Covariance& P,
-                              EstimateCallback&& take) {
+void contact_measurement_rows(const Contact& c, RollingMode mode, double node_s, const Eigen::Vector3d& v_WI_m_s,
+                              const Vector& x, const Covariance& P, EstimateCallback&& take) {
   // The part of the contact velocity that is not linear in the error state is subtracted from the measurement.
-  const Eigen::Vector3d u = c.velocity(x) - c.measurement_jacobian * x, variance = contact_variance(params, c, mode);
+  const Eigen::Vector3d u = c.velocity(x) - c.measurement_jacobian * x, variance = contact_variance(c, mode);
   if (!may_slip(mode)) {
     for (int axis = 0; axis < 2; ++axis) take(Row(c.measurement_jacobian.row(axis)), -u[axis], variance[axis]);
   }
@@ -28,13 +27,13 @@ void contact_measurement_rows(const RollingParams& params, const Contact& c, Rol
 
 /// See rolling.md (R28).
 template <class EstimateCallback>
-void stationary_measurement_rows(const RollingParams& params, const RollingNodeIntegrals& sums,
-                                 const RollingNominalState& nominal, bool spins_in_place, EstimateCallback&& take) {
+void stationary_measurement_rows(const RollingNodeIntegrals& sums, const RollingNominalState& nominal,
+                                 bool spins_in_place, EstimateCallback&& take) {
   for (int axis = 0; axis < 3; ++axis) {
-    take(kVelocity + axis, -nominal.v_WI_m_s[axis], squared(params.expert.contact.kRestVelocitySigma_m_s));
+    take(kVelocity + axis, -nominal.v_WI_m_s[axis], squared(RollingContactParams::kRestVelocitySigma_m_s));
     if (spins_in_place) continue;
     const double bias_rad_s = sums.rate_integral_I_rad[axis] / sums.node_interval_s;
-    take(kGyroBias + axis, bias_rad_s, squared(params.expert.contact.kRestRateSigma_rad_s));
+    take(kGyroBias + axis, bias_rad_s, squared(RollingContactParams::kRestRateSigma_rad_s));
   }
 }
 

@@ -32,10 +32,10 @@ Status RollingFilter::step_with_listener(const ImuSample& sample, State& state, 
   if (state.started) {
     double dt_s = 0.0;
     if (const Status bad =
-            elapsed_time_since_last(sample.time_ns, state.last_time_ns, params_.expert.gap.gap_max_s, dt_s);
+            elapsed_time_since_last(sample.time_ns, state.last_time_ns, RollingGapParams::kGapMax_s, dt_s);
         !bad.ok())
       return bad;
-    if (dt_s > params_.expert.gap.kGapMinDuration_s) {
+    if (dt_s > RollingGapParams::kGapMinDuration_s) {
       bridge_gap(sample, dt_s, state, listener);
     } else {
       state.average.add(sample, dt_s);
@@ -151,7 +151,7 @@ bool RollingFilter::spins_in_place(const State& state) const {
   const double averaged = params_.expert.kNode_s / (2.0 * kSlowRateTau_s);
   const Hypothesis& best = state.hypotheses[0];
   const Eigen::Array3d variance = best.covariance.diagonal().segment<3>(rolling::kGyroBias).array() +
-                                  squared(params_.expert.contact.kRestRateSigma_rad_s) * averaged;
+                                  squared(RollingContactParams::kRestRateSigma_rad_s) * averaged;
   const Eigen::Array3d off =
       (state.low_passed_rate_rad_s - state.nominal.gyro_bias_rad_s - best.x.segment<3>(rolling::kGyroBias)).array();
   return (off.square() > kSpinSigmas * kSpinSigmas * variance).any();
@@ -177,7 +177,7 @@ void RollingFilter::flag_uncertain(State& state) const {
   const bool event = may_slip(state.hypotheses[0].mode);
   if (!event) state.variance_before_slip_m2 = variance_m2;
   state.uncertain =
-      event && variance_m2 - state.variance_before_slip_m2 > squared(params_.expert.modes.event_sigma_growth_m);
+      event && variance_m2 - state.variance_before_slip_m2 > squared(RollingModeParams::kEventSigmaGrowth_m);
 }
 
 void RollingFilter::weigh_modes(State& state) {

@@ -71,8 +71,7 @@ double log_normalised_square(double square) {
 }
 
 /// See rolling.md (R23).
-double log_likelihood_stationary(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode,
-                                 const RollingParams& params) {
+double log_likelihood_stationary(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode) {
   RollingFilter::Vector x = h.x;
   Eigen::Matrix<double, 3, rolling::kStates> H = c.measurement_jacobian;
   const bool slope_reset = rolling::resets_floor_slope(h.mode, mode);
@@ -83,7 +82,7 @@ double log_likelihood_stationary(const rolling::Contact& c, const RollingFilter:
   Eigen::Matrix3d S = H * h.covariance * H.transpose();
   if (slope_reset && mode == RollingMode::incline) {
     const Eigen::Matrix<double, 3, 2> by_slope = c.measurement_jacobian.middleCols<2>(rolling::kSlope);
-    S += squared(params.expert.contact.kSlopeSigma) * by_slope * by_slope.transpose();
+    S += squared(RollingContactParams::kSlopeSigma) * by_slope * by_slope.transpose();
   }
   const auto log_det_with = [&](const Eigen::Vector3d& variance, Eigen::LLT<Eigen::Matrix3d>& factor) {
     factor.compute(S + Eigen::Matrix3d(variance.asDiagonal()));
@@ -95,10 +94,10 @@ double log_likelihood_stationary(const rolling::Contact& c, const RollingFilter:
     // The mode uneven has a larger variance than grip, which would reduce the likelihood of every node on a rough
     // floor. The normalisation of the likelihood therefore uses the variance of grip. Instead, each node in the mode
     // uneven has the constant cost kRoughCost.
-    log_det = log_det_with(rolling::contact_variance(params, c, RollingMode::grip), factor);
+    log_det = log_det_with(rolling::contact_variance(c, RollingMode::grip), factor);
     cost = kRoughCost;
   }
-  const double own = log_det_with(rolling::contact_variance(params, c, mode), factor);
+  const double own = log_det_with(rolling::contact_variance(c, mode), factor);
   if (mode != RollingMode::uneven) log_det = own;
   const double square = factor.matrixL().solve(c.velocity(x)).squaredNorm();
   return -cost - 0.5 * (square + log_det + 3.0 * std::log(2.0 * std::numbers::pi));
@@ -106,13 +105,13 @@ double log_likelihood_stationary(const rolling::Contact& c, const RollingFilter:
 
 /// See rolling.md (R24), (R25).
 double log_likelihood_moving(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode,
-                             const Eigen::Vector3d& u, const RollingParams& params) {
+                             const Eigen::Vector3d& u) {
   const Eigen::Vector3d change = u - h.contact_velocity_W_m_s;
   const double horizontal = log_normalised_square(change.head<2>().squaredNorm());
   if (mode == RollingMode::bump) return horizontal + log_floor_rise(change.z());
   const double check_vertical =
       c.measurement_jacobian.row(2) * h.covariance * c.measurement_jacobian.row(2).transpose() +
-      squared(params.expert.contact.kVerticalSigma_m_s);
+      squared(RollingContactParams::kVerticalSigma_m_s);
   return horizontal + gaussian_log_density(u.z(), check_vertical);
 }
 
@@ -161,8 +160,7 @@ std::span<const ModeCandidate> propose_mode_changes(const RollingParams& params,
       if (too_fast && !may_slip(mode)) continue;
       double likelihood = 0.0;  // a gap is no evidence of a mode
       if (!in_gap)
-        likelihood = may_slip(mode) ? log_likelihood_moving(c, h, mode, u, params)
-                                    : log_likelihood_stationary(c, h, mode, params);
+        likelihood = may_slip(mode) ? log_likelihood_moving(c, h, mode, u) : log_likelihood_stationary(c, h, mode);
       const double impact =
           mode == RollingMode::bump ? 0.0 : state.node_integrals.unexplained_impact_m_s / kUnexplainedImpact_m_s;
       out[total++] = {h.log_weight + log_transition(params, h.mode, mode, node_s) + likelihood - impact, parent, mode,
@@ -258,8 +256,8 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, bool headi
   for (std::size_t k = 0; k < kept.count; ++k) {
     const ModeCandidate& candidate = kept.candidates[k];
     Hypothesis& h = state.hypotheses[k];
-    rolling::update_slope_for_mode(params_, h.mode, candidate.mode, node_s, state.nominal, h.x, h.covariance);
-    rolling::contact_measurement_rows(params_, c, candidate.mode, node_s, state.nominal.v_WI_m_s, h.x, h.covariance,
+    rolling::update_slope_for_mode(h.mode, candidate.mode, node_s, state.nominal, h.x, h.covariance);
+    rolling::contact_measurement_rows(c, candidate.mode, node_s, state.nominal.v_WI_m_s, h.x, h.covariance,
                                       [&](const auto& row, double measured, double variance) {
                                         rolling::update(row, measured, variance, h.x, h.covariance);
                                       });
@@ -286,8 +284,7 @@ void RollingFilter::correct_at_rest(State& state) const {
     Hypothesis& h = state.hypotheses[static_cast<std::size_t>(k)];
     double likelihood = 0.0;
     rolling::stationary_measurement_rows(
-        params_, state.node_integrals, state.nominal, state.spins_in_place,
-        [&](int index, double measured, double variance) {
+        state.node_integrals, state.nominal, state.spins_in_place, [&](int index, double measured, double variance) {
           if (index < rolling::kPosition)  // a velocity is evidence of a mode, a bias is not
             likelihood += gaussian_log_density(measured - h.x[index], h.covariance(index, index) + variance);
           rolling::update(index, measured, variance, h.x, h.covariance);

@@ -53,11 +53,11 @@ constexpr double kGapTimeSigmaRatio = 0.15;  // uncertain time of a rate change 
 }  // namespace
 
 /// See rolling.md (R18), (R19).
-Eigen::Vector3d contact_variance(const RollingParams& params, const Contact& c, RollingMode mode) {
+Eigen::Vector3d contact_variance(const Contact& c, RollingMode mode) {
   const double rough =
-      mode == RollingMode::uneven ? squared(params.expert.contact.kRoughShare * c.rolling_speed_m_s) : 0.0;
+      mode == RollingMode::uneven ? squared(RollingContactParams::kRoughShare * c.rolling_speed_m_s) : 0.0;
   return {c.grip_variance, c.grip_variance,
-          squared(params.expert.contact.kVerticalSigma_m_s) + rough + c.gap_extra_variance};
+          squared(RollingContactParams::kVerticalSigma_m_s) + rough + c.gap_extra_variance};
 }
 
 /// See rolling.md (R17).
@@ -164,8 +164,8 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   nominal.q_WI = (q_mid * half).normalized();
   const double gravity = params.gravity_m_s2;
   const bool beyond = reading.rate_peak_rad_s >= params.gyro_range_rad_s;
-  const bool lost = (sample.device_clip_flags & kClipGyro) != 0 ||
-                    (beyond && !(params.expert.saturation.recovered_rate_sigma_rad_s > 0.0));
+  const bool lost =
+      (sample.device_clip_flags & kClipGyro) != 0 || (beyond && !params.expert.saturation.recovered_rate_sigma_rad_s);
   const bool has_unknown_rate = lost || beyond || known == Force::force_unknown;
   const bool railed =
       (sample.device_clip_flags & kClipAccel) != 0 || reading.force_peak_m_s2 >= params.accel_range_m_s2;
@@ -275,7 +275,8 @@ Moving transition(const RollingNodeIntegrals& sums) {
 }
 
 /// See rolling.md (R11) to (R14).
-void predict(const RollingParams& params, const RollingNodeIntegrals& sums, const Moving& B, Vector& x, Covariance& P) {
+void predict(const RollingParams& params, const RollingNodeIntegrals& sums, const Moving& B, Vector& x, Covariance& P,
+             double noise_ratio) {
   const double h = sums.node_interval_s;
   x.head<9>() += (B * x).eval();
   P.topRows<9>() += (B * P).eval();
@@ -283,10 +284,11 @@ void predict(const RollingParams& params, const RollingNodeIntegrals& sums, cons
   make_symmetric(P);
   const double attitude =
       squared(params.expert.noise.attitude_walk_rad_sqrts) * h +
-      squared(params.expert.noise.rate_error_sqrts) * sums.squared_rate_integral_rad2_s + sums.gap_angle_variance_rad2 +
-      squared(kClippedRateSigma_rad_s * sums.rate_clipped_s) +
-      squared(params.expert.saturation.recovered_rate_sigma_rad_s) * 2.0 * kRecoveredTau_s * sums.recovered_rate_s;
-  const double velocity = squared(params.expert.noise.velocity_walk_m_s_sqrts) * h +
+      squared(noise_ratio * params.expert.noise.rate_error_sqrts) * sums.squared_rate_integral_rad2_s +
+      sums.gap_angle_variance_rad2 + squared(kClippedRateSigma_rad_s * sums.rate_clipped_s) +
+      squared(params.expert.saturation.recovered_rate_sigma_rad_s.value_or(0.0)) * 2.0 * kRecoveredTau_s *
+          sums.recovered_rate_s;
+  const double velocity = squared(noise_ratio * RollingImuNoiseParams::kVelocityWalk_m_s_sqrts) * h +
                           squared(kImpactSigmaRatio * sums.impact_m_s) +
                           squared(kVelocityWalkPerRate2_sqrts * sums.squared_rate_integral_rad2_s) / h +
                           sums.gap_speed_variance_m2_s2 + squared(kClippedForceSigma_m_s2 * sums.force_clipped_s);
@@ -301,7 +303,7 @@ void predict(const RollingParams& params, const RollingNodeIntegrals& sums, cons
 
 /// See rolling.md (R15), (R16), (R18).
 Contact contact(const RollingParams& params, const RollingNominalState& nominal, const Eigen::Vector3d& rate_I_rad_s,
-                const RollingNodeIntegrals& sums) {
+                const RollingNodeIntegrals& sums, double noise_ratio) {
   const Eigen::Matrix3d R = nominal.q_WI.toRotationMatrix();
   const Eigen::Vector3d w_W = R * (rate_I_rad_s - nominal.gyro_bias_rad_s - nominal.gyro_scale * rate_I_rad_s);
   const Eigen::Vector3d arm_W = R * (params.lever_arm_m + nominal.lever_arm_error_m);
@@ -325,14 +327,14 @@ Contact contact(const RollingParams& params, const RollingNominalState& nominal,
       by_normal.leftCols<2>() - out.normal_height_derivative_W * nominal.floor_slope.transpose() / n.z();
   out.measurement_jacobian.col(kRadius) = -w_W.cross(n);
   out.rolling_speed_m_s = r * w_W.cross(n).norm();
-  out.grip_variance =
-      squared(params.expert.contact.grip_sigma_m_s) + squared(params.expert.contact.grip_sigma_ratio * r * w_W.norm());
+  out.grip_variance = squared(noise_ratio * RollingContactParams::kGripSigma_m_s) +
+                      squared(noise_ratio * RollingContactParams::kGripSigmaRatio * r * w_W.norm());
   const bool beyond = rate_I_rad_s.cwiseAbs().maxCoeff() >= params.gyro_range_rad_s || sums.recovered_rate_s > 0.0;
-  const bool recovered = params.expert.saturation.recovered_rate_sigma_rad_s > 0.0;
-  if (sums.rate_clipped_s > 0.0 || (beyond && !recovered)) {
+  const std::optional<double>& recovered_sigma_rad_s = params.expert.saturation.recovered_rate_sigma_rad_s;
+  if (sums.rate_clipped_s > 0.0 || (beyond && !recovered_sigma_rad_s)) {
     out.grip_variance += squared(r * kClippedRateSigma_rad_s);
   } else if (beyond) {
-    out.grip_variance += squared(r * params.expert.saturation.recovered_rate_sigma_rad_s);
+    out.grip_variance += squared(r * *recovered_sigma_rad_s);
   }
   if (sums.gap_s > 0.0) {
     out.gap_extra_variance = squared(r) * sums.gap_rate_variance_rad2_s / sums.node_interval_s;  // rolling.md (R32)
@@ -353,8 +355,8 @@ bool resets_floor_slope(RollingMode from, RollingMode to) {
 }
 
 /// See rolling.md (R21).
-void update_slope_for_mode(const RollingParams& params, RollingMode from, RollingMode to, double h_s,
-                           const RollingNominalState& nominal, Vector& x, Covariance& P) {
+void update_slope_for_mode(RollingMode from, RollingMode to, double h_s, const RollingNominalState& nominal, Vector& x,
+                           Covariance& P) {
   if (from == RollingMode::incline && to == from) {
     P.diagonal().segment<2>(kSlope).array() += squared(kSlopeWalk_sqrts) * h_s;
   }
@@ -362,7 +364,7 @@ void update_slope_for_mode(const RollingParams& params, RollingMode from, Rollin
   if (!resets_floor_slope(from, to)) return;
   P.middleRows<2>(kSlope).setZero();
   P.middleCols<2>(kSlope).setZero();
-  const double sigma = to == RollingMode::incline ? params.expert.contact.kSlopeSigma : kLevelSlopeSigma;
+  const double sigma = to == RollingMode::incline ? RollingContactParams::kSlopeSigma : kLevelSlopeSigma;
   P.diagonal().segment<2>(kSlope).setConstant(squared(sigma));
   x.segment<2>(kSlope) = -nominal.floor_slope;
 }
@@ -387,7 +389,7 @@ bool reset_tilt(const RollingParams& params, const RollingNodeIntegrals& sums, b
   P.diagonal().segment<2>(kAttitude).setConstant(squared(tilt_sigma_rad));
   P(kAttitude + 2, kAttitude + 2) = squared(kLostSpeed_m_s);  // practically unknown, but small enough for linearisation
   P.diagonal().segment<3>(kVelocity).setConstant(
-      squared(at_rest ? params.expert.contact.kRestVelocitySigma_m_s : kLostSpeed_m_s));
+      squared(at_rest ? RollingContactParams::kRestVelocitySigma_m_s : kLostSpeed_m_s));
   return true;
 }
 

@@ -44,7 +44,7 @@ struct Contact {
 
 /// Returns the variance of the contact velocity. In the mode `slip`, only the variance of the vertical component is
 /// valid.
-Eigen::Vector3d contact_variance(const RollingParams& params, const Contact& c, RollingMode mode);
+Eigen::Vector3d contact_variance(const Contact& c, RollingMode mode);
 
 bool starts_in_motion(const Eigen::Vector3d& rate_I_rad_s);
 
@@ -75,17 +75,19 @@ void integrate_gap(const RollingParams& params, const ImuAverage& piece, const G
 
 /// Returns the matrix B: over a node, errors of attitude, velocity and position increase by B times the error state.
 Moving transition(const RollingNodeIntegrals& sums);
-void predict(const RollingParams& params, const RollingNodeIntegrals& sums, const Moving& B, Vector& x, Covariance& P);
+/// `noise_ratio` multiplies the root densities of the velocity and of rate-dependent attitude errors.
+void predict(const RollingParams& params, const RollingNodeIntegrals& sums, const Moving& B, Vector& x, Covariance& P,
+             double noise_ratio = 1.0);
 
 /// `rate_I_rad_s` is the gyro reading at the node, without correction. A gap in the node increases the variance of the
-/// contact velocity.
+/// contact velocity. `noise_ratio` multiplies the standard deviation of the contact velocity while gripping.
 Contact contact(const RollingParams& params, const RollingNominalState& nominal, const Eigen::Vector3d& rate_I_rad_s,
-                const RollingNodeIntegrals& sums);
+                const RollingNodeIntegrals& sums, double noise_ratio = 1.0);
 
 /// In the mode `incline`, the slope of the floor is a random walk. A change to a mode with resting contact point resets
 /// the slope.
-void update_slope_for_mode(const RollingParams& params, RollingMode from, RollingMode to, double h_s,
-                           const RollingNominalState& nominal, Vector& x, Covariance& P);
+void update_slope_for_mode(RollingMode from, RollingMode to, double h_s, const RollingNominalState& nominal, Vector& x,
+                           Covariance& P);
 
 /// Returns the variance of a pseudo-measurement of zero velocity, or nothing if the velocity is certain enough.
 std::optional<double> velocity_variance_if_lost(double node_s, const Covariance& P);

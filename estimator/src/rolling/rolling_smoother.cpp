@@ -17,14 +17,6 @@ namespace {
 // maximum number of preallocated samples; with a longer lag of the smoother, the memory grows during the run
 constexpr std::size_t kPreallocatedMax = 1'000'000;
 
-RollingParams scale_noise(RollingParams params, double share) {
-  params.expert.contact.grip_sigma_m_s *= share;
-  params.expert.contact.grip_sigma_ratio *= share;
-  params.expert.noise.velocity_walk_m_s_sqrts *= share;
-  params.expert.noise.rate_error_sqrts *= share;
-  return params;
-}
-
 RollingMode less_constrained_mode(RollingMode a, RollingMode b) {
   const auto rank = [](RollingMode mode) {
     if (may_slip(mode)) return mode == RollingMode::bump ? 3 : 2;
@@ -76,7 +68,7 @@ RollingSmoother::EstimateCallback append_estimates_to(std::vector<RollingEstimat
 }
 
 /// The final pass starts at the last node whose estimates were reported, or at the first sample.
-void start_window(const RollingParams& filter, const RollingParams& path, const RollingSmoother::State& state,
+void start_window(const RollingParams& filter, const RollingSmoother::State& state,
                   rolling::SmoothingCheckpoint& start) {
   start = state.committed_state.checkpoint;
   if (state.committed_state.started) return;
@@ -84,8 +76,8 @@ void start_window(const RollingParams& filter, const RollingParams& path, const 
   Eigen::Quaterniond q_WI = filter.q_WI_start.value_or(Eigen::Quaterniond::Identity());
   // The filter has already levelled with the force of this sample, so inclination_from_force() cannot fail.
   if (!filter.q_WI_start) (void)inclination_from_force(sample.specific_force_m_s2, q_WI);
-  start.filter.nominal = rolling::start_nominal(path, q_WI, sample.angular_velocity_rad_s);
-  rolling::set_prior(path, sample.angular_velocity_rad_s, start.filter.covariance);
+  start.filter.nominal = rolling::start_nominal(filter, q_WI, sample.angular_velocity_rad_s);
+  rolling::set_prior(filter, sample.angular_velocity_rad_s, start.filter.covariance);
   start.reading = start_cursor(sample);
 }
 
@@ -116,8 +108,8 @@ SlipAndBumpEvents find_slip_and_bump_events(const RollingSmoother::Params& param
       ++b;
     }
     const double after_m2 = stated_distance_sigma(params) * horizontal_variance_m2[std::min(b, count - 1)];
-    const bool grew = after_m2 - before_m2 >
-                      params.filter.expert.modes.event_sigma_growth_m * params.filter.expert.modes.event_sigma_growth_m;
+    const bool grew =
+        after_m2 - before_m2 > RollingModeParams::kEventSigmaGrowth_m * RollingModeParams::kEventSigmaGrowth_m;
     for (std::size_t n = a; n < b; ++n) out.uncertain[n] = grew;
     a = b;
   }
@@ -156,7 +148,6 @@ bool RollingSmoother::State::operator==(const State& other) const {
 RollingSmoother::RollingSmoother(const Params& p) : params_(p), filter_(p.filter) {
   require_valid_fields(p);
   require_in_interval("lag_s", p.lag_s, p.filter.expert.kNode_s, kWholeRecordingLag);
-  final_smoothing_params_ = scale_noise(p.filter, p.kFinalPassNoiseRatio);
   lag_nodes_ = static_cast<std::size_t>(std::ceil(p.lag_s / p.filter.expert.kNode_s - 1e-9));
   nodes_per_block_ = static_cast<std::size_t>(std::ceil(p.kBlock_s / p.filter.expert.kNode_s - 1e-9));
 }
@@ -250,11 +241,10 @@ void RollingSmoother::smooth_window(const ModePath& path, std::size_t emitted, S
   if (emitted > path.size() && params_.known_distance_m > 0.0) {
     distance = {params_.known_distance_m, params_.known_distance_sigma_m};
   }
-  const auto owned_pass =
-      std::make_unique<rolling::FinalSmoothingPass>(final_smoothing_params_, state.samples, path, distance);
+  const auto owned_pass = std::make_unique<rolling::FinalSmoothingPass>(params_.filter, state.samples, path, distance);
   rolling::FinalSmoothingPass& pass = *owned_pass;
   const auto start = std::make_unique<rolling::SmoothingCheckpoint>();
-  start_window(params_.filter, final_smoothing_params_, state, *start);
+  start_window(params_.filter, state, *start);
   pass.run_to_cut(*start, emitted);
   state.constants = pass.end_filter().nominal;
   state.radius_sigma_m = std::sqrt(std::max(0.0, pass.end_filter().covariance(rolling::kRadius, rolling::kRadius)));

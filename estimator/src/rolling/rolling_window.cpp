@@ -80,7 +80,7 @@ bool RollingReadings::next(RollingReading& out) {
   for (; out.end < samples_.size(); ++out.end) {
     const ImuSample& sample = samples_[out.end];
     const double dt_s = seconds(sample.time_ns - last_ns);
-    if (dt_s > params_.expert.gap.kGapMinDuration_s) {
+    if (dt_s > RollingGapParams::kGapMinDuration_s) {
       if (out.average.readings > 0) break;
       cursor_.rate_before_gap_rad_s = cursor_.last_rate_rad_s;
       cursor_.gap_start_ns = last_ns;
@@ -126,21 +126,21 @@ void complete_filter_node(const RollingParams& params, const RollingNodeIntegral
   record.mode_path_node = path;
   record.moving_jacobian = transition(sums);
   Vector x = Vector::Zero();
-  predict(params, sums, record.moving_jacobian, x, filter.covariance);
+  constexpr double kNoiseRatio = RollingSmoother::Params::kFinalPassNoiseRatio;
+  predict(params, sums, record.moving_jacobian, x, filter.covariance, kNoiseRatio);
   record.tilt_reset = reset_tilt(params, sums, path.at_rest, filter.nominal, filter.covariance);
   record.resets_floor_slope = resets_floor_slope(filter.mode, path.mode);
-  update_slope_for_mode(params, filter.mode, path.mode, sums.node_interval_s, filter.nominal, x, filter.covariance);
+  update_slope_for_mode(filter.mode, path.mode, sums.node_interval_s, filter.nominal, x, filter.covariance);
   record.heading_lost = heading_lost(filter.covariance);
   const auto take = [&](const auto& row, double measured, double variance) {
     update_with_measurement(row, measured, variance, record, x, filter.covariance);
   };
   if (path.at_rest) {
-    stationary_measurement_rows(params, sums, filter.nominal, path.spins_in_place, take);
+    stationary_measurement_rows(sums, filter.nominal, path.spins_in_place, take);
   } else {
-    Contact c = contact(params, filter.nominal, rate_I_rad_s, sums);
+    Contact c = contact(params, filter.nominal, rate_I_rad_s, sums, kNoiseRatio);
     if (record.heading_lost) remove_heading_component(c);
-    contact_measurement_rows(params, c, path.mode, sums.node_interval_s, filter.nominal.v_WI_m_s, x, filter.covariance,
-                             take);
+    contact_measurement_rows(c, path.mode, sums.node_interval_s, filter.nominal.v_WI_m_s, x, filter.covariance, take);
   }
   make_symmetric(filter.covariance);
   filter.covariance.block<3, 3>(kPosition, kPosition) += path.position_spread_m2;

@@ -70,7 +70,7 @@ std::vector<Value> interpolate(const Axis& axis) {
 }  // namespace
 
 ClippedBaseline::ClippedBaseline(const Params& params)
-    : params_(params), rails_({.axis_limit_params = params.rails, .tilted = params.tilted_rails}) {
+    : params_(params), rails_({.axis_limit_params = params.rails}, params.tilted_rails) {
   require_valid_fields(params);
 }
 

@@ -56,7 +56,7 @@ Status RigidOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const 
       points_[i].t_s = 0.0f;
     }
     const bool first = map_.size() == 0;
-    if (first && counts.usable_points >= params_.registration.matches_min) report.verdict = SweepVerdict::first;
+    if (first && counts.usable_points >= params_.registration.expert.matches_min) report.verdict = SweepVerdict::first;
     if (!first) register_points(report);
     if (first || params_.extend_always || report.verdict != SweepVerdict::rejected) {
       extend_map(counts.has_ring_numbers, report);
@@ -90,7 +90,8 @@ void RigidOdometry::register_points(SweepReport& report) {
   report.iterations = result.iterations;
   report.inlier_ratio = result.points == 0 ? 0.0 : double(result.inliers) / double(result.points);
   if (!status.ok()) return;
-  if (result.verdict == RegistrationVerdict::too_few_matches && chosen_.size() >= params_.registration.matches_min) {
+  if (result.verdict == RegistrationVerdict::too_few_matches &&
+      chosen_.size() >= params_.registration.expert.matches_min) {
     report.verdict = SweepVerdict::degenerate;  // no constraints: keep the motion model
   }
   if (result.verdict != RegistrationVerdict::converged) return;

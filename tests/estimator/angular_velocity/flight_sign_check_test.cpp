@@ -66,17 +66,17 @@ std::vector<ImuSample> swung(const Eigen::Vector3d& arm_m) {
   return out;
 }
 
-FlightSignCheck::Params flight_params(FlightSignCheck::BodyMotionType body, double range_rad_s) {
-  FlightSignCheck::Params params;
-  params.motion_type = body;
-  params.lever_arm_m = kFlightArm_m;
-  params.gyro_range_rad_s = range_rad_s;
-  return params;
+FlightSignCheck::Setup flight_setup(FlightSignCheck::BodyMotionType body, double range_rad_s) {
+  FlightSignCheck::Setup setup;
+  setup.motion_type = body;
+  setup.lever_arm_m = kFlightArm_m;
+  setup.gyro_range_rad_s = range_rad_s;
+  return setup;
 }
 
 std::string sense_told(std::vector<ImuSample> samples, FlightSignCheck::BodyMotionType body, double range_rad_s,
                        const std::function<void(ImuSample&)>& harm) {
-  const FlightSignCheck sense(flight_params(body, range_rad_s));
+  const FlightSignCheck sense(flight_setup(body, range_rad_s));
   FlightSignCheck::State state;
   for (ImuSample& sample : samples) {
     harm(sample);
@@ -134,9 +134,9 @@ TEST(FlightSignCheck, OfABodyAtRestOrWithoutALeverArmNothingIsSaid) {
   std::vector<ImuSample> rest;
   for (int k = 0; k < 500; ++k) rest.push_back(flight_sample(k, {0.001, 0.0, 0.0}, {0.0, 0.0, -9.81}));
   EXPECT_EQ(sense_told(rest, FlightSignCheck::BodyMotionType::always_thrown, 100.0, [](ImuSample&) {}), "");
-  FlightSignCheck::Params params = flight_params(FlightSignCheck::BodyMotionType::always_thrown, 100.0);
-  params.lever_arm_m.setZero();
-  const FlightSignCheck sense(params);
+  FlightSignCheck::Setup setup = flight_setup(FlightSignCheck::BodyMotionType::always_thrown, 100.0);
+  setup.lever_arm_m.setZero();
+  const FlightSignCheck sense(setup);
   FlightSignCheck::State state;
   for (const ImuSample& sample : thrown_flight()) sense.step(sample, state);
   EXPECT_TRUE(sense.verdict(state).ok());

@@ -51,8 +51,8 @@ struct Found {
   FrozenAxes::State state;
 };
 
-Found watch_axes(const std::vector<ImuSample>& samples, const FrozenAxes::Params& params) {
-  const FrozenAxes detector(params);
+Found watch_axes(const std::vector<ImuSample>& samples, const FrozenAxes::ImuRanges& imu_ranges) {
+  const FrozenAxes detector(imu_ranges);
   Found out;
   for (const ImuSample& sample : samples) {
     detector.step(sample, out.state);
@@ -66,23 +66,23 @@ Found watch_axes(const std::vector<ImuSample>& samples, const FrozenAxes::Params
   return out;
 }
 
-FrozenAxes::Params stated_ranges() {
+FrozenAxes::ImuRanges stated_ranges() {
   return {.gyro_range_rad_s = kGyroRail_rad_s, .accel_range_m_s2 = kAccelRail_m_s2};
 }
 
 TEST(FrozenAxes, NamesAnAxisThatRepeatsOneReadingWhileTheOthersMove) {
-  for (const FrozenAxes::Params& params : {FrozenAxes::Params{}, stated_ranges()}) {
-    EXPECT_EQ(watch_axes(clipped_samples(moving_body()), params).first, "");
+  for (const FrozenAxes::ImuRanges& imu_ranges : {FrozenAxes::ImuRanges{}, stated_ranges()}) {
+    EXPECT_EQ(watch_axes(clipped_samples(moving_body()), imu_ranges).first, "");
     std::vector<ImuSample> samples = clipped_samples(moving_body());
     for (std::size_t k = 300; k < samples.size(); ++k)
       samples[k].angular_velocity_rad_s.x() = samples[300].angular_velocity_rad_s.x();
-    const Found found = watch_axes(samples, params);
+    const Found found = watch_axes(samples, imu_ranges);
     EXPECT_NE(found.first.find("gyro x"), std::string::npos) << found.first;
     EXPECT_LT(found.told_ns, samples[300].time_ns + 600'000'000);
-    const Eigen::Vector3d variance = FrozenAxes(params).rate_variance_rad2_s2(samples[400].time_ns, found.state);
+    const Eigen::Vector3d variance = FrozenAxes(imu_ranges).rate_variance_rad2_s2(samples[400].time_ns, found.state);
     EXPECT_GT(std::sqrt(variance.x()), kGyroRail_rad_s);
     EXPECT_EQ(variance.y(), 0.0);
-    EXPECT_EQ(FrozenAxes(params).rate_variance_rad2_s2(samples[299].time_ns, found.state).x(), 0.0);
+    EXPECT_EQ(FrozenAxes(imu_ranges).rate_variance_rad2_s2(samples[299].time_ns, found.state).x(), 0.0);
   }
 }
 

@@ -259,8 +259,8 @@ TEST(SaturationPlaneDecision, PublishedFamiliesKeepUprightRailsUnlessAsked) {
 
 // The first readings, usually at rest, determine the noise even if later readings are forgotten.
 TEST(SaturationPlaneDecision, TheWatchKeepsTheFirstReadingsAndTheLatest) {
-  for (const int readings_max : {64, 1024}) {
-    const StreamingClippingFinder watch({.clipping = {}, .readings_max = readings_max});
+  for (const std::size_t readings_max : {std::size_t{64}, StreamingClippingFinder::kReadingsMax}) {
+    const StreamingClippingFinder watch({}, readings_max);
     StreamingClippingFinder::State state = watch.start();
     const auto reading = [](int k) {
       // a slow motion near one level, in which every reading is different
@@ -275,7 +275,7 @@ TEST(SaturationPlaneDecision, TheWatchKeepsTheFirstReadingsAndTheLatest) {
     }
     const std::vector<Vector3d>& kept = state.distinct_readings[0].readings;
     ASSERT_TRUE(state.distinct_readings[0].readings_pruned);
-    ASSERT_LE(kept.size(), static_cast<std::size_t>(readings_max));
+    ASSERT_LE(kept.size(), readings_max);
     const int first = readings_max == 64 ? 12 : 48;
     for (int k = 0; k < first; ++k) EXPECT_EQ(kept[static_cast<std::size_t>(k)], reading(k)) << k;
     for (int k = 0; k < 12; ++k) {

@@ -125,8 +125,8 @@ TEST(PossibleSaturation, APlateauOfTheMotionNearTheOthersMayHideWhereItsSlopesMe
       EXPECT_EQ(tops[5].suspected_saturation, 0u);
       EXPECT_EQ(tops[30].saturation_deficit_sigma_rad_s.x(), 0.0);
       // neither clipped nor measured, as in the stream
-      EXPECT_EQ(rate_source_of(tops[30], {}, Eigen::Matrix3d::Identity(), 0.5), AngularRateSource::lower_bound_only);
-      EXPECT_EQ(rate_source_of(tops[5], {}, Eigen::Matrix3d::Identity(), 0.5), AngularRateSource::measured);
+      EXPECT_EQ(rate_source_of(tops[30], {}, Eigen::Matrix3d::Identity()), AngularRateSource::lower_bound_only);
+      EXPECT_EQ(rate_source_of(tops[5], {}, Eigen::Matrix3d::Identity()), AngularRateSource::measured);
     }
   }
 }

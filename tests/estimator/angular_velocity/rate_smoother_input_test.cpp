@@ -159,7 +159,6 @@ TEST(RateSmootherInput, RefusesParametersOutsideOfTheirBounds) {
   EXPECT_THROW(AngularRateSmoother{{}}, InvalidParams) << "the lever arm has no default";
   refused([](AngularRateSmoother::Params& p) { p.expert.optimisation.iterations_max = 0; });
   refused([](AngularRateSmoother::Params& p) { p.expert.optimisation.tolerance_rad_s = 0.0; });
-  refused([](AngularRateSmoother::Params& p) { p.gap_max_s = -1.0; });
   refused([](AngularRateSmoother::Params& p) { p.model.nominal.lever_arm_m.x() = std::nan(""); });
   refused([](AngularRateSmoother::Params& p) { p.model.lever_arm_sigma_m = 0.0; });
   refused([](AngularRateSmoother::Params& p) { p.saturation_detector.stated_gyro_range_rad_s = -1.0; });

@@ -113,7 +113,7 @@ TEST(RestDetector, AMeanThatForgetsFollowsABiasThatDrifts) {
   constexpr double kDrift_rad_s2 = 0.002;
   constexpr int kCount = 3000;
   const auto drifting = [](double memory_s) {
-    const RestDetector detector({.memory_s = memory_s});
+    const RestDetector detector({.caller_settings = {.memory_s = memory_s}});
     RestDetector::State state;
     std::vector<ImuSample> samples = standing(kCount, 6);
     for (ImuSample& sample : samples) {
@@ -131,7 +131,7 @@ TEST(RestDetector, AMeanThatForgetsFollowsABiasThatDrifts) {
 // Means that the caller has averaged count as readings, weighted by their length.
 TEST(RestDetector, TakesMeans) {
   constexpr TimeNs kNode_ns = 20'000'000;
-  const RestDetector detector({.rest_s = 0.4, .reading_s = 1.0});
+  const RestDetector detector({.rest_s = 0.4, .caller_settings = {.reading_s = 1.0}});
   RestDetector::State state;
   const auto take = [&](double rate_rad_s, int k) {
     return detector.detect_stationary_from_mean({rate_rad_s, 0.0, 0.0}, {0.0, 0.0, 9.8}, k * kNode_ns,
@@ -149,7 +149,7 @@ TEST(RestDetector, TakesMeans) {
 TEST(RestDetector, ForceBeyondGravityIsNoRest) {
   std::vector<ImuSample> samples = standing(100, 7);
   const auto rests = [&](double force_max_m_s2) {
-    const std::vector<bool> found = RestDetector({.force_max_m_s2 = force_max_m_s2}).find(samples);
+    const std::vector<bool> found = RestDetector({.caller_settings = {.force_max_m_s2 = force_max_m_s2}}).find(samples);
     return std::count(found.begin(), found.end(), true);
   };
   EXPECT_EQ(rests(10.3), 100);

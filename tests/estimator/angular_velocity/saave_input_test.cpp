@@ -139,7 +139,6 @@ TEST(SaaveInput, RefusesParametersOutsideOfTheirBounds) {
   refused([](SaturationAwareRateEstimator::Params& p) { p.lever_arm_m.x() = 11.0; });
   refused([](SaturationAwareRateEstimator::Params& p) { p.saturation_point_rad_s = 0.0; });
   refused([](SaturationAwareRateEstimator::Params& p) { p.jerk_psd_rad2_s5 = 0.0; });
-  refused([](SaturationAwareRateEstimator::Params& p) { p.gap_max_s = 0.0; });
 }
 
 }  // namespace

@@ -92,7 +92,7 @@ void expect_bad_input_refused(const Filter& filter) {
   expect_refused(filter, state, bad, ErrorCode::time_order);
   bad.time_ns = std::numeric_limits<TimeNs>::min();
   expect_refused(filter, state, bad, ErrorCode::time_order);
-  bad.time_ns = state.last_time_ns + 1'000'000'001;  // the default of gap_max_s is 1
+  bad.time_ns = state.last_time_ns + 1'000'000'001;  // the longest gap is 1 s
   expect_refused(filter, state, bad, ErrorCode::gap);
   bad.time_ns = std::numeric_limits<TimeNs>::max();
   expect_refused(filter, state, bad, ErrorCode::gap);

@@ -23,8 +23,8 @@ const std::array<Eigen::Vector3d, kCount> kPositions = {
     {{0.08, 0.0, 0.01}, {-0.04, 0.069, 0.01}, {-0.04, -0.069, 0.01}}};
 using UnitReadings = std::array<ImuSample, kCount>;
 
-ImuMerge::Params unit_params() {
-  ImuMerge::Params out;
+ImuMerge::Setup unit_params() {
+  ImuMerge::Setup out;
   out.count = kCount;
   for (std::size_t k = 0; k < kCount; ++k) {
     out.T_mean_imu[k] = Eigen::Isometry3d::Identity();

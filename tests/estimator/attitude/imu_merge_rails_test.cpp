@@ -51,8 +51,8 @@ struct TiltedSpin {
   }
 };
 
-ImuMerge::Params tilted_params(const TiltedSpin& spin, int count) {
-  ImuMerge::Params out;
+ImuMerge::Setup tilted_params(const TiltedSpin& spin, int count) {
+  ImuMerge::Setup out;
   out.count = count;
   for (std::size_t k = 0; k < 3; ++k) {
     out.T_mean_imu[k] = Eigen::Isometry3d::Identity();
@@ -71,7 +71,7 @@ struct RailedMerge {
 };
 
 /// The first `flagged` IMUs report that they clip.
-RailedMerge merge_tilted(const TiltedSpin& spin, const ImuMerge::Params& p,
+RailedMerge merge_tilted(const TiltedSpin& spin, const ImuMerge::Setup& p,
                          std::array<bool, 3> flagged = {true, true, true}) {
   const ImuMerge merge(p);
   RailedMerge out;
@@ -114,7 +114,7 @@ TEST(ImuMergeSaturation, ReadsTiltedElementsAlongTheirRows) {
   EXPECT_GT(ours.raw_error_rad_s, 5.0);
   EXPECT_LT(ours.error_rad_s, 0.5);
   // negative control: axis by axis, the free axes would be used although they are wrong
-  ImuMerge::Params upright = tilted_params(spin, 3);
+  ImuMerge::Setup upright = tilted_params(spin, 3);
   upright.gyro_sensing_directions = {};
   EXPECT_GT(merge_tilted(spin, upright).error_rad_s, 1.5 * ours.error_rad_s);  // measured: 0.275 and 0.139 rad/s
 }
@@ -141,7 +141,7 @@ TEST(ImuMergeSaturation, OneUnitOrTwoKeepTheirFlags) {
 
 TEST(ImuMergeSaturation, FlagsTurnWithTheMounting) {
   const TiltedSpin spin{16.0, 12.0};
-  ImuMerge::Params p = tilted_params(spin, 1);
+  ImuMerge::Setup p = tilted_params(spin, 1);
   p.T_mean_imu[0].linear() = so3::exp(0.5 * 3.14159265358979 * Vector3d::UnitZ()).toRotationMatrix();
   const ImuMerge merge(p);
   ImuMerge::State state;

@@ -41,8 +41,8 @@ struct Spin {
   }
 };
 
-ImuMerge::Params spin_params(const Spin& spin, const Eigen::Vector3d& first_arm_error_m = Eigen::Vector3d::Zero()) {
-  ImuMerge::Params out;
+ImuMerge::Setup spin_params(const Spin& spin, const Eigen::Vector3d& first_arm_error_m = Eigen::Vector3d::Zero()) {
+  ImuMerge::Setup out;
   out.count = 3;
   for (std::size_t k = 0; k < 3; ++k) {
     out.T_mean_imu[k] = Eigen::Isometry3d::Identity();
@@ -60,7 +60,7 @@ struct MergeErrors {
   int railed = 0, flagged = 0;
 };
 
-MergeErrors merge_errors(const Spin& spin, const ImuMerge::Params& p, double top) {
+MergeErrors merge_errors(const Spin& spin, const ImuMerge::Setup& p, double top) {
   const ImuMerge merge(p);
   ImuMerge::State state;
   MergeErrors out;
@@ -191,7 +191,7 @@ TEST(ImuMerge, LeavesOutASaturationLimitThatAnImpactHides) {
 
 TEST(ImuMerge, RefusesBadInput) {
   const Spin spin;
-  ImuMerge::Params bad = spin_params(spin);
+  ImuMerge::Setup bad = spin_params(spin);
   bad.gyro_range_rad_s = 0.0;
   EXPECT_THROW(ImuMerge{bad}, InvalidParams);
   bad = spin_params(spin);

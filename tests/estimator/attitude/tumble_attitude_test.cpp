@@ -31,9 +31,9 @@ TEST(TumbleAttitude, ContractOfEveryFilter) {
 
 TEST(TumbleAttitude, RefusesBadParams) {
   EXPECT_THROW(TumbleAttitude({.gravity_m_s2 = 0.0}), InvalidParams);
-  EXPECT_THROW(TumbleAttitude({.gyro_noise_rad_sqrts = -1.0}), InvalidParams);
-  EXPECT_THROW(TumbleAttitude({.expert = {.recovered_tau_s = 0.0}}), InvalidParams);
-  EXPECT_THROW(TumbleAttitude({.velocity_m_sqrts = std::numeric_limits<double>::quiet_NaN()}), InvalidParams);
+  EXPECT_THROW(TumbleAttitude({.radius_m = -1.0}), InvalidParams);
+  EXPECT_THROW(TumbleAttitude({.radius_m = std::numeric_limits<double>::quiet_NaN()}), InvalidParams);
+  EXPECT_THROW(TumbleAttitude({.lever_arm_m = {9.0, 9.0, 0.0}}), InvalidParams) << "longer than 10 m";
 }
 
 TEST(TumbleAttitude, AtRestTheBiasIsEstimatedAndTheAttitudeIsConstant) {
@@ -71,22 +71,16 @@ TEST(TumbleAttitude, SlowTurnAfterTheBiasIsKnownIsNotRest) {
 // A sphere that has rolled keeps turning about its contact, too slowly for the detector alone: attitude.md (A16)
 TEST(TumbleAttitude, ACreepingTurnAfterTheBiasIsKnownIsNotRest) {
   constexpr double kCreep = 0.02;  // rad/s
-  const auto after_creeping = [&](const TumbleAttitude::Params& params) {
-    const TumbleAttitude filter(params);
-    TumbleAttitude::State state;
-    for (int k = 0; k <= 5000; ++k) {
-      const double rate = k <= 1250 ? 0.0 : k <= 1750 ? 6.0 : kCreep;
-      EXPECT_TRUE(filter.step({k * kPeriod_ns, {0, 0, rate}, {0, 0, kGravity_m_s2}, 0}, state).ok());
-    }
-    return state;
-  };
-  const TumbleAttitude::State state = after_creeping({});
+  const TumbleAttitude filter({});
+  TumbleAttitude::State state;
+  for (int k = 0; k <= 5000; ++k) {
+    const double rate = k <= 1250 ? 0.0 : k <= 1750 ? 6.0 : kCreep;
+    ASSERT_TRUE(filter.step({k * kPeriod_ns, {0, 0, rate}, {0, 0, kGravity_m_s2}, 0}, state).ok());
+  }
   EXPECT_FALSE(state.at_rest);
   EXPECT_NEAR(state.bias_rad_s.z(), 0.0, 1e-3);
   // negative control: the detector's result without the uncertainty of the bias
-  const TumbleAttitude::State believed = after_creeping({.expert = {.at_rest = {.rate_sigmas = 1e6}}});
-  EXPECT_TRUE(believed.at_rest);
-  EXPECT_GT(believed.bias_rad_s.z(), 0.5 * kCreep);
+  EXPECT_TRUE(state.stationary_state.is_stationary);
 }
 
 TEST(TumbleAttitude, AnOscillationTiltsItLessThanVqf) {
@@ -138,10 +132,7 @@ TEST(TumbleAttitude, ABodyThatGoesFarIsNotTiltedForIt) {
     return worst;
   };
   EXPECT_LT(worst_tilt(TumbleAttitude({})), 0.012);
-  // negative controls: a low-pass of the force, and the assumption of a body that stays in place, which forgets the
-  // travelled distance
-  EXPECT_GT(worst_tilt(Vqf({})), 0.02);
-  EXPECT_GT(worst_tilt(TumbleAttitude({.displacement_m_sqrts = 0.03, .motion_tau_s = 1e-3})), 0.02);
+  EXPECT_GT(worst_tilt(Vqf({})), 0.02);  // negative control: a low-pass of the force
 }
 
 /// Returns the state of a body that turns uniformly about its vertical, with a rate about x that is 0.5 rad/s too large
@@ -167,30 +158,32 @@ TEST(TumbleAttitude, ATiltThatARecoveredRateLeavesOpenIsTakenBack) {
   EXPECT_GT(tilt(after_wrong_rates(filter, Eigen::Matrix3d::Zero(), lost_rad).q_WI), 0.06);
 }
 
-// attitude.md (A10): an error with deviation s and memory T gives the angle the variance 2 s^2 T (t - T(1 - e)) after
-// time t
+// attitude.md (A10): an error with deviation s and memory T adds to the heading, after N readings of length h, the
+// variance s^2 h^2 (N + 2/(1 - c) (N - 1 - c (1 - c^(N - 1))/(1 - c))) with c = e^(-h/T)
 TEST(TumbleAttitude, ARecoveredRatesErrorGrowsAsThatOfItsMemory) {
-  constexpr double kMemory_s = 0.5, kSigma_rad_s = 0.1;
-  TumbleAttitude::Params params{.gyro_noise_rad_sqrts = 1e-6,
-                                .rate_error_sqrts = 0.0,
-                                .bias_sigma_start_rad_s = 0.0,
-                                .velocity_m_sqrts = 1e3,
-                                .displacement_m_sqrts = 1e3,
-                                .expert = {.recovered_tau_s = kMemory_s}};
-  const TumbleAttitude filter(params);
-  TumbleAttitude::State state, before;
-  const auto step = [&](int k, const Eigen::Matrix3d& told) {
-    ASSERT_TRUE(filter.step({k * kPeriod_ns, {0, 0, 0.5}, {0, 0, kGravity_m_s2}, 0}, told, state).ok());
+  constexpr double kSigma_rad_s = 0.1;
+  constexpr int kBefore = 100, kReadings = 500;  // both are whole nodes
+  const TumbleAttitude filter({});
+  const auto after = [&](const Eigen::Matrix3d& told, int last) {
+    TumbleAttitude::State state;
+    for (int k = 0; k <= last; ++k) {
+      const Eigen::Matrix3d covariance = k > kBefore ? told : Eigen::Matrix3d(Eigen::Matrix3d::Zero());
+      EXPECT_TRUE(filter.step({k * kPeriod_ns, {0, 0, 0.5}, {0, 0, kGravity_m_s2}, 0}, covariance, state).ok());
+    }
+    return state;
   };
-  for (int k = 0; k <= 100; ++k) step(k, Eigen::Matrix3d::Zero());
-  before = state;
-  for (int k = 101; k <= 600; ++k) step(k, kSigma_rad_s * kSigma_rad_s * Eigen::Matrix3d::Identity());
-  const double expected =
-      2.0 * kSigma_rad_s * kSigma_rad_s * kMemory_s * (2.0 - kMemory_s * (1.0 - std::exp(-2.0 / kMemory_s)));
-  const Eigen::Matrix3d grown =
-      TumbleAttitude::attitude_covariance_rad2(state) - TumbleAttitude::attitude_covariance_rad2(before);
-  // sums over samples replace integrals: half a sample of the memory
-  for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(grown(axis, axis), expected, 0.01 * expected) << axis;
+  const Eigen::Matrix3d told = kSigma_rad_s * kSigma_rad_s * Eigen::Matrix3d::Identity();
+  const auto heading_variance = [&](const Eigen::Matrix3d& covariance) {
+    return TumbleAttitude::attitude_covariance_rad2(after(covariance, kBefore + kReadings))(2, 2);
+  };
+  const double h = seconds(kPeriod_ns), c = std::exp(-h / TumbleAttitude::Params::kRecoveredTau_s);
+  const double correlated = kReadings - 1.0 - c * (1.0 - std::pow(c, kReadings - 1)) / (1.0 - c);
+  const double expected = kSigma_rad_s * kSigma_rad_s * h * h * (kReadings + 2.0 / (1.0 - c) * correlated);
+  EXPECT_NEAR(heading_variance(told) - heading_variance(Eigen::Matrix3d::Zero()), expected, 1e-3 * expected);
+  // an error that is equal about all axes adds as much to the tilt as to the heading
+  const TumbleAttitude::State within_node = after(told, kBefore + kReadings + 5);
+  EXPECT_GT(within_node.recovered_angle_variance_rad2[0], 0.0);
+  EXPECT_NEAR(within_node.recovered_angle_variance_rad2[0], within_node.recovered_angle_variance_rad2[1], 1e-12);
 }
 
 TEST(TumbleAttitude, RefusesACovarianceThatIsNone) {
@@ -305,7 +298,7 @@ TEST(TumbleAttitude, OverAGapTheRateGoesOnAndTheVarianceIsThatOfAWalk) {
   constexpr double kGap_s = 0.3;
   const BehindGap found = behind_gap({{3.0, -2.0, 1.0}, {3.0, -2.0, 1.0}}, kGap_s);
   EXPECT_LT(found.tilt_rad.norm(), 0.02);
-  const double walk = TumbleAttitude::Params{}.expert.gap.kRateWalk_rad_s_sqrts;
+  const double walk = TumbleAttitude::Params::kGapRateWalk_rad_s_sqrts;
   EXPECT_NEAR(found.variance_rad2, walk * walk * kGap_s * kGap_s * kGap_s / 12.0, 0.1 * found.variance_rad2);
 }
 

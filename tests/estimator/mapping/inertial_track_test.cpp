@@ -43,9 +43,8 @@ struct Listener {
 };
 
 /// Returns a gyro with noise of 6.5 mrad/s whose first two readings are 35 mrad/s apart: rare, but no motion.
-Listener noisy_at_first(double bias_rest_s) {
+Listener noisy_at_first() {
   Listener listener;
-  listener.params.expert.start.bias_rest_s = bias_rest_s;
   const Eigen::Vector3d off_rad_s(0.0175, 0.0, 0.0);
   listener.hear(1, kBias_rad_s + off_rad_s);
   listener.hear(1, kBias_rad_s - off_rad_s);
@@ -54,15 +53,19 @@ Listener noisy_at_first(double bias_rest_s) {
 }
 
 TEST(InertialTrack, NoiseOfTheFirstReadingsEndsNoRest) {
-  Listener listener = noisy_at_first(0.1);
+  Listener listener = noisy_at_first();
   EXPECT_EQ(listener.resting(), 100);
   listener.hear(1, kBias_rad_s + Eigen::Vector3d(0.0, 1.0, 0.0), {0.0, 0.0, 12.0});
   EXPECT_EQ(listener.resting(), 100);
   // the second reading is one of 99
   EXPECT_NEAR((listener.track.samples().back().w_WI_I_rad_s - Eigen::Vector3d(0.0, 1.0, 0.0)).norm(), 0.0175 / 99.0,
               1e-9);
-  // negative control: only the first few readings count
-  EXPECT_EQ(noisy_at_first(0.0).resting(), 1);
+  // negative control: after kBiasRest_s, a reading that differs by as much ends the rest
+  Listener noisy_later;
+  noisy_later.hear(20, kBias_rad_s);
+  noisy_later.hear(1, kBias_rad_s + Eigen::Vector3d(0.035, 0.0, 0.0));
+  noisy_later.hear(79, kBias_rad_s);
+  EXPECT_EQ(noisy_later.resting(), 20);
 }
 
 TEST(InertialTrack, ARestOnceLeftDoesNotComeBack) {

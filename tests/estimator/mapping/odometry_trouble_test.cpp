@@ -152,7 +152,7 @@ TEST(LidarInertialOdometry, MissingImuIsATroubleNotAGuess) {
 
 TEST(LidarInertialOdometry, ThrowsOnBadParams) {
   Odometry::Params params;
-  params.expert.matching.neighbours = 100;
+  params.expert.matching.distance_m = 100.0;
   EXPECT_THROW(Odometry{params}, InvalidParams);
   params = {};
   params.T_IL.linear() *= 1.1;

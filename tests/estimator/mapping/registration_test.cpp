@@ -273,7 +273,7 @@ Registration::Result align_few(const Registration::Prior& prior, std::size_t agr
   Registration::Result result;
   EXPECT_TRUE(
       registration.align(prior, still_samples(), test::kSweep_ns, points, map_of(room), trajectory, result).ok());
-  EXPECT_LT(result.matches, params.matches_min);
+  EXPECT_LT(result.matches, params.expert.matches_min);
   return result;
 }
 
@@ -301,7 +301,7 @@ TEST(Registration, RefusesACorrectionBeyondItsBound) {
   Registration::Prior prior = loose_prior(1.0, 0.3);
   prior.mean.state.p_WI_m = Eigen::Vector3d(0.25, -0.2, 0.1);
   Registration::Params params;
-  params.correction_max_m = 0.1;
+  params.expert.correction_max_m = 0.1;
   const Registration::Result result = align(test::Room::box_with_pillars(), prior, params);
   EXPECT_EQ(result.verdict, RegistrationVerdict::diverged);
   EXPECT_EQ(result.mean.state.p_WI_m, prior.mean.state.p_WI_m);

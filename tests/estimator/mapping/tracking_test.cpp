@@ -102,17 +102,14 @@ DelayGrid failed_with(bool too_few) {
   return out;
 }
 
-SweepRegistration judged(const LidarInertialOdometry::Params& params, const TrackingState& before, std::size_t points,
-                         bool trusted, DelayGrid tried) {
-  judge_registration(params, before, points, trusted, tried.attempt, tried.placed);
+SweepRegistration judged(const TrackingState& before, std::size_t points, bool trusted, DelayGrid tried) {
+  judge_registration(before, points, trusted, tried.attempt, tried.placed);
   return tried.placed;
 }
 
 TEST(Tracking, VerdictsAreWhatTheAttemptAndThePriorAllow) {
-  LidarInertialOdometry::Params params;
-  params.expert.matching.matches_min = 100;
   const auto verdict = [&](const TrackingState& before, std::size_t points, bool trusted, DelayGrid tried) {
-    return judged(params, before, points, trusted, std::move(tried)).verdict;
+    return judged(before, points, trusted, std::move(tried)).verdict;
   };
   EXPECT_EQ(verdict(Tracking{}, 500, false, aligned(0.15)), registered);
   EXPECT_EQ(verdict(Tracking{}, 500, false, aligned(0.16)), degenerate);
@@ -123,11 +120,11 @@ TEST(Tracking, VerdictsAreWhatTheAttemptAndThePriorAllow) {
   EXPECT_EQ(verdict(TrackingLost{28, 28}, 500, false, failed_with(false)), rejected);
   EXPECT_EQ(verdict(TrackingLost{29, 29}, 500, false, failed_with(false)), degenerate);
   EXPECT_EQ(verdict(TrackingLost{29, 29}, 99, false, failed_with(false)), rejected);
-  EXPECT_TRUE(judged(params, Tracking{}, 500, false, failed_with(true)).map_too_sparse);
-  EXPECT_FALSE(judged(params, Tracking{}, 500, false, failed_with(false)).map_too_sparse);
-  EXPECT_FALSE(judged(params, Tracking{}, 99, false, failed_with(true)).map_too_sparse);
-  EXPECT_EQ(judged(params, Tracking{}, 500, false, aligned(0.1)).outcome, alignment_found);
-  EXPECT_EQ(judged(params, Tracking{}, 500, true, failed_with(true)).outcome, failed);
+  EXPECT_TRUE(judged(Tracking{}, 500, false, failed_with(true)).map_too_sparse);
+  EXPECT_FALSE(judged(Tracking{}, 500, false, failed_with(false)).map_too_sparse);
+  EXPECT_FALSE(judged(Tracking{}, 99, false, failed_with(true)).map_too_sparse);
+  EXPECT_EQ(judged(Tracking{}, 500, false, aligned(0.1)).outcome, alignment_found);
+  EXPECT_EQ(judged(Tracking{}, 500, true, failed_with(true)).outcome, failed);
 }
 
 /// Returns a relocalisation with `inliers` inliers among a hundred matches.
@@ -142,7 +139,7 @@ DelayGrid aligned_of(std::size_t inliers, bool expected) {
 TEST(Tracking, ARelocalisationIsUnconfirmedWhereInertiaOrSurfacesContradictIt) {
   const LidarInertialOdometry::Params params;
   const auto placement = [&](const TrackingState& before, std::size_t inliers, bool expected) {
-    return judged(params, before, 500, false, aligned_of(inliers, expected)).outcome;
+    return judged(before, 500, false, aligned_of(inliers, expected)).outcome;
   };
   EXPECT_EQ(placement(TrackingLost{}, 90, true), alignment_found);
   EXPECT_EQ(placement(TrackingLost{}, 89, true), relocalisation_unconfirmed);

@@ -187,15 +187,16 @@ TEST(RollingFilter, ProbabilityOfSlipIsThatOfAllHypotheses) {
   EXPECT_LT(deepest, 1e-3);
 }
 
-/// With this low limit every event is uncertain, with a high limit none; without an event never.
+/// With a gyro of large angle random walk, an event is uncertain; without an event, the position is never uncertain.
 TEST(RollingFilter, CallsAnEventUncertainByHowMuchItsSigmaGrows) {
   const Contact slip = event(2.8, 0.8, {-0.6, 0.1, 0.0});
-  const auto called = [&](const Contact& contact, double event_sigma_growth_m) {
+  const double usual_rad_sqrts = RollingParams{}.expert.noise.attitude_walk_rad_sqrts;
+  const auto called = [&](const Contact& contact, double attitude_walk_rad_sqrts) {
     RollingTruth truth = truth_of(l_shape, contact);
     add_errors(1003, truth);
     const RollingFilter filter({.radius_m = testing::kRadius_m,
                                 .lever_arm_m = kLeverArm,
-                                .expert = {.modes = {.event_sigma_growth_m = event_sigma_growth_m}}});
+                                .expert = {.noise = {.attitude_walk_rad_sqrts = attitude_walk_rad_sqrts}}});
     const auto state = std::make_unique<RollingFilter::State>();
     int inside = 0, outside = 0;
     for (std::size_t k = 0; k < truth.samples.size(); ++k) {
@@ -205,10 +206,9 @@ TEST(RollingFilter, CallsAnEventUncertainByHowMuchItsSigmaGrows) {
     }
     return std::pair(inside, outside);
   };
-  EXPECT_GT(called(slip, 5e-4).first, 50);
-  EXPECT_EQ(called(slip, 5e-4).second, 0);
-  EXPECT_EQ(called(slip, 1.0), std::pair(0, 0));
-  EXPECT_EQ(called(no_slip, 5e-4), std::pair(0, 0));
+  EXPECT_GT(called(slip, 0.05).first, 20);  // the integrated tilt error grows beyond 3 cm within half a second
+  EXPECT_EQ(called(slip, usual_rad_sqrts).second, 0);
+  EXPECT_EQ(called(no_slip, usual_rad_sqrts), std::pair(0, 0));
 }
 
 TEST(RollingFilter, FindsItsWayThroughSlipAndSlide) {
@@ -335,7 +335,7 @@ TEST(RollingFilter, RefusesBadInputAndKeepsItsState) {
   EXPECT_EQ(filter.step(bad, *state).error_code, ErrorCode::non_finite);
   EXPECT_EQ(filter.step(truth.samples[599], *state).error_code, ErrorCode::time_order);
   ImuSample late = truth.samples[640];
-  late.time_ns = truth.samples[599].time_ns + 1'000'000'001;  // the default of gap_max_s is 1
+  late.time_ns = truth.samples[599].time_ns + 1'000'000'001;  // the longest gap is 1 s
   EXPECT_EQ(filter.step(late, *state).error_code, ErrorCode::gap);
   EXPECT_TRUE(*state == *before);
   EXPECT_TRUE(filter.step(truth.samples[600], *state).ok());
@@ -346,7 +346,7 @@ TEST(RollingFilter, RefusesBadParams) {
   EXPECT_NO_THROW(RollingFilter({.radius_m = r}));
   EXPECT_THROW(RollingFilter({}), InvalidParams) << "the radius has no default";
   EXPECT_THROW(RollingFilter({.radius_m = r, .lever_arm_m = {0, 0, 11}}), InvalidParams);
-  EXPECT_THROW(RollingFilter({.radius_m = r, .expert = {.contact = {.grip_sigma_m_s = -1.0}}}), InvalidParams);
+  EXPECT_THROW(RollingFilter({.radius_m = r, .expert = {.noise = {.rate_error_sqrts = -1.0}}}), InvalidParams);
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(RollingFilter({.radius_m = r, .expert = {.modes = {.slip_begins_per_s = kNan}}}), InvalidParams);
 }

@@ -17,6 +17,7 @@ namespace tumble {
 ///
 /// SampleClock fits a line to the time stamps as a function of the sample number, with exponentially decreasing weights
 /// of older time stamps. Source: fading-memory polynomial filter of first degree (Morrison, Introduction to Sequential
+<<<<<<< HEAD
 /// Smoothing and Prediction, 1969, ch. 13). The error of an estimated time is 1.1 sqrt(T / memory_s) times the jitter
 /// of the time stamps, for the sample period T. An estimated time differs from the time stamp by at most half a sample
 /// period. SampleClock cannot observe, and does not correct, a constant delay of the host.
@@ -24,16 +25,24 @@ namespace tumble {
 /// SampleClock does not change the first 31 time stamps. SampleClock also leaves time stamps unchanged while their
 /// jitter is outside of [kJitterMin, jitter_max] sample periods, or while their errors are correlated. Set `jitter_max`
 /// to 0 if a host computer triggers the samples at irregular times and assigns exact time stamps.
+=======
+/// Smoothing and Prediction, 1969, ch. 13). The error of an estimated time is 1.1 sqrt(T / kMemory_s) times the jitter
+/// of the time stamps, for the sample period T. An estimated time differs from the time stamp by at most half a period.
+/// A constant delay of the host is not observable.
+///
+/// SampleClock does not change the first 32 time stamps, time stamps with a jitter outside of [kJitterMin, jitter_max],
+/// and time stamps with correlated errors. Set `jitter_max` to 0 if a host computer triggers the samples at irregular
+/// times and assigns exact time stamps.
+>>>>>>> params
 class SampleClock {
  public:
   struct Params {
-    double memory_s = 2.0;                       ///< time constant of the fit
+    static constexpr double kMemory_s = 2.0;     ///< time constant of the fit
     static constexpr double kJitterMin = 0.005;  ///< minimum jitter of corrected time stamps, in sample periods
     double jitter_max = 0.15;
 
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
-      visit(p.memory_s, {"memory_s", "s", 0.01, 1e3, "time constant of the fit of sample times to time stamps"});
       visit(p.jitter_max, {"jitter_max", "1", 0.0, 0.2,
                            "maximum jitter of time stamps that are corrected, in sample periods; 0: never correct"});
     }

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <span>
 
-#include "tumble/attitude/detail/imu_merge.hpp"
 #include "tumble/attitude/detail/regime_stream.hpp"
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/sample_clock.hpp"
@@ -18,6 +17,7 @@ namespace tumble {
 /// SecondMappingPassParams contains the parameters of the second mapping pass over the first seconds of motion; see
 /// TumblingOdometry.
 struct SecondMappingPassParams {
+<<<<<<< HEAD
   double after_s = 3.0;    ///< duration of motion before the second pass starts; 0: none
   double lost_s = 0.4;     ///< duration of tracking failure that starts a second pass; 0: never
   double lag_s = 0.5;      ///< lag of the rates of the second pass
@@ -26,6 +26,11 @@ struct SecondMappingPassParams {
   /// readings again.
   double inflation = 4.0;
   double rest_s = 1.0;  ///< duration of the initial rest that is buffered
+=======
+  double after_s = 3.0;  ///< duration of motion before the second pass starts; 0: none
+  double lost_s = 0.4;   ///< duration of tracking failure that starts a second pass; 0: never
+  double lag_s = 0.5;    ///< lag of the rates of the second pass
+>>>>>>> params
 
   /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
@@ -37,12 +42,6 @@ struct SecondMappingPassParams {
           {"lost_s", "s", 0.0, 100.0,
            "time without a registered sweep after which the second pass starts early, once; 0: no early start"});
     visit(p.lag_s, {"lag_s", "s", 0.0, 10.0, "second pass: age of a sample when its rate is reported"});
-    visit(p.sweeps, {"sweeps", "1", 2, 1000,
-                     "number of sweeps that the second pass processes per new sweep; a larger value finishes earlier "
-                     "with more load"});
-    visit(p.inflation,
-          {"inflation", "1", 1.0, 1e6, "factor on the variance of the calibration at the start of the second pass"});
-    visit(p.rest_s, {"rest_s", "s", 0.1, 100.0, "maximum duration of the initial rest that is stored"});
   }
 };
 
@@ -87,13 +86,11 @@ struct MergedRecordings;
 /// RollingOdometryExpertParams contains the rarely changed parameters of RollingOdometry. If RollingOdometry::Params
 /// contains the same parameter, RollingOdometry uses the value in RollingOdometry::Params.
 struct RollingOdometryExpertParams {
-  ImuMerge::Params merge;
   RollingSmoother::Params rolling;
   SampleClock::Params stamps;  ///< correction of time stamps that a host computer assigned
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit.group("merge_", p.merge);
     visit.group("rolling_", p.rolling);
     visit.group("stamps_", p.stamps);
   }

@@ -104,7 +104,7 @@ class RollingOdometry {
     RollingMode mode = RollingMode::grip;
     bool at_rest = false;
     /// True after a restart, and during a slip or bump that increases the standard deviation of the position by more
-    /// than RollingModeParams::event_sigma_growth_m.
+    /// than RollingModeParams::kEventSigmaGrowth_m.
     bool uncertain = false;
   };
 

@@ -24,7 +24,7 @@ namespace tumble {
 /// While the sphere is at rest, the reported position is constant, unless another hypothesis becomes the most probable
 /// one. Position corrections that RollingFilter computes at rest change the reported position when motion resumes.
 ///
-/// RollingFilter bridges gaps of up to gap_max_s between samples. In a gap, the rate is interpolated, the specific
+/// RollingFilter bridges gaps of up to kGapMax_s between samples. In a gap, the rate is interpolated, the specific
 /// force is unknown, and the covariance grows. While the gyro is saturated, the rolling constraint is not used, and the
 /// covariance of the position grows.
 ///
@@ -64,7 +64,7 @@ class RollingFilter {
     double bump_probability = 0.0;  ///< part of slip_probability for modes in which the sphere hops
     bool at_rest = false;
     bool spins_in_place = false;  ///< the sphere rotates slowly about the contact point; no update of the gyro bias
-    bool uncertain = false;  ///< an event increased the position's standard deviation by more than event_sigma_growth_m
+    bool uncertain = false;  ///< an event increased the position's standard deviation by more than kEventSigmaGrowth_m
     bool started_in_motion = false;
     std::int64_t gaps = 0;  ///< number of bridged gaps
     double gap_longest_s = 0.0;

@@ -57,18 +57,11 @@ class ClippingFinder {
     SaturationPlaneFinder::Params gyro_planes =
         {};  ///< if no range is stated here, the range of `axis_aligned_rails` applies
     SaturationPlaneFinder::Params accel_saturation_planes = SaturationPlaneFinder::Params::defaults_for_accelerometer();
-    /// If `tilted` is false, ClippingFinder uses only clip flags and equal readings.
-    bool tilted = true;
 
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("planes_", p.gyro_planes);
       visit.group("accel_planes_", p.accel_saturation_planes);
-      visit(p.tilted,
-            boolean_field(
-                "tilted",
-                "1: also detect tilted saturation limits; 0: use only upright saturation limits and the device's clip "
-                "flags"));
     }
   };
   struct ClippingSearchResult {
@@ -76,8 +69,9 @@ class ClippingFinder {
     std::vector<Clipping> clipping_per_sample;  ///< one entry per sample
   };
 
-  /// Throws InvalidParams if a parameter is out of bounds.
-  explicit ClippingFinder(const Params& params);
+  /// If `use_tilted_planes` is false, ClippingFinder uses only clip flags and equal readings. Throws InvalidParams if a
+  /// parameter is out of bounds.
+  explicit ClippingFinder(const Params& params, bool use_tilted_planes = true);
 
   /// The samples must be finite and in time order. Cost: O(N), plus SaturationPlaneFinder::find().
   ClippingSearchResult find(std::span<const ImuSample> samples) const;

@@ -6,7 +6,6 @@
 #include <cstddef>
 
 #include "tumble/common/detail/imu_average.hpp"
-#include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/common/types.hpp"
 
@@ -27,19 +26,11 @@ class FlightSignCheck {
 
   enum class BodyMotionType { possibly_hand_held, always_thrown };
 
-  struct Params {
+  struct Setup {
     BodyMotionType motion_type = BodyMotionType::possibly_hand_held;
     /// lever arm from the centre of mass to the IMU, in IMU axes
     Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();
     double gyro_range_rad_s = 0.0;  ///< range from the data sheet; 0: unknown
-
-    template <class Self, class Visitor>
-    static void fields(Self& p, Visitor& visit) {
-      visit(p.lever_arm_m,
-            {"lever_arm_m", "m", -1e3, 1e3, "lever arm: vector from the centre of mass to the IMU, IMU axes"});
-      visit(p.gyro_range_rad_s,
-            {"gyro_range_rad_s", "rad/s", 0.0, kUnbounded, "range stated by the device; 0: not stated"});
-    }
   };
   struct AveragedReading {
     TimeNs time_ns = 0;
@@ -62,8 +53,8 @@ class FlightSignCheck {
     bool operator==(const State&) const = default;
   };
 
-  /// Throws InvalidParams if a parameter is out of bounds.
-  explicit FlightSignCheck(const Params& params);
+  /// Throws InvalidParams if a lever arm is beyond 1 km, or if a range is negative or not finite.
+  explicit FlightSignCheck(const Setup& setup);
 
   /// Cost: O(1), no allocation. Samples that are not finite or out of order are ignored.
   void step(const ImuSample& sample, State& state) const;
@@ -77,7 +68,7 @@ class FlightSignCheck {
   AveragedReading reading_of(const ImuSample& mean, double rate_peak_rad_s) const;
   void process_reading(const AveragedReading& now, State& state) const;
 
-  Params params_;
+  Setup setup_;
 };
 
 }  // namespace tumble

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/triad.hpp"
-#include "tumble/common/parameters.hpp"
 #include "tumble/common/sensor_health.hpp"
 #include "tumble/common/types.hpp"
 
@@ -23,16 +22,8 @@ namespace tumble {
 /// A saturated axis may repeat one reading and does not count as frozen.
 class FrozenAxes {
  public:
-  struct Params {
+  struct ImuRanges {
     double gyro_range_rad_s = 0.0, accel_range_m_s2 = 0.0;  ///< ranges from the data sheet; 0: unknown
-
-    template <class Self, class Visitor>
-    static void fields(Self& p, Visitor& visit) {
-      visit(p.gyro_range_rad_s,
-            {"gyro_range_rad_s", "rad/s", 0.0, kUnbounded, "range stated by the device; 0: not stated"});
-      visit(p.accel_range_m_s2,
-            {"accel_range_m_s2", "m/s^2", 0.0, kUnbounded, "range stated by the device; 0: not stated"});
-    }
   };
   struct Axis {
     double reading = 0.0;
@@ -58,8 +49,8 @@ class FrozenAxes {
     bool operator==(const State&) const = default;
   };
 
-  /// Throws InvalidParams if a parameter is out of bounds.
-  explicit FrozenAxes(const Params& params);
+  /// Throws InvalidParams if a range is negative or not finite.
+  explicit FrozenAxes(const ImuRanges& imu_ranges);
 
   /// Cost: O(1), no allocation. Samples that are not finite or out of order are ignored.
   void step(const ImuSample& sample, State& state) const;
@@ -81,7 +72,7 @@ class FrozenAxes {
   bool is_at_saturation_limit(std::size_t channel, const Axis& axis) const;
   static bool other_axes_change(std::size_t channel, const Axis& axis);
 
-  Params params_;
+  ImuRanges imu_ranges_;
 };
 
 struct FrozenAxis {

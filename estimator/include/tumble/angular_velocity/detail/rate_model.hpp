@@ -127,8 +127,8 @@ class AngularRateModel {
   RigConstants::Matrix prior_information_;
 };
 
-/// In contact, a clipped axis counts as recovered if its standard deviation is at most `recovered_sigma_rad_s`.
+/// In contact, a clipped axis counts as recovered if its standard deviation is at most 0.5 rad/s.
 AngularRateSource rate_source_of(const AngularRateObservation& observation, const AngularRateEstimate& estimate,
-                                 const Eigen::Matrix3d& covariance_rad2_s2, double recovered_sigma_rad_s);
+                                 const Eigen::Matrix3d& covariance_rad2_s2);
 
 }  // namespace tumble

@@ -24,13 +24,12 @@ namespace tumble {
 struct AngularRateSmootherParams {
   AngularRateModelParams model = {};
   SaturationLimitDetector::Params saturation_detector = {};
-  double recovered_sigma_rad_s = 0.5;  ///< clipped rates with a smaller standard deviation count as recovered
   /// Maximum Mahalanobis distance of the estimated rig constants from their prior; beyond, AngularRateSmoother fixes
   /// the rig constants at the prior.
   double calibration_mahalanobis_max = 1.5;
   /// Sensor errors of an earlier run (AngularRateReport::sensor_errors), used only if `error_rounds_max` is above 1.
   std::optional<KnownSensorErrors> calibrated_errors = std::nullopt;
-  double gap_max_s = 1.0;  ///< a longer time between two samples is a gap; see estimate()
+  static constexpr double kGapMax_s = 1.0;  ///< a longer time between two samples is a gap; see estimate()
 
   using Expert = AngularRateSmootherExpertParams;
   Expert expert = {};  ///< rarely changed parameters
@@ -38,16 +37,10 @@ struct AngularRateSmootherParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit.group("", p.model);
-    visit(p.recovered_sigma_rad_s, {"recovered_sigma_rad_s", "rad/s", 0.0, 1e4,
-                                    "maximum standard deviation of a clipped axis that is reported as recovered; "
-                                    "otherwise the axis is reported as bounded",
-                                    ParameterRank::common_use});
     visit(p.calibration_mahalanobis_max, {"calibration_mahalanobis_max", "1", 0.1, 1e6,
                                           "maximum Mahalanobis distance between the estimated rig constants and their "
                                           "prior; a larger distance fixes the constants at the prior",
                                           ParameterRank::common_use});
-    visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0,
-                        "maximum time between two samples; the rates before and after a longer gap are independent"});
     visit.group("", p.expert);
   }
 };

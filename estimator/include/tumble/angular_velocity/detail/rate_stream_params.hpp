@@ -19,9 +19,8 @@ struct AngularRateStreamParams {
   SaturationLimitDetector::Params saturation_detector = {};
   double period_s = 0.01;                    ///< nominal time between samples
   double lag_s = 0.2;                        ///< length of the window; [2 period_s, lag_max_s()]
-  double recovered_sigma_rad_s = 0.5;        ///< see AngularRateSmootherParams
   double calibration_mahalanobis_max = 1.5;  ///< maximum distance from the prior; a larger one resets the calibration
-  double gap_max_s = 1.0;                    ///< longest time between samples
+  static constexpr double kGapMax_s = 1.0;   ///< longest time between samples; a longer gap is an error
   double step_s = 0.005;  ///< a Gauss-Newton step follows as many samples as fit into this time; 0: each sample
 
   /// Sensor errors from an earlier run, used unchanged instead of model.errors. If empty, AngularRateStream corrects
@@ -42,16 +41,10 @@ struct AngularRateStreamParams {
                     "age of a sample when its estimate is reported; a larger value adds delay and makes the estimate "
                     "more accurate",
                     ParameterRank::common_use});
-    visit(p.recovered_sigma_rad_s, {"recovered_sigma_rad_s", "rad/s", 0.0, 1e4,
-                                    "maximum standard deviation of a clipped axis that is reported as recovered; "
-                                    "otherwise the axis is reported as bounded",
-                                    ParameterRank::common_use});
     visit(p.calibration_mahalanobis_max, {"calibration_mahalanobis_max", "1", 0.1, 1e6,
                                           "maximum Mahalanobis distance between the estimated rig constants and their "
                                           "prior; a larger distance resets the calibration to the prior",
                                           ParameterRank::common_use});
-    visit(p.gap_max_s,
-          {"gap_max_s", "s", 1e-6, 3600.0, "maximum time between two samples; a longer gap causes an error"});
     visit(p.step_s, {"step_s", "s", 0.0, 0.1,
                      "time between two Gauss-Newton steps, rounded down to whole samples; a larger value costs less "
                      "computing time; 0: one step per sample"});

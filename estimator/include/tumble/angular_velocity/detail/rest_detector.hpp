@@ -14,21 +14,25 @@ namespace tumble {
 /// Detects when an IMU is stationary: the mean rate is within a plausible gyro bias, the specific force may be gravity,
 /// and rate and force are constant up to noise.
 ///
-/// RestDetector first averages the readings over `reading_s`, so that the parameters do not depend on the sample rate.
-/// White noise of density n [unit/sqrt(Hz)] has the standard deviation n / sqrt(reading_s) after averaging. Set
-/// `rate_spread_rad_s` and `force_spread_m_s2` to at least five standard deviations of the averaged noise. A steady
-/// rotation about the vertical slower than `rate_max_rad_s` also counts as rest.
+/// RestDetector first averages the readings over `reading_s` (CallerSettings), so that the parameters do not depend on
+/// the sample rate. White noise of density n [unit/sqrt(Hz)] has the standard deviation n / sqrt(reading_s) after
+/// averaging. Set `rate_spread_rad_s` and `force_spread_m_s2` to at least five standard deviations of the averaged
+/// noise. A steady rotation about the vertical slower than `rate_max_rad_s` also counts as rest.
 class RestDetector {
  public:
+  /// Settings that the callers of RestDetector set, but not the users of a method.
+  struct CallerSettings {
+    double force_min_m_s2 = 5.0;  ///< minimum force at rest; excludes flight
+    double force_max_m_s2 = 1e3;  ///< maximum force at rest; excludes impacts
+    double reading_s = 0.01;      ///< averaging time of a reading; 0: each sample
+    double memory_s = 600.0;      ///< time constant of the mean, which follows a drifting bias
+  };
   struct Params {
     double rate_max_rad_s = 0.05;     ///< maximum difference between mean rate and bias, per axis
     double rate_spread_rad_s = 0.03;  ///< maximum distance of a reading from the mean reading, per axis
-    double force_min_m_s2 = 5.0;      ///< minimum force at rest; excludes flight
-    double force_max_m_s2 = 1e3;      ///< maximum force at rest; excludes impacts
     double force_spread_m_s2 = 0.15;  ///< maximum distance of a reading from the mean reading, per axis
     double rest_s = 0.4;              ///< minimum duration of a rest
-    double reading_s = 0.01;          ///< averaging time of a reading; 0: each sample
-    double memory_s = 600.0;          ///< time constant of the mean, which follows a drifting bias
+    CallerSettings caller_settings = {};
 
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
@@ -37,17 +41,10 @@ class RestDetector {
       visit(p.rate_spread_rad_s,
             {"rate_spread_rad_s", "rad/s", 1e-6, 10.0,
              "maximum difference between a rate reading and the mean rate during the rest, per axis"});
-      visit(p.force_min_m_s2, {"force_min_m_s2", "m/s^2", 0.0, 100.0, "minimum force at rest; excludes free flight"});
-      visit(p.force_max_m_s2,
-            {"force_max_m_s2", "m/s^2", 0.0, 1e6, "maximum force at rest; excludes accelerated motion"});
       visit(p.force_spread_m_s2,
             {"force_spread_m_s2", "m/s^2", 1e-6, 100.0,
              "maximum difference between a force reading and the mean force during the rest, per axis"});
       visit(p.rest_s, {"rest_s", "s", 0.0, 1e4, "minimum duration of a rest"});
-      visit(p.reading_s, {"reading_s", "s", 0.0, 1.0, "duration over which readings are averaged; 0: no averaging"});
-      visit(p.memory_s,
-            {"memory_s", "s", 1e-3, 1e6,
-             "time constant of the exponential mean of the readings during a rest, which follows a drifting bias"});
     }
   };
   struct State {

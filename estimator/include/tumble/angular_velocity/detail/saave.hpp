@@ -44,7 +44,7 @@ class SaturationAwareRateEstimator {
     /// power spectral density of the white angular jerk [rad^2/s^5]
     double jerk_psd_rad2_s5 = 1e6;
     /// maximum time between two samples [s]
-    double gap_max_s = 1.0;
+    static constexpr double kGapMax_s = 1.0;
 
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
@@ -58,8 +58,6 @@ class SaturationAwareRateEstimator {
             {"jerk_psd_rad2_s5", "rad^2/s^5", 1e-12, 1e12,
              "power spectral density of the smoother's white angular jerk (ICRA 2024 paper, sec. IV)",
              ParameterRank::common_use});
-      visit(p.gap_max_s,
-            {"gap_max_s", "s", 1e-6, 3600.0, "maximum time between two samples; a longer gap causes an error"});
     }
   };
 

@@ -16,14 +16,14 @@ namespace tumble {
 /// Saturation is detected some samples after its first occurrence, so callers must classify earlier samples again.
 class StreamingClippingFinder {
  public:
+  static constexpr std::size_t kReadingsMax = 1024;  ///< default of `readings_max`, see StreamingClippingFinder()
+
   struct Params {
     ClippingFinder::Params clipping;
-    int readings_max = 1024;
 
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.clipping);
-      visit(p.readings_max, {"readings_max", "1", 64, 65536, "maximum number of distinct readings stored per triad"});
     }
   };
   /// unit of the readings: rad/s for the gyro, m/s^2 for the accelerometer
@@ -42,8 +42,9 @@ class StreamingClippingFinder {
     SaturationPlaneFinder::Workspace search_workspace;       ///< buffer, not part of the state
   };
 
-  /// Throws InvalidParams if a parameter is out of bounds.
-  explicit StreamingClippingFinder(const Params& params);
+  /// `readings_max` is the maximum number of distinct readings stored per triad. Throws InvalidParams if a parameter is
+  /// out of bounds.
+  explicit StreamingClippingFinder(const Params& params, std::size_t readings_max = kReadingsMax);
 
   /// The returned state has all memory that observe_reading() needs.
   State start() const;

@@ -8,7 +8,9 @@ namespace tumble {
 
 struct HandMotionModelParams {
   static constexpr double kHandTau_s = 0.1;        ///< correlation time of the hand's acceleration
+  static constexpr double kVelocity_m_s = 1.0;     ///< standard deviation of the hand's velocity
   static constexpr double kVelocityTau_s = 0.3;    ///< correlation time of the hand's velocity
+  static constexpr double kPosition_m = 1.0;       ///< standard deviation of the hand's position
   static constexpr double kPositionTau_s = 1.0;    ///< correlation time of the hand's position
   static constexpr double kPositionLeak_s = 10.0;  ///< time constant with which the hand's position returns to zero
   double hand_noise_adaptation = 0.8;              ///< weight of the measured acceleration power: 0 (not used) to 1
@@ -36,14 +38,8 @@ struct HandHeldSensorParams {
   static constexpr double kRecoveredSigma_rad_s =
       1.0;  ///< clipped rates with a smaller standard deviation count as recovered
   static constexpr double kRecoveredTau_s = 0.005;  ///< correlation time of the error of a recovered rate
-  double recovered_scale_sigma = 6e-3;  ///< standard deviation of the gyro's scale error next to recovered rates
-
-  template <class Self, class Visitor>
-  static void fields(Self& p, Visitor& visit) {
-    visit(p.recovered_scale_sigma,
-          {"recovered_scale_sigma", "1", 0.0, 1.0,
-           "standard deviation of the gyro's scale error in samples next to recovered rates, as a share of the rate"});
-  }
+  static constexpr double kRecoveredScaleSigma =
+      6e-3;  ///< standard deviation of the gyro's scale error next to recovered rates
 };
 
 struct HandHeldExpertParams {
@@ -54,7 +50,6 @@ struct HandHeldExpertParams {
   double jerk_inflation = 4.0;
   RestDetector::Params rest_detector = {};
   HandMotionModelParams hand_motion = {};
-  HandHeldSensorParams readings = {};
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -68,7 +63,6 @@ struct HandHeldExpertParams {
                              ParameterRank::common_use});
     visit.group("rest_", p.rest_detector);
     visit.group("", p.hand_motion);
-    visit.group("", p.readings);
   }
 };
 
@@ -81,8 +75,6 @@ struct HandHeldParams {
   double lever_arm_sigma_m = 0.03;
   double jerk_rad_s3_sqrts = 200.0;  ///< square root of the power spectral density of the angular jerk
   double hand_sigma_m_s2 = 5.0;      ///< standard deviation of the hand's acceleration
-  double velocity_m_s = 1.0;         ///< standard deviation of the hand's velocity
-  double position_m = 1.0;           ///< standard deviation of the hand's position
 
   using Expert = HandHeldExpertParams;
   Expert expert = {};  ///< rarely changed parameters
@@ -105,10 +97,6 @@ struct HandHeldParams {
                                 "root power spectral density of the angular jerk", ParameterRank::common_use});
     visit(p.hand_sigma_m_s2, {"hand_sigma_m_s2", "m/s^2", 1e-3, 1e3,
                               "standard deviation of the hand-held point's acceleration", ParameterRank::common_use});
-    visit(p.velocity_m_s, {"velocity_m_s", "m/s", 1e-3, 1e3, "standard deviation of the hand-held point's velocity",
-                           ParameterRank::common_use});
-    visit(p.position_m, {"position_m", "m", 1e-3, 1e3, "standard deviation of the hand-held point's position",
-                         ParameterRank::common_use});
     visit.group("", p.expert);
   }
 };

@@ -13,14 +13,14 @@
 #include "tumble/attitude/detail/imu_merge_state.hpp"
 #include "tumble/attitude/detail/multi_imu_sign_check.hpp"
 #include "tumble/attitude/detail/rate_recovery.hpp"
-#include "tumble/common/parameters.hpp"
 #include "tumble/common/sensor_health.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble {
 
-struct ImuMergeParams {
+/// IMUs to merge. The members follow from the data sheets and mountings of the IMUs.
+struct ImuMergeSetup {
   static constexpr int kImus = ImuMergeState::kImus;
   /// pose of each IMU in the common axes C of the rigid body; the first `count` entries are used
   std::array<Eigen::Isometry3d, kImus> T_mean_imu{};
@@ -28,24 +28,12 @@ struct ImuMergeParams {
   /// An accelerometer reading above this fraction of the range may be saturated during a part of its averaging window.
   static constexpr double kSubsampleSaturationRatio = 0.15;
   static constexpr double kRateNoise_rad_s = 0.01;  ///< standard deviation of the mean rate over a window
-  double window_s = 4e-3;                           ///< averaging time of the readings
+  static constexpr double kWindow_s = 4e-3;         ///< averaging time of the readings
+  static constexpr double kGapMax_s = 1.0;          ///< a longer time between two samples causes an error
   double gyro_range_rad_s = 1e3;                    ///< readings at or above this rate are saturated
   double accel_range_m_s2 = 1e5;
-  double gap_max_s = 1.0;
   /// sensing directions of each IMU, as found by SaturationPlaneFinder
   std::array<SensingDirections, kImus> gyro_sensing_directions{}, accel_sensing_directions{};
-
-  template <class Self, class Visitor>
-  static void fields(Self& p, Visitor& visit) {
-    visit(p.count, {"count", "1", 1, kImus, "number of IMUs in use"});
-    visit(p.window_s, {"window_s", "s", 0.0, 0.1, "duration over which readings are averaged before merging"});
-    visit(p.gyro_range_rad_s, {"gyro_range_rad_s", "rad/s", 1e-12, 1e3,
-                               "measuring range of the gyros; readings at or above this value count as saturated"});
-    visit(p.accel_range_m_s2,
-          {"accel_range_m_s2", "m/s^2", 1e-12, 1e5,
-           "measuring range of the accelerometers; readings at or above this value count as saturated"});
-    visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap causes an error"});
-  }
 };
 
 /// Merges several IMUs on one rigid body into one IMU, in common axes C, at the mean position of the IMUs.
@@ -63,7 +51,7 @@ struct ImuMergeParams {
 /// an IMU that disagrees with three or more agreeing IMUs, permanently if the disagreement lasts. A frozen IMU, which
 /// repeats one reading during motion, is excluded until its readings have changed for 0.5 s.
 ///
-/// The readings are averaged over `window_s`, unless the sample period is at least `window_s`. ImuMerge assumes that
+/// The readings are averaged over `kWindow_s`, unless the sample period is at least `kWindow_s`. ImuMerge assumes that
 /// all clocks have the same rate, and does not detect an error that all IMUs share.
 class ImuMerge {
  public:
@@ -71,13 +59,14 @@ class ImuMerge {
   static constexpr int kAngularAccelerationWindows = ImuMergeState::kAngularAccelerationWindows;
   static constexpr int kErrorCount = MergedImuState::kErrorCount;
 
-  using Params = ImuMergeParams;
+  using Setup = ImuMergeSetup;
 
   using Repetition = RepeatedImuReading;
   using Unit = MergedImuState;
   using State = ImuMergeState;
 
-  explicit ImuMerge(const Params& params);
+  /// Throws InvalidParams if the number of IMUs, a range or a mounting is out of bounds.
+  explicit ImuMerge(const Setup& setup);
 
   /// Returns the ratio of measured to expected force differences between IMUs. The expected force differences follow
   /// from the rotation and the positions of the IMUs. The force ratio is 1 for correct IMUs, -1 for accelerometers with
@@ -96,7 +85,7 @@ class ImuMerge {
   Eigen::Vector3d mean_imu_position_m() const { return mean_imu_position_m_; }
 
   /// The samples must be simultaneous; the merged sample has the time stamp of the first IMU. `merged` is the mean over
-  /// `window_s` in axes C, or empty between two averages. Returns `insufficient_data` if `samples` does not contain
+  /// `kWindow_s` in axes C, or empty between two averages. Returns `insufficient_data` if `samples` does not contain
   /// `count` samples, or if none of the samples is finite. On error, the state is unchanged and `merged` is empty.
   /// Cost: O(count), no allocation.
   Status step(std::span<const ImuSample> samples, State& state, std::optional<ImuSample>& merged) const;
@@ -128,10 +117,10 @@ class ImuMerge {
                                 const Eigen::Vector3d& rate, double h, State& state, ImuMask& used) const;
   void recover_saturated_rate(const Readings& readings, const ImuMask& present, double h, State& state,
                               ImuSample& merged) const;
-  static ForceErrors::Params force_params(const Params& params);
-  static AngularRateRecovery::Params rate_recovery_params(const Params& params);
+  static ForceErrors::Params force_params(const Setup& setup);
+  static AngularRateRecovery::Params rate_recovery_params(const Setup& setup);
 
-  Params params_;
+  Setup setup_;
   Eigen::Vector3d mean_imu_position_m_ = Eigen::Vector3d::Zero();
   ForceErrors forces_;
   AngularRateRecovery rate_recovery_;

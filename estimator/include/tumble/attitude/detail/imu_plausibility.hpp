@@ -4,7 +4,6 @@
 #include <Eigen/Geometry>
 
 #include "tumble/common/detail/imu_average.hpp"
-#include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/common/types.hpp"
 
@@ -22,16 +21,9 @@ namespace tumble {
 /// ImuPlausibility does not detect errors of a few per cent, exchanged axes, or errors while the body is pushed.
 class ImuPlausibility {
  public:
-  struct Params {
+  struct Setup {
     double gravity_m_s2 = 9.80665;
     double gyro_range_rad_s = 1e6;  ///< windows with a faster rate on an axis are ignored
-
-    template <class Self, class Visitor>
-    static void fields(Self& p, Visitor& visit) {
-      visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
-      visit(p.gyro_range_rad_s, {"gyro_range_rad_s", "rad/s", 1e-3, 1e6,
-                                 "windows are compared only if the rate of each axis is below this value"});
-    }
   };
 
   struct RepeatedReadingTime {
@@ -59,8 +51,8 @@ class ImuPlausibility {
     bool operator==(const State&) const = default;
   };
 
-  /// Throws InvalidParams if a parameter is out of bounds.
-  explicit ImuPlausibility(const Params& params);
+  /// Throws InvalidParams if gravity is beyond [1e-12, 100] m/s^2, or the range beyond [1e-3, 1e6] rad/s.
+  explicit ImuPlausibility(const Setup& setup);
 
   /// Cost: O(1), no allocation. Samples that are not finite or out of order are ignored.
   void step(const ImuSample& sample, State& state) const;
@@ -88,7 +80,7 @@ class ImuPlausibility {
   void process_averaged_reading(State& state) const;
   void compare_rotations(const Eigen::Vector3d& force_m_s2, State& state) const;
 
-  Params params_;
+  Setup setup_;
 };
 
 }  // namespace tumble

@@ -6,7 +6,6 @@
 
 #include "tumble/angular_velocity/detail/rest_detector.hpp"
 #include "tumble/angular_velocity/types.hpp"
-#include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/common/types.hpp"
 
@@ -23,16 +22,9 @@ namespace tumble {
 /// ground and another in a steadily moving vehicle, RestGravity mistakes correct rates for wrong rates.
 class RestGravity {
  public:
-  struct Params {
+  struct Setup {
     double gravity_m_s2 = 9.80665;
     double accel_range_m_s2 = 0.0;  ///< range from the data sheet; 0: unknown
-
-    template <class Self, class Visitor>
-    static void fields(Self& p, Visitor& visit) {
-      visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
-      visit(p.accel_range_m_s2,
-            {"accel_range_m_s2", "m/s^2", 0.0, kUnbounded, "range stated by the device; 0: not stated"});
-    }
   };
   struct GravityMagnitudeState {
     RestDetector::State stationary_state, stationary_weightless, stationary_above_gravity;
@@ -59,8 +51,8 @@ class RestGravity {
     std::size_t compared_rest_pairs = 0;  ///< number of compared pairs of rests
   };
 
-  /// Throws InvalidParams if a parameter is out of bounds.
-  explicit RestGravity(const Params& params);
+  /// Throws InvalidParams if gravity is beyond [1e-12, 100] m/s^2, or if the range is negative or not finite.
+  explicit RestGravity(const Setup& setup);
 
   /// Cost: O(1), no allocation. Samples that are not finite or out of order are ignored.
   void step(const ImuSample& sample, const AngularRateState& rate, State& state) const;
@@ -92,7 +84,7 @@ class RestGravity {
   void end_segment(State& state) const;
   void finish_rest_pair(State& state) const;
 
-  Params params_;
+  Setup setup_;
   RestDetector detector_, weightless_, above_gravity_;
 };
 

@@ -49,114 +49,35 @@ struct TumbleAttitudeState {
   bool operator==(const TumbleAttitudeState&) const = default;
 };
 
-struct AttitudeRestParams {
-  static constexpr double kVelocitySigma_m_s = 0.005;  ///< standard deviation of the velocity at rest, per node
-  static constexpr double kRateSigma_rad_sqrts =
-      2e-3;  ///< standard deviation of the rate measured at rest, mean over 1 s
-  /// maximum difference between mean rate and bias at rest, in standard deviations of the difference
-  double rate_sigmas = 3.0;
-
-  template <class Self, class Visitor>
-  static void fields(Self& p, Visitor& visit) {
-    visit(p.rate_sigmas, {"rest_rate_sigmas", "1", 1.0, 1e6,
-                          "maximum difference between mean rate and bias at rest, in standard deviations"});
-  }
-};
-
-struct AttitudeGapParams {
+struct TumbleAttitudeParams {
+  static constexpr double kRecoveredTau_s = 0.05;  ///< correlation time of the error of a recovered rate
   /// Random walks of the rate and velocity of tumbling bodies during a gap. On hills, stairs and cliffs, the true
   /// random walks over 0.05 to 0.5 s are 3.0 to 11.4 rad/s and 2.4 to 4.1 m/s per sqrt(s) (docs/figures.md).
-  static constexpr double kRateWalk_rad_s_sqrts = 7.0;
-  static constexpr double kVelocityWalk_m_s_sqrts = 3.3;
-  /// Standard deviations of the tilt, per axis. Coarse alignment starts above `lost_tilt_rad`, where the linearised
-  /// filter is invalid, and ends below `aligned_tilt_rad`.
-  double lost_tilt_rad = 0.3;
-  static constexpr double kAlignedTilt_rad = 0.4;
-
-  template <class Self, class Visitor>
-  static void fields(Self& p, Visitor& visit) {
-    visit(p.lost_tilt_rad,
-          {"gap_lost_tilt_rad", "rad", 1e-3, 1e4,
-           "standard deviation of the tilt after a gap, above which TumbleAttitude initialises the tilt again"});
-  }
-};
-
-struct TumbleAttitudeExpertParams {
-  static constexpr double kBiasWalk_rad_s_sqrts = 2e-6;  ///< random walk of the bias per sqrt(s)
-  double recovered_tau_s = 0.05;                         ///< correlation time of the error of a recovered rate
-  double gap_max_s = 1.0;
-  RestDetector::Params rest_detector = {.rate_max_rad_s = 3.4907e-2,
-                                        .rate_spread_rad_s = 3.4907e-2,
-                                        .force_spread_m_s2 = 0.5,
-                                        .rest_s = 1.0,
-                                        .reading_s = 0.0,  // the readings are already averaged
-                                        .memory_s = 1.0};
-  AttitudeRestParams at_rest = {};
-  AttitudeGapParams gap = {};
-
-  template <class Self, class Visitor>
-  static void fields(Self& p, Visitor& visit) {
-    visit(p.recovered_tau_s, {"recovered_tau_s", "s", 1e-4, 1e4, "correlation time of the error of a recovered rate"});
-    visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap causes an error"});
-    visit.group("rest_", p.rest_detector);
-    visit.group("", p.at_rest);
-    visit.group("", p.gap);
-  }
-};
-
-struct TumbleAttitudeParams {
+  static constexpr double kGapRateWalk_rad_s_sqrts = 7.0;
+  static constexpr double kGapVelocityWalk_m_s_sqrts = 3.3;
   double gravity_m_s2 = 9.80665;
-  double gyro_noise_rad_sqrts = 1e-3;         ///< angle random walk, including unmodelled errors
-  double rate_error_sqrts = 4e-3;             ///< angle random walk per rad/s of rate, from scale and timing errors
-  double bias_sigma_start_rad_s = 8.7266e-3;  ///< prior standard deviation of the gyro bias: 0.5 deg/s
-  double velocity_m_sqrts = 1.0;              ///< standard deviation of the mean velocity over 1 s of motion
-  double displacement_m_sqrts = 0.3;          ///< standard deviation of the mean displacement over 1 s
-  static constexpr double kDisplacementTau_s = 10.0;  ///< time constant with which the displacement decays to zero
-  double motion_tau_s = 3.0;                          ///< time constant of the body's velocity and displacement
   double radius_m = 0.0;  ///< radius of a sphere that rolls on a level floor; 0: not a sphere
   Eigen::Vector3d lever_arm_m =
       Eigen::Vector3d::Zero();  ///< lever arm from the body's centre to the IMU, in sensor axes
 
-  using Expert = TumbleAttitudeExpertParams;
-  Expert expert = {};  ///< rarely changed parameters
-
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
-    visit(p.gyro_noise_rad_sqrts,
-          {"gyro_noise_rad_sqrts", "rad/sqrt(s)", 1e-12, 1.0,
-           "angle random walk of the gyro, including unmodelled errors; a larger value gives gyro readings less weight",
-           ParameterRank::common_use});
-    visit(p.rate_error_sqrts,
-          {"rate_error_sqrts", "sqrt(s)", 0.0, 1.0,
-           "angle random walk per rad/s of rate, caused by scale and timing errors", ParameterRank::common_use});
-    visit(p.bias_sigma_start_rad_s, {"bias_sigma_start_rad_s", "rad/s", 0.0, 1.0,
-                                     "prior standard deviation of the gyro bias", ParameterRank::common_use});
-    visit(p.velocity_m_sqrts,
-          {"velocity_m_sqrts", "m/sqrt(s)", 1e-12, 1e3, "standard deviation of the mean velocity over 1 s of motion",
-           ParameterRank::common_use});
-    visit(p.displacement_m_sqrts, {"displacement_m_sqrts", "m sqrt(s)", 1e-12, 1e3,
-                                   "standard deviation of the mean displacement over 1 s", ParameterRank::common_use});
-    visit(p.motion_tau_s,
-          {"motion_tau_s", "s", 1e-3, 1e4,
-           "correlation time of the body's velocity and displacement; also the averaging time of their magnitudes",
-           ParameterRank::common_use});
     visit(p.radius_m, {"radius_m", "m", 0.0, 10.0, "radius of the sphere"});
     visit(p.lever_arm_m, {"lever_arm_m", "m", -10.0, 10.0, "lever arm from the centre to the IMU, sensor axes"});
-    visit.group("", p.expert);
   }
 };
 
 /// Estimates attitude from gyro and accelerometer, assuming that the velocity of the body is bounded, and zero at rest.
 ///
 /// TumbleAttitude integrates the gyro. Weak pseudo-measurements of zero velocity and zero displacement correct tilt and
-/// gyro bias every `node_s`. At rest, TumbleAttitude measures the gyro bias and keeps the attitude constant. The
+/// gyro bias every 0.04 s. At rest, TumbleAttitude measures the gyro bias and keeps the attitude constant. The
 /// equations are in docs/maths/attitude.md.
 ///
 /// The extent of the motion is not known in advance, and ranges from a few centimetres to a whole hillside.
 /// TumbleAttitude accepts a large velocity or displacement as real motion if the tilt variance cannot explain the
 /// value. After accepting a large motion, TumbleAttitude increases the assumed standard deviation of velocity or
-/// displacement for `motion_tau_s`.
+/// displacement for 3 s.
 ///
 /// The centre of a rolling sphere of radius r has the velocity r w x n, with the rate w and the floor's normal n. The
 /// IMU's velocity differs from the centre's velocity by w x (R rho), with the attitude R and the lever arm rho. The
@@ -164,10 +85,10 @@ struct TumbleAttitudeParams {
 /// need the derivative of the rate. A velocity that does not fit the rolling constraint indicates slip. During slip,
 /// TumbleAttitude pauses its corrections for at most 3 s.
 ///
-/// TumbleAttitude averages the readings of a fast IMU over `reading_s`, and extrapolates the attitude between averages.
+/// TumbleAttitude averages the readings of a fast IMU over 4 ms, and extrapolates the attitude between averages.
 /// In a gap longer than 0.05 s, TumbleAttitude interpolates the rate and keeps the velocity, with increased
 /// variances. A body that is at rest before and after a gap is assumed to be at rest during the gap. If a gap increases
-/// the tilt's standard deviation to `gap_lost_tilt_rad`, the linearisation of the Kalman filter is invalid. A coarse
+/// the tilt's standard deviation to 0.3 rad, the linearisation of the Kalman filter is invalid. A coarse
 /// alignment then estimates the tilt in parallel to the Kalman filter. Until the coarse alignment ends, the reported
 /// tilt variance is at least the variance after the gap. If Kalman filter and coarse alignment disagree, the filter
 /// restarts from the alignment.
@@ -186,7 +107,7 @@ class TumbleAttitude {
   Status step(const ImuSample& sample, State& state) const { return step(sample, Eigen::Matrix3d::Zero(), state); }
   /// Processes a sample whose rate was recovered from saturation. `rate_covariance_rad2_s2` is the covariance of the
   /// rate in sensor axes, or zero for a measured rate. The error of a recovered rate has the correlation time
-  /// `recovered_tau_s`. Returns `out_of_range` if the covariance is not finite or has a negative variance.
+  /// `kRecoveredTau_s`. Returns `out_of_range` if the covariance is not finite or has a negative variance.
   Status step(const ImuSample& sample, const Eigen::Matrix3d& rate_covariance_rad2_s2, State& state) const;
 
   /// Returns the covariance of the attitude error at the last correction, with the error as defined in AttitudeState.

@@ -12,30 +12,17 @@ namespace tumble {
 
 /// At rest, the rate differs from the bias and from its mean by at most kRate_rad_s. The specific force at rest differs
 /// from gravity and from its mean by at most kForce_m_s2.
-struct StationaryBoundsParams {
-  double levelling_max_s = 0.5;  ///< maximum duration of the initial rest that determines the tilt
+struct StationaryBounds {
+  static constexpr double kLevellingMax_s = 0.5;  ///< maximum duration of the initial rest that determines the tilt
   static constexpr double kRate_rad_s = 0.05;
   static constexpr double kForce_m_s2 = 0.5;
-
-  template <class Self, class Visitor>
-  static void fields(Self& p, Visitor& visit) {
-    visit(p.levelling_max_s,
-          {"rest_s", "s", 1e-9, 60.0, "maximum duration of the initial rest that determines the tilt",
-           ParameterRank::common_use});
-  }
 };
 
-struct OdometryStartParams {
+struct OdometryStart {
   /// standard deviation of the initial tilt in the registration; larger than in WorldCovarianceParams, for starts in
   /// motion
   static constexpr double kLevelSigma_rad = 0.01;
-  double bias_rest_s = 0.1;  ///< minimum duration of a rest that determines the gyro's bias
-
-  template <class Self, class Visitor>
-  static void fields(Self& p, Visitor& visit) {
-    visit(p.bias_rest_s,
-          {"bias_rest_s", "s", 0.0, 60.0, "minimum duration of an initial rest that calibrates the gyro bias"});
-  }
+  static constexpr double kBiasRest_s = 0.1;  ///< minimum duration of a rest that determines the gyro's bias
 };
 
 struct Standstill {
@@ -59,8 +46,8 @@ struct InertialNoiseParams {
   static constexpr double kForceShare = 0.03;
   /// Random walks of velocity and rate over a gap of the IMU: mapping.md (R43), (R44). For tumbling rigs and gaps of
   /// 0.05 to 0.5 s, the true random walks are 2.4 to 4.1 m/s and 3 to 11 rad/s per sqrt(s).
-  double gap_velocity_walk_m_s_sqrt_s = 3.0;
-  double gap_rate_walk_rad_s_sqrt_s = 9.0;
+  static constexpr double kGapVelocityWalk_m_s_sqrt_s = 3.0;
+  static constexpr double kGapRateWalk_rad_s_sqrt_s = 9.0;
   static constexpr double kRateSigmaMax_rad_s = 5.0;  ///< upper bound of the standard deviation in AngularRateState
 
   template <class Self, class Visitor>
@@ -71,11 +58,6 @@ struct InertialNoiseParams {
     visit(p.sigma_rad,
           {"prior_sigma_rad", "rad", 1e-9, 1e3, "standard deviation of the attitude after 0.1 s of inertial prediction",
            ParameterRank::common_use});
-    visit(p.gap_velocity_walk_m_s_sqrt_s,
-          {"gap_velocity_walk_m_s_sqrt_s", "m/s/sqrt(s)", 0.0, 1e3, "random walk of the velocity during an IMU gap"});
-    visit(p.gap_rate_walk_rad_s_sqrt_s,
-          {"gap_rate_walk_rad_s_sqrt_s", "rad/s/sqrt(s)", 0.0, 1e3,
-           "random walk of the rate during an IMU gap, about a linear interpolation between the rates at both ends"});
   }
 };
 
@@ -102,14 +84,12 @@ struct SaturatedImuParams {
 };
 
 struct MatchingParams {
-  int neighbours = 12;                    ///< number of nearest neighbours for a plane fit
-  double distance_m = 1.0;                ///< maximum distance of matched map points
-  std::size_t matches_min = 100;          ///< minimum number of matches; sweeps with fewer are rejected
-  std::size_t agreeing_matches_min = 30;  ///< minimum number of matches if the result agrees with the prior
-  /// see RegistrationStagesParams
-  int iterations_max = 30;
-  double correction_max_m = 15.0;   ///< a larger correction of the prior is rejected
-  double correction_max_rad = 1.1;  ///< a larger correction of the prior is rejected
+  static constexpr int kNeighbours = 12;           ///< number of nearest neighbours for a plane fit
+  static constexpr std::size_t kMatchesMin = 100;  ///< minimum number of matches; sweeps with fewer are rejected
+  double distance_m = 1.0;                         ///< maximum distance of matched map points
+  std::size_t agreeing_matches_min = 30;           ///< minimum number of matches if the result agrees with the prior
+  double correction_max_m = 15.0;                  ///< a larger correction of the prior is rejected
+  double correction_max_rad = 1.1;                 ///< a larger correction of the prior is rejected
   /// growth rate of a point's standard deviation since the start of the sweep
   double skew_sigma_m_s = 0.25;
   /// standard deviation of the pose from the sweep's points alone, above which a sweep is `degenerate`
@@ -117,18 +97,12 @@ struct MatchingParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.neighbours,
-          {"neighbours", "1", 3, 32, "number of map points used for each plane fit", ParameterRank::common_use});
     visit(p.distance_m, {"match_distance_m", "m", 1e-3, 10.0,
                          "maximum distance between a point and its matches in the map", ParameterRank::common_use});
-    visit(p.matches_min, {"matches_min", "1", 0, 1e9, "minimum number of matches for an accepted sweep"});
     visit(p.agreeing_matches_min,
           {"matches_agreeing_min", "1", 1, 1e9,
-           "minimum number of matches of an accepted sweep whose registration agrees with the predicted pose; applies "
-           "below matches_min"});
-    visit(p.iterations_max,
-          {"iterations_max", "1", 1, 200,
-           "maximum number of iterations of a registration; at most full_iterations of them use all points"});
+           "minimum number of matches of an accepted sweep whose registration agrees with the predicted pose; other "
+           "sweeps need 100 matches"});
     visit(p.correction_max_m,
           {"correction_max_m", "m", 0.0, 1e6,
            "maximum correction of the predicted pose; a registration with a larger correction is rejected"});
@@ -141,23 +115,16 @@ struct MatchingParams {
   }
 };
 
-/// TrackingParams contains the parameters for sweeps without a registration, and for tracking failure.
-struct TrackingParams {
-  /// A sweep with too few matches still extends the map, as `degenerate`, up to these standard deviations of its
+/// TrackingLimits contains the limits for sweeps without a registration, and for tracking failure.
+struct TrackingLimits {
+  /// A sweep with too few matches still extends the map, as `degenerate`, up to this standard deviation of its
   /// inertial prediction. Such sweeps occur because a lidar at rest scans only rings, which give no planes until the
   /// lidar rotates. The map excludes points that are too uncertain because of their range and the
   /// uncertain attitude.
-  double extend_sigma_max_m = 0.1;
+  static constexpr double kExtendSigmaMax_m = 0.1;
   /// Maximum number of consecutive sweeps with points but without registration. After kLostSweepsMax sweeps,
   /// LidarInertialOdometry continues by inertial prediction and reports `degenerate`.
   static constexpr int kLostSweepsMax = 30;
-
-  template <class Self, class Visitor>
-  static void fields(Self& p, Visitor& visit) {
-    visit(p.extend_sigma_max_m, {"extend_sigma_max_m", "m", 0.0, 1e3,
-                                 "a sweep with too few matches still extends the map if the standard deviation of its "
-                                 "prior position is below this value"});
-  }
 };
 
 struct LocalMapParams {
@@ -197,13 +164,10 @@ struct OdometryExpertParams {
   double gravity_sigma_m_s2 = 0.0;
   /// number of newest sweeps that the fixed-lag smoother refines together; 1: no smoothing
   int window_sweeps = 2;
-  StationaryBoundsParams stationary_bounds = {};
-  OdometryStartParams start = {};
   InertialNoiseParams prior = {};
   SaturatedImuParams saturated_imu = {};
   LocalMapParams map = {};
   MatchingParams matching = {};
-  TrackingParams tracking = {};
   WorldCovarianceParams world_covariance = {};
 
   template <class Self, class Visitor>
@@ -213,7 +177,6 @@ struct OdometryExpertParams {
           {"gravity_sigma_m_s2", "m/s^2", 0.0, 10.0,
            "standard deviation of gravity's horizontal part after initial levelling; 0: fixed direction of gravity",
            ParameterRank::common_use});
-    visit.group("", p.stationary_bounds);
     visit.group("", p.map);
     visit.group("", p.matching);
     visit.group("", p.prior);
@@ -222,8 +185,6 @@ struct OdometryExpertParams {
                             "number of newest sweeps that are refined together; each pose is final after this number "
                             "minus one of later sweeps",
                             ParameterRank::common_use});
-    visit.group("", p.tracking);
-    visit.group("start_", p.start);
     visit.group("world_", p.world_covariance);
   }
 };

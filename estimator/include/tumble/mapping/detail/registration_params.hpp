@@ -11,6 +11,10 @@ namespace tumble {
 
 /// Parameters that the callers of Registration set, but not the users of a method.
 struct RegistrationExpertParams {
+  int iterations_max = 30;
+  std::size_t matches_min = 100;   ///< minimum number of matches
+  double correction_max_m = 15.0;  ///< a registration with a larger correction of the prior is rejected
+  double correction_max_rad = 1.1;
   double step_m = 5e-4;  ///< converged if a step is below `step_m` and `step_rad`
   double step_rad = 1e-4;
   double step_s = 1e-5;       ///< convergence limit for a step of the time offset
@@ -31,15 +35,11 @@ struct RegistrationParams {
   static constexpr double kMatchDistanceMax_m = 10.0;
   int neighbours = 8;             ///< number of nearest neighbours for a plane fit
   double match_distance_m = 1.0;  ///< maximum distance of matched map points
-  int iterations_max = 30;
   static constexpr double kRangeSigma_m =
       0.02;  ///< standard deviation of the range: max(kRangeSigma_m, kRangeSigmaRatio * range)
   static constexpr double kRangeSigmaRatio = 0.0015;
-  double skew_sigma_m_s = 0.25;   ///< growth rate of a point's standard deviation during the sweep; 0: none
-  std::size_t matches_min = 100;  ///< minimum number of matches
-  double correction_max_m = 15.0;
-  double correction_max_rad = 1.1;
-  ParallelFor parallel_for;  ///< threads for neighbour search and sums; empty: the calling thread
+  double skew_sigma_m_s = 0.25;  ///< growth rate of a point's standard deviation during the sweep; 0: none
+  ParallelFor parallel_for;      ///< threads for neighbour search and sums; empty: the calling thread
 
   using Expert = RegistrationExpertParams;
   Expert expert = {};  ///< rarely changed parameters
@@ -51,17 +51,9 @@ struct RegistrationParams {
     visit(p.match_distance_m,
           {"match_distance_m", "m", 1e-3, kMatchDistanceMax_m,
            "maximum distance between a point and its matches in the map", ParameterRank::common_use});
-    visit(p.iterations_max, {"iterations_max", "1", 1, 200, "maximum number of iterations"});
     visit(p.skew_sigma_m_s,
           {"skew_sigma_m_s", "m/s", 0.0, 1e3,
            "growth of a point's standard deviation with the time since the start of the sweep; 0: no growth"});
-    visit(p.matches_min, {"matches_min", "1", 0, 1e9, "minimum number of matches in an accepted registration"});
-    visit(p.correction_max_m,
-          {"correction_max_m", "m", 0.0, 1e6,
-           "maximum correction of the predicted pose; a registration with a larger correction is rejected"});
-    visit(p.correction_max_rad,
-          {"correction_max_rad", "rad", 0.0, 3.15,
-           "maximum correction of the predicted pose; a registration with a larger correction is rejected"});
   }
 };
 

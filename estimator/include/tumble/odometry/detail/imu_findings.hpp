@@ -34,7 +34,7 @@ struct ImuHealthReport {
 };
 
 /// `gyro_range_rad_s` is the range in the data sheet; 0: unknown.
-ImuPlausibility::Params plausibility_params(double gravity_m_s2, double gyro_range_rad_s);
+ImuPlausibility::Setup plausibility_setup(double gravity_m_s2, double gyro_range_rad_s);
 
 /// Returns whether the rotation of gravity confirms the gyro's scale. If the gyro's scale is confirmed and forces
 /// contradict each other, the cause is a mounting or an accelerometer.

@@ -50,10 +50,10 @@ std::string imu_name(std::size_t unit, std::size_t units);
 /// recording. ClippingFinder flags the clipped readings, ImuTimeAlignment resamples the units to common times, and
 /// ImuMerge merges the units. A unit is excluded while an axis is frozen or readings are missing. If ImuMerge finds a
 /// frozen or contradicting unit, a second pass excludes the unit from the start of the fault. Units without samples are
-/// ignored. `params` states ranges and gaps; the function sets the number, mountings and sensing elements of the units.
+/// ignored. `setup` states the ranges; the function sets the number, mountings and sensing elements of the units.
 ///
 /// Returns `empty` if no IMU has a sample, or an error of ImuMerge. Returns `out_of_range` with the axis if frozen axes
 /// leave no IMU; `out.faults` then lists the excluded IMUs. Cost: O(N).
-Status merge_recordings(std::span<const ImuRecording> recordings, ImuMerge::Params params, MergedRecordings& out);
+Status merge_recordings(std::span<const ImuRecording> recordings, ImuMerge::Setup setup, MergedRecordings& out);
 
 }  // namespace tumble

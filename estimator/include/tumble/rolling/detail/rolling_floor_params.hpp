@@ -6,8 +6,8 @@
 namespace tumble {
 
 struct RollingContactParams {
-  double grip_sigma_m_s = 3e-3;                       ///< standard deviation of the contact velocity while gripping
-  double grip_sigma_ratio = 1.5e-3;                   ///< additional standard deviation, relative to the rolling speed
+  static constexpr double kGripSigma_m_s = 3e-3;      ///< standard deviation of the contact velocity while gripping
+  static constexpr double kGripSigmaRatio = 1.5e-3;   ///< additional standard deviation, relative to the rolling speed
   static constexpr double kVerticalSigma_m_s = 8e-3;  ///< standard deviation of the vertical velocity while rolling
   /// standard deviation of the vertical velocity on a rough floor, relative to the rolling speed
   static constexpr double kRoughShare = 0.055;
@@ -15,15 +15,6 @@ struct RollingContactParams {
       0.15;  ///< standard deviation of both components of the slope when a slope begins
   static constexpr double kRestVelocitySigma_m_s = 2e-3;  ///< standard deviation of the mean velocity of a node at rest
   static constexpr double kRestRateSigma_rad_s = 3e-3;    ///< standard deviation of a node's mean rate at rest
-
-  template <class Self, class Visitor>
-  static void fields(Self& p, Visitor& visit) {
-    visit(p.grip_sigma_m_s, {"grip_sigma_m_s", "m/s", 1e-12, 1e3,
-                             "standard deviation of the contact velocity while gripping", ParameterRank::common_use});
-    visit(p.grip_sigma_ratio,
-          {"grip_sigma_ratio", "1", 1e-12, 1e3,
-           "additional standard deviation of the contact velocity while gripping, as a share of the rolling speed"});
-  }
 };
 
 struct RollingModeParams {
@@ -35,7 +26,7 @@ struct RollingModeParams {
   static constexpr double kEventShortest_s = 0.06;  ///< minimum duration of slip or bump
   /// An event that increases the horizontal standard deviation of the position by more than this value sets
   /// RollingEstimate::uncertain.
-  double event_sigma_growth_m = 0.03;
+  static constexpr double kEventSigmaGrowth_m = 0.03;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -45,10 +36,6 @@ struct RollingModeParams {
           {"bump_begins_per_s", "1/s", 1e-12, 1e3, "rate of transitions from grip to bump", ParameterRank::common_use});
     visit(p.incline_begins_per_s, {"incline_begins_per_s", "1/s", 1e-12, 1e3,
                                    "rate of transitions from level floor to slope", ParameterRank::common_use});
-    visit(p.event_sigma_growth_m,
-          {"event_sigma_growth_m", "m", 1e-12, 1e3,
-           "growth of the horizontal standard deviation of the position during slip or bump, above which the "
-           "position is reported as uncertain"});
   }
 };
 

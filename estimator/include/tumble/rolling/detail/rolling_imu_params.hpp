@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+
 #include "tumble/common/parameters.hpp"
 
 namespace tumble {
@@ -34,16 +36,15 @@ struct RollingPriorParams {
 };
 
 struct RollingImuNoiseParams {
-  double attitude_walk_rad_sqrts = 1e-4;  ///< 0.006 deg/sqrt(s)
-  double rate_error_sqrts = 6e-4;         ///< angle random walk per rad/s of rotation
-  double velocity_walk_m_s_sqrts = 6e-3;
+  double attitude_walk_rad_sqrts = 1e-4;                   ///< 0.006 deg/sqrt(s)
+  double rate_error_sqrts = 6e-4;                          ///< angle random walk per rad/s of rotation
+  static constexpr double kVelocityWalk_m_s_sqrts = 6e-3;  ///< velocity random walk
   double gyro_bias_walk_rad_s_sqrts = 1.7e-5;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.attitude_walk_rad_sqrts, {"attitude_walk_rad_sqrts", "rad/sqrt(s)", 1e-12, 1e3, "angle random walk"});
     visit(p.rate_error_sqrts, {"rate_error_sqrts", "sqrt(s)", 1e-12, 1e3, "angle random walk per rad/s of rate"});
-    visit(p.velocity_walk_m_s_sqrts, {"velocity_walk_m_s_sqrts", "m/s/sqrt(s)", 1e-12, 1e3, "velocity random walk"});
     visit(p.gyro_bias_walk_rad_s_sqrts,
           {"gyro_bias_walk_rad_s_sqrts", "rad/s/sqrt(s)", 1e-12, 1e3, "random walk of the gyro bias"});
   }
@@ -51,8 +52,8 @@ struct RollingImuNoiseParams {
 
 struct RollingSaturationParams {
   /// Standard deviation of rates that ImuMerge recovered. A rate counts as recovered if it is beyond the range and has
-  /// no clip flag. The value 0 means that ImuMerge recovers no rates.
-  double recovered_rate_sigma_rad_s = 0.0;
+  /// no clip flag. Without a value, ImuMerge recovers no rates.
+  std::optional<double> recovered_rate_sigma_rad_s = {};
   /// Standard deviation of the force deficit due to saturation shorter than a sample, relative to the specific force. A
   /// short impact may saturate the accelerometer within a sample although the mean stays below the range. The full
   /// standard deviation applies above 0.6 of the range; below 0.3 of the range, the standard deviation is zero.
@@ -60,27 +61,18 @@ struct RollingSaturationParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.recovered_rate_sigma_rad_s,
-          {"recovered_rate_sigma_rad_s", "rad/s", 0.0, 1e3,
-           "standard deviation of a clipped rate that was recovered from several IMUs; 0: no recovery"});
     visit(p.subsample_saturation_ratio, {"subsample_saturation_ratio", "1", 0.0, 10.0,
                                          "standard deviation of the force deficit due to saturation shorter than a "
                                          "sample, as a share of the specific force"});
   }
 };
 
-/// RollingGapParams contains the parameters of gaps in the readings. If two readings are further apart than
-/// gap_min_duration_s, the specific force between the readings is unknown. RollingFilter interpolates the rate
-/// linearly.
+/// RollingGapParams contains the limits of gaps in the readings. If two readings are further apart than
+/// kGapMinDuration_s, the specific force between the readings is unknown. RollingFilter interpolates the rate linearly.
 struct RollingGapParams {
   static constexpr double kGapMinDuration_s =
-      0.06;                ///< a longer time between two readings is a gap, in which the force is unknown
-  double gap_max_s = 1.0;  ///< a longer gap ends the run
-
-  template <class Self, class Visitor>
-  static void fields(Self& p, Visitor& visit) {
-    visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1.0, "maximum time between two samples; a longer gap causes an error"});
-  }
+      0.06;  ///< a longer time between two readings is a gap, in which the force is unknown
+  static constexpr double kGapMax_s = 1.0;  ///< a longer gap ends the run
 };
 
 }  // namespace tumble

@@ -21,7 +21,7 @@ struct RollingEstimate {
   Eigen::Matrix3d velocity_covariance_I_m2_s2 = Eigen::Matrix3d::Zero();
   RollingMode mode = RollingMode::grip;
   bool at_rest = false;
-  bool uncertain = false;  ///< the position is uncertain after an event (RollingModeParams::event_sigma_growth_m)
+  bool uncertain = false;  ///< the position is uncertain after an event (RollingModeParams::kEventSigmaGrowth_m)
 };
 
 /// Nominal trajectory and calibration, about which the filter linearises its errors.

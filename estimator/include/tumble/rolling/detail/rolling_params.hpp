@@ -19,14 +19,15 @@ struct RollingExpertParams {
   double reading_s = 4e-3;
   /// The rest detector processes the mean reading of each time step `kNode_s`. With a rate limit of 0.02 instead of
   /// 0.0115 rad/s per axis, the drift of a sphere that comes to rest would be 1.5 times as large.
-  RestDetector::Params rest_detector = {
-      .rate_max_rad_s = 0.0115, .rate_spread_rad_s = 0.016, .force_spread_m_s2 = 0.15, .rest_s = 0.4, .memory_s = 0.1};
+  RestDetector::Params rest_detector = {.rate_max_rad_s = 0.0115,
+                                        .rate_spread_rad_s = 0.016,
+                                        .force_spread_m_s2 = 0.15,
+                                        .rest_s = 0.4,
+                                        .caller_settings = {.memory_s = 0.1}};
   RollingPriorParams prior = {};
   RollingImuNoiseParams noise = {};
-  RollingContactParams contact = {};
   RollingSaturationParams saturation = {};
   RollingModeParams modes = {};
-  RollingGapParams gap = {};
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -34,10 +35,8 @@ struct RollingExpertParams {
     visit.group("rest_", p.rest_detector);
     visit.group("", p.prior);
     visit.group("", p.noise);
-    visit.group("", p.contact);
     visit.group("", p.saturation);
     visit.group("", p.modes);
-    visit.group("", p.gap);
   }
 };
 

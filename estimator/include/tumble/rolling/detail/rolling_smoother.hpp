@@ -148,7 +148,6 @@ class RollingSmoother {
   void smooth_window(const ModePath& path, std::size_t emitted, State& state, const EstimateCallback& take) const;
 
   Params params_;
-  RollingParams final_smoothing_params_;
   RollingFilter filter_;
   std::size_t lag_nodes_ = 0, nodes_per_block_ = 0;
 };
