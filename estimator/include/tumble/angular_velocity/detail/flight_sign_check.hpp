@@ -53,7 +53,7 @@ class FlightSignCheck {
     bool operator==(const State&) const = default;
   };
 
-  /// Throws InvalidParams if a lever arm is beyond 1 km, or if a range is negative or not finite.
+  /// Throws InvalidParams if a coordinate of the lever arm exceeds 1 km, or if the range is negative or not finite.
   explicit FlightSignCheck(const Setup& setup);
 
   /// Cost: O(1), no allocation. Samples that are not finite or out of order are ignored.

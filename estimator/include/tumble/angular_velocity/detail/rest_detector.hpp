@@ -20,7 +20,7 @@ namespace tumble {
 /// noise. A steady rotation about the vertical slower than `rate_max_rad_s` also counts as rest.
 class RestDetector {
  public:
-  /// Settings that the callers of RestDetector set, but not the users of a method.
+  /// The callers of RestDetector set these values; the users of a method do not.
   struct CallerSettings {
     double force_min_m_s2 = 5.0;  ///< minimum force at rest; excludes flight
     double force_max_m_s2 = 1e3;  ///< maximum force at rest; excludes impacts
