@@ -17,23 +17,13 @@ namespace tumble {
 ///
 /// SampleClock fits a line to the time stamps as a function of the sample number, with exponentially decreasing weights
 /// of older time stamps. Source: fading-memory polynomial filter of first degree (Morrison, Introduction to Sequential
-<<<<<<< HEAD
-/// Smoothing and Prediction, 1969, ch. 13). The error of an estimated time is 1.1 sqrt(T / memory_s) times the jitter
+/// Smoothing and Prediction, 1969, ch. 13). The error of an estimated time is 1.1 sqrt(T / kMemory_s) times the jitter
 /// of the time stamps, for the sample period T. An estimated time differs from the time stamp by at most half a sample
 /// period. SampleClock cannot observe, and does not correct, a constant delay of the host.
 ///
 /// SampleClock does not change the first 31 time stamps. SampleClock also leaves time stamps unchanged while their
 /// jitter is outside of [kJitterMin, jitter_max] sample periods, or while their errors are correlated. Set `jitter_max`
 /// to 0 if a host computer triggers the samples at irregular times and assigns exact time stamps.
-=======
-/// Smoothing and Prediction, 1969, ch. 13). The error of an estimated time is 1.1 sqrt(T / kMemory_s) times the jitter
-/// of the time stamps, for the sample period T. An estimated time differs from the time stamp by at most half a period.
-/// A constant delay of the host is not observable.
-///
-/// SampleClock does not change the first 32 time stamps, time stamps with a jitter outside of [kJitterMin, jitter_max],
-/// and time stamps with correlated errors. Set `jitter_max` to 0 if a host computer triggers the samples at irregular
-/// times and assigns exact time stamps.
->>>>>>> params
 class SampleClock {
  public:
   struct Params {

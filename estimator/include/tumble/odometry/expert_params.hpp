@@ -17,20 +17,9 @@ namespace tumble {
 /// SecondMappingPassParams contains the parameters of the second mapping pass over the first seconds of motion; see
 /// TumblingOdometry.
 struct SecondMappingPassParams {
-<<<<<<< HEAD
-  double after_s = 3.0;    ///< duration of motion before the second pass starts; 0: none
-  double lost_s = 0.4;     ///< duration of tracking failure that starts a second pass; 0: never
-  double lag_s = 0.5;      ///< lag of the rates of the second pass
-  std::size_t sweeps = 3;  ///< number of buffered sweeps per new sweep, at least two
-  /// Factor by which the variance of the estimated calibration is multiplied, because the second pass uses the same
-  /// readings again.
-  double inflation = 4.0;
-  double rest_s = 1.0;  ///< duration of the initial rest that is buffered
-=======
   double after_s = 3.0;  ///< duration of motion before the second pass starts; 0: none
   double lost_s = 0.4;   ///< duration of tracking failure that starts a second pass; 0: never
   double lag_s = 0.5;    ///< lag of the rates of the second pass
->>>>>>> params
 
   /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
