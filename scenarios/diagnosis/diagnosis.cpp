@@ -211,7 +211,7 @@ std::vector<RecordingFinding> findings_in_estimate(const Estimate& estimate, std
   if (share < kRegisteredShareMin)
     out.push_back(
         {"odometry",
-         fmt::format("the odometry registered only {} of {} sweeps to the map (share {}, minimum {})", registered,
+         fmt::format("slam/tumble_lag registered only {} of {} sweeps to the map (share {}, minimum {})", registered,
                      sweeps, percent_text(share), percent_text(kRegisteredShareMin)),
          "check the options --T-body-lidar, --lever-arm, --gyro-unit and --accel-unit, and the other faults in this "
          "list"});

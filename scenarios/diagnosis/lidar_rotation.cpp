@@ -309,13 +309,14 @@ Eigen::Isometry3d better_pose(const sim::LidarRecord& lidar, const Eigen::Matrix
 std::string pose_text(const sim::LidarRecord& lidar, const Eigen::Isometry3d& better_BL) {
   const Eigen::Quaterniond q(better_BL.linear());
   const Eigen::Vector3d p = better_BL.translation();
+  const auto text = [](double number) { return rounded(std::abs(number) < 1e-9 ? 0.0 : number); };
   return fmt::format("{} (set '--T-body-lidar {} {} {} {} {} {} {}')",
                      is_inverse(lidar.T_BL.linear(), better_BL.linear())
                          ? "; the stated pose may be inverted: the pose of the body in the lidar frame instead of the "
-                           "pose of the lidar in the body frame"
+                           "pose of the lidar in the body frame. If only the stated orientation is wrong, keep the "
+                           "stated position"
                          : "",
-                     rounded(p.x()), rounded(p.y()), rounded(p.z()), rounded(q.x()), rounded(q.y()), rounded(q.z()),
-                     rounded(q.w()));
+                     text(p.x()), text(p.y()), text(p.z()), text(q.x()), text(q.y()), text(q.z()), text(q.w()));
 }
 
 }  // namespace

@@ -23,7 +23,8 @@ void append_findings(std::vector<RecordingFinding> more, std::vector<RecordingFi
   std::move(more.begin(), more.end(), std::back_inserter(out));
 }
 
-/// The health of the causal slam method reports faults that only a map reveals.
+/// The health of the causal slam method reports faults that only a map reveals. The whole recording can give an
+/// accurate estimate although the causal method reports a fault.
 std::vector<RecordingFinding> findings_of_odometry(const sim::Sensors& sensors) {
   const scenarios::MethodPointer method = chosen_method("slam/tumble_lag", {sensors.robot, true});
   const scenarios::Estimate estimate = run_method(*method, sensors);

@@ -92,7 +92,10 @@ class Found {
     const Eigen::Vector3d arm_m = imus().front().T_BI.translation();
     const bool arm_stated = !options.lever_arm_m.empty() || !arm_m.isZero(0.0);
     add("lever arm of the IMU",
-        arm_stated ? fmt::format("{} m from the centre of mass", vector_text(arm_m))
+        arm_stated ? fmt::format("{} m from {}", vector_text(arm_m),
+                                 options.lever_arm_m.empty()
+                                     ? "the origin of the body frame, which is assumed to be the centre of mass"
+                                     : "the centre of mass")
                    : "the IMU is assumed at the centre of mass (lever arm 0). A wrong lever arm can cause a tracking "
                      "failure while the gyro clips, and is harmless otherwise",
         arm_stated ? kStated : kAssumed, "--lever-arm X Y Z");
@@ -109,8 +112,8 @@ class Found {
                  kMeasured, kPoseOption);
     }
     add("pose of the lidar",
-        "the lidar frame is assumed equal to the body frame; mapping calibrates the lidar's pose. Tracking may fail if "
-        "the assumed pose is wrong by more than 1 deg or 5 cm",
+        "the lidar frame is assumed equal to the body frame; mapping calibrates the lidar's pose. An assumed pose that "
+        "is wrong by more than 1 deg or 5 cm may shift the poses without a warning, or cause a tracking failure",
         kAssumed, kPoseOption);
   }
 

@@ -106,11 +106,15 @@ double run_with_progress(const Session& session, const scenarios::Method& method
   return since(start);
 }
 
-/// Only the ends of the sweeps count for the path length, because the poses between would add noise.
+/// Only the ends of the sweeps count for the path length, because the poses between would add noise. The step from the
+/// local frame to the frame of a prior map is no motion.
 double path_length_m(const Estimate& estimate) {
   double sum_m = 0.0;
-  for (std::size_t k = 1; k < estimate.sweeps.size(); ++k)
-    sum_m += (estimate.sweeps[k].pose.position_W_m - estimate.sweeps[k - 1].pose.position_W_m).norm();
+  for (std::size_t k = 1; k < estimate.sweeps.size(); ++k) {
+    const SweepReport& last = estimate.sweeps[k - 1];
+    const SweepReport& sweep = estimate.sweeps[k];
+    if (sweep.in_prior_map == last.in_prior_map) sum_m += (sweep.pose.position_W_m - last.pose.position_W_m).norm();
+  }
   return sum_m;
 }
 
@@ -170,8 +174,7 @@ void write_replay(const std::filesystem::path& page, const OpenRecording& record
 }
 
 void print_notes(const Session& session, const OpenRecording& recording, const Estimate& estimate) {
-  if (std::ranges::any_of(estimate.sweeps,
-                          [](const auto& sweep) { return sweep.verdict == SweepVerdict::degenerate; }))
+  if (std::ranges::any_of(estimate.sweeps, [](const auto& sweep) { return sweep.verdict == SweepVerdict::degenerate; }))
     session.note(
         "in a degenerate sweep, the lidar determines the pose in some directions only; in the other directions, the "
         "pose is predicted from the IMU and its covariance is larger");
@@ -221,17 +224,19 @@ int run_odometry(const Session& session, const OdometryOptions& options) {
                                            {"health", estimate.health}});
   if (estimate.status.ok()) {
     session.note(
-        fmt::format("written: {} (trajectory.tum, map.ply, map.pcd, map.tumblemap, estimate.json, replay.html)",
+        fmt::format("written: {} (trajectory.tum, map.ply, map.pcd, map.tumblemap, estimate.json, replay.html, and "
+                    "tables of rates, sweeps and covariances)",
                     options.folder.string()));
     if (outcome.status != scenarios::OutcomeStatus::diverged) return kDone;
     session.note(
-        fmt::format("do not use this estimate; 'tumble doctor {}' with the same options searches for the cause",
+        fmt::format("do not use this estimate; 'tumble doctor {}' with the same sensor options searches for the cause",
                     options.input.path.string()));
     return kCheckFailed;
   }
-  throw BadInput(fmt::format("{}: {} failed: {}; 'tumble doctor {}' with the same options searches for the cause",
-                             options.input.path.string(), full_name(info), failure_reason(estimate.status, sensors),
-                             options.input.path.string()));
+  throw BadInput(
+      fmt::format("{}: {} failed: {}; 'tumble doctor {}' with the same sensor options searches for the cause",
+                  options.input.path.string(), full_name(info), failure_reason(estimate.status, sensors),
+                  options.input.path.string()));
 }
 
 }  // namespace
