@@ -115,7 +115,7 @@ TEST(Page, SaysWhatItsTasksAndMethodsAre) {
   content.comparison = scenarios::compare(content.summary, {});
   content.methods = {{"rate/raw (baseline)", "The gyro as it is."}};
   const std::string page = page_html(content, "");
-  EXPECT_THAT(page, HasSubstr("one task on one scenario: rate (angular velocity).</p>"));
+  EXPECT_THAT(page, HasSubstr("one task on one scenario. The tasks are: rate (angular velocity).</p>"));
   EXPECT_THAT(page, HasSubstr("<dt>rate/raw (baseline)</dt><dd>The gyro as it is.</dd>"));
 }
 
