@@ -103,8 +103,39 @@ std::optional<RecordingFinding> moving_start(const sim::ImuRecord& imu) {
       "less accurate"};
 }
 
+Saturation saturation_beyond(const SaturationLimitDetector::Params& stated, const sim::ImuRecord& imu) {
+  std::vector<ImuSample> samples;
+  Saturation out;
+  if (!bridge::imu_samples(imu, samples).ok() || samples.empty()) return out;
+  ClippingFinder::Params params;
+  params.axis_limit_params = stated;
+  const std::vector<Clipping> clippings = ClippingFinder(params).find(samples).clipping_per_sample;
+  std::size_t gyro = 0, accel = 0;
+  const auto keep_smallest = [](const Eigen::Vector3d& reading, unsigned axes, double& smallest) {
+    for (int j = 0; j < 3; ++j) {
+      if ((axes >> static_cast<unsigned>(j) & 1u) == 0u) continue;
+      const double size = std::abs(reading[j]);
+      smallest = smallest > 0.0 ? std::min(smallest, size) : size;
+    }
+  };
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    gyro += clippings[k].gyro != 0 ? 1 : 0;
+    accel += clippings[k].accel != 0 ? 1 : 0;
+    keep_smallest(samples[k].angular_velocity_rad_s, clippings[k].gyro, out.gyro_rad_s);
+    keep_smallest(samples[k].specific_force_m_s2, clippings[k].accel, out.accel_m_s2);
+  }
+  out.gyro_share = static_cast<double>(gyro) / static_cast<double>(samples.size());
+  out.accel_share = static_cast<double>(accel) / static_cast<double>(samples.size());
+  return out;
+}
+
 void add_saturation(const sim::ImuRecord& imu, std::vector<RecordingFinding>& out) {
-  const Saturation found = saturation_of(imu);
+  Saturation found = saturation_of(imu);
+  if (found.gyro_share == 0.0) {  // the stated range hides a smaller range
+    const Saturation detected = saturation_beyond({}, imu);
+    if (detected.gyro_rad_s < kOfRangeMin * imu.stated_gyro_range_rad_s)
+      found.gyro_share = detected.gyro_share, found.gyro_rad_s = detected.gyro_rad_s;
+  }
   const auto range = [](double stated, const char* unit) {
     return stated > 0.0 ? fmt::format(" (stated range: {} {})", rounded(stated), unit) : std::string();
   };
@@ -115,7 +146,7 @@ void add_saturation(const sim::ImuRecord& imu, std::vector<RecordingFinding>& ou
          fmt::format("the gyro is saturated in {} of the samples; its smallest saturated reading is {} rad/s{}",
                      percent_text(found.gyro_share), rounded(found.gyro_rad_s),
                      range(imu.stated_gyro_range_rad_s, "rad/s")),
-         below ? "check --device: the gyro saturates far below the range of its data sheet"
+         below ? "leave out --device: the gyro saturates far below the range of the data sheet"
                : "set a larger gyro range in the IMU's driver, if possible; 'tumble odometry' estimates the "
                  "rates beyond the range",
          false});
@@ -152,29 +183,7 @@ std::vector<RecordingFinding> findings_in_notes(std::span<const std::string> not
 }
 
 Saturation saturation_of(const sim::ImuRecord& imu) {
-  std::vector<ImuSample> samples;
-  Saturation out;
-  if (!bridge::imu_samples(imu, samples).ok() || samples.empty()) return out;
-  ClippingFinder::Params params;
-  params.axis_limit_params = stated_rails(imu);
-  const std::vector<Clipping> clippings = ClippingFinder(params).find(samples).clipping_per_sample;
-  std::size_t gyro = 0, accel = 0;
-  const auto keep_smallest = [](const Eigen::Vector3d& reading, unsigned axes, double& smallest) {
-    for (int j = 0; j < 3; ++j) {
-      if ((axes >> static_cast<unsigned>(j) & 1u) == 0u) continue;
-      const double size = std::abs(reading[j]);
-      smallest = smallest > 0.0 ? std::min(smallest, size) : size;
-    }
-  };
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    gyro += clippings[k].gyro != 0 ? 1 : 0;
-    accel += clippings[k].accel != 0 ? 1 : 0;
-    keep_smallest(samples[k].angular_velocity_rad_s, clippings[k].gyro, out.gyro_rad_s);
-    keep_smallest(samples[k].specific_force_m_s2, clippings[k].accel, out.accel_m_s2);
-  }
-  out.gyro_share = static_cast<double>(gyro) / static_cast<double>(samples.size());
-  out.accel_share = static_cast<double>(accel) / static_cast<double>(samples.size());
-  return out;
+  return saturation_beyond(stated_rails(imu), imu);
 }
 
 std::vector<RecordingFinding> findings_in_readings(const sim::Sensors& sensors) {

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "scenarios/diagnosis/probable_devices.hpp"
@@ -84,6 +85,22 @@ TEST(Diagnosis, SaturationIsANoteAndNoFault) {
   ASSERT_EQ(found.size(), 1u);
   EXPECT_THAT(found[0].evidence, testing::StartsWith("the gyro is saturated"));
   EXPECT_FALSE(found[0].fault);
+}
+
+TEST(Diagnosis, AGyroThatSaturatesFarBelowItsStatedRangeIsNoted) {
+  const auto swinging = [](double amplitude_rad_s) {
+    sim::Sensors out = at_rest(0.0, 4.0);
+    out.imus[0].stated_gyro_range_rad_s = 34.9;
+    for (std::size_t k = 200; k < 400; ++k)
+      out.imus[0].gyro_rad_s[k].z() =
+          std::clamp(amplitude_rad_s * std::sin(0.07 * static_cast<double>(k - 200)), -8.7, 8.7);
+    return findings_in_readings(out);
+  };
+  const std::vector<RecordingFinding> found = swinging(12.0);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_THAT(found[0].evidence, testing::HasSubstr("8.7 rad/s (stated range: 34.9 rad/s)"));
+  EXPECT_THAT(found[0].repair, testing::StartsWith("leave out --device"));
+  EXPECT_THAT(swinging(5.0), IsEmpty()) << "negative control: the gyro never saturates";
 }
 
 std::vector<DataSheet> all_sheets() {
