@@ -180,7 +180,7 @@ TEST(Odometry, WritesAllFilesOfABagThatNeedsARepair) {
   for (const char* file : {"trajectory.tum", "map.ply", "map.pcd", "estimate.json", "replay.html"})
     EXPECT_GT(fs::file_size(out / file), 100u) << file;
   EXPECT_THAT(read_file(out / "map.pcd"), HasSubstr("FIELDS x y z normal_x normal_y normal_z sigma\n"));
-  EXPECT_THAT(ended.err, HasSubstr("--gyro-unit deg/s was set"));
+  EXPECT_THAT(ended.err, HasSubstr("the program set the option --gyro-unit deg/s"));
   const json document = json_of(ended);
   const json& summary = document["summary"];
   EXPECT_EQ(summary["health"], "ok");

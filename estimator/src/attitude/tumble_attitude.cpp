@@ -16,30 +16,25 @@ namespace tumble {
 namespace {
 
 constexpr double kRollingVelocitySigma_m_s = 0.03;  // when rolling without slip, per node
-
-constexpr double kGyroNoise_rad_sqrts = 1e-3;   // angle random walk, including unmodelled errors
-constexpr double kRateError_sqrts = 4e-3;       // angle random walk per rad/s of rate, from scale and timing errors
-constexpr double kBiasWalk_rad_s_sqrts = 2e-6;  // random walk of the bias
+constexpr double kGyroNoise_rad_sqrts = 1e-3;       // angle random walk, including unmodelled errors
+constexpr double kRateError_sqrts = 4e-3;           // angle random walk per rad/s of rate, from scale and timing errors
+constexpr double kBiasWalk_rad_s_sqrts = 2e-6;      // random walk of the bias
 constexpr double kAccelerationNoise_m_s_sqrts = 0.01;  // velocity random walk
 constexpr double kVelocity_m_sqrts = 1.0;              // standard deviation of the mean velocity over 1 s of motion
 constexpr double kDisplacement_m_sqrts = 0.3;          // standard deviation of the mean displacement over 1 s
 constexpr double kDisplacementTau_s = 10.0;            // time constant with which the displacement decays to zero
-// Correlation time of the body's velocity and displacement, and averaging time of their magnitudes.
-constexpr double kMotionTau_s = 3.0;
+constexpr double kMotionTau_s = 3.0;  // correlation time of velocity and displacement, averaging time of their size
 // Velocity residual above which slip starts. Slip ends below half of this velocity residual.
 constexpr double kSlipVelocity_m_s = 0.12;
-// Duration of small velocity residuals after which slip ends.
-constexpr double kSlipQuiet_s = 0.2;
-constexpr double kSlipTimeout_s = 3.0;  // maximum duration of a slip
-// Minimum time between two samples that counts as a gap.
-constexpr double kGapMin_s = 0.05;
+constexpr double kSlipQuiet_s = 0.2;     // duration of small velocity residuals after which slip ends
+constexpr double kSlipTimeout_s = 3.0;   // maximum duration of a slip
+constexpr double kGapMin_s = 0.05;       // minimum time between two samples that counts as a gap
 constexpr double kNode_s = 0.04;         // time between two corrections
 constexpr double kReading_s = 4e-3;      // averaging time of the readings
 constexpr double kSampleGapMax_s = 1.0;  // a longer time between two samples causes an error
 // Standard deviations of the tilt, per axis. Coarse alignment starts above kLostTilt_rad, where the linearised filter
 // is invalid, and ends below kAlignedTilt_rad.
 constexpr double kLostTilt_rad = 0.3, kAlignedTilt_rad = 0.4;
-
 constexpr RestDetector::Params kRestDetector = {
     .rate_max_rad_s = 3.4907e-2,
     .rate_spread_rad_s = 3.4907e-2,
@@ -49,9 +44,7 @@ constexpr RestDetector::Params kRestDetector = {
                         .memory_s = 1.0}};
 constexpr double kRestVelocitySigma_m_s = 0.005;   // standard deviation of the velocity at rest, per node
 constexpr double kRestRateSigma_rad_sqrts = 2e-3;  // standard deviation of the rate measured at rest, mean over 1 s
-// Maximum difference between mean rate and bias at rest, in standard deviations of the difference.
-constexpr double kRestRateSigmas = 3.0;
-
+constexpr double kRestRateSigmas = 3.0;  // maximum difference of mean rate and bias at rest, in standard deviations
 constexpr double kGyroBiasSigmaStart_rad_s = 8.7266e-3;  // prior standard deviation of the gyro bias: 0.5 deg/s
 constexpr double kTiltSigmaStart_rad = 0.01;
 constexpr double kVelocitySigmaStart_m_s = 0.1;

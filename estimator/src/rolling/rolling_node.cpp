@@ -12,8 +12,7 @@ namespace tumble::rolling {
 
 namespace {
 
-// Root densities of the random walks of radius (rough floor), slope, accelerometer bias and velocity. The root density
-// of the velocity is multiplied by the squared angular rate.
+// Root densities of random walks: radius (rough floor), slope, accelerometer bias, and velocity (times squared rate).
 constexpr double kRoughRadiusWalk_m_sqrts = 1e-4, kSlopeWalk_sqrts = 0.02, kAccelBiasWalk_m_s2_sqrts = 2e-3,
                  kVelocityWalkPerRate2_sqrts = 4e-5;
 constexpr double kImpactSigmaRatio = 0.06;  // timing and direction of an impact, relative to its velocity change
@@ -35,12 +34,10 @@ constexpr double kPartialRangeMin = 0.3, kPartialRangeMax = 0.6;  // as fraction
 constexpr double kForceTilt_rad = 0.35;                           // direction error of the mean force in motion
 constexpr double kLostTilt_rad = kForceTilt_rad;  // the specific force levels a tilt with a larger standard deviation
 constexpr double kUncertainTilt_rad = 0.1;        // limit of the tilt at rest, where the specific force is gravity
-constexpr double kRestTilt_rad = 5e-3;
-// If force and gravity differ by more than this fraction of gravity, the sphere is pushed or rotates fast.
-constexpr double kPushForceRatio = 0.15;
-constexpr double kLostSpeed_m_s = 1.0;
-constexpr double kRecoveredTau_s = 0.1;  // correlation time of the error of a recovered rate
-constexpr double kFastRate_rad_s = 6.0;  // above this rate, the specific force rotates too far per node for levelling
+constexpr double kRestTilt_rad = 5e-3, kLostSpeed_m_s = 1.0;
+constexpr double kPushForceRatio = 0.15;  // minimum difference of force and gravity in a push or fast rotation, in g
+constexpr double kRecoveredTau_s = 0.1;   // correlation time of the error of a recovered rate
+constexpr double kFastRate_rad_s = 6.0;   // above this rate, the specific force rotates too far per node for levelling
 constexpr double kUnsureSpeed_m_s = 0.1, kSpeedWindow_s = 1.0, kSpeedSigma_m_s = 1.0;
 constexpr double kStartTilt_rad = 0.15;  // tilt error of a start in motion, caused by a push of 1.5 m/s^2
 // If the rates before and after a gap are below kGapRate_rad_s, the sphere was hardly pushed during the gap.
@@ -237,8 +234,7 @@ ImuAverage gap_step_average(const RollingParams& params, const ImuSample& before
   sample.device_clip_flags = 0;  // flags of the reading after the gap do not apply within the gap
   const double turning = std::max(before.angular_velocity_rad_s.norm(), after.angular_velocity_rad_s.norm());
   const double acceleration = kGapStill_rad_s2 + kGapAcceleration_rad_s2 * std::min(1.0, turning / kGapRate_rad_s);
-  // A parabolic deviation of the rate, with the second derivative a over a data gap T, causes the rotation error a T^3
-  // / 12: rolling.md (R31).
+  // A parabolic rate deviation with second derivative a over a gap T rotates by a T^3 / 12: rolling.md (R31).
   const double mean_force_tilt_rad =
       acceleration * gap_s * gap_s * gap_s / 12.0 + kGapTimeSigmaRatio * change.norm() * gap_s;
   uncertainty.rotation_variance_rad2 = mean_force_tilt_rad * mean_force_tilt_rad / pieces;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Geometry>
 #include <span>
 #include <utility>
 
@@ -51,6 +52,16 @@ struct LidarDataSheet {
     visit(p.range_max_m,
           {"range_max_m", "m", 0.0, 1e4, "maximum range; farther returns are dropped", ParameterRank::common_use});
   }
+};
+
+/// FurtherLidar is a lidar in addition to the lidar of TumblingParams. Relative to the first lidar, the stated mounting
+/// and clock offset of a further lidar must be exact. TumblingOdometry estimates only the mounting and clock offset of
+/// the first lidar.
+struct FurtherLidar {
+  Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
+  LidarDataSheet data_sheet;
+  Eigen::AlignedBox3d own_body_L;  ///< see TumblingParams::own_body_L, in axes of this lidar
+  double time_offset_s = 0.0;      ///< clock of the first lidar minus clock of this lidar
 };
 
 /// The functions of this namespace return the data sheets of the simulated sensors. The file models/sensors/NAME.yaml

@@ -22,16 +22,6 @@ namespace tumble {
 struct TumblingExpertParams;
 extern template class HeapValue<TumblingExpertParams>;
 
-/// FurtherLidar is a lidar in addition to the lidar of TumblingParams. Relative to the first lidar, the stated mounting
-/// and clock offset of a further lidar must be exact. TumblingOdometry estimates only the mounting and clock offset of
-/// the first lidar.
-struct FurtherLidar {
-  Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
-  LidarDataSheet data_sheet;
-  Eigen::AlignedBox3d own_body_L;  ///< see TumblingParams::own_body_L, in axes of this lidar
-  double time_offset_s = 0.0;      ///< clock of the first lidar minus clock of this lidar
-};
-
 struct TumblingParams {
   static constexpr double kWholeRecording = 1e9;  ///< value of `lag_s`; see TumblingOdometry
 
@@ -52,8 +42,7 @@ struct TumblingParams {
   /// box, keeps all returns. The constructor rejects a box with swapped corners.
   Eigen::AlignedBox3d own_body_L;
   std::vector<FurtherLidar> further_lidars;  ///< lidars in addition to the first; see TumblingOdometry::add_sweep()
-  /// Delay of reported rates and sweeps: at least two samples and at most 10 s, or kWholeRecording.
-  double lag_s = 0.2;
+  double lag_s = 0.2;  ///< delay of reported rates and sweeps: two samples to 10 s, or kWholeRecording
 
   using Expert = TumblingExpertParams;
   HeapValue<Expert> expert;  ///< rarely changed parameters, odometry/expert_params.hpp
@@ -64,8 +53,7 @@ struct TumblingParams {
     return out;
   }
 
-  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning. A caller needs
-  /// odometry/expert_params.hpp.
+  /// A caller needs odometry/expert_params.hpp.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit.group("imu_", p.imu);
