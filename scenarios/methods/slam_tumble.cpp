@@ -86,26 +86,42 @@ class Collector {
         continue;
       }
       std::vector<PoseState> smoothed = std::move(sweep->report.smoothed);
+      const bool in_prior_map = sweep->report.in_prior_map;
+      if (in_prior_map && !first_in_prior_map_) first_in_prior_map_ = estimate_.sweeps.size();
       const TimeNs end_ns = sweep->report.pose.time_ns;
       found_.merge_current_findings(odometry.health());
       append_sweep(sweep->status, end_ns, std::move(sweep->report), estimate_);
-      apply_next(std::move(smoothed));
+      apply_next(std::move(smoothed), in_prior_map);
     }
   }
   void conclude(const TumblingOdometry& odometry) {
     if (output_ != SlamOutput::whole) {
-      for (std::vector<PoseState>& open : odometry.mapper().window_trajectories()) apply_next(std::move(open));
+      const bool in_prior_map = odometry.mapper().prior_map() != nullptr && odometry.mapper().localised().ok();
+      for (std::vector<PoseState>& open : odometry.mapper().window_trajectories())
+        apply_next(std::move(open), in_prior_map);
     }
     if (output_ == SlamOutput::live) replace_by_live();
+    if (output_ == SlamOutput::lag && first_in_prior_map_) transform_to_prior_map(odometry.mapper());
+    if (odometry.mapper().prior_map() != nullptr)
+      estimate_.health["prior_map_sweep"] = static_cast<double>(first_in_prior_map_.value_or(0));
     found_.merge_current_findings(odometry.health());
     add_findings(found_, names_, estimate_);
     scenarios::conclude(odometry.mapper(), estimate_);
   }
 
  private:
-  void apply_next(std::vector<PoseState> smoothed) {
+  void apply_next(std::vector<PoseState> smoothed, bool in_prior_map) {
     if (smoothed.empty() || smoothed_ == estimate_.sweeps.size()) return;
+    estimate_.sweeps[smoothed_].in_prior_map = in_prior_map;
     apply_smoothed(std::move(smoothed), estimate_.sweeps[smoothed_++]);
+  }
+
+  void transform_to_prior_map(const LidarInertialOdometry& mapper) {
+    for (SweepReport& sweep : estimate_.sweeps) {
+      if (sweep.in_prior_map || !mapper.transform_to_prior_map(sweep.trajectory).ok()) continue;
+      sweep.pose = sweep.trajectory.back();
+      sweep.in_prior_map = true;
+    }
   }
 
   void replace_by_live() {
@@ -125,6 +141,7 @@ class Collector {
   std::vector<std::string> names_;
   SensorHealth found_;
   std::size_t smoothed_ = 0;
+  std::optional<std::size_t> first_in_prior_map_;
   std::vector<PoseState> live_;
 };
 
@@ -186,13 +203,6 @@ void report_stream(const TumblingOdometry& odometry, Estimate& estimate) {
   estimate.health["second_pass_applied"] = odometry.second_mapping_pass_applied() ? 1.0 : 0.0;
 }
 
-void report_prior_map(Estimate& estimate) {
-  const auto first = std::find_if(estimate.sweeps.begin(), estimate.sweeps.end(),
-                                  [](const SweepReport& sweep) { return sweep.in_prior_map; });
-  const bool localised = first != estimate.sweeps.end();
-  estimate.health["prior_map_sweep"] = localised ? static_cast<double>(first - estimate.sweeps.begin()) : 0.0;
-}
-
 Estimate run(SlamOutput output, const Settings<TumblingOdometry::Params>& settings, const sim::Sensors& sensors,
              const sim::Values& parameters, const SweepProgress& on_sweep, const PriorMap* map = nullptr) {
   Estimate estimate;
@@ -224,7 +234,6 @@ Estimate run(SlamOutput output, const Settings<TumblingOdometry::Params>& settin
     estimate.health["gaps"] = static_cast<double>(odometry.restart_count());
   if (output != SlamOutput::whole) report_stream(odometry, estimate);
   collector.conclude(odometry);
-  if (map != nullptr) report_prior_map(estimate);
   return estimate;
 }
 

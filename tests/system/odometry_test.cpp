@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <fstream>
 #include <span>
+#include <sstream>
 
+#include "scenarios/estimates/map_file.hpp"
 #include "scenarios/recordings/dialects/export_for.hpp"
 #include "scenarios/recordings/left_out.hpp"
 #include "scenarios/recordings/recording_file.hpp"
@@ -221,6 +223,42 @@ TEST(Odometry, AnEstimateThatItsHealthInvalidatesIsDiverged) {
   EXPECT_EQ(estimate.status, 0) << estimate.err;
   EXPECT_EQ(json_of(estimate)["status"], "diverged");
   EXPECT_EQ(json_of(run_program({"score", rates, recording, "--json"}))["status"], "diverged");
+}
+
+std::vector<Eigen::Vector3d> positions_m(const fs::path& trajectory) {
+  std::ifstream file(trajectory);
+  std::vector<Eigen::Vector3d> out;
+  for (std::string line; std::getline(file, line);) {
+    std::istringstream row(line);
+    double time_s = 0.0;
+    Eigen::Vector3d p_m;
+    if (line.front() != '#' && row >> time_s >> p_m.x() >> p_m.y() >> p_m.z()) out.push_back(p_m);
+  }
+  return out;
+}
+
+TEST(Odometry, AllPosesAreInTheFrameOfThePriorMap) {
+  const fs::path folder = test_folder(), first = folder / "first", second = folder / "second";
+  const std::string recording = short_stroll().string(), map = (folder / "moved.tumblemap").string();
+  ASSERT_EQ(run_program({"odometry", recording, "-o", first.string()}).status, 0);
+  const Eigen::Isometry3d T_MW =
+      Eigen::Translation3d(7.0, -12.0, 3.0) * Eigen::AngleAxisd(2.0, Eigen::Vector3d::UnitZ());
+  std::vector<MapPoint> points = scenarios::read_prior_map(first / "map.tumblemap");
+  for (MapPoint& point : points) {
+    point.position_W_m = T_MW.cast<float>() * point.position_W_m;
+    point.normal_W = T_MW.linear().cast<float>() * point.normal_W;
+  }
+  scenarios::write_prior_map(map, points);
+
+  const Ended ended = run_program({"odometry", recording, "-o", second.string(), "--map", map, "--json"});
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  EXPECT_GT(json_of(ended)["health"]["prior_map_sweep"].get<int>(), 0);
+  EXPECT_THAT(ended.err, HasSubstr("earlier poses are transformed to the frame of the map"));
+  const std::vector<Eigen::Vector3d> p_W_m = positions_m(first / "trajectory.tum"),
+                                     p_M_m = positions_m(second / "trajectory.tum");
+  ASSERT_EQ(p_M_m.size(), p_W_m.size());
+  ASSERT_GT(p_M_m.size(), 600u);
+  for (std::size_t k = 0; k < p_M_m.size(); ++k) ASSERT_LT((p_M_m[k] - T_MW * p_W_m[k]).norm(), 0.1) << "pose " << k;
 }
 
 TEST(Odometry, DropsPointsInsideTheGivenBox) {

@@ -76,4 +76,22 @@ void FrameChange::apply(LagWindow& window) const {
   });
 }
 
+PosesBeforeChange::PosesBeforeChange(const FrameChange& change, const PoseState& last)
+    : T_prior_map_world_(change.T_prior_map_world), last_M_m_(change.T_prior_map_world * last.position_W_m) {
+  Eigen::Matrix<double, 6, 6> R = Eigen::Matrix<double, 6, 6>::Zero();
+  R.topLeftCorner<3, 3>() = R.bottomRightCorner<3, 3>() = T_prior_map_world_.linear();
+  last_covariance_M_ = R * last.covariance * R.transpose() + change.covariance;
+}
+
+void PosesBeforeChange::apply(PoseState& pose) const {
+  const Eigen::Quaterniond q_MW(T_prior_map_world_.linear());
+  pose.position_W_m = T_prior_map_world_ * pose.position_W_m;
+  pose.orientation_W = (q_MW * pose.orientation_W).normalized();
+  pose.velocity_W_m_s = q_MW * pose.velocity_W_m_s;
+  Eigen::Matrix<double, 6, 6> A = Eigen::Matrix<double, 6, 6>::Identity();
+  A.topRightCorner<3, 3>() = -so3::hat(pose.position_W_m - last_M_m_);
+  pose.covariance = A * last_covariance_M_ * A.transpose();
+  make_symmetric(pose.covariance);
+}
+
 }  // namespace tumble::mapping

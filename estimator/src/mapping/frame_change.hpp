@@ -23,4 +23,21 @@ struct FrameChange {
   Registration::Matrix rotation() const;
 };
 
+/// PosesBeforeChange transforms poses before the localisation to the frame of the prior map.
+class PosesBeforeChange {
+ public:
+  /// `last` is the pose at the localisation, in the local frame.
+  PosesBeforeChange(const FrameChange& change, const PoseState& last);
+
+  /// The drift between an earlier pose and the last pose is at most the drift since the start. Therefore, the
+  /// covariance of the earlier pose is the covariance of the last pose, with the attitude error acting on the distance
+  /// between both poses.
+  void apply(PoseState& pose) const;
+
+ private:
+  Eigen::Isometry3d T_prior_map_world_;
+  Eigen::Vector3d last_M_m_;                      // position of the last pose
+  Eigen::Matrix<double, 6, 6> last_covariance_M_;  // covariance of the last pose
+};
+
 }  // namespace tumble::mapping

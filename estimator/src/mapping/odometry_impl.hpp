@@ -5,6 +5,7 @@
 
 #include "aligner.hpp"
 #include "dead_reckoning.hpp"
+#include "frame_change.hpp"
 #include "inertial_track.hpp"
 #include "lag_window.hpp"
 #include "local_map.hpp"
@@ -83,7 +84,8 @@ struct LidarInertialOdometry::Impl {
   void prune_until(TimeNs end_ns);
   /// The odometry continues in the frame of the prior map if MapLocaliser accepts a pose.
   void localise(const SweepReport& report);
-  void enter_prior_map(const mapping::FramePose& pose);
+  /// `last` is the newest pose in the local frame.
+  void enter_prior_map(const mapping::FramePose& pose, const PoseState& last);
   bool extends_map() const { return !localiser.is_localised() || localiser.map().extend; }
 
   PoseState pose_along(const SweepTrajectory& motion, double t_s, const Registration::Matrix& errors) const;
@@ -105,6 +107,7 @@ struct LidarInertialOdometry::Impl {
   mapping::WorldCovariance world_covariance;
   std::optional<mapping::DeadReckoning> alternative;  // alternative pose, see DeadReckoning
   mapping::MapLocaliser localiser;                    // localiser in a prior map, if any
+  std::optional<mapping::PosesBeforeChange> poses_before_localisation;  // empty before the localisation
   mapping::SweepScratch sweep_scratch;
 };
 

@@ -27,6 +27,13 @@ Status LidarInertialOdometry::localised() const {
   return impl_->localiser.status();
 }
 
+Status LidarInertialOdometry::transform_to_prior_map(std::span<PoseState> poses) const {
+  if (!impl_->poses_before_localisation)
+    return {ErrorCode::degenerate, "number of localisations in a prior map", 0.0, 1.0};
+  for (PoseState& pose : poses) impl_->poses_before_localisation->apply(pose);
+  return {};
+}
+
 const PriorMap* LidarInertialOdometry::prior_map() const {
   return impl_->localiser.has_map() ? &impl_->localiser.map() : nullptr;
 }
@@ -37,12 +44,13 @@ void LidarInertialOdometry::Impl::localise(const SweepReport& report) {
   if (report.verdict != SweepVerdict::registered || !std::holds_alternative<mapping::Tracking>(tracking)) return;
   const std::optional<mapping::FramePose> pose =
       localiser.match_local_map(map.voxels(), sweep_boundary.state_estimate.mean.state.p_WI_m);
-  if (pose) enter_prior_map(*pose);
+  if (pose) enter_prior_map(*pose, report.pose);
 }
 
-void LidarInertialOdometry::Impl::enter_prior_map(const mapping::FramePose& pose) {
+void LidarInertialOdometry::Impl::enter_prior_map(const mapping::FramePose& pose, const PoseState& last) {
   const Eigen::Vector3d sensor_M_m = pose.T_prior_map_world * sweep_boundary.state_estimate.mean.state.p_WI_m;
   const mapping::FrameChange change{pose.T_prior_map_world, pose.covariance, sensor_M_m};
+  poses_before_localisation.emplace(change, last);
   change.apply(sweep_boundary);
   change.apply(window);
   window.clear_inserted();  // the indices of the points change

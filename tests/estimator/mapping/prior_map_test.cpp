@@ -91,6 +91,28 @@ TEST(PriorMap, ARunIsLocalisedWithoutAPose) {
   }
 }
 
+TEST(PriorMap, EarlierPosesAreTransformedToTheFrameOfTheMap) {
+  RoomRig rig(true_params(), second_motion());
+  ASSERT_TRUE(rig.odometry.use_map({.points = map_of_pillars()}).ok());
+  std::vector<PoseState> poses;
+  for (int k = 0; k < kLocalised && !rig.odometry.localised().ok(); ++k) {
+    EXPECT_EQ(rig.odometry.transform_to_prior_map(poses).error_code, ErrorCode::degenerate);
+    rig.run(k, k + 1);
+    poses.push_back(rig.report.pose);
+  }
+  ASSERT_TRUE(rig.odometry.transform_to_prior_map(poses).ok());
+  ASSERT_GT(poses.size(), 3u);
+  for (const PoseState& pose : poses) {
+    const double t = 1e-9 * static_cast<double>(pose.time_ns);
+    const Eigen::Isometry3d expected = T_MW() * rig.motion.pose(t);
+    const Eigen::Vector3d error = pose.position_W_m - expected.translation();
+    EXPECT_LT(error.norm(), 0.06) << t;
+    EXPECT_LT(pose.orientation_W.angularDistance(Eigen::Quaterniond(expected.linear())), 0.02) << t;
+    const Eigen::Matrix3d covariance = pose.covariance.topLeftCorner<3, 3>();
+    EXPECT_LT(error.dot(covariance.inverse() * error), 2.0 * 16.8) << t;
+  }
+}
+
 TEST(PriorMap, AnApproximateOrAGivenPoseLimitsTheSearch) {
   for (const double error_m : {0.0, 1.5}) {
     RoomRig rig(true_params(), second_motion());

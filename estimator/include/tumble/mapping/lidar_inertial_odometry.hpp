@@ -83,6 +83,9 @@ class LidarInertialOdometry {
   void use_map_of_pass(const LidarInertialOdometry& other);
   /// Returns `degenerate` if a prior map is set but the robot is not yet localised.
   Status localised() const;
+  /// Transforms poses before the localisation from the local frame to the frame of the prior map, with covariances that
+  /// include the uncertainty of the localisation. Returns `degenerate` before the localisation.
+  Status transform_to_prior_map(std::span<PoseState> poses) const;
   /// null without a prior map
   const PriorMap* prior_map() const;
 
