@@ -24,6 +24,7 @@ namespace {
 
 using scenarios::rounded;
 
+constexpr const char* kLidarPose = "pose of the lidar";
 constexpr const char *kStated = "stated", *kMeasured = "measured", *kAssumed = "assumed", *kByName = "by name";
 
 std::string vector_text(const Eigen::Vector3d& v) {
@@ -102,19 +103,19 @@ class Found {
     sim::LidarRecord& lidar = lidars().front();
     const bool pose_stated =
         !options.T_body_lidar.empty() || !lidar.T_BL.isApprox(Eigen::Isometry3d::Identity(), 1e-12);
-    if (pose_stated) return add("pose of the lidar", pose_text(lidar.T_BL), kStated, kPoseOption);
+    if (pose_stated) return add(kLidarPose, pose_text(lidar.T_BL), kStated, kPoseOption);
+    const std::string calibrated =
+        fmt::format("mapping calibrates the pose, with standard deviations of {} m and {} rad before the calibration",
+                    kAssumedLidarSigma_m, kAssumedLidarSigma_rad);
     if (const auto& better = recording_.rotation.better_BL) {
       lidar.T_BL = *better;
-      return add("pose of the lidar",
+      return add(kLidarPose,
                  fmt::format("{}: the lidar's attitude is estimated from the rotations of lidar and gyro, and the "
-                             "lidar's position is assumed 0",
-                             pose_text(lidar.T_BL)),
+                             "lidar's position is assumed 0; {}",
+                             pose_text(lidar.T_BL), calibrated),
                  kMeasured, kPoseOption);
     }
-    add("pose of the lidar",
-        "the lidar frame is assumed equal to the body frame; mapping calibrates the lidar's pose. An assumed pose that "
-        "is wrong by more than 1 deg or 5 cm may shift the poses without a warning, or cause a tracking failure",
-        kAssumed, kPoseOption);
+    add(kLidarPose, "the lidar frame is assumed equal to the body frame; " + calibrated, kAssumed, kPoseOption);
   }
 
   void add_own_body(const Eigen::AlignedBox3d& box, bool stated) {
@@ -241,6 +242,11 @@ std::vector<FoundItem> complete_recording(const Session& session, OpenRecording&
   found.add_mounting();
   found.add_own_body(own_body_L, own_body_stated);
   return std::move(found).items();
+}
+
+bool states_lidar_pose(const std::vector<FoundItem>& items) {
+  return std::ranges::any_of(items,
+                             [](const FoundItem& each) { return each.item == kLidarPose && each.sure == kStated; });
 }
 
 Table found_table(const std::vector<FoundItem>& items) {

@@ -25,6 +25,12 @@ struct FoundItem {
 std::vector<FoundItem> complete_recording(const Session& session, OpenRecording& recording,
                                           const Eigen::AlignedBox3d& own_body_L, bool own_body_stated);
 
+/// Returns whether the user or the recording states the pose of the lidar.
+bool states_lidar_pose(const std::vector<FoundItem>& items);
+
+/// Standard deviations of a lidar pose that nobody states. `found_table` shows them.
+inline constexpr double kAssumedLidarSigma_m = 0.1, kAssumedLidarSigma_rad = 0.05;
+
 Table found_table(const std::vector<FoundItem>& items);
 nlohmann::json found_document(const std::vector<FoundItem>& items);
 

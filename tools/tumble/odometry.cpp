@@ -60,12 +60,26 @@ std::string method_name(const OdometryOptions& options) {
   return options.prior_map.map.empty() ? "slam/tumble" : "slam/tumble_lag";
 }
 
-std::vector<std::string> parameter_texts(const OdometryOptions& options, const scenarios::MethodInfo& info) {
+bool has_parameter(const scenarios::MethodInfo& info, std::string_view name) {
+  return std::ranges::count(info.parameters, name, &sim::Parameter::name) > 0;
+}
+
+std::vector<std::string> parameter_texts(const OdometryOptions& options, const scenarios::MethodInfo& info,
+                                         bool states_lidar_pose) {
   std::vector<std::string> texts = options.parameters;
+  const auto assume = [&](const std::string& name, double value) {
+    const std::string parameter = full_name(info) + "." + name + "=";
+    const bool given = std::ranges::any_of(texts, [&](const std::string& text) { return text.starts_with(parameter); });
+    if (!given && has_parameter(info, name)) texts.push_back(fmt::format("{}{}", parameter, value));
+  };
+  if (!states_lidar_pose) {
+    assume("mount_sigma_m", kAssumedLidarSigma_m);
+    assume("mount_sigma_rad", kAssumedLidarSigma_rad);
+  }
   if (options.own_body_m.empty()) return texts;
   const char* const names[] = {"own_body_min_x_m", "own_body_min_y_m", "own_body_min_z_m",
                                "own_body_max_x_m", "own_body_max_y_m", "own_body_max_z_m"};
-  const bool in_mapper = std::ranges::count(info.parameters, "mapping_own_body_min_x_m", &sim::Parameter::name) > 0;
+  const bool in_mapper = has_parameter(info, "mapping_own_body_min_x_m");
   for (std::size_t k = 0; k < std::size(names); ++k)
     texts.push_back(
         fmt::format("{}.{}{}={}", full_name(info), in_mapper ? "mapping_" : "", names[k], options.own_body_m[k]));
@@ -178,6 +192,10 @@ void print_notes(const Session& session, const OpenRecording& recording, const E
     session.note(
         "in a degenerate sweep, the lidar determines the pose in some directions only; in the other directions, the "
         "pose is predicted from the IMU and its covariance is larger");
+  if (estimate.health.contains("lidar_calibration_replaced"))
+    session.note(
+        "the pose of the lidar (--T-body-lidar or /tf_static) or the clock of the lidar contradicts the recording; the "
+        "program used the pose and time offset that it estimated from the recording");
   for (const Repair& repair : recording.repairs)
     session.note(
         fmt::format("the program set the option {} {}: {}", repair.option.name, repair.option.value, repair.cause));
@@ -198,7 +216,8 @@ int run_odometry(const Session& session, const OdometryOptions& options) {
   if (!session.json) session.print({found_table(found)}, {});
   const scenarios::MethodInfo& info = method.info;
   const scenarios::MethodPointer chosen[] = {scenarios::unowned(method)};
-  const std::vector<scenarios::Method> methods = scenarios::with_parameters(chosen, parameter_texts(options, info));
+  const std::vector<scenarios::Method> methods =
+      scenarios::with_parameters(chosen, parameter_texts(options, info, states_lidar_pose(found)));
   Estimate estimate;
   const double run_s = run_with_progress(session, methods.front(), sensors, estimate);
   scenarios::write_estimate(options.folder, info.name, info.kind, estimate, scenarios::digest(sensors, nullptr),

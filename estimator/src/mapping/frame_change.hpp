@@ -36,7 +36,7 @@ class PosesBeforeChange {
 
  private:
   Eigen::Isometry3d T_prior_map_world_;
-  Eigen::Vector3d last_M_m_;                      // position of the last pose
+  Eigen::Vector3d last_M_m_;                       // position of the last pose
   Eigen::Matrix<double, 6, 6> last_covariance_M_;  // covariance of the last pose
 };
 

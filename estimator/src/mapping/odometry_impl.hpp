@@ -105,8 +105,8 @@ struct LidarInertialOdometry::Impl {
   mapping::LagWindow window;
   mapping::LocalMap map;
   mapping::WorldCovariance world_covariance;
-  std::optional<mapping::DeadReckoning> alternative;  // alternative pose, see DeadReckoning
-  mapping::MapLocaliser localiser;                    // localiser in a prior map, if any
+  std::optional<mapping::DeadReckoning> alternative;                    // alternative pose, see DeadReckoning
+  mapping::MapLocaliser localiser;                                      // localiser in a prior map, if any
   std::optional<mapping::PosesBeforeChange> poses_before_localisation;  // empty before the localisation
   mapping::SweepScratch sweep_scratch;
 };

@@ -51,6 +51,8 @@ struct MappedRecording {
   /// distance between the last calibration and the stated calibration (LidarImuCalibrationPrior::distance_in_sigmas)
   double calibration_deviations = 0.0;
   bool calibration_converged = false;
+  /// The stated calibration contradicts the recording, and the last pass started from the estimated calibration.
+  bool calibration_replaced = false;
 
   /// The estimated calibration differs from the stated calibration by more than the stated uncertainty allows.
   bool calibration_is_off() const;
@@ -61,10 +63,11 @@ struct MappedRecording {
 /// If the IMU covers most of the last sweep, the sweep is cut at the last sample.
 MappedRecording map_in_one_pass(const MappingInput& input, const LidarInertialOdometry::Params& params);
 
-/// Processes a recording until the lidar's calibration has converged. The first pass estimates the calibration. The
-/// last pass starts from the estimated calibration and builds a consistent map. If the calibration changes by more than
-/// its stated uncertainty allows, another pass starts from the new value, at most three times. Passes also end if more
-/// than one sweep in five is rejected, because such a pass does not determine the calibration.
+/// Processes a recording until the lidar's calibration has converged: mapping.md, "Second pass". The first pass
+/// estimates the calibration. The last pass starts from the estimated calibration and builds a consistent map. If the
+/// first pass contradicts the stated calibration, the mounting counts as uncertain in further passes. If the calibration
+/// changes by more than its uncertainty allows, another pass starts from the new value, at most three times. Passes also
+/// end if more than one sweep in five is rejected, because such a pass does not determine the calibration.
 MappedRecording map_with_calibration(const MappingInput& input, const LidarInertialOdometry::Params& params);
 
 LidarScale find_sweep_scale(std::span<const ImuSample> samples, const MappedRecording& mapped, double gravity_m_s2);
