@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <span>
 #include <vector>
 
 #include "tumble/common/parameters.hpp"
@@ -135,10 +134,6 @@ class RollingSmoother {
   using EstimateCallback = std::function<void(const RollingEstimate&)>;
   void finish(State& state, const EstimateCallback& take) const;
   void finish(State& state, std::vector<RollingEstimate>& out) const;
-
-  /// Smooths all estimates with externally known contact modes. `known` contains one contact mode per sample of a run
-  /// that was processed with kWholeRecordingLag.
-  void finish(std::span<const RollingMode> known, State& state, const EstimateCallback& take) const;
 
  private:
   using ModePath = std::vector<rolling::ModePathNode>;
