@@ -208,11 +208,7 @@ RollingSmoother::ModePath RollingSmoother::most_probable_path(const State& state
 void RollingSmoother::smooth_window(const ModePath& path, std::size_t emitted, State& state,
                                     const EstimateCallback& take) const {
   if (state.samples.empty()) return;
-  std::optional<rolling::FinalSmoothingPass::Distance> distance;
-  if (emitted > path.size() && params_.known_distance_m > 0.0) {
-    distance = {params_.known_distance_m, params_.known_distance_sigma_m};
-  }
-  const auto owned_pass = std::make_unique<rolling::FinalSmoothingPass>(params_.filter, state.samples, path, distance);
+  const auto owned_pass = std::make_unique<rolling::FinalSmoothingPass>(params_.filter, state.samples, path);
   rolling::FinalSmoothingPass& pass = *owned_pass;
   const auto start = std::make_unique<rolling::SmoothingCheckpoint>();
   start_window(params_.filter, state, *start);
