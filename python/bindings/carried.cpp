@@ -57,10 +57,6 @@ void bind_smoother(nb::module_& m) {
       .def_ro("iterations", &Report::iterations)
       .def_ro("converged", &Report::converged)
       .def_ro("cost", &Report::cost)
-      .def_ro(
-          "hand_acceleration_ratio", &Report::mean_hand_acceleration_ratio,
-          "largest mean acceleration of the hand over 0.25 s, divided by the assumed standard deviation; 2 or more\n"
-          "indicates a thrown body or violent hand-held motion")
       .def_ro("revolutions_tested", &Report::revolutions_tested)
       .def_ro("revolutions_corrected", &Report::revolutions_corrected)
       .def_ro("revolutions_ambiguous", &Report::revolutions_ambiguous,

@@ -19,7 +19,7 @@ bool unusable_axis_count(const AngularRateReport& report, const AngularRateState
   return rate.clipped_axes != 0 || report.suspected_saturation_axes[k] != 0;
 }
 
-/// See carried.md (C38). The readings of a slow accelerometer are older than the rates.
+/// See carried.md (C37). The readings of a slow accelerometer are older than the rates.
 std::vector<ImuSample> interpolate_forces(std::span<const ImuSample> samples) {
   std::vector<ImuSample> out(samples.begin(), samples.end());
   const std::vector<Eigen::Vector3d> forces = interpolated_forces(samples);
@@ -143,7 +143,7 @@ bool MotionRegimeSmoother::estimate_hand_held(std::span<const ImuSample> samples
   return any;
 }
 
-/// Returns the probability of hand-held motion near clipped or suspect readings, and 0 elsewhere: carried.md (C40).
+/// Returns the probability of hand-held motion near clipped or suspect readings, and 0 elsewhere: carried.md (C39).
 std::vector<double> MotionRegimeSmoother::segment_hand_held_probability(
     std::span<const RegimeProbabilities> probabilities, const AngularRateReport& report,
     std::span<const AngularRateState> rates) const {
