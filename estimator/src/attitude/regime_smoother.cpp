@@ -56,18 +56,9 @@ Status MotionRegimeSmoother::estimate(std::span<const ImuSample> samples,
   report = {};
   const Status status = rate_.estimate(samples, auxiliary_imus, rates, report.rate);
   if (!status.ok()) return status;
-  if (auxiliary_imus.empty()) {
-    join_regime_rates(samples, rates, report);
-  } else {
-    join_spin_rates(samples, true, rates, report);
-  }
+  if (auxiliary_imus.empty()) join_hand_held_rates(samples, rates, report);
+  join_spin_rates(samples, !auxiliary_imus.empty(), rates, report);
   return {};
-}
-
-void MotionRegimeSmoother::join_regime_rates(std::span<const ImuSample> samples, std::vector<AngularRateState>& rates,
-                                             Report& report) const {
-  join_hand_held_rates(samples, rates, report);
-  join_spin_rates(samples, false, rates, report);
 }
 
 void MotionRegimeSmoother::join_spin_rates(std::span<const ImuSample> samples, bool further_imus,
