@@ -13,6 +13,7 @@
 #include "scenarios/methods/robot_presets.hpp"
 #include "scenarios/methods/sample_times.hpp"
 #include "scenarios/methods/settings.hpp"
+#include "scenarios/methods/sphere_imus.hpp"
 #include "tumble/odometry/detail/imu_findings.hpp"
 #include "tumble/odometry/detail/merge_recordings.hpp"
 #include "tumble/odometry/expert_params.hpp"
