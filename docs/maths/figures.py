@@ -160,7 +160,7 @@ def rate_stream():
 
 
 def carried():
-    """Plots rates that differ by whole revolutions (C28), and the likelihoods of the regimes (C32 to C35)."""
+    """Plots rates that differ by whole revolutions (C28), and the likelihoods of the regimes (C31 to C34)."""
     figure, (turns, regimes) = panels(2)
     rail, span = 10.0, 0.6
     t = np.linspace(-0.2, span + 0.2, 400)

@@ -69,9 +69,8 @@ inline std::vector<double> answers(TumblingOdometry odometry) {
   out.add(odometry.mapper().calibration().T_IL.matrix());
   out.add(odometry.mapper().calibration().gravity_W_m_s2);
   out.add(odometry.mapper().calibration_covariance());
-  for (const std::size_t count :
-       {odometry.restart_count(), odometry.rejected_readings(), odometry.rejected_samples(), odometry.dropped_sweeps(),
-        odometry.sweeps_before_first_imu(), odometry.unused_odometer_readings(), odometry.unused_points()})
+  for (const std::size_t count : {odometry.restart_count(), odometry.rejected_readings(), odometry.rejected_samples(),
+                                  odometry.dropped_sweeps(), odometry.sweeps_before_first_imu()})
     out.add(static_cast<double>(count));
   return out.numbers;
 }

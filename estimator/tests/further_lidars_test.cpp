@@ -103,8 +103,6 @@ TEST(FurtherLidars, PointsJoinTheSweepAtTheirTime) {
       EXPECT_LT(of_lower.sweeps[k].points_used, 0.6 * double(of_whole.sweeps[k].points_used)) << "negative control";
     }
     EXPECT_LT(of_both.worst_m, of_whole.worst_m + 0.01);
-    // the second lidar starts half a sweep after the first lidar
-    EXPECT_LT(both.unused_points(), of_whole.sweeps.back().points_used);
   }
 }
 

@@ -174,7 +174,6 @@ TEST(TumblingRecording, FindsTheOdometerReadingThatALiveRunTakes) {
     EXPECT_EQ(reading_start_ns(*here), reading_start_ns(*expected));
   }
   EXPECT_GT(found, 2);
-  EXPECT_GT(taken.readings_spanning_two_sweeps(), 0u);
 }
 
 TEST(TumblingRecording, SavesItsResults) {

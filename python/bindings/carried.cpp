@@ -5,7 +5,6 @@
 #include <nanobind/stl/vector.h>
 
 #include <cstddef>
-#include <optional>
 #include <tuple>
 #include <vector>
 
@@ -14,12 +13,10 @@
 #include "parameters.hpp"
 #include "rails.hpp"
 #include "results.hpp"
-#include "streams.hpp"
+#include "trouble.hpp"
 #include "tumble/angular_velocity/detail/recording_check.hpp"
 #include "tumble/attitude/detail/clipped_readings.hpp"
-#include "tumble/attitude/detail/hand_held_pipeline.hpp"
 #include "tumble/attitude/detail/hand_held_smoother.hpp"
-#include "tumble/attitude/detail/hand_held_stream.hpp"
 
 namespace tumble::python {
 
@@ -60,10 +57,6 @@ void bind_smoother(nb::module_& m) {
       .def_ro("iterations", &Report::iterations)
       .def_ro("converged", &Report::converged)
       .def_ro("cost", &Report::cost)
-      .def_ro(
-          "hand_acceleration_ratio", &Report::mean_hand_acceleration_ratio,
-          "largest mean acceleration of the hand over 0.25 s, divided by the assumed standard deviation; 2 or more\n"
-          "indicates a thrown body or violent hand-held motion")
       .def_ro("revolutions_tested", &Report::revolutions_tested)
       .def_ro("revolutions_corrected", &Report::revolutions_corrected)
       .def_ro("revolutions_ambiguous", &Report::revolutions_ambiguous,
@@ -91,63 +84,10 @@ void bind_smoother(nb::module_& m) {
       .def_static("parameters", [] { return list_fields(HandHeldSmoother::Params{}); });
 }
 
-/// The stream makes one iteration per node and ignores these parameters.
-const std::vector<const char*> kUnusedParameters = {"iterations_max"};
-
-void bind_stream(nb::module_& m) {
-  using Live = Streaming<HandHeldPipeline>;
-  using Object = Guarded<Live>;
-  nb::class_<Object> bound(
-      m, "HandHeldRateStream",
-      "The streaming form of HandHeldSmoother: returns each rate when its sample is lag_s old.\n"
-      "The stream uses the rails detected in the readings so far.\n\n"
-      "HandHeldRateStream(gyro_range_rad_s=None, accel_range_m_s2=None, **options): see parameters().");
-  bound
-      .def(
-          "__init__",
-          [](Object* self, const nb::kwargs& options) {
-            Keywords keywords("HandHeldRateStream", options);
-            HandHeldPipeline::Params params;
-            read_ranges(keywords, params.clipping_finder.clipping.axis_limit_params);
-            read_fields(keywords, params.stream, kUnusedParameters);
-            keywords.done();
-            new (self) Object(Live(params));
-          },
-          nb::arg("options"), takes_options())
-      .def(
-          "add_imu",
-          [](Object& self, const ArrayLike& time_ns, const ArrayLike& gyro, const ArrayLike& accel,
-             const ArrayLike& clip_flags) {
-            std::optional<AngularRateState> smoothed;
-            const auto step = [&smoothed](Live& at, const ImuSample& sample, Rates& out) {
-              const Status status = at.filter.push(sample, *at.state, smoothed);
-              if (smoothed) out.rows.push_back(*smoothed);
-              return status;
-            };
-            return feed<Rates>(self, samples_of(time_ns, gyro, accel, clip_flags), step);
-          },
-          nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"), nb::arg("clip_flags") = nb::none(),
-          "Adds one sample or many. Returns the rates that became available, each lag_s old.")
-      .def(
-          "flush",
-          [](Object& self) {
-            Rates out;
-            self.run([&](Live& at) { at.filter.flush(*at.state, out.rows); });
-            return out;
-          },
-          "Returns the current estimates for the samples still in the window. The stream is unchanged.")
-      .def_prop_ro(
-          "failures", [](Object& self) { return self.run([](Live& at) { return at.state->stream.failures; }); },
-          "number of steps skipped because their equations were not positive definite")
-      .def_static("parameters", [] { return list_fields(HandHeldRateStream::Params{}, kUnusedParameters); });
-  bind_copy<Object>(bound);
-}
-
 }  // namespace
 
 void bind_carried(nb::module_& m) {
   bind_smoother(m);
-  bind_stream(m);
 }
 
 }  // namespace tumble::python

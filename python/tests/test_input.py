@@ -16,7 +16,6 @@ STREAMS = {
     "vqf": tumble.Vqf,
     "tumble": tumble.TumbleAttitude,
     "strapdown": tumble.Strapdown,
-    "carried": tumble.HandHeldRateStream,
     "rolling": lambda: tumble.RollingSmoother(radius_m=0.145, lag_s=0.2),
     "rolling_live": lambda: tumble.RollingFilter(radius_m=0.145),
 }

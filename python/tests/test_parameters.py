@@ -13,7 +13,7 @@ NEEDED = {
     "AngularRateStream": {"lever_arm_m": (0.0, 0.0, 0.0)},
     "MotionRegimeStream": {"lever_arm_m": (0.0, 0.0, 0.0)},
     "Saave": {"lever_arm_m": (0.0, 0.0, 0.0), "saturation_point_rad_s": 10.0},
-    "HandHeldSmoother": {}, "HandHeldRateStream": {}, "Vqf": {}, "TumbleAttitude": {}, "Strapdown": {}, "ImuDataSheet": {}, "LidarDataSheet": {},
+    "HandHeldSmoother": {}, "Vqf": {}, "TumbleAttitude": {}, "Strapdown": {}, "ImuDataSheet": {}, "LidarDataSheet": {},
     "RollingSmoother": {"radius_m": 0.145},
     "RollingFilter": {"radius_m": 0.145},
     "RollingOdometry": {"units": [(tumble.sheets.phidget1044(), np.eye(4))], "radius_m": 0.145},

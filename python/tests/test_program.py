@@ -138,60 +138,6 @@ def test_rolling_filter(slip, estimates, recordings, tmp_path):
     assert late.started_in_motion and late.gaps == 1
 
 
-def test_carried_stream(twirl):
-    """With a long lag, the stream agrees with the batch smoother. With the default lag, it is far more accurate than the clipped gyro.
-    The stream detects all saturation levels."""
-    imu = twirl.imus[0]
-    samples, truth = [rows[:2000] for rows in imu.samples], twirl.truth.imu_rate[0][:2000]
-    stated = {"gravity_m_s2": twirl.gravity_m_s2, "gyro_range_rad_s": imu.gyro_range_rad_s, "accel_range_m_s2": imu.accel_range_m_s2}
-    batch, _, _ = tumble.HandHeldSmoother(**stated).estimate(*samples)
-    clipped = batch.clipped_axes != 0
-    assert np.count_nonzero(clipped) > 100
-
-    def through(**options):
-        stream = tumble.HandHeldRateStream(period_s=imu.period_ns * 1e-9, **(stated | options))
-        rates = tumble.Rates.joined([stream.add_imu(*samples), stream.flush()])
-        assert np.array_equal(rates.time_ns, samples[0]) and stream.failures == 0
-        return rates
-
-    off = lambda rate, other: np.median(np.linalg.norm(rate - other, axis=1)[clipped])
-    own, long = through(), through(lag_s=1.5, window_s=1.8)
-    raw = off(samples[1], truth)
-    assert off(own.rate, truth) < 0.35 * raw
-    assert off(long.rate, batch.rate) < 0.1 * raw  # the bound allows for different numbers of turns in a few segments
-    assert np.count_nonzero((own.clipped_axes != 0) != clipped) <= 0.05 * np.count_nonzero(clipped)
-    within = np.abs(own.rate - truth) < 3.0 * np.sqrt(own.covariance.diagonal(axis1=1, axis2=2))
-    assert within[clipped].mean() > 0.9
-    unstated = through(gyro_range_rad_s=None, accel_range_m_s2=None)
-    assert off(unstated.rate, truth) < 0.35 * raw, "rails need no data sheet"
-    believing = through(rest_rest_s=0.2, jerk_rad_s3_sqrts=20.0)
-    assert not np.array_equal(believing.rate, own.rate), "numbers arrive"
-
-
-def test_carried_stream_hears_flags_and_goes_on_after_a_refusal(twirl):
-    imu = twirl.imus[0]
-    samples = [rows[:400] for rows in imu.samples]
-    flags = samples[3].copy()
-    flags[200:210] = 2
-    expected = tumble.HandHeldRateStream().add_imu(*samples[:3], flags)
-    assert ((expected.clipped_axes[200:210] & 2) != 0).all()
-    whole, refused = tumble.HandHeldRateStream(), tumble.HandHeldRateStream()
-    expected = whole.add_imu(*samples)
-    first = refused.add_imu(*(rows[:300] for rows in samples))
-    for time_ns, gyro, trouble in ((int(samples[0][299]), samples[1][300], "time_order"), (int(samples[0][299]) + 3 * 10**9, samples[1][300], "gap"),
-                                   (int(samples[0][300]), np.full(3, np.nan), "non_finite")):
-        with pytest.raises(tumble.TumbleError) as caught:
-            refused.add_imu(time_ns, gyro, samples[2][300])
-        assert caught.value.trouble == trouble and caught.value.index == 0 and len(caught.value.so_far) == 0
-    rest = refused.add_imu(*(rows[300:] for rows in samples))
-    assert np.array_equal(tumble.Rates.joined([first, rest]).rate, expected.rate), "a sample that was refused left its mark"
-    with pytest.raises(tumble.TumbleError) as caught:
-        tumble.HandHeldRateStream(lag_s=0.6)
-    assert (caught.value.trouble, caught.value.field) == ("out_of_range", "window_s")
-    with pytest.raises(tumble.TumbleError, match="iterations_max"):
-        tumble.HandHeldRateStream(iterations_max=3)
-
-
 def test_rolling_smoother_over_the_run(slip):
     imu = slip.imus[0]
     smoother = tumble.RollingSmoother(radius_m=slip.sphere_radius_m, lever_arm_m=imu.lever_arm_m, lever_arm_sigma_m=6e-3)

@@ -43,9 +43,6 @@ struct MethodInfo {
   bool applies_to(const Subject& subject) const { return why_not(subject).empty(); }
   /// true: the method is the baseline for methods of its kind, and does not handle saturation or slip.
   bool baseline = false;
-  /// true: the method can start from a saved calibration of the rig (lever arm, biases, inertia ratios), and saves its
-  /// new calibration.
-  bool calibrates_rig = false;
   std::string version = {};  ///< for external methods
 };
 

@@ -13,6 +13,7 @@
 #include "scenarios/methods/robot_presets.hpp"
 #include "scenarios/methods/sample_times.hpp"
 #include "scenarios/methods/settings.hpp"
+#include "scenarios/methods/sphere_imus.hpp"
 #include "tumble/odometry/detail/imu_findings.hpp"
 #include "tumble/odometry/detail/merge_recordings.hpp"
 #include "tumble/odometry/expert_params.hpp"
@@ -46,12 +47,12 @@ const Settings<RollingOdometry::Params>& rolling_whole_settings() {
 }
 
 const Settings<RollingOdometry::Params>& rolling_lag_settings() {
-  static const auto all = rolling_settings(kRollingLagS, {"rolling_known_distance_*"});
+  static const auto all = rolling_settings(kRollingLagS, {});
   return all;
 }
 
 const Settings<RollingOdometry::Params>& rolling_live_settings() {
-  static const auto all = rolling_settings(0.0, {"lag_s", "rolling_known_distance_*"});
+  static const auto all = rolling_settings(0.0, {"lag_s"});
   return all;
 }
 
@@ -234,7 +235,7 @@ bool prepare(const sim::Sensors& sensors, Prepared& out, Estimate& estimate) {
 Settings<RollingSmoother::Params> oracle_settings(std::vector<std::string> fixed) {
   RollingSmoother::Params params;
   params.filter.radius_m = presets::kSphereRadius_m;
-  fixed.insert(fixed.end(), {"lag_s", "rate_max_hz", "known_distance_*"});
+  fixed.insert(fixed.end(), {"lag_s", "rate_max_hz"});
   return Settings<RollingSmoother::Params>(
       params, {.stated = {"radius_m", "gravity_m_s2", "lever_arm_x_m", "lever_arm_y_m", "lever_arm_z_m",
                           "gyro_range_rad_s", "accel_range_m_s2", "gyro_bias_sigma_rad_s", "accel_bias_sigma_m_s2",

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/rate_tumble.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "scenarios/errors.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/rate_baselines.hpp"
@@ -64,59 +61,6 @@ const Settings<AngularRateSmoother::Params>& rate_tumble_settings() {
   return all;
 }
 
-const CalibratedRig* RigCalibrationUse::found() const {
-  const bool more = of_batch && of_batch->only_saturation_limits && of_stream && !of_stream->only_saturation_limits;
-  if (of_batch && !more) return &*of_batch;
-  return of_stream ? &*of_stream : nullptr;
-}
-
-namespace {
-
-/// Returns false, and adds a health finding, if the saved calibration and the calibration that was estimated without it
-/// cannot belong to one rig.
-bool may_be_of_this_rig(const CalibratedRig& given, const std::optional<CalibratedRig>& fresh, Estimate& result) {
-  constexpr double kDistanceMax = 2.0;  // standard deviations
-  if (!fresh || fresh->only_saturation_limits) return true;
-  const double distance = calibration_distance(given.calibration, fresh->calibration);
-  if (distance <= kDistanceMax) return true;
-  SensorHealth health;
-  health.add(HealthFinding::Kind::rig_calibration,
-             {ErrorCode::out_of_range,
-              "difference between the calibration in the --learnt file and the calibration of this run, in standard "
-              "deviations",
-              distance, kDistanceMax},
-             "imu");
-  add_finding(health.findings.front(), result);
-  return false;
-}
-
-}  // namespace
-
-Method calibrating_method(const Method& method, RigCalibrationUse& learning) {
-  const std::string name = full_name(method.info);
-  const bool batch = name == "rate/tumble";
-  if (!batch && name != "rate/tumble_lag") {
-    throw BadInput(fmt::format("method '{}' does not calibrate the rig; use 'rate/tumble' or 'rate/tumble_lag'", name));
-  }
-  Method out = method;
-  out.run = with_settings(
-      method.info, [batch, &learning](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-        const CalibratedRig* const start = learning.given ? &*learning.given : nullptr;
-        std::optional<CalibratedRig> rig;
-        const auto run = batch ? run_rate_tumble : run_rate_tumble_lag;
-        Estimate estimate = run(sensors, parameters, start, &rig);
-        bool of_this_rig = true;
-        if (start != nullptr && estimate.status.ok()) {
-          std::optional<CalibratedRig> fresh;
-          run(sensors, parameters, nullptr, &fresh);
-          of_this_rig = may_be_of_this_rig(*start, fresh, estimate);
-        }
-        if (rig && of_this_rig) (batch ? learning.of_batch : learning.of_stream) = rig;
-        return estimate;
-      });
-  return out;
-}
-
 MotionRegimeSmoother::Params regime_params(const sim::Sensors& sensors, const AngularRateSmoother::Params& rate) {
   MotionRegimeSmoother::Params out;
   out.rate = rate;
@@ -136,14 +80,13 @@ RecoveredRates recovered_readings(const sim::Sensors& sensors, std::span<const I
 
 namespace {
 
-Estimate rates_of_batch(const sim::Sensors& sensors, const sim::Values& parameters, const CalibratedRig* given,
-                        std::optional<CalibratedRig>* found) {
+Estimate rates_of_batch(const sim::Sensors& sensors, const sim::Values& parameters) {
   Estimate estimate;
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples, bridge::kAnyGapS);
   if (estimate.status.ok()) {
-    AngularRateSmoother::Params params = smoother_params(sensors.imus.front(), rate_tumble_settings(), parameters);
-    if (given != nullptr) apply_saved_calibration(*given, params);
+    const AngularRateSmoother::Params params =
+        smoother_params(sensors.imus.front(), rate_tumble_settings(), parameters);
     std::vector<AuxiliaryRecording> auxiliary_imus;
     estimate.status = auxiliary_recordings(sensors, auxiliary_imus);
     MotionRegimeSmoother::Report report;
@@ -154,8 +97,6 @@ Estimate rates_of_batch(const sim::Sensors& sensors, const sim::Values& paramete
       report_rates(report, estimate);
       report_gaps(samples, estimate);
       inflate_rates(check_imu(sensors, samples, estimate.rates, carried_share(report), estimate), samples, estimate);
-      if (std::optional<CalibratedRig> rig = calibrated_rig(report.rate, given, params.model); rig && found != nullptr)
-        *found = std::move(rig);
     }
   }
   count_sources(estimate.rates, estimate.health);
@@ -163,14 +104,6 @@ Estimate rates_of_batch(const sim::Sensors& sensors, const sim::Values& paramete
 }
 
 }  // namespace
-
-Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const CalibratedRig* given,
-                         std::optional<CalibratedRig>* found) {
-  return without_outliers(sensors, [&](const sim::Sensors& kept) {
-    return with_sample_times(
-        kept, [&](const sim::Sensors& timed) { return rates_of_batch(timed, parameters, given, found); });
-  });
-}
 
 Method rate_tumble() {
   return make_method(
@@ -183,10 +116,11 @@ Method rate_tumble() {
        .ours = true,
        .source = "ours: extends Deschenes et al., Saturation-Aware Angular Velocity Estimation, ICRA 2024",
        .settings = {&rate_tumble_settings()},
-       .robots = {"rig", "pendulum", "sphere"},
-       .calibrates_rig = true},
+       .robots = {"rig", "pendulum", "sphere"}},
       [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-        return run_rate_tumble(sensors, parameters, nullptr, nullptr);
+        return without_outliers(sensors, [&](const sim::Sensors& kept) {
+          return with_sample_times(kept, [&](const sim::Sensors& timed) { return rates_of_batch(timed, parameters); });
+        });
       });
 }
 
@@ -204,8 +138,7 @@ const Settings<MotionRegimeStream::Params>& rate_tumble_lag_settings() {
   return all;
 }
 
-MotionRegimeStream::Params stream_params(const sim::Sensors& sensors, const sim::Values& parameters,
-                                         const CalibratedRig* given) {
+MotionRegimeStream::Params stream_params(const sim::Sensors& sensors, const sim::Values& parameters) {
   const sim::ImuRecord& record = sensors.imus.front();
   MotionRegimeStream::Params params = rate_tumble_lag_settings().defaults();
   AngularRateStream::Params& rate = params.rate;
@@ -219,9 +152,6 @@ MotionRegimeStream::Params stream_params(const sim::Sensors& sensors, const sim:
   rate_tumble_lag_settings().apply(parameters, params);
   rate.lag_s = std::max(rate.lag_s, 2.0 * rate.period_s);
   params.hand_held.body.expert.gap_max_s = rate.kGapMax_s;
-  if (given == nullptr) return params;
-
-  apply_saved_calibration(*given, rate);
   return params;
 }
 
@@ -236,13 +166,12 @@ void restart_after_gap(MotionRegimeStream::Params& params, MotionRegimeStream& j
   all.rate.flight_sign_check = sense;
 }
 
-Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& parameters, const CalibratedRig* given,
-                         std::optional<CalibratedRig>* found) {
+Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& parameters) {
   Estimate estimate;
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples, bridge::kAnyGapS);
   if (!estimate.status.ok()) return estimate;
-  MotionRegimeStream::Params params = stream_params(sensors, parameters, given);
+  MotionRegimeStream::Params params = stream_params(sensors, parameters);
   std::vector<AuxiliaryRecording> recordings;
   estimate.status = auxiliary_recordings(sensors, recordings);
   if (!estimate.status.ok()) return estimate;
@@ -270,16 +199,13 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   joined.flush(all, estimate.rates);
   report_gaps(samples, estimate);
   const AngularRateStream::State& state = all.rate;
-  estimate.health["calibration_at_prior"] = is_at_prior(stream, state) ? 1.0 : 0.0;
+  estimate.health["calibration_at_prior"] = stream.is_at_prior(state) ? 1.0 : 0.0;
   estimate.health["accel_delay_s"] = stream.sensor_errors(state).errors.accel_delay_s;
   report_rails(state.clipping_state.known_limits, estimate.health);
   const std::optional<double> carried_share =
       all.reported_sample_count > 0
           ? std::optional(all.regime_probability_sum.hand_held / static_cast<double>(all.reported_sample_count))
           : std::nullopt;
-  if (estimate.status.ok() && found != nullptr) {
-    if (std::optional<CalibratedRig> rig = calibrated_rig(stream, params.rate, given, state)) *found = std::move(rig);
-  }
   if (estimate.status.ok()) {
     (void)check_imu(sensors, samples, estimate.rates, carried_share, estimate);
   }
@@ -289,14 +215,6 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
 
 }  // namespace
 
-Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& parameters, const CalibratedRig* given,
-                             std::optional<CalibratedRig>* found) {
-  return without_outliers(sensors, [&](const sim::Sensors& kept) {
-    return with_sample_times(
-        kept, [&](const sim::Sensors& timed) { return rates_of_stream(timed, parameters, given, found); });
-  });
-}
-
 Method rate_tumble_lag() {
   return make_method(
       {.name = "tumble_lag",
@@ -304,10 +222,11 @@ Method rate_tumble_lag() {
        .doc = "Runs the smoother of rate/tumble as a stream: the same factors in a sliding window, with a fixed lag.",
        .ours = true,
        .settings = {&rate_tumble_lag_settings()},
-       .robots = {"rig", "pendulum", "sphere"},
-       .calibrates_rig = true},
+       .robots = {"rig", "pendulum", "sphere"}},
       [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
-        return run_rate_tumble_lag(sensors, parameters, nullptr, nullptr);
+        return without_outliers(sensors, [&](const sim::Sensors& kept) {
+          return with_sample_times(kept, [&](const sim::Sensors& timed) { return rates_of_stream(timed, parameters); });
+        });
       });
 }
 

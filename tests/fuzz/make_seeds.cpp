@@ -15,7 +15,6 @@
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/estimates/estimate_file.hpp"
 #include "scenarios/estimates/map_file.hpp"
-#include "scenarios/methods/rig_calibration_file.hpp"
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/clouds/cloud_file.hpp"
 #include "scenarios/recordings/export.hpp"
@@ -169,10 +168,6 @@ void write_documents(const path& folder, const path& scratch) {
   put_text(in(folder, "gate_run") / "small",
            "scenario,kind,method,metric,1,2\nhill,slam,tumble,status,ok,failed\nhill,slam,tumble,map_overlap,0.75,\n");
 
-  CalibratedRig rig;
-  rig.calibration.covariance = 0.7e-4 * RigConstants::Matrix::Identity();
-  rig.saturation_limits = {10.5, std::nullopt, 10.4, std::nullopt, std::nullopt, std::nullopt};
-  write_rig_calibration(in(folder, "learnt") / "small", rig);
   const std::vector<MapPoint> map(3, MapPoint{{1, 2, 3}, {0, 0, 1}, 0.1f});
   write_map(in(folder, "map_ply") / "small", map);
 

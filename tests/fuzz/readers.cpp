@@ -14,7 +14,6 @@
 #include "scenarios/estimates/estimate_file.hpp"
 #include "scenarios/estimates/map_file.hpp"
 #include "scenarios/external/external_description.hpp"
-#include "scenarios/methods/rig_calibration_file.hpp"
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/clouds/cloud_file.hpp"
 #include "scenarios/recordings/clouds/import_sweeps.hpp"
@@ -143,9 +142,6 @@ void data_sheet(const path& file) {
   parse_data_sheet(read_text_file(file), file.string(), Registry::of_simulation());
 }
 
-void learnt(const path& file) {
-  read_rig_calibration(file);
-}
 void map_ply(const path& file) {
   read_map(file);
 }
@@ -203,7 +199,6 @@ constexpr std::array kReaders = {
     Reader{"gate", "a.yaml", gate},
     Reader{"gate_run", "a.csv", gate_accepted},
     Reader{"data_sheet", "a.yaml", data_sheet},
-    Reader{"learnt", "a.json", learnt},
     Reader{"map_ply", "map.ply", map_ply},
     Reader{"estimate_tum", "a.tum", estimate_tum},
     Reader{"estimate_rates", "rates.csv", estimate_rates},

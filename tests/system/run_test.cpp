@@ -155,33 +155,6 @@ TEST(Run, PrintsATablePerKind) {
   EXPECT_THAT(ended.out, HasSubstr("digest"));
 }
 
-TEST(Run, TheCalibrationOfTheRigIsUsedInTheNextRun) {
-  const fs::path file = test_folder() / "rig.json";
-  const auto run_with = [&](const std::string& method) {
-    const Ended ended = run_program({"run", shared_scenario("hill"), "--seed", "1", "--method", "rate/" + method,
-                                     "--learnt", file.string(), "--json"});
-    EXPECT_EQ(ended.status, 0) << ended.err;
-    return json_of(ended)["outcomes"][0]["digest"].get<std::string>();
-  };
-  const std::string fresh = run_with("tumble_lag");
-  ASSERT_TRUE(fs::exists(file));
-  const std::string of_stream = read_file(file);
-  EXPECT_NE(run_with("tumble_lag"), fresh) << "the file counts";
-  EXPECT_NE(read_file(file), of_stream) << "written anew";
-  EXPECT_EQ(run_program({"run", shared_scenario("hill"), "--method", "rate/saave", "--learnt", file.string()}).status,
-            2);
-}
-
-TEST(Run, AMissingCalibrationOfTheRigIsReported) {
-  const fs::path file = test_folder() / "rig.json";
-  const Ended ended =
-      run_program({"run", "stroll", "--seed", "1", "--method", "rate/tumble_lag", "--learnt", file.string()});
-  EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_FALSE(fs::exists(file));
-  EXPECT_THAT(ended.err,
-              HasSubstr("rig.json: the file was not written, because the run produced no calibration of the rig"));
-}
-
 TEST(Render, WritesAPictureOfARecordingWithItsEstimates) {
   const fs::path run = shared_run("roll");
   const fs::path png = test_folder() / "roll.png";

@@ -6,7 +6,6 @@
 
 #include <cstdio>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "system/program.hpp"
 #include "tests/tree.hpp"
@@ -16,7 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 void expect_one_line(const Ended& ended, const std::string& says) {
   EXPECT_EQ(ended.status, 2) << ended.err;
@@ -172,43 +170,6 @@ TEST(ErrorCode, AGapIsSaidWithItsPlace) {
   const Ended ended = run_program({"estimate", recording, "--method", "rate/raw", "-o", (folder / "e").string()});
   EXPECT_EQ(ended.status, 2);
   EXPECT_THAT(ended.err, HasSubstr("imu has no readings between 1.990 and 3.500 s"));
-}
-
-// the error occurs before the run, of which no file remains that looks finished
-TEST(ErrorCode, WhatIsLearntHasAPlaceOrNothingRuns) {
-  const fs::path folder = test_folder();
-  const std::string recording = (shared_run("hill") / "recording.h5").string(), made = (folder / "e").string();
-  expect_one_line(run_program({"estimate", recording, "--method", "rate/tumble", "--learnt",
-                               (folder / "none" / "rig.json").string(), "-o", made}),
-                  "none/rig.json: cannot be written");
-  EXPECT_TRUE(fs::is_empty(folder)) << fs::directory_iterator(folder)->path();
-  expect_one_line(run_program({"run", "hill", "--method", "rate/tumble", "--learnt",
-                               (folder / "none" / "rig.json").string(), "-o", made}),
-                  "none/rig.json: cannot be written");
-  EXPECT_TRUE(fs::is_empty(folder)) << fs::directory_iterator(folder)->path();
-  // a path in the folder that the run makes is accepted
-  EXPECT_EQ(run_program({"estimate", recording, "--method", "rate/tumble", "--learnt", made + "/rig.json", "-o", made})
-                .status,
-            0);
-  ASSERT_TRUE(fs::exists(folder / "e" / "rig.json"));
-}
-
-// the method trusts calibration learnt from another rig to millimetres, which makes saturated rates wrong
-TEST(ErrorCode, WhatWasLearntOfAnotherRigIsACaution) {
-  const fs::path folder = test_folder();
-  const std::string recording = (shared_run("hill") / "recording.h5").string(), file = (folder / "rig.json").string();
-  const auto estimate = [&](const std::string& out) {
-    return run_program(
-        {"estimate", recording, "--method", "rate/tumble", "--learnt", file, "-o", (folder / out).string()});
-  };
-  ASSERT_EQ(estimate("first").status, 0);
-  EXPECT_THAT(estimate("again").err, Not(HasSubstr("another rig")));
-  nlohmann::json rig = nlohmann::json::parse(read_file(file));
-  rig["lever_arm_m"][0] = rig["lever_arm_m"][0].get<double>() + 0.3;
-  std::ofstream(file) << rig;
-  const Ended other = estimate("other");
-  EXPECT_EQ(other.status, 0) << other.err;
-  EXPECT_THAT(other.err, HasSubstr("from the lever arm of the recording, so the file may belong to another rig"));
 }
 
 TEST(ErrorCode, AFrameIsCheckedWithoutATrajectoryToo) {

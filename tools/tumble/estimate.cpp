@@ -18,7 +18,6 @@
 #include "scenarios/sweep/evaluate.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/chosen_method.hpp"
-#include "tools/tumble/learnt_file.hpp"
 #include "tools/tumble/prior_map_options.hpp"
 #include "tools/tumble/verbs.hpp"
 
@@ -33,7 +32,6 @@ struct EstimateOptions {
   std::string method;
   std::vector<std::string> parameters;
   std::filesystem::path folder;
-  std::filesystem::path learnt;
   PriorMapOptions prior_map;
 };
 
@@ -76,16 +74,10 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
   const sim::Sensors sensors = scenarios::read_sensors(options.recording);
   const scenarios::MethodPointer chosen = chosen_method(options.method, {sensors.robot, !sensors.lidars.empty()});
   const scenarios::Method& method = *chosen;
-  if (!options.learnt.empty() && !method.info.calibrates_rig) {
-    throw BadInput(fmt::format("--learnt applies only to {}; '{}' does not calibrate the rig",
-                               LearntFile::learning_methods(), full_name(method.info)));
-  }
-  LearntFile learnt(options.learnt);
-  const scenarios::Method learning = learnt.wrap(with_prior_map(method, options.prior_map));
-  const scenarios::MethodPointer selected[] = {scenarios::unowned(learning)};
+  const scenarios::Method asked = with_prior_map(method, options.prior_map);
+  const scenarios::MethodPointer selected[] = {scenarios::unowned(asked)};
   const std::vector<scenarios::Method> methods = scenarios::with_parameters(selected, options.parameters);
   scenarios::OutputFolder folder(options.folder);
-  learnt.require_place();
   note_time_limits(session, std::span(&options.method, 1));
   scenarios::Estimate estimate = run_method(methods.front(), sensors);
   const bool with_digest = scenarios::states_digest(options.recording);
@@ -93,7 +85,6 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
   scenarios::write_estimate(options.folder, method.info.name, method.info.kind, estimate,
                             scenarios::digest(sensors, nullptr), scenarios::read_info(options.recording).origin_ns);
   if (!estimate.map.empty()) scenarios::write_prior_map(options.folder / scenarios::kPriorMapName, estimate.map);
-  learnt.keep(session);
   folder.keep();
 
   scenarios::Outcome outcome;
@@ -107,7 +98,6 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
   session.print({summary(estimate, outcome.status)}, document);
   session.note(fmt::format("--json and {1} contain all {0} health counters", estimate.health.size(),
                            (options.folder / "estimate.json").string()));
-  if (const std::string caution = learnt.caution(sensors); !caution.empty()) session.note(caution);
   if (!options.prior_map.map.empty()) session.note(localisation_text(options.prior_map, estimate));
   if (!with_digest) session.note("the recording contains no digest of its data, so the program cannot detect damage");
   for (const HealthFinding& each : estimate.faults.findings)
@@ -128,9 +118,6 @@ Action declare_estimate(VerbOptions& verb, const Session& session) {
            "option for more parameters ('tumble list methods NAME' lists them)")
       .one_at_a_time();
   verb.add("-o,--output", options->folder, "writes the estimate to this folder").required();
-  verb.add("--learnt", options->learnt,
-           "starts 'rate/tumble' or 'rate/tumble_lag' from the calibration of the rig in this FILE.json, if the file "
-           "exists; at the end writes the calibration of this run to the file");
   declare_prior_map(verb, options->prior_map);
   return [&session, options] { return run_estimate(session, *options); };
 }

@@ -19,7 +19,6 @@
 #include "tools/replay/page.hpp"
 #include "tools/replay/run_replay.hpp"
 #include "tools/tumble/arguments.hpp"
-#include "tools/tumble/learnt_file.hpp"
 #include "tools/tumble/recording_info.hpp"
 #include "tools/tumble/score_tables.hpp"
 #include "tools/tumble/verbs.hpp"
@@ -36,12 +35,10 @@ struct RunOptions {
   std::string vary;
   int threads = 1;
   fs::path folder;
-  fs::path learnt;
 };
 
 bool is_bare(const RunOptions& options) {
-  return options.methods.empty() && options.folder.empty() && options.learnt.empty() && options.parameters.empty() &&
-         options.vary.empty();
+  return options.methods.empty() && options.folder.empty() && options.parameters.empty() && options.vary.empty();
 }
 
 /// Returns the scenario's name, or the first of NAME_2, NAME_3, ... that does not exist as a folder.
@@ -162,20 +159,11 @@ std::uint64_t asked_seed(const RunOptions& options, const scenarios::Scenario& s
   return any_draw ? 1 : seed_of(scenario, options.seed);
 }
 
-std::vector<scenarios::Method> asked_methods(const RunOptions& options, const scenarios::Scenario& scenario,
-                                             LearntFile& learnt) {
-  const auto selected = select_methods(options.methods);
-  if (!options.learnt.empty() &&
-      std::none_of(selected.begin(), selected.end(), [](const auto& method) { return method->info.calibrates_rig; })) {
-    throw scenarios::BadInput(
-        fmt::format("--learnt applies only to {}, but none of these methods runs; name one with --method",
-                    LearntFile::learning_methods()));
-  }
+std::vector<scenarios::MethodPointer> asked_methods(const RunOptions& options, const scenarios::Scenario& scenario) {
+  std::vector<scenarios::MethodPointer> selected = select_methods(options.methods);
   if (!options.methods.empty() && scenarios::applicable(selected, scenarios::subject_of(scenario)).empty())
     scenarios::require_applies(*selected.front(), scenario);
-  std::vector<scenarios::Method> out;
-  for (const scenarios::MethodPointer& method : selected) out.push_back(learnt.wrap(*method));
-  return out;
+  return selected;
 }
 
 void print_result(const Session& session, const scenarios::RunResult& result, std::uint64_t seed) {
@@ -200,12 +188,10 @@ int run(const Session& session, const RunOptions& given) {
   const bool first = is_bare(given);
   const RunOptions options = first ? first_run(given, scenario) : given;
   const std::uint64_t seed = asked_seed(options, scenario);
-  LearntFile learnt(options.learnt);
-  const std::vector<scenarios::Method> asked = asked_methods(options, scenario, learnt);
-  const std::vector<scenarios::Method> methods = scenarios::with_parameters(pointers(asked), options.parameters);
+  const std::vector<scenarios::MethodPointer> asked = asked_methods(options, scenario);
+  const std::vector<scenarios::Method> methods = scenarios::with_parameters(asked, options.parameters);
   std::optional<scenarios::OutputFolder> folder;
   if (!options.folder.empty()) folder.emplace(options.folder);
-  learnt.require_place();
 
   note_time_limits(session, options.methods);
   const scenarios::Setting setting = setting_of(data, options, seed);
@@ -214,12 +200,10 @@ int run(const Session& session, const RunOptions& given) {
   if (folder) {
     leave_files(options.folder, result);
     leave_pictures(options.folder, result);
+    folder->keep();
   }
-  learnt.keep(session);
-  if (folder) folder->keep();
   print_result(session, result, seed);
   say_troubles(session, result);
-  if (const std::string caution = learnt.caution(result.recording.sensors); !caution.empty()) session.note(caution);
   if (const std::string moving = end_in_motion(result.recording.truth); !moving.empty()) session.note(moving);
   if (folder)
     session.note(
@@ -259,9 +243,6 @@ Action declare_run(VerbOptions& verb, const Session& session) {
       "-o,--output", options->folder,
       "writes recording, estimates, pictures and replay to this folder; without --method, all methods that apply run "
       "[default: nothing is written; with only a scenario and a seed, a folder named after the scenario]");
-  verb.add("--learnt", options->learnt,
-           "starts 'rate/tumble' and 'rate/tumble_lag' from the calibration of the rig in this FILE.json, if the file "
-           "exists; at the end writes the calibration of this run to the file");
   verb.footer(
       "With only a scenario and a seed, the program runs 'tumble' and the baseline method of each kind, and writes all "
       "results to a folder with the scenario's name.");

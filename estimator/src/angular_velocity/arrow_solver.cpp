@@ -23,11 +23,6 @@ Conditional state_given_next_state(const Block& block, const Conditional* next) 
   return System::state_given_next_state(block, next);
 }
 
-// See rate_smoother.md (R35).
-Marginal marginal(const Conditional& conditional, const BorderMatrix& border_covariance) {
-  return System::marginal(conditional, border_covariance);
-}
-
 // See rate_smoother.md (R27).
 void eliminate_sensor_errors(const Block& block, ErrorMatrix& errors, ErrorMatrix* next, BorderErrors& border) {
   errors = (block.diagonal.lazyProduct(errors)).eval();

@@ -101,6 +101,11 @@ AngularRateStream::State AngularRateStream::start() const {
   return state;
 }
 
+bool AngularRateStream::is_at_prior(const State& state) const {
+  const RigConstants::Matrix before = start().rig_covariance;
+  return !(state.rig_covariance.topLeftCorner<3, 3>().trace() < before.topLeftCorner<3, 3>().trace());
+}
+
 Status AngularRateStream::push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
                                std::optional<AngularRateState>& out) const {
   out.reset();

@@ -56,23 +56,4 @@ SensingDirections sensing_directions(const SaturationPlanes& planes, double unkn
   return out;
 }
 
-// See rails.md (R54), (R55).
-SensingAxisClipping classify_clipping(const ImuSample& sample, const SaturationPlanes& planes) {
-  SensingAxisClipping out;
-  for (std::size_t j = 0; j < 3; ++j) {
-    const auto& rail = planes.sensing_axis[j];
-    if (!rail) continue;
-    for (const int sign : {-1, 1}) {
-      if (rail->is_saturated(sample.angular_velocity_rad_s, sign))
-        out.saturated_side[j] = static_cast<std::int8_t>(sign);
-    }
-  }
-  return out;
-}
-
-void classify_clipping(std::span<const ImuSample> samples, const SaturationPlanes& planes,
-                       std::span<SensingAxisClipping> out) {
-  for (std::size_t k = 0; k < samples.size(); ++k) out[k] = classify_clipping(samples[k], planes);
-}
-
 }  // namespace tumble

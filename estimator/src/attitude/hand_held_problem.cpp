@@ -20,9 +20,8 @@ constexpr double kRotationMax_rad = 0.8;
 constexpr double kConvergenceTolerance = 1e-3;  // attitudes [rad]; ten times for rates [rad/s]
 constexpr int kFirstAdaptIteration = 3;         // iterations before the hand's acceleration density is estimated
 constexpr int kLastAdaptIteration = 8;
-constexpr double kHandAveraging_s = 0.25;  // averaging time of the hand's acceleration
-constexpr int kHalvings = 4;               // maximum number of times that a step is halved if the cost increases
-constexpr double kCostRiseMax = 0.2;       // tolerated increase of the cost, corresponding to odds of 1.1
+constexpr int kHalvings = 4;          // maximum number of times that a step is halved if the cost increases
+constexpr double kCostRiseMax = 0.2;  // tolerated increase of the cost, corresponding to odds of 1.1
 constexpr ErrorCode kLost = ErrorCode::diverged;
 
 }  // namespace
@@ -219,7 +218,6 @@ Status HandHeldProblem::solve(HandHeldSmoother::Report& report) {
     (void)halve_step_until_decrease(*before, report.cost);
   }
   report.constants = constants_;
-  report.mean_hand_acceleration_ratio = mean_hand_acceleration_ratio();
   return {};
 }
 
@@ -260,24 +258,6 @@ Status HandHeldProblem::covariances(HandHeldSmoother::Report& report) {
     next = here;
   }
   return {};
-}
-
-// See carried.md (C30). A random process with standard deviation s and correlation time tau has a mean over a window T
-// with the variance s^2 2 tau/T (1 - tau/T (1 - exp(-T/tau))).
-double HandHeldProblem::mean_hand_acceleration_ratio() const {
-  const auto window = static_cast<std::size_t>(std::max(1.0, kHandAveraging_s / params_.expert.node_s));
-  const double span = static_cast<double>(window) * params_.expert.node_s,
-               ratio = params_.expert.hand_motion.kHandTau_s / span;
-  const double variance =
-      params_.hand_sigma_m_s2 * params_.hand_sigma_m_s2 * 2.0 * ratio * (1.0 - ratio * (1.0 - std::exp(-1.0 / ratio)));
-  double largest = 0.0;
-  Vector3d sum = Vector3d::Zero();
-  for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    sum += nodes_[i].a_W_m_s2;
-    if (i >= window) sum -= nodes_[i - window].a_W_m_s2;
-    if (i + 1 >= window) largest = std::max(largest, (sum / static_cast<double>(window)).norm());
-  }
-  return largest / std::sqrt(variance);
 }
 
 }  // namespace tumble::hand_held

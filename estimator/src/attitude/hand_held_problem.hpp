@@ -89,7 +89,6 @@ class HandHeldProblem {
   void apply_state_step(double share);
   bool halve_step_until_decrease(const Iterate& before, double& cost);
   void adapt_process_noise();
-  double mean_hand_acceleration_ratio() const;
 
   HandHeldSmoother::Params params_;
   Eigen::Matrix3d sensing_directions_;

@@ -251,7 +251,7 @@ void HandHeldRateStream::predict(const Node& before, const Eigen::Matrix3d& rows
   if (knot.readings.force_reading_count > 0.0) node.a_W_m_s2 = node.q_WI * knot.readings.force_m_s2 + g_W_m_s2_;
 }
 
-// See carried.md (C41).
+// See carried.md (C40).
 double HandHeldRateStream::hand_acceleration_power_ratio(const State& state) const {
   return std::max(
       params_.body.expert.hand_motion.kHandNoiseFloorRatio,
@@ -275,7 +275,7 @@ void HandHeldRateStream::add_prior(const State& state, System::StateBlock& block
                      state.prior.border_coupling.transpose() * x;
 }
 
-// Replaces the oldest time step by a prior: carried.md (C17), (C41), rate_stream.md (R90).
+// Replaces the oldest time step by a prior: carried.md (C17), (C40), rate_stream.md (R90).
 void HandHeldRateStream::marginalise_oldest(State& state) const {
   store_oldest_rates(state);
   const Knot& oldest = state.window[0];

@@ -74,7 +74,7 @@ AngularRateState HandHeldRateStream::rate_state_of_reading(const Reading& readin
   return out;
 }
 
-// Counts a clipped segment whose number of revolutions is ambiguous: carried.md (C43).
+// Counts a clipped segment whose number of revolutions is ambiguous: carried.md (C42).
 void HandHeldRateStream::count_revolutions(std::size_t at, const AngularRateState& rate, State& state) const {
   const Reading& reading = state.readings[at];
   const double since_s = at > 0 ? reading.end_s - state.readings[at - 1].end_s : params_.period_s;
@@ -97,7 +97,7 @@ void HandHeldRateStream::count_revolutions(std::size_t at, const AngularRateStat
   }
 }
 
-// See carried.md (C23), (C42). `factorised` is true if the equations are already factorised for the assumed jerk
+// See carried.md (C23), (C41). `factorised` is true if the equations are already factorised for the assumed jerk
 // density.
 void HandHeldRateStream::report_rates(std::size_t first, std::size_t last, bool factorised, State& state,
                                       std::span<AngularRateState> out) const {
@@ -111,7 +111,7 @@ void HandHeldRateStream::report_rates(std::size_t first, std::size_t last, bool 
   for (std::size_t i = from; i < to; ++i) clipped = clipped || hand_held::clips(state.window[i].readings);
   System::BorderVector unused;
   hand_held::ReadingNoise noise = adapted_noise(state);
-  // See carried.md (C42).
+  // See carried.md (C41).
   if (clipped) noise.bound = noise.force_bound_weight = 0.0;
   const bool known = (factorised && !clipped) || factorise(clipped ? inflated_motion_ : motion_, noise, state, unused);
   System::StateGivenNextState here, next;

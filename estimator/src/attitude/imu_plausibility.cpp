@@ -59,6 +59,13 @@ void add_repeated_reading(const Eigen::Vector3d& reading, double dt_s, ImuPlausi
   if (froze) hold.frozen_s = std::max(hold.frozen_s, hold.repeated_s);
 }
 
+/// Returns the fraction of the specific force's rotation that the gyro does not explain, or 0 while unknown.
+double unexplained_force_rotation_ratio(const ImuPlausibility::State& state) {
+  return rotated_enough(state) ? state.unexplained_force_rotation_rad2 /
+                                     std::max(state.force_rotation_square_sum_rad2, state.gyro_rotation_square_sum_rad2)
+                               : 0.0;
+}
+
 }  // namespace
 
 ImuPlausibility::ImuPlausibility(const Setup& setup) : setup_(setup) {
@@ -152,12 +159,6 @@ void ImuPlausibility::limit_memory(State& state) {
   for (double* sum : {&state.unexplained_force_rotation_rad2, &state.force_rotation_square_sum_rad2,
                       &state.gyro_rotation_square_sum_rad2, &state.rotated_window_count})
     *sum *= share;
-}
-
-double ImuPlausibility::unexplained_force_rotation_ratio(const State& state) const {
-  return rotated_enough(state) ? state.unexplained_force_rotation_rad2 /
-                                     std::max(state.force_rotation_square_sum_rad2, state.gyro_rotation_square_sum_rad2)
-                               : 0.0;
 }
 
 /// A sensor whose reading never changed counts as frozen only while the body moves. A rotating force, or a force that

@@ -19,7 +19,7 @@ bool unusable_axis_count(const AngularRateReport& report, const AngularRateState
   return rate.clipped_axes != 0 || report.suspected_saturation_axes[k] != 0;
 }
 
-/// See carried.md (C38). The readings of a slow accelerometer are older than the rates.
+/// See carried.md (C37). The readings of a slow accelerometer are older than the rates.
 std::vector<ImuSample> interpolate_forces(std::span<const ImuSample> samples) {
   std::vector<ImuSample> out(samples.begin(), samples.end());
   const std::vector<Eigen::Vector3d> forces = interpolated_forces(samples);
@@ -56,18 +56,9 @@ Status MotionRegimeSmoother::estimate(std::span<const ImuSample> samples,
   report = {};
   const Status status = rate_.estimate(samples, auxiliary_imus, rates, report.rate);
   if (!status.ok()) return status;
-  if (auxiliary_imus.empty()) {
-    join_regime_rates(samples, rates, report);
-  } else {
-    join_spin_rates(samples, true, rates, report);
-  }
+  if (auxiliary_imus.empty()) join_hand_held_rates(samples, rates, report);
+  join_spin_rates(samples, !auxiliary_imus.empty(), rates, report);
   return {};
-}
-
-void MotionRegimeSmoother::join_regime_rates(std::span<const ImuSample> samples, std::vector<AngularRateState>& rates,
-                                             Report& report) const {
-  join_hand_held_rates(samples, rates, report);
-  join_spin_rates(samples, false, rates, report);
 }
 
 void MotionRegimeSmoother::join_spin_rates(std::span<const ImuSample> samples, bool further_imus,
@@ -143,7 +134,7 @@ bool MotionRegimeSmoother::estimate_hand_held(std::span<const ImuSample> samples
   return any;
 }
 
-/// Returns the probability of hand-held motion near clipped or suspect readings, and 0 elsewhere: carried.md (C40).
+/// Returns the probability of hand-held motion near clipped or suspect readings, and 0 elsewhere: carried.md (C39).
 std::vector<double> MotionRegimeSmoother::segment_hand_held_probability(
     std::span<const RegimeProbabilities> probabilities, const AngularRateReport& report,
     std::span<const AngularRateState> rates) const {

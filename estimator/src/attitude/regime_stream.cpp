@@ -42,7 +42,7 @@ AngularRateState mixed_rate(const AngularRateState& rate, const AngularRateState
   return out;
 }
 
-// Computes the angular acceleration from rate differences: carried.md (C44). The angular acceleration of
+// Computes the angular acceleration from rate differences: carried.md (C43). The angular acceleration of
 // AngularRateStream is not used, because it depends on the specific force that the regime test compares with the rate.
 Eigen::Vector3d angular_acceleration(std::span<const AngularRateStream::Knot> window, std::size_t k) {
   const auto between_s = [&](std::size_t from, std::size_t to) {
@@ -165,7 +165,7 @@ bool MotionRegimeStream::calibration_is_unstable(const State& state) const {
   return state.calibration_reset_rate > kResetFraction * rate.lag_s / std::max(rate.period_s, rate.step_s);
 }
 
-// Updates the probabilities of the motion regimes: forward recursion of carried.md (C38).
+// Updates the probabilities of the motion regimes: forward recursion of carried.md (C37).
 void MotionRegimeStream::update_probabilities(const AngularRateState& rate, State& state) const {
   const double dt_s =
       state.reported_sample_count == 0 ? MotionRegimeEvidence::kMemory_s : seconds(rate.time_ns - state.reported_ns);
@@ -181,7 +181,7 @@ void MotionRegimeStream::update_probabilities(const AngularRateState& rate, Stat
   state.regime_probability_sum.hand_held += state.probabilities.hand_held;
 }
 
-// Returns the weight of HandHeldRateStream in the reported rate: s in carried.md (C40).
+// Returns the weight of HandHeldRateStream in the reported rate: s in carried.md (C39).
 double MotionRegimeStream::hand_held_weight(const AngularRateState& rate, State& state) const {
   const auto near_ns = static_cast<TimeNs>(std::llround(1e9 * params_.kSegmentGapMax_s));
   const std::vector<AngularRateStream::Knot>& window = state.rate.window;

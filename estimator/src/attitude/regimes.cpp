@@ -30,7 +30,7 @@ double log_gaussian(double squared_norm, double variance) {
 }
 
 // Returns the log density of a measured force of norm n, if the true force has norm g and any direction: carried.md
-// (C35).
+// (C34).
 double log_density_near_gravity(double n, double g, double variance) {
   const double x = n * g / variance;
   const double log_sinh_x = x < 1e-3 ? 0.0 : x - std::log(2.0 * x) + std::log1p(-std::exp(-2.0 * x));
@@ -38,7 +38,7 @@ double log_density_near_gravity(double n, double g, double variance) {
 }
 
 // For one third of the hand-held samples, the specific force has a five times larger standard deviation than for the
-// other samples: carried.md (C33).
+// other samples: carried.md (C32).
 constexpr double kRoughly = 3.0, kRougher = 5.0;
 
 double log_density_hand_held(double n, double g, double hand_variance, double grip_variance) {
@@ -48,7 +48,7 @@ double log_density_hand_held(double n, double g, double hand_variance, double gr
   return larger + std::log(((kRoughly - 1.0) * std::exp(gentle - larger) + std::exp(rough - larger)) / kRoughly);
 }
 
-// Contact is gentle rolling (prior fraction `kRolls`) or an impact with a force of any size: carried.md (C34).
+// Contact is gentle rolling (prior fraction `kRolls`) or an impact with a force of any size: carried.md (C33).
 constexpr double kRolls = 0.5;
 
 double log_density_in_contact(double left, double n, double g, double variance) {
@@ -64,7 +64,7 @@ Vector3d angular_acceleration(std::span<const AngularRateState> rates, std::size
   return (rates[b].w_WI_I_rad_s - rates[a].w_WI_I_rad_s) / dt_s;
 }
 
-// See carried.md (C37).
+// See carried.md (C36).
 Matrix3d regime_transition_matrix(double dt_s) {
   const double contacts = 1.0 - std::exp(-kContacts_hz * dt_s), throws = 0.5 * (1.0 - std::exp(-kThrows_hz * dt_s));
   Matrix3d out;
@@ -80,7 +80,7 @@ MotionRegimeEvidence::MotionRegimeEvidence(const Params& params) : params_(param
   require_valid_fields(params);
 }
 
-// Returns the likelihoods of flight, contact and hand-held motion: carried.md (C31), (C32), (C33), (C34), (C36).
+// Returns the likelihoods of flight, contact and hand-held motion: carried.md (C30), (C31), (C32), (C33), (C35).
 Vector3d MotionRegimeEvidence::likelihood(double dt_s, const ImuSample& sample, const AngularRateState& rate,
                                           const Vector3d& alpha, const Vector3d& lever_arm_m,
                                           double lever_arm_variance_m2) const {
@@ -103,7 +103,7 @@ Vector3d MotionRegimeEvidence::likelihood(double dt_s, const ImuSample& sample, 
   return (logs.array() - logs.maxCoeff()).exp().cwiseMax(1e-300);
 }
 
-// See carried.md (C38).
+// See carried.md (C37).
 RegimeProbabilities MotionRegimeEvidence::next(const RegimeProbabilities& before, double dt_s, const ImuSample& sample,
                                                const AngularRateState& rate, const Vector3d& alpha,
                                                const Vector3d& lever_arm_m,
@@ -115,7 +115,7 @@ RegimeProbabilities MotionRegimeEvidence::next(const RegimeProbabilities& before
   return {after[0], after[1], after[2]};
 }
 
-// See carried.md (C38).
+// See carried.md (C37).
 Status MotionRegimeEvidence::find(std::span<const ImuSample> samples, std::span<const AngularRateState> rates,
                                   const Vector3d& lever_arm_m, const Matrix3d& lever_arm_covariance_m2,
                                   std::vector<RegimeProbabilities>& out) const {
@@ -150,7 +150,7 @@ Status MotionRegimeEvidence::find(std::span<const ImuSample> samples, std::span<
   return {};
 }
 
-// See carried.md (C39). `share` is the probability of the rate state `second`.
+// See carried.md (C38). `share` is the probability of the rate state `second`.
 AngularRateState mix_rate_states(const AngularRateState& first, const AngularRateState& second, double share) {
   AngularRateState out = share > 0.5 ? second : first;
   const Vector3d apart = second.w_WI_I_rad_s - first.w_WI_I_rad_s;

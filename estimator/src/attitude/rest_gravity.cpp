@@ -48,6 +48,13 @@ double allowed_rad(double sigma_rad) {
   return std::min(kAngleToleranceMax_rad, std::max(kAngleToleranceMin_rad, kAngleMax_sigmas * sigma_rad));
 }
 
+/// Returns the mean magnitude of the specific force at rest as a fraction of gravity. Returns 0 if every rest of a
+/// second was without force, and 1 if the body never rested.
+double gravity_magnitude_error_ratio(const RestGravity::GravityMagnitudeState& state, double gravity_m_s2) {
+  if (state.rest_s >= kRested_s) return state.stationary_force_integral_m_s / state.rest_s / gravity_m_s2;
+  return state.weightless_s >= kRested_s ? 0.0 : 1.0;
+}
+
 }  // namespace
 
 RestGravity::RestGravity(const Setup& setup)
@@ -146,11 +153,6 @@ void RestGravity::finish_rest_pair(State& state) const {
   state.worst_pair_error_limit = allowed;
 }
 
-double RestGravity::gravity_magnitude_error_ratio(const GravityMagnitudeState& state) const {
-  if (state.rest_s >= kRested_s) return state.stationary_force_integral_m_s / state.rest_s / setup_.gravity_m_s2;
-  return state.weightless_s >= kRested_s ? 0.0 : 1.0;
-}
-
 void RestGravity::limit_memory(GravityMagnitudeState& state) {
   constexpr double kForgettingTime_s = 60.0;
   if (state.rest_s <= kForgettingTime_s) return;
@@ -159,7 +161,7 @@ void RestGravity::limit_memory(GravityMagnitudeState& state) {
 }
 
 Status RestGravity::gravity_magnitude_verdict(const GravityMagnitudeState& state) const {
-  const double size = gravity_magnitude_error_ratio(state);
+  const double size = gravity_magnitude_error_ratio(state, setup_.gravity_m_s2);
   if (std::abs(size - 1.0) > kMagnitudeErrorMax) {
     const bool unit = size > 0.0 && (size < 1.0 / kWrongUnitRatio || size > kWrongUnitRatio);
     return {ErrorCode::out_of_range,

@@ -20,10 +20,10 @@ constexpr int kTurning = 2, kFixed = 4;               // of Modulation
 constexpr int kArm = 2, kForce = 4, kWorldForce = 6;  // of Centripetal
 constexpr double kJerk_rad_s3_sqrts = 50.0;           // root density of the angular jerk about the spin axis
 // The rate perpendicular to the spin axis is the sum of a world part (constant in world axes) and a body part (constant
-// in body axes): carried.md (C45). World part and body part change as random walks with the root density
+// in body axes): carried.md (C44). World part and body part change as random walks with the root density
 // kWalk_rad_s_sqrts. Vibration adds an error with the standard deviation kVibration_rad_s to the readings. The
 // vibration error is correlated over kReadingInterval_s. SpinFilter::variance_ratio scales the variances of random walk
-// and vibration: carried.md (C47).
+// and vibration: carried.md (C46).
 constexpr double kWalk_rad_s_sqrts = 1.0, kVibration_rad_s = 0.3;
 // size of the body: prior standard deviation of the lever arm from the spin axis to the IMU
 constexpr double kBodySize_m = 0.3;
@@ -103,7 +103,7 @@ void turn_part(const SpinFilter<N>& filter, int part, double related, double dt_
 }
 
 // Updates a filter with the readings perpendicular to the spin axis. Returns the log likelihood of these readings:
-// carried.md (C47), (C48).
+// carried.md (C46), (C47).
 template <int N>
 double update_across(const Eigen::Matrix<double, 2, N>& H, const Vector2d& innovation, double sigma, double dt_s,
                      SpinFilter<N>& filter) {

@@ -29,7 +29,7 @@ struct SpinReading {
   double dt_s = 0.0;
 };
 
-/// Modulation models the rate perpendicular to the spin axis, equations (C45) and (C46) of carried.md. The states are:
+/// Modulation models the rate perpendicular to the spin axis, equations (C44) and (C45) of carried.md. The states are:
 /// - the rate and the angular acceleration about the spin axis,
 /// - the world part of the rate perpendicular to the spin axis: constant in world axes, two components in body axes,
 /// - the body part of the rate perpendicular to the spin axis: constant in body axes, two components.
@@ -44,7 +44,7 @@ struct Modulation {
                 Filter& filter) const;
 };
 
-/// Centripetal models the specific force perpendicular to the spin axis, equations (C50) and (C51) of carried.md. The
+/// Centripetal models the specific force perpendicular to the spin axis, equations (C49) and (C50) of carried.md. The
 /// states are the rate, the angular acceleration, and three vectors. Each vector has two components perpendicular to
 /// the spin axis, in body axes:
 /// - the lever arm,

@@ -26,7 +26,7 @@ constexpr double kRatioSigma = 0.01, kForceRatioSigma = 0.02;
 constexpr double kProbabilityMax = 1.0 - 1e-12;
 constexpr double kLogRatioMax = 50.0;  // avoids overflow of the likelihood ratio of one sample
 
-// Returns the probability of a change between spin and other motion: carried.md (C49).
+// Returns the probability of a change between spin and other motion: carried.md (C48).
 double probability_of_change(double dt_s) {
   return 1.0 - std::exp(-kChanges_hz * dt_s);
 }
@@ -41,7 +41,7 @@ struct RecordedSpin {
 };
 
 // Smooths one spin: a backward pass over the states (Rauch, Tung, Striebel, AIAA Journal 3, 1965), and the backward
-// recursion of carried.md (C38) for the probabilities.
+// recursion of carried.md (C37) for the probabilities.
 template <int N>
 void smooth_spin(std::span<const RecordedSpin<N>> run, std::span<SpinRate> out) {
   if (run.empty()) return;

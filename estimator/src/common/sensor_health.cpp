@@ -46,10 +46,6 @@ constexpr std::array kMeanings = {
     FaultDescription{"lidar_scale", true, "the scale of the lidar's ranges contradicts the motion measured by the IMU"},
     FaultDescription{"lidar_calibration", true, "the stated mounting or clock of the lidar seems to be wrong"},
     FaultDescription{
-        "rig_calibration", false,
-        "the stored calibration differs from the estimate of this run, so the file may belong to another rig; "
-        "estimated rates beyond saturation depend on the calibration; the program left the file unchanged"},
-    FaultDescription{
         "attitude_unknown", true,
         "the direction of gravity is uncertain, for example after a gap of the IMU; the covariance includes this "
         "uncertainty"},

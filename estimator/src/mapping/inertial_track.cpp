@@ -158,14 +158,6 @@ std::optional<Eigen::Vector3d> InertialTrack::resting_force(TimeNs time_ns, doub
   return stationary_state_.mean_force_m_s2();
 }
 
-void InertialTrack::exclude_accelerometer(TimeNs end_ns) {
-  for (MotionSample& sample : samples_) {
-    if (sample.from_ns >= end_ns) break;
-    sample.bridges_gap = true;
-    sample.accel_saturated_axes = 0;
-  }
-}
-
 void InertialTrack::prune_until(TimeNs end_ns) {
   const auto after = [&](const MotionSample& sample) { return sample.time_ns > end_ns; };
   samples_.erase(samples_.begin(), std::find_if(samples_.begin(), samples_.end(), after));

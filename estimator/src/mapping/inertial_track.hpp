@@ -37,8 +37,6 @@ class InertialTrack {
   std::optional<TimeNs> last_ns() const;
   bool is_stationary_until(TimeNs end_ns) const;
   bool is_stationary_between(TimeNs from_ns, TimeNs end_ns) const;
-  /// Marks the specific forces before `end_ns` as unknown; the angular rates remain.
-  void exclude_accelerometer(TimeNs end_ns);
   void prune_until(TimeNs end_ns);
 
  private:

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <variant>
 
 #include "odometry_impl.hpp"
 #include "tumble/common/detail/sample_check.hpp"
@@ -83,23 +82,10 @@ Status LidarInertialOdometry::add_imu(const ImuSample& sample, const AngularRate
   return {};
 }
 
-Status LidarInertialOdometry::add_velocity(const Eigen::Vector3d& v_WI_I_m_s, double sigma_m_s) {
-  if (!v_WI_I_m_s.allFinite() || !std::isfinite(sigma_m_s)) {
-    return {ErrorCode::non_finite, "velocity", std::numeric_limits<double>::quiet_NaN(), 0.0};
-  }
-  if (!(sigma_m_s > 0.0)) return {ErrorCode::out_of_range, "sigma_m_s", sigma_m_s, 0.0};
-  impl_->motion_prior = mapping::KnownVelocity{v_WI_I_m_s, sigma_m_s};
-  return {};
-}
-
 Status LidarInertialOdometry::add_reading(const OdometerReading& reading) {
   const Status status = check_reading(reading);
-  if (status.ok()) impl_->motion_prior = reading;
+  if (status.ok()) impl_->odometer_reading = reading;
   return status;
-}
-
-void LidarInertialOdometry::exclude_accelerometer() {
-  impl_->motion_prior = mapping::ConstantVelocity{};
 }
 
 Status LidarInertialOdometry::add_sweep(TimeNs lidar_start_ns, TimeNs lidar_end_ns, std::span<const LidarPoint> points,
@@ -133,7 +119,6 @@ Status LidarInertialOdometry::predict(std::span<const ImuSample> samples, std::s
     return pose_at(my.sweep_boundary.time_ns(), pose);
   }
   const TimeNs end_ns = track.samples().back().time_ns;
-  if (std::holds_alternative<mapping::ConstantVelocity>(my.motion_prior)) track.exclude_accelerometer(end_ns);
   const Registration::Estimate& last = my.sweep_boundary.state_estimate.mean;
   SweepTrajectory trajectory;
   if (Status status = trajectory.build(last.state, track.samples(), end_ns, last.calibration.gravity_W_m_s2);
@@ -142,7 +127,7 @@ Status LidarInertialOdometry::predict(std::span<const ImuSample> samples, std::s
   const int resting_sweeps = my.is_stationary(track, trajectory, end_ns) ? my.resting_sweeps + 1 : 0;
   const mapping::MotionWindow motion{track.samples(), end_ns, resting_sweeps};
   const std::unique_ptr<const mapping::Prediction> at_start(
-      new mapping::Prediction(mapping::predict(my.params, my.sweep_boundary, motion, trajectory, my.motion_prior)));
+      new mapping::Prediction(mapping::predict(my.params, my.sweep_boundary, motion, trajectory, my.odometer_reading)));
   const Registration::Estimate& mean = at_start->prior.mean;  // already includes an odometer reading
   if (Status status = trajectory.build(mean.state, track.samples(), end_ns, mean.calibration.gravity_W_m_s2,
                                        mean.saturation_deficit_rad_s);

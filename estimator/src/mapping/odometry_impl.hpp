@@ -99,9 +99,9 @@ struct LidarInertialOdometry::Impl {
   std::optional<StartTilt> start_tilt;
   mapping::TrackingState tracking;
   mapping::InertialTrack inertial_track;
-  mapping::SweepBoundary sweep_boundary;  // boundary between the last sweep and the next sweep
-  mapping::MotionPrior motion_prior;      // additional information about the motion of the next sweep
-  int resting_sweeps = 0;                 // number of consecutive sweeps at rest, detected by the IMU
+  mapping::SweepBoundary sweep_boundary;            // boundary between the last sweep and the next sweep
+  std::optional<OdometerReading> odometer_reading;  // odometer reading of the next sweep
+  int resting_sweeps = 0;                           // number of consecutive sweeps at rest, detected by the IMU
   mapping::LagWindow window;
   mapping::LocalMap map;
   mapping::WorldCovariance world_covariance;

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
-#include <variant>
 
 #include "before_map.hpp"
 #include "odometry_impl.hpp"
@@ -28,7 +28,6 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   if (Status status = check_sweep(start_ns, end_ns, returns); !status.ok()) return status;
   if (Status status = initialise_inclination(); !status.ok()) return status;
 
-  if (std::holds_alternative<mapping::ConstantVelocity>(motion_prior)) inertial_track.exclude_accelerometer(end_ns);
   if (!mapping::has_started(tracking)) {
     if (Status status = start_map(start_ns, end_ns, returns, report); !status.ok()) return status;
   }
@@ -42,7 +41,7 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   resting_sweeps = is_stationary(inertial_track, trajectory, end_ns) ? resting_sweeps + 1 : 0;
   const MotionWindow motion{inertial_track.samples(), end_ns, resting_sweeps};
   const std::unique_ptr<Prediction> prediction(new Prediction(
-      mapping::predict(params, sweep_boundary, motion, trajectory, motion_prior)));  // too large for the stack
+      mapping::predict(params, sweep_boundary, motion, trajectory, odometer_reading)));  // too large for the stack
 
   // A sweep without usable returns gets the inertially predicted pose.
   mapping::SweepPoints& points = sweep_scratch.points;
@@ -138,9 +137,9 @@ Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, st
       seconds(start_ns - sweep_boundary.time_ns()) <= kFirstSweepDelayMax_s)
     return {};
   if (usable) {
-    const mapping::MotionPrior sweep_prior = std::exchange(motion_prior, mapping::InertialPrior{});
+    const std::optional<OdometerReading> sweep_reading = std::exchange(odometer_reading, std::nullopt);
     if (Status status = dead_reckon(start_ns); !status.ok()) return status;
-    motion_prior = sweep_prior;
+    odometer_reading = sweep_reading;
     if (start_pose)
       sweep_boundary.state_estimate = mapping::transformed_to_pose(*start_pose, sweep_boundary.state_estimate);
     if (start_tilt)
@@ -150,7 +149,7 @@ Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, st
     return {};
   }
   if (Status status = dead_reckon(end_ns); !status.ok()) return status;
-  motion_prior = mapping::InertialPrior{};
+  odometer_reading.reset();
   if (!selected.ok()) return selected;
   return {ErrorCode::insufficient_data, "points", double(points), double(MatchingParams::kMatchesMin)};
 }
@@ -233,7 +232,7 @@ StateEstimate LidarInertialOdometry::Impl::update(const MotionWindow& motion, co
 
 void LidarInertialOdometry::Impl::predict_stationary(const MotionWindow& motion, const mapping::SweepBoundary& from,
                                                      Prediction& prediction) const {
-  if (std::holds_alternative<mapping::InertialPrior>(motion_prior) && inertial_track.is_stationary_until(motion.end_ns))
+  if (!odometer_reading && inertial_track.is_stationary_until(motion.end_ns))
     mapping::predict_stationary_sweep(from, prediction);
 }
 
@@ -294,7 +293,7 @@ void LidarInertialOdometry::Impl::add_map_drift(const UpdatedSweep& sweep, const
 }
 
 void LidarInertialOdometry::Impl::prune_until(TimeNs end_ns) {
-  motion_prior = mapping::InertialPrior{};
+  odometer_reading.reset();
   inertial_track.prune_until(end_ns);
   if (mapping::is_unconfirmed_relocalisation(tracking))
     return;                              // pruning would change the sweep numbers for remove_sweeps_since()
@@ -315,8 +314,7 @@ void LidarInertialOdometry::Impl::propagate_alternative_pose(const MotionWindow&
   }
   if (!relocalisation_unconfirmed && !mapping::is_lost(tracking)) alternative.reset();
   if (!alternative) return;
-  const bool rests =
-      std::holds_alternative<mapping::InertialPrior>(motion_prior) && inertial_track.is_stationary_until(motion.end_ns);
+  const bool rests = !odometer_reading && inertial_track.is_stationary_until(motion.end_ns);
   if (!continue_by_inertia(motion, rests, alternative->sweep_boundary, &alternative->window).ok()) alternative.reset();
 }
 
@@ -330,7 +328,7 @@ Status LidarInertialOdometry::Impl::continue_by_inertia(const MotionWindow& moti
       !status.ok())
     return status;
   const std::unique_ptr<Prediction> prediction(
-      new Prediction(mapping::predict(params, at, motion, trajectory, motion_prior)));
+      new Prediction(mapping::predict(params, at, motion, trajectory, odometer_reading)));
   if (rests) mapping::predict_stationary_sweep(at, *prediction);
   const std::unique_ptr<const StateEstimate> start(new StateEstimate(mapping::posterior(*prediction)));
   const Registration::Estimate& mean = start->mean;

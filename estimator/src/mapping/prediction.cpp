@@ -112,17 +112,8 @@ void Prediction::zero_velocity_update(double sigma_m_s) {
   u::variances(noise, u::velocity).setConstant(sigma_m_s * sigma_m_s);
 }
 
-/// See mapping.md (R33).
-void apply_velocity_prior(const KnownVelocity& known, Prediction& prediction) {
-  prediction.zero_velocity_update(known.sigma_m_s);
-  const Eigen::Vector3d v_WI_m_s = prediction.prior.mean.state.q_WI * known.v_WI_I_m_s;
-  prediction.prior.mean.state.v_WI_m_s = v_WI_m_s;
-  u::row_range(prediction.boundary_jacobian, u::velocity) =
-      -so3::hat(v_WI_m_s) * u::row_range(prediction.boundary_jacobian, u::attitude);
-}
-
 Prediction predict(const Params& params, const SweepBoundary& boundary, const MotionWindow& window,
-                   const SweepTrajectory& trajectory, const MotionPrior& known) {
+                   const SweepTrajectory& trajectory, const std::optional<OdometerReading>& reading) {
   Prediction next;
   next.prior.mean.state = boundary.state_estimate.mean.state;
   next.prior.mean.calibration = boundary.state_estimate.mean.calibration;
@@ -132,7 +123,6 @@ Prediction predict(const Params& params, const SweepBoundary& boundary, const Mo
   const bool creeps = boundary.state_estimate.mean.state.v_WI_m_s.norm() < Standstill::kCreepMax_m_s;
   if (window.resting_sweeps >= kRestingSweepsMin && !boundary.all_directions_constrained && creeps)
     next.zero_velocity_update(Standstill::kSigma_m_s);
-  apply_velocity_prior(known, next);
   const std::uint8_t axes = params.expert.saturated_imu.estimate_deficit ? trajectory.clipped_axes() : 0;
   MotionNoise within = inertial_noise(params, trajectory, window.samples, axes);
   const Eigen::Matrix3d clipped_force_m2_s2 = velocity_variance_from_clipping(trajectory, window.samples);
@@ -142,7 +132,7 @@ Prediction predict(const Params& params, const SweepBoundary& boundary, const Mo
   u::sub_block(next.noise, u::velocity) += boundary.clipped_velocity_variance_m2_s2 + clipped_force_m2_s2;
   u::sub_block(within, u::velocity) += clipped_force_m2_s2;
   add_saturation_deficit_noise(params, window, trajectory, next);
-  weigh_with_motion_prior(known, boundary, window, within, next);
+  if (reading) fuse_reading(*reading, boundary, window, within, next);
   next.prior.initial_saturation_deficit_rad_s = next.prior.mean.saturation_deficit_rad_s;
   next.compose_with_boundary(boundary.state_estimate);
   return next;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <span>
 
-#include "motion_prior.hpp"
+#include "reading_update.hpp"
 #include "state_estimate.hpp"
 
 namespace tumble::mapping {
@@ -39,14 +40,16 @@ struct Prediction {
 
   /// compose_with_boundary() requires that all other members are set.
   void compose_with_boundary(const StateEstimate& at_boundary);
-  /// Sets the velocity to zero and removes its correlations. Call zero_velocity_update() before
+  /// Sets the velocity to zero and removes its correlations: mapping.md (R33). Call zero_velocity_update() before
   /// compose_with_boundary().
   void zero_velocity_update(double sigma_m_s);
 };
 
-/// `trajectory` is the inertial motion since the end of the last sweep.
+/// `trajectory` is the inertial motion since the end of the last sweep. `reading` is the odometer reading of the sweep,
+/// if any.
 Prediction predict(const LidarInertialOdometry::Params& params, const SweepBoundary& boundary,
-                   const MotionWindow& window, const SweepTrajectory& trajectory, const MotionPrior& known);
+                   const MotionWindow& window, const SweepTrajectory& trajectory,
+                   const std::optional<OdometerReading>& reading);
 
 /// At rest after a tracking failure, a prediction of zero motion stops the drift of the velocity.
 void predict_stationary_sweep(const SweepBoundary& boundary, Prediction& prediction);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // See mapping.md, heading "Prediction from sweep to sweep".
+#include "reading_update.hpp"
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <memory>

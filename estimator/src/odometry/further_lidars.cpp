@@ -62,10 +62,7 @@ Status FurtherLidars::add(std::size_t lidar, TimeNs start_ns, TimeNs end_ns, std
     if (point.ring < kRingsPerLidar) point.ring = static_cast<std::uint16_t>(point.ring + lidar * kRingsPerLidar);
     sweep.points.push_back(point);
   }
-  if (waiting_sweeps_.size() >= most) {
-    unused_points_ += waiting_sweeps_.front().points.size();
-    waiting_sweeps_.pop_front();
-  }
+  if (waiting_sweeps_.size() >= most) waiting_sweeps_.pop_front();
   waiting_sweeps_.push_back(std::move(sweep));
   return {};
 }
@@ -76,10 +73,7 @@ void FurtherLidars::merge_into(WaitingSweep& sweep) {
     std::erase_if(from.points, [&](LidarPoint point) {
       const TimeNs time_ns = from.start_ns + point.offset_ns;
       if (time_ns > sweep.end_ns) return false;
-      if (time_ns < sweep.start_ns) {
-        ++unused_points_;
-        return true;
-      }
+      if (time_ns < sweep.start_ns) return true;
       point.offset_ns = static_cast<std::uint32_t>(time_ns - sweep.start_ns);
       sweep.points.push_back(point);
       return true;

@@ -30,15 +30,11 @@ class FurtherLidars {
   /// Adds the stored points whose times are within a sweep to the sweep, and drops earlier points. Cost: O(stored
   /// points).
   void merge_into(WaitingSweep& sweep);
-  /// Returns the number of unused points. A point is unused if it arrived late, or if the first lidar had no sweep at
-  /// the point's time.
-  std::size_t unused_points() const { return unused_points_; }
 
  private:
   std::vector<FurtherLidar> lidars_;
   Eigen::Isometry3d T_first_lidar_imu_ = Eigen::Isometry3d::Identity();
   std::deque<WaitingSweep> waiting_sweeps_;  ///< points in axes of the first lidar
-  std::size_t unused_points_ = 0;
 };
 
 }  // namespace tumble

@@ -97,12 +97,6 @@ std::size_t TumblingOdometry::dropped_sweeps() const {
 std::size_t TumblingOdometry::sweeps_before_first_imu() const {
   return impl_->sweeps_before_first_imu_;
 }
-std::size_t TumblingOdometry::unused_odometer_readings() const {
-  return impl_->readings_.readings_spanning_two_sweeps();
-}
-std::size_t TumblingOdometry::unused_points() const {
-  return impl_->further_lidars_.unused_points();
-}
 std::optional<double> TumblingOdometry::estimated_jitter_s() const {
   return impl_->estimated_jitter_s();
 }
@@ -155,12 +149,6 @@ const MergedImuRecording* RollingOdometry::recording() const {
 }
 RollingOdometry::Calibration RollingOdometry::calibration() const {
   return impl_->calibration();
-}
-std::int64_t RollingOdometry::bridged_gaps() const {
-  return impl_->state_->live_filter.gaps;
-}
-double RollingOdometry::longest_gap_s() const {
-  return impl_->state_->live_filter.gap_longest_s;
 }
 bool RollingOdometry::started_in_motion() const {
   return impl_->state_->live_filter.started_in_motion;

@@ -9,8 +9,6 @@ namespace {
 
 constexpr std::size_t kRecoveringUnits = 3;  // minimum number of IMUs for recovering a rate beyond the range
 constexpr double kRecoveredSigma_rad_s = 1.0;
-constexpr double kUnknownRadiusSigmaRatio =
-    0.05;  // prior of an unknown radius, if a known distance determines the radius
 // prior standard deviations for an IMU without a data sheet, at an unknown position in the sphere
 constexpr double kUnknownGyroBias_rad_s = 5e-3, kUnknownAccelBias_m_s2 = 0.4, kUnknownScale = 0.01,
                  kUnknownDelay_s = 5e-3, kUnknownLeverArm_m = 0.05;
@@ -76,8 +74,6 @@ RollingSmoother::Params rolling_params(const RollingOdometry::Params& params, co
   if (units >= kRecoveringUnits) out.filter.expert.saturation.recovered_rate_sigma_rad_s = kRecoveredSigma_rad_s;
   out.lag_s = std::max(params.lag_s, out.filter.expert.kNode_s);
   out.rate_max_hz = std::max(out.rate_max_hz, 1.1 * params.imus.front().data_sheet.rate_hz);
-  if (out.known_distance_m > 0.0 && out.filter.radius_sigma_m == 0.0)
-    out.filter.radius_sigma_m = kUnknownRadiusSigmaRatio * out.filter.radius_m;
   return out;
 }
 

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "saved_saturation_levels.hpp"
-#include "tumble/angular_velocity/detail/learnt_rig.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
 #include "tumbling_odometry_impl.hpp"
 #include "tumbling_odometry_params.hpp"
@@ -138,8 +137,8 @@ std::vector<std::byte> TumblingOdometry::Impl::save_with_pose(const std::optiona
   const AngularRateStream& stream = odometry_pass_.rates().rate();
   const AngularRateStream::State& state = odometry_pass_.rate_stream_state().rate;
   const AngularRateStreamParams& used = odometry_pass_.rates().params().rate;
-  const bool estimated = whole_recording_result_ ? !whole_recording_result_->report.rate.calibration_at_prior
-                                                 : !is_at_prior(stream, state);
+  const bool estimated =
+      whole_recording_result_ ? !whole_recording_result_->report.rate.calibration_at_prior : !stream.is_at_prior(state);
   if (estimated || used.model.calibration) out->rig = rig();
   if (out->rig && !check_calibration(*out->rig).ok()) out->rig.reset();
   if (whole_recording_result_ && estimated) out->sensor_errors = whole_recording_result_->report.rate.sensor_errors;

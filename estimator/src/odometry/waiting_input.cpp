@@ -48,11 +48,8 @@ std::optional<OdometerReading> WaitingReadings::take_readings_in(TimeNs from_ns,
   for (; !waiting_readings_.empty() && middle_ns(waiting_readings_.front()) <= end_ns; waiting_readings_.pop_front()) {
     const OdometerReading& reading = waiting_readings_.front();
     if (reading_start_ns(reading) >= from_ns - kExtrapolation_ns &&
-        reading_end_ns(reading) <= end_ns + kExtrapolation_ns) {
+        reading_end_ns(reading) <= end_ns + kExtrapolation_ns)
       out = reading;
-    } else {
-      ++readings_spanning_two_sweeps_;
-    }
   }
   return out;
 }

@@ -6,9 +6,8 @@
 namespace tumble::rolling {
 
 FinalSmoothingPass::FinalSmoothingPass(const RollingParams& params, std::span<const ImuSample> samples,
-                                       std::span<const ModePathNode> path, std::optional<Distance> distance,
-                                       std::size_t segment)
-    : params_(params), samples_(samples), mode_path_(path), distance_(distance), length_(segment) {
+                                       std::span<const ModePathNode> path, std::size_t segment)
+    : params_(params), samples_(samples), mode_path_(path), length_(segment) {
   segment_ends_.resize(std::max<std::size_t>(1, (path.size() + length_ - 1) / length_));
   node_records_.reserve(std::min(path.size(), length_));
   horizontal_variance_m2_.reserve(path.size());
@@ -43,7 +42,6 @@ void FinalSmoothingPass::filter_forward(std::size_t segment, SmoothingCheckpoint
   loaded_ = segment;
   node_records_.clear();
   points_.clear();
-  known_distance_correction_.setZero();
   auto& [filter, cursor] = at;
   if (segment == 0 && cursor.next == 1) store_sample_point(cursor.time_ns, filter.nominal, cursor.last_rate_rad_s, 0);
   RollingNodeIntegrals sums;
@@ -79,10 +77,6 @@ void FinalSmoothingPass::filter_forward(std::size_t segment, SmoothingCheckpoint
       if (reading.is_whole) integrate(params_, average, filter.nominal, sums);
     }
     cursor = readings.cursor();
-  }
-  if (distance_ && !node_records_.empty()) {
-    known_distance_correction_ =
-        measure_distance(params_, distance_->distance_m, distance_->sigma_m, node_records_.back(), filter);
   }
 }
 
@@ -121,7 +115,7 @@ void FinalSmoothingPass::report_smoothed_segment(std::size_t segment, std::size_
     const std::size_t next = point.node - first;
     const bool inside = next < node_records_.size(), at_start = next == 0;
     const Reported from = at_start ? smoothed_start_error_ : node_records_[next - 1].smoothed;
-    Reported error = inside ? from : Reported(from + known_distance_correction_);
+    Reported error = from;
     if (inside) {
       const TimeNs from_ns = at_start ? start.reading.time_ns : node_records_[next - 1].time_ns;
       const double length_s = seconds(node_records_[next].time_ns - from_ns);

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <functional>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,9 +22,6 @@ class FinalSmoothingPass {
   static constexpr std::size_t kNodesPerSegment =
       128;  ///< number of nodes per segment; the backward pass needs 1.6 MiB
 
-  struct Distance {
-    double distance_m = 0.0, sigma_m = 0.0;
-  };
   struct Smoothed {
     const SampleMotion& point;
     const RollingNominalState& nominal;
@@ -34,11 +30,9 @@ class FinalSmoothingPass {
     std::size_t index;
   };
 
-  /// All arguments must outlive the pass. A known `distance` from the start acts as a measurement after the last
-  /// sample. `segment` is the number of nodes whose records are stored at the same time.
+  /// All arguments must outlive the pass. `segment` is the number of nodes whose records are stored at the same time.
   FinalSmoothingPass(const RollingParams& params, std::span<const ImuSample> samples,
-                     std::span<const ModePathNode> path, std::optional<Distance> distance,
-                     std::size_t segment = kNodesPerSegment);
+                     std::span<const ModePathNode> path, std::size_t segment = kNodesPerSegment);
 
   /// After run(), cut() returns the filter after the first `cut` nodes.
   void run_to_cut(const SmoothingCheckpoint& start, std::size_t cut);
@@ -70,7 +64,6 @@ class FinalSmoothingPass {
   const RollingParams& params_;
   std::span<const ImuSample> samples_;
   std::span<const ModePathNode> mode_path_;
-  std::optional<Distance> distance_;
   std::size_t length_;
   std::vector<SegmentEnds> segment_ends_;
   std::vector<double> horizontal_variance_m2_;
@@ -83,8 +76,6 @@ class FinalSmoothingPass {
   std::vector<FilterNodeRecord> node_records_;
   std::vector<SampleMotion> points_;
   Reported smoothed_start_error_ = Reported::Zero();
-  /// correction of the nominal trajectory due to the known distance from the start
-  Reported known_distance_correction_ = Reported::Zero();
 };
 
 }  // namespace tumble::rolling

@@ -92,7 +92,6 @@ void RollingFilter::bridge_gap(const ImuSample& sample, double gap_s, State& sta
     state.last_rate_rad_s = rate;
   }
   ++state.gaps;
-  state.gap_longest_s = std::max(state.gap_longest_s, gap_s);
 }
 
 void RollingFilter::complete_filter_node(const Eigen::Vector3d& next_rate_rad_s, State& state) const {

@@ -17,14 +17,6 @@ namespace {
 // maximum number of preallocated samples; with a longer lag of the smoother, the memory grows during the run
 constexpr std::size_t kPreallocatedMax = 1'000'000;
 
-RollingMode less_constrained_mode(RollingMode a, RollingMode b) {
-  const auto rank = [](RollingMode mode) {
-    if (may_slip(mode)) return mode == RollingMode::bump ? 3 : 2;
-    return mode == RollingMode::grip ? 0 : 1;
-  };
-  return rank(a) >= rank(b) ? a : b;
-}
-
 bool equal(const ImuSample& a, const ImuSample& b) {
   return a.time_ns == b.time_ns && a.angular_velocity_rad_s == b.angular_velocity_rad_s &&
          a.specific_force_m_s2 == b.specific_force_m_s2;
@@ -193,27 +185,6 @@ void RollingSmoother::finish(State& state, std::vector<RollingEstimate>& out) co
   finish(state, append_estimates_to(out));
 }
 
-void RollingSmoother::finish(std::span<const RollingMode> known, State& state, const EstimateCallback& take) const {
-  ModePath path = most_probable_path(state);
-  if (state.samples.empty()) return;
-  std::size_t n = 0;
-  double node_s = 0.0;
-  RollingMode mode = RollingMode::grip;
-  rolling::RollingReadings readings(params_.filter, state.samples, start_cursor(state.samples.front()));
-  rolling::RollingReading reading;
-  while (readings.next(reading) && reading.is_whole && n < path.size()) {
-    if (node_s >= params_.filter.expert.kNode_s - 0.5 * reading.average.length_s) {
-      path[n++].mode = less_constrained_mode(mode, known[std::min(reading.first, known.size() - 1)]);
-      mode = RollingMode::grip;
-      node_s = 0.0;
-    }
-    for (std::size_t k = reading.first; k < std::min(reading.end, known.size()); ++k)
-      mode = less_constrained_mode(mode, known[k]);
-    node_s += reading.average.length_s;
-  }
-  smooth_window(path, path.size() + 1, state, take);
-}
-
 /// Returns the contact modes of the most probable hypothesis, back to the last node whose estimates were reported.
 RollingSmoother::ModePath RollingSmoother::most_probable_path(const State& state) const {
   ModePath path(state.node_modes.size());
@@ -237,11 +208,7 @@ RollingSmoother::ModePath RollingSmoother::most_probable_path(const State& state
 void RollingSmoother::smooth_window(const ModePath& path, std::size_t emitted, State& state,
                                     const EstimateCallback& take) const {
   if (state.samples.empty()) return;
-  std::optional<rolling::FinalSmoothingPass::Distance> distance;
-  if (emitted > path.size() && params_.known_distance_m > 0.0) {
-    distance = {params_.known_distance_m, params_.known_distance_sigma_m};
-  }
-  const auto owned_pass = std::make_unique<rolling::FinalSmoothingPass>(params_.filter, state.samples, path, distance);
+  const auto owned_pass = std::make_unique<rolling::FinalSmoothingPass>(params_.filter, state.samples, path);
   rolling::FinalSmoothingPass& pass = *owned_pass;
   const auto start = std::make_unique<rolling::SmoothingCheckpoint>();
   start_window(params_.filter, state, *start);

@@ -13,7 +13,6 @@ namespace tumble::rolling {
 namespace {
 
 constexpr double kMaxSigmas = 5.0;
-constexpr double kNoDirection_m = 0.05;  // minimum distance of two positions whose direction is defined
 
 /// A residual beyond kMaxSigmas standard deviations has less weight, because a large linear correction would distort
 /// the whole run: rolling.md (R37).
@@ -159,31 +158,6 @@ Reported error_before_update(const FilterNodeRecord& node) {
   const Reported error = node.smoothed + node.correction;
   return node.heading_lost ? Reported(error - node.smoothed[kAttitude + 2] * reported_errors(node.heading_correction))
                            : error;
-}
-
-/// See rolling.md (R41).
-Reported measure_distance(const RollingParams& params, double distance_m, double sigma_m, FilterNodeRecord& last,
-                          ModePathFilter& filter) {
-  const RollingNominalState& nominal = filter.nominal;
-  const Eigen::Matrix3d R = nominal.q_WI.toRotationMatrix();
-  const Eigen::Vector3d arm_W = R * (params.lever_arm_m + nominal.lever_arm_error_m);
-  Eigen::Vector3d from_start = nominal.p_WI_m - arm_W;
-  from_start.z() = 0.0;
-  const double length_m = from_start.norm();
-  if (length_m < kNoDirection_m) return Reported::Zero();
-  const Eigen::RowVector3d along = (from_start / length_m).transpose();
-  Row H = Row::Zero();
-  H.segment<3>(kAttitude) = along * so3::hat(arm_W);
-  H.segment<3>(kPosition) = along;
-  H.segment<3>(kLeverArm) = -along * R;
-  Vector x = Vector::Zero();
-  update_with_measurement(H, distance_m - length_m, sigma_m * sigma_m, last, x, filter.covariance);
-  make_symmetric(filter.covariance);
-  move_linearisation_point(x, filter.nominal);
-  last.correction += reported_errors(x);
-  last.covariance_rows = output_covariance_rows(filter.covariance);
-  last.nominal = filter.nominal;
-  return reported_errors(x);
 }
 
 /// See rolling.md (R38), (R39).

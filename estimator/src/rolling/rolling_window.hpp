@@ -24,8 +24,7 @@ inline constexpr int kReported = 12;
 using Reported = Eigen::Matrix<double, kReported, 1>;
 
 struct FilterNodeRecord {
-  static constexpr int kMaxMeasurements =
-      7;  ///< maximum number of measurements, for a node at rest with a known distance
+  static constexpr int kMaxMeasurements = 6;  ///< maximum number of measurements, for a node at rest
   Moving moving_jacobian;
   std::array<Row, kMaxMeasurements> measurement_rows;
   std::array<Vector, kMaxMeasurements> gain;
@@ -93,11 +92,6 @@ void complete_filter_node(const RollingParams& params, const RollingNodeIntegral
 
 /// Returns the smoothed error at a node, relative to the nominal trajectory before the node's update.
 Reported error_before_update(const FilterNodeRecord& node);
-
-/// Applies the known horizontal distance of the sphere's centre from the start. Returns the correction of the nominal
-/// trajectory, or zero if the first and last positions are too close to define a direction.
-Reported measure_distance(const RollingParams& params, double distance_m, double sigma_m, FilterNodeRecord& last,
-                          ModePathFilter& filter);
 
 /// Adjoint contains the information that later measurements provide about the error at a node.
 struct Adjoint {

@@ -6,7 +6,7 @@ x y z w, and rotate sensor or body axes to the world (z up). Invalid input raise
 `parameters()` of a class lists its keywords.
 
 Odometry        TumblingOdometry (an IMU that may clip and a lidar), RollingOdometry (IMUs in a sphere), sheets: data sheets of sensors
-Rates           MotionRegimeSmoother, AngularRateSmoother, HandHeldSmoother, Saave (whole recordings), MotionRegimeStream, AngularRateStream, HandHeldRateStream (live), find_rails
+Rates           MotionRegimeSmoother, AngularRateSmoother, HandHeldSmoother, Saave (whole recordings), MotionRegimeStream, AngularRateStream (live), find_rails
 Attitude        TumbleAttitude, Vqf, Strapdown
 Sphere          RollingSmoother, RollingFilter (live)
 Mapper          LidarInertialOdometry
@@ -22,7 +22,6 @@ from ._tumble import (
     Attitudes,
     HandHeldReport,
     HandHeldSmoother,
-    HandHeldRateStream,
     HealthFinding,
     ImuDataSheet,
     LidarInertialOdometry,
@@ -74,7 +73,7 @@ from .truth import Contacts, ImuTruth, LidarTruth, SeriesTruth, Truth
 
 __version__ = importlib.metadata.version("tumble")
 __all__ = [
-    "Attitudes", "HandHeldReport", "HandHeldSmoother", "HandHeldRateStream", "Contacts", "Estimate", "HealthFinding", "Imu", "ImuDataSheet", "ImuTruth", "Lidar",
+    "Attitudes", "HandHeldReport", "HandHeldSmoother", "Contacts", "Estimate", "HealthFinding", "Imu", "ImuDataSheet", "ImuTruth", "Lidar",
     "LidarInertialOdometry", "LidarDataSheet", "LidarTruth", "MapPoints", "Parameter", "Pose", "Poses", "ProgramError", "SaturationPlane", "Rails", "AngularRateReport", "AngularRateSmoother", "AngularRateSource",
     "AngularRateStream", "RateTable", "Rates", "Recording", "RegimeReport", "MotionRegimeSmoother", "MotionRegimeStream", "RigCalibration", "RollingFilter", "RollingMode", "RollingOdometry",
     "RollingPoses", "RollingSmoother", "Saave", "Series", "SeriesTruth", "SphereUnit", "Strapdown", "Sweep", "LidarImuCalibration", "SweepReport", "SweepScale", "SweepVerdict", "Trajectory",

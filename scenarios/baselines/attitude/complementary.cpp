@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "scenarios/baselines/attitude/force_min.hpp"
-#include "tumble/attitude/detail/tilt.hpp"
+#include "scenarios/baselines/attitude/tilt_correction.hpp"
 #include "tumble/attitude/detail/timing.hpp"
 #include "tumble/attitude/strapdown.hpp"
 #include "tumble/common/types.hpp"

@@ -60,9 +60,10 @@ struct Score {
   void add(const std::vector<ImuSample>& samples, const std::vector<Vector3d>& hidden) {
     const SaturationPlanes planes = SaturationPlaneFinder({}).find(samples);
     for (std::size_t k = 0; k < samples.size(); ++k) {
-      const SensingAxisClipping now = classify_clipping(samples[k], planes);
       for (int j = 0; j < 3; ++j) {
-        const bool called = now.saturated_side[static_cast<std::size_t>(j)] != 0;
+        const auto& rail = planes.sensing_axis[static_cast<std::size_t>(j)];
+        const Vector3d& reading = samples[k].angular_velocity_rad_s;
+        const bool called = rail && (rail->is_saturated(reading, -1) || rail->is_saturated(reading, 1));
         deep += std::abs(hidden[k][j]) > 0.1;
         found += std::abs(hidden[k][j]) > 0.1 && called;
         wrong += called && hidden[k][j] == 0.0;

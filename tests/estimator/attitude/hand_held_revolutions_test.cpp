@@ -79,7 +79,7 @@ double once_more(double lasts_s) {
 }
 
 /// Returns the deviation in the middle of a segment with known rate, angular acceleration and angle at its ends:
-/// carried.md (C42).
+/// carried.md (C41).
 double closed_form_sigma(const HandHeldRateStream::Params& params, double lasts_s) {
   const double q = std::pow(params.body.expert.jerk_inflation * params.body.jerk_rad_s3_sqrts, 2.0);
   return std::sqrt(q * std::pow(lasts_s + 1.0 / SpinReadings::kHz, 3.0) * (1.0 / 192.0 - 720.0 / (384.0 * 384.0)));

@@ -69,7 +69,6 @@ TEST(RestGravity, RatesCarryGravityFromOneRestToTheNext) {
   EXPECT_TRUE(gravity.verdict(good).ok()) << gravity.verdict(good).message();
   EXPECT_EQ(good.compared_rest_pairs, 1u);
   EXPECT_LT(good.worst_velocity_error_ratio, 0.04);
-  EXPECT_NEAR(gravity.gravity_magnitude_error_ratio(good), 1.0, 1e-3);
 }
 
 TEST(RestGravity, AGyroOfAnotherSenseNamingOrScaleMisses) {
@@ -239,7 +238,8 @@ TEST(RestGravity, ReadingsThatAreNoneAndStampsOutOfOrderArePassedOver) {
     none.time_ns = 0;
     gravity.step(none, {}, state);
   }
-  EXPECT_NEAR(gravity.gravity_magnitude_error_ratio(state), 1.0, 1e-9);
+  EXPECT_GT(state.rest_s, 0.0);
+  EXPECT_TRUE(gravity.verdict(state).ok()) << gravity.verdict(state).message();
 }
 
 }  // namespace

@@ -58,7 +58,6 @@ std::string complaint(const Outer& params) {
 TEST(Fields, AreWithinTheirBoundsBothIncluded) {
   Outer params;
   EXPECT_EQ(complaint(params), "");
-  EXPECT_TRUE(check_fields(params).ok());
   params.tau_s = 10.0;
   params.arm_m.setConstant(-1.0);
   params.right.share = 1.0;
@@ -69,11 +68,6 @@ TEST(Fields, OutOfBoundsAreNamedWithTheirGroup) {
   Outer params;
   params.right.share = 1.5;
   EXPECT_EQ(complaint(params), "right_share is 1.5; it must be within [0, 1]");
-  const Status status = check_fields(params);
-  EXPECT_EQ(status.error_code, ErrorCode::out_of_range);
-  EXPECT_STREQ(status.field, "share");
-  EXPECT_EQ(status.value, 1.5);
-  EXPECT_EQ(status.bound, 1.0);
 }
 
 TEST(Fields, TheFirstOfSeveralIsReported) {
@@ -83,7 +77,6 @@ TEST(Fields, TheFirstOfSeveralIsReported) {
   EXPECT_EQ(complaint(params), "left_count is 0; it must be within [1, 4]");
   params.tau_s = 0.0;
   EXPECT_EQ(complaint(params), "tau_s is 0; it must be within [0.001, 10]");
-  EXPECT_EQ(check_fields(params).bound, 1e-3);
 }
 
 TEST(Fields, EachTypeIsLookedAt) {
@@ -104,7 +97,7 @@ TEST(Fields, NaNIsOutOfAnyBounds) {
   EXPECT_TRUE(complaint(params).starts_with("left_share is nan")) << complaint(params);
   params = {};
   params.arm_m.y() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(check_fields(params).ok());
+  EXPECT_NE(complaint(params), "");
 }
 
 TEST(Fields, AreVisitedByTheirWholeNamesAndSetThroughThem) {

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "tests/estimator/mapping/room_tumble.hpp"
@@ -167,64 +166,6 @@ TEST(LidarInertialOdometry, AnExactlyDegenerateAlignmentCounts) {
   EXPECT_GT(report.iterations, 0);
   EXPECT_NEAR(report.pose.position_W_m.z(), -0.005, 0.002);
   EXPECT_GT(report.innovation, 0.0);
-}
-
-/// Above a floor alone, which leaves two directions undetermined, and with an accelerometer error of 0.5 m/s^2 after
-/// the rest, the integrated motion drifts; a stated velocity at every sweep prevents the drift.
-TEST(LidarInertialOdometry, AGivenVelocityConstrainsWhatTheSurfacesDoNot) {
-  const test::Motion& motion = test::room_tumble().motion;
-  const auto end_error_m = [&](bool told) {
-    Odometry odometry(rig_params());
-    Odometry::SweepReport report;
-    for (int i = 0; i < 12; ++i) {
-      for (int k = i * kSamplesPerSweep; k < (i + 1) * kSamplesPerSweep; ++k) {
-        ImuSample sample = test::room_tumble().imu[static_cast<std::size_t>(k)];
-        const double t = seconds(sample.time_ns);
-        if (t > motion.rest_s) sample.specific_force_m_s2 += motion.q(t).conjugate() * Eigen::Vector3d(0.5, 0.0, 0.0);
-        EXPECT_TRUE(odometry.add_imu(sample, test::believe(sample)).ok());
-      }
-      const double start_s = 0.1 * i;
-      const Eigen::Vector3d v_I_m_s = motion.q(start_s).conjugate() * motion.v_m_s(start_s);
-      if (told) {
-        EXPECT_TRUE(odometry.add_velocity(v_I_m_s, 0.01).ok());
-      }
-      const auto points = test::make_sweep(test::Room::floor_only(), motion, rig_params().T_IL, i, test::kRoomNoise_m);
-      EXPECT_TRUE(add_sweep(odometry, i, points, report).ok());
-    }
-    return error_of(report.pose).m;
-  };
-  EXPECT_LT(end_error_m(true), 0.1);
-  EXPECT_GT(end_error_m(false), 0.15);
-}
-
-/// From the throw on, the accelerometer reads a constant saturated value, or zero.
-TEST(LidarInertialOdometry, AnAccelerometerOfNoUseIsLeftOut) {
-  const test::Motion& motion = test::room_tumble().motion;
-  const auto worst_m = [&](const Eigen::Vector3d& read, bool left_out) {
-    Odometry odometry(rig_params());
-    Odometry::SweepReport report;
-    double worst = 0.0;
-    for (int i = 0; i < 26; ++i) {
-      bool of_no_use = false;
-      for (int k = i * kSamplesPerSweep; k < (i + 1) * kSamplesPerSweep; ++k) {
-        ImuSample sample = test::room_tumble().imu[static_cast<std::size_t>(k)];
-        of_no_use = seconds(sample.time_ns) > motion.rest_s;
-        if (of_no_use) sample.specific_force_m_s2 = read;
-        EXPECT_TRUE(odometry.add_imu(sample, test::believe(sample)).ok());
-      }
-      if (of_no_use && left_out) odometry.exclude_accelerometer();
-      EXPECT_TRUE(add_sweep(odometry, i, test::room_tumble().sweeps[static_cast<std::size_t>(i)], report).ok());
-      worst = std::max(worst, error_of(report.pose).m);
-    }
-    return worst;
-  };
-  for (const Eigen::Vector3d& read : {Eigen::Vector3d(0.0, 0.0, 0.0), Eigen::Vector3d(100.0, -100.0, 100.0)}) {
-    const double with = worst_m(read, false), without = worst_m(read, true);
-    EXPECT_LT(without, 0.08);
-    EXPECT_LT(without, 0.5 * with) << with;
-  }
-  EXPECT_EQ(worst_m(Eigen::Vector3d::Zero(), true), worst_m(Eigen::Vector3d(1.0, 2.0, 3.0), true))
-      << "what it reads has no part in it";
 }
 
 TEST(LidarInertialOdometry, LevelsAtRest) {

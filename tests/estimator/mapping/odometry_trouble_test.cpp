@@ -134,14 +134,6 @@ TEST(LidarInertialOdometry, TreatsNanReturnsAsMisses) {
   EXPECT_EQ(a.map_points_added, b.map_points_added);
 }
 
-TEST(LidarInertialOdometry, RefusesAVelocityThatSaysNothing) {
-  Odometry odometry(rig_params());
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(odometry.add_velocity({nan, 0.0, 0.0}, 0.01).error_code, ErrorCode::non_finite);
-  EXPECT_EQ(odometry.add_velocity({0.0, 0.0, 0.0}, nan).error_code, ErrorCode::non_finite);
-  EXPECT_EQ(odometry.add_velocity({0.0, 0.0, 0.0}, 0.0).error_code, ErrorCode::out_of_range);
-}
-
 TEST(LidarInertialOdometry, MissingImuIsATroubleNotAGuess) {
   Odometry odometry(rig_params());
   Odometry::SweepReport report;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compares state estimates and predictions with closed forms, and with the nonlinear relations that they linearise.
+// Compares state estimates with closed forms, and with the nonlinear relations that they linearise.
 #include "estimator/src/mapping/state_estimate.hpp"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "estimator/src/common/symmetric.hpp"
-#include "estimator/src/mapping/prediction.hpp"
 #include "estimator/src/mapping/unknowns.hpp"
 #include "tumble/common/types.hpp"
 
@@ -179,24 +178,6 @@ TEST(StateEstimate, AtTheStartHangsOnTheLidar) {
 
   params.T_IL.translation().x() += 0.1;  // another lever arm gives another covariance
   EXPECT_GT((estimate_at_start(params, levelled).prior_weight_covariance - expected).cwiseAbs().maxCoeff(), 1e-5);
-}
-
-TEST(Prediction, AKnownVelocityTurnsWithTheAttitude) {
-  Prediction prediction;
-  prediction.prior.mean.state.q_WI = so3::exp({0.1, 0.7, -0.3});
-  apply_velocity_prior(KnownVelocity{{1.0, -2.0, 0.5}, 0.1}, prediction);
-  prediction.compose_with_boundary(uncertain());
-  const Registration::Estimate& mean = prediction.prior.mean;
-  EXPECT_LT((mean.state.v_WI_m_s - mean.state.q_WI * Eigen::Vector3d(1.0, -2.0, 0.5)).norm(), 1e-15);
-  const Eigen::Matrix3d hat = so3::hat(mean.state.v_WI_m_s);
-  const Eigen::Matrix3d expected = 0.04 * hat * hat.transpose() + 0.01 * Eigen::Matrix3d::Identity();
-  EXPECT_LT((u::sub_block(prediction.prior.covariance, u::velocity) - expected).norm(), 1e-12);
-  EXPECT_LT((u::sub_block(prediction.prior.covariance, u::velocity, u::attitude) + 0.04 * hat).norm(), 1e-12);
-
-  Prediction inertial;
-  apply_velocity_prior(InertialPrior{}, inertial);
-  inertial.compose_with_boundary(uncertain());
-  EXPECT_EQ(inertial.prior.covariance, uncertain().prior_weight_covariance);
 }
 
 }  // namespace

@@ -144,10 +144,10 @@ TEST(Window, APoseAheadIsTheInertialPriorAndChangesNothing) {
   EXPECT_EQ(pose.time_ns, 14 * test::kSweep_ns);
   EXPECT_LT(run.error_m(pose), 0.05);
   EXPECT_GT(pose.covariance.diagonal().head<3>().sum(), run.report.pose.covariance.diagonal().head<3>().sum());
-  // a known velocity is used with its stated uncertainty
+  // an odometer reading is fused with its stated uncertainty
   Odometry told(run.odometry);
   const Eigen::Vector3d v_I_m_s(3.0, 0.0, 0.0);
-  ASSERT_TRUE(told.add_velocity(v_I_m_s, 0.01).ok());
+  ASSERT_TRUE(told.add_reading(VelocityReading{12 * test::kSweep_ns, v_I_m_s, 0.001}).ok());
   PoseState led;
   ASSERT_TRUE(told.predict(ahead, rates, led).ok());
   EXPECT_GT((led.position_W_m - pose.position_W_m).norm(), 0.1);

@@ -147,7 +147,6 @@ TEST(RollingRates, AGapCostsAccuracyAndIsReported) {
       const Smoothed moving = smoothed_samples(without(6.3, length_s), testing::lagged_params(lag_s));
       const double error = (moving.out.back().sphere_centre_W_m - end_m).norm();
       EXPECT_EQ(moving.state->live_filter.gaps, 1);
-      EXPECT_NEAR(moving.state->live_filter.gap_longest_s, length_s, 9e-3);
       EXPECT_LT(error, 3.0 * sigma(moving)) << length_s;
       EXPECT_LT(error, 0.3) << length_s;
       EXPECT_GT(sigma(moving), sigma(none)) << length_s;

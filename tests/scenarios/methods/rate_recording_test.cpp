@@ -10,7 +10,9 @@
 #include "scenarios/estimates/method.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/synthetic_recording.hpp"
+#include "scenarios/recordings/import.hpp"
 #include "scenarios/scoring/score.hpp"
+#include "stand_ins/stand_ins.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -161,6 +163,33 @@ TEST(RateRecording, ClippedAxesOfTheAccelerometerAreBounds) {
   // Without the stated range, the model of a steady spin uses the clipped forces, and limits the error: 0.144 rad/s
   // with the stated range, 0.128 rad/s without.
   EXPECT_LT(stated, 1.2 * hidden) << "without a rail " << free;
+}
+
+/// Returns the first 30 s of the wand's simulated recording.
+sim::Sensors wand() {
+  const auto folder = test::written(test::data_folders("repoimu").front());
+  sim::Sensors out = import_imu_csv(folder / test::kStandInWand, {}, AccelUnit::m_s2, GyroUnit::rad_s,
+                                    "time=0,gyro=8,9,10,accel=5,6,7")
+                         .sensors;
+  sim::ImuRecord& imu = out.imus.front();
+  constexpr std::size_t kSamples = 3000;
+  imu.time_ns.resize(kSamples);
+  imu.gyro_rad_s.resize(kSamples);
+  imu.accel_m_s2.resize(kSamples);
+  if (!imu.clip_flags.empty()) imu.clip_flags.resize(kSamples);
+  return out;
+}
+
+TEST(RateRecording, EachMethodReportsTheSaturationLimitsThatItFound) {
+  const sim::Sensors twirled = wand();
+  const test::WandRail rail;
+  for (const char* const name : {"rate/tumble", "rate/tumble_lag", "attitude/tumble"}) {
+    const auto health = find_methods(name).front()->run(twirled, {}, {}).health;
+    ASSERT_TRUE(health.contains("gyro_limit_x_rad_s")) << name;
+    EXPECT_NEAR(health.at("gyro_limit_x_rad_s"), rail.distance_rad_s, 0.01) << name;
+    for (const char* const key : {"gyro_limit_y_rad_s", "gyro_limit_z_rad_s"})
+      EXPECT_FALSE(health.contains(key)) << name << ' ' << key << ": no saturation limit was observed there";
+  }
 }
 
 }  // namespace

@@ -12,7 +12,6 @@
 #include <string>
 
 #include "scenarios/estimates/estimate_file.hpp"
-#include "scenarios/methods/rig_calibration_file.hpp"
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"
 #include "scenarios/recordings/import.hpp"
@@ -90,7 +89,6 @@ TEST_F(RegularFile, ReadersRefuseAPipeAndDoNotWaitForIt) {
   EXPECT_EQ(complaint([&] { pose_format(pipe); }), said);
   EXPECT_FALSE(is_pose_table(pipe));
   EXPECT_EQ(complaint([&] { read_pose_table(pipe, false); }), said);
-  EXPECT_EQ(complaint([&] { read_rig_calibration(pipe); }), said);
   Kind kind{};
   std::string method;
   std::filesystem::create_directory(folder_ / "estimate");

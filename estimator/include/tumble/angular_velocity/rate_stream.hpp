@@ -66,6 +66,9 @@ class AngularRateStream {
   /// accelerometer from the specific force in free flight.
   SensorHealth health(const State& state) const;
 
+  /// Returns true if AngularRateStream has not estimated the rig constants since its start or its last reset.
+  bool is_at_prior(const State& state) const;
+
   RigCalibration calibration(const State& state) const { return {state.rig, inflated_calibration_covariance(state)}; }
 
   /// Returns the sensor errors that AngularRateStream currently corrects, with their covariance.

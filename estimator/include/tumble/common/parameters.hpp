@@ -88,16 +88,7 @@ void throw_if_out_of_bounds(const OutOfBoundsParameter& found);
 
 }  // namespace detail
 
-/// Returns `ok`, or `out_of_range` with the name, value and violated bound of the first invalid parameter of `params`.
-/// For a parameter of a nested group, the returned name lacks the group's prefix. No memory is allocated.
-template <class Params>
-Status check_fields(const Params& params) {
-  detail::OutOfBoundsParameter found;
-  detail::BoundsChecker visitor(found);
-  Params::fields(params, visitor);
-  return found.status;
-}
-
+/// Throws InvalidParams with the name, value and bounds of the first invalid parameter of `params`.
 template <class Params>
 void require_valid_fields(const Params& params) {
   detail::OutOfBoundsParameter found;

@@ -27,7 +27,6 @@ struct HealthFinding {
     gyro_scale,                ///< the forces of several IMUs contradict the scale of the gyros
     lidar_scale,               ///< the lidar's ranges have another scale than the motion
     lidar_calibration,         ///< mounting or clock of the lidar differ from the stated values
-    rig_calibration,           ///< a stored calibration belongs to another rig
     attitude_unknown,          ///< the direction of gravity is unknown; value: duration [s]
     vertical_unknown,          ///< the vertical of the map is uncertain after a start in motion
     tracking_lost,             ///< the pose in the map is uncertain, or sweeps contradict their predicted poses

@@ -94,19 +94,11 @@ class LidarInertialOdometry {
   /// of `sample` and `rate` differ, or exceed kStampMax_ns. On error, the state is unchanged.
   Status add_imu(const ImuSample& sample, const AngularRateState& rate);
 
-  /// Sets the velocity that an odometer measured at the start of the next sweep, in IMU axes, with one standard
-  /// deviation for all axes. The odometer's velocity replaces the estimated velocity in the prediction of the next
-  /// sweep's pose. Returns `non_finite` if a number is not finite, or `out_of_range` if the standard deviation is not
-  /// above 0. On error, the state is unchanged.
-  Status add_velocity(const Eigen::Vector3d& v_WI_I_m_s, double sigma_m_s);
   /// Sets an odometer reading for the prediction of the next sweep's pose. The prediction ignores a reading with time
   /// stamps more than 20 ms before the end of the last sweep or after the end of the next sweep. The odometer reading
-  /// is fused with the inertial prediction, weighted by their covariances. Each sweep uses one odometer input: the last
-  /// call of add_reading() or add_velocity().
+  /// is fused with the inertial prediction, weighted by their covariances. Each sweep uses one odometer reading: that
+  /// of the last call of add_reading().
   Status add_reading(const OdometerReading& reading);
-  /// Excludes the accelerometer from the prediction of the next sweep's pose, which then uses only the gyro.
-  /// exclude_accelerometer() also drops the odometer readings that were set for the next sweep.
-  void exclude_accelerometer();
 
   /// Registers a sweep of points fired in [start_ns, end_ns]. Consecutive sweeps must not overlap. A point with NaN
   /// coordinates is a laser pulse without a return.

@@ -3,7 +3,6 @@
 
 #include <Eigen/Geometry>
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -171,9 +170,6 @@ class RollingOdometry {
   /// If `lag_s` is above 0, centre and radius are the estimates at the newest smoothed pose.
   Calibration calibration() const;
 
-  /// Returns the number of bridged gaps between samples, and the longest gap [s].
-  std::int64_t bridged_gaps() const;
-  double longest_gap_s() const;
   /// Returns true if the sphere was already moving at the first samples.
   bool started_in_motion() const;
 

@@ -238,15 +238,10 @@ class TumblingOdometry {
   bool second_mapping_pass_applied() const;
   /// The following counters are 0 in normal operation. The function rejected_samples() counts IMU samples that the
   /// mapper rejected. The function dropped_sweeps() counts sweeps that take() did not return in time. The function
-  /// sweeps_before_first_imu() counts sweeps that ended before the first IMU sample. The function
-  /// unused_odometer_readings() counts motion readings that start in one sweep and end in another sweep.
+  /// sweeps_before_first_imu() counts sweeps that ended before the first IMU sample.
   std::size_t rejected_samples() const;
   std::size_t dropped_sweeps() const;
   std::size_t sweeps_before_first_imu() const;
-  std::size_t unused_odometer_readings() const;
-  /// Returns the number of unused points of further lidars. Points are unused if they arrived late, or if the first
-  /// lidar had no sweep at the same time.
-  std::size_t unused_points() const;
   /// Returns the jitter of the IMU's time stamps about a regular clock [s] while SampleClock corrects them, and
   /// otherwise an empty value.
   std::optional<double> estimated_jitter_s() const;

@@ -67,7 +67,6 @@ class RollingFilter {
     bool uncertain = false;  ///< an event increased the position's standard deviation by more than kEventSigmaGrowth_m
     bool started_in_motion = false;
     std::int64_t gaps = 0;  ///< number of bridged gaps
-    double gap_longest_s = 0.0;
     // The errors of all contact-mode hypotheses are linearised about the nominal trajectory and calibration.
     RollingNominalState nominal;
     RollingNodeIntegrals node_integrals;

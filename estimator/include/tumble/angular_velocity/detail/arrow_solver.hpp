@@ -21,7 +21,6 @@ using BorderVector = System::BorderVector;
 using Block = System::StateBlock;
 using Corner = System::BorderBlock;
 using Conditional = System::StateGivenNextState;
-using Marginal = System::MarginalDistribution;
 
 inline constexpr int kErrorCount = 29;  ///< number of sensor errors, which all blocks share: see SensorErrors
 
@@ -33,7 +32,6 @@ bool eliminate(Block& block, Block* next, Corner& corner);
 bool solve_border_block(const Corner& corner, BorderVector& step, BorderMatrix& covariance);
 StateVector back_substitute(const Block& block, const StateVector* next_step, const BorderVector& border_step);
 Conditional state_given_next_state(const Block& block, const Conditional* next);
-Marginal marginal(const Conditional& conditional, const BorderMatrix& border_covariance);
 
 /// Call eliminate() for `block` first. `next` is null for the last block.
 void eliminate_sensor_errors(const Block& block, ErrorMatrix& errors, ErrorMatrix* next, BorderErrors& border);
@@ -43,7 +41,7 @@ void eliminate_sensor_errors(const Block& block, ErrorMatrix& errors, ErrorMatri
 ErrorMatrix back_substitute_errors(const Block& block, const ErrorMatrix& errors, const ErrorMatrix* next_moved,
                                    const BorderErrors& border_moved);
 
-/// Returns the covariance of the rate in a block, at lower cost than marginal().
+/// Returns the covariance of the rate in a block, including the uncertainty of the border.
 Eigen::Matrix3d rate_covariance(const Conditional& conditional, const BorderMatrix& border_covariance);
 
 }  // namespace arrow

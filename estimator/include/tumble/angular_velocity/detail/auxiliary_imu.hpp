@@ -13,13 +13,6 @@
 
 namespace tumble {
 
-/// Readings of a second accelerometer on the rigid body of the primary IMU, in the axes and at the time stamps of the
-/// primary IMU.
-struct AuxiliaryAccelerometer {
-  Eigen::Vector3d p_I_m = Eigen::Vector3d::Zero();   ///< position relative to the primary IMU, in its axes
-  std::vector<Eigen::Vector3d> specific_force_m_s2;  ///< one reading per sample of the primary IMU; NaN: no reading
-};
-
 /// Mounting and accuracy of an additional IMU C on the body of the primary IMU. The biases and mounting errors of an
 /// additional IMU are not estimated, but increase the standard deviations of its readings.
 struct AuxiliaryImu {

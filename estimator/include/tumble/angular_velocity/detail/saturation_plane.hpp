@@ -3,7 +3,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <cstdint>
 #include <optional>
 #include <span>
 
@@ -35,7 +34,7 @@ struct SaturationPlane {
     return saturation_limit_rad_s - sign * (row.dot(reading_rad_s) - offset_rad_s);
   }
   /// Returns true if a reading is at or beyond the plane of the given sign. Returns false if no saturation of this sign
-  /// was observed.
+  /// was observed. See rails.md (R54), (R55).
   bool is_saturated(const Eigen::Vector3d& reading_rad_s, int sign) const {
     return was_reached(sign) && distance_to_plane_rad_s(reading_rad_s, sign) <= tolerance_rad_s;
   }
@@ -62,12 +61,5 @@ struct SensingDirections {
 /// A sensing element without a plane of saturated readings has an axis-aligned sensing direction with the standard
 /// deviation `unknown_sigma`.
 SensingDirections sensing_directions(const SaturationPlanes& planes, double unknown_sigma);
-
-/// clipping per sensing element: -1 at the negative limit, 1 at the positive limit, 0 if unsaturated
-struct SensingAxisClipping {
-  std::array<std::int8_t, 3> saturated_side{};
-  bool any_axis_saturated() const { return saturated_side[0] != 0 || saturated_side[1] != 0 || saturated_side[2] != 0; }
-  bool operator==(const SensingAxisClipping&) const = default;
-};
 
 }  // namespace tumble

@@ -88,10 +88,4 @@ class SaturationPlaneFinder {
   Params params_;
 };
 
-/// Cost: O(1).
-SensingAxisClipping classify_clipping(const ImuSample& sample, const SaturationPlanes& planes);
-/// `out` must have the size of `samples`.
-void classify_clipping(std::span<const ImuSample> samples, const SaturationPlanes& planes,
-                       std::span<SensingAxisClipping> out);
-
 }  // namespace tumble

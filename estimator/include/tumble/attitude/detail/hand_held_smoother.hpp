@@ -46,8 +46,8 @@ struct SensingAxisClipSigns {
 /// Computation and memory (about 7 kB per time step `node_s`) are proportional to the duration of the recording, and
 /// independent of the sample rate of the IMU.
 ///
-/// HandHeldSmoother assumes constant biases and a body that is neither thrown nor hit (see
-/// `mean_hand_acceleration_ratio`). The heading is relative to the start of the recording.
+/// HandHeldSmoother assumes constant biases and a body that is neither thrown nor hit. The heading is relative to the
+/// start of the recording.
 class HandHeldSmoother {
  public:
   using Params = HandHeldParams;
@@ -58,9 +58,6 @@ class HandHeldSmoother {
     int iterations = 0;
     bool converged = false;
     double cost = 0.0;
-    /// Largest mean acceleration of the hand over a quarter of a second, divided by `hand_sigma_m_s2`; above 2, the
-    /// body was probably thrown or handled roughly.
-    double mean_hand_acceleration_ratio = 0.0;
     /// During long saturation, the number of full revolutions can be ambiguous. `revolutions_tested` counts the
     /// saturated intervals in which HandHeldSmoother compared several numbers of revolutions. `revolutions_corrected`
     /// counts the saturated intervals in which another number of revolutions fitted better. `revolutions_ambiguous`

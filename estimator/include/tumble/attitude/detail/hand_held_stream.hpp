@@ -19,7 +19,7 @@ namespace tumble {
 /// bit-identical results.
 ///
 /// Unlike HandHeldSmoother, HandHeldRateStream does not test other numbers of full revolutions during saturation. The
-/// rate covariance includes the error of one additional revolution: carried.md (C42), (C43). After the detection of a
+/// rate covariance includes the error of one additional revolution: carried.md (C41), (C42). After the detection of a
 /// saturation limit, HandHeldRateStream classifies only the readings in the window again.
 ///
 /// Cost: O(window) per node while a sample in the window is clipped, and a fifth of this cost otherwise.

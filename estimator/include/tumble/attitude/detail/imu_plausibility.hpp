@@ -60,8 +60,6 @@ class ImuPlausibility {
   /// Reduces the weight of old samples to about a minute, so that a warning ends after its cause.
   static void limit_memory(State& state);
 
-  /// Returns the fraction of the specific force's rotation that the gyro does not explain, or 0 while unknown.
-  double unexplained_force_rotation_ratio(const State& state) const;
   /// Returns the slope of the regression of the specific force's rotation on the gyro's rotation: imu_merge.md (I20).
   /// The slope is 1 for a correct gyro, 2 for a half-scale gyro, -1 for an inverted gyro, and 1 while unknown.
   double force_to_gyro_rotation_ratio(const State& state) const;

@@ -55,11 +55,6 @@ class MotionRegimeSmoother {
   Status estimate(std::span<const ImuSample> samples, std::span<const std::vector<AuxiliaryReading>> auxiliary_imus,
                   std::vector<AngularRateState>& rates, Report& report) const;
 
-  /// Combines the rates of AngularRateSmoother, given in `rates`, with the rates of HandHeldSmoother and SpinTracker.
-  /// The caller must set `report.rate` to the report of AngularRateSmoother before calling join_regime_rates().
-  void join_regime_rates(std::span<const ImuSample> samples, std::vector<AngularRateState>& rates,
-                         Report& report) const;
-
  private:
   void join_hand_held_rates(std::span<const ImuSample> samples, std::vector<AngularRateState>& rates,
                             Report& report) const;

@@ -64,10 +64,7 @@ class RestGravity {
   /// Reduces the weight of old rests to a minute, so that a warning ends after its cause.
   static void limit_memory(GravityMagnitudeState& state);
 
-  /// Returns the mean magnitude of the specific force at rest as a fraction of gravity. Returns 0 if every rest of a
-  /// second was without force, and 1 if the body never rested.
-  double gravity_magnitude_error_ratio(const GravityMagnitudeState& state) const;
-  /// Returns `out_of_range` if gravity_magnitude_error_ratio() differs from 1 by more than 15 %.
+  /// Returns `out_of_range` if the mean magnitude of the specific force at rest differs from gravity by more than 15 %.
   Status gravity_magnitude_verdict(const GravityMagnitudeState& state) const;
   /// Returns the error of gravity_magnitude_verdict(), if any. Otherwise returns `out_of_range` if the velocity,
   /// integrated between two rests, contradicts zero velocity at both rests.

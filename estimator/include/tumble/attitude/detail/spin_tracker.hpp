@@ -33,8 +33,8 @@ struct SpinFilter {
 ///
 /// - **Modulation of the rate:** The axis of a spinning body that is long or has a steady load turns slowly in the
 ///   world. The rate across the spin axis is then the sum of a part that is constant in the body and a part that the
-///   gyro measures modulated at the frequency of the spin: carried.md (C45).
-/// - **Centripetal force:** The specific force across the spin axis grows with the squared rate: carried.md (C50). The
+///   gyro measures modulated at the frequency of the spin: carried.md (C44).
+/// - **Centripetal force:** The specific force across the spin axis grows with the squared rate: carried.md (C49). The
 ///   lever arm is estimated while the spin axis is unsaturated.
 ///
 /// For each of both, an extended Kalman filter assumes a steady spin, and a second filter assumes readings that change

@@ -44,12 +44,6 @@ struct BlockArrowSystem {
     CrossMatrix border_jacobian;
   };
 
-  /// posterior covariance of a block, and its cross-covariance with the border
-  struct MarginalDistribution {
-    StateMatrix state;
-    CrossMatrix cross_covariance;
-  };
-
   /// Eliminates `block`, and adds its Schur complement to the corner and to `next` (null for the last block). Returns
   /// false if the block is not positive definite.
   static bool eliminate(StateBlock& block, StateBlock* next, BorderBlock& corner);
@@ -65,9 +59,6 @@ struct BlockArrowSystem {
 
   /// `next` is null for the last block.
   static StateGivenNextState state_given_next_state(const StateBlock& block, const StateGivenNextState* next);
-
-  /// Returns the covariance of a block, including the uncertainty of the border.
-  static MarginalDistribution marginal(const StateGivenNextState& conditional, const BorderMatrix& border_covariance);
 
  private:
   static bool invert_cholesky_factor(StateMatrix& a);
@@ -169,16 +160,6 @@ auto BlockArrowSystem<State, Border>::state_given_next_state(const StateBlock& b
   const StateMatrix A = L_inv.transpose().lazyProduct(block.coupling_to_next_state);
   const StateMatrix A_state = A.lazyProduct(next->state);
   out.state.noalias() += A_state.lazyProduct(A.transpose());
-  return out;
-}
-
-template <int State, int Border>
-auto BlockArrowSystem<State, Border>::marginal(const StateGivenNextState& conditional,
-                                               const BorderMatrix& border_covariance) -> MarginalDistribution {
-  MarginalDistribution out;
-  out.cross_covariance = conditional.border_jacobian.lazyProduct(border_covariance);
-  out.state = conditional.state;
-  out.state.noalias() += out.cross_covariance.lazyProduct(conditional.border_jacobian.transpose());
   return out;
 }
 

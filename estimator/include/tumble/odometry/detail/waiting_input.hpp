@@ -39,11 +39,8 @@ class WaitingReadings {
   /// Returns the last odometer reading within a sweep, like take_readings_in(), but keeps all readings. Cost: O(log n).
   std::optional<OdometerReading> find(TimeNs from_ns, TimeNs end_ns) const;
 
-  std::size_t readings_spanning_two_sweeps() const { return readings_spanning_two_sweeps_; }
-
  private:
   std::deque<OdometerReading> waiting_readings_;  ///< waiting readings in the order of their middle times
-  std::size_t readings_spanning_two_sweeps_ = 0;
 };
 
 }  // namespace tumble

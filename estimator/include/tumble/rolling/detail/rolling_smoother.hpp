@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <span>
 #include <vector>
 
 #include "tumble/common/parameters.hpp"
@@ -64,9 +63,6 @@ class RollingSmoother {
     double lag_s = kWholeRecordingLag;       ///< delay of an estimate behind the newest sample
     static constexpr double kBlock_s = 0.2;  ///< RollingSmoother reports estimates in blocks of this duration
     double rate_max_hz = 500.0;              ///< sample rate for which memory is allocated in advance
-    /// Measured horizontal distance of the centre between start and end of the run, and its standard deviation; 0: not
-    /// measured. A measured distance corrects the radius of the sphere.
-    double known_distance_m = 0.0, known_distance_sigma_m = 5e-3;
 
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
@@ -77,12 +73,6 @@ class RollingSmoother {
              ParameterRank::common_use});
       visit(p.rate_max_hz,
             {"rate_max_hz", "Hz", 1e-3, 1e5, "sample rate for which the memory of the delay is allocated in advance"});
-      visit(p.known_distance_m,
-            {"known_distance_m", "m", 0.0, 1e6,
-             "known horizontal distance from start to end, from which the radius is estimated; 0: not known",
-             ParameterRank::common_use});
-      visit(p.known_distance_sigma_m, {"known_distance_sigma_m", "m", 1e-12, 1e3,
-                                       "standard deviation of the known distance", ParameterRank::common_use});
     }
   };
 
@@ -135,10 +125,6 @@ class RollingSmoother {
   using EstimateCallback = std::function<void(const RollingEstimate&)>;
   void finish(State& state, const EstimateCallback& take) const;
   void finish(State& state, std::vector<RollingEstimate>& out) const;
-
-  /// Smooths all estimates with externally known contact modes. `known` contains one contact mode per sample of a run
-  /// that was processed with kWholeRecordingLag.
-  void finish(std::span<const RollingMode> known, State& state, const EstimateCallback& take) const;
 
  private:
   using ModePath = std::vector<rolling::ModePathNode>;
