@@ -54,14 +54,14 @@ std::string how_it_fails(const CaseResult& result) {
 
 }  // namespace
 
-Scenario named_case_of(const Shrunk& shrunk, const std::string& name, const std::string& method, const Failure& failure,
-                       const std::string& version, const std::string& command) {
+Scenario named_case_of(const Shrunk& shrunk, const std::string& name, const std::string& method,
+                       const FailureGoal& failure, const std::string& version, const std::string& command) {
   Scenario out = shrunk.scenario;
   Expectation expected;
   expected.method = method;
   expected.fails = true;
   expected.metric = failure.metric.empty() ? headline_metrics(shrunk.drawn.kind).front() : failure.metric;
-  if (!failure.metric.empty()) expected.worse_than = failure.limit;
+  if (!failure.metric.empty() && std::isfinite(failure.limit)) expected.worse_than = failure.limit;
   expected.status = to_string(shrunk.left.status);
   expected.drawn = finite_value_of(shrunk.drawn, expected.metric);
   expected.value = finite_value_of(shrunk.left, expected.metric);
@@ -71,8 +71,8 @@ Scenario named_case_of(const Shrunk& shrunk, const std::string& name, const std:
   return out;
 }
 
-Failure failure_of(const Expectation& expected) {
-  return expected.worse_than ? Failure{expected.metric, *expected.worse_than} : Failure{};
+FailureGoal failure_of(const Expectation& expected) {
+  return expected.worse_than ? FailureGoal{expected.metric, *expected.worse_than} : FailureGoal{};
 }
 
 CaseResult hold_case(const std::string& name, const Expectation& expected, const Outcome& outcome) {

@@ -8,10 +8,10 @@
 
 namespace tumble::scenarios {
 
-Scenario named_case_of(const Shrunk& shrunk, const std::string& name, const std::string& method, const Failure& failure,
-                       const std::string& version, const std::string& command);
+Scenario named_case_of(const Shrunk& shrunk, const std::string& name, const std::string& method,
+                       const FailureGoal& failure, const std::string& version, const std::string& command);
 
-Failure failure_of(const Expectation& expected);
+FailureGoal failure_of(const Expectation& expected);
 
 inline constexpr double kCaseFactor = 2.0;
 

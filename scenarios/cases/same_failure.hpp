@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "scenarios/sweep/triage.hpp"
+#include "scenarios/sweep/failure_goal.hpp"
 
 namespace tumble::scenarios {
 
@@ -11,16 +11,15 @@ namespace tumble::scenarios {
 /// has no value in a run without clipping.
 class SameFailure {
  public:
-  SameFailure(const Failure& failure, const Outcome& outcome);
+  SameFailure(const FailureGoal& failure, const Outcome& outcome);
 
   bool holds(const Outcome& outcome) const;
   std::string describe() const;
-  const std::string& metric() const { return metric_; }
+  const std::string& metric() const { return goal_.metric; }
 
  private:
   OutcomeStatus status_;
-  std::string metric_;
-  double limit_ = 0.0;
+  FailureGoal goal_;
 };
 
 }  // namespace tumble::scenarios

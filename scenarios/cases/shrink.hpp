@@ -18,7 +18,7 @@ struct ShrinkTrial {
 };
 
 struct ShrinkOptions {
-  Failure failure;
+  FailureGoal failure;
   /// Reference method of the same kind, which must succeed on each simplified run. The reference method excludes
   /// scenarios that no method can solve.
   MethodPointer control;

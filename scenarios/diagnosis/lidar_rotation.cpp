@@ -7,10 +7,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenarios/diagnosis/lidar_odometry.hpp"
 #include "scenarios/errors.hpp"
-#include "scenarios/estimates/method.hpp"
 #include "scenarios/methods/bridge.hpp"
-#include "scenarios/methods/registry.hpp"
 #include "scenarios/recordings/number_text.hpp"
 #include "scenarios/recordings/repairable.hpp"
 #include "scenarios/recordings/upper_median.hpp"
@@ -34,7 +33,8 @@ constexpr double kDelayMost_s = 0.5, kDelayStep_s = 0.01, kDelaySaid_s = 0.03;
 constexpr std::int64_t kGap_ns = 100'000'000;
 constexpr double kInverted = 0.2;
 
-sim::Sensors span_alone(const sim::LidarRecord& lidar, const PointStore* aside, std::size_t first, std::size_t last) {
+sim::LidarRecord span_alone(const sim::LidarRecord& lidar, const PointStore* aside, std::size_t first,
+                            std::size_t last) {
   sim::LidarRecord out = sweep_alone(lidar, aside, first);
   const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
   for (std::size_t k = first + 1; k < last; ++k) {
@@ -47,17 +47,15 @@ sim::Sensors span_alone(const sim::LidarRecord& lidar, const PointStore* aside, 
     append(out.ring, sweep.ring);
     out.sweep_first.push_back(out.position_L_m.size());
   }
-  sim::Sensors sensors;
-  sensors.lidars.push_back(std::move(out));
-  return sensors;
+  return out;
 }
 
-void add_rotations(const Estimate& estimate, std::vector<SeenRotation>& out) {
+void add_rotations(std::span<const SweepReport> sweeps, std::vector<SeenRotation>& out) {
   const auto registered = [](const SweepReport& sweep) {
     return sweep.verdict == SweepVerdict::first || sweep.verdict == SweepVerdict::registered;
   };
-  for (std::size_t k = 1; k < estimate.sweeps.size(); ++k) {
-    const SweepReport &before = estimate.sweeps[k - 1], &after = estimate.sweeps[k];
+  for (std::size_t k = 1; k < sweeps.size(); ++k) {
+    const SweepReport &before = sweeps[k - 1], &after = sweeps[k];
     if (!registered(before) || !registered(after)) continue;
     SeenRotation seen{before.pose.time_ns, after.pose.time_ns,
                       so3::logarithm(before.pose.orientation_W.conjugate() * after.pose.orientation_W)};
@@ -246,11 +244,9 @@ std::vector<SeenRotation> seen_rotations(const sim::LidarRecord& lidar, const Po
   std::vector<SeenRotation> out;
   const std::size_t sweeps = lidar.sweep_start_ns.size();
   const std::size_t spans = std::min(kSpans, (sweeps + kSweepsOfSpan - 1) / kSweepsOfSpan);
-  const MethodPointer method = find_methods("slam/constant_velocity").front();
-  const sim::Values parameters = sim::resolve(method->info.name, {}, method->info.parameters);
   for (std::size_t k = 0; k < spans; ++k) {
     const std::size_t first = k * sweeps / spans, last = std::min(first + kSweepsOfSpan, sweeps);
-    add_rotations(method->run(span_alone(lidar, aside, first, last), parameters, {}), out);
+    add_rotations(register_sweeps(span_alone(lidar, aside, first, last)), out);
   }
   return out;
 }

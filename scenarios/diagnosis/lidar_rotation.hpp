@@ -20,10 +20,10 @@ struct SeenRotation {
   Eigen::Vector3d rotation_L_rad = Eigen::Vector3d::Zero();  ///< rotation vector, lidar axes
 };
 
-/// The rotations between consecutive sweeps come from the lidar alone, by the method `slam/constant_velocity`. At most
-/// ten segments of a dozen sweeps, spread over the recording, are processed, each with a separate map. Only pairs of
-/// registered sweeps with rates of 0.1 to 2 rad/s are kept. Slower rotations are mostly noise, and faster rotations
-/// distort the sweeps. The cost is about 10 ms per sweep.
+/// The rotations between consecutive sweeps come from the lidar alone, by `register_sweeps`. At most ten segments of a
+/// dozen sweeps, spread over the recording, are processed, each with a separate map. Only pairs of registered sweeps
+/// with rates of 0.1 to 2 rad/s are kept. Slower rotations are mostly noise, and faster rotations distort the sweeps.
+/// The cost is about 10 ms per sweep.
 std::vector<SeenRotation> seen_rotations(const sim::LidarRecord& lidar, const PointStore* aside);
 
 /// True axis i is `sign[i]` times axis `axis[i]` of the readings.

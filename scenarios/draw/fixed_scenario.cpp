@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
 #include "scenarios/draw/case_text.hpp"
 #include "scenarios/draw/drawn_numbers.hpp"
@@ -27,25 +29,47 @@ void fix(const sim::Values& values, Numbers& numbers) {
   for (const auto& [name, value] : values.all()) numbers[name] = constant(value);
 }
 
-std::string numbers_text(const Numbers& numbers, const std::string& indent, const std::string& place) {
-  std::string out;
-  for (const auto& [name, number] : numbers) {
-    out += indent + name + ": " + yaml_number(number.numbers.front(), place + "." + name) + "\n";
-  }
+std::vector<std::string> entries_of(const Numbers& numbers, const std::string& place) {
+  std::vector<std::string> out;
+  for (const auto& [name, number] : numbers)
+    out.push_back(name + ": " + yaml_number(number.numbers.front(), place + "." + name));
   return out;
 }
 
+/// Returns the text of a map in one line, or in lines of up to 120 columns. `start` is the text before the map.
+std::string map_text(const std::string& start, const std::vector<std::string>& entries, const std::string& indent) {
+  constexpr std::size_t kColumns = 120;
+  std::string out, line = start + "{";
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const std::string entry = entries[i] + (i + 1 < entries.size() ? "," : "}");
+    if (line.size() + 1 + entry.size() > kColumns) {
+      out += line + "\n";
+      line = indent + entry;
+    } else {
+      line += (i > 0 ? " " : "") + entry;
+    }
+  }
+  return out + line + "\n";
+}
+
 std::string part_text(const std::string& place, const Scenario::Part& part) {
-  return place + ":\n  type: " + yaml_word(part.type) + "\n" + numbers_text(part.numbers, "  ", place);
+  std::vector<std::string> entries = entries_of(part.numbers, place);
+  entries.insert(entries.begin(), "type: " + yaml_word(part.type));
+  return map_text(place + ": ", entries, "  ");
 }
 
 std::string sensor_text(const Scenario::Sensor& sensor) {
   const std::string place = "sensors." + sensor.name;
-  std::string out = "  - name: " + yaml_word(sensor.name) + "\n    kind: " + yaml_word(sensor.kind) +
-                    "\n    device: " + yaml_word(sensor.device) + "\n    site: " + yaml_word(sensor.site) + "\n" +
-                    numbers_text(sensor.numbers, "    ", place);
-  if (sensor.mount_error.empty()) return out;
-  return out + "    mount_error:\n" + numbers_text(sensor.mount_error, "      ", place + ".mount_error");
+  std::vector<std::string> entries = {"name: " + yaml_word(sensor.name), "kind: " + yaml_word(sensor.kind),
+                                      "device: " + yaml_word(sensor.device), "site: " + yaml_word(sensor.site)};
+  for (const std::string& number : entries_of(sensor.numbers, place)) entries.push_back(number);
+  std::vector<std::string> errors = entries_of(sensor.mount_error, place + ".mount_error");
+  if (!errors.empty()) {
+    errors.front() = "mount_error: {" + errors.front();
+    errors.back() += "}";
+  }
+  entries.insert(entries.end(), errors.begin(), errors.end());
+  return map_text("  - ", entries, "     ");
 }
 
 }  // namespace

@@ -30,17 +30,36 @@ std::filesystem::path find_scenario(const DataRoot& data, std::span<const std::s
   throw BadInput("unknown scenario '" + name + "'" + suggestion(name, known));
 }
 
+/// `derived` are the files that extend this file.
+Scenario load_file(const DataRoot& data, const std::filesystem::path& path, const Registry& registry,
+                   std::vector<std::filesystem::path> derived = {}) {
+  derived.push_back(std::filesystem::weakly_canonical(path));
+  return parse_scenario(read_text_file(path), path.string(), registry, [&](const YamlNode& extends) {
+    const std::string name = extends.identifier(), file = name + ".yaml";
+    // A file that extends a scenario of its own name, for example a copy of `hill`, extends the scenario of the
+    // catalogue.
+    std::filesystem::path base = std::filesystem::weakly_canonical(path.parent_path() / file);
+    if (base == derived.back() || !std::filesystem::exists(base))
+      base = std::filesystem::weakly_canonical(data.catalogue() / file);
+    if (!std::filesystem::exists(base))
+      extends.fail("unknown scenario '" + name + "'" + suggestion(name, scenario_names(data)));
+    if (std::find(derived.begin(), derived.end(), base) != derived.end())
+      extends.fail(fmt::format("the scenario '{}' extends itself through its bases; remove one key 'extends'", name));
+    return load_file(data, base, registry, derived);
+  });
+}
+
 }  // namespace
 
 Scenario load_scenario(const DataRoot& data, const std::string& name) {
   const Registry registry = Registry::of_simulation();
-  if (name.ends_with(".yaml")) return parse_scenario(read_text_file(name), name, registry);
+  if (name.ends_with(".yaml")) return load_file(data, name, registry);
   const std::vector<std::string> cases = case_names(data);
   const bool is_case = std::binary_search(cases.begin(), cases.end(), name);
   if (is_case && std::filesystem::exists(data.catalogue() / (name + ".yaml")))
     throw BadInput(fmt::format("a scenario and a named case have the same name, '{}'; rename one of them", name));
   const std::filesystem::path path = is_case ? data.regressions() / (name + ".yaml") : find_scenario(data, cases, name);
-  Scenario scenario = parse_scenario(read_text_file(path), path.string(), registry);
+  Scenario scenario = load_file(data, path, registry);
   if (scenario.name != name) {
     throw BadInput(
         fmt::format("{}: the name is '{}'; it must be the name of the file, '{}'", path.string(), scenario.name, name));

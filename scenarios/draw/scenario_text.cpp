@@ -88,48 +88,69 @@ const sim::ComponentType& known_type(const YamlNode& node, std::span<const sim::
   return *type;
 }
 
-Scenario::Part parse_part(const YamlNode& node, std::span<const sim::ComponentType> types) {
-  static const std::array<std::string, 1> kOther = {"type"};
-  const auto entries = node.entries();
-  const YamlNode* const type_node = find_entry(entries, "type");
-  if (type_node == nullptr) node.fail("key 'type' is missing");
-  const sim::ComponentType& type = known_type(*type_node, types);
-  return {type.name, parse_numbers(node, kOther, type.parameters), node.line()};
+using Entries = std::vector<std::pair<std::string, YamlNode>>;
+
+/// Returns the type that the key `key` names. Without this key, returns the type `base`.
+const sim::ComponentType& parse_type(const YamlNode& node, const Entries& entries, const std::string& key,
+                                     std::span<const sim::ComponentType> types, const std::string& base) {
+  if (const YamlNode* const own = find_entry(entries, key)) return known_type(*own, types);
+  if (base.empty()) node.fail(fmt::format("key '{}' is missing", key));
+  return *find_type(types, base);
 }
 
-Scenario::Sensor parse_sensor(const YamlNode& node, const Registry& registry) {
+/// Replaces `part`. If `node` has no key `type`, the numbers of `part` that `node` does not contain are kept.
+void parse_part(const YamlNode& node, std::span<const sim::ComponentType> types, Scenario::Part& part) {
+  static const std::array<std::string, 1> kOther = {"type"};
+  const Entries entries = node.entries();
+  const sim::ComponentType& type = parse_type(node, entries, "type", types, part.type);
+  Numbers numbers = parse_numbers(node, kOther, type.parameters);
+  if (find_entry(entries, "type") == nullptr) numbers.merge(part.numbers);
+  part = {type.name, std::move(numbers), node.line()};
+}
+
+/// If `node` has no key `kind`, the values of `base` that `node` does not contain are kept.
+Scenario::Sensor parse_sensor(const YamlNode& node, const Registry& registry, Scenario::Sensor base) {
   static const std::array<std::string, 5> kOther = {"name", "kind", "device", "site", "mount_error"};
-  const auto entries = node.entries();
-  for (const char* required : {"name", "kind", "device", "site"}) {
-    if (find_entry(entries, required) == nullptr) node.fail(fmt::format("key '{}' is missing", required));
-  }
-  const sim::ComponentType& type = known_type(*find_entry(entries, "kind"), registry.sensors);
+  const Entries entries = node.entries();
+  if (find_entry(entries, "kind") != nullptr) base = {};
+  const auto read = [&](const std::string& key, const std::string& inherited) {
+    if (const YamlNode* const own = find_entry(entries, key)) return own->identifier();
+    if (inherited.empty()) node.fail(fmt::format("key '{}' is missing", key));
+    return inherited;
+  };
   Scenario::Sensor out;
   out.line = node.line();
-  out.name = find_entry(entries, "name")->identifier();
+  out.name = read("name", base.name);
+  const sim::ComponentType& type = parse_type(node, entries, "kind", registry.sensors, base.kind);
   out.kind = type.name;
-  out.device = find_entry(entries, "device")->identifier();
-  out.site = find_entry(entries, "site")->identifier();
+  out.device = read("device", base.device);
+  out.site = read("site", base.site);
   out.numbers = parse_numbers(node, kOther, type.parameters);
-  if (const YamlNode* const error = find_entry(entries, "mount_error")) {
+  out.numbers.merge(base.numbers);
+  if (const YamlNode* const error = find_entry(entries, "mount_error"))
     out.mount_error = parse_numbers(*error, {}, registry.mount_error);
-  }
+  out.mount_error.merge(base.mount_error);
   return out;
 }
 
-std::vector<Scenario::Sensor> parse_sensors(const YamlNode& list, const Registry& registry) {
-  std::vector<Scenario::Sensor> out;
+/// Replaces the sensors that `list` names, and adds sensors with new names at the end.
+void parse_sensors(const YamlNode& list, const Registry& registry, std::vector<Scenario::Sensor>& sensors) {
+  std::map<std::string, int> lines;
   for (const YamlNode& item : list.items()) {
-    Scenario::Sensor sensor = parse_sensor(item, registry);
-    for (const Scenario::Sensor& other : out) {
-      if (other.name == sensor.name)
-        item.fail(fmt::format("a sensor with the name '{}' exists already in line {}; choose another name", sensor.name,
-                              other.line));
-    }
-    out.push_back(std::move(sensor));
+    const Entries entries = item.entries();
+    const YamlNode* const name = find_entry(entries, "name");
+    auto place = std::find_if(sensors.begin(), sensors.end(), [&](const Scenario::Sensor& sensor) {
+      return name != nullptr && sensor.name == name->any_text();
+    });
+    Scenario::Sensor sensor = parse_sensor(item, registry, place != sensors.end() ? *place : Scenario::Sensor{});
+    const auto [other, is_new] = lines.emplace(sensor.name, sensor.line);
+    if (!is_new)
+      item.fail(fmt::format("a sensor with the name '{}' exists already in line {}; choose another name", sensor.name,
+                            other->second));
+    if (place == sensors.end()) place = sensors.emplace(place);
+    *place = std::move(sensor);
   }
-  if (out.empty()) list.fail("the scenario needs at least one sensor");
-  return out;
+  if (sensors.empty()) list.fail("the scenario needs at least one sensor");
 }
 
 std::map<std::string, std::uint64_t> parse_streams(const YamlNode& node, std::span<const Scenario::Sensor> sensors) {
@@ -150,19 +171,34 @@ const sim::Parameter& duration_parameter() {
   return kDuration;
 }
 
-Scenario parse_scenario(const std::string& text, const std::string& file, const Registry& registry) {
-  static const std::array<std::string, 7> kKeys = {"name", "doc", "duration_s", "world", "robot", "motion", "sensors"};
-  static const std::array<std::string, 2> kOptional = {"case", "streams"};
-  const auto fields = YamlNode::parse(text, file).fields(kKeys, kOptional);
+Scenario refuse_base(const YamlNode& extends) {
+  extends.fail("a base can only be used in a scenario file");
+}
+
+Scenario parse_scenario(const std::string& text, const std::string& file, const Registry& registry,
+                        const LoadBase& load_base) {
+  static const std::vector<std::string> kParts = {"duration_s", "world", "robot", "motion", "sensors"};
+  std::vector<std::string> required = {"name", "doc"}, optional = {"case", "streams", "extends"};
+  const YamlNode document = YamlNode::parse(text, file);
+  const bool extends = document.is_map() && find_entry(document.entries(), "extends") != nullptr;
+  std::vector<std::string>& with_parts = extends ? optional : required;
+  with_parts.insert(with_parts.end(), kParts.begin(), kParts.end());
+  const auto fields = document.fields(required, optional);
   Scenario out;
+  if (extends) {
+    out = load_base(fields.at("extends"));
+    out.named_case.reset();
+    const int line = fields.at("extends").line();  // messages about inherited sensors name this line
+    for (Scenario::Sensor& sensor : out.sensors) sensor.line = line;
+  }
   out.file = file;
   out.name = fields.at("name").identifier();
   out.doc = fields.at("doc").text();
-  out.duration_s = parse_checked(fields.at("duration_s"), kDuration);
-  out.world = parse_part(fields.at("world"), registry.worlds);
-  out.robot = parse_part(fields.at("robot"), registry.robots);
-  out.motion = parse_part(fields.at("motion"), registry.motions);
-  out.sensors = parse_sensors(fields.at("sensors"), registry);
+  if (fields.contains("duration_s")) out.duration_s = parse_checked(fields.at("duration_s"), kDuration);
+  if (fields.contains("world")) parse_part(fields.at("world"), registry.worlds, out.world);
+  if (fields.contains("robot")) parse_part(fields.at("robot"), registry.robots, out.robot);
+  if (fields.contains("motion")) parse_part(fields.at("motion"), registry.motions, out.motion);
+  if (fields.contains("sensors")) parse_sensors(fields.at("sensors"), registry, out.sensors);
   if (fields.contains("streams")) out.streams = parse_streams(fields.at("streams"), out.sensors);
   if (fields.contains("case")) {
     out.named_case = case_from_yaml(fields.at("case"));

@@ -51,7 +51,6 @@ std::vector<Method> all_methods() {
       slam_poses_autogain_fusion(),
       slam_poses_tumble(),
       slam_rolling_prior(),
-      slam_constant_velocity(),
   };
   std::stable_sort(all.begin(), all.end(), [](const Method& a, const Method& b) { return a.info.kind < b.info.kind; });
   return all;

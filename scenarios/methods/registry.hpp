@@ -61,7 +61,6 @@ Method slam_poses_autogain_fusion();
 Method slam_poses_tumble();
 Method slam_rolling_prior();
 Method slam_published();
-Method slam_constant_velocity();
 Method slam_tumble_lag();
 Method slam_tumble_live();
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
+#include <optional>
 
 #include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/consistency.hpp"
@@ -15,34 +16,31 @@ struct AttitudeError {
   double inclination_rad;
   double heading_rad;
   double total_rad;
-  bool rest;
 };
 
-std::vector<AttitudeError> attitude_errors(const ScoredEstimate& scored) {
+std::vector<AttitudeError> errors_in_motion(const ScoredEstimate& scored) {
   const TruthTrack& truth = truth_track(scored);
   std::vector<AttitudeError> errors;
-  Eigen::Quaterniond q_align = Eigen::Quaterniond::Identity();
+  std::optional<Eigen::Quaterniond> q_align;
   for (const AttitudeState& attitude : scored.estimate().attitudes) {
     if (!truth.covers_attitude(attitude.time_ns)) continue;
     const Eigen::Quaterniond q_true = truth.pose(attitude.time_ns).orientation_W;
-    if (errors.empty()) {
+    if (!q_align) {
       const double heading = twist_about_z_rad(q_true * attitude.orientation_W.conjugate());
       q_align = Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ());
     }
-    const Eigen::Quaterniond e = q_align * attitude.orientation_W * q_true.conjugate();
+    if (truth.at_rest(attitude.time_ns)) continue;
+    const Eigen::Quaterniond e = *q_align * attitude.orientation_W * q_true.conjugate();
     errors.push_back({2.0 * std::atan2(std::hypot(e.x(), e.y()), std::hypot(e.w(), e.z())),
-                      2.0 * std::atan2(std::abs(e.z()), std::abs(e.w())), rotation_angle_rad(e),
-                      truth.at_rest(attitude.time_ns)});
+                      2.0 * std::atan2(std::abs(e.z()), std::abs(e.w())), rotation_angle_rad(e)});
   }
   return errors;
 }
 
-template <double AttitudeError::*Member, bool Rest>
+template <double AttitudeError::*Member>
 bool rmse(const ScoredEstimate& scored, double& value) {
   std::vector<double> errors;
-  for (const AttitudeError& error : scored.once(attitude_errors)) {
-    if (error.rest == Rest) errors.push_back(error.*Member);
-  }
+  for (const AttitudeError& error : scored.once(errors_in_motion)) errors.push_back(error.*Member);
   if (errors.empty()) return false;
   value = rms(errors);
   return true;
@@ -69,21 +67,6 @@ bool tilt_nees_median(const ScoredEstimate& scored, double& value) {
   return normalised_median(scored.once(normalised_tilt_errors), value);
 }
 
-bool step_rest_rms(const ScoredEstimate& scored, double& value) {
-  const TruthTrack& truth = truth_track(scored);
-  std::vector<double> steps;
-  const AttitudeState* previous = nullptr;
-  for (const AttitudeState& attitude : scored.estimate().attitudes) {
-    const bool rest = truth.covers_attitude(attitude.time_ns) && truth.at_rest(attitude.time_ns);
-    if (rest && previous)
-      steps.push_back(rotation_angle_rad(previous->orientation_W.conjugate() * attitude.orientation_W));
-    previous = rest ? &attitude : nullptr;
-  }
-  if (steps.empty()) return false;
-  value = rms(steps);
-  return true;
-}
-
 }  // namespace
 
 std::vector<Metric> attitude_metrics() {
@@ -91,12 +74,12 @@ std::vector<Metric> attitude_metrics() {
       {{"inclination_rmse_rad", Unit::rad,
         "root mean square (rms) angle between estimated and true vertical, in motion", Sense::lower, Place::headline},
        Kind::attitude,
-       rmse<&AttitudeError::inclination_rad, false>},
+       rmse<&AttitudeError::inclination_rad>},
       {{"heading_rmse_rad", Unit::rad,
         "rms error of the heading in motion; estimated and true heading are aligned at the start", Sense::lower,
         Place::held},
        Kind::attitude,
-       rmse<&AttitudeError::heading_rad, false>},
+       rmse<&AttitudeError::heading_rad>},
       {{"inclination_coverage_3sigma", Unit::share,
         "share of tilt errors (per horizontal axis, in motion) within three reported standard deviations",
         Sense::two_sided, Place::held, kNormal3Sigma, Compared::by_difference},
@@ -110,21 +93,7 @@ std::vector<Metric> attitude_metrics() {
        tilt_nees_median},
       {{"attitude_rmse_rad", Unit::rad, "rms angle of the attitude error, in motion", Sense::lower},
        Kind::attitude,
-       rmse<&AttitudeError::total_rad, false>},
-      {{"inclination_rmse_rest_rad", Unit::rad, "rms angle between estimated and true vertical, at rest", Sense::lower},
-       Kind::attitude,
-       rmse<&AttitudeError::inclination_rad, true>},
-      {{"heading_rmse_rest_rad", Unit::rad,
-        "rms error of the heading at rest; estimated and true heading are aligned at the start", Sense::lower},
-       Kind::attitude,
-       rmse<&AttitudeError::heading_rad, true>},
-      {{"attitude_rmse_rest_rad", Unit::rad, "rms angle of the attitude error, at rest", Sense::lower},
-       Kind::attitude,
-       rmse<&AttitudeError::total_rad, true>},
-      {{"attitude_step_rest_rms_rad", Unit::rad,
-        "rms change of the estimated attitude from sample to sample at standstill (jitter)", Sense::lower},
-       Kind::attitude,
-       step_rest_rms},
+       rmse<&AttitudeError::total_rad>},
   };
 }
 

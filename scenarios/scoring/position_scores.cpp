@@ -47,26 +47,6 @@ bool height_error_max(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-bool rest_drift(const ScoredEstimate& scored, double& value) {
-  value = 0.0;
-  bool any = false;
-  Eigen::Vector3d error_at_start;
-  bool resting = false;
-  for (const PairedPose& pose : paired_track(scored).poses) {
-    const Eigen::Vector3d error = pose.estimate.position_W_m - pose.truth.position_W_m;
-    if (pose.rest && resting) {
-      any = true;
-      const double drift = (error - error_at_start).norm();
-      if (!(drift <= value)) value = drift;
-      if (std::isnan(value)) break;
-    } else if (pose.rest) {
-      error_at_start = error;
-    }
-    resting = pose.rest;
-  }
-  return any;
-}
-
 std::vector<double> normalised_position_errors(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   const PairedTrack& track = paired_track(scored);
@@ -119,10 +99,6 @@ std::vector<Metric> position_metrics() {
         Sense::two_sided, Place::held, 1.0},
        Kind::position,
        nees_median},
-      {{"position_rest_drift_m", Unit::m, "maximum drift of the estimated position during one standstill",
-        Sense::lower},
-       Kind::position,
-       rest_drift},
   };
 }
 

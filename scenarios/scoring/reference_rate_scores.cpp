@@ -118,13 +118,6 @@ bool clipped_samples(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-bool unknown_samples(const ScoredEstimate& scored, double& value) {
-  const ClippingTruth& truth = clipping_truth(scored);
-  if (!truth.is_reference()) return false;
-  value = static_cast<double>(truth.size() - truth.known_samples());
-  return true;
-}
-
 template <ErrorOf kError, unsigned kAxes>
 void add_pair(const std::string& name, const std::string& doc, std::vector<Metric>& all) {
   all.push_back({{"rate_" + name + "_clipped_median_rad_s", Unit::rad_s, "median " + doc, Sense::lower},
@@ -184,10 +177,6 @@ std::vector<Metric> reference_rate_metrics() {
                   "number of samples with an axis that is clipped according to the reference", Sense::none},
                  Kind::rate,
                  clipped_samples});
-  all.push_back({{"rate_reference_unknown_samples", Unit::number,
-                  "number of samples that are not scored because the reference has no rate", Sense::none},
-                 Kind::rate,
-                 unknown_samples});
   return all;
 }
 

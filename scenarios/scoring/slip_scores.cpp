@@ -6,7 +6,6 @@
 #include <string>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/recordings/upper_median.hpp"
 #include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/families.hpp"
 
@@ -149,21 +148,6 @@ bool recall(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-bool delay(const ScoredEstimate& scored, double& value) {
-  const auto& found = scored.once(match_events);
-  if (!found) return false;
-  std::vector<double> delays_s;
-  for (const SlipSpan& event : found->events) {
-    if (!half_covered(event, found->right, 0)) continue;
-    const auto first = std::find_if(found->right.begin(), found->right.end(),
-                                    [&](const SlipSpan& span) { return span.end_ns > event.begin_ns; });
-    delays_s.push_back(1e-9 * static_cast<double>(std::max<std::int64_t>(first->begin_ns - event.begin_ns, 0)));
-  }
-  if (delays_s.empty()) return false;
-  value = upper_median(std::move(delays_s));
-  return true;
-}
-
 struct Passed {
   bool lost = false, flagged = false;
 };
@@ -226,12 +210,6 @@ std::vector<Metric> slip_metrics() {
         kNoTarget, Compared::by_difference},
        Kind::position,
        recall},
-      {{"slip_delay_s", Unit::s,
-        "median delay from the true start of a detected slip event to the start that the method reports; reports "
-        "before the true start count as 0",
-        Sense::lower},
-       Kind::position,
-       delay},
       {{"slip_flag_recall", Unit::share,
         "share of the true slip and slide events in which the reported horizontal variance grows by more than 0.0009 "
         "m^2; counts only events that change the horizontal position error by more than 0.1 m",

@@ -1,24 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/families.hpp"
-#include "tumble/common/types.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
-Eigen::Vector3d mean_rate_rad_s(const PoseState& a, const PoseState& b) {
-  return so3::logarithm(b.orientation_W * a.orientation_W.conjugate()) / seconds(b.time_ns - a.time_ns);
-}
-
-struct Jumps {
-  std::vector<double> velocity_m_s;
-  std::vector<double> rate_rad_s;
-};
-
-Jumps border_jumps(const ScoredEstimate& scored) {
+/// Returns the norm of the velocity jump at each sweep boundary, without the true change of velocity.
+std::vector<double> border_jumps_m_s(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
-  Jumps jumps;
+  std::vector<double> jumps;
   const TruthTrack& truth = truth_track(scored);
   const Alignment& alignment = paired_track(scored).alignment;
   for (std::size_t k = 1; k < estimate.sweeps.size(); ++k) {
@@ -37,26 +28,15 @@ Jumps border_jumps(const ScoredEstimate& scored) {
     if (!covered) continue;
     const Eigen::Isometry3d to_world = alignment.transform();
     const Eigen::Vector3d dv = to_world.linear() * (poses[2].velocity_W_m_s - poses[1].velocity_W_m_s);
-    const Eigen::Vector3d dw =
-        to_world.linear() * (mean_rate_rad_s(poses[2], poses[3]) - mean_rate_rad_s(poses[0], poses[1]));
-    jumps.velocity_m_s.push_back((dv - (truths[2].velocity_W_m_s - truths[1].velocity_W_m_s)).norm());
-    jumps.rate_rad_s.push_back(
-        (dw - (mean_rate_rad_s(truths[2], truths[3]) - mean_rate_rad_s(truths[0], truths[1]))).norm());
+    jumps.push_back((dv - (truths[2].velocity_W_m_s - truths[1].velocity_W_m_s)).norm());
   }
   return jumps;
 }
 
 bool jump_m_s(const ScoredEstimate& scored, double& value) {
-  const Jumps& jumps = scored.once(border_jumps);
-  if (jumps.velocity_m_s.empty()) return false;
-  value = rms(jumps.velocity_m_s);
-  return true;
-}
-
-bool jump_rad_s(const ScoredEstimate& scored, double& value) {
-  const Jumps& jumps = scored.once(border_jumps);
-  if (jumps.rate_rad_s.empty()) return false;
-  value = rms(jumps.rate_rad_s);
+  const std::vector<double> jumps = border_jumps_m_s(scored);
+  if (jumps.empty()) return false;
+  value = rms(jumps);
   return true;
 }
 
@@ -69,12 +49,6 @@ std::vector<Metric> sweep_border_metrics() {
         Sense::lower, Place::held},
        Kind::slam,
        jump_m_s},
-      {{"sweep_jump_rad_s", Unit::rad_s,
-        "rms jump of the estimated rate (derived from the attitudes) at sweep boundaries, after subtraction of the "
-        "true change of rate",
-        Sense::lower},
-       Kind::slam,
-       jump_rad_s},
   };
 }
 

@@ -179,7 +179,6 @@ PairedTrack pair_poses(const Estimate& estimate, const TruthTrack& truth) {
     if (track.poses.empty()) track.alignment = Alignment::at(pose, pair.truth);
     pair.estimate = track.alignment.apply(pose);
     pair.path_m = truth.path_m(pose.time_ns);
-    pair.rest = truth.at_rest(pose.time_ns);
     track.poses.push_back(pair);
   }
   return track;

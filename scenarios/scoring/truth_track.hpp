@@ -58,7 +58,6 @@ struct PairedPose {
   PoseState estimate;
   PoseState truth;
   double path_m = 0;  ///< true path length since time 0
-  bool rest = false;
 };
 
 /// Alignment moves the world frame of an estimate to the true world frame by position and heading only. Gravity fixes

@@ -13,9 +13,9 @@
 #include "scenarios/draw/drawn_numbers.hpp"
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/estimates/method.hpp"
-#include "scenarios/search/failure_goal.hpp"
 #include "scenarios/search/input_shift.hpp"
 #include "scenarios/search/splitting.hpp"
+#include "scenarios/sweep/failure_goal.hpp"
 #include "scenarios/sweep/results.hpp"
 #include "scenarios/sweep/sweep.hpp"
 

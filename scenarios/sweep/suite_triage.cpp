@@ -45,7 +45,7 @@ std::string doc_of(const std::string& input) {
   return "unchanged recording";
 }
 
-bool read_rows(const std::string& text, const Failure& failure, DrawTriage& out) {
+bool read_rows(const std::string& text, const FailureGoal& failure, DrawTriage& out) {
   std::size_t begin = 0;
   for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
     const std::string line = text.substr(begin, end - begin);
@@ -64,7 +64,7 @@ bool read_rows(const std::string& text, const Failure& failure, DrawTriage& out)
   return false;
 }
 
-void conclude(const PooledEnd& ended, const Failure& failure, DrawTriage& draw) {
+void conclude(const PooledEnd& ended, const FailureGoal& failure, DrawTriage& draw) {
   if (read_rows(ended.said, failure, draw)) return;
   draw.error_code = ended.late
                         ? "the simulated run did not end within its time limit"
@@ -89,7 +89,7 @@ std::vector<DrawName> draws_of(const DataRoot& data, const Suite& suite, const M
   return out;
 }
 
-std::set<DrawName> failed_draws(const Results& results, const Method& method, const Failure& failure) {
+std::set<DrawName> failed_draws(const Results& results, const Method& method, const FailureGoal& failure) {
   std::set<DrawName> out;
   Names names;
   results.each(Rows::plain, names, [&](const OutcomeView& row) {

@@ -23,7 +23,7 @@ struct DrawTriage {
 
 std::vector<DrawName> draws_of(const DataRoot& data, const Suite& suite, const Method& method);
 
-std::set<DrawName> failed_draws(const Results& results, const Method& method, const Failure& failure);
+std::set<DrawName> failed_draws(const Results& results, const Method& method, const FailureGoal& failure);
 
 struct SuiteTriageOptions {
   TriageOptions triage;                  ///< without callbacks

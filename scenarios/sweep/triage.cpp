@@ -17,26 +17,13 @@ namespace tumble::scenarios {
 
 namespace {
 
-TriageRow row_of(const std::string& input, const std::string& doc, Outcome outcome, const Failure& failure) {
+TriageRow row_of(const std::string& input, const std::string& doc, Outcome outcome, const FailureGoal& failure) {
   TriageRow row{input, doc, std::move(outcome), false};
   row.fails = failure.holds(row.outcome);
   return row;
 }
 
 }  // namespace
-
-bool is_failed_verdict(const Score& score) {
-  return metric_info(score.metric).marks_failure() && score.value != 0.0;
-}
-
-bool Failure::holds(const Outcome& outcome) const {
-  if (outcome.status != OutcomeStatus::ok) return true;
-  if (std::any_of(outcome.scores.begin(), outcome.scores.end(), is_failed_verdict)) return true;
-  if (metric.empty()) return false;
-  const Score* score = find_score(outcome.scores, metric);
-  if (score == nullptr || std::isnan(score->value)) return true;  // no value counts as failed
-  return metric_info(metric).sense == Sense::higher ? score->value < limit : score->value > limit;
-}
 
 std::vector<TriageRow> triage(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
                               const TriageOptions& options) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scenarios/sweep/evaluate.hpp"
+#include "scenarios/sweep/failure_goal.hpp"
 
 namespace tumble::scenarios {
 
@@ -18,14 +19,6 @@ struct TrueInput {
 
 std::span<const TrueInput> true_inputs();
 
-bool is_failed_verdict(const Score& score);
-
-struct Failure {
-  std::string metric;  ///< empty: only status and verdicts
-  double limit = 0.0;  ///< lower limit if higher is better
-  bool holds(const Outcome& outcome) const;
-};
-
 struct TriageRow {
   std::string input;  ///< "none": without true inputs
   std::string doc;
@@ -34,7 +27,7 @@ struct TriageRow {
 };
 
 struct TriageOptions {
-  Failure failure;
+  FailureGoal failure;
   double timeout_s = 300.0;  ///< time limit of one run
   std::function<void(const std::string& input)> on_run;
   std::function<void(const TriageRow&)> on_row;  ///< called after each row

@@ -76,6 +76,14 @@ TEST(Registration, TheDesignNamesEveryScenarioAndDevice) {
   EXPECT_EQ(left_out(devices, design), std::vector<std::string>());
 }
 
+/// Returns the text of a scenario of the catalogue, and the texts of the scenarios that the scenario extends.
+std::string with_base(const std::string& scenario) {
+  const std::string text =
+      tumble::test::text_of(tumble::test::source_dir() / ("scenarios/catalogue/" + scenario + ".yaml"));
+  std::smatch base;
+  return std::regex_search(text, base, std::regex("\nextends: ([a-z_]+)\n")) ? text + with_base(base[1]) : text;
+}
+
 /// The evalio package cannot call the program when its data sets are listed, so its list must equal the rig scenarios
 /// with a lidar.
 TEST(Registration, EvalioHasEveryScenarioOfTheRig) {
@@ -86,8 +94,7 @@ TEST(Registration, EvalioHasEveryScenarioOfTheRig) {
   const std::string listed = adapter.substr(from, adapter.find(')', from) - from);
   std::vector<std::string> of_the_rig, others;
   for (const std::string& name : stems_in("scenarios/catalogue")) {
-    const std::string text =
-        tumble::test::text_of(tumble::test::source_dir() / ("scenarios/catalogue/" + name + ".yaml"));
+    const std::string text = with_base(name);
     const bool rig = std::regex_search(text, std::regex("\n  type: rig\\b"));
     (rig && text.find("_lidar") != std::string::npos ? of_the_rig : others).push_back(name);
   }

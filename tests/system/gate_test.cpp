@@ -68,8 +68,8 @@ TEST(Gate, WithoutAnAcceptedRunSaysHowToMakeIt) {
 }
 
 TEST(Triage, NamesTheInputThatCures) {
-  const Ended ended = run_program({"triage", shared_scenario("hill"), "--seed", "1", "--method", "rate/raw", "--metric",
-                                   "rate_error_clipped_median_rad_s", "--limit", "0.1", "--json"});
+  const Ended ended = run_program({"triage", shared_scenario("hill"), "--seed", "1", "--method", "rate/raw",
+                                   "--failure", "rate_error_clipped_median_rad_s > 0.1", "--json"});
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.err, HasSubstr("cured by: "));
   const json triage = json_of(ended);
@@ -88,8 +88,8 @@ TEST(Shrink, LeavesACaseThatTheGateHolds) {
     fs::create_symlink(test::source_dir() / "scenarios" / name, folder / "scenarios" / name);
   const fs::path file = folder / "scenarios" / "regressions" / "raw_clips.yaml";
   const Ended shrunk =
-      run_program({"shrink", "swing", "--seed", "1", "--method", "rate/raw", "--metric", "rate_error_free_median_rad_s",
-                   "--worse-than", "0.0001", "--budget", "6", "-o", file.string(), "--json"},
+      run_program({"shrink", "swing", "--seed", "1", "--method", "rate/raw", "--failure",
+                   "rate_error_free_median_rad_s > 0.0001", "--budget", "6", "-o", file.string(), "--json"},
                   in_own_data);
   ASSERT_EQ(shrunk.status, 0) << shrunk.err;
   EXPECT_THAT(shrunk.err, HasSubstr("6 of at most 6: "));
@@ -134,8 +134,8 @@ TEST(Triage, OfASuiteSaysWhichInputMattersMost) {
   const fs::path folder = test_folder();
   std::ofstream(folder / "small.yaml")
       << "name: small\ndoc: two draws\nscenarios: [swing]\nseeds: {first: 1, last: 2}\n";
-  const Ended ended = run_program({"triage", (folder / "small.yaml").string(), "--method", "rate/raw", "--metric",
-                                   "rate_error_free_median_rad_s", "--limit", "0.0001", "--jobs", "2", "--json"});
+  const Ended ended = run_program({"triage", (folder / "small.yaml").string(), "--method", "rate/raw", "--failure",
+                                   "rate_error_free_median_rad_s > 0.0001", "--jobs", "2", "--json"});
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.err, HasSubstr("gyro_exact"));
   EXPECT_THAT(ended.err, HasSubstr("has the strongest influence: its true value prevents 2 of 2 failures"));

@@ -47,8 +47,8 @@ TEST(Search, LeavesDrawsThatRunReproduces) {
   const json again = json_of(run_shortened({"run", file, "--seed", seed, "--method", "rate/raw", "--json"}));
   const auto has_value = [&](const json& row) { return row["metric"] == kMetric && row["value"] == draw["value"]; };
   EXPECT_TRUE(std::any_of(again["scores"].begin(), again["scores"].end(), has_value)) << again["scores"];
-  EXPECT_EQ(run_shortened({"shrink", file, "--seed", seed, "--method", "rate/raw", "--metric", kMetric, "--worse-than",
-                           "0.0001", "--budget", "2", "-o", folder / "case.yaml"})
+  EXPECT_EQ(run_shortened({"shrink", file, "--seed", seed, "--method", "rate/raw", "--failure",
+                           std::string(kMetric) + " > 0.0001", "--budget", "2", "-o", folder / "case.yaml"})
                 .status,
             0);
 }

@@ -80,7 +80,7 @@ TEST(Page, AMethodHasOneColourInEveryFigure) {
 
 TEST(Page, AxesAreNamedInTheUnitThatTheyShow) {
   EXPECT_EQ(axis_title("rate_error_clipped_median_rad_s"), "rate error clipped median [rad/s]");
-  EXPECT_EQ(axis_title("attitude_rmse_rest_rad"), "attitude rmse rest [°]");
+  EXPECT_EQ(axis_title("attitude_rmse_rad"), "attitude rmse [°]");
   EXPECT_EQ(axis_title("position_end_error_share"), "position end error share [%]");
   EXPECT_EQ(axis_title("world.rock_count"), "world.rock_count");
 }

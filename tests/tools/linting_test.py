@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests the parts of tools/lint other than clang-format and clang-tidy: missing includes, and joint texts of many
-sources.
+"""Tests the parts of tools/lint other than clang-format and clang-tidy: joint texts of many
+sources, and the sources that passed before.
 
     linting_test.py TOOLS_FOLDER
 """
@@ -16,7 +16,7 @@ import unittest
 TOOLS = pathlib.Path(sys.argv.pop(1))
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(TOOLS))
-from linting import clean, groups, includes  # noqa: E402
+from linting import clean, groups  # noqa: E402
 
 
 class Case(unittest.TestCase):
@@ -28,33 +28,6 @@ class Case(unittest.TestCase):
     def write(self, name: str, *lines: str) -> str:
         (self.root / name).write_text("".join(line + "\n" for line in lines))
         return name
-
-
-class Includes(Case):
-    def complaints(self, *lines: str) -> list[str]:
-        return includes.complaints(self.root, [self.write("a.cpp", *lines)])
-
-    def test_what_is_used_must_be_included(self):
-        self.assertEqual(self.complaints("std::vector<int> a;"), ["a.cpp: uses std::vector without <vector>"])
-        self.assertEqual(self.complaints("#include <vector>", "std::vector<int> a;"), [])
-
-    def test_a_header_of_the_tree_may_include_it(self):
-        self.write("b.hpp", "#include <vector>")
-        self.write("c.hpp", '#include "b.hpp"')
-        self.assertEqual(self.complaints('#include "c.hpp"', "std::vector<int> a;"), [])
-
-    def test_a_header_of_a_library_may_not(self):
-        self.assertEqual(len(self.complaints("#include <Eigen/Geometry>", "double a = std::sqrt(2.0);")), 1)
-
-    def test_members_of_eigen_stand_in_headers_of_their_own(self):
-        self.assertEqual(self.complaints("#include <Eigen/Core>", "auto c = a.cross(b);"),
-                         ["a.cpp: uses .cross( without <Eigen/Geometry>"])
-
-    def test_comments_and_texts_use_nothing(self):
-        self.assertEqual(self.complaints("// std::vector", 'auto a = "std::map"; /* std::set */', 'auto b = R"(std::list)";'), [])
-
-    def test_an_unknown_name_is_not_passed_over(self):
-        self.assertIn("std::no_such_thing is unknown", self.complaints("std::no_such_thing a;")[0])
 
 
 class Groups(Case):

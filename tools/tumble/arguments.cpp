@@ -119,6 +119,10 @@ std::string metric_of(const scenarios::Method& method, const std::string& name) 
   return name;
 }
 
+scenarios::FailureGoal failure_of(const scenarios::Method& method, const std::string& text) {
+  return text.empty() ? scenarios::FailureGoal{} : scenarios::parse_goal(text, method.info.kind);
+}
+
 std::uint64_t seed_of(const scenarios::Scenario& scenario, const std::string& text) {
   if (!text.empty()) return parse_seed(text);
   if (scenario.named_case) return scenario.named_case->seed;

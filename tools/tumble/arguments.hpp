@@ -12,6 +12,7 @@
 
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/estimates/method.hpp"
+#include "scenarios/sweep/failure_goal.hpp"
 #include "tools/tumble/session.hpp"
 
 namespace tumble::tools {
@@ -36,6 +37,13 @@ scenarios::MethodPointer one_method(const std::string& name, double time_limit_s
 void note_time_limits(const Session& session, std::span<const std::string> names);
 
 std::string metric_of(const scenarios::Method& method, const std::string& name);
+
+inline constexpr const char* kFailureHelp =
+    "defines a failure: 'METRIC > VALUE' in SI units, or 'METRIC < VALUE' if lower values are worse. A run whose "
+    "status is not ok, or that fails a pass-fail metric, also fails [default: only these runs fail]";
+
+/// Returns the failure that the value of --failure defines. An empty text gives a failure without a metric.
+scenarios::FailureGoal failure_of(const scenarios::Method& method, const std::string& text);
 
 /// For an empty `text`, returns the seed of a named case; other scenarios require a seed.
 std::uint64_t seed_of(const scenarios::Scenario& scenario, const std::string& text);

@@ -31,8 +31,7 @@ using scenarios::ShrinkLine;
 using scenarios::Shrunk;
 
 struct ShrinkVerbOptions {
-  std::string scenario, seed, method, metric, control;
-  std::optional<double> worse_than;
+  std::string scenario, seed, method, failure, control;
   int budget = scenarios::ShrinkOptions{}.budget;
   std::filesystem::path file;
 };
@@ -102,8 +101,7 @@ std::string command_of(const ShrinkVerbOptions& options, std::uint64_t seed) {
   using scenarios::shell_word;
   std::string words = "tumble shrink " + shell_word(options.scenario) + " --seed " + std::to_string(seed) +
                       " --method " + shell_word(options.method);
-  if (options.worse_than)
-    words += " --metric " + shell_word(options.metric) + fmt::format(" --worse-than {}", *options.worse_than);
+  if (!options.failure.empty()) words += " --failure " + shell_word(options.failure);
   if (!options.control.empty()) words += " --control " + shell_word(options.control);
   return words + fmt::format(" --budget {} -o ", options.budget) + shell_word(options.file.filename().string());
 }
@@ -127,14 +125,6 @@ void require_own_name(const scenarios::DataRoot& data, const std::string& name) 
   }
 }
 
-void require_whole(const ShrinkVerbOptions& options) {
-  if (options.metric.empty() != !options.worse_than)
-    throw BadInput(
-        "--metric and --worse-than must be given together: a run fails if its metric is worse than the value of "
-        "--worse-than");
-  if (options.worse_than && !std::isfinite(*options.worse_than)) throw BadInput("--worse-than must be a finite number");
-}
-
 std::string control_text(const Shrunk& shrunk, const scenarios::ShrinkOptions& options) {
   if (!options.control)
     return "no control method was stated (--control), so the recording itself may cause the failure";
@@ -147,7 +137,6 @@ std::string control_text(const Shrunk& shrunk, const scenarios::ShrinkOptions& o
 }
 
 int run_shrink(const Session& session, const ShrinkVerbOptions& options) {
-  require_whole(options);
   const std::string name = name_of(options.file);
   const scenarios::DataRoot data = session.data();
   require_own_name(data, name);
@@ -156,9 +145,9 @@ int run_shrink(const Session& session, const ShrinkVerbOptions& options) {
   scenarios::ShrinkOptions shrinking;
   const double time_limit_s = 0.9 * shrinking.timeout_s;
   const scenarios::MethodPointer method = one_method(options.method, time_limit_s);
-  const std::string metric = metric_of(*method, options.metric);
+  shrinking.failure = failure_of(*method, options.failure);
+  const std::string metric = metric_of(*method, shrinking.failure.metric);
   prepare_file(options.file, std::vector<std::filesystem::path>{options.scenario, options.method}, {".yaml"});
-  if (options.worse_than) shrinking.failure = {metric, *options.worse_than};
   shrinking.control = control_of(options, *method, scenario, time_limit_s);
   shrinking.budget = options.budget;
   shrinking.on_trial = [&](const scenarios::ShrinkTrial& trial) {
@@ -199,11 +188,7 @@ Action declare_shrink(VerbOptions& verb, const Session& session) {
   verb.add("--seed", options->seed,
            "sets the seed of the failing simulated run [default: for a named case, the seed of the case]");
   verb.add("--method", options->method, "names the method that fails on the simulated run").required();
-  verb.add("--metric", options->metric,
-           "names the metric that defines a failure, together with --worse-than [default: a run fails by its status or "
-           "by a pass-fail metric]");
-  verb.add("--worse-than", options->worse_than,
-           "sets the limit of the metric in SI units; a run with a worse value fails");
+  verb.add("--failure", options->failure, kFailureHelp);
   verb.add("--control", options->control,
            "names a control method, which must succeed on the smaller simulated run, or 'none' [default: the oracle "
            "(method with true input) of the method's kind]");

@@ -8,7 +8,6 @@
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <span>
 #include <string>
 #include <tuple>
@@ -126,7 +125,7 @@ std::string conclusion(const std::vector<InputWorth>& worths) {
   if (first->cured > 0)
     return fmt::format("the input {} has the strongest influence: its true value prevents {} of {} failures", name,
                        first->cured, first->failed);
-  const std::string failures = first->failed == 0 ? "no method run failed (--metric and --limit define a failure)"
+  const std::string failures = first->failed == 0 ? "no method run failed (--failure defines a failure)"
                                                   : "replacing a single input by its true value prevents no failure";
   if (first->better <= first->worse)
     return fmt::format("{}; no replacement of an input by its true value improves more simulated runs than it worsens",
@@ -204,8 +203,7 @@ using scenarios::BadInput;
 using scenarios::TriageRow;
 
 struct TriageVerbOptions {
-  std::string what, seed, seeds, method, metric;
-  std::optional<double> limit;
+  std::string what, seed, seeds, method, metric, failure;
   int jobs = available_processors();
   double memory_mib = scenarios::kWorkerMemoryMib;
   std::filesystem::path database;
@@ -247,7 +245,7 @@ json to_json(const std::vector<TriageRow>& rows, const std::string& metric) {
 
 std::string conclusion(const std::vector<TriageRow>& rows) {
   if (!rows.front().fails)
-    return "the run does not fail (--metric and --limit define a failure); compare the values to see the influence of "
+    return "the run does not fail (--failure defines a failure); compare the values to see the influence of "
            "each input";
   std::string cures;
   for (const TriageRow& row : rows) {
@@ -258,10 +256,9 @@ std::string conclusion(const std::vector<TriageRow>& rows) {
              : "cured by: " + cures;
 }
 
-scenarios::Failure failure_of(const TriageVerbOptions& options, const std::string& metric) {
-  if (!options.limit) return {};
-  if (!std::isfinite(*options.limit)) throw BadInput("--limit must be a finite number");
-  return {metric, *options.limit};
+std::string listed_metric(const TriageVerbOptions& options, const scenarios::Method& method,
+                          const scenarios::FailureGoal& failure) {
+  return metric_of(method, options.metric.empty() ? failure.metric : options.metric);
 }
 
 int run_triage_of_draw(const Session& session, const TriageVerbOptions& options) {
@@ -270,9 +267,9 @@ int run_triage_of_draw(const Session& session, const TriageVerbOptions& options)
   const std::uint64_t seed = seed_of(scenario, options.seed);
   const scenarios::MethodPointer chosen = one_method(options.method, 0.9 * scenarios::TriageOptions{}.timeout_s);
   const scenarios::Method& method = *chosen;
-  const std::string metric = metric_of(method, options.metric);
   scenarios::TriageOptions triage_options;
-  triage_options.failure = failure_of(options, metric);
+  triage_options.failure = failure_of(method, options.failure);
+  const std::string metric = listed_metric(options, method, triage_options.failure);
   triage_options.on_run = [&](const std::string& input) {
     session.note(input == "none" ? "original run" : "true: " + input);
   };
@@ -300,7 +297,7 @@ bool is_one_draw(const Session& session, const TriageVerbOptions& options) {
 std::string words_of(const TriageVerbOptions& options) {
   std::string words = " --method " + scenarios::shell_word(options.method);
   if (!options.metric.empty()) words += " --metric " + scenarios::shell_word(options.metric);
-  if (options.limit) words += fmt::format(" --limit {}", *options.limit);
+  if (!options.failure.empty()) words += " --failure " + scenarios::shell_word(options.failure);
   return words;
 }
 
@@ -308,8 +305,8 @@ int run_triage(const Session& session, const TriageVerbOptions& options) {
   if (is_one_draw(session, options)) return run_triage_of_draw(session, options);
   SuiteTriage asked;
   asked.method = one_method(options.method, 0.9 * asked.options.triage.timeout_s);
-  asked.metric = metric_of(*asked.method, options.metric);
-  asked.options.triage.failure = failure_of(options, asked.metric);
+  asked.options.triage.failure = failure_of(*asked.method, options.failure);
+  asked.metric = listed_metric(options, *asked.method, asked.options.triage.failure);
   asked.words = words_of(options);
   asked.options.jobs = options.jobs;
   asked.options.memory_mib = options.memory_mib;
@@ -347,12 +344,9 @@ Action declare_triage(VerbOptions& verb, const Session& session) {
       .within(64.0, 1e7)
       .shows_default();
   verb.add("--method", options->method, "names the method that fails").required();
+  verb.add("--failure", options->failure, kFailureHelp);
   verb.add("--metric", options->metric,
-           "lists this metric; with --limit, this metric also defines a failure [default: the first metric of the "
-           "method's kind]");
-  verb.add("--limit", options->limit,
-           "sets the limit of --metric in SI units; a run with a worse value fails [default: a run fails only by its "
-           "status or by the metric map_failed]");
+           "lists this metric [default: the metric of --failure, or the first metric of the method's kind]");
   return [&session, options] { return run_triage(session, *options); };
 }
 

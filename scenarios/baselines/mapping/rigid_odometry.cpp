@@ -22,10 +22,7 @@ Eigen::Isometry3d pose_of(const MotionState& state) {
 }  // namespace
 
 RigidOdometry::RigidOdometry(const Params& params)
-    : params_(params), map_({params.map_voxel_m, params.map_spacing_m}), registration_(params.registration) {
-  require_valid_fields(params);
-  require_in_interval("range_max_m", params.range_max_m, params.range_min_m, 1e4);
-}
+    : params_(params), map_({params.map_voxel_m, params.map_spacing_m}), registration_(params.registration) {}
 
 Status RigidOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
                                 const Motion& motion, SweepReport& report) {
@@ -58,9 +55,7 @@ Status RigidOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const 
     const bool first = map_.size() == 0;
     if (first && counts.usable_points >= params_.registration.expert.matches_min) report.verdict = SweepVerdict::first;
     if (!first) register_points(report);
-    if (first || params_.extend_always || report.verdict != SweepVerdict::rejected) {
-      extend_map(counts.has_ring_numbers, report);
-    }
+    extend_map(counts.has_ring_numbers, report);
   }
   describe(trajectory, report);
   return status;
@@ -108,13 +103,12 @@ void RigidOdometry::extend_map(bool has_ring_numbers, SweepReport& report) {
   place(T_WI);
   const std::uint32_t base =
       scan_lines_.line_number_offset((T_WI.linear() * params_.T_IL.linear()).col(2), has_ring_numbers);
-  const auto sweep = static_cast<std::uint32_t>(seen_from_W_m_.size());
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const auto sigma = static_cast<float>(std::sqrt(registration_.point_variance_m2(points_[i])));
     report.map_points_added +=
-        map_.insert(positions_m_[i], sigma, sweep, mapping::ScanLines::line(base, points_[i].ring));
+        map_.insert(positions_m_[i], sigma, sweeps_, mapping::ScanLines::line(base, points_[i].ring));
   }
-  seen_from_W_m_.push_back(T_WI.translation().cast<float>());
+  ++sweeps_;
 }
 
 void RigidOdometry::describe(const SweepTrajectory& trajectory, SweepReport& report) const {
@@ -131,11 +125,6 @@ void RigidOdometry::describe(const SweepTrajectory& trajectory, SweepReport& rep
   }
   report.trajectory.back().time_ns = state_.time_ns;
   report.pose = state_.pose();
-}
-
-std::vector<MapPoint> RigidOdometry::map() const {
-  return mapping::to_map_points(map_, seen_from_W_m_, params_.registration.neighbours,
-                                params_.registration.match_distance_m);
 }
 
 }  // namespace tumble::baselines

@@ -32,6 +32,7 @@ TEST(SameFailure, TheMetricAskedForStandsBeforeAVerdict) {
   const SameFailure by_metric({"translation_error_end_m", 1.0}, both);
   EXPECT_TRUE(by_metric.holds(outcome(OutcomeStatus::ok, {{"translation_error_end_m", 1.1}})));
   EXPECT_FALSE(by_metric.holds(outcome(OutcomeStatus::ok, {{"translation_error_end_m", 0.9}, {"map_failed", 1.0}})));
+  EXPECT_EQ(by_metric.describe(), "translation_error_end_m > 1");
   const SameFailure by_verdict({}, both);
   EXPECT_EQ(by_verdict.describe(), "map_failed");
   EXPECT_TRUE(by_verdict.holds(outcome(OutcomeStatus::ok, {{"map_failed", 1.0}})));
@@ -48,7 +49,7 @@ TEST(SameFailure, ARunWithoutTheMetricIsAnotherThing) {
 }
 
 TEST(SameFailure, WhatDoesNotFailIsRefused) {
-  const auto complaint = [](const Failure& failure, const Outcome& of) {
+  const auto complaint = [](const FailureGoal& failure, const Outcome& of) {
     return test::complaint([&] { const SameFailure same(failure, of); });
   };
   EXPECT_THAT(complaint({"ate_m", 1.0}, outcome(OutcomeStatus::ok, {{"ate_m", 0.5}})),

@@ -143,6 +143,88 @@ TEST_F(DrawReal, TheSituationIsCompleteAndFromTheDataSheets) {
   EXPECT_EQ(draw(data_, load_scenario(data_, (data_.catalogue() / "slope.yaml").string()), 5), resolved) << "by path";
 }
 
+/// Returns the scenario `kReal` with `changes` instead of the values of `kReal`, as a file that extends `slope`.
+std::string extending(const std::string& changes) {
+  return "name: other\ndoc: a change\nextends: slope\n" + changes;
+}
+
+TEST_F(DrawReal, AScenarioInheritsTheValuesOfItsBase) {
+  put("slope.yaml", with(kReal, "{type: hill}", "{type: hill, relief_m: 0.1, rock_count: 3}"));
+  put("other.yaml", extending("world: {rock_count: 4}\nmotion: {type: throw}\nsensors:\n"
+                              "  - {name: lidar, range_noise_m: 0.02, mount_error: {x_m: 0.001}}\n"
+                              "  - {name: imu, mount_error: {y_m: 0.002}}\n"
+                              "  - {name: imu_2, kind: imu, device: vn100, site: vn100}\n"));
+  const Scenario base = load_scenario(data_, "slope"), other = load_scenario(data_, "other");
+  EXPECT_EQ(other.name, "other");
+  EXPECT_EQ(other.duration_s, base.duration_s);
+  EXPECT_EQ(other.world.type, "hill");
+  EXPECT_EQ(other.world.numbers.at("relief_m").numbers, std::vector{0.1});
+  EXPECT_EQ(other.world.numbers.at("rock_count").numbers, std::vector{4.0});
+  EXPECT_EQ(other.motion.type, "throw");
+  ASSERT_EQ(other.sensors.size(), 3u);
+  EXPECT_EQ(other.sensors[0].device, "mti30");
+  EXPECT_EQ(other.sensors[0].mount_error.at("x_m"), base.sensors[0].mount_error.at("x_m"));
+  EXPECT_EQ(other.sensors[0].mount_error.at("y_m").numbers, std::vector{0.002});
+  EXPECT_EQ(other.sensors[1].numbers.at("range_noise_m").numbers, std::vector{0.02});
+  EXPECT_EQ(other.sensors[1].site, "rs16");
+  EXPECT_EQ(other.sensors[2].name, "imu_2");
+}
+
+TEST_F(DrawReal, AKeyOfTypeOrKindInheritsNothing) {
+  put("slope.yaml", with(kReal, "{type: hill}", "{type: hill, relief_m: 0.1}"));
+  put("other.yaml", extending("world: {type: hill}\nsensors:\n"
+                              "  - {name: lidar, kind: spinning_lidar, device: rs16, site: rs16}\n"));
+  const Scenario other = load_scenario(data_, "other");
+  EXPECT_TRUE(other.world.numbers.empty());
+  EXPECT_TRUE(other.sensors[1].numbers.empty());
+}
+
+TEST_F(DrawReal, AScenarioDrawsTheSameNumbersAsItsBase) {
+  put("slope.yaml", kReal);
+  put("other.yaml", extending(""));
+  sim::Situation drawn = draw(data_, load_scenario(data_, "other"), 5);
+  drawn.scenario = "slope";
+  EXPECT_EQ(drawn, draw(data_, load_scenario(data_, "slope"), 5));
+}
+
+TEST_F(DrawReal, ABaseIsInTheFolderOfTheFileOrInTheCatalogue) {
+  put("slope.yaml", kReal);
+  const std::filesystem::path elsewhere = data_.root / "elsewhere";
+  std::filesystem::create_directories(elsewhere);
+  std::ofstream(elsewhere / "slope.yaml") << "name: slope\ndoc: a copy\nextends: slope\nduration_s: 7\n";
+  std::ofstream(elsewhere / "other.yaml") << extending("");
+  EXPECT_EQ(load_scenario(data_, (elsewhere / "other.yaml").string()).duration_s.numbers, std::vector{7.0});
+  std::filesystem::remove(elsewhere / "slope.yaml");
+  EXPECT_EQ(load_scenario(data_, (elsewhere / "other.yaml").string()).duration_s.numbers, (std::vector{5.0, 6.0}));
+}
+
+TEST_F(DrawReal, MistakesWithABaseAreNamedWithFileAndLine) {
+  const std::string folder = data_.catalogue().string() + "/";
+  const auto other = [&](const std::string& text) {
+    put("other.yaml", text);
+    return complaint_of("other");
+  };
+  put("slope.yaml", kReal);
+  EXPECT_EQ(other(with(extending(""), "extends: slope", "extends: slop")),
+            folder + "other.yaml:3: extends: unknown scenario 'slop'; did you mean 'slope'?");
+  EXPECT_THAT(other(extending("world: {slop_rad: 1}\n")), HasSubstr(folder + "other.yaml:4: world.slop_rad: unknown"));
+  EXPECT_THAT(other(extending("sensors:\n  - {name: imu_2, device: vn100, site: vn100}\n")),
+              HasSubstr(folder + "other.yaml:5: sensors[0]: key 'kind' is missing"));
+  EXPECT_THAT(other(extending("sensors:\n  - {name: imu}\n  - {name: imu}\n")),
+              HasSubstr(folder + "other.yaml:6: sensors[1]: a sensor with the name 'imu' exists already in line 5"));
+  put("slope.yaml", with(kReal, "device: rs16", "device: rs17"));
+  put("other.yaml", extending(""));
+  EXPECT_THAT(fixture::complaint([&] { draw(data_, load_scenario(data_, "other"), 5); }),
+              HasSubstr(folder + "other.yaml:3: sensors.lidar: unknown device 'rs17'"));
+  put("slope.yaml", with(kReal, "world: {type: hill}", "world: {type: hil}"));
+  EXPECT_THAT(complaint_of("other"), HasSubstr(folder + "slope.yaml:4: world.type: unknown 'hil'"));
+  put("slope.yaml", "name: slope\ndoc: a circle\nextends: other\n");
+  EXPECT_EQ(complaint_of("other"),
+            folder +
+                "slope.yaml:3: extends: the scenario 'other' extends itself through its bases; remove one key "
+                "'extends'");
+}
+
 TEST_F(DrawReal, WhatOnlyShowsWhenDrawnIsNamed) {
   EXPECT_EQ(draw_complaint("{type: rig}", "{type: rig}", 5), "");
   EXPECT_THAT(draw_complaint("device: rs16", "device: rs17", 5),

@@ -50,7 +50,6 @@ const std::vector<Live> kLive = {
     {"position/autogain_fusion", 0.0},
     {"position/tumble_lag", kRollLagS},
     {"position/tumble_live", 0.0},
-    {"slam/constant_velocity", 0.0},
     {"slam/icp_raw", 0.0},
     {"slam/tumble_lag", kSweepLagS},
     {"slam/tumble_live", 0.0},

@@ -89,7 +89,6 @@ TEST(MethodAccuracy, IntegrationFollowsAGyroThatDoesNotClip) {
   // the axis is fixed and the rates are those at mid-window: the midpoint rule's error, dt^2/24 times the change of
   // acceleration, is below 1e-4 rad
   EXPECT_LT(integrate.at("attitude_rmse_rad"), 1e-4);
-  EXPECT_LT(integrate.at("attitude_rmse_rest_rad"), 1e-4);
   // negative control: with saturation, the same motion loses a radian or more
   EXPECT_GT(scores_of("integrate", testing::synthetic_rig()).at("attitude_rmse_rad"), 0.5);
 }
@@ -113,7 +112,6 @@ TEST(MethodAccuracy, TumbleAttitudeFollowsAGyroThatClips) {
 TEST(MethodAccuracy, MadgwickHoldsTheVerticalAtRest) {
   const auto madgwick = scores_of("madgwick", testing::synthetic_sphere());
   EXPECT_LT(madgwick.at("inclination_rmse_rad"), 0.05);
-  EXPECT_GT(madgwick.at("attitude_step_rest_rms_rad"), 0.0);
 }
 
 // the bounds are two to ten times the measured values: a wrong frame, sign or unit costs far more
@@ -167,7 +165,6 @@ TEST(MethodAccuracy, RollingGivesThePathOfASphereThatGrips) {
     // the measured share is below 1e-3 for each direction (trapezoid rule over window means)
     EXPECT_LT(rolling.at("position_end_error_share"), 1e-3) << direction_rad;
     EXPECT_LT(rolling.at("position_height_error_max_m"), 1e-9);
-    EXPECT_LT(rolling.at("position_rest_drift_m"), 1e-9);
   }
 }
 

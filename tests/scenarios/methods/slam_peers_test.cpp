@@ -5,7 +5,6 @@
 
 #include "scenarios/estimates/method.hpp"
 #include "scenarios/methods/registry.hpp"
-#include "scenarios/methods/slam_constant_velocity.hpp"
 #include "scenarios/methods/synthetic_recording.hpp"
 #include "scenarios/scoring/score.hpp"
 #include "scenarios/sweep/triage.hpp"
@@ -58,30 +57,6 @@ TEST(SeedChain, SweepsOfAnInstantDoNotLeadItAstray) {
   const double unbent_m = outcome_of("slam/icp_raw", recording).end_error_m;
   EXPECT_LT(bent_m, 0.2);
   EXPECT_LT(unbent_m, 0.2);
-}
-
-/// The test checks that the rest at the start is the mean of its samples, each of them counted once.
-TEST(RigidChain, TheFirstSampleOfTheRestCountsOnce) {
-  std::vector<ImuSample> samples(4);
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    samples[k].time_ns = static_cast<TimeNs>(k) * 10'000'000;
-    samples[k].angular_velocity_rad_s = {0.01, -0.02, 0.005};
-    samples[k].specific_force_m_s2 = {k == 0 ? 0.4 : 0.0, 0.0, 9.8};  // within the spread of a rest
-  }
-  StartAtRest start;
-  ASSERT_TRUE(start_at_rest(samples, start).ok());
-  EXPECT_NEAR((start.gyro_bias_rad_s - samples[0].angular_velocity_rad_s).norm(), 0.0, 1e-15);
-  const Eigen::Vector3d up = start.q_WI * Eigen::Vector3d(0.1, 0.0, 9.8).normalized();
-  EXPECT_NEAR(up.z(), 1.0, 1e-12);
-  // a sample with a push is not part of the rest
-  samples[2].specific_force_m_s2.x() = 2.0;
-  samples[2].angular_velocity_rad_s.x() = 0.03;
-  ASSERT_TRUE(start_at_rest(samples, start).ok());
-  EXPECT_NEAR(start.gyro_bias_rad_s.x(), 0.01, 1e-15);
-  // a body that turns from the start on is levelled by the first sample
-  samples[0].angular_velocity_rad_s.x() = 1.0;
-  ASSERT_TRUE(start_at_rest(samples, start).ok());
-  EXPECT_EQ(start.gyro_bias_rad_s.norm(), 0.0);
 }
 
 /// The test checks that a number has the same bounds here and in the library.
@@ -150,45 +125,9 @@ std::string test_name(const ::testing::TestParamInfo<const char*>& param) {
   return name.substr(name.find('/') + 1);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, SlamPeer, ::testing::Values("slam/constant_velocity", "slam/icp_raw", "slam/published"),
-                         test_name);
+INSTANTIATE_TEST_SUITE_P(All, SlamPeer, ::testing::Values("slam/icp_raw", "slam/published"), test_name);
 
 INSTANTIATE_TEST_SUITE_P(Some, SlamPeerWithGyro, ::testing::Values("slam/icp_raw", "slam/published"), test_name);
-
-TEST(ConstantVelocity, NeedsNoImu) {
-  sim::Recording recording = testing::synthetic_rig(gentle());
-  const PeerOutcome with = outcome_of("slam/constant_velocity", recording);
-  recording.sensors.imus.clear();
-  const PeerOutcome without = outcome_of("slam/constant_velocity", recording);
-  EXPECT_EQ(without.estimate.sweeps.size(), 60u);
-  EXPECT_GT(without.estimate.poses.size(), 500u);
-  EXPECT_LT(without.end_error_m, 0.05);
-  EXPECT_NEAR(without.end_error_m, with.end_error_m, 0.02);
-}
-
-TEST(ConstantVelocity, NeedsNoTimesOfThePointsWhereTheRecordingSaysSo) {
-  // the skew is small: the points of a sweep lie within a millimetre of their positions at its start
-  testing::SyntheticMotion slow;
-  slow.angle_rad = 0.02;
-  slow.displacement_m = {0.05, -0.03, 0.0};
-  slow.rail_rad_s = 100.0;
-  sim::Recording recording = testing::synthetic_rig(slow);
-  recording.sensors.imus.clear();
-  sim::LidarRecord& lidar = recording.sensors.lidars.front();
-  std::fill(lidar.offset_ns.begin(), lidar.offset_ns.end(), 0u);
-  // when the record does not state how its points are timed, equal times mean that a driver lost the stamps
-  const Estimate refused = find_methods("slam/constant_velocity").at(0)->run(recording.sensors, {}, {});
-  EXPECT_FALSE(refused.status.ok());
-  for (const sim::PointTimes times : {sim::PointTimes::not_skewed, sim::PointTimes::unknown}) {
-    lidar.point_times = times;
-    const PeerOutcome outcome = outcome_of("slam/constant_velocity", recording);
-    EXPECT_EQ(outcome.estimate.sweeps.size(), 60u);
-    // without a prior, a sweep drifts where its rings lie on those of the map; measured 0.04
-    EXPECT_LT(outcome.end_error_m, 0.06);
-    // a pose belongs to the only time of its sweep
-    EXPECT_EQ(outcome.estimate.sweeps[30].pose.time_ns, lidar.sweep_start_ns[30]);
-  }
-}
 
 TEST(SlamMethods, SayThatTheyNeedAnImu) {
   sim::Recording recording = testing::synthetic_rig(gentle());
@@ -196,7 +135,7 @@ TEST(SlamMethods, SayThatTheyNeedAnImu) {
   recording.truth.imus.clear();
   int tried = 0;
   for (const Method& method : methods()) {
-    if (method.info.kind != Kind::slam || method.info.name == "constant_velocity") continue;
+    if (method.info.kind != Kind::slam) continue;
     if (!method.info.applies_to({"rig"})) continue;
     const Estimate estimate = method.run(recording.sensors, {}, {&recording.truth});
     EXPECT_EQ(estimate.status.error_code, ErrorCode::empty) << method.info.name;

@@ -140,7 +140,6 @@ TEST(ReferenceRateScores, OfTheTruthAndOfTheReadings) {
   EXPECT_NEAR(truth.at("rate_reference_coverage_3sigma"), 0.997, 0.004);
   EXPECT_LT(truth.at("rate_coverage_3sigma"), 0.5) << "which does not count the reference's error";
   EXPECT_EQ(truth.at("rate_clipped_called_measured"), 0.0);
-  EXPECT_EQ(truth.at("rate_reference_unknown_samples"), 50.0);
   EXPECT_GT(truth.at("rate_reference_clipped_samples"), 500.0);
   EXPECT_FALSE(truth.contains("rate_error_y_clipped_median_rad_s")) << "y never clips";
   const auto raw = scores_of(estimate_of(made_.reading, 0.01, 0), recording);

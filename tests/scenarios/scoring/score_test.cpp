@@ -173,8 +173,6 @@ TEST(AttitudeScores, SplitTheErrorAsBroadDoes) {
   EXPECT_NEAR(values.at("inclination_rmse_rad"), tilt, 1e-9);
   EXPECT_NEAR(values.at("heading_rmse_rad"), yaw, 1e-9);
   EXPECT_NEAR(values.at("attitude_rmse_rad"), 2.0 * std::acos(std::cos(tilt / 2) * std::cos(yaw / 2)), 1e-9);
-  // the first sample is correct and at rest, so the RMSE is sqrt((n - 1) / n) times the error of the other samples
-  EXPECT_NEAR(values.at("inclination_rmse_rest_rad"), tilt, 1e-3);
 }
 
 TEST(AttitudeScores, AHeadingAtTheStartIsRemovedATiltIsNot) {
@@ -182,16 +180,6 @@ TEST(AttitudeScores, AHeadingAtTheStartIsRemovedATiltIsNot) {
   move_world(tilted_world(0.05), estimate);
   const auto values = scores(Kind::attitude, estimate, rig());
   EXPECT_NEAR(values.at("inclination_rmse_rad"), 0.05, 1e-9);
-  EXPECT_NEAR(values.at("attitude_rmse_rest_rad"), 0.05, 1e-9);
-}
-
-TEST(AttitudeScores, JitterIsTheStepAtStandstillAlone) {
-  Estimate estimate = perfect_estimate(rig());
-  const double step = 1e-3;
-  for (std::size_t k = 0; k < estimate.attitudes.size(); k += 2) {
-    estimate.attitudes[k].orientation_W = estimate.attitudes[k].orientation_W * so3::exp(Eigen::Vector3d(0, step, 0));
-  }
-  EXPECT_NEAR(scores(Kind::attitude, estimate, rig()).at("attitude_step_rest_rms_rad"), step, 1e-8);
 }
 
 TEST(PositionScores, AGrowingOffsetGivesKnownErrors) {
@@ -265,17 +253,6 @@ TEST(AttitudeScores, TheTiltIsComparedWithItsCovarianceForAnyHeading) {
   }
 }
 
-TEST(PositionScores, DriftAtStandstillIsWithinOneSpell) {
-  Estimate estimate = perfect_estimate(rig(), Frame::body);
-  for (PoseState& pose : estimate.poses) {
-    const double t = 1e-9 * static_cast<double>(pose.time_ns);
-    // a jump during motion does not count as drift, but 2 cm/s during the rest at the end does
-    if (t > 3.0) pose.position_W_m.x() += 0.5;
-    if (t > 5.0) pose.position_W_m.y() += 0.02 * (t - 5.0);
-  }
-  EXPECT_NEAR(scores(Kind::position, estimate, rig()).at("position_rest_drift_m"), 0.02, 1e-9);
-}
-
 TEST(TrajectoryScores, AteIsTheRmsOfAConstantShift) {
   Estimate estimate = perfect_estimate(rig());
   for (std::size_t k = 1; k < estimate.poses.size(); ++k)
@@ -331,16 +308,10 @@ TEST(EndPoseScores, FewerThanSixSweepsAreADivergence) {
 TEST(SweepBorderScores, AJumpAtEveryBorderIsFound) {
   Estimate estimate = perfect_estimate(rig());
   for (std::size_t k = 1; k < estimate.sweeps.size(); k += 2) {
-    for (PoseState& pose : estimate.sweeps[k].trajectory) {
-      pose.velocity_W_m_s += Eigen::Vector3d(0.0, 0.3, 0.4);
-      const double t = 1e-9 * static_cast<double>(pose.time_ns);
-      pose.orientation_W =
-          so3::exp(0.2 * t * testing::SyntheticMotion().axis_W) * pose.orientation_W;  // axis of motion: rates add
-    }
+    for (PoseState& pose : estimate.sweeps[k].trajectory) pose.velocity_W_m_s += Eigen::Vector3d(0.0, 0.3, 0.4);
   }
   const auto values = scores(Kind::slam, estimate, rig());
   EXPECT_NEAR(values.at("sweep_jump_m_s"), 0.5, 1e-9);
-  EXPECT_NEAR(values.at("sweep_jump_rad_s"), 0.2, 1e-9);
 }
 
 TEST(Verdict, AnEndFartherThanThePathIsADivergence) {

@@ -79,14 +79,6 @@ TEST(SlipScores, TheTruthIsPerfectWhicheverOfTheTwoLabelsItSays) {
   const auto values = scores(Kind::position, claims_within(recording, {{2.0, 3.0}, {5.0, 5.4}}), recording);
   EXPECT_EQ(values.at("slip_precision"), 1.0);
   EXPECT_EQ(values.at("slip_recall"), 1.0);
-  EXPECT_EQ(values.at("slip_delay_s"), 0.0);
-}
-
-TEST(SlipScores, ALateClaimIsLateByAsMuch) {
-  const sim::Recording recording = slipping(kTwo);
-  const auto values = scores(Kind::position, claims_within(recording, {{2.1, 3.0}, {5.1, 5.4}}), recording);
-  EXPECT_EQ(values.at("slip_recall"), 1.0);
-  EXPECT_NEAR(values.at("slip_delay_s"), 0.1, 1e-9);
 }
 
 TEST(SlipScores, NothingClaimedFindsNothing) {
@@ -94,7 +86,6 @@ TEST(SlipScores, NothingClaimedFindsNothing) {
   const auto values = scores(Kind::position, claims_within(recording, {}), recording);
   EXPECT_EQ(values.at("slip_precision"), 1.0);
   EXPECT_EQ(values.at("slip_recall"), 0.0);
-  EXPECT_FALSE(values.contains("slip_delay_s"));
 }
 
 // 1.4 s of ten are slip: an estimate that always reports slip is wrong, and detects nothing

@@ -104,23 +104,6 @@ TEST(TrueInputs, UnbentSweepsLieRightAtOneInstant) {
   }
 }
 
-TEST(Failure, IsAStatusAMapOrAMetricBeyondItsLimit) {
-  Outcome outcome;
-  outcome.status = OutcomeStatus::ok;
-  outcome.scores = {{"map_failed", 0.0}, {"map_overlap", 0.7}, {"translation_error_end_m", 2.0}};
-  EXPECT_FALSE(Failure{}.holds(outcome));
-  EXPECT_TRUE((Failure{"translation_error_end_m", 1.0}.holds(outcome)));
-  EXPECT_FALSE((Failure{"translation_error_end_m", 3.0}.holds(outcome)));
-  EXPECT_TRUE((Failure{"map_overlap", 0.8}.holds(outcome))) << "of an overlap more is better";
-  EXPECT_FALSE((Failure{"map_overlap", 0.6}.holds(outcome)));
-  EXPECT_TRUE((Failure{"ate_m", 1.0}.holds(outcome))) << "a run without the number has not shown it";
-  outcome.scores[0].value = 1.0;
-  EXPECT_TRUE(Failure{}.holds(outcome));
-  outcome.scores.clear();
-  outcome.status = OutcomeStatus::diverged;
-  EXPECT_TRUE(Failure{}.holds(outcome));
-}
-
 /// The rate of `raw` fails where the gyro is saturated: the unsaturated gyro cures it, and the accelerometer does not.
 TEST(Triage, TheClippedGyroIsTheCauseOfRawsError) {
   Scenario scenario = load_scenario(tree_data(), "hill");

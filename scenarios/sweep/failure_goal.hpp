@@ -5,16 +5,26 @@
 
 #include "scenarios/estimates/method.hpp"
 #include "scenarios/scoring/outcome_status.hpp"
+#include "scenarios/sweep/outcome.hpp"
 
 namespace tumble::scenarios {
 
-/// FailureGoal is the event whose probability a search estimates: the metric of a run is worse than a limit. A run also
-/// fails if its status is neither ok nor `rejected`. A run whose result lacks the metric does not count as failed.
+/// Returns whether the score is a pass-fail metric that has failed.
+bool is_failed_verdict(const Score& score);
+
+/// FailureGoal defines the failure of a run by a metric that is worse than a limit. A run whose status is not ok also
+/// fails. A search (`score`) does not count runs that are `rejected` or lack the metric; triage, shrinking and named
+/// cases (`holds`) do.
 struct FailureGoal {
-  std::string metric;
-  double limit = 0.0;  ///< infinite: only runs whose status is not ok fail
+  std::string metric;  ///< empty: only status and pass-fail metrics define a failure; not valid for a search
+  double limit = 0.0;  ///< infinite: no value is worse
   bool operator==(const FailureGoal&) const = default;
 
+  /// Returns whether the run failed by its status, by a pass-fail metric, or by the metric of this goal. A run without
+  /// this metric fails.
+  bool holds(const Outcome& outcome) const;
+  /// Returns whether a value of the metric is worse than the limit. NaN is not worse.
+  bool is_worse(double value) const;
   /// Returns the score of a run, which is larger for worse runs. A run with the status `rejected` or without the metric
   /// has the score -infinity; any other status except ok gives +infinity.
   double score(OutcomeStatus status, double value) const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/search/failure_goal.hpp"
+#include "scenarios/sweep/failure_goal.hpp"
 
 #include <fmt/format.h>
 
@@ -18,7 +18,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kWorstScore = std::numeric_limits<double>::infinity();
 
 bool is_higher_better(const std::string& metric) {
   return metric_info(metric).sense == Sense::higher;
@@ -40,10 +40,26 @@ void require_metric(const std::string& name, Kind kind) {
 
 }  // namespace
 
+bool is_failed_verdict(const Score& score) {
+  return metric_info(score.metric).marks_failure() && score.value != 0.0;
+}
+
+bool FailureGoal::holds(const Outcome& outcome) const {
+  if (outcome.status != OutcomeStatus::ok) return true;
+  if (std::any_of(outcome.scores.begin(), outcome.scores.end(), is_failed_verdict)) return true;
+  if (metric.empty()) return false;
+  const Score* score = find_score(outcome.scores, metric);
+  return score == nullptr || std::isnan(score->value) || is_worse(score->value);
+}
+
+bool FailureGoal::is_worse(double value) const {
+  return value_at(value) > value_at(limit);
+}
+
 double FailureGoal::score(OutcomeStatus status, double value) const {
-  if (status == OutcomeStatus::rejected) return -kInfinity;
-  if (status != OutcomeStatus::ok) return kInfinity;
-  if (std::isnan(value)) return -kInfinity;
+  if (status == OutcomeStatus::rejected) return -kWorstScore;
+  if (status != OutcomeStatus::ok) return kWorstScore;
+  if (std::isnan(value)) return -kWorstScore;
   return value_at(value);
 }
 

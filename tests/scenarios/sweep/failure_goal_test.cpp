@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/search/failure_goal.hpp"
+#include "scenarios/sweep/failure_goal.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kWorstScore = std::numeric_limits<double>::infinity();
 
 std::string complaint(const std::string& text) {
   return test::complaint([&] { parse_goal(text, Kind::slam); });
@@ -29,6 +29,23 @@ TEST(FailureGoal, IsReadAndWritten) {
   EXPECT_EQ(parse_goal("map_overlap < 0.8", Kind::slam).text(), "map_overlap < 0.8");
 }
 
+TEST(FailureGoal, IsAStatusAMapOrAMetricBeyondItsLimit) {
+  Outcome outcome;
+  outcome.status = OutcomeStatus::ok;
+  outcome.scores = {{"map_failed", 0.0}, {"map_overlap", 0.7}, {"translation_error_end_m", 2.0}};
+  EXPECT_FALSE(FailureGoal{}.holds(outcome));
+  EXPECT_TRUE((FailureGoal{"translation_error_end_m", 1.0}.holds(outcome)));
+  EXPECT_FALSE((FailureGoal{"translation_error_end_m", 3.0}.holds(outcome)));
+  EXPECT_TRUE((FailureGoal{"map_overlap", 0.8}.holds(outcome))) << "of an overlap more is better";
+  EXPECT_FALSE((FailureGoal{"map_overlap", 0.6}.holds(outcome)));
+  EXPECT_TRUE((FailureGoal{"ate_m", 1.0}.holds(outcome))) << "a run without the number has not shown it";
+  outcome.scores[0].value = 1.0;
+  EXPECT_TRUE(FailureGoal{}.holds(outcome));
+  outcome.scores.clear();
+  outcome.status = OutcomeStatus::diverged;
+  EXPECT_TRUE(FailureGoal{}.holds(outcome));
+}
+
 TEST(FailureGoal, ScoresRiseWithBadness) {
   const FailureGoal error{"translation_error_end_m", 0.5}, overlap{"map_overlap", 0.8};
   EXPECT_GT(error.score(OutcomeStatus::ok, 0.6), error.bound());
@@ -39,8 +56,8 @@ TEST(FailureGoal, ScoresRiseWithBadness) {
   for (const FailureGoal& goal : {error, overlap}) {
     EXPECT_GT(goal.score(OutcomeStatus::diverged, 0.0), goal.bound());
     EXPECT_GT(goal.score(OutcomeStatus::crashed, std::nan("")), goal.bound());
-    EXPECT_EQ(goal.score(OutcomeStatus::rejected, std::nan("")), -kInfinity);
-    EXPECT_EQ(goal.score(OutcomeStatus::ok, std::nan("")), -kInfinity);
+    EXPECT_EQ(goal.score(OutcomeStatus::rejected, std::nan("")), -kWorstScore);
+    EXPECT_EQ(goal.score(OutcomeStatus::ok, std::nan("")), -kWorstScore);
   }
 }
 
