@@ -179,7 +179,7 @@ TEST(SecondMappingPass, BeginsAtOnceWhereTheFirstIsLost) {
 
   // a copy continues at any stage
   params = measured_badly(body, 100.0);
-  for (const std::size_t split : {std::size_t{165}, std::size_t{175}, std::size_t{190}, std::size_t{240}}) {
+  for (const std::size_t split : {std::size_t{165}, std::size_t{240}}) {
     Outcome parts;
     TumblingOdometry first(params);
     live(body, 0, split, first, parts, blind);
@@ -214,14 +214,6 @@ TEST(SecondMappingPass, ALagBeyondTheRatesWindowIsThatWindow) {
   live(body, 0, body.imu().size(), odometry, run);
   odometry.finish();
   EXPECT_TRUE(odometry.second_mapping_pass_applied());
-}
-
-TEST(SecondMappingPass, RefusesParametersOutOfTheirBounds) {
-  TumblingOdometry::Params params;
-  params.lever_arm_I_m.setZero();
-  EXPECT_NO_THROW(TumblingOdometry{params});
-  params.expert->second_mapping_pass.lost_s = -0.1;
-  EXPECT_THROW(TumblingOdometry{params}, InvalidParams);
 }
 
 }  // namespace
