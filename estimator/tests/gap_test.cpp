@@ -72,9 +72,8 @@ ThrownWithGap throw_body(const ThrownBody& body, const DataGap& gap, double lag_
 }
 
 TEST(Gaps, LiveLagAndWholeRecordingContinue) {
-  for (const DataGap& gap :
-       {DataGap{0.3, 0.0}, DataGap{2.0, 0.0}, DataGap{20.0, 0.0}, DataGap{0.0, 0.3}, DataGap{0.0, 2.0},
-        DataGap{0.0, 20.0}, DataGap{0.3, 0.3}, DataGap{2.0, 2.0}, DataGap{20.0, 20.0}}) {
+  for (const DataGap& gap : {DataGap{0.3, 0.0}, DataGap{2.0, 0.0}, DataGap{0.0, 0.3}, DataGap{0.0, 2.0},
+                             DataGap{2.0, 2.0}, DataGap{6.0, 6.0}}) {
     ThrownBody body;
     body.rest_s = 4.2 + std::max(gap.imu_s, gap.lidar_s);
     body.end_s = body.rest_s + 2.3;

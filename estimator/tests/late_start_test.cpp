@@ -109,7 +109,7 @@ ThrownBody body_that_rests(double rest_s) {
 }
 
 TEST(LateLidar, AtRestIsAsIfBothHadStartedTogether) {
-  for (const double late_s : {1.0, 3.0, 5.0, 20.0}) {
+  for (const double late_s : {1.0, 6.0}) {
     SCOPED_TRACE(late_s);
     const auto [late, together] = late_and_together(body_that_rests(late_s + 1.0), late_s);
     EXPECT_LT(late.m, 1.2 * together.m + 0.002);

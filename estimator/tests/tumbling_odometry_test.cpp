@@ -62,6 +62,22 @@ Answers whole(const ThrownBody& body, TumblingOdometry& odometry) {
   return run;
 }
 
+struct ThrownRun {
+  TumblingOdometry odometry;
+  Answers results;
+};
+
+/// Returns the run on the default body, which several tests use.
+const ThrownRun& thrown_run() {
+  static const ThrownRun run = [] {
+    const ThrownBody body;
+    ThrownRun out{TumblingOdometry(params_of(body)), {}};
+    out.results = whole(body, out.odometry);
+    return out;
+  }();
+  return run;
+}
+
 double position_error_m(const ThrownBody& body, const PoseState& pose) {
   return (pose.position_W_m - body.T_WI(seconds(pose.time_ns)).translation()).norm();
 }
@@ -71,8 +87,7 @@ double attitude_error_rad(const ThrownBody& body, const PoseState& pose) {
 
 TEST(TumblingOdometry, FollowsAThrowBeyondTheRail) {
   const ThrownBody body;
-  TumblingOdometry odometry(params_of(body));
-  const Answers run = whole(body, odometry);
+  const auto& [odometry, run] = thrown_run();
   ASSERT_EQ(run.sweeps.size(), body.sweeps().size());
   for (const TumblingOdometry::Sweep& sweep : run.sweeps) EXPECT_TRUE(sweep.status.ok()) << sweep.status.message();
   // the returns have no noise, so the errors come from the map's planes and from the deskewing
@@ -107,8 +122,7 @@ TEST(TumblingOdometry, AClippedGyroAloneLosesTheSame) {  // negative control: wi
 
 TEST(TumblingOdometry, RecoversTheRateInFlight) {
   const ThrownBody body;
-  TumblingOdometry odometry(params_of(body));
-  const Answers run = whole(body, odometry);
+  const Answers& run = thrown_run().results;
   // the test covers the flight, except the start and the last quarter second, in which the stream already uses samples
   // of the gentle catch
   const double from_s = body.rest_s + body.push_s + 0.1, to_s = body.rest_s + body.push_s + body.flight_s - 0.25;
@@ -173,8 +187,7 @@ TEST(TumblingOdometry, TheNewestPoseIsCausalAndHonest) {
 
 TEST(TumblingOdometry, ACopyGoesOnWithTheSameBits) {
   const ThrownBody body;
-  TumblingOdometry one(params_of(body));
-  const Answers run = whole(body, one);
+  const Answers& run = thrown_run().results;
   const std::vector<ImuSample> imu = body.imu();
   for (const std::size_t split : {std::size_t{90}, imu.size() / 2 + 3}) {
     Answers parts;
@@ -335,6 +348,8 @@ TEST(TumblingOdometry, RefusesParametersOutOfTheirBounds) {
   EXPECT_EQ(refuses([](Params&) {}), "");
   EXPECT_TRUE(names(refuses([](Params& p) { p.lever_arm_sigma_m = -1.0; }), "lever_arm_sigma_m"));
   EXPECT_TRUE(names(refuses([](Params& p) { p.imu.rate_hz = 0.0; }), "rate_hz"));
+  EXPECT_TRUE(names(refuses([](Params& p) { p.lag_s = 100.0; }), "lag_s"));  // longer than the window of the rates
+  EXPECT_TRUE(names(refuses([](Params& p) { p.expert->second_mapping_pass.lost_s = -0.1; }), "lost_s"));
   EXPECT_TRUE(
       names(refuses([](Params& p) { p.expert->mapping.expert.matching.distance_m = 0.0; }), "match_distance_m"));
   // a missing lever arm is an error, but a lever arm of zero is accepted

@@ -107,8 +107,14 @@ Recorded record(const std::string& scenario) {
   return out;
 }
 
+/// Returns the recording of `hill` that two tests use.
+const Recorded& recorded_hill() {
+  static const Recorded hill = record("hill");
+  return hill;
+}
+
 TEST(OdometryExamples, TheTumblingExampleFollowsATumbleAndABagSaysTheSame) {
-  const Recorded hill_1 = record("hill");
+  const Recorded& hill_1 = recorded_hill();
   const std::vector<Line> lines = lines_of(output_of(std::string(TUMBLE_TUMBLING) + " < " + hill_1.messages.string()));
   ASSERT_GT(lines.size(), 30u);
   const Line& end = lines.back();
@@ -117,17 +123,13 @@ TEST(OdometryExamples, TheTumblingExampleFollowsATumbleAndABagSaysTheSame) {
   EXPECT_NEAR(end.p_m.norm(), distance, 0.3);
   EXPECT_GT(end.sigma_m, 0.0);
 
-  for (const auto& [format, name] : {std::pair("rosbag1", "hill.bag"), {"rosbag2", "hill_2"}, {"mcap", "hill.mcap"}}) {
-    const fs::path bag = hill_1.file.parent_path() / name;
-    output_of(test::program().string() + " export " + hill_1.file.string() + " --format " + format + " -o " +
-              bag.string());
-    const std::vector<Line> from_bag = lines_of(output_of(std::string(TUMBLE_BAG) + " " + bag.string()));
-    ASSERT_EQ(from_bag.size(), lines.size()) << format;
-    EXPECT_LT((from_bag.back().p_m - end.p_m).norm(), 1e-9) << format;
-  }
+  const fs::path bag = hill_1.file.parent_path() / "hill.mcap";
+  output_of(test::program().string() + " export " + hill_1.file.string() + " --format mcap -o " + bag.string());
+  const std::vector<Line> from_bag = lines_of(output_of(std::string(TUMBLE_BAG) + " " + bag.string()));
+  ASSERT_EQ(from_bag.size(), lines.size());
+  EXPECT_LT((from_bag.back().p_m - end.p_m).norm(), 1e-9);
   // The bag does not state the lever arm, so the whole recording is less accurate here: measured difference 0.23 m.
-  const std::vector<Line> whole =
-      lines_of(output_of(std::string(TUMBLE_BAG_MAP) + " " + (hill_1.file.parent_path() / "hill.mcap").string()));
+  const std::vector<Line> whole = lines_of(output_of(std::string(TUMBLE_BAG_MAP) + " " + bag.string()));
   ASSERT_GT(whole.size(), lines.size());
   EXPECT_NEAR(whole.back().p_m.norm(), end.p_m.norm(), 0.4);
   EXPECT_NE(std::system((std::string(TUMBLE_BAG) + " " + hill_1.file.string() + " 2>/dev/null").c_str()), 0);
@@ -135,7 +137,7 @@ TEST(OdometryExamples, TheTumblingExampleFollowsATumbleAndABagSaysTheSame) {
 
 // stamps of a real lidar's sweeps have jitter: 50 us are some points of a sweep, not its end
 TEST(OdometryExamples, SweepsThatOverlapALittleArePlacedAllTheSame) {
-  const Recorded hill_1 = record("hill");
+  const Recorded& hill_1 = recorded_hill();
   const fs::path early = hill_1.file.parent_path() / "early.txt";
   write_messages(hill_1.sensors, early, 50'000);
   const auto lines = [](const fs::path& messages) {

@@ -84,6 +84,12 @@ std::vector<std::string> broad_trials() {
   return numbers;
 }
 
+std::vector<std::string> few_broad_trials() {
+  std::vector<std::string> numbers = {test::kStandInTrial};
+  if (!broad_folder().empty()) numbers.insert(numbers.end(), {"05", "14"});
+  return numbers;
+}
+
 std::string broad_folder() {
   const std::filesystem::path folder = test::shared_data() / "broad";
   return std::filesystem::is_directory(folder) ? folder.string() : std::string();

@@ -20,6 +20,9 @@ struct BroadTrial {
 /// they exist.
 std::vector<std::string> broad_trials();
 
+/// Returns the simulated trial and two real ones where they exist, for tests that must be fast.
+std::vector<std::string> few_broad_trials();
+
 /// Returns the folder of the real trials, or an empty string when the shared data are absent.
 std::string broad_folder();
 

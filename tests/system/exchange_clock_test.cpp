@@ -56,37 +56,6 @@ TEST(Exchange, AFolderOfTablesComesBackWithItsTruth) {
   EXPECT_LT(metric(json_of(scored), "ate_m"), 1e-6);
 }
 
-/// A bag, a TUM file and tables of one simulated recording have the same time stamps; files that count from zero are
-/// also accepted.
-TEST(Exchange, ExportsOfARecordingHaveOneClock) {
-  const fs::path folder = test_folder();
-  const std::string recording = (shared_run("roll") / "recording.h5").string(), bag = (folder / "a.bag").string();
-  const std::string tum = (folder / "truth.tum").string(), back = (folder / "back.h5").string();
-  for (const std::string& out : {bag, tum}) {
-    ASSERT_EQ(run_program({"export", recording, "-o", out, "--quiet"}).status, 0);
-  }
-  std::ifstream file(tum);
-  std::ofstream from_zero(folder / "zero.tum");
-  std::string line;
-  std::getline(file, line);
-  std::getline(file, line);
-  EXPECT_THAT(line, testing::StartsWith("1000000000.000000000 "));
-  for (; file; std::getline(file, line)) from_zero << line.substr(1).insert(0, 1, '0') << '\n';
-  from_zero.close();
-  for (const std::string& reference : {tum, (folder / "zero.tum").string()}) {
-    SCOPED_TRACE(reference);
-    const Ended imported = run_program({"import", bag, "--robot", "sphere", "--radius", "0.145", "--reference",
-                                        reference, "--reference-frame", "body", "-o", back, "--json"});
-    ASSERT_EQ(imported.status, 0) << imported.err;
-    EXPECT_EQ(json_of(imported)["origin_ns"], 1000000000000000000);
-    for (const std::string& of : {recording, back}) {
-      const Ended scored = run_program({"score", reference, of, "--frame", "body", "--json"});
-      ASSERT_EQ(scored.status, 0) << scored.err;
-      EXPECT_LT(metric(json_of(scored), "ate_m"), 1e-9);
-    }
-  }
-}
-
 // a user wrote rates at the stamps of the exported table
 TEST(Exchange, RatesAtTheStampsOfAnExportAreScored) {
   const fs::path folder = test_folder(), given = folder / "estimate";

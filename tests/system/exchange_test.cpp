@@ -43,28 +43,6 @@ sensors:
   EXPECT_THAT(bag.err, HasSubstr("sensor 'height' of kind 'barometer' is left out"));
 }
 
-TEST(Exchange, WhatIsExportedAsCsvComesBack) {
-  const fs::path folder = test_folder();
-  const std::string recording = (shared_run("roll") / "recording.h5").string();
-  ASSERT_EQ(run_program({"export", recording, "--format", "csv", "-o", (folder / "csv").string(), "--quiet"}).status,
-            0);
-  const std::string back = (folder / "back.h5").string();
-  const Ended imported = run_program({"import", (folder / "csv" / "imu.csv").string(), "--device", "phidget1044",
-                                      "--robot", "sphere", "--lever-arm", "0.01", "0", "-0.02", "-o", back, "--json"});
-  ASSERT_EQ(imported.status, 0) << imported.err;
-  EXPECT_THAT(imported.err, testing::Not(testing::HasSubstr("--lever-arm")));
-  const json said = json_of(imported);
-  EXPECT_EQ(said["period_ns"], 4000000);
-  EXPECT_GT(said["samples"].get<int>(), 1000);
-  // the recording can be used like any other, without truth
-  const Ended estimate =
-      run_program({"estimate", back, "--method", "attitude/madgwick", "-o", (folder / "estimate").string()});
-  EXPECT_EQ(estimate.status, 0) << estimate.err;
-  const Ended export_truth = run_program({"export", back, "--format", "tum", "-o", (folder / "t").string()});
-  EXPECT_EQ(export_truth.status, 2);
-  EXPECT_EQ(line_count(export_truth.err), 1u) << export_truth.err;
-}
-
 // foreign data enter as files with sweeps, an IMU and reference poses, and the results are scores
 TEST(Exchange, SweepsWithAnImuAndReferencePosesAreScored) {
   const fs::path folder = test_folder();

@@ -67,16 +67,6 @@ TEST(Gate, WithoutAnAcceptedRunSaysHowToMakeIt) {
   EXPECT_THAT(ended.err, HasSubstr("'tumble gate small --accept'"));
 }
 
-TEST(Triage, NamesTheInputThatCures) {
-  const Ended ended = run_program({"triage", shared_scenario("hill"), "--seed", "1", "--method", "rate/raw",
-                                   "--failure", "rate_error_clipped_median_rad_s > 0.1", "--json"});
-  EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_THAT(ended.err, HasSubstr("cured by: "));
-  const json triage = json_of(ended);
-  EXPECT_EQ(triage["fails"], true);
-  EXPECT_THAT(triage["cures"].get<std::vector<std::string>>(), testing::Contains("gyro_unclipped"));
-}
-
 /// The test makes a case from a draw that fails, runs it by its name, compares it with its bound, finds it cured, and
 /// accepts it.
 TEST(Shrink, LeavesACaseThatTheGateHolds) {
@@ -120,14 +110,6 @@ TEST(Shrink, LeavesACaseThatTheGateHolds) {
   EXPECT_EQ(run_program({"gate", "raw_clips", "--accept", "--quiet"}, in_own_data).status, 0);
   EXPECT_THAT(read_file(file), HasSubstr("run: holds"));
   EXPECT_EQ(run_program(gate, in_own_data).status, 0);
-}
-
-TEST(Shrink, WhatDoesNotFailIsRefusedAndLeavesNothing) {
-  const fs::path file = test_folder() / "none.yaml";
-  const Ended ended = run_program({"shrink", "swing", "--seed", "1", "--method", "rate/raw", "-o", file.string()});
-  EXPECT_EQ(ended.status, 2);
-  EXPECT_THAT(ended.err, HasSubstr("does not fail"));
-  EXPECT_FALSE(fs::exists(file));
 }
 
 TEST(Triage, OfASuiteSaysWhichInputMattersMost) {

@@ -155,25 +155,6 @@ TEST(Report, ShowsFailedDrawsInTheSectionOfFailures) {
   EXPECT_THAT(text, Not(HasSubstr("not match these results")));
 }
 
-// a few draws have no typical one: a failed draw is shown nevertheless, unless no examples are requested
-TEST(Report, ShowsADrawThatFailedOfFew) {
-  const fs::path folder = test_folder();
-  std::ofstream(folder / "lost.yaml") << "name: lost\nkind: position\ncommand: [sh, -c, 'exit 3 # {output}']\n";
-  const auto swept = [&](const char* name, const std::vector<std::string>& more) {
-    const fs::path database = folder / name;
-    std::vector<std::string> arguments = {"sweep",    "roll",           "--seeds",  "1..1",
-                                          "--method", "rolling",        "--method", (folder / "lost.yaml").string(),
-                                          "--db",     database.string()};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    EXPECT_EQ(run_shortened(arguments).status, 0);
-    return fs::path(database.string() + ".files") / "examples.json";
-  };
-  const json left = json::parse(read_file(swept("f.db", {})));
-  ASSERT_EQ(left["examples"].size(), 1u);
-  EXPECT_THAT(left["examples"][0]["choice"].get<std::string>(), HasSubstr("failed"));
-  EXPECT_FALSE(fs::exists(swept("n.db", {"--examples", "0"})));
-}
-
 TEST(Sweep, OfAnotherSuiteKeepsTheExamplesThatStandThere) {
   const fs::path folder = test_folder();
   const fs::path database = copy_of_sweep(folder, "s"), list = folder / "s.db.files" / "examples.json";
@@ -250,14 +231,6 @@ TEST(Report, AFullDiskLeavesNeitherPageNorBadge) {
   EXPECT_FALSE(fs::exists(badge));
   EXPECT_EQ(report(RLIM_INFINITY).status, 0);
   EXPECT_TRUE(fs::exists(page) && fs::exists(badge));
-}
-
-TEST(Report, OfAnAbsentDatabaseMakesNone) {
-  const fs::path database = test_folder() / "absent.db";
-  const Ended absent = run_shortened({"report", database.string()});
-  EXPECT_EQ(absent.status, 2);
-  EXPECT_EQ(line_count(absent.err), 1u) << absent.err;
-  EXPECT_FALSE(fs::exists(database));
 }
 
 }  // namespace

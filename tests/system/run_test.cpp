@@ -147,7 +147,8 @@ TEST_P(OnRobot, StagesAgreeWithRunAndEstimateNeverOpensTheTruth) {
 INSTANTIATE_TEST_SUITE_P(Program, OnRobot, testing::Values("hill", "roll"));
 
 TEST(Run, PrintsATablePerKind) {
-  const Ended ended = run_program({"run", "roll", "--seed", "1", "--method", "rolling", "--method", "rate/raw"});
+  const Ended ended =
+      run_program({"run", shared_scenario("roll"), "--seed", "1", "--method", "rolling", "--method", "rate/raw"});
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("roll, seed 1: rate"));
   EXPECT_THAT(ended.out, HasSubstr("roll, seed 1: position"));

@@ -75,23 +75,19 @@ TEST(Sweep, InterruptedKeepsWhatIsDoneAndGoesOn) {
 
 // the shell and the system both signal when a terminal closes; nohup leaves the signal ignored
 TEST(Sweep, ASignalStopsItAndTheLockIsLetGo) {
-  const fs::path folder = test_folder();
-  for (const int number : {SIGHUP, SIGTERM}) {
-    const fs::path database = folder / (std::to_string(number) + ".db"), lock = database.string() + ".lock";
-    std::vector<std::string> arguments = sweep_arguments(database, "1..500");
-    arguments.insert(arguments.end(), {"--jobs", "1"});
-    Running running(arguments, in_short_catalogue());
-    wait_for_a_draw(running, database);
-    ASSERT_FALSE(running.has_ended()) << running.wait().err;
-    EXPECT_TRUE(fs::exists(lock));
-    running.signal(number);
-    if (number == SIGHUP) running.signal(number);
-    const Ended stopped = running.wait();
-    EXPECT_EQ(stopped.status, 1) << stopped.err;
-    EXPECT_THAT(stopped.err, HasSubstr(" of 500 simulated runs are stored; run again to continue"));
-    EXPECT_GE(report_json(database)["draws"]["roll"], 1);
-    EXPECT_FALSE(fs::exists(lock));
-  }
+  const fs::path database = test_folder() / "s.db", lock = database.string() + ".lock";
+  std::vector<std::string> arguments = sweep_arguments(database, "1..500");
+  arguments.insert(arguments.end(), {"--jobs", "1"});
+  Running running(arguments, in_short_catalogue());
+  wait_for_a_draw(running, database);
+  ASSERT_FALSE(running.has_ended()) << running.wait().err;
+  EXPECT_TRUE(fs::exists(lock));
+  for (int signals = 0; signals < 2; ++signals) running.signal(SIGHUP);
+  const Ended stopped = running.wait();
+  EXPECT_EQ(stopped.status, 1) << stopped.err;
+  EXPECT_THAT(stopped.err, HasSubstr(" of 500 simulated runs are stored; run again to continue"));
+  EXPECT_GE(report_json(database)["draws"]["roll"], 1);
+  EXPECT_FALSE(fs::exists(lock));
 }
 
 TEST(Sweep, ThatEndsAtOnceLetsTheLockGoToo) {
@@ -142,37 +138,6 @@ TEST(Sweep, ShardsMergeToTheWhole) {
   const json report = comparable(report_json(folder / "merged.db"));
   EXPECT_EQ(report["draws"]["roll"], 3);
   EXPECT_EQ(report, comparable(report_json(folder / "whole.db")));
-}
-
-TEST(Sweep, OffATerminalWritesNoControlCharacters) {
-  const Ended ended = run_shortened(sweep_arguments(test_folder() / "x.db", "1"));
-  EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_THAT(ended.err, Not(HasSubstr("\r")));
-  EXPECT_THAT(ended.err, Not(HasSubstr("\x1b")));
-  EXPECT_THAT(ended.err, HasSubstr("1/1 simulated runs"));
-  std::vector<std::string> quiet = sweep_arguments(test_folder() / "x.db", "1");
-  quiet.push_back("--quiet");
-  EXPECT_EQ(run_shortened(quiet).err, "");
-}
-
-// a kept draw has the files of `tumble run`, which other verbs read
-TEST(Sweep, KeepsDrawsThatOtherVerbsRead) {
-  const fs::path folder = test_folder();
-  std::vector<std::string> arguments = sweep_arguments(folder / "k.db", "1..2");
-  arguments.insert(arguments.end(), {"--keep", "worst:1"});
-  const Ended ended = run_shortened(arguments);
-  ASSERT_EQ(ended.status, 0) << ended.err;
-  const json swept = json_of(ended);
-  EXPECT_GE(swept["kept"], 1);
-  EXPECT_EQ(swept["kept"], swept["to_keep"]);
-  EXPECT_GT(swept["peak_mib"], 1.0);
-  EXPECT_THAT(ended.err, HasSubstr("k.db.files/kept/SCENARIO/SEED"));
-  const fs::path kept = folder / "k.db.files" / "kept" / "roll";
-  const fs::path draw = fs::directory_iterator(kept)->path();
-  EXPECT_THAT(read_file(draw / "command"), HasSubstr("tumble run roll --seed " + draw.filename().string()));
-  const Ended scored = run_shortened(
-      {"score", (draw / "estimates" / "position-rolling").string(), (draw / "recording.h5").string(), "--json"});
-  EXPECT_EQ(scored.status, 0) << scored.err;
 }
 
 // a shard without a draw does not prevent the merge from keeping the draws of the others

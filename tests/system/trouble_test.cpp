@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The test checks damaged files, paths that cannot be written, and a full disk.
+// The test checks errors of the surroundings (paths, limits, a full standard output), and gaps in the data.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -8,7 +8,6 @@
 #include <fstream>
 
 #include "system/program.hpp"
-#include "tests/tree.hpp"
 
 namespace tumble::system_test {
 namespace {
@@ -20,22 +19,6 @@ void expect_one_line(const Ended& ended, const std::string& says) {
   EXPECT_EQ(ended.status, 2) << ended.err;
   EXPECT_EQ(line_count(ended.err), 1u) << ended.err;
   EXPECT_THAT(ended.err, HasSubstr(says));
-}
-
-TEST(ErrorCode, TruncatedRecordingIsRecognised) {
-  const fs::path folder = test_folder();
-  const std::string whole = read_file(shared_run("roll") / "recording.h5");
-  ASSERT_GT(whole.size(), 1000u);
-  for (const double share : {0.0, 0.001, 0.5, 0.999}) {
-    const fs::path cut = folder / "cut.h5";
-    std::ofstream(cut, std::ios::binary) << whole.substr(
-        0, static_cast<std::size_t>(share * static_cast<double>(whole.size())));
-    expect_one_line(run_program({"estimate", cut.string(), "--method", "rate/raw", "-o", (folder / "e").string()}),
-                    "cut.h5");
-    expect_one_line(run_program({"render", cut.string(), "-o", (folder / "p.png").string()}), "cut.h5");
-    expect_one_line(run_program({"replay", cut.string(), "-o", (folder / "p.html").string()}), "cut.h5");
-  }
-  EXPECT_FALSE(fs::exists(folder / "e")) << "nothing is left of an estimate that could not begin";
 }
 
 TEST(ErrorCode, FolderThatCannotBeWritten) {
@@ -78,39 +61,6 @@ TEST(ErrorCode, FilesOfAnotherKindAreNotReplaced) {
   kept("a.tum", {"export", recording, "--format", "mcap", "-o"}, "ends in .mcap");
 }
 
-TEST(ErrorCode, ABagForARecordingPointsToImport) {
-  const fs::path folder = test_folder();
-  const std::string bag = (folder / "a.bag").string(), out = (folder / "out").string();
-  std::ofstream(bag) << "#ROSBAG V2.0\n";
-  for (const std::vector<std::string>& words : {std::vector<std::string>{"estimate", bag, "--method", "rate/raw"},
-                                                {"replay", bag},
-                                                {"render", bag},
-                                                {"score", bag, bag},
-                                                {"export", bag},
-                                                {"estimate", folder.string(), "--method", "rate/raw"}}) {
-    const Ended ended = run_program(words);
-    EXPECT_EQ(ended.status, 2) << words.front();
-    EXPECT_THAT(ended.err, HasSubstr("must be a recording (FILE.h5); 'tumble import ")) << words.front();
-  }
-}
-
-TEST(ErrorCode, FullDiskLeavesNoPartialRecording) {
-  const fs::path folder = test_folder();
-  // a limit on the size of files simulates the full disk; a roll takes more than this
-  const auto full = [] {
-    const rlimit limit = {64 * 1024, 64 * 1024};
-    setrlimit(RLIMIT_FSIZE, &limit);
-  };
-  expect_one_line(run_program({"record", "roll", "--seed", "1", "-o", (folder / "r.h5").string()}, full), "r.h5");
-  EXPECT_TRUE(fs::is_empty(folder)) << "a partial file stayed: " << fs::directory_iterator(folder)->path();
-  expect_one_line(run_program({"sweep", "roll", "--seeds", "1", "--db", (folder / "x.db").string()},
-                              [] {
-                                const rlimit limit = {4096, 4096};
-                                setrlimit(RLIMIT_FSIZE, &limit);
-                              }),
-                  "x.db");
-}
-
 TEST(ErrorCode, TooFewFilesAreNoDefect) {
   const fs::path folder = test_folder();
   const std::string recording = (shared_run("hill") / "recording.h5").string();
@@ -143,17 +93,6 @@ TEST(ErrorCode, DataThatAreNotThereAreSaid) {
   expect_one_line(ended, "/nowhere");
 }
 
-TEST(ErrorCode, ScenarioFileWithAnUnknownKeyNamesItsLineAndTheNearest) {
-  const fs::path file = test_folder() / "bad.yaml";
-  const std::string catalogue = read_file(test::source_dir() / "scenarios" / "catalogue" / "roll.yaml");
-  const std::size_t at = catalogue.find("motion:");
-  ASSERT_NE(at, std::string::npos);
-  std::ofstream(file) << catalogue.substr(0, at) << "motoin:" << catalogue.substr(at + 7);
-  const Ended ended = run_program({"run", file.string(), "--seed", "1"});
-  expect_one_line(ended, "bad.yaml:");
-  EXPECT_THAT(ended.err, HasSubstr("did you mean 'motion'?"));
-}
-
 TEST(ErrorCode, AGapIsSaidWithItsPlace) {
   const fs::path folder = test_folder();
   std::ofstream csv(folder / "gap.csv");
@@ -176,17 +115,6 @@ TEST(ErrorCode, AFrameIsCheckedWithoutATrajectoryToo) {
   expect_one_line(run_program({"replay", (shared_run("roll") / "recording.h5").string(), "--frame", "limu", "-o",
                                (test_folder() / "p.html").string()}),
                   "unknown frame 'limu'");
-}
-
-TEST(ErrorCode, ForeignFilesAreRefused) {
-  const fs::path folder = test_folder();
-  std::ofstream(folder / "text") << "this is neither HDF5 nor SQLite\n";
-  expect_one_line(
-      run_program({"estimate", (folder / "text").string(), "--method", "rate/raw", "-o", (folder / "e").string()}),
-      "text");
-  expect_one_line(run_program({"report", (folder / "text").string()}), "text");
-  expect_one_line(run_program({"score", (folder / "text").string(), (shared_run("roll") / "recording.h5").string()}),
-                  "text");
 }
 
 }  // namespace

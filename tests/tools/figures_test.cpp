@@ -110,12 +110,6 @@ TEST(Page, FullCoverageIsNotTheBest) {
   EXPECT_THAT(table, Not(HasSubstr("<td class=\"number best\"><b>100")));
 }
 
-TEST(Page, TextInTablesWrapsAndColoursStandOutOnDarkGround) {
-  const std::string page = page_html({}, "");
-  EXPECT_THAT(page, HasSubstr(".number { text-align: right; white-space: nowrap; }"));
-  EXPECT_THAT(page, HasSubstr("Plotly.react(element, shown(figure.data), layout,"));
-}
-
 // there are six colours: further methods have another symbol and filling, and lines have other dashes
 TEST(Page, DistinguishesMoreMethodsThanThereAreColours) {
   Summary summary = page_summary("hill");

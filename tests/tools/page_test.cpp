@@ -19,7 +19,6 @@ namespace {
 
 using scenarios::Kind;
 using scenarios::MetricSummary;
-using scenarios::Section;
 using scenarios::Summary;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -94,29 +93,6 @@ TEST(Page, LinksTheReplayOfAnExampleThatHasOne) {
   EXPECT_THAT(page_html(content, ""), Not(HasSubstr("Open the replay"))) << "it has none";
   content.examples[0].replay_address = "a.db.files/hill-7-replay.html";
   EXPECT_THAT(page_html(content, ""), HasSubstr("<a href=\"a.db.files/hill-7-replay.html\">"));
-}
-
-TEST(Page, SaysWhatItsRecordingsAre) {
-  PageContent content;
-  content.summary = page_summary("hill");
-  EXPECT_THAT(page_html(content, ""), HasSubstr("2 simulated runs of scenario hill with known truth"));
-  content.recorded = true;
-  EXPECT_THAT(page_html(content, ""), HasSubstr("the same recordings (hill) and are scored against the truth"));
-  EXPECT_THAT(page_html(content, ""), Not(HasSubstr("simulated runs of scenario hill")));
-}
-
-TEST(Page, SaysWhatItsTasksAndMethodsAre) {
-  PageContent content;
-  content.summary = page_summary("hill");
-  // a section of one method has no contest, so its task is not compared
-  content.summary.sections.push_back(content.summary.sections[0]);
-  content.summary.sections[1].kind = Kind::attitude;
-  content.summary.sections[1].methods.resize(1);
-  content.comparison = scenarios::compare(content.summary, {});
-  content.methods = {{"rate/raw (baseline)", "The gyro as it is."}};
-  const std::string page = page_html(content, "");
-  EXPECT_THAT(page, HasSubstr("one task on one scenario. The tasks are: rate (angular velocity).</p>"));
-  EXPECT_THAT(page, HasSubstr("<dt>rate/raw (baseline)</dt><dd>The gyro as it is.</dd>"));
 }
 
 TEST(Page, SaysWhichOfTheTwoFailed) {

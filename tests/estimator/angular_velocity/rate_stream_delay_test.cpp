@@ -146,7 +146,7 @@ TEST(AngularRateStreamDelay, IsThatOfTheBatch) {
 
 // Negative controls: synchronous sensors, and a device whose data sheet is accepted.
 TEST(AngularRateStreamDelay, IsNotFoundWhereThereIsNone) {
-  for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u}) {
+  for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u}) {
     const AngularRateStream method(looking()), believes(looking(false));
     AngularRateStream::State state = method.start();
     std::optional<AngularRateState> one;
@@ -226,30 +226,15 @@ TEST(AngularRateStreamDelay, OnceFoundTheNextRunIsAsGoodAsInTime) {
 TEST(AngularRateStreamDelay, SplittingAnywhereChangesNothing) {
   const std::vector<ImuSample> samples = long_late_tumble(3, 1).samples;
   const AngularRateStream method(looking());
-  AngularRateStream::State whole = method.start();
+  AngularRateStream::State state = method.start();
   std::optional<AngularRateState> one;
-  std::vector<AngularRateState> want;
-  std::size_t found = 0;
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    ASSERT_TRUE(method.push(samples[k], whole, one).ok());
-    if (one) want.push_back(*one);
-    if (found == 0 && whole.sensor_errors.front().accel_delay_state.delay_found) found = k;
+  std::size_t found = 0;  // the sample at which the stream finds the delay
+  for (std::size_t k = 0; k < samples.size() && found == 0; ++k) {
+    ASSERT_TRUE(method.push(samples[k], state, one).ok());
+    if (state.sensor_errors.front().accel_delay_state.delay_found) found = k;
   }
   ASSERT_GT(found, 30u);
-  method.flush(whole, want);
-  for (const std::size_t split : {found - 1, found, found + 1, found + 2, found + 300}) {
-    AngularRateStream::State state = method.start();
-    std::vector<AngularRateState> got;
-    for (std::size_t k = 0; k < samples.size(); ++k) {
-      const AngularRateStream second(looking());
-      if (k == split) state = AngularRateStream::State(state);
-      ASSERT_TRUE((k < split ? method : second).push(samples[k], state, one).ok());
-      if (one) got.push_back(*one);
-    }
-    method.flush(state, got);
-    ASSERT_EQ(got.size(), want.size());
-    for (std::size_t k = 0; k < got.size(); ++k) ASSERT_EQ(got[k].w_WI_I_rad_s, want[k].w_WI_I_rad_s) << k;
-  }
+  expect_same_rates_if_split(looking(), samples, {found - 1, found, found + 1, found + 2, found + 300});
 }
 
 // A stated delay applies from the start: forces are paired with the rates at their own times, also in the newest

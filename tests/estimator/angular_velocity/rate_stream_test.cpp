@@ -112,26 +112,7 @@ TEST(AngularRateStream, TheShapeOfABoxIsExpectedAndThatOfARodIsNot) {
 
 TEST(AngularRateStream, SplittingAnywhereChangesNothing) {
   const std::vector<ImuSample> samples = make_tumble(options_of(3)).samples;
-  const AngularRateStream method(wrong_lever(3));
-  AngularRateStream::State whole = method.start();
-  const std::vector<AngularRateState> want = streamed_rates(method, samples, whole);
-  std::optional<AngularRateState> one;
-  for (std::size_t split : {std::size_t{0}, std::size_t{1}, std::size_t{7}, std::size_t{21}, samples.size() / 2}) {
-    AngularRateStream::State state = method.start();
-    std::vector<AngularRateState> got;
-    for (std::size_t k = 0; k < samples.size(); ++k) {
-      if (k == split) state = AngularRateStream::State(state);  // continues with a copy in another object
-      const AngularRateStream second(wrong_lever(3));
-      ASSERT_TRUE((k < split ? method : second).push(samples[k], state, one).ok());
-      if (one) got.push_back(*one);
-    }
-    method.flush(state, got);
-    ASSERT_EQ(got.size(), want.size());
-    for (std::size_t k = 0; k < got.size(); ++k) {
-      ASSERT_EQ(got[k].w_WI_I_rad_s, want[k].w_WI_I_rad_s) << k;
-      ASSERT_EQ(got[k].covariance_rad2_s2, want[k].covariance_rad2_s2) << k;
-    }
-  }
+  expect_same_rates_if_split(wrong_lever(3), samples, {0, 1, 7, 21, samples.size() / 2});
 }
 
 /// After a failed step, the newest sample's deviation is that of any rate, not zero.

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -23,6 +24,31 @@ inline std::vector<AngularRateState> streamed_rates(const AngularRateStream& met
   }
   method.flush(state, out);
   return out;
+}
+
+/// Checks that a copy of the state in another method object continues with the same bits, from each of the samples
+/// `splits` on.
+inline void expect_same_rates_if_split(const AngularRateStream::Params& params, const std::vector<ImuSample>& samples,
+                                       const std::vector<std::size_t>& splits) {
+  const AngularRateStream method(params), second(params);
+  AngularRateStream::State whole = method.start();
+  const std::vector<AngularRateState> expected = streamed_rates(method, samples, whole);
+  for (const std::size_t split : splits) {
+    AngularRateStream::State state = method.start();
+    std::vector<AngularRateState> rates;
+    std::optional<AngularRateState> one;
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      if (k == split) state = AngularRateStream::State(state);
+      ASSERT_TRUE((k < split ? method : second).push(samples[k], state, one).ok());
+      if (one) rates.push_back(*one);
+    }
+    second.flush(state, rates);
+    ASSERT_EQ(rates.size(), expected.size());
+    for (std::size_t k = 0; k < rates.size(); ++k) {
+      ASSERT_EQ(rates[k].w_WI_I_rad_s, expected[k].w_WI_I_rad_s) << split << ' ' << k;
+      ASSERT_EQ(rates[k].covariance_rad2_s2, expected[k].covariance_rad2_s2) << split << ' ' << k;
+    }
+  }
 }
 
 }  // namespace tumble

@@ -225,7 +225,7 @@ bool is_as_measured(double mean, unsigned draws, double measured, double deviati
 // The roll is true, to 0.2 mm: the shift from the ranges' noise is measured over draws 101 to 148 of that noise, as is
 // its part of the covariance. The covariance is cautious, since it includes errors of the roll and of the levelled
 // start.
-TEST(MethodAccuracy, RegistrationDoesNotSpoilARollThatIsTrue) {
+TEST(MethodAccuracySoak, RegistrationDoesNotSpoilARollThatIsTrue) {
   constexpr unsigned kDraws = 16;
   constexpr double kError_m = 0.73e-3, kErrorDeviation_m = 0.25e-3, kNees = 0.0206, kNeesDeviation = 0.0148;
   const AlongARoll mean = registered_along_a_roll(kDraws, {});

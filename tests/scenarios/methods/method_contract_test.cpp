@@ -102,7 +102,9 @@ TEST_P(MethodContract, AnswersWithTheSameBitsWhateverTheTruth) {
   if (method().info.needs_truth) {
     EXPECT_THROW(method().run(given.sensors, {}, {}), BadInput);
   }
-  // negative control: the digest depends on the data
+  // negative control: the digest depends on the data; two methods show this, because each run takes seconds
+  const std::string name = full_name(method().info);
+  if (name != "rate/raw" && name != "slam/icp") return;
   sim::Recording other = given;
   for (auto& rate : other.sensors.imus.front().gyro_rad_s) rate *= 1.001;
   for (auto& rate : other.truth.imus.front().gyro_unclipped_rad_s) rate *= 1.001;

@@ -65,22 +65,15 @@ double farthest(const std::vector<State>& found, const std::vector<State>& expec
   return out;
 }
 
-/// Returns how far an estimate lies from another one: its rates [rad/s], attitudes [rad] or last position [m].
+/// Returns the largest distance between the rates [rad/s] or the attitudes [rad] of two estimates.
 double apart(Kind kind, const Estimate& found, const Estimate& expected) {
-  switch (kind) {
-    case Kind::rate:
-      return farthest(found.rates, expected.rates, [](const AngularRateState& a, const AngularRateState& b) {
-        return (a.w_WI_I_rad_s - b.w_WI_I_rad_s).norm();
-      });
-    case Kind::attitude:
-      return farthest(found.attitudes, expected.attitudes,
-                      [](const auto& a, const auto& b) { return a.orientation_W.angularDistance(b.orientation_W); });
-    case Kind::position:
-      return (found.poses.back().position_W_m - expected.poses.back().position_W_m).norm();
-    case Kind::slam:
-      return (found.sweeps.back().pose.position_W_m - expected.sweeps.back().pose.position_W_m).norm();
+  if (kind == Kind::rate) {
+    return farthest(found.rates, expected.rates, [](const AngularRateState& a, const AngularRateState& b) {
+      return (a.w_WI_I_rad_s - b.w_WI_I_rad_s).norm();
+    });
   }
-  return 0.0;
+  return farthest(found.attitudes, expected.attitudes,
+                  [](const auto& a, const auto& b) { return a.orientation_W.angularDistance(b.orientation_W); });
 }
 
 /// The first reading is in motion and beyond twice the gyro's range; the second one is of the accelerometer at rest.
@@ -97,28 +90,10 @@ void expect_one_sample_lost(const std::string& method, const sim::Recording& rec
   }
 }
 
-/// The estimate must be within `bound` of the estimate from the correct recording.
-void expect_nothing_lost(const std::string& method, const sim::Recording& recording, std::span<const Wild> all,
-                         double bound) {
-  const Kind kind = find_methods(method).front()->info.kind;
-  const Estimate clean = run(method, recording);
-  for (const Wild& wild : all) {
-    const Estimate found = run(method, with_wild(recording, wild));
-    EXPECT_LT(apart(kind, found, clean), bound) << method << ' ' << wild.time_s << ' ' << wild.value;
-    EXPECT_EQ(found.health.at("rejected_readings"), 1.0) << method << ' ' << wild.time_s << ' ' << wild.value;
-  }
-}
-
 void expect_one_lost_sample_of_attitudes(std::span<const Wild> all) {
   const sim::Recording recording = testing::synthetic_rig();
   for (const char* method : {"attitude/tumble", "attitude/tumble_batch", "attitude/tumble_lag"})
     expect_one_sample_lost(method, recording, all);
-}
-
-void expect_the_same_map(std::span<const Wild> all) {
-  const sim::Recording recording = testing::synthetic_rig();
-  for (const char* method : {"slam/tumble", "slam/tumble_lag", "slam/tumble_live"})
-    expect_nothing_lost(method, recording, all, 0.012);  // measured: 0.0094; the standard deviation at the end is 0.43
 }
 
 TEST(Outliers, OneWildReadingOfARateIsOneLostSample) {
@@ -133,22 +108,9 @@ TEST(Outliers, OneWildReadingOfAnAttitudeIsOneLostSample) {
   expect_one_lost_sample_of_attitudes(kWild);
 }
 
-TEST(Outliers, OneWildReadingMovesNoMap) {
-  expect_the_same_map(kWild);
-}
-
-// the methods reject readings at rest as they reject those above, and run for a quarter of a minute
-TEST(OutliersSoak, OneWildReadingOfAGyroAtRestChangesNoAttitudeAndNoMap) {
+// the methods reject readings at rest as they reject those above
+TEST(OutliersSoak, OneWildReadingOfAGyroAtRestChangesNoAttitude) {
   expect_one_lost_sample_of_attitudes(kGyroAtRest);
-  expect_the_same_map(kGyroAtRest);
-}
-
-TEST(Outliers, OneWildReadingMovesNoSphere) {
-  const sim::Recording recording = testing::synthetic_sphere();
-  for (const char* method : {"position/tumble", "position/tumble_lag", "position/tumble_live"}) {
-    expect_nothing_lost(method, recording, kWild, 0.005);
-    expect_nothing_lost(method, recording, kGyroAtRest, 0.005);
-  }
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,6 +30,16 @@ Estimate run_wrong(const SimulatedDraw& draw, const char* method, const std::str
   return run_method(*find_methods(method).at(0), given, outcome);
 }
 
+/// Returns a draw without lidar data. Several tests share a draw, which is simulated once.
+const SimulatedDraw& imu_draw(const std::string& scenario, std::uint64_t seed) {
+  static std::map<std::pair<std::string, std::uint64_t>, SimulatedDraw> draws;
+  const auto found = draws.find({scenario, seed});
+  if (found != draws.end()) return found->second;
+  const DataRoot data{test::source_dir()};
+  SimulatedDraw draw = simulate_draw(data, load_scenario(data, scenario), seed, 1, Lidars::left_out);
+  return draws.emplace(std::pair(scenario, seed), std::move(draw)).first->second;
+}
+
 struct Said {
   OutcomeStatus status;
   double localised = std::nan(""), ate_m = std::nan(""), nees = std::nan("");
@@ -49,22 +61,32 @@ Said said_of(const Method& method, const SimulatedDraw& draw, const std::string&
   return out;
 }
 
-TEST(Verdicts, SlamFindsAWrongCalibrationAndSaysWhenSensorsContradictEachOther) {
+/// slam/tumble must correct the `harmless` wrong inputs, and must report the `harmful` wrong inputs.
+void expect_slam_verdicts(const std::vector<std::string>& harmless, const std::vector<std::string>& harmful) {
   const DataRoot data{test::source_dir()};
   const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 16202, 1);
   const Method& method = *find_methods("slam/tumble").at(0);
-  // the clocks differ by 20 ms, or the mounting is wrong by 3 deg and 3 cm; the method estimates both errors
-  for (const char* wrong : {"none", "lidar_20_ms", "mounting_2_deg"}) {
+  for (const std::string& wrong : harmless) {
     const Said good = said_of(method, draw, wrong);
     EXPECT_EQ(good.localised, 1.0) << wrong;
     EXPECT_LT(good.ate_m, 0.06) << wrong;
     EXPECT_LT(good.nees, 3.0) << wrong;
   }
-  for (const char* wrong : {"accel_flipped", "gyro_x_y_swapped", "lidar_ranges_long"}) {
+  for (const std::string& wrong : harmful) {
     const Said bad = said_of(method, draw, wrong);
     EXPECT_TRUE(bad.status != OutcomeStatus::ok || bad.localised == 0.0) << wrong;
     EXPECT_FALSE(bad.ate_m < 0.2) << wrong;  // control: the wrong input causes an error
   }
+}
+
+// the mounting is wrong by 3 deg and 3 cm; the method estimates this error
+TEST(Verdicts, SlamFindsAWrongCalibrationAndSaysWhenSensorsContradictEachOther) {
+  expect_slam_verdicts({"none", "mounting_2_deg"}, {"accel_flipped"});
+}
+
+// the clocks differ by 20 ms, which the method estimates
+TEST(VerdictsSoak, SlamFindsAWrongClockAndFurtherContradictionsOfSensors) {
+  expect_slam_verdicts({"lidar_20_ms"}, {"gyro_x_y_swapped", "lidar_ranges_long"});
 }
 
 // The test checks the method with a lag, which uses only past samples. TumblingOdometry::health() reports the same
@@ -89,8 +111,7 @@ TEST(VerdictsSoak, SlamThatLagsFindsFaultsInSlowMotion) {
 
 // The IMU starts during the motion. At the end of the run, pushes tilt the force while the rig rocks.
 TEST(Verdicts, AZeroOffsetOfAGyroThatStartsLateIsNoFault) {
-  const DataRoot data{test::source_dir()};
-  const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 1001, 1, Lidars::left_out);
+  const SimulatedDraw& draw = imu_draw("hill", 1001);
   for (const char* wrong : {"gyros_late_offset_5_deg_s", "gyros_late_offset_8_deg_s"}) {
     const Estimate estimate = run_wrong(draw, "rate/tumble", wrong);
     EXPECT_TRUE(estimate.faults.ok()) << estimate.faults.message();
@@ -113,8 +134,7 @@ TEST(Verdicts, SlamLiveReportsAMountingThatDiffersFromTheGivenOne) {
 // If all gyros have the same wrong scale, the scale correction of the filter makes the path wrong by more than a metre.
 // The forces of IMUs at different positions reveal the wrong gyro scale.
 TEST(Verdicts, PositionReportsGyrosOfAnotherScale) {
-  const DataRoot data{test::source_dir()};
-  const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "slip"), 16202, 1, Lidars::left_out);
+  const SimulatedDraw& draw = imu_draw("slip", 16202);
   const auto tells = [&](const std::string& wrong) {
     const Estimate estimate = run_wrong(draw, "position/tumble", wrong);
     return !estimate.status.ok() || estimate.health.contains("imu_implausible");
@@ -127,8 +147,7 @@ TEST(Verdicts, PositionReportsGyrosOfAnotherScale) {
 // In the first case, one axis is flipped, and its force component is too small for the other checks. In the second
 // case, all accelerometers are frozen, and the method rejects the run.
 TEST(Verdicts, PositionReportsAFlippedAxisAndRefusesForcesThatAllFroze) {
-  const DataRoot data{test::source_dir()};
-  const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "slide"), 99453, 1, Lidars::left_out);
+  const SimulatedDraw& draw = imu_draw("slide", 99453);
   const Estimate good = run_wrong(draw, "position/tumble", "none");
   EXPECT_TRUE(good.faults.ok()) << good.faults.message();
   const Estimate flipped = run_wrong(draw, "position/tumble", "gyro_x_flipped");
@@ -140,8 +159,7 @@ TEST(Verdicts, PositionReportsAFlippedAxisAndRefusesForcesThatAllFroze) {
 // In this draw, the force differences between the IMUs are 6 to 9 % too small, because of errors in the IMU positions.
 // The rotation of gravity confirms the gyros.
 TEST(Verdicts, PositionDoesNotBlameGyrosForPlaces) {
-  const DataRoot data{test::source_dir()};
-  const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "bump"), 99470, 1, Lidars::left_out);
+  const SimulatedDraw& draw = imu_draw("bump", 99470);
   const Estimate good = run_wrong(draw, "position/tumble", "none");
   EXPECT_GT(std::abs(good.health.at("lever_arm_agreement") - 1.0), 0.06);
   EXPECT_TRUE(good.faults.ok()) << good.faults.message();
@@ -149,8 +167,7 @@ TEST(Verdicts, PositionDoesNotBlameGyrosForPlaces) {
 }
 
 TEST(Verdicts, PositionDivergesWithForcesOfHalfTheSize) {
-  const DataRoot data{test::source_dir()};
-  SimulatedDraw draw = simulate_draw(data, load_scenario(data, "roll"), 16202, 1, Lidars::left_out);
+  SimulatedDraw draw = imu_draw("roll", 16202);
   testing::wrong_inputs().at("accel_halved")(draw.recording.sensors);
   const Method& method = *find_methods("position/tumble").at(0);
   Outcome outcome;
@@ -164,8 +181,7 @@ TEST(Verdicts, PositionDivergesWithForcesOfHalfTheSize) {
 
 // The time stamps are in microseconds instead of nanoseconds, so the whole run lasts only some milliseconds.
 TEST(Verdicts, StampsOfAnotherUnitThanThePeriodAreRefused) {
-  const DataRoot data{test::source_dir()};
-  SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 62001, 1, Lidars::left_out);
+  SimulatedDraw draw = imu_draw("hill", 62001);
   testing::wrong_inputs().at("stamps_in_us")(draw.recording.sensors);
   for (const char* method : {"rate/tumble", "rate/tumble_lag", "attitude/tumble"}) {
     Outcome outcome;
@@ -177,8 +193,7 @@ TEST(Verdicts, StampsOfAnotherUnitThanThePeriodAreRefused) {
 
 // The rotation from one rest to the next must be consistent with gravity. The methods for attitude test this too.
 TEST(Verdicts, AttitudesTellWrongReadingsOfATumble) {
-  const DataRoot data{test::source_dir()};
-  const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 91001, 1, Lidars::left_out);
+  const SimulatedDraw& draw = imu_draw("hill", 91001);
   const auto tells = [&](const char* method, const std::string& wrong) {
     const Estimate estimate = run_wrong(draw, method, wrong);
     return !estimate.status.ok() || estimate.health.contains("imu_implausible");
@@ -213,8 +228,7 @@ SaidOfRates rates_of(const SimulatedDraw& draw, const std::string& wrong) {
 // The tumble contains flights, impacts and saturated axes. Gravity at the rests before and after the tumble reveals
 // wrong rates.
 TEST(Verdicts, RatesTellAGyroOfAnotherSenseAndAnAxisThatFroze) {
-  const DataRoot data{test::source_dir()};
-  const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 62001, 1, Lidars::left_out);
+  const SimulatedDraw& draw = imu_draw("hill", 62001);
   const SaidOfRates good = rates_of(draw, "none");
   EXPECT_FALSE(good.implausible);
   EXPECT_FALSE(good.z_frozen);
@@ -234,8 +248,7 @@ TEST(Verdicts, RatesTellAGyroOfAnotherSenseAndAnAxisThatFroze) {
 // The gyro is saturated in every flight of this draw, so the check must also use saturated readings:
 // docs/maths/imu_merge.md (I32).
 TEST(Verdicts, FlightsTellInvertedForcesWhileTheGyroClips) {
-  const DataRoot data{test::source_dir()};
-  const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "throw"), 99101, 1, Lidars::left_out);
+  const SimulatedDraw& draw = imu_draw("throw", 99101);
   EXPECT_FALSE(rates_of(draw, "none").mislabelled_axes);
   for (const char* wrong : {"accel_flipped", "accel_z_flipped"})
     EXPECT_TRUE(rates_of(draw, wrong).mislabelled_axes) << wrong;
@@ -244,8 +257,7 @@ TEST(Verdicts, FlightsTellInvertedForcesWhileTheGyroClips) {
 // After a gap in a tumble, the attitude is wrong by radians, and the covariance must include this error: attitude.md
 // (A17).
 TEST(Verdicts, AttitudesSayThatAGapLeavesThemWithoutUp) {
-  const DataRoot data{test::source_dir()};
-  const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 99101, 1, Lidars::left_out);
+  const SimulatedDraw& draw = imu_draw("hill", 99101);
   EXPECT_FALSE(has_finding(HealthFinding::Kind::attitude_unknown, run_wrong(draw, "attitude/tumble", "none")));
   const Estimate estimate = run_wrong(draw, "attitude/tumble", "imus_silent_300_ms");
   EXPECT_TRUE(has_finding(HealthFinding::Kind::attitude_unknown, estimate));
@@ -261,8 +273,7 @@ TEST(Verdicts, AttitudesSayThatAGapLeavesThemWithoutUp) {
 
 // The wand never rests, so no window of constant force reveals the fault.
 TEST(Verdicts, RatesTellAWandWhoseGyroIsNamedOrScaledOtherwise) {
-  const DataRoot data{test::source_dir()};
-  const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "twirl"), 81201, 1, Lidars::left_out);
+  const SimulatedDraw& draw = imu_draw("twirl", 81201);
   EXPECT_FALSE(rates_of(draw, "none").implausible);
   EXPECT_TRUE(rates_of(draw, "gyro_z_flipped").implausible) << "about which it hardly turns";
   EXPECT_TRUE(rates_of(draw, "gyro_scale_5_percent").implausible);
@@ -270,8 +281,7 @@ TEST(Verdicts, RatesTellAWandWhoseGyroIsNamedOrScaledOtherwise) {
 
 // The methods for attitude check the gyro in the same way as the methods for rates.
 TEST(Verdicts, AttitudesTellAWandWhoseGyroIsNamedOtherwise) {
-  const DataRoot data{test::source_dir()};
-  const SimulatedDraw draw = simulate_draw(data, load_scenario(data, "twirl"), 81201, 1, Lidars::left_out);
+  const SimulatedDraw& draw = imu_draw("twirl", 81201);
   const auto tells = [&](const char* method, const char* wrong) {
     const Estimate estimate = run_wrong(draw, method, wrong);
     return estimate.health.contains("imu_implausible");
@@ -283,8 +293,7 @@ TEST(Verdicts, AttitudesTellAWandWhoseGyroIsNamedOtherwise) {
 
 // The scoring uses the covariances from before the findings increased them.
 TEST(Verdicts, CovariancesWithoutSuspectTermsAreRestored) {
-  const DataRoot data{test::source_dir()};
-  SimulatedDraw draw = simulate_draw(data, load_scenario(data, "hill"), 62001, 1, Lidars::left_out);
+  const SimulatedDraw& draw = imu_draw("hill", 62001);
   const auto trace = [](const std::vector<AngularRateState>& rates) {
     double sum = 0.0;
     for (const AngularRateState& rate : rates) sum += rate.covariance_rad2_s2.trace();

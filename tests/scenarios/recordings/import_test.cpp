@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <sstream>
 
 #include "scenarios/recordings/export.hpp"
@@ -213,35 +212,6 @@ TEST_F(ImportOwnCsv, AFileWithoutHeaderKeepsItsFirstSample) {
   const Imported imported = import(text_.substr(text_.find('\n') + 1));
   EXPECT_EQ(imported.sensors.imus[0].gyro_rad_s, given_.gyro_rad_s);
   EXPECT_EQ(imported.sensors.imus[0].time_ns.size(), given_.time_ns.size());
-}
-
-// a body that turns slowly in gravity shows the unit of its gyro
-TEST_F(ImportCsv, UnitsOfTheGyroAreComparedWithGravity) {
-  const auto turning = [](double scale, double sign) {
-    std::string text = kHeader;
-    for (int k = 0; k < 500; ++k) {
-      const double angle = 0.5 * std::sin(0.02 * k), rate = 0.5 * 2.0 * std::cos(0.02 * k);
-      char row[200];
-      std::snprintf(row, sizeof row, "%d,%d,imu,0,0,0,1,0,%.6f,0,0,0,0,%.6f,%.6f,0\n", 1 + k / 100, k % 100 * 10000000,
-                    scale * rate, sign * 9.80665 * std::sin(angle), 9.80665 * std::cos(angle));
-      text += row;
-    }
-    return text;
-  };
-  fixture::put(folder_ / "a.csv", turning(1.0, 1.0));
-  const Imported good = import_imu_csv(folder_ / "a.csv", {});
-  ASSERT_EQ(good.notes.size(), 1u);
-  EXPECT_THAT(good.notes[0], HasSubstr("gyro and accelerometer agree in units and axes"));
-  EXPECT_THAT(complaint_of(turning(57.29578, 1.0)), HasSubstr("The rates may be in deg/s"));
-  fixture::put(folder_ / "deg.csv", turning(57.29578, 1.0));
-  const Imported degrees = import_imu_csv(folder_ / "deg.csv", {}, AccelUnit::m_s2, GyroUnit::deg_s);
-  EXPECT_NEAR(degrees.sensors.imus[0].gyro_rad_s[0].x(), 1.0, 1e-5);
-  EXPECT_THAT(fixture::complaint([&] { import_imu_csv(folder_ / "a.csv", {}, AccelUnit::m_s2, GyroUnit::deg_s); }),
-              HasSubstr("The rates may be in rad/s"));
-  fixture::put(folder_ / "sign.csv", turning(1.0, -1.0));
-  EXPECT_THAT(import_imu_csv(folder_ / "sign.csv", {}).notes.at(0), HasSubstr("caution: gravity rotates -1 times"));
-  EXPECT_THAT(import(kHeader + line("1,0") + line("1,10000000")).notes,
-              testing::Contains(HasSubstr("the import reads rates in rad/s, with unchanged signs and axes")));
 }
 
 TEST_F(ImportCsv, AGapDoesNotChangeThePeriod) {

@@ -118,7 +118,7 @@ TEST(MedianBootstrap, CoversTheTrueMedianAsOftenAsItSays) {
   const auto normal = [](sim::Stream& s) { return s.normal(); };
   const auto skewed = [](sim::Stream& s) { return -std::log(1.0 - s.uniform()); };
   const auto heavy = [](sim::Stream& s) { return s.normal() / s.normal(); };
-  for (const std::size_t n : {12u, 25u, 60u, 151u}) {
+  for (const std::size_t n : {12u, 60u}) {
     for (const double share :
          {coverage(n, 0.05, normal, 0.0), coverage(n, 0.05, skewed, std::log(2.0)), coverage(n, 0.05, heavy, 0.0)}) {
       EXPECT_GT(share, 0.92) << n;

@@ -137,14 +137,14 @@ std::pair<double, double> largest_rate_and_clipped_s(const char* scenario, std::
 TEST(SpinningScenarios, ExceedTheSaturationLimitForSeconds) {
   for (const auto& [scenario, least_s] : {std::pair{"spin", 2.0}, std::pair{"rocket", 0.5}, std::pair{"ball", 0.5}}) {
     std::vector<double> clipped_s;
-    for (std::uint64_t seed = kClippedSeed; seed < kClippedSeed + 5; ++seed) {
+    for (std::uint64_t seed = kClippedSeed; seed < kClippedSeed + 3; ++seed) {
       const auto [rate_rad_s, time_s] = largest_rate_and_clipped_s(scenario, seed);
       EXPECT_GT(rate_rad_s, 10.0) << scenario << " " << seed;
       EXPECT_LT(rate_rad_s, 120.0) << scenario << " " << seed;
       clipped_s.push_back(time_s);
     }
     std::sort(clipped_s.begin(), clipped_s.end());
-    EXPECT_GT(clipped_s[2], least_s) << scenario;
+    EXPECT_GT(clipped_s[1], least_s) << scenario;
   }
 }
 
@@ -158,7 +158,7 @@ double repeated_share(const std::vector<Eigen::Vector3d>& readings) {
 // the expected values are those of RepoIMU's pendulum, segment 3: models/README.md
 TEST(SwingScenario, ClipsAsTheRealPendulumDoesAndRepeatsItsReadings) {
   std::size_t railed_force = 0;  // over all draws, because a whip may be between two accelerometer readings
-  for (std::uint64_t seed = kClippedSeed; seed < kClippedSeed + 3; ++seed) {
+  for (std::uint64_t seed = kClippedSeed; seed < kClippedSeed + 2; ++seed) {
     const sim::Recording recording = sim::simulate(
         sim::BuiltSituation(draw(tree_data(), load_scenario(tree_data(), "swing"), seed), tree_data().models()));
     const sim::ImuRecord& imu = recording.sensors.imus.at(0);
@@ -186,23 +186,21 @@ TEST(SwingScenario, ClipsAsTheRealPendulumDoesAndRepeatsItsReadings) {
 // a failure of a compared method on a tumble is due to the tumble only when the method follows a motion far from
 // saturation, without contact, whose end is not its start: otherwise an estimate without motion would be right
 TEST(StrollScenario, IsGentleGoesAwayAndEndsAtRest) {
-  for (std::uint64_t seed = kClippedSeed; seed < kClippedSeed + 3; ++seed) {
-    const sim::ResolvedSituation situation =
-        without_lidars(draw(tree_data(), load_scenario(tree_data(), "stroll"), seed));
-    const sim::Recording recording = sim::simulate(sim::BuiltSituation(situation, tree_data().models()));
-    const sim::Truth& truth = recording.truth;
-    const MotionSummary motion = summarise_motion(recording.sensors, truth);
-    EXPECT_EQ(motion.clipped_samples, 0u) << seed;
-    EXPECT_LT(motion.peak_rate_rad_s, 3.0) << seed;
-    EXPECT_LT(motion.peak_accel_m_s2, 25.0) << seed;
-    EXPECT_GT(motion.path_m, 8.0) << seed;
-    EXPECT_LT(motion.path_m, 20.0) << seed;
-    EXPECT_TRUE(truth.contacts.empty()) << seed;
-    EXPECT_GT((truth.p_WB_m.back() - truth.p_WB_m.front()).norm(), 1.0) << seed;
-    for (const std::size_t k : {std::size_t{0}, truth.q_WB.size() - 1}) {
-      EXPECT_LT(truth.v_WB_m_s[k].norm(), 0.02) << seed;
-      EXPECT_LT(truth.w_WB_B_rad_s[k].norm(), 0.05) << seed;
-    }
+  const sim::ResolvedSituation situation =
+      without_lidars(draw(tree_data(), load_scenario(tree_data(), "stroll"), kClippedSeed));
+  const sim::Recording recording = sim::simulate(sim::BuiltSituation(situation, tree_data().models()));
+  const sim::Truth& truth = recording.truth;
+  const MotionSummary motion = summarise_motion(recording.sensors, truth);
+  EXPECT_EQ(motion.clipped_samples, 0u);
+  EXPECT_LT(motion.peak_rate_rad_s, 3.0);
+  EXPECT_LT(motion.peak_accel_m_s2, 25.0);
+  EXPECT_GT(motion.path_m, 8.0);
+  EXPECT_LT(motion.path_m, 20.0);
+  EXPECT_TRUE(truth.contacts.empty());
+  EXPECT_GT((truth.p_WB_m.back() - truth.p_WB_m.front()).norm(), 1.0);
+  for (const std::size_t k : {std::size_t{0}, truth.q_WB.size() - 1}) {
+    EXPECT_LT(truth.v_WB_m_s[k].norm(), 0.02);
+    EXPECT_LT(truth.w_WB_B_rad_s[k].norm(), 0.05);
   }
 }
 
