@@ -13,10 +13,6 @@ namespace {
 
 constexpr int kExtraPassesMax = 3;
 constexpr std::size_t kSweepsPerRejection = 5;
-// A correct calibration changed by at most 1.5 standard deviations in twelve runs of four scenarios (seeds 700001 to
-// 700003 of stroll, hill, throw and hill_consumer). In 20 s of stroll, a position that is wrong by 0.1 m changes by
-// three.
-constexpr double kContradiction_sigmas = 3.0;
 // If a pass contradicts the stated mounting, the next pass assumes at least these standard deviations.
 constexpr double kUncertainMountSigma_rad = 0.05, kUncertainMountSigma_m = 0.1;
 
@@ -219,8 +215,8 @@ MappedRecording map_with_calibration(const MappingInput& input, const LidarInert
     out = map_in_one_pass(levelled, started);
     ++passes;
   };
-  const bool contradicts =
-      determines_lidar_calibration(out) && contradiction(started, out.mapper) > kContradiction_sigmas;
+  const bool contradicts = determines_lidar_calibration(out) &&
+                           contradiction(started, out.mapper) > LidarImuCalibrationPrior::kDistanceMax_sigmas;
   if (contradicts) {
     given = with_uncertain_mounting(params);
     started = given;
