@@ -144,11 +144,11 @@ void solve_arrow(benchmark::State& state) {
     arrow::Corner corner = problem.corner;
     bool good = true;
     for (std::size_t k = 0; k < blocks.size(); ++k) {
-      good = good && arrow::eliminate(blocks[k], k + 1 < blocks.size() ? &blocks[k + 1] : nullptr, corner);
+      good = good && arrow::System::eliminate(blocks[k], k + 1 < blocks.size() ? &blocks[k + 1] : nullptr, corner);
     }
-    good = good && arrow::solve_border_block(corner, border, covariance);
+    good = good && arrow::System::solve_border_block(corner, border, covariance);
     for (std::size_t k = blocks.size(); k-- > 0;) {
-      step = arrow::back_substitute(blocks[k], k + 1 < blocks.size() ? &step : nullptr, border);
+      step = arrow::System::back_substitute(blocks[k], k + 1 < blocks.size() ? &step : nullptr, border);
     }
     benchmark::DoNotOptimize(step);
     // both solvers must solve the same problem

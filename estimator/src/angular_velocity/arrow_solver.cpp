@@ -1,27 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/angular_velocity/detail/arrow_solver.hpp"
 
-namespace tumble::arrow {
+namespace tumble {
 
-// See rate_smoother.md (R27).
-bool eliminate(Block& block, Block* next, Corner& corner) {
-  return System::eliminate(block, next, corner);
-}
+// See rate_smoother.md (R27), (R28), (R29), (R33), (R34).
+template struct BlockArrowSystem<arrow::kBlockSize, arrow::kBorderSize>;
 
-// See rate_smoother.md (R28).
-bool solve_border_block(const Corner& corner, BorderVector& step, BorderMatrix& covariance) {
-  return System::solve_border_block(corner, step, covariance);
-}
-
-// See rate_smoother.md (R29).
-StateVector back_substitute(const Block& block, const StateVector* next_step, const BorderVector& border_step) {
-  return System::back_substitute(block, next_step, border_step);
-}
-
-// See rate_smoother.md (R33), (R34).
-Conditional state_given_next_state(const Block& block, const Conditional* next) {
-  return System::state_given_next_state(block, next);
-}
+namespace arrow {
 
 // See rate_smoother.md (R27).
 void eliminate_sensor_errors(const Block& block, ErrorMatrix& errors, ErrorMatrix* next, BorderErrors& border) {
@@ -47,4 +32,6 @@ Eigen::Matrix3d rate_covariance(const Conditional& conditional, const BorderMatr
   return out;
 }
 
-}  // namespace tumble::arrow
+}  // namespace arrow
+
+}  // namespace tumble

@@ -160,9 +160,10 @@ bool GaussNewtonRateStep::factorise(const AngularRateModel& model, std::span<con
       const double dt_s = seconds(observations_[k + 1].sample.time_ns - observations_[k].sample.time_ns);
       model.add_motion_model(estimates[k], estimates[k + 1], dt_s, state_blocks_[k], state_blocks_[k + 1]);
     }
-    if (!arrow::eliminate(state_blocks_[k], last ? nullptr : &state_blocks_[k + 1], border_block_)) return false;
+    if (!arrow::System::eliminate(state_blocks_[k], last ? nullptr : &state_blocks_[k + 1], border_block_))
+      return false;
   }
-  return arrow::solve_border_block(border_block_, calibration_step_, rig_covariance_);
+  return arrow::System::solve_border_block(border_block_, calibration_step_, rig_covariance_);
 }
 
 // See rate_smoother.md (R30).
@@ -178,7 +179,7 @@ double GaussNewtonRateStep::apply(const AngularRateModel& model, double step_max
   arrow::StateVector step;
   for (std::size_t k = state_blocks_.size(); k-- > 0;) {
     const bool last = k + 1 == state_blocks_.size();
-    step = arrow::back_substitute(state_blocks_[k], last ? nullptr : &step, calibration_step_);
+    step = arrow::System::back_substitute(state_blocks_[k], last ? nullptr : &step, calibration_step_);
     const Eigen::Matrix<double, 6, 1> physical = model.unscaled_step(step);
     const double length = physical.head<3>().norm();
     const double share = length > step_max ? step_max / length : 1.0;

@@ -28,8 +28,8 @@ class GaussNewtonRateStep {
   void for_each_state_given_next(Use use) const {
     arrow::Conditional conditional;
     for (std::size_t k = state_blocks_.size(); k-- > 0;) {
-      conditional =
-          arrow::state_given_next_state(state_blocks_[k], k + 1 == state_blocks_.size() ? nullptr : &conditional);
+      conditional = arrow::System::state_given_next_state(state_blocks_[k],
+                                                          k + 1 == state_blocks_.size() ? nullptr : &conditional);
       use(k, conditional);
     }
   }

@@ -178,7 +178,7 @@ void AngularRateStream::marginalise(std::size_t first, State& state) const {
   model_.add_sensor_errors(oldest.observation, oldest.estimate, state.rig, errors, device.border_errors,
                            device.sensor_error_evidence, short_flight);
   model_.add_motion_model(oldest.estimate, next.estimate, seconds_between(oldest, next), block, after);
-  if (arrow::eliminate(block, &after, corner)) {
+  if (arrow::System::eliminate(block, &after, corner)) {
     state.prior = after;
     state.prior_border_block = corner;
     store_errors(block, errors, state);
@@ -321,11 +321,11 @@ bool AngularRateStream::step(State& state) const {
       blocks[k + 1] = {};
       model_.add_motion_model(knot.estimate, next.estimate, seconds_between(knot, next), blocks[k], blocks[k + 1]);
     }
-    if (!arrow::eliminate(blocks[k], last ? nullptr : &blocks[k + 1], corner)) return false;
+    if (!arrow::System::eliminate(blocks[k], last ? nullptr : &blocks[k + 1], corner)) return false;
   }
   arrow::BorderVector rig_step;
   arrow::BorderMatrix rig_covariance;
-  if (!arrow::solve_border_block(corner, rig_step, rig_covariance)) return false;
+  if (!arrow::System::solve_border_block(corner, rig_step, rig_covariance)) return false;
   state.rig_covariance = rig_covariance;
   add_sensor_error_covariance(rig_step, state);
   state.rig.add(rig_step);
@@ -335,8 +335,8 @@ bool AngularRateStream::step(State& state) const {
   for (std::size_t k = count; k-- > 0;) {
     Knot& knot = state.window[k];
     const bool last = k + 1 == count;
-    x = arrow::back_substitute(blocks[k], last ? nullptr : &x, rig_step);
-    conditional = arrow::state_given_next_state(blocks[k], last ? nullptr : &conditional);
+    x = arrow::System::back_substitute(blocks[k], last ? nullptr : &x, rig_step);
+    conditional = arrow::System::state_given_next_state(blocks[k], last ? nullptr : &conditional);
     const Eigen::Matrix<double, 6, 1> physical = model_.unscaled_step(x);
     const double share = std::min(1.0, params_.expert.kStepMax_rad_s / std::max(1e-300, physical.head<3>().norm()));
     knot.estimate.knot.rate_rad_s += share * physical.head<3>();

@@ -83,11 +83,11 @@ TEST(ArrowSolver, SolutionAndCovarianceAreThoseOfTheDenseSystem) {
     const MatrixXd covariance = H.inverse();
 
     for (std::size_t k = 0; k < count; ++k) {
-      ASSERT_TRUE(eliminate(s.blocks[k], k + 1 < count ? &s.blocks[k + 1] : nullptr, s.corner));
+      ASSERT_TRUE(arrow::System::eliminate(s.blocks[k], k + 1 < count ? &s.blocks[k + 1] : nullptr, s.corner));
     }
     BorderVector border;
     BorderMatrix border_covariance;
-    ASSERT_TRUE(solve_border_block(s.corner, border, border_covariance));
+    ASSERT_TRUE(arrow::System::solve_border_block(s.corner, border, border_covariance));
     // condition numbers are below 1e5: rounding is at most 1e-11, measured 1e-13
     EXPECT_LE((border - want.tail(kBorderSize)).norm(), 1e-9 * want.norm());
     EXPECT_LE((border_covariance - covariance.bottomRightCorner(kBorderSize, kBorderSize)).norm(),
@@ -98,8 +98,8 @@ TEST(ArrowSolver, SolutionAndCovarianceAreThoseOfTheDenseSystem) {
     for (std::size_t k = count; k-- > 0;) {
       const Index i = static_cast<Index>(k) * kBlockSize;
       const bool last = k + 1 == count;
-      step = back_substitute(s.blocks[k], last ? nullptr : &step, border);
-      conditional = state_given_next_state(s.blocks[k], last ? nullptr : &conditional);
+      step = arrow::System::back_substitute(s.blocks[k], last ? nullptr : &step, border);
+      conditional = arrow::System::state_given_next_state(s.blocks[k], last ? nullptr : &conditional);
       EXPECT_LE((step - want.segment(i, kBlockSize)).norm(), 1e-9 * want.norm()) << k;
       const Eigen::Matrix3d expected = covariance.block<3, 3>(i, i);
       EXPECT_LE((rate_covariance(conditional, border_covariance) - expected).norm(), 1e-9 * covariance.norm()) << k;
@@ -122,12 +122,12 @@ TEST(ArrowSolver, ErrorsMoveTheSolutionAsInTheDenseSystem) {
       errors[k] = gained.middleRows<kBlockSize>(static_cast<Index>(k) * kBlockSize);
     for (std::size_t k = 0; k < count; ++k) {
       const bool last = k + 1 == count;
-      ASSERT_TRUE(eliminate(s.blocks[k], last ? nullptr : &s.blocks[k + 1], s.corner));
+      ASSERT_TRUE(arrow::System::eliminate(s.blocks[k], last ? nullptr : &s.blocks[k + 1], s.corner));
       eliminate_sensor_errors(s.blocks[k], errors[k], last ? nullptr : &errors[k + 1], border);
     }
     BorderVector step;
     BorderMatrix border_covariance;
-    ASSERT_TRUE(solve_border_block(s.corner, step, border_covariance));
+    ASSERT_TRUE(arrow::System::solve_border_block(s.corner, step, border_covariance));
     const BorderErrors border_moved = border_covariance * border;
     EXPECT_LE((border_moved - want.bottomRows(kBorderSize)).norm(), 1e-9 * want.norm());
     ErrorMatrix moved;
@@ -143,7 +143,7 @@ TEST(ArrowSolver, EliminatingTheFirstBlockIsItsMarginalisation) {
   System s = random_system(4, 9);
   const MatrixXd want =
       dense_matrix(s).inverse().bottomRightCorner(3 * kBlockSize + kBorderSize, 3 * kBlockSize + kBorderSize);
-  ASSERT_TRUE(eliminate(s.blocks[0], &s.blocks[1], s.corner));
+  ASSERT_TRUE(arrow::System::eliminate(s.blocks[0], &s.blocks[1], s.corner));
   System rest{{s.blocks.begin() + 1, s.blocks.end()}, s.corner};
   EXPECT_LE((dense_matrix(rest).inverse() - want).norm(), 1e-9 * want.norm());
 }
@@ -151,14 +151,14 @@ TEST(ArrowSolver, EliminatingTheFirstBlockIsItsMarginalisation) {
 TEST(ArrowSolver, RefusesWhatIsNotPositiveDefinite) {
   System s = random_system(2, 3);
   s.blocks[0].diagonal(5, 5) = -1.0;
-  EXPECT_FALSE(eliminate(s.blocks[0], &s.blocks[1], s.corner));
+  EXPECT_FALSE(arrow::System::eliminate(s.blocks[0], &s.blocks[1], s.corner));
   s = random_system(1, 4);
   s.blocks[0].diagonal(0, 0) = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(eliminate(s.blocks[0], nullptr, s.corner));
+  EXPECT_FALSE(arrow::System::eliminate(s.blocks[0], nullptr, s.corner));
   Corner corner;
   BorderVector step;
   BorderMatrix covariance;
-  EXPECT_FALSE(solve_border_block(corner, step, covariance));
+  EXPECT_FALSE(arrow::System::solve_border_block(corner, step, covariance));
 }
 
 }  // namespace

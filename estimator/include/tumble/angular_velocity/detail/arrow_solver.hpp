@@ -28,12 +28,7 @@ inline constexpr int kErrorCount = 29;  ///< number of sensor errors, which all 
 using ErrorMatrix = Eigen::Matrix<double, kBlockSize, kErrorCount>;
 using BorderErrors = Eigen::Matrix<double, kBorderSize, kErrorCount>;
 
-bool eliminate(Block& block, Block* next, Corner& corner);
-bool solve_border_block(const Corner& corner, BorderVector& step, BorderMatrix& covariance);
-StateVector back_substitute(const Block& block, const StateVector* next_step, const BorderVector& border_step);
-Conditional state_given_next_state(const Block& block, const Conditional* next);
-
-/// Call eliminate() for `block` first. `next` is null for the last block.
+/// Call System::eliminate() for `block` first. `next` is null for the last block.
 void eliminate_sensor_errors(const Block& block, ErrorMatrix& errors, ErrorMatrix* next, BorderErrors& border);
 
 /// Returns the derivative of a block's step with respect to each sensor error. `next_moved` (null for the last block)
@@ -45,4 +40,6 @@ ErrorMatrix back_substitute_errors(const Block& block, const ErrorMatrix& errors
 Eigen::Matrix3d rate_covariance(const Conditional& conditional, const BorderMatrix& border_covariance);
 
 }  // namespace arrow
+
+extern template struct BlockArrowSystem<arrow::kBlockSize, arrow::kBorderSize>;  // arrow_solver.cpp
 }  // namespace tumble
