@@ -37,6 +37,12 @@ nb::class_<Sheet> bind_sheet(nb::module_& m, const char* name, const char* doc) 
   return bound;
 }
 
+template <class Sheet>
+void bind_named(nb::module_& m, const sheets::Named<Sheet>& sheet, const char* doc) {
+  m.def(
+      sheet.name, [&sheet] { return sheet.data_sheet; }, doc);
+}
+
 }  // namespace
 
 void bind_sheets(nb::module_& m) {
@@ -51,35 +57,34 @@ void bind_sheets(nb::module_& m) {
   bind_sheet<LidarDataSheet>(m, "LidarDataSheet", "Data sheet of a lidar. LidarDataSheet(**numbers).")
       .def_ro("range_min_m", &LidarDataSheet::range_min_m)
       .def_ro("range_max_m", &LidarDataSheet::range_max_m);
-  m.def("mti30", &sheets::mti30, "Xsens MTi-30, fifth generation (20 g).");
-  m.def("vn100", &sheets::vn100, "VectorNav VN-100.");
-  m.def("phidget1044", &sheets::phidget1044, "PhidgetSpatial Precision 3/3/3 1044_0.");
-  m.def("mpu6050", &sheets::mpu6050, "InvenSense MPU-6050 with ranges of 500 deg/s and 16 g.");
-  m.def("bmi088", &sheets::bmi088, "Bosch BMI088 with ranges of 2000 deg/s and 24 g.");
-  m.def("icm20948", &sheets::icm20948, "InvenSense ICM-20948 with ranges of 2000 deg/s and 16 g.");
-  m.def("icm42688", &sheets::icm42688, "InvenSense ICM-42688-P with ranges of 2000 deg/s and 16 g.");
-  m.def("mti3", &sheets::mti3, "Xsens MTi-3.");
-  m.def("lsm6dso", &sheets::lsm6dso, "STMicroelectronics LSM6DSO with ranges of 2000 deg/s and 16 g.");
-  m.def("ouster_imu", &sheets::ouster_imu,
-        "IMU inside an Ouster OS0 or OS1, in the default setting of 250 deg/s and 2 g.");
-  m.def("mid360_imu", &sheets::mid360_imu, "IMU inside a Livox Mid-360 with ranges of 2000 deg/s and 4 g.");
-  m.def("icm20601", &sheets::icm20601, "InvenSense ICM-20601 with ranges of 2000 deg/s and 32 g.");
-  m.def("icm20602", &sheets::icm20602, "InvenSense ICM-20602 with ranges of 2000 deg/s and 16 g.");
-  m.def("lsm6dsv320x", &sheets::lsm6dsv320x, "STMicroelectronics LSM6DSV320X with ranges of 4000 deg/s and 16 g.");
-  m.def("adis16405", &sheets::adis16405, "Analog Devices ADIS16405 with ranges of 300 deg/s and 18 g.");
-  m.def("iim42653", &sheets::iim42653, "InvenSense IIM-42653 with ranges of 4000 deg/s and 32 g.");
-  m.def("rs16", &sheets::rs16, "RoboSense RS-16.");
-  m.def("mid40", &sheets::mid40, "Livox Mid-40.");
-  m.def("mid100", &sheets::mid100, "Livox Mid-100.");
-  m.def("vlp16", &sheets::vlp16, "Velodyne VLP-16.");
-  m.def("xt16", &sheets::xt16, "Hesai XT16.");
-  m.def("xt32", &sheets::xt32, "Hesai XT32.");
-  m.def("helios32", &sheets::helios32, "RoboSense Helios with 32 beams.");
-  m.def("os0_64", &sheets::os0_64, "Ouster OS0 with 64 rings.");
-  m.def("os0_128", &sheets::os0_128, "Ouster OS0 with 128 rings.");
-  m.def("os1_64", &sheets::os1_64, "Ouster OS1 with 64 rings.");
-  m.def("os1_128", &sheets::os1_128, "Ouster OS1 with 128 rings.");
-  m.def("mid360", &sheets::mid360, "Livox Mid-360.");
+  bind_named(m, sheets::mti30, "Xsens MTi-30, fifth generation (20 g).");
+  bind_named(m, sheets::vn100, "VectorNav VN-100.");
+  bind_named(m, sheets::phidget1044, "PhidgetSpatial Precision 3/3/3 1044_0.");
+  bind_named(m, sheets::mpu6050, "InvenSense MPU-6050 with ranges of 500 deg/s and 16 g.");
+  bind_named(m, sheets::bmi088, "Bosch BMI088 with ranges of 2000 deg/s and 24 g.");
+  bind_named(m, sheets::icm20948, "InvenSense ICM-20948 with ranges of 2000 deg/s and 16 g.");
+  bind_named(m, sheets::icm42688, "InvenSense ICM-42688-P with ranges of 2000 deg/s and 16 g.");
+  bind_named(m, sheets::mti3, "Xsens MTi-3.");
+  bind_named(m, sheets::lsm6dso, "STMicroelectronics LSM6DSO with ranges of 2000 deg/s and 16 g.");
+  bind_named(m, sheets::ouster_imu, "IMU inside an Ouster OS0 or OS1, in the default setting of 250 deg/s and 2 g.");
+  bind_named(m, sheets::mid360_imu, "IMU inside a Livox Mid-360 with ranges of 2000 deg/s and 4 g.");
+  bind_named(m, sheets::icm20601, "InvenSense ICM-20601 with ranges of 2000 deg/s and 32 g.");
+  bind_named(m, sheets::icm20602, "InvenSense ICM-20602 with ranges of 2000 deg/s and 16 g.");
+  bind_named(m, sheets::lsm6dsv320x, "STMicroelectronics LSM6DSV320X with ranges of 4000 deg/s and 16 g.");
+  bind_named(m, sheets::adis16405, "Analog Devices ADIS16405 with ranges of 300 deg/s and 18 g.");
+  bind_named(m, sheets::iim42653, "InvenSense IIM-42653 with ranges of 4000 deg/s and 32 g.");
+  bind_named(m, sheets::rs16, "RoboSense RS-16.");
+  bind_named(m, sheets::mid40, "Livox Mid-40.");
+  bind_named(m, sheets::mid100, "Livox Mid-100.");
+  bind_named(m, sheets::vlp16, "Velodyne VLP-16.");
+  bind_named(m, sheets::xt16, "Hesai XT16.");
+  bind_named(m, sheets::xt32, "Hesai XT32.");
+  bind_named(m, sheets::helios32, "RoboSense Helios with 32 beams.");
+  bind_named(m, sheets::os0_64, "Ouster OS0 with 64 rings.");
+  bind_named(m, sheets::os0_128, "Ouster OS0 with 128 rings.");
+  bind_named(m, sheets::os1_64, "Ouster OS1 with 64 rings.");
+  bind_named(m, sheets::os1_128, "Ouster OS1 with 128 rings.");
+  bind_named(m, sheets::mid360, "Livox Mid-360.");
 }
 
 }  // namespace tumble::python

@@ -6,20 +6,18 @@
 #include <limits>
 #include <span>
 #include <string>
-#include <utility>
 
 namespace tumble::ros {
 
 namespace {
 
 template <class Sheet>
-Sheet sheet_of(const char* parameter, const std::string& name,
-               std::span<const std::pair<const char*, Sheet (*)()>> sheets) {
+Sheet sheet_of(const char* parameter, const std::string& name, std::span<const sheets::Named<Sheet>> all) {
   if (name.empty()) return {};
   std::string known;
-  for (const auto& [each, sheet] : sheets) {
-    if (name == each) return sheet();
-    known += std::string(known.empty() ? "one of " : ", ") + each;
+  for (const sheets::Named<Sheet>& each : all) {
+    if (name == each.name) return each.data_sheet;
+    known += std::string(known.empty() ? "one of " : ", ") + each.name;
   }
   throw InvalidParams(std::string(parameter) + " '" + name + "'", std::numeric_limits<double>::quiet_NaN(), known);
 }

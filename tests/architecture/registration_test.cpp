@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test finds forgotten registrations of components that consist of a file and a line of registration. Each function
-// that a header of such a list declares must be called where the list is created.
+// or constant that a header of such a list declares must be named where the list is created.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -14,14 +14,14 @@
 namespace {
 
 struct Registry {
-  std::string header, returns;  ///< functions with this return type
-  std::string arguments;        ///< functions with these arguments; others create entries for other lists
+  std::string header, returns;  ///< functions with this return type, or constants of this type
+  std::string arguments;        ///< functions or constants with these arguments; others create entries for other lists
   std::string list;             ///< the source that must name each function
   std::size_t least;            ///< lower bound of the number of functions, so that the search cannot fail silently
 };
 
 std::vector<std::string> declared(const std::string& text, const std::string& returns, const std::string& arguments) {
-  const std::regex function("(?:^|\n)" + returns + R"( ([a-z0-9_]+)\()" + arguments + R"(\);)");
+  const std::regex function("(?:^|\n)" + returns + R"( ([a-z0-9_]+)[({])" + arguments + R"([)}];)");
   std::vector<std::string> out;
   for (std::sregex_iterator it(text.begin(), text.end(), function), end; it != end; ++it) out.push_back((*it)[1]);
   return out;
@@ -43,10 +43,14 @@ TEST(Registration, NothingThatIsDeclaredIsLeftOut) {
       {"sim/robot/robot_type.hpp", "const RobotType&", "", "sim/robot/robot_type.cpp", 3},
       {"sim/motion/motion_type.hpp", "const MotionType&", "", "sim/motion/motion_type.cpp", 7},
       {"sim/series/series_sensors.hpp", "const SensorType&", "", "sim/sensor_type.cpp", 1},
-      {"estimator/include/tumble/odometry/sensor_sheets.hpp", "ImuDataSheet", "", "python/bindings/sheets.cpp", 16},
-      {"estimator/include/tumble/odometry/sensor_sheets.hpp", "ImuDataSheet", "", "python/src/tumble/sheets.py", 16},
-      {"estimator/include/tumble/odometry/sensor_sheets.hpp", "LidarDataSheet", "", "python/bindings/sheets.cpp", 12},
-      {"estimator/include/tumble/odometry/sensor_sheets.hpp", "LidarDataSheet", "", "python/src/tumble/sheets.py", 12},
+      {"estimator/include/tumble/odometry/sensor_sheets.hpp", "inline constexpr NamedImu", "[^;]*",
+       "python/bindings/sheets.cpp", 16},
+      {"estimator/include/tumble/odometry/sensor_sheets.hpp", "inline constexpr NamedImu", "[^;]*",
+       "python/src/tumble/sheets.py", 16},
+      {"estimator/include/tumble/odometry/sensor_sheets.hpp", "inline constexpr NamedLidar", "[^;]*",
+       "python/bindings/sheets.cpp", 12},
+      {"estimator/include/tumble/odometry/sensor_sheets.hpp", "inline constexpr NamedLidar", "[^;]*",
+       "python/src/tumble/sheets.py", 12},
       {"tools/tumble/verbs.hpp", "Action", "[^;{]*", "tools/tumble/verbs.cpp", 15},
   };
   for (const Registry& registry : registries) {

@@ -40,12 +40,12 @@ Compare compare(const Sheet& sheet, const std::string& device) {
 
 TEST(LibrarySheets, AreThoseOfTheModels) {
   for (const auto& [device, sheet] : sheets::imus()) {
-    const Compare found = compare(sheet(), device);
+    const Compare found = compare(sheet, device);
     EXPECT_EQ(found.count(), 5) << device;
     EXPECT_EQ(found.different(), 0) << device;
   }
   for (const auto& [device, sheet] : sheets::lidars()) {
-    const Compare found = compare(sheet(), device);
+    const Compare found = compare(sheet, device);
     EXPECT_EQ(found.count(), 2) << device;
     EXPECT_EQ(found.different(), 0) << device;
   }
