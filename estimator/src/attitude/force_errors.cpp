@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "tumble/common/detail/squared.hpp"
-#include "tumble/common/status.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble {
@@ -15,40 +14,28 @@ constexpr int kForceBias = 0, kScale = 3, kPosition = 12;
 
 }  // namespace
 
-ForceErrors::ForceErrors(const Params& p) : params_(p) {
-  require_in_interval("count", p.count, 1, kImus);
-  require_in_interval("bias_sigma_m_s2", p.bias_sigma_m_s2, 0.0, 1e3);
-  require_in_interval("scale_sigma", p.scale_sigma, 0.0, 1.0);
-  require_in_interval("position_sigma_m", p.position_sigma_m, 0.0, 10.0);
-  require_in_interval("noise_m_s2", p.noise_m_s2, 1e-12, 1e3);
-  require_in_interval("acceleration_noise_ratio", p.acceleration_noise_ratio, 0.0, 1.0);
-  require_in_interval("gate_deviations", p.gate_sigmas, 1e-12, 1e3);
-}
-
 /// See imu_merge.md (I10), (I11).
 void ForceErrors::calibrate(std::span<const Eigen::Vector3d> forces, const Eigen::Vector3d& rate,
                             const Eigen::Vector3d& acceleration, double dt_s, State& state) const {
-  const auto count = static_cast<std::size_t>(params_.count);
   if (!state.started) {
-    for (int k = 0; k < params_.count; ++k) {
+    for (int k = 0; k < setup_.count; ++k) {
       auto prior = state.error_covariance.diagonal().segment<kErrorsPerImu>(kErrorsPerImu * k);
-      prior.segment<3>(kForceBias).setConstant(squared(params_.bias_sigma_m_s2));
-      prior.segment<9>(kScale).setConstant(squared(params_.scale_sigma));
-      prior.segment<3>(kPosition).setConstant(squared(params_.position_sigma_m));
+      prior.segment<3>(kForceBias).setConstant(squared(kBiasSigma_m_s2));
+      prior.segment<9>(kScale).setConstant(squared(kScaleSigma));
+      prior.segment<3>(kPosition).setConstant(squared(kPositionSigma_m));
     }
     state.started = true;
   }
   const Eigen::Matrix3d jacobian_position = so3::hat(acceleration) + so3::hat(rate) * so3::hat(rate);
   Eigen::Vector3d mean_force = Eigen::Vector3d::Zero(), mean_position = Eigen::Vector3d::Zero();
-  for (std::size_t k = 0; k < count; ++k) {
-    mean_force += forces[k] / params_.count;
-    mean_position += params_.imu_positions_m[k] / params_.count;
+  for (int k = 0; k < setup_.count; ++k) {
+    mean_force += forces[static_cast<std::size_t>(k)] / setup_.count;
+    mean_position += imu_position_m(k) / setup_.count;
   }
-  for (std::size_t k = 0; k < count; ++k) {
-    const auto column = static_cast<Eigen::Index>(k);
-    state.force_difference_m_s2.col(column) +=
-        forces[k] - mean_force - jacobian_position * (params_.imu_positions_m[k] - mean_position);
-    state.force_m_s2.col(column) += forces[k];
+  for (int k = 0; k < setup_.count; ++k) {
+    const Eigen::Vector3d& force = forces[static_cast<std::size_t>(k)];
+    state.force_difference_m_s2.col(k) += force - mean_force - jacobian_position * (imu_position_m(k) - mean_position);
+    state.force_m_s2.col(k) += force;
   }
   state.jacobian_position += jacobian_position;
   state.acceleration_rad_s2 += acceleration.norm();
@@ -59,21 +46,18 @@ void ForceErrors::calibrate(std::span<const Eigen::Vector3d> forces, const Eigen
 
 /// See imu_merge.md (I11).
 void ForceErrors::update(State& state) const {
-  const double share = 1.0 / params_.count;
+  const double share = 1.0 / setup_.count;
   const double samples = state.samples;
   double reach_m = 0.0;
-  for (int k = 1; k < params_.count; ++k) {
-    reach_m =
-        std::max(reach_m, (params_.imu_positions_m[static_cast<std::size_t>(k)] - params_.imu_positions_m[0]).norm());
-  }
-  const double variance = squared(params_.noise_m_s2) +
-                          squared(params_.acceleration_noise_ratio * reach_m * state.acceleration_rad_s2 / samples);
-  const Eigen::Index used = kErrorsPerImu * params_.count;
+  for (int k = 1; k < setup_.count; ++k) reach_m = std::max(reach_m, (imu_position_m(k) - imu_position_m(0)).norm());
+  const double variance =
+      squared(kNoise_m_s2) + squared(kAccelerationNoiseRatio * reach_m * state.acceleration_rad_s2 / samples);
+  const Eigen::Index used = kErrorsPerImu * setup_.count;
   auto P = state.error_covariance.topLeftCorner(used, used);
-  for (int k = 0; k < params_.count; ++k) {
+  for (int k = 0; k < setup_.count; ++k) {
     for (int axis = 0; axis < 3; ++axis) {
       Vector row = Vector::Zero();
-      for (int j = 0; j < params_.count; ++j) {
+      for (int j = 0; j < setup_.count; ++j) {
         const double weight = (j == k ? 1.0 : 0.0) - share;
         auto own = row.segment<kErrorsPerImu>(kErrorsPerImu * j);
         own[kForceBias + axis] = weight;
@@ -85,7 +69,7 @@ void ForceErrors::update(State& state) const {
       const double s = row.dot(PHt) + variance;
       const double innovation = state.force_difference_m_s2(axis, k) / samples - row.dot(state.x);
       // An impact within the averaged samples causes a large innovation.
-      if (squared(innovation) > squared(params_.gate_sigmas) * s) continue;
+      if (squared(innovation) > squared(kGateSigmas) * s) continue;
       state.x += PHt * (innovation / s);
       P.noalias() -= PHt.head(used) * (PHt.head(used) / s).transpose();
     }

@@ -40,45 +40,32 @@ constexpr double kSuspect_s = 0.04;
 // standard deviation of an angular acceleration, as a fraction of its change since the last window
 constexpr double kAccelerationSigmaRatio = 0.3;
 
-}  // namespace
-
-ForceErrors::Params ImuMerge::force_params(const Setup& setup) {
-  ForceErrors::Params out;
-  out.count = std::clamp(setup.count, 1, kImus);
-  for (std::size_t k = 0; k < static_cast<std::size_t>(out.count); ++k)
-    out.imu_positions_m[k] = setup.T_mean_imu[k].translation();
-  return out;
-}
-
-AngularRateRecovery::Params ImuMerge::rate_recovery_params(const Setup& setup) {
-  AngularRateRecovery::Params out;
-  out.count = setup.count;
-  out.gyro_range_rad_s = setup.gyro_range_rad_s;
-  out.accel_range_m_s2 = setup.accel_range_m_s2;
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  const auto count = static_cast<std::size_t>(std::clamp(setup.count, 0, kImus));
-  for (std::size_t k = 0; k < count; ++k) mean += setup.T_mean_imu[k].translation() / setup.count;
-  for (std::size_t k = 0; k < count; ++k) {
-    out.T_mean_imu[k] = setup.T_mean_imu[k];
-    out.T_mean_imu[k].translation() -= mean;
-    out.gyro_sensing_directions[k] = setup.gyro_sensing_directions[k];
-    out.accel_sensing_directions[k] = setup.accel_sensing_directions[k];
-  }
-  return out;
-}
-
-ImuMerge::ImuMerge(const Setup& setup)
-    : setup_(setup), forces_(force_params(setup)), rate_recovery_(rate_recovery_params(setup)) {
-  require_in_interval("count", setup.count, 1.0, kImus);
+const ImuMergeSetup& checked(const ImuMergeSetup& setup) {
+  require_in_interval("count", setup.count, 1.0, ImuMerge::kImus);
   require_in_interval("gyro_range_rad_s", setup.gyro_range_rad_s, 1e-12, 1e3);
   require_in_interval("accel_range_m_s2", setup.accel_range_m_s2, 1e-12, 1e5);
   for (int k = 0; k < setup.count; ++k) {
     const Eigen::Isometry3d& T = setup.T_mean_imu[static_cast<std::size_t>(k)];
     require_in_interval("T_CI", T.translation().norm(), 0.0, 1e3);
     require_in_interval("T_CI", (T.linear() * T.linear().transpose() - Eigen::Matrix3d::Identity()).norm(), 0.0, 1e-6);
-    mean_imu_position_m_ += T.translation() / setup.count;
   }
+  return setup;
 }
+
+Eigen::Vector3d mean_position_m(const ImuMergeSetup& setup) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (int k = 0; k < setup.count; ++k)
+    mean += setup.T_mean_imu[static_cast<std::size_t>(k)].translation() / setup.count;
+  return mean;
+}
+
+}  // namespace
+
+ImuMerge::ImuMerge(const Setup& setup)
+    : setup_(checked(setup)),
+      mean_imu_position_m_(mean_position_m(setup)),
+      forces_(setup),
+      rate_recovery_(setup, mean_imu_position_m_) {}
 
 Status ImuMerge::step(std::span<const ImuSample> samples, State& state, std::optional<ImuSample>& merged) const {
   merged.reset();

@@ -7,14 +7,12 @@
 
 #include "tumble/common/detail/scalar_update.hpp"
 #include "tumble/common/detail/squared.hpp"
-#include "tumble/common/status.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble {
 
 namespace {
 
-constexpr double kSmallest = 1e-12;
 constexpr int kRate = 0, kAcceleration = 3, kForce = 6, kArms = 9;
 constexpr double kStartRateSigma_rad_s = 0.1, kStartAcceleration_rad_s2 = 200.0, kStartForce_m_s2 = 10.0;
 constexpr double kRailSigma_rad_s = 0.1;
@@ -60,32 +58,19 @@ SaturatedReading saturated_reading_of_imu(const SensingDirections& elements, con
 
 }  // namespace
 
-AngularRateRecovery::AngularRateRecovery(const Params& p) : params_(p) {
-  require_in_interval("count", p.count, 1, kImus);
-  for (int k = 0; k < p.count; ++k) {
-    const Eigen::Isometry3d& T = p.T_mean_imu[static_cast<std::size_t>(k)];
-    require_in_interval("T_CI", T.translation().norm(), 0.0, 1e3);
-    require_in_interval("T_CI", (T.linear() * T.linear().transpose() - Eigen::Matrix3d::Identity()).norm(), 0.0, 1e-6);
-  }
-  require_in_interval("gyro_range_rad_s", p.gyro_range_rad_s, kSmallest, 1e3);
-  require_in_interval("accel_range_m_s2", p.accel_range_m_s2, kSmallest, 1e5);
-  require_in_interval("lever_arm_sigma_m", p.lever_arm_sigma_m, kSmallest, 10.0);
-  require_in_interval("rate_noise_rad_s", p.noise.rate_rad_s, kSmallest, 10.0);
-  require_in_interval("rate_noise_share", p.noise.rate_share, 0.0, 1.0);
-  require_in_interval("force_noise_m_s2", p.noise.force_m_s2, kSmallest, 1e3);
-  require_in_interval("force_noise_share", p.noise.force_share, 0.0, 1.0);
-  require_in_interval("acceleration_walk_rad_s2_sqrts", p.acceleration_walk_rad_s2_sqrts, kSmallest, 1e6);
-  require_in_interval("force_walk_m_s2_sqrts", p.force_walk_m_s2_sqrts, kSmallest, 1e6);
-  require_in_interval("recovered_sigma_rad_s", p.recovered_sigma_rad_s, kSmallest, 1e3);
+AngularRateRecovery::AngularRateRecovery(const ImuMergeSetup& setup, const Eigen::Vector3d& mean_imu_position_m)
+    : setup_(setup) {
+  for (int k = 0; k < setup.count; ++k)
+    setup_.T_mean_imu[static_cast<std::size_t>(k)].translation() -= mean_imu_position_m;
 }
 
 bool AngularRateRecovery::is_rate_saturated(const ImuSample& unit, int axis) const {
-  return std::abs(unit.angular_velocity_rad_s[axis]) >= params_.gyro_range_rad_s ||
+  return std::abs(unit.angular_velocity_rad_s[axis]) >= setup_.gyro_range_rad_s ||
          (unit.device_clip_flags & (kClipGyroX << axis)) != 0;
 }
 
 bool AngularRateRecovery::is_force_saturated(const ImuSample& unit, int axis) const {
-  return std::abs(unit.specific_force_m_s2[axis]) >= params_.accel_range_m_s2 ||
+  return std::abs(unit.specific_force_m_s2[axis]) >= setup_.accel_range_m_s2 ||
          (unit.device_clip_flags & (kClipAccelX << axis)) != 0;
 }
 
@@ -115,7 +100,7 @@ void AngularRateRecovery::step(std::span<const ImuSample> units, double dt_s, St
   // mean.
   merged.device_clip_flags = met.force ? kClipAccelX | kClipAccelY | kClipAccelZ : 0;
   const bool fast =
-      merged.angular_velocity_rad_s.cwiseAbs().maxCoeff() >= kMinSaturatedRangeFraction * params_.gyro_range_rad_s;
+      merged.angular_velocity_rad_s.cwiseAbs().maxCoeff() >= kMinSaturatedRangeFraction * setup_.gyro_range_rad_s;
   if (!fast && !met.rate) {
     state.running = false;
     return;
@@ -129,8 +114,7 @@ void AngularRateRecovery::step(std::span<const ImuSample> units, double dt_s, St
   measure_forces(units, dt_s, state);
   state.error_covariance = (0.5 * (state.error_covariance + state.error_covariance.transpose())).eval();
 
-  if (met.rate &&
-      state.error_covariance.diagonal().segment<3>(kRate).maxCoeff() < squared(params_.recovered_sigma_rad_s)) {
+  if (met.rate && state.error_covariance.diagonal().segment<3>(kRate).maxCoeff() < squared(kRecoveredSigma_rad_s)) {
     merged.angular_velocity_rad_s = state.x.segment<3>(kRate);
   } else if (met.rate) {
     merged.device_clip_flags = static_cast<std::uint8_t>(merged.device_clip_flags | kClipGyro);
@@ -142,7 +126,7 @@ void AngularRateRecovery::start(const ImuSample& merged, State& state) const {
   state.error_covariance.topRows<kArms>().setZero();
   state.error_covariance.leftCols<kArms>().setZero();
   auto diagonal = state.error_covariance.diagonal();
-  if (!state.started) diagonal.tail<kStates - kArms>().setConstant(squared(params_.lever_arm_sigma_m));
+  if (!state.started) diagonal.tail<kStates - kArms>().setConstant(squared(kLeverArmSigma_m));
   state.x.head<kArms>() << merged.angular_velocity_rad_s, Eigen::Vector3d::Zero(), merged.specific_force_m_s2;
   diagonal.segment<3>(kRate).setConstant(squared(kStartRateSigma_rad_s));
   diagonal.segment<3>(kAcceleration).setConstant(squared(kStartAcceleration_rad_s2));
@@ -163,11 +147,11 @@ void AngularRateRecovery::predict(double dt_s, State& state) const {
   state.x.segment<3>(kForce) = turn * force;
   state.error_covariance.topRows<kArms>() = (F * state.error_covariance.topRows<kArms>()).eval();
   state.error_covariance.leftCols<kArms>() = (state.error_covariance.leftCols<kArms>() * F.transpose()).eval();
-  const double walk = squared(params_.acceleration_walk_rad_s2_sqrts) * dt_s;
+  const double walk = squared(kAccelerationWalk_rad_s2_sqrts) * dt_s;
   auto diagonal = state.error_covariance.diagonal();
   diagonal.segment<3>(kRate).array() += walk * squared(dt_s) / 3.0;
   diagonal.segment<3>(kAcceleration).array() += walk;
-  diagonal.segment<3>(kForce).array() += squared(params_.force_walk_m_s2_sqrts) * dt_s;
+  diagonal.segment<3>(kForce).array() += squared(kForceWalk_m_s2_sqrts) * dt_s;
 }
 
 /// See imu_merge.md (I16).
@@ -175,10 +159,10 @@ void AngularRateRecovery::measure_rates(std::span<const ImuSample> units, double
   const double shorter = std::max(1.0, kReadingInterval_s / dt_s);
   for (std::size_t k = 0; k < units.size(); ++k) {
     if (!is_finite(units[k])) continue;
-    const Eigen::Matrix3d R_IC = params_.T_mean_imu[k].linear().transpose();
+    const Eigen::Matrix3d R_IC = setup_.T_mean_imu[k].linear().transpose();
     const auto railed = [&](int axis) { return is_rate_saturated(units[k], axis); };
     const SaturatedReading seen =
-        saturated_reading_of_imu(params_.gyro_sensing_directions[k], R_IC, units[k].angular_velocity_rad_s, railed);
+        saturated_reading_of_imu(setup_.gyro_sensing_directions[k], R_IC, units[k].angular_velocity_rad_s, railed);
     const double hidden = seen.saturation_deficit(seen.sensing_directions_mean_frame * state.x.segment<3>(kRate));
     for (int axis = 0; axis < 3; ++axis) {
       const double reading = seen.reading[axis];
@@ -187,7 +171,7 @@ void AngularRateRecovery::measure_rates(std::span<const ImuSample> units, double
         continue;  // the predicted reading is beyond the saturation level, as required
       Row row = Row::Zero();
       row.segment<3>(kRate) = seen.sensing_directions_mean_frame.row(axis);
-      const double sigma = params_.noise.rate_rad_s + params_.noise.rate_share * std::abs(reading);
+      const double sigma = kRateNoise_rad_s + kRateNoiseRatio * std::abs(reading);
       const double variance =
           seen.is_saturated[static_cast<std::size_t>(axis)] ? squared(kRailSigma_rad_s) : squared(sigma);
       update_rate_state(row, missing, shorter * variance + squared(seen.cross_axis_slope_sigma[axis] * hidden), state);
@@ -200,16 +184,16 @@ void AngularRateRecovery::measure_forces(std::span<const ImuSample> units, doubl
   const double shorter = std::max(1.0, kReadingInterval_s / dt_s);
   for (std::size_t k = 0; k < units.size(); ++k) {
     if (!is_finite(units[k])) continue;
-    const Eigen::Matrix3d R_IC = params_.T_mean_imu[k].linear().transpose();
+    const Eigen::Matrix3d R_IC = setup_.T_mean_imu[k].linear().transpose();
     const auto railed = [&](int axis) { return is_force_saturated(units[k], axis); };
     const SaturatedReading seen =
-        saturated_reading_of_imu(params_.accel_sensing_directions[k], R_IC, units[k].specific_force_m_s2, railed);
+        saturated_reading_of_imu(setup_.accel_sensing_directions[k], R_IC, units[k].specific_force_m_s2, railed);
     const int arm = kArms + 3 * static_cast<int>(k);
     for (int axis = 0; axis < 3; ++axis) {
       const double reading = seen.reading[axis];
       if (seen.is_saturated[static_cast<std::size_t>(axis)]) continue;
       const Eigen::Vector3d rate = state.x.segment<3>(kRate), acceleration = state.x.segment<3>(kAcceleration);
-      const Eigen::Vector3d position = params_.T_mean_imu[k].translation() + state.x.segment<3>(arm);
+      const Eigen::Vector3d position = setup_.T_mean_imu[k].translation() + state.x.segment<3>(arm);
       const Eigen::Matrix3d jacobian_position = so3::hat(acceleration) + so3::hat(rate) * so3::hat(rate);
       const auto axis_C = seen.sensing_directions_mean_frame.row(axis);
       Row row = Row::Zero();
@@ -221,7 +205,7 @@ void AngularRateRecovery::measure_forces(std::span<const ImuSample> units, doubl
       const double hidden = seen.cross_axis_slope_sigma[axis] > 0.0
                                 ? seen.saturation_deficit(seen.sensing_directions_mean_frame * force)
                                 : 0.0;
-      const double sigma = params_.noise.force_m_s2 + params_.noise.force_share * std::abs(reading);
+      const double sigma = kForceNoise_m_s2 + kForceNoiseRatio * std::abs(reading);
       update_rate_state(row, reading - axis_C.dot(force),
                         shorter * squared(sigma) + squared(seen.cross_axis_slope_sigma[axis] * hidden), state);
     }

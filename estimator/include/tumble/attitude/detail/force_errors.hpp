@@ -2,9 +2,10 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <array>
-#include <cstdint>
+#include <cstddef>
 #include <span>
+
+#include "tumble/attitude/detail/imu_merge_setup.hpp"
 
 namespace tumble {
 
@@ -13,23 +14,13 @@ namespace tumble {
 /// accelerometers share are not observable, and their estimates remain close to zero.
 class ForceErrors {
  public:
-  static constexpr int kImus = 4;
+  static constexpr int kImus = ImuMergeSetup::kImus;
   static constexpr int kErrorsPerImu = 15;  ///< bias, rows of M, position error
   static constexpr int kStates = kImus * kErrorsPerImu;
   static constexpr double kCorrelationTime_s = 0.032;
   using Vector = Eigen::Matrix<double, kStates, 1>;
   using Covariance = Eigen::Matrix<double, kStates, kStates>;
 
-  struct Params {
-    std::array<Eigen::Vector3d, kImus> imu_positions_m{};  ///< positions of the IMUs
-    int count = 1;                                         ///< bound [1, kUnits]
-    double bias_sigma_m_s2 = 0.05;                         ///< prior standard deviation of the bias; bound [0, 1e3]
-    double scale_sigma = 4e-3;               ///< prior standard deviation of each entry of M; bound [0, 1]
-    double position_sigma_m = 1.5e-3;        ///< prior standard deviation of the position error; bound [0, 10]
-    double noise_m_s2 = 0.06;                ///< noise of one force difference, averaged over kSpan_s; bound (0, 1e3]
-    double acceleration_noise_ratio = 0.02;  ///< additional noise / tangential force a x p; bound [0, 1]
-    double gate_sigmas = 5.0;  ///< largest accepted force difference, in standard deviations; bound (0, 1e3]
-  };
   struct State {
     Vector x = Vector::Zero();
     Covariance error_covariance = Covariance::Zero();
@@ -44,8 +35,7 @@ class ForceErrors {
     bool operator==(const State&) const = default;
   };
 
-  /// Throws InvalidParams if a parameter is out of bounds.
-  explicit ForceErrors(const Params& params);
+  explicit ForceErrors(const ImuMergeSetup& setup) : setup_(setup) {}
 
   /// Processes the forces of all IMUs in common axes C, measured over `dt_s`. Cost: O((kErrorsPerImu count)^2), no
   /// allocation.
@@ -59,9 +49,16 @@ class ForceErrors {
   }
 
  private:
+  // prior standard deviations of the bias, of each entry of M, and of the position error
+  static constexpr double kBiasSigma_m_s2 = 0.05, kScaleSigma = 4e-3, kPositionSigma_m = 1.5e-3;
+  static constexpr double kNoise_m_s2 = 0.06;  // noise of one force difference, averaged over kCorrelationTime_s
+  static constexpr double kAccelerationNoiseRatio = 0.02;  // additional noise / tangential force a x p
+  static constexpr double kGateSigmas = 5.0;               // largest accepted force difference, in standard deviations
+
+  Eigen::Vector3d imu_position_m(int k) const { return setup_.T_mean_imu[static_cast<std::size_t>(k)].translation(); }
   void update(State& state) const;
 
-  Params params_;
+  ImuMergeSetup setup_;
 };
 
 }  // namespace tumble

@@ -8,8 +8,8 @@
 #include <span>
 #include <string>
 
-#include "tumble/angular_velocity/detail/saturation_plane.hpp"
 #include "tumble/attitude/detail/force_errors.hpp"
+#include "tumble/attitude/detail/imu_merge_setup.hpp"
 #include "tumble/attitude/detail/imu_merge_state.hpp"
 #include "tumble/attitude/detail/multi_imu_sign_check.hpp"
 #include "tumble/attitude/detail/rate_recovery.hpp"
@@ -18,23 +18,6 @@
 #include "tumble/common/types.hpp"
 
 namespace tumble {
-
-/// IMUs to merge. The members follow from the data sheets and mountings of the IMUs.
-struct ImuMergeSetup {
-  static constexpr int kImus = ImuMergeState::kImus;
-  /// pose of each IMU in the common axes C of the rigid body; the first `count` entries are used
-  std::array<Eigen::Isometry3d, kImus> T_mean_imu{};
-  int count = 1;
-  /// An accelerometer reading above this fraction of the range may be saturated during a part of its averaging window.
-  static constexpr double kSubsampleSaturationRatio = 0.15;
-  static constexpr double kRateNoise_rad_s = 0.01;  ///< standard deviation of the mean rate over a window
-  static constexpr double kWindow_s = 4e-3;         ///< averaging time of the readings
-  static constexpr double kGapMax_s = 1.0;          ///< a longer time between two samples causes an error
-  double gyro_range_rad_s = 1e3;                    ///< readings at or above this rate are saturated
-  double accel_range_m_s2 = 1e5;
-  /// sensing directions of each IMU, as found by SaturationPlaneFinder
-  std::array<SensingDirections, kImus> gyro_sensing_directions{}, accel_sensing_directions{};
-};
 
 /// Merges several IMUs on one rigid body into one IMU, in common axes C, at the mean position of the IMUs.
 ///
@@ -117,11 +100,9 @@ class ImuMerge {
                                 const Eigen::Vector3d& rate, double h, State& state, ImuMask& used) const;
   void recover_saturated_rate(const Readings& readings, const ImuMask& present, double h, State& state,
                               ImuSample& merged) const;
-  static ForceErrors::Params force_params(const Setup& setup);
-  static AngularRateRecovery::Params rate_recovery_params(const Setup& setup);
 
   Setup setup_;
-  Eigen::Vector3d mean_imu_position_m_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d mean_imu_position_m_;
   ForceErrors forces_;
   AngularRateRecovery rate_recovery_;
 };

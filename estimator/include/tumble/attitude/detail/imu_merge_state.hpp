@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "tumble/attitude/detail/force_errors.hpp"
+#include "tumble/attitude/detail/imu_merge_setup.hpp"
 #include "tumble/attitude/detail/multi_imu_sign_check.hpp"
 #include "tumble/attitude/detail/rate_recovery.hpp"
 #include "tumble/common/detail/imu_average.hpp"
@@ -46,7 +47,7 @@ struct MergedImuState {
 };
 
 struct ImuMergeState {
-  static constexpr int kImus = 4;
+  static constexpr int kImus = ImuMergeSetup::kImus;
   static constexpr int kAngularAccelerationWindows = 3;  ///< windows needed for an angular acceleration
 
   std::array<MergedImuState, kImus> imus{};
