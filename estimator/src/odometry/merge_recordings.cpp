@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "imu_time_alignment.hpp"
-#include "tumble/angular_velocity/detail/clipping_finder.hpp"
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
 
 namespace tumble {
@@ -34,14 +33,8 @@ struct ImuReadingSets {
 
 void flag_clipped(const ImuDataSheet& sheet, std::vector<ImuSample>& samples, SensingDirections& gyro,
                   SensingDirections& accel) {
-  ClippingFinder::Params params;
-  if (sheet.gyro_range_rad_s > 0.0) params.axis_limit_params.stated_gyro_range_rad_s = sheet.gyro_range_rad_s;
-  if (sheet.accel_range_m_s2 > 0.0) params.axis_limit_params.stated_accel_range_m_s2 = sheet.accel_range_m_s2;
-  const ClippingFinder::ClippingSearchResult found = ClippingFinder(params).find(samples);
-  const ConfirmedSaturation certain{.gyro = found.saturation_levels.saturation_planes_in_use(),
-                                    .accel = found.saturation_levels.saturation_planes_in_use(Triad::accelerometer),
-                                    .gyro_range_rad_s = sheet.gyro_range_rad_s,
-                                    .accel_range_m_s2 = sheet.accel_range_m_s2};
+  const ClippingFinder::ClippingSearchResult found = ClippingFinder(clipping_finder_params(sheet)).find(samples);
+  const ConfirmedSaturation certain = confirmed_saturation(found.saturation_levels, sheet);
   for (std::size_t k = 0; k < samples.size(); ++k)
     samples[k].device_clip_flags = certain.flags(samples[k], found.clipping_per_sample[k]);
   gyro = found.saturation_levels.rows(Triad::gyro, kUnknownSlope);
@@ -269,6 +262,20 @@ void report_calibration(const ImuMerge& merge, const ImuMerge::State& state, con
 }
 
 }  // namespace
+
+ClippingFinder::Params clipping_finder_params(const ImuDataSheet& sheet) {
+  ClippingFinder::Params out;
+  if (sheet.gyro_range_rad_s > 0.0) out.axis_limit_params.stated_gyro_range_rad_s = sheet.gyro_range_rad_s;
+  if (sheet.accel_range_m_s2 > 0.0) out.axis_limit_params.stated_accel_range_m_s2 = sheet.accel_range_m_s2;
+  return out;
+}
+
+ConfirmedSaturation confirmed_saturation(const SaturationLevels& detected, const ImuDataSheet& sheet) {
+  return {.gyro = detected.saturation_planes_in_use(),
+          .accel = detected.saturation_planes_in_use(Triad::accelerometer),
+          .gyro_range_rad_s = sheet.gyro_range_rad_s,
+          .accel_range_m_s2 = sheet.accel_range_m_s2};
+}
 
 std::string imu_name(std::size_t unit, std::size_t units) {
   return units > 1 ? "imu_" + std::to_string(unit + 1) : "imu";

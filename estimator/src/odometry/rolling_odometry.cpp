@@ -10,7 +10,7 @@
 
 namespace tumble {
 
-using odometry::outlier_filters_of, odometry::merge_setup, odometry::rolling_params, odometry::data_sheets_of,
+using odometry::outlier_filters_of, odometry::merge_setup, odometry::rolling_params, odometry::clipping_finders_of,
     odometry::frozen_axis_detectors;
 
 namespace {
@@ -50,14 +50,15 @@ RollingOdometry::Impl::Impl(const Params& params, const ImuMerge::Setup& merged)
       sample_clock_(params.expert->stamps),
       imu_merge_(merged),
       smoother_(rolling_params(params, merged, params.imus.size(), imu_merge_.mean_imu_position_m())),
-      imu_saturation_limits_(data_sheets_of(params)),
+      clipping_finders_(clipping_finders_of(params)),
       imu_time_alignment_(params.imus.size()),
-      imu_saturation_limits_state_(imu_saturation_limits_.start()),
       outlier_filters_(outlier_filters_of(params)),
       frozen_axis_detectors_(frozen_axis_detectors(params)),
       merged_imu_checks_{RestGravity({.gravity_m_s2 = params.gravity_m_s2}),
                          ImuPlausibility(plausibility_setup(params.gravity_m_s2, 0.0))},
-      is_live_(params.lag_s <= 0.0) {}
+      is_live_(params.lag_s <= 0.0) {
+  start_clipping_states();
+}
 
 Status RollingOdometry::Impl::add_imus(std::span<const ImuSample> samples) {
   if (finished_) return {ErrorCode::out_of_range, "samples after finish()", 1.0, 0.0};
@@ -79,7 +80,7 @@ Status RollingOdometry::Impl::add_imus(std::span<const ImuSample> samples) {
   if (verdict == StampOrder::Verdict::restarts_after_gap)
     restart_at_newest(seconds(samples.front().time_ns - *stamp_order_state_.newest_ns));
   if (const Status status = add_delayed_samples(samples); !status.ok()) return status;
-  ImuSaturationLimits::Samples judged;
+  Samples judged;
   std::copy(samples.begin(), samples.end(), judged.begin());
   std::array<bool, ImuMerge::kImus> delayed_sample{};
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -153,7 +154,7 @@ bool RollingOdometry::Impl::is_delayed_after(std::span<const ImuSample> next, st
   if (state.delayed_count > 0) confirmed = {state.delayed_sample.data(), std::exchange(state.delayed_count, 0)};
   for (const ImuSample& sample : confirmed) OutlierFilter::mark_accepted(sample, state);
   if (!confirmed.empty()) return false;
-  for (ImuSaturationLimits::Samples& samples : std::span(delayed_samples_).first(delayed_count_)) {
+  for (Samples& samples : std::span(delayed_samples_).first(delayed_count_)) {
     if (samples.front().time_ns >= first_ns) mark_readings_absent(samples[unit]);
   }
   return false;
@@ -164,8 +165,7 @@ Status RollingOdometry::Impl::add_inliers(std::span<const ImuSample> samples) {
   SampleClock::State stamps = sample_clock_state_;
   TimeNs time_ns = 0;
   if (Status status = sample_clock_.push(samples.front().time_ns, stamps, time_ns); !status.ok()) return status;
-  ImuSaturationLimits::Samples flagged;
-  imu_saturation_limits_.flag_clipped(samples, imu_saturation_limits_state_, flagged);
+  Samples flagged = flag_clipped(samples);
   flagged.front().time_ns = time_ns;
   *merge_state_buffer_ = *imu_merge_state_;  // either all parts accept the sample or none
   Frozen frozen = frozen_imus_;
@@ -187,9 +187,41 @@ Status RollingOdometry::Impl::add_inliers(std::span<const ImuSample> samples) {
     merged_imu_checks_.rest_gravity.step(samples[k], merged_imu_checks_.rest_gravity_state[k]);
     RestGravity::limit_memory(merged_imu_checks_.rest_gravity_state[k]);
   }
-  imu_saturation_limits_.observe_readings(samples, imu_saturation_limits_state_);
+  observe_saturation(samples);
   StampOrder::accept(samples.front().time_ns, stamp_order_state_);
   return {};
+}
+
+/// Sets the clip flags of saturated axes, without allocating memory. Samples that are not finite remain unchanged. Only
+/// confirmed saturation limits count, as defined by ConfirmedSaturation. The first two to ten samples at a saturation
+/// limit are not flagged.
+RollingOdometry::Impl::Samples RollingOdometry::Impl::flag_clipped(std::span<const ImuSample> samples) const {
+  Samples out;
+  std::copy(samples.begin(), samples.end(), out.begin());
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (!check_sample(samples[k]).ok()) continue;
+    const auto& [state, previous] = clipping_states_[k];
+    const Clipping judged = clipping_finders_[k].classify_clipping(previous ? &*previous : nullptr, samples[k], state);
+    out[k].device_clip_flags =
+        confirmed_saturation(state.known_limits, params_.imus[k].data_sheet).flags(samples[k], judged);
+  }
+  return out;
+}
+
+/// Updates the saturation limits with unflagged samples. Cost: O(1), except for rare searches for saturation planes
+/// (SaturationPlane). No memory is allocated.
+void RollingOdometry::Impl::observe_saturation(std::span<const ImuSample> samples) {
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (!check_sample(samples[k]).ok()) continue;
+    auto& [state, previous] = clipping_states_[k];
+    clipping_finders_[k].observe_reading(samples[k], state);
+    clipping_finders_[k].axis_limit_detector().classify_clipping(samples[k], state.known_limits.axis_limit_state);
+    previous = samples[k];
+  }
+}
+
+void RollingOdometry::Impl::start_clipping_states() {
+  for (std::size_t k = 0; k < clipping_finders_.size(); ++k) clipping_states_[k] = {clipping_finders_[k].start(), {}};
 }
 
 std::size_t RollingOdometry::Impl::rejected_readings() const {
@@ -268,7 +300,7 @@ void RollingOdometry::Impl::start_continuous_run() {
   sample_clock_state_ = {};
   imu_merge_state_ = {};
   state_ = {};
-  imu_saturation_limits_state_ = imu_saturation_limits_.start();
+  start_clipping_states();
   frozen_imus_ = {};
   for (OutlierFilter::State& unit : outlier_filter_state_) {
     unit.delayed_count = 0;

@@ -10,10 +10,10 @@
 #include <span>
 #include <vector>
 
-#include "imu_saturation_limits.hpp"
 #include "imu_time_alignment.hpp"
 #include "stamp_order.hpp"
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
+#include "tumble/angular_velocity/detail/streaming_clipping_finder.hpp"
 #include "tumble/attitude/detail/imu_merge.hpp"
 #include "tumble/common/detail/outlier_filter.hpp"
 #include "tumble/common/sample_clock.hpp"
@@ -34,6 +34,11 @@ struct RollingRestart {
 /// the public header.
 struct RollingOdometry::Impl {
   using Frozen = std::array<FrozenAxes::State, ImuMerge::kImus>;
+  using Samples = std::array<ImuSample, ImuMerge::kImus>;
+  struct ImuClippingState {
+    StreamingClippingFinder::State clipping_state;
+    std::optional<ImuSample> previous_sample;  ///< last finite sample
+  };
   using Outliers = std::array<OutlierFilter::State, ImuMerge::kImus>;
 
   explicit Impl(const Params& params);
@@ -67,6 +72,9 @@ struct RollingOdometry::Impl {
   Status record_sample(std::size_t unit, ImuSample sample);
   Status finish_whole_recording();
   bool uses_whole_recording() const { return params_.lag_s >= kWholeRecording; }
+  Samples flag_clipped(std::span<const ImuSample> samples) const;
+  void observe_saturation(std::span<const ImuSample> samples);
+  void start_clipping_states();
   Status exclude_frozen(const Frozen& frozen, std::span<ImuSample> samples) const;
   void add_frozen_findings(const Frozen& frozen, SensorHealth& health) const;
 
@@ -77,7 +85,7 @@ struct RollingOdometry::Impl {
   SampleClock::State sample_clock_state_;  ///< clock state after the last accepted sample
   ImuMerge imu_merge_;
   RollingSmoother smoother_;
-  ImuSaturationLimits imu_saturation_limits_;
+  std::vector<StreamingClippingFinder> clipping_finders_;  ///< one per IMU
   ImuTimeAlignment imu_time_alignment_;
   ImuTimeAlignment::State imu_time_alignment_state_;
   std::array<std::vector<ImuSample>, ImuMerge::kImus>
@@ -85,10 +93,10 @@ struct RollingOdometry::Impl {
   /// State of ImuMerge, and buffer for its next state.
   HeapValue<ImuMerge::State> imu_merge_state_, merge_state_buffer_;
   HeapValue<RollingSmoother::State> state_;
-  ImuSaturationLimits::State imu_saturation_limits_state_;
+  std::array<ImuClippingState, ImuMerge::kImus> clipping_states_;
   std::vector<OutlierFilter> outlier_filters_;  ///< one filter per IMU
   Outliers outlier_filter_state_{};
-  std::array<ImuSaturationLimits::Samples, OutlierFilter::kDelayedMax>
+  std::array<Samples, OutlierFilter::kDelayedMax>
       delayed_samples_{};                          ///< samples of all IMUs while OutlierFilter delays one IMU
   std::size_t delayed_count_ = 0;                  ///< number of valid elements of `delayed_samples_`
   std::vector<FrozenAxes> frozen_axis_detectors_;  ///< one detector per IMU

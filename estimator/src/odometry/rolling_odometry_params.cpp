@@ -3,6 +3,9 @@
 
 #include <algorithm>
 
+#include "saved_saturation_levels.hpp"
+#include "tumble/odometry/detail/merge_recordings.hpp"
+
 namespace tumble {
 
 namespace {
@@ -12,6 +15,8 @@ constexpr double kRecoveredSigma_rad_s = 1.0;
 // prior standard deviations for an IMU without a data sheet, at an unknown position in the sphere
 constexpr double kUnknownGyroBias_rad_s = 5e-3, kUnknownAccelBias_m_s2 = 0.4, kUnknownScale = 0.01,
                  kUnknownDelay_s = 5e-3, kUnknownLeverArm_m = 0.05;
+// maximum number of stored readings per sensor; sufficient for some seconds of motion near the largest rate or force
+constexpr std::size_t kClippingReadings = 512;
 constexpr double kLevelInclinePerS = 1e-9;  // rate at which slopes begin, for a floor that is known to be level
 
 // The radius has no default.
@@ -77,9 +82,16 @@ RollingSmoother::Params rolling_params(const RollingOdometry::Params& params, co
   return out;
 }
 
-std::vector<ImuDataSheet> data_sheets_of(const RollingOdometry::Params& params) {
-  std::vector<ImuDataSheet> out;
-  for (const RollingOdometry::ImuSetup& unit : params.imus) out.push_back(unit.data_sheet);
+std::vector<StreamingClippingFinder> clipping_finders_of(const RollingOdometry::Params& params,
+                                                         std::span<const SaturationLevels> known) {
+  std::vector<StreamingClippingFinder> out;
+  for (std::size_t k = 0; k < params.imus.size(); ++k) {
+    ClippingFinder::Params clipping = clipping_finder_params(params.imus[k].data_sheet);
+    if (!known.empty())
+      start_from_saturation_levels(known[k], clipping.axis_limit_params, clipping.gyro_planes,
+                                   clipping.accel_saturation_planes);
+    out.emplace_back(StreamingClippingFinder::Params{clipping}, kClippingReadings);
+  }
   return out;
 }
 

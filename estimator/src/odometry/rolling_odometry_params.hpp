@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
+#include "tumble/angular_velocity/detail/streaming_clipping_finder.hpp"
 #include "tumble/attitude/detail/imu_merge.hpp"
 #include "tumble/common/detail/outlier_filter.hpp"
 #include "tumble/odometry/expert_params.hpp"
@@ -18,7 +20,10 @@ ImuMerge::Setup merge_setup(const RollingOdometry::Params& params);
 RollingSmoother::Params rolling_params(const RollingOdometry::Params& params, const ImuMerge::Setup& merged,
                                        std::size_t units, const Eigen::Vector3d& lever_arm_m);
 
-std::vector<ImuDataSheet> data_sheets_of(const RollingOdometry::Params& params);
+/// Returns one StreamingClippingFinder per IMU. `known` contains the saturation levels of an earlier run for each IMU,
+/// or is empty.
+std::vector<StreamingClippingFinder> clipping_finders_of(const RollingOdometry::Params& params,
+                                                         std::span<const SaturationLevels> known = {});
 std::vector<FrozenAxes> frozen_axis_detectors(const RollingOdometry::Params& params);
 std::vector<OutlierFilter> outlier_filters_of(const RollingOdometry::Params& params);
 

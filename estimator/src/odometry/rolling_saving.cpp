@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "rolling_odometry_impl.hpp"
+#include "rolling_odometry_params.hpp"
 #include "saved_saturation_levels.hpp"
 
 namespace tumble {
@@ -58,7 +59,7 @@ std::vector<std::byte> RollingOdometry::Impl::save_with_pose(const std::optional
   odometry::SavedStateWriter out;
   visit_saved_state(out, std::as_const(saved));
   for (std::size_t k = 0; k < params_.imus.size(); ++k)
-    odometry::write_saturation_levels(imu_saturation_limits_state_[k].clipping_state.known_limits, out);
+    odometry::write_saturation_levels(clipping_states_[k].clipping_state.known_limits, out);
   return std::move(out).finish(odometry::SavedStateKind::rolling);
 }
 
@@ -82,8 +83,8 @@ Status RollingOdometry::Impl::load(std::span<const std::byte> bytes, std::option
   if (saved.calibration)
     params.expert->rolling.filter.calibration = std::make_shared<RollingCalibration>(*saved.calibration);
   const auto fresh = std::make_unique<Impl>(params);
-  for (std::size_t k = 0; k < units; ++k) fresh->imu_saturation_limits_.start_from_saturation_levels(k, rails[k]);
-  fresh->imu_saturation_limits_state_ = fresh->imu_saturation_limits_.start();
+  fresh->clipping_finders_ = odometry::clipping_finders_of(params, rails);
+  fresh->start_clipping_states();
   if (saved.pose) {
     fresh->start_.emplace(Eigen::Translation3d(saved.pose->position_W_m) * saved.pose->orientation_W);
     fresh->restart_ = RollingRestart{saved.pose->position_W_m, saved.pose->covariance};

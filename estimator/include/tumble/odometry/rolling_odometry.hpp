@@ -23,7 +23,7 @@ extern template class HeapValue<RollingOdometryExpertParams>;
 
 /// Estimates the pose of a rolling sphere from one to four IMUs, through grip, slip, bumps and slopes. The reported
 /// poses are live, smoothed with the data of the following `lag_s`, or smoothed with the whole recording.
-/// ImuSaturationLimits flags readings that a device clips without reporting saturation. ImuMerge fuses the IMUs.
+/// StreamingClippingFinder flags readings that a device clips without reporting saturation. ImuMerge fuses the IMUs.
 /// RollingSmoother (with its RollingFilter) estimates the motion. With kWholeRecording, merge_recordings() flags
 /// clipped readings and fuses the IMUs.
 ///

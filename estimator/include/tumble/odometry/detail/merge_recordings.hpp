@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tumble/angular_velocity/detail/clipping_finder.hpp"
 #include "tumble/attitude/detail/imu_merge.hpp"
 #include "tumble/attitude/detail/multi_imu_sign_check.hpp"
 #include "tumble/common/sensor_health.hpp"
@@ -42,6 +43,11 @@ struct MergedRecordings {
   std::optional<MultiImuSignCheck::DetectedMirroring>
       mislabelled_axes;  ///< mislabelled axes of the IMUs, as found by ImuMerge
 };
+
+/// Returns default parameters with the ranges of a data sheet.
+ClippingFinder::Params clipping_finder_params(const ImuDataSheet& sheet);
+/// Returns the confirmed saturation limits of an IMU with the saturation levels `detected`.
+ConfirmedSaturation confirmed_saturation(const SaturationLevels& detected, const ImuDataSheet& sheet);
 
 /// Returns the name of a unit in findings: "imu_1" for index 0, or "imu" if there is only one unit.
 std::string imu_name(std::size_t unit, std::size_t units);
