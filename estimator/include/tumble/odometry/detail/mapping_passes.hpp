@@ -65,9 +65,9 @@ MappedRecording map_in_one_pass(const MappingInput& input, const LidarInertialOd
 
 /// Processes a recording until the lidar's calibration has converged: mapping.md, "Second pass". The first pass
 /// estimates the calibration. The last pass starts from the estimated calibration and builds a consistent map. If the
-/// first pass contradicts the stated calibration, the mounting counts as uncertain in further passes. If the calibration
-/// changes by more than its uncertainty allows, another pass starts from the new value, at most three times. Passes also
-/// end if more than one sweep in five is rejected, because such a pass does not determine the calibration.
+/// first pass contradicts the stated calibration, further passes treat the mounting as uncertain. If the calibration
+/// changes by more than its uncertainty allows, another pass starts from the new value, at most three times. Passes
+/// also end if more than one sweep in five is rejected, because such a pass does not determine the calibration.
 MappedRecording map_with_calibration(const MappingInput& input, const LidarInertialOdometry::Params& params);
 
 LidarScale find_sweep_scale(std::span<const ImuSample> samples, const MappedRecording& mapped, double gravity_m_s2);
