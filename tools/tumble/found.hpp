@@ -28,7 +28,7 @@ std::vector<FoundItem> complete_recording(const Session& session, OpenRecording&
 /// Returns whether the user or the recording states the pose of the lidar.
 bool states_lidar_pose(const std::vector<FoundItem>& items);
 
-/// Standard deviations of a lidar pose that nobody states. `found_table` shows them.
+/// Standard deviations of the lidar pose if neither an option nor the recording states it; found_table() shows them.
 inline constexpr double kAssumedLidarSigma_m = 0.1, kAssumedLidarSigma_rad = 0.05;
 
 Table found_table(const std::vector<FoundItem>& items);
