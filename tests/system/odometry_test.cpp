@@ -261,6 +261,22 @@ TEST(Odometry, AllPosesAreInTheFrameOfThePriorMap) {
   for (std::size_t k = 0; k < p_M_m.size(); ++k) ASSERT_LT((p_M_m[k] - T_MW * p_W_m[k]).norm(), 0.1) << "pose " << k;
 }
 
+TEST(Odometry, AWrongPositionOfTheLidarIsReplacedAndSaid) {
+  const fs::path folder = test_folder();
+  const std::string recording = short_stroll().string();
+  const Ended right = run_program({"odometry", recording, "-o", (folder / "right").string(), "--json"});
+  ASSERT_EQ(right.status, 0) << right.err;
+  EXPECT_FALSE(json_of(right)["health"].contains("lidar_calibration_replaced"));
+  // half a metre from the position in the recording
+  const Ended wrong = run_program({"odometry", recording, "-o", (folder / "wrong").string(), "--json", "--T-body-lidar",
+                                   "-0.0045", "0.497", "0.1", "0.00497", "-0.002", "-0.707", "0.707"});
+  ASSERT_EQ(wrong.status, 0) << wrong.err;
+  EXPECT_EQ(json_of(wrong)["health"].value("lidar_calibration_replaced", 0.0), 1.0);
+  EXPECT_THAT(wrong.err, HasSubstr("contradicts the recording"));
+  const Eigen::Vector3d expected_m = positions_m(folder / "right" / "trajectory.tum").back();
+  EXPECT_LT((positions_m(folder / "wrong" / "trajectory.tum").back() - expected_m).norm(), 0.15);
+}
+
 TEST(Odometry, DropsPointsInsideTheGivenBox) {
   const auto map_of = [](const std::string& corner) {
     const std::string out = (test_folder() / ("box" + corner)).string(), low = "-" + corner;

@@ -14,7 +14,7 @@ namespace {
 constexpr int kExtraPassesMax = 3;
 constexpr std::size_t kSweepsPerRejection = 5;
 // If a pass contradicts the stated mounting, the next pass assumes at least these standard deviations.
-constexpr double kUncertainMountSigma_rad = 0.05, kUncertainMountSigma_m = 0.1;
+constexpr double kUncertainMountSigma_rad = 0.1, kUncertainMountSigma_m = 0.5;
 
 /// Cuts the last sweep at the end of the IMU data, if at least half of the sweep remains. Without cutting, a small
 /// clock offset between lidar and IMU would make the last sweep unusable.
