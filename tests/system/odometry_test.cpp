@@ -256,12 +256,12 @@ TEST(Odometry, AllPosesAreInTheFrameOfThePriorMap) {
   EXPECT_THAT(ended.err, HasSubstr("earlier poses are transformed to the frame of the map"));
   const std::vector<Eigen::Vector3d> p_W_m = positions_m(first / "trajectory.tum"),
                                      p_M_m = positions_m(second / "trajectory.tum");
-  ASSERT_EQ(p_M_m.size(), p_W_m.size());
   ASSERT_GT(p_M_m.size(), 600u);
+  ASSERT_LE(p_M_m.size(), p_W_m.size());  // the run with a lag may end a sweep earlier
   for (std::size_t k = 0; k < p_M_m.size(); ++k) ASSERT_LT((p_M_m[k] - T_MW * p_W_m[k]).norm(), 0.1) << "pose " << k;
 }
 
-TEST(Odometry, AWrongPositionOfTheLidarIsReplacedAndSaid) {
+TEST(Odometry, AWrongPositionOfTheLidarIsFound) {
   const fs::path folder = test_folder();
   const std::string recording = short_stroll().string();
   const Ended right = run_program({"odometry", recording, "-o", (folder / "right").string(), "--json"});
@@ -275,6 +275,13 @@ TEST(Odometry, AWrongPositionOfTheLidarIsReplacedAndSaid) {
   EXPECT_THAT(wrong.err, HasSubstr("contradicts the recording"));
   const Eigen::Vector3d expected_m = positions_m(folder / "right" / "trajectory.tum").back();
   EXPECT_LT((positions_m(folder / "wrong" / "trajectory.tum").back() - expected_m).norm(), 0.15);
+
+  // 0.3 m: the mounting hardly changes, but the change is larger than a correct mounting explains
+  const Ended lag = run_program({"odometry", recording, "-o", (folder / "lag").string(), "--json", "--method",
+                                 "slam/tumble_lag", "--T-body-lidar", "-0.0045", "0.297", "0.1", "0.00497", "-0.002",
+                                 "-0.707", "0.707"});
+  EXPECT_EQ(lag.status, 1) << lag.err;
+  EXPECT_THAT(json_of(lag)["summary"]["health"].get<std::string>(), HasSubstr("lidar_calibration"));
 }
 
 TEST(Odometry, DropsPointsInsideTheGivenBox) {

@@ -34,10 +34,6 @@ double LidarImuCalibrationPrior::distance_in_sigmas(const LidarImuCalibration& e
                    share(std::abs(by[6]), time_offset_sigma_s)});
 }
 
-Status LidarImuCalibrationPrior::verdict(const LidarImuCalibration& estimated) const {
-  return distance_verdict(distance_in_sigmas(estimated));
-}
-
 Status distance_verdict(double deviations) {
   constexpr double kMost = LidarImuCalibrationPrior::kDistanceMax_sigmas;
   if (deviations <= kMost) return {};

@@ -138,23 +138,6 @@ Params with_uncertain_mounting(Params params) {
   return params;
 }
 
-/// Returns the change of rotation, translation or time offset in a pass, in standard deviations of a change from a
-/// correct prior. The largest of the three changes counts. See mapping.md, "Second pass".
-double contradiction(const Params& started, const LidarInertialOdometry& mapper) {
-  using Matrix7 = Eigen::Matrix<double, 7, 7>;
-  Eigen::Matrix<double, 7, 1> sigma;
-  sigma << Eigen::Vector3d::Constant(started.mount_sigma_rad), Eigen::Vector3d::Constant(started.mount_sigma_m),
-      started.time_offset_sigma_s;
-  constexpr double kRegular = 1e-4;  // fraction of the prior variance: a change without information does not count
-  const Matrix7 S = Matrix7(((1.0 + kRegular) * sigma.cwiseAbs2().array() + 1e-18).matrix().asDiagonal()) -
-                    mapper.calibration_prior_covariance().topLeftCorner<7, 7>();
-  const auto change = mapper.calibration().minus(calibration_prior(started, started).calibration);
-  const auto mahalanobis2 = [](const auto& x, const auto& P) { return x.dot(P.ldlt().solve(x)); };
-  const Eigen::Vector3d rotation = change.head<3>(), translation = change.segment<3>(3);
-  return std::sqrt(std::max({mahalanobis2(rotation, S.topLeftCorner<3, 3>()),
-                             mahalanobis2(translation, S.block<3, 3>(3, 3)), change[6] * change[6] / S(6, 6)}));
-}
-
 /// A pass that rejected many sweeps does not determine the calibration.
 bool determines_lidar_calibration(const MappedRecording& pass) {
   if (!pass.status.ok()) return false;
@@ -200,6 +183,21 @@ void MappedRecording::add_findings(const LidarScale& scale, SensorHealth& health
     health.add(HealthFinding::Kind::lidar_calibration, distance_verdict(calibration_deviations), "lidar");
 }
 
+double calibration_contradiction(const LidarImuCalibrationPrior& stated, const LidarInertialOdometry& mapper) {
+  using Matrix7 = Eigen::Matrix<double, 7, 7>;
+  Eigen::Matrix<double, 7, 1> sigma;
+  sigma << Eigen::Vector3d::Constant(stated.mount_sigma_rad), Eigen::Vector3d::Constant(stated.mount_sigma_m),
+      stated.time_offset_sigma_s;
+  constexpr double kRegular = 1e-4;  // fraction of the prior variance: a change without information does not count
+  const Matrix7 S = Matrix7(((1.0 + kRegular) * sigma.cwiseAbs2().array() + 1e-18).matrix().asDiagonal()) -
+                    mapper.calibration_prior_covariance().topLeftCorner<7, 7>();
+  const auto change = mapper.calibration().minus(stated.calibration);
+  const auto mahalanobis2 = [](const auto& x, const auto& P) { return x.dot(P.ldlt().solve(x)); };
+  const Eigen::Vector3d rotation = change.head<3>(), translation = change.segment<3>(3);
+  return std::sqrt(std::max({0.0, mahalanobis2(rotation, S.topLeftCorner<3, 3>()),
+                             mahalanobis2(translation, S.block<3, 3>(3, 3)), change[6] * change[6] / S(6, 6)}));
+}
+
 MappedRecording map_in_one_pass(const MappingInput& input, const LidarInertialOdometry::Params& params) {
   return MappingPass(input, params).map_recording();
 }
@@ -215,8 +213,9 @@ MappedRecording map_with_calibration(const MappingInput& input, const LidarInert
     out = map_in_one_pass(levelled, started);
     ++passes;
   };
-  const bool contradicts = determines_lidar_calibration(out) &&
-                           contradiction(started, out.mapper) > LidarImuCalibrationPrior::kDistanceMax_sigmas;
+  const bool contradicts =
+      determines_lidar_calibration(out) && calibration_contradiction(calibration_prior(started, started), out.mapper) >
+                                               LidarImuCalibrationPrior::kDistanceMax_sigmas;
   if (contradicts) {
     given = with_uncertain_mounting(params);
     started = given;

@@ -174,7 +174,9 @@ SensorHealth TumblingOdometry::Impl::health() const {
   out.add(Kind::not_localised, mapper().localised(), "");
   const Localisation& localisation = odometry_pass_.localisation();
   out.add(Kind::tracking_lost, localisation.current_verdict(), "", "", localisation.lost_since_ns());
-  out.add(Kind::lidar_calibration, stated_calibration_.verdict(mapper().calibration()), "lidar");
+  const double deviations = std::max(stated_calibration_.distance_in_sigmas(mapper().calibration()),
+                                     calibration_contradiction(stated_calibration_, mapper()));
+  out.add(Kind::lidar_calibration, distance_verdict(deviations), "lidar");
   return out;
 }
 

@@ -30,9 +30,9 @@ TEST(LidarImuCalibrationPrior, CountsTheLargestOfTurnShiftAndDelayInItsDeviation
   EXPECT_EQ(kGiven.distance_in_sigmas(learnt), 0.0);
 }
 
-TEST(LidarImuCalibrationPrior, SaysWhereItWasGivenWrong) {
-  EXPECT_TRUE(kGiven.verdict(turned(0.049)).ok());
-  const Status wrong = kGiven.verdict(turned(0.051));
+TEST(LidarImuCalibrationPrior, ALargeDistanceIsOutOfRange) {
+  EXPECT_TRUE(distance_verdict(kGiven.distance_in_sigmas(turned(0.049))).ok());
+  const Status wrong = distance_verdict(kGiven.distance_in_sigmas(turned(0.051)));
   EXPECT_EQ(wrong.error_code, ErrorCode::out_of_range);
   EXPECT_NEAR(wrong.value, 5.1, 1e-9);
   EXPECT_EQ(wrong.bound, LidarImuCalibrationPrior::kDistanceMax_sigmas);

@@ -49,7 +49,7 @@ struct LidarImuCalibration {
 };
 
 /// `deviations` is the result of LidarImuCalibrationPrior::distance_in_sigmas(). Returns `out_of_range` above
-/// kDistanceMax_sigmas.
+/// kDistanceMax_sigmas, because the stated calibration is probably wrong.
 Status distance_verdict(double deviations);
 
 /// LidarImuCalibrationPrior is the calibration that the caller states, with standard deviations of rotation (per axis),
@@ -64,9 +64,6 @@ struct LidarImuCalibrationPrior {
   /// mapping.md (R69). The result is the largest of three distances: rotation, translation and time offset. The result
   /// is infinite if an estimated value differs from a stated value with standard deviation 0.
   double distance_in_sigmas(const LidarImuCalibration& estimated) const;
-  /// Returns `out_of_range` if distance_in_sigmas() is above kDistanceMax_sigmas, because the stated calibration is
-  /// probably wrong.
-  Status verdict(const LidarImuCalibration& estimated) const;
 };
 
 /// Describes the parameters that state the accuracy of the lidar's mounting and time offset.

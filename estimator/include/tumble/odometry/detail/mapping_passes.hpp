@@ -70,6 +70,11 @@ MappedRecording map_in_one_pass(const MappingInput& input, const LidarInertialOd
 /// also end if more than one sweep in five is rejected, because such a pass does not determine the calibration.
 MappedRecording map_with_calibration(const MappingInput& input, const LidarInertialOdometry::Params& params);
 
+/// Returns the largest of the changes of rotation, translation and time offset from the stated to the estimated
+/// calibration, in standard deviations of a change from a correct stated value (Hausman test): mapping.md, "Second
+/// pass". In slow motion, this test finds a wrong mounting before LidarImuCalibrationPrior::distance_in_sigmas() does.
+double calibration_contradiction(const LidarImuCalibrationPrior& stated, const LidarInertialOdometry& mapper);
+
 LidarScale find_sweep_scale(std::span<const ImuSample> samples, const MappedRecording& mapped, double gravity_m_s2);
 
 }  // namespace tumble
