@@ -277,9 +277,9 @@ TEST(Odometry, AWrongPositionOfTheLidarIsFound) {
   EXPECT_LT((positions_m(folder / "wrong" / "trajectory.tum").back() - expected_m).norm(), 0.15);
 
   // 0.3 m: the mounting hardly changes, but the change is larger than a correct mounting explains
-  const Ended lag = run_program({"odometry", recording, "-o", (folder / "lag").string(), "--json", "--method",
-                                 "slam/tumble_lag", "--T-body-lidar", "-0.0045", "0.297", "0.1", "0.00497", "-0.002",
-                                 "-0.707", "0.707"});
+  const Ended lag =
+      run_program({"odometry", recording, "-o", (folder / "lag").string(), "--json", "--method", "slam/tumble_lag",
+                   "--T-body-lidar", "-0.0045", "0.297", "0.1", "0.00497", "-0.002", "-0.707", "0.707"});
   EXPECT_EQ(lag.status, 1) << lag.err;
   EXPECT_THAT(json_of(lag)["summary"]["health"].get<std::string>(), HasSubstr("lidar_calibration"));
 }
