@@ -45,7 +45,9 @@ struct Estimate {
   std::vector<LidarInertialOdometry::SweepReport> sweeps;  ///< for kind slam, one per sweep
   std::vector<std::int64_t> sweep_end_ns;                  ///< parallel to `sweeps`
   std::vector<MapPoint> map;                               ///< for kind slam
-  SensorHealth faults;                                     ///< suspected faults of sensors and estimate
+  /// Estimated pose of the lidar in body axes, if the stated pose contradicts the recording; for kind slam.
+  std::optional<Eigen::Isometry3d> replaced_T_BL;
+  SensorHealth faults;  ///< suspected faults of sensors and estimate
   /// Covariance that health findings add to the covariance of each rate; empty if there is no health finding.
   std::vector<Eigen::Matrix3d> suspect_rad2_s2;
   std::map<std::string, double> health;      ///< named counters: "rejected_samples", "sweeps_rejected"

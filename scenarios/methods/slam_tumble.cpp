@@ -194,7 +194,10 @@ void report_whole(const WholeRecordingEstimate& whole, const sim::Sensors& senso
   report_rates(whole.report, estimate);
   report_findings(whole.findings.health, sensors, estimate);
   count_sources(estimate.rates, estimate.health);
-  if (whole.mapped_recording.calibration_replaced) estimate.health["lidar_calibration_replaced"] = 1.0;
+  if (whole.mapped_recording.calibration_replaced) {
+    estimate.health["lidar_calibration_replaced"] = 1.0;
+    estimate.replaced_T_BL = sensors.imus.front().T_BI * whole.mapped_recording.mapper.calibration().T_IL;
+  }
   if (whole.corrected_jitter_s > 0.0) estimate.health["time_stamps_corrected_s"] = whole.corrected_jitter_s;
   for (std::size_t left = whole.mapped_recording.unfinished_sweeps; left > 0; --left) leave_out_unfinished(estimate);
 }

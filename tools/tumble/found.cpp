@@ -31,12 +31,6 @@ std::string vector_text(const Eigen::Vector3d& v) {
   return fmt::format("({} {} {})", rounded(v.x()), rounded(v.y()), rounded(v.z()));
 }
 
-std::string pose_text(const Eigen::Isometry3d& T) {
-  const Eigen::Quaterniond q(T.linear());
-  return fmt::format("{} m, quaternion x y z w ({} {} {} {})", vector_text(T.translation()), rounded(q.x()),
-                     rounded(q.y()), rounded(q.z()), rounded(q.w()));
-}
-
 std::string rate_text(std::int64_t period_ns) {
   return period_ns > 0 ? rounded(1e9 / static_cast<double>(period_ns)) + " Hz" : "unknown rate";
 }
@@ -242,6 +236,12 @@ std::vector<FoundItem> complete_recording(const Session& session, OpenRecording&
   found.add_mounting();
   found.add_own_body(own_body_L, own_body_stated);
   return std::move(found).items();
+}
+
+std::string pose_text(const Eigen::Isometry3d& T) {
+  const Eigen::Quaterniond q(T.linear());
+  return fmt::format("{} m, quaternion x y z w ({} {} {} {})", vector_text(T.translation()), rounded(q.x()),
+                     rounded(q.y()), rounded(q.z()), rounded(q.w()));
 }
 
 bool states_lidar_pose(const std::vector<FoundItem>& items) {

@@ -31,6 +31,9 @@ bool states_lidar_pose(const std::vector<FoundItem>& items);
 /// Standard deviations of the lidar pose if neither an option nor the recording states it; found_table() shows them.
 inline constexpr double kAssumedLidarSigma_m = 0.1, kAssumedLidarSigma_rad = 0.05;
 
+/// Position and quaternion.
+std::string pose_text(const Eigen::Isometry3d& T);
+
 Table found_table(const std::vector<FoundItem>& items);
 nlohmann::json found_document(const std::vector<FoundItem>& items);
 

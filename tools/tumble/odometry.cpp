@@ -192,10 +192,12 @@ void print_notes(const Session& session, const OpenRecording& recording, const E
     session.note(
         "in a degenerate sweep, the lidar determines the pose in some directions only; in the other directions, the "
         "pose is predicted from the IMU and its covariance is larger");
-  if (estimate.health.contains("lidar_calibration_replaced"))
+  if (estimate.replaced_T_BL)
     session.note(
-        "the pose of the lidar (--T-body-lidar or /tf_static) or the clock of the lidar contradicts the recording; the "
-        "program used the pose and time offset that it estimated from the recording");
+        fmt::format("the stated pose or clock of the lidar contradicts the recording, so the program used its estimate "
+                    "of the pose: "
+                    "{}",
+                    pose_text(*estimate.replaced_T_BL)));
   for (const Repair& repair : recording.repairs)
     session.note(
         fmt::format("the program set the option {} {}: {}", repair.option.name, repair.option.value, repair.cause));

@@ -65,14 +65,15 @@ scenarios::Method with_prior_map(const scenarios::Method& method, const PriorMap
 
 std::string localisation_text(const PriorMapOptions& options, const scenarios::Estimate& estimate) {
   const std::string file = options.map.string();
-  const auto sweep = estimate.health.find("prior_map_sweep");
-  if (sweep == estimate.health.end() || sweep->second == 0.0)
+  const auto first = std::find_if(estimate.sweeps.begin(), estimate.sweeps.end(),
+                                  [](const SweepReport& sweep) { return sweep.in_prior_map; });
+  if (first == estimate.sweeps.end())
     return fmt::format("{}: the recording is not localised in this map; poses are in a local frame", file);
-  const bool all = estimate.sweeps.front().in_prior_map;
-  return fmt::format("{}: the recording is localised in this map at sweep {:.0f} of {}; {}", file, sweep->second + 1.0,
-                     estimate.sweeps.size(),
-                     all ? "earlier poses are transformed to the frame of the map"
-                         : "earlier poses are in a local frame, as on the robot");
+  if (first == estimate.sweeps.begin())
+    return fmt::format("{}: the recording is localised in this map; all poses are in the frame of the map", file);
+  return fmt::format(
+      "{}: the recording is localised in this map; poses are in the frame of the map from sweep {} of {}", file,
+      first - estimate.sweeps.begin() + 1, estimate.sweeps.size());
 }
 
 }  // namespace tumble::tools
