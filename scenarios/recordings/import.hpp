@@ -25,9 +25,9 @@ enum class AccelUnit { m_s2, g };
 enum class GyroUnit { rad_s, deg_s };
 
 /// Reads the samples of one IMU from a text table with commas, semicolons, tabs or blanks (tables/csv_text.hpp).
-/// If the rows of several IMUs alternate, a column with the numbers of the IMUs separates the IMUs. The first IMU is
-/// the primary IMU. The positions of the further IMUs are estimated from the readings (tables/import_imu_csv.cpp); an
-/// IMU of unknown position is left out, with a note.
+/// If the rows of several IMUs alternate, one column must contain the number of the IMU to which the row belongs. The
+/// first IMU is the primary IMU. The positions of the further IMUs are estimated from the readings
+/// (tables/import_imu_csv.cpp); an IMU of unknown position is left out, with a note.
 ///
 /// The header line identifies the columns by one of these naming schemes:
 /// - names that export_csv writes, or their short forms (sec nsec wx.. fx.. or ax..),
@@ -95,8 +95,9 @@ struct ReferenceSource {
 
 Imported import_trajectory(const ReferenceSource& source);
 
-/// Uses the poses of a file as the truth of `recording`, up to the end of the sensor data. The stamps of the poses are
-/// in the clock of the recording's source (`origin_ns`). A KITTI file must have one pose per sweep.
+/// Uses the poses of a file as the truth of `recording`, up to the end of the sensor data. The time stamps of the poses
+/// must come from the same clock as the time stamps of the imported sensor data. In this clock, time 0 of `recording`
+/// has the time stamp `origin_ns`. A KITTI file must have one pose per sweep.
 void attach_reference(Imported& recording, const ReferenceSource& source);
 
 /// Adds IMUs that use the same clock as `recording`. If the IMU recording starts earlier, its time 0 becomes time 0 of

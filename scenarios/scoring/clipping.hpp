@@ -23,8 +23,8 @@ inline constexpr std::uint8_t kGyroClipFlags = 0b000111;
 /// (sim/imu/elements.hpp). An unclipped axis has a cross-axis error if a saturated sensing element of another axis
 /// changes its reading by more than the tolerance.
 ///
-/// If the truth comes from a reference instrument, an axis is clipped if the reference confirms saturation
-/// (reference_clipping.hpp), and cross-axis errors are unknown.
+/// If the truth comes from a reference instrument, an axis counts as clipped if the reference confirms the saturation
+/// (reference_clipping.hpp). Cross-axis errors are then unknown, and no axis is marked in Sample::cross_axes.
 class ClippingTruth {
  public:
   struct Sample {

@@ -50,7 +50,8 @@ SweepPlan::SweepPlan(const DataRoot& data, const Suite& suite, const SweepOption
   if (std::all_of(scenarios_.begin(), scenarios_.end(), idle) &&
       std::all_of(recordings_.begin(), recordings_.end(), idle)) {
     throw BadInput(fmt::format(
-        "suite {}: none of the suite's methods applies to its scenarios; add a method for this robot", suite.name));
+        "suite {}: no method of the suite supports the robots and sensors of the suite's runs; add such a method",
+        suite.name));
   }
   for (const Planned& each : scenarios_) draw(data, each.scenario, suite.first_seed);
   next_.seed = suite.first_seed;

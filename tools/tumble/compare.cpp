@@ -223,12 +223,13 @@ Action declare_compare(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<CompareOptions>();
   verb.add("DATABASE", options->database, "reads this results database, FILE.db").required();
   verb.add("--method", options->methods,
-           "compares this method; if the option is repeated, the program compares each method with the method named "
-           "last [default: compares all methods that need no truth with the baseline method]")
+           "compares this method with the method of --against; repeat the option for more methods [default: all "
+           "methods that need no truth]")
       .one_at_a_time();
   verb.add(
       "--against", options->against,
-      "sets the method with which the other methods are compared [default: the last --method, or the baseline method]");
+      "sets the method with which the other methods are compared [default: the last of several --method, otherwise the "
+      "baseline method]");
   verb.add("--metric", options->metrics,
            "compares this metric; repeat the option for more metrics [default: the most important metrics of the "
            "method's kind]")

@@ -10,7 +10,8 @@ namespace tumble {
 namespace {
 
 constexpr int kBeside = ImpactDelayCorrelation::kDelayMax_samples;
-// number of gyro intervals in which the weight of an impact decays to 1/e
+// The sums (R104) of rate_stream.md weight recent gyro intervals more than earlier gyro intervals. After kMemory
+// further intervals, the weight of an interval is 1/e.
 constexpr double kMemory = 2000.0;
 constexpr TimeNs kUpdatePeriod_ns = 50'000'000;
 constexpr double kDelayChangeMin_s = 3e-4;

@@ -22,10 +22,10 @@ constexpr double kRotationMin_rad2 = 0.5, kRotationMin_rad = 0.15;  // minimum r
 // A push, or the centripetal force in flight, may rotate the measured force for a few windows of 0.2 s.
 constexpr double kRotatedWindowsMin = 5.0;
 // A scale error of the gyro is reported only if a scaled gyro rotation explains the rotation of the measured force much
-// better. The unexplained rotation with scaling must be at most kScaledResidualMax times the unexplained rotation
-// without scaling: imu_merge.md (I21). In the regression of the force's rotation on the gyro's rotation, pushes of the
-// body often cause a slope between 0 and 1: imu_merge.md (I20). For a regression slope between 0 and 1, the stricter
-// limit kReducedResidualMax applies.
+// better. The scaling must reduce the sum of squared unexplained force rotations to less than kScaledResidualMax times
+// the sum for the unscaled gyro rotation: imu_merge.md (I21). In the regression of the force's rotation on the gyro's
+// rotation, pushes of the body often cause a slope between 0 and 1: imu_merge.md (I20). For a regression slope between
+// 0 and 1, the stricter limit kReducedResidualMax applies.
 constexpr double kScaledResidualMax = 0.75, kReducedResidualMax = 0.33;
 constexpr double kSlow_rad_s = 0.4;  // zero offset of a gyro, and rocking on the ground while pushes tilt the force
 constexpr double kFrozen_s = 1.0, kRepetitionRatio = 10.0;

@@ -19,8 +19,8 @@ constexpr int kRate = 0, kAcceleration = 1;
 constexpr int kTurning = 2, kFixed = 4;               // of Modulation
 constexpr int kArm = 2, kForce = 4, kWorldForce = 6;  // of Centripetal
 constexpr double kJerk_rad_s3_sqrts = 50.0;           // root density of the angular jerk about the spin axis
-// The rate perpendicular to the spin axis is the sum of a world part (constant in world axes) and a body part (constant
-// in body axes): carried.md (C44). World part and body part change as random walks with the root density
+// The rate perpendicular to the spin axis is the sum of a world-fixed part (constant in world axes) and a body-fixed
+// part (constant in body axes): carried.md (C44). Both parts change as random walks with the root density
 // kWalk_rad_s_sqrts. Vibration adds an error with the standard deviation kVibration_rad_s to the readings. The
 // vibration error is correlated over kReadingInterval_s. SpinFilter::variance_ratio scales the variances of random walk
 // and vibration: carried.md (C46).

@@ -19,8 +19,9 @@ struct SpinPrediction {
   Eigen::Matrix<double, N, N> covariance, transition_matrix;
 };
 
-/// SpinReading is one sample about a spin axis. The readings of the two axes perpendicular to the spin axis are in the
-/// order of a right-handed frame.
+/// SpinReading splits one IMU sample into the gyro reading about the spin axis, and the readings of the two axes
+/// perpendicular to the spin axis. The spin axis and the two perpendicular axes, in this order, form a right-handed
+/// frame.
 struct SpinReading {
   double rate_rad_s = 0.0;
   bool saturated = false;
@@ -31,8 +32,9 @@ struct SpinReading {
 
 /// Modulation models the rate perpendicular to the spin axis, equations (C44) and (C45) of carried.md. The states are:
 /// - the rate and the angular acceleration about the spin axis,
-/// - the world part of the rate perpendicular to the spin axis: constant in world axes, two components in body axes,
-/// - the body part of the rate perpendicular to the spin axis: constant in body axes, two components.
+/// - the world-fixed part of the rate perpendicular to the spin axis: constant in world axes, two components in body
+///   axes,
+/// - the body-fixed part of the rate perpendicular to the spin axis: constant in body axes, two components.
 struct Modulation {
   static constexpr int kStates = 6;
   using Filter = SpinFilter<kStates>;

@@ -99,7 +99,7 @@ bool fits_as_stated(const TurningCheck& check) {
                          const std::string& remedies) {
   throw BadInput(
       where + ": " + disagreement(check, imu) +
-      fmt::format(". After a correction of the reference, the rotations of reference and gyro would differ by only {}",
+      fmt::format(". With the following correction, the rotations of reference and gyro would differ by only {}",
                   share_text(corrected)) +
       remedies);
 }

@@ -173,8 +173,8 @@ class RollingOdometry {
   /// Returns true if the sphere was already moving at the first samples.
   bool started_in_motion() const;
 
-  /// Returns the state of ImuMerge (attitude/detail/imu_merge.hpp). The state shows which IMUs are frozen, disagree
-  /// with the other IMUs, or have a time offset.
+  /// Returns the state of ImuMerge (attitude/detail/imu_merge.hpp). The returned state shows which IMUs repeat one
+  /// constant reading (frozen), disagree with the other IMUs, or have a time offset.
   const ImuMergeState& imus() const;
 
   /// Returns the number of readings of all IMUs that OutlierFilter rejected.

@@ -54,8 +54,8 @@ struct LidarDataSheet {
 };
 
 /// FurtherLidar is a lidar in addition to the lidar of TumblingParams. Relative to the first lidar, the stated mounting
-/// and clock offset of a further lidar must be exact. TumblingOdometry estimates only the mounting and clock offset of
-/// the first lidar.
+/// and clock offset of a further lidar must be exact. TumblingOdometry estimates mounting and clock offset for the
+/// first lidar, but not for the further lidars.
 struct FurtherLidar {
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
   LidarDataSheet data_sheet;

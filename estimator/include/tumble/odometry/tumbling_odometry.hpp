@@ -32,8 +32,9 @@ struct TumblingParams {
   Eigen::Vector3d lever_arm_I_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   double lever_arm_sigma_m = 0.01;
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
-  /// Standard deviations of T_IL and of the lidar's time offset. TumblingOdometry estimates a value if its standard
-  /// deviation is above 0. A standard deviation of 0 means that the stated value is exact.
+  /// Standard deviations of the lidar's orientation and position in T_IL, and of the lidar's time offset. If a standard
+  /// deviation is above 0, TumblingOdometry estimates the corresponding value. A standard deviation of 0 means that the
+  /// stated value is exact.
   double mount_sigma_rad = 0.01;
   double mount_sigma_m = 0.006;
   double time_offset_sigma_s = 0.003;
