@@ -112,7 +112,7 @@ class Collector {
  private:
   void apply_next(std::vector<PoseState> smoothed, bool in_prior_map) {
     if (smoothed.empty() || smoothed_ == estimate_.sweeps.size()) return;
-    estimate_.sweeps[smoothed_].in_prior_map = in_prior_map;
+    if (output_ != SlamOutput::live) estimate_.sweeps[smoothed_].in_prior_map = in_prior_map;  // else: live poses
     apply_smoothed(std::move(smoothed), estimate_.sweeps[smoothed_++]);
   }
 

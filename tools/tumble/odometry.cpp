@@ -195,8 +195,7 @@ void print_notes(const Session& session, const OpenRecording& recording, const E
   if (estimate.replaced_T_BL)
     session.note(
         fmt::format("the stated pose or clock of the lidar contradicts the recording, so the program used its estimate "
-                    "of the pose: "
-                    "{}",
+                    "of the pose: {}",
                     pose_text(*estimate.replaced_T_BL)));
   for (const Repair& repair : recording.repairs)
     session.note(
