@@ -208,10 +208,11 @@ std::vector<RecordingFinding> findings_in_readings(const sim::Sensors& sensors) 
   return out;
 }
 
-std::vector<RecordingFinding> findings_in_estimate(const Estimate& estimate, std::size_t sweeps) {
+std::vector<RecordingFinding> findings_in_estimate(const Estimate& estimate, const std::string& method,
+                                                   std::size_t sweeps) {
   std::vector<RecordingFinding> out;
   if (!estimate.status.ok()) {
-    out.push_back({"odometry", "failed: " + estimate.status.message(), ""});
+    out.push_back({method, "failed: " + estimate.status.message(), ""});
     return out;
   }
   const auto registered =
@@ -219,14 +220,14 @@ std::vector<RecordingFinding> findings_in_estimate(const Estimate& estimate, std
   const double share = sweeps > 0 ? static_cast<double>(registered) / static_cast<double>(sweeps) : 0.0;
   if (share < kRegisteredShareMin)
     out.push_back(
-        {"odometry",
-         fmt::format("slam/tumble_lag registered only {} of {} sweeps to the map (share {}, minimum {})", registered,
-                     sweeps, percent_text(share), percent_text(kRegisteredShareMin)),
+        {method,
+         fmt::format("only {} of {} sweeps were registered to the map (share {}, minimum {})", registered, sweeps,
+                     percent_text(share), percent_text(kRegisteredShareMin)),
          "check the options --T-body-lidar, --lever-arm, --gyro-unit and --accel-unit, and the other faults in this "
          "list"});
   for (const HealthFinding& finding : estimate.faults.findings) {
     const bool mounting = finding.kind == HealthFinding::Kind::lidar_calibration;
-    out.push_back({"odometry", report_text(finding),
+    out.push_back({method, report_text(finding),
                    mounting ? "set --T-body-lidar to the measured pose of the lidar on the body" : "",
                    is_current(finding)});
   }

@@ -32,6 +32,8 @@ Saturation saturation_of(const sim::ImuRecord& imu);
 
 std::vector<RecordingFinding> findings_in_readings(const sim::Sensors& sensors);
 
-std::vector<RecordingFinding> findings_in_estimate(const Estimate& estimate, std::size_t sweeps);
+/// @param method  Name of the method that computed the estimate.
+std::vector<RecordingFinding> findings_in_estimate(const Estimate& estimate, const std::string& method,
+                                                   std::size_t sweeps);
 
 }  // namespace tumble::scenarios

@@ -5,12 +5,13 @@
 #include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
 #include "scenarios/diagnosis/diagnosis.hpp"
 #include "scenarios/errors.hpp"
 #include "tools/tumble/chosen_method.hpp"
-#include "tools/tumble/importing.hpp"
+#include "tools/tumble/odometry_options.hpp"
 #include "tools/tumble/verbs.hpp"
 
 namespace tumble::tools {
@@ -23,17 +24,22 @@ void append_findings(std::vector<RecordingFinding> more, std::vector<RecordingFi
   std::move(more.begin(), more.end(), std::back_inserter(out));
 }
 
-/// The health of the causal slam method reports faults that only a map reveals. The whole recording can give an
-/// accurate estimate although the causal method reports a fault.
-std::vector<RecordingFinding> findings_of_odometry(const sim::Sensors& sensors) {
-  const scenarios::MethodPointer method = chosen_method("slam/tumble_lag", {sensors.robot, true});
-  const scenarios::Estimate estimate = run_method(*method, sensors);
+std::vector<RecordingFinding> findings_of_odometry(const Session& session, const OdometryOptions& options,
+                                                   OpenRecording& recording) {
+  const sim::Sensors& sensors = recording.content.sensors;
+  const OdometrySetup setup = set_up_odometry(session, options, recording);
+  const scenarios::Estimate estimate = run_method(setup.method, sensors);
+  const std::string method = full_name(setup.method.info);
   std::vector<RecordingFinding> out =
-      scenarios::findings_in_estimate(estimate, sensors.lidars.front().sweep_start_ns.size());
+      scenarios::findings_in_estimate(estimate, method, sensors.lidars.front().sweep_start_ns.size());
+  if (estimate.replaced_T_BL)
+    out.push_back({method, "the stated pose or clock of the lidar contradicts the recording",
+                   "--T-body-lidar with the estimated pose: " + pose_text(*estimate.replaced_T_BL)});
   return out;
 }
 
-std::vector<RecordingFinding> findings_of(const OpenRecording& recording) {
+std::vector<RecordingFinding> findings_of(const Session& session, const OdometryOptions& options,
+                                          OpenRecording& recording) {
   std::vector<RecordingFinding> out;
   for (const Repair& repair : recording.repairs)
     out.push_back(
@@ -50,20 +56,25 @@ std::vector<RecordingFinding> findings_of(const OpenRecording& recording) {
           {recording.options.path.filename().string(), fmt::format("the recording has no {}", name), "", false});
   }
   const bool rolls = sensors.robot == "sphere" || sensors.robot == "pendulum";
-  if (!sensors.imus.empty() && !sensors.lidars.empty() && !rolls) append_findings(findings_of_odometry(sensors), out);
+  if (!sensors.imus.empty() && !sensors.lidars.empty() && !rolls)
+    append_findings(findings_of_odometry(session, options, recording), out);
   return out;
 }
 
-int run_doctor(const Session& session, const ImportOptions& options) {
-  (void)format_of(options);
-  (void)bag_reading(session, options);
+int run_doctor(const Session& session, const OdometryOptions& options) {
+  const ImportOptions& input = options.input;
+  check_odometry_options(options);
+  (void)format_of(input);
+  (void)bag_reading(session, input);
   std::vector<RecordingFinding> findings;
+  std::optional<OpenRecording> recording;
   try {
-    findings = findings_of(open_recording(session, options));
+    recording = open_recording(session, input);
   } catch (const scenarios::BadInput& error) {
-    if (!std::filesystem::exists(options.path)) throw;
-    findings.push_back({options.path.filename().string(), error.what(), scenarios::recommended_option(error.what())});
+    if (!std::filesystem::exists(input.path)) throw;
+    findings.push_back({input.path.filename().string(), error.what(), scenarios::recommended_option(error.what())});
   }
+  if (recording) findings = findings_of(session, options, *recording);
   Table table("", {"where", "finding"});
   table.wrap_last();
   nlohmann::json document = nlohmann::json::array();
@@ -74,7 +85,7 @@ int run_doctor(const Session& session, const ImportOptions& options) {
         {{"where", each.where}, {"evidence", each.evidence}, {"repair", each.repair}, {"fault", each.fault}});
   }
   const bool any_fault = std::ranges::any_of(findings, &RecordingFinding::fault);
-  if (!any_fault) table.add_row({options.path.filename().string(), "no fault found"});
+  if (!any_fault) table.add_row({input.path.filename().string(), "no fault found"});
   session.print({table}, {{"findings", document}});
   return any_fault ? kCheckFailed : kDone;
 }
@@ -82,8 +93,8 @@ int run_doctor(const Session& session, const ImportOptions& options) {
 }  // namespace
 
 Action declare_doctor(VerbOptions& verb, const Session& session) {
-  auto options = std::make_shared<ImportOptions>();
-  declare_sensors(verb, *options);
+  auto options = std::make_shared<OdometryOptions>();
+  declare_odometry_options(verb, *options);
   verb.footer(
       "Exit status: 0 no fault found, 1 at least one fault, 2 wrong use. Notes, for example on saturation, are not "
       "faults.");

@@ -14,15 +14,12 @@
 #include "scenarios/estimates/estimate_file.hpp"
 #include "scenarios/estimates/findings.hpp"
 #include "scenarios/estimates/map_file.hpp"
-#include "scenarios/methods/registry.hpp"
-#include "scenarios/methods/robot_presets.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/sweep/evaluate.hpp"
 #include "tools/replay/page.hpp"
 #include "tools/replay/replay.hpp"
 #include "tools/tumble/chosen_method.hpp"
-#include "tools/tumble/found.hpp"
-#include "tools/tumble/prior_map_options.hpp"
+#include "tools/tumble/odometry_options.hpp"
 #include "tools/tumble/progress.hpp"
 #include "tools/tumble/verbs.hpp"
 
@@ -33,58 +30,10 @@ namespace {
 using scenarios::BadInput;
 using scenarios::Estimate;
 
-struct OdometryOptions {
-  ImportOptions input;
+struct OdometryCommand {
+  OdometryOptions odometry;
   std::filesystem::path folder;
-  std::string method;
-  bool live = false;
-  PriorMapOptions prior_map;
-  std::vector<double> own_body_m;
-  std::vector<std::string> parameters;
 };
-
-Eigen::AlignedBox3d own_body(const OdometryOptions& options) {
-  if (options.own_body_m.empty()) return scenarios::presets::rig_body_L();
-  const Eigen::Vector3d min = Eigen::Vector3d::Map(options.own_body_m.data()),
-                        max = Eigen::Vector3d::Map(options.own_body_m.data() + 3);
-  if (!((min.array() <= max.array()).all()))
-    throw BadInput("--own-body: the first corner must not exceed the second corner in any coordinate");
-  return {min, max};
-}
-
-std::string method_name(const OdometryOptions& options) {
-  if (options.live && !options.method.empty())
-    throw BadInput("--live and --method exclude each other; --live means --method slam/tumble_live");
-  if (!options.method.empty()) return options.method;
-  if (options.live) return "slam/tumble_live";
-  return options.prior_map.map.empty() ? "slam/tumble" : "slam/tumble_lag";
-}
-
-bool has_parameter(const scenarios::MethodInfo& info, std::string_view name) {
-  return std::ranges::count(info.parameters, name, &sim::Parameter::name) > 0;
-}
-
-std::vector<std::string> parameter_texts(const OdometryOptions& options, const scenarios::MethodInfo& info,
-                                         bool states_lidar_pose) {
-  std::vector<std::string> texts = options.parameters;
-  const auto assume = [&](const std::string& name, double value) {
-    const std::string parameter = full_name(info) + "." + name + "=";
-    const bool given = std::ranges::any_of(texts, [&](const std::string& text) { return text.starts_with(parameter); });
-    if (!given && has_parameter(info, name)) texts.push_back(fmt::format("{}{}", parameter, value));
-  };
-  if (!states_lidar_pose) {
-    assume("mount_sigma_m", kAssumedLidarSigma_m);
-    assume("mount_sigma_rad", kAssumedLidarSigma_rad);
-  }
-  if (options.own_body_m.empty()) return texts;
-  const char* const names[] = {"own_body_min_x_m", "own_body_min_y_m", "own_body_min_z_m",
-                               "own_body_max_x_m", "own_body_max_y_m", "own_body_max_z_m"};
-  const bool in_mapper = has_parameter(info, "mapping_own_body_min_x_m");
-  for (std::size_t k = 0; k < std::size(names); ++k)
-    texts.push_back(
-        fmt::format("{}.{}{}={}", full_name(info), in_mapper ? "mapping_" : "", names[k], options.own_body_m[k]));
-  return texts;
-}
 
 void require_both_sensors(const std::filesystem::path& path, const sim::Sensors& sensors) {
   if (!sensors.imus.empty() && !sensors.lidars.empty()) return;
@@ -205,29 +154,25 @@ void print_notes(const Session& session, const OpenRecording& recording, const E
   for (const HealthFinding& each : estimate.faults.findings) session.note(scenarios::report_text(each));
 }
 
-int run_odometry(const Session& session, const OdometryOptions& options) {
-  const Eigen::AlignedBox3d box = own_body(options);
-  const std::string name = method_name(options);
-  scenarios::OutputFolder folder(options.folder);
+int run_odometry(const Session& session, const OdometryCommand& command) {
+  const OdometryOptions& options = command.odometry;
+  check_odometry_options(options);
+  scenarios::OutputFolder folder(command.folder);
   OpenRecording recording = open_recording(session, options.input);
   const sim::Sensors& sensors = recording.content.sensors;
   require_both_sensors(options.input.path, sensors);
-  const scenarios::Method method = with_prior_map(*chosen_method(name, {sensors.robot, true}), options.prior_map);
-  const std::vector<FoundItem> found = complete_recording(session, recording, box, !options.own_body_m.empty());
-  if (!session.json) session.print({found_table(found)}, {});
-  const scenarios::MethodInfo& info = method.info;
-  const scenarios::MethodPointer chosen[] = {scenarios::unowned(method)};
-  const std::vector<scenarios::Method> methods =
-      scenarios::with_parameters(chosen, parameter_texts(options, info, states_lidar_pose(found)));
+  const OdometrySetup setup = set_up_odometry(session, options, recording);
+  if (!session.json) session.print({found_table(setup.found)}, {});
+  const scenarios::MethodInfo& info = setup.method.info;
   Estimate estimate;
-  const double run_s = run_with_progress(session, methods.front(), sensors, estimate);
-  scenarios::write_estimate(options.folder, info.name, info.kind, estimate, scenarios::digest(sensors, nullptr),
+  const double run_s = run_with_progress(session, setup.method, sensors, estimate);
+  scenarios::write_estimate(command.folder, info.name, info.kind, estimate, scenarios::digest(sensors, nullptr),
                             recording.content.info.origin_ns);
   if (!estimate.map.empty()) {
-    scenarios::write_map_pcd(options.folder / "map.pcd", estimate.map);
-    scenarios::write_prior_map(options.folder / scenarios::kPriorMapName, estimate.map);
+    scenarios::write_map_pcd(command.folder / "map.pcd", estimate.map);
+    scenarios::write_prior_map(command.folder / scenarios::kPriorMapName, estimate.map);
   }
-  if (!estimate.poses.empty()) write_replay(options.folder / "replay.html", recording, full_name(info), estimate);
+  if (!estimate.poses.empty()) write_replay(command.folder / "replay.html", recording, full_name(info), estimate);
   folder.keep();
 
   print_notes(session, recording, estimate);
@@ -235,18 +180,18 @@ int run_odometry(const Session& session, const OdometryOptions& options) {
   scenarios::Outcome outcome;
   judge_without_truth(info, estimate, outcome);
   const nlohmann::json summary = summary_of(sensors, estimate, outcome.status, run_s);
-  session.print({summary_table(summary)}, {{"folder", options.folder.string()},
+  session.print({summary_table(summary)}, {{"folder", command.folder.string()},
                                            {"method", full_name(info)},
                                            {"status", to_string(outcome.status)},
                                            {"message", outcome.message.empty() ? "ok" : outcome.message},
-                                           {"found", found_document(found)},
+                                           {"found", found_document(setup.found)},
                                            {"summary", summary},
                                            {"health", estimate.health}});
   if (estimate.status.ok()) {
     session.note(
         fmt::format("written: {} (trajectory.tum, map.ply, map.pcd, map.tumblemap, estimate.json, replay.html, and "
                     "tables of rates, sweeps and covariances)",
-                    options.folder.string()));
+                    command.folder.string()));
     if (outcome.status != scenarios::OutcomeStatus::diverged) return kDone;
     session.note(
         fmt::format("do not use this estimate; 'tumble doctor {}' with the same sensor options searches for the cause",
@@ -262,22 +207,9 @@ int run_odometry(const Session& session, const OdometryOptions& options) {
 }  // namespace
 
 Action declare_odometry(VerbOptions& verb, const Session& session) {
-  auto options = std::make_shared<OdometryOptions>();
-  declare_sensors(verb, options->input);
+  auto options = std::make_shared<OdometryCommand>();
+  declare_odometry_options(verb, options->odometry);
   verb.add("-o,--output", options->folder, "writes trajectory, map, health and replay page to this folder").required();
-  verb.add_flag("--live", options->live, "uses past data only, as on the robot: runs slam/tumble_live");
-  verb.add("--method", options->method,
-           "runs this slam method ('tumble list methods') [default: slam/tumble; slam/tumble_lag with --map]");
-  declare_prior_map(verb, options->prior_map);
-  verb.add("--own-body", options->own_body_m,
-           "sets a box around the robot by two opposite corners X Y Z X Y Z in lidar axes, m; drops returns inside the "
-           "box [default: -0.5 -0.4 -0.27 0.5 0.4 0.23]")
-      .words(6);
-  verb.add("--set", options->parameters,
-           "sets a parameter of the method: METHOD.PARAMETER=NUMBER; repeat the option for more parameters ('tumble "
-           "list "
-           "methods NAME' lists them)")
-      .one_at_a_time();
   verb.footer(
       "Exit status: 0 estimate written, 1 estimate written but its health is 'diverged', 2 wrong use or bad input.");
   return [&session, options] { return run_odometry(session, *options); };

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/tumble/odometry_options.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <iterator>
+#include <string_view>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/robot_presets.hpp"
+#include "tools/tumble/chosen_method.hpp"
+
+namespace tumble::tools {
+
+using scenarios::BadInput;
+
+namespace {
+
+Eigen::AlignedBox3d own_body(const OdometryOptions& options) {
+  if (options.own_body_m.empty()) return scenarios::presets::rig_body_L();
+  const Eigen::Vector3d min = Eigen::Vector3d::Map(options.own_body_m.data()),
+                        max = Eigen::Vector3d::Map(options.own_body_m.data() + 3);
+  if (!((min.array() <= max.array()).all()))
+    throw BadInput("--own-body: the first corner must not exceed the second corner in any coordinate");
+  return {min, max};
+}
+
+std::string method_name(const OdometryOptions& options) {
+  if (options.live && !options.method.empty())
+    throw BadInput("--live and --method exclude each other; --live means --method slam/tumble_live");
+  if (!options.method.empty()) return options.method;
+  if (options.live) return "slam/tumble_live";
+  return options.prior_map.map.empty() ? "slam/tumble" : "slam/tumble_lag";
+}
+
+bool has_parameter(const scenarios::MethodInfo& info, std::string_view name) {
+  return std::ranges::count(info.parameters, name, &sim::Parameter::name) > 0;
+}
+
+std::vector<std::string> parameter_texts(const OdometryOptions& options, const scenarios::MethodInfo& info,
+                                         bool states_lidar_pose) {
+  std::vector<std::string> texts = options.parameters;
+  const auto assume = [&](const std::string& name, double value) {
+    const std::string parameter = full_name(info) + "." + name + "=";
+    const bool given = std::ranges::any_of(texts, [&](const std::string& text) { return text.starts_with(parameter); });
+    if (!given && has_parameter(info, name)) texts.push_back(fmt::format("{}{}", parameter, value));
+  };
+  if (!states_lidar_pose) {
+    assume("mount_sigma_m", kAssumedLidarSigma_m);
+    assume("mount_sigma_rad", kAssumedLidarSigma_rad);
+  }
+  if (options.own_body_m.empty()) return texts;
+  const char* const names[] = {"own_body_min_x_m", "own_body_min_y_m", "own_body_min_z_m",
+                               "own_body_max_x_m", "own_body_max_y_m", "own_body_max_z_m"};
+  const bool in_mapper = has_parameter(info, "mapping_own_body_min_x_m");
+  for (std::size_t k = 0; k < std::size(names); ++k)
+    texts.push_back(
+        fmt::format("{}.{}{}={}", full_name(info), in_mapper ? "mapping_" : "", names[k], options.own_body_m[k]));
+  return texts;
+}
+
+}  // namespace
+
+void declare_odometry_options(VerbOptions& verb, OdometryOptions& options) {
+  declare_sensors(verb, options.input);
+  verb.add_flag("--live", options.live, "uses past data only, as on the robot: runs slam/tumble_live");
+  verb.add("--method", options.method,
+           "runs this slam method ('tumble list methods') [default: slam/tumble; slam/tumble_lag with --map]");
+  declare_prior_map(verb, options.prior_map);
+  verb.add("--own-body", options.own_body_m,
+           "sets a box around the robot by two opposite corners X Y Z X Y Z in lidar axes, m; drops returns inside the "
+           "box [default: -0.5 -0.4 -0.27 0.5 0.4 0.23]")
+      .words(6);
+  verb.add("--set", options.parameters,
+           "sets a parameter of the method: METHOD.PARAMETER=NUMBER; repeat the option for more parameters ('tumble "
+           "list "
+           "methods NAME' lists them)")
+      .one_at_a_time();
+}
+
+void check_odometry_options(const OdometryOptions& options) {
+  (void)own_body(options);
+  (void)method_name(options);
+}
+
+OdometrySetup set_up_odometry(const Session& session, const OdometryOptions& options, OpenRecording& recording) {
+  const sim::Sensors& sensors = recording.content.sensors;
+  const scenarios::Method method =
+      with_prior_map(*chosen_method(method_name(options), {sensors.robot, true}), options.prior_map);
+  OdometrySetup setup;
+  setup.found = complete_recording(session, recording, own_body(options), !options.own_body_m.empty());
+  const scenarios::MethodPointer chosen[] = {scenarios::unowned(method)};
+  setup.method =
+      scenarios::with_parameters(chosen, parameter_texts(options, method.info, states_lidar_pose(setup.found))).front();
+  return setup;
+}
+
+}  // namespace tumble::tools
