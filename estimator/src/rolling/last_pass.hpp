@@ -15,8 +15,8 @@ namespace tumble::rolling {
 /// The backward pass needs more than 10 KiB per node, so FinalSmoothingPass divides the nodes into segments. For each
 /// segment, FinalSmoothingPass stores only the state of the filter at the start, and the adjoint variables of the
 /// backward pass at the end. During the backward pass, all other data of a segment are recomputed with bit-identical
-/// results. The filter runs once for a window of one segment, and three times for a longer window. A FinalSmoothingPass
-/// is too large for the stack (four filters of 13 KiB).
+/// results. If the window has several segments, the filter runs three times: forward, for the backward pass, and for
+/// the reported estimates. A FinalSmoothingPass is too large for the stack (four filters of 13 KiB).
 class FinalSmoothingPass {
  public:
   static constexpr std::size_t kNodesPerSegment =
@@ -30,7 +30,8 @@ class FinalSmoothingPass {
     std::size_t index;
   };
 
-  /// All arguments must outlive the pass. `segment` is the number of nodes whose records are stored at the same time.
+  /// All arguments must outlive the pass. `segment` is the number of nodes per segment. Only the filter records of one
+  /// segment are stored at the same time.
   FinalSmoothingPass(const RollingParams& params, std::span<const ImuSample> samples,
                      std::span<const ModePathNode> path, std::size_t segment = kNodesPerSegment);
 
@@ -71,7 +72,7 @@ class FinalSmoothingPass {
   SmoothingCheckpoint cut_checkpoint_, end_checkpoint_;
   SmoothingCheckpoint recomputation_checkpoint_;  ///< filter for a segment that is recomputed
   Adjoint adjoint_;                               ///< state of the backward pass
-  // index of the segment (`length_` successive nodes) whose filter records are in `node_records_`
+  // index of the segment whose filter records are in `node_records_`; a segment has `length_` successive nodes
   std::size_t loaded_ = 0;
   std::vector<FilterNodeRecord> node_records_;
   std::vector<SampleMotion> points_;

@@ -32,7 +32,8 @@ inline Vector heading_component(const Vector& x) {
   return out;
 }
 
-/// Transforms the covariance P to the corrected nominal trajectory, P <- T P T^T: rolling.md (R36).
+/// Transforms the covariance P of the error state to the corrected nominal trajectory, with the matrix T of rolling.md
+/// (R36).
 inline void remove_heading_covariance(const Vector& turned, Covariance& P) {
   P += (turned * P.row(kAttitude + 2)).eval();
   P += (P.col(kAttitude + 2) * turned.transpose()).eval();

@@ -5,8 +5,8 @@
 
 #include "rolling_node.hpp"
 
-/// `take(row, measured, variance)` processes one measurement: measured = row x + noise. `row` is a Row, or the index of
-/// a single state. Each call of `take` may change the state `x` and its covariance `P`.
+/// `take(row, measured, variance)` processes one scalar measurement of the error state x: measured = row * x + noise.
+/// `row` is a Row, or the index of a single state. Each call of `take` may change the state `x` and its covariance `P`.
 namespace tumble::rolling {
 
 /// The contact point is at rest, or moves along the floor during slip: rolling.md (R17), (R20). An unknown velocity of

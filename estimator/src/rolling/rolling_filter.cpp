@@ -235,7 +235,8 @@ void RollingFilter::report(State& state) const {
   state.contact_velocity_m_s = state.hypotheses[0].contact_velocity_W_m_s;
 }
 
-/// Hypotheses with the same current contact mode but a different past add their weights.
+/// The total weight of all hypotheses decides between gripping and slipping. A single best hypothesis would not
+/// suffice, because several hypotheses may have the same current contact mode.
 RollingMode RollingFilter::most_probable_mode(const State& state) {
   const bool event = state.slip_probability >= kEventProbability;
   if (event == may_slip(state.mode)) return state.mode;

@@ -29,16 +29,16 @@ constexpr double kPruneLogWeight = -120.0;  // minimum log weight of a hypothesi
 constexpr double kRestLogLikelihoodMin =
     -60.0;                             // smallest log likelihood at rest; limits the effect of a single bad node
 constexpr double kModeAgeMax_s = 1.0;  // maximum age of a mode; older modes count as equally old
-// During slip, the change of the contact velocity per node is a mixture of three Gaussians. The first standard
-// deviation, kPlateau_m_s, is smaller than the noise of the contact velocity in the mode grip. A slip at constant
-// velocity therefore has a higher likelihood in the mode slip than in the mode grip.
+// During slip, the change of the contact velocity per node is a mixture of three Gaussians with the standard deviations
+// kPlateau_m_s, kSteady_m_s and kJump_m_s. Because kPlateau_m_s is smaller than the velocity noise in the mode grip, a
+// slip at constant velocity is more probable in the mode slip.
 constexpr double kPlateau_m_s = 0.004, kSteady_m_s = 0.01, kJump_m_s = 0.08, kPlateauFraction = 0.4,
                  kSteadyFraction = 0.35;
 constexpr double kRollOverSigma_m_s = 0.03, kHitSigma_m_s = 0.3, kRollOverFraction = 0.7;
 constexpr std::int64_t kAgesApart = 4;
-// A slip with constant spin looks like grip until the slip ends. At the end of such a slip, about a hundred wrong
-// hypotheses have higher weights than the correct hypothesis. kMinDissentingHypotheses places are therefore reserved
-// for hypotheses whose current mode started before the current mode of the best hypothesis.
+// A slip with constant spin looks like grip until the slip ends. At the end of a slip with constant spin, about a
+// hundred wrong hypotheses have higher weights than the correct hypothesis. The filter therefore reserves memory for
+// kMinDissentingHypotheses hypotheses whose current mode started before the current mode of the best hypothesis.
 constexpr std::size_t kMinDissentingHypotheses = 6;
 constexpr double kRoughCost = 0.2;
 // The foot of a ramp is a bump, so a slope is more probable after a bump.
@@ -91,9 +91,9 @@ double log_likelihood_stationary(const rolling::Contact& c, const RollingFilter:
   Eigen::LLT<Eigen::Matrix3d> factor;
   double log_det = 0.0, cost = 0.0;
   if (mode == RollingMode::uneven) {
-    // The mode uneven has a larger variance than grip, which would reduce the likelihood of every node on a rough
-    // floor. The normalisation of the likelihood therefore uses the variance of grip. Instead, each node in the mode
-    // uneven has the constant cost kRoughCost.
+    // The contact velocity has a larger variance in the mode uneven than in the mode grip. The larger variance would
+    // reduce the normalised likelihood of every node on a rough floor. For the mode uneven, the likelihood is therefore
+    // normalised with the variance of the mode grip, and its logarithm is reduced by kRoughCost.
     log_det = log_det_with(rolling::contact_variance(c, RollingMode::grip), factor);
     cost = kRoughCost;
   }
@@ -175,8 +175,8 @@ std::span<const ModeCandidate> propose_mode_changes(const RollingParams& params,
   return {out.data(), total};
 }
 
-/// Rounds the number of the node at which a contact mode started. The rounding step increases with the age of the mode,
-/// so that hypotheses with similar mode starts count as equal.
+/// Rounds the index of the node at which a contact mode started, more coarsely for older modes. After the rounding,
+/// hypotheses whose contact modes started at similar times count as equal.
 std::int64_t mode_beginning_node(std::int64_t mode_start_node, std::int64_t node, double node_s) {
   const auto mode_age_max_nodes = static_cast<std::int64_t>(kModeAgeMax_s / node_s);
   const std::int64_t age = std::min(node - mode_start_node, mode_age_max_nodes);
@@ -226,7 +226,8 @@ void rearrange_hypotheses(const Origins& from, std::size_t count, std::span<Roll
       --readers[from[k]];
     }
   }
-  // The remaining hypotheses form cycles, in which each hypothesis replaces another hypothesis of the cycle.
+  // The remaining copies are cyclic: for example, hypothesis 1 replaces hypothesis 2, and hypothesis 2 replaces
+  // hypothesis 1.
   for (std::size_t first = 0; first < count; ++first) {
     if (!waits[first]) continue;
     const RollingFilter::Hypothesis kept = all[first];

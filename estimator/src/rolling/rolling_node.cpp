@@ -12,7 +12,7 @@ namespace tumble::rolling {
 
 namespace {
 
-// Root densities of random walks: radius (rough floor), slope, accelerometer bias, and velocity (times squared rate).
+// Root densities of random walks: radius on a rough floor, slope, accelerometer bias, and velocity per squared rate.
 constexpr double kRoughRadiusWalk_m_sqrts = 1e-4, kSlopeWalk_sqrts = 0.02, kAccelBiasWalk_m_s2_sqrts = 2e-3,
                  kVelocityWalkPerRate2_sqrts = 4e-5;
 constexpr double kImpactSigmaRatio = 0.06;  // timing and direction of an impact, relative to its velocity change
@@ -40,8 +40,8 @@ constexpr double kRecoveredTau_s = 0.1;   // correlation time of the error of a 
 constexpr double kFastRate_rad_s = 6.0;   // above this rate, the specific force rotates too far per node for levelling
 constexpr double kUnsureSpeed_m_s = 0.1, kSpeedWindow_s = 1.0, kSpeedSigma_m_s = 1.0;
 constexpr double kStartTilt_rad = 0.15;  // tilt error of a start in motion, caused by a push of 1.5 m/s^2
-// If the rates before and after a gap are below kGapRate_rad_s, the sphere was hardly pushed during the gap.
-// kGapStill_rad_s2 is the smallest standard deviation of the angular acceleration in a gap.
+// Constants of rolling.md (R31). Low rates before and after a data gap indicate that the sphere was hardly pushed
+// during the gap. Below kGapRate_rad_s, the uncertainty of the rate in a data gap is therefore smaller.
 constexpr double kGapRate_rad_s = 1.0, kGapStill_rad_s2 = 0.5, kGapAcceleration_rad_s2 = 15.0;
 constexpr double kGapVelocityChangeRatio =
     0.5;  // unknown velocity change in a gap, as a fraction of the rolling velocity's change
@@ -91,8 +91,8 @@ RollingNominalState start_nominal(const RollingParams& params, const Eigen::Quat
 void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s, Covariance& P) {
   P.setZero();
   auto prior = P.diagonal();
-  // While a sphere is pushed, the specific force differs from gravity. A rotating sphere may slip with its full rolling
-  // speed.
+  // While a sphere is pushed, the specific force differs from gravity. A rotating sphere may slip, so its initial
+  // velocity is uncertain by its full rolling speed.
   const bool moves = starts_in_motion(rate_I_rad_s);
   const double tilt = moves ? kStartTilt_rad : 0.0, velocity = moves ? params.radius_m * rate_I_rad_s.norm() : 0.0;
   // The initial heading defines the world's x axis, so its prior variance is 0.
@@ -120,8 +120,8 @@ struct SaturatedForce {
   Eigen::Vector3d lower_bound_m_s2 = Eigen::Vector3d::Zero();  ///< components for which the reading is a lower bound
 };
 
-/// For a saturated reading, the assumed force is the reading or the force that keeps the velocity of the centre
-/// constant, whichever is larger: rolling.md (R8).
+/// A saturated accelerometer reading is a lower bound of the force. The assumed force is the larger of two values: the
+/// reading, and the force at constant velocity of the sphere's centre (rolling.md, R8).
 SaturatedForce saturated_force(const ImuSample& sample, const Eigen::Vector3d& read_m_s2,
                                const Eigen::Vector3d& kept_m_s2) {
   int largest = 0;
@@ -234,7 +234,7 @@ ImuAverage gap_step_average(const RollingParams& params, const ImuSample& before
   sample.device_clip_flags = 0;  // flags of the reading after the gap do not apply within the gap
   const double turning = std::max(before.angular_velocity_rad_s.norm(), after.angular_velocity_rad_s.norm());
   const double acceleration = kGapStill_rad_s2 + kGapAcceleration_rad_s2 * std::min(1.0, turning / kGapRate_rad_s);
-  // A parabolic rate deviation with second derivative a over a gap T rotates by a T^3 / 12: rolling.md (R31).
+  // A parabolic rate error with second derivative a in a gap of T seconds causes an angle error of a T^3 / 12 (R31).
   const double mean_force_tilt_rad =
       acceleration * gap_s * gap_s * gap_s / 12.0 + kGapTimeSigmaRatio * change.norm() * gap_s;
   uncertainty.rotation_variance_rad2 = mean_force_tilt_rad * mean_force_tilt_rad / pieces;

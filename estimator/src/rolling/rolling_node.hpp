@@ -36,9 +36,8 @@ struct Contact {
   Eigen::Vector3d normal_height_derivative_W;  ///< derivative of u with respect to the normal's third component
   Eigen::Vector2d floor_slope;                 ///< slope of the floor on the nominal trajectory
 
-  /// Returns the contact velocity for the error state `x`. The contact velocity is linear in `x`, except for the third
-  /// component of the floor normal. The third component depends nonlinearly on the slope, because the normal has unit
-  /// length.
+  /// Returns the contact velocity for the error state `x`. Only the slope error enters the contact velocity
+  /// nonlinearly, because the floor normal has unit length.
   Eigen::Vector3d velocity(const Vector& x) const;
 };
 
@@ -73,14 +72,16 @@ ImuAverage gap_step_average(const RollingParams& params, const ImuSample& before
 void integrate_gap(const RollingParams& params, const ImuAverage& piece, const GapUncertainty& uncertainty,
                    RollingNominalState& nominal, RollingNodeIntegrals& sums);
 
-/// Returns the matrix B: over a node, errors of attitude, velocity and position increase by B times the error state.
+/// Returns the matrix B: during one filter step (node), the errors of attitude, velocity and position change by B times
+/// the error state.
 Moving transition(const RollingNodeIntegrals& sums);
 /// `noise_ratio` multiplies the root densities of the velocity and of rate-dependent attitude errors.
 void predict(const RollingParams& params, const RollingNodeIntegrals& sums, const Moving& B, Vector& x, Covariance& P,
              double noise_ratio = 1.0);
 
-/// `rate_I_rad_s` is the gyro reading at the node, without correction. A gap in the node increases the variance of the
-/// contact velocity. `noise_ratio` multiplies the standard deviation of the contact velocity while gripping.
+/// `rate_I_rad_s` is the gyro reading at the node, without correction. A data gap within the filter step (node)
+/// increases the variance of the contact velocity. `noise_ratio` multiplies the standard deviation of the contact
+/// velocity while gripping.
 Contact contact(const RollingParams& params, const RollingNominalState& nominal, const Eigen::Vector3d& rate_I_rad_s,
                 const RollingNodeIntegrals& sums, double noise_ratio = 1.0);
 

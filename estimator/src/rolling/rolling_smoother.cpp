@@ -22,7 +22,8 @@ bool equal(const ImuSample& a, const ImuSample& b) {
          a.specific_force_m_s2 == b.specific_force_m_s2;
 }
 
-/// Returns the factor from the variance of the final pass, which uses reduced noise, to the reported variance.
+/// Returns the factor that converts a variance of the final pass to the reported variance. The final pass assumes
+/// reduced noise, so its variances are too small.
 double stated_distance_sigma(const RollingSmoother::Params& params) {
   return 1.0 / (params.kFinalPassNoiseRatio * params.kFinalPassNoiseRatio);
 }
@@ -66,7 +67,8 @@ void start_window(const RollingParams& filter, const RollingSmoother::State& sta
   if (state.committed_state.started) return;
   const ImuSample& sample = state.samples[0];
   Eigen::Quaterniond q_WI = filter.q_WI_start.value_or(Eigen::Quaterniond::Identity());
-  // The filter has already levelled with the force of this sample, so inclination_from_force() cannot fail.
+  // inclination_from_force() has already succeeded for this sample when the live filter started, so its status is
+  // ignored.
   if (!filter.q_WI_start) (void)inclination_from_force(sample.specific_force_m_s2, q_WI);
   start.filter.nominal = rolling::start_nominal(filter, q_WI, sample.angular_velocity_rad_s);
   rolling::set_prior(filter, sample.angular_velocity_rad_s, start.filter.covariance);
