@@ -168,8 +168,8 @@ double add_gyro(const NodeReadings& readings, const Matrix3d& rows, const Readin
     const SensingAxisSums& e = readings.gyro[static_cast<std::size_t>(i)];
     const GyroSensingAxisRow& element = elements[static_cast<std::size_t>(i)];
     if (e.count > 0.0) {
-      // While another sensing element clips, an error of the sensing directions causes the same error in all readings
-      // of a node, which averaging does not reduce.
+      // While another sensing element clips, an error of the sensing directions shifts all readings of a time step
+      // equally. Averaging the readings of a time step does not reduce a common shift of these readings.
       const double tilt = noise.deficit_error_ratio * clipped_axis_deficit(readings, elements, i);
       cost += add_unclipped_readings(
           e, element,

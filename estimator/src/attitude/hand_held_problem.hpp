@@ -10,7 +10,7 @@
 
 namespace tumble::hand_held {
 
-/// `jerk` multiplies the root of the spectral density of the angular jerk.
+/// `jerk` is a factor on the root spectral density of the angular jerk in `params`.
 Motion::Params motion_params(const HandHeldSmoother::Params& params, double jerk = 1.0);
 ReadingNoise reading_noise(const HandHeldSmoother::Params& params, double period_s);
 double add_node(const NodeReadings& readings, const Eigen::Matrix3d& rows, const ReadingNoise& noise,
@@ -21,8 +21,8 @@ double add_constants_prior(const HandHeldSmoother::Params& params, const Constan
 /// Returns the difference between the states of two nodes, as a step for Node::move.
 System::StateVector node_difference(const Node& from, const Node& to);
 
-/// NodeMessage replaces all earlier or all later nodes by a prior on one node, linearised at the state
-/// `linearisation_node`.
+/// NodeMessage is a prior on the state of one node that summarises all earlier or all later nodes. The prior is
+/// linearised at the state `linearisation_node`.
 struct NodeMessage {
   Node linearisation_node;
   System::StateMatrix information = System::StateMatrix::Zero();

@@ -28,16 +28,18 @@ constexpr double kCertainDeviations = 4.0;
 constexpr int kMinImusForRecovery = 3;          // minimum number of IMUs for recovering a rate from accelerometers
 constexpr double kUnsaturatedForceRatio = 0.8;  // accelerometer errors are estimated up to this fraction of the range
 constexpr int kOffset = ImuMerge::kErrorCount - 1;
-// lever_arm_agreement() returns a value only if the sum of squared lever arm effects reaches kArmSquareMin_m2_s3. A
-// constant lever arm effect of 1 m/s^2 contributes 1 m^2/s^3 per second to the sum. At the minimum sum, an
-// accelerometer bias of 0.05 m/s^2 changes lever_arm_agreement() by at most 0.05.
+// The lever arm effect is the specific force that rotation causes at the IMU's distance from the mean IMU position.
+// lever_arm_agreement() returns a value only if the time integral of the squared lever arm effects reaches
+// kArmSquareMin_m2_s3. If a lever arm effect of 1 m/s^2 lasts 1 s, an accelerometer bias of 0.05 m/s^2 changes
+// lever_arm_agreement() by at most 0.05.
 constexpr double kArmSquareMin_m2_s3 = 1.0;
 constexpr double kRepeated_s = 0.03;
 constexpr double kWindowMax_s = 0.05;  // maximum window for a central difference
 
 // After an impact, a contradicting accelerometer is excluded for kSuspect_s, because impacts come in groups.
 constexpr double kSuspect_s = 0.04;
-// standard deviation of an angular acceleration, as a fraction of its change since the last window
+// standard deviation of the angular acceleration in a time window, as a fraction of its change since the previous
+// window
 constexpr double kAccelerationSigmaRatio = 0.3;
 
 const ImuMergeSetup& checked(const ImuMergeSetup& setup) {

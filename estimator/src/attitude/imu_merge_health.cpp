@@ -13,22 +13,23 @@ namespace {
 // sensor with a lower sample rate than the log repeats each reading for less than kUnitFrozen_s.
 constexpr double kUnitFrozen_s = 0.1, kOthersRate_rad_s = 0.03, kOthersForce_m_s2 = 0.3, kGravityRotation_rad = 1.0;
 constexpr double kUnfreeze_s = 0.5;
-// The tolerance of the rate grows with the rate, because of scale errors.
+// The tolerated difference between a gyro and the median of all gyros grows with the rate, because of scale errors.
 constexpr double kDisagreeRate_rad_s = 0.1, kDisagreeRateRatio = 0.06, kDisagreeForce_m_s2 = 1.0, kDisagrees_s = 0.3;
 constexpr int kMinImusForFault = 3;  // minimum number of IMUs for identifying the faulty IMU
 constexpr double kMisfitTau_s = 0.5;
 constexpr double kComparableRateRatio = 0.8;  // fraction of the gyro's range up to which IMUs are compared
 
 constexpr double kArmShareMin = 0.5;  // smallest plausible lever_arm_agreement() if the gyros are confirmed
-// A deviation of 6 % corresponds to a gyro scale error of 3 %, because the centripetal force grows with the squared
-// rate. In runs without faults, lever_arm_agreement() was 0.999 to 1.002.
+// lever_arm_agreement() is the ratio of measured to expected force differences between the IMUs. A deviation of 6 %
+// from 1 corresponds to a gyro scale error of 3 %, because the centripetal force grows with the squared rate. In runs
+// without faults, the ratio of measured to expected force differences was 0.999 to 1.002.
 constexpr double kArmShareOff = 0.06;
 
 constexpr double kAxisContributionMin =
     0.02;  // another axis counts as clipped if a clipped axis contributes more than this fraction to it
 
-/// Returns the component of the measured rotation perpendicular to the repeated specific force. The specific force is
-/// mostly gravity, so the returned rotation should change the reading of the accelerometer.
+/// Returns the component of the IMU's rotation perpendicular to the repeated accelerometer reading. The reading is
+/// mostly gravity, and a rotation perpendicular to gravity should change the reading of the accelerometer.
 double rotation_across_force_rad(const ImuMerge::Repetition& hold) {
   return hold.turned_rad.cross(hold.repeated_reading.stableNormalized()).norm();
 }

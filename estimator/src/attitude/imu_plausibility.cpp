@@ -22,10 +22,10 @@ constexpr double kRotationMin_rad2 = 0.5, kRotationMin_rad = 0.15;  // minimum r
 // A push, or the centripetal force in flight, may rotate the measured force for a few windows of 0.2 s.
 constexpr double kRotatedWindowsMin = 5.0;
 // A scale error of the gyro is reported only if a scaled gyro rotation explains the rotation of the measured force much
-// better. The scaling must reduce the sum of squared unexplained force rotations to less than kScaledResidualMax times
-// the sum for the unscaled gyro rotation: imu_merge.md (I21). In the regression of the force's rotation on the gyro's
-// rotation, pushes of the body often cause a slope between 0 and 1: imu_merge.md (I20). For a regression slope between
-// 0 and 1, the stricter limit kReducedResidualMax applies.
+// better. Scaling the gyro must reduce the sum of squared unexplained force rotations to less than the fraction
+// kScaledResidualMax: imu_merge.md (I21). A regression gives the ratio of the measured force's rotation to the gyro's
+// rotation: imu_merge.md (I20). Pushes of the body often cause a ratio between 0 and 1. For a ratio between 0 and 1,
+// the stricter limit kReducedResidualMax applies.
 constexpr double kScaledResidualMax = 0.75, kReducedResidualMax = 0.33;
 constexpr double kSlow_rad_s = 0.4;  // zero offset of a gyro, and rocking on the ground while pushes tilt the force
 constexpr double kFrozen_s = 1.0, kRepetitionRatio = 10.0;
@@ -193,9 +193,9 @@ double ImuPlausibility::rotation_agreement(const State& state) const {
 bool ImuPlausibility::fits_better(const State& state) const {
   const double slope = force_to_gyro_rotation_ratio(state), agreement = rotation_agreement(state);
   const double left = state.force_rotation_square_sum_rad2 * (1.0 - agreement * agreement);
-  // Pushes of the body often change the ratio of force rotation to gyro rotation, but rarely to values below 0 or above
-  // 1.5. If the gyro measures slow rotation only, pushes dominate the rotation of the force, and the ratio can have any
-  // value.
+  // Pushes of the body often change the ratio of the force's rotation to the gyro's rotation, but rarely to values
+  // below 0 or above 1.5. During slow rotation, pushes may cause any ratio of the force's rotation to the gyro's
+  // rotation.
   const double slow_rad = kSlow_rad_s * kGravityWindow_s;
   const bool pushed = (slope > 0.0 && slope < 1.0) ||
                       state.gyro_rotation_square_sum_rad2 < state.rotated_window_count * slow_rad * slow_rad;

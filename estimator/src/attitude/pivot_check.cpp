@@ -69,14 +69,15 @@ constexpr double kScaleStep = 0.05;
 constexpr std::size_t kHalf = kAxisLabels, kTwice = kAxisLabels + 1;  // indices of the gyro scales 1/2 and 2
 constexpr std::size_t kLower = kAxisLabels + 2, kUpper = kAxisLabels + 3, kReadings = kAxisLabels + 4;
 constexpr std::size_t kCompared = kLower;  // number of hypotheses that differ clearly from the unchanged rates
-// A segment favours a gyro hypothesis if the hypothesis has a smaller velocity residual than the unchanged rates. The
-// logarithms of the squared residuals with the hypothesis and with the unchanged rates must differ by more than
+// A gyro hypothesis is a possible gyro fault, for example swapped axes or a wrong scale. A time segment favours a gyro
+// hypothesis if correcting the fault reduces the logarithm of the squared velocity residual by more than
 // kClearLogRatio.
 constexpr double kClearLogRatio = 0.4;
 
 using Readings = std::array<Eigen::Matrix3d, kReadings>;
 
-/// Each hypothesis about the gyro multiplies the rates by a matrix: imu_merge.md (I27).
+/// Returns matrices that correct the measured rates for possible gyro faults (swapped axes, wrong signs, wrong scale):
+/// imu_merge.md (I27).
 Readings all_readings() {
   Readings out;
   for (std::size_t k = 0; k < kAxisLabels; ++k) {
@@ -92,7 +93,8 @@ Readings all_readings() {
   return out;
 }
 
-/// `scale_step` is the Newton step from gyro scale 1, and `weight` is the second derivative of the squared residual.
+/// `scale_step` is one segment's estimate of the gyro scale minus 1, from one Newton step. `weight` is the second
+/// derivative of the squared velocity residual with respect to the scale, divided by the squared residual.
 struct GyroScaleVote {
   double scale_step, weight;
 };
@@ -185,8 +187,8 @@ void conclude_gyro_scale(const std::vector<GyroScaleVote>& votes, PivotMotionChe
 PivotMotionCheck PivotMotionCheck::of(std::span<const ImuSample> samples, double gravity_m_s2, double gyro_range_rad_s,
                                       double accel_range_m_s2) {
   static const Readings readings = all_readings();
-  // The second series of segments is shifted by half a segment. An impact between two segments of one series is inside
-  // a segment of the other series.
+  // The recording is divided into time segments twice, and the second series of segments is shifted by half a segment.
+  // An impact at the end of a segment of one series is inside a segment of the other series.
   std::array<Segments, 2> series = {Segments(gravity_m_s2, readings), Segments(gravity_m_s2, readings)};
   double mean_s = 0.0, since_s = 0.0;
   Eigen::Vector3d turned = Eigen::Vector3d::Zero(), gained = Eigen::Vector3d::Zero();

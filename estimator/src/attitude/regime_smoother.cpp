@@ -27,7 +27,7 @@ std::vector<ImuSample> interpolate_forces(std::span<const ImuSample> samples) {
   return out;
 }
 
-/// Returns the bits of SpinTracker for the saturated axes of the accelerometer.
+/// Returns the saturated accelerometer axes as bits 3 (x) to 5 (z), the format that SpinTracker expects.
 std::uint8_t saturated_forces(const ImuSample& sample, const AngularRateReport& report) {
   constexpr double kMargin = 0.95;  // the saturation limits differ between the axes
   unsigned out = 0;

@@ -86,8 +86,8 @@ Status MotionRegimeStream::push(const ImuSample& sample, std::span<const Auxilia
     share = hand_held_weight(*out, state);
   }
   std::optional<AngularRateState> hand_held;
-  // HandHeldRateStream rejects an accepted sample of AngularRateStream only if the sensing directions do not span three
-  // dimensions.
+  // AngularRateStream has accepted the sample, so HandHeldRateStream fails only if the gyro's sensing directions are
+  // almost linearly dependent.
   if (state.probabilities.hand_held >= params_.hand_held_probability_min) {
     if (!state.hand_held_stream_running) {
       hand_held_.restart(state.hand_held);
@@ -181,7 +181,7 @@ void MotionRegimeStream::update_probabilities(const AngularRateState& rate, Stat
   state.regime_probability_sum.hand_held += state.probabilities.hand_held;
 }
 
-// Returns the weight of HandHeldRateStream in the reported rate: s in carried.md (C39).
+// Returns the weight of HandHeldRateStream's rate in the reported rate, from equation (C39) of carried.md.
 double MotionRegimeStream::hand_held_weight(const AngularRateState& rate, State& state) const {
   const auto near_ns = static_cast<TimeNs>(std::llround(1e9 * params_.kSegmentGapMax_s));
   const std::vector<AngularRateStream::Knot>& window = state.rate.window;

@@ -48,7 +48,8 @@ double log_density_hand_held(double n, double g, double hand_variance, double gr
   return larger + std::log(((kRoughly - 1.0) * std::exp(gentle - larger) + std::exp(rough - larger)) / kRoughly);
 }
 
-// Contact is gentle rolling (prior fraction `kRolls`) or an impact with a force of any size: carried.md (C33).
+// During contact, the body rolls gently with the prior probability `kRolls`, or has an impact with any force:
+// carried.md (C33).
 constexpr double kRolls = 0.5;
 
 double log_density_in_contact(double left, double n, double g, double variance) {

@@ -32,8 +32,8 @@ RestDetector::Params without_force_limits() {
   return rests;
 }
 
-/// In mg, cm/s^2 or counts, forces and their noise have larger numbers than in m/s^2. Readings far above gravity at
-/// rest prove a wrong unit, because no robot stands still at ten times gravity.
+/// The numerical value of a specific force is larger in mg, cm/s^2 or counts than in m/s^2. Readings far above gravity
+/// at rest prove a wrong unit, because no robot stands still at ten times gravity.
 RestDetector::Params params_for_large_units() {
   constexpr double kLarger = 100.0;
   RestDetector::Params rests = kRests;
@@ -48,8 +48,8 @@ double allowed_rad(double sigma_rad) {
   return std::min(kAngleToleranceMax_rad, std::max(kAngleToleranceMin_rad, kAngleMax_sigmas * sigma_rad));
 }
 
-/// Returns the mean magnitude of the specific force at rest as a fraction of gravity. Returns 0 if every rest of a
-/// second was without force, and 1 if the body never rested.
+/// Returns the mean magnitude of the specific force at rest as a fraction of gravity. Returns 0 if the accelerometer
+/// measured nearly zero force during rest, and 1 if the body rested for less than kRested_s.
 double gravity_magnitude_error_ratio(const RestGravity::GravityMagnitudeState& state, double gravity_m_s2) {
   if (state.rest_s >= kRested_s) return state.stationary_force_integral_m_s / state.rest_s / gravity_m_s2;
   return state.weightless_s >= kRested_s ? 0.0 : 1.0;

@@ -21,9 +21,9 @@ constexpr int kArm = 2, kForce = 4, kWorldForce = 6;  // of Centripetal
 constexpr double kJerk_rad_s3_sqrts = 50.0;           // root density of the angular jerk about the spin axis
 // The rate perpendicular to the spin axis is the sum of a world-fixed part (constant in world axes) and a body-fixed
 // part (constant in body axes): carried.md (C44). Both parts change as random walks with the root density
-// kWalk_rad_s_sqrts. Vibration adds an error with the standard deviation kVibration_rad_s to the readings. The
-// vibration error is correlated over kReadingInterval_s. SpinFilter::variance_ratio scales the variances of random walk
-// and vibration: carried.md (C46).
+// kWalk_rad_s_sqrts. Vibration adds an error with the standard deviation kVibration_rad_s to the readings. Vibration
+// errors are correlated over time, so all readings within kReadingInterval_s together count as one reading.
+// SpinFilter::variance_ratio scales the variances of random walk and vibration: carried.md (C46).
 constexpr double kWalk_rad_s_sqrts = 1.0, kVibration_rad_s = 0.3;
 // size of the body: prior standard deviation of the lever arm from the spin axis to the IMU
 constexpr double kBodySize_m = 0.3;
@@ -37,7 +37,8 @@ constexpr double kForceSigma_m_s2 = 0.3, kForceWalk_m_s2_sqrts = 0.1, kVibration
 // The air force is smooth. A variance ratio of the residuals above kSmoothVarianceRatioMax indicates contact or
 // vibration, and contradicts a spin in the air.
 constexpr double kSmoothVarianceRatioMax = 20.0, kContradiction = 1e3;
-// ratio of the angular jerk in Centripetal to the angular jerk in Modulation; a spin in the air changes slowly
+// ratio of the root densities of the angular jerk in Centripetal and in Modulation; the rate of a spin in the air
+// changes slowly
 constexpr double kForceJerkRatio = 0.3;
 constexpr double kWorldForceSigma_m_s2 = 3.0, kWorldForceWalk_m_s2_sqrts = 1.0;
 
@@ -86,9 +87,10 @@ void predict_spin(const SpinFilter<N>& filter, double jerk_rad_s3_sqrts, double 
   out.covariance(kAcceleration, kAcceleration) += jerk;
 }
 
-// Rotates the state components `part` and `part` + 1 by -related times the rotation angle of the spin. Writes the
-// derivatives of the rotated components to `out.transition_matrix`. In the axes of the body, a vector that is constant
-// in the world turns by minus the angle of the spin.
+// If `related` is 1, rotates the two-dimensional vector at the state index `part` by the negative spin angle. If
+// `related` is 0, the vector remains unchanged. Writes the derivatives of the rotated vector with respect to the state
+// to `out.transition_matrix`. In the axes of the body, a vector that is constant in the world turns by minus the angle
+// of the spin.
 template <int N>
 void turn_part(const SpinFilter<N>& filter, int part, double related, double dt_s, SpinPrediction<N>& out) {
   const auto& x = filter.x;

@@ -9,9 +9,9 @@
 namespace tumble {
 
 // This file contains two measurement models of a steady spin: Modulation and Centripetal. The first two states of each
-// model are the rate and the angular acceleration about the spin axis. In the filter for a steady spin, `related` is 1,
-// and the filter rotates the state's world-fixed vectors by the spin angle. In the filter for motion without a steady
-// spin, `related` is 0, and the filter does not rotate the state's world-fixed vectors.
+// model are the rate and the angular acceleration about the spin axis. The parameter `related` is 1 in the filter for a
+// steady spin, and 0 in the filter for motion without a steady spin. Only the filter for a steady spin rotates the
+// world-fixed vectors in its state by the spin angle.
 
 template <int N>
 struct SpinPrediction {
@@ -30,11 +30,11 @@ struct SpinReading {
   double dt_s = 0.0;
 };
 
-/// Modulation models the rate perpendicular to the spin axis, equations (C44) and (C45) of carried.md. The states are:
+/// Modulation models the transverse rate (perpendicular to the spin axis), equations (C44) and (C45) of carried.md. The
+/// states are:
 /// - the rate and the angular acceleration about the spin axis,
-/// - the world-fixed part of the rate perpendicular to the spin axis: constant in world axes, two components in body
-///   axes,
-/// - the body-fixed part of the rate perpendicular to the spin axis: constant in body axes, two components.
+/// - the part of the transverse rate that is constant in world axes: two components, in body axes,
+/// - the part of the transverse rate that is constant in body axes: two components, in body axes.
 struct Modulation {
   static constexpr int kStates = 6;
   using Filter = SpinFilter<kStates>;

@@ -21,7 +21,7 @@ constexpr double kChanges_hz = 0.02;     // assumed frequency of starts and ends
 constexpr double kGapMax_s = 0.5;        // the spin restarts after a longer gap
 constexpr double kAxisHysteresis = 1.2;  // ratio of two rates at which the spin axis changes
 constexpr double kStartProbability = 0.01;
-// Standard deviation of (frequency of the modulation / rate of the spin), because the spin axis precesses
+// relative standard deviations of the spin rates from gyro and from accelerometer, due to precession of the spin axis
 constexpr double kRatioSigma = 0.01, kForceRatioSigma = 0.02;
 constexpr double kProbabilityMax = 1.0 - 1e-12;
 constexpr double kLogRatioMax = 50.0;  // avoids overflow of the likelihood ratio of one sample
@@ -64,8 +64,8 @@ void smooth_spin(std::span<const RecordedSpin<N>> run, std::span<SpinRate> out) 
   }
 }
 
-// Returns the estimate of the more probable spin model, `modulation` or `force`. With further IMUs, the rates already
-// depend on all specific forces, so the model of one IMU's specific force is not used.
+// Returns the estimate of the more probable spin model, `modulation` or `force`. If the body has several IMUs, `force`
+// is not used, because the rates already depend on all specific forces.
 SpinRate select_spin(const SpinRate& modulation, const SpinRate& force, bool further_imus) {
   const bool by_force = !further_imus && force.probability > modulation.probability;
   SpinRate out = by_force ? force : modulation;

@@ -24,7 +24,7 @@ constexpr double kVelocity_m_sqrts = 1.0;              // standard deviation of 
 constexpr double kDisplacement_m_sqrts = 0.3;          // standard deviation of the mean displacement over 1 s
 constexpr double kDisplacementTau_s = 10.0;            // time constant with which the displacement decays to zero
 constexpr double kMotionTau_s = 3.0;  // correlation time of velocity and displacement, averaging time of their size
-// Velocity residual above which slip starts. Slip ends below half of this velocity residual.
+// A slip starts above the velocity residual kSlipVelocity_m_s, and can end only below kSlipVelocity_m_s / 2.
 constexpr double kSlipVelocity_m_s = 0.12;
 constexpr double kSlipQuiet_s = 0.2;     // duration of small velocity residuals after which slip ends
 constexpr double kSlipTimeout_s = 3.0;   // maximum duration of a slip
@@ -304,7 +304,7 @@ void TumbleAttitude::predict_node(State& state) const {
     F.block<2, 3>(kTilt, kBias) = -state.integrated_rotation_matrix_s.topRows<2>();
     F.block<1, 3>(kHeading, kBias) = -state.integrated_rotation_matrix_s.row(2);
   }
-  // The derivative of the velocity with respect to the tilt phi is the horizontal part of phi x f.
+  // A tilt error phi changes the velocity by the horizontal part of the cross product of phi and the integrated force.
   F(kVelocity, kTilt + 1) = state.force_integral_W_m_s.z();
   F(kVelocity + 1, kTilt) = -state.force_integral_W_m_s.z();
   F.block<2, 2>(kDisplacement, kVelocity) = h * Eigen::Matrix2d::Identity();

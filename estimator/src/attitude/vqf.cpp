@@ -35,8 +35,8 @@ constexpr double kNoDirection_m_s2 = 1e-6;
 /// growth of the bias' standard deviation within the forgetting time (0.1 deg/s in the VQF publication)
 constexpr double kForgottenSigma_rad_s = 1.7453292519943295e-3;
 
-/// Returns the measurement variance for which the variance of a scalar bias filter converges to sigma^2. `growth` is
-/// the increase of the bias variance per step.
+/// Returns the measurement variance with which a scalar Kalman filter of the gyro bias converges to the standard
+/// deviation `sigma`. `growth` is the increase of the bias variance per step.
 double steady_state_noise(double sigma, double growth) {
   const double variance = sigma * sigma;
   return variance * variance / growth + variance;
@@ -121,8 +121,7 @@ void Vqf::estimate_bias(const Eigen::Vector3d& up_W, double dt_s, State& state) 
     noise.setConstant(steady_state_noise(kBiasSigmaRest_rad_s, growth));
   } else if (params_.motion_bias_estimation) {
     H = Eigen::Map<const Eigen::Matrix3d>(state.R_WI.value.data());
-    // The sum of two terms measures the gyro bias: the low-passed bias estimate, and the rate at which levelling
-    // rotates the vertical.
+    // The measured gyro bias is the low-passed bias estimate plus the rate at which levelling rotates the vertical.
     const Eigen::Vector2d low_passed = state.bias_W_rad_s.value;
     innovation = Eigen::Vector3d(low_passed.x() - up_W.y() / dt_s, low_passed.y() + up_W.x() / dt_s, 0.0) - H * b;
     const double motion = steady_state_noise(kBiasSigmaMotion_rad_s, growth);
