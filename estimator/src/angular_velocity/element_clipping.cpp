@@ -14,8 +14,8 @@ namespace {
 constexpr double kDeterminedSlopeSigma = 2e-3, kNegligibleSlope = 3e-3;
 constexpr double kUnequalLevelsRatio = 1e-4;
 constexpr double kUprightSigma = 1e-5, kSlopeSigmaMin = 3e-4;
-// kEdgeStepRatio limits the distance between a partly saturated reading and the saturation level. The limit is a
-// fraction of the reading's distance from its neighbour on the unsaturated side.
+// The distance of a partly saturated reading from the saturation level must be less than kEdgeStepRatio times its
+// distance from the neighbouring unsaturated reading.
 constexpr double kEdgeStepRatio = 0.5;
 
 int half_range_side(const ImuSample& sample, Triad triad, std::size_t j) {
@@ -77,8 +77,8 @@ bool are_upright(std::span<const Eigen::Vector3d> readings, const SaturationPlan
     const double plateau = rails.channels[first_channel(triad) + j].plateau_limit;
     if (rail && has_unequal_limits(*rail)) return false;
     if (rail && plateau > 0.0) {
-      // If the device compensates misalignment after clipping, the other axes change the clipped readings of this axis,
-      // so most of these readings differ.
+      // If the device compensates misalignment after clipping, a clipped output also depends on the rates about the
+      // other axes. Most clipped readings of an axis then differ from each other.
       const auto equal = std::count_if(readings.begin(), readings.end(), [&](const Eigen::Vector3d& y) {
         return std::abs(std::abs(y[static_cast<Eigen::Index>(j)]) - plateau) <= kEqualReadingsRatio * plateau;
       });

@@ -28,12 +28,12 @@ std::array<std::array<SaturationPlaneFinder, 2>, 2> make_plane_finders(const Cli
 bool stated_range_contradicted(const SaturationLimitDetector& axis_aligned_rails,
                                const SaturationLimitDetector::State& state, Triad triad);
 
-/// Returns whether the device clips each output axis separately (upright rails).
+/// Returns whether the device clips each output axis separately, at fixed saturation limits.
 bool are_upright(std::span<const Eigen::Vector3d> readings, const SaturationPlanes& planes,
                  const SaturationLimitDetector::State& rails, Triad triad);
 
-/// Returns `planes` without the saturation plane (SaturationPlane) of each axis with a plateau, which is a sequence of
-/// equal extreme readings.
+/// Returns a copy of `planes` without the saturation planes (SaturationPlane) of axes that have a plateau. A plateau is
+/// a sequence of equal extreme readings.
 SaturationPlanes without_planes_from_plateaus(const SaturationPlanes& planes,
                                               const SaturationLimitDetector::State& rails, Triad triad);
 

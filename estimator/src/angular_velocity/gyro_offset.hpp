@@ -10,9 +10,9 @@
 
 namespace tumble {
 
-/// Estimates a large zero offset of a gyro from the rest at the start of a run. Consumer gyros may have offsets above
-/// the mean rate that RestDetector accepts at rest by default (0.05 rad/s). GyroOffset mistakes a steady rotation about
-/// the vertical for an offset.
+/// Estimates a large zero offset of a gyro from the rest at the start of a run. The zero offset of a consumer gyro may
+/// exceed 0.05 rad/s, the default limit of RestDetector for the mean rate at rest. GyroOffset mistakes a steady
+/// rotation about the vertical for an offset.
 class GyroOffset {
  public:
   static constexpr double kOffsetMin_rad_s = 0.05, kOffsetMax_rad_s = 0.15;

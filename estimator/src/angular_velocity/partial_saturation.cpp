@@ -21,8 +21,9 @@ PartialSaturation partial_saturation(double reading_rad_s, double neighbour_rad_
   // The device clips the sum of rate and noise. Noise therefore lowers a fully saturated reading by less than a tenth
   // of the noise's standard deviation.
   if (!(depth > 0.1 * noise_rad_s)) return {};
-  // If the device compensates misalignment after clipping, the other axes slowly change a fully saturated reading. A
-  // slope of the readings below the noise therefore does not indicate partial saturation.
+  // If the device compensates misalignment after clipping, rotation about the other axes slowly changes a fully
+  // saturated reading. Only a change between two readings that exceeds the noise therefore indicates partial
+  // saturation.
   if (!(slope > noise_rad_s)) return {};
   double share = 0.0;  // rails.md (R71)
   if (slope > 2.0 * depth) {

@@ -29,8 +29,8 @@ double rise_above_plateau(double count, double entered, double left) {
   return both > 0.0 ? count * std::max(0.0, entered) * std::max(0.0, left) / both : 0.0;
 }
 
-// On a tilted plane of saturated readings, a saturated reading changes by the tilt times the change of the rate about
-// the other axes.
+// If an axis has a tilted plane of saturated readings, rotation about the other axes changes the saturated readings by
+// the tilt times the rotation rate.
 double rate_of_other_axes(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) {
   return std::hypot(rate_rad_s[(axis + 1) % 3], rate_rad_s[(axis + 2) % 3]);
 }

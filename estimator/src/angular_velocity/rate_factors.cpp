@@ -14,7 +14,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Returns the products S_i v as columns, for the matrices S_i of RigConstants::inertia_basis_matrix.
+// Returns a matrix with the columns S_i v, where S_i are the five basis matrices of the inertia
+// (RigConstants::inertia_basis_matrix).
 Eigen::Matrix<double, 3, 5> inertia_basis_products(const Vector3d& v) {
   constexpr double kHalf = 0.5 * std::numbers::sqrt2, kSixth = std::numbers::inv_sqrt3 * kHalf;
   Eigen::Matrix<double, 3, 5> out;
@@ -102,7 +103,7 @@ AngularRateFactor flight_force_factor(const AngularRateKnot& knot, const RigCons
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2, &t = rig.lever_arm_m;
   AngularRateFactor f;
   f.residual = alpha.cross(t) + w.cross(w.cross(t)) + rig.accel_bias_m_s2 - reading_m_s2;
-  // derivative of w x (w x t) = w (w.t) - t (w.w) with respect to the rate w
+  // derivative of the centripetal force w x (w x t) = w (w.t) - t (w.w) at the lever arm t with respect to the rate w
   f.jacobian_knot << w * t.transpose() + w.dot(t) * Matrix3d::Identity() - 2.0 * t * w.transpose(), -so3::hat(t);
   f.jacobian_calibration.setZero();
   f.jacobian_calibration.middleCols<3>(0) =

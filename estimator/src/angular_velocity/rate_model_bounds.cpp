@@ -47,10 +47,10 @@ GaussianMoments truncated_gaussian_moments(const GaussianMoments& from, double b
           from.variance - from.variance * from.variance * r * (z + r) / spread2};
 }
 
-// Returns the Gaussian factor that gives `marginal` the moments of a distribution truncated at `bound`:
-// rate_smoother.md (R22), (R25). `now` is the current Gaussian factor, and `share` in (0, 1] is the weight of the new
-// Gaussian factor. `variance_max` limits the variance of the cavity distribution, which is `marginal` divided by the
-// factor `now`.
+// Returns a new Gaussian factor that approximates the lower bound `bound` by expectation propagation: rate_smoother.md
+// (R22), (R25). `now` is the previous Gaussian factor, which `marginal` includes. `share` in (0, 1] is the weight of
+// the new factor in the average of new and previous factor. `variance_max` limits the variance of the cavity
+// distribution, which is `marginal` divided by the factor `now`.
 GaussianLikelihoodApproximation refined_bound_approximation(const GaussianMoments& marginal,
                                                             const GaussianLikelihoodApproximation& now, double bound,
                                                             double bound_variance, double variance_max, double share) {
@@ -72,8 +72,8 @@ void AngularRateModel::search_flight_solutions(const AngularRateObservation& obs
   const Vector3d reading = corrected_rate(observation, estimate);
   AngularRateEstimate flight_estimate = estimate;
   const Eigen::Matrix3d J = rig.inertia_matrix();
-  // Each output axis combines several sensing elements, because the device compensates their misalignment. The
-  // saturation deficit of one clipped element therefore changes all output axes: rails.md (R51).
+  // Each output axis combines several sensing elements, because the device compensates their misalignment. If one
+  // sensing element clips, the errors of all output axes therefore depend on its saturation deficit: rails.md (R51).
   Eigen::Matrix3d rows;
   for (int j = 0; j < 3; ++j) rows.row(j) = rig.sensing_direction(j);
   const Eigen::Matrix3d deficit_directions = rows.inverse();

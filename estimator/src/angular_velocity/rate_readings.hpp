@@ -12,7 +12,8 @@
 
 namespace tumble {
 
-/// `known_params` contains the prior calibration, with cross-axis sensitivities from the planes of saturated readings.
+/// `known_params` contains the prior calibration. The priors of the cross-axis sensitivities are from the detected
+/// planes of saturated readings (SaturationPlane).
 struct AngularRateReadings {
   std::vector<AngularRateObservation> observations;  ///< one per sample
   AngularRateModelParams known_params;

@@ -147,7 +147,8 @@ SensorErrorInformation calibration_evidence_at(const SensorErrors& given, KnownS
   return evidence_from_earlier_runs(learnt, sizes);
 }
 
-// `learnt` is the information about the sensor errors from an earlier run, relative to the errors `given` by the user.
+// `given` contains the sensor errors that the user states. `learnt` is the information of an earlier run about the
+// deviations of the sensor errors from `given`.
 SensorErrorFit fit_errors_at(const SensorErrors& given, SensorErrorInformation evidence, const SensorErrorPriors& sizes,
                              const SensorErrorInformation& learnt) {
   evidence.linearisation_point = SensorErrors::from(evidence.linearisation_point.vector() - given.vector());
@@ -232,7 +233,8 @@ Status collect_error_evidence(const CorrectionIterations& rounds, const SensorEr
   const RateSolution& solution = fit.solution;
   fit.error_derivatives = solution.iteration.error_derivatives(fit.model, solution.estimates, solution.rig);
   if (rounds.estimated) {
-    // Before convergence, the gradient is not evidence of sensor errors.
+    // The normal equations are computed again at the final estimates, because gradients before convergence are not
+    // evidence of sensor errors.
     GaussNewtonRateStep again = solution.iteration;
     if (!again.factorise(fit.model, solution.estimates, solution.rig)) {
       return {ErrorCode::diverged, "iteration", static_cast<double>(health.iterations), 0.0};

@@ -47,8 +47,9 @@ double rate_change_rad_s2(const AngularRateModelParams& params, std::span<const 
   return (estimates[k + 1].knot.rate_rad_s - estimates[k].knot.rate_rad_s).norm() / dt_s;
 }
 
-// Returns the covariance of a rate due to an unknown delay that gyro and accelerometer have in common. The largest rate
-// change within the possible delay is used, because the delay may shift an impact.
+// Returns the covariance of a rate due to an unknown delay that gyro and accelerometer have in common. The covariance
+// uses the largest angular acceleration within the possible delay, because an impact may have occurred before or after
+// sample `k`.
 Eigen::Matrix3d common_delay_covariance(double variance_s2, const AngularRateModelParams& params,
                                         std::span<const AngularRateObservation> observations,
                                         std::span<const AngularRateEstimate> estimates, std::size_t k) {

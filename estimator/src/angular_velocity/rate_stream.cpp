@@ -163,7 +163,8 @@ void AngularRateStream::marginalise(std::size_t first, State& state) const {
   const double after_it = model_.jump(oldest.estimate.knot, next.estimate.knot, seconds_between(oldest, next));
   const double jump = std::min(rate_change_before_window(oldest, state), after_it);
   model_.compute_flight_weight(oldest.observation, state.rig, RigConstants::Matrix::Zero(), 1.0, jump, oldest.estimate);
-  // Short flights do not update the calibration, because 20 free calibration constants can fit any short contact.
+  // Short flights do not update the calibration. A short contact may be mistaken for flight, because the 20 calibration
+  // constants can fit any few readings.
   std::size_t run = state.consecutive_flight_samples;
   const auto needed = params_.expert.kFlightRunMin;
   const auto flies = [](const Knot& knot) { return knot.estimate.flight_weight >= 0.5; };
@@ -273,8 +274,8 @@ void AngularRateStream::predict_new_knot(Knot& knot, const Knot& previous, const
   centripetal.estimate.knot.rate_rad_s = rate.cwiseMin(largest).cwiseMax(-largest);
   model_.compute_flight_weight(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, knot.estimate);
   model_.compute_flight_weight(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, centripetal.estimate);
-  // An impact changes the angular acceleration abruptly, so the previous angular acceleration may be wrong.
-  // search_flight_solutions() therefore computes the angular acceleration of a rotation without torque.
+  // The previous angular acceleration may be wrong, because an impact changes the angular acceleration abruptly.
+  // search_flight_solutions() computes the angular acceleration from Euler's equation without torque instead.
   model_.search_flight_solutions(knot.observation, state.rig, centripetal.estimate);
   model_.compute_flight_weight(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, centripetal.estimate);
   if (centripetal.estimate.flight_weight > knot.estimate.flight_weight) knot.estimate = centripetal.estimate;

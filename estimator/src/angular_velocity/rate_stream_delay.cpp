@@ -10,8 +10,8 @@ namespace tumble {
 namespace {
 
 constexpr int kBeside = ImpactDelayCorrelation::kDelayMax_samples;
-// The sums (R104) of rate_stream.md weight recent gyro intervals more than earlier gyro intervals. After kMemory
-// further intervals, the weight of an interval is 1/e.
+// The correlation sums of rate_stream.md (R104) have exponentially decreasing weights. The weight of a gyro interval
+// decreases to 1/e after kMemory further gyro intervals.
 constexpr double kMemory = 2000.0;
 constexpr TimeNs kUpdatePeriod_ns = 50'000'000;
 constexpr double kDelayChangeMin_s = 3e-4;

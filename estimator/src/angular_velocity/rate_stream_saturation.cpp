@@ -16,8 +16,8 @@ namespace {
 using Eigen::Vector3d;
 
 // The slopes before and after a maximum predict how far the rate rises above the readings at the maximum:
-// rate_stream.md (R94). For an unsaturated parabola, the predicted rise is at most 2.25 times the difference between
-// largest and smallest reading.
+// rate_stream.md (R94). For an unsaturated parabola, the predicted rise above the readings is at most 2.25 times the
+// difference between largest and smallest reading.
 constexpr double kSlopeSigmasMax = 3.0, kHeightRatioMin = 4.0, kHeightNoiseSigmas = 5.0;
 constexpr std::ptrdiff_t kPlateauReadingsMin = 3;
 

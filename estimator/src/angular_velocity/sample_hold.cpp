@@ -16,7 +16,7 @@ using sample_hold::kMoving_rad_s, sample_hold::kRepeatsMin, sample_hold::kMoving
 
 constexpr int kPeriods = 100, kPhases = 24, kFineSteps = 10;
 constexpr double kPeriodRangeRatio = 0.03;
-// averaging window of an accelerometer, as an assumed fraction of its period
+// assumed averaging window of an accelerometer, as a fraction of the accelerometer's sample period
 constexpr double kAccelWindowRatio = 0.5;
 
 struct Clock {
@@ -55,7 +55,8 @@ ClockPhaseSegment best_clock_phases(double period, std::span<const std::size_t> 
     misses[p] = count_missed_repetitions(clock, moving, repeats, std::min(most, out.missed_repetitions));
     out.missed_repetitions = std::min(out.missed_repetitions, misses[p]);
   }
-  // The clock phase is periodic, so an interval of equally good phases may contain phase 0.
+  // The phase of the sensor's clock is cyclic, so the interval of best phases may extend over the end of the tested
+  // range.
   int run = 0;
   for (int p = 0; p < 2 * kPhases; ++p) {
     run = misses[static_cast<std::size_t>(p % kPhases)] == out.missed_repetitions ? std::min(run + 1, kPhases) : 0;
@@ -66,8 +67,8 @@ ClockPhaseSegment best_clock_phases(double period, std::span<const std::size_t> 
   return out;
 }
 
-// If several candidate clocks predict the repetitions equally well, the function returns the middle of their periods
-// and phases.
+// Returns the clock (period and phase) of the sensor that best predicts which samples repeat a reading. If several
+// clocks are equally good, returns a clock with the middle of their periods and the middle of their phases.
 Clock best_matching_clock(const Clock& first, double reach, int periods, std::span<const std::size_t> moving,
                           const std::vector<bool>& repeats, double& found) {
   ClockPhaseSegment best{moving.size()};

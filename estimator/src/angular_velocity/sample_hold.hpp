@@ -27,9 +27,9 @@ struct RepeatedReadings {
   double reading_age_s(std::size_t sample) const { return age_s[sample] + window_lag_s; }
 };
 
-/// Detects repeated readings by fitting a regular clock of the sensor. Cost: O(N), plus about 5000 tested clocks on at
-/// most 1000 samples. Returns nothing if fewer than 30 samples exceed 0.3 rad/s, or if less than a twentieth of these
-/// samples are repetitions. `age_s` is zero if no regular clock predicts 90 % of the samples.
+/// Detects repeated readings by fitting a regular clock of the sensor. Cost: O(N), plus a test of about 5000 candidate
+/// clocks on at most 1000 samples. Returns nothing if fewer than 30 samples exceed 0.3 rad/s, or if less than a
+/// twentieth of these samples are repetitions. `age_s` is zero if no regular clock predicts 90 % of the samples.
 std::optional<RepeatedReadings> find_repeated(std::span<const ImuSample> samples, Triad triad);
 
 struct Neighbours {

@@ -54,8 +54,9 @@ Segment next_segment(std::span<const std::size_t> inliers, std::size_t& at) {
   return out;
 }
 
-// Returns the log-likelihood ratio of saturation to gyro noise for the scatter of readings about a line: rails.md
-// (R65). Saturated readings contain no noise if the device adds the noise before it clips.
+// Compares the scatter of readings about a line with the gyro noise. Returns the log-likelihood ratio of two
+// hypotheses, saturated and unsaturated readings: rails.md (R65). Saturated readings contain no noise if the device
+// adds the noise before it clips.
 double plane_thickness_log_likelihood(const DistinctReadings& readings, const SaturationPlaneCandidate& facet,
                                       const Segment& s) {
   if (s.size() <= kThinLostFreedom) return 0.0;

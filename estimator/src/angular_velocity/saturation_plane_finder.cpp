@@ -27,9 +27,10 @@ using rails::PlaneInlierGate;
 using rails::PlaneSlopePrior;
 using rails::SaturationPlaneSide;
 
-// Initial standard deviations of the distances between saturated readings and their plane, as fractions of
-// ExtremeReading::slab_thickness. The plane is fitted once with each of the two standard deviations. The smaller
-// standard deviation suits sets of readings with few partly saturated readings.
+// Each plane of saturated readings is fitted with two different initial standard deviations of the distance between
+// reading and plane. kInitialSigmaRatios contains the two standard deviations as fractions of
+// ExtremeReading::slab_thickness. The fit with the smaller initial standard deviation is better if few readings are
+// partly saturated.
 constexpr double kInitialSigmaRatios[] = {0.5, 0.02};
 constexpr double kElementLevelRatio = 0.04;
 constexpr double kNearElementLogOdds = 5.0, kNearStatedLogOdds = 3.0, kOppositeSignLogOdds = 5.0,
@@ -227,7 +228,7 @@ SaturationPlanes SaturationPlaneFinder::find(std::span<const Vector3d> readings_
     return merge_known_saturation_planes(found, readings.rates);
   const PlaneSideSearch search{params_, readings, workspace};
   std::array<Pair, 3> sides;
-  // Each accepted plane changes the log odds of further planes.
+  // Each accepted saturation plane changes the log odds of other saturation planes, so the search is repeated.
   for (bool added = true; added;) {
     added = false;
     for (int axis = 0; axis < 3; ++axis) {

@@ -18,7 +18,8 @@ using Vector = SensorErrors::Vector;
 using Matrix = SensorErrors::Matrix;
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-// `share` is 0 for the data sheet's standard deviations and 1 for those of an uncalibrated device.
+// `error_fraction` is 0 for the standard deviations of the data sheet, and 1 for the standard deviations of an
+// uncalibrated device.
 struct ErrorSize {
   double error_fraction, probability;
 };
@@ -223,7 +224,8 @@ SensorErrorInformation evidence_from_earlier_runs(const KnownSensorErrors& earli
   Vector values;
   Matrix vectors;
   dense::decompose(scaled, values, vectors);
-  // The loaded calibration contains no information along directions in which its variance equals the prior variance.
+  // If the loaded variance of a combination of sensor errors equals the prior variance, the loaded calibration contains
+  // no information about this combination.
   const Vector precision_ratio = values.cwiseMax(1e-12).cwiseInverse();
   const Vector of_mean = (precision_ratio.array() > 1.0).select(precision_ratio, Vector::Zero());
   const auto in_units = [&](const Vector& kept_values) -> Matrix {

@@ -11,8 +11,9 @@ namespace {
 constexpr double kVarianceMin = 1e-18;
 constexpr double kVarianceMax = 1e18;
 
-// Represents the equation R x_k + S x_{k+1} = z (unit noise) of one axis: saave.md (S6). The state x contains the rate,
-// and the angular acceleration times time_scale.
+// Relates the states x_k and x_{k+1} of two successive samples on one axis: R x_k + S x_{k+1} = z, with unit noise. R
+// is `residual_factor`, and S is `innovation_matrix`: saave.md (S6). The state x contains the rate, and the angular
+// acceleration times time_scale.
 struct EliminatedKnot {
   Eigen::Matrix2d residual_factor, innovation_matrix;
   Eigen::Vector2d z;

@@ -23,8 +23,8 @@ constexpr double kRateJumpMax_rad_s = 50.0;           // largest plausible jump 
 constexpr double kVelocityJumpMax_m_s = 20.0;         // largest plausible jump of the velocity in a single sample
 constexpr double kNear_s = 0.1;                       // maximum time between compared neighbours
 // If two successive time stamps differ by more than kStampStepMax_periods sample periods, the second time stamp may be
-// an outlier. The filter delays the second sample of such a pair until the next sample arrives. If the next time stamp
-// is not later than the delayed sample's time stamp, the filter rejects the delayed sample.
+// an outlier. The outlier filter delays a sample with a suspect time stamp until the next sample arrives. If the next
+// time stamp is not later than the delayed sample's time stamp, the filter rejects the delayed sample.
 constexpr double kStampStepMax_periods = 1.75;
 
 // A reading may be saturated if it exceeds kAtRange times the stated range, or if it is large and repeated.
@@ -216,7 +216,8 @@ bool OutlierFilter::is_outlier_candidate(const ImuSample& sample, const State& s
   return after_s > kStampStepMax_periods * period_s(state) || jumps(sample, state.delayed_samples(), state);
 }
 
-/// Returns whether a reading jumps further than the reading of the other sensor explains: outliers.md (O5).
+/// Returns whether the gyro or accelerometer reading jumps by more than the other sensor's reading can explain:
+/// outliers.md (O5).
 bool OutlierFilter::jumps(const ImuSample& sample, std::span<const ImuSample> delayed, const State& state) const {
   if (step_s(state.recent_inliers[1], sample) > kNear_s) return false;
   const ImuSample& before = delayed.empty() ? state.recent_inliers[1] : delayed.back();

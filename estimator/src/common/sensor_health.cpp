@@ -79,8 +79,8 @@ double HealthFinding::confidence() const {
   return larger > 0.0 && std::isfinite(larger) ? 1.0 - std::min(distance, limit) / larger : 1.0;
 }
 
-/// Estimates after the end of an attitude, vertical or localisation failure are correct. A tracking failure makes all
-/// later poses wrong.
+/// After a failure of attitude, vertical or localisation has ended, later estimates are correct again. A tracking
+/// failure makes all later poses wrong.
 bool HealthFinding::invalidates_estimate() const {
   // The rotation of gravity later confirms or corrects a suspect gyro scale.
   const bool recovers = kind == Kind::attitude_unknown || kind == Kind::vertical_unknown ||

@@ -17,9 +17,9 @@ namespace {
 using Kind = HealthFinding::Kind;
 
 constexpr double kSilentReported_s = 0.5;  // minimum duration without readings that is reported
-// If no saturation plane (SaturationPlane) of a sensing element was observed, the element is assumed to be aligned with
-// its axis. With a standard deviation of 0.03 for the cross-axis sensitivity, three clipped IMUs could not determine
-// the rate.
+// standard deviation of the cross-axis sensitivity of a sensing element without an observed saturation plane
+// (SaturationPlane); 0: the element is aligned with its axis. With a standard deviation of 0.03, the rate would be
+// undetermined while three IMUs clip.
 constexpr double kUnknownSlope = 0.0;
 
 struct ImuReadingSets {

@@ -141,7 +141,8 @@ Status RollingOdometry::Impl::add_delayed_samples(std::span<const ImuSample> nex
   return {};
 }
 
-/// Returns whether readings of the IMU `unit` remain delayed. Marks the rejected readings of the IMU `unit` as absent.
+/// Returns whether the outlier filter still delays readings of the IMU `unit`. Marks rejected readings of the IMU
+/// `unit` as absent.
 bool RollingOdometry::Impl::is_delayed_after(std::span<const ImuSample> next, std::size_t unit) {
   OutlierFilter::State& state = outlier_filter_state_[unit];
   if (state.delayed_count == 0) return false;
@@ -193,8 +194,8 @@ Status RollingOdometry::Impl::add_inliers(std::span<const ImuSample> samples) {
 }
 
 /// Sets the clip flags of saturated axes, without allocating memory. Samples that are not finite remain unchanged. Only
-/// confirmed saturation limits count, as defined by ConfirmedSaturation. The first two to ten samples at a saturation
-/// limit are not flagged.
+/// confirmed saturation limits count, as defined by ConfirmedSaturation. Detecting a new saturation limit takes two to
+/// ten saturated samples, and these samples are not flagged.
 RollingOdometry::Impl::Samples RollingOdometry::Impl::flag_clipped(std::span<const ImuSample> samples) const {
   Samples out;
   std::copy(samples.begin(), samples.end(), out.begin());

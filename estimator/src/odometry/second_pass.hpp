@@ -20,12 +20,13 @@ namespace tumble {
 /// SecondMappingPass buffers samples and sweeps from the end of the initial rest. After `after_s` of motion, the buffer
 /// is processed with the current calibration, and with rates smoothed with a lag of `lag_s`. The second pass processes
 /// three buffered sweeps per new sweep. When the second pass ends, its map and pose replace the map and pose of the
-/// first pass. The result is discarded if tracking failed in the second pass. The result is also discarded if the
-/// second pass rejected clearly more sweeps than the first pass.
+/// first pass. The results of the second pass are discarded if the second pass rejected clearly more sweeps than the
+/// first pass. The results are also discarded if the second pass rejected the last sweep, but the first pass registered
+/// the last sweep.
 ///
-/// If tracking of the first pass has failed for `lost_s`, an early second pass processes the whole buffer immediately.
-/// The early second pass takes place at most once. The regular second pass after `after_s` of motion follows in
-/// addition. SecondMappingPass does not change earlier poses: the reported pose jumps by the error of the first pass.
+/// If tracking of the first pass has failed for `lost_s`, an early second pass starts immediately. The early second
+/// pass takes place at most once. After an early second pass, the regular second pass still takes place after `after_s`
+/// of motion. SecondMappingPass does not change earlier poses: the reported pose jumps by the error of the first pass.
 ///
 /// SecondMappingPass stores samples and sweeps of 1 s at rest and of at most 10 s of motion. The second pass
 /// also needs memory for a second map. If a jolt ends the rest long before the tumble, the second pass starts too

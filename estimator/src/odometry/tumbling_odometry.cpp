@@ -212,9 +212,9 @@ void TumblingOdometry::Impl::register_sweep(TimeNs start_ns, TimeNs end_ns, std:
 }
 
 /// Returns whether a sweep that ends at `end_ns` must be registered now, because its latency would exceed lag_s when
-/// the next sample arrives. The covering sample is the first sample at or after the end of the sweep. After a data gap,
-/// the covering sample may be much later than the end of the sweep. After a data gap, a sweep therefore waits until the
-/// covering sample is older than lag_s - 1.5 sample periods.
+/// the next sample arrives. The covering sample of a sweep is the first IMU sample at or after the end of the sweep. If
+/// a sweep ends in a gap of the IMU data, the first IMU sample after the sweep may be much later. A sweep is therefore
+/// due only if the first IMU sample after the sweep is also older than lag_s - 1.5 sample periods.
 bool TumblingOdometry::Impl::is_due(TimeNs end_ns) const {
   const std::optional<TimeNs> covering_ns = odometry_pass_.covering_ns(end_ns);
   if (!covering_ns) return false;
@@ -226,8 +226,8 @@ bool TumblingOdometry::Impl::is_due(TimeNs end_ns) const {
 void TumblingOdometry::Impl::register_sweeps_with_rates() {
   while (!waiting_sweeps_.empty()) {
     const TimeNs end_ns = waiting_sweeps_.front().end_ns;
-    // The sample that covers the end of a sweep may be up to one sample period later than the end. flush_until()
-    // reports the rate of this sample before lag_s has passed.
+    // The first IMU sample after a sweep may be up to one sample period later than the sweep. flush_until() therefore
+    // reports the last rates of a due sweep before lag_s has passed.
     if (!odometry_pass_.has_rates_until(end_ns) && is_due(end_ns))
       odometry_pass_.flush_until(odometry_pass_.oldest_needed_ns(end_ns));
     if (!odometry_pass_.has_rates_until(end_ns)) break;
