@@ -126,8 +126,8 @@ void require_of_suite(const BenchResult& result, const Suite& suite) {
   const std::string whose = full_name(result.kind, result.method);
   if (result.suite != suite.name || result.suite_digest != digest)
     throw BadInput(
-        fmt::format("the result of method {} belongs to suite {} (digest {}), but must belong to suite {} (digest {}), "
-                    "because results of two suites cannot be compared",
+        fmt::format("the result of method {} belongs to suite {} (digest {}), but this comparison needs results of "
+                    "suite {} (digest {})",
                     whose, result.suite, result.suite_digest, suite.name, digest));
   const std::vector<BenchDraw> draws = draws_of(suite);
   if (result.draws.size() != draws.size())

@@ -77,10 +77,10 @@ std::span<const CertificateRow> certificate_rows() {
       CertificateRow{"lidar_rays", "compares lidar ranges with MuJoCo's mj_ray", as_certified<certify_lidar_rays>},
       CertificateRow{"imu_noise", "compares the noise of simulated IMUs at rest with the data sheets of the IMUs",
                      as_certified<certify_imu_noise>},
-      CertificateRow{
-          "tilted_rail",
-          "compares saturated readings of simulated IMUs with the tilted saturation limits that the simulation applies",
-          as_certified<certify_tilted_rail>},
+      CertificateRow{"tilted_rail",
+                     "compares saturated readings of simulated IMUs with the saturation limits that the simulation "
+                     "applies to each sensing element",
+                     as_certified<certify_tilted_rail>},
       CertificateRow{"real_rails",
                      "compares the saturation limits of two real gyros with the saturation limits of simulated gyros",
                      as_certified<certify_real_rails>},

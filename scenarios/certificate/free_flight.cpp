@@ -70,8 +70,8 @@ std::vector<CertificateEntry> certify_free_fall(const CertificateInput& input, c
     if (!trial.contacts().empty()) touched_s = trial.state().time_s;
   }
   return {{"free_fall_time", "sphere",
-           "a fall from height h takes the time sqrt(2 h / g); the value is the simulated time minus this time, in "
-           "steps of the physics engine",
+           "a fall from height h with gravity g takes the time sqrt(2 h / g). The value is the error of the simulated "
+           "time, in time steps of the simulation",
            "1", (touched_s - expected_s) / trial.step_s(), -0.01, 1.01, ""}};
 }
 

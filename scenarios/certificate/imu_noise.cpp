@@ -101,18 +101,19 @@ std::vector<CertificateEntry> entries_of(const std::string& subject, const State
   const sim::AllanPoint& floor = sim::nearest_point(curve, stated.bias.in_run_s / 10.0);
   std::vector<CertificateEntry> entries = {
       entry("imu_white_noise", subject,
-            "white noise at rest; the value is the ratio of the Allan deviation at 0.1 s to the data sheet", white,
-            stated.all(white.tau_s), sim::AllanNoise::white),
+            "white noise at rest; the value is the simulated Allan deviation at 0.1 s, divided by the Allan deviation "
+            "of the data sheet",
+            white, stated.all(white.tau_s), sim::AllanNoise::white),
       entry("imu_bias_instability", subject,
-            "bias instability at rest; the value is the ratio of the Allan deviation at a tenth of the bias "
-            "correlation time to the data sheet",
+            "bias instability at rest; the value is the simulated Allan deviation at a tenth of the bias correlation "
+            "time, divided by the Allan deviation of the data sheet",
             floor, stated.all(floor.tau_s), sim::AllanNoise::flicker)};
   if (stated.bias.walk_sqrt_s > 0.0) {
     const sim::AllanPoint& long_walk = sim::nearest_point(walk, 10.0);
-    entries.push_back(entry(
-        "imu_bias_walk", subject,
-        "bias random walk without other noise; the value is the ratio of the Allan deviation at 10 s to the data sheet",
-        long_walk, stated.walk(long_walk.tau_s), sim::AllanNoise::walk));
+    entries.push_back(entry("imu_bias_walk", subject,
+                            "bias random walk without other noise; the value is the simulated Allan deviation at 10 s, "
+                            "divided by the Allan deviation of the data sheet",
+                            long_walk, stated.walk(long_walk.tau_s), sim::AllanNoise::walk));
   }
   return entries;
 }

@@ -83,8 +83,8 @@ std::vector<CertificateEntry> certify_lidar_range(const CertificateInput& input,
     const RangeErrors errors = against_planes(recording, setup.added_range_m);
     CertificateEntry entry{"lidar_range_analytic",
                            device,
-                           "each point of a moving lidar without noise is on the plane that the beam hit; the value is "
-                           "the maximum distance from the plane",
+                           "the points of a moving lidar without range noise are on the planes that the beams hit; the "
+                           "value is the maximum distance of a point from its plane",
                            "m",
                            errors.largest_m,
                            0.0,

@@ -79,14 +79,14 @@ void show_plane(const DataSheet& sheet, const MeasuredPlane& plane, const RealRa
     entries.push_back({row, subject, law, unit, value, measured.low, measured.high, note});
   };
   const char* slope =
-      "the tilted saturation limit of a simulated gyro has the same slope towards another axis as the limit of a real "
-      "gyro";
+      "the saturation limit of a simulated gyro depends on the output of another axis with the same slope as the limit "
+      "of a real gyro";
   add("real_rail_slope", name + ", " + axis_name(plane.element + 1), slope, "1", fitted.first_slope, plane.first_slope);
   add("real_rail_slope", name + ", " + axis_name(plane.element + 2), slope, "1", fitted.second_slope,
       plane.second_slope);
   add("real_rail_distance", name,
-      "the tilted saturation limit of a simulated gyro has the same distance from zero as the limit of a real gyro",
-      "rad/s", fitted.distance, plane.distance_rad_s);
+      "the saturation limit of a simulated gyro has the same distance from zero as the limit of a real gyro", "rad/s",
+      fitted.distance, plane.distance_rad_s);
   add("real_rail_offset", name,
       "the midpoint between upper and lower saturation limit of a simulated gyro equals the midpoint of a real gyro",
       "rad/s", fitted.offset, plane.offset_rad_s);
@@ -133,13 +133,13 @@ std::vector<CertificateEntry> certify_real_rails(const CertificateInput& input, 
     const DataSheet sheet = load_data_sheet(input.data, name);
     if (sheet.sensor_kind != "imu") continue;
     const DrawnPlanes drawn = drawn_planes(sheet, setup);
-    entries.push_back({"real_rail_slope_drawn", name + " gyro",
-                       "largest slope of the saturation limits of a real gyro, divided by the standard deviation of "
-                       "the slopes of simulated gyros",
-                       "1", slope / drawn.slope, 0.0, kCut, ""});
+    entries.push_back(
+        {"real_rail_slope_drawn", name + " gyro",
+         "ratio of the largest slope of a real gyro's saturation limits to the standard deviation of simulated slopes",
+         "1", slope / drawn.slope, 0.0, kCut, ""});
     entries.push_back({"real_rail_offset_drawn", name + " gyro",
-                       "largest midpoint between the saturation limits of a real gyro, divided by the standard "
-                       "deviation of the midpoints of simulated gyros",
+                       "ratio of the largest midpoint of a real gyro's two saturation limits to the standard deviation "
+                       "of simulated midpoints",
                        "1", offset_rad_s / drawn.offset_rad_s, 0.0, kCut, ""});
   }
   return entries;

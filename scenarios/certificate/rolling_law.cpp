@@ -48,8 +48,8 @@ CertificateEntry entry(const CertificateInput& input, const RollingSetup& setup,
   const Lengths lengths = compare(recording.truth, setup.stated_radius_m > 0.0 ? setup.stated_radius_m : own_m);
   return {"rolling_law",
           subject,
-          "the centre of a sphere that grips moves with the velocity r w x n (r: radius, w: rate, n: floor normal); "
-          "the value is the share of the path that violates this law",
+          "the centre of a sphere without slip moves with the velocity r w x n (r: radius, w: rate, n: floor normal). "
+          "The value is the share of the path that violates this law",
           "1",
           lengths.missed_m / lengths.path_length_m,
           0.0,
@@ -114,11 +114,10 @@ std::vector<CertificateEntry> certify_slip_to_grip(const CertificateInput& input
     }
     before_m_s = now_m_s;
   }
-  return {
-      {"slip_to_grip_time", "sphere",
-       "a sphere that starts to slide at the speed v0 grips after the time v0 / (mu g (1 + m r^2 / I)); the value is "
-       "the relative difference (mu: friction coefficient; g: gravity; m, r, I: mass, radius and moment of inertia)",
-       "1", gripped_s / expected_s - 1.0, -0.01, 0.01, ""}};
+  return {{"slip_to_grip_time", "sphere",
+           "a sliding sphere with initial speed v0, friction mu, gravity g, mass m, radius r and inertia I grips after "
+           "the time v0 / (mu g (1 + m r^2 / I)). The value is the relative error of the simulated time",
+           "1", gripped_s / expected_s - 1.0, -0.01, 0.01, ""}};
 }
 
 }  // namespace tumble::scenarios

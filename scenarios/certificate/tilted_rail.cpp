@@ -68,17 +68,17 @@ std::vector<CertificateEntry> certify_tilted_rail(const CertificateInput& input,
   std::vector<CertificateEntry> entries;
   for (const auto& [subject, errors] : {std::pair{"mti30 gyro", gyro}, std::pair{"mti30 accel", accel}}) {
     const bool enough = errors.samples >= kFewestClipped && errors.samples < kMany;
-    const std::string note =
-        enough ? ""
-               : "too few samples: for each sign, at least 10 samples must saturate this sensing element and no other";
+    const std::string note = enough ? ""
+                                    : "too few samples: at least 10 positive and 10 negative readings must be "
+                                      "saturated by this sensing element alone";
     const double none = std::nan("");
     entries.push_back({"tilted_rail_slope", subject,
-                       "the saturated readings of a sensing element are on its simulated tilted saturation limit; the "
-                       "value is the maximum error of the slopes",
+                       "the plane through the saturated readings of a sensing element is the simulated saturation "
+                       "limit; the value is the maximum error of the plane's slopes",
                        "1", enough ? errors.slope : none, 0.0, 1e-9, note});
     entries.push_back({"tilted_rail_distance", subject,
-                       "the saturated readings of a sensing element are on its simulated tilted saturation limit; the "
-                       "value is the maximum error of distance and offset, relative to the limit",
+                       "the plane through the saturated readings of a sensing element is the simulated saturation "
+                       "limit; the value is the maximum relative error of the plane's distance and offset",
                        "1", enough ? errors.distance_share : none, 0.0, 1e-9, note});
   }
   return entries;

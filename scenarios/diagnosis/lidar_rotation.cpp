@@ -185,8 +185,8 @@ std::string pairs_text(const RotationAgreement& found) {
 std::string unit_text(const std::string& where, const RotationAgreement& found, GyroUnit unit) {
   const bool degrees = unit == GyroUnit::deg_s;
   const std::string read = fmt::format(
-      "if the gyro is read in {}, the lidar rotates {} times as far as the gyro measures (accurate to {}){}; this "
-      "ratio must be from 0.5 to 2",
+      "if the gyro is read in {}, the ratio of lidar rotation to gyro rotation is {} (accurate to {}){}; this ratio "
+      "must be from 0.5 to 2",
       degrees ? "deg/s" : "rad/s", rounded(found.unit), percent(found.unit_error), pairs_text(found));
   if ((found.unit < 1.0) == degrees) return "caution: " + read;
   const std::string fits = degrees ? "rad/s" : "deg/s";
@@ -198,7 +198,7 @@ std::string delay_text(const RotationAgreement& found) {
   if (std::abs(found.delay_s) < kDelaySaid_s) return "";
   return fmt::format(
       "caution: the lidar measures rotations {}{} than the gyro; check that both sensors use one clock and that sweep "
-      "stamps are start times. Without this time offset: ",
+      "stamps are start times. After correction of the time offset: ",
       rounded(std::abs(found.delay_s)), found.delay_s > 0.0 ? " s later" : " s earlier");
 }
 

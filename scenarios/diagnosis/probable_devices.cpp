@@ -115,7 +115,7 @@ std::optional<ProbableDevice> probable_lidar(const sim::LidarRecord& lidar, std:
     best_off = off;
     best = ProbableDevice{
         sheet.device,
-        fmt::format("the elevation angles of {} rings differ from the beams of this device by at most {} deg",
+        fmt::format("the elevation angles of {} rings differ from the data sheet of this device by at most {} deg",
                     seen.size(), rounded(off / kDegree_rad))};
   }
   return best ? best : by_name(lidar.name, sheets, "lidar");

@@ -31,7 +31,8 @@ Expectation expectation_from(const YamlNode& node) {
   const auto number = [&](const std::string& key, std::optional<double>& value) {
     if (!fields.contains(key)) return;
     if (out.metric.empty())
-      fields.at(key).fail("this value needs the key 'metric' in the same entry, which names the metric of the value");
+      fields.at(key).fail(
+          "this value needs the key 'metric' in the same entry; 'metric' is the name of the value's metric");
     value = fields.at(key).number();
   };
   number("worse_than", out.worse_than);

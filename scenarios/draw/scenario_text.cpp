@@ -172,7 +172,7 @@ const sim::Parameter& duration_parameter() {
 }
 
 Scenario refuse_base(const YamlNode& extends) {
-  extends.fail("a base can only be used in a scenario file");
+  extends.fail("the key 'extends' is allowed only in a scenario file; remove the key");
 }
 
 Scenario parse_scenario(const std::string& text, const std::string& file, const Registry& registry,
@@ -205,7 +205,8 @@ Scenario parse_scenario(const std::string& text, const std::string& file, const 
     const std::vector<DrawnNumber> drawn = drawn_numbers(out);
     if (!drawn.empty())
       fields.at("case").fail(
-          fmt::format("a named case describes one simulated run, but its number {} is random; give a constant",
+          fmt::format("the number {} is random, but all numbers of a named case must be constant, because a named case "
+                      "describes one simulated run",
                       drawn.front().place));
   }
   return out;

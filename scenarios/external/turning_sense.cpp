@@ -70,8 +70,8 @@ std::string turning_complaint(const Estimate& estimate, const sim::Sensors& sens
   const TurningFit& best = check.reading.undelayed;
   if (check.pairs == 0 || check.stated.difference <= kTurnsOtherwise || best.difference >= kTurnsAsSaid) return "";
   return fmt::format(
-      "the estimated attitudes in frame {} rotate differently from the gyro (difference {:.0f} % over {} pairs of "
-      "poses); the difference would be only {:.0f} % if {}",
+      "the rotations of the estimated attitudes (frame {}) differ from the rotations of the gyro by {:.0f} % ({} pairs "
+      "of poses). The difference would be only {:.0f} % if {}",
       to_string(estimate.frame), 100.0 * check.stated.difference, check.pairs, 100.0 * best.difference,
       text_of(best, frames[best.frame].name));
 }
@@ -85,9 +85,8 @@ std::string clock_complaint(const Estimate& estimate, const sim::Sensors& sensor
       likely.difference >= kTurnsOnceCorrected || !is_delayed(likely.delay_s))
     return "";
   return fmt::format(
-      "the estimated attitudes rotate differently from the gyro (difference {:.0f} % over {} pairs of poses); "
-      "corrected "
-      "time stamps would reduce the difference to {:.0f} %: {}",
+      "the rotations of the estimated attitudes differ from the rotations of the gyro by {:.0f} % ({} pairs of poses). "
+      "Corrected time stamps would reduce the difference to {:.0f} %: {}",
       100.0 * check.stated.difference, check.pairs, 100.0 * likely.difference, delay_remedy(likely.delay_s));
 }
 

@@ -125,9 +125,9 @@ Estimate run_attitude_tumble(const sim::Sensors& sensors, const sim::Values& par
 Method attitude_tumble() {
   return make_method({.name = "tumble",
                       .kind = Kind::attitude,
-                      .doc = "Estimates tilt and gyro bias from velocity constraints: the velocity is bounded in "
-                             "motion and zero at rest, and a sphere rolls without slip. For the other robots, "
-                             "rate/tumble replaces clipped and suspect rates.",
+                      .doc = "Estimates tilt and gyro bias with velocity constraints: bounded velocity in motion, zero "
+                             "velocity at rest, and rolling without slip for a sphere. For other robots, the rates of "
+                             "rate/tumble replace clipped and unreliable gyro readings.",
                       .ours = true,
                       .settings = {&attitude_tumble_settings()}},
                      at_sample_times<run_attitude_tumble>);

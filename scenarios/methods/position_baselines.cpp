@@ -126,8 +126,8 @@ Method position_rolling() {
   return make_method(
       {.name = "rolling",
        .kind = Kind::position,
-       .doc = "Assumes rolling without slip on a level plane: removes the gyro bias measured at rest, integrates the "
-              "gyro, and computes the velocity r w x n (r: radius, w: rate, n: plane normal).",
+       .doc = "Integrates the gyro after subtraction of the bias measured at rest. Computes the velocity of a sphere "
+              "that rolls without slip on a level plane: r w x n (r: radius, w: rate, n: plane normal).",
        .source = "textbook rolling constraint",
        .settings = {&default_settings<RestParams>(), &position_rolling_settings()},
        .robots = {"sphere"}},
@@ -138,8 +138,8 @@ Method position_autogain_fusion() {
   return make_method(
       {.name = "autogain_fusion",
        .kind = Kind::position,
-       .doc = "Averages the rolling velocity and the integrated acceleration, whose magnitude is limited. The attitude "
-              "comes from attitude/autogain.",
+       .doc = "Averages the rolling velocity and the velocity from integrated acceleration. The integrated velocity is "
+              "limited to a multiple of the rolling velocity. The attitude comes from attitude/autogain.",
        .source = "Zevering et al., IMU-based pose-estimation for spherical robots, IEEE MFI 2021, eqs 2-13",
        .settings = {&default_settings<baselines::Autogain::Params>(), &fusion_settings()},
        .robots = {"sphere"}},

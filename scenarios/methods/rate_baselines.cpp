@@ -106,7 +106,7 @@ Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std
   Status status = bridge::primary_imu_samples(sensors, samples);
   if (!status.ok()) return status;
   if (truth.imus.empty())
-    throw BadInput("the truth contains no IMU, but this method needs the unclipped readings of an IMU");
+    throw BadInput("this method needs unclipped IMU readings, but the truth contains no IMU readings");
   status = bridge::unclipped_samples(sensors.imus.front(), truth.imus.front(), samples);
   if (!status.ok()) return status;
   return raw_rates(sensors, samples, out);
@@ -137,14 +137,14 @@ Method rate_raw() {
 }
 
 Method rate_interpolate() {
-  return make_method(
-      {.name = "interpolate",
-       .kind = Kind::rate,
-       .doc = "Interpolates each clipped interval with a cubic that has the values and slopes of both ends and stays "
-              "beyond the saturation limit. The method is designed for short intervals without impact.",
-       .source = "textbook: cubic interpolation",
-       .settings = {&rate_interpolate_settings()}},
-      run_rate_interpolate);
+  return make_method({.name = "interpolate",
+                      .kind = Kind::rate,
+                      .doc = "Interpolates each clipped segment with a cubic polynomial. The polynomial continues the "
+                             "values and slopes at both ends of the segment, and stays beyond the saturation limit. "
+                             "The method is designed for short segments without impact.",
+                      .source = "textbook: cubic interpolation",
+                      .settings = {&rate_interpolate_settings()}},
+                     run_rate_interpolate);
 }
 
 Method rate_saave() {

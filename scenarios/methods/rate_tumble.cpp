@@ -109,10 +109,11 @@ Method rate_tumble() {
   return make_method(
       {.name = "tumble",
        .kind = Kind::rate,
-       .doc = "Smooths the rates of the whole recording. The smoother uses bounds from clipped readings, the specific "
-              "force at the lever arm in free flight, and Euler's equation. The method also calibrates the rig (lever "
-              "arm, biases, inertia ratios, gyro axis directions). The method uses all IMUs on the body except the "
-              "comparison IMU 'imu_reference'. During hand-held motion, the method runs the hand-held smoother.",
+       .doc = "Smooths the rates of the whole recording. A clipped reading is a lower bound of the rate's magnitude. "
+              "Euler's equation, and the specific force at the lever arm in free flight, also constrain the rate. The "
+              "method calibrates lever arm, biases, inertia ratios and gyro axis directions. The method uses all IMUs "
+              "on the body except 'imu_reference', which serves only for comparison. During hand-held motion, the "
+              "method runs the hand-held smoother.",
        .ours = true,
        .source = "ours: extends Deschenes et al., Saturation-Aware Angular Velocity Estimation, ICRA 2024",
        .settings = {&rate_tumble_settings()},
@@ -219,7 +220,7 @@ Method rate_tumble_lag() {
   return make_method(
       {.name = "tumble_lag",
        .kind = Kind::rate,
-       .doc = "Runs the smoother of rate/tumble as a stream: the same factors in a sliding window, with a fixed lag.",
+       .doc = "Runs the smoother of rate/tumble with a fixed lag, on a sliding window of recent readings.",
        .ours = true,
        .settings = {&rate_tumble_lag_settings()},
        .robots = {"rig", "pendulum", "sphere"}},

@@ -32,35 +32,36 @@ struct AlongParams {
     visit(p.grip_sigma_ratio,
           {"along_grip_sigma_share", "1", 1e-6, 1.0,
            "standard deviation of the rolling velocity while the sphere grips, as a share of the speed"});
-    visit(p.still_sigma_m_s, {"along_still_sigma_m_s", "m/s", 1e-9, 10.0,
-                              "standard deviation of the rolling velocity at rest, and minimum in motion"});
+    visit(p.still_sigma_m_s,
+          {"along_still_sigma_m_s", "m/s", 1e-9, 10.0,
+           "standard deviation of the rolling velocity at rest; in motion, a share of the speed is added"});
     visit(p.loose_sigma_share, {"along_loose_sigma_share", "1", 1e-6, 10.0,
-                                "standard deviation of the rolling velocity while the sphere does not grip or the "
-                                "radius is uncertain, as a share of the speed"});
+                                "standard deviation of the rolling velocity without grip, as a share of the speed; "
+                                "also used before the lidar has measured the radius"});
     visit(p.loose_sigma_m_s, {"along_loose_sigma_m_s", "m/s", 1e-9, 10.0,
-                              "minimum standard deviation of the velocity of a moving sphere while it does not grip or "
-                              "the radius is uncertain"});
+                              "minimum standard deviation of the velocity of a moving sphere without grip; also used "
+                              "before the lidar has measured the radius"});
     visit(p.rotation_sigma_rad,
           {"along_rotation_sigma_rad", "rad", 1e-9, 1.0,
            "standard deviation of the rotation between the ends of two consecutive sweeps, per axis"});
     visit(p.moving_m_s, {"along_moving_m_s", "m/s", 1e-6, 10.0, "minimum speed at which the sphere counts as moving"});
-    visit(p.correction_m,
-          {"along_correction_m", "m", 1e-6, 100.0, "maximum accepted position correction by registration"});
-    visit(p.correction_rad,
-          {"along_correction_rad", "rad", 1e-6, 3.0, "maximum accepted rotation correction by registration"});
+    visit(p.correction_m, {"along_correction_m", "m", 1e-6, 100.0,
+                           "registration rejects a sweep if the position correction exceeds this limit"});
+    visit(p.correction_rad, {"along_correction_rad", "rad", 1e-6, 3.0,
+                             "registration rejects a sweep if the rotation correction exceeds this limit"});
     visit(p.loose_correction_m, {"along_loose_correction_m", "m", 0.0, 100.0,
-                                 "additional position correction that is accepted while the radius is uncertain"});
+                                 "increase of along_correction_m before the lidar has measured the radius"});
     visit(p.segment_m, {"along_segment_m", "m", 0.01, 100.0,
                         "length of the rolled path over which the lidar measures the radius of the sphere"});
     visit(p.segment_sigma_m,
           {"along_segment_sigma_m", "m", 1e-6, 10.0,
-           "minimum standard deviation of the path length that the lidar measures, caused by registration errors"});
+           "minimum standard deviation of a path length measured by the lidar, to cover registration errors"});
     visit(p.corrected_sigmas, {"along_corrected_sigmas", "1", 0.0, 1e3,
-                               "the radius measured by the lidar is used if it differs from the stated radius by more "
-                               "than this many standard deviations"});
+                               "the lidar's radius replaces the stated radius only if both differ by more than this "
+                               "number of standard deviations"});
     visit(p.corrected_share, {"along_corrected_share", "1", 0.0, 1.0,
-                              "the radius measured by the lidar is used if it differs from the stated radius by more "
-                              "than this share of the stated radius"});
+                              "the lidar's radius replaces the stated radius only if both differ by more than this "
+                              "share of the stated radius"});
   }
 };
 

@@ -270,8 +270,8 @@ Method slam_tumble() {
 Method slam_tumble_lag() {
   return make_method({.name = "tumble_lag",
                       .kind = Kind::slam,
-                      .doc = "Runs TumblingOdometry (public API) in one causal pass; the final pose of a sweep is "
-                             "available at most 0.3 s later.",
+                      .doc = "Runs TumblingOdometry (public API) in one causal pass. The report of the next sweep "
+                             "contains the final pose of a sweep.",
                       .ours = true,
                       .settings = {&lag_settings()},
                       .robots = {"rig"}},

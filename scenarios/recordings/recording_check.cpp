@@ -295,7 +295,7 @@ std::string contacts_problem(const StoredContacts& contacts, std::size_t surface
 std::string attitude_problem(const Eigen::Quaterniond& q_WB, std::size_t) {
   const bool unknown = q_WB.coeffs().array().isNaN().all();  // the reference has no pose at this time
   if (unknown || std::abs(q_WB.squaredNorm() - 1.0) <= kUnitTolerance) return "";
-  return "the quaternion q_WB must have norm 1";
+  return "the quaternion q_WB (attitude of the body in the world) must have norm 1";
 }
 
 std::string label_problem(sim::ContactLabel label, std::size_t) {

@@ -65,8 +65,8 @@ std::optional<std::int64_t> clock_shift_ns(const StampSpan& moved, const StampSp
 
 std::string clock_note(const std::string& what, std::int64_t shift_ns) {
   return fmt::format(
-      "the time stamps of {} count from {} s; the import shifts them by {} s, because exported recordings start at {} "
-      "s",
+      "the time stamps of {} count from {} s. The import shifts these time stamps by {} s, because exported recordings "
+      "start at {} s",
       what, shift_ns > 0 ? 0 : kExportOrigin_ns / kSecond_ns, shift_ns / kSecond_ns, kExportOrigin_ns / kSecond_ns);
 }
 

@@ -86,8 +86,8 @@ std::vector<Metric> attitude_metrics() {
        Kind::attitude,
        tilt_coverage},
       {{"inclination_nees_median", Unit::number,
-        "consistency of the tilt covariance in motion: median of the squared error divided by the reported variance, "
-        "relative to a normal distribution; the ideal is 1",
+        "consistency of the tilt covariance in motion: median of squared error divided by reported variance, scaled so "
+        "that a correct covariance gives 1",
         Sense::two_sided, Place::held, 1.0},
        Kind::attitude,
        tilt_nees_median},

@@ -87,7 +87,9 @@ void add_bin(const char* axis, const std::string& words, std::vector<Metric>& al
   all.push_back(
       {{name("rate_error_median_rad_s"), Unit::rad_s, words, Sense::lower}, Kind::rate, error_in_bin<kAxis, kBin, 50>});
   all.push_back({{name("rate_error_p99_rad_s"), Unit::rad_s,
-                  "99th percentile of the rate error (norm) over the clipped samples of one bin", Sense::lower},
+                  "99th percentile of the rate error (norm) over clipped samples; the metric's name states which "
+                  "clipped samples count",
+                  Sense::lower},
                  Kind::rate,
                  error_in_bin<kAxis, kBin, 99>});
 }
@@ -102,9 +104,9 @@ void add_bins(const char* axis, const std::string& words, std::vector<Metric>& a
 std::vector<MetricInfo> binned_rate_quantities() {
   return {
       {"rate_error_median_rad_s", Unit::rad_s,
-       "median rate error (norm) over the clipped samples in one bin of the curve's x axis", Sense::lower},
+       "median rate error (norm) over the clipped samples in one bin of the plot's x axis", Sense::lower},
       {"rate_error_p99_rad_s", Unit::rad_s,
-       "99th percentile of the rate error (norm) over the clipped samples in one bin of the curve's x axis",
+       "99th percentile of the rate error (norm) over the clipped samples in one bin of the plot's x axis",
        Sense::lower},
       {"clip_depth_rad_s", Unit::rad_s, "largest saturation deficit of a gyro axis: true rate minus clipped reading"},
       {"clip_length_s", Unit::s, "length of a segment of clipped samples"},
@@ -115,13 +117,13 @@ std::vector<MetricInfo> binned_rate_quantities() {
 std::vector<Metric> binned_rate_metrics() {
   std::vector<Metric> all;
   add_bins<BinAxis::depth>("clip_depth_rad_s",
-                           "median rate error (norm) over clipped samples; the metric's name states the range of the "
-                           "largest saturation deficit",
+                           "median rate error (norm) over the clipped samples whose largest saturation deficit is in "
+                           "the range that the metric's name states",
                            all, std::make_index_sequence<kDepthEdges.size() - 1>());
-  add_bins<BinAxis::length>("clip_length_s",
-                            "median rate error (norm) over clipped samples; the metric's name states the range of the "
-                            "length of the clipped segment",
-                            all, std::make_index_sequence<kLengthEdges.size() - 1>());
+  add_bins<BinAxis::length>(
+      "clip_length_s",
+      "median rate error (norm) over the clipped segments whose duration is in the range that the metric's name states",
+      all, std::make_index_sequence<kLengthEdges.size() - 1>());
   add_bins<BinAxis::count>(
       "clipped_axes",
       "median rate error (norm) over clipped samples; the metric's name states the number of clipped gyro axes", all,

@@ -128,8 +128,8 @@ std::vector<std::size_t> registered_sweeps(const Estimate& estimate) {
 std::vector<Metric> end_pose_metrics() {
   return {
       {{"translation_error_end_m", Unit::m,
-        "translation error at the last sweep with IMU readings, relative to the sixth registered sweep. Without "
-        "sweeps: at the last pose, relative to the first pose",
+        "translation error at the last sweep with IMU readings, relative to the sixth registered sweep. For an "
+        "estimate without sweeps, the error at the last pose, relative to the first pose",
         Sense::lower, Place::headline},
        Kind::slam,
        translation_error_end},

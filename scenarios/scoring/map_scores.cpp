@@ -127,7 +127,7 @@ std::vector<Metric> map_metrics() {
        Kind::slam,
        fine_overlap},
       {{"map_coverage", Unit::share,
-        "share of the true surface cells (0.1 m) hit by the lidar that have a map point within 0.25 m", Sense::higher,
+        "share of the surface hit by the lidar (in cells of 0.1 m) that has a map point within 0.25 m", Sense::higher,
         Place::held, kNoTarget, Compared::by_difference},
        Kind::slam,
        map_coverage},
@@ -143,8 +143,8 @@ std::vector<Metric> map_metrics() {
        Kind::slam,
        unique_share},
       {{"map_failed", Unit::verdict,
-        "1 if the map is missing, covers less than half of the surface that the lidar hit, or has more than 15 % of "
-        "its points farther than 0.25 m from the true surface; otherwise 0",
+        "1 if the map failed, otherwise 0. A failed map is missing, covers less than half of the surface hit by the "
+        "lidar, or has over 15 % of points farther than 0.25 m from the surface",
         Sense::lower, Place::held},
        Kind::slam,
        failed},

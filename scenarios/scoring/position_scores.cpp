@@ -94,8 +94,8 @@ std::vector<Metric> position_metrics() {
        Kind::position,
        position_coverage_3sigma},
       {{"position_nees_median", Unit::number,
-        "median ratio of squared position error to reported variance, divided by the median for a normal distribution; "
-        "the ideal is 1",
+        "consistency of the position covariance: median of squared error divided by reported variance, scaled so that "
+        "a correct covariance gives 1",
         Sense::two_sided, Place::held, 1.0},
        Kind::position,
        nees_median},

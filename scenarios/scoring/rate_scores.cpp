@@ -173,8 +173,8 @@ std::vector<Metric> rate_metrics() {
        Kind::rate,
        coverage_3sigma_impact},
       {{"rate_coverage_3sigma_cross_axis", Unit::share,
-        "share of rate errors within three reported standard deviations, for unclipped axes on which a clipped axis "
-        "causes a cross-axis error",
+        "share of rate errors within three reported standard deviations, for unclipped axes with an error caused by a "
+        "clipped axis (cross-axis error)",
         Sense::two_sided, Place::detail, kNormal3Sigma, Compared::by_difference},
        Kind::rate,
        coverage_3sigma_cross_axis},

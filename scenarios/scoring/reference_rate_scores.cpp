@@ -144,17 +144,18 @@ std::vector<Metric> reference_rate_metrics() {
   std::vector<Metric> all;
   all.push_back(
       {{"rate_error_clipped_p90_rad_s", Unit::rad_s,
-        "90th percentile of the rate error (norm) over clipped samples, compared with a reference", Sense::lower},
+        "90th percentile of the rate error (norm) relative to a reference, over clipped samples", Sense::lower},
        Kind::rate,
        clipped_error<error_norm, 90, 7u>});
-  add_pair<error_speed, 7u>("speed_error",
-                            "error of the rate's magnitude over clipped samples, compared with a reference", all);
-  add_pair<error_axis<0>, 1u>("error_x", "rate error of axis x while axis x is clipped, compared with a reference",
-                              all);
-  add_pair<error_axis<1>, 2u>("error_y", "rate error of axis y while axis y is clipped, compared with a reference",
-                              all);
-  add_pair<error_axis<2>, 4u>("error_z", "rate error of axis z while axis z is clipped, compared with a reference",
-                              all);
+  add_pair<error_speed, 7u>(
+      "speed_error", "difference between the magnitudes of estimated rate and reference rate, over clipped samples",
+      all);
+  add_pair<error_axis<0>, 1u>(
+      "error_x", "rate error of axis x relative to a reference, over samples in which axis x is clipped", all);
+  add_pair<error_axis<1>, 2u>(
+      "error_y", "rate error of axis y relative to a reference, over samples in which axis y is clipped", all);
+  add_pair<error_axis<2>, 4u>(
+      "error_z", "rate error of axis z relative to a reference, over samples in which axis z is clipped", all);
   add_reference<error_norm>(
       "reference_error", "norm of the difference between the rates of reference and gyro, in motion without clipping",
       all);

@@ -212,7 +212,7 @@ std::vector<Metric> slip_metrics() {
        recall},
       {{"slip_flag_recall", Unit::share,
         "share of the true slip and slide events in which the reported horizontal variance grows by more than 0.0009 "
-        "m^2; counts only events that change the horizontal position error by more than 0.1 m",
+        "m^2. Only events that change the horizontal position error by more than 0.1 m count",
         Sense::higher, Place::detail, kNoTarget, Compared::by_difference},
        Kind::position,
        flag_recall},

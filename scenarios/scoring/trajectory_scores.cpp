@@ -85,8 +85,8 @@ std::vector<Metric> trajectory_metrics(Kind kind) {
        kind,
        ate},
       {{"ate_rad", Unit::rad,
-        "rms rotation error, from 0 to pi, including the effect of wrong time stamps; position and yaw of the estimate "
-        "are aligned with the truth at the start only",
+        "rms rotation error (0 to pi), including the effect of wrong time stamps. The estimate is aligned with the "
+        "truth in position and yaw, at the start only",
         Sense::lower, Place::held},
        kind,
        ate_rotation},
@@ -94,7 +94,7 @@ std::vector<Metric> trajectory_metrics(Kind kind) {
         Place::held},
        kind,
        rpe_m},
-      {{"rpe_1m_rad", Unit::rad, "rms rotation error of the relative motion over 1 m of true path, from 0 to pi",
+      {{"rpe_1m_rad", Unit::rad, "rms rotation error (0 to pi) of the relative motion over 1 m of true path",
         Sense::lower, Place::held},
        kind,
        rpe_rad},

@@ -62,8 +62,8 @@ double pairs_for_failures(std::int64_t only_first, std::int64_t only_second, std
   require(plan);
   if (only_first < 0 || only_second < 0 || only_first + only_second > pairs)
     throw BadInput(
-        fmt::format("sample size of a test: the numbers of pairs in which only one method fails are {} and {}; their "
-                    "sum must be at most the number of pairs, {}",
+        fmt::format("sample size of a test: only the first method fails in {} pairs, and only the second method in {}; "
+                    "the sum must be at most the number of pairs, {}",
                     only_first, only_second, pairs));
   if (only_first == only_second) return kInfinity;
   const auto n = static_cast<double>(pairs);

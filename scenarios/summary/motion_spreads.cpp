@@ -28,8 +28,10 @@ struct Quantity {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 constexpr std::array kQuantities = {
-    Quantity{"motion_peak_rate_rad_s", "largest rate", "rad/s", 1.0,
-             "rates up to 18.6 rad/s; the scenario 'hill' aims at 8 to 25 rad/s, with a median of 13 to 16", 8.0, 25.0},
+    Quantity{
+        "motion_peak_rate_rad_s", "largest rate", "rad/s", 1.0,
+        "up to 18.6 rad/s in the published campaign; target of the scenario 'hill': 8 to 25 rad/s, median 13 to 16",
+        8.0, 25.0},
     Quantity{"motion_clipped_share", "share of the samples in motion with a clipped gyro axis", "%", 100.0, "", kNone,
              kNone},
     Quantity{"motion_several_axes_share",
@@ -44,8 +46,8 @@ constexpr std::array kQuantities = {
              "%", 100.0, "", kNone, kNone, Over::clipped_samples},
     Quantity{"motion_path_m", "path", "m", 1.0, "5 to 10", 5.0, 10.0},
     Quantity{"motion_peak_accel_m_s2", "largest specific force", "m/s²", 1.0,
-             "specific forces up to 157.8 m/s²; an accelerometer with a range of 16 g saturates at 156.9", 157.8,
-             157.8},
+             "up to 157.8 m/s² in the published campaign; an accelerometer with a range of 16 g saturates at 156.9",
+             157.8, 157.8},
     Quantity{"motion_clips", "share of the simulated runs in which the gyro clips", "%", 100.0, "target: 90", kNone,
              kNone, Over::share_of_draws},
 };

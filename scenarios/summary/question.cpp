@@ -28,8 +28,8 @@ void require_contest(const std::string& metric, const std::string& kind) {
   const auto own = std::find_if(all.begin(), all.end(), [&](const Metric& m) { return m.info.name == info.name; });
   if (own == all.end() || info.sense == Sense::none)
     throw BadInput(
-        fmt::format("metric '{}' of a question is unknown or cannot rank methods; choose a metric for which lower or "
-                    "higher is better",
+        fmt::format("--until: the metric '{}' is unknown or cannot rank methods; choose a metric for which lower or "
+                    "higher values are better",
                     metric));
   if (to_string(own->kind) != kind)
     throw BadInput(fmt::format("metric '{}' is of kind '{}'; it must be of kind '{}', like the methods", metric,
@@ -123,8 +123,8 @@ void claim(Results& results, const Question& question, const std::filesystem::pa
   if (known == asked) return;
   if (!known.empty())
     throw BadInput(
-        fmt::format("{}: this file belongs to the question '{}', but the question of this run is '{}'; choose another "
-                    "file",
+        fmt::format("{}: this database belongs to a sweep with the --until question '{}', but this sweep has the "
+                    "question '{}'; choose another file",
                     database.string(), known, asked));
   if (!results.outcomes().empty())
     throw BadInput(
@@ -146,7 +146,7 @@ std::vector<Answer> answers(const Results& results, const Question& question, st
 }
 
 const char* finding_text(const Answer& answer, const Question& question) {
-  return answer.finding == Finding::worse && question.margin.value > 0.0 ? "not better by the margin of --until"
+  return answer.finding == Finding::worse && question.margin.value > 0.0 ? "not better by more than the margin"
                                                                          : to_string(answer.finding);
 }
 

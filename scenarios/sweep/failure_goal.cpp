@@ -82,8 +82,8 @@ FailureGoal parse_goal(const std::string& text, Kind kind) {
   if (sign == std::string::npos || trimmed(text.substr(0, sign)).empty() ||
       !read_number(trimmed(text.substr(sign + 1)), goal.limit) || std::isnan(goal.limit))
     throw BadInput(
-        fmt::format("--failure is '{}'; write 'METRIC > VALUE' with a number in SI units. With 'METRIC > inf', only "
-                    "runs whose status is not ok fail",
+        fmt::format("--failure is '{}'; write 'METRIC > VALUE' with a number in SI units. 'METRIC > inf' counts only "
+                    "runs with a status other than ok",
                     shortened(text)));
   goal.metric = trimmed(text.substr(0, sign));
   require_metric(goal.metric, kind);

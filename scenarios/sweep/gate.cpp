@@ -220,7 +220,7 @@ std::vector<GateResult> hold_to_gate(const GateRun& run, const Gate& gate) {
   if (run.seeds != gate.accepted.seeds) {
     throw BadInput(
         fmt::format("the accepted results of suite {} have other seeds ({} simulated runs) than this comparison ({} "
-                    "simulated runs); use the same seeds, or run 'tumble gate {} --accept' to accept the new results",
+                    "simulated runs). Use the same seeds, or run 'tumble gate {} --accept' to accept the new results",
                     gate.suite, gate.accepted.seeds.size(), run.seeds.size(), gate.suite));
   }
   std::vector<Pooled> all = pooled_metrics(gate.accepted);

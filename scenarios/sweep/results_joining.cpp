@@ -277,10 +277,10 @@ class Joining {
   }
 
   [[noreturn]] void complain(const ShardRow& row, const std::string& known, const std::string& digest) const {
-    throw BadInput(fmt::format(
-        "{}: {}: the method run has status {} and estimate digest '{}', but status {} and digest '{}' in another "
-        "database; one build must give the same result everywhere",
-        path_.string(), words(row), row.status, row.estimate_digest, known, digest));
+    throw BadInput(
+        fmt::format("{}: {}: the result has status {} and digest '{}', but another database has status {} and digest "
+                    "'{}'. Results of one build must be equal",
+                    path_.string(), words(row), row.status, row.estimate_digest, known, digest));
   }
 
   void require_same_scores(const ShardRow& row, std::int64_t held) {
@@ -306,9 +306,8 @@ class Joining {
 
   [[noreturn]] void differ(const ShardRow& row, const std::string& metric, const std::string& here,
                            const std::string& elsewhere) const {
-    throw BadInput(
-        fmt::format("{}: {}: {} is {}, but {} in another database; one build must give the same result everywhere",
-                    path_.string(), words(row), metric, here, elsewhere));
+    throw BadInput(fmt::format("{}: {}: {} is {}, but {} in another database; results of one build must be equal",
+                               path_.string(), words(row), metric, here, elsewhere));
   }
 
   template <typename Visit>

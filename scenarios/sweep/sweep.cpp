@@ -32,10 +32,10 @@ void claim(Results& results, const DataRoot& data, const Suite& suite, const std
   if (known.empty()) {
     results.set_note("data", digest);
   } else if (known != digest) {
-    throw BadInput(
-        fmt::format("{}: the results in this file were made from other models or scenarios (digest {}; digest of this "
-                    "run: {}). One file cannot contain outcomes of both, so choose another file",
-                    database.string(), known, digest));
+    throw BadInput(fmt::format(
+        "{}: the results in this file were made from other models or scenarios (digest {}; digest of this run: {}). "
+        "Choose another file, because one file cannot contain results of different models or scenarios",
+        database.string(), known, digest));
   }
   results.set_note("suite", suite.name);
   if (!suite.recordings.empty()) results.set_note("source", kRecordingsSource);

@@ -133,8 +133,9 @@ void check(const Variation& variation, const DataRoot& data, std::span<const std
   for (const std::string& key : variation.keys) {
     const Reach own = reach_of(key), first = reach_of(variation.keys.front());
     if (own != first) {
-      throw BadInput(fmt::format("key '{}' is {}, and key '{}' is {}; keys of different kinds cannot vary together",
-                                 key, words(own), variation.keys.front(), words(first)));
+      throw BadInput(
+          fmt::format("key '{}' sets {}, but key '{}' sets {}; keys that vary together must be of the same kind", key,
+                      words(own), variation.keys.front(), words(first)));
     }
     if (own == Reach::method) check_parameter(key, variation.values);
     for (const std::string& name : scenarios) {
@@ -306,14 +307,14 @@ std::span<const GivenError> given_errors() {
                  false,
                  radius},
       GivenError{{"rate_error_rad_s", 0.0, 0.0, 1000.0, "rad/s",
-                  "error that replaces clipping: each clipped gyro reading becomes the unclipped reading plus an error "
-                  "of this magnitude. The error is constant over each clipped segment, and methods receive these "
-                  "readings as valid"},
+                  "error of clipped gyro readings: replaces each clipped reading by the unclipped reading plus an "
+                  "error of this magnitude. The error is constant in each clipped segment. Methods receive the new "
+                  "readings as unclipped"},
                  false,
                  rate_error},
       GivenError{{"stated_rail_error", 0.0, -0.9, 9.0, "1",
-                  "error of the stated gyro range, as a share of the true saturation limit; methods do not receive the "
-                  "device's clip flags"},
+                  "error of the stated gyro range, as a share of the true saturation limit. With this error, methods "
+                  "receive no saturation flags from the device"},
                  false,
                  stated_rail,
                  report_rail},

@@ -44,8 +44,8 @@ void note_points_to_come(const std::string& topic, const BuiltSweeps& built, con
   if (middle_s < kAhead_s) return;
   notes.push_back(
       fmt::format("{}: caution: the last points of a sweep are {} s later than the record stamp, so the header stamp "
-                  "may be the end of the sweep. The import reads the header stamp as the start (set '--stamps record' "
-                  "to start each sweep one period before its record stamp)",
+                  "may be the end of the sweep. The import assumes that the header stamp is the start (set '--stamps "
+                  "record' to start each sweep one sweep period before its record stamp)",
                   topic, std::to_string(middle_s)));
 }
 
@@ -168,8 +168,8 @@ Cloud cloud_of(const ros::PointCloud2& message, const std::string& where) {
   if (status.error_code == ErrorCode::empty) return out;
   if (!status.ok()) {
     throw BadInput(
-        fmt::format("{}: the cloud of {} x {} points with {} bytes each does not match its {} bytes of data, or has an "
-                    "unsupported layout: {}",
+        fmt::format("{}: the cloud has {} x {} points of {} bytes each and {} bytes of data. The sizes contradict each "
+                    "other, or the layout is not supported: {}",
                     where, view.height, view.width, view.point_step, view.data.size(), status.message()));
   }
   out.points = std::size_t{view.width} * view.height;

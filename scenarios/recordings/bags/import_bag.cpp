@@ -261,9 +261,8 @@ Imported import_bag(BagReader& reader, const std::filesystem::path& path, const 
   add_lidars(bag, places, reading, out);
   note_unread_clouds(bag, out.notes);
   if (out.sensors.imus.empty() && out.sensors.lidars.empty()) {
-    throw BadInput(
-        fmt::format("{}: the bag has no topic of type {}, {} or CustomMsg with messages (existing topics:{})",
-                    path.string(), kImu, kCloud, bag.topic_list()));
+    throw BadInput(fmt::format("{}: the bag contains no messages of type {}, {} or CustomMsg (existing topics:{})",
+                               path.string(), kImu, kCloud, bag.topic_list()));
   }
   out.info.attribution = "imported from " + path.filename().string();
   require_one_clock(out.sensors, reading.stamps == StampSource::header, path);

@@ -199,7 +199,8 @@ void File::take_indexed(std::vector<ChunkIndex> chunks) {
       if (!channels_.contains(channel)) return segments_.clear();  // scan the file if channels are missing
       if (place < at + each.chunk_length || place >= free)
         fail(place,
-             fmt::format("a message index must follow its chunk at byte {}, but does not: the file is damaged", at));
+             fmt::format(
+                 "the chunk at byte {} must be followed by its message indexes, but is not: the file is damaged", at));
     }
     segments_.push_back({at, each.chunk_length, each.message_start_time, each.message_end_time, each});
   }

@@ -84,9 +84,10 @@ class TopicWalk {
     std::sort(index->entries.begin(), index->entries.end());
     std::sort(found.begin(), found.end());
     if (index->entries == found) return;
-    file_.fail(segment.at, fmt::format("the message index of a chunk lists {} messages of channel {}, but the chunk "
-                                       "contains {}, or their times or positions differ: the file is damaged",
-                                       index->entries.size(), channel, found.size()));
+    file_.fail(segment.at,
+               fmt::format("the message index of a chunk lists {} messages of channel {}, and the chunk contains {}. "
+                           "Number, times and positions of the messages must be equal: the file is damaged",
+                           index->entries.size(), channel, found.size()));
   }
 
   void hold(const Segment& segment, std::uint64_t time_ns, std::string_view bytes) {

@@ -146,8 +146,8 @@ void unpack(const path& file, const path& to) {
       bytes += out.pos;
       if (bytes > most)
         fail(
-            fmt::format("the unpacked bag has more than {} bytes: {} has too little space, or the file is not a "
-                        "compressed bag; set TMPDIR to another folder, or check the file",
+            fmt::format("the unpacked bag has more than {} bytes. Either {} has too little space (set TMPDIR to "
+                        "another folder), or the file is not a compressed bag",
                         most, to.parent_path().string()));
       unpacked.write(given.data(), static_cast<std::streamsize>(out.pos));
       full = out.pos == out.size;

@@ -65,8 +65,8 @@ void SensorMountings::mounting_in_body(const std::string& topic, const Eigen::Is
         fmt::format("{}: /tf_static contains the sensor's pose in '{}': {}", topic, body, pose_text(stated)));
   } else if (!(T_BA.matrix() - stated.matrix()).isZero(kSame)) {
     notes.push_back(
-        fmt::format("{}: caution: /tf_static contains the sensor's pose in '{}' as {}, but your option states the pose "
-                    "{}; the import uses your option",
+        fmt::format("{}: caution: /tf_static states the sensor's pose in '{}' as {}, but your option states {}. The "
+                    "import uses your option",
                     topic, body, pose_text(stated), pose_text(T_BA)));
   }
 }
@@ -122,8 +122,7 @@ void StaticFrames::add(const ros::TransformStamped& transform, const std::string
     remarks_.push_back(fmt::format("caution: the import ignores an invalid transform: {}", hung.problem));
   if (const auto before = frames_.find(child); before != frames_.end() && before->second.parent != parent) {
     remarks_.push_back(
-        fmt::format("caution: frame '{}' has the parent '{}' and later the parent '{}'; a frame may have only one "
-                    "parent, so the later parent is used ({})",
+        fmt::format("caution: frame '{}' has two parents, '{}' and later '{}'; the import uses the later parent ({})",
                     child, before->second.parent, parent, where));
   }
   frames_.insert_or_assign(child, std::move(hung));

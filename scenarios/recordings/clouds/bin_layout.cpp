@@ -147,8 +147,8 @@ std::string contradiction_to_kitti(std::span<const char> bytes) {
   const double as_kitti = columns_differ(floats, bins_of(floats), kKitti);
   if (!(other.differ > kClearlyMore * as_kitti + kClearlyMoreBy)) return "";
   return fmt::format(
-      "the numbers match {} columns of float32 better than the expected 4 (x y z intensity): the distributions of the "
-      "columns differ by {:.2f}, but only by {:.2f} with 4 columns (0: equal, 1: disjoint)",
+      "the numbers match {} columns of float32 better than the expected 4 (x y z intensity). The distributions of the "
+      "columns differ by {:.2f}, compared with {:.2f} for 4 columns (0: equal, 1: disjoint)",
       other.columns, other.differ, as_kitti);
 }
 

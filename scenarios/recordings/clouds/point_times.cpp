@@ -112,15 +112,15 @@ double unit_by_size(double span, double largest, double period_ns, const std::st
   append_number(period, period_ns * 1e-6);
   if (!(period_ns > 0.0)) {
     throw BadInput(
-        fmt::format("{}: the point times in field '{}' have a range of {} in a sweep. Their unit is unknown, because "
-                    "they are not times since 1970 and the sweep period is unknown; state the times of the sweeps "
-                    "(--times), or the duration of one sweep (--sweep-period)",
+        fmt::format("{}: the unit of the point times in field '{}' is unknown: the times of a sweep have a range of "
+                    "{}, and the sweep period is unknown. State the times of the sweeps (--times), or the duration of "
+                    "one sweep (--sweep-period)",
                     where, field, range));
   }
-  throw BadInput(
-      fmt::format("{}: the point times in field '{}' have a range of {} in a sweep. In none of the units s, ms, us and "
-                  "ns is this range 0.15 to 150 % of the sweep period ({} ms). State the unit (--time-unit)",
-                  where, field, range, period));
+  throw BadInput(fmt::format(
+      "{}: the point times in field '{}' have a range of {} in a sweep, which fits none of the units s, ms, us and ns. "
+      "The range must be 0.15 to 150 % of the sweep period ({} ms). State the unit (--time-unit)",
+      where, field, range, period));
 }
 
 }  // namespace

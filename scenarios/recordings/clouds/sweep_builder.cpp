@@ -69,9 +69,10 @@ std::string in_ns(std::int64_t time_ns) {
 std::string said(const PointTimeRule& rule) {
   const char* unit = rule.unit_ns == 1e9 ? "s" : rule.unit_ns == 1e6 ? "ms" : rule.unit_ns == 1e3 ? "us" : "ns";
   return rule.absolute
-             ? fmt::format("the point times come from field '{}', in {} on the lidar's clock", rule.field, unit)
-             : fmt::format("the point times come from field '{}', in {} after the sweep's time stamp", rule.field,
-                           unit);
+             ? fmt::format("the point times come from field '{}', which counts {} on the lidar's clock", rule.field,
+                           unit)
+             : fmt::format("the point times come from field '{}', which counts {} from the sweep's time stamp",
+                           rule.field, unit);
 }
 
 std::int64_t middle_of(const std::vector<std::optional<std::int64_t>>& times_ns) {
@@ -343,8 +344,8 @@ void SweepBuilder::note_dropped_points(std::vector<std::string>& notes) const {
   if (dark_ > 0) notes.push_back(fmt::format("{} points have no valid intensity; the import stores 0", dark_));
   if (viewpoints_ > 0)
     notes.push_back(
-        fmt::format("{} sweeps have a VIEWPOINT, which the import ignores: it reads the points as coordinates in the "
-                    "lidar's axes (first VIEWPOINT: {})",
+        fmt::format("{} sweeps have a VIEWPOINT. The import ignores the VIEWPOINT and reads the points as coordinates "
+                    "in the lidar's axes (first VIEWPOINT: {})",
                     viewpoints_, first_viewpoint_));
   if (record_.point_times == sim::PointTimes::unknown)
     notes.push_back(

@@ -83,7 +83,7 @@ void require_room(const VtkWords& words, std::uint64_t count, std::uint64_t each
   }
   if (count * each * 2 > words.left() + 1) {
     words.fail(
-        fmt::format("the VTK file states {} times {} numbers, but only {} bytes follow; the file may be truncated",
+        fmt::format("the VTK file states {} rows of {} numbers, but only {} bytes follow; the file may be truncated",
                     count, each, words.left()));
   }
 }

@@ -112,7 +112,8 @@ ImuPosition estimate_imu_position(const sim::ImuRecord& first, const sim::ImuRec
   out.samples = pairs.size();
   if (pairs.size() < kSamplesMin) {
     out.problem = fmt::format(
-        "only {} samples have a rate above {} rad/s and no saturated gyro; an estimate of the IMU's position needs {}",
+        "only {} samples have a rate above {} rad/s without saturation; an estimate of the IMU's position needs {} "
+        "such samples",
         pairs.size(), rounded(kRateMin_rad_s), kSamplesMin);
     return out;
   }
@@ -254,8 +255,8 @@ void add_further_imu(const Read& read, const std::vector<std::string>& imus, std
       imu.T_BI.translation() += imu.T_BI.linear() * p;
       out.sensors.imus.push_back(std::move(imu));
       out.notes.push_back(
-          fmt::format("IMU {} is at {} {} {} m from IMU {} with a standard deviation of {} m, estimated from {} "
-                      "samples. The import assumes that both IMUs have the same axes",
+          fmt::format("the estimated position of IMU {} is {} {} {} m relative to IMU {} (standard deviation {} m, {} "
+                      "samples). The import assumes that both IMUs have the same axes",
                       imus[i], rounded(p.x()), rounded(p.y()), rounded(p.z()), imus.front(),
                       rounded(position.sigma_m.maxCoeff()), position.samples));
     }

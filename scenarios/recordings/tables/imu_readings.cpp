@@ -90,8 +90,8 @@ void require_rates_in_range(const std::string& where, const sim::ImuRecord& imu,
   const bool as_rad = unit == GyroUnit::rad_s;
   const bool degrees = as_rad && beyond_share(imu, bound, 1.0 / kDegreesPerRadian) <= kBeyondShare;
   const std::string text = fmt::format(
-      "{}: if the gyro is read in {}, {} % of the rates exceed {} rad/s, which is {}. At most 1 % of the rates may "
-      "exceed this limit. The rates may be in {}{}",
+      "{}: if the gyro is read in {}, {} % of the rates exceed {} rad/s ({}). At most 1 % of the rates may exceed this "
+      "limit. The rates may be in {}{}",
       where, as_rad ? "rad/s" : "deg/s", rounded(100.0 * share), rounded(bound),
       stated ? "twice the device's range" : "above any robot's rate", degrees ? "deg/s" : "raw counts of the sensor",
       degrees ? kTakenInDegrees : "");
@@ -235,8 +235,8 @@ std::string undetermined_text(const GravityRotation& turn) {
   if (turn.windows < kLeastWindows)
     return "unit and axes are not checked, because gravity rotates too little in the accelerometer axes";
   return fmt::format(
-      "unit and axes are not checked, because the rotation of the specific force agrees too little with the gyro ({} "
-      "windows, correlation {})",
+      "unit and axes are not checked, because gyro and accelerometer measure different rotations ({} time windows, "
+      "correlation {})",
       turn.windows, rounded(turn.correlation));
 }
 
@@ -254,22 +254,24 @@ std::string require_plausible_rates(const std::string& where, const sim::ImuReco
   }
   if (!has_sufficient_rotation(turn)) return "";
   const std::string seen = fmt::format(
-      "gravity rotates {} times as far in the accelerometer axes as the gyro measures ({} windows, correlation {})",
+      "the rotation measured by the accelerometer is {} times the rotation measured by the gyro ({} time windows, "
+      "correlation {})",
       rounded(turn.ratio), turn.windows, rounded(turn.correlation));
   const bool as_deg = unit == GyroUnit::deg_s;
   if (!as_deg && near_factor(turn.ratio, 1.0 / kDegreesPerRadian))
-    throw RepairableInput(fmt::format("{}: if the gyro is read in rad/s, {}. The ratio of both rotations must be from "
-                                      "0.5 to 2. The rates may be in deg/s{}",
+    throw RepairableInput(fmt::format("{}: if the gyro is read in rad/s, {}. The ratio of accelerometer rotation to "
+                                      "gyro rotation must be from 0.5 to 2. The rates may be in deg/s{}",
                                       where, seen, kTakenInDegrees),
                           {"--gyro-unit", "deg/s"});
   if (as_deg && near_factor(turn.ratio, kDegreesPerRadian))
-    throw RepairableInput(fmt::format("{}: if the gyro is read in deg/s, {}. The ratio of both rotations must be from "
-                                      "0.5 to 2. The rates may be in rad/s{}",
+    throw RepairableInput(fmt::format("{}: if the gyro is read in deg/s, {}. The ratio of accelerometer rotation to "
+                                      "gyro rotation must be from 0.5 to 2. The rates may be in rad/s{}",
                                       where, seen, kTakenInRadians),
                           {"--gyro-unit", "rad/s"});
   if (near_factor(turn.ratio, 1.0)) return fmt::format("{}, so gyro and accelerometer agree in units and axes", seen);
   return fmt::format(
-      "caution: {}. The ratio of both rotations should be 1. Check the unit, the signs and the order of the axes",
+      "caution: {}. The ratio of accelerometer rotation to gyro rotation should be 1. Check the unit, the signs and "
+      "the order of the axes",
       seen);
 }
 
@@ -353,8 +355,8 @@ std::string even_out_stamps(sim::ImuRecord& imu) {
   imu.time_ns = evened(imu.time_ns);
   imu.period_ns = mean_step_ns(imu.time_ns);
   return fmt::format(
-      "the time stamps are whole milliseconds, but the IMU samples every {} ms; the import replaces them by equally "
-      "spaced times, with shifts of at most 1 ms",
+      "the time stamps are whole milliseconds, but the IMU samples every {} ms. The import replaces the time stamps by "
+      "equally spaced times, which shifts each time by at most 1 ms",
       rounded(1e-6 * static_cast<double>(imu.period_ns)));
 }
 

@@ -205,11 +205,10 @@ std::string pose_format(const std::filesystem::path& file) {
   for (std::string word; words >> word; ++count) others += parse_number(word, number) ? 0 : 1;
   if (count == 8 && others == 0) return "tum";
   if (count == 12 && others == 0) return "kitti";
-  throw BadInput(
-      fmt::format("{}: the first line has {} numbers{}; it must have 8 (TUM: t x y z qx qy qz qw) or 12 (KITTI: rows "
-                  "of a matrix), or be the header of a table of poses with the names of time, position and quaternion "
-                  "(timestamp,x,y,z,qx,qy,qz,qw)",
-                  file.string(), count - others, others == 0 ? "" : fmt::format(" and {} other words", others)));
+  throw BadInput(fmt::format(
+      "{}: the first line has {} numbers{}. A line of a TUM file has 8 numbers (t x y z qx qy qz qw), and a line of a "
+      "KITTI file has 12 (rows of a matrix). A table of poses starts with a header (timestamp,x,y,z,qx,qy,qz,qw)",
+      file.string(), count - others, others == 0 ? "" : fmt::format(" and {} other words", others)));
 }
 
 std::vector<ReferencePose> read_tum_poses(const std::filesystem::path& file, bool sorted) {

@@ -58,21 +58,21 @@ std::string caution(const TurningCheck& check, const std::string& frame, const s
                            fmt::format("; these rotations should differ by at most {}; ", share_text(kContradicts));
   const TurningFit& reading = check.reading.undelayed;
   if (reading.difference < kReferenceAgrees && reading.written == QuaternionConvention::as_stated) {
-    return text + fmt::format("the rotations would differ by only {} if the poses belonged to the {}{}",
-                              share_text(reading.difference), frame,
-                              frame == "IMU" ? "" : ": give --reference-frame " + frame);
+    return text + fmt::format(
+                      "the rotations of reference and gyro would differ by only {} if the poses belonged to the {}{}",
+                      share_text(reading.difference), frame, frame == "IMU" ? "" : ": give --reference-frame " + frame);
   }
   const MountingFit& mounting = check.mounting.undelayed;
   if (mounting.difference < kReferenceAgrees) {
     const Eigen::Quaterniond& q = mounting.q_AI;
     return text + fmt::format(
-                      "the rotations would differ by only {} if the IMU were rotated in the frame of the poses by the "
-                      "quaternion x y z w {:.4f} {:.4f} {:.4f} {:.4f}; check the mounting",
+                      "the rotations of reference and gyro would differ by only {} if the IMU's orientation in the "
+                      "frame of the poses were x y z w {:.4f} {:.4f} {:.4f} {:.4f}; check the mounting",
                       share_text(mounting.difference), q.x(), q.y(), q.z(), q.w());
   }
   return text + fmt::format(
-                    "no other order or direction of the quaternions, no other frame and no delay within {:.0f} s "
-                    "explains this difference; the reference may belong to another recording",
+                    "the program tested other quaternion conventions, other frames and delays up to {:.0f} s, and none "
+                    "explains this difference. The reference may belong to another recording",
                     kDelaySearched_s);
 }
 
@@ -132,14 +132,14 @@ std::string check_reference(const std::vector<ReferencePose>& poses, const Eigen
   const TurningCheck check = check_turning(attitudes, frames, imu, kDelaySearched_s);
   if (check.pairs == 0)
     return fmt::format(
-        "the reference is not checked against a gyro: in too few pairs of poses (0.05 to 1 s apart), the reference "
-        "rotates by at least 0.02 rad and the gyro of '{}' is not saturated",
+        "the reference is not checked against the gyro of '{}': there are too few pairs of poses, 0.05 to 1 s apart, "
+        "with a rotation of at least 0.02 rad and without saturation",
         imu.name);
   if (check.upright) {
     throw BadInput(
         fmt::format("{}: the mean specific force of '{}' should point up, but differs from the vertical of the "
                     "reference by more than 60 degrees. The rotations of the reference agree with the gyro, but "
-                    "another order or direction of the quaternions agrees equally well{}",
+                    "another quaternion convention agrees equally well{}",
                     where, imu.name, remedy(check.upright->written, 0.0)));
   }
   require_reading_as_stated(check, imu.name, where);

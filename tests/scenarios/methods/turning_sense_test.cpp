@@ -97,7 +97,7 @@ TEST_P(TurningSense, AConstantDelayIsNamed) {
 TEST(TurningSense, AnotherFrameIsNamed) {
   const sim::Sensors rig = sensors();
   const Estimate lidar = attitudes(rig.lidars.front().T_BL.linear(), Frame::imu, as_is);
-  EXPECT_THAT(turning_complaint(lidar, rig), HasSubstr("in frame imu rotate differently from the gyro"));
+  EXPECT_THAT(turning_complaint(lidar, rig), HasSubstr("(frame imu) differ from the rotations of the gyro by"));
   EXPECT_THAT(turning_complaint(lidar, rig), HasSubstr("if the poses belonged to the frame lidar"));
 }
 

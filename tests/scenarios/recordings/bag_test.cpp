@@ -206,12 +206,12 @@ TEST_P(Bag, RatesInDegreesAreNoticedByGravity) {
   EXPECT_THAT(in_degrees.notes, testing::Contains(HasSubstr("gyro and accelerometer agree in units and axes")));
   EXPECT_TRUE(in_degrees.sensors.imus[0].gyro_rad_s[0].isApprox(Eigen::Vector3d(1.0, 0.0, 0.0), 1e-7));
   turning(1.0, 1.0);
-  EXPECT_THAT(complaint_of(), HasSubstr("if the gyro is read in deg/s, gravity rotates"));
+  EXPECT_THAT(complaint_of(), HasSubstr("if the gyro is read in deg/s, the rotation measured by the accelerometer"));
   EXPECT_THAT(complaint_of(), HasSubstr("The rates may be in rad/s"));
   reading_.gyro_unit = GyroUnit::rad_s;
   turning(1.0, -1.0);
   EXPECT_THAT(read().notes,
-              testing::Contains(HasSubstr("caution: gravity rotates -1 times as far in the accelerometer axes")));
+              testing::Contains(HasSubstr("caution: the rotation measured by the accelerometer is -1 times")));
 }
 
 TEST_P(Bag, AnImuThatIsNoneIsSaidWithTheWayOut) {

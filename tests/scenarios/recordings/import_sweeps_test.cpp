@@ -277,8 +277,9 @@ TEST_F(ImportSweeps, TimesOverAPartOfASweepAreReadWithACaution) {
   put("times.txt", "1.0\n1.1\n");
   for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("uint time_stamp", ns));
   EXPECT_EQ(import().point_times, sim::PointTimes::measured);
-  EXPECT_THAT(imported_.notes,
-              testing::Contains("the point times come from field 'time_stamp', in ns after the sweep's time stamp"));
+  EXPECT_THAT(
+      imported_.notes,
+      testing::Contains("the point times come from field 'time_stamp', which counts ns from the sweep's time stamp"));
   EXPECT_THAT(imported_.notes, testing::Contains(HasSubstr("caution: the point times span less than 2 %")));
 }
 
@@ -297,7 +298,7 @@ TEST_F(ImportSweeps, AUnitThatTheNumbersContradictIsRefusedWithBoth) {
   for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("float time", us));
   import();
   EXPECT_THAT(imported_.notes,
-              testing::Contains("the point times come from field 'time', in us after the sweep's time stamp"));
+              testing::Contains("the point times come from field 'time', which counts us from the sweep's time stamp"));
   source_.reading.time_unit = "ns";
   EXPECT_THAT(
       complaint_of(),

@@ -126,8 +126,9 @@ TEST(LidarRotation, DegreesAreRefusedWithTheOptionThatTakesThem) {
     with_gyro(-degrees);
     FAIL() << "degrees per second were taken for radians";
   } catch (const BadInput& error) {
-    EXPECT_THAT(error.what(), AllOf(HasSubstr("bag: 'imu'"), HasSubstr("0.0175 times as far as the gyro"),
-                                    HasSubstr("set '--gyro-unit deg/s'")));
+    EXPECT_THAT(error.what(),
+                AllOf(HasSubstr("bag: 'imu'"), HasSubstr("the ratio of lidar rotation to gyro rotation is 0.0175"),
+                      HasSubstr("set '--gyro-unit deg/s'")));
   }
   EXPECT_THROW(with_gyro(Eigen::Matrix3d::Identity() / kDegrees, GyroUnit::deg_s), BadInput);
   EXPECT_THAT(with_gyro(degrees, GyroUnit::deg_s), HasSubstr("caution: if the gyro is read in deg/s"));

@@ -86,7 +86,7 @@ TEST_F(Mcap, MessagesOfRos1AreReadToo) {
 
 TEST_F(Mcap, OtherEncodingsAreNamed) {
   shape_.channel.message_encoding = "json";
-  EXPECT_THAT(complaint_of(shape_), HasSubstr("the bag has no topic of type sensor_msgs/Imu"));
+  EXPECT_THAT(complaint_of(shape_), HasSubstr("the bag contains no messages of type sensor_msgs/Imu"));
   fixture::put(file(), fixture::mcap_bytes(shape_));
   BagReading reading;
   reading.imu_topics = {"/imu"};
@@ -156,12 +156,12 @@ const Lie kLies[] = {
      },
      "is not allowed in the summary offset section"},
     {"PlaceOfAMessage", [](McapShape& s) { s.index = [](mcap::MessageIndex& i) { i.entries[3].second += 1; }; },
-     "the message index of a chunk lists 20 messages of channel 1, but the chunk contains 20, or their times or "
-     "positions differ: the file is damaged"},
+     "the message index of a chunk lists 20 messages of channel 1, and the chunk contains 20. Number, times and "
+     "positions of the messages must be equal: the file is damaged"},
     {"TimeOfAMessage", [](McapShape& s) { s.index = [](mcap::MessageIndex& i) { i.entries[3].first += 1; }; },
      "the message index of a chunk lists"},
     {"MessageLeftOutOfTheIndex", [](McapShape& s) { s.index = [](mcap::MessageIndex& i) { i.entries.pop_back(); }; },
-     "the message index of a chunk lists 19 messages of channel 1, but the chunk contains 20"},
+     "the message index of a chunk lists 19 messages of channel 1, and the chunk contains 20"},
     {"ChannelOfAnIndex", [](McapShape& s) { s.index = [](mcap::MessageIndex& i) { i.channel_id = 9; }; },
      "this message index belongs to channel 9, but must belong to channel 1"},
     {"ChunkLeftOutOfTheIndex", [](McapShape& s) { s.chunk_index = [](auto& all) { all.pop_back(); }; },
@@ -179,7 +179,7 @@ const Lie kLies[] = {
     {"TimesOfAChunk", [](McapShape& s) { s.chunk_index = [](auto& all) { --all[0].message_end_time; }; },
      "differs from its entry in the chunk index"},
     {"PlaceOfAnIndex", [](McapShape& s) { s.chunk_index = [](auto& all) { all[0].message_index_offsets[1] = 8; }; },
-     "must follow its chunk at byte "},
+     "must be followed by its message indexes"},
     {"PlaceWithinAnIndex",
      [](McapShape& s) { s.chunk_index = [](auto& all) { all[0].message_index_offsets[1] += 1; }; }, "damaged"},
     {"MessageOutsideOfItsChunk", [](McapShape& s) { s.chunk = [](mcap::Chunk& c) { ++c.message_start_time; }; },

@@ -85,8 +85,9 @@ TEST(RecordingClock, AReferenceFromZeroFitsAnExport) {
   attach_poses(imported, poses, Eigen::Isometry3d::Identity(), "poses");
   ASSERT_TRUE(imported.reference.has_value());
   EXPECT_EQ(imported.reference->p_WB_m.at(1).x(), 1.0);
-  EXPECT_THAT(imported.notes, testing::Contains(testing::HasSubstr("the time stamps of the reference count from 0 s; "
-                                                                   "the import shifts them by 1000000000 s")));
+  EXPECT_THAT(imported.notes,
+              testing::Contains(testing::HasSubstr("the time stamps of the reference count from 0 s. "
+                                                   "The import shifts these time stamps by 1000000000 s")));
 }
 
 }  // namespace

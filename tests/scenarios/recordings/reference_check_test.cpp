@@ -153,7 +153,7 @@ TEST(ReferenceCheck, AnotherMountingIsACaution) {
 
 TEST(ReferenceCheck, WhatCannotBeDecidedIsReported) {
   EXPECT_THAT(said(hand_held, [](const Eigen::Quaterniond&) { return Eigen::Quaterniond::Identity(); }),
-              HasSubstr("the reference is not checked against a gyro: in too few pairs of poses"));
+              HasSubstr("the reference is not checked against the gyro of 'imu': there are too few pairs of poses"));
   EXPECT_THAT(said([](double) { return Eigen::Quaterniond::Identity(); }, as_is), HasSubstr("not checked"));
   EXPECT_THAT(said(
                   [](double time_s) {

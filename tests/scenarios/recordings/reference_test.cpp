@@ -142,7 +142,8 @@ TEST_F(Reference, BadLinesAreNamed) {
               }),
               HasSubstr("has 2 poses, but there are 3 times"));
   fixture::put(folder_ / "c.txt", "1 2 3\n");
-  EXPECT_THAT(fixture::complaint([&] { pose_format(folder_ / "c.txt"); }), HasSubstr("has 3 numbers; it must have 8"));
+  EXPECT_THAT(fixture::complaint([&] { pose_format(folder_ / "c.txt"); }),
+              HasSubstr("has 3 numbers. A line of a TUM file has 8"));
 }
 
 TEST_F(Reference, PosesOfTheLidarBecomePosesOfTheBody) {

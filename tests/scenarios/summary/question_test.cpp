@@ -86,7 +86,7 @@ TEST_F(QuestionTest, AMarginAsksForMore) {
   EXPECT_EQ(ask(question, 60).front().finding, Finding::worse);
   question.margin = {0.15, false};
   EXPECT_EQ(ask(question, 60).front().finding, Finding::worse);
-  EXPECT_STREQ(finding_text(ask(question, 60).front(), question), "not better by the margin of --until")
+  EXPECT_STREQ(finding_text(ask(question, 60).front(), question), "not better by more than the margin")
       << "it is better on every draw";
   question.margin = {0.05, false};
   EXPECT_EQ(ask(question, 60).front().finding, Finding::better);
@@ -142,7 +142,7 @@ TEST_F(QuestionTest, IsClaimedBeforeTheDraws) {
   };
   Question other = sound_question();
   other.risk = 0.01;
-  refused(other, "belongs to the question");
+  refused(other, "with the --until question");
   results.set_note(kQuestionNote, "");
   refused(sound_question(), "of a sweep without --until");
 }

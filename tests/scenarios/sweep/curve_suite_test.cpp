@@ -58,7 +58,8 @@ TEST_F(CurveSuiteTest, ComplaintsNameFileLineAndNearestName) {
   EXPECT_THAT(complaint("  given.time_offset_s: 3\n"), HasSubstr("test.yaml:7"));
   EXPECT_THAT(complaint("  world.room_half_m: [4, -4]\n"), HasSubstr("must be within"));
   EXPECT_THAT(complaint("  given.extrinsic_rotation_rad: [0]\n"), HasSubstr("has no lidar"));
-  EXPECT_THAT(complaint("  given.time_offset_s + world.room_half_m: [0.1]\n"), HasSubstr("cannot vary together"));
+  EXPECT_THAT(complaint("  given.time_offset_s + world.room_half_m: [0.1]\n"),
+              HasSubstr("keys that vary together must be of the same kind"));
   EXPECT_THAT(complaint("  given.time_offset_s + : [0.1]\n"), HasSubstr("empty or occurs twice"));
   EXPECT_THAT(complaint("  {}\n"), HasSubstr("needs at least one curve"));
 }

@@ -106,9 +106,8 @@ TEST_F(MergeTest, SaysOfAllInputsHowTheyWereAskedFor) {
 TEST_F(MergeTest, TwoAnswersOfOneBuildAreRefusedAndNothingIsLeft) {
   const auto a = make("a.db", {row(1, OutcomeStatus::ok, "one")});
   const auto b = make("b.db", {row(1, OutcomeStatus::ok, "two")});
-  EXPECT_THAT(
-      complaint({a, b}),
-      HasSubstr("b.db: hill, seed 1, slam/icp: the method run has status ok and estimate digest 'two', but status ok"));
+  EXPECT_THAT(complaint({a, b}), HasSubstr("b.db: hill, seed 1, slam/icp: the result has status ok and digest 'two', "
+                                           "but another database has status ok"));
   EXPECT_FALSE(std::filesystem::exists(out_));
   EXPECT_EQ(files(), 2u);
   const auto c = make("c.db", {row(1, OutcomeStatus::diverged, "one")});
