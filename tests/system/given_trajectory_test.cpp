@@ -78,7 +78,7 @@ TEST_F(GivenTrajectory, WhatWasNotComparedIsNotPerfect) {
   // the stamps are in milliseconds, with a pose every 0.5 ms: some thirty lie within the recording, each at a wrong
   // time
   EXPECT_THAT(refused(score(lines_.size(), 1e3)),
-              HasSubstr("1000 times as long. The time unit of the file may be ms;"));
+              HasSubstr("1000 times the duration of the recording. The time unit of the file may be ms;"));
   // the stamps are in kiloseconds: all lie in the first thousandth of the recording
   EXPECT_THAT(refused(score(lines_.size(), 1e-3)), HasSubstr("a score needs at least 2 poses and 1 %"));
 }

@@ -186,7 +186,7 @@ TEST(Sweep, NamedDrawsAreNoSeedsInARow) {
     const Ended ended = run_shortened(arguments);
     EXPECT_EQ(ended.status, 2) << what;
     EXPECT_THAT(ended.err, HasSubstr(what));
-    EXPECT_THAT(ended.err, HasSubstr("lists its simulated runs"));
+    EXPECT_THAT(ended.err, HasSubstr("lists the simulated runs"));
   };
   const std::string database = (folder / "x.db").string();
   refused({"sweep", suite.string(), "--db", database, "--until", "rate/raw:rate/saave:rate_error_clipped_median_rad_s"},

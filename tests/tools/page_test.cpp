@@ -190,10 +190,11 @@ TEST(Page, DrawsAScoreOverTheRangeOfWhatBreaksIt) {
 
 TEST(Page, StatesHowManyMoreDrawsTheSensitivityNeeds) {
   EXPECT_EQ(draws_needed_text({{"hill", 24}, {"roll", 500}}), "");
-  EXPECT_EQ(draws_needed_text({{"hill", 5}, {"roll", 500}, {"slip", 23}}),
-            "A scenario needs 12 simulated runs to compute the influence of its parameters, and 24 simulated runs for "
-            "a plot of the score over a parameter. These scenarios need more runs: hill 7, and 19 for the plot; slip 1 "
-            "for the plot. ");
+  EXPECT_EQ(
+      draws_needed_text({{"hill", 5}, {"roll", 500}, {"slip", 23}}),
+      "A scenario needs 12 simulated runs to compute the influence of its parameters. A plot of the score against a "
+      "parameter needs 24 simulated runs. These scenarios need more runs: hill 7, and 19 for the plot; slip 1 "
+      "for the plot. ");
 }
 
 TEST(Page, MovesByItselfAndStandsStillForWhoeverAsks) {

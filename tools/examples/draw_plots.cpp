@@ -361,10 +361,10 @@ Plot sphere_height_plot(const scenarios::RunResult& run) {
 }
 
 Plot sphere_standstill_plot(const scenarios::RunResult& run) {
-  Plot plot = plot_of(
-      "standstill",
-      "The plot shows the tilt at standstill, minus the mean tilt of the same line. Jitter and drift become visible.",
-      "time [s]", "tilt [°]");
+  Plot plot = plot_of("standstill",
+                      "The plot shows the tilt at standstill. The mean of each line is subtracted, so that jitter and "
+                      "drift are visible.",
+                      "time [s]", "tilt [°]");
   plot.over_time = true;
   const sim::Recording& recording = run.recording;
   if (recording.sensors.imus.empty() || recording.truth.imus.empty()) return plot;

@@ -196,11 +196,13 @@ std::string caption_of(const Curve& curve) {
   const std::string axis = curve.axis + (doc.empty() ? "" : " (" + doc + ")");
   switch (curve.source) {
     case Curve::Source::set:
-      return fmt::format("{}the plot shows {} against {}. Each value is applied to every simulated run.", what,
-                         curve.metric, axis);
+      return fmt::format(
+          "{}the plot shows {} against {}. Every simulated run was repeated with each value of the x axis.", what,
+          curve.metric, axis);
     case Curve::Source::samples:
-      return fmt::format("{}the plot shows {}, computed from the clipped samples of a simulated run in each bin of {}.",
-                         what, curve.metric, axis);
+      return fmt::format(
+          "{}the plot shows {} of a simulated run. The clipped samples of the run are divided into bins of {}.", what,
+          curve.metric, axis);
     case Curve::Source::draws:
       return fmt::format("{}the plot shows {} against {} of the simulated run. All bins have equal numbers of runs.",
                          what, curve.metric, axis);

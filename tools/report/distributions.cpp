@@ -107,7 +107,7 @@ std::string distributions_html(std::span<const Spread> spreads, std::span<const 
   if (spreads.empty()) return "";
   std::string out =
       "<p>The table shows distributions of the simulated motions, which are computed from the truth. For comparison, "
-      "it contains values of " +
+      "the table contains values of " +
       html::escaped(scenarios::kPublishedMotion) +
       ". Brackets contain the middle 90 % of the simulated runs. For a share of runs or of all samples, the brackets "
       "contain the 95 % interval.</p>\n<details><summary>Table of the motions</summary><div "

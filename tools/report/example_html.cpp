@@ -47,7 +47,8 @@ std::string plots_html(const Example& example, const Palette& palette, std::vect
 
 std::string example_html(const ShownExample& shown, const Palette& palette, std::vector<Figure>& figures) {
   const Example& example = shown.example;
-  std::string out = fmt::format("<p>{}. The sweep repeated this simulated run for the page", escaped(example.choice));
+  std::string out = fmt::format("<p>{}. The program repeated this simulated run to create the pictures of this page",
+                                escaped(example.choice));
   out += shown.of_these_results ? "; the recording has the same digest as in the results.</p>\n"
                                 : ". The pictures do not match these results, because another build or an earlier run "
                                   "created the pictures.</p>\n";

@@ -270,8 +270,8 @@ std::string caption_of(const MotionMap& map) {
     shown += cloud.points.size();
   }
   std::string out = fmt::format(
-      "Each point shows the largest rate of the body in one simulated run, and the largest specific force that an IMU "
-      "without saturation would have measured. The shaded area shows the density of all {} runs{}. The outlines show "
+      "Each point shows the largest rate and the largest specific force of one simulated run. The specific force is "
+      "the reading of an IMU without saturation. The shaded area shows the density of all {} runs{}. The outlines show "
       "the largest values in published campaigns",
       draws, shown < draws ? fmt::format("; {} of the simulated runs are shown as points", shown) : "");
   for (const PublishedExtreme& extreme : map.extremes) out += "; " + extreme.source;

@@ -116,10 +116,12 @@ std::string how_to_get_pictures(const scenarios::Results& results, const ReportO
   const std::string made_by = results.note("build"), made_of = results.note("data");
   if (made_by == scenarios::kMixedBuilds)
     return fmt::format(
-        "{}. The results come from several builds, and a sweep can only extend results of its own build.", none);
+        "{}. Pictures can only be created if one build computed all results, but these results come from several "
+        "builds.",
+        none);
   if (!made_by.empty() && made_by != scenarios::build_id())
     return fmt::format(
-        "{}. Only a sweep by the build that computed these results ({}) can create pictures; this build is {}.", none,
+        "{}. Pictures can only be created by the build that computed these results ({}); this build is {}.", none,
         made_by, scenarios::build_id());
   if (!made_of.empty() && !options.data.empty() && made_of != options.data)
     return fmt::format(

@@ -77,12 +77,11 @@ std::string draws_needed_text(const std::map<std::string, std::int64_t>& draws) 
   std::string out;
   for (const auto& [scenario, count] : draws) {
     if (count >= kDrawnFrom) continue;
-    out += out.empty()
-               ? fmt::format(
-                     "A scenario needs {} simulated runs to compute the influence of its parameters, and {} simulated "
-                     "runs for a plot of the score over a parameter. These scenarios need more runs: ",
-                     kDrawsMin, kDrawnFrom)
-               : "; ";
+    out += out.empty() ? fmt::format(
+                             "A scenario needs {} simulated runs to compute the influence of its parameters. A plot of "
+                             "the score against a parameter needs {} simulated runs. These scenarios need more runs: ",
+                             kDrawsMin, kDrawnFrom)
+                       : "; ";
     out += scenario + " ";
     if (count < kDrawsMin) out += fmt::format("{}, and ", kDrawsMin - count);
     out += fmt::format("{} for the plot", kDrawnFrom - count);

@@ -64,7 +64,7 @@ Table table_of(const std::vector<scenarios::Answer>& answers, const Question& qu
                                        : fmt::format(" by {:g}", question.margin.value),
           question.risk),
       {"scenario", "answer", "seeds used",
-       question.margin.value > 0.0 ? "wins by more than the margin : other runs" : "better : worse",
+       question.margin.value > 0.0 ? "runs won by more than the margin : other runs" : "better : worse",
        "share better, interval"});
   table.align_right_from(2);
   for (const scenarios::Answer& each : answers) {

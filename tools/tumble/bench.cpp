@@ -251,8 +251,8 @@ BenchPage page_of(const scenarios::Results& results, const scenarios::Suite& sui
       page.stored.push_back(std::move(each));
     else
       page.left_out.push_back(
-          fmt::format("{}: the recording of simulated run {} in these results differs, because another build simulated "
-                      "the recording",
+          fmt::format("{}: another build simulated run {} of these results, and the recording differs from the "
+                      "recording of this build",
                       each.method, draw));
   }
   return page;

@@ -39,8 +39,7 @@ Action declare_certify(VerbOptions& verb, const Session& session) {
   std::string known;
   for (const scenarios::CertificateRow& row : scenarios::certificate_rows()) known += " " + row.name;
   verb.add("--row", *rows,
-           fmt::format("makes only this measurement of the simulation; repeat the option for more measurements:{}",
-                       known))
+           fmt::format("runs only this check of the simulation; repeat the option for more checks:{}", known))
       .one_at_a_time();
   return [&session, rows] { return certify(session, *rows); };
 }

@@ -210,8 +210,8 @@ int compare(const Session& session, const CompareOptions& options) {
     tables.push_back(std::move(table));
   session.print(tables, to_json(comparison, asked.margin.has_value()));
   session.note(
-      fmt::format("the probability of at least one wrong conclusion is at most {0:g} in the {1} comparisons of "
-                  "metrics, and at most {0:g} in the {2} comparisons of failures. The p-values are corrected with "
+      fmt::format("the probability of at least one wrong conclusion in the {1} comparisons of metrics is at most "
+                  "{0:g}. The same limit applies to the {2} comparisons of failures. The p-values are corrected with "
                   "Holm's method (docs/maths/statistics.md)",
                   options.risk, comparison.metrics.size(), comparison.failures.size()));
   return kDone;
@@ -226,17 +226,16 @@ Action declare_compare(VerbOptions& verb, const Session& session) {
            "compares this method with the method of --against; repeat the option for more methods [default: all "
            "methods that need no truth]")
       .one_at_a_time();
-  verb.add(
-      "--against", options->against,
-      "sets the method with which the other methods are compared [default: the last of several --method, otherwise the "
-      "baseline method]");
+  verb.add("--against", options->against,
+           "compares the other methods with this method [default: the last --method if there are several, otherwise "
+           "the baseline method]");
   verb.add("--metric", options->metrics,
            "compares this metric; repeat the option for more metrics [default: the most important metrics of the "
            "method's kind]")
       .one_at_a_time();
   verb.add("--margin", options->margin,
-           "sets the margin: a smaller loss counts as 'not worse'. Write a number in the metric's unit, or a "
-           "percentage of the other method's value, for example 10%");
+           "sets the margin: a method counts as 'not worse' if it is worse than the other method by less than the "
+           "margin. Write a number in the metric's unit, or a percentage of the other method's value, for example 10%");
   verb.add("--risk", options->risk, "sets the maximum probability that a table contains a wrong conclusion")
       .within(1e-6, 0.5)
       .shows_default();

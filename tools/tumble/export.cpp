@@ -111,8 +111,8 @@ Action declare_export(VerbOptions& verb, const Session& session) {
                        "configuration for the sensors of this recording, and manifest.json. Choose one of:{}",
                        peers));
   verb.add("--frame", options->frame,
-           "sets the frame of the true poses in tum and kitti: body (centre of mass), centre (of a sphere's shell) or "
-           "a sensor's name; use imu to compare with estimates of the rig [default: body]");
+           "sets the frame of the true poses in tum and kitti files: body (centre of mass), centre (of a sphere's "
+           "shell) or the name of a sensor. To compare with estimates of a rig, use imu [default: body]");
   verb.add("--points", options->points,
            "sets the message type of the points in a bag: pointcloud2, or livox for the CustomMsg of Livox' drivers "
            "[default: pointcloud2]");
@@ -120,8 +120,9 @@ Action declare_export(VerbOptions& verb, const Session& session) {
            "writes to this file or folder. kitti and tum write the true poses to a file; mcap and rosbag1 write the "
            "sensor data to a file. csv, pcd, ply, rosbag2 and --for write to a folder")
       .required();
-  verb.add_flag("--with-truth", options->with_truth,
-                "adds the true poses of the body: as topic /truth to a bag, or as file truth.tum to a folder of --for");
+  verb.add_flag(
+      "--with-truth", options->with_truth,
+      "adds the true poses of the body: topic /truth in a bag, or file truth.tum in the folder that --for writes");
   verb.add(
       "--estimate", options->estimates,
       "adds the poses and lidar points of an estimate (a folder, or a TUM file of the IMU) to a bag. If the recording "

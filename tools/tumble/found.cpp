@@ -99,7 +99,7 @@ class Found {
         !options.T_body_lidar.empty() || !lidar.T_BL.isApprox(Eigen::Isometry3d::Identity(), 1e-12);
     if (pose_stated) return add(kLidarPose, pose_text(lidar.T_BL), kStated, kPoseOption);
     const std::string calibrated =
-        fmt::format("mapping calibrates the pose, with standard deviations of {} m and {} rad before the calibration",
+        fmt::format("mapping calibrates the pose; before the calibration, the standard deviations are {} m and {} rad",
                     kAssumedLidarSigma_m, kAssumedLidarSigma_rad);
     if (const auto& better = recording_.rotation.better_BL) {
       lidar.T_BL = *better;

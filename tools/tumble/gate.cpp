@@ -55,7 +55,7 @@ std::vector<scenarios::MethodPointer> given_methods(const GateOptions& options) 
     if (!options.accept && !scenarios::is_method_file(name))
       throw scenarios::BadInput(
           fmt::format("--method {}: give a FILE.yaml that describes an external method, or add --accept. Without "
-                      "--accept, the accepted results determine which methods of this build run",
+                      "--accept, only external methods and methods with accepted results run",
                       name));
   }
   return scenarios::find_methods(options.methods);
@@ -205,9 +205,10 @@ int run_gate(const Session& session, const GateOptions& options) {
         "suite '{}' contains recordings, but 'tumble gate' needs simulated runs of scenarios; choose another suite",
         suite.name));
   if (!suite.classes.empty())
-    throw scenarios::BadInput(fmt::format(
-        "suite '{}' lists its simulated runs, but 'tumble gate' needs a range of seeds; choose another suite",
-        suite.name));
+    throw scenarios::BadInput(
+        fmt::format("the file of suite '{}' lists the simulated runs, but 'tumble gate' needs a range of seeds; choose "
+                    "another suite",
+                    suite.name));
   if (!options.accepted.empty() && options.accepted.extension() != ".yaml")
     throw scenarios::BadInput(
         fmt::format("--against {}: the accepted results must be in a FILE.yaml", options.accepted.string()));
@@ -265,8 +266,8 @@ Action declare_gate(VerbOptions& verb, const Session& session) {
            "compares with the accepted results in this FILE.yaml, which needs a FILE.csv in the same folder [default: "
            "scenarios/gates/SUITE.yaml]");
   verb.add("--method", options->methods,
-           "also checks the external method in this FILE.yaml. With --accept, adds this method (external, or of this "
-           "build) to the accepted results. Repeat the option for more methods")
+           "also checks the external method in this FILE.yaml. With --accept, adds the results of this external or "
+           "built-in method to the accepted results. Repeat the option for more methods")
       .one_at_a_time();
   verb.add("--jobs", options->jobs, "runs this number of processes in parallel [default: number of processors]")
       .whole(1, 1024)

@@ -32,11 +32,11 @@ void require_own(const std::filesystem::path& estimate, const std::filesystem::p
   const std::string made_from = scenarios::estimated_sensors(estimate);
   const std::string own = scenarios::digest(sensors, nullptr);
   if (made_from.empty() || made_from == own) return;
-  throw scenarios::BadInput(fmt::format(
-      "{0}: this estimate belongs to another recording. The estimate was made from sensor data with digest "
-      "{1}, but the sensor data of {2} have digest {3}; give the recording of the estimate. If the estimate "
-      "was made from an export of {2}, score only the poses: tumble score --kind slam {0}/trajectory.tum {2}",
-      estimate.string(), made_from, recording.string(), own));
+  throw scenarios::BadInput(
+      fmt::format("{0}: this estimate belongs to another recording. The estimate was made from sensor data with digest "
+                  "{1}, but {2} has sensor data with digest {3}. Give the recording of the estimate. For an estimate "
+                  "from an export of {2}, score only the poses: tumble score --kind slam {0}/trajectory.tum {2}",
+                  estimate.string(), made_from, recording.string(), own));
 }
 
 scenarios::StampSpan span_of(const sim::Sensors& sensors, const sim::Truth* truth) {

@@ -93,22 +93,22 @@ void declare_lidar(VerbOptions& verb, ImportOptions& options) {
   verb.add("--lidar", options.lidar,
            "names the data sheet of the lidar ('tumble list sensors' lists the sheets) [default: unknown; odometry "
            "detects the lidar]");
-  verb.add("--T-body-lidar", options.T_body_lidar,
-           "sets the pose of the lidar in the body frame: X Y Z in m, then the quaternion QX QY QZ QW. The origin of "
-           "the "
-           "body frame is the centre of mass; its axes are the axes of 'body' or 'base_link' in /tf_static, else of "
-           "the IMU [default: from /tf_static, else identity]")
+  verb.add(
+          "--T-body-lidar", options.T_body_lidar,
+          "sets the pose of the lidar in the body frame: X Y Z in m, then the quaternion QX QY QZ QW. The origin of "
+          "the body frame is the centre of mass. The axes of the body frame are the axes of 'body' or 'base_link' in "
+          "/tf_static; without these frames, the axes of the IMU [default: the pose in /tf_static, otherwise identity]")
       .words(7);
   verb.add("--stem", options.stem,
-           "selects the sweeps whose file names start with this text, followed by a number, for a folder with several "
-           "lidars");
-  verb.add(
-      "--times", options.times,
-      "reads the time stamps of the sweeps or poses from this file, one per line, in s or as a date in UTC [default: "
-      "STEM_times.txt or times.txt in the folder of the sweeps, else the file names, else the times of the points]");
+           "selects one lidar in a folder of several lidars: the file names of its sweeps are this text, followed by a "
+           "number");
+  verb.add("--times", options.times,
+           "reads the time stamps of the sweeps or poses from this file: one time stamp per line, in s or as a date in "
+           "UTC [default: STEM_times.txt or times.txt in the folder of the sweeps; without such a file, the file "
+           "names, then the times of the points]");
   verb.add("--sweep-period", options.sweep_period_s,
-           "sets the duration of a sweep, s; without time stamps also the time between sweeps [default: median time "
-           "between sweeps]")
+           "sets the duration of a sweep, s. If the sweeps have no time stamps, this duration is also the time between "
+           "sweeps [default: median time between sweeps]")
       .within(1e-4, 1000.0);
   verb.add("--bin-columns", options.bin_columns,
            "lists the columns of .bin files in order, for example x,y,z,intensity,ring. A column is float32, or has "
@@ -127,9 +127,9 @@ void declare_lidar(VerbOptions& verb, ImportOptions& options) {
 
 void declare_reference(VerbOptions& verb, ImportOptions& options) {
   verb.add("--reference", options.reference,
-           "uses the poses in this file as truth. The file is a TUM file or a table of poses with named columns (EuRoC "
-           "ground truth, nav_msgs/Odometry) in the clock of the sensors, or a KITTI file with one pose per sweep "
-           "[default: trajectory.csv in a folder of VTK sweeps, truth.csv in a folder of CSV tables]");
+           "uses the poses in this file as truth. A TUM file, or a table with named columns (EuRoC ground truth, "
+           "nav_msgs/Odometry), must use the clock of the sensors. A KITTI file must have one pose per sweep [default: "
+           "trajectory.csv in a folder of VTK sweeps, truth.csv in a folder of CSV tables]");
   verb.add("--reference-frame", options.reference_frame,
            "sets the frame of the reference poses: lidar or body [default for a file: lidar if the recording has a "
            "lidar; default for a topic: the frame named in the messages, else body]");
@@ -156,7 +156,7 @@ void declare_sensors(VerbOptions& verb, ImportOptions& options) {
            "detected from extension or content]");
   verb.add("--device", options.device,
            "names the data sheet of the IMU, which states ranges and noise ('tumble list sensors' lists the sheets) "
-           "[default: unknown; odometry uses the sheet that the topic names]");
+           "[default: unknown; 'tumble odometry' searches the topic for the name of a data sheet]");
   verb.add("--accel-unit", options.accel_unit,
            "sets the unit of the accelerometer in a CSV file or bag: m/s^2 or g [default: m/s^2; for a bag g, if the "
            "readings at rest indicate g]");
@@ -176,9 +176,9 @@ void declare_sensors(VerbOptions& verb, ImportOptions& options) {
            "imports this lidar topic of a bag (sensor_msgs/PointCloud2); methods map with the first topic [default: "
            "all lidar topics; topics whose points have times come first]");
   verb.add("--stamps", options.stamps,
-           "selects the time stamps of a bag: 'header' uses the stamps of the messages; 'record' uses the stamps of "
-           "the bag, if the headers have no usable stamps. With 'record', a sweep starts one period before its stamp "
-           "[default: header]");
+           "selects the time stamps of a bag. 'header' uses the stamps in the message headers. 'record' uses the times "
+           "at which the messages were recorded; use 'record' if the headers have no usable stamps. With 'record', a "
+           "sweep starts one sweep period before its stamp [default: header]");
   declare_lidar(verb, options);
 }
 
@@ -187,7 +187,7 @@ void declare(VerbOptions& verb, ImportOptions& options) {
   verb.add("--robot", options.robot,
            "states the type of robot, which some methods need: rig, sphere or pendulum [default: unknown]");
   verb.add("--radius", options.radius_m,
-           "states the radius of the sphere, m, which position methods need [default: unknown]")
+           "states the radius of the sphere in m; position methods need the radius [default: unknown]")
       .within(1e-3, 10.0);
   declare_reference(verb, options);
   verb.add("-o,--output", options.out, "writes this recording, FILE.h5").required();

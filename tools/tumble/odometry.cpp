@@ -139,12 +139,12 @@ void write_replay(const std::filesystem::path& page, const OpenRecording& record
 void print_notes(const Session& session, const OpenRecording& recording, const Estimate& estimate) {
   if (std::ranges::any_of(estimate.sweeps, [](const auto& sweep) { return sweep.verdict == SweepVerdict::degenerate; }))
     session.note(
-        "in a degenerate sweep, the lidar determines the pose in some directions only; in the other directions, the "
-        "pose is predicted from the IMU and its covariance is larger");
+        "in a degenerate sweep, the lidar determines the pose in some directions only. In the other directions, the "
+        "IMU predicts the pose, and the covariance is larger");
   if (estimate.replaced_T_BL)
     session.note(
-        fmt::format("the stated pose or clock of the lidar contradicts the recording, so the program used its estimate "
-                    "of the pose: {}",
+        fmt::format("the program used an estimated pose of the lidar, because the stated pose or the clock of the "
+                    "lidar contradicts the recording: {}",
                     pose_text(*estimate.replaced_T_BL)));
   for (const Repair& repair : recording.repairs)
     session.note(

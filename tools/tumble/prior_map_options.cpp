@@ -43,10 +43,9 @@ void declare_prior_map(VerbOptions& verb, PriorMapOptions& options) {
   verb.add("--map", options.map,
            "estimates poses in this prior map, with the method 'slam/tumble_live' or 'slam/tumble_lag'. The map is the "
            "file map.tumblemap of an earlier run, or a PCD or PLY file");
-  verb.add(
-      "--map-pose", options.pose,
-      "states the IMU's pose in the map at the start: X Y Z HEADING [m, rad], then the standard deviations SIGMA_M "
-      "SIGMA_RAD [default: 0 0; without --map-pose, the program searches the whole map]");
+  verb.add("--map-pose", options.pose,
+           "states the IMU's initial pose in the map: X Y Z HEADING [m, rad], optionally followed by the standard "
+           "deviations SIGMA_M SIGMA_RAD [default: 0 0]. Without --map-pose, the program searches the whole map");
   verb.add_flag("--map-frozen", options.frozen, "keeps the prior map unchanged; by default, sweeps extend the map");
 }
 
@@ -72,7 +71,7 @@ std::string localisation_text(const PriorMapOptions& options, const scenarios::E
   if (first == estimate.sweeps.begin())
     return fmt::format("{}: the recording is localised in this map; all poses are in the frame of the map", file);
   return fmt::format(
-      "{}: the recording is localised in this map; poses are in the frame of the map from sweep {} of {}", file,
+      "{}: the recording is localised in this map. From sweep {} of {}, the poses are in the frame of the map", file,
       first - estimate.sweeps.begin() + 1, estimate.sweeps.size());
 }
 

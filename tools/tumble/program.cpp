@@ -90,15 +90,15 @@ int say(const char* prefix, const std::string& line, int status) {
 int show_the_way() {
   std::string text =
       "tumble simulates robots that tumble and roll, estimates their motion and scores the estimates\n\nfirst steps\n  "
-      "tumble run hill                simulates a rig that tumbles down a hill, runs methods, writes scores and "
+      "tumble run hill                simulates a robot that tumbles down a hill, runs methods, writes scores and "
       "pictures\n  tumble run slip                does the same for a sphere that rolls and slips\n  tumble list "
       "scenarios          lists the scenarios; 'tumble list' also lists methods, sensors and suites\n\nyour own "
       "recording\n  tumble odometry BAG -o DIR     writes trajectory, map and replay from a bag with IMU and lidar\n  "
       "tumble doctor BAG              searches a bag for faults\n  tumble import FILE -o r.h5     imports a bag, IMU "
-      "readings, lidar sweeps or a trajectory\n  tumble "
-      "estimate r.h5 --method rate/tumble -o DIR\n                                 runs a method on the recording and "
-      "writes the estimate to a folder\n  tumble score YOURS.tum r.h5    scores an external trajectory against the "
-      "truth of a recording\n\nverbs ('tumble VERB --help' explains the options of a verb)\n";
+      "readings, lidar sweeps or a trajectory\n  tumble estimate r.h5 --method rate/tumble -o DIR\n                    "
+      "             runs a method on the recording and writes the estimate to a folder\n  tumble score YOURS.tum r.h5  "
+      "  scores an external trajectory against the truth of a recording\n\nverbs ('tumble VERB --help' explains the "
+      "options of a verb)\n";
   for (const Verb& verb : verbs()) text += fmt::format("  {:<11}  {}\n", verb.name, verb.doc);
   std::fputs(text.c_str(), stdout);
   return kDone;

@@ -206,7 +206,7 @@ int render(const Session& session, const RenderOptions& options) {
 Action declare_render(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<RenderOptions>();
   verb.add("WHAT", options->what,
-           "renders this recording, FILE.h5, or one simulated run of this scenario (with --seed)")
+           "renders this recording, FILE.h5. With --seed, renders one simulated run of this scenario")
       .required()
       .check([&session](const std::string& text) {
         if (is_recording(text)) return a_recording(text);

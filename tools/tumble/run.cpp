@@ -226,7 +226,7 @@ Action declare_run(VerbOptions& verb, const Session& session) {
            "sets the seed of the simulated run [default: 1; for a named case, the seed of the case]");
   verb.add("--method", options->methods,
            "runs this method, for example 'saave' or 'rate/saave'; repeat the option for more methods [default: all "
-           "methods that apply; with only a scenario and a seed, 'tumble' and the baseline method of each kind]")
+           "methods that apply; exception: see the end of this help]")
       .one_at_a_time();  // one word per --method
   verb.add("--set", options->parameters,
            "sets a parameter of a method: METHOD.PARAMETER=NUMBER, for example rate/tumble_lag.lag_s=0.5; repeat the "
@@ -239,13 +239,12 @@ Action declare_run(VerbOptions& verb, const Session& session) {
            "uses this number of threads to simulate the lidar; the result is the same for any number")
       .whole(1, 1024)
       .shows_default();
-  verb.add(
-      "-o,--output", options->folder,
-      "writes recording, estimates, pictures and replay to this folder; without --method, all methods that apply run "
-      "[default: nothing is written; with only a scenario and a seed, a folder named after the scenario]");
+  verb.add("-o,--output", options->folder,
+           "writes recording, estimates, pictures and replay to this folder [default: writes nothing; exception: see "
+           "the end of this help]");
   verb.footer(
-      "With only a scenario and a seed, the program runs 'tumble' and the baseline method of each kind, and writes all "
-      "results to a folder with the scenario's name.");
+      "With only a scenario and a seed, the program runs 'tumble' and the baseline method of each kind. The program "
+      "then writes all results to a folder with the scenario's name.");
   return [&session, options] { return run(session, *options); };
 }
 

@@ -98,11 +98,11 @@ void require_seconds(const ScoreOptions& options, const scenarios::Estimate& est
   const double factor = length_s / standing.end_s;
   for (const auto& [unit, of_second] : {std::pair("ms", 1e3), std::pair("us", 1e6), std::pair("ns", 1e9)}) {
     if (factor > kNear * of_second || kNear * factor < of_second) continue;
-    throw scenarios::BadInput(
-        fmt::format("{}: only {} of {} poses are within the duration of {}, which is {:.3f} s. The poses cover {:.3f} "
-                    "s, {:.0f} times as long. The time unit of the file may be {}; the unit must be seconds",
-                    options.estimate.string(), standing.compared, standing.poses, options.recording.string(),
-                    standing.end_s, length_s, factor, unit));
+    throw scenarios::BadInput(fmt::format(
+        "{}: only {} of {} poses are within the duration of {}, which is {:.3f} s. The poses cover {:.3f} s, which is "
+        "{:.0f} times the duration of the recording. The time unit of the file may be {}; the unit must be seconds",
+        options.estimate.string(), standing.compared, standing.poses, options.recording.string(), standing.end_s,
+        length_s, factor, unit));
   }
 }
 
@@ -118,8 +118,8 @@ void require_compared(const ScoreOptions& options, const Standing& standing) {
 std::string alignment_text(const Standing& standing) {
   const Eigen::Vector3d& t = standing.alignment.translation_m;
   return fmt::format(
-      "aligned in position and yaw at {:.3f} s, the first pose within the truth: the estimate is rotated about the "
-      "vertical by {:.6g} rad and moved by ({:.6g}, {:.6g}, {:.6g}) m; scale and tilt are not aligned",
+      "the estimate is aligned in position and yaw at the first pose within the truth ({:.3f} s): rotation {:.6g} rad "
+      "about the vertical, translation ({:.6g}, {:.6g}, {:.6g}) m. Scale and tilt are not aligned",
       standing.first_s, standing.alignment.yaw_rad, t.x(), t.y(), t.z());
 }
 
@@ -294,8 +294,8 @@ Action declare_score(VerbOptions& verb, const Session& session) {
            "sets the frame of the poses in a TUM file: imu, lidar, body or centre [default: imu; body if the recording "
            "has no IMU]");
   verb.add("--kind", options->kind,
-           "sets the kind of a TUM file: position, or slam, which also scores the rotation at the end [default: slam "
-           "if the recording has a lidar and no rolling sphere, else position]");
+           "sets the kind of a TUM file: position or slam. The kind slam also scores the rotation at the end [default: "
+           "slam if the recording has a lidar and no rolling sphere, otherwise position]");
   return [&session, options] {
     order(*options);
     a_recording(options->recording.string());

@@ -65,7 +65,7 @@ Table probability_table(const ShownSearch& shown) {
   const scenarios::SearchResult& result = shown.result;
   Table table(fmt::format("{}: probability that {} fails ({})", shown.scenario, shown.method, shown.goal.text()),
               {"probability", "95 % interval", "bound reached", "runs", "failures found", "not simulated",
-               "independent runs for an equally narrow interval"});
+               "runs of 'tumble sweep' for an equally narrow interval"});
   const Interval& p = result.splitting.probability;
   table.add_row({number_text(p.value), interval_text(p), result.splitting.complete ? "yes" : "no",
                  std::to_string(result.splitting.draws.size()), std::to_string(result.failures),
@@ -86,7 +86,7 @@ Table levels_table(const ShownSearch& shown) {
 
 Table shifts_table(const ShownSearch& shown) {
   Table table(fmt::format("{}: random parameters of the worst simulated runs", shown.scenario),
-              {"number", "shift [sigma]", "Holm p", "quantiles 0.1, 0.5, 0.9 in these runs", "in the scenario"});
+              {"number", "shift [sigma]", "Holm p", "quantiles 0.1, 0.5, 0.9 in the worst runs", "in the scenario"});
   for (std::size_t i = 0; i < shown.result.shifts.size() && i < kShiftsShown; ++i) {
     const InputShift& each = shown.result.shifts[i];
     const auto three = [](double low, double middle, double high) {
@@ -252,23 +252,23 @@ SearchResult search_with_progress(const Session& session, const scenarios::DataR
 void say_result(const Session& session, const ShownSearch& shown) {
   const scenarios::SplittingResult& splitting = shown.result.splitting;
   if (!splitting.complete)
-    session.note(fmt::format(
-        "{}: the budget ended before the simulated runs reached the bound of --failure, so the interval of the "
-        "probability is wide; a larger --budget with the same database continues the search",
-        shown.scenario));
+    session.note(
+        fmt::format("{}: the --budget ended too early, so the interval of the probability is wide. A larger --budget "
+                    "with the same database continues the search",
+                    shown.scenario));
   const double plain = plain_draws(splitting.probability);
   if (splitting.complete && plain < static_cast<double>(splitting.draws.size()))
-    session.note(fmt::format(
-        "{}: {:.0f} independent simulated runs of 'tumble sweep' would give an equally narrow interval of the failure "
-        "probability; this failure is frequent or depends on noise",
-        shown.scenario, plain));
+    session.note(
+        fmt::format("{}: 'tumble sweep' needs only {:.0f} simulated runs for an equally narrow interval of the failure "
+                    "probability. This failure is frequent or depends on noise",
+                    shown.scenario, plain));
   const bool is_stuck = std::any_of(splitting.levels.begin(), splitting.levels.end(),
                                     [](const auto& level) { return level.moves > kMovesOfDrawnSearch; });
   if (is_stuck)
-    session.note(fmt::format(
-        "{}: the search rarely accepts a new seed, because noise or terrain cause the failures; the interval of the "
-        "failure probability may be too narrow",
-        shown.scenario));
+    session.note(
+        fmt::format("{}: the interval of the failure probability may be too narrow. The search rejects most new seeds, "
+                    "because noise or terrain cause the failures",
+                    shown.scenario));
   if (!shown.draws.empty())
     session.note("to simplify a listed run, give the file, seed and method in the run's command to 'tumble shrink'");
 }
@@ -322,17 +322,16 @@ Action declare_search(VerbOptions& verb, const Session& session) {
       .one_at_a_time();
   verb.add("--method", options->method, "names the method whose failures are searched").required();
   verb.add("--failure", options->failure,
-           "defines a failure: 'METRIC > VALUE' in SI units, or 'METRIC < VALUE' if lower values are worse. A run "
-           "whose status is not ok also fails; with the value inf, only runs whose status is not ok fail");
+           "defines a failure: 'METRIC > VALUE' in SI units, or 'METRIC < VALUE' if lower values are worse. A run with "
+           "a status other than ok also fails; 'METRIC > inf' counts only such runs");
   verb.add("--worst", options->worst,
            "searches for the simulated run with the worst value of this metric, and estimates no failure probability");
   verb.add("--budget", options->budget, "limits the number of simulated runs of each scenario")
       .whole(1, 10000000)
       .shows_default();
-  verb.add(
-          "--population", options->population,
-          "sets the number of simulated runs per level of the search; a larger population gives a narrower interval of "
-          "the probability and needs a larger budget")
+  verb.add("--population", options->population,
+           "sets the number of simulated runs per step of the search (population). A larger population gives a "
+           "narrower interval of the probability, but needs a larger --budget")
       .whole(4, 100000)
       .shows_default();
   verb.add("--seed", options->seed, "sets the seed of the search; another seed gives an independent estimate")

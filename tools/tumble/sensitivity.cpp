@@ -35,9 +35,9 @@ void require_same_data(const scenarios::Results& results, const scenarios::DataR
   const std::string made_of = results.note("data"), found = scenarios::data_digest(data);
   if (made_of != found)
     throw BadInput(
-        fmt::format("{}: these results come from models and scenarios with digest '{}', but the models and scenarios "
-                    "of this installation have digest {}. The random parameters of the simulated runs are therefore "
-                    "unknown; use --motion for the influence of the motions",
+        fmt::format("{}: these results come from models and scenarios with digest '{}', but this installation has "
+                    "models and scenarios with digest {}. The random parameters of the simulated runs are therefore "
+                    "unknown. Use --motion for the influence of the motions",
                     database.string(), made_of, found));
 }
 
@@ -88,7 +88,7 @@ std::vector<Table> tables_of(const std::vector<Sensitivity>& rows, bool all) {
 }
 
 Table dependence_table(const std::vector<Sensitivity>& rows, bool all) {
-  Table table("partial dependence: median score, or share of failures, for each class of values of a parameter",
+  Table table("partial dependence: median score, or share of failures, for each interval of a parameter's values",
               {"scenario", "method", "metric", "number", "from", "to", "draws", "score", "95 %"});
   table.align_right_from(4);
   for (const Sensitivity& row : rows) {
@@ -183,7 +183,8 @@ Action declare_sensitivity(VerbOptions& verb, const Session& session) {
   verb.add_flag("--all", options->all,
                 "lists every parameter [default: the three parameters with the strongest significant influence]");
   verb.add_flag("--dependence", options->dependence,
-                "also lists the score and its interval for each class of values of a listed parameter");
+                "also divides the values of each listed parameter into intervals, and lists the score (with confidence "
+                "interval) per interval");
   return [&session, options] { return sensitivity(session, *options); };
 }
 

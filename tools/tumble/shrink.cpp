@@ -171,7 +171,7 @@ int run_shrink(const Session& session, const ShrinkVerbOptions& options) {
       shrunk.complete ? "no further part of the simulated run can be removed"
                       : "the budget of simulated runs is used up; a larger --budget may remove more parts",
       control_text(shrunk, shrinking),
-      shrunk.cure.empty() ? "no replacement of a single input by its true value prevents the failure"
+      shrunk.cure.empty() ? "replacing one input by its true value never prevents the failure"
                           : fmt::format("replacing the input {} by its true value prevents the failure", shrunk.cure),
       options.file.string()));
   return kDone;
@@ -190,8 +190,8 @@ Action declare_shrink(VerbOptions& verb, const Session& session) {
   verb.add("--method", options->method, "names the method that fails on the simulated run").required();
   verb.add("--failure", options->failure, kFailureHelp);
   verb.add("--control", options->control,
-           "names a control method, which must succeed on the smaller simulated run, or 'none' [default: the oracle "
-           "(method with true input) of the method's kind]");
+           "names the control method, which must succeed on the smaller simulated run; 'none' omits this check "
+           "[default: the method of the same kind that receives a true input (oracle)]");
   verb.add("--budget", options->budget, "limits the number of simulated runs").whole(1, 100000).shows_default();
   verb.add("-o,--output", options->file,
            "writes this case file, NAME.yaml; 'tumble gate regressions' checks all cases in scenarios/regressions")

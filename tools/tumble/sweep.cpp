@@ -57,8 +57,8 @@ bool select(const scenarios::DataRoot& data, const SweepVerbOptions& options, sc
     throw scenarios::BadInput(
         "--seeds and --shard do not apply, because a suite of recordings has no seeds; remove both options");
   if (!suite.classes.empty() && !options.seeds.empty())
-    throw scenarios::BadInput(
-        fmt::format("--seeds does not apply to suite '{}', because the suite lists its simulated runs", suite.name));
+    throw scenarios::BadInput(fmt::format(
+        "--seeds does not apply to suite '{}', because the suite file lists the simulated runs", suite.name));
   if (!options.seeds.empty()) std::tie(suite.first_seed, suite.last_seed) = parse_seeds(options.seeds);
   if (!recorded && !options.recordings.empty())
     throw scenarios::BadInput(
@@ -192,9 +192,10 @@ std::optional<scenarios::Question> ask(const SweepVerbOptions& options, const sc
         fmt::format("--until does not apply to suite '{}', because the suite contains recordings or varied parameters",
                     suite.name));
   if (!suite.classes.empty())
-    throw scenarios::BadInput(fmt::format(
-        "--until does not apply to suite '{}', because the suite lists its simulated runs and has no range of seeds",
-        suite.name));
+    throw scenarios::BadInput(
+        fmt::format("--until does not apply to suite '{}', because the suite file lists the simulated runs instead of "
+                    "a range of seeds",
+                    suite.name));
   const scenarios::Question question = parse_question(options.until, options.risk, suite);
   scenarios::Results results = scenarios::open_results(data, suite, options.database);
   scenarios::claim(results, question, options.database);
@@ -288,14 +289,14 @@ Action declare_sweep(VerbOptions& verb, const Session& session) {
       .separated_by(',')
       .one_at_a_time();
   verb.add("--examples", options->examples,
-           "sets the number of typical simulated runs that the sweep repeats at the end. For these runs, the sweep "
-           "writes pictures, plots and replays to FILE.db.files for 'tumble report'; does not apply to shards "
-           "[default: one per 8 simulated runs, at most 3]")
+           "sets the number of typical simulated runs (with the median score of the scenario) that the sweep repeats "
+           "at the end. For these runs, the sweep writes pictures, plots and replays to FILE.db.files for 'tumble "
+           "report'. Does not apply to shards [default: one per 8 simulated runs, at most 3]")
       .whole(0, 64);
   verb.add("--failures", options->failures,
-           "sets the number of simulated runs with the most failed methods that the sweep repeats. For each of these "
-           "runs, the sweep writes a picture and a replay [default: one per 4 simulated runs, at most 8; none with "
-           "--examples 0]")
+           "sets the number of failed simulated runs that the sweep repeats at the end. Runs on which most methods "
+           "failed come first. For each of these runs, the sweep writes a picture and a replay [default: one per 4 "
+           "simulated runs, at most 8; none with --examples 0]")
       .whole(0, 64);
   verb.add("--memory", options->memory_mib,
            "limits the memory of each worker process and of each method, MiB; a run beyond the limit has status "
@@ -303,13 +304,13 @@ Action declare_sweep(VerbOptions& verb, const Session& session) {
       .within(64.0, 1e7)
       .shows_default();
   verb.add("--keep", options->keep,
-           "stores recording and estimates of these simulated runs in FILE.db.files/kept: none, failed, worst:N of "
-           "each scenario and method, or all")
+           "stores recording and estimates of the selected simulated runs in FILE.db.files/kept. The selection is "
+           "none, failed, all, or worst:N (the N worst runs of each scenario and method)")
       .shows_default();
   verb.add("--until", options->until,
-           "stops when the simulated runs show whether method A is better than B by more than the margin: "
-           "A:B:METRIC[:MARGIN]. The margin is in the metric's unit, or a percentage of B's value such as 10%. If a "
-           "sweep ends without an answer, run again with more --seeds")
+           "stops when the simulated runs show whether method A is better than method B by more than the margin. Write "
+           "A:B:METRIC or A:B:METRIC:MARGIN. The margin is in the metric's unit, or a percentage of B's value such as "
+           "10%. If a sweep ends without an answer, run the command again with more --seeds")
       .filled();
   verb.add("--risk", options->risk,
            "sets the maximum probability that --until names a better method although neither method is better")

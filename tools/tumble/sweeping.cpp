@@ -43,8 +43,9 @@ std::uint64_t step_of(std::uint64_t done) {
 void take_scenarios(const std::vector<std::string>& named, scenarios::Suite& suite) {
   if (named.empty()) return;
   if (!suite.recordings.empty() || !suite.classes.empty())
-    throw scenarios::BadInput(fmt::format("--scenario does not apply to suite '{}', because the suite lists its {}",
-                                          suite.name, suite.recordings.empty() ? "simulated runs" : "recordings"));
+    throw scenarios::BadInput(
+        fmt::format("--scenario does not apply to suite '{}', because the suite file lists the {}", suite.name,
+                    suite.recordings.empty() ? "simulated runs" : "recordings"));
   for (const std::string& name : named) require_known("scenario of suite '" + suite.name + "'", name, suite.scenarios);
   std::erase_if(suite.scenarios, [&](const std::string& name) { return std::ranges::count(named, name) == 0; });
 }

@@ -125,10 +125,11 @@ std::string conclusion(const std::vector<InputWorth>& worths) {
   if (first->cured > 0)
     return fmt::format("the input {} has the strongest influence: its true value prevents {} of {} failures", name,
                        first->cured, first->failed);
-  const std::string failures = first->failed == 0 ? "no method run failed (--failure defines a failure)"
-                                                  : "replacing a single input by its true value prevents no failure";
+  const std::string failures = first->failed == 0
+                                   ? "the method succeeded on all simulated runs (--failure defines a failure)"
+                                   : "replacing one input by its true value never prevents a failure";
   if (first->better <= first->worse)
-    return fmt::format("{}; no replacement of an input by its true value improves more simulated runs than it worsens",
+    return fmt::format("{}; the true value of every input worsens at least as many simulated runs as it improves",
                        failures);
   return fmt::format("{}; the true value of {} improves {} of {} simulated runs", failures, name, first->better,
                      first->better + first->worse);
@@ -251,9 +252,9 @@ std::string conclusion(const std::vector<TriageRow>& rows) {
   for (const TriageRow& row : rows) {
     if (&row != &rows.front() && !row.fails) cures += (cures.empty() ? "" : ", ") + row.input;
   }
-  return cures.empty()
-             ? "no true value of a single input prevents the failure: the cause is in the method or in the scenario"
-             : "cured by: " + cures;
+  return cures.empty() ? "replacing one input by its true value never prevents the failure; the cause is in the method "
+                         "or in the scenario"
+                       : "cured by: " + cures;
 }
 
 std::string listed_metric(const TriageVerbOptions& options, const scenarios::Method& method,
@@ -312,7 +313,7 @@ int run_triage(const Session& session, const TriageVerbOptions& options) {
   asked.options.memory_mib = options.memory_mib;
   asked.suite = scenarios::load_suite(session.data(), options.what);
   if (!asked.suite.classes.empty() && !options.seeds.empty())
-    throw BadInput(fmt::format("--seeds does not apply to suite '{}', because the suite lists its simulated runs",
+    throw BadInput(fmt::format("--seeds does not apply to suite '{}', because the suite file lists the simulated runs",
                                asked.suite.name));
   if (!options.seeds.empty()) std::tie(asked.suite.first_seed, asked.suite.last_seed) = parse_seeds(options.seeds);
   asked.database = options.database;
@@ -324,8 +325,8 @@ int run_triage(const Session& session, const TriageVerbOptions& options) {
 Action declare_triage(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<TriageVerbOptions>();
   verb.add("SCENARIO", options->what,
-           "with --seed, analyses one simulated run of this scenario, named case or scenario file; without --seed, "
-           "analyses the simulated runs of this suite, suite file or scenario")
+           "analyses the simulated runs of this suite, suite file or scenario. With --seed, analyses one simulated run "
+           "of this scenario, named case or scenario file")
       .required()
       .check(known_name(session));
   verb.add("--seed", options->seed,

@@ -26,7 +26,7 @@ std::span<const Verb> verbs() {
        declare_search},
       {"render", "renders pictures of a recording or of a simulated run", declare_render},
       {"replay", "writes a page that plays a recording with its estimates; the page needs no network", declare_replay},
-      {"bench", "compares an external method with stored results on the standard simulated runs of its kind",
+      {"bench", "compares an external method with stored results of other methods on standard simulated runs",
        declare_bench},
       {"gate", "runs a suite's fixed seeds and compares each simulated run with the accepted results", declare_gate},
       {"triage", "replaces one input at a time by its true value and reports which input prevents a failure",
