@@ -88,8 +88,8 @@ std::span<const CertificateRow> certificate_rows() {
                      "compares energy, periods and specific force of the simulated pendulum with Lagrange's equations",
                      as_certified<certify_pendulum>},
       CertificateRow{"digests",
-                     "checks that the digests of recordings do not depend on the number of threads, the order of the "
-                     "simulated runs or a restart of the program",
+                     "checks that recordings have equal digests for any number of threads, any order of the simulated "
+                     "runs, and a restarted program",
                      as_certified<certify_digests>},
   };
   return kRows;

@@ -71,8 +71,8 @@ Method attitude_autogain() {
 /// The default parameters of VQF are the values of its authors.
 Method attitude_vqf() {
   return attitude_filter<Vqf>("vqf",
-                              "Applies a low-pass filter to the specific force in a nearly inertial frame, and "
-                              "estimates the gyro bias at rest and in motion, without a magnetometer.",
+                              "Applies a low-pass filter to the specific force in a nearly inertial frame. Estimates "
+                              "the gyro bias at rest and in motion. Uses no magnetometer.",
                               "D. Laidig, T. Seel, VQF, Information Fusion 91, 2023");
 }
 

@@ -139,8 +139,8 @@ void require_own(const std::filesystem::path& path, const std::string& own) {
   const std::string made_from = estimated_sensors(path);
   if (made_from.empty() || made_from == own) return;
   throw BadInput(
-      fmt::format("the estimate was made from another recording (digest of that recording: {}; digest of this "
-                  "recording: {}); use the recording that the estimate was made from",
+      fmt::format("the estimate was made from a recording with digest {}, but this recording has digest {}; use the "
+                  "recording of the estimate",
                   made_from, own));
 }
 

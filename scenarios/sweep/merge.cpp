@@ -46,7 +46,7 @@ void join_method_notes(const Notes& shard, const fs::path& path, bool mixed, Res
     const std::string known = into.note(key);
     if (!known.empty() && known != theirs && !mixed)
       throw BadInput(
-          fmt::format("{}: {} is '{}', but in another database '{}'; to join the databases anyway, set --mixed-builds",
+          fmt::format("{}: {} is '{}', but '{}' in another database; to join the databases anyway, set --mixed-builds",
                       path.string(), key, theirs, known));
     into.set_note(key, known.empty() || known == theirs ? theirs : "mixed");
   }

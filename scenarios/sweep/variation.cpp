@@ -292,7 +292,8 @@ void report_rail(std::span<const sim::Parameter> known, double size, sim::Values
 std::span<const GivenError> given_errors() {
   static const std::array kErrors = {
       GivenError{{"lever_arm_error_m", 0.0, 0.0, 1.0, "m",
-                  "error of the stated lever arm, in a random direction for each simulated run; 0: exact lever arm"},
+                  "error of the stated lever arm (0: exact lever arm); each simulated run has a random direction of "
+                  "the error"},
                  false,
                  lever_arm},
       GivenError{{"extrinsic_rotation_rad", 0.0, 0.0, 3.14, "rad",

@@ -80,7 +80,7 @@ TEST_F(GivenTrajectory, WhatWasNotComparedIsNotPerfect) {
   EXPECT_THAT(refused(score(lines_.size(), 1e3)),
               HasSubstr("1000 times the duration of the recording. The time unit of the file may be ms;"));
   // the stamps are in kiloseconds: all lie in the first thousandth of the recording
-  EXPECT_THAT(refused(score(lines_.size(), 1e-3)), HasSubstr("a score needs at least 2 poses and 1 %"));
+  EXPECT_THAT(refused(score(lines_.size(), 1e-3)), HasSubstr("a score needs at least 2 poses that cover 1 %"));
 }
 
 TEST_F(GivenTrajectory, HowMuchWasComparedStandsInTheTable) {

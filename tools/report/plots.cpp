@@ -278,7 +278,7 @@ Figure box_figure(const Summary& summary, Kind kind, const std::string& metric, 
   figure.caption = caption;
   if (holds_more_than_shown(summary, kind, metric))
     figure.caption += fmt::format(
-        " A box of more than {0} simulated runs shows {0} of them as points, evenly spaced in the sorted values.",
+        " A box of more than {0} simulated runs shows the points of {0} runs, evenly spaced in the sorted values.",
         kBoxPoints);
   Boxes boxes(metric, palette);
   for (const Section& section : summary.sections) {

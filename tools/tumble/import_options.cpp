@@ -136,8 +136,9 @@ void declare_reference(VerbOptions& verb, ImportOptions& options) {
   verb.add("--reference-topic", options.reference_topic,
            "uses the poses of this topic of a bag as truth: nav_msgs/Odometry, geometry_msgs/PoseStamped or "
            "geometry_msgs/TransformStamped [default: no truth]");
-  verb.add_flag("--sort", options.sorted,
-                "accepts lines of a TUM file in any order, and uses the first of several lines with equal stamps");
+  verb.add_flag(
+      "--sort", options.sorted,
+      "accepts the lines of a TUM file in any order. If several lines have equal time stamps, uses the first line");
 }
 
 }  // namespace
@@ -173,8 +174,8 @@ void declare_sensors(VerbOptions& verb, ImportOptions& options) {
            "imports this IMU topic of a bag (sensor_msgs/Imu); the first topic is the primary IMU [default: all IMU "
            "topics]");
   verb.add("--lidar-topic", options.lidar_topics,
-           "imports this lidar topic of a bag (sensor_msgs/PointCloud2); methods map with the first topic [default: "
-           "all lidar topics; topics whose points have times come first]");
+           "imports this lidar topic of a bag (sensor_msgs/PointCloud2); mapping methods use only the first topic "
+           "[default: all lidar topics; topics whose points have times come first]");
   verb.add("--stamps", options.stamps,
            "selects the time stamps of a bag. 'header' uses the stamps in the message headers. 'record' uses the times "
            "at which the messages were recorded; use 'record' if the headers have no usable stamps. With 'record', a "

@@ -41,8 +41,8 @@ std::shared_ptr<const PriorMap> read_map_of(const PriorMapOptions& options) {
 
 void declare_prior_map(VerbOptions& verb, PriorMapOptions& options) {
   verb.add("--map", options.map,
-           "estimates poses in this prior map, with the method 'slam/tumble_live' or 'slam/tumble_lag'. The map is the "
-           "file map.tumblemap of an earlier run, or a PCD or PLY file");
+           "estimates the poses in this prior map. The method must be 'slam/tumble_live' or 'slam/tumble_lag'. The map "
+           "is the file map.tumblemap of an earlier run, or a PCD or PLY file");
   verb.add("--map-pose", options.pose,
            "states the IMU's initial pose in the map: X Y Z HEADING [m, rad], optionally followed by the standard "
            "deviations SIGMA_M SIGMA_RAD [default: 0 0]. Without --map-pose, the program searches the whole map");

@@ -125,9 +125,7 @@ int dispatch(int argc, const char* const* argv) {
                "tumble");
   app.set_version_flag("--version", program_version());
   app.require_subcommand(1);
-  app.footer(
-      "The exit status is 0 on success, 1 if a check failed, 2 for wrong use or bad input, and 3 for a defect of the "
-      "program.");
+  app.footer("Exit status: 0 success, 1 a check failed, 2 wrong use or bad input, 3 defect of the program.");
   Session session;
   Action chosen;
   for (const Verb& verb : verbs()) {

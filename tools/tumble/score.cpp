@@ -108,11 +108,11 @@ void require_seconds(const ScoreOptions& options, const scenarios::Estimate& est
 
 void require_compared(const ScoreOptions& options, const Standing& standing) {
   if (standing.compared >= kComparedMin && standing.spanned() >= kSpannedShareMin) return;
-  throw scenarios::BadInput(
-      fmt::format("{}: {} of {} poses are within the duration of {}. These poses cover {:.1f} % of {:.3f} s; a "
-                  "score needs at least {} poses and {:.0f} %. Check the time unit and the clock of the file",
-                  options.estimate.string(), standing.compared, standing.poses, options.recording.string(),
-                  100.0 * standing.spanned(), standing.end_s, kComparedMin, 100.0 * kSpannedShareMin));
+  throw scenarios::BadInput(fmt::format(
+      "{}: {} of {} poses are within the duration of {}. These poses cover {:.1f} % of {:.3f} s; a score needs at "
+      "least {} poses that cover {:.0f} % of the recording. Check the time unit and the clock of the file",
+      options.estimate.string(), standing.compared, standing.poses, options.recording.string(),
+      100.0 * standing.spanned(), standing.end_s, kComparedMin, 100.0 * kSpannedShareMin));
 }
 
 std::string alignment_text(const Standing& standing) {

@@ -15,7 +15,8 @@ std::span<const Verb> verbs() {
       {"estimate", "runs a method on a real or simulated recording; never reads the truth", declare_estimate},
       {"score", "scores an estimate against the truth of a recording", declare_score},
       {"sweep",
-       "simulates thousands of runs and stores the scores of methods in a results database; continues when run again",
+       "simulates thousands of runs and stores the scores of methods in a results database; the same command continues "
+       "a stopped sweep",
        declare_sweep},
       {"merge", "merges results databases", declare_merge},
       {"report", "prints score tables and writes a self-contained page from a results database", declare_report},

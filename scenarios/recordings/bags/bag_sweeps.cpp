@@ -139,8 +139,8 @@ BuiltSweeps read_lidar(const OpenedBag& bag, SensorMountings& places, const std:
     note_points_to_come(topic, built, records, notes);
   if (clocks_apart_s > kClocksApart_s) {
     notes.push_back(
-        fmt::format("{}: caution: the timebase and the header stamp of the messages differ by up to {} s; point times "
-                    "count from the header stamp",
+        fmt::format("{}: caution: the timebase and the header stamp of the messages differ by up to {} s; the import "
+                    "counts the point times from the header stamp",
                     topic, std::to_string(clocks_apart_s)));
   }
   places.place(topic, headers.frame, "--T-body-lidar", reading.lidar_placed, built.lidar.T_BL, notes);
