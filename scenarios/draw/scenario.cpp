@@ -43,7 +43,8 @@ Scenario load_file(const DataRoot& data, const std::filesystem::path& path, cons
     if (!std::filesystem::exists(base))
       extends.fail("unknown scenario '" + name + "'" + suggestion(name, scenario_names(data)));
     if (std::find(derived.begin(), derived.end(), base) != derived.end())
-      extends.fail(fmt::format("the scenario '{}' extends itself through its bases; remove one key 'extends'", name));
+      extends.fail(
+          fmt::format("the keys 'extends' of scenario '{}' and its bases form a loop; remove one key 'extends'", name));
     return load_file(data, base, registry, derived);
   });
 }

@@ -246,8 +246,8 @@ Estimate run_rolling_prior(const sim::Sensors& sensors, const sim::Values& param
 Method slam_rolling_prior() {
   return make_method({.name = "rolling_prior",
                       .kind = Kind::slam,
-                      .doc = "Registers the sweeps of a sphere with the same algorithm as the sweeps of the rig. The "
-                             "poses of position/tumble (our method) predict the motion between two sweeps.",
+                      .doc = "Registers the lidar sweeps of a sphere. The poses of position/tumble (our method) "
+                             "predict the motion between two sweeps. The registration algorithm is also used for rigs.",
                       .ours = true,
                       .settings = stages_after({&prior_settings(), &along_settings()}, followed()),
                       .robots = {"sphere"}},

@@ -102,9 +102,10 @@ void require_sound(const Question& question) {
       throw BadInput(fmt::format(
           "method '{}' of the question (--until) must be written with its kind, for example 'rate/tumble'", name));
     if (kind_of(name) != kind)
-      throw BadInput(fmt::format(
-          "methods '{}' and '{}' have different kinds, so no metric can compare them; choose methods of one kind",
-          question.method, name));
+      throw BadInput(
+          fmt::format("methods '{}' and '{}' have different kinds, so no metric can compare these methods; choose "
+                      "methods of one kind",
+                      question.method, name));
   }
   if (question.method == question.against)
     throw BadInput(fmt::format("method '{}' is compared with itself; name two different methods", question.method));

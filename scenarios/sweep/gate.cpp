@@ -215,8 +215,8 @@ const MethodRun* GateRun::find(const std::string& scenario, Kind kind, const std
 
 std::vector<GateResult> hold_to_gate(const GateRun& run, const Gate& gate) {
   if (gate.accepted.methods.empty())
-    throw BadInput(
-        fmt::format("suite {} has no accepted results; run 'tumble gate SUITE --accept' to create them", gate.suite));
+    throw BadInput(fmt::format(
+        "suite {} has no accepted results; 'tumble gate SUITE --accept' creates accepted results", gate.suite));
   if (run.seeds != gate.accepted.seeds) {
     throw BadInput(
         fmt::format("the accepted results of suite {} have other seeds ({} simulated runs) than this comparison ({} "

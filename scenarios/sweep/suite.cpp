@@ -77,7 +77,8 @@ void read_curves(const DataRoot& data, const YamlNode& node, Suite& suite) {
     }
     suite.curves.push_back(std::move(curve));
   }
-  if (suite.curves.empty()) node.fail("the list of curves is empty; this key needs at least one curve");
+  if (suite.curves.empty())
+    node.fail("the list of curves (varied parameters with their values) is empty; list at least one curve");
 }
 
 void read_scenarios(const DataRoot& data, const YamlNode& node, Suite& suite) {

@@ -150,7 +150,7 @@ Plot rate_plot(const scenarios::RunResult& run) {
   }
   plot.caption = fmt::format(
       "The plot shows the angular velocity about the sensor's {} axis, which clips most often. The gyro is saturated "
-      "where its line is flat. Drag to zoom; double-click to reset.",
+      "where the line of the gyro is flat. Drag to zoom; double-click to reset.",
       "xyz"[axis]);
   plot.x_title = "time [s]";
   plot.y_title = "rate [rad/s]";

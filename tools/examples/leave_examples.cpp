@@ -24,9 +24,9 @@ namespace fs = std::filesystem;
 constexpr int kPollMs = 200;
 /// Time limit for simulation and rendering, in multiples of the time limit of one method
 constexpr double kOtherTimeouts = 3.0;
-constexpr const char* kTypical = "The simulated run with the median score of its scenario";
-constexpr const char* kFailed = "The simulated run on which most methods failed";
-constexpr const char* kAlsoFailed = "A simulated run on which methods failed";
+constexpr const char* kTypical = "This simulated run has the median score of its scenario";
+constexpr const char* kFailed = "This is the simulated run on which most methods failed";
+constexpr const char* kAlsoFailed = "Methods failed on this simulated run";
 
 enum class Extent { whole, of_failure };
 

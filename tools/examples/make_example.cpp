@@ -68,7 +68,7 @@ void add_moving(const Scene& scene, Example& example) {
   const Span span = liveliest_span(*scene.truth, kMoving_s);
   example.moving = moving_picture(scene, span, options);
   example.moving_caption =
-      fmt::format("the {:.1f} s of the simulated run in which the robot turns fastest, at half speed",
+      fmt::format("the fastest rotation of the robot in the simulated run ({:.1f} s), at half speed",
                   1e-9 * static_cast<double>(span.end_ns - span.begin_ns));
 }
 

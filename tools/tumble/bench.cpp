@@ -337,8 +337,8 @@ int bench(const Session& session, const BenchOptions& options) {
 Action declare_bench(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<BenchOptions>();
   verb.add("METHOD", options->methods,
-           "runs this method: NAME.yaml or NAME.py of an external method, or the name of a method; several methods "
-           "must have the same kind (rate, attitude, position or slam)")
+           "runs this method: the file NAME.yaml or NAME.py of an external method, or the name of a built-in method. "
+           "All methods must have the same kind (rate, attitude, position or slam)")
       .required();
   verb.add("--suite", options->suite,
            "runs this suite, which must list its simulated runs [default: the standard suite of the method's kind]");

@@ -43,7 +43,7 @@ int merge(const Session& session, const MergeOptions& options) {
 
 Action declare_merge(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<MergeOptions>();
-  verb.add("OUT", options->out, "creates this results database, or adds rows to it").required();
+  verb.add("OUT", options->out, "creates this results database, or adds rows to an existing database").required();
   verb.add("IN", options->in, "adds the results of these databases to the output database").required();
   verb.add_flag("--mixed-builds", options->mixed, "also accepts results of different builds of the program");
   return [&session, options] { return merge(session, *options); };

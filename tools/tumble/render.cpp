@@ -215,7 +215,8 @@ Action declare_render(VerbOptions& verb, const Session& session) {
   verb.add("ESTIMATE", options->estimates, "also shows the estimates in these folders");
   verb.add("--seed", options->seed,
            "sets the seed of the simulated run [default: for a named case, the seed of the case]");
-  verb.add("-o,--output", options->output, "writes this picture, FILE.png; with --video FILE.webp").required();
+  verb.add("-o,--output", options->output, "writes this picture, FILE.png, or with --video this animation, FILE.webp")
+      .required();
   verb.add("--film", options->film, "renders a film strip with this number of frames").whole(1, 64);
   verb.add_flag("--map", options->map,
                 "renders the maps of the estimates next to each other, coloured by error from 0 (blue) to 1 m (red)");

@@ -120,7 +120,8 @@ Action declare_replay(VerbOptions& verb, const Session& session) {
            "sets the frame of the poses in a TUM file: imu, lidar, body or centre [default: imu; body if the recording "
            "has no IMU]");
   verb.add("--points", options->points,
-           "limits the number of lidar points; the page may show fewer, because its size is limited to 3 MB")
+           "limits the number of lidar points. The page may show fewer points, because the size of the page is limited "
+           "to 3 MB")
       .whole(0, 200000)
       .shows_default();
   return [&session, options] { return make_replay(session, *options); };

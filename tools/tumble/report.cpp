@@ -230,8 +230,8 @@ Action declare_report(VerbOptions& verb, const Session& session) {
   verb.add("DATABASE", options->database, "reads this results database, FILE.db").required();
   verb.add("-o,--output", options->page, "writes this page, FILE.html [default: prints only tables]");
   verb.add("--badge", options->badge,
-           "writes this badge, FILE.svg, which shows the suite and in how many scenarios a method is better than the "
-           "baseline method");
+           "writes this badge, FILE.svg. The badge shows the suite, and the number of scenarios in which a method is "
+           "better than the baseline method");
   verb.add_flag("--all", options->all,
                 "prints all metrics, including metrics per range of clipping depth and clipping duration [default: "
                 "only the most important metrics]");

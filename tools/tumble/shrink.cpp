@@ -113,7 +113,7 @@ std::string name_of(const std::filesystem::path& file) {
                     std::all_of(name.begin(), name.end(), allowed);
   if (good) return name;
   throw BadInput(
-      fmt::format("-o {}: the file must be NAME.yaml; NAME must start with a lower-case letter and contain only "
+      fmt::format("-o {}: the file must be NAME.yaml. NAME must start with a lower-case letter, and contain only "
                   "lower-case letters, digits and underscores",
                   file.string()));
 }
@@ -131,8 +131,8 @@ std::string control_text(const Shrunk& shrunk, const scenarios::ShrinkOptions& o
   const std::string& name = options.control->info.name;
   return shrunk.controlled ? fmt::format("the control method {} does not fail on the smaller simulated run", name)
                            : fmt::format(
-                                 "the control method {} also fails on the simulated run, so it cannot confirm that the "
-                                 "failure comes from the method",
+                                 "the control method {} also fails on the simulated run, so the cause of the failure "
+                                 "may be outside the method",
                                  name);
 }
 

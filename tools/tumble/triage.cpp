@@ -171,8 +171,9 @@ std::string first_trouble(const std::vector<DrawTriage>& draws) {
 
 int run_suite_triage(const Session& session, SuiteTriage asked) {
   if (!asked.suite.recordings.empty())
-    throw BadInput(fmt::format("suite '{}' contains recordings, whose inputs cannot be replaced by their true values",
-                               asked.suite.name));
+    throw BadInput(
+        fmt::format("suite '{}' contains recordings, but only inputs of simulated runs can be replaced by true values",
+                    asked.suite.name));
   const std::vector<DrawName> draws = chosen_draws(session, asked);
   const InterruptFlag interrupt;
   std::size_t done = 0, failed = 0;

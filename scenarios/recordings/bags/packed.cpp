@@ -199,8 +199,8 @@ class UnpackedMessages : public BagReader {
     const unsigned long long size = ZSTD_getFrameContentSize(bytes.data(), bytes.size());
     if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN || size > most_of(bytes.size()))
       throw BadInput(
-          fmt::format("{}the content of the message is not a valid Zstandard frame; its stated size must be at most 64 "
-                      "MiB plus 200 times the compressed size",
+          fmt::format("{}the content of the message is not a valid Zstandard frame, or the stated size exceeds 64 MiB "
+                      "plus 200 times the compressed size",
                       where));
     try {
       const std::string plain = unpacked_zstd({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, size);

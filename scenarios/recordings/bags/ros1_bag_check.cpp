@@ -44,7 +44,8 @@ class Walk {
       fail(at, "the bag was not closed and has no index (create the index with 'rosbag reindex')");
     const std::uint64_t index_at = number<std::uint64_t>(file, "index_pos");
     if (index_at >= bytes_)
-      fail(at, "the index is beyond the end of the file; the bag may be truncated, and 'rosbag reindex' repairs it");
+      fail(at,
+           "the index is beyond the end of the file; the bag may be truncated (repair the bag with 'rosbag reindex')");
     bool indexed = false;
     for (at = file.end(); at < bytes_;) {
       const CheckedRecord next = record(at, bytes_);

@@ -331,7 +331,7 @@ void SweepBuilder::note_dropped_points(std::vector<std::string>& notes) const {
   if (rule_ && rule_->constant)
     notes.push_back(
         "caution: all points of a sweep have the same time, so the sweeps are treated as not skewed. If the lidar "
-        "rotates during a sweep, configure its driver to provide point times");
+        "rotates during a sweep, configure the lidar's driver to provide point times");
   if (rule_ && rule_->short_span)
     notes.push_back(
         "caution: the point times span less than 2 % of the sweep period. Check the unit (set '--time-unit'), or set "

@@ -52,7 +52,7 @@ std::string unit(const PointColumn& column) {
     case PointQuantity::intensity:
       return column.scale == 1.0 ? "0 to 1" : "0 to 255";
     case PointQuantity::ring:
-      return "number of the point's ring from bottom to top, or of its scan line";
+      return "number of the point's ring, counted from bottom to top, or number of the point's scan line";
     case PointQuantity::time:
       break;
   }
@@ -74,7 +74,7 @@ Json fields_of(const SweepLayout& sweeps, bool timed) {
          {"unit", "the tag of every point is 0, which means a single return with full confidence"}},
         {{"name", "line"},
          {"type", "uint8"},
-         {"unit", "number of the point's ring from bottom to top, or of its scan line"}}};
+         {"unit", "number of the point's ring, counted from bottom to top, or number of the point's scan line"}}};
   }
   for (const PointColumn& column : sweeps.columns) {
     if (column.quantity == PointQuantity::time && !timed) continue;

@@ -349,8 +349,8 @@ Imported import_csv_folder(const std::filesystem::path& folder, const sim::ImuRe
   if (out.sensors.imus.size() > 1)
     out.notes.push_back(
         fmt::format("IMU '{}' is the primary IMU, because its file comes first. Tables do not state the poses of the "
-                    "IMUs on the body, "
-                    "so all IMUs are assumed at the same position with the same axes. To use one IMU, import its file",
+                    "IMUs on the body, so the import assumes that all IMUs have the same position and axes. To use one "
+                    "IMU, import only the file of this IMU",
                     out.sensors.imus.front().name));
   out.notes.insert(out.notes.end(), left_out.begin(), left_out.end());
   return out;

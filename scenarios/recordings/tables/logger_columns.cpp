@@ -268,7 +268,7 @@ std::size_t column_of(const LoggedTable& table, const std::string& name) {
   std::size_t position = 0;
   if (count == 0 && read_number(name, position) && position < fields.size()) return position;
   throw BadInput(fmt::format(
-      "{}: --columns names '{}', but {} of the {} columns have this name; exactly one column must have it. {}{}",
+      "{}: --columns names '{}', but {} of the {} columns have this name; exactly one column must have this name. {}{}",
       table.header().where, name, count, fields.size(),
       table.has_header() ? "Names: " : "The table has no column names; write the number of the column, counted from 0",
       table.has_header() ? fmt::format("{}", fmt::join(fields, " ")) : ""));

@@ -102,8 +102,8 @@ void export_kitti(const sim::Truth& truth, const std::filesystem::path& file, co
   for (std::size_t i = 0; i < truth.p_WB_m.size(); ++i) {
     if (!known(truth, i))
       throw BadInput(
-          "the reference has gaps, which the KITTI format cannot represent because it has no times; use the format "
-          "tum");
+          "the reference has gaps, but a KITTI file cannot represent gaps, because the format has no times; use the "
+          "format tum");
     const Pose each = pose(truth, i, T_BA);
     const Eigen::Matrix3d R_WA = each.q_WA.toRotationMatrix();
     for (int row = 0; row < 3; ++row) {

@@ -219,10 +219,9 @@ TEST_F(DrawReal, MistakesWithABaseAreNamedWithFileAndLine) {
   put("slope.yaml", with(kReal, "world: {type: hill}", "world: {type: hil}"));
   EXPECT_THAT(complaint_of("other"), HasSubstr(folder + "slope.yaml:4: world.type: unknown 'hil'"));
   put("slope.yaml", "name: slope\ndoc: a circle\nextends: other\n");
-  EXPECT_EQ(complaint_of("other"),
-            folder +
-                "slope.yaml:3: extends: the scenario 'other' extends itself through its bases; remove one key "
-                "'extends'");
+  EXPECT_EQ(complaint_of("other"), folder +
+                                       "slope.yaml:3: extends: the keys 'extends' of scenario 'other' and its bases "
+                                       "form a loop; remove one key 'extends'");
 }
 
 TEST_F(DrawReal, WhatOnlyShowsWhenDrawnIsNamed) {
