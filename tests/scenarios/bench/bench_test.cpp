@@ -56,13 +56,13 @@ TEST(Bench, ResultsOfAnotherSuiteAreRefused) {
   EXPECT_EQ(refusal(result, small()), "");
   Suite other = small();
   other.classes[1].draws[1].second = 4;
-  EXPECT_THAT(refusal(result, other), HasSubstr("two suites"));
+  EXPECT_THAT(refusal(result, other), HasSubstr("this comparison needs results of suite"));
   other = small();
   other.classes[0].name = "soft";
-  EXPECT_THAT(refusal(result, other), HasSubstr("two suites"));
+  EXPECT_THAT(refusal(result, other), HasSubstr("this comparison needs results of suite"));
   other = small();
   other.timeout_s = 61;
-  EXPECT_THAT(refusal(result, other), HasSubstr("two suites"));
+  EXPECT_THAT(refusal(result, other), HasSubstr("this comparison needs results of suite"));
   result.draws.pop_back();
   EXPECT_THAT(refusal(result, small()), HasSubstr("contains 2 simulated runs"));
 }

@@ -61,7 +61,7 @@ TEST_F(CurveSuiteTest, ComplaintsNameFileLineAndNearestName) {
   EXPECT_THAT(complaint("  given.time_offset_s + world.room_half_m: [0.1]\n"),
               HasSubstr("keys that vary together must be of the same kind"));
   EXPECT_THAT(complaint("  given.time_offset_s + : [0.1]\n"), HasSubstr("empty or occurs twice"));
-  EXPECT_THAT(complaint("  {}\n"), HasSubstr("needs at least one curve"));
+  EXPECT_THAT(complaint("  {}\n"), HasSubstr("list at least one curve"));
 }
 
 /// Returns outcomes by their curve: (key, value) -> digests of recordings.
