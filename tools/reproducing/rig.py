@@ -124,7 +124,7 @@ def rate_rows(out: Table, quantity: str, errors: dict, elements: str, printed: s
     out.add(CHANGE, printed, "-", *(change(m, medians[0]) for m in medians[1:]))
 
 
-CHANGE = "change relative to raw gyro"
+CHANGE = "change from raw gyro"
 PRINTED = {TRANSLATION: "−71.5 %", ROTATION: "−65.5 %", OVERLAP: "77.2 %; 92.1 %",
            FAILED: "12; 0 of 32"}
 
@@ -301,11 +301,11 @@ accelerometer. `tools/reproduce papers --only rig` writes this page from {draws}
 - Saave treats gyro readings above a saturation threshold of 10.45 rad/s as clipped. In {unseen} of our clipped samples,
   no axis exceeds 10.45 rad/s, because the simulated gyros have different saturation limits. The column *published,
   threshold 10.0 rad/s* shows Saave with `{threshold}`.
-- The column *ours, whole recording* shows `rate/tumble` and `slam/tumble`. The last column shows `rate/tumble_lag` (0.2
-  s lag) and `slam/tumble_lag` (0.3 s lag).
-- The gyro clips in {clipping} simulated runs, in {clipped} samples. The highest angular speed is {top_speed} rad/s
-  (median over the runs: {speed} rad/s; ICRA paper: up to 18.6 rad/s). The highest acceleration is {top_force} m/s²
-  (median over the runs: {force} m/s²; ICRA paper: up to 157.8 m/s²).
+- The column *ours, whole recording* shows `rate/tumble` and `slam/tumble`. The column *ours, 0.2/0.3 s
+  lag* shows `rate/tumble_lag` with a lag of 0.2 s, and `slam/tumble_lag` with a lag of 0.3 s.
+- The gyro clips in {clipping} of {draws} simulated runs, for {clipped} samples in total. The highest angular speed is
+  {top_speed} rad/s (median over the runs: {speed} rad/s; ICRA paper: up to 18.6 rad/s). The highest acceleration is
+  {top_force} m/s² (median over the runs: {force} m/s²; ICRA paper: up to 157.8 m/s²).
 - The median rate error covers only clipped samples. The end error is the error of the motion from the sixth registered
   sweep to the last, as in the ICRA paper.
 - The map overlap is the share of map points within 0.25 m of the true surface. A map fails if its overlap is below
@@ -339,13 +339,13 @@ accelerometer. `tools/reproduce papers --only rig` writes this page from {draws}
 
 ## Rate through a tumble
 
-![rate in the simulated run with the most collisions while the gyro clips](rig_rate.png)
+![angular rate in one simulated tumble with many collisions](rig_rate.png)
 
 ## Rate error with and without recovery
 
 {rates}
-The table shows the median rate error for samples with one clipped sensing element ({one} of the clipped
-samples), and with two or three ({more}). In the rows *inexact*, the assumed centre of mass has an error of up to 20 mm.
+The table shows the median rate error. Of the clipped samples, {one} have one clipped sensing element, and {more} have
+two or three. In the rows *inexact*, the assumed centre of mass has an error of up to 20 mm.
 
 ![distribution of the rate error](rig_rate_errors.png)
 
@@ -355,8 +355,8 @@ samples), and with two or three ({more}). In the rows *inexact*, the assumed cen
 
 The figure shows a failed run as an error of 10 m and 180°.
 
-The table covers only the {alike_draws} of {draws} simulated runs that are most similar to the ICRA paper. A run is
-similar if at most 2 % of its clipped samples have two or three clipped sensing elements.
+The table covers only the {alike_draws} of {draws} simulated runs that are most similar to the ICRA paper. A run
+counts as similar to the ICRA paper if at most 2 % of its clipped samples have several clipped sensing elements.
 
 {alike}
 ## Map outliers
@@ -368,6 +368,6 @@ similar if at most 2 % of its clipped samples have two or three clipped sensing 
 ![angular speed against acceleration](rig_density.png)
 
 A rectangle marks the highest values of other data sets according to the ICRA paper: 4.7 rad/s and 30.7 m/s². Two
-lines show the highest angular speed per 5 m/s² of acceleration in the public data sets BROAD (Laidig et al.,
-Data 2021, CC BY 4.0) and AirbrakesV2 (MIT).
+lines show the highest angular speed per 5 m/s² of acceleration in the data sets [BROAD and
+AirbrakesV2](../real_gyros.md).
 """

@@ -175,7 +175,7 @@ def page(runs: Runs, turns: dict[str, list[Turning]], legs: dict[str, list[Leg]]
     true_legs = {name: [number(statistics.median(d.true_legs_m[k] for d in draws)) for k in (0, 1)] for name, draws in legs.items() if name != FAST_SLIP}
     return PAGE.format(draws=len(turns[SLOW]), first=runs.seeds[0], last=runs.seeds[1], jitter=jitter_table(steps).text(),
                        distance=distance_table(turns).text(), slow=rates[SLOW], fast=rates[FAST], ways=leg_table(legs).text(),
-                       true_legs="; ".join(f"{first} m and {second} m (`{name}`)" for name, (first, second) in true_legs.items()),
+                       true_legs=", and ".join(f"{first} m and {second} m in `{name}`" for name, (first, second) in true_legs.items()),
                        rooms=room_table(maps).text(), rooms_draws=len(maps), map_seed=next(iter(maps)),
                        lag1=number(lag_1([t.rest_step_rad[MADGWICK] for t in turns[SLOW]]), 2).replace("-", "−"))
 
@@ -317,12 +317,12 @@ acceleration.
 
 ## What is reproduced
 
-- At standstill, the attitude of Madgwick's filter jumps by more than ten times the attitude steps of the complementary
-  filter, in the MFI paper and in our simulation.
-- At the pace of the MFI paper (scenario `slow_roll`), Autogain and Madgwick's filter have similar attitude errors, but
-  the attitude error of Autogain changes more slowly.
-- In the faster scenario `roll`, Autogain has nearly the errors of Madgwick's filter, because above 2.1 rad/s,
-  Autogain applies only Madgwick's correction.
+- At standstill, Madgwick's filter has more than ten times larger attitude steps than the complementary filter, in the
+  MFI paper and in our simulation.
+- At the pace of the MFI paper (scenario `slow_roll`), Autogain and Madgwick's filter have similar attitude errors. The
+  attitude error of Autogain changes more slowly.
+- In the faster scenario `roll`, Autogain and Madgwick's filter have nearly equal errors. Above 2.1 rad/s, Autogain
+  applies only Madgwick's correction.
 
 ## What differs from the MFI paper
 
@@ -341,16 +341,17 @@ acceleration.
 
 {jitter}
 An attitude step is the rotation of the estimated attitude between two successive samples (figure 2 of the MFI
-paper). A step of Madgwick's filter is at most twice the gain times the sample time: 0.092° at our sample time of 4 ms,
-and 0.229° at 10 ms. Madgwick's filter alternates between two attitudes: successive steps have a correlation of
-{lag1} in our simulation, and −0.83 in the MFI paper's data.
+paper). An attitude step of Madgwick's filter is at most 2 · gain · sample time. With gain 0.2, this limit is 0.092° at
+our sample time of 4 ms, and 0.229° at 10 ms. Madgwick's filter alternates between two attitudes: successive steps have
+a correlation of {lag1} in our simulation, and −0.83 in the MFI paper's data.
 
 ![steps at standstill](sphere_jitter.png)
 
 ## Autogain against Madgwick: distance to the reference and its derivative
 
 The *distance* is the angle between estimated and true attitude (figures 5 and 6 of the MFI paper). A *step* is the
-change of the attitude error between samples at 120 Hz. A *second difference* is the change between successive steps.
+change of the attitude error between samples at 120 Hz. A *second difference* is the difference of two
+successive steps of the attitude error.
 
 Each cell is a median over the simulated runs. The mean angular rate is {slow} rad/s in `slow_roll`, {fast} rad/s in
 `roll`, and 0.56 rad/s in a log of the MFI paper's authors. In the MFI paper, the total variation of the attitude
@@ -363,17 +364,17 @@ error includes noise of the optical tracker.
 
 {ways}
 - In the column *MFI paper*, the first of two lengths comes from rotation alone, and the second from the position
-  filter. A cell with one value shows the position filter.
+  filter. A cell with one value shows the result of the position filter.
 - In the scenario `slip_l` (figure 7 of the MFI paper), the sphere spins 1.5 to 2.8 times faster on slippery patches
   than without slip.
-- In the scenario `slide_l` (figure 8 of the MFI paper), a hand slows the rotation on slippery patches to at most 0.7
-  times the rate without slip.
-- The medians of the true lengths of first and second leg are
+- On slippery patches of `slide_l` (figure 8 of the MFI paper), a hand slows the rotation to at most 0.7 times the rate
+  without slip.
+- The first and second leg of the path have median true lengths of
   {true_legs}.
 - The column *published fusion* shows the position filter with the sphere's radius of 0.145 m. The column *published
   fusion, radius 0.29 m* uses the sphere's diameter as radius, like the code of the MFI paper.
-- While the velocity from the accelerometer is near zero, the position filter halves the rolling velocity. The doubled
-  radius partly compensates for the halved velocity.
+- While the velocity from the accelerometer is near zero, the position filter halves the rolling velocity. A
+  doubled sphere radius partly compensates for the halved rolling velocity.
 
 ![three paths with slip, from above](sphere_slip.png)
 
@@ -381,7 +382,7 @@ error includes noise of the optical tracker.
 
 ![errors of the legs](sphere_legs.png)
 
-The figure of leg errors also shows the faster scenario `slip`: 1 m in 2 to 5 s, instead of 5 to 9 s in the MFI paper.
+The figure also shows the scenario `slip`, in which the sphere rolls 1 m in 2 to 5 s (MFI paper: 5 to 9 s).
 
 ## The map of a room
 
