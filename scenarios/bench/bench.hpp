@@ -26,9 +26,9 @@ void require_of_suite(const BenchResult& result, const Suite& suite);
 
 std::string other_recording(const BenchResult& a, const BenchResult& b);
 
-/// In the median, failed runs and runs without a value of the metric count as the worst values. A simulated run is
-/// skipped if another method completed the run without a value of the metric, for example because no reading was
-/// clipped.
+/// In the median, a failed run counts as the worst value of the metric. bench_cell() skips a simulated run if `result`
+/// or a method in `beside` completed the run without a value of the metric. For example, a run without clipped readings
+/// has no error at clipped readings.
 struct BenchCell {
   std::size_t draws = 0, lost = 0;
   double median = 0.0;  ///< infinite if half failed; NaN if no runs
@@ -37,7 +37,8 @@ struct BenchCell {
 BenchCell bench_cell(const BenchResult& result, const std::string& metric, const std::string& group,
                      std::span<const BenchResult> beside);
 
-/// BenchWins counts only simulated runs for which both `result` and `baseline` have a value.
+/// bench_wins() compares the simulated runs that `baseline` contains and bench_cell() does not skip. A failed run has
+/// the worst value of the metric.
 struct BenchWins {
   std::size_t better = 0, draws = 0;
 };

@@ -8,8 +8,8 @@
 
 namespace tumble::scenarios {
 
-/// A FailsWith function runs a simulation with only the items `kept` (ascending indices). The function returns whether
-/// the method fails, or nothing if the budget of runs is used up.
+/// A FailsWith function simulates a run with only the removable details (items) whose indices are in `kept`, in
+/// ascending order. The function returns whether the method fails, or nothing if no more runs are allowed.
 using FailsWith = std::function<std::optional<bool>(const std::vector<std::size_t>& kept)>;
 
 struct LeastSet {
@@ -18,9 +18,10 @@ struct LeastSet {
   bool complete = false;            ///< no single item is removable
 };
 
-/// Returns a subset of the items 0 to `count` - 1 with which the run fails. Without any single item of this subset, the
-/// run succeeds. The method is delta debugging (Zeller and Hildebrandt, IEEE TSE 28:183, 2002, algorithm ddmin). The
-/// number of trial runs is about 2 log2(count) if the failure needs one item, and at most O(count^2).
+/// Returns a subset of the items 0 to `count` - 1 with which the run fails. If `complete` is true, each item in `kept`
+/// is necessary: the run succeeds if any single item is removed. The method is delta debugging (Zeller and Hildebrandt,
+/// IEEE TSE 28:183, 2002, algorithm ddmin). The number of trial runs is about 2 log2(count) if the failure needs one
+/// item, and at most O(count^2).
 LeastSet least_failing_set(std::size_t count, const FailsWith& fails);
 
 using FailsAt = std::function<std::optional<bool>(double value)>;

@@ -3,14 +3,15 @@
 // tests/bench/rail_measures fits planes to the saturated readings of the data set RepoIMU (Szczesna et al., ICCVG
 // 2016).
 //
-// The plane of the wand's x axis (limit 7.3 rad/s) is fitted to the RepoIMU recordings Test05 and Test10, trials 1 to
-// 3.
+// For the gyro's x axis of the hand-held wand (limit 7.3 rad/s), the saturation plane is fitted to the RepoIMU
+// recordings Test05 and Test10, trials 1 to 3.
 //
-// The plane of the wand's y axis (limit 7.2 rad/s) is fitted to the RepoIMU recording Test06, trial 1. The simulated
-// plane must agree with the plane of the wand's y axis within three standard errors of this single fit.
+// For the gyro's y axis of the hand-held wand (limit 7.2 rad/s), the saturation plane is fitted to the RepoIMU
+// recording Test06, trial 1. The simulated saturation plane must agree with the fitted plane of the wand's y axis
+// within three standard errors of the fit.
 //
-// The plane of the pendulum's z axis (limit 10.29 rad/s) is fitted to the RepoIMU recordings Test02a and Test07, trial
-// 3.
+// For the gyro's z axis of the pendulum (limit 10.29 rad/s), the saturation plane is fitted to the RepoIMU recordings
+// Test02a and Test07, trial 3.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -11,8 +11,8 @@
 /// A member named `stated_*` changes the expected result of a check, so that a test can make the check fail.
 namespace tumble::scenarios {
 
-/// The free-flight check throws the rig with a rotation near its unstable axis. Kinetic energy and angular momentum
-/// must be constant.
+/// The free-flight check throws the rig with a rotation near its unstable axis. Kinetic energy and angular momentum of
+/// the rig must be constant during the flight.
 struct FreeFlightSetup {
   double duration_s = 5.0;
   double rate_rad_s = 18.0;
@@ -52,8 +52,8 @@ struct SlipToGripSetup {
 std::vector<CertificateEntry> certify_slip_to_grip(const CertificateInput& input, const SlipToGripSetup& setup = {});
 
 /// The impact check drops the rig on its corners and computes the first peak of the specific force, averaged over 2 ms.
-/// The impact check also reports the exponent of the power law between the peak and the contact time constant. An ideal
-/// spring has the exponent -1.
+/// The impact check also reports the exponent of the power law between the peak and the contact time constant. For an
+/// ideal spring, the peak of the specific force is inversely proportional to the contact time constant (exponent -1).
 struct ImpactSetup {
   double height_m = 1.0;
   double step_s = 0.0;                  ///< 0: the simulation's step

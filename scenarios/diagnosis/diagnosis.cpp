@@ -19,7 +19,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Largest accepted time [s] between the starts of IMU and lidar. A slowly booting driver exceeds this limit.
+/// Largest accepted time [s] between the starts of IMU and lidar. If one driver boots slowly, the time between the
+/// starts of IMU and lidar exceeds kApart_s.
 constexpr double kApart_s = 0.5;
 /// A single lost reading costs no accuracy. Many lost readings indicate a fault of the bus, the driver or the recorder.
 constexpr double kLostShareMax = 0.005;
@@ -29,7 +30,7 @@ constexpr double kLostStep = 1.5;
 /// The estimators initialise attitude and gyro bias in the first second of a recording.
 constexpr double kStart_s = 1.0;
 constexpr double kRegisteredShareMin = 0.8;
-/// A gyro that saturates below this fraction of its stated range probably has another range.
+/// A gyro that saturates below kOfRangeMin times its stated range probably has another range.
 constexpr double kOfRangeMin = 0.7;
 
 double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {

@@ -25,8 +25,9 @@ constexpr std::size_t kLeastPairs = 12;
 /// Largest accepted difference between the rotations of lidar and gyro, relative to the median rotation. In correct
 /// recordings, the rotations of lidar and gyro differ by about 0.1 of the median rotation.
 constexpr double kAgrees = 0.3;
-/// A correction of the gyro's axes or delay is reported only if its rotation error is below these fractions of the
-/// error with other axes or without delay.
+/// If the stated axes agree within kAgrees, other axes are reported only if their rotation error is below kConclusive
+/// times the error of the stated axes. A delay is reported only if the rotation error with delay is below
+/// kDelayConclusive times the error without delay.
 constexpr double kConclusive = 0.5, kDelayConclusive = 0.6;
 constexpr double kDegreesOfRadian = 57.29577951308232;
 constexpr double kDelayMost_s = 0.5, kDelayStep_s = 0.01, kDelaySaid_s = 0.03;

@@ -23,7 +23,7 @@ struct SeenRotation {
 /// The rotations between consecutive sweeps come from the lidar alone, by `register_sweeps`. At most ten segments of a
 /// dozen sweeps, spread over the recording, are processed, each with a separate map. Only pairs of registered sweeps
 /// with rates of 0.1 to 2 rad/s are kept. Slower rotations are mostly noise, and faster rotations distort the sweeps.
-/// The cost is about 10 ms per sweep.
+/// seen_rotations() takes about 10 ms per sweep.
 std::vector<SeenRotation> seen_rotations(const sim::LidarRecord& lidar, const PointStore* aside);
 
 /// True axis i is `sign[i]` times axis `axis[i]` of the readings.
@@ -55,8 +55,8 @@ struct RotationAgreement {
 std::optional<RotationAgreement> rotation_agreement(const sim::ImuRecord& imu, const sim::LidarRecord& lidar,
                                                     std::span<const SeenRotation> seen);
 
-/// Returns a note that lidar and gyro agree, or a warning with a better interpretation of the gyro. If the agreement is
-/// undetermined, the text is empty.
+/// Returns a note if the rotations of lidar and gyro agree, otherwise a warning with a unit, delay, axes or mounting
+/// for which the rotations agree. Throws RepairableInput if another option --gyro-unit makes the rotations agree.
 std::string agreement_text(const std::string& where, const RotationAgreement& agreement, GyroUnit unit);
 
 struct LidarRotationCheck {

@@ -20,7 +20,8 @@ std::optional<ProbableDevice> probable_lidar(const sim::LidarRecord& lidar, std:
 
 /// An IMU matches a data sheet if the IMU's name contains the name of the device. The name may also contain the maker
 /// of a lidar with a built-in IMU (`ouster`, `livox`). A data sheet is rejected if the readings exceed its range by
-/// more than the factor bridge::kStatedRangesMax. Real saturation limits do not reach this factor.
+/// more than the factor bridge::kStatedRangesMax. Real devices saturate below kStatedRangesMax times the range in their
+/// data sheet.
 std::optional<ProbableDevice> probable_imu(const sim::ImuRecord& imu, std::span<const DataSheet> sheets);
 
 void apply_sheet(const DataSheet& sheet, sim::ImuRecord& imu);

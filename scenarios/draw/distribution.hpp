@@ -27,8 +27,9 @@ std::vector<double> support_points(const Distribution& distribution);
 
 double draw_number(const Distribution& distribution, std::uint64_t seed, std::string_view place);
 
-/// Converts the standard normal number `score` to a value of `distribution`. A larger score gives a larger value, or a
-/// later number in a list of choices. Throws BadInput if find_problem returns a problem.
+/// Converts the standard normal number `score` to a value of `distribution`. A larger standard normal number gives a
+/// larger value of the distribution, or a later number in a list of choices. Throws BadInput if find_problem returns a
+/// problem.
 double number_at(const Distribution& distribution, double score);
 
 }  // namespace tumble::scenarios

@@ -7,8 +7,8 @@
 
 namespace tumble::scenarios {
 
-/// Returns a copy of `scenario` with the parameter values of `situation`. Later changes of data sheets and defaults do
-/// not affect runs of this copy.
+/// Returns a copy of `scenario` with the parameter values of `situation`. Later changes of data sheets and default
+/// values do not affect runs of the returned scenario.
 Scenario fixed_as(Scenario scenario, const sim::Situation& situation);
 
 std::string to_yaml(const Scenario& scenario);

@@ -36,7 +36,7 @@ Scenario load_file(const DataRoot& data, const std::filesystem::path& path, cons
   derived.push_back(std::filesystem::weakly_canonical(path));
   return parse_scenario(read_text_file(path), path.string(), registry, [&](const YamlNode& extends) {
     const std::string name = extends.identifier(), file = name + ".yaml";
-    // If a file and its base have the same name, for example a copy of `hill`, the base is in the catalogue.
+    // If a scenario file extends a scenario of the same name, the extended scenario is the file in the catalogue.
     std::filesystem::path base = std::filesystem::weakly_canonical(path.parent_path() / file);
     if (base == derived.back() || !std::filesystem::exists(base))
       base = std::filesystem::weakly_canonical(data.catalogue() / file);

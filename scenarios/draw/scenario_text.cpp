@@ -90,7 +90,7 @@ const sim::ComponentType& known_type(const YamlNode& node, std::span<const sim::
 
 using Entries = std::vector<std::pair<std::string, YamlNode>>;
 
-/// Returns the type that the key `key` names. Without this key, returns the type `base`.
+/// Returns the component type that the value of `key` names, or the type `base` if the YAML node has no such key.
 const sim::ComponentType& parse_type(const YamlNode& node, const Entries& entries, const std::string& key,
                                      std::span<const sim::ComponentType> types, const std::string& base) {
   if (const YamlNode* const own = find_entry(entries, key)) return known_type(*own, types);
@@ -98,7 +98,8 @@ const sim::ComponentType& parse_type(const YamlNode& node, const Entries& entrie
   return *find_type(types, base);
 }
 
-/// Replaces `part`. If `node` has no key `type`, the numbers of `part` that `node` does not contain are kept.
+/// Replaces `part` by the content of the YAML node. If the YAML node has no key `type`, numbers that the node omits
+/// keep their values.
 void parse_part(const YamlNode& node, std::span<const sim::ComponentType> types, Scenario::Part& part) {
   static const std::array<std::string, 1> kOther = {"type"};
   const Entries entries = node.entries();
@@ -108,7 +109,7 @@ void parse_part(const YamlNode& node, std::span<const sim::ComponentType> types,
   part = {type.name, std::move(numbers), node.line()};
 }
 
-/// If `node` has no key `kind`, the values of `base` that `node` does not contain are kept.
+/// If the YAML node of a sensor has no key `kind`, the sensor `base` supplies all omitted values.
 Scenario::Sensor parse_sensor(const YamlNode& node, const Registry& registry, Scenario::Sensor base) {
   static const std::array<std::string, 5> kOther = {"name", "kind", "device", "site", "mount_error"};
   const Entries entries = node.entries();

@@ -11,15 +11,17 @@
 
 namespace tumble::scenarios {
 
-/// Returns the base that the value of the key `extends` names. Errors name the line of this key.
+/// A LoadBase function loads the base scenario, which the key `extends` names. Error messages state the line of the key
+/// `extends`.
 using LoadBase = std::function<Scenario(const YamlNode& extends)>;
 
 [[noreturn]] Scenario refuse_base(const YamlNode& extends);
 
-/// Returns the scenario of the text. If the text has the key `extends`, the base supplies the missing values:
-/// - `duration_s`, `streams` and the parts `world`, `robot` and `motion`, if the text lacks the key.
-/// - The numbers of a part that the text lacks. A part with the key `type` inherits nothing.
-/// - The sensors, and the values of a sensor of the same name. A sensor with the key `kind` inherits nothing.
+/// Parses a scenario from YAML text. If the text has the key `extends`, the base scenario supplies values that the text
+/// omits:
+/// - `duration_s`, `streams`, and the whole parts `world`, `robot` and `motion`,
+/// - single numbers of a part, unless the text sets the `type` of the part,
+/// - whole sensors, and single values of a sensor with the same name, unless the text sets the `kind` of the sensor.
 Scenario parse_scenario(const std::string& text, const std::string& file, const Registry& registry,
                         const LoadBase& load_base = refuse_base);
 

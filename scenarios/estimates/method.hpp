@@ -16,8 +16,8 @@ namespace tumble::scenarios {
 /// Only methods with `needs_truth` receive the true state and the readings before clipping.
 struct OracleInput {
   const sim::Truth* truth = nullptr;
-  /// A slam method calls this function after each lidar sweep, with the number of processed sweeps and the number of
-  /// all sweeps.
+  /// A slam method calls on_sweep() after each lidar sweep, with the number of processed sweeps and the number of all
+  /// sweeps.
   std::function<void(std::size_t done, std::size_t all)> on_sweep = {};
 };
 

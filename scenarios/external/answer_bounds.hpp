@@ -34,9 +34,10 @@ class AnswerBounds {
   void require_poses(const std::vector<PoseState>& poses, const Place& place) const;
   void require_attitudes(const std::vector<AttitudeState>& attitudes, const Place& place) const;
   /// Throws BadInput if the time stamps seem to have a wrong unit. For ten or more time stamps, the function compares
-  /// the time span from the smallest to the largest stamp with the duration of the recording. A wrong unit is assumed
-  /// if span and duration differ by a factor above 100. If a large span fits no other unit, the function accepts the
-  /// stamps, because probably only a few stamps are wrong.
+  /// the time span from the smallest to the largest stamp with the duration of the recording. If the time span of the
+  /// stamps and the duration of the recording differ by a factor above 100, the unit is probably wrong. If a time span
+  /// that is too long fits no other unit, require_unit() accepts the stamps, because probably only a few stamps are
+  /// wrong.
   void require_unit(std::span<const double> stamps_s, const char* unit, const Place& place) const;
   void require_unit(const Estimate& estimate, const char* unit, const Place& place) const;
   void require_slam(const Estimate& estimate) const;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kTurnsOtherwise = 0.5, kTurnsAsSaid = 0.15;
 /// Largest accepted rotation difference between estimate and gyro after the correction of a delay, as a fraction of the
-/// rotation. The file reference_check.cpp has the same limit.
+/// rotation. The file reference_check.cpp accepts the same largest rotation difference.
 constexpr double kTurnsOnceCorrected = 0.3;
 
 std::vector<TimedAttitude> attitudes_of(const Estimate& estimate) {

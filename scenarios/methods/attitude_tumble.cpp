@@ -225,8 +225,8 @@ Status run_carried(const sim::Sensors& sensors, const sim::Values& parameters, s
   return status;
 }
 
-/// From this probability of hand-held motion on, HandHeldSmoother also estimates the rates, because its rates are more
-/// accurate in clipped intervals.
+/// If the largest probability of hand-held motion in a recording is at least kCarried, HandHeldSmoother also estimates
+/// the rates. For hand-held motion, the rates of HandHeldSmoother are more accurate in clipped intervals.
 constexpr double kCarried = 0.5;
 
 Status run_thrown(const sim::Sensors& sensors, const sim::Values& parameters, const std::vector<ImuSample>& samples,

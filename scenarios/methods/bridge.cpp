@@ -30,8 +30,8 @@ std::uint8_t clip_flags(std::uint8_t sim_bits) {
   return flags;
 }
 
-// The measured and the stated sample period may differ by at most this factor. If the time stamps have a wrong unit,
-// the two periods differ by a factor of 1000.
+// The measured and the stated sample period may differ by at most the factor kPeriodsMax. If the time stamps have a
+// wrong unit, the measured and the stated period differ by a factor of 1000.
 constexpr double kPeriodsMax = 20.0;
 
 Status check_period(const sim::ImuRecord& record, std::span<const ImuSample> samples) {

@@ -22,18 +22,17 @@
 /// - In both libraries, the rate is the rate of the IMU relative to the world, in IMU axes [rad/s].
 /// - In both libraries, the specific force is in IMU axes [m/s^2], with +g upward at rest.
 /// - In both libraries, a lidar point is in metres in the lidar frame, with its time offset from the sweep start [ns].
-/// - In `sim`, the clip flags are bits 0 to 5 for gyro x y z and accelerometer x y z. The estimator uses ClipFlag.
-/// - In `sim`, the IMU mounting is T_BI, with the body frame B at the centre of mass. The estimator uses the lever arm
-///   from the centre of mass to the IMU, in IMU axes.
-/// - In `sim`, the lidar pose is relative to the body (T_BL). The estimator uses the lidar pose relative to the IMU
-///   (T_IL).
+/// - The clip flags are bits 0 to 5 (gyro x y z, accelerometer x y z) in `sim`, and the type ClipFlag in `estimator`.
+/// - The IMU mounting is T_BI (body frame B at the centre of mass) in `sim`, and the lever arm from the centre of mass
+///   to the IMU (in IMU axes) in `estimator`.
+/// - The lidar pose is relative to the body (T_BL) in `sim`, and relative to the IMU (T_IL) in `estimator`.
 namespace tumble::scenarios::bridge {
 
 inline constexpr double kGapMaxS = 1.0, kAnyGapS = std::numeric_limits<double>::infinity();
 
 /// Maximum ratio of a reading to the stated range of a device. The saturation limit of a real device may exceed its
-/// stated range (MTi-30: by a factor of 1.4). With a tilted saturation limit, a single output may exceed the stated
-/// range further, because the limit depends on all three outputs.
+/// stated range (MTi-30: by a factor of 1.4). A tilted saturation limit depends on all three outputs, so a single
+/// output may exceed the stated range by an even larger factor.
 inline constexpr double kStatedRangesMax = OutlierFilter::kMaxReadingToRangeRatio;
 
 inline constexpr double kWildShareMax = 0.01;
@@ -46,9 +45,9 @@ Status check_range(const sim::ImuRecord& record, const Eigen::Vector3d& gyro_rad
 /// the arrays of the record differ in length, all samples count as usable.
 std::vector<bool> find_inliers(const sim::ImuRecord& record);
 
-/// Returns `empty`, `non_finite`, `time_order`, `gap` or `out_of_range`. The code `out_of_range` means a reading far
-/// beyond the device's range, or a median time step that differs 20-fold from the stated sample period. On error, `out`
-/// is empty.
+/// Returns the error `empty`, `non_finite`, `time_order`, `gap` or `out_of_range` if the estimator cannot use the IMU
+/// record. The code `out_of_range` means a reading far beyond the device's range, or a median time step that differs
+/// 20-fold from the stated sample period. On error, `out` is empty.
 Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out, double gap_max_s = kGapMaxS);
 
 Status primary_imu_samples(const sim::Sensors& sensors, std::vector<ImuSample>& out, double gap_max_s = kGapMaxS);

@@ -100,8 +100,8 @@ Status raw_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples
 
 Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std::vector<AngularRateState>& out) {
   out.clear();
-  // If the clipped readings are invalid, all other methods fail, so this oracle must fail too, although it uses the
-  // unclipped readings.
+  // The oracle `rate/oracle` uses the unclipped readings. If the clipped readings are invalid, unclipped_rates() fails
+  // like all other methods.
   std::vector<ImuSample> samples;
   Status status = bridge::primary_imu_samples(sensors, samples);
   if (!status.ok()) return status;

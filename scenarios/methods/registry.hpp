@@ -20,13 +20,14 @@ using RunCore = Estimate (*)(const sim::Sensors&, const sim::Values& parameters,
 
 Method make_method(MethodInfo info, RunCore run);
 
-/// Returns a function that checks and completes the given parameter values with the settings of `info`, and then calls
-/// `run`. The returned function throws BadInput if a parameter is invalid.
+/// Wraps `run`: the returned function checks the parameter values, adds the default values of `info.settings`, and
+/// calls `run`. The function that with_settings() returns throws BadInput if a parameter is invalid.
 RunMethod with_settings(const MethodInfo& info, RunMethod run);
 
 std::span<const Method> methods();
 
-/// The name may be that of several methods ("saave"), one method ("rate/oracle"), or an external method (NAME.yaml).
+/// `name` selects all methods of a name ("saave"), one method ("rate/oracle"), or an external method (NAME.yaml or
+/// NAME.py).
 std::vector<MethodPointer> find_methods(const std::string& name);
 std::vector<MethodPointer> find_methods(std::span<const std::string> names);
 bool is_method_file(const std::string& name);

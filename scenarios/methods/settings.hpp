@@ -47,7 +47,8 @@ struct SettingsOptions {
   /// wildcard `*`.
   std::vector<std::string> fixed = {};
   std::vector<std::string> first = {};
-  /// A field with the same name as a parameter of another stage gets `prefix` before its name.
+  /// `beside` contains the parameters of another stage of the same method. A field whose name also occurs in `beside`
+  /// gets `prefix` before its name.
   std::span<const sim::Parameter> beside = {};
   std::string prefix = {};
 };

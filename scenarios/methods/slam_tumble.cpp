@@ -146,7 +146,7 @@ class Collector {
 };
 
 /// Replays IMU samples at the end of their averaging windows, and sweeps after their last points, as in real time.
-/// Sweeps that end after the last IMU sample are used only if `whole` is true.
+/// Sweeps that end after the last IMU sample are used only for an estimate from the whole recording (`whole`).
 Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, bool whole, TumblingOdometry& odometry,
               Collector& collector, const SweepProgress& on_sweep, Estimate& estimate) {
   const sim::LidarRecord& lidar = sensors.lidars.front();

@@ -26,7 +26,7 @@ struct Running {
 };
 
 /// Returns false if the operating system refuses to start a process while other processes of the pool are running. The
-/// caller can try again after one of the running processes has ended.
+/// caller can call begin() again after another process of the pool has ended.
 bool begin(std::list<Running>& running, std::size_t index, double deadline_s, const std::function<void(int)>& work) {
   try {
     running.push_back({index, deadline_s, Process(work, true), {}});

@@ -19,8 +19,8 @@ struct ExportNames {
   std::set<std::string> taken;  ///< names of sensors, topics and frames
 };
 
-/// A sensor name gets a number if an earlier sensor has the same name, or if the name is a frame or topic of a bag
-/// (truth, body, world, tf, map, odom, base_link).
+/// export_names() appends a number to a sensor name that another sensor already has. The names of topics and frames of
+/// a bag also get a number: body, clock, tf, tf_static, truth, world, base_link, map, odom.
 ExportNames export_names(const sim::Sensors& sensors);
 ExportNames export_names(const sim::Truth& truth);
 

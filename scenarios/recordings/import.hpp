@@ -55,8 +55,8 @@ enum class GyroUnit { rad_s, deg_s };
 ///
 /// - The median specific force is 3 to 30 m/s^2, and the sample period is 20 us to 2 s.
 /// - At most 1 % of the rates exceed twice the device's range (100 rad/s if unknown).
-/// - The rotation that the gyro measures agrees with the rotation of gravity in the accelerometer axes. If the two
-///   rotations differ by a factor of 57, deg/s and rad/s are confused.
+/// - The rotation that the gyro measures agrees with the rotation of gravity in the accelerometer axes. If the
+///   rotations of gyro and gravity differ by a factor of 57, the unit of the rates (deg/s or rad/s) is wrong.
 Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord& device,
                         AccelUnit unit = AccelUnit::m_s2, GyroUnit gyro_unit = GyroUnit::rad_s,
                         const std::string& columns = "");
@@ -96,8 +96,8 @@ struct ReferenceSource {
 Imported import_trajectory(const ReferenceSource& source);
 
 /// Uses the poses of a file as the truth of `recording`, up to the end of the sensor data. The time stamps of the poses
-/// must come from the same clock as the time stamps of the imported sensor data. In this clock, time 0 of `recording`
-/// has the time stamp `origin_ns`. A KITTI file must have one pose per sweep.
+/// must come from the same clock as the time stamps of the imported sensor data. In the clock of the imported sensor
+/// data, time 0 of `recording` has the time stamp `origin_ns`. A KITTI file must have one pose per sweep.
 void attach_reference(Imported& recording, const ReferenceSource& source);
 
 /// Adds IMUs that use the same clock as `recording`. If the IMU recording starts earlier, its time 0 becomes time 0 of

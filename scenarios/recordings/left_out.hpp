@@ -24,11 +24,11 @@ class LeftOut {
  public:
   explicit LeftOut(std::string items) : items_(std::move(items)) {}
 
-  /// `cause` completes the note "the import leaves out 1 of 150 readings: 1 with ..."; `error` contains the location of
-  /// the faulty reading.
+  /// `cause` completes the note "the import leaves out 1 of 150 readings: 1 because of ..."; `error` contains the
+  /// location of the faulty reading.
   void add(const std::string& cause, const std::string& error);
-  /// Counts a skipped reading that kLeftOutShareMax does not limit, for example an empty message in place of a lost
-  /// reading.
+  /// Counts a skipped reading for which the limit kLeftOutShareMax does not apply, for example a reading whose values
+  /// are all 0.
   void add_unlimited(const std::string& cause, const std::string& error);
   template <class Read>
   void guard(Read&& read) {
@@ -56,9 +56,9 @@ class LeftOut {
 };
 
 /// Selects time stamps such that the kept stamps increase and the fewest possible stamps are dropped (longest
-/// increasing subsequence). With at least ten stamps, the first or last stamp is also dropped if its gap to the other
-/// stamps exceeds the time span of the other stamps. Several stamps at one end are dropped only if their gap to the
-/// other stamps also exceeds a day. The cost for N stamps is O(N log N), or O(N) if all increase.
+/// increasing subsequence). With at least ten stamps, a single stamp at either end is also dropped if its gap to the
+/// other stamps exceeds their time span. Several stamps at one end are dropped only if their gap to the other stamps
+/// also exceeds a day. The cost for N stamps is O(N log N), or O(N) if all increase.
 std::vector<bool> stamps_in_order(std::span<const std::int64_t> stamps_ns);
 
 /// If `rows` and `kept` differ in size, the sensor does not measure the quantity in `rows`, and `rows` stays unchanged.

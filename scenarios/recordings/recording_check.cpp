@@ -17,8 +17,7 @@ namespace {
 
 using FieldLengths = std::initializer_list<std::pair<const char*, std::size_t>>;
 
-/// This tolerance of the quaternion norm accepts rotations with few digits, but rejects a wrong order of quaternion
-/// components.
+/// Largest accepted deviation of a rotation matrix from orthogonality, and of a squared quaternion norm from 1.
 constexpr double kUnitTolerance = 1e-6;
 constexpr std::int64_t kTimeMax_ns = 100'000'000'000'000'000;
 

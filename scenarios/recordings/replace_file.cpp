@@ -99,7 +99,8 @@ std::string process_mark(const std::string& pid) {
   return ".tumble-" + std::string(host.data()) + "-" + pid + ".";
 }
 
-/// Removes, once per folder, temporary files that killed processes (SIGKILL) of this computer left behind.
+/// Removes temporary files that remain after a process on this computer was killed (SIGKILL). Each folder is cleaned
+/// only once per process.
 void remove_abandoned(const fs::path& folder) {
   static std::mutex mutex;
   static std::set<fs::path> cleaned;

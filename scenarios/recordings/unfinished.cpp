@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t kPathBytes = 4096;
 constexpr int kPlaces = 64, kDepthMax = 16;
 
-/// A signal handler ignores an entry without `owner`, so `owner` is written last and cleared first.
+/// A signal handler ignores an Entry whose `owner` (process id) is 0, so `owner` is set last and cleared first.
 struct Entry {
   std::atomic<bool> taken{false};
   std::atomic<pid_t> owner{0};

@@ -20,11 +20,12 @@ inline constexpr std::uint8_t kGyroClipFlags = 0b000111;
 /// rad/s).
 ///
 /// A saturated sensing element with a tilted axis also changes the readings of the other output axes
-/// (sim/imu/elements.hpp). An unclipped axis has a cross-axis error if a saturated sensing element of another axis
-/// changes its reading by more than the tolerance.
+/// (sim/imu/elements.hpp). An unclipped axis has a cross-axis error if the saturation of another sensing element
+/// changes the reading of this axis by more than the gyro noise.
 ///
 /// If the truth comes from a reference instrument, an axis counts as clipped if the reference confirms the saturation
-/// (reference_clipping.hpp). Cross-axis errors are then unknown, and no axis is marked in Sample::cross_axes.
+/// (reference_clipping.hpp). With a reference instrument, cross-axis errors are unknown, and no axis is marked in
+/// Sample::cross_axes.
 class ClippingTruth {
  public:
   struct Sample {

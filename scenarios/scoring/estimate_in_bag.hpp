@@ -12,10 +12,11 @@
 
 namespace tumble::scenarios {
 
-/// Converts an estimate to a track of body poses, with the sensor mounting that the estimator used, aligned with the
-/// truth as for the scores. Points outside the time of the poses, or in gaps of the poses longer than 0.2 s, are
-/// omitted. The field `error_m` is the distance between a point and the true hit of its ray, including range noise. The
-/// clouds are computed when the bag is written, so `sensors`, `points` and `truth` must live until then.
+/// Converts an estimate to a track of body poses, with the sensor mounting that the estimator used. The track is
+/// aligned with the truth in the same way as for the scores. Points outside the time of the poses, or in gaps of the
+/// poses longer than 0.2 s, are omitted. The field `error_m` is the distance between a point and the true hit of its
+/// ray, including range noise. The clouds are computed when the bag is written, so `sensors`, `points` and `truth` must
+/// live until then.
 BagTrack in_bag(const std::string& name, const Estimate& estimate, const sim::Sensors& sensors,
                 const std::vector<PointStore>* points, const StoredTruth* truth);
 

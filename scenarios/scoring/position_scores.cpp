@@ -40,7 +40,7 @@ bool height_error_max(const ScoredEstimate& scored, double& value) {
   value = 0.0;
   for (const PairedPose& pose : poses) {
     const double error = std::abs(pose.estimate.position_W_m.z() - pose.truth.position_W_m.z());
-    // The negated comparison is also true for a NaN error, whereas std::max would ignore NaN.
+    // The condition !(error <= value) is also true for a NaN error, whereas std::max would ignore NaN.
     if (!(error <= value)) value = error;
     if (std::isnan(value)) break;
   }

@@ -42,7 +42,8 @@ bool clipped_max(const ScoredEstimate& scored, double& value) {
   return quantile_of(scored.once(error_norms).clipped_rad_s, 1.0, value);
 }
 
-// The error of an interval with a clipped axis is the norm of its mean error vector, in which random errors cancel.
+// An interval is a sequence of samples with at least one clipped axis. The error of an interval is the norm of the mean
+// error vector, because random errors cancel in the mean.
 bool segment_max(const ScoredEstimate& scored, double& value) {
   std::vector<double> offsets;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -77,9 +78,10 @@ bool in_contact(const ScoredEstimate& scored, std::int64_t time_ns) {
   return false;
 }
 
-// NormalisedErrors contains squared rate errors divided by their reported variances. The error of a clipped axis is in
-// `all`. The error of a clipped axis is also in `impact` if the robot is in contact, otherwise in `flight`. The errors
-// of unclipped axes that a clipped sensing element disturbs are in `cross_axis`.
+// NormalisedErrors contains squared rate errors divided by their reported variances. `all` contains the normalised
+// errors of all clipped axes. `impact` contains the errors of clipped axes while the robot is in contact, and `flight`
+// contains the errors without contact. `cross_axis` contains the errors of unclipped axes that a clipped sensing
+// element disturbs.
 struct NormalisedErrors {
   std::vector<double> all, flight, impact, cross_axis;
 };

@@ -19,8 +19,8 @@
 #include "scenarios/sweep/results.hpp"
 #include "scenarios/sweep/sweep.hpp"
 
-/// failure_search.hpp estimates the probability that a method fails on a random draw of a scenario, and finds draws on
-/// which it fails.
+/// failure_search.hpp estimates the probability that a method fails on a random run (draw) of a scenario. The search
+/// also finds runs on which the method fails.
 namespace tumble::scenarios {
 
 /// Key under which the results database stores the runs of a search, with the index of the run as value.

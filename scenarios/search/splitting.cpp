@@ -267,8 +267,8 @@ void SplittingEstimate::advance(std::size_t removed, std::span<const std::size_t
 }
 
 /// Computes the confidence interval by equation (S30) of statistics.md. The estimate is log-normal, and the median of a
-/// log-normal distribution is below its mean. To correct the confidence interval, half of the variance is added to the
-/// logarithm of its upper limit. The lower limit of the confidence interval is not corrected.
+/// log-normal distribution is below its mean. To correct this difference, the upper limit of the confidence interval is
+/// multiplied by exp(variance / 2). The lower limit of the confidence interval is not corrected.
 Interval SplittingEstimate::interval(std::span<const std::size_t> members, double risk) const {
   const auto n = static_cast<double>(population_), own = static_cast<double>(members.size());
   const double share = own / n, log_value = log_probability_ + std::log(share);
@@ -291,9 +291,9 @@ Interval SplittingEstimate::of_failure(std::span<const std::size_t> families,
     return share_interval(static_cast<std::int64_t>(failing.size()), static_cast<std::int64_t>(population_));
   if (2 * failing.size() >= population_) return interval(failing, kRisk);
   // If fewer than half of the population fails, the estimated probability is not log-normal, so two confidence
-  // intervals are multiplied. One interval is for the level probability, and one for the failing fraction of the
-  // population; each has half of the error risk. The interval of the failing fraction counts all copies of one initial
-  // draw as one draw.
+  // intervals are multiplied. The two multiplied intervals are for the probability of the level and for the failing
+  // fraction of the population. Each multiplied interval has half of the error risk. For the failing fraction, all
+  // copies of one initial draw count as one draw.
   const Interval level = interval(families, 0.5 * kRisk);
   const auto n = static_cast<double>(sizes_of(families).size());
   const double share = static_cast<double>(failing.size()) / static_cast<double>(population_), count = share * n;

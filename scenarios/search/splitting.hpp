@@ -27,8 +27,8 @@ struct SplittingPoint {
 /// these scores.
 using ScorePoints = std::function<std::vector<double>(std::span<const SplittingPoint>)>;
 
-/// Move changes the standard normal numbers of a draw at random, by a step size in (0, 1]. If `normals` are standard
-/// normal, the result must be standard normal too.
+/// Move changes the standard normal numbers of a draw at random, by a step size in (0, 1]. A Move function must
+/// preserve the standard normal distribution of the numbers.
 using Move = std::function<std::vector<double>(std::span<const double> normals, double step,
                                                const std::function<double()>& normal)>;
 
@@ -77,13 +77,14 @@ struct SplittingResult {
 /// In each step, the search removes the quarter of the draws with the lowest scores. A copy of another draw replaces
 /// each removed draw. Each copy makes several Metropolis moves, and accepts a move if its score exceeds all removed
 /// scores. Half of the Metropolis moves also draw a new seed of one random stream. The probability is the product of
-/// the fractions that remain in each step and the final fraction above the bound. The search ends if three quarters of
-/// the draws exceed the bound.
+/// the fractions that remain in each step and the final fraction above the bound. The search ends when the scores of at
+/// least three quarters of the population exceed the bound.
 ///
-/// The step size of the Metropolis moves increases if more than 40 % of the moves are accepted. Each copy makes enough
-/// moves that at least 90 % of the copies would accept a move if every move drew a new seed. The 95 % interval takes
-/// into account that copies of one initial draw depend on each other. Equal options give equal results for
-/// deterministic scores. Scores may be infinite, but not NaN. Throws BadInput for invalid options or NaN scores.
+/// The step size of the Metropolis moves increases if more than 40 % of the moves are accepted. The number of moves per
+/// copy follows from the acceptance rate of moves with a new seed. If every move drew a new seed, at least 90 % of the
+/// copies would accept one of their moves. The 95 % interval takes into account that copies of one initial draw depend
+/// on each other. Equal options give equal results for deterministic scores. Scores may be infinite, but not NaN.
+/// Throws BadInput for invalid options or NaN scores.
 SplittingResult split(const SplittingOptions& options, const ScorePoints& score);
 
 /// SplittingEstimate accumulates the probability of a level in adaptive multilevel splitting, and the variance of its
@@ -92,8 +93,8 @@ class SplittingEstimate {
  public:
   explicit SplittingEstimate(std::size_t population) : population_(population) {}
 
-  /// Adds a step that removed `removed` draws of the population; `copies` contains the number of copies of each
-  /// remaining draw, including the draw.
+  /// Adds a step of the search that removed `removed` draws of the population. For each remaining draw, `copies`
+  /// contains the number of its copies plus 1.
   void advance(std::size_t removed, std::span<const std::size_t> copies);
 
   /// Returns the probability that a random draw exceeds the level, with its 95 % interval.

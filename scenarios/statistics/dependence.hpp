@@ -32,8 +32,8 @@ struct FirstOrder {
 
 /// Estimates the first-order (Sobol') index of y with respect to x from existing data (Plischke, Borgonovo, Smith, EJOR
 /// 226:536, 2013). The estimator divides x into equally large classes, and computes the variance of the class means of
-/// y, equation (S18) of statistics.md. The index is corrected for chance, because class means also vary if y does not
-/// depend on x, equation (S19).
+/// y, equation (S18) of statistics.md. Equation (S19) corrects the first-order index for chance, because class means of
+/// y also vary if y is independent of x.
 FirstOrder first_order_index(std::span<const double> x, std::span<const double> y);
 
 /// The 95 % interval is Student's for the mean, from order statistics for the median, and Clopper and Pearson's for the

@@ -18,8 +18,8 @@ struct Plan {
 double pairs_for_signed_rank(std::span<const double> differences, const Plan& plan);
 
 /// Returns the number of pairs for the paired test of failures (Connor, Biometrics 43:207, 1987), equation (S12) of
-/// statistics.md. Of `pairs` observed runs, only the first method failed on `only_first`, and only the second on
-/// `only_second`.
+/// statistics.md. In `pairs` observed runs, only the first method failed `only_first` times, and only the second method
+/// failed `only_second` times.
 double pairs_for_failures(std::int64_t only_first, std::int64_t only_second, std::int64_t pairs, const Plan& plan);
 
 }  // namespace tumble::scenarios

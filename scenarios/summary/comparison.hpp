@@ -18,8 +18,8 @@ struct Margin {
   bool relative = false;
 };
 
-/// Returns how much worse `own` is than `other` on a simulated run, minus the margin. The difference is infinite if
-/// only `own` is a failed run, and 0 if both runs failed.
+/// Returns how much worse the metric value `own` is than the value `other` on a simulated run, minus the accepted
+/// margin. The result is infinite if only the method with the value `own` failed, and 0 if both methods failed.
 double worse_by(const MetricInfo& info, double own, double other, const Margin& allowed);
 
 struct ComparisonOptions {
@@ -50,8 +50,9 @@ struct MetricComparison {
   std::string metric;
   std::int64_t pairs = 0, better = 0, worse = 0;
   double median = 0.0, against_median = 0.0;
-  /// Median of the paired differences, method minus reference, with its BCa interval (bias-corrected bootstrap). If the
-  /// metric has a target, the differences are those of the distances from the target.
+  /// Median of the paired differences, method minus reference, with its BCa interval (bias-corrected bootstrap). For a
+  /// metric with a target, the difference is the distance of the method from the target minus the distance of the
+  /// reference from the target.
   Interval difference{};
   double sign_chance = 1.0, rank_chance = 1.0;  ///< two-sided p-values
   double corrected = 1.0;                       ///< `rank_chance` after Holm's correction
@@ -80,7 +81,7 @@ struct Comparison {
 };
 
 /// Compares the methods. A metric without a sense (for example a cost, for which neither lower nor higher is better) is
-/// compared only if the caller names it. For a metric without a sense, the `finding` remains undecided.
+/// compared only if the caller names it. For a metric without a sense, the finding is always Finding::undecided.
 Comparison compare(const Summary& summary, const ComparisonOptions& options);
 
 }  // namespace tumble::scenarios

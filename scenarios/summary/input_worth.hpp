@@ -23,7 +23,7 @@ struct InputWorth {
   Interval cured_share{};              ///< `cured` / `failed`, 95 % interval
   std::int64_t better = 0, worse = 0;  ///< runs with a better or worse metric
   /// Median decrease of how_bad() if the method gets the true input, with its bias-corrected bootstrap interval (BCa).
-  /// A run that is not ok has the worst value.
+  /// A run whose status is not ok counts as the worst value of the metric.
   Interval improvement{};
   double chance = 1.0;     ///< two-sided signed-rank test
   double corrected = 1.0;  ///< `chance` after Holm's correction

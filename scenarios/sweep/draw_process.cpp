@@ -250,8 +250,8 @@ std::vector<Outcome> without_answer(const DrawTask& task, OutcomeStatus status, 
 void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int fd, bool recordings_unseen) {
   const std::unique_ptr<const MadeDraw> made = made_draw(data, task, fd, recordings_unseen);
   if (!made) return;
-  // Memory that the simulation freed is returned to the operating system, because it would hide the memory use of the
-  // method.
+  // malloc_trim() returns the freed memory of the simulation to the operating system, because freed memory would hide
+  // the memory use of the method.
   malloc_trim(0);
   DrawFiles files(task.keeping);
   bool failed = false;

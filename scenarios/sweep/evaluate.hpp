@@ -51,8 +51,8 @@ void judge_without_truth(const MethodInfo& info, const Estimate& estimate, Outco
 void assess(const Method& method, const SimulatedDraw& draw, const sim::Surface* surface, const Estimate& estimate,
             Outcome& outcome);
 
-/// Returns the simulated run `draw` with the IMU time stamps of `given`, so that each estimate is compared with the
-/// truth of its IMU sample.
+/// Returns a copy of the simulated run `draw` with the IMU time stamps of `given`, the run with added errors. The
+/// scores then compare each estimate with the truth of its IMU sample.
 SimulatedDraw scored_by(const SimulatedDraw& draw, const SimulatedDraw& given);
 
 double process_cpu_s();

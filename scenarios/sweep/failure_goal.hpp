@@ -13,8 +13,8 @@ namespace tumble::scenarios {
 bool is_failed_verdict(const Score& score);
 
 /// FailureGoal defines the failure of a run by a metric that is worse than a limit. A run whose status is not ok also
-/// fails. A search (`score`) does not count runs that are `rejected` or lack the metric; triage, shrinking and named
-/// cases (`holds`) do.
+/// fails. A search (`score`) does not count runs that are `rejected` or lack the metric. Triage, shrinking and named
+/// cases (`holds`) count rejected runs and runs without the metric as failures.
 struct FailureGoal {
   std::string metric;  ///< empty: only status and pass-fail metrics define a failure; not valid for a search
   double limit = 0.0;  ///< infinite: no value is worse
@@ -37,7 +37,7 @@ struct FailureGoal {
 };
 
 /// Parses "METRIC > VALUE" or, if higher values are better, "METRIC < VALUE". Throws BadInput for any other text, a
-/// metric that methods of `kind` lack, or a sign that selects better values.
+/// metric that methods of `kind` lack, or a sign (< or >) that makes better values fail.
 FailureGoal parse_goal(const std::string& text, Kind kind);
 
 }  // namespace tumble::scenarios

@@ -12,17 +12,17 @@
 #include "scenarios/scoring/metric.hpp"
 #include "scenarios/sweep/results.hpp"
 
-/// A gate compares new results of a suite with accepted results. Both results contain the same scenarios and seeds with
-/// equal sensor data, so each test compares pairs of values. The gate tests:
+/// A gate compares new results of a suite with accepted results. New and accepted results contain the same scenarios
+/// and seeds with equal sensor data, so each test compares pairs of values. The gate tests:
 ///
 /// - Outcomes: a run that was ok must be ok again, and a pass-fail metric (`map_failed`) must not change to 1.
 /// - Presence: if the accepted outcome of a run has a metric and the new outcome is ok, the new outcome must have the
 ///   metric too.
 /// - Median: no metric may become worse by more than the margin, by the exact signed-rank test of the paired
-///   differences. A metric with a target is tested on both sides, so a covariance that becomes too small also fails.
-/// - Median over all scenarios of a method: detects shifts that are too small to detect in one scenario.
-/// - Worst run: no value may be worse than `worst` times the worst accepted value, because tests of the median cannot
-///   detect a single bad run.
+///   differences. For a metric with a target, the test has two sides, because a covariance can also become too small.
+/// - Median over all scenarios of a method: this test detects shifts that are too small to detect in one scenario.
+/// - Worst run: no value may be worse than `worst` times the worst accepted value. Tests of the median cannot detect a
+///   single bad run.
 ///
 /// If the new results are not worse, the probability that any test of a median fails is at most `risk` (Bonferroni).
 namespace tumble::scenarios {
@@ -61,8 +61,8 @@ struct Gate {
 };
 
 std::vector<std::string> gate_names(const DataRoot& data);
-/// Reads a gate from its files. The files may contain results of external methods only if `described` contains these
-/// methods.
+/// Reads a gate from its files. A gate may contain the results of an external method only if the method is in
+/// `described`.
 Gate load_gate(const DataRoot& data, const std::string& name, std::span<const MethodPointer> described = {});
 std::string to_yaml(const Gate& gate);
 std::string to_csv(const GateRun& run);

@@ -64,7 +64,7 @@ struct Results::Impl {
   };
 
   /// A process that is killed during a transaction leaves a journal. Only a connection that may write can roll back the
-  /// transaction. If the rollback fails, the read-only connection reports the error.
+  /// transaction. rolled_back() ignores a failed rollback, because the read-only connection then reports the error.
   static const std::filesystem::path& rolled_back(const std::filesystem::path& file, Mode mode) {
     std::error_code ignored;
     if (mode != Mode::read_only || !std::filesystem::exists(file.string() + "-journal", ignored)) return file;

@@ -34,7 +34,7 @@ struct SuiteTriageOptions {
 };
 
 /// Runs the triage (replacement of inputs by true values) of each simulated run in a separate process with a time
-/// limit. If the process dies or times out, its results so far are kept, with an error.
+/// limit. If the process dies or times out, DrawTriage contains the results so far and an error message.
 std::vector<DrawTriage> triage_draws(const DataRoot& data, std::span<const DrawName> draws, const Method& method,
                                      const SuiteTriageOptions& options);
 

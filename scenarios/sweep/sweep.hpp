@@ -47,8 +47,8 @@ struct Suite {
 void require_seeds(const Suite& suite);
 
 std::vector<std::string> suite_names(const DataRoot& data);
-/// Loads a suite by its name, from a suite file, or from the name of a scenario, which gives a suite of all methods on
-/// this scenario.
+/// Loads a suite by its name or from a suite file. The name of a scenario gives a suite that runs all methods on the
+/// scenario.
 Suite load_suite(const DataRoot& data, const std::string& name);
 
 struct SweepProgress {

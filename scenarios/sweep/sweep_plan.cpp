@@ -17,8 +17,8 @@ namespace {
 
 using nlohmann::json;
 
-// The time limit of an external command is this fraction of the method's time limit. The process that starts an
-// external command must end the command before this process reaches the method's time limit.
+// The time limit of an external command is kOwnShare times the method's time limit. The process that starts an external
+// command must end the command before this process reaches the method's time limit.
 constexpr double kOwnShare = 0.9;
 
 }  // namespace

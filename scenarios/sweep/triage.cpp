@@ -207,8 +207,8 @@ bool exact_series(sim::Sensors& sensors, const sim::Truth& truth) {
   return changed;
 }
 
-/// Range errors are corrected first, because the correction needs the time of each point, which the removal of
-/// distortion deletes.
+/// Range errors are corrected before the motion distortion, because the correction of ranges needs the original time of
+/// each point.
 bool everything(sim::Sensors& sensors, const sim::Truth& truth) {
   bool changed = false;
   for (const auto& replace :

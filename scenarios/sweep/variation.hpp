@@ -12,7 +12,8 @@
 
 namespace tumble::scenarios {
 
-/// Variation is a curve of a suite: one parameter, or several that change together, with a list of values.
+/// Variation describes one curve of a suite: the values of one parameter, or of several parameters that change
+/// together.
 ///
 /// - A key such as `world.rock_count` names a parameter of the scenario; each value needs a new simulation.
 /// - A key such as `given.lever_arm_error_m` names an error in the methods' input; one simulation serves all values.
@@ -29,8 +30,9 @@ Reach reach(const Setting& setting);
 
 bool needs_lidar(const Setting& setting);
 
-/// A key belongs to the scenario, to the `given` errors or to a method. Throws BadInput if a key is unknown, if it does
-/// not apply to a scenario, or if a variation has keys of several kinds.
+/// A key names a parameter of the scenario, an error in the methods' input (`given.`), or a parameter of a method.
+/// Throws BadInput if a key is unknown, if it does not apply to a scenario, or if a variation has keys of several
+/// kinds.
 void check(const Variation& variation, const DataRoot& data, std::span<const std::string> scenarios,
            std::uint64_t seed);
 

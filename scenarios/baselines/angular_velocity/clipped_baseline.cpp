@@ -57,8 +57,8 @@ std::vector<Value> interpolate(const Axis& axis) {
       const double span_s = axis.time_s(b) - axis.time_s(a), share = (axis.time_s(k) - axis.time_s(a)) / span_s;
       out[k].rate =
           cubic(share, span_s, axis.reading(a), slope_at(axis, a, -1), axis.reading(b), slope_at(axis, b, +1));
-      // A cubic interpolation has no variance, so the difference between cubic and clipped reading serves as its
-      // standard deviation.
+      // The variance of an interpolated rate is the noise variance plus the squared difference between interpolated
+      // rate and clipped reading.
       const double departure = out[k].rate - axis.reading(k);
       out[k].variance = axis.variance + departure * departure;
     }

@@ -26,8 +26,8 @@ class TrimmedIcp {
     double trim_min = 0.5;       ///< smallest fraction of the matches to keep
     double trim_max = 0.7;
     double trim_lambda = 2.35;
-    /// If true, the fraction of kept matches refers to all match slots, including empty slots, as in the code of the
-    /// ICRA 2024 paper.
+    /// If true, trimming keeps a fraction of all possible matches (points times `neighbours`) instead of the found
+    /// matches. The code of the ICRA 2024 paper also counts all possible matches.
     bool count_unmatched_slots = false;
     int iterations_max = 40;
     double step_m = 0.01;  ///< converged below both bounds

@@ -10,9 +10,8 @@
 namespace tumble::baselines {
 
 /// RollingOdometry computes the position of a rolling sphere's centre from the angular velocity, by the trapezoid rule.
-/// A sphere of radius r rolls with the angular velocity w on a plane with the unit normal n. The velocity of the
-/// sphere's centre is r w x n: rolling.md (R15). The computed position is wrong during slip, sliding and changes of the
-/// floor height.
+/// On a plane with unit normal n, the centre of a sphere with radius r and angular velocity w has the velocity r w x n:
+/// rolling.md (R15). The computed position is wrong during slip, sliding and changes of the floor height.
 class RollingOdometry {
  public:
   struct Params {

@@ -41,8 +41,8 @@ struct BagTrack {
   std::string name;  ///< letters, digits and _
   std::vector<Pose> poses;
   std::vector<std::int64_t> cloud_time_ns = {};  ///< times of point clouds along the track
-  /// Returns the point cloud with the given index. The exporter calls this function when it writes the cloud, and omits
-  /// clouds without points.
+  /// Returns the point cloud with the given index. The exporter calls cloud() when it writes the point cloud, and omits
+  /// point clouds without points.
   std::function<BagCloud(const BagTrack&, std::size_t)> cloud = {};
 };
 
@@ -69,8 +69,8 @@ struct BagWriting {
 ///   exported name of the sensor (export_names). The topic of the primary IMU comes before the topics of other IMUs.
 /// - "/NAME/points" is a sensor_msgs/PointCloud2, stamped at the start of the sweep, with the fields of Velodyne
 ///   drivers: x y z intensity ring time. The field `time` contains the time of a point in float32 seconds after the
-///   stamp (4 ns resolution within 0.1 s). The field `offset_ns` contains the same time in whole nanoseconds. If the
-///   points have no times, both fields are missing.
+///   stamp (4 ns resolution within 0.1 s). The field `offset_ns` contains the same time in whole nanoseconds. The
+///   fields `time` and `offset_ns` are missing if the points have no times.
 /// - "/truth" is a nav_msgs/Odometry of "body" in "world", at most every 5 ms. "/TRACK" and "/TRACK/points" contain
 ///   estimates. Unknown values have the variance -1, as in sensor_msgs/Imu; an unknown twist is zero.
 /// - "/tf_static" contains the pose of each sensor in "body", from the calibration that the estimator uses.

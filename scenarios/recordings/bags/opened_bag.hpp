@@ -57,7 +57,8 @@ struct OpenedBag {
     return out;
   }
 
-  /// A message that cannot be decoded is counted in `left_out`. If `left_out` is null, such a message throws BadInput.
+  /// A message that cannot be decoded is counted in `left_out`. If `left_out` is null, a message that cannot be decoded
+  /// throws BadInput.
   template <class Message, class Take>
   void read(const std::string& name, Take&& take, LeftOut* left_out = nullptr) const {
     std::size_t number = 0;

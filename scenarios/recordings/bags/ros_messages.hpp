@@ -109,7 +109,7 @@ inline const char* type_of(const TFMessage&) {
 inline const char* type_of(const Clock&) {
   return "rosgraph_msgs/Clock";
 }
-/// In ROS 2 bags, LivoxCustomMsg has this type name; in ROS 1 bags, its type name is kLivoxRos1.
+/// The type name of LivoxCustomMsg is "livox_ros_driver2/CustomMsg" in ROS 2 bags, and kLivoxRos1 in ROS 1 bags.
 inline const char* type_of(const LivoxCustomMsg&) {
   return "livox_ros_driver2/CustomMsg";
 }

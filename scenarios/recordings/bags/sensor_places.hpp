@@ -50,8 +50,8 @@ class SensorMountings {
 
   /// Sets the mounting T_BA of a sensor A from /tf_static, unless the user has set T_BA. If the user's value differs
   /// from /tf_static, the function adds a caution to `notes`. If /tf_static contains no pose of A on the body, the
-  /// function computes T_BA from the mounting of another sensor. For this computation, an earlier call must have placed
-  /// the other sensor, and /tf_static must contain the pose between the two sensors.
+  /// function computes T_BA from the mounting of another sensor. place() computes T_BA from another sensor only if
+  /// /tf_static contains the pose between both sensors, and an earlier call has set the other mounting.
   void place(const std::string& topic, const std::string& frame, const char* option, bool given,
              Eigen::Isometry3d& T_BA, std::vector<std::string>& notes);
 

@@ -75,8 +75,8 @@ std::vector<std::size_t> bins_of(const NumberSample& sample) {
 using NumberHistogram = std::array<double, kNumberBins + 1>;
 
 /// Returns the total variation distance between the histogram of a column and the histogram of all numbers, averaged
-/// over the columns. Even if all columns have the same distribution, random samples have a positive mean distance. The
-/// function subtracts the mean distance of random samples.
+/// over the columns. Even if all columns have the same distribution, random samples have a positive mean distance.
+/// columns_differ() subtracts the mean distance between random samples of one distribution.
 double columns_differ(const NumberSample& sample, const std::vector<std::size_t>& bins, std::size_t columns) {
   std::vector<NumberHistogram> counts(columns, NumberHistogram{});
   NumberHistogram all{};

@@ -66,7 +66,8 @@ Vector3d largest_readings(const sim::ImuRecord& imu) {
   return out;
 }
 
-/// Returns the pairs of readings during fast rotation, and the median difference of both gyros relative to the rate.
+/// Returns the readings of both IMUs during fast rotation, in pairs. `rate_difference` becomes the median difference
+/// between the rates of both gyros, as a fraction of the rate.
 std::vector<Pair> fast_pairs(const sim::ImuRecord& first, const sim::ImuRecord& second, double& rate_difference) {
   const Vector3d largest = kUnsaturatedRatio * largest_readings(first);
   std::vector<Pair> pairs;
@@ -102,9 +103,9 @@ std::vector<Pair> fast_pairs(const sim::ImuRecord& first, const sim::ImuRecord& 
   return pairs;
 }
 
-/// Estimates the position p of a second IMU with the same axes, by least squares. The difference of both specific
-/// forces is a x p + w x (w x p) plus a bias, with rate w and angular acceleration a. The least-squares fit omits
-/// samples near the largest gyro reading, because the gyro may be saturated. Cost: O(N) for N samples.
+/// Estimates the position p of a second IMU with the same axes, by least squares. The specific forces of both IMUs
+/// differ by a x p + w x (w x p) plus a bias, with position p, rate w and angular acceleration a. The least-squares fit
+/// omits samples near the largest gyro reading, because the gyro may be saturated. Cost: O(N) for N samples.
 ImuPosition estimate_imu_position(const sim::ImuRecord& first, const sim::ImuRecord& second) {
   ImuPosition out;
   double rate_difference = 0.0;
@@ -185,8 +186,8 @@ void say_columns(const ImuColumns& columns, bool stated, std::vector<std::string
   if (!others.empty()) notes.push_back("ignored columns: " + others);
 }
 
-/// Returns the numbers of the IMUs in the order of their first rows; for a single IMU, returns nothing. A column with
-/// more than eight different numbers contains row numbers and not IMU numbers.
+/// Returns the IMU numbers in a table, in the order of their first rows, or nothing for a table of one IMU. A column
+/// with more than eight different numbers contains row numbers and not IMU numbers.
 std::vector<std::string> imus_in(LoggedTable& table, std::size_t id) {
   constexpr std::size_t kImusMax = 8;
   std::vector<std::string> found;

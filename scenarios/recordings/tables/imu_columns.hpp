@@ -36,7 +36,8 @@ ImuColumns imu_columns(const LoggedTable& table);
 std::int64_t stamp_ns(const CsvLine& line, const ImuColumns& columns);
 
 /// Infers the unit of the time stamps from up to a thousand steps at the start of the table. In the inferred unit (s,
-/// ms, us or ns), the sample rate is 10 to 1000 Hz. Returns 9 for s, 6 for ms, 3 for us and 0 for ns.
+/// ms, us or ns), the sample rate is 10 to 1000 Hz. Returns the power of ten that converts the unit to nanoseconds: 9
+/// for s, 6 for ms, 3 for us and 0 for ns.
 int decimals_by_step(LoggedTable& table, std::size_t stamp, const std::string& file);
 
 }  // namespace tumble::scenarios

@@ -71,7 +71,8 @@ void require_plausible_period(const std::string& where, const sim::ImuRecord& im
 
 /// The IMU of a robot does not rotate faster than 100 rad/s.
 constexpr double kLargestRate_rad_s = 100.0;
-/// At most this fraction of the samples may exceed twice the range, because single samples are glitches.
+/// At most the fraction kBeyondShare of the samples may exceed kBeyondRange times the range, because single glitches
+/// are normal.
 constexpr double kBeyondShare = 0.01, kBeyondRange = 2.0;
 constexpr double kDegreesPerRadian = 57.29577951308232;
 
@@ -196,8 +197,8 @@ GravityRotation gravity_rotation(const sim::ImuRecord& imu, RotationWindows wind
     const bool whole = near(end) && end >= begin + 4 && (length_s >= kRotationWindow_s || turned()) &&
                        length_s < 1.5 * kRotationWindow_s;
     if (whole) {
-      // To reduce noise, the force change is the difference between the means of the last and the first quarter of the
-      // readings.
+      // To reduce noise, the change of the specific force is the mean of the last quarter of the readings minus the
+      // mean of the first quarter.
       const std::size_t quarter = std::max<std::size_t>(1, (end - begin) / 4);
       Eigen::Vector3d first = Eigen::Vector3d::Zero(), last = Eigen::Vector3d::Zero(), middle = Eigen::Vector3d::Zero();
       for (std::size_t k = 0; k < quarter; ++k) first += imu.accel_m_s2[begin + k], last += imu.accel_m_s2[end - k];

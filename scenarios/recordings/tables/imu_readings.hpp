@@ -37,11 +37,11 @@ std::string even_out_stamps(sim::ImuRecord& imu);
 
 std::string gaps_text(const sim::ImuRecord& imu);
 
-/// RotationWindows selects the time windows in which the rotation of the measured gravity is compared with the gyro. A
-/// window of kind `even` lasts 0.2 s. A window of kind `brisk` ends earlier if the specific force has changed by a
-/// quarter of gravity. A window is used if its specific force has the size of gravity within 10 %, and changes by 2 to
-/// 40 % of gravity. The value `ratio` compares the change of the specific force with the product -(rotation vector) x
-/// force; `ratio` is 1 for correct units.
+/// RotationWindows selects the time windows in which the rotation of the measured gravity is compared with the gyro.
+/// RotationWindows::even selects windows of 0.2 s. RotationWindows::brisk ends a window before 0.2 s if the specific
+/// force has changed by a quarter of gravity. A window is used if its specific force has the size of gravity within 10
+/// %, and changes by 2 to 40 % of gravity. The value `ratio` compares the change of the specific force with the product
+/// -(rotation vector) x force; `ratio` is 1 for correct units.
 enum class RotationWindows { even, brisk };
 struct GravityRotation {
   int windows = 0;

@@ -23,8 +23,8 @@ inline constexpr double kReferenceNormTolerance = 1e-2;
 /// Optical systems and the command `export` write unknown poses with NaN in all numbers; readers skip these poses.
 bool is_unknown(const ReferencePose& pose);
 
-/// A pose is invalid if it has non-finite numbers, a quaternion norm that differs from 1 by more than 1 %, or a stamp
-/// that is not later than the stamp of `before`.
+/// Returns why a pose is invalid; empty for a valid pose. A valid pose is finite, within 1e9 m of the origin, and later
+/// than the pose `before`. The quaternion norm of a valid pose is 1 within 1 %; the function normalises the quaternion.
 std::string problem_of(ReferencePose& pose, const ReferencePose* before);
 
 /// If `sorted` is true, sorts the poses by time and keeps the first of several poses with equal stamps.

@@ -15,8 +15,9 @@ namespace {
 /// The rotations of reference and gyro contradict each other if they differ by more than 50 %, and agree if they differ
 /// by less than 30 %.
 constexpr double kContradicts = 0.5, kReferenceAgrees = 0.3;
-/// A wrong quaternion convention is reported only if reference and gyro differ by more than 15 % of the rotation. The
-/// correct convention must reduce the difference to less than 40 % of the original difference.
+/// A wrong quaternion convention is reported only if reference and gyro differ by more than 15 % of the rotation. With
+/// the correct quaternion convention, the rotation difference must be less than 40 % of the difference with the stated
+/// convention.
 constexpr double kExplained = 0.15, kExplanationLeaves = 0.4;
 /// The filters of an IMU cause a delay of about 0.02 s.
 constexpr double kDelayNoted_s = 0.03;

@@ -25,8 +25,8 @@ constexpr std::uint8_t kGyroClipped = 0b111;
 constexpr double kCoarse_s = 0.02, kFine_s = 0.002;
 /// A delay of 0.3 s is detectable if it at least doubles the rotation difference between gyro and attitudes.
 constexpr double kShown_s = 0.3, kShows = 2.0, kShowsBy = 0.02;
-/// The direction of gravity is tested only if the attitudes in the stated quaternion convention agree with the gyro:
-/// their rotations may differ by at most 30 %.
+/// The direction of gravity is tested only if the stated quaternion convention agrees with the gyro: the rotations
+/// differ by at most 30 %.
 constexpr double kAgreesAsStated = 0.3;
 constexpr double kNoFit = std::numeric_limits<double>::infinity();
 

@@ -13,7 +13,7 @@
 #include "sim/recording.hpp"
 
 /// A pose file does not state the frame of its poses, its quaternion convention or its clock. A comparison with a gyro
-/// determines these three properties.
+/// determines frame, quaternion convention and clock of a pose file.
 namespace tumble::scenarios {
 
 struct TimedAttitude {
@@ -46,8 +46,8 @@ template <class Fit>
 struct DelayedFit {
   Fit undelayed, delayed;
 
-  /// A delay must clearly halve the rotation difference, because one of several hundred delays may fit better by
-  /// chance.
+  /// likely() returns the delayed fit only if the delay reduces the rotation difference to less than half. One of
+  /// several hundred delays may fit better by chance.
   const Fit& likely() const { return delayed.difference < 0.5 * undelayed.difference - 0.02 ? delayed : undelayed; }
 };
 
@@ -58,8 +58,8 @@ struct TurningCheck {
   DelayedFit<MountingFit> mounting;
   bool clock_known = false;  ///< a delay of 0.3 s is detectable
   bool order_known = false;  ///< wrong quaternion conventions are detectable
-  /// Another quaternion convention that agrees with the gyro about equally well, if gravity is vertical only in this
-  /// other convention.
+  /// `upright` is another quaternion convention that agrees with the gyro about equally well. Gravity is vertical with
+  /// the convention `upright`, but not with the stated convention.
   std::optional<TurningFit> upright;
 };
 
@@ -71,9 +71,10 @@ inline bool is_delayed(double delay_s) {
 std::string delay_text(double delay_s);
 std::string delay_remedy(double delay_s);
 
-/// Compares the rotations between pairs of attitudes (0.05 to 1 s and 0.02 to 2.5 rad apart) with the rotations from
-/// unsaturated gyro samples without a gap above 0.1 s. At most 400 pairs of attitudes are used, spread evenly over the
-/// recording. Fewer than 6 pairs of attitudes give no result.
+/// Compares the rotations between pairs of attitudes with the rotations that the gyro measures. The attitudes of a pair
+/// are 0.05 to 1 s and 0.02 to 2.5 rad apart. Pairs with a saturated gyro sample or a gap above 0.1 s between the two
+/// attitudes are omitted. At most 400 pairs of attitudes are used, spread evenly over the recording. Fewer than 6 pairs
+/// of attitudes give no result.
 ///
 /// @param frames       Frames to which the attitudes may belong; the first is the user's choice.
 /// @param delay_max_s  Largest delay in either direction, searched in steps of 20 ms, then of 2 ms. With fewer than 20
