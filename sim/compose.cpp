@@ -56,8 +56,8 @@ int count_pairs(const mjModel& model) {
 }
 
 /// Returns true if MuJoCo finds the contacts in the same order with and without its bounding-volume tree. With the
-/// bounding-volume tree, MuJoCo sorts the two geoms of a contact by type number. The orders of contacts with and
-/// without the tree are comparable only if the robot has a single geom.
+/// bounding-volume tree, MuJoCo sorts the two geoms of a contact by type number. For a robot with several geoms,
+/// sorts_as_asked() returns false without comparing the orders of contacts.
 bool sorts_as_asked(const mjModel& model) {
   int robot = -1;
   for (int i = 0; i < model.ngeom; ++i) {

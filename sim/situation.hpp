@@ -34,8 +34,8 @@ struct Situation {
   Component robot;
   Component motion;
   std::vector<SensorSpec> sensors;
-  /// Seeds of single random streams: of the world's shape ("world"), and of the errors of a sensor (its name). All
-  /// other streams use `seed`.
+  /// `streams` contains the seeds of single random streams: "world" for the shape of the world, and a sensor's name for
+  /// the errors of the sensor. All other streams use `seed`.
   std::map<std::string, std::uint64_t> streams;
   bool operator==(const Situation&) const = default;
 

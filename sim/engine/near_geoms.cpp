@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector3d;
 using Box = Eigen::Matrix<double, 6, 1>;
 
-/// With this margin around the robot, one bounding-volume tree is valid for hundreds of steps.
+/// With a margin of 0.5 m around the robot, one bounding-volume tree is valid for hundreds of steps.
 constexpr double kMargin_m = 0.5;
 /// Motion of a robot in one step of 0.5 ms at 400 m/s.
 constexpr double kStep_m = 0.2;

@@ -32,8 +32,8 @@ class Physics {
   /// Throws SimulationFailure for a warning of MuJoCo, a non-finite state, or a robot that left its world.
   void step(const Wrench& wrench);
 
-  /// MuJoCo computes contacts at the last stage of RK4. The position at the last stage differs from the final position
-  /// by an error of second order in the step.
+  /// MuJoCo computes contacts at the last stage of RK4. The robot's position at the last RK4 stage differs from its
+  /// position after the step by an error of second order in the step.
   void append_contacts(std::int64_t time_ns, std::vector<ContactTruth>& contacts) const;
 
  private:

@@ -29,8 +29,8 @@ struct GivenElements {
 void simulate_imu(const Truth& truth, const SensorSpec& sensor, const Eigen::Isometry3d& T_BI, double gravity_m_s2,
                   std::uint64_t seed, ImuRecord& record, ImuTruth& imu_truth, const GivenElements& given = {});
 
-/// The error chain runs at `chain_rate_hz` instead of the physics rate; the simulation of an hour at 500 Hz takes about
-/// a second. The bandwidths of the device must be 0 or below half of `chain_rate_hz`.
+/// The sensor errors are simulated at the rate `chain_rate_hz` instead of the physics rate. The simulation of an hour
+/// at 500 Hz takes about a second. The bandwidths of the device must be 0 or below half of `chain_rate_hz`.
 void simulate_imu_at_rest(const SensorSpec& sensor, double duration_s, double chain_rate_hz, double gravity_m_s2,
                           std::uint64_t seed, ImuRecord& record, ImuTruth& imu_truth);
 

@@ -17,9 +17,10 @@ struct MagneticDipole {
   Eigen::Vector3d moment_W_a_m2;
 };
 
-/// MagneticField is the magnetic flux density in the world [T]: the uniform field of the Earth plus point dipoles. The
-/// field of a dipole is B = mu_0 / (4 pi) (3 (m r) r - m r^2) / r^5 (Jackson, Classical Electrodynamics, equation
-/// 5.56). The magnetic model excludes induced magnetisation, currents and moving sources.
+/// MagneticField is the magnetic flux density in the world [T]: the uniform field of the Earth plus point dipoles. At
+/// the position r relative to a dipole with the moment m, the field is B = mu_0 / (4 pi) (3 (m r) r - m r^2) / r^5
+/// (Jackson, Classical Electrodynamics, equation 5.56). The magnetic model excludes induced magnetisation, currents and
+/// moving sources.
 struct MagneticField {
   Eigen::Vector3d earth_W_t = Eigen::Vector3d::Zero();
   std::vector<MagneticDipole> dipoles;

@@ -9,10 +9,11 @@
 
 namespace tumble::sim {
 
-/// Sampling models a device that outputs a mean value, in place of the exact increment of the motion between outputs.
-/// Each reading is the unweighted mean of the signal over the device's averaging window. The device's update rate may
-/// be lower or higher than the output rate; the output repeats the last reading until a new reading is available
-/// (sample and hold). The sampling model excludes drift and jitter of the device's clock, and weighted windows.
+/// Sampling models a device that outputs mean values. If Sampling is off, each reading contains the exact increment of
+/// the motion between two outputs. If Sampling is on, each reading is the unweighted mean of the signal over the
+/// device's averaging window. The device's update rate may be lower or higher than the output rate; the output repeats
+/// the last reading until a new reading is available (sample and hold). The sampling model excludes drift and jitter of
+/// the device's clock, and weighted windows.
 class Sampling {
  public:
   struct Params {

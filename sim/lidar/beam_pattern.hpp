@@ -26,8 +26,8 @@ struct FiringBlock {
   std::array<ChannelFirings, kMaxChannels> channel;
 };
 
-/// A slot is one sequence of all channels (spinning lidar), or one instant at which all units fire (rosette). Slot k
-/// starts at k times the slot period, counted over all sweeps.
+/// A slot is one sequence of all channels (spinning lidar), or one instant at which all units fire (rosette). The slot
+/// with the number k starts at k times the slot period. Slot numbers continue from sweep to sweep.
 class BeamPattern {
  public:
   virtual ~BeamPattern() = default;

@@ -38,7 +38,8 @@ RangeErrors::RangeErrors(const Values& values, std::uint64_t seed, std::string_v
 bool RangeErrors::is_detected(float signal, double uniform) const {
   if (uniform >= kept_share_) return false;
   if (detection2_m2_ == 0.0 || signal >= certain_signal_) return true;
-  // If a lidar return is not lost at random, its random number divided by kept_share_ is again uniform.
+  // The random number of a return that is not lost is uniform in [0, kept_share_), so uniform / kept_share_ is uniform
+  // in [0, 1).
   const double u = uniform / kept_share_;
   if (u < kSure && signal >= sure_signal_) return true;
   const double odds = std::pow(signal, steepness_);

@@ -135,8 +135,8 @@ double signed_box_distance(const Vector& point, const Vector& half) {
   return outside > 0.0 ? outside : beyond.maxCoeff();
 }
 
-/// The point of the ellipsoid nearest to y follows from the root of sum (a_i y_i / (t + a_i^2))^2 = 1 for t > -min
-/// a_i^2, with half axes a_i.
+/// For a point y and an ellipsoid with half axes a_i, the nearest point of the ellipsoid follows from the root t > -min
+/// a_i^2 of sum (a_i y_i / (t + a_i^2))^2 = 1.
 double ellipsoid_distance(const Vector3d& size, const Vector3d& point) {
   const double scale = size.maxCoeff();
   const Vector3d a = size / scale, y = point.cwiseAbs() / scale;
@@ -150,8 +150,8 @@ double ellipsoid_distance(const Vector3d& size, const Vector3d& point) {
     (outside(middle) > 0.0 ? low : high) = middle;
   }
   Vector3d nearest = a2.cwiseProduct(y).cwiseQuotient(a2 + Vector3d::Constant(high));
-  // If `y` is on the plane of symmetry across the shortest axis, the ellipsoid's equation gives the coordinate of
-  // `nearest` along this axis.
+  // If the point y is on the symmetry plane perpendicular to the shortest axis, the ellipsoid's equation gives the
+  // coordinate of the nearest point along the shortest axis.
   int shortest = 0;
   a.minCoeff(&shortest);
   if (y[shortest] < 1e-12) {

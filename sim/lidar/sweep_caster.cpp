@@ -119,7 +119,8 @@ void SweepCaster::cast_block(Workspace& work) const {
     } else {
       for (int k = 0; k < spread_.rays(); ++k) {
         spread_.bend(firings, k, work.bent);
-        // The cage mask is valid only for the axis of a beam, so all other rays of the beam are cast against the cage.
+        // The cage mask is valid only for the central ray of a beam, so every ray of a wide beam is tested against the
+        // cage.
         cast_channel(work.block, work.poses, c, !cage_.empty(), work.bent, work.beam[k]);
       }
       spread_.merge(work.beam, out.echoes);

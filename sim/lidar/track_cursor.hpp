@@ -18,8 +18,8 @@ using Pose34 = Eigen::Matrix<double, 3, 4>;
 /// position is the acceleration times dt^2 / 8: 13 um for dt = 0.5 ms and 400 m/s^2.
 class TrackCursor {
  public:
-  /// at() interpolates the attitude by Rodrigues' formula. With the cross-product matrix K of the body's rotation over
-  /// the interval, `turned` is R_WB K T_BL, and `rotated_twice` is R_WB K K T_BL.
+  /// at() interpolates the attitude by Rodrigues' formula. `turned` is R_WB K T_BL, and `rotated_twice` is R_WB K K
+  /// T_BL, with the cross-product matrix K of the body's rotation over the interval.
   struct Interval {
     std::int64_t start_ns = 0, end_ns = 0;
     double per_ns = 0.0, per_s = 0.0;

@@ -10,7 +10,7 @@ namespace tumble::sim {
 namespace {
 
 constexpr double kTremorLow_hz = 0.7, kTremorHigh_hz = 9.0;
-// At this and higher speeds, the hand's tremor has its full amplitude.
+// At speeds of kFullTremor_m_s and above, the hand's tremor has its full amplitude.
 constexpr double kFullTremor_m_s = 0.1;
 
 /// Eigen's setFromTwoVectors would take 6 s to compile.

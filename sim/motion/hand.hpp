@@ -51,9 +51,9 @@ constexpr std::array<Parameter, kHandParameters.size() + N> with_hand(const std:
   return all;
 }
 
-/// Hand moves a sphere with a horizontal force at the sphere's centre: a spring and a damper to a moving reference
-/// position, the feed-forward force of rolling, and tremor. On floor patches with different friction, the hand adds
-/// bursts of torque.
+/// Hand moves a sphere with a horizontal force at the sphere's centre. The force of the hand is the sum of a spring and
+/// a damper to a moving reference position, the feed-forward force of rolling, and tremor. On floor patches with
+/// different friction, the hand adds bursts of torque.
 class Hand {
  public:
   /// `world` must outlive the hand.

@@ -20,8 +20,8 @@ struct TrialOptions {
   Integrator integrator = Integrator::runge_kutta_4;
 };
 
-/// Trial simulates a robot in its world step by step for measurements, with the model and engine of simulate(). The
-/// robot starts at its initial pose, without first coming to rest; the motion and sensors of `built` are ignored.
+/// Trial simulates a robot in its world step by step, with the same model and physics engine as simulate(). The robot
+/// starts at its initial pose, without first coming to rest; the motion and sensors of `built` are ignored.
 class Trial {
  public:
   explicit Trial(const BuiltSituation& built, const TrialOptions& options = {});

@@ -13,7 +13,8 @@ namespace tumble::sim {
 Truth record_truth(engine::World& world, Motion& motion, double duration_s);
 
 /// Returns the mean specific force at a body-fixed point P over one step, in the body axes halfway through the step's
-/// rotation. The integral of specific force and gravity is exactly the velocity change of the point P.
+/// rotation. The integral of specific force plus gravity over the step is exactly the velocity change of the body-fixed
+/// point.
 Eigen::Vector3d specific_force_B(const BodyState& before, const BodyState& after, const Eigen::Vector3d& p_BP_m,
                                  double gravity_m_s2);
 

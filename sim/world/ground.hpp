@@ -27,8 +27,8 @@ inline constexpr std::array kGroundParameters = {
 /// MuJoCo uses the larger friction of two touching geoms, and the sphere has no friction.
 void set_ground_contact(mjsGeom* geom, const Values& values);
 
-/// The uneven floor is never above its profile without unevenness, so that no object starts inside the ground. Returns
-/// false if the floor is a plane.
+/// The unevenness only lowers the floor, so that no object starts inside the ground. Returns false if the floor is a
+/// plane.
 bool add_ground(mjSpec* spec, engine::World& world, const Values& values, double half_x_m, double half_y_m,
                 const std::function<double(double, double)>& profile_m, const Colour& colour, Stream& stream);
 

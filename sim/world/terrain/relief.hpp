@@ -8,8 +8,8 @@
 
 namespace tumble::sim {
 
-/// The power per wave number k of a rough surface, integrated over directions, is proportional to k^-exponent for
-/// wavelengths within [shortest_m, longest_m], and zero outside.
+/// The power of a rough surface per wave number k (all directions) is proportional to k^-exponent for wavelengths
+/// within [shortest_m, longest_m], and zero otherwise.
 struct ReliefSpectrum {
   double rms_m = 0.1;       ///< root mean square, at least 0
   double shortest_m = 1.0;  ///< above 0
@@ -31,8 +31,8 @@ class Relief {
   std::vector<Wave> waves_;
 };
 
-/// Heights of the Gaussian bumps are uniform in +-height_m; standard deviations of the shape are uniform in [0.2, 0.7]
-/// m.
+/// The height of a Gaussian bump is uniform in +-height_m. The standard deviation (width) of a Gaussian bump is uniform
+/// in [0.2, 0.7] m.
 void add_bumps(Ground& ground, Stream& stream, int count, double height_m);
 
 }  // namespace tumble::sim
