@@ -29,7 +29,7 @@ void refuse_for_memory(std::string_view message) {
   if (message.find("ould not allocate") != std::string_view::npos) throw std::bad_alloc();
 }
 
-/// Without these error handlers, MuJoCo writes a log file, and ends the process on an error.
+/// MuJoCo's default error handlers write a log file, and end the process on an error.
 void install_handlers() {
   static const bool kInstalled = [] {
     mju_user_warning = [](const char*) {};
@@ -96,7 +96,7 @@ void spare_work(mjModel& model) {
     if (model.geom_type[i] == mjGEOM_HFIELD)
       std::fill(model.geom_aabb + 6 * i + 3, model.geom_aabb + 6 * i + 6, mjMAXVAL);
   }
-  // With few pairs of geoms, MuJoCo's bounding-volume tree saves time only if it contains just the geoms near the
+  // With few pairs of geoms, MuJoCo's bounding-volume tree saves time only if the tree contains just the geoms near the
   // robot.
   if (count_pairs(model) <= kFewPairs && !(NearGeoms::serves(model) && sorts_as_asked(model))) {
     model.opt.disableflags |= mjDSBL_MIDPHASE;

@@ -30,7 +30,7 @@ std::filesystem::path find_scenario(const DataRoot& data, std::span<const std::s
   throw BadInput("unknown scenario '" + name + "'" + suggestion(name, known));
 }
 
-/// `derived` are the files that extend this file.
+/// `derived` contains the scenario files that extend the loaded file.
 Scenario load_file(const DataRoot& data, const std::filesystem::path& path, const Registry& registry,
                    std::vector<std::filesystem::path> derived = {}) {
   derived.push_back(std::filesystem::weakly_canonical(path));

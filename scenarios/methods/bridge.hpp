@@ -73,9 +73,9 @@ std::size_t sweep_count(const sim::LidarRecord& record);
 /// Time stamps that are stored as seconds since 1970 in a double have rounding errors of up to 250 ns.
 inline constexpr std::int64_t kRounding_ns = 1000;
 
-/// A lidar sweep ends after one period, or at the start of the next sweep if this is earlier. Points up to kRounding_ns
-/// after the end of the sweep get the time of the end; later points are dropped. A sweep without a time per point has
-/// zero duration, so its points are not deskewed.
+/// A lidar sweep ends after one period or at the start of the next sweep, whichever is earlier. Points up to
+/// kRounding_ns after the end of the sweep get the time of the end; later points are dropped. A sweep without a time
+/// per point has zero duration, so its points are not deskewed.
 Sweep sweep(const sim::LidarRecord& record, std::size_t index);
 
 }  // namespace tumble::scenarios::bridge

@@ -50,7 +50,7 @@ struct KnownMotion {
 
 struct SlamChain {
   /// true: a first pass over the recording estimates lidar mounting, clock offset and gravity, and a second pass starts
-  /// with this calibration.
+  /// with these estimates.
   bool calibration = false;
   const KnownMotion* along = nullptr;  ///< odometer
   std::function<void(std::size_t done, std::size_t all)> on_sweep = {};

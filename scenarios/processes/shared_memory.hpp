@@ -7,8 +7,8 @@
 
 namespace tumble::scenarios {
 
-/// SharedMemory is anonymous shared memory, which a child program inherits as a file descriptor. The memory is freed
-/// when the last process that uses it ends.
+/// SharedMemory is anonymous shared memory, which a child program inherits as a file descriptor. The shared memory is
+/// freed when the last process that uses the memory ends.
 class SharedMemory {
  public:
   explicit SharedMemory(const char* name);

@@ -42,8 +42,8 @@ std::vector<std::string> export_recording(const std::filesystem::path& recording
 /// its exported or original name.
 Eigen::Isometry3d true_mounting(const sim::Truth& truth, const std::string& frame);
 
-/// Writes the true poses T_WA to a TUM file: one line "t x y z qx qy qz qw" per physics sample, with t in seconds,
-/// rounded to nanoseconds. The TUM file omits times with an unknown pose.
+/// Writes the true poses T_WA to a TUM file, one line "t x y z qx qy qz qw" per physics sample. The time t is in
+/// seconds, rounded to nanoseconds. The TUM file omits times with an unknown pose.
 void export_tum(const sim::Truth& truth, const std::filesystem::path& file, std::int64_t origin_ns = 0,
                 const std::string& frame = "body");
 void export_tum(const StoredTruth& truth, const std::filesystem::path& file, std::int64_t origin_ns = 0,
@@ -53,9 +53,9 @@ void export_tum(const StoredTruth& truth, const std::filesystem::path& file, std
 /// Throws BadInput for a reference with gaps, because a KITTI file has no time stamps.
 void export_kitti(const sim::Truth& truth, const std::filesystem::path& file, const std::string& frame = "body");
 
-/// The columns of an IMU are those of sensor_msgs/Imu: rate [rad/s] and specific force [m/s^2], each with its
-/// covariance; the attitude is unknown. If `truth` is not null, truth.csv contains time, T_WB, v_WB_W, w_WB_B, f_B and
-/// contact label.
+/// The columns of an IMU are the fields of sensor_msgs/Imu: rate [rad/s] and specific force [m/s^2], each with
+/// covariance. The attitude is marked as unknown. If `truth` is not null, truth.csv contains time, T_WB, v_WB_W,
+/// w_WB_B, f_B and contact label.
 void export_csv(const sim::Sensors& sensors, const sim::Truth* truth, const std::filesystem::path& folder,
                 std::int64_t origin_ns = 0);
 

@@ -49,9 +49,9 @@ enum class GyroUnit { rad_s, deg_s };
 /// - The readings are all 0.
 /// - The stamp does not increase.
 ///
-/// Throws BadInput with file and line for unknown, repeated or missing columns, an unexpected unit, a truncated last
-/// line, more than 5 % of faulty lines, or fewer than two samples. Throws BadInput if the readings violate one of these
-/// limits:
+/// Throws BadInput with file and line for unknown, repeated or missing columns, or an unexpected unit. Throws BadInput
+/// for a truncated last line, more than 5 % of faulty lines, or fewer than two samples. Throws BadInput if the readings
+/// violate one of these limits:
 ///
 /// - The median specific force is 3 to 30 m/s^2, and the sample period is 20 us to 2 s.
 /// - At most 1 % of the rates exceed twice the device's range (100 rad/s if unknown).

@@ -42,8 +42,8 @@ std::string digest(const sim::Sensors& sensors, const std::vector<PointStore>& p
 std::string digest(const sim::Truth& truth);
 std::string digest(const StoredTruth& truth);
 
-/// Writes a recording as HDF5 (scenarios/recordings/FORMAT.md) to a temporary file, which is then renamed. Throws
-/// BadInput if the folder is not writable or the disk is full; no partial file remains.
+/// Writes a recording as HDF5 (scenarios/recordings/FORMAT.md) to a temporary file, and renames the complete file.
+/// Throws BadInput if the folder is not writable or the disk is full; no partial file remains.
 void write_recording(const std::filesystem::path& path, const RecordingInfo& info, const sim::Sensors& sensors,
                      const sim::Truth* truth);
 
@@ -51,8 +51,8 @@ void write_recording(const std::filesystem::path& path, const RecordingInfo& inf
 void write_recording(const std::filesystem::path& path, const RecordingInfo& info, const sim::Sensors& sensors,
                      const std::vector<PointStore>& points, const sim::Truth* truth);
 
-/// The readers throw BadInput, with path and reason, if the file is damaged or not HDF5, a dataset has a wrong shape,
-/// or the format version or digest does not match.
+/// The readers throw BadInput, with path and reason, if the file is damaged or not HDF5, or if a dataset has a wrong
+/// shape. The readers also throw BadInput if the format version or the digest does not match.
 RecordingInfo read_info(const std::filesystem::path& path);
 sim::Sensors read_sensors(const std::filesystem::path& path);
 sim::Sensors read_sensors(const std::filesystem::path& path, const std::filesystem::path& scratch,

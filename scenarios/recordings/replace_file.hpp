@@ -22,7 +22,8 @@ class OutputFile {
 
   const std::filesystem::path& unfinished() const { return unfinished_; }
   void write(std::span<const std::byte> bytes);
-  /// Flushes the file to disk and renames it, so the final path always has the complete old or new file.
+  /// Flushes the temporary file to disk and renames the file, so the final path always has the complete old or new
+  /// file.
   void move_into_place();
 
  private:

@@ -85,7 +85,7 @@ extern "C" void remove_and_end(int number) {
     if (entry.owner.load() == getpid()) remove_entry(entry);
   }
   errno = error;
-  // The signal has its default effect when this handler returns and the signal is unblocked.
+  // The signal has its default effect when the signal handler returns and the signal is unblocked.
   struct sigaction usual = {};
   usual.sa_handler = SIG_DFL;
   sigaction(number, &usual, nullptr);

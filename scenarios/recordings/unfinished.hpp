@@ -31,8 +31,9 @@ class SignalsWait {
   SignalsWait& operator=(const SignalsWait&) = delete;
 };
 
-/// The handlers for SIGINT, SIGTERM and SIGHUP remove incomplete outputs; the signals then have their usual effect.
-/// Ignored signals stay ignored. The handlers are async-signal-safe: they only make system calls on static storage.
+/// The handlers for SIGINT, SIGTERM and SIGHUP remove incomplete outputs. After the removal, the signals have their
+/// usual effect. Ignored signals stay ignored. The handlers are async-signal-safe: they only make system calls on
+/// static storage.
 void remove_unfinished_on_signals();
 
 }  // namespace tumble::scenarios

@@ -14,8 +14,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-// The primary IMU may cover the last sweep partly; some methods drop this sweep and others shorten it, so the scores
-// exclude it.
+// The scores exclude a last sweep that the primary IMU covers only partly, because some methods drop the sweep and
+// others shorten the sweep.
 std::int64_t last_sweep_before_ns(const sim::Sensors& sensors) {
   constexpr std::int64_t kAll = std::numeric_limits<std::int64_t>::max();
   if (sensors.lidars.empty() || sensors.imus.empty() || sensors.imus.front().time_ns.empty()) return kAll;

@@ -12,11 +12,11 @@
 /// A slip event is a time interval in which every sample has the contact label slip or the contact label slide, except
 /// for short interruptions. Interruptions of a slip event are allowed because an unbalanced spinning sphere hops. An
 /// interruption contains at most kBridge_ns of the label grip, and lasts at most kHop_ns in total (grip and air). A
-/// true slip event is scored if it lasts at least kShortest_ns and the contact speed reaches kLeastSpeed_m_s; weaker
-/// events cause no position error.
+/// true slip event is scored if the event lasts at least kShortest_ns, and the contact speed reaches kLeastSpeed_m_s.
+/// Weaker slip events cause no position error.
 ///
-/// An estimated slip event is correct if true events, widened by kMargin_ns, cover at least half of it. A true slip
-/// event is detected if correct estimated events cover at least half of it.
+/// An estimated slip event is correct if true events, widened by kMargin_ns, cover at least half of the estimated
+/// event. A true slip event is detected if correct estimated events cover at least half of the true event.
 ///
 /// The position is lost in a true slip event if the horizontal error grows by more than kLost_m during the event. An
 /// estimate reports a lost position if its horizontal variance grows by more than kFlagged_m^2 in a slip event.

@@ -15,8 +15,8 @@ namespace tumble::scenarios {
 /// error is below 13 um and 1 urad.
 class TruthTrack {
  public:
-  /// The body is at rest at a time if its speed and rate are below kRestSpeedMS and kRestRateRadS during the
-  /// kRestWindowS before and after this time.
+  /// The body counts as at rest if speed and rate are below kRestSpeedMS and kRestRateRadS from kRestWindowS before
+  /// until kRestWindowS after the time.
   static constexpr double kRestWindowS = 0.1;
   static constexpr double kRestSpeedMS = 0.03;
   static constexpr double kRestRateRadS = 0.05;
@@ -77,7 +77,8 @@ double twist_about_z_rad(const Eigen::Quaterniond& q);
 double rotation_angle_rad(const Eigen::Quaterniond& q);
 
 /// Returns the horizontal part of the attitude error phi, in the world frame of the estimate. The heading of `q_true`
-/// is first aligned with the heading of `q_estimate`; then q_true = Exp(phi) q_estimate.
+/// is first aligned with the heading of `q_estimate`. The attitude error phi then satisfies q_true = Exp(phi)
+/// q_estimate.
 Eigen::Vector2d tilt_error_rad(const Eigen::Quaterniond& q_estimate, const Eigen::Quaterniond& q_true);
 
 struct PairedTrack {

@@ -24,7 +24,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// SearchedRun is the result of the method on one draw of the search.
+/// SearchedRun is the result of the method on one simulated run of the search.
 struct SearchedRun {
   std::uint64_t seed = 0;
   OutcomeStatus status = OutcomeStatus::ok;
@@ -46,7 +46,7 @@ void claim(Results& results, const Scenario& scenario, const Method& method, con
   results.set_note(key, text);
 }
 
-/// Evaluator runs the method on draws of the scenario, and stores each outcome.
+/// Evaluator runs the method on random runs of the scenario, and stores each outcome.
 class Evaluator {
  public:
   Evaluator(const DataRoot& data, const Scenario& scenario, const Method& method, const FailureGoal& goal,

@@ -37,8 +37,8 @@ struct SearchOptions {
   std::function<void(std::size_t runs, std::size_t failures)> on_runs;
 };
 
-/// FoundFailure is a draw on which the method fails. `distance` is the norm of the draw's standard normal numbers: the
-/// draw with the smallest distance has the largest probability density.
+/// FoundFailure is a simulated run (draw) on which the method fails. `distance` is the norm of the draw's standard
+/// normal numbers: the draw with the smallest distance has the largest probability density.
 struct FoundFailure {
   std::size_t run = 0;  ///< index of the run
   double distance = 0.0;

@@ -81,7 +81,8 @@ struct Comparison {
 };
 
 /// Compares the methods. A metric without a sense (for example a cost, for which neither lower nor higher is better) is
-/// compared only if the caller names it. For a metric without a sense, the finding is always Finding::undecided.
+/// compared only if the caller names the metric. For a metric without a sense, the finding is always
+/// Finding::undecided.
 Comparison compare(const Summary& summary, const ComparisonOptions& options);
 
 }  // namespace tumble::scenarios

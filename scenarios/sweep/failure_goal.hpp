@@ -21,7 +21,7 @@ struct FailureGoal {
   bool operator==(const FailureGoal&) const = default;
 
   /// Returns whether the run failed by its status, by a pass-fail metric, or by the metric of this goal. A run without
-  /// this metric fails.
+  /// the metric of the goal fails.
   bool holds(const Outcome& outcome) const;
   /// Returns whether a value of the metric is worse than the limit. NaN is not worse.
   bool is_worse(double value) const;

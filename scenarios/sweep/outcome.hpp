@@ -44,7 +44,8 @@ struct DrawValues {
 
 bool was_scored(OutcomeStatus status);
 
-/// Rank of outcomes for one run of a method: a completed run, then crashed and timeout, then killed.
+/// Returns true if `status` has a higher rank than `other`. Completed runs have the highest rank, then `crashed` and
+/// `timeout`, then `killed`.
 bool outranks(OutcomeStatus status, OutcomeStatus other);
 
 bool may_run_again(OutcomeStatus status);

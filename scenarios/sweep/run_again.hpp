@@ -34,7 +34,7 @@ std::string to_text(const Setting& setting);
 /// Value of the note `source` if the results come from recordings, which cannot be simulated again
 inline constexpr const char* kRecordingsSource = "recordings";
 
-/// Value of the note `build` if results of several builds were merged; only reports accept such results
+/// Value of the note `build` if results of several builds were merged; only reports accept merged results
 inline constexpr const char* kMixedBuilds = "mixed";
 
 /// Key of the note with the commands that produced the results: one line per sweep, quoted for a shell

@@ -31,8 +31,7 @@ Reach reach(const Setting& setting);
 bool needs_lidar(const Setting& setting);
 
 /// A key names a parameter of the scenario, an error in the methods' input (`given.`), or a parameter of a method.
-/// Throws BadInput if a key is unknown, if it does not apply to a scenario, or if a variation has keys of several
-/// kinds.
+/// Throws BadInput if a key is unknown or does not apply to a scenario, or if a variation has keys of several kinds.
 void check(const Variation& variation, const DataRoot& data, std::span<const std::string> scenarios,
            std::uint64_t seed);
 

@@ -5,7 +5,7 @@
 
 #include <optional>
 
-/// Contacts between struts (capsules of the robot's cage) and the ground are computed in closed form, because MuJoCo's
+/// Contacts between struts (capsules of the robot's cage) and the ground are computed in closed form. MuJoCo's
 /// iterative method (GJK) would take half of the computing time of a tumble.
 namespace tumble::sim::engine {
 

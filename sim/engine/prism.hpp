@@ -18,7 +18,7 @@ struct Closest {
 
 enum class Meeting { apart, near, pierced };
 
-/// There are no closest points if the axis from `a_m` to `b_m` pierces the prism or is within 10 um of it.
+/// There are no closest points if the axis from `a_m` to `b_m` pierces the prism or is within 10 um of the prism.
 Meeting meet(const Eigen::Vector3d& a_m, const Eigen::Vector3d& b_m, const Prism& prism, double reach_m,
              Closest& closest);
 

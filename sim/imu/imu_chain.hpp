@@ -20,8 +20,8 @@ struct TriadReading {
   Eigen::Vector3d bias;       ///< at the end of the window
 };
 
-/// Order of the stages: analogue low-pass, scale and misalignment, bias, external additions (g-sensitivity), white
-/// noise of the active range, sensing elements with saturation, compensation of the elements, quantum, digital
+/// The stages have this order: analogue low-pass, scale and misalignment, bias, external additions (g-sensitivity),
+/// white noise of the active range, sensing elements with saturation, compensation of the elements, quantum, digital
 /// low-pass, mean over the window.
 ///
 /// If a triad rotates, the mean of its readings over the window differs from the increment of the motion divided by the

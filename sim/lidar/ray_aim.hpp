@@ -6,8 +6,8 @@
 
 namespace tumble::sim {
 
-/// Within a slot (50 us), the pose is extrapolated with the rate at the middle of the slot; at 20 rad/s, the error is
-/// (rate dt)^2 / 2 = 1e-7 rad.
+/// Within a slot (50 us), the pose is extrapolated with the rate at the middle of the slot. At 20 rad/s, the
+/// extrapolation error is (rate dt)^2 / 2 = 1e-7 rad.
 class BlockPoses {
  public:
   void follow(const BeamPattern& pattern, const FiringBlock& block, TrackCursor& track);

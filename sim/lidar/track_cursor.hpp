@@ -15,7 +15,8 @@ using Pose34 = Eigen::Matrix<double, 3, 4>;
 
 /// TrackCursor interpolates the true pose of a lidar between the samples of the body's motion: position linearly,
 /// attitude at a constant rate about a fixed axis. For samples at an interval dt, the interpolation error of the
-/// position is the acceleration times dt^2 / 8: 13 um for dt = 0.5 ms and 400 m/s^2.
+/// position is the acceleration times dt^2 / 8. With dt = 0.5 ms and an acceleration of 400 m/s^2, the position error
+/// is 13 um.
 class TrackCursor {
  public:
   /// at() interpolates the attitude by Rodrigues' formula. `turned` is R_WB K T_BL, and `rotated_twice` is R_WB K K

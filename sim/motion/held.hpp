@@ -9,8 +9,8 @@
 
 namespace tumble::sim {
 
-/// HoldingHand holds a robot still in the air, with critically damped springs for position and attitude, and a force at
-/// the centre of mass that carries the weight.
+/// HoldingHand holds a robot still in the air, with critically damped springs for position and attitude. A force at the
+/// centre of mass carries the weight of the robot.
 class HoldingHand {
  public:
   /// The lowest point of the robot is `height_m` above the ground at the start.

@@ -10,8 +10,8 @@
 
 namespace tumble::sim {
 
-/// A Motion never sets a velocity, because the simulated accelerometers would not measure the jump; it applies a wrench
-/// (force and torque).
+/// A Motion applies a wrench (force and torque) to the robot. A Motion never sets a velocity, because the simulated
+/// accelerometers would not measure the jump.
 class Motion {
  public:
   virtual ~Motion() = default;

@@ -60,8 +60,8 @@ double smooth(double share) {
   return u * u * u * (10.0 + u * (-15.0 + 6.0 * u));
 }
 
-/// In the motion Swing, a hand grips the lowest segment of the pendulum at the segment's centre of mass, and pulls it
-/// to a moving target by a spring and a damper.
+/// In the motion Swing, a hand grips the lowest segment of the pendulum at the segment's centre of mass. The hand pulls
+/// the segment to a moving target by a spring and a damper.
 class Swing : public Motion {
  public:
   Swing(const Values& values, const engine::World& world)

@@ -5,8 +5,8 @@
 
 namespace tumble::sim {
 
-/// The library OSMesa is loaded when the first picture is rendered, because loading it (with LLVM) would make the start
-/// of every program a third longer.
+/// The library OSMesa is loaded when the first picture is rendered. Loading OSMesa and LLVM at the start would make the
+/// start of every program a third longer.
 struct OsMesa {
   decltype(&::OSMesaCreateContextExt) create_context;
   decltype(&::OSMesaDestroyContext) destroy_context;

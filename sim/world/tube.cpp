@@ -40,8 +40,8 @@ double ground_m(const Values& values, double x_m, double y_m) {
   return values.at("gutter_m") * u * u;
 }
 
-/// The shell of the tube has no contacts, because MuJoCo would use the convex hull of its mesh; the ground and the ends
-/// keep the robot inside.
+/// The shell of the tube has no contacts, because MuJoCo would use the convex hull of the shell's mesh. The ground and
+/// the ends keep the robot inside the tube.
 void add_shell(mjSpec* spec, engine::World& world, const Values& values, int side, const Relief& rough) {
   constexpr double kRing_m = 0.1;
   constexpr int kSteps = 28;

@@ -119,8 +119,8 @@ struct BagReading {
 /// Sensor poses that the caller does not set come from /tf_static, relative to "body", "base_link" or another sensor.
 /// If `sweeps.scratch` is set, memory contains only one sweep and the IMU data; otherwise, memory contains all points.
 ///
-/// Throws BadInput with file and location for damaged or truncated data, a missing topic, a wrong type, more than 5 %
-/// of faulty messages, or a cycle of frames.
+/// Throws BadInput with file and location for damaged or truncated data, a missing topic, or a wrong type. Also throws
+/// BadInput for more than 5 % of faulty messages, or a cycle of frames.
 Imported import_ros1_bag(const std::filesystem::path& path, const BagReading& reading);
 Imported import_ros2_bag(const std::filesystem::path& path, const BagReading& reading);
 Imported import_mcap(const std::filesystem::path& file, const BagReading& reading);

@@ -33,8 +33,8 @@ struct Record {
 class File {
  public:
   /// Reads the summary of the MCAP file; without a summary, scans the file. The cost is O(file size). Throws BadInput
-  /// with the offset if the file is damaged, has a compression other than none, lz4 or zstd, or has a chunk or record
-  /// larger than 256 MiB.
+  /// with the offset if the file is damaged, or has a compression other than none, lz4 or zstd. Also throws BadInput if
+  /// a chunk or record is larger than 256 MiB.
   explicit File(const std::filesystem::path& path);
 
   const std::map<std::uint16_t, Schema>& schemas() const { return schemas_; }

@@ -285,8 +285,8 @@ class Ros1BagReader : public BagReader {
   void open_unpacked(const std::filesystem::path& file) {
     const std::filesystem::path folder = std::filesystem::temp_directory_path();
     require_room(file, folder);
-    // The decompressed file is unlinked once it is open, so the file vanishes when the reader closes it or the process
-    // ends.
+    // The decompressed file is unlinked directly after opening, so the file vanishes when the reader closes the file or
+    // the process ends.
     const OutputFile unpacked(folder / "tumble_unpacked.bag");
     copy_ros1_bag(file, unpacked.unfinished(), [](Ros1Chunk& chunk) {
       if (chunk.compression == "lz4") unpack_lz4(chunk);

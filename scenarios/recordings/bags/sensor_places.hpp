@@ -17,9 +17,10 @@ std::string without_slash(const std::string& frame);
 class StaticFrames {
  public:
   /// If a frame occurs in several transforms, the last transform is used. If the parent of a frame changes, remarks()
-  /// contains a note. A transform is invalid if it has non-finite values, a translation above 1 km, its own frame as
-  /// parent, or a quaternion whose norm differs from 1 by more than 1 %. An invalid transform causes an exception only
-  /// when it is used, because bags contain frames unrelated to the sensors.
+  /// contains a note. A transform is invalid if a value is not finite, the translation is above 1 km, or the norm of
+  /// the quaternion differs from 1 by more than 1 %. A transform whose parent is its own frame is also invalid. An
+  /// invalid transform throws an exception only when the transform is used, because bags contain frames unrelated to
+  /// the sensors.
   void add(const ros::TransformStamped& transform, const std::string& where);
 
   void require_no_cycle(const std::string& where) const;

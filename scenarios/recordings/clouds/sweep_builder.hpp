@@ -54,13 +54,13 @@ struct BuiltSweeps {
 
 /// SweepBuilder buffers the first ten clouds to determine the unit of the point times.
 ///
-/// A point counts as a ray without return if it is not finite, farther than 1000 km, or at the origin. Intensities
-/// above 1 are divided by 255, or by their maximum if it exceeds 255. A sweep starts at its time stamp. If the first
-/// point is earlier than the stamp, or more than a period later, the sweep starts at the first point.
+/// A point that is not finite, farther than 1000 km, or at the origin counts as a ray without return. Intensities above
+/// 1 are divided by 255, or by the maximum intensity if the maximum exceeds 255. A sweep starts at its time stamp. If
+/// the first point is earlier than the stamp, or more than a period later, the sweep starts at the first point.
 ///
-/// A cloud is skipped if it lacks a field, has an invalid ring, starts before the previous sweep, or has most points
-/// beyond twice the lidar's range. If absolute point times and stamps come from different clocks, the stamp is assumed
-/// to be the time of the first point.
+/// A cloud is skipped if a field is missing, a ring is invalid, or the cloud starts before the previous sweep. A cloud
+/// is also skipped if most points are beyond twice the lidar's range. If absolute point times and stamps come from
+/// different clocks, the stamp is assumed to be the time of the first point.
 class SweepBuilder {
  public:
   SweepBuilder(SweepReading reading, std::int64_t period_ns, LeftOut left_out = LeftOut("clouds"))

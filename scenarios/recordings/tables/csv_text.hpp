@@ -48,8 +48,8 @@ double csv_number(const CsvLine& line, std::size_t index, const std::string& col
 bool is_number(std::string_view field);
 
 /// Empty lines, comments and an empty field after the last separator of a line are skipped. The first line that is not
-/// a comment is the header if fewer than half of its fields are numbers. If samples directly follow comments, the last
-/// comment is the header if it has as many fields as a sample ("#timestamp [ns],w_RS_S_x [rad s^-1],...").
+/// a comment is the header if fewer than half of its fields are numbers. A comment directly before the samples is the
+/// header if the comment has as many fields as a sample ("#timestamp [ns],w_RS_S_x [rad s^-1],...").
 class LoggedTable {
  public:
   explicit LoggedTable(const std::filesystem::path& path);
@@ -59,8 +59,8 @@ class LoggedTable {
   const CsvLine& header() const { return header_; }
   bool has_header() const { return has_header_; }
 
-  /// Throws BadInput with file and line for a wrong number of fields, or for a last line without newline; the caller
-  /// can then continue.
+  /// Throws BadInput with file and line for a wrong number of fields, or for a last line without newline. After
+  /// BadInput, the caller can continue to read.
   bool next(CsvLine& line);
   bool next_sound(CsvLine& line);
   void restart() { text_.back_to(samples_); }

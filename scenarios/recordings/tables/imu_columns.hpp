@@ -29,8 +29,8 @@ struct ImuColumns {
   std::vector<std::string> left_out;  ///< names of ignored columns
 };
 
-/// Known names are those of ROS messages (".../angular_velocity/x"), of the command `export`, their short forms (sec
-/// nsec wx.. fx..), and of loggers (logger_columns.hpp).
+/// Known column names are the names of ROS messages (".../angular_velocity/x"), of the command `export` and of loggers
+/// (logger_columns.hpp). The short forms sec, nsec, wx.. and fx.. are also known.
 ImuColumns imu_columns(const LoggedTable& table);
 
 std::int64_t stamp_ns(const CsvLine& line, const ImuColumns& columns);

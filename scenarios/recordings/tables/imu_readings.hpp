@@ -50,8 +50,8 @@ struct GravityRotation {
 GravityRotation gravity_rotation(const sim::ImuRecord& imu, RotationWindows windows = RotationWindows::even);
 
 /// Returns a note on the unit of the rates, or on a gyro that always reads 0; empty if the motion is insufficient.
-/// Throws BadInput if gravity indicates deg/s instead of rad/s or vice versa, or if more than 1 % of the rates exceed
-/// twice the range of the IMU (100 rad/s if unknown).
+/// Throws BadInput if gravity indicates deg/s instead of rad/s or vice versa. Also throws BadInput if more than 1 % of
+/// the rates exceed twice the range of the IMU (100 rad/s if unknown).
 std::string require_plausible_rates(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit);
 
 std::string rates_text(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit);

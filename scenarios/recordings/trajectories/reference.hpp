@@ -32,10 +32,10 @@ void finish_poses(const std::filesystem::path& file, bool sorted, std::vector<Re
 
 std::string pose_format(const std::filesystem::path& file);
 
-/// A line of a TUM file is "t x y z qx qy qz qw", t in seconds; '#' starts a comment, and blanks or commas separate
-/// numbers. Throws BadInput with file and line for a line without eight finite numbers, or a quaternion norm that
-/// differs from 1 by more than 1 %. If `sorted` is true, the poses are sorted by time; otherwise, a stamp that does not
-/// increase throws BadInput.
+/// A line of a TUM file is "t x y z qx qy qz qw", with the time t in seconds. In TUM files, '#' starts a comment, and
+/// blanks or commas separate numbers. Throws BadInput with file and line for a line without eight finite numbers, or a
+/// quaternion norm that differs from 1 by more than 1 %. If `sorted` is true, the poses are sorted by time; otherwise,
+/// a stamp that does not increase throws BadInput.
 std::vector<ReferencePose> read_tum_poses(const std::filesystem::path& file, bool sorted);
 
 /// The lines of a KITTI file contain the upper three rows of pose matrices. Throws BadInput with file and line for a
