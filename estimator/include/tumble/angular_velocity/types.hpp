@@ -49,7 +49,8 @@ struct RigConstants {
   Eigen::Vector3d sensing_direction(int j) const;
   /// Returns the inertia matrix, scaled to trace 3.
   Eigen::Matrix3d inertia_matrix() const;
-  /// Converts a symmetric inertia matrix of any positive scale to the coordinates `inertia`.
+  /// Returns the five coordinates `inertia` of a symmetric inertia matrix. A positive scale factor of the matrix has no
+  /// effect.
   static Eigen::Matrix<double, 5, 1> inertia_basis_coordinates(const Eigen::Matrix3d& inertia);
   static const Eigen::Matrix3d& inertia_basis_matrix(int i);
 

@@ -44,13 +44,15 @@ inline Field boolean_field(const char* name, const char* meaning, ParameterRank 
 /// bound for parameters without a limit: the largest finite number
 inline constexpr double kUnbounded = std::numeric_limits<double>::max();
 
-/// Number is the concept of arithmetic and enumeration types. A visitor handles parameters of these types as numbers.
+/// Number is the concept of arithmetic and enumeration types. A visitor handles parameters of arithmetic and
+/// enumeration types as numbers.
 template <class T>
 concept Number = std::is_arithmetic_v<std::remove_cvref_t<T>> || std::is_enum_v<std::remove_cvref_t<T>>;
 
 namespace detail {
 
-/// `names` contains the prefixes of the invalid parameter's groups, followed by the parameter's name.
+/// OutOfBoundsParameter describes the first invalid parameter of a struct. `names` contains the prefixes of the
+/// parameter's groups, and then the name of the parameter.
 struct OutOfBoundsParameter {
   std::array<const char*, 8> names{};
   std::size_t prefix_count = 0;
@@ -133,7 +135,7 @@ void visit_by_name(Params& params, Each each) {
 }
 
 /// Returns true if `name` matches one of `patterns`. A pattern that ends in '*' matches every name that starts with the
-/// text before the '*'. Any other pattern matches only the equal name.
+/// text before the '*'. A pattern without '*' at its end matches only a name that is equal to the pattern.
 template <class Text>
 bool matches_any(std::string_view name, std::span<const Text> patterns) {
   return std::any_of(patterns.begin(), patterns.end(), [&](std::string_view pattern) {
@@ -142,11 +144,10 @@ bool matches_any(std::string_view name, std::span<const Text> patterns) {
   });
 }
 
-/// HeapValue stores a value on the heap. Like std::indirect of C++26, a copy of a HeapValue contains a copy of the
-/// value, and a constant HeapValue gives access to a constant value. A class can have a member HeapValue<T> for an
-/// incomplete type T, if the header declares `extern template class HeapValue<T>`. Only the source file that
-/// instantiates HeapValue<T> explicitly then needs the complete type T. A moved-from HeapValue has no value until a new
-/// value is assigned.
+/// HeapValue stores a value on the heap. Copying a HeapValue copies the stored value, as for std::indirect of C++26.
+/// The value of a constant HeapValue is constant. A class can have a member HeapValue<T> for an incomplete type T, if
+/// the header declares `extern template class HeapValue<T>`. Only the source file that instantiates HeapValue<T>
+/// explicitly needs the complete type T. A moved-from HeapValue has no value until a new value is assigned.
 template <class T>
 class HeapValue {
  public:

@@ -101,8 +101,8 @@ Eigen::Quaterniond shortest_arc(const Eigen::Vector3d& from, const Eigen::Vector
 
 /// A program and the compiled library must use the same memory layout for Eigen's matrices and the standard library's
 /// containers. A program with a different layout, for example because of EIGEN_MAX_STATIC_ALIGN_BYTES or
-/// _GLIBCXX_DEBUG, does not link. The linker of such a program reports that CompilerSettingsCheck<...>::link_time_check
-/// is undefined.
+/// _GLIBCXX_DEBUG, does not link. If the memory layouts differ, the linker reports that
+/// CompilerSettingsCheck<...>::link_time_check is undefined.
 namespace tumble::detail {
 
 #ifdef _GLIBCXX_DEBUG

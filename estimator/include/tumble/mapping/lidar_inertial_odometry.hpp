@@ -23,8 +23,8 @@ namespace tumble {
 /// The z axis of the world frame points upwards, along the specific force at rest. The first sweep with at least
 /// `matches_min` usable points starts the map. The pose of the IMU at the first IMU sample defines origin and yaw of
 /// the world frame. If the map starts more than 0.5 s after the first IMU sample, the IMU's pose at the start of the
-/// map defines origin and yaw. If earlier sweeps had too few points, the IMU's pose at the start of the map also
-/// defines origin and yaw.
+/// map defines origin and yaw. If earlier sweeps had too few points to start the map, the IMU's pose at the start of
+/// the map defines origin and yaw.
 ///
 /// Pass IMU samples in time order. Before each sweep, pass the IMU samples up to the end of the sweep.
 /// LidarInertialOdometry starts no threads, uses no files and prints nothing.
@@ -62,8 +62,9 @@ class LidarInertialOdometry {
   };
   /// Returns the tilt at the start, computed from the direction of gravity in the map, for a second run over the same
   /// data. start_tilt() returns an empty value after a start at rest, before the map starts, and after localisation in
-  /// a prior map. If the computed tilt is not at least twice as accurate as the initial tilt, start_tilt() returns the
-  /// argument of set_start_tilt(), if any.
+  /// a prior map. If the computed tilt is too inaccurate, start_tilt() returns the argument of set_start_tilt(), or an
+  /// empty value without such an argument. A computed tilt is too inaccurate if its standard deviation exceeds half the
+  /// initial standard deviation.
   std::optional<StartTilt> start_tilt() const;
   /// Call set_start_tilt() before the first sweep.
   void set_start_tilt(const StartTilt& tilt);
@@ -94,10 +95,10 @@ class LidarInertialOdometry {
   /// of `sample` and `rate` differ, or exceed kStampMax_ns. On error, the state is unchanged.
   Status add_imu(const ImuSample& sample, const AngularRateState& rate);
 
-  /// Sets an odometer reading for the prediction of the next sweep's pose. The prediction ignores a reading with time
-  /// stamps more than 20 ms before the end of the last sweep or after the end of the next sweep. The odometer reading
-  /// is fused with the inertial prediction, weighted by their covariances. Each sweep uses one odometer reading: that
-  /// of the last call of add_reading().
+  /// Sets an odometer reading for the prediction of the next sweep's pose. The prediction ignores an odometer reading
+  /// that starts more than 20 ms before the end of the last sweep. The prediction also ignores an odometer reading that
+  /// ends more than 20 ms after the end of the next sweep. The odometer reading is fused with the inertial prediction,
+  /// weighted by their covariances. Each sweep uses one odometer reading: that of the last call of add_reading().
   Status add_reading(const OdometerReading& reading);
 
   /// Registers a sweep of points fired in [start_ns, end_ns]. Consecutive sweeps must not overlap. A point with NaN

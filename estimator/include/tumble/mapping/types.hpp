@@ -48,8 +48,8 @@ struct LidarImuCalibration {
   Eigen::Matrix<double, kErrorCount, 1> minus(const LidarImuCalibration& other) const;
 };
 
-/// `deviations` is the result of LidarImuCalibrationPrior::distance_in_sigmas(). Returns `out_of_range` above
-/// kDistanceMax_sigmas, because the stated calibration is probably wrong.
+/// `deviations` is the result of LidarImuCalibrationPrior::distance_in_sigmas(). Returns `out_of_range` if `deviations`
+/// exceeds kDistanceMax_sigmas, because the stated calibration is probably wrong.
 Status distance_verdict(double deviations);
 
 /// LidarImuCalibrationPrior is the calibration that the caller states, with standard deviations of rotation (per axis),
@@ -117,15 +117,16 @@ struct MotionReading {
 using OdometerReading = std::variant<VelocityReading, MotionReading>;
 
 /// Returns `non_finite` if a number is not finite. Returns `out_of_range` if a standard deviation is not above 0, a
-/// covariance is not positive definite, or a rotation matrix is not orthonormal. Returns `time_order` if a motion does
-/// not end after its start.
+/// covariance is not positive definite, or a rotation matrix is not orthonormal. Returns `time_order` if a motion ends
+/// before or at its start.
 Status check_reading(const OdometerReading& reading);
 TimeNs reading_start_ns(const OdometerReading& reading);
 TimeNs reading_end_ns(const OdometerReading& reading);
 
-/// PositionReading is the position of an antenna or tag A on the robot, in a position frame P with z up, for example
-/// from GPS (as local east, north, up) or from beacons. PositionAlignment assumes that the errors of the readings are
-/// independent. If the errors of successive readings are correlated, state a larger covariance.
+/// PositionReading is the measured position of an antenna or tag A on the robot, for example from GPS or beacons. The
+/// position is given in a position frame P with an upward z axis, for example east, north, up. PositionAlignment
+/// assumes that the errors of the readings are independent. If the errors of successive readings are correlated, state
+/// a larger covariance.
 struct PositionReading {
   TimeNs time_ns = 0;  ///< in the IMU's clock
   Eigen::Vector3d antenna_position_P_m = Eigen::Vector3d::Zero();
@@ -196,21 +197,22 @@ struct SweepReport {
   /// standard deviation of the pose in the least constrained direction, from this sweep's points alone; 0: the sweep
   /// was not aligned
   double least_constrained_sigma_m = 0.0;
-  /// Normalised innovation sqrt(d' P^-1 d / 9), for the nine corrections d of the predicted position, attitude and
-  /// velocity. P is the covariance of the predicted position, attitude and velocity. If the covariances are correct,
-  /// the mean innovation is at most 1. An innovation of 0 means that the sweep was not aligned.
+  /// Normalised innovation sqrt(d' P^-1 d / 9), for nine corrections d with the predicted covariance P. The
+  /// registration adds the corrections d to the predicted position, attitude and velocity. If the covariances are
+  /// correct, the mean innovation is at most 1. An innovation of 0 means that the sweep was not aligned.
   double innovation = 0.0;
   /// Standard deviation of the position relative to the nearby map points. The covariance of `pose` also includes the
   /// map's drift and tilt, which grow with the travelled distance.
   double map_sigma_m = 0.0;
   int iterations = 0;
   int consecutive_rejected_sweeps = 0;  ///< consecutive rejected sweeps, including the current sweep
-  /// True from a relocalisation away from the predicted pose until two further sweeps confirm the relocalisation. If a
-  /// sweep contradicts the relocalisation, the run returns to the inertially predicted pose.
+  /// True after a relocalisation that disagrees with the predicted pose or fits the map poorly, until two further
+  /// sweeps confirm the relocalisation. If a sweep contradicts the relocalisation, the odometry returns to the
+  /// inertially predicted pose.
   bool relocalisation_unconfirmed = false;
   /// Direction in which the lidar constrains the pose least: unit vector of three position and three attitude
-  /// components, in world axes. An attitude component is the angle times the root-mean-square distance of the points
-  /// from the IMU, so that all components have the same unit.
+  /// components, in world axes. The attitude components are angles, multiplied by the root-mean-square distance of the
+  /// points from the IMU, so all six components are lengths.
   Eigen::Matrix<double, 6, 1> least_constrained_direction = Eigen::Matrix<double, 6, 1>::Zero();
   Eigen::Vector3d mean_saturation_deficit_rad_s =
       Eigen::Vector3d::Zero();        ///< mean correction of the clipped gyro axes

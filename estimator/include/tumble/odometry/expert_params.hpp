@@ -40,8 +40,8 @@ struct SecondMappingPassParams {
 struct TumblingExpertParams {
   double gravity_m_s2 = 9.80665;
   /// Maximum number of sweeps that wait for IMU samples, in addition to the sweeps of the last `lag_s`.
-  /// TumblingOdometry also stores at most sweeps_max registered sweeps until take() returns them. If more sweeps wait
-  /// for take(), TumblingOdometry drops the oldest sweep.
+  /// TumblingOdometry also stores at most sweeps_max registered sweeps until take() returns them. If more than
+  /// sweeps_max registered sweeps wait for take(), TumblingOdometry drops the oldest sweep.
   std::size_t sweeps_max = 16;
   /// Parameters of the rate estimation. By default, the prior probability that the IMU does not match its data sheet is
   /// 0.003. The covariance of each estimated rate includes the uncertainty of the IMU's calibration.

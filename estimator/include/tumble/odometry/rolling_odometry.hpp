@@ -32,10 +32,10 @@ extern template class HeapValue<RollingOdometryExpertParams>;
 ///
 /// The state of RollingOdometry takes half a megabyte, plus 0.1 MB per IMU and 11 KiB per 0.02 s of lag. If `lag_s` is
 /// above 0, RollingOdometry computes poses in blocks of RollingSmoother::Params::kBlock_s. After start-up, add_imus()
-/// allocates memory only at the end of a block, and for poses that take() has not yet returned. A call needs at most 64
-/// KiB of stack. RollingOdometry starts no threads, uses no files and prints nothing. A copy of a RollingOdometry
-/// contains the complete state. The limitations of ImuMerge, RollingFilter and RollingSmoother apply to
-/// RollingOdometry.
+/// allocates memory only at the end of a block, and for poses that take() has not yet returned. Each call of a member
+/// function needs at most 64 KiB of stack. RollingOdometry starts no threads, uses no files and prints nothing. A copy
+/// of a RollingOdometry contains the complete state. The limitations of ImuMerge, RollingFilter and RollingSmoother
+/// apply to RollingOdometry.
 class RollingOdometry {
  public:
   static constexpr double kWholeRecording = 1e9;  ///< value of Params::lag_s
@@ -64,8 +64,8 @@ class RollingOdometry {
     static std::span<const char* const> derived_fields();
 
     /// Increases the prior standard deviations for uncalibrated IMUs without data sheet, at unknown positions in the
-    /// sphere. The floor is then assumed level, because the accelerometer bias of an uncalibrated IMU resembles a
-    /// slope.
+    /// sphere. widen_priors_for_unknown_imus() also makes slopes of the floor improbable, because the accelerometer
+    /// bias of an uncalibrated IMU resembles a slope.
     void widen_priors_for_unknown_imus();
 
     /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning. A caller needs
@@ -147,8 +147,8 @@ class RollingOdometry {
   std::optional<Pose> take();
 
   /// Ends the estimation and smooths the remaining poses. After finish(), add_imus() rejects samples until reset().
-  /// Returns `ok`, or the first error of the remaining samples. With kWholeRecording, finish() returns `ok`, an error
-  /// of merge_recordings(), or an error of RollingSmoother::step().
+  /// Returns `ok`, or the first error of the samples that waited for samples of other IMUs. With kWholeRecording,
+  /// finish() returns `ok`, an error of merge_recordings(), or an error of RollingSmoother::step().
   Status finish();
 
   /// Starts a new run at the origin and at rest. After reset(), take() still returns the remaining poses of the old
@@ -173,8 +173,8 @@ class RollingOdometry {
   /// Returns true if the sphere was already moving at the first samples.
   bool started_in_motion() const;
 
-  /// Returns the state of ImuMerge (attitude/detail/imu_merge.hpp). The returned state shows which IMUs repeat one
-  /// constant reading (frozen), disagree with the other IMUs, or have a time offset.
+  /// Returns the state of ImuMerge, which fuses the IMUs (attitude/detail/imu_merge.hpp). The returned state shows
+  /// which IMUs repeat one constant reading (frozen), disagree with the other IMUs, or have a time offset.
   const ImuMergeState& imus() const;
 
   /// Returns the number of readings of all IMUs that OutlierFilter rejected.
@@ -186,9 +186,9 @@ class RollingOdometry {
 
   /// Saves calibration, saturation limits of each IMU, and newest pose as bytes with a checksum, for load() after a
   /// reboot. The calibration contains biases, scales and delay of the merged IMU, and centre and radius of the sphere,
-  /// with covariance. The saved bytes are equal on every machine. The saved bytes contain no velocity, contact mode,
-  /// differences between the IMUs, health findings or counters. save() also omits recorded readings, and poses that
-  /// take() has not yet returned.
+  /// with covariance. Every machine saves numbers in little-endian order. The saved bytes contain no velocity, contact
+  /// mode, differences between the IMUs, health findings or counters. save() also omits recorded readings, and poses
+  /// that take() has not yet returned.
   std::vector<std::byte> save() const;
   /// Starts a new run from the bytes that save() returned, and discards the previous state of the object. The saved
   /// calibration and saturation limits replace the initial values in the parameters, also after a later reset(). The

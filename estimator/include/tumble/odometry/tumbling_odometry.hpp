@@ -94,8 +94,8 @@ struct LidarScale;
 ///
 /// Some seconds after motion starts, SecondMappingPass processes the first seconds of motion again with the calibration
 /// estimated so far. If the second pass succeeds, TumblingOdometry continues with the map and pose of
-/// SecondMappingPass. Poses that were already reported do not change. If no sweep arrives for a second, inertial
-/// integration continues, and take() returns a sweep without points.
+/// SecondMappingPass. The second pass does not change poses that were already reported. If no sweep arrives for a
+/// second, inertial integration continues, and take() returns a sweep without points.
 ///
 /// With `lag_s` = kWholeRecording, add_imu() and add_sweep() store the data, and finish() estimates rates, poses and
 /// map from the whole recording. finish() estimates the rates with MotionRegimeSmoother, checks the IMU, and repeats
@@ -106,10 +106,11 @@ struct LidarScale;
 ///
 /// An IMU sample costs one step of MotionRegimeStream, and sometimes the registration of a sweep. After start-up,
 /// add_imu() allocates memory only if the sample completes a sweep. While SecondMappingPass runs, a sweep costs up to
-/// four registrations. The end of SecondMappingPass costs five additional registrations. The memory of TumblingOdometry
-/// is bounded, depending on lag, map radius, `sweeps_max` and the buffer of SecondMappingPass. The map also stores the
-/// sensor position of each sweep (12 bytes). The map regularly deletes the sensor positions of sweeps without remaining
-/// map points, unless the robot is localised in a prior map. A call needs at most 64 KiB of stack.
+/// four registrations. The sweep that completes SecondMappingPass costs about five additional registrations. The memory
+/// of TumblingOdometry is bounded, depending on lag, map radius, `sweeps_max` and the buffer of SecondMappingPass. The
+/// map also stores the sensor position of each sweep (12 bytes). The map regularly deletes the sensor positions of
+/// sweeps without remaining map points, unless the robot is localised in a prior map. Without kWholeRecording, each
+/// call of a member function needs at most 64 KiB of stack.
 ///
 /// TumblingOdometry starts no threads, uses no files and prints nothing. A copy of a TumblingOdometry contains the
 /// complete state, so the copy can continue the run. The limitations of MotionRegimeStream and LidarInertialOdometry
@@ -144,14 +145,14 @@ class TumblingOdometry {
   /// argument of reset(pose) is a pose in the frame of the prior map. Returns `ok` or an error of
   /// LidarInertialOdometry::use_map().
   Status use_map(PriorMap map);
-  /// Processes an IMU sample, and registers the sweeps whose rates become available. Time stamps must increase. Returns
-  /// `non_finite`, `out_of_range`, `time_order` or `gap` if the sample is rejected. A single wrong time stamp causes
-  /// the loss of only one sample. After a gap of more than a second, add_imu() rejects the first sample after the gap
-  /// with `gap`. The next sample restarts the rate estimation with the current calibration. Inertial integration
-  /// bridges the gap. If the clock steps back, add_imu() rejects samples with `time_order` for 0.2 s, and then restarts
-  /// the run at the newest pose, like reset(pose). OutlierFilter rejects outliers among the readings. While
-  /// OutlierFilter checks a sudden change of the readings, one to five samples wait, and newest() returns the pose
-  /// before these samples.
+  /// Processes an IMU sample, and registers each sweep that ended at least `lag_s` before the sample. Time stamps must
+  /// increase. Returns `non_finite`, `out_of_range`, `time_order` or `gap` if the sample is rejected. A single wrong
+  /// time stamp causes the loss of only one sample. After a gap of more than a second, add_imu() rejects the first
+  /// sample after the gap with `gap`. The next sample restarts the rate estimation with the current calibration.
+  /// Inertial integration bridges the gap. If the clock steps back, add_imu() rejects samples with `time_order` for 0.2
+  /// s, and then restarts the run at the newest pose, like reset(pose). OutlierFilter rejects outliers among the
+  /// readings. While OutlierFilter checks a sudden change of the readings, one to five samples wait, and newest()
+  /// returns the pose before these samples.
   Status add_imu(const ImuSample& sample);
   /// Processes a sweep of points fired in [start_ns, end_ns]. Call add_sweep() after the last point of the sweep; later
   /// IMU samples may be added first. The points are copied. add_sweep() drops points that were fired before the end of
@@ -184,9 +185,9 @@ class TumblingOdometry {
   /// Returns the oldest registered sweep that take() has not yet returned; empty if there is no such sweep.
   std::optional<Sweep> take();
   /// Registers all waiting sweeps that the IMU samples cover. Call finish() at the end of a run or during a halt. After
-  /// finish(), take() returns the registered sweeps. After finish(), mapper().window_trajectories() returns the final
-  /// poses of the last sweeps, which no `report.smoothed` contains. If more samples are added after finish(), the rate
-  /// estimation restarts with the current calibration.
+  /// finish(), take() returns the registered sweeps. No `report.smoothed` contains the final poses of the last sweeps.
+  /// After finish(), mapper().window_trajectories() returns the final poses of the last sweeps. If more samples are
+  /// added after finish(), the rate estimation restarts with the current calibration.
   ///
   /// With kWholeRecording, finish() processes the whole recording, and later samples and sweeps are rejected until
   /// reset(). take() then returns all sweeps with their final poses in `report.pose` and `report.trajectory`. Returns
@@ -254,8 +255,8 @@ class TumblingOdometry {
 
   /// Saves calibration, saturation limits, map and newest pose as bytes with a checksum, for load() after a reboot. The
   /// calibration consists of rig(), the detected delay and errors of the IMU, and the lidar's mounting and time offset,
-  /// each with its uncertainty. The saved map has the format of save_map(). The saved bytes are equal on every machine.
-  /// Before the robot is localised in a prior map, save() saves the prior map.
+  /// each with its uncertainty. The saved map has the format of save_map(). Every machine saves numbers in
+  /// little-endian order. Before the robot is localised in a prior map, save() saves the prior map.
   ///
   /// The saved bytes contain no velocity, filter states, health findings, counters, odometer readings, position
   /// readings, or buffer of SecondMappingPass. save() also omits sweeps that wait for IMU samples or for take(). With
@@ -283,14 +284,14 @@ class TumblingOdometry {
 };
 
 /// Converts map points to bytes: position, normal and standard deviation of each point, in the order of `points`. The
-/// saved bytes also contain the version of the format, the number of points and a checksum, and are equal on every
-/// machine. A point needs 28 bytes. Cost: O(points).
+/// saved bytes also contain the version of the format, the number of points and a checksum. Every machine saves numbers
+/// in little-endian order. A point needs 28 bytes. Cost: O(points).
 std::vector<std::byte> save_map(std::span<const MapPoint> points);
 
 /// Reads map points from the bytes that save_map() returned, for LidarInertialOdometry::use_map(). On error, `points`
 /// is unchanged, and the returned status names the field, the value and the bound. The error `insufficient_data` means
-/// truncated bytes. The errors `non_finite` and `out_of_range` mean that the bytes are damaged, contain no map, have
-/// another format version, or contain points that check_map_points() rejects.
+/// truncated bytes. The errors `non_finite` and `out_of_range` mean damaged bytes, bytes without a map, another format
+/// version, or points that check_map_points() rejects.
 Status load_map(std::span<const std::byte> bytes, std::vector<MapPoint>& points);
 
 }  // namespace tumble

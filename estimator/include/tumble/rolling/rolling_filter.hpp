@@ -16,10 +16,10 @@ namespace tumble {
 /// Estimates the pose of a rolling sphere from one IMU, live, through slip, slide and bumps, on a level or sloped
 /// floor.
 ///
-/// While the sphere grips the floor, the rolling constraint acts as a velocity measurement. The velocity measurements
-/// determine tilt and sensor errors. RollingFilter can then integrate the calibrated IMU through several seconds
-/// without grip. Each hypothesis about the past contact modes (grip, slip, bump, incline, rough floor) has a separate
-/// error-state Kalman filter. The equations are in docs/maths/rolling.md.
+/// While the sphere grips the floor, the rolling constraint acts as a velocity measurement. With the rolling
+/// constraint, RollingFilter estimates tilt and sensor errors. RollingFilter can integrate the calibrated IMU through
+/// several seconds without grip. Each hypothesis about the past contact modes (grip, slip, bump, incline, rough floor)
+/// has a separate error-state Kalman filter. The equations are in docs/maths/rolling.md.
 ///
 /// While the sphere is at rest, the reported position is constant, unless another hypothesis becomes the most probable
 /// one. Position corrections that RollingFilter computes at rest change the reported position when motion resumes.
@@ -88,10 +88,10 @@ class RollingFilter {
 
   explicit RollingFilter(const Params& params);
 
-  /// The specific force of the first sample determines the initial tilt; the initial yaw is 0. The sphere starts with
-  /// its centre at the origin, at rest, or rolling without slip if the first rate is large. The sphere should be at
-  /// rest for one second after the first sample. On error, the state is unchanged. Cost: about 40 kHypotheses kStates^2
-  /// operations per time step of 20 ms, no allocation.
+  /// The specific force of the first sample determines the initial tilt; the initial yaw is 0. The sphere's centre
+  /// starts at the origin. The initial velocity is zero, or the velocity of rolling without slip if the first rate is
+  /// large. The sphere should be at rest for one second after the first sample. On error, the state is unchanged. Cost:
+  /// about 40 kHypotheses kStates^2 operations per time step of 20 ms, no allocation.
   Status step(const ImuSample& sample, State& state) const {
     return step(sample, state, [](const State&) {});
   }

@@ -12,7 +12,7 @@ namespace tumble {
 class SpatialHash {
  public:
   static constexpr std::uint32_t kAbsentEntry = 0xffffffffu;
-  static constexpr int kCoordinateLimit = 1 << 20;  ///< coordinates must be in [-kLimit, kLimit)
+  static constexpr int kCoordinateLimit = 1 << 20;  ///< coordinates c: -kCoordinateLimit <= c < kCoordinateLimit
 
   static std::uint64_t key(const Eigen::Vector3i& cube) {
     const auto part = [](int v) { return static_cast<std::uint64_t>(v + kCoordinateLimit) & 0x1fffffu; };
@@ -21,7 +21,7 @@ class SpatialHash {
 
   explicit SpatialHash(std::size_t expected = 64);
 
-  /// Returns kAbsent if the key is not stored.
+  /// Returns kAbsentEntry if the key is not stored.
   std::uint32_t find(std::uint64_t key) const {
     for (std::size_t slot = table_slot_of(key);; slot = (slot + 1) & mask_) {
       if (keys_[slot] == key) return values_[slot];

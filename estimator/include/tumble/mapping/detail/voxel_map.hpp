@@ -64,8 +64,8 @@ class VoxelMap {
   /// (`through` is false).
   void count_observation(std::uint32_t index, bool through);
 
-  /// Finds the k <= Neighbours::kMax nearest points within `radius_m`, without allocating memory. The cost grows with
-  /// the number of cells within the distance of the k-th neighbour.
+  /// Finds the k <= NearestNeighbours::kMaxNeighbours nearest points within `radius_m`, without allocating memory. The
+  /// cost grows with the number of cells within the distance of the k-th neighbour.
   void nearest(const Eigen::Vector3f& query_W_m, int k, float radius_m, NearestNeighbours& found) const;
 
   /// Deletes the points farther than `radius_m` from `plane_centre_W_m`. The indices of points change, and the
