@@ -16,14 +16,14 @@ struct RegistrationScene {
   const VoxelMap& map;
 };
 
-/// Aligner registers a sweep to the map in stages, from few points to all points. `trajectory` receives the registered
-/// motion, or the motion of a failed attempt.
+/// SweepAligner registers a sweep to the map in stages, from few points to all points. `trajectory` receives the
+/// registered motion, or the motion of a failed attempt.
 class SweepAligner {
  public:
   explicit SweepAligner(const LidarInertialOdometry::Params& params);
 
-  /// Registers a sweep with all points and few iterations. If the registration does not converge, the function
-  /// continues with fewer points.
+  /// Registers a sweep with all points and few iterations. If align_with_all_points() does not converge, the caller can
+  /// try align_to_convergence().
   void align_with_all_points(const Registration::Prior& prior, const RegistrationScene& scene,
                              SweepTrajectory& trajectory, Registration::Result& found);
   /// Registers a sweep with a subset of its points until convergence, then with all points.

@@ -130,8 +130,8 @@ StateEstimate reset_origin_and_yaw(const StateEstimate& reckoned, double step_s)
   return state_estimate_of_motion(state, reckoned.mean.calibration, T * C * T.transpose(), T * E * T.transpose());
 }
 
-/// The tilt error φ of the first sweep rotates the map frame. The rotation adds v × φ to the error of velocity v, and g
-/// × φ to the error of gravity g.
+/// The tilt error φ of the first sweep rotates the map frame. In a map frame rotated by the tilt error φ, velocity v
+/// has the additional error v × φ, and gravity g has the additional error g × φ.
 StateEstimate estimate_at_first_sweep(const Params& params, const StateEstimate& reckoned) {
   MotionState start = reckoned.mean.state;
   start.covariance.setZero();

@@ -21,15 +21,15 @@ StateEstimate transformed_to_pose(const Eigen::Isometry3d& T_WI, const StateEsti
 StateEstimate with_start_tilt(const LidarInertialOdometry::StartTilt& tilt, const StateEstimate& estimate);
 
 /// Returns the dead-reckoned state in a new frame, with the origin and the yaw of the IMU's present pose. `step_s` is
-/// the time since the last call. A weak prior on the speed limits the errors of tilt and velocity over minutes of
-/// motion.
+/// the time since the last call. A weak prior of the robot's speed bounds the errors of tilt and velocity during
+/// minutes of motion.
 StateEstimate reset_origin_and_yaw(const StateEstimate& reckoned, double step_s);
 
 /// The lidar's pose at the start of the first sweep defines the map frame, and is therefore exact. In the map frame,
 /// the tilt error of dead reckoning is an error of gravity's direction.
 StateEstimate estimate_at_first_sweep(const LidarInertialOdometry::Params& params, const StateEstimate& reckoned);
 
-/// The map's vertical has the tilt uncertainty of the dead-reckoned state.
+/// Returns the covariance of the new map relative to the world, with the tilt variance of the dead-reckoned state.
 WorldCovariance world_at_first_sweep(const LidarInertialOdometry::Params& params, const StateEstimate& reckoned);
 
 }  // namespace tumble::mapping

@@ -9,9 +9,9 @@
 
 namespace tumble::mapping {
 
-/// After an unconfirmed relocalisation, DeadReckoning continues the pose from before the relocalisation with the IMU
-/// alone. If a later sweep contradicts the relocalisation, odometry and DeadReckoning swap their poses. The rejected
-/// pose remains a starting pose of the search after a tracking failure.
+/// While a relocalisation is unconfirmed, DeadReckoning stores a second state, which ignores the relocalisation and
+/// integrates only the IMU. If a later sweep contradicts the relocalisation, odometry and DeadReckoning swap their
+/// poses. The search after a tracking failure also starts from the pose of the contradicted relocalisation.
 struct DeadReckoning {
   SweepBoundary sweep_boundary;
   LagWindow window;

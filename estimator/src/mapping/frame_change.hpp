@@ -18,7 +18,7 @@ struct FrameChange {
 
  private:
   void apply(Registration::Estimate& mean) const;
-  /// Rotates a covariance of all unknowns from frame W to frame M, and adds the error of T_MW.
+  /// Rotates a covariance of all unknowns from frame W to frame M, and adds the covariance of the transform T_MW.
   void apply(const Registration::Estimate& mean, Registration::Matrix& of_all) const;
   Registration::Matrix rotation() const;
 };
@@ -26,12 +26,11 @@ struct FrameChange {
 /// PosesBeforeChange transforms poses before the localisation to the frame of the prior map.
 class PosesBeforeChange {
  public:
-  /// `last` is the pose at the localisation, in the local frame.
+  /// `last` is the last pose in the local frame W, at which the robot was localised in the prior map.
   PosesBeforeChange(const FrameChange& change, const PoseState& last);
 
-  /// The drift between an earlier pose and the last pose is at most the drift since the start. Therefore, the
-  /// covariance of the earlier pose is the covariance of the last pose, with the attitude error acting on the distance
-  /// between both poses.
+  /// The drift between an earlier pose and the last pose is at most the drift since the start. The covariance of an
+  /// earlier pose is computed from the covariance of the last pose and the displacement between both poses.
   void apply(PoseState& pose) const;
 
  private:

@@ -20,8 +20,8 @@ struct WindowRate {
 };
 
 /// Fills the gap from the end of `before` to the start of `after` with linearly interpolated rates: mapping.md (R44).
-/// All axes count as clipped, so that the registration also estimates the interpolation error. Each sample appended in
-/// a gap is 10 ms long, or longer in gaps beyond 0.64 s.
+/// In a gap, all gyro axes count as clipped, so that the registration also estimates the interpolation error. Each
+/// appended sample covers 10 ms, or about 1/64 of a gap that is longer than 0.64 s.
 void bridge_gap(const WindowRate& before, const WindowRate& after, std::vector<MotionSample>& samples);
 
 }  // namespace tumble::mapping

@@ -28,7 +28,7 @@ Eigen::Matrix3d velocity_variance_from_clipping(const SweepTrajectory& trajector
 Status start_at_rest(std::span<const MotionSample> samples, MotionState& state);
 Status level_at_rest(const Eigen::Vector3d& force_I_m_s2, MotionState& state);
 
-/// Returns the standard deviation of the rate, at most the mapper's rate_sigma_max_rad_s.
+/// Returns the standard deviation of the rate, at most kRateSigmaMax_rad_s of InertialNoiseParams.
 Eigen::Vector3d assumed_rate_sigma(const LidarInertialOdometry::Params& params, const AngularRateState& rate);
 
 }  // namespace tumble::mapping

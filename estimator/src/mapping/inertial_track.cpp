@@ -99,7 +99,8 @@ void InertialTrack::update_rest(const ImuSample& sample, const AngularRateState&
     next.rest_start_ns = stationary_state_.first_ns;
   if (initial_rest_.still_stationary) {
     if (!initial_rest_.first_ns) initial_rest_.first_ns = initial_rest_.initial_rest_start_ns = sample.time_ns;
-    // The mean reading at the start of a rest is as noisy as single readings, so noise may interrupt the detected rest.
+    // At the start of a rest, noise may interrupt the detected rest. A rest that starts within kBiasRest_s of the first
+    // sample therefore replaces the initial rest.
     if (next.rest_start_ns && seconds(*next.rest_start_ns - *initial_rest_.first_ns) < OdometryStart::kBiasRest_s)
       initial_rest_.initial_rest_start_ns = next.rest_start_ns;
     initial_rest_.still_stationary = next.rest_start_ns == initial_rest_.initial_rest_start_ns;

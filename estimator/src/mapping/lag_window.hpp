@@ -41,8 +41,8 @@ class LagWindow {
   void smooth();
   /// Moves the map points of all sweeps except the newest to their smoothed positions.
   void move_inserted_sweeps(LocalMap& map) const;
-  /// Call clear_inserted() after a change of the map's point indices. Smoothing no longer moves the points that were
-  /// inserted before the call.
+  /// Call clear_inserted() after a change of the map's point indices. After clear_inserted(), smoothing no longer moves
+  /// the map points that earlier sweeps inserted.
   void clear_inserted();
 
   /// Calls `change` for each sweep, oldest first.

@@ -16,7 +16,8 @@ namespace {
 
 constexpr double kLeast = 0.02, kScaleDeviations = 5.0;
 // Over short time spans, the IMU's weight in the mapping hides errors of the lidar's scale. If ranges are 10 % too
-// long, velocity changes over 0.4 s give the scale 1.08, but changes over 0.1 s only 1.02 to 1.03.
+// long, velocity changes over 0.4 s give the scale 1.08. With the same ranges, velocity changes over 0.1 s give a scale
+// of only 1.02 to 1.03.
 constexpr double kSpan_s = 0.4;
 constexpr double kChange_m_s = 0.2;  // minimum change of velocity; noise dominates smaller changes
 constexpr std::size_t kChangesMin = 5, kChangesMax = 1000;
@@ -163,8 +164,8 @@ LidarScale fit(const Changes& changes) {
     }
     out.scale = together / squared;
     if (i + 1 < kIterations) continue;
-    // The variance is multiplied by n / (n - 1) for n disjoint velocity changes, because the scale is estimated from
-    // the same velocity changes.
+    // The variance from n disjoint velocity changes is multiplied by n / (n - 1), because the fit estimates one
+    // parameter, the scale.
     const double residual = score_variance(changes, residuals) * disjoint / (disjoint - 1.0);
     out.sigma = std::sqrt(residual + kBias_m_s2 * kBias_m_s2 * by_bias.squaredNorm()) / squared;
   }

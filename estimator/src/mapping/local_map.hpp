@@ -38,19 +38,19 @@ class LocalMap {
   bool empty() const { return map_.size() == 0; }
 
   /// Adds the points of a sweep to the map and to the list `inserted`. Cost: O(points of the map). `noise` computes the
-  /// variance of a lidar return. If the pose of the sweep is certain, insert() updates the counts of the map points
-  /// that the sweep saw or saw through.
+  /// variance of a lidar return. If the pose of the sweep is certain, insert() counts the sweep for each map point that
+  /// the sweep saw, or through which a beam passed.
   std::size_t insert(const Params& params, const SweepToInsert& sweep, const Registration& noise,
                      std::vector<InsertedPoint>& inserted);
-  /// Moves inserted points to their positions on the refined trajectory, with `later_s` added to their times:
-  /// mapping.md (R3).
+  /// Moves inserted map points to the positions that follow from the refined trajectory: mapping.md (R3). move() adds
+  /// `later_s` to the time of each point.
   void move(const SweepTrajectory& trajectory, const Eigen::Isometry3d& T_IL, double later_s,
             std::span<const InsertedPoint> inserted);
 
-  /// Replaces the map by a prior map. Each prior point is stored as seen from a distant sensor position, on the side of
-  /// the point's surface normal. The stored sensor position is one of six distant positions on the positive and
-  /// negative map axes. Because of the stored sensor positions, normals that are later estimated from the map keep
-  /// their sign. If `T_MW` is given, the points of the local map are added, transformed to the prior map's frame.
+  /// Replaces the map by a prior map. Each point of the prior map gets a distant sensor position, on the positive or
+  /// negative map axis that is nearest to the point's normal. Because of the stored sensor positions, normals that are
+  /// later estimated from the map keep their sign. If `T_MW` is given, the points of the local map are added,
+  /// transformed to the prior map's frame.
   void start_from_map_points(const Params& params, std::span<const MapPoint> points, const Eigen::Isometry3f* T_MW);
 
   /// Returns the number of sweeps that have added points to the map.

@@ -11,8 +11,9 @@ namespace {
 
 // sin 10 deg: minimum angle between a beam and the line to a return on the same surface (Bogoslavskyi, Stachniss)
 constexpr float kMinSurfaceSine = 0.17365f;
-// sin 2 deg: at a smaller angle to the beam, the surface counts as an edge. A lidar 0.5 m above the ground sees the
-// ground at 2 deg in a distance of 14 m.
+// sin 2 deg: minimum angle between a beam and the line through the two neighbours of a return. At a smaller angle, the
+// two neighbours count as two sides of an edge. The beam of a lidar 0.5 m above level ground meets the ground at an
+// angle of 2 deg, at a distance of 14 m.
 constexpr float kGrazingSine = 0.0349f;
 constexpr float kBend = 0.15f;                     // relative tolerance of ranges on uneven ground
 constexpr int kNeighbours = 2;                     // number of neighbours on each side along the ring

@@ -9,7 +9,7 @@
 
 namespace tumble {
 
-/// standard deviation of a range r: max(sigma_m, share * r)
+/// standard deviation of a range r: max(sigma_m, range_fraction * r)
 struct RangeNoise {
   double sigma_m, range_fraction;
 };
@@ -19,7 +19,7 @@ struct RangeNoise {
 /// A return is confirmed in three cases:
 /// - A neighbour on the same ring has the same range: mapping.md (R13).
 /// - The return and the adjacent beam on the ring are on a common surface: mapping.md (R14).
-/// - The return is on the line between a neighbour before it and a neighbour after it on the ring: mapping.md (R15).
+/// - The return is on the line between an earlier and a later neighbour on the ring: mapping.md (R15).
 ///
 /// If few returns of a sweep are unconfirmed, LoneReturns keeps all returns of the sweep, because the air is clear.
 class LoneReturns {

@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kSameLineCosine = 0.9988;  // cosine of 0.05 rad, which is less than the angle between two rings
 constexpr int kRingBits = 16;
-// A map point counts as removed if at least this number of sweeps had beams through its position. A single sweep may be
-// wrong near the edge of a surface.
+// A map point counts as removed if the beams of at least kSeenThrough sweeps passed through its position. A single
+// sweep may be wrong near the edge of a surface.
 constexpr std::uint8_t kSeenThrough = 2;
 
 }  // namespace

@@ -86,7 +86,7 @@ void MapLocaliser::propose_map_pose(const std::vector<SurfacePoint>& points, con
   random_agreement_fraction_ = std::max(kChanceAgreementMax, second + kChanceMargin * (1.0 - second));
 }
 
-/// Returns whether the agreement with the prior map at `pose` is improbable by chance: mapping.md (R74).
+/// Returns true if a wrong pose is unlikely to agree with the prior map as well as `pose` does: mapping.md (R74).
 bool MapLocaliser::matches_prior_map(const FramePose& pose) const {
   if (pose.agreement_ratio() <= random_agreement_fraction_ || random_agreement_fraction_ >= 1.0) return false;
   return double(pose.covered_point_count) * relative_entropy(pose.agreement_ratio(), random_agreement_fraction_) >=

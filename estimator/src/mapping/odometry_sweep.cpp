@@ -185,7 +185,9 @@ Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
   return {};
 }
 
-/// A robot at rest measures only gravity, in the direction that the estimated attitude predicts.
+/// Returns true if the rest detector reports rest, and the inertially predicted velocity stays nearly constant during
+/// the sweep. A wrong estimated attitude changes the predicted velocity, because gravity is removed in a wrong
+/// direction.
 bool LidarInertialOdometry::Impl::is_stationary(const mapping::InertialTrack& inertial, const SweepTrajectory& motion,
                                                 TimeNs end_ns) const {
   if (!inertial.is_stationary_until(end_ns)) return false;
@@ -341,8 +343,8 @@ Status LidarInertialOdometry::Impl::continue_by_inertia(const MotionWindow& moti
   return {};
 }
 
-/// Removes the map points that were inserted since a wrong relocalisation, and continues from the inertial pose. The
-/// wrong pose remains a starting pose of the search after a tracking failure.
+/// Removes the map points that were inserted since a wrong relocalisation, and continues from the inertially predicted
+/// pose. The search after a tracking failure also starts from the pose of the wrong relocalisation.
 void LidarInertialOdometry::Impl::revert_to_inertial_pose() {
   map.remove_sweeps_since(
       std::exchange(alternative->first_inserted_sweep, 0));  // 0, because pruning changes sweep numbers

@@ -24,8 +24,8 @@ class OuterProducts {
 
   Eigen::Matrix<double, Rows, Columns> columns;
 
-  /// Adds v v^T, for the first `count` columns v, to the lower triangle of `sum`. Only the first `size` rows of each
-  /// column are used.
+  /// For each of the first `count` columns v of `columns`, adds the outer product v v^T to the lower triangle of `sum`.
+  /// Only the first `size` rows of each column are used.
   void add_products_to(int size, int count, Matrix& sum) {
     namespace e = Eigen::internal;
     e::general_matrix_matrix_triangular_product<Eigen::Index, double, Eigen::ColMajor, false, double, Eigen::RowMajor,

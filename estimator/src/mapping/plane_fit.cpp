@@ -34,7 +34,8 @@ PlaneFit fit_plane(const VoxelMap& map, const NearestNeighbours& neighbours, con
     return fit;
   }
 
-  // Positions relative to the nearest neighbour keep the precision of floats far from the origin.
+  // Positions relative to the nearest neighbour are small, so rounding errors of floats are small even far from the
+  // origin.
   const Eigen::Vector3f origin = map.position_W_m(neighbours.index[0]);
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   Eigen::Matrix3f square = Eigen::Matrix3f::Zero();

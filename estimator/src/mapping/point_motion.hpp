@@ -20,7 +20,7 @@ class PointMotion {
   /// registration: mapping.md (R17).
   void derivative_along_normal(const Eigen::Vector3d& direction_W, RegistrationUnknowns::Vector& derivative) const;
 
-  /// Returns the lever arm vector u of SweepTrajectory::gravity_free_position_m, in W.
+  /// Returns the lever vector u of the lidar return in world axes: mapping.md (R3).
   const Eigen::Vector3d& lever_m() const { return lever_arm_; }
 
  private:

@@ -13,9 +13,9 @@ struct SweepBoundary {
   StateEstimate state_estimate;
   /// derivative of the unknowns at the end of the last sweep with respect to the unknowns at its start
   Registration::Matrix end_by_start_jacobian = Registration::Matrix::Identity();
-  /// Magnitude of the factor s_j of each gyro axis at the end of the last sweep: mapping.md (R8). The magnitude is the
-  /// standard deviation of the rate, divided by the largest standard deviation of the axis while clipped. For an
-  /// unclipped axis, the value is 0.
+  /// Absolute value of the factor s_j of the saturation deficit of gyro axis j, at the end of the last sweep:
+  /// mapping.md (R8). The absolute value of s_j is the standard deviation of the rate, divided by its largest value
+  /// over the clipped samples. The factor s_j of an unclipped axis is 0.
   Eigen::Vector3d clipped_axis_sign = Eigen::Vector3d::Zero();
   Eigen::Matrix3d clipped_velocity_variance_m2_s2 =
       Eigen::Matrix3d::Zero();              ///< variance of the velocity due to the accelerometer's saturation, in W
@@ -64,9 +64,9 @@ StateEstimate posterior(const Prediction& prediction, const Registration::Result
 /// Returns the normalised difference between registered and predicted motion: mapping.md (R62).
 double innovation(const Prediction& prediction, const Registration::Estimate& aligned);
 
-/// See mapping.md (R67). A registered pose is expected if its difference from the prediction is within the predicted
-/// covariance and the matching distance. If the registered position differs from the prediction by more than the
-/// matching distance, returns may match wrong surfaces by chance.
+/// See mapping.md (R67). A registered pose agrees with the prediction if the difference passes a chi-square test, and
+/// the distance is at most the matching distance. If the registered position differs from the prediction by more than
+/// the matching distance, returns may match wrong surfaces by chance.
 bool agrees_with_prediction(const LidarInertialOdometry::Params& params, const Prediction& prediction,
                             const Registration::Estimate& aligned, double innovation);
 
@@ -75,7 +75,8 @@ void sweep_boundary_after(const LidarInertialOdometry::Params& params, const Sta
                           const MotionWindow& window, const SweepTrajectory& trajectory,
                           const Registration::Result* alignment, SweepBoundary& boundary);
 
-/// Returns the correlation of the saturation deficit between adjacent knots of a sweep, see mapping.md (R46).
+/// Returns the correlation between the saturation deficits at adjacent knots (start, middle and end of a sweep):
+/// mapping.md (R46).
 double deficit_knot_correlation(const SweepTrajectory& trajectory);
 
 }  // namespace tumble::mapping

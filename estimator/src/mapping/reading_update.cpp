@@ -152,7 +152,7 @@ bool holds(const SweepMotion& sweep, const OdometerReading& reading) {
 template <int Size>
 using Gain = Eigen::Matrix<double, Size, Eigen::Dynamic, 0, Size, kMost>;
 
-/// The matrices of Work are on the heap, because propagate_covariance() needs 32 KiB of stack.
+/// The matrices of UpdateWorkspace are on the heap, because propagate_covariance() needs 32 KiB of stack.
 struct UpdateWorkspace {
   Matrix start_covariance, noise_covariance,
       remaining_error_factor;  ///< covariance at the start; its part due to noise; factor of the remaining errors
@@ -228,7 +228,8 @@ void fuse_reading(const OdometerReading& reading, const SweepBoundary& boundary,
   const SweepMotion sweep(prediction.prior.mean, window);
   if (!holds(sweep, reading)) return;
   const auto work = std::make_unique<UpdateWorkspace>();
-  // The Kalman gains follow from the covariance that weights the prediction: mapping.md (R37).
+  // The Kalman gains are computed from prior_weight_covariance, which also weights the prediction in the registration:
+  // mapping.md (R37).
   propagate_covariance(prediction.boundary_jacobian, boundary.state_estimate.prior_weight_covariance,
                        work->start_covariance);
   Matrix& before = work->noise_covariance;  // noise at the start: saturation deficit, earlier saturation

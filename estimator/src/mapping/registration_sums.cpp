@@ -76,7 +76,7 @@ void Registration::Sums::add(const Sums& other) {
   inliers += other.inliers;
 }
 
-/// Returns the variance from range noise and deskewing: first terms of mapping.md (R18).
+/// Returns the variance of a lidar return from range noise and deskewing: the first two terms of mapping.md (R18).
 double Registration::point_variance_m2(const SweepPoint& point) const {
   const double range = std::max(params_.kRangeSigma_m, params_.kRangeSigmaRatio * point.range_m);
   const double skew = params_.skew_sigma_m_s * point.sweep_time_s;
@@ -100,7 +100,8 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, NearestNei
   if (match.plane_searched) {
     const float moved2 = (positions_[point] - match.search_position_W_m).squaredNorm();
     if (moved2 <= rematch2) return;
-    // The search radius includes all neighbours of the previous search, so the search finds the nearest neighbours.
+    // The new search radius includes all neighbours of the previous search, so a smaller radius than the matching
+    // distance suffices.
     radius_m = std::min(radius_m, kRounding * (match.farthest_neighbour_m + std::sqrt(moved2)));
   }
   match.plane_searched = true;
@@ -167,8 +168,9 @@ double Registration::kernel_width_m() {
 void Registration::accumulate_block(std::span<const SweepPoint> points, std::size_t block,
                                     const SweepTrajectory& trajectory, const LidarImuCalibration& calibration,
                                     const Unknowns& unknowns, double kernel_m, Products& products, Sums& sum) {
-  // Each matched point has one column, which contains the point's distance from the plane and the derivatives of the
-  // distance. The column is multiplied by the square root of the match's weight.
+  // Each matched point has one column in `rows`, which contains the derivatives of the point's distance from its plane.
+  // The vector `weighted` contains the distance of each matched point from its plane. Derivatives and distance are
+  // multiplied by the square root of the match's weight.
   auto& rows = products.columns;
   Eigen::Matrix<double, static_cast<int>(kPointsPerPartialSum), 1> weighted;
   const bool rigid = !unknowns.deficit_free && !unknowns.calibration_free;
@@ -219,9 +221,9 @@ void Registration::accumulate(std::span<const SweepPoint> points, const SweepTra
   sum.normal_matrix = lower.selfadjointView<Eigen::Lower>();
 }
 
-/// SurfaceNormalNoise is the part of the normal matrix due to noise of the surface normals: mapping.md (R28), (R29).
-/// Noise of the normals adds false information, also in directions of motion that the surfaces do not constrain.
-/// SurfaceNormalNoise therefore covers all free unknowns.
+/// SurfaceNormalNoise is the part of the registration's normal matrix H that errors of the surface normals cause:
+/// mapping.md (R28), (R29). Errors of the surface normals add false information, also in directions of motion that the
+/// surfaces do not constrain. SurfaceNormalNoise contains rows and columns of all free unknowns.
 struct Registration::SurfaceNormalNoise {
   const Unknowns& unknowns;
   using Products = mapping::OuterProducts<kUnknowns, 2 * static_cast<int>(kPointsPerPartialSum)>;
@@ -259,7 +261,8 @@ struct Registration::SurfaceNormalNoise {
   }
 };
 
-/// The gradient sums of all clusters of points determine the covariance of the gradient: mapping.md (R26).
+/// ClusterGradients sums the gradients of the lidar returns in each cube of the map. From the sum of each cube,
+/// ClusterGradients computes the covariance of the whole gradient: mapping.md (R26).
 struct Registration::ClusterGradients {
   SpatialHash& cluster_index;
   std::vector<Vector>& gradients;

@@ -13,10 +13,12 @@ struct Registration::Unknowns {
   int count = 0;
   bool deficit_free = false, calibration_free = false;
 
-  /// The unknowns of the motion are always free. Any other unknown is free if its prior variance is above 0.
+  /// The unknowns of the motion are always free. A saturation deficit or a calibration unknown is free if its prior
+  /// variance is above 0.
   explicit Unknowns(const Matrix& covariance);
 
-  /// Expands the normal equations to all unknowns: in H and g, the rows of fixed unknowns are 0.
+  /// Expands the sums over the free unknowns to a normal matrix H and a gradient g of all unknowns. The rows and
+  /// columns of fixed unknowns are 0.
   void expand_to_all_unknowns(const Sums& sum, Matrix& H, Vector& g) const;
   /// Changes the normal equations such that the solution is 0 for the fixed unknowns.
   void fix_constrained_unknowns(Matrix& H, Vector& g) const;

@@ -12,20 +12,22 @@ namespace tumble::mapping {
 
 namespace {
 
-// A relocalisation is confirmed if at least this fraction of the sweep's residuals is within three standard deviations.
-// Otherwise, the sweep contradicts the relocalisation. Normally distributed residuals give 0.997.
+// A sweep confirms a relocalisation if at least the fraction kConfirmInlierRatio of its residuals is within three
+// standard deviations. A sweep with a smaller fraction contradicts the relocalisation. Normally distributed residuals
+// give 0.997.
 constexpr double kConfirmInlierRatio = 0.9;
-// Maximum number of repetitions of a failed registration, per sweep. Each repetition starts with a larger saturation
-// deficit of the gyro.
+// Maximum number of repetitions of a failed registration, per sweep. Each repeated registration starts with a larger
+// saturation deficit of the gyro.
 constexpr int kDeficitTriesMax = 5;
-// Smallest increase of the gyro's saturation deficit in a repeated registration.
+// Smallest increase of the gyro's initial saturation deficit when a failed registration is repeated.
 constexpr double kDeficitTry_rad_s = 3.0;
 // Number of starting poses per sweep after a tracking failure, including the predicted pose.
 constexpr int kStartsPerSweep = 3;
 
 using Params = LidarInertialOdometry::Params;
 
-// Repeated registrations start with the gyro's saturation deficit increased by these multiples of kDeficitTry_rad_s.
+// Repeated registrations increase the gyro's initial saturation deficit by kDeficitTry_rad_s times an element of
+// kDeficitTries.
 constexpr double kDeficitTries[] = {1.0, 2.0, 3.0, 5.0};
 constexpr double kDeficitSigmas = 5.0;  // largest tried increase, in standard deviations
 
@@ -33,7 +35,7 @@ constexpr int kStartsPerRound = 12;  // number of initial poses per round: six a
 constexpr double kStartSigmas = 1.5;
 constexpr double kShiftMin_m = 0.3, kRotationMin_rad = 0.1;  // closer starting poses converge to one pose
 // Maximum distance and rotation between starting pose and predicted pose in the first round: mapping.md (R66). In round
-// n, the maximum distance and the maximum rotation are n times as large.
+// n of the search, the maximum distance and the maximum rotation are n times their values of the first round.
 constexpr double kShift_m = 1.0, kRotation_rad = 0.3;
 constexpr int kRounds = 3;
 

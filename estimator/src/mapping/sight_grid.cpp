@@ -9,12 +9,13 @@ namespace tumble::mapping {
 
 namespace {
 
-// Returns are sorted by direction from one position, although the sensor moves during the sweep. For ranges above ten
-// times the sensor's motion in the sweep, the direction error is below 0.1 rad, about three bins.
+// FreeSpaceGrid computes the direction of each lidar return from one position, although the sensor moves during the
+// sweep. At ranges above ten times the sensor's motion, the error of the computed direction is below 0.1 rad, about
+// three bins.
 constexpr float kMinRangePerMotion = 10.0f;
 constexpr int kEmptyBinsMax = 4;  // maximum number of empty bins out of nine; rings may be further apart than bins
-// The margin of the range covers the relative pose error of two sweeps, range noise, and the slope of the ground within
-// a bin.
+// kBeyond_m and kBeyondRatio define a tolerance of the range for the relative pose error of two sweeps, range noise,
+// and sloped ground within a bin.
 constexpr float kBeyond_m = 0.3f, kBeyondRatio = 0.03f;
 constexpr float kDeviations = 3.0f;
 

@@ -11,7 +11,8 @@ namespace tumble::mapping {
 /// sensor. A sweep saw through a map point if all returns around its direction are farther away: mapping.md (R65).
 class FreeSpaceGrid {
  public:
-  /// `moved_m` is the distance that the sensor moved from the ray origin during the sweep.
+  /// `from_W_m` is the assumed origin of all beams of a sweep. `moved_m` is the largest distance of the sensor from
+  /// `from_W_m` during the sweep.
   void start(const Eigen::Vector3f& from_W_m, float moved_m);
   void add(const Eigen::Vector3f& return_W_m);
 

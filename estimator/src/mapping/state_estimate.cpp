@@ -9,9 +9,9 @@ namespace tumble::mapping {
 
 using Matrix = Registration::Matrix;
 
-/// See mapping.md (R54), (R55). The first lidar pose defines the map frame. The mounting gives the initial IMU pose and
-/// the direction of gravity relative to the lidar. A mounting error therefore causes errors of the initial IMU pose and
-/// of gravity's direction in the map frame.
+/// See mapping.md (R54), (R55). The first lidar pose defines the map frame. The lidar's mounting on the IMU determines
+/// the initial IMU pose and the direction of gravity in the map frame. An error of the lidar's mounting causes errors
+/// of the initial IMU pose and of gravity's direction in the map frame.
 StateEstimate estimate_at_start(const LidarInertialOdometry::Params& params, const MotionState& levelled) {
   namespace u = unknowns;
   StateEstimate state_estimate;
@@ -64,7 +64,8 @@ MotionErrors marginal_motion_errors(const Matrix& F, const Matrix& errors) {
   return moved * rows.transpose();
 }
 
-/// Computes the covariance of R_IW (δv + v × φ), with the velocity error δv and the attitude error φ in frame W.
+/// Computes the covariance of the velocity error in IMU axes, R_IW (δv + v × φ), from the errors δv of velocity v and φ
+/// of attitude.
 Eigen::Matrix3d velocity_covariance_I(const MotionState& state, const MotionErrors& errors) {
   namespace u = unknowns;
   const Eigen::Matrix3d R_IW = state.q_WI.toRotationMatrix().transpose();
@@ -74,9 +75,9 @@ Eigen::Matrix3d velocity_covariance_I(const MotionState& state, const MotionErro
   return J * errors * J.transpose();
 }
 
-/// The number of rows of each matrix block is a multiple of the SIMD packet size. Matrix products of such blocks add
-/// their terms in the same order as in propagate_covariance(). The rows of the transition matrix F for mounting and
-/// other constants are rows of the identity: mapping.md (R11).
+/// The number of rows of each matrix block is a multiple of the SIMD packet size. Because of this number of rows, the
+/// products of the matrix blocks add their terms in the same order as propagate_covariance(). The rows of the
+/// transition matrix F for mounting and other constants are rows of the identity: mapping.md (R11).
 Matrix propagate_pose_and_mounting(const Matrix& F, const Matrix& errors) {
   constexpr int kSize = 8, kMounting = 16;
   static_assert(kMounting >= Registration::kMotionSize && kMounting <= Registration::kFirstCalibrationUnknown &&

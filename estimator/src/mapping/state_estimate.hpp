@@ -7,35 +7,38 @@
 
 namespace tumble::mapping {
 
-/// The covariances `prior_weight_covariance` and `state_error_covariance` are C and E of mapping.md, "Two covariances".
+/// In mapping.md, "Two covariances", the matrix C is `prior_weight_covariance` and the matrix E is
+/// `state_error_covariance`.
 struct StateEstimate {
   Registration::Estimate mean;  ///< mean; the covariance of its state is the motion block of `prior_weight_covariance`
-  /// For robustness, `prior_weight_covariance` assigns less information to the points than independent points would
-  /// have.
+  /// `prior_weight_covariance` is larger than for independent lidar returns, because a heuristic factor reduces the
+  /// weights of lidar returns.
   Registration::Matrix prior_weight_covariance = Registration::Matrix::Zero();
-  /// covariance of the errors of `mean`
+  /// covariance of the actual errors of the state `mean`
   Registration::Matrix state_error_covariance = Registration::Matrix::Zero();
 };
 
 /// See mapping.md (R54), (R55).
 StateEstimate estimate_at_start(const LidarInertialOdometry::Params& params, const MotionState& levelled);
 
-/// Returns the derivative of the unknowns `t_s` after the start of a trajectory with respect to the unknowns at its
-/// start.
+/// Returns the derivative of the unknowns at the time `t_s` with respect to the unknowns at the start of the
+/// trajectory, where `t_s` is 0.
 Registration::Matrix unknowns_at(const SweepTrajectory& trajectory, double t_s);
 
-/// Computes F P F^T into `out`, which must not be P. propagate_covariance() needs 32 KiB of stack, so callers should
-/// keep matrices on the heap.
+/// Computes the propagated covariance F P F^T for the transition matrix F and the covariance P. `out` must be a
+/// different matrix than P. propagate_covariance() needs 32 KiB of stack, so callers should keep matrices on the heap.
 void propagate_covariance(const Registration::Matrix& F, const Registration::Matrix& P, Registration::Matrix& out);
 
-/// Returns the blocks of pose and mounting of the covariance `errors`, propagated by the transition matrix F. The
-/// returned blocks are bit-identical to the blocks from propagate_covariance(), at a third of the computing time.
+/// Propagates the covariance `errors` by the transition matrix F, but returns only the blocks of pose and mounting. The
+/// blocks of pose and mounting are bit-identical to the result of propagate_covariance(), at a third of the computing
+/// time.
 Registration::Matrix propagate_pose_and_mounting(const Registration::Matrix& F, const Registration::Matrix& errors);
 
 /// covariance of the errors of position, attitude and velocity in frame W
 using MotionErrors = Eigen::Matrix<double, Registration::kMotionSize, Registration::kMotionSize>;
 
-/// Returns the block of position, attitude and velocity of `errors`, propagated by the transition matrix F.
+/// Propagates the covariance `errors` by the transition matrix F, but returns only the block of position, attitude and
+/// velocity.
 MotionErrors marginal_motion_errors(const Registration::Matrix& F, const Registration::Matrix& errors);
 
 /// Returns the covariance of the velocity in IMU axes, R_IW v_WI_W, including the attitude error.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The operations and their order equal those of Eigen's quaternions, so the results are bit-identical to
-// SweepTrajectory::at.
+// The results are bit-identical to SweepTrajectory::at, because sweep_levers.cpp performs the operations of Eigen's
+// quaternions in the same order.
 #include <algorithm>
 #include <limits>
 

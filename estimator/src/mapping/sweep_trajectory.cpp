@@ -45,7 +45,8 @@ Eigen::Matrix<double, SweepTrajectory::kKnots, 1> knot_weights(double share) {
   return weights;
 }
 
-/// The power series is faster than so3::exp, and exact to rounding for small angles.
+/// For small angles, rotated_by() sums the power series of cosine and sine, which is faster than so3::exp and exact
+/// except for rounding.
 Eigen::Quaterniond rotated_by(const Eigen::Vector3d& rate_rad_s, double s) {
   const double angle2 = s * s * rate_rad_s.squaredNorm();
   if (!(angle2 <= rotation_series::kAngle2_rad2)) return so3::exp(rate_rad_s * s);

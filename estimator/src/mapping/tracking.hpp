@@ -9,8 +9,8 @@ namespace tumble::mapping {
 
 struct WaitingForStart {};
 
-/// Tracking is the state after a sweep that was not rejected. A sweep with enough points but without
-/// registration is not rejected in two cases:
+/// Tracking is the state after a sweep that was not rejected. A sweep with enough points but without registration is
+/// still accepted in two cases:
 /// - The sweep has too few matches with the map, and the standard deviation of the predicted pose is small.
 /// - The maximum number of successive failed searches is reached.
 struct Tracking {

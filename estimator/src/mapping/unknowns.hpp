@@ -32,7 +32,8 @@ inline constexpr double kMinVariance = 1e-12;
 inline constexpr double kAgreementChi2Max = 16.9;
 static_assert(RegistrationUnknowns::kMotionSize == 9);
 
-/// Returns the index of an axis' saturation deficit at a knot, in the vector of all unknowns.
+/// Returns the index of a gyro axis' saturation deficit in the vector of all unknowns. The knots 0, 1 and 2 are start,
+/// middle and end of the sweep.
 constexpr int saturation_deficit_index(int axis, int knot) {
   return Registration::kFirstDeficitUnknown + 3 * knot + axis;
 }

@@ -31,7 +31,7 @@ inline void keep_nearest(float distance2, std::uint32_t index, int k, NearestNei
   best.index[place] = index;
 }
 
-/// `fraction` is the position of the query point within its cell, in cells.
+/// `fraction` is the position of the query point within its cell, divided by the edge length of the cell.
 void squared_axis_distances(float fraction, float voxel_m, int reach, float* distance2) {
   for (int d = -reach; d <= reach; ++d) {
     const float cells = d > 0 ? static_cast<float>(d) - fraction : d < 0 ? fraction - static_cast<float>(d + 1) : 0.0f;
@@ -43,7 +43,8 @@ void squared_axis_distances(float fraction, float voxel_m, int reach, float* dis
 using Floats [[gnu::vector_size(16)]] = float;
 using Ints [[gnu::vector_size(16)]] = std::int32_t;
 
-/// Returns a bit mask with one bit per value, without branches. A bit is set if the value is at most `limit`.
+/// Compares each element of `values` with `limit`, and returns the results as a bit mask, without branches. The bit of
+/// an element is 1 if the element is at most `limit`.
 inline std::uint32_t values_within_limit(float limit, const Floats (&values)[4]) {
   constexpr Ints kFirst = {1, 2, 4, 8};
   const Floats limits = {limit, limit, limit, limit};

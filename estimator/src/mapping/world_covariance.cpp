@@ -17,7 +17,8 @@ using Pose = WorldCovariance::Pose;
 // pillars).
 constexpr double kScale = 0.003;
 // The standard deviation of the drift per sweep is kDriftRatio times the pose's standard deviation along its least
-// constrained direction. kDriftSigmaMax_m limits this standard deviation of the pose.
+// constrained direction. For the computation of the drift, a standard deviation of the pose above kDriftSigmaMax_m
+// counts as kDriftSigmaMax_m.
 constexpr double kDriftRatio = 0.1, kDriftSigmaMax_m = 3.0;
 
 /// See mapping.md (R57).
@@ -76,8 +77,8 @@ void WorldCovariance::add_drift(double least_constrained_sigma_m,
 void WorldCovariance::add_inserted_sweep(double inserted_fraction, const SweepTrajectory& trajectory,
                                          const Registration::Matrix& errors, const Eigen::Vector3d& p_IL_m) {
   const double middle_s = 0.5 * trajectory.duration_s();
-  // A rotation error of the map causes a position error at the robot. The position error is proportional to the robot's
-  // distance from the last map extension.
+  // A rotation error of the map causes a position error at the robot. The position error from a rotation error of the
+  // map is proportional to the distance from the last sweep that extended the map.
   const Eigen::Vector3d p_WI_m = trajectory.state(middle_s).p_WI_m;
   Pose moved = Pose::Identity();
   moved.topRightCorner<3, 3>() = -so3::hat(p_WI_m - last_map_extension_W_m_);

@@ -23,7 +23,8 @@ class WorldCovariance {
   /// The prior map is assumed exact.
   static WorldCovariance covariance_in_prior_map(const WorldCovarianceParams& params, const Eigen::Vector3d& p_WI_m);
 
-  /// `joint` is the covariance of the registration's unknowns, relative to the map, at the position `p_WI_m`.
+  /// Returns the covariance of the IMU pose in the world frame, at the IMU position `p_WI_m`. `joint` is the covariance
+  /// of the registration's unknowns relative to the map.
   Pose in_world_frame(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const;
 
   /// Returns the standard deviation of the IMU's position relative to the nearby part of the map.
