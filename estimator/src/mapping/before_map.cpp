@@ -131,7 +131,7 @@ StateEstimate reset_origin_and_yaw(const StateEstimate& reckoned, double step_s)
 }
 
 /// The tilt error φ of the first sweep rotates the map frame. In a map frame rotated by the tilt error φ, velocity v
-/// has the additional error v × φ, and gravity g has the additional error g × φ.
+/// has an additional error v × φ, and gravity g an error g × φ.
 StateEstimate estimate_at_first_sweep(const Params& params, const StateEstimate& reckoned) {
   MotionState start = reckoned.mean.state;
   start.covariance.setZero();

@@ -20,7 +20,7 @@ class InertialTrack {
 
   /// Returns `ok` if the sample is later than all earlier samples, and `time_order` otherwise.
   Status check(const ImuSample& sample) const;
-  /// The method check() must have accepted the sample.
+  /// Requires that check() has accepted the sample.
   void store_sample(const Params& params, const ImuSample& sample, const AngularRateState& rate);
 
   /// The last sweep ended within the averaging window of the first stored sample.

@@ -38,12 +38,12 @@ class LocalMap {
   bool empty() const { return map_.size() == 0; }
 
   /// Adds the points of a sweep to the map and to the list `inserted`. Cost: O(points of the map). `noise` computes the
-  /// variance of a lidar return. If the pose of the sweep is certain, insert() counts the sweep for each map point that
-  /// the sweep saw, or through which a beam passed.
+  /// variance of a lidar return. If the pose of the sweep is certain, the sweep is counted for each map point that the
+  /// sweep saw or saw through.
   std::size_t insert(const Params& params, const SweepToInsert& sweep, const Registration& noise,
                      std::vector<InsertedPoint>& inserted);
-  /// Moves inserted map points to the positions that follow from the refined trajectory: mapping.md (R3). move() adds
-  /// `later_s` to the time of each point.
+  /// Moves inserted map points to the positions that follow from the refined trajectory: mapping.md (R3). The time of
+  /// each point is increased by `later_s`.
   void move(const SweepTrajectory& trajectory, const Eigen::Isometry3d& T_IL, double later_s,
             std::span<const InsertedPoint> inserted);
 

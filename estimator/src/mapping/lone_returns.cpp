@@ -20,8 +20,8 @@ constexpr int kNeighbours = 2;                     // number of neighbours on ea
 constexpr float kReachSteps = kNeighbours + 0.5f;  // angular steps; beams further apart are not neighbours
 constexpr float kStepMax = 0.05f;                  // rad; the rings of 16-channel lidars are 0.035 rad apart
 constexpr float kDeviations = 3.0f;
-// The fraction of returns that no neighbour confirms is 0.05 % at rest, 0.3 to 0.7 % in motion, and 1.6 % for a thrown
-// rig.
+// In clear air, the fraction of unconfirmed returns is 0.05 % at rest, 0.3 to 0.7 % in motion, and 1.6 % for a thrown
+// robot.
 constexpr float kClearAirFraction = 0.02f;
 
 float squared(float x) {

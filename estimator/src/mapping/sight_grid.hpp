@@ -8,7 +8,8 @@
 namespace tumble::mapping {
 
 /// FreeSpaceGrid stores the nearest return of a sweep in each direction, in bins on the faces of a cube around the
-/// sensor. A sweep saw through a map point if all returns around its direction are farther away: mapping.md (R65).
+/// sensor. A sweep saw through a map point if all returns around the direction of the map point are farther away:
+/// mapping.md (R65).
 class FreeSpaceGrid {
  public:
   /// `from_W_m` is the assumed origin of all beams of a sweep. `moved_m` is the largest distance of the sensor from

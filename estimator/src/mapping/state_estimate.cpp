@@ -64,8 +64,8 @@ MotionErrors marginal_motion_errors(const Matrix& F, const Matrix& errors) {
   return moved * rows.transpose();
 }
 
-/// Computes the covariance of the velocity error in IMU axes, R_IW (δv + v × φ), from the errors δv of velocity v and φ
-/// of attitude.
+/// Computes the covariance of the velocity error in IMU axes: R_IW (δv + v × φ), for errors δv of velocity v and φ of
+/// attitude.
 Eigen::Matrix3d velocity_covariance_I(const MotionState& state, const MotionErrors& errors) {
   namespace u = unknowns;
   const Eigen::Matrix3d R_IW = state.q_WI.toRotationMatrix().transpose();

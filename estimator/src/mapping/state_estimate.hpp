@@ -26,7 +26,7 @@ StateEstimate estimate_at_start(const LidarInertialOdometry::Params& params, con
 Registration::Matrix unknowns_at(const SweepTrajectory& trajectory, double t_s);
 
 /// Computes the propagated covariance F P F^T for the transition matrix F and the covariance P. `out` must be a
-/// different matrix than P. propagate_covariance() needs 32 KiB of stack, so callers should keep matrices on the heap.
+/// different matrix than P. The computation needs 32 KiB of stack, so callers should keep matrices on the heap.
 void propagate_covariance(const Registration::Matrix& F, const Registration::Matrix& P, Registration::Matrix& out);
 
 /// Propagates the covariance `errors` by the transition matrix F, but returns only the blocks of pose and mounting. The

@@ -53,7 +53,8 @@ inline std::uint32_t values_within_limit(float limit, const Floats (&values)[4])
   return static_cast<std::uint32_t>(bits[0] | bits[1] | bits[2] | bits[3]);
 }
 
-/// The sequence 0, 1, -1, 2, -2 lets the neighbour search visit near cells first, so that its radius shrinks early.
+/// The sequence 0, 1, -1, 2, -2 lets the neighbour search visit near cells first, so that the search radius shrinks
+/// early.
 inline int alternating_offset(int i) {
   return (i & 1) ? (i + 1) / 2 : -i / 2;
 }

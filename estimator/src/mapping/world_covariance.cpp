@@ -17,8 +17,7 @@ using Pose = WorldCovariance::Pose;
 // pillars).
 constexpr double kScale = 0.003;
 // The standard deviation of the drift per sweep is kDriftRatio times the pose's standard deviation along its least
-// constrained direction. For the computation of the drift, a standard deviation of the pose above kDriftSigmaMax_m
-// counts as kDriftSigmaMax_m.
+// constrained direction. A standard deviation of the pose above kDriftSigmaMax_m counts as kDriftSigmaMax_m.
 constexpr double kDriftRatio = 0.1, kDriftSigmaMax_m = 3.0;
 
 /// See mapping.md (R57).

@@ -22,9 +22,9 @@ namespace tumble {
 ///
 /// The z axis of the world frame points upwards, along the specific force at rest. The first sweep with at least
 /// `matches_min` usable points starts the map. The pose of the IMU at the first IMU sample defines origin and yaw of
-/// the world frame. If the map starts more than 0.5 s after the first IMU sample, the IMU's pose at the start of the
-/// map defines origin and yaw. If earlier sweeps had too few points to start the map, the IMU's pose at the start of
-/// the map defines origin and yaw.
+/// the world frame. If the map starts more than 0.5 s after the first IMU sample, the IMU pose at the map's start
+/// defines origin and yaw. If earlier sweeps had too few points to start the map, the IMU pose at the map's start
+/// defines origin and yaw.
 ///
 /// Pass IMU samples in time order. Before each sweep, pass the IMU samples up to the end of the sweep.
 /// LidarInertialOdometry starts no threads, uses no files and prints nothing.
@@ -61,10 +61,10 @@ class LidarInertialOdometry {
     double sigma_rad = 0.0;                                        ///< standard deviation of the corrected tilt
   };
   /// Returns the tilt at the start, computed from the direction of gravity in the map, for a second run over the same
-  /// data. start_tilt() returns an empty value after a start at rest, before the map starts, and after localisation in
-  /// a prior map. If the computed tilt is too inaccurate, start_tilt() returns the argument of set_start_tilt(), or an
-  /// empty value without such an argument. A computed tilt is too inaccurate if its standard deviation exceeds half the
-  /// initial standard deviation.
+  /// data. The result is empty after a start at rest, before the map starts, and after localisation in a prior map. If
+  /// the computed tilt is too inaccurate, start_tilt() returns the argument of set_start_tilt(), or an empty value
+  /// without such an argument. A computed tilt is too inaccurate if its standard deviation exceeds half the initial
+  /// standard deviation.
   std::optional<StartTilt> start_tilt() const;
   /// Call set_start_tilt() before the first sweep.
   void set_start_tilt(const StartTilt& tilt);
@@ -98,7 +98,7 @@ class LidarInertialOdometry {
   /// Sets an odometer reading for the prediction of the next sweep's pose. The prediction ignores an odometer reading
   /// that starts more than 20 ms before the end of the last sweep. The prediction also ignores an odometer reading that
   /// ends more than 20 ms after the end of the next sweep. The odometer reading is fused with the inertial prediction,
-  /// weighted by their covariances. Each sweep uses one odometer reading: that of the last call of add_reading().
+  /// weighted by their covariances. Each sweep uses only the odometer reading of the last call of add_reading().
   Status add_reading(const OdometerReading& reading);
 
   /// Registers a sweep of points fired in [start_ns, end_ns]. Consecutive sweeps must not overlap. A point with NaN
@@ -122,8 +122,8 @@ class LidarInertialOdometry {
   /// Returns the current calibration. Calibration values that are not estimated have covariance 0.
   LidarImuCalibration calibration() const;
   LidarImuCalibration::Covariance calibration_covariance() const;
-  /// Returns the prior covariance of the calibration in the next registration. A second run over the same recording
-  /// should start with the results of calibration() and calibration_prior_covariance().
+  /// Returns the covariance of the calibration with which the next registration starts. A second run over the same
+  /// recording should start with the results of calibration() and calibration_prior_covariance().
   LidarImuCalibration::Covariance calibration_prior_covariance() const;
 
   /// Returns `out_of_range` while the standard deviation of gravity's direction exceeds 0.02 rad, for example after a
@@ -134,8 +134,8 @@ class LidarInertialOdometry {
   Status pose_at(TimeNs time_ns, PoseState& pose) const;
 
   /// Returns the current poses of the sweeps that later sweeps still refine (at most `window_sweeps` - 1 sweeps),
-  /// oldest first. At the end of a run, all SweepReport::smoothed and then window_trajectories() give the whole
-  /// trajectory.
+  /// oldest first. At the end of a run, the poses of all SweepReport::smoothed and then of window_trajectories() are
+  /// the whole trajectory.
   std::vector<std::vector<PoseState>> window_trajectories() const;
 
   std::size_t map_bytes() const;

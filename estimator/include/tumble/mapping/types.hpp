@@ -168,9 +168,9 @@ Status check_map_points(std::span<const MapPoint> points);
 /// `non_finite` or `out_of_range` if the start pose or a standard deviation is invalid.
 Status check_prior_map(const PriorMap& map);
 
-/// Converts positions, for example of a PCD or PLY file, to map points with normals. to_map_points() keeps at most one
-/// point per cube of 0.1 m, and drops positions that are NaN or infinite. The sign of a normal is arbitrary. `sigma_m`
-/// is the standard deviation of each position. Cost: O(points).
+/// Converts positions, for example of a PCD or PLY file, to map points with normals. The result contains at most one
+/// point per cube of 0.1 m, and no positions that are NaN or infinite. The sign of a normal is arbitrary. `sigma_m` is
+/// the standard deviation of each position. Cost: O(points).
 std::vector<MapPoint> to_map_points(std::span<const Eigen::Vector3f> positions_M_m, float sigma_m = 0.02f);
 
 /// SweepVerdict states whether a sweep's pose comes from the registration or from the inertial prediction. If a

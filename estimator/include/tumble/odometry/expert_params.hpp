@@ -55,8 +55,8 @@ struct TumblingExpertParams {
   static OdometryParams mapping_defaults();
   static MotionRegimeStream::Params default_rate_params();
   /// Returns the names of parameters that TumblingOdometry computes from other parameters. A name that ends in '*'
-  /// stands for all names that start with the text before the '*'. TumblingOdometry ignores user values of computed
-  /// parameters.
+  /// stands for all names that start with the text before the '*'. TumblingOdometry ignores values that a user sets for
+  /// computed parameters.
   static std::span<const char* const> derived_fields();
 
   template <class Self, class Visitor>

@@ -60,12 +60,12 @@ class RollingOdometry {
     HeapValue<Expert> expert;  ///< rarely changed parameters, odometry/expert_params.hpp
 
     /// Returns the names of parameters that RollingOdometry computes from other parameters and from data sheets.
-    /// RollingOdometry ignores user values of computed parameters.
+    /// RollingOdometry ignores values that a user sets for computed parameters.
     static std::span<const char* const> derived_fields();
 
     /// Increases the prior standard deviations for uncalibrated IMUs without data sheet, at unknown positions in the
-    /// sphere. widen_priors_for_unknown_imus() also makes slopes of the floor improbable, because the accelerometer
-    /// bias of an uncalibrated IMU resembles a slope.
+    /// sphere. The prior probability of slopes becomes very small, because the accelerometer bias of an uncalibrated
+    /// IMU resembles a slope.
     void widen_priors_for_unknown_imus();
 
     /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning. A caller needs
@@ -135,8 +135,8 @@ class RollingOdometry {
   /// Processes a sample of the IMU with the index `unit`, if the samples of the IMUs are not simultaneous.
   /// RollingOdometry resamples the readings of all IMUs to common times, which delays the poses by at most 0.05 s.
   /// RollingOdometry treats an IMU without readings as absent. Returns `ok`, an error of add_imus(), or `out_of_range`
-  /// for an invalid IMU number. If the clock of an IMU steps back, add_imu() rejects samples of this IMU until their
-  /// time stamps exceed the newest accepted time stamp, or until reset().
+  /// for an invalid IMU number. If the clock of an IMU steps back, add_imu() rejects samples of this IMU until reset(),
+  /// or until a time stamp exceeds the newest accepted time stamp.
   Status add_imu(std::size_t unit, const ImuSample& sample);
 
   /// Returns the newest pose, estimated from all data so far, or an empty value before the first sample.
@@ -187,8 +187,8 @@ class RollingOdometry {
   /// Saves calibration, saturation limits of each IMU, and newest pose as bytes with a checksum, for load() after a
   /// reboot. The calibration contains biases, scales and delay of the merged IMU, and centre and radius of the sphere,
   /// with covariance. Every machine saves numbers in little-endian order. The saved bytes contain no velocity, contact
-  /// mode, differences between the IMUs, health findings or counters. save() also omits recorded readings, and poses
-  /// that take() has not yet returned.
+  /// mode, differences between the IMUs, health findings or counters. The saved bytes also omit recorded readings, and
+  /// poses that take() has not yet returned.
   std::vector<std::byte> save() const;
   /// Starts a new run from the bytes that save() returned, and discards the previous state of the object. The saved
   /// calibration and saturation limits replace the initial values in the parameters, also after a later reset(). The
@@ -198,9 +198,9 @@ class RollingOdometry {
   ///
   /// `last_pose` receives the saved pose with its time in the clock of the saved run. If no pose was saved, `last_pose`
   /// is empty. On error, the object is unchanged, and the returned status names the field, the saved value and the
-  /// bound. The error is `insufficient_data` (truncated bytes), `non_finite` or `out_of_range`. load() rejects damaged
-  /// bytes, and bytes that another version or a TumblingOdometry saved. load() also rejects a saved run with another
-  /// radius or other IMUs.
+  /// bound. The error is `insufficient_data` (truncated bytes), `non_finite` or `out_of_range`. The function load()
+  /// rejects damaged bytes, and bytes that another version or a TumblingOdometry saved. A saved run with another radius
+  /// or other IMUs is also rejected.
   Status load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose = nullptr);
 
   struct Impl;  ///< private implementation

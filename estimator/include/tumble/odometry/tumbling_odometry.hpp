@@ -83,11 +83,11 @@ struct LidarScale;
 /// corrects time stamps that a host computer assigned. MotionRegimeStream estimates the angular velocity of each sample
 /// with a delay of `lag_s`.
 ///
-/// Three poses of increasing accuracy are reported. newest() predicts the IMU's pose at the newest sample by inertial
-/// integration from the last registered sweep. take() returns a sweep registered to the map (`report.pose`), at most
-/// `lag_s` after the sweep's end. The final pose of a sweep is in the report of the following sweep
-/// (`report.smoothed`). At ten sweeps per second and the default `lag_s`, the final pose is available at most 0.3 s
-/// after the end of its sweep. Time stamps of poses are in the IMU's clock. The earliest sweep with enough points
+/// Three poses of increasing accuracy are reported. The function newest() predicts the IMU's pose at the newest sample
+/// by inertial integration from the last registered sweep. The function take() returns a sweep registered to the map
+/// (`report.pose`), at most `lag_s` after the sweep's end. The final pose of a sweep is in the report of the following
+/// sweep (`report.smoothed`). At ten sweeps per second and the default `lag_s`, the final pose is available at most 0.3
+/// s after the end of its sweep. Time stamps of poses are in the IMU's clock. The earliest sweep with enough points
 /// starts the map, and poses are reported only after the map has started. Start with at least half a second at rest,
 /// which determines the tilt. A gyro with a zero offset above 0.05 rad/s needs a full second at rest, because
 /// TumblingOdometry then subtracts the offset and restarts.
@@ -98,11 +98,11 @@ struct LidarScale;
 /// second, inertial integration continues, and take() returns a sweep without points.
 ///
 /// With `lag_s` = kWholeRecording, add_imu() and add_sweep() store the data, and finish() estimates rates, poses and
-/// map from the whole recording. finish() estimates the rates with MotionRegimeSmoother, checks the IMU, and repeats
-/// the mapping until the lidar's calibration has converged. With kWholeRecording, there are no live poses, and take()
-/// returns all sweeps after finish(). With kWholeRecording, if the clock steps back, add_imu() rejects samples with
-/// `time_order` until the time stamps exceed the newest accepted time stamp. With kWholeRecording, the recording
-/// continues after a gap in the data. finish() needs more stack and memory than other functions.
+/// map from the whole recording. The function finish() estimates the rates with MotionRegimeSmoother, checks the IMU,
+/// and repeats the mapping until the lidar's calibration has converged. With kWholeRecording, there are no live poses,
+/// and take() returns all sweeps after finish(). With kWholeRecording, if the clock steps back, add_imu() rejects
+/// samples with `time_order` until the time stamps exceed the newest accepted time stamp. With kWholeRecording, the
+/// recording continues after a gap in the data. The function finish() needs more stack and memory than other functions.
 ///
 /// An IMU sample costs one step of MotionRegimeStream, and sometimes the registration of a sweep. After start-up,
 /// add_imu() allocates memory only if the sample completes a sweep. While SecondMappingPass runs, a sweep costs up to
@@ -141,8 +141,8 @@ class TumblingOdometry {
   /// Sets the map of an earlier run as prior map, and starts the localisation of the robot in the prior map. Call
   /// use_map() before the first sweep. Until the robot is localised, poses are not in the frame of the prior map, and
   /// health() reports the missing localisation. After localisation, `report.in_prior_map` is true, and poses are in the
-  /// frame of the prior map. reset() keeps the prior map and localises the robot again. If a prior map is set, the
-  /// argument of reset(pose) is a pose in the frame of the prior map. Returns `ok` or an error of
+  /// frame of the prior map. The function reset() keeps the prior map and localises the robot again. If a prior map is
+  /// set, the argument of reset(pose) is a pose in the frame of the prior map. Returns `ok` or an error of
   /// LidarInertialOdometry::use_map().
   Status use_map(PriorMap map);
   /// Processes an IMU sample, and registers each sweep that ended at least `lag_s` before the sample. Time stamps must
@@ -155,12 +155,12 @@ class TumblingOdometry {
   /// returns the pose before these samples.
   Status add_imu(const ImuSample& sample);
   /// Processes a sweep of points fired in [start_ns, end_ns]. Call add_sweep() after the last point of the sweep; later
-  /// IMU samples may be added first. The points are copied. add_sweep() drops points that were fired before the end of
-  /// the last sweep, because jitter can make the time stamps of sweeps overlap. On error, the state is unchanged.
-  /// `time_order` means that `end_ns` is before `start_ns`, or that more than half of the sweep is before the end of
-  /// the last sweep. `out_of_range` means that a point was fired outside [start_ns, end_ns], or that `end_ns` is more
-  /// than a second after the newest IMU sample. `out_of_range` also means that a time stamp exceeds kStampMax_ns, or
-  /// that too many sweeps wait for IMU samples.
+  /// IMU samples may be added first. The points are copied. Points that were fired before the end of the last sweep are
+  /// dropped, because jitter can make the time stamps of sweeps overlap. On error, the state is unchanged. `time_order`
+  /// means that `end_ns` is before `start_ns`, or that more than half of the sweep is before the end of the last sweep.
+  /// `out_of_range` means that a point was fired outside [start_ns, end_ns], or that `end_ns` is more than a second
+  /// after the newest IMU sample. `out_of_range` also means that a time stamp exceeds kStampMax_ns, or that too many
+  /// sweeps wait for IMU samples.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
   /// Processes a sweep of one of several lidars. For the first lidar, `lidar` is 0; for `further_lidars[k - 1]`,
   /// `lidar` is k. The points of a further lidar are registered together with the simultaneous sweep of the first
@@ -190,11 +190,11 @@ class TumblingOdometry {
   /// added after finish(), the rate estimation restarts with the current calibration.
   ///
   /// With kWholeRecording, finish() processes the whole recording, and later samples and sweeps are rejected until
-  /// reset(). take() then returns all sweeps with their final poses in `report.pose` and `report.trajectory`. Returns
-  /// `ok`, an error of AngularRateSmoother::estimate() such as `insufficient_data`, or an error of the mapper
-  /// (LidarInertialOdometry). Without kWholeRecording, finish() returns `ok`. For a progress display, finish() calls
-  /// `on_sweep` before each sweep, with the numbers of processed sweeps and of all sweeps. At the start of each pass
-  /// over the recording, the number of processed sweeps is 0.
+  /// reset(). After finish() with kWholeRecording, take() returns all sweeps with final poses in `report.pose` and
+  /// `report.trajectory`. Returns `ok`, an error of AngularRateSmoother::estimate() such as `insufficient_data`, or an
+  /// error of the mapper (LidarInertialOdometry). Without kWholeRecording, finish() returns `ok`. For a progress
+  /// display, finish() calls `on_sweep` before each sweep, with the numbers of processed sweeps and of all sweeps. At
+  /// the start of each pass over the recording, the number of processed sweeps is 0.
   Status finish(const SweepProgress& on_sweep = {});
   /// Starts a new run with a new map, at the origin and at rest. After reset(), take() still returns the remaining
   /// sweeps of the old run, and counters keep their values.
@@ -204,11 +204,12 @@ class TumblingOdometry {
   void reset(const Eigen::Isometry3d& T_WI);
 
   /// Predicts pose and velocity of the IMU at its newest sample, with covariance, by inertial integration from the last
-  /// registered sweep. Returns `empty` before the map has started. newest() allocates memory. Cost: O(samples since the
-  /// last sweep). `velocity_covariance_I_m2_s2` (optional) is the covariance of the velocity error in IMU axes.
+  /// registered sweep. Returns `empty` before the map has started. The function newest() allocates memory. Cost:
+  /// O(samples since the last sweep). `velocity_covariance_I_m2_s2` (optional) is the covariance of the velocity error
+  /// in IMU axes.
   Status newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2 = nullptr) const;
-  /// Reports the suspected faults of the sensors and of the estimate. Estimation continues after any finding. health()
-  /// stops reporting a finding at most one minute after the fault has ended. The checks are
+  /// Reports the suspected faults of the sensors and of the estimate. Estimation continues after any finding. The
+  /// report of a finding stops at most one minute after the fault has ended. The checks are
   /// AngularRateStream::health(), ImuPlausibility, RestGravity, LidarScale, LidarInertialOdometry::check_vertical() and
   /// localised(), Localisation and LidarImuCalibrationPrior. With kWholeRecording, finish() checks the whole recording
   /// (detail/imu_findings.hpp), and health() reports no finding before finish(). Cost: a few hundred operations.
@@ -259,8 +260,8 @@ class TumblingOdometry {
   /// little-endian order. Before the robot is localised in a prior map, save() saves the prior map.
   ///
   /// The saved bytes contain no velocity, filter states, health findings, counters, odometer readings, position
-  /// readings, or buffer of SecondMappingPass. save() also omits sweeps that wait for IMU samples or for take(). With
-  /// kWholeRecording, the saved bytes contain the results of finish(), without the recorded data.
+  /// readings, or buffer of SecondMappingPass. The saved bytes also omit sweeps that wait for IMU samples or for
+  /// take(). With kWholeRecording, the saved bytes contain the results of finish(), without the recorded data.
   std::vector<std::byte> save() const;
   /// Starts a new run from the bytes that save() returned, and discards the previous state of the object. The saved
   /// calibration replaces the calibration in the parameters, also after a later reset(). The saved biases get the
@@ -272,9 +273,9 @@ class TumblingOdometry {
   ///
   /// `last_pose` receives the saved pose with its time in the clock of the saved run. If no pose was saved, `last_pose`
   /// is empty. On error, the object is unchanged, and the returned status names the field, the saved value and the
-  /// bound. The error is `insufficient_data` (truncated bytes), `non_finite`, `degenerate` or `out_of_range`. load()
-  /// rejects damaged bytes, and bytes that another version or a RollingOdometry saved. load() also rejects a saved run
-  /// with another stated lever arm or lidar mounting.
+  /// bound. The error is `insufficient_data` (truncated bytes), `non_finite`, `degenerate` or `out_of_range`. The
+  /// function load() rejects damaged bytes, and bytes that another version or a RollingOdometry saved. A saved run with
+  /// another stated lever arm or lidar mounting is also rejected.
   Status load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose = nullptr);
 
   struct Impl;  ///< private implementation
