@@ -45,7 +45,8 @@ bool append_sweeps(std::vector<MappedSweep>& sweeps, Estimate& estimate) {
       continue;
     }
     if (leave_out_before_map(sweep.status, report, estimate)) continue;
-    if (!append_sweep(sweep.status, report.pose.time_ns, std::move(report), estimate)) return false;
+    const TimeNs end_ns = report.pose.time_ns;
+    if (!append_sweep(sweep.status, end_ns, std::move(report), estimate)) return false;
   }
   return true;
 }

@@ -86,7 +86,8 @@ inline std::vector<std::uint8_t> livox_cdr(TimeNs stamp_ns, const std::string& f
                                            const std::vector<LidarPoint>& points) {
   std::vector<std::uint8_t> out = {0, 1, 0, 0};
   const auto align = [&](std::size_t to) { out.resize(4 + (out.size() - 4 + to - 1) / to * to); };
-  put<std::int32_t>(out, double(stamp_ns / 1'000'000'000));
+  const TimeNs whole_s = stamp_ns / 1'000'000'000;
+  put<std::int32_t>(out, double(whole_s));
   put<std::uint32_t>(out, double(stamp_ns % 1'000'000'000));
   put<std::uint32_t>(out, double(frame.size() + 1));
   out.insert(out.end(), frame.begin(), frame.end());
