@@ -41,8 +41,9 @@ enum class GyroUnit { rad_s, deg_s };
 ///
 /// @param columns   Names or positions (from 0) of the columns: "time=t,gyro=gx,gy,gz,accel=ax,ay,az"; may be empty.
 /// @param device    Properties that the file lacks: name, device, ranges, noise, T_BI of the primary IMU.
-/// @return          Times count from the first stamp; the period is the median step. Stamps rounded to milliseconds are
-/// moved to the true period of the IMU, with a note (rounded_stamps.hpp).
+/// @return          The samples and notes. Times count from the first stamp, and the period is the median time step. If
+/// the stamps are rounded to milliseconds, the result contains corrected times, evenly spaced, and a note
+/// (rounded_stamps.hpp).
 ///
 /// A line is skipped, with a note, in each of these cases (left_out.hpp):
 /// - The line has an invalid or non-finite number, or a wrong number of columns.

@@ -20,7 +20,7 @@ constexpr float kSamePointM = 1e-3f;     // cell of duplicate points
 constexpr double kSeenRangeM = 100.0;    // farther surfaces are not required
 
 static_assert(kErrorLimitM > kToleranceM && kErrorLimitM > kFineToleranceM,
-              "the upper bound of a distance must exceed both distance tolerances");
+              "kErrorLimitM, the upper bound of a map error, must exceed kToleranceM and kFineToleranceM");
 
 std::vector<Eigen::Vector3f> map_in_world(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();

@@ -24,9 +24,9 @@ const char* symbol(Unit unit);
 /// signed values).
 enum class Compared { by_ratio, by_difference };
 
-/// Place states whether gates and the start of the report page contain a metric. A gate (sweep/gate.hpp) compares new
-/// with accepted results in metrics with the place `held` or `headline`. The report page starts with the metrics that
-/// have the place `headline`. `tumble report --all` prints all metrics.
+/// Place states whether gates compare a metric, and whether the report page shows the metric at its start. A gate
+/// (sweep/gate.hpp) compares new results with accepted results, for metrics with the place `held` or `headline`. The
+/// report page starts with the metrics that have the place `headline`. `tumble report --all` prints all metrics.
 enum class Place { detail, held, headline };
 
 inline constexpr double kNoTarget = std::numeric_limits<double>::quiet_NaN();

@@ -53,7 +53,7 @@ struct SearchResult {
   std::size_t failures = 0, rejected = 0;  ///< runs that fail, and runs that could not be simulated
   std::vector<FoundFailure> likely;  ///< per initial draw, the failing copy with the smallest distance, smallest first
   FoundFailure worst;                ///< run with the largest score, of equal runs that with the smallest distance
-  std::vector<InputShift> shifts;    ///< of the failures in the last population, or without failures of all its members
+  std::vector<InputShift> shifts;    ///< of the failing runs after the last step; without failing runs, of all runs
 };
 
 /// Returns the names of the random streams of a scenario, as in sim::Situation: the world and each sensor.

@@ -11,8 +11,8 @@
 
 namespace tumble::scenarios {
 
-/// InputShift compares the values of one random parameter in the draws of a population with its distribution in the
-/// scenario.
+/// InputShift compares the values of one random parameter in a set of draws, for example all failing draws, with
+/// the distribution of the parameter in the scenario.
 struct InputShift {
   std::string number;
   double shift = 0.0;      ///< mean normal score of the draws [standard deviations of the scenario's distribution]

@@ -21,7 +21,7 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::size_t kPopulationMin = 4;
-constexpr std::size_t kRemovedPart = 4;  // a quarter of the population is removed
+constexpr std::size_t kRemovedPart = 4;  // each step removes a quarter of the draws
 constexpr std::size_t kMovesMin = 2, kMovesFirst = 5;
 constexpr double kNotMoved = 0.1;  // fraction of the copies that may keep their seed
 constexpr double kStepMin = 0.05, kStepMax = 0.95, kStepFirst = 0.7, kAcceptedTarget = 0.4;
@@ -101,7 +101,7 @@ class Splitting {
     return true;
   }
 
-  /// Returns true if at least three quarters of the population exceed the bound of the score.
+  /// Returns true if the scores of at least three quarters of the current draws exceed the bound.
   bool is_at_bound() const { return failing().size() + removed_at_once() >= options_.population; }
   std::size_t removed_at_once() const { return std::max<std::size_t>(1, options_.population / kRemovedPart); }
 
@@ -135,8 +135,8 @@ class Splitting {
     return true;
   }
 
-  /// Replaces the members of the population with the lowest scores by copies of the remaining members. Each remaining
-  /// member is copied once before any member is copied twice.
+  /// Replaces the draws with the lowest scores by copies of the remaining draws. Each remaining draw is copied once
+  /// before any draw is copied twice.
   void copy(const std::vector<std::size_t>& lowest, std::vector<std::size_t> remaining) {
     std::vector<std::size_t> copies(remaining.size(), 1);
     for (std::size_t i = 0; i < lowest.size(); ++i) {

@@ -52,23 +52,23 @@ struct ScoredPoint {
   std::size_t family = 0;  ///< index of the initial draw that was copied and changed to this draw
 };
 
-/// SplittingLevel describes the population after one step of the search. A step of the search replaces all draws with a
-/// score of at most `score` by copies of other draws.
+/// SplittingLevel describes the population (the draws that advance together) after one step of the search. A step of
+/// the search replaces all draws with a score of at most `score` by copies of other draws.
 struct SplittingLevel {
-  double score = 0.0;        ///< each member of the population exceeds this score
+  double score = 0.0;        ///< all draws after the step exceed this score
   Interval probability{};    ///< probability that a random draw exceeds the score
   std::size_t runs = 0;      ///< number of scored draws so far
-  std::size_t families = 0;  ///< number of initial draws that have copies in the population
-  std::size_t moves = 0;     ///< number of moves of each new member
+  std::size_t families = 0;  ///< number of initial draws with copies after the step
+  std::size_t moves = 0;     ///< number of moves of each copied draw
   double accepted = 0.0;     ///< fraction of accepted moves
 };
 
 struct SplittingResult {
   Interval probability{0.0, 0.0, 1.0};  ///< probability of a failure with its 95 % interval
-  bool complete = false;                ///< the population reached the bound within the budget
+  bool complete = false;                ///< true: three quarters of the draws reached the bound within the budget
   bool stopped = false;                 ///< `ScorePoints` stopped the search
   std::vector<ScoredPoint> draws;       ///< all scored draws, in order
-  std::vector<std::size_t> members;     ///< indices in `draws` of the population at the end
+  std::vector<std::size_t> members;     ///< indices in `draws` of the draws after the last step
   std::vector<SplittingLevel> levels;
 };
 
@@ -77,8 +77,8 @@ struct SplittingResult {
 /// In each step, the search removes the quarter of the draws with the lowest scores. A copy of another draw replaces
 /// each removed draw. Each copy makes several Metropolis moves, and accepts a move if its score exceeds all removed
 /// scores. Half of the Metropolis moves also draw a new seed of one random stream. The probability is the product of
-/// the fractions that remain in each step and the final fraction above the bound. The search ends when the scores of at
-/// least three quarters of the population exceed the bound.
+/// the fractions that remain in each step and the final fraction above the bound. The search ends when at least three
+/// quarters of the draws that advance together have scores above the bound.
 ///
 /// The step size of the Metropolis moves increases if more than 40 % of the moves are accepted. The number of moves per
 /// copy follows from the acceptance rate of moves with a new seed. If every move drew a new seed, at least 90 % of the
@@ -93,15 +93,15 @@ class SplittingEstimate {
  public:
   explicit SplittingEstimate(std::size_t population) : population_(population) {}
 
-  /// Adds a step of the search that removed `removed` draws of the population. For each remaining draw, `copies`
-  /// contains the number of its copies plus 1.
+  /// Adds a step of the search that removed `removed` draws. For each remaining draw, `copies` contains the number of
+  /// its copies plus 1.
   void advance(std::size_t removed, std::span<const std::size_t> copies);
 
   /// Returns the probability that a random draw exceeds the level, with its 95 % interval.
   Interval of_level(std::span<const std::size_t> families) const;
 
   /// Returns the probability of a failure with its 95 % interval. `families` contains ScoredPoint::family (the initial
-  /// draw) of all draws in the population, and `failing` contains ScoredPoint::family of the failing draws.
+  /// draw) of all draws after the last step, and `failing` contains ScoredPoint::family of the failing draws.
   Interval of_failure(std::span<const std::size_t> families, std::span<const std::size_t> failing) const;
 
  private:

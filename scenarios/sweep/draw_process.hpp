@@ -35,7 +35,7 @@ OutcomeStatus ended_as(const Process::End& end);
 
 std::vector<Outcome> without_answer(const DrawTask& task, OutcomeStatus status, const std::string& message);
 
-/// Writes one message per line to `fd`: the outcome of a method, or a rejection if the simulation is impossible.
+/// Writes one message per line to `fd`: the outcome of a method, or an error if the draw cannot be simulated or read.
 void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int fd, bool recordings_unseen = false);
 
 /// Runs one method in a separate process for at most `timeout_s` of wall time; a crash, a time-out or an exception

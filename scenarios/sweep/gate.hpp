@@ -61,8 +61,8 @@ struct Gate {
 };
 
 std::vector<std::string> gate_names(const DataRoot& data);
-/// Reads a gate from its files. A gate may contain the results of an external method only if the method is in
-/// `described`.
+/// Reads the accepted results and the limits of a regression gate from its two files. A gate may contain the results of
+/// an external method only if the method is in `described`.
 Gate load_gate(const DataRoot& data, const std::string& name, std::span<const MethodPointer> described = {});
 std::string to_yaml(const Gate& gate);
 std::string to_csv(const GateRun& run);

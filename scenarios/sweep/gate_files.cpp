@@ -154,7 +154,9 @@ GateRun parse_gate_run(const std::string& text, const std::string& file, std::sp
     else
       read_row(line, described, run);
   }
-  if (run.methods.empty()) throw BadInput(fmt::format("{}: this file has no accepted results", file));
+  if (run.methods.empty())
+    throw BadInput(fmt::format(
+        "{}: this table has no accepted results; 'tumble gate SUITE --accept' stores the results of this build", file));
   return run;
 }
 

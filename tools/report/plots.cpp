@@ -292,7 +292,8 @@ Figure cost_figure(const Summary& summary, const Palette& palette) {
   Figure figure;
   figure.id = "cost";
   figure.caption = fmt::format(
-      "The plot shows the CPU time of one estimate. Each point shows one simulated run; a box has at most {} points.",
+      "The plot shows the CPU time that one estimate needs. Each point is one simulated run, and each box shows at "
+      "most {} points.",
       kBoxPoints);
   std::set<Kind> kinds;
   for (const Section& section : summary.sections) kinds.insert(section.kind);

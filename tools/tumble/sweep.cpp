@@ -44,9 +44,8 @@ struct SweepVerbOptions {
 void say_what_it_holds(const Session& session, const SweepVerbOptions& options, const scenarios::Suite& suite) {
   if (!options.scenarios.empty() || suite.scenarios.size() < 2) return;
   if (std::ranges::count(suite.scenarios, options.suite) == 0) return;
-  session.note(fmt::format(
-      "suite '{0}' contains the scenarios {1}; use --scenario {0} to run only the scenario with the name of the suite",
-      options.suite, fmt::join(suite.scenarios, " ")));
+  session.note(fmt::format("suite '{0}' contains the scenarios {1}; use --scenario {0} to run only the scenario '{0}'",
+                           options.suite, fmt::join(suite.scenarios, " ")));
 }
 
 bool select(const scenarios::DataRoot& data, const SweepVerbOptions& options, scenarios::Suite& suite) {

@@ -42,8 +42,9 @@ AngularRateState mixed_rate(const AngularRateState& rate, const AngularRateState
   return out;
 }
 
-// Computes the angular acceleration from rate differences: carried.md (C43). The angular acceleration of
-// AngularRateStream is not used, because it depends on the specific force that the regime test compares with the rate.
+// Computes the angular acceleration from rate differences: carried.md (C43). The regime test compares rates with the
+// specific force. The angular acceleration from AngularRateStream is unsuitable for this comparison, because
+// AngularRateStream also uses the specific force.
 Eigen::Vector3d angular_acceleration(std::span<const AngularRateStream::Knot> window, std::size_t k) {
   const auto between_s = [&](std::size_t from, std::size_t to) {
     return seconds(window[to].observation.sample.time_ns - window[from].observation.sample.time_ns);

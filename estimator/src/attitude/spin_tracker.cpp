@@ -112,9 +112,9 @@ SpinRate SpinTracker::advance_spin_filter(const Model& model, const ImuSample& s
     const double c = recorded.spin_change_probability;
     const double spins = hypotheses.probability * (1.0 - c) + (1.0 - hypotheses.probability) * c;
     hypotheses.probability = std::min(kProbabilityMax, spins * ratio / (spins * ratio + 1.0 - spins));
-    // If the gyro axis of the spin is saturated, the readings do not limit the spin rate from above. While the gyro
-    // axis is saturated, any modulation frequency therefore agrees with some spin rate. Samples with a saturated gyro
-    // axis can contradict a spin, but not confirm a spin.
+    // If the spin axis is saturated, the readings do not limit the spin rate from above. Any frequency at which the
+    // rate or force across the spin axis oscillates therefore fits some spin rate beyond the saturation limit. Samples
+    // with a saturated spin axis can lower the probability of a steady spin, but cannot raise this probability.
     if (!reading.saturated) {
       hypotheses.measured_probability = hypotheses.probability;
     } else if (hypotheses.probability > hypotheses.measured_probability) {

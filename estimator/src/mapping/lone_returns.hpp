@@ -21,7 +21,8 @@ struct RangeNoise {
 /// - The return and the adjacent beam on the ring are on a common surface: mapping.md (R14).
 /// - The return is on the line between an earlier and a later neighbour on the ring: mapping.md (R15).
 ///
-/// If few returns of a sweep are unconfirmed, LoneReturns keeps all returns of the sweep, because the air is clear.
+/// If neighbouring beams confirm at least 98 % of the returns of a sweep, LoneReturns keeps all returns of the sweep,
+/// because the air is clear.
 class LoneReturns {
  public:
   /// Removes the lone returns from `points`, and returns their number. Cost: O(points). The order of the remaining

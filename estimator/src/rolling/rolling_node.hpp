@@ -36,8 +36,8 @@ struct Contact {
   Eigen::Vector3d normal_height_derivative_W;  ///< derivative of u with respect to the normal's third component
   Eigen::Vector2d floor_slope;                 ///< slope of the floor on the nominal trajectory
 
-  /// Returns the contact velocity for the error state `x`. Only the slope error enters the contact velocity
-  /// nonlinearly, because the floor normal has unit length.
+  /// Returns the contact velocity for the error state `x`. The contact velocity is a nonlinear function of the slope
+  /// error, because the floor normal has unit length. The contact velocity is linear in all other errors.
   Eigen::Vector3d velocity(const Vector& x) const;
 };
 

@@ -69,8 +69,8 @@ struct BagWriting {
 ///   exported name of the sensor (export_names). The topic of the primary IMU comes before the topics of other IMUs.
 /// - "/NAME/points" is a sensor_msgs/PointCloud2, stamped at the start of the sweep, with the fields of Velodyne
 ///   drivers: x y z intensity ring time. The field `time` contains the time of a point in float32 seconds after the
-///   stamp (4 ns resolution within 0.1 s). The field `offset_ns` contains the same time in whole nanoseconds. The
-///   fields `time` and `offset_ns` are missing if the points have no times.
+///   stamp, with a rounding error of at most 4 ns within 0.1 s. The field `offset_ns` contains the same time in whole
+///   nanoseconds. The fields `time` and `offset_ns` are missing if the points have no times.
 /// - "/truth" is a nav_msgs/Odometry of "body" in "world", at most every 5 ms. "/TRACK" and "/TRACK/points" contain
 ///   estimates. Unknown values have the variance -1, as in sensor_msgs/Imu; an unknown twist is zero.
 /// - "/tf_static" contains the pose of each sensor in "body", from the calibration that the estimator uses.

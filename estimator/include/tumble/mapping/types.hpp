@@ -189,8 +189,9 @@ struct SweepReport {
   /// covariance of the velocity in IMU axes at the end of the sweep [m^2/s^2]
   Eigen::Matrix3d velocity_covariance_I_m2_s2 = Eigen::Matrix3d::Zero();
   std::vector<PoseState> trajectory;  ///< IMU poses within the sweep, corrected by the registration
-  /// Final poses of the oldest sweep that the fixed-lag smoother refines; empty until `window_sweeps` sweeps have
-  /// arrived. With the default `window_sweeps` of 2, `smoothed` contains the poses of the previous sweep.
+  /// Final poses of the oldest sweep in the window of the fixed-lag smoother. Later sweeps no longer change these
+  /// poses. The vector is empty until `window_sweeps` sweeps have arrived. With the default `window_sweeps` of 2,
+  /// `smoothed` contains the poses of the previous sweep.
   std::vector<PoseState> smoothed;
   double inlier_ratio = 0.0;      ///< fraction of the registered points that are inliers
   double eigenvalue_ratio = 0.0;  ///< smallest divided by largest eigenvalue of the scaled normal matrix

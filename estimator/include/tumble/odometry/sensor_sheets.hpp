@@ -33,8 +33,8 @@ struct ImuDataSheet {
 };
 
 /// Returns the largest reading that is certainly unsaturated: 98 % of a range from a data sheet. Returns infinity if
-/// the range is unknown (0). The margin of 2 % is necessary, because the calibration in a device also scales saturated
-/// readings.
+/// the range is unknown (0). The 2 % are a margin for scale errors: a device that multiplies its readings by
+/// calibration factors can saturate slightly below the stated range.
 double range_below_saturation(double stated_range);
 
 /// LidarDataSheet contains the range limits in the data sheet of a lidar. The estimators drop lidar returns outside of

@@ -101,8 +101,9 @@ struct LidarScale;
 /// map from the whole recording. The function finish() estimates the rates with MotionRegimeSmoother, checks the IMU,
 /// and repeats the mapping until the lidar's calibration has converged. With kWholeRecording, there are no live poses,
 /// and take() returns all sweeps after finish(). With kWholeRecording, if the clock steps back, add_imu() rejects
-/// samples with `time_order` until the time stamps exceed the newest accepted time stamp. With kWholeRecording, the
-/// recording continues after a gap in the data. The function finish() needs more stack and memory than other functions.
+/// samples and returns `time_order` until the time stamps exceed the newest accepted time stamp. With kWholeRecording,
+/// the recording continues after a gap in the data. The function finish() needs more stack and memory than other
+/// functions.
 ///
 /// An IMU sample costs one step of MotionRegimeStream, and sometimes the registration of a sweep. After start-up,
 /// add_imu() allocates memory only if the sample completes a sweep. While SecondMappingPass runs, a sweep costs up to
@@ -148,11 +149,11 @@ class TumblingOdometry {
   /// Processes an IMU sample, and registers each sweep that ended at least `lag_s` before the sample. Time stamps must
   /// increase. Returns `non_finite`, `out_of_range`, `time_order` or `gap` if the sample is rejected. A single wrong
   /// time stamp causes the loss of only one sample. After a gap of more than a second, add_imu() rejects the first
-  /// sample after the gap with `gap`. The next sample restarts the rate estimation with the current calibration.
-  /// Inertial integration bridges the gap. If the clock steps back, add_imu() rejects samples with `time_order` for 0.2
-  /// s, and then restarts the run at the newest pose, like reset(pose). OutlierFilter rejects outliers among the
-  /// readings. While OutlierFilter checks a sudden change of the readings, one to five samples wait, and newest()
-  /// returns the pose before these samples.
+  /// sample and returns `gap`. The next sample restarts the rate estimation with the current calibration. Inertial
+  /// integration bridges the gap. If the clock steps back, add_imu() rejects samples for 0.2 s, returns `time_order`,
+  /// and then restarts the run at the newest pose, like reset(pose). OutlierFilter rejects outliers among the readings.
+  /// While OutlierFilter checks a sudden change of the readings, one to five samples wait, and newest() returns the
+  /// pose before these samples.
   Status add_imu(const ImuSample& sample);
   /// Processes a sweep of points fired in [start_ns, end_ns]. Call add_sweep() after the last point of the sweep; later
   /// IMU samples may be added first. The points are copied. Points that were fired before the end of the last sweep are
@@ -204,9 +205,9 @@ class TumblingOdometry {
   void reset(const Eigen::Isometry3d& T_WI);
 
   /// Predicts pose and velocity of the IMU at its newest sample, with covariance, by inertial integration from the last
-  /// registered sweep. Returns `empty` before the map has started. The function newest() allocates memory. Cost:
-  /// O(samples since the last sweep). `velocity_covariance_I_m2_s2` (optional) is the covariance of the velocity error
-  /// in IMU axes.
+  /// registered sweep. Returns `empty` before the first registered sweep, which starts the map. The function newest()
+  /// allocates memory. Cost: O(samples since the last sweep). `velocity_covariance_I_m2_s2` (optional) is the
+  /// covariance of the velocity error in IMU axes.
   Status newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2 = nullptr) const;
   /// Reports the suspected faults of the sensors and of the estimate. Estimation continues after any finding. The
   /// report of a finding stops at most one minute after the fault has ended. The checks are

@@ -32,16 +32,16 @@ struct SpinFilter {
 /// axis.
 ///
 /// - **Modulation of the rate:** The axis of a spinning body that is long or has a steady load turns slowly in the
-///   world. The rate across the spin axis is then the sum of a part that is constant in the body and a part that the
-///   gyro measures modulated at the frequency of the spin: carried.md (C44).
+///   world. The rate across the spin axis is then the sum of two parts: carried.md (C44). One part is constant in the
+///   body, and the other part oscillates in body axes with the frequency of the spin.
 /// - **Centripetal force:** The specific force across the spin axis grows with the squared rate: carried.md (C49). The
 ///   lever arm is estimated while the spin axis is unsaturated.
 ///
-/// For each of both, an extended Kalman filter assumes a steady spin, and a second filter assumes readings that change
-/// independently of the spin. The likelihood ratio of both filters determines the probability of a steady spin. Only
-/// samples with an unsaturated spin axis increase the probability, because any modulation agrees with some rate beyond
-/// the saturation limit. SpinTracker assumes that the spin axis is close to one gyro axis, and that the body turns by
-/// less than half a revolution between two samples. Cost: O(1) per sample.
+/// For the modulation and for the centripetal force, one extended Kalman filter assumes a steady spin, and a second
+/// filter assumes readings that change independently of the spin. The likelihood ratio of the two filters determines
+/// the probability of a steady spin. Only samples with an unsaturated spin axis raise this probability, because any
+/// oscillation fits some spin rate beyond the saturation limit. SpinTracker assumes that the spin axis is close to one
+/// gyro axis, and that the body turns by less than half a revolution between two samples. Cost: O(1) per sample.
 class SpinTracker {
  public:
   struct Params {
