@@ -24,7 +24,7 @@ std::shared_ptr<const PriorMap> read_map_of(const PriorMapOptions& options) {
   map->points = scenarios::read_prior_map(options.map);
   map->extend = !options.frozen;
   const std::vector<double>& pose = options.pose;
-  if (pose.size() != 0 && pose.size() != kPose && pose.size() != kWithSigmas)
+  if (!pose.empty() && pose.size() != kPose && pose.size() != kWithSigmas)
     throw BadInput(fmt::format("--map-pose has {} numbers; it needs X Y Z HEADING or X Y Z HEADING SIGMA_M SIGMA_RAD",
                                pose.size()));
   if (!pose.empty()) {
