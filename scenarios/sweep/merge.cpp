@@ -79,51 +79,34 @@ std::string common_rule(const std::vector<Notes>& notes) {
   return std::all_of(notes.begin(), notes.end(), is_it) ? rule : std::string();
 }
 
-class Made {
- public:
-  explicit Made(const fs::path& path) : path_(path), is_new_(!fs::exists(path)) {}
-  ~Made() {
-    std::error_code ignored;
-    if (is_new_ && !kept_) fs::remove(path_, ignored);
-  }
-  Made(const Made&) = delete;
-  Made& operator=(const Made&) = delete;
-  void keep() { kept_ = true; }
-  bool is_new() const { return is_new_; }
-
- private:
-  fs::path path_;
-  bool is_new_, kept_ = false;
-};
-
 }  // namespace
 
 MergeCounts merge_results(const DatabaseOwner& owner, std::span<const fs::path> in, bool mixed) {
   const fs::path& out = owner.database();
   require_not_an_input(out, in);
   const std::vector<Notes> notes = checked_notes(in, mixed);
-  Made made(out);
+  const bool exists = fs::exists(out);
+  const Notes own = exists ? Results(out, Results::Mode::create_or_append).notes() : Notes();
+  if (exists && !mixed && !notes.empty() && !text_of(own, "data").empty()) require_same_origin(notes.front(), own, out);
+  OutputFile file(out);
+  if (exists) fs::copy_file(out, file.unfinished(), fs::copy_options::overwrite_existing);
   MergeCounts counts;
   {
-    Results results(out, Results::Mode::join);
-    results.in_one_transaction([&] {
-      if (!made.is_new() && !mixed && !notes.empty() && !results.note("data").empty())
-        require_same_origin(notes.front(), results.notes(), out);
-      if (!mixed && !notes.empty() && !results.has_rows()) results.set_note(kKeepNote, common_rule(notes));
-      for (std::size_t i = 0; i < in.size(); ++i) {
-        results.absorb(Results(in[i], Results::Mode::read_only), mixed, counts);
-        join_method_notes(notes[i], in[i], mixed, results);
-      }
-      for (const Notes& own : notes) join_place_notes(own, results);
-      join_command_notes(notes, results);
-      for (const char* key : {"suite", "build", "data"}) {
-        std::string text;
-        for (std::size_t i = 0; i < notes.size() && text.empty(); ++i) text = text_of(notes[i], key);
-        if (!text.empty()) results.set_note(key, mixed && std::string_view(key) == "build" ? kMixedBuilds : text);
-      }
-    });
+    Results results(file.unfinished(), Results::Mode::join);
+    if (!mixed && !notes.empty() && !results.has_rows()) results.set_note(kKeepNote, common_rule(notes));
+    for (std::size_t i = 0; i < in.size(); ++i) {
+      results.absorb(Results(in[i], Results::Mode::read_only), mixed, counts);
+      join_method_notes(notes[i], in[i], mixed, results);
+    }
+    for (const Notes& each : notes) join_place_notes(each, results);
+    join_command_notes(notes, results);
+    for (const char* key : {"suite", "build", "data"}) {
+      std::string text;
+      for (std::size_t i = 0; i < notes.size() && text.empty(); ++i) text = text_of(notes[i], key);
+      if (!text.empty()) results.set_note(key, mixed && std::string_view(key) == "build" ? kMixedBuilds : text);
+    }
   }
-  made.keep();
+  file.move_into_place();
   return counts;
 }
 

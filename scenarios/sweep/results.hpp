@@ -64,7 +64,7 @@ class Results {
  public:
   enum class Mode { create_or_append, join, read_only };
   /// Throws BadInput if the file is no results database, has an incomplete schema, or was written by another build. The
-  /// mode `read_only` accepts databases of other builds.
+  /// mode `read_only` accepts databases of other builds. An error damages a database with the mode `join`.
   Results(const std::filesystem::path& path, Mode mode);
   ~Results();
   Results(Results&&) noexcept;
@@ -76,7 +76,8 @@ class Results {
   void set_note(const std::string& key, const std::string& text);
   std::string note(const std::string& key) const;
   std::map<std::string, std::string> notes() const;
-  /// Copies all rows of another results database `shard`, with constant memory.
+  /// Copies all rows of another results database `shard`, with constant memory. A caller must not have an open
+  /// transaction.
   void absorb(const Results& shard, bool mixed, MergeCounts& counts);
   void in_one_transaction(const std::function<void()>& work);
 

@@ -84,8 +84,8 @@ struct Results::Impl {
                  kBusyTimeoutMs) {
     // With a rollback journal, the results database is one file and can be read in a read-only folder.
     if (mode == Mode::read_only) return;
-    database.exec("PRAGMA synchronous = FULL");
-    database.exec(mode == Mode::join ? "PRAGMA foreign_keys = OFF" : "PRAGMA foreign_keys = ON");
+    database.exec(mode == Mode::join ? "PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF; PRAGMA foreign_keys = OFF"
+                                     : "PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON");
   }
 
   template <typename Action>

@@ -224,8 +224,7 @@ TEST_F(MergeTest, HasAllThatTheShardsHave) {
   EXPECT_EQ(joined.notes().at("build"), whole.note("build"));
 }
 
-// the numbers of rows are as many as one statement writes, one less and one more; an existing row is removed with its
-// scores, which SQLite does not do during a merge
+// an existing row is removed with its scores, which SQLite does not do during a merge
 TEST_F(MergeTest, ScoresInAnyNumberArriveAndBelongToTheirOutcomes) {
   const auto with_scores = [](Outcome outcome, int scores) {
     outcome.scores.clear();
