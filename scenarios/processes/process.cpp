@@ -6,7 +6,6 @@
 #include <string.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
-#include <sys/socket.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -59,28 +58,6 @@ bool Process::End::killed() const {
 }
 
 Process::Process(const std::function<void(int)>& work, bool own_group) : own_group_(own_group) {
-  start(work);
-}
-
-Process::Process(const std::function<void(int, int)>& work, bool own_group) : own_group_(own_group) {
-  int ends[2];
-  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
-    throw std::system_error(errno, std::generic_category(), "socketpair");
-  try {
-    start([&](int fd) {
-      close(ends[1]);
-      work(ends[0], fd);
-    });
-  } catch (const std::system_error&) {
-    close(ends[0]);
-    close(ends[1]);
-    throw;
-  }
-  close(ends[0]);
-  input_fd_ = ends[1];
-}
-
-void Process::start(const std::function<void(int)>& work) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) throw std::system_error(errno, std::generic_category(), "pipe");
   const pid_t parent = getpid();
@@ -107,25 +84,10 @@ Process::~Process() {
     wait();
   }
   if (fd_ >= 0) close(fd_);
-  if (input_fd_ >= 0) close(input_fd_);
 }
 
 Process::Process(Process&& other) noexcept
-    : pid_(std::exchange(other.pid_, -1)),
-      fd_(std::exchange(other.fd_, -1)),
-      input_fd_(std::exchange(other.input_fd_, -1)),
-      own_group_(other.own_group_) {}
-
-bool Process::write_text(const std::string& text) {
-  std::size_t done = 0;
-  while (done < text.size()) {
-    const ssize_t count = send(input_fd_, text.data() + done, text.size() - done, MSG_NOSIGNAL);
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return false;
-    done += static_cast<std::size_t>(count);
-  }
-  return true;
-}
+    : pid_(std::exchange(other.pid_, -1)), fd_(std::exchange(other.fd_, -1)), own_group_(other.own_group_) {}
 
 bool Process::read_available(std::string& buffer) {
   char chunk[8192];

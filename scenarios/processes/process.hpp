@@ -24,13 +24,11 @@ class Process {
   };
 
   explicit Process(const std::function<void(int)>& work, bool own_group);
-  explicit Process(const std::function<void(int, int)>& work, bool own_group);
   ~Process();
   Process(Process&& other) noexcept;
   Process& operator=(Process&&) = delete;
 
   int read_end() const { return fd_; }
-  bool write_text(const std::string& text);
   bool read_available(std::string& buffer);
   /// Waits for the end of the child process. Returns false if the child process is still running at `deadline_s`, a
   /// time on the clock of now_s().
@@ -39,11 +37,8 @@ class Process {
   End wait();
 
  private:
-  void start(const std::function<void(int)>& work);
-
   pid_t pid_ = -1;
   int fd_ = -1;
-  int input_fd_ = -1;  ///< this process's end of the child's input socket
   bool own_group_ = false;
 };
 

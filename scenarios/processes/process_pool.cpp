@@ -27,9 +27,9 @@ struct Running {
 
 /// Returns false if the operating system refuses to start a process while other processes of the pool are running. The
 /// caller can call begin() again after another process of the pool has ended.
-bool begin(std::list<Running>& running, std::size_t index, double deadline_s, const std::function<void(int)>& work) {
+bool begin(std::list<Running>& running, std::size_t index, const PooledWork& work) {
   try {
-    running.push_back({index, deadline_s, Process(work, true), {}});
+    running.push_back({index, now_s() + work.limit_s, Process(work.work, true), {}});
     return true;
   } catch (const std::system_error& error) {
     if (running.empty()) throw BadInput(fmt::format("cannot start a worker process: {}", error.what()));
@@ -45,20 +45,29 @@ void wait_for_words(const std::list<Running>& running) {
 
 }  // namespace
 
-void run_in_processes(std::size_t count, const PoolOptions& options, const std::function<void(std::size_t, int)>& work,
+void run_in_processes(const std::function<std::optional<PooledWork>()>& next, const PoolOptions& options,
                       const std::function<void(const PooledEnd&)>& on_end) {
   const auto stopped = [&] { return options.stop != nullptr && options.stop->load(); };
+  const auto end_round = [&] {
+    if (options.on_round) options.on_round();
+  };
   std::list<Running> running;
-  std::size_t next = 0;
-  while (!stopped() && (next < count || !running.empty())) {
-    while (next < count && running.size() < static_cast<std::size_t>(options.jobs)) {
-      const auto own = [&work, index = next](int fd) { work(index, fd); };
-      if (!begin(running, next, now_s() + options.limit_s, own)) break;
-      ++next;
+  std::size_t begun = 0;
+  std::optional<PooledWork> waiting;
+  for (bool more = true; !stopped();) {
+    while (more && !stopped() && running.size() < static_cast<std::size_t>(options.jobs)) {
+      if (!waiting) waiting = next();
+      more = waiting.has_value();
+      if (!more || !begin(running, begun, *waiting)) break;
+      waiting.reset();
+      ++begun;
     }
+    end_round();
+    if (running.empty()) return;
     wait_for_words(running);
     for (auto each = running.begin(); each != running.end();) {
       const bool open = each->process.read_available(each->said);
+      if (options.on_words) options.on_words(each->index, each->said);
       const bool late = open && now_s() > each->deadline_s;
       if (open && !late) {
         ++each;
@@ -69,7 +78,19 @@ void run_in_processes(std::size_t count, const PoolOptions& options, const std::
       on_end({each->index, std::move(each->said), late, end});
       each = running.erase(each);
     }
+    end_round();
   }
+}
+
+void run_in_processes(std::size_t count, double limit_s, const PoolOptions& options,
+                      const std::function<void(std::size_t, int)>& work,
+                      const std::function<void(const PooledEnd&)>& on_end) {
+  std::size_t begun = 0;
+  const auto next = [&]() -> std::optional<PooledWork> {
+    if (begun == count) return std::nullopt;
+    return PooledWork{[&work, index = begun++](int fd) { work(index, fd); }, limit_s};
+  };
+  run_in_processes(next, options, on_end);
 }
 
 }  // namespace tumble::scenarios

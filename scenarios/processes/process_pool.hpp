@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "scenarios/processes/process.hpp"
@@ -11,23 +12,35 @@
 namespace tumble::scenarios {
 
 struct PoolOptions {
-  int jobs = 1;          ///< number of processes at a time
-  double limit_s = 0.0;  ///< time limit of each process [s]
+  int jobs = 1;  ///< number of processes at a time
   const std::atomic<bool>* stop = nullptr;
+  /// Called when a process may have written text, with all of the text; may remove what it has used.
+  std::function<void(std::size_t index, std::string& said)> on_words = {};
+  std::function<void()> on_round = {};  ///< called several times per second
+};
+
+struct PooledWork {
+  std::function<void(int)> work;  ///< writes text to this descriptor
+  double limit_s = 0.0;           ///< time limit of the process [s]
 };
 
 /// PooledEnd is the end of one process: everything that the process wrote, and how it ended.
 struct PooledEnd {
   std::size_t index = 0;
-  std::string said;
+  std::string said;   ///< without the text that `on_words` removed
   bool late = false;  ///< the process was killed at its time limit
   Process::End end;
 };
 
-/// Runs `work(index, write_end)` for each index below `count` in a separate process. Calls `on_end` in the calling
-/// process whenever a process ends. When `stop` becomes true, the running processes are killed, and `on_end` is not
-/// called for them. Throws BadInput if no process can be started.
-void run_in_processes(std::size_t count, const PoolOptions& options, const std::function<void(std::size_t, int)>& work,
+/// Runs everything that `next` returns, each in a separate process; `index` is 0 for the first. Calls `on_end` in the
+/// calling process whenever a process ends. When `stop` becomes true, the running processes are killed, and `on_end` is
+/// not called for them. Throws BadInput if no process can be started.
+void run_in_processes(const std::function<std::optional<PooledWork>()>& next, const PoolOptions& options,
+                      const std::function<void(const PooledEnd&)>& on_end);
+
+/// Runs `work(index, write_end)` for each index below `count`.
+void run_in_processes(std::size_t count, double limit_s, const PoolOptions& options,
+                      const std::function<void(std::size_t, int)>& work,
                       const std::function<void(const PooledEnd&)>& on_end);
 
 }  // namespace tumble::scenarios

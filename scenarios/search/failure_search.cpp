@@ -117,7 +117,7 @@ class Evaluator {
     std::size_t done = runs_.size() + points.size() - missing.size();
     report(done);
     run_in_processes(
-        missing.size(), {options_.jobs, limit_s, options_.stop},
+        missing.size(), limit_s, {options_.jobs, options_.stop},
         [&](std::size_t k, int fd) {
           limit_memory(options_.memory_mib);
           run_draw(data_, task_of(k), options_.timeout_s, fd, true);

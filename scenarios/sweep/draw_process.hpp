@@ -26,8 +26,6 @@ struct DrawTask {
   Keeping keeping;  ///< only for unmodified scenarios
 };
 
-/// Longest wait for messages from workers before the deadlines are checked [ms]
-inline constexpr int kPollMs = 200;
 /// Time limit of a simulation, in multiples of the time limit of one method
 inline constexpr double kSimulateTimeouts = 2.0;
 

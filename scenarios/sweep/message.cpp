@@ -12,6 +12,14 @@ namespace {
 
 using nlohmann::json;
 
+json to_json(const Setting& setting) {
+  return json::array({setting.key, setting.value});
+}
+
+Setting setting_from(const json& pair) {
+  return {pair.at(0).get<std::string>(), pair.at(1).get<double>()};
+}
+
 json to_json(const std::vector<Score>& scores) {
   json pairs = json::array();
   for (const Score& score : scores) pairs.push_back({score.metric, score.value});
@@ -103,14 +111,6 @@ std::optional<Message> from_line(const std::string& line) {
   } catch (const std::invalid_argument&) {
     return std::nullopt;
   }
-}
-
-nlohmann::json to_json(const Setting& setting) {
-  return nlohmann::json::array({setting.key, setting.value});
-}
-
-Setting setting_from(const nlohmann::json& pair) {
-  return {pair.at(0).get<std::string>(), pair.at(1).get<double>()};
 }
 
 }  // namespace tumble::scenarios

@@ -117,7 +117,7 @@ std::vector<DrawTriage> triage_draws(const DataRoot& data, std::span<const DrawN
     const DrawName& draw = draws[index];
     report_rows(data, scenarios.at(draw.scenario), draw.seed, method, options, fd);
   };
-  run_in_processes(draws.size(), {options.jobs, draw_s, options.stop}, work, [&](const PooledEnd& ended) {
+  run_in_processes(draws.size(), draw_s, {options.jobs, options.stop}, work, [&](const PooledEnd& ended) {
     DrawTriage& draw = all[ended.index];
     draw.draw = draws[ended.index];
     conclude(ended, options.triage.failure, draw);

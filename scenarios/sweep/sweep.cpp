@@ -3,19 +3,20 @@
 
 #include <fmt/format.h>
 
-#include <poll.h>
+#include <stdlib.h>
 
 #include <algorithm>
-#include <list>
+#include <map>
 #include <optional>
-#include <system_error>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/external/external_description.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/processes/process_pool.hpp"
 #include "scenarios/provenance/data_digest.hpp"
 #include "scenarios/recordings/scratch_file.hpp"
-#include "scenarios/sweep/draw_worker.hpp"
+#include "scenarios/sweep/draw_process.hpp"
+#include "scenarios/sweep/message.hpp"
 #include "scenarios/sweep/results.hpp"
 #include "scenarios/sweep/run_again.hpp"
 #include "scenarios/sweep/sweep_plan.hpp"
@@ -68,13 +69,13 @@ class Sweep {
  public:
   Sweep(const DataRoot& data, const Suite& suite, Results& results, const SweepOptions& options,
         const std::filesystem::path& database)
-      : suite_(suite),
+      : data_(data),
+        suite_(suite),
         results_(results),
         options_(options),
         started_s_(now_s()),
         plan_(data, suite, options, database),
-        kept_(database),
-        terms_{data, plan_, suite.timeout_s, options.memory_mib, options.recordings_unseen, temporary_.path()} {}
+        kept_(database) {}
 
   SweepProgress run() {
     plan_.require_same_recordings(results_);
@@ -90,16 +91,12 @@ class Sweep {
     }
     if (stopped()) discard_unfinished();
     if (options_.keep.which != Keep::Which::none && !stopped()) update_kept();
-    for (DrawWorker& worker : workers_) note_peak(worker.dismiss());
-    workers_.clear();
     report();
     return progress_;
   }
 
  private:
   void discard_unfinished() {
-    for (DrawWorker& worker : workers_) worker.kill();
-    workers_.clear();
     if (options_.keep.which == Keep::Which::none) return;
     try {
       kept_.discard_unfinished();
@@ -113,28 +110,29 @@ class Sweep {
   bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
 
   void work(const NextDraw& next) {
-    std::optional<DrawTask> waiting = next();
-    while (!stopped()) {
-      while (waiting && !stopped() && give(*waiting)) waiting = next();
-      report();
-      if (!waiting && busy() == 0) return;
-      wait_for_words();
-      for (auto worker = workers_.begin(); worker != workers_.end();) {
-        worker = serve(*worker) ? workers_.erase(worker) : std::next(worker);
-      }
-      report();
-    }
-    for (DrawWorker& worker : workers_) {
-      const bool busy = worker.is_busy();
-      hear(worker);
-      if (busy && !worker.is_busy()) ++progress_.draws_done;
-      worker.kill();
-    }
+    std::map<std::size_t, DrawTask> running;
+    std::size_t begun = 0;
+    PoolOptions pool{options_.jobs, options_.stop, {}, [this] { report(); }};
+    pool.on_words = [&](std::size_t index, std::string& said) { hear(said, running.at(index)); };
+    const auto next_work = [&]() -> std::optional<PooledWork> {
+      std::optional<DrawTask> task = next();
+      if (!task) return std::nullopt;
+      const DrawTask& draw = running[begun++] = std::move(*task);
+      const double limit_s = suite_.timeout_s * (static_cast<double>(draw.runs.size()) + kSimulateTimeouts);
+      return PooledWork{[this, &draw](int fd) { execute(draw, fd); }, limit_s};
+    };
+    run_in_processes(next_work, pool, [&](const PooledEnd& ended) {
+      const auto draw = running.extract(ended.index);
+      progress_.peak_mib = std::max(progress_.peak_mib, ended.end.peak_mib);
+      if (!ended.end.normal || !draw.mapped().runs.empty()) account_for_death(draw.mapped(), ended);
+      ++progress_.draws_done;
+    });
   }
 
-  int busy() const {
-    return static_cast<int>(
-        std::count_if(workers_.begin(), workers_.end(), [](const DrawWorker& worker) { return worker.is_busy(); }));
+  void execute(const DrawTask& draw, int fd) const {
+    limit_memory(options_.memory_mib);
+    setenv("TMPDIR", temporary_.path().c_str(), 1);
+    run_draw(data_, draw, suite_.timeout_s, fd, options_.recordings_unseen);
   }
 
   std::optional<DrawTask> next_draw() {
@@ -150,78 +148,40 @@ class Sweep {
     return std::nullopt;
   }
 
-  bool give(const DrawTask& task) {
-    if (busy() >= options_.jobs) return false;
-    const double deadline_s = now_s() + suite_.timeout_s * (static_cast<double>(task.runs.size()) + kSimulateTimeouts);
-    for (auto worker = workers_.begin(); worker != workers_.end();) {
-      if (worker->is_fresh() && worker->give(task, deadline_s)) return true;
-      worker = worker->is_busy() ? std::next(worker) : dismissed(worker);
+  /// Stores the results in the complete lines of `said`, and removes these lines.
+  void hear(std::string& said, DrawTask& draw) {
+    for (std::size_t newline; (newline = said.find('\n')) != std::string::npos; said.erase(0, newline + 1)) {
+      if (const std::optional<Message> message = from_line(said.substr(0, newline))) take(*message, draw);
     }
-    try {
-      workers_.emplace_back(terms_);
-    } catch (const std::system_error& error) {
-      if (workers_.empty())
-        throw BadInput(fmt::format("cannot start a worker process for simulated runs: {}", error.what()));
-      return false;  // retry after a process has ended
-    }
-    return workers_.back().give(task, deadline_s);
   }
 
-  std::list<DrawWorker>::iterator dismissed(std::list<DrawWorker>::iterator worker) {
-    note_peak(worker->dismiss());
-    return workers_.erase(worker);
-  }
-
-  void note_peak(const Process::End& end) { progress_.peak_mib = std::max(progress_.peak_mib, end.peak_mib); }
-
-  void wait_for_words() const {
-    std::vector<pollfd> waiting;
-    for (const DrawWorker& worker : workers_) {
-      if (worker.is_busy()) waiting.push_back({worker.read_end(), POLLIN, 0});
+  /// Removes the methods that have a result from `draw`.
+  void take(const Message& message, DrawTask& draw) {
+    if (message.outcome) {
+      std::erase_if(draw.runs, [&](const DrawTask::Run& run) {
+        const MethodInfo& info = run.method->info;
+        return info.kind == message.outcome->kind && info.name == message.outcome->method &&
+               run.setting == message.outcome->setting;
+      });
     }
-    poll(waiting.data(), waiting.size(), kPollMs);
-  }
-
-  bool serve(DrawWorker& worker) {
-    if (!worker.is_busy()) return false;
-    const bool open = hear(worker);
-    if (!worker.is_busy()) {
-      ++progress_.draws_done;
-      return false;
-    }
-    const bool late = open && worker.is_late();
-    if (open && !late) return false;
-    if (late) worker.kill();
-    const Process::End end = worker.dismiss();
-    note_peak(end);
-    account_for_death(worker.draw(), late, end);
-    ++progress_.draws_done;
-    return true;
-  }
-
-  bool hear(DrawWorker& worker) {
-    std::vector<Message> said;
-    const bool open = worker.hear(said);
-    for (const Message& message : said) {
-      if (message.not_kept) progress_.not_kept = *message.not_kept;
-      if (updating_kept_) continue;  // the rows exist already
-      if (message.outcome) keep(*message.outcome);
-      if (message.draw) results_.store(*message.draw);
-      if (message.rejected && results_.store(*message.rejected)) ++progress_.rejected;
-    }
-    return open;
+    if (message.rejected) draw.runs.clear();
+    if (message.not_kept) progress_.not_kept = *message.not_kept;
+    if (updating_kept_) return;  // the rows exist already
+    if (message.outcome) keep(*message.outcome);
+    if (message.draw) results_.store(*message.draw);
+    if (message.rejected && results_.store(*message.rejected)) ++progress_.rejected;
   }
 
   // If the worker process of a task dies, each of its remaining methods gets an outcome without scores.
-  void account_for_death(const DrawTask& draw, bool late, const Process::End& end) {
+  void account_for_death(const DrawTask& draw, const PooledEnd& ended) {
     const std::string what =
-        late ? "the simulated run did not end within its time limit"
-             : fmt::format("the process that computed the simulated run failed: {}", end.describe());
+        ended.late ? "the simulated run did not end within its time limit"
+                   : fmt::format("the process that computed the simulated run failed: {}", ended.end.describe());
     if (updating_kept_) {
       progress_.not_kept = what;
       return;
     }
-    for (const Outcome& outcome : without_answer(draw, late ? OutcomeStatus::timeout : ended_as(end), what))
+    for (const Outcome& outcome : without_answer(draw, ended.late ? OutcomeStatus::timeout : ended_as(ended.end), what))
       keep(outcome);
   }
 
@@ -284,15 +244,14 @@ class Sweep {
     if (options_.on_progress) options_.on_progress(progress_);
   }
 
+  const DataRoot& data_;
   const Suite& suite_;
   Results& results_;
   const SweepOptions& options_;
   double started_s_;
   SweepPlan plan_;
   KeptDraws kept_;
-  const ScratchFolder temporary_{"sweep"};  ///< removed after the workers have ended
-  WorkerTerms terms_;
-  std::list<DrawWorker> workers_;
+  const ScratchFolder temporary_{"sweep"};  ///< removed after the processes have ended
   SweepProgress progress_;
   std::uint64_t done_before_ = 0;
   bool updating_kept_ = false;  ///< only write files

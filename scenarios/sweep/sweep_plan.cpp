@@ -4,21 +4,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/registry.hpp"
-#include "scenarios/sweep/message.hpp"
 #include "scenarios/sweep/run_again.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
-using nlohmann::json;
-
-// The time limit of an external command is kOwnShare times the method's time limit. The process that starts an external
-// command must end the command before this process reaches the method's time limit.
+// The time limit of an external command is this fraction of the method's time limit. The process that starts an
+// external command must end the command before this process reaches the method's time limit.
 constexpr double kOwnShare = 0.9;
 
 }  // namespace
@@ -185,48 +181,6 @@ Keeping SweepPlan::keeping(const Planned& planned, const DrawTask& task, Keeping
   for (const std::string& method : suite_.methods) out.command += " --method " + shell_word(method);
   out.command += " -o " + shell_word(task.name + "_" + std::to_string(task.seed));
   return out;
-}
-
-std::string SweepPlan::to_line(const DrawTask& task) const {
-  json runs = json::array();
-  for (const DrawTask::Run& run : task.runs) {
-    const auto at =
-        std::find_if(methods_.begin(), methods_.end(), [&](const auto& m) { return m.get() == run.method; });
-    runs.push_back({at - methods_.begin(), to_json(run.setting)});
-  }
-  const auto scenario = std::find_if(scenarios_.begin(), scenarios_.end(),
-                                     [&](const Planned& each) { return &each.scenario == task.scenario; });
-  const auto recording = std::find_if(recordings_.begin(), recordings_.end(),
-                                      [&](const Recorded& each) { return &each.recording == task.recording; });
-  return json{{"scenario", scenario - scenarios_.begin()},
-              {"recording", recording - recordings_.begin()},
-              {"seed", task.seed},
-              {"setting", to_json(task.setting)},
-              {"keep", static_cast<int>(task.keeping.when)},
-              {"keep_lidars", task.keeping.lidars},
-              {"runs", std::move(runs)}}
-             .dump() +
-         "\n";
-}
-
-DrawTask SweepPlan::from_line(const std::string& line) const {
-  const json object = json::parse(line);
-  DrawTask task;
-  task.seed = object.at("seed").get<std::uint64_t>();
-  task.setting = setting_from(object.at("setting"));
-  for (const json& run : object.at("runs"))
-    task.runs.push_back({methods_.at(run.at(0).get<std::size_t>()).get(), setting_from(run.at(1))});
-  if (const auto at = object.at("recording").get<std::size_t>(); at < recordings_.size()) {
-    task.recording = &recordings_[at].recording;
-    task.name = task.recording->name;
-    return task;
-  }
-  const Planned& planned = scenarios_.at(object.at("scenario").get<std::size_t>());
-  task.scenario = &planned.scenario;
-  task.name = planned.scenario.name;
-  task.keeping = keeping(planned, task, static_cast<Keeping::When>(object.at("keep").get<int>()));
-  task.keeping.lidars = object.at("keep_lidars").get<bool>();
-  return task;
 }
 
 }  // namespace tumble::scenarios

@@ -36,9 +36,6 @@ class SweepPlan {
   bool has(const DrawName& draw) const;
   DrawTask again(const DrawName& draw, const Results& results) const;
 
-  std::string to_line(const DrawTask& task) const;
-  DrawTask from_line(const std::string& line) const;
-
  private:
   struct Planned {
     std::string asked;  ///< name in the suite

@@ -2,16 +2,14 @@
 #include "tools/examples/leave_examples.hpp"
 
 #include <fmt/format.h>
-#include <poll.h>
 
 #include <algorithm>
-#include <list>
+#include <optional>
 #include <set>
-#include <system_error>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/registry.hpp"
-#include "scenarios/processes/process.hpp"
+#include "scenarios/processes/process_pool.hpp"
 #include "scenarios/summary/example_choice.hpp"
 #include "tools/examples/make_example.hpp"
 
@@ -21,7 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kPollMs = 200;
 /// Time limit for simulation and rendering, in multiples of the time limit of one method
 constexpr double kOtherTimeouts = 3.0;
 constexpr const char* kTypical = "This simulated run has the median score of its scenario";
@@ -149,79 +146,35 @@ void make(const scenarios::DataRoot& data, const fs::path& folder, const Making&
   }
 }
 
-class Makers {
- public:
-  Makers(const scenarios::DataRoot& data, const fs::path& folder, double timeout_s, const LeaveOptions& options)
-      : data_(data), folder_(folder), timeout_s_(timeout_s), options_(options) {}
-
-  bool run(std::vector<Making>& makings) {
-    auto next = makings.begin();
-    while (true) {
-      if (options_.stop != nullptr && options_.stop->load()) return false;
-      while (next != makings.end() && static_cast<int>(workers_.size()) < options_.jobs) {
-        if (!next->done) start(*next);
-        ++next;
-      }
-      if (workers_.empty()) return true;
-      wait_for_words();
-      std::erase_if(workers_, [&](Worker& worker) { return serve(worker); });
-    }
-  }
-
- private:
-  struct Worker {
-    Making* making;
-    scenarios::Process process;
-    double deadline_s;
+/// Returns false if the user stopped the program.
+bool make_all(const scenarios::DataRoot& data, const fs::path& folder, double timeout_s, const LeaveOptions& options,
+              std::vector<Making>& makings) {
+  const auto say = [&](const std::string& line) {
+    if (options.note) options.note(line);
   };
-
-  void start(Making& making) {
+  std::vector<Making*> begun;
+  auto next = makings.begin();
+  const auto next_work = [&]() -> std::optional<scenarios::PooledWork> {
+    next = std::find_if(next, makings.end(), [](const Making& making) { return !making.done; });
+    if (next == makings.end()) return std::nullopt;
+    const Making& making = *begun.emplace_back(&*next++);
     say(fmt::format("scenario {}, seed {}: the program simulates this run again to create its pictures",
                     making.draw.scenario, making.draw.seed));
-    const double limit_s = timeout_s_ * (static_cast<double>(making.methods.size()) + kOtherTimeouts);
-    try {
-      scenarios::Process process([&](int fd) { make(data_, folder_, making, fd); }, true);
-      workers_.push_back({&making, std::move(process), scenarios::now_s() + limit_s});
-    } catch (const std::system_error& error) {
-      making.text = error.what();
-      say_failed(making);
-    }
-  }
-
-  void wait_for_words() const {
-    std::vector<pollfd> waiting;
-    for (const Worker& worker : workers_) waiting.push_back({worker.process.read_end(), POLLIN, 0});
-    poll(waiting.data(), waiting.size(), kPollMs);
-  }
-
-  bool serve(Worker& worker) {
-    const bool open = worker.process.read_available(worker.making->text);
-    const bool late = open && scenarios::now_s() > worker.deadline_s;
-    if (open && !late) return false;
-    if (late) worker.process.kill();
-    const scenarios::Process::End end = worker.process.wait();
-    worker.making->done = !late && end.normal && worker.making->text.starts_with('{');
-    if (late) worker.making->text = "the simulated run exceeded its time limit";
-    if (!late && !end.normal) worker.making->text = "its process " + end.describe();
-    if (!worker.making->done) say_failed(*worker.making);
-    return true;
-  }
-
-  void say(const std::string& line) const {
-    if (options_.note) options_.note(line);
-  }
-
-  void say_failed(const Making& making) const {
-    say(fmt::format("the pictures of scenario {}, seed {} could not be created: {}", making.draw.scenario,
-                    making.draw.seed, making.text));
-  }
-
-  const scenarios::DataRoot& data_;
-  const fs::path& folder_;
-  double timeout_s_;
-  const LeaveOptions& options_;
-  std::list<Worker> workers_;
-};
+    return scenarios::PooledWork{[&](int fd) { make(data, folder, making, fd); },
+                                 timeout_s * (static_cast<double>(making.methods.size()) + kOtherTimeouts)};
+  };
+  scenarios::run_in_processes(next_work, {options.jobs, options.stop}, [&](const scenarios::PooledEnd& ended) {
+    Making& making = *begun[ended.index];
+    making.text = ended.said;
+    making.done = !ended.late && ended.end.normal && making.text.starts_with('{');
+    if (ended.late) making.text = "the simulated run exceeded its time limit";
+    if (!ended.late && !ended.end.normal) making.text = "its process " + ended.end.describe();
+    if (!making.done)
+      say(fmt::format("the pictures of scenario {}, seed {} could not be created: {}", making.draw.scenario,
+                      making.draw.seed, making.text));
+  });
+  return options.stop == nullptr || !options.stop->load();
+}
 
 class Unfinished {
  public:
@@ -255,7 +208,7 @@ bool leave_examples(const scenarios::DataRoot& data, const scenarios::Suite& sui
   fs::create_directories(folder, error);
   if (error) throw scenarios::BadInput(folder.string() + ": " + error.message());
   const Unfinished unfinished(folder);
-  if (!Makers(data, folder, suite.timeout_s, options).run(makings)) return false;
+  if (!make_all(data, folder, suite.timeout_s, options, makings)) return false;
   for (Making& making : makings) {
     if (making.done) texts.push_back(std::move(making.text));
   }
