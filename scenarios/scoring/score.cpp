@@ -147,16 +147,8 @@ std::vector<Score> score(Kind kind, const ScoredEstimate& scored) {
   return scores;
 }
 
-std::vector<Score> score(Kind kind, const Estimate& estimate, const ScoringInput& input) {
-  return score(kind, ScoredEstimate(estimate, input));
-}
-
 OutcomeStatus verdict(Kind kind, const ScoredEstimate& scored) {
   return holds(kind, scored) ? OutcomeStatus::ok : OutcomeStatus::diverged;
-}
-
-OutcomeStatus verdict(Kind kind, const Estimate& estimate, const ScoringInput& input) {
-  return verdict(kind, ScoredEstimate(estimate, input));
 }
 
 bool trajectory_holds(const ScoredEstimate& scored) {

@@ -61,7 +61,6 @@ struct Metric {
 std::span<const Metric> metrics();
 
 std::vector<Score> score(Kind kind, const ScoredEstimate& scored);
-std::vector<Score> score(Kind kind, const Estimate& estimate, const ScoringInput& input);
 
 /// Returns `ok` for a usable estimate, and `diverged` in each of these cases:
 /// - The estimate is not finite.
@@ -69,7 +68,6 @@ std::vector<Score> score(Kind kind, const Estimate& estimate, const ScoringInput
 /// - The end error exceeds the path length (or 1 m for shorter paths).
 /// - The estimate reports sweeps, but fewer than six sweeps are registered.
 OutcomeStatus verdict(Kind kind, const ScoredEstimate& scored);
-OutcomeStatus verdict(Kind kind, const Estimate& estimate, const ScoringInput& input);
 
 /// Returns true if a trajectory is finite and its end error is below its path length; unlike `verdict`, gaps are not
 /// tested.

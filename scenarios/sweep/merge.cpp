@@ -110,9 +110,4 @@ MergeCounts merge_results(const DatabaseOwner& owner, std::span<const fs::path> 
   return counts;
 }
 
-MergeCounts merge_results(const fs::path& out, std::span<const fs::path> in, bool mixed) {
-  require_not_an_input(out, in);
-  return merge_results(DatabaseOwner(out), in, mixed);
-}
-
 }  // namespace tumble::scenarios

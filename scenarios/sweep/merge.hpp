@@ -14,6 +14,5 @@ namespace tumble::scenarios {
 /// digest or a score other than cost, because one build must give one result. If `mixed` is true, rows of different
 /// builds are joined; of two differing rows for the same run, the first is kept.
 MergeCounts merge_results(const DatabaseOwner& out, std::span<const std::filesystem::path> in, bool mixed);
-MergeCounts merge_results(const std::filesystem::path& out, std::span<const std::filesystem::path> in, bool mixed);
 
 }  // namespace tumble::scenarios

@@ -278,11 +278,6 @@ Results open_results(const DataRoot& data, const Suite& suite, const std::filesy
   return results;
 }
 
-SweepProgress sweep(const DataRoot& data, const Suite& suite, const std::filesystem::path& database,
-                    const SweepOptions& options) {
-  return sweep(data, suite, DatabaseOwner(database), options);
-}
-
 void require_sound(const Suite& suite, const SweepOptions& options) {
   if (options.jobs < 1 || options.jobs > kJobsMax) {
     throw BadInput(fmt::format("the number of parallel processes (--jobs) is {}; it must be within [1, {}]",

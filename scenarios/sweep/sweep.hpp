@@ -90,7 +90,5 @@ Results open_results(const DataRoot& data, const Suite& suite, const std::filesy
 /// Memory use does not depend on the number of simulated runs.
 SweepProgress sweep(const DataRoot& data, const Suite& suite, const DatabaseOwner& database,
                     const SweepOptions& options);
-SweepProgress sweep(const DataRoot& data, const Suite& suite, const std::filesystem::path& database,
-                    const SweepOptions& options);
 
 }  // namespace tumble::scenarios

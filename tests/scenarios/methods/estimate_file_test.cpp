@@ -55,8 +55,8 @@ TEST_F(EstimateFile, ScoresOfWhatIsReadBackAreTheSame) {
     EXPECT_EQ(back.parameters, estimate.parameters);
     EXPECT_EQ(back.map.size(), estimate.map.size());
     const ScoringInput input{&recording.sensors, &recording.truth, nullptr};
-    const auto before = score(kind, estimate, input);
-    const auto after = score(kind, back, input);
+    const auto before = score(kind, {estimate, input});
+    const auto after = score(kind, {back, input});
     ASSERT_EQ(before.size(), after.size()) << method.info.name;
     ASSERT_GT(before.size(), 0u);
     for (std::size_t k = 0; k < before.size(); ++k) {

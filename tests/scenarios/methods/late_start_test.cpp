@@ -61,7 +61,7 @@ Estimate run_late(const std::string& name, const sim::Recording& recording) {
 
 double score_of(const std::string& metric, const Estimate& estimate, const sim::Recording& recording) {
   const ScoringInput input{&recording.sensors, &recording.truth, nullptr};
-  for (const Score& score : score(Kind::slam, estimate, input)) {
+  for (const Score& score : score(Kind::slam, {estimate, input})) {
     if (score.metric == metric) return score.value;
   }
   ADD_FAILURE() << "no " << metric;

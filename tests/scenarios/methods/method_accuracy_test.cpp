@@ -28,9 +28,9 @@ std::map<std::string, double> scores_of(const std::string& name, const sim::Reco
   const Estimate estimate = method.run(recording.sensors, parameters, {&recording.truth});
   EXPECT_TRUE(estimate.status.ok()) << estimate.status.message();
   const ScoringInput input{&recording.sensors, &recording.truth, nullptr};
-  EXPECT_EQ(verdict(method.info.kind, estimate, input), OutcomeStatus::ok) << name;
+  EXPECT_EQ(verdict(method.info.kind, {estimate, input}), OutcomeStatus::ok) << name;
   std::map<std::string, double> values;
-  for (const Score& score : score(method.info.kind, estimate, input)) values[score.metric] = score.value;
+  for (const Score& score : score(method.info.kind, {estimate, input})) values[score.metric] = score.value;
   return values;
 }
 
@@ -51,7 +51,7 @@ TEST(MethodAccuracy, ARateWithoutCovarianceHasNoConsistencyScores) {
   Estimate estimate = find_methods("raw").at(0)->run(recording.sensors, {}, {});
   for (AngularRateState& rate : estimate.rates) rate.covariance_rad2_s2.setZero();
   std::set<std::string> scored;
-  for (const Score& score : score(Kind::rate, estimate, {&recording.sensors, &recording.truth, nullptr}))
+  for (const Score& score : score(Kind::rate, {estimate, {&recording.sensors, &recording.truth, nullptr}}))
     scored.insert(score.metric);
   EXPECT_TRUE(scored.contains("rate_error_clipped_median_rad_s"));
   for (const std::string& metric : scored)

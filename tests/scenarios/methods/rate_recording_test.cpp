@@ -26,7 +26,7 @@ Estimate estimated_rates(const std::string& method, const sim::Recording& record
 
 double clipped_median(const std::string& method, const sim::Recording& recording) {
   const ScoringInput input{&recording.sensors, &recording.truth, nullptr};
-  for (const Score& score : score(Kind::rate, estimated_rates(method, recording), input)) {
+  for (const Score& score : score(Kind::rate, {estimated_rates(method, recording), input})) {
     if (score.metric == "rate_error_clipped_median_rad_s") return score.value;
   }
   ADD_FAILURE() << "no score";

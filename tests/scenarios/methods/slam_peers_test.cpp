@@ -37,7 +37,7 @@ PeerOutcome outcome_of(const std::string& name, const sim::Recording& recording)
   EXPECT_TRUE(out.estimate.status.ok()) << name << ": " << out.estimate.status.message();
   const ScoringInput input{&recording.sensors, &recording.truth, nullptr};
   bool any = false;
-  for (const Score& score : score(method.info.kind, out.estimate, input)) {
+  for (const Score& score : score(method.info.kind, {out.estimate, input})) {
     if (score.metric == "translation_error_end_m") out.end_error_m = score.value, any = true;
     if (score.metric == "rotation_error_end_rad") out.end_error_rad = score.value;
   }

@@ -69,14 +69,14 @@ inline void move_world(const Eigen::Isometry3d& T, Estimate& estimate) {
 inline std::map<std::string, double> scores(Kind kind, const Estimate& estimate, const sim::Recording& recording,
                                             const sim::Surface* surface = nullptr) {
   std::map<std::string, double> values;
-  for (const Score& one : score(kind, estimate, {&recording.sensors, &recording.truth, surface})) {
+  for (const Score& one : score(kind, {estimate, {&recording.sensors, &recording.truth, surface}})) {
     values[one.metric] = one.value;
   }
   return values;
 }
 
 inline OutcomeStatus verdict_of(Kind kind, const Estimate& estimate, const sim::Recording& recording) {
-  return verdict(kind, estimate, {&recording.sensors, &recording.truth, nullptr});
+  return verdict(kind, {estimate, {&recording.sensors, &recording.truth, nullptr}});
 }
 
 }  // namespace tumble::scenarios::testing

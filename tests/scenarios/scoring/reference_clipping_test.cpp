@@ -121,8 +121,8 @@ Estimate estimate_of(const std::vector<Eigen::Vector3d>& rates, double sigma_rad
 std::map<std::string, double> scores_of(const Estimate& estimate, const sim::Recording& recording) {
   const ScoringInput input{&recording.sensors, &recording.truth, nullptr};
   std::map<std::string, double> values;
-  for (const Score& score : score(Kind::rate, estimate, input)) values[score.metric] = score.value;
-  EXPECT_EQ(verdict(Kind::rate, estimate, input), OutcomeStatus::ok);
+  for (const Score& score : score(Kind::rate, {estimate, input})) values[score.metric] = score.value;
+  EXPECT_EQ(verdict(Kind::rate, {estimate, input}), OutcomeStatus::ok);
   return values;
 }
 

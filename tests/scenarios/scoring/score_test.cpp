@@ -363,8 +363,8 @@ TEST(Verdict, TheTimeBeforeTheSensorsStartIsNoHole) {
 }
 
 TEST(Score, NeedsTheTruth) {
-  EXPECT_THROW(score(Kind::rate, Estimate{}, ScoringInput{&rig().sensors, nullptr, nullptr}), BadInput);
-  EXPECT_THROW(verdict(Kind::rate, Estimate{}, ScoringInput{nullptr, &rig().truth, nullptr}), BadInput);
+  EXPECT_THROW(score(Kind::rate, {Estimate{}, ScoringInput{&rig().sensors, nullptr, nullptr}}), BadInput);
+  EXPECT_THROW(verdict(Kind::rate, {Estimate{}, ScoringInput{nullptr, &rig().truth, nullptr}}), BadInput);
 }
 
 }  // namespace

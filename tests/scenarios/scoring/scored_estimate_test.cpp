@@ -59,8 +59,8 @@ TEST(ScoredEstimate, ScoresAreThoseOfAnEstimateThatNobodyAskedBefore) {
   const Estimate estimate = testing::perfect_estimate(rig());
   for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
     const ScoredEstimate scored(estimate, input());
-    EXPECT_EQ(verdict(kind, scored), verdict(kind, estimate, input()));
-    const std::vector<Score> after = score(kind, scored), fresh = score(kind, estimate, input());
+    EXPECT_EQ(verdict(kind, scored), verdict(kind, {estimate, input()}));
+    const std::vector<Score> after = score(kind, scored), fresh = score(kind, {estimate, input()});
     ASSERT_EQ(after.size(), fresh.size());
     for (std::size_t k = 0; k < fresh.size(); ++k) {
       EXPECT_EQ(after[k].metric, fresh[k].metric);

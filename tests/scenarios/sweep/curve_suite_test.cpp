@@ -75,7 +75,7 @@ TEST_F(CurveSuiteTest, SweepsEveryPointOnceAndSimulatesOnlyWhereItMust) {
   const Suite curves = suite(
       "  given.time_offset_s: [0, 0.01]\n  motion.leg_1_m: [0.35, 0.45]\n  rate/saave.saturation_point_rad_s: [9]\n");
   const auto path = folder_ / "a.db";
-  const SweepProgress progress = sweep(data(), curves, path, {});
+  const SweepProgress progress = sweep(data(), curves, DatabaseOwner(path), {});
   EXPECT_EQ(progress.draws_total, 3u) << "one simulation as it is, one for each length of the way";
   // two methods run unchanged, at two offsets and at two lengths; the parameter of an absent method adds no outcome
   EXPECT_EQ(progress.outcomes, 10u);
@@ -98,15 +98,16 @@ TEST_F(CurveSuiteTest, SweepsEveryPointOnceAndSimulatesOnlyWhereItMust) {
   EXPECT_EQ(results.draws(Rows::all).size(), 3u);
 
   // no outcome remains to be computed; only another value is run
-  EXPECT_EQ(sweep(data(), curves, path, {}).outcomes, 0u);
-  EXPECT_EQ(sweep(data(), suite("  given.time_offset_s: [0, 0.01, 0.02]\n"), path, {}).outcomes, 2u);
+  EXPECT_EQ(sweep(data(), curves, DatabaseOwner(path), {}).outcomes, 0u);
+  EXPECT_EQ(sweep(data(), suite("  given.time_offset_s: [0, 0.01, 0.02]\n"), DatabaseOwner(path), {}).outcomes, 2u);
 }
 
 TEST_F(CurveSuiteTest, LeavesThePlainDrawAsASuiteWithoutCurvesHasIt) {
-  sweep(data(), suite("  given.time_offset_s: [0.01]\n  motion.leg_1_m: [0.35]\n"), folder_ / "a.db", {});
+  sweep(data(), suite("  given.time_offset_s: [0.01]\n  motion.leg_1_m: [0.35]\n"), DatabaseOwner(folder_ / "a.db"),
+        {});
   Suite plain = suite("  given.time_offset_s: [0.01]\n");
   plain.curves.clear();
-  sweep(data(), plain, folder_ / "b.db", {});
+  sweep(data(), plain, DatabaseOwner(folder_ / "b.db"), {});
   const auto digests = [&](const char* name) {
     std::vector<std::string> all;
     for (const Outcome& row : Results(folder_ / name, Results::Mode::read_only).outcomes())
@@ -121,12 +122,12 @@ TEST_F(CurveSuiteTest, ADrawThatAValueMakesImpossibleIsKeptAsRejected) {
   // the simulation rejects a path without length, which the suite cannot foresee
   const auto path = folder_ / "a.db";
   const Suite curves = suite("  motion.leg_1_m: [0, 0.4]\n");
-  EXPECT_EQ(sweep(data(), curves, path, {}).rejected, 1u);
+  EXPECT_EQ(sweep(data(), curves, DatabaseOwner(path), {}).rejected, 1u);
   const Results results(path, Results::Mode::read_only);
   EXPECT_TRUE(results.rejected().empty()) << "the scenario as it is was not rejected";
   ASSERT_EQ(results.rejected(Rows::curves).size(), 1u);
   EXPECT_EQ(results.rejected(Rows::curves)[0].setting, (Setting{"motion.leg_1_m", 0.0}));
-  EXPECT_EQ(sweep(data(), curves, path, {}).rejected, 0u) << "not tried again";
+  EXPECT_EQ(sweep(data(), curves, DatabaseOwner(path), {}).rejected, 0u) << "not tried again";
 }
 
 TEST(CurveSuites, OfTheTreeVaryWhatTheirIssuesName) {

@@ -52,7 +52,7 @@ class KeepTest : public testing::SmallCatalogue {
     SweepOptions options;
     options.jobs = jobs;
     options.keep = parse_keep(keep);
-    return sweep(data(), suite(first, last), folder_ / name, options);
+    return sweep(data(), suite(first, last), DatabaseOwner(folder_ / name), options);
   }
 
   /// Returns every kept file with its bytes.
@@ -151,7 +151,7 @@ TEST_F(KeepTest, TheWorstAreTheSameResumedAndInShards) {
   run("shard_1.db", 1, 2, "worst:1");
   run("shard_2.db", 3, 4, "worst:1", 2);
   const std::vector<std::filesystem::path> shards = {folder_ / "shard_1.db", folder_ / "shard_2.db"};
-  merge_results(folder_ / "merged.db", shards, false);
+  merge_results(DatabaseOwner(folder_ / "merged.db"), shards, false);
   EXPECT_EQ(merge_kept(DatabaseOwner(folder_ / "merged.db"), shards), seeds("whole.db").size());
   EXPECT_EQ(kept("merged.db"), whole);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "merged.db.files/kept/.unfinished"));
@@ -212,7 +212,7 @@ TEST_F(KeepTest, TwoRulesAreNotMerged) {
   run("a.db", 1, 1, "all");
   run("b.db", 2, 2, "failed");
   const std::vector<std::filesystem::path> in = {folder_ / "a.db", folder_ / "b.db"};
-  merge_results(folder_ / "out.db", in, false);
+  merge_results(DatabaseOwner(folder_ / "out.db"), in, false);
   EXPECT_EQ(merge_kept(DatabaseOwner(folder_ / "out.db"), in), 0u);
   EXPECT_TRUE(kept("out.db").empty());
 }
@@ -243,7 +243,7 @@ TEST_F(KeepTest, OtherMethodsAddTheirEstimates) {
   for (const char* method : {"rate/raw", "position/rolling"}) {
     Suite one = suite(1, 1);
     one.methods = {method};
-    EXPECT_EQ(sweep(data(), one, folder_ / "a.db", options).kept, 1u);
+    EXPECT_EQ(sweep(data(), one, DatabaseOwner(folder_ / "a.db"), options).kept, 1u);
   }
   const auto both = kept("a.db");
   EXPECT_TRUE(both.contains("roll/1/estimates/rate-raw/estimate.json"));
@@ -273,7 +273,7 @@ TEST_F(KeepTest, ACrashCostsTheRecordingNoLidar) {
     results.store(row);
     results.store(Outcome{"ride", 1, Kind::slam, "tumble", OutcomeStatus::crashed, "", {}, "", ""});
   }
-  const SweepProgress progress = sweep(data(), ride, folder_ / "a.db", options);
+  const SweepProgress progress = sweep(data(), ride, DatabaseOwner(folder_ / "a.db"), options);
   EXPECT_EQ(progress.outcomes, 0u) << "the rows stand";
   ASSERT_EQ(progress.kept, 1u) << progress.not_kept;
   const std::filesystem::path draw = KeptDraws(folder_ / "a.db").folder_of({"ride", 1});

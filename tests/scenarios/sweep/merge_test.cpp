@@ -50,7 +50,7 @@ class MergeTest : public testing::TemporaryFolder {
     return folder_ / name;
   }
   std::string complaint(const Paths& in, bool mixed = false) {
-    return test::complaint([&] { merge_results(out_, in, mixed); });
+    return test::complaint([&] { merge_results(DatabaseOwner(out_), in, mixed); });
   }
   std::vector<Outcome> merged() const { return Results(out_, Results::Mode::read_only).outcomes(); }
   std::size_t files() const {
@@ -72,7 +72,8 @@ TEST_F(MergeTest, WhatWasScoredStaysInEitherOrder) {
       std::filesystem::remove(folder_ / "bad.db");
       const auto good = make("good.db", {row(1, OutcomeStatus::ok)});
       const auto bad = make("bad.db", {row(1, worse), row(2, OutcomeStatus::killed)});
-      const MergeCounts counts = merge_results(out_, good_first ? Paths{good, bad} : Paths{bad, good}, false);
+      const MergeCounts counts =
+          merge_results(DatabaseOwner(out_), good_first ? Paths{good, bad} : Paths{bad, good}, false);
       EXPECT_EQ(counts.added, 2u);
       EXPECT_EQ(counts.replaced, good_first ? 0u : 1u);
       EXPECT_EQ(counts.held, good_first ? 1u : 0u);
@@ -87,9 +88,9 @@ TEST_F(MergeTest, WhatWasScoredStaysInEitherOrder) {
 TEST_F(MergeTest, CountsWhatItWrote) {
   const auto a = make("a.db", {row(1, OutcomeStatus::ok), row(2, OutcomeStatus::diverged)});
   const auto b = make("b.db", {row(2, OutcomeStatus::diverged), row(3, OutcomeStatus::failed)});
-  EXPECT_EQ(merge_results(out_, Paths{a, b, a}, false).added, 3u);
+  EXPECT_EQ(merge_results(DatabaseOwner(out_), Paths{a, b, a}, false).added, 3u);
   EXPECT_EQ(merged().size(), 3u);
-  EXPECT_EQ(merge_results(out_, Paths{a, b}, false).added, 0u);
+  EXPECT_EQ(merge_results(DatabaseOwner(out_), Paths{a, b}, false).added, 0u);
 }
 
 TEST_F(MergeTest, SaysOfAllInputsHowTheyWereAskedFor) {
@@ -99,7 +100,7 @@ TEST_F(MergeTest, SaysOfAllInputsHowTheyWereAskedFor) {
   Results(a, Results::Mode::create_or_append).set_note(kCommandNote, "hill --seeds 1..1");
   Results(b, Results::Mode::create_or_append).set_note(kCommandNote, "throw --seeds 2..3");
   Results(shard, Results::Mode::create_or_append).set_note(kCommandNote, "throw --seeds 2..3");
-  merge_results(out_, Paths{a, b, shard}, false);
+  merge_results(DatabaseOwner(out_), Paths{a, b, shard}, false);
   EXPECT_EQ(Results(out_, Results::Mode::read_only).note(kCommandNote), "hill --seeds 1..1\nthrow --seeds 2..3");
 }
 
@@ -164,7 +165,7 @@ TEST_F(MergeTest, ARejectionGivesWayToAnOutcome) {
   const auto run = make("b.db", {row(1, OutcomeStatus::ok)});
   for (const Paths& in : {Paths{rejected, run}, Paths{run, rejected}}) {
     std::filesystem::remove(out_);
-    merge_results(out_, in, false);
+    merge_results(DatabaseOwner(out_), in, false);
     const Results results(out_, Results::Mode::read_only);
     EXPECT_EQ(results.outcomes().size(), 1u);
     ASSERT_EQ(results.rejected().size(), 1u);
@@ -202,7 +203,7 @@ TEST_F(MergeTest, HasAllThatTheShardsHave) {
   fill(folder_ / "whole.db", 0, 1);
   Paths shards;
   for (std::size_t k = 0; k < 13; ++k) shards.push_back(fill(folder_ / ("s" + std::to_string(k) + ".db"), k, 13));
-  const MergeCounts counts = merge_results(out_, shards, false);
+  const MergeCounts counts = merge_results(DatabaseOwner(out_), shards, false);
   EXPECT_EQ(counts.added, rows.size());
   EXPECT_EQ(counts.held + counts.replaced, 0u);
   const Results whole(folder_ / "whole.db", Results::Mode::read_only), joined(out_, Results::Mode::read_only);
@@ -243,7 +244,7 @@ TEST_F(MergeTest, ScoresInAnyNumberArriveAndBelongToTheirOutcomes) {
     for (std::size_t i = 0; i < numbers.size(); ++i)
       results.store(DrawValues{"hill", i, with_scores(row(i, OutcomeStatus::ok), numbers[i]).scores, {}});
   }
-  const MergeCounts counts = merge_results(out_, Paths{bad, good}, false);
+  const MergeCounts counts = merge_results(DatabaseOwner(out_), Paths{bad, good}, false);
   EXPECT_EQ(counts.added, numbers.size());
   EXPECT_EQ(counts.replaced, numbers.size());
   const auto everything = [](const std::filesystem::path& path) {
@@ -264,7 +265,7 @@ TEST_F(MergeTest, ScoresInAnyNumberArriveAndBelongToTheirOutcomes) {
 
 TEST_F(MergeTest, ARejectionOfTwoShardsIsOne) {
   const auto a = make("a.db", {}, {{"hill", 1, "no place", {}}}), b = make("b.db", {}, {{"hill", 1, "no place", {}}});
-  const MergeCounts counts = merge_results(out_, Paths{a, b}, false);
+  const MergeCounts counts = merge_results(DatabaseOwner(out_), Paths{a, b}, false);
   EXPECT_EQ(counts.added, 1u);
   EXPECT_EQ(counts.rejected, 1u);
   EXPECT_EQ(counts.held, 1u);

@@ -74,13 +74,13 @@ class RecordedSweep : public testing::TemporaryFolder {
   }
 
   std::string complaint(const Suite& suite, const std::filesystem::path& database) const {
-    return test::complaint([&] { sweep(DataRoot{folder_}, suite, database, {}); });
+    return test::complaint([&] { sweep(DataRoot{folder_}, suite, DatabaseOwner(database), {}); });
   }
 };
 
 TEST_F(RecordedSweep, EachRecordingIsADraw) {
   const auto path = folder_ / "a.db";
-  const SweepProgress progress = sweep(DataRoot{folder_}, suite(), path, {});
+  const SweepProgress progress = sweep(DataRoot{folder_}, suite(), DatabaseOwner(path), {});
   EXPECT_EQ(progress.draws_total, 2u);
   EXPECT_EQ(progress.draws_done, 2u);
   const Results results(path, Results::Mode::read_only);
@@ -102,15 +102,15 @@ TEST_F(RecordedSweep, EachRecordingIsADraw) {
   }
   EXPECT_EQ(results.note("source"), kRecordingsSource);
   // a resumed sweep has no work left; two processes at once give the same bits
-  EXPECT_EQ(sweep(DataRoot{folder_}, suite(), path, {}).outcomes, 0u);
+  EXPECT_EQ(sweep(DataRoot{folder_}, suite(), DatabaseOwner(path), {}).outcomes, 0u);
   SweepOptions two;
   two.jobs = 2;
-  sweep(DataRoot{folder_}, suite(), folder_ / "b.db", two);
+  sweep(DataRoot{folder_}, suite(), DatabaseOwner(folder_ / "b.db"), two);
   EXPECT_EQ(digests(path), digests(folder_ / "b.db"));
 }
 
 TEST_F(RecordedSweep, ARecordingThatHasChangedIsRefused) {
-  sweep(DataRoot{folder_}, suite(), folder_ / "a.db", {});
+  sweep(DataRoot{folder_}, suite(), DatabaseOwner(folder_ / "a.db"), {});
   record("wand_b", 21.0, false);
   EXPECT_THAT(complaint(suite(), folder_ / "a.db"), HasSubstr("choose another database"));
   EXPECT_EQ(complaint(suite(), folder_ / "c.db"), "");

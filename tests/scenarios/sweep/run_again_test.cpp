@@ -66,7 +66,7 @@ TEST_F(CommandAgainOfASweep, RunsWhatItRan) {
                   {{"given.time_offset_s"}, {0.015}},
                   {{"rate/saave.jerk_psd_rad2_s5"}, {100.0}}};
   for (const Variation& curve : suite.curves) check(curve, tree_data(), suite.scenarios, 1);
-  sweep(tree_data(), suite, folder_ / "a.db", {});
+  sweep(tree_data(), suite, DatabaseOwner(folder_ / "a.db"), {});
 
   const Results results(folder_ / "a.db", Results::Mode::read_only);
   const std::vector<Outcome> outcomes = results.outcomes(Rows::all);

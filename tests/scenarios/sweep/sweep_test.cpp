@@ -48,13 +48,13 @@ TEST_F(SweepTest, StoresEveryOutcomeResumesAndDoesNotDependOnJobs) {
   SweepOptions options;
   options.stop = &stop;
   options.on_progress = [&](const SweepProgress& progress) { stop = progress.draws_done >= 1; };
-  const SweepProgress stopped = sweep(data(), small_suite(2), path, options);
+  const SweepProgress stopped = sweep(data(), small_suite(2), DatabaseOwner(path), options);
   EXPECT_EQ(stopped.draws_done, 1u);
   EXPECT_EQ(stopped.draws_total, 2u);
   EXPECT_EQ(Results(path, Results::Mode::read_only).outcomes().size(), 2u);
 
   // a resumed sweep runs only the missing draws
-  const SweepProgress resumed = sweep(data(), small_suite(2), path, {});
+  const SweepProgress resumed = sweep(data(), small_suite(2), DatabaseOwner(path), {});
   EXPECT_EQ(resumed.draws_done, 2u);
   EXPECT_EQ(resumed.outcomes, 2u);
   const Results results(path, Results::Mode::read_only);
@@ -66,12 +66,12 @@ TEST_F(SweepTest, StoresEveryOutcomeResumesAndDoesNotDependOnJobs) {
   EXPECT_TRUE(cost);
 
   // no work remains
-  EXPECT_EQ(sweep(data(), small_suite(2), path, {}).outcomes, 0u);
+  EXPECT_EQ(sweep(data(), small_suite(2), DatabaseOwner(path), {}).outcomes, 0u);
 
   // two processes and another file give the same bits, and the same as in this process
   SweepOptions two;
   two.jobs = 2;
-  sweep(data(), small_suite(2), folder_ / "b.db", two);
+  sweep(data(), small_suite(2), DatabaseOwner(folder_ / "b.db"), two);
   const auto a = digests(path);
   ASSERT_EQ(a.size(), 4u);
   EXPECT_EQ(a, digests(folder_ / "b.db"));
@@ -88,8 +88,8 @@ TEST_F(SweepTest, RateMethodsAloneAreRunWithoutLidar) {
         std::string(kRoll) + "  - {name: lidar, kind: rosette_lidar, device: mid100, site: mid100}\n");
   Suite suite = small_suite(1);
   suite.methods = {"rate/raw"};
-  sweep(data(), suite, folder_ / "rate.db", {});
-  sweep(data(), small_suite(1), folder_ / "all.db", {});
+  sweep(data(), suite, DatabaseOwner(folder_ / "rate.db"), {});
+  sweep(data(), small_suite(1), DatabaseOwner(folder_ / "all.db"), {});
   const Scenario scenario = load_scenario(data(), "roll");
   const SimulatedDraw whole = simulate_draw(data(), scenario, 1, 1);
   ASSERT_EQ(whole.recording.sensors.lidars.size(), 1u);
@@ -109,8 +109,8 @@ TEST_F(SweepTest, UnseenRecordingsHaveTheLidarsThatAreRead) {
   suite.methods = {"rolling", "attitude/tumble", "position/tumble", "position/tumble_live"};
   SweepOptions unseen;
   unseen.recordings_unseen = true;
-  sweep(data(), suite, folder_ / "seen.db", {});
-  sweep(data(), suite, folder_ / "unseen.db", unseen);
+  sweep(data(), suite, DatabaseOwner(folder_ / "seen.db"), {});
+  sweep(data(), suite, DatabaseOwner(folder_ / "unseen.db"), unseen);
   const SimulatedDraw whole = simulate_draw(data(), load_scenario(data(), "roll"), 1, 1);
   const std::string bare = digest_without_lidars(whole.recording);
   const Results as_seen(folder_ / "seen.db", Results::Mode::read_only);
@@ -124,7 +124,7 @@ TEST_F(SweepTest, UnseenRecordingsHaveTheLidarsThatAreRead) {
     EXPECT_EQ(found.estimate_digest, seen.estimate_digest) << seen.method;
   }
   suite.methods.push_back("slam/poses_rolling");
-  sweep(data(), suite, folder_ / "maps.db", unseen);
+  sweep(data(), suite, DatabaseOwner(folder_ / "maps.db"), unseen);
   for (const Outcome& outcome : Results(folder_ / "maps.db", Results::Mode::read_only).outcomes())
     EXPECT_EQ(outcome.recording_digest, whole.recording_digest) << "a map is made with a lidar";
 }
@@ -135,19 +135,19 @@ TEST_F(SweepTest, ARejectedDrawIsKept) {
   still.replace(still.find("{uniform: [0.3, 0.5]}"), std::string("{uniform: [0.3, 0.5]}").size(), "0");
   write("scenarios/catalogue/roll.yaml", still);
   const auto path = folder_ / "a.db";
-  EXPECT_EQ(sweep(data(), small_suite(1), path, {}).rejected, 1u);
+  EXPECT_EQ(sweep(data(), small_suite(1), DatabaseOwner(path), {}).rejected, 1u);
   const Results results(path, Results::Mode::read_only);
   ASSERT_EQ(results.rejected().size(), 1u);
   EXPECT_NE(results.rejected().front().message, "");
   EXPECT_EQ(results.outcomes().size(), 0u);
-  const SweepProgress again = sweep(data(), small_suite(1), path, {});
+  const SweepProgress again = sweep(data(), small_suite(1), DatabaseOwner(path), {});
   EXPECT_EQ(again.rejected, 0u);
   EXPECT_EQ(again.draws_done, 1u);
 }
 
 TEST_F(SweepTest, WhatTheMachineKilledIsRunAgainOnDemandAlone) {
   const auto path = folder_ / "a.db";
-  sweep(data(), small_suite(1), path, {});
+  sweep(data(), small_suite(1), DatabaseOwner(path), {});
   const auto before = digests(path);
   {
     Results results(path, Results::Mode::create_or_append);
@@ -159,18 +159,18 @@ TEST_F(SweepTest, WhatTheMachineKilledIsRunAgainOnDemandAlone) {
     }
   }
   EXPECT_NE(digests(path), before);
-  EXPECT_EQ(sweep(data(), small_suite(1), path, {}).outcomes, 0u);
+  EXPECT_EQ(sweep(data(), small_suite(1), DatabaseOwner(path), {}).outcomes, 0u);
   SweepOptions options;
   options.again = {OutcomeStatus::crashed};
-  EXPECT_EQ(sweep(data(), small_suite(1), path, options).outcomes, 0u);
+  EXPECT_EQ(sweep(data(), small_suite(1), DatabaseOwner(path), options).outcomes, 0u);
   options.again = {OutcomeStatus::timeout, OutcomeStatus::killed};
-  const SweepProgress again = sweep(data(), small_suite(1), path, options);
+  const SweepProgress again = sweep(data(), small_suite(1), DatabaseOwner(path), options);
   EXPECT_EQ(again.outcomes, 1u);
   EXPECT_EQ(again.not_ok(), 0u);
   // the recording of a rate method that runs alone has no lidar; this scenario has none anyway
   EXPECT_EQ(digests(path), before);
   options.again = {OutcomeStatus::ok};
-  EXPECT_THROW(sweep(data(), small_suite(1), path, options), BadInput);
+  EXPECT_THROW(sweep(data(), small_suite(1), DatabaseOwner(path), options), BadInput);
 }
 
 double peak_mib() {
@@ -185,7 +185,7 @@ TEST_F(SweepTest, TenMillionSeedsArePlannedOneAtATime) {
   options.stop = &stop;
   options.on_progress = [&](const SweepProgress& progress) { stop = progress.draws_done >= 1; };
   const double before_mib = peak_mib();
-  const SweepProgress progress = sweep(data(), small_suite(10'000'000), folder_ / "a.db", options);
+  const SweepProgress progress = sweep(data(), small_suite(10'000'000), DatabaseOwner(folder_ / "a.db"), options);
   EXPECT_EQ(progress.draws_total, 10'000'000u);
   EXPECT_EQ(progress.outcomes, 2u);
   EXPECT_LT(peak_mib() - before_mib, 50.0);  // a plan of all draws at once would need 4 GB
@@ -194,26 +194,26 @@ TEST_F(SweepTest, TenMillionSeedsArePlannedOneAtATime) {
 TEST_F(SweepTest, RefusesADatabaseOfOtherScenarios) {
   const auto path = folder_ / "a.db";
   Results(path, Results::Mode::create_or_append).set_note("data", "another catalogue");
-  EXPECT_THAT(test::complaint([&] { sweep(data(), small_suite(1), path, {}); }),
+  EXPECT_THAT(test::complaint([&] { sweep(data(), small_suite(1), DatabaseOwner(path), {}); }),
               ::testing::HasSubstr("made from other models or scenarios"));
 }
 
 TEST_F(SweepTest, WrongUseIsBadInputBeforeAnythingRuns) {
   SweepOptions options;
   options.jobs = 0;
-  EXPECT_THROW(sweep(data(), small_suite(1), folder_ / "a.db", options), BadInput);
+  EXPECT_THROW(sweep(data(), small_suite(1), DatabaseOwner(folder_ / "a.db"), options), BadInput);
   Suite suite = small_suite(1);
   suite.methods = {"no_such_method"};
-  EXPECT_THROW(sweep(data(), suite, folder_ / "a.db", {}), BadInput);
+  EXPECT_THROW(sweep(data(), suite, DatabaseOwner(folder_ / "a.db"), {}), BadInput);
   suite = small_suite(1);
   suite.scenarios = {"no_such_scenario"};
-  EXPECT_THROW(sweep(data(), suite, folder_ / "a.db", {}), BadInput);
+  EXPECT_THROW(sweep(data(), suite, DatabaseOwner(folder_ / "a.db"), {}), BadInput);
   suite = small_suite(1);
   suite.methods = {"icp"};  // only for the rig
-  EXPECT_THROW(sweep(data(), suite, folder_ / "a.db", {}), BadInput);
+  EXPECT_THROW(sweep(data(), suite, DatabaseOwner(folder_ / "a.db"), {}), BadInput);
   suite = small_suite(1);
   suite.last_seed = 0;
-  EXPECT_THROW(sweep(data(), suite, folder_ / "a.db", {}), BadInput);
+  EXPECT_THROW(sweep(data(), suite, DatabaseOwner(folder_ / "a.db"), {}), BadInput);
 }
 
 }  // namespace
