@@ -8,13 +8,13 @@ namespace tumble::mapping {
 
 namespace {
 
-// Stages of a registration: all points of the sweep, every n-th point until convergence, and a coarse stage for
-// starting poses far from the prior.
+// Maximum iterations of the three registration stages: all points, a subset of the points, and a coarse stage for
+// initial poses far from the prior.
 constexpr int kFullIterations = 8, kSubsampledIterations = 30, kCoarseIterations = 15;
 constexpr std::size_t kSubsamplePoints = 1000, kCoarsePoints = 300, kCoarseMatchesMin = 50;
 constexpr double kCoarseKernelMin_m = 0.5;  // minimum width of the robust kernel
-constexpr double kCoarseRematch_m = 0.2;    // motion of a point after which its plane is searched again
-constexpr double kCoarseStep_m = 5e-3, kCoarseStep_rad = 2e-3;  // converged if a step is below both
+constexpr double kCoarseRematch_m = 0.2;    // distance by which a point moves before its plane is searched again
+constexpr double kCoarseStep_m = 5e-3, kCoarseStep_rad = 2e-3;  // converged if the step is below both limits
 constexpr double kCoarseInlierRatioMin = 0.2;  // minimum fraction of matches within three standard deviations
 
 Registration::Params full_registration_params(const LidarInertialOdometry::Params& params) {
@@ -25,7 +25,7 @@ Registration::Params full_registration_params(const LidarInertialOdometry::Param
 
 constexpr double kCoarseReach = 2.0;
 
-/// The result of a coarse registration only needs to be near the solution.
+/// The coarse registration only needs to reach the region in which the next stage converges.
 Registration::Params coarse_params(const LidarInertialOdometry::Params& params) {
   Registration::Params out = registration_params(params);
   out.match_distance_m =
@@ -37,7 +37,8 @@ Registration::Params coarse_params(const LidarInertialOdometry::Params& params) 
   out.expert.step_m = kCoarseStep_m;
   out.expert.step_rad = kCoarseStep_rad;
   out.expert.inlier_ratio_min = kCoarseInlierRatioMin;
-  out.expert.agreeing_matches_needed = kCoarseMatchesMin;  // a coarse start has no prior that it could agree with
+  // agreement with a displaced start permits no fewer matches
+  out.expert.agreeing_matches_needed = kCoarseMatchesMin;
   return out;
 }
 

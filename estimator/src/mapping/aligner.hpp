@@ -17,19 +17,18 @@ struct RegistrationScene {
 };
 
 /// SweepAligner registers a sweep to the map in stages, from few points to all points. `trajectory` receives the
-/// registered motion, or the motion of a failed attempt.
+/// registered motion. After a failed registration, the caller must rebuild `trajectory`.
 class SweepAligner {
  public:
   explicit SweepAligner(const LidarInertialOdometry::Params& params);
 
-  /// Registers a sweep with all points and few iterations. If align_with_all_points() does not converge, the caller can
-  /// try align_to_convergence().
+  /// Registers a sweep with all points and few iterations.
   void align_with_all_points(const Registration::Prior& prior, const RegistrationScene& scene,
                              SweepTrajectory& trajectory, Registration::Result& found);
   /// Registers a sweep with a subset of its points until convergence, then with all points.
   void align_to_convergence(const Registration::Prior& prior, const RegistrationScene& scene,
                             SweepTrajectory& trajectory, Registration::Result& found);
-  /// Starts with a coarse stage, because the initial pose may be far from the solution.
+  /// Registers a sweep with few points first, for an initial pose `start` that may be far from the solution.
   void align_coarse_to_fine(const Registration::Prior& start, const Registration::Prior& prior,
                             const RegistrationScene& scene, SweepTrajectory& trajectory, Registration::Result& found);
 

@@ -15,9 +15,9 @@ namespace u = unknowns;
 using Motion = Eigen::Matrix<double, 9, 9>;
 using Params = LidarInertialOdometry::Params;
 
-// standard deviation and correlation time of the speed before a map exists
+// Before a map exists, the speed is assumed to have this standard deviation and this correlation time.
 constexpr double kSpeed_m_s = 10.0, kSpeedTime_s = 1.0;
-// For a start in motion, the mean force over half a second is assumed to differ from gravity by 1 m/s^2.
+// If a recording starts in motion, the mean specific force over 0.5 s is assumed to differ from gravity by 1 m/s^2.
 constexpr double kMovingTilt_rad = 0.1, kMovingSpeed_m_s = 2.0;
 
 StateEstimate state_estimate_of_motion(const MotionState& state, const LidarImuCalibration& calibration,
@@ -35,7 +35,7 @@ double yaw_rad(const Eigen::Quaterniond& q) {
   return 2.0 * std::atan2(q.z(), q.w());
 }
 
-/// Returns the matrix that transforms the errors of position, attitude and velocity to a frame with origin at the IMU,
+/// Returns the Jacobian of position, attitude and velocity errors for a new world frame with its origin at the IMU,
 /// rotated by `turn`.
 Motion world_frame_jacobian(const Eigen::Matrix3d& turn, const Eigen::Vector3d& v_WI_m_s) {
   Motion T = Motion::Zero();
@@ -45,8 +45,8 @@ Motion world_frame_jacobian(const Eigen::Matrix3d& turn, const Eigen::Vector3d& 
   return T;
 }
 
-/// Applies a Kalman update with the measured velocity 0. C is the covariance that determines the Kalman gain, and E is
-/// the covariance of the actual errors of `state`.
+/// Applies a Kalman update with the measured velocity 0, which bounds the speed. The covariance C determines the Kalman
+/// gain. The covariance E describes the actual errors of `state`.
 void bound_speed(double sigma_m_s, MotionState& state, Motion& C, Motion& E) {
   const Eigen::Matrix3d R = sigma_m_s * sigma_m_s * Eigen::Matrix3d::Identity();
   const Eigen::Matrix3d S = u::sub_block(C, u::velocity) + R;
@@ -130,8 +130,7 @@ StateEstimate reset_origin_and_yaw(const StateEstimate& reckoned, double step_s)
   return state_estimate_of_motion(state, reckoned.mean.calibration, T * C * T.transpose(), T * E * T.transpose());
 }
 
-/// The tilt error φ of the first sweep rotates the map frame. In a map frame rotated by the tilt error φ, velocity v
-/// has an additional error v × φ, and gravity g an error g × φ.
+/// In a map frame with the tilt error φ, velocity v has an additional error v × φ, and gravity g has an error g × φ.
 StateEstimate estimate_at_first_sweep(const Params& params, const StateEstimate& reckoned) {
   MotionState start = reckoned.mean.state;
   start.covariance.setZero();

@@ -7,10 +7,12 @@
 /// See mapping.md, heading "Inertial noise".
 namespace tumble::mapping {
 
-/// Gravity is exactly vertical in the world frame, so a wrong tilt is an error of the attitude.
+/// Returns the state before a map exists. Gravity is exactly vertical in the world frame, so tilt errors are attitude
+/// errors.
 StateEstimate estimate_before_map(const LidarInertialOdometry::Params& params, const MotionState& levelled);
 
-/// The mean force of a moving body differs from gravity, and the velocity of the body is unknown.
+/// Increases the covariance of tilt and velocity for a start in motion, when the mean specific force differs from
+/// gravity.
 void add_motion_covariance(MotionState& levelled);
 
 /// Returns `motion` with the position and heading of `T_WI`, and with unchanged tilt.
@@ -20,16 +22,17 @@ StateEstimate transformed_to_pose(const Eigen::Isometry3d& T_WI, const StateEsti
 /// Replaces roll and pitch by `tilt`, whose errors are independent of all other errors.
 StateEstimate with_start_tilt(const LidarInertialOdometry::StartTilt& tilt, const StateEstimate& estimate);
 
-/// Returns the dead-reckoned state in a new frame, with the origin and the yaw of the IMU's present pose. `step_s` is
-/// the time since the last call. A weak prior of the robot's speed bounds the errors of tilt and velocity during
-/// minutes of motion.
+/// Returns the dead-reckoned state in a frame with the origin and the yaw of the IMU's present pose. `step_s` is the
+/// time since the last call. A weak prior on the robot's speed bounds the errors of tilt and velocity during minutes of
+/// motion.
 StateEstimate reset_origin_and_yaw(const StateEstimate& reckoned, double step_s);
 
-/// The lidar's pose at the start of the first sweep defines the map frame, and is therefore exact. In the map frame,
-/// the tilt error of dead reckoning is an error of gravity's direction.
+/// Returns the state at the first sweep, whose lidar pose defines the map frame and is therefore exact. In the map
+/// frame, the tilt error of dead reckoning is an error of gravity's direction.
 StateEstimate estimate_at_first_sweep(const LidarInertialOdometry::Params& params, const StateEstimate& reckoned);
 
-/// Returns the covariance of the new map relative to the world, with the tilt variance of the dead-reckoned state.
+/// Returns the covariance of the new map frame relative to the world, with the tilt variance of the dead-reckoned
+/// state.
 WorldCovariance world_at_first_sweep(const LidarInertialOdometry::Params& params, const StateEstimate& reckoned);
 
 }  // namespace tumble::mapping

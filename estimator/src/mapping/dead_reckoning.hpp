@@ -9,9 +9,10 @@
 
 namespace tumble::mapping {
 
-/// While a relocalisation is unconfirmed, DeadReckoning stores a second state, which ignores the relocalisation and
-/// integrates only the IMU. If a later sweep contradicts the relocalisation, odometry and DeadReckoning swap their
-/// poses. The search after a tracking failure also starts from the pose of the contradicted relocalisation.
+/// DeadReckoning is a second pose hypothesis while a relocalisation is unconfirmed. The second hypothesis ignores the
+/// relocalisation and uses only IMU and odometer. If a later sweep contradicts the relocalisation, the odometry
+/// continues from the second hypothesis. The contradicted pose then becomes an additional starting pose of the search
+/// in the map.
 struct DeadReckoning {
   SweepBoundary sweep_boundary;
   LagWindow window;

@@ -18,7 +18,6 @@ struct FrameChange {
 
  private:
   void apply(Registration::Estimate& mean) const;
-  /// Rotates a covariance of all unknowns from frame W to frame M, and adds the covariance of the transform T_MW.
   void apply(const Registration::Estimate& mean, Registration::Matrix& of_all) const;
   Registration::Matrix rotation() const;
 };
@@ -26,11 +25,11 @@ struct FrameChange {
 /// PosesBeforeChange transforms poses before the localisation to the frame of the prior map.
 class PosesBeforeChange {
  public:
-  /// `last` is the last pose in the local frame W, at which the robot was localised in the prior map.
+  /// `last` is the pose in the local frame W when the robot was localised in the prior map.
   PosesBeforeChange(const FrameChange& change, const PoseState& last);
 
-  /// The drift between an earlier pose and the last pose is at most the drift since the start. The covariance of an
-  /// earlier pose is computed from the covariance of the last pose and the displacement between both poses.
+  /// Transforms a pose from frame W to frame M. The covariance of an earlier pose is computed from the covariance of
+  /// the last pose and the displacement between both poses.
   void apply(PoseState& pose) const;
 
  private:

@@ -8,7 +8,7 @@
 
 namespace tumble::mapping {
 
-/// A time step above 50 ms between IMU samples is a gap, because a reading does not describe the motion in between.
+/// Larger time steps between IMU samples count as gaps, because one reading does not describe the motion over 50 ms.
 inline constexpr TimeNs kGap_ns = 50'000'000;
 
 struct WindowRate {
@@ -19,9 +19,9 @@ struct WindowRate {
   TimeNs middle_ns() const { return from_ns + (time_ns - from_ns) / 2; }
 };
 
-/// Fills the gap from the end of `before` to the start of `after` with linearly interpolated rates: mapping.md (R44).
-/// In a gap, all gyro axes count as clipped, so that the registration also estimates the interpolation error. Each
-/// appended sample covers 10 ms, or about 1/64 of a gap that is longer than 0.64 s.
+/// Fills the gap from the end of `before` to the start of `after` with linearly interpolated angular rates: mapping.md
+/// (R44). In a gap, all gyro axes count as clipped, so that the registration also estimates the interpolation error.
+/// Each appended sample covers 10 ms, or about 1/64 of a gap that is longer than 0.64 s.
 void bridge_gap(const WindowRate& before, const WindowRate& after, std::vector<MotionSample>& samples);
 
 }  // namespace tumble::mapping

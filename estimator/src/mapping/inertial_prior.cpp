@@ -11,9 +11,9 @@ namespace tumble::mapping {
 
 namespace {
 
-// Standard deviation of a saturated force reading.
+// Standard deviation of the specific force along a saturated accelerometer axis.
 constexpr double kSaturatedForceSigma_m_s2 = 50.0;
-// Ratio of the inertial prediction's noise at rest to its noise in motion.
+// Ratio of the standard deviations of the inertial prediction's process noise at rest and in motion.
 constexpr double kRestNoiseRatio = 0.02;
 // Standard deviation of the speed of a robot that seems to be at rest.
 constexpr double kStartSpeedSigma_m_s = 0.05;
@@ -22,7 +22,7 @@ constexpr double kStartSpeedSigma_m_s = 0.05;
 
 namespace u = unknowns;
 
-/// Computes the process noise: mapping.md (R39), (R40), (R41), (R43).
+/// See mapping.md (R39), (R40), (R41), (R43).
 Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& params,
                                            const SweepTrajectory& trajectory, std::span<const MotionSample> samples,
                                            unsigned deficit_axes) {
@@ -57,7 +57,7 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
       .setConstant(std::pow(params.expert.prior.kSigma_m_s * span, 2) +
                    std::pow(params.expert.prior.kForceShare * velocity_change_m_s, 2) + gap_m2_s2);
   u::variances(noise, u::position).array() += gap_m2;
-  // A robot at rest has zero velocity, so the velocity error does not affect the position.
+  // A robot at rest has zero velocity, so rate and acceleration errors hardly affect its pose.
   const auto rests = [&](const MotionSample& sample) {
     return sample.at_rest || seconds(sample.from_ns - start_ns) >= trajectory.duration_s();
   };
@@ -67,11 +67,11 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
   return noise;
 }
 
-/// Computes the covariance of the velocity due to saturated accelerometer readings: mapping.md (R45).
+/// See mapping.md (R45).
 Eigen::Matrix3d velocity_variance_from_clipping(const SweepTrajectory& trajectory,
                                                 std::span<const MotionSample> samples) {
   std::size_t hint = 0;
-  Eigen::Matrix3d lasted = Eigen::Matrix3d::Zero();  // column j: saturated time of axis j, as a vector in W
+  Eigen::Matrix3d lasted = Eigen::Matrix3d::Zero();  // column j: accelerometer axis j, times its saturated time
   for (const MotionSample& sample : samples) {
     const double from = std::max(seconds(sample.from_ns - trajectory.start_ns()), 0.0);
     const double to = std::min(seconds(sample.time_ns - trajectory.start_ns()), trajectory.duration_s());

@@ -11,7 +11,8 @@
 
 namespace tumble::mapping {
 
-/// InertialTrack stores the IMU samples since the end of the last sweep, detects rest and flights, and bridges gaps.
+/// InertialTrack stores the IMU samples since the end of the last sweep, detects rest, and fills gaps between IMU
+/// samples.
 class InertialTrack {
  public:
   using Params = LidarInertialOdometry::Params;
@@ -23,7 +24,7 @@ class InertialTrack {
   /// Requires that check() has accepted the sample.
   void store_sample(const Params& params, const ImuSample& sample, const AngularRateState& rate);
 
-  /// The last sweep ended within the averaging window of the first stored sample.
+  /// Returns the samples since the last sweep, which ended within the averaging window of the first returned sample.
   std::span<const MotionSample> samples() const { return samples_; }
   std::span<const MotionSample> motion_samples_from(TimeNs from_ns) const;
   std::optional<TimeNs> sweep_boundary_ns() const { return sweep_boundary_ns_; }
@@ -44,7 +45,7 @@ class InertialTrack {
   struct InitialRest {
     bool still_stationary = true;
     std::optional<TimeNs> first_ns;               ///< first sample of the recording
-    std::optional<TimeNs> initial_rest_start_ns;  ///< first sample of the current rest
+    std::optional<TimeNs> initial_rest_start_ns;  ///< first sample of the initial rest
     Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();
   };
 
@@ -57,7 +58,7 @@ class InertialTrack {
   RestDetector rest_detector_;
   RestDetector::State stationary_state_;
   InitialRest initial_rest_;
-  std::vector<Eigen::Vector3d> pending_rates_rad_s_;  // rates since the last averaged reading
+  std::vector<Eigen::Vector3d> pending_rates_rad_s_;  // rates of samples that the rest detector has not averaged yet
   std::optional<WindowRate> second_newest_rate_, newest_rate_;
 };
 

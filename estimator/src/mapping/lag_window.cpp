@@ -21,8 +21,8 @@ WindowSweep& LagWindow::append_sweep() {
   return sweeps_.emplace_back();
 }
 
-/// Smooths the sweeps of the lag window by a backward pass (Rauch, Tung, Striebel, 1965): mapping.md (R63). The
-/// registration of a sweep acts as a measurement that is linearised at the converged pose.
+/// The smoother of Rauch, Tung and Striebel (1965) treats the registration of each sweep as a measurement that is
+/// linearised at the converged pose.
 void LagWindow::smooth() {
   if (sweeps_.empty()) return;
   sweeps_.back().smoothed = sweeps_.back().filtered;

@@ -33,19 +33,18 @@ class LagWindow {
   LagWindow() = default;
   explicit LagWindow(int sweeps) : length_(static_cast<std::size_t>(sweeps)) {}
 
-  /// If the lag window is full, append_sweep() drops the oldest sweep before appending a new sweep.
+  /// Appends a sweep, and drops the oldest sweep if the lag window is full.
   WindowSweep& append_sweep();
-  /// The oldest sweep of a full lag window has its final estimate.
+  /// If the lag window is full, the estimate of its oldest sweep is final.
   bool is_full() const { return sweeps_.size() == length_; }
   /// Smooths all sweeps except the newest: mapping.md (R63).
   void smooth();
   /// Moves the map points of all sweeps except the newest to their smoothed positions.
   void move_inserted_sweeps(LocalMap& map) const;
-  /// Call clear_inserted() after a change of the map's point indices. After clear_inserted(), smoothing no longer moves
-  /// the map points that earlier sweeps inserted.
+  /// Excludes the map points inserted so far from later smoothing. Call this function after the indices of map points
+  /// have changed.
   void clear_inserted();
 
-  /// Calls `change` for each sweep, oldest first.
   template <class Change>
   void for_each(const Change& change) {
     for (WindowSweep& sweep : sweeps_) change(sweep);

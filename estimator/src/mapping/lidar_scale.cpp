@@ -15,17 +15,16 @@ namespace tumble {
 namespace {
 
 constexpr double kLeast = 0.02, kScaleDeviations = 5.0;
-// Over short time spans, the IMU's weight in the mapping hides errors of the lidar's scale. If ranges are 10 % too
-// long, velocity changes over 0.4 s give the scale 1.08. With the same ranges, velocity changes over 0.1 s give a scale
-// of only 1.02 to 1.03.
+// Registered poses follow the IMU over short time spans, which hides a scale error of the lidar's ranges. If all ranges
+// are 10 % too long, velocity changes over 0.4 s give a range scale of 1.08.
 constexpr double kSpan_s = 0.4;
 constexpr double kChange_m_s = 0.2;  // minimum change of velocity; noise dominates smaller changes
 constexpr std::size_t kChangesMin = 5, kChangesMax = 1000;
-constexpr int kDisjointMin = 4;       // minimum number of changes without a common sweep; fewer do not determine sigma
+constexpr int kDisjointMin = 4;       // minimum number of velocity changes without a common sweep, to determine sigma
 constexpr std::size_t kSpanMax = 64;  // maximum number of buffered sweeps
 constexpr int kIterations = 10;
 constexpr double kBias_m_s2 = 0.05;         // constant error of the acceleration, from accelerometer bias and tilt
-constexpr double kForgettingTime_s = 60.0;  // age up to which a change is compared, so that a finding ends
+constexpr double kForgettingTime_s = 60.0;  // maximum age of a velocity change, so that a finding ends
 // width of the Huber kernel in standard deviations; ratio of standard deviation to median absolute deviation
 constexpr double kHuber = 1.5, kPerMedian = 1.4826;
 
@@ -41,7 +40,7 @@ class ImuMotion {
   }
 
   /// Returns the mean velocity from `middle_ns` to `to_ns`, minus the mean velocity from `from_ns` to `middle_ns`.
-  /// Returns nothing if a force between `from_ns` and `to_ns` is saturated or missing.
+  /// Returns nothing if an accelerometer reading between `from_ns` and `to_ns` is clipped or missing.
   std::optional<Eigen::Vector3d> velocity_change(TimeNs from_ns, TimeNs middle_ns, TimeNs to_ns) const {
     if (attitudes_.empty()) return std::nullopt;
     const auto later = [](const ImuSample& sample, TimeNs time_ns) { return sample.time_ns <= time_ns; };
@@ -78,7 +77,6 @@ class ImuMotion {
   std::vector<PoseState> attitudes_;
 };
 
-/// Surfaces constrain the pose of a registered or degenerate sweep in at least one direction.
 bool is_registered_in_map(const SweepReport& sweep) {
   return sweep.verdict == SweepVerdict::registered || sweep.verdict == SweepVerdict::degenerate;
 }
@@ -91,7 +89,6 @@ std::size_t sweep_count_in_duration(double span_s, const Sweeps& sweeps) {
   return static_cast<std::size_t>(std::clamp(std::round(count), 1.0, static_cast<double>(sweeps.size())));
 }
 
-/// Returns nothing if the change of velocity is unknown or too small.
 template <class Sweeps>
 std::optional<Change> velocity_change_until(std::size_t last, std::size_t span, const Sweeps& sweeps,
                                             const ImuMotion& imu_motion) {
@@ -107,7 +104,7 @@ std::optional<Change> velocity_change_until(std::size_t last, std::size_t span, 
                     (middle.position_W_m - from.position_W_m) / seconds(middle.time_ns - from.time_ns)};
 }
 
-/// Changes of velocity are disjoint if they share no sweep.
+/// Counts velocity changes that share no sweep.
 template <class Changes>
 int disjoint_velocity_changes(const Changes& changes) {
   int count = 0;
@@ -120,7 +117,7 @@ int disjoint_velocity_changes(const Changes& changes) {
   return count;
 }
 
-/// Returns the variance of the sum of weighted residuals times velocity changes, for correlated residuals (Newey and
+/// Returns the variance of the score (weighted residuals times velocity changes) for correlated residuals (Newey and
 /// West, 1987).
 template <class Changes>
 double score_variance(const Changes& changes, const std::vector<Eigen::Vector3d>& weighted) {

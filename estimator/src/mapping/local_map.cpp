@@ -12,7 +12,6 @@ namespace tumble::mapping {
 
 namespace {
 
-// maximum standard deviation of a point that is inserted into the map
 constexpr double kPointSigmaMax_m = 0.25;
 
 /// PoseVariance computes the variance of a map point due to the uncertain trajectory of its sweep: mapping.md (R64).

@@ -23,7 +23,7 @@ struct SweepToInsert {
   const Registration::Matrix& covariance;
   std::span<const SweepPoint> points;
   bool has_ring_numbers;
-  bool is_pose_certain;  ///< certain pose: the sweep's free space may contradict map points
+  bool is_pose_certain;  ///< whether free space of this sweep may contradict map points
 };
 
 /// LocalMap contains the points around the sensor, their scan lines, and the sensor positions from which the points
@@ -38,19 +38,18 @@ class LocalMap {
   bool empty() const { return map_.size() == 0; }
 
   /// Adds the points of a sweep to the map and to the list `inserted`. Cost: O(points of the map). `noise` computes the
-  /// variance of a lidar return. If the pose of the sweep is certain, the sweep is counted for each map point that the
-  /// sweep saw or saw through.
+  /// variance of a lidar return. If the pose is certain, counts for each map point whether beams of the sweep hit its
+  /// position or passed through it.
   std::size_t insert(const Params& params, const SweepToInsert& sweep, const Registration& noise,
                      std::vector<InsertedPoint>& inserted);
-  /// Moves inserted map points to the positions that follow from the refined trajectory: mapping.md (R3). The time of
-  /// each point is increased by `later_s`.
+  /// Moves inserted map points to the positions that follow from the refined trajectory: mapping.md (R3). `later_s` is
+  /// the change of the lidar's estimated time offset since the points were inserted.
   void move(const SweepTrajectory& trajectory, const Eigen::Isometry3d& T_IL, double later_s,
             std::span<const InsertedPoint> inserted);
 
-  /// Replaces the map by a prior map. Each point of the prior map gets a distant sensor position, on the positive or
-  /// negative map axis that is nearest to the point's normal. Because of the stored sensor positions, normals that are
-  /// later estimated from the map keep their sign. If `T_MW` is given, the points of the local map are added,
-  /// transformed to the prior map's frame.
+  /// Replaces the map by a prior map. Each point of the prior map gets a fictitious distant sensor position, on the map
+  /// axis nearest to the point's normal. Normals that are later estimated from the map then keep their sign. If `T_MW`
+  /// is given, the points of the local map are added, transformed to the prior map's frame.
   void start_from_map_points(const Params& params, std::span<const MapPoint> points, const Eigen::Isometry3f* T_MW);
 
   /// Returns the number of sweeps that have added points to the map.
@@ -67,7 +66,6 @@ class LocalMap {
   std::vector<MapPoint> to_map_points(const Params& params) const;
 
  private:
-  /// Counts for each map point how many sweeps saw through it.
   void check_free_space(const FreeSpaceGrid& sight);
 
   VoxelMap map_;

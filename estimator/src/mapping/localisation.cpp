@@ -11,14 +11,12 @@ namespace tumble {
 
 namespace {
 
-// A chi-square value (nine degrees of freedom) exceeds 32.9 with a probability of 1.4e-4. In 1000 sweeps with correct
-// covariances, two or more chi-square values exceed 32.9 with a probability of 1 %.
+// With correct covariances, the chi-square value of a sweep's innovation (9 degrees of freedom) exceeds 32.9 with a
+// probability of 1.4e-4. Two or more of 1000 sweeps exceed this value with a probability of 1 %.
 constexpr double kContradictionChi2Min = 32.9;
 
-// Wrong point times or a wrong mounting distort sweeps, so that few points fit the map and the registered poses are
-// noisy. Over the scenarios without a fault, the mean inlier ratio is 0.37 to 0.77. The mean innovation is below 0.15
-// with a good IMU, and up to 0.35 with a low-cost IMU. If the order of point times is reversed and the motion is slow,
-// the mean inlier ratio is 0.13 and the mean innovation is 0.3.
+// Wrong point times or a wrong lidar mounting distort sweeps, so that few points fit the map and the registered poses
+// are noisy. Scenarios without such faults have mean inlier ratios of at least 0.37.
 constexpr double kInlierRatioMin = 0.2, kMeanInnovationMax = 0.2;
 constexpr std::size_t kMeanSweepsMin = 20, kMeanSweepsMax = 50;
 

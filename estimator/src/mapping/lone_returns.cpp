@@ -9,19 +9,19 @@ namespace tumble {
 
 namespace {
 
-// sin 10 deg: minimum angle between a beam and the line to a return on the same surface (Bogoslavskyi, Stachniss)
+// sin 10 deg: minimum angle between a beam and the line to an adjacent return on the same surface (Bogoslavskyi,
+// Stachniss)
 constexpr float kMinSurfaceSine = 0.17365f;
-// sin 2 deg: minimum angle between a beam and the line through the two neighbours of a return. At a smaller angle, the
-// two neighbours count as two sides of an edge. The beam of a lidar 0.5 m above level ground meets the ground at an
-// angle of 2 deg, at a distance of 14 m.
+// sin 2 deg: minimum angle between a beam and the line through the two neighbours of its return. At a smaller angle,
+// the two neighbours count as two sides of an edge. A lidar 0.5 m above level ground sees the ground at an angle of 2
+// deg, at a distance of 14 m.
 constexpr float kGrazingSine = 0.0349f;
 constexpr float kBend = 0.15f;                     // relative tolerance of ranges on uneven ground
 constexpr int kNeighbours = 2;                     // number of neighbours on each side along the ring
 constexpr float kReachSteps = kNeighbours + 0.5f;  // angular steps; beams further apart are not neighbours
 constexpr float kStepMax = 0.05f;                  // rad; the rings of 16-channel lidars are 0.035 rad apart
 constexpr float kDeviations = 3.0f;
-// In clear air, the fraction of unconfirmed returns is 0.05 % at rest, 0.3 to 0.7 % in motion, and 1.6 % for a thrown
-// robot.
+// In clear air, at most 1.6 % of the returns are unconfirmed, even for a thrown robot.
 constexpr float kClearAirFraction = 0.02f;
 
 float squared(float x) {
@@ -105,7 +105,6 @@ bool LoneReturns::is_confirmed(const RangeNoise& noise, std::size_t at, float re
   });
 }
 
-/// Sorts the points by lidar ring, and within each ring by firing time.
 void LoneReturns::sort_by_ring(const std::vector<SweepPoint>& points) {
   next_beam_on_ring_.assign(1, 0);
   for (const SweepPoint& point : points) {
@@ -133,7 +132,6 @@ void LoneReturns::measure_beam_steps() {
   }
 }
 
-/// Returns the median squared sine of the angle between successive beams of a ring, or 1 if no ring has two beams.
 float LoneReturns::median_step2() {
   if (sorted_squared_beam_steps_.empty()) return 1.0f;
   const auto middle =

@@ -25,8 +25,8 @@ struct RangeNoise {
 /// because the air is clear.
 class LoneReturns {
  public:
-  /// Removes the lone returns from `points`, and returns their number. Cost: O(points). The order of the remaining
-  /// points does not change.
+  /// Removes the unconfirmed returns from `points`, and returns their number. Cost: O(points). The order of the
+  /// remaining points does not change.
   std::size_t drop_isolated_returns(const RangeNoise& noise, std::vector<SweepPoint>& points);
 
  private:

@@ -7,10 +7,11 @@ namespace tumble::mapping {
 
 namespace {
 
-constexpr double kSameLineCosine = 0.9988;  // cosine of 0.05 rad, which is less than the angle between two rings
+// cosine of 0.05 rad: after a smaller rotation of the spin axis, a ring retraces its scan line
+constexpr double kSameLineCosine = 0.9988;
 constexpr int kRingBits = 16;
-// A map point counts as removed if the beams of at least kSeenThrough sweeps passed through its position. A single
-// sweep may be wrong near the edge of a surface.
+// The exported map excludes points through which beams of at least kSeenThrough sweeps passed. A single sweep may be
+// wrong near the edge of a surface.
 constexpr std::uint8_t kSeenThrough = 2;
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace tumble::mapping {
 namespace {
 
 constexpr double kChanceAgreementMax = 0.8;
-// The fraction of points that agree at the second best (wrong) pose measures agreement by chance.
+// The second-best pose of a search is wrong, so its fraction of agreeing points estimates the agreement by chance.
 constexpr double kChanceMargin = 0.3;
 constexpr double kFalseAcceptance = 1e-6;  // maximum probability that a search accepts a wrong pose
 constexpr std::size_t kMinPoints = 100;    // minimum number of surface points for a search
@@ -69,7 +69,7 @@ std::optional<FramePose> MapLocaliser::match_local_map(const VoxelMap& local, co
 
 void MapLocaliser::propose_map_pose(const std::vector<SurfacePoint>& points, const Eigen::Vector3d& p_WI_m) {
   SearchRegion region;
-  if (map().T_prior_map_imu) {  // the stated pose defines the local frame, so the heading of W in M is about zero
+  if (map().T_prior_map_imu) {  // the given start pose also defines frame W, so W and M have nearly equal headings
     region.p_WI_m = region.centre_in_prior_map_m = map().T_prior_map_imu->translation();
     region.search_radius_m = std::max(kSigmas * map().sigma_m, kMinReach_m);
     region.search_angle_rad = std::max(kSigmas * map().sigma_rad, kMinReach_rad);
@@ -86,7 +86,7 @@ void MapLocaliser::propose_map_pose(const std::vector<SurfacePoint>& points, con
   random_agreement_fraction_ = std::max(kChanceAgreementMax, second + kChanceMargin * (1.0 - second));
 }
 
-/// Returns true if a wrong pose is unlikely to agree with the prior map as well as `pose` does: mapping.md (R74).
+/// See mapping.md (R74).
 bool MapLocaliser::matches_prior_map(const FramePose& pose) const {
   if (pose.agreement_ratio() <= random_agreement_fraction_ || random_agreement_fraction_ >= 1.0) return false;
   return double(pose.covered_point_count) * relative_entropy(pose.agreement_ratio(), random_agreement_fraction_) >=

@@ -20,10 +20,11 @@ class MapLocaliser {
   bool has_map() const { return prior_scene_ != nullptr; }
   bool is_localised() const { return localised_; }
   const PriorMap& map() const { return prior_scene_->map(); }
-  /// The search is limited to the neighbourhood of `T_MI`, if given.
+  /// Restarts the localisation in the prior map. If the IMU pose `T_MI` is given, the search is limited to its
+  /// neighbourhood.
   void restart(const std::optional<Eigen::Isometry3d>& T_MI);
 
-  /// Returns the pose of the local frame in the prior map if the sweep confirms the proposed pose. Cost: a few
+  /// Returns the pose of the local frame in the prior map after three successive sweeps have confirmed it. Cost: a few
   /// milliseconds, or about a second for every fifth sweep while no pose is proposed.
   std::optional<FramePose> match_local_map(const VoxelMap& local, const Eigen::Vector3d& p_WI_m);
   /// Returns `degenerate` if the robot is not localised in the prior map.

@@ -6,8 +6,8 @@
 
 namespace tumble::mapping {
 
-/// At rest, the mean rate is within `kRate_rad_s` of the gyro bias on each axis (StationaryBounds). At rest, the
-/// specific force is within `kForce_m_s2` of gravity.
+/// At rest, the angular rate is within `kRate_rad_s` of the gyro bias, and the specific force is within `kForce_m_s2`
+/// of gravity (StationaryBounds).
 RestDetector::Params mapping_stationary_params(const LidarInertialOdometry::Params& params);
 
 }  // namespace tumble::mapping

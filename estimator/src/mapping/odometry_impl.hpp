@@ -22,7 +22,6 @@ namespace mapping {
 
 void require_params(const LidarInertialOdometry::Params& params);
 
-/// predicted and updated state at the start of a sweep, and the updated trajectory of the sweep
 struct UpdatedSweep {
   const Prediction& prediction;
   const StateEstimate& start;
@@ -47,7 +46,7 @@ struct LidarInertialOdometry::Impl {
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns, SweepReport& report);
 
   Status check_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns) const;
-  /// Computes the initial state from the IMU at rest, before the first sweep.
+  /// Computes the initial state from the IMU samples before the first sweep, at rest or in motion.
   Status initialise_inclination();
   Status level_start(MotionState& levelled) const;
   /// Starts the map if the sweep has enough usable points; otherwise propagates the state inertially to the end of the
@@ -77,12 +76,11 @@ struct LidarInertialOdometry::Impl {
   Status continue_by_inertia(const mapping::MotionWindow& motion, bool rests, mapping::SweepBoundary& at,
                              mapping::LagWindow* into) const;
   void revert_to_inertial_pose();
-  /// Returns the state of a relocalisation that later sweeps contradicted, or null. The search after a tracking failure
-  /// also starts from the returned state.
+  /// Returns the state of a relocalisation that later sweeps contradicted, or null.
   const MotionState* rejected_relocalisation() const;
   void add_map_drift(const mapping::UpdatedSweep& sweep, const SweepReport& report);
   void prune_until(TimeNs end_ns);
-  /// The odometry continues in the frame of the prior map if MapLocaliser accepts a pose.
+  /// If the local map matches the prior map, the odometry continues in the prior map's frame.
   void localise(const SweepReport& report);
   /// `last` is the newest pose in the local frame.
   void enter_prior_map(const mapping::FramePose& pose, const PoseState& last);
@@ -105,9 +103,9 @@ struct LidarInertialOdometry::Impl {
   mapping::LagWindow window;
   mapping::LocalMap map;
   mapping::WorldCovariance world_covariance;
-  std::optional<mapping::DeadReckoning> alternative;                    // alternative pose, see DeadReckoning
-  mapping::MapLocaliser localiser;                                      // localiser in a prior map, if any
-  std::optional<mapping::PosesBeforeChange> poses_before_localisation;  // empty before the localisation
+  std::optional<mapping::DeadReckoning> alternative;  // pose hypothesis without the unconfirmed relocalisation
+  mapping::MapLocaliser localiser;                    // localiser in a prior map, if any
+  std::optional<mapping::PosesBeforeChange> poses_before_localisation;  // empty until localised in the prior map
   mapping::SweepScratch sweep_scratch;
 };
 

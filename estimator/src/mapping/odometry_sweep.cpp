@@ -18,8 +18,9 @@ using mapping::UpdatedSweep, mapping::WindowSweep;
 
 namespace {
 
-constexpr double kFirstSweepDelayMax_s = 0.5;  // maximum delay between first sample and first sweep
-constexpr TimeNs kStep_ns = 100'000'000;       // step of dead reckoning, for which the inertial noise is stated
+constexpr double kFirstSweepDelayMax_s = 0.5;  // maximum delay between first IMU sample and first sweep
+// time step of dead reckoning, and interval for which the process noise is specified
+constexpr TimeNs kStep_ns = 100'000'000;
 
 }  // namespace
 
@@ -52,7 +53,7 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   report.isolated_points = counts.isolated;
   const auto placed = std::make_unique<SweepRegistration>();
   if (points_status.ok()) register_to_map(*prediction, motion, points, trajectory, report, *placed);
-  if (alternative && mapping::contradicts_tracking(tracking, placed->outcome)) {  // restart from tracking failure
+  if (alternative && mapping::contradicts_tracking(tracking, placed->outcome)) {  // repeat without the relocalisation
     revert_to_inertial_pose();
     resting_sweeps = previous_resting_sweeps;
     report = SweepReport{};
@@ -89,8 +90,8 @@ Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
   if (samples.back().time_ns < end_ns) {
     return {ErrorCode::insufficient_data, "imu time_ns", double(samples.back().time_ns), double(end_ns)};
   }
-  // If the lidar's clock is wrong, the first sweep may start before the first IMU sample. Before the first IMU sample,
-  // the robot is assumed to be at rest.
+  // A time offset between lidar and IMU may move the start of the first sweep before the first IMU sample. The motion
+  // before the first IMU sample is extrapolated.
   const double early_s = seconds(samples.front().from_ns - start_ns);
   if (!started && early_s > (params.time_offset_s != 0.0 ? SweepTrajectory::kExtrapolation_s : 0.0)) {
     return {ErrorCode::insufficient_data, "start_ns", double(start_ns), double(samples.front().from_ns)};
@@ -154,7 +155,7 @@ Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, st
   return {ErrorCode::insufficient_data, "points", double(points), double(MatchingParams::kMatchesMin)};
 }
 
-/// While the IMU is at rest, the measured gravity levels the attitude.
+/// While the IMU is at rest, the mean specific force determines roll and pitch.
 Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
   MotionState levelled;
   if (!inertial_track.sweep_boundary_ns()) {
@@ -186,7 +187,7 @@ Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
 }
 
 /// Returns true if the rest detector reports rest, and the inertially predicted velocity stays nearly constant during
-/// the sweep. A wrong estimated attitude changes the predicted velocity, because gravity is removed in a wrong
+/// the sweep. With a wrong estimated attitude, the predicted velocity changes, because gravity is subtracted in a wrong
 /// direction.
 bool LidarInertialOdometry::Impl::is_stationary(const mapping::InertialTrack& inertial, const SweepTrajectory& motion,
                                                 TimeNs end_ns) const {
@@ -320,8 +321,7 @@ void LidarInertialOdometry::Impl::propagate_alternative_pose(const MotionWindow&
   if (!continue_by_inertia(motion, rests, alternative->sweep_boundary, &alternative->window).ok()) alternative.reset();
 }
 
-/// Propagates the state over a sweep without using lidar points. If `into` is not null, the sweep is also appended to
-/// the lag window `into`.
+/// If `into` is not null, the sweep is also appended to the lag window `into`.
 Status LidarInertialOdometry::Impl::continue_by_inertia(const MotionWindow& motion, bool rests,
                                                         mapping::SweepBoundary& at, mapping::LagWindow* into) const {
   const Registration::Estimate& before = at.state_estimate.mean;
@@ -344,7 +344,7 @@ Status LidarInertialOdometry::Impl::continue_by_inertia(const MotionWindow& moti
 }
 
 /// Removes the map points that were inserted since a wrong relocalisation, and continues from the inertially predicted
-/// pose. The search after a tracking failure also starts from the pose of the wrong relocalisation.
+/// pose.
 void LidarInertialOdometry::Impl::revert_to_inertial_pose() {
   map.remove_sweeps_since(
       std::exchange(alternative->first_inserted_sweep, 0));  // 0, because pruning changes sweep numbers

@@ -9,8 +9,8 @@
 
 namespace tumble::mapping {
 
-/// The sum of outer products equals Eigen's rankUpdate bit for bit. Eigen's rankUpdate needs 86 KiB of stack for 128
-/// columns of 28 numbers; OuterProducts uses the heap.
+/// OuterProducts computes the same sums of outer products as Eigen's rankUpdate, bit for bit, but on the heap. Eigen's
+/// rankUpdate needs 86 KiB of stack for 128 columns of 28 numbers.
 template <int Rows, int Columns>
 class OuterProducts {
  public:

@@ -16,7 +16,8 @@ namespace tumble::mapping {
 
 namespace {
 
-// Maximum standard deviation of the predicted attitude with which a sweep with too few matches extends the map.
+// A sweep with too few matches extends the map only if the standard deviation of its predicted attitude is below this
+// limit.
 constexpr double kExtendSigmaMax_rad = 0.1;
 // Minimum prior standard deviation of the saturation deficit of a clipped gyro axis.
 constexpr double kDeficitSigmaMin_rad_s = 1.0;
@@ -24,18 +25,18 @@ constexpr double kDeficitSigmaMin_rad_s = 1.0;
 constexpr double kDeficitTime_s = 0.3;
 // Maximum growth factor of the gyro's saturation deficit from one sweep to the next.
 constexpr double kDeficitCarryMax = 3.0;
-// The saturation deficit of the gyro is estimated at start, middle and end of each sweep. At each of the three times,
-// the saturation deficit also has an independent error, with kKnotSigmaRatio times its standard deviation.
+// The gyro's saturation deficit is estimated at start, middle and end of each sweep. Each of the three estimates has an
+// additional independent error of this fraction of its standard deviation.
 constexpr double kKnotSigmaRatio = 0.05;
 // Standard deviation of the velocity during the initial rest.
 constexpr double kStartSigma_m_s = 0.01;
-// Minimum number of consecutive sweeps at rest before kCreepMax_m_s applies.
+// Minimum number of consecutive sweeps at rest before the predicted velocity is set to zero.
 constexpr int kRestingSweepsMin = 3;
 
 namespace u = unknowns;
 using Params = LidarInertialOdometry::Params;
 
-/// The saturation deficit of the gyro at the end of a sweep continues in the next sweep, and decays exponentially:
+/// The gyro's saturation deficit at the end of a sweep continues in the next sweep, and decays exponentially:
 /// mapping.md (R48).
 void propagate_saturation_deficit(const Params& params, const SweepBoundary& boundary,
                                   const SweepTrajectory& trajectory, Prediction& next) {
@@ -57,8 +58,6 @@ void propagate_saturation_deficit(const Params& params, const SweepBoundary& bou
   }
 }
 
-/// Returns the largest standard deviation of the rate over the samples in which the gyro axis `axis` is clipped. The
-/// result is at least kDeficitSigmaMin_rad_s.
 double saturation_deficit_sigma(const MotionWindow& window, const SweepTrajectory& trajectory, int axis) {
   double sigma = kDeficitSigmaMin_rad_s;
   for (const MotionSample& sample : window.samples) {
@@ -68,9 +67,8 @@ double saturation_deficit_sigma(const MotionWindow& window, const SweepTrajector
   return sigma;
 }
 
-/// The saturation deficit of the gyro is modelled as a first-order Gauss-Markov process: mapping.md (R46), (R47). If
-/// the saturation continues from the last sweep, the process noise of the saturation deficit has the covariance of
-/// mapping.md (R49).
+/// The gyro's saturation deficit is modelled as a first-order Gauss-Markov process: mapping.md (R46), (R47). If the
+/// saturation continues from the last sweep, the process noise is smaller: mapping.md (R49).
 void add_saturation_deficit_noise(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory,
                                   Prediction& next) {
   if (!params.expert.saturated_imu.estimate_deficit) return;

@@ -13,12 +13,12 @@ struct SweepBoundary {
   StateEstimate state_estimate;
   /// derivative of the unknowns at the end of the last sweep with respect to the unknowns at its start
   Registration::Matrix end_by_start_jacobian = Registration::Matrix::Identity();
-  /// Absolute value of the factor s_j of the saturation deficit of gyro axis j, at the end of the last sweep:
-  /// mapping.md (R8). The absolute value of s_j is the standard deviation of the rate, divided by its largest value
-  /// over the clipped samples. The factor s_j of an unclipped axis is 0.
+  /// Absolute value of the saturation factor s_j of each gyro axis at the end of the last sweep: mapping.md (R8). This
+  /// value is the standard deviation of the angular rate, divided by its maximum over the clipped samples. The value of
+  /// an unclipped axis is 0.
   Eigen::Vector3d clipped_axis_sign = Eigen::Vector3d::Zero();
   Eigen::Matrix3d clipped_velocity_variance_m2_s2 =
-      Eigen::Matrix3d::Zero();              ///< variance of the velocity due to the accelerometer's saturation, in W
+      Eigen::Matrix3d::Zero();              ///< velocity covariance due to accelerometer saturation, in frame W
   bool all_directions_constrained = false;  ///< surfaces constrained the last sweep in all directions
 
   TimeNs time_ns() const { return state_estimate.mean.state.time_ns; }
@@ -51,7 +51,7 @@ Prediction predict(const LidarInertialOdometry::Params& params, const SweepBound
                    const MotionWindow& window, const SweepTrajectory& trajectory,
                    const std::optional<OdometerReading>& reading);
 
-/// At rest after a tracking failure, a prediction of zero motion stops the drift of the velocity.
+/// Predicts zero velocity for a sweep at rest after a tracking failure, which stops the drift of the velocity.
 void predict_stationary_sweep(const SweepBoundary& boundary, Prediction& prediction);
 
 bool prior_is_certain(const LidarInertialOdometry::Params& params, const SweepBoundary& boundary,
@@ -64,9 +64,8 @@ StateEstimate posterior(const Prediction& prediction, const Registration::Result
 /// Returns the normalised difference between registered and predicted motion: mapping.md (R62).
 double innovation(const Prediction& prediction, const Registration::Estimate& aligned);
 
-/// See mapping.md (R67). A registered pose agrees with the prediction if the difference passes a chi-square test, and
-/// the distance is at most the matching distance. If the registered position differs from the prediction by more than
-/// the matching distance, returns may match wrong surfaces by chance.
+/// Returns whether the difference between registered and predicted pose passes a chi-square test, and is at most the
+/// matching distance: mapping.md (R67). At larger distances, lidar returns may match wrong surfaces by chance.
 bool agrees_with_prediction(const LidarInertialOdometry::Params& params, const Prediction& prediction,
                             const Registration::Estimate& aligned, double innovation);
 

@@ -17,7 +17,7 @@ struct SurfacePoint {
   Eigen::Vector3f normal_W;
 };
 
-/// The surface points are ordered by distance from `p_WI_m`.
+/// Returns points on planar surfaces within `radius_m` of `p_WI_m`, nearest first.
 std::vector<SurfacePoint> surface_points(const VoxelMap& map, const Eigen::Vector3f& p_WI_m, float radius_m);
 
 struct FramePose {

@@ -58,7 +58,8 @@ class SweepMotion {
     return time_ns >= predicted_estimate_.state.time_ns - beyond_ns && time_ns <= window_.end_ns + beyond_ns;
   }
 
-  /// The effect of the process noise grows linearly with the time in the sweep: mapping.md (R34).
+  /// The effect of the process noise is assumed to grow linearly with the time since the start of the sweep: mapping.md
+  /// (R34).
   MotionInstant at(TimeNs time_ns, const StateOffsets& offsets) const {
     MotionInstant out;
     const double t_s = seconds(time_ns - predicted_estimate_.state.time_ns);
@@ -177,7 +178,6 @@ bool compute_gains(const MotionNoise& within, UpdateWorkspace& work) {
   return true;
 }
 
-/// Returns false if the Kalman gain is undefined.
 [[gnu::noinline]] bool iterate_to_convergence(const OdometerReading& reading, const SweepMotion& sweep,
                                               const MotionNoise& within, UpdateWorkspace& work) {
   for (int iteration = 0; iteration < kIterations; ++iteration) {
@@ -232,7 +232,7 @@ void fuse_reading(const OdometerReading& reading, const SweepBoundary& boundary,
   // mapping.md (R37).
   propagate_covariance(prediction.boundary_jacobian, boundary.state_estimate.prior_weight_covariance,
                        work->start_covariance);
-  Matrix& before = work->noise_covariance;  // noise at the start: saturation deficit, earlier saturation
+  Matrix& before = work->noise_covariance;  // noise at the start, due to gyro and accelerometer saturation
   before = prediction.noise;
   u::sub_block(before, u::motion) -= within;
   work->start_covariance += before;

@@ -212,7 +212,7 @@ Status Registration::finalise(const RegistrationProblem& problem, const Iteratio
 /// See mapping.md (R30), (R31).
 void Registration::compute_eigenvalues(std::span<const SweepPoint> points, double kernel_m, const Sums& sum,
                                        Result& result) const {
-  Eigen::Matrix<double, 6, 6> shape = Eigen::Matrix<double, 6, 6>::Zero();  // weighted robustly, but not by variance
+  Eigen::Matrix<double, 6, 6> shape = Eigen::Matrix<double, 6, 6>::Zero();  // robust weights without variances
   double weight = 0.0, lever2 = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (matches_[i].plane.verdict != PlaneVerdict::plane) continue;

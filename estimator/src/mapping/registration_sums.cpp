@@ -100,8 +100,8 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, NearestNei
   if (match.plane_searched) {
     const float moved2 = (positions_[point] - match.search_position_W_m).squaredNorm();
     if (moved2 <= rematch2) return;
-    // The new search radius includes all neighbours of the previous search, so a smaller radius than the matching
-    // distance suffices.
+    // The sphere around the moved point that contains all neighbours of the previous search is large enough for the new
+    // search.
     radius_m = std::min(radius_m, kRounding * (match.farthest_neighbour_m + std::sqrt(moved2)));
   }
   match.plane_searched = true;
@@ -168,9 +168,9 @@ double Registration::kernel_width_m() {
 void Registration::accumulate_block(std::span<const SweepPoint> points, std::size_t block,
                                     const SweepTrajectory& trajectory, const LidarImuCalibration& calibration,
                                     const Unknowns& unknowns, double kernel_m, Products& products, Sums& sum) {
-  // Each matched point has one column in `rows`, which contains the derivatives of the point's distance from its plane.
-  // The vector `weighted` contains the distance of each matched point from its plane. Derivatives and distance are
-  // multiplied by the square root of the match's weight.
+  // Each column of `rows` contains the derivatives of one matched point's distance from its plane. The vector
+  // `weighted` contains the distances. Derivatives and distances are multiplied by the square roots of the matches'
+  // weights.
   auto& rows = products.columns;
   Eigen::Matrix<double, static_cast<int>(kPointsPerPartialSum), 1> weighted;
   const bool rigid = !unknowns.deficit_free && !unknowns.calibration_free;
@@ -223,7 +223,7 @@ void Registration::accumulate(std::span<const SweepPoint> points, const SweepTra
 
 /// SurfaceNormalNoise is the part of the registration's normal matrix H that errors of the surface normals cause:
 /// mapping.md (R28), (R29). Errors of the surface normals add false information, also in directions of motion that the
-/// surfaces do not constrain. SurfaceNormalNoise contains rows and columns of all free unknowns.
+/// surfaces do not constrain.
 struct Registration::SurfaceNormalNoise {
   const Unknowns& unknowns;
   using Products = mapping::OuterProducts<kUnknowns, 2 * static_cast<int>(kPointsPerPartialSum)>;
@@ -261,8 +261,8 @@ struct Registration::SurfaceNormalNoise {
   }
 };
 
-/// ClusterGradients sums the gradients of the lidar returns in each cube of the map. From the sum of each cube,
-/// ClusterGradients computes the covariance of the whole gradient: mapping.md (R26).
+/// ClusterGradients sums the cost gradients of the lidar returns in each cube of the map, because nearby residuals are
+/// correlated. The covariance of the whole gradient follows from the sums of all cubes: mapping.md (R26).
 struct Registration::ClusterGradients {
   SpatialHash& cluster_index;
   std::vector<Vector>& gradients;

@@ -12,12 +12,11 @@ namespace tumble::mapping {
 
 namespace {
 
-// A sweep confirms a relocalisation if at least the fraction kConfirmInlierRatio of its residuals is within three
-// standard deviations. A sweep with a smaller fraction contradicts the relocalisation. Normally distributed residuals
-// give 0.997.
+// A sweep confirms a relocalisation if at least this fraction of its point-to-plane residuals is within three standard
+// deviations. Normally distributed residuals give 0.997.
 constexpr double kConfirmInlierRatio = 0.9;
-// Maximum number of repetitions of a failed registration, per sweep. Each repeated registration starts with a larger
-// saturation deficit of the gyro.
+// Maximum number of repetitions of a failed registration, per sweep. Each repetition starts with a larger saturation
+// deficit of the gyro.
 constexpr int kDeficitTriesMax = 5;
 // Smallest increase of the gyro's initial saturation deficit when a failed registration is repeated.
 constexpr double kDeficitTry_rad_s = 3.0;
@@ -29,13 +28,13 @@ using Params = LidarInertialOdometry::Params;
 // Repeated registrations increase the gyro's initial saturation deficit by kDeficitTry_rad_s times an element of
 // kDeficitTries.
 constexpr double kDeficitTries[] = {1.0, 2.0, 3.0, 5.0};
-constexpr double kDeficitSigmas = 5.0;  // largest tried increase, in standard deviations
+constexpr double kDeficitSigmas = 5.0;  // largest tried increase of the saturation deficit, in standard deviations
 
 constexpr int kStartsPerRound = 12;  // number of initial poses per round: six axes, two directions
 constexpr double kStartSigmas = 1.5;
 constexpr double kShiftMin_m = 0.3, kRotationMin_rad = 0.1;  // closer starting poses converge to one pose
-// Maximum distance and rotation between starting pose and predicted pose in the first round: mapping.md (R66). In round
-// n of the search, the maximum distance and the maximum rotation are n times their values of the first round.
+// Maximum distance and rotation between starting pose and predicted pose in the first round: mapping.md (R66). Round n
+// of the search uses n times these values.
 constexpr double kShift_m = 1.0, kRotation_rad = 0.3;
 constexpr int kRounds = 3;
 
@@ -43,13 +42,13 @@ bool converged(const Registration::Result& found) {
   return found.verdict == RegistrationVerdict::converged;
 }
 
-/// Returns whether enough matched points of a registration are close to their surfaces: mapping.md (R68).
+/// See mapping.md (R68).
 bool is_sufficient_fit(const Registration::Result& found) {
   return double(found.inliers) >= kConfirmInlierRatio * double(found.matches);
 }
 
-/// If the registration fails and a gyro axis is clipped, the registration is repeated with larger saturation deficits.
-/// Saturation within one sweep may rotate the initial pose by a radian.
+/// Gyro saturation within one sweep may rotate the predicted pose by a radian. A failed registration is therefore
+/// repeated with larger saturation deficits of the clipped gyro axes.
 void track_sweep(const Params& params, const Registration::Prior& prior, const RegistrationScene& scene,
                  SweepAligner& aligner, SweepTrajectory& trajectory, Registration::Result& found) {
   aligner.align_with_all_points(prior, scene, trajectory, found);

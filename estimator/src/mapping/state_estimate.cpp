@@ -9,9 +9,8 @@ namespace tumble::mapping {
 
 using Matrix = Registration::Matrix;
 
-/// See mapping.md (R54), (R55). The first lidar pose defines the map frame. The lidar's mounting on the IMU determines
-/// the initial IMU pose and the direction of gravity in the map frame. An error of the lidar's mounting causes errors
-/// of the initial IMU pose and of gravity's direction in the map frame.
+/// See mapping.md (R54), (R55). The first lidar pose defines the map frame. An error of the lidar's mounting therefore
+/// causes errors of the initial IMU pose and of gravity's direction in the map frame.
 StateEstimate estimate_at_start(const LidarInertialOdometry::Params& params, const MotionState& levelled) {
   namespace u = unknowns;
   StateEstimate state_estimate;
@@ -75,9 +74,9 @@ Eigen::Matrix3d velocity_covariance_I(const MotionState& state, const MotionErro
   return J * errors * J.transpose();
 }
 
-/// The number of rows of each matrix block is a multiple of the SIMD packet size. Because of this number of rows, the
-/// products of the matrix blocks add their terms in the same order as propagate_covariance(). The rows of the
-/// transition matrix F for mounting and other constants are rows of the identity: mapping.md (R11).
+/// Each matrix block has a multiple of the SIMD packet size as its number of rows. The products of the matrix blocks
+/// therefore add their terms in the same order as propagate_covariance(). The rows of the transition matrix F for
+/// mounting and other constants are rows of the identity: mapping.md (R11).
 Matrix propagate_pose_and_mounting(const Matrix& F, const Matrix& errors) {
   constexpr int kSize = 8, kMounting = 16;
   static_assert(kMounting >= Registration::kMotionSize && kMounting <= Registration::kFirstCalibrationUnknown &&

@@ -11,8 +11,8 @@ namespace tumble::mapping {
 /// `state_error_covariance`.
 struct StateEstimate {
   Registration::Estimate mean;  ///< mean; the covariance of its state is the motion block of `prior_weight_covariance`
-  /// `prior_weight_covariance` is larger than for independent lidar returns, because a heuristic factor reduces the
-  /// weights of lidar returns.
+  /// Covariance with which the registration weights its prior. A heuristic factor for correlated lidar residuals makes
+  /// this covariance larger than for independent residuals.
   Registration::Matrix prior_weight_covariance = Registration::Matrix::Zero();
   /// covariance of the actual errors of the state `mean`
   Registration::Matrix state_error_covariance = Registration::Matrix::Zero();
@@ -51,7 +51,7 @@ void at_end(const StateEstimate& at_start, const SweepTrajectory& trajectory,
 /// mapping.md (R54).
 Eigen::Matrix<double, 6, 6> pose_mounting_jacobian(const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& p_IL_m);
 
-/// Small variances replace zeros.
+/// Adds a small variance to each unknown, because fixed unknowns have variance 0.
 Registration::Matrix make_invertible(const Registration::Matrix& covariance);
 
 }  // namespace tumble::mapping

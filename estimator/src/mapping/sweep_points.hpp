@@ -26,7 +26,7 @@ class SweepPoints {
   /// check_point_selection().
   Status select_returns(const Params& params, std::span<const LidarPoint> returns, TimeNs span_ns,
                         const LidarImuCalibration& calibration, double start_s, Counts& counts);
-  /// Selects one point per cube of the world for the registration, with the points at their predicted positions.
+  /// Selects one point per voxel of the world frame for the registration, based on the predicted point positions.
   void choose_points_per_voxel(const Params& params, const SweepTrajectory& predicted);
   void apply_calibration_shift(const LidarImuCalibration& calibration, double later_s) {
     apply_calibration(calibration, later_s, all_);

@@ -12,7 +12,7 @@ namespace tumble {
 
 namespace {
 
-/// Returns for each axis the largest standard deviation of a clipped rate before `end_ns`.
+/// Returns for each gyro axis the largest standard deviation of a clipped rate before `end_ns`.
 Eigen::Vector3d max_rate_sigma_per_axis(std::span<const MotionSample> samples, TimeNs end_ns) {
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();
   for (const MotionSample& sample : samples) {
@@ -24,14 +24,15 @@ Eigen::Vector3d max_rate_sigma_per_axis(std::span<const MotionSample> samples, T
   return sigma;
 }
 
-/// Returns the signed factors s_j by which the saturation deficit of each axis changes the rate of a sample: mapping.md
-/// (R8).
+/// Returns the signed factors s_j by which the saturation deficit of each gyro axis changes the rate of a sample:
+/// mapping.md (R8).
 Eigen::Vector3d clipped_axis_signs(const MotionSample& sample, const Eigen::Vector3d& least_known_rad_s) {
   Eigen::Vector3d share = Eigen::Vector3d::Zero();
   for (int axis = 0; axis < 3; ++axis) {
     if (!(sample.clipped_axes >> axis & 1)) continue;
     share[axis] = least_known_rad_s[axis] > 0.0 ? sample.rate_sigma_rad_s[axis] / least_known_rad_s[axis] : 1.0;
-    // The true rate has a larger magnitude than a saturated reading. In a gap, the sign of the rate's error is unknown.
+    // The true rate has a larger magnitude than a saturated reading. In a gap between IMU samples, the sign of the
+    // interpolated rate's error is unknown.
     if (sample.w_WI_I_rad_s[axis] < 0.0 && !sample.bridges_gap) share[axis] = -share[axis];
   }
   return share;

@@ -23,7 +23,7 @@ struct TrackingLost {
 };
 
 /// Relocalised is the state after an unconfirmed relocalisation: mapping.md (R67), (R68). Inertial prediction continues
-/// in parallel, and replaces a relocalisation that a sweep contradicts.
+/// in parallel. If a later sweep contradicts the relocalisation, the predicted pose replaces the relocalised pose.
 struct Relocalised {
   int rejected_sweeps_before = 0;  ///< number of rejected sweeps before the relocalisation
   int failed_searches = 0;

@@ -26,7 +26,7 @@ inline constexpr UnknownRange<Registration::kFirstCalibrationUnknown + 3, 3> mou
 inline constexpr UnknownRange<Registration::kFirstCalibrationUnknown + 6, 1> clock;
 inline constexpr UnknownRange<Registration::kFirstCalibrationUnknown + 7, 3> gravity;
 
-/// A prior variance above 0 keeps the prior covariance invertible.
+/// This variance is added to the variance of each unknown, so that the prior covariance is invertible.
 inline constexpr double kMinVariance = 1e-12;
 /// 95 % quantile of the chi-square distribution with nine degrees of freedom, used in mapping.md (R25), (R67)
 inline constexpr double kAgreementChi2Max = 16.9;

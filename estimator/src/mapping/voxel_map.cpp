@@ -43,8 +43,7 @@ void squared_axis_distances(float fraction, float voxel_m, int reach, float* dis
 using Floats [[gnu::vector_size(16)]] = float;
 using Ints [[gnu::vector_size(16)]] = std::int32_t;
 
-/// Compares each element of `values` with `limit`, and returns the results as a bit mask, without branches. The bit of
-/// an element is 1 if the element is at most `limit`.
+/// Returns a bit mask of the elements of `values` that are at most `limit`, without branches.
 inline std::uint32_t values_within_limit(float limit, const Floats (&values)[4]) {
   constexpr Ints kFirst = {1, 2, 4, 8};
   const Floats limits = {limit, limit, limit, limit};
@@ -80,8 +79,7 @@ inline Eigen::Vector3i VoxelMap::VoxelGroup::of(const Eigen::Vector3i& cell) {
   return {cell.x() >> kBits, cell.y() >> kBits, cell.z() >> kBits};
 }
 
-/// Iterates over rows of cells near a cell, and returns the occupied cells of each row. Each group of 8 x 8 x 8 cells
-/// is looked up in the hash table at most once.
+/// NeighbourVoxelRows looks up each group of 8 x 8 x 8 cells in the hash table at most once per neighbour search.
 class VoxelMap::NeighbourVoxelRows {
  public:
   NeighbourVoxelRows(const VoxelMap& map, const Eigen::Vector3i& cell, int reach)
@@ -237,7 +235,7 @@ void VoxelMap::remove_sweeps_from(std::uint32_t first_sweep) {
   for (std::uint32_t index = 0; index < index_end(); ++index) {
     if (!exists(index) || sweep_[index] >= first_sweep) continue;
     const Eigen::Vector3f position = position_W_m(index);
-    // move() may have displaced two points into one cube with the edge length `spacing_m`. `kept` contains both points.
+    // Smoothing may have moved two points into one cube with the edge length `spacing_m`. The map keeps both points.
     if (params_.spacing_m > 0.0) kept.occupied_cubes_.add(SpatialHash::key(voxel_cube_of(position, cubes_per_m_)));
     const std::uint32_t now = kept.store_point(position, sigma_m_[index], sweep_[index], line_[index]);
     kept.seen_through_counts_[now] = seen_through_counts_[index];

@@ -20,7 +20,7 @@ class WorldCovariance {
         last_map_extension_W_m_(p_WI_m),
         mounting_jacobian_at_start_(pose_mounting_jacobian(q_WI, p_IL_m)) {}
 
-  /// The prior map is assumed exact.
+  /// Returns the covariance after localisation in a prior map, which is assumed exact.
   static WorldCovariance covariance_in_prior_map(const WorldCovarianceParams& params, const Eigen::Vector3d& p_WI_m);
 
   /// Returns the covariance of the IMU pose in the world frame, at the IMU position `p_WI_m`. `joint` is the covariance

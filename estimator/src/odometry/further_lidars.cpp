@@ -16,7 +16,7 @@ namespace tumble {
 
 namespace {
 
-// Different lidars have different ring numbers, because LoneReturns compares returns within one ring.
+// Offset between the ring numbers of two lidars, because LoneReturns compares returns within one ring.
 constexpr std::uint16_t kRingsPerLidar = 4096;
 constexpr double kOffsetMax_s = 1.0;
 

@@ -14,17 +14,16 @@
 namespace tumble {
 
 /// Adds the points of further lidars to the sweeps of the first lidar. FurtherLidars transforms each point to axes of
-/// the first lidar, and adds the point to the sweep that contains the point's time. A copy of a FurtherLidars object
-/// contains the complete state.
+/// the first lidar, and adds the point to the sweep that contains the point's time.
 class FurtherLidars {
  public:
   FurtherLidars() = default;
-  /// Throws InvalidParams for a pose, range or offset that is not finite, for swapped corners of a box, or for an
-  /// offset beyond a second. `T_IL_first` is the pose of the first lidar.
+  /// Throws InvalidParams for a non-finite pose, range or time offset, for swapped corners of an own-body box, or for a
+  /// time offset above 1 s. `T_IL_first` is the pose of the first lidar in the IMU frame.
   FurtherLidars(std::span<const FurtherLidar> lidars, const Eigen::Isometry3d& T_IL_first);
 
-  /// Lidars are counted from 1. See TumblingOdometry::add_sweep(). If more than `most` sweeps wait, the oldest sweep is
-  /// dropped.
+  /// `lidar` is the number of the further lidar, counted from 1. See TumblingOdometry::add_sweep(). If more than `most`
+  /// sweeps are stored, the oldest sweep is dropped.
   Status add(std::size_t lidar, TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, TimeNs latest_ns,
              std::size_t most);
   /// Adds the stored points whose times are within a sweep to the sweep, and drops earlier points. Cost: O(stored

@@ -19,10 +19,9 @@ using Kind = HealthFinding::Kind;
 
 constexpr const char* kImu = "imu";
 constexpr double kSlopeTolerance = 0.02, kSlopeAgreementMin = 0.99;
-// A body counts as hand-held if at least this fraction of its samples is classified as hand-held. In recordings of
-// hand-held motion, at least 91 % of the samples were classified as hand-held. In recordings of throws with correctly
-// labelled sensor axes, at most 25 % of the samples were classified as hand-held. In recordings of throws with wrongly
-// labelled sensor axes, mostly less than 60 % of the samples were classified as hand-held.
+// The body counts as hand-held if at least this fraction of the samples is classified as hand-held. In recordings, the
+// fraction is at least 91 % for hand-held motion, and at most 25 % for throws. For throws with wrongly labelled sensor
+// axes, the fraction is mostly below 60 %.
 constexpr double kRepeatedFraction = 0.8;
 
 double rate_max_so_far_rad_s(std::span<const ImuSample> samples) {
@@ -42,14 +41,14 @@ Status check_force_at_rest(const ImuDescription& imu, std::span<const ImuSample>
   return gravity.gravity_magnitude_verdict(state);
 }
 
-/// Returns whether the gyro agrees with the measured rotation of gravity.
+/// Returns whether the gyro agrees with the rotation of the specific-force vector.
 bool check_readings(const ImuDescription& imu, std::span<const ImuSample> samples, SensorHealth& health) {
   const ImuPlausibility plausibility(plausibility_setup(imu.gravity_m_s2, imu.is_merged ? 0.0 : imu.gyro_range_rad_s));
   ImuPlausibility::State state;
   for (const ImuSample& sample : samples) plausibility.step(sample, state);
   add_findings(plausibility, state, kImu, health);
   health.add(Kind::force_at_rest, check_force_at_rest(imu, samples), kImu);
-  if (!imu.is_merged) {  // several IMUs are on a sphere, which does not rotate about a pivot
+  if (!imu.is_merged) {  // several IMUs are assumed to be on a sphere, which does not rotate about a pivot
     const PivotMotionCheck pivots =
         PivotMotionCheck::of(samples, imu.gravity_m_s2, imu.gyro_range_rad_s, imu.accel_range_m_s2);
     health.add(Kind::rotation, pivots.verdict(), kImu);
@@ -69,7 +68,7 @@ void check_flight_forces(const ImuDescription& imu, std::span<const ImuSample> s
   health.add(Kind::inverted_accel_in_flight, sense.verdict(state), kImu);
 }
 
-/// The estimated rates must rotate gravity correctly from each rest to the next rest.
+/// The estimated angular rates must rotate the gravity vector of each rest to the gravity vector of the next rest.
 void check_stationary_gravity(const ImuDescription& imu, std::span<const ImuSample> samples,
                               std::span<const AngularRateState> rates, SensorHealth& health) {
   const RestGravity gravity = rest_gravity(imu);

@@ -17,7 +17,6 @@ ImuSample absent_sample(TimeNs time_ns) {
   return sample;
 }
 
-/// Returns the newest time stamp of an IMU. If the IMU has no readings, returns the first time stamp of all IMUs.
 TimeNs newest_ns(std::size_t unit, const ImuTimeAlignment::State& state) {
   const std::vector<ImuSample>& readings = state.readings[unit];
   return readings.empty() ? *state.first_ns : readings.back().time_ns;
@@ -85,7 +84,6 @@ bool ImuTimeAlignment::next(State& state, Readings& out, bool ended) const {
   return true;
 }
 
-/// A silent reference IMU is replaced by another IMU.
 void ImuTimeAlignment::choose_reference(State& state) const {
   const std::vector<ImuSample>& readings = state.readings[state.reference_imu];
   if (samples_after_common_time(readings, state) != readings.end() || !is_silent(state.reference_imu, state)) return;

@@ -16,10 +16,10 @@ namespace tumble {
 ///
 /// The common times are the time stamps of the reference IMU, which is initially the first IMU. If the reference IMU
 /// has no reading for kSilentMax_s while another IMU has, the next IMU with readings becomes the reference. The
-/// readings of all IMUs except the reference IMU are interpolated linearly (ImuInterpolation). An IMU without a reading
-/// within kSilentMax_s before and after a common time is absent at that time. The alignment is causal, and its output
-/// is at most kSilentMax_s late. A common time is complete when each IMU has a later reading or is silent for
-/// kSilentMax_s.
+/// readings of all IMUs except the reference IMU are interpolated linearly (ImuInterpolation). An IMU is absent at a
+/// common time if its previous or next reading is more than kSilentMax_s away. The alignment is causal, and its output
+/// is at most kSilentMax_s late. The resampled readings are returned when each IMU has a reading at or after the common
+/// time, or no reading for kSilentMax_s.
 ///
 /// Cost: O(1) per reading. The stored readings cover kSilentMax_s.
 class ImuTimeAlignment {
@@ -43,7 +43,8 @@ class ImuTimeAlignment {
   Status push(std::size_t unit, const ImuSample& sample, State& state) const;
 
   /// `out` receives the readings of all IMUs at the next common time; the rates of an absent IMU are NaN. Returns false
-  /// while an IMU may still send a reading before the next common time. `ended` states that no more readings follow.
+  /// while an IMU may still send a reading before the next common time. If `ended` is true, next() does not wait for
+  /// further readings.
   bool next(State& state, Readings& out, bool ended = false) const;
 
  private:

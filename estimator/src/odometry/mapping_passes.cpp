@@ -13,7 +13,8 @@ namespace {
 
 constexpr int kExtraPassesMax = 3;
 constexpr std::size_t kSweepsPerRejection = 5;
-// If a pass contradicts the stated mounting, the next pass assumes at least these standard deviations.
+// If a mapping pass contradicts the given lidar mounting, the next pass assumes at least these standard deviations of
+// the mounting.
 constexpr double kUncertainMountSigma_rad = 0.1, kUncertainMountSigma_m = 0.5;
 
 /// Cuts the last sweep at the end of the IMU data, if at least half of the sweep remains. Without cutting, a small
@@ -61,7 +62,7 @@ class MappingPass {
     if (out_.status.ok()) add_points(sweep);
   }
 
-  /// While the lidar provides no sweeps, TumblingOdometry adds empty sweeps, also during live operation.
+  /// While the lidar provides no sweeps, empty sweeps are added, as TumblingOdometry does in live operation.
   void add_time_without_sweeps(TimeNs to_ns) {
     while (out_.status.ok() && last_end_ns_) {
       const TimeNs silent_ns = *last_end_ns_ + offset_ns_ + static_cast<TimeNs>(1e9 * kLidarSilent_s);
@@ -138,7 +139,6 @@ Params with_uncertain_mounting(Params params) {
   return params;
 }
 
-/// A pass that rejected many sweeps does not determine the calibration.
 bool determines_lidar_calibration(const MappedRecording& pass) {
   if (!pass.status.ok()) return false;
   std::size_t rejected = 0, located = 0;
@@ -188,7 +188,7 @@ double calibration_contradiction(const LidarImuCalibrationPrior& stated, const L
   Eigen::Matrix<double, 7, 1> sigma;
   sigma << Eigen::Vector3d::Constant(stated.mount_sigma_rad), Eigen::Vector3d::Constant(stated.mount_sigma_m),
       stated.time_offset_sigma_s;
-  constexpr double kRegular = 1e-4;  // fraction of the prior variance: a change without information does not count
+  constexpr double kRegular = 1e-4;  // fraction of the prior variance; keeps S positive if a pass adds no information
   const Matrix7 S = Matrix7(((1.0 + kRegular) * sigma.cwiseAbs2().array() + 1e-18).matrix().asDiagonal()) -
                     mapper.calibration_prior_covariance().topLeftCorner<7, 7>();
   const auto change = mapper.calibration().minus(stated.calibration);

@@ -17,9 +17,9 @@ namespace {
 using Kind = HealthFinding::Kind;
 
 constexpr double kSilentReported_s = 0.5;  // minimum duration without readings that is reported
-// standard deviation of the cross-axis sensitivity of a sensing element without an observed saturation plane
-// (SaturationPlane); 0: the element is aligned with its axis. With a standard deviation of 0.03, the rate would be
-// undetermined while three IMUs clip.
+// Sensing elements without an observed saturation plane are assumed aligned with their axis (standard deviation of the
+// cross-axis sensitivity). With a standard deviation of 0.03, the angular rate would be undetermined while three IMUs
+// clip.
 constexpr double kUnknownSlope = 0.0;
 
 struct ImuReadingSets {
@@ -96,7 +96,7 @@ void set_imus(const ImuReadingSets& units, ImuMerge::Setup& setup) {
             setup.accel_sensing_directions.begin());
 }
 
-/// TimeWithoutGaps removes gaps from time stamps, so that ImuMerge keeps its calibration.
+/// TimeWithoutGaps removes gaps from the time stamps of the IMUs, so that ImuMerge keeps the calibration of the IMUs.
 class TimeWithoutGaps {
  public:
   std::pair<TimeNs, bool> next(TimeNs time_ns) {
@@ -130,7 +130,7 @@ class TimeWithoutGaps {
   TimeNs last_ns_ = 0, step_ns_ = 1;
 };
 
-/// The calibration of the IMUs remains valid after a gap.
+/// Only the motion is reset after a gap, because the calibration of the IMUs remains valid.
 void reset_motion_state(ImuMerge::State& state) {
   for (ImuMerge::Unit& unit : state.imus) unit.window = {};
   state.rate_recovery.running = false;

@@ -15,10 +15,9 @@
 
 namespace tumble {
 
-/// Processes IMU samples and lidar sweeps once, in time order. MotionRegimeStream estimates the rates.
+/// Processes IMU samples and lidar sweeps once, in time order. MotionRegimeStream estimates the angular rates.
 /// LidarInertialOdometry processes the samples and sweeps for which rates are available. TumblingOdometry runs one
-/// OdometryPass live, and SecondMappingPass runs a second OdometryPass with the estimated calibration. A copy of an
-/// OdometryPass contains the complete state.
+/// OdometryPass live, and SecondMappingPass runs a second OdometryPass with the estimated calibration.
 class OdometryPass {
  public:
   /// first-in, first-out queue of samples that reuses its memory
@@ -33,7 +32,7 @@ class OdometryPass {
   /// Throws InvalidParams if a parameter is out of bounds.
   OdometryPass(const MotionRegimeStream::Params& rate, const LidarInertialOdometry::Params& mapping);
 
-  /// Passes the newest smoothed rate to the mapper. The smoothed rate is lag_s older than `sample`.
+  /// Adds an IMU sample, and passes the smoothed angular rate that is lag_s older to the mapper.
   Status add_imu(const ImuSample& sample);
   /// See LidarInertialOdometry::set_start_pose().
   void set_start_pose(const Eigen::Isometry3d& T_WI) { mapper_.set_start_pose(T_WI); }
@@ -44,7 +43,8 @@ class OdometryPass {
   bool has_rates_until(TimeNs end_ns) const;
   /// Returns the time, in the lidar's clock, up to which rates are available; empty before the first rate.
   std::optional<TimeNs> covered_ns() const;
-  /// Returns the time stamp of the first sample that is not earlier than the lidar time `end_ns` and has no rate yet.
+  /// Returns the time stamp of the first IMU sample at or after the lidar time `end_ns` whose rate is not yet
+  /// available.
   std::optional<TimeNs> covering_ns(TimeNs end_ns) const;
   /// `reading` is the odometer reading within the sweep, if any.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,

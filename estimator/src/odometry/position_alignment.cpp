@@ -20,7 +20,6 @@ constexpr double kDrift = 0.01;   // minimum assumed drift of the poses, as a fr
 
 const Eigen::Vector3d kUp = Eigen::Vector3d::UnitZ();
 
-/// Interpolates the trajectory of a sweep linearly.
 PoseState pose_at(const std::vector<PoseState>& trajectory, TimeNs time_ns) {
   const auto next = std::find_if(trajectory.begin(), trajectory.end() - 1,
                                  [&](const PoseState& pose) { return pose.time_ns >= time_ns; });
@@ -102,7 +101,7 @@ void PositionAlignment::restart_fit() {
   position_frame_.reset();
 }
 
-/// If the robot has hardly moved since the last reading, the function averages the last reading and the new reading.
+/// If the robot has hardly moved since the last position reading, the last reading and the new reading are averaged.
 void PositionAlignment::add_position_pair(const PositionReading& reading, const PoseState& pose) {
   const double variance_m2 = reading.covariance_m2.trace() / 3.0;
   const PositionPair pair{pose.position_W_m + pose.orientation_W * reading.antenna_lever_arm_I_m,

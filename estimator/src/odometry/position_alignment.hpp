@@ -12,10 +12,10 @@
 
 namespace tumble {
 
-/// Estimates PositionFrame from position readings, causally, by a weighted least-squares fit of heading and translation
-/// to the last 64 distinct positions. Readings whose positions are within half a standard deviation of each other are
-/// averaged. The weight of earlier positions decreases with the drift of the poses. A chi-square test (99.9 %) rejects
-/// up to a fifth of the positions as outliers. PositionAlignment does not change the poses and the map in W.
+/// Estimates heading and translation of the frame of position readings relative to W, causally. The method is a
+/// weighted least-squares fit to the last 64 distinct antenna positions. Readings whose positions are within half a
+/// standard deviation of each other are averaged. The weight of earlier positions decreases with the drift of the
+/// poses. A chi-square test (99.9 %) rejects up to a fifth of the positions as outliers.
 class PositionAlignment {
  public:
   static constexpr std::size_t kReadingsMax = 1024, kMaxPositionPairs = 64;
@@ -24,10 +24,10 @@ class PositionAlignment {
     double variance_m2 = 0.0, path_m = 0.0, pose_variance_m2 = 0.0;
   };
 
-  /// A reading waits until the sweep at its time is registered. Readings may arrive in any order. See
+  /// Stores a position reading until the sweep at its time is registered. Readings may arrive in any order. See
   /// TumblingOdometry::add_position().
   Status add(const PositionReading& reading, TimeNs done_ns, TimeNs latest_ns, std::size_t most);
-  /// Processes a registered sweep and the readings up to its end. Cost: O(n^2) for n stored positions.
+  /// Processes a registered sweep and the position readings up to its end. Cost: O(n^2) for n stored positions.
   void add_sweep(const SweepReport& report);
   /// Discards the processed readings after a change of the world frame W.
   void restart_fit();

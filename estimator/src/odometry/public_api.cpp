@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// public_api.cpp forwards the functions of TumblingOdometry and RollingOdometry to their private implementations.
 #include <memory>
 #include <utility>
 

@@ -13,7 +13,7 @@ using Kind = HealthFinding::Kind;
 
 constexpr double kUnitSilent_s = 0.5;  // time without readings after which an IMU counts as silent
 
-/// If the forces of all IMUs contradict gravity at rest, the finding concerns the merged IMU. If only some IMUs
+/// If the accelerometers of all IMUs contradict gravity at rest, the finding concerns the merged IMU. If only some IMUs
 /// contradict gravity, these IMUs get the finding `imu_disagrees`.
 void add_forces_at_rest(const MergedImuChecks& checks, std::size_t count, SensorHealth& health) {
   const auto verdict = [&](std::size_t unit) {
@@ -52,7 +52,7 @@ SensorHealth RollingOdometry::Impl::health() const {
   return out;
 }
 
-/// Adds findings about frozen axes. If other IMUs replace the frozen IMU, the finding is `imu_frozen`.
+/// If other IMUs replace an IMU with a frozen axis, the finding is `imu_frozen` instead of `frozen_axis`.
 void RollingOdometry::Impl::add_frozen_findings(const Frozen& frozen, SensorHealth& health) const {
   const std::size_t count = params_.imus.size();
   const auto end = frozen.begin() + static_cast<std::ptrdiff_t>(count);

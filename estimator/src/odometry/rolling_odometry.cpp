@@ -114,8 +114,7 @@ Status RollingOdometry::Impl::add_imu(std::size_t unit, const ImuSample& sample)
   return add_time_aligned_readings(false);
 }
 
-/// Processes the readings at all common times that ImuTimeAlignment has completed. `ended` is true if no further
-/// readings follow.
+/// `ended` is true if no further IMU readings follow. Returns the first error.
 Status RollingOdometry::Impl::add_time_aligned_readings(bool ended) {
   Status first;
   ImuTimeAlignment::Readings readings;
@@ -126,8 +125,8 @@ Status RollingOdometry::Impl::add_time_aligned_readings(bool ended) {
   return first;
 }
 
-/// The outlier filters delay suspect samples, until the next samples show which readings are outliers. When the outlier
-/// filters of all IMUs have decided, the function processes the delayed samples of all IMUs together.
+/// An outlier filter delays suspect samples of an IMU until later samples show which samples are outliers. When the
+/// filters of all IMUs have decided, the delayed samples of all IMUs are processed together.
 Status RollingOdometry::Impl::add_delayed_samples(std::span<const ImuSample> next) {
   bool open = false;
   for (std::size_t k = 0; k < next.size(); ++k) open = is_delayed_after(next, k) || open;
@@ -141,8 +140,8 @@ Status RollingOdometry::Impl::add_delayed_samples(std::span<const ImuSample> nex
   return {};
 }
 
-/// Returns whether the outlier filter still delays readings of the IMU `unit`. Marks rejected readings of the IMU
-/// `unit` as absent.
+/// Returns whether the outlier filter still delays readings of the IMU `unit`, and marks rejected readings of this IMU
+/// as absent.
 bool RollingOdometry::Impl::is_delayed_after(std::span<const ImuSample> next, std::size_t unit) {
   OutlierFilter::State& state = outlier_filter_state_[unit];
   if (state.delayed_count == 0) return false;
@@ -168,7 +167,7 @@ Status RollingOdometry::Impl::add_inliers(std::span<const ImuSample> samples) {
   if (Status status = sample_clock_.push(samples.front().time_ns, stamps, time_ns); !status.ok()) return status;
   Samples flagged = flag_clipped(samples);
   flagged.front().time_ns = time_ns;
-  *merge_state_buffer_ = *imu_merge_state_;  // either all parts accept the sample or none
+  *merge_state_buffer_ = *imu_merge_state_;  // a copy, so that a rejected sample changes no state
   Frozen frozen = frozen_imus_;
   for (std::size_t k = 0; k < samples.size(); ++k) frozen_axis_detectors_[k].step(samples[k], frozen[k]);
   const std::span<ImuSample> judged = std::span(flagged).first(samples.size());
@@ -193,9 +192,8 @@ Status RollingOdometry::Impl::add_inliers(std::span<const ImuSample> samples) {
   return {};
 }
 
-/// Sets the clip flags of saturated axes, without allocating memory. Samples that are not finite remain unchanged. Only
-/// confirmed saturation limits count, as defined by ConfirmedSaturation. Detecting a new saturation limit takes two to
-/// ten saturated samples, and these samples are not flagged.
+/// Sets the clip flags of saturated axes. Only confirmed saturation limits count, as defined by ConfirmedSaturation.
+/// Detecting a new saturation limit takes two to ten saturated samples, and these samples are not flagged.
 RollingOdometry::Impl::Samples RollingOdometry::Impl::flag_clipped(std::span<const ImuSample> samples) const {
   Samples out;
   std::copy(samples.begin(), samples.end(), out.begin());
@@ -209,8 +207,7 @@ RollingOdometry::Impl::Samples RollingOdometry::Impl::flag_clipped(std::span<con
   return out;
 }
 
-/// Updates the saturation limits with unflagged samples. Cost: O(1), except for rare searches for saturation planes
-/// (SaturationPlane). No memory is allocated.
+/// Cost: O(1), except for rare searches for saturation planes (SaturationPlane). No memory is allocated.
 void RollingOdometry::Impl::observe_saturation(std::span<const ImuSample> samples) {
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (!check_sample(samples[k]).ok()) continue;
@@ -280,7 +277,6 @@ Status RollingOdometry::Impl::finish() {
   return status;
 }
 
-/// Ends a run, and smooths the poses of the last `lag_s`.
 void RollingOdometry::Impl::end_continuous_run() {
   for (OutlierFilter::State& unit : outlier_filter_state_) OutlierFilter::finish(unit);
   delayed_count_ = 0;
@@ -296,7 +292,7 @@ void RollingOdometry::Impl::reset() {
   recorded_samples_ = {};
 }
 
-/// Resets all states of a run, except the readings that ImuTimeAlignment has not completed yet.
+/// Resets all states of a run, except the IMU readings that wait for resampling.
 void RollingOdometry::Impl::start_continuous_run() {
   sample_clock_state_ = {};
   imu_merge_state_ = {};

@@ -26,7 +26,7 @@ namespace tumble {
 
 /// start of a run of RollingOdometry after a gap or a step of the clock
 struct RollingRestart {
-  Eigen::Vector3d sphere_centre_W_m = Eigen::Vector3d::Zero();  ///< position of the sphere's centre
+  Eigen::Vector3d sphere_centre_W_m = Eigen::Vector3d::Zero();
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
 

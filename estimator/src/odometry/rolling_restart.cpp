@@ -11,7 +11,7 @@ namespace tumble {
 
 namespace {
 
-// standard deviations of the motion in a gap: speed, rate about the vertical, heading after a long gap
+// standard deviations of the motion in a gap of the IMU data: speed, rate about the vertical, heading after a long gap
 constexpr double kGapSpeed_m_s = 0.5, kGapTurn_rad_s = 1.0, kUnknownHeading_rad = 1.8;
 
 /// Removes the tilt from a pose covariance, because a restart levels the attitude.
@@ -50,7 +50,6 @@ void RollingOdometry::Impl::restart_at_newest(double gap_s) {
   restart_ = restart;
 }
 
-/// Computes the pose of the filter's frame in the world from the stated start pose and the filter's first pose.
 void RollingOdometry::Impl::initialise_pose() {
   if (!start_ || !state_->live_filter.started) return;
   const RollingEstimate first = RollingFilter::estimate(state_->live_filter);
@@ -62,7 +61,6 @@ void RollingOdometry::Impl::initialise_pose() {
   start_.reset();
 }
 
-/// Converts an estimate of the filter or the smoother from the filter's frame to the world.
 RollingEstimate RollingOdometry::Impl::transform_to_world(RollingEstimate estimate) const {
   estimate.uncertain = estimate.uncertain || restart_.has_value();
   if (!T_world_run_origin_) return estimate;

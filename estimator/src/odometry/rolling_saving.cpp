@@ -16,7 +16,7 @@ struct SavedRollingState {
   Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< stated position of the merged IMU
   std::uint32_t imu_count = 0;
   std::optional<RollingCalibration> calibration;  ///< empty before the first sample
-  std::optional<PoseState> pose;                  ///< pose of the centre; the covariance omits the tilt
+  std::optional<PoseState> pose;                  ///< pose of the sphere's centre; the covariance omits the tilt
 };
 
 template <class Visit, class Saved>

@@ -30,8 +30,8 @@ void visit_saturation_levels(Visit& visit, Rails& rails) {
 
 }  // namespace
 
-/// If a sensor clips after the compensation of misalignment, each output has a fixed saturation limit. Fixed saturation
-/// limits describe the saturated readings completely, so the saturation planes are not saved.
+/// If a sensor clips after misalignment compensation, each output has a fixed saturation limit, and saturation planes
+/// are not needed.
 void write_saturation_levels(const SaturationLevels& rails, SavedStateWriter& out) {
   SaturationLevels kept = rails;
   if (rails.gyro_clips_after_compensation) kept.gyro_planes = {};

@@ -17,16 +17,13 @@ constexpr double kAbandonAfter_s = 10.0;
 
 constexpr double kRest_s = 1.0;             // duration of the initial rest that is buffered
 constexpr std::size_t kSweepsPerSweep = 3;  // buffered sweeps that the second pass processes per new sweep
-// Factor on the calibration's variance, because the second pass uses the readings again.
+// Factor on the variances of the estimated calibration, because the second pass uses the same readings again.
 constexpr double kInflation = 4.0;
 constexpr double kBufferLead_s = 0.1;  // buffered time before the first sweep, because the clocks may differ
-constexpr std::size_t kSweepsPerExtraRejection =
-    20;  // rejections by second pass <= rejections by first pass + sweeps / kSweepsPerExtraRejection
-// The estimated calibration is not used if more than one in kSweepsPerRejection sweeps was rejected.
+constexpr std::size_t kSweepsPerExtraRejection = 20;  // sweeps per additional rejection that the second pass may have
+// The estimated lidar calibration is not used if more than one in kSweepsPerRejection sweeps was rejected.
 constexpr std::size_t kSweepsPerRejection = 5;
 
-/// Multiplies the covariance of each known saturation plane by kInflation. A saturation plane contains the readings of
-/// a saturated sensing axis.
 void start_from_saturation_levels(const SaturationLevels& known, AngularRateStream::Params& params) {
   params.expert.gyro_planes.known_limits = known.gyro_planes;
   params.expert.accel_saturation_planes.known_limits = known.accel_saturation_planes;

@@ -16,21 +16,18 @@ namespace tumble {
 
 /// Processes the first seconds of motion again with the calibration estimated so far, while the first pass continues.
 ///
-/// The first pass maps the start of a tumble while lever arm, mounting and time offset are still uncertain.
-/// SecondMappingPass buffers samples and sweeps from the end of the initial rest. After `after_s` of motion, the buffer
-/// is processed with the current calibration, and with rates smoothed with a lag of `lag_s`. The second pass processes
-/// three buffered sweeps per new sweep. When the second pass ends, its map and pose replace the map and pose of the
-/// first pass. The results of the second pass are discarded if the second pass rejected clearly more sweeps than the
-/// first pass. The results are also discarded if the second pass rejected the last sweep, but the first pass registered
-/// the last sweep.
+/// The first pass maps the start of a tumble while lever arm, lidar mounting and time offset are still uncertain.
+/// SecondMappingPass buffers IMU samples and sweeps from the end of the initial rest. After `after_s` of motion, the
+/// buffer is processed with the current calibration, and with angular rates smoothed with a lag of `lag_s`. The second
+/// pass processes three buffered sweeps per new sweep. When the second pass ends, its map and pose replace the map and
+/// pose of the first pass. The results of the second pass are discarded if the second pass rejected clearly more sweeps
+/// than the first pass. The results are also discarded if only the second pass rejected the last sweep.
 ///
-/// If tracking of the first pass has failed for `lost_s`, an early second pass starts immediately. The early second
-/// pass takes place at most once. After an early second pass, the regular second pass still takes place after `after_s`
-/// of motion. SecondMappingPass does not change earlier poses: the reported pose jumps by the error of the first pass.
+/// If tracking of the first pass has failed for `lost_s`, an additional early second pass starts immediately, at most
+/// once. SecondMappingPass does not change earlier poses: the reported pose jumps by the error of the first pass.
 ///
-/// SecondMappingPass stores samples and sweeps of 1 s at rest and of at most 10 s of motion. The second pass
-/// also needs memory for a second map. If a jolt ends the rest long before the tumble, the second pass starts too
-/// early.
+/// SecondMappingPass stores samples and sweeps of 1 s at rest and of at most 10 s of motion. The second pass also needs
+/// memory for a second map. If a jolt ends the rest long before the tumble, the second pass starts too early.
 class SecondMappingPass {
  public:
   using Params = SecondMappingPassParams;

@@ -18,8 +18,8 @@ struct RejectedStamps {
 /// after the last accepted time stamp is rejected with `gap`. The run restarts after a gap when the next time stamp
 /// confirms the rejected time stamp. After a backward step of the clock, the run restarts when rejected time stamps
 /// have increased for kStepBack_s. After only one accepted sample, one further time stamp is enough for a restart,
-/// because the accepted time stamp may be wrong. A single wrong time stamp causes the loss of one sample. OutlierFilter
-/// detects time stamps that are too late by less than `gap_max_s`.
+/// because the accepted time stamp may be wrong. OutlierFilter detects time stamps that are too late by less than
+/// `gap_max_s`.
 class StampOrder {
  public:
   static constexpr double kStepBack_s = 0.2;

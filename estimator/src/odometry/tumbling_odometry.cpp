@@ -211,10 +211,9 @@ void TumblingOdometry::Impl::register_sweep(TimeNs start_ns, TimeNs end_ns, std:
   if (second_mapping_pass_.is_applied() != applied_before) positions_.restart_fit();
 }
 
-/// Returns whether a sweep that ends at `end_ns` must be registered now, because its latency would exceed lag_s when
-/// the next sample arrives. The covering sample of a sweep is the first IMU sample at or after the end of the sweep. If
-/// a sweep ends in a gap of the IMU data, the first IMU sample after the sweep may be much later. A sweep is therefore
-/// due only if the first IMU sample after the sweep is also older than lag_s - 1.5 sample periods.
+/// Returns whether a sweep must be registered now, because its latency would exceed lag_s when the next IMU sample
+/// arrives. If the sweep ends in a gap of the IMU data, the first IMU sample after the sweep may be much later. A sweep
+/// is therefore due only if the first IMU sample after the sweep is also older than lag_s - 1.5 sample periods.
 bool TumblingOdometry::Impl::is_due(TimeNs end_ns) const {
   const std::optional<TimeNs> covering_ns = odometry_pass_.covering_ns(end_ns);
   if (!covering_ns) return false;
@@ -259,8 +258,7 @@ void TumblingOdometry::Impl::restart_rate_estimation() {
   start_rate_estimation();
 }
 
-/// Restarts the run at its newest pose after the clock has stepped back. Before the run restarts, all sweeps that IMU
-/// samples cover are registered.
+/// Restarts the run at its newest pose after the clock has stepped back.
 void TumblingOdometry::Impl::restart_at_newest() {
   ++restart_count_;
   PoseState pose;

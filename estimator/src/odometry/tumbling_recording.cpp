@@ -45,7 +45,6 @@ Status estimate_rates(const TumblingOdometry::Params& params, std::span<const Im
 
 }  // namespace
 
-/// Stores a sample until finish().
 Status TumblingOdometry::Impl::record_sample(const ImuSample& sample) {
   if (finished_) return {ErrorCode::out_of_range, "samples after finish()", 1.0, 0.0};
   StampOrder::Verdict verdict{};

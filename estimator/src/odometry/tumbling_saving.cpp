@@ -175,7 +175,7 @@ Status TumblingOdometry::Impl::load(std::span<const std::byte> bytes, std::optio
   if (saved.sensor_errors) rate.calibrated_errors = std::make_shared<KnownSensorErrors>(*saved.sensor_errors);
   odometry::start_from_saturation_levels(saved.saturation_levels, rate.saturation_detector, rate.expert.gyro_planes,
                                          rate.expert.accel_saturation_planes);
-  // The estimator assumes that the pose of each further lidar relative to the first lidar has no error.
+  // The poses of further lidars relative to the first lidar are assumed exact.
   for (FurtherLidar& further : params.further_lidars)
     further.T_IL = saved.lidar.calibration.T_IL * params.T_IL.inverse() * further.T_IL;
   params.T_IL = saved.lidar.calibration.T_IL;
