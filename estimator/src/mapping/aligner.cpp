@@ -37,12 +37,11 @@ Registration::Params coarse_params(const LidarInertialOdometry::Params& params) 
   out.expert.step_m = kCoarseStep_m;
   out.expert.step_rad = kCoarseStep_rad;
   out.expert.inlier_ratio_min = kCoarseInlierRatioMin;
-  // agreement with a displaced start permits no fewer matches
+  // For a displaced starting pose, agreement with the prior does not permit fewer matches.
   out.expert.agreeing_matches_needed = kCoarseMatchesMin;
   return out;
 }
 
-/// Selects every n-th point, so that at most `count` points remain.
 void select_evenly(std::span<const SweepPoint> points, std::size_t count, std::vector<SweepPoint>& out) {
   out.clear();
   const std::size_t every = std::max<std::size_t>(1, (points.size() + count - 1) / count);

@@ -17,7 +17,7 @@ struct RegistrationScene {
 };
 
 /// SweepAligner registers a sweep to the map in stages, from few points to all points. `trajectory` receives the
-/// registered motion. After a failed registration, the caller must rebuild `trajectory`.
+/// registered motion of the IMU. After a failed registration, the caller must rebuild `trajectory`.
 class SweepAligner {
  public:
   explicit SweepAligner(const LidarInertialOdometry::Params& params);

@@ -45,8 +45,8 @@ Motion world_frame_jacobian(const Eigen::Matrix3d& turn, const Eigen::Vector3d& 
   return T;
 }
 
-/// Applies a Kalman update with the measured velocity 0, which bounds the speed. The covariance C determines the Kalman
-/// gain. The covariance E describes the actual errors of `state`.
+/// Applies a Kalman update with the measured velocity 0. The covariance C determines the Kalman gain. The covariance E
+/// describes the actual errors of `state`.
 void bound_speed(double sigma_m_s, MotionState& state, Motion& C, Motion& E) {
   const Eigen::Matrix3d R = sigma_m_s * sigma_m_s * Eigen::Matrix3d::Identity();
   const Eigen::Matrix3d S = u::sub_block(C, u::velocity) + R;

@@ -7,7 +7,7 @@
 /// See mapping.md, heading "Inertial noise".
 namespace tumble::mapping {
 
-/// Returns the state before a map exists. Gravity is exactly vertical in the world frame, so tilt errors are attitude
+/// Returns the state before a map exists: gravity is exactly vertical in the world frame, and tilt errors are attitude
 /// errors.
 StateEstimate estimate_before_map(const LidarInertialOdometry::Params& params, const MotionState& levelled);
 
@@ -22,9 +22,9 @@ StateEstimate transformed_to_pose(const Eigen::Isometry3d& T_WI, const StateEsti
 /// Replaces roll and pitch by `tilt`, whose errors are independent of all other errors.
 StateEstimate with_start_tilt(const LidarInertialOdometry::StartTilt& tilt, const StateEstimate& estimate);
 
-/// Returns the dead-reckoned state in a frame with the origin and the yaw of the IMU's present pose. `step_s` is the
-/// time since the last call. A weak prior on the robot's speed bounds the errors of tilt and velocity during minutes of
-/// motion.
+/// Returns the dead-reckoned state in a frame with the origin and the yaw of the IMU's present pose. A weak prior on
+/// the robot's speed bounds the errors of tilt and velocity during minutes of motion. `step_s` is the time since the
+/// last call.
 StateEstimate reset_origin_and_yaw(const StateEstimate& reckoned, double step_s);
 
 /// Returns the state at the first sweep, whose lidar pose defines the map frame and is therefore exact. In the map

@@ -22,14 +22,14 @@ struct FrameChange {
   Registration::Matrix rotation() const;
 };
 
-/// PosesBeforeChange transforms poses before the localisation to the frame of the prior map.
+/// PosesBeforeChange transforms poses before the localisation to the frame M of the prior map.
 class PosesBeforeChange {
  public:
   /// `last` is the pose in the local frame W when the robot was localised in the prior map.
   PosesBeforeChange(const FrameChange& change, const PoseState& last);
 
-  /// Transforms a pose from frame W to frame M. The covariance of an earlier pose is computed from the covariance of
-  /// the last pose and the displacement between both poses.
+  /// The covariance of an earlier pose is computed from the covariance of the last pose and the displacement between
+  /// both poses.
   void apply(PoseState& pose) const;
 
  private:

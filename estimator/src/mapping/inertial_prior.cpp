@@ -57,7 +57,7 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
       .setConstant(std::pow(params.expert.prior.kSigma_m_s * span, 2) +
                    std::pow(params.expert.prior.kForceShare * velocity_change_m_s, 2) + gap_m2_s2);
   u::variances(noise, u::position).array() += gap_m2;
-  // A robot at rest has zero velocity, so rate and acceleration errors hardly affect its pose.
+  // A robot at rest has zero velocity, so errors of gyro and accelerometer hardly affect its predicted pose.
   const auto rests = [&](const MotionSample& sample) {
     return sample.at_rest || seconds(sample.from_ns - start_ns) >= trajectory.duration_s();
   };

@@ -28,7 +28,7 @@ Status start_at_rest(std::span<const MotionSample> samples, MotionState& state);
 Status level_at_rest(const Eigen::Vector3d& force_I_m_s2, MotionState& state);
 
 /// Returns the standard deviation of the angular rate per axis, which is increased for clipped gyro axes without a
-/// recovered rate. The largest returned value is InertialNoiseParams::kRateSigmaMax_rad_s.
+/// recovered rate.
 Eigen::Vector3d assumed_rate_sigma(const LidarInertialOdometry::Params& params, const AngularRateState& rate);
 
 }  // namespace tumble::mapping

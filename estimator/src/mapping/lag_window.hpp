@@ -41,8 +41,8 @@ class LagWindow {
   void smooth();
   /// Moves the map points of all sweeps except the newest to their smoothed positions.
   void move_inserted_sweeps(LocalMap& map) const;
-  /// Excludes the map points inserted so far from later smoothing. Call this function after the indices of map points
-  /// have changed.
+  /// Excludes the map points inserted so far from later smoothing. Must be called after the indices of map points have
+  /// changed.
   void clear_inserted();
 
   template <class Change>

@@ -104,7 +104,6 @@ std::optional<Change> velocity_change_until(std::size_t last, std::size_t span, 
                     (middle.position_W_m - from.position_W_m) / seconds(middle.time_ns - from.time_ns)};
 }
 
-/// Counts velocity changes that share no sweep.
 template <class Changes>
 int disjoint_velocity_changes(const Changes& changes) {
   int count = 0;

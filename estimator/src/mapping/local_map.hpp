@@ -48,11 +48,11 @@ class LocalMap {
             std::span<const InsertedPoint> inserted);
 
   /// Replaces the map by a prior map. Each point of the prior map gets a fictitious distant sensor position, on the map
-  /// axis nearest to the point's normal. Normals that are later estimated from the map then keep their sign. If `T_MW`
-  /// is given, the points of the local map are added, transformed to the prior map's frame.
+  /// axis nearest to the point's normal. The fictitious sensor positions preserve the signs of surface normals that are
+  /// later estimated from the map. If `T_MW` is given, the points of the local map are added, transformed to the prior
+  /// map's frame.
   void start_from_map_points(const Params& params, std::span<const MapPoint> points, const Eigen::Isometry3f* T_MW);
 
-  /// Returns the number of sweeps that have added points to the map.
   std::uint32_t sweeps() const { return static_cast<std::uint32_t>(seen_from_W_m_.size()); }
   /// Removes the points of `first_sweep` and all later sweeps, which changes the indices of map points. Cost:
   /// O(points).

@@ -11,12 +11,12 @@ namespace tumble {
 
 namespace {
 
-// With correct covariances, the chi-square value of a sweep's innovation (9 degrees of freedom) exceeds 32.9 with a
-// probability of 1.4e-4. Two or more of 1000 sweeps exceed this value with a probability of 1 %.
+// In a run of 1000 sweeps with correct covariances, two or more chi-square values of the innovation (9 degrees of
+// freedom) exceed 32.9 with a probability of 1 %.
 constexpr double kContradictionChi2Min = 32.9;
 
 // Wrong point times or a wrong lidar mounting distort sweeps, so that few points fit the map and the registered poses
-// are noisy. Scenarios without such faults have mean inlier ratios of at least 0.37.
+// are noisy. Without these errors, the mean inlier ratio of the simulated runs is at least 0.37.
 constexpr double kInlierRatioMin = 0.2, kMeanInnovationMax = 0.2;
 constexpr std::size_t kMeanSweepsMin = 20, kMeanSweepsMax = 50;
 

@@ -24,8 +24,8 @@ class MapLocaliser {
   /// neighbourhood.
   void restart(const std::optional<Eigen::Isometry3d>& T_MI);
 
-  /// Returns the pose of the local frame in the prior map after three successive sweeps have confirmed it. Cost: a few
-  /// milliseconds, or about a second for every fifth sweep while no pose is proposed.
+  /// Returns the pose of the local frame in the prior map after three successive sweeps have confirmed this pose. Cost:
+  /// a few milliseconds, or about a second for every fifth sweep while no pose is proposed.
   std::optional<FramePose> match_local_map(const VoxelMap& local, const Eigen::Vector3d& p_WI_m);
   /// Returns `degenerate` if the robot is not localised in the prior map.
   Status status() const;

@@ -28,7 +28,7 @@ struct UpdatedSweep {
   const SweepTrajectory& trajectory;
 };
 
-/// Reused work buffers avoid memory allocation per sweep; their contents are undefined between sweeps.
+/// Reused work buffers avoid memory allocation per sweep.
 struct SweepScratch {
   explicit SweepScratch(const LidarInertialOdometry::Params& params) : points(params), sweep_aligner(params) {}
 
@@ -82,7 +82,6 @@ struct LidarInertialOdometry::Impl {
   void prune_until(TimeNs end_ns);
   /// If the local map matches the prior map, the odometry continues in the prior map's frame.
   void localise(const SweepReport& report);
-  /// `last` is the newest pose in the local frame.
   void enter_prior_map(const mapping::FramePose& pose, const PoseState& last);
   bool extends_map() const { return !localiser.is_localised() || localiser.map().extend; }
 

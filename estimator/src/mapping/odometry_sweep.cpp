@@ -90,8 +90,8 @@ Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
   if (samples.back().time_ns < end_ns) {
     return {ErrorCode::insufficient_data, "imu time_ns", double(samples.back().time_ns), double(end_ns)};
   }
-  // A time offset between lidar and IMU may move the start of the first sweep before the first IMU sample. The motion
-  // before the first IMU sample is extrapolated.
+  // A time offset between lidar and IMU may move the start of the first sweep before the first IMU sample.
+  // SweepTrajectory extrapolates the motion before the first IMU sample.
   const double early_s = seconds(samples.front().from_ns - start_ns);
   if (!started && early_s > (params.time_offset_s != 0.0 ? SweepTrajectory::kExtrapolation_s : 0.0)) {
     return {ErrorCode::insufficient_data, "start_ns", double(start_ns), double(samples.front().from_ns)};
@@ -155,7 +155,7 @@ Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, st
   return {ErrorCode::insufficient_data, "points", double(points), double(MatchingParams::kMatchesMin)};
 }
 
-/// While the IMU is at rest, the mean specific force determines roll and pitch.
+/// While the IMU is at rest, the mean specific force determines roll and pitch of the dead-reckoned state.
 Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
   MotionState levelled;
   if (!inertial_track.sweep_boundary_ns()) {
@@ -186,9 +186,8 @@ Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
   return {};
 }
 
-/// Returns true if the rest detector reports rest, and the inertially predicted velocity stays nearly constant during
-/// the sweep. With a wrong estimated attitude, the predicted velocity changes, because gravity is subtracted in a wrong
-/// direction.
+/// The inertially predicted velocity must stay nearly constant at rest. With a wrong estimated attitude, the predicted
+/// velocity changes, because gravity is subtracted in a wrong direction.
 bool LidarInertialOdometry::Impl::is_stationary(const mapping::InertialTrack& inertial, const SweepTrajectory& motion,
                                                 TimeNs end_ns) const {
   if (!inertial.is_stationary_until(end_ns)) return false;
@@ -321,7 +320,6 @@ void LidarInertialOdometry::Impl::propagate_alternative_pose(const MotionWindow&
   if (!continue_by_inertia(motion, rests, alternative->sweep_boundary, &alternative->window).ok()) alternative.reset();
 }
 
-/// If `into` is not null, the sweep is also appended to the lag window `into`.
 Status LidarInertialOdometry::Impl::continue_by_inertia(const MotionWindow& motion, bool rests,
                                                         mapping::SweepBoundary& at, mapping::LagWindow* into) const {
   const Registration::Estimate& before = at.state_estimate.mean;
@@ -343,8 +341,6 @@ Status LidarInertialOdometry::Impl::continue_by_inertia(const MotionWindow& moti
   return {};
 }
 
-/// Removes the map points that were inserted since a wrong relocalisation, and continues from the inertially predicted
-/// pose.
 void LidarInertialOdometry::Impl::revert_to_inertial_pose() {
   map.remove_sweeps_since(
       std::exchange(alternative->first_inserted_sweep, 0));  // 0, because pruning changes sweep numbers

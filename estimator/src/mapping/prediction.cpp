@@ -19,14 +19,14 @@ namespace {
 // A sweep with too few matches extends the map only if the standard deviation of its predicted attitude is below this
 // limit.
 constexpr double kExtendSigmaMax_rad = 0.1;
-// Minimum prior standard deviation of the saturation deficit of a clipped gyro axis.
+// Minimum prior standard deviation of the gyro's saturation deficit on a clipped axis.
 constexpr double kDeficitSigmaMin_rad_s = 1.0;
 // Correlation time of the gyro's saturation deficit.
 constexpr double kDeficitTime_s = 0.3;
 // Maximum growth factor of the gyro's saturation deficit from one sweep to the next.
 constexpr double kDeficitCarryMax = 3.0;
-// The gyro's saturation deficit is estimated at start, middle and end of each sweep. Each of the three estimates has an
-// additional independent error of this fraction of its standard deviation.
+// The gyro's saturation deficit is estimated at start, middle and end of each sweep. Each of these three deficits has
+// an additional independent error, with this fraction of the deficit's standard deviation.
 constexpr double kKnotSigmaRatio = 0.05;
 // Standard deviation of the velocity during the initial rest.
 constexpr double kStartSigma_m_s = 0.01;
@@ -68,7 +68,7 @@ double saturation_deficit_sigma(const MotionWindow& window, const SweepTrajector
 }
 
 /// The gyro's saturation deficit is modelled as a first-order Gauss-Markov process: mapping.md (R46), (R47). If the
-/// saturation continues from the last sweep, the process noise is smaller: mapping.md (R49).
+/// gyro's saturation continues from the last sweep, the process noise of the deficit is smaller: mapping.md (R49).
 void add_saturation_deficit_noise(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory,
                                   Prediction& next) {
   if (!params.expert.saturated_imu.estimate_deficit) return;

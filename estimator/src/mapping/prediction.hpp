@@ -13,9 +13,8 @@ struct SweepBoundary {
   StateEstimate state_estimate;
   /// derivative of the unknowns at the end of the last sweep with respect to the unknowns at its start
   Registration::Matrix end_by_start_jacobian = Registration::Matrix::Identity();
-  /// Absolute value of the saturation factor s_j of each gyro axis at the end of the last sweep: mapping.md (R8). This
-  /// value is the standard deviation of the angular rate, divided by its maximum over the clipped samples. The value of
-  /// an unclipped axis is 0.
+  /// Absolute value of the saturation factor s_j of each gyro axis at the end of the last sweep: mapping.md (R8). The
+  /// saturation factor of an unclipped gyro axis is 0.
   Eigen::Vector3d clipped_axis_sign = Eigen::Vector3d::Zero();
   Eigen::Matrix3d clipped_velocity_variance_m2_s2 =
       Eigen::Matrix3d::Zero();              ///< velocity covariance due to accelerometer saturation, in frame W
@@ -65,7 +64,7 @@ StateEstimate posterior(const Prediction& prediction, const Registration::Result
 double innovation(const Prediction& prediction, const Registration::Estimate& aligned);
 
 /// Returns whether the difference between registered and predicted pose passes a chi-square test, and is at most the
-/// matching distance: mapping.md (R67). At larger distances, lidar returns may match wrong surfaces by chance.
+/// matching distance: mapping.md (R67). Beyond the matching distance, lidar returns may match wrong surfaces by chance.
 bool agrees_with_prediction(const LidarInertialOdometry::Params& params, const Prediction& prediction,
                             const Registration::Estimate& aligned, double innovation);
 

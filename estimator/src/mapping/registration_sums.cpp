@@ -76,7 +76,7 @@ void Registration::Sums::add(const Sums& other) {
   inliers += other.inliers;
 }
 
-/// Returns the variance of a lidar return from range noise and deskewing: the first two terms of mapping.md (R18).
+/// Returns the variance of a lidar return due to range noise and deskewing: the first two terms of mapping.md (R18).
 double Registration::point_variance_m2(const SweepPoint& point) const {
   const double range = std::max(params_.kRangeSigma_m, params_.kRangeSigmaRatio * point.range_m);
   const double skew = params_.skew_sigma_m_s * point.sweep_time_s;
@@ -120,7 +120,7 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, NearestNei
   match.map_variance_m2 = variance / static_cast<float>(found.count) + match.plane.thickness_variance_m2;
 }
 
-/// Returns inverse variance times robust weight (Geman, McClure, 1987) of a residual: mapping.md (R19), (R21).
+/// See mapping.md (R19), (R21), and Geman and McClure (1987) for the robust weight.
 Registration::Weight Registration::compute_weight(const SweepPoint& point, const Match& match, double distance_m,
                                                   double kernel_m) const {
   const double variance = point_variance_m2(point) + match.map_variance_m2;
@@ -168,9 +168,8 @@ double Registration::kernel_width_m() {
 void Registration::accumulate_block(std::span<const SweepPoint> points, std::size_t block,
                                     const SweepTrajectory& trajectory, const LidarImuCalibration& calibration,
                                     const Unknowns& unknowns, double kernel_m, Products& products, Sums& sum) {
-  // Each column of `rows` contains the derivatives of one matched point's distance from its plane. The vector
-  // `weighted` contains the distances. Derivatives and distances are multiplied by the square roots of the matches'
-  // weights.
+  // Columns of `rows`: derivatives of a matched point's distance from its plane, times the square root of the match's
+  // weight.
   auto& rows = products.columns;
   Eigen::Matrix<double, static_cast<int>(kPointsPerPartialSum), 1> weighted;
   const bool rigid = !unknowns.deficit_free && !unknowns.calibration_free;

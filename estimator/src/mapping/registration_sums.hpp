@@ -17,7 +17,7 @@ struct Registration::Unknowns {
   /// variance is above 0.
   explicit Unknowns(const Matrix& covariance);
 
-  /// Expands the sums over the free unknowns to all unknowns. The rows and columns of fixed unknowns are 0.
+  /// Expands the sums over the free unknowns to all unknowns, with zeros for fixed unknowns.
   void expand_to_all_unknowns(const Sums& sum, Matrix& H, Vector& g) const;
   /// Changes the normal equations such that the solution is 0 for the fixed unknowns.
   void fix_constrained_unknowns(Matrix& H, Vector& g) const;

@@ -33,8 +33,8 @@ constexpr double kDeficitSigmas = 5.0;  // largest tried increase of the saturat
 constexpr int kStartsPerRound = 12;  // number of initial poses per round: six axes, two directions
 constexpr double kStartSigmas = 1.5;
 constexpr double kShiftMin_m = 0.3, kRotationMin_rad = 0.1;  // closer starting poses converge to one pose
-// Maximum distance and rotation between starting pose and predicted pose in the first round: mapping.md (R66). Round n
-// of the search uses n times these values.
+// In round n of the search, starting poses differ from the predicted pose by at most n times these values: mapping.md
+// (R66).
 constexpr double kShift_m = 1.0, kRotation_rad = 0.3;
 constexpr int kRounds = 3;
 
@@ -77,8 +77,7 @@ void track_sweep(const Params& params, const Registration::Prior& prior, const R
   found.iterations = iterations;
 }
 
-/// If no initial pose fits, the result is the pose with the most inliers. The number of initial poses per sweep is
-/// limited, so an unsuccessful search continues with the next sweep.
+/// The number of initial poses per sweep is limited, so an unsuccessful search continues with the next sweep.
 void search_displaced_poses(const RelocalisationContext& from, const RegistrationScene& scene, SweepAligner& aligner,
                             SweepTrajectory& trajectory, Registration::Result& found) {
   const Registration::Prior& prior = from.prior;

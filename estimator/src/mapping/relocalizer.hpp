@@ -37,8 +37,8 @@ struct SweepRegistration {
   std::optional<Registration::Result> alignment;  ///< alignment at the start of the sweep
 };
 
-/// Sets the verdict and the outcome of a sweep. Without alignment, the verdict is `degenerate` if the map has too few
-/// points and the prediction is certain, or after enough failed searches.
+/// Without alignment, the verdict is `degenerate` if the map has too few points and the prediction is certain, or after
+/// enough failed searches.
 void judge_registration(const TrackingState& before, std::size_t points, bool prior_certain,
                         const RegistrationAttempt& attempt, SweepRegistration& placed);
 

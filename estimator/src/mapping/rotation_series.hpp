@@ -3,9 +3,7 @@
 
 #include <utility>
 
-/// Horner's method evaluates the power series of c = cos(x) and s = sin(x) / x, where x is half of a small rotation
-/// angle. The evaluation starts with c = s = 1. Each pair (a, b) of kRatios gives the next values 1 - a c x^2 and 1 - b
-/// s x^2.
+/// Horner's method evaluates the power series of cos(x) and sin(x) / x, where x is half of a small rotation angle.
 namespace tumble::rotation_series {
 
 /// square of the largest full angle for which the series is accurate

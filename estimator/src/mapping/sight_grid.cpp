@@ -46,7 +46,7 @@ void FreeSpaceGrid::add(const Eigen::Vector3f& return_W_m) {
   nearest_m = std::min(nearest_m, lever_m.norm());
 }
 
-/// Returns the smallest range of the returns around a direction, or 0 if the range is unknown.
+/// Returns 0 if the range of the returns around a direction is unknown.
 float FreeSpaceGrid::free_space_range_m(const Direction& towards) const {
   float nearest_m = std::numeric_limits<float>::infinity();
   int empty = 0;

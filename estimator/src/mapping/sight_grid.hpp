@@ -18,8 +18,7 @@ class FreeSpaceGrid {
   void add(const Eigen::Vector3f& return_W_m);
 
   enum class Verdict { unknown_space, occupied, free_space };
-  /// Checks whether the sweep saw a map point, or saw through its position. `sigma_m` is the standard deviation of the
-  /// map point's position. Cost: O(1).
+  /// Checks whether the sweep saw a map point, or saw through its position. Cost: O(1).
   Verdict verdict(const Eigen::Vector3f& point_W_m, float sigma_m) const;
 
  private:

@@ -63,8 +63,7 @@ MotionErrors marginal_motion_errors(const Matrix& F, const Matrix& errors) {
   return moved * rows.transpose();
 }
 
-/// Computes the covariance of the velocity error in IMU axes: R_IW (δv + v × φ), for errors δv of velocity v and φ of
-/// attitude.
+/// R_IW (δv + v × φ), for errors δv of velocity v and φ of attitude
 Eigen::Matrix3d velocity_covariance_I(const MotionState& state, const MotionErrors& errors) {
   namespace u = unknowns;
   const Eigen::Matrix3d R_IW = state.q_WI.toRotationMatrix().transpose();
@@ -75,7 +74,7 @@ Eigen::Matrix3d velocity_covariance_I(const MotionState& state, const MotionErro
 }
 
 /// Each matrix block has a multiple of the SIMD packet size as its number of rows. The products of the matrix blocks
-/// therefore add their terms in the same order as propagate_covariance(). The rows of the transition matrix F for
+/// therefore add their terms in the same order as propagate_covariance(). In the transition matrix F, the rows of
 /// mounting and other constants are rows of the identity: mapping.md (R11).
 Matrix propagate_pose_and_mounting(const Matrix& F, const Matrix& errors) {
   constexpr int kSize = 8, kMounting = 16;

@@ -37,8 +37,7 @@ Registration::Matrix propagate_pose_and_mounting(const Registration::Matrix& F, 
 /// covariance of the errors of position, attitude and velocity in frame W
 using MotionErrors = Eigen::Matrix<double, Registration::kMotionSize, Registration::kMotionSize>;
 
-/// Propagates the covariance `errors` by the transition matrix F, but returns only the block of position, attitude and
-/// velocity.
+/// Returns only the block of position, attitude and velocity of the covariance propagated by the transition matrix F.
 MotionErrors marginal_motion_errors(const Registration::Matrix& F, const Registration::Matrix& errors);
 
 /// Returns the covariance of the velocity in IMU axes, R_IW v_WI_W, including the attitude error.

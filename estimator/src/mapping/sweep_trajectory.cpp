@@ -12,7 +12,6 @@ namespace tumble {
 
 namespace {
 
-/// Returns for each gyro axis the largest standard deviation of a clipped rate before `end_ns`.
 Eigen::Vector3d max_rate_sigma_per_axis(std::span<const MotionSample> samples, TimeNs end_ns) {
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();
   for (const MotionSample& sample : samples) {
@@ -110,7 +109,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     now.length_s = dt;
     now.clipped_axis_sign = share;
     now.knot_weight = knot_weights(duration_s_ > 0.0 ? (now.start_s + 0.5 * dt) / duration_s_ : 0.0);
-    // Integrates one IMU sample: mapping.md (R7), (R5), (R4), (R6).
+    // See mapping.md (R7), (R5), (R4), (R6).
     now.rate_I_rad_s = sample.w_WI_I_rad_s + share.cwiseProduct(deficit_rad_s * now.knot_weight);
     const Eigen::Matrix3d R = now.q_WI.toRotationMatrix();
     const Eigen::Matrix3d mean_rotation = R * so3::left_jacobian(now.rate_I_rad_s * dt);

@@ -249,7 +249,6 @@ std::size_t VoxelMap::bytes() const {
          (sweep_.capacity() + line_.capacity()) * sizeof(std::uint32_t) + seen_through_counts_.capacity();
 }
 
-/// `worst_distance2_m2` is the square of the current search radius.
 void VoxelMap::search_neighbours(std::uint32_t first, const Eigen::Vector3f& query, int k, float& worst_distance2_m2,
                                  NearestNeighbours& found) const {
   for (std::uint32_t c = first; c != kNone; c = point_chunks_[c].next) {

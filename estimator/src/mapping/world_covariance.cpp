@@ -17,7 +17,7 @@ using Pose = WorldCovariance::Pose;
 // hall with pillars).
 constexpr double kScale = 0.003;
 // The standard deviation of the drift per sweep is kDriftRatio times the pose's standard deviation along its least
-// constrained direction. The pose's standard deviation counts as at most kDriftSigmaMax_m.
+// constrained direction.
 constexpr double kDriftRatio = 0.1, kDriftSigmaMax_m = 3.0;
 
 /// See mapping.md (R57).

@@ -19,9 +19,8 @@ using Kind = HealthFinding::Kind;
 
 constexpr const char* kImu = "imu";
 constexpr double kSlopeTolerance = 0.02, kSlopeAgreementMin = 0.99;
-// The body counts as hand-held if at least this fraction of the samples is classified as hand-held. In recordings, the
-// fraction is at least 91 % for hand-held motion, and at most 25 % for throws. For throws with wrongly labelled sensor
-// axes, the fraction is mostly below 60 %.
+// The body counts as hand-held if at least this fraction of the samples is classified as hand-held. The fraction is at
+// least 91 % for recorded hand-held motion, and mostly below 60 % for throws, even with wrongly labelled sensor axes.
 constexpr double kRepeatedFraction = 0.8;
 
 double rate_max_so_far_rad_s(std::span<const ImuSample> samples) {

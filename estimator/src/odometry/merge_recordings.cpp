@@ -17,9 +17,8 @@ namespace {
 using Kind = HealthFinding::Kind;
 
 constexpr double kSilentReported_s = 0.5;  // minimum duration without readings that is reported
-// Sensing elements without an observed saturation plane are assumed aligned with their axis (standard deviation of the
-// cross-axis sensitivity). With a standard deviation of 0.03, the angular rate would be undetermined while three IMUs
-// clip.
+// Sensing elements without an observed saturation plane are assumed aligned with their axis. If their cross-axis
+// sensitivity had a standard deviation of 0.03, the angular rate would be undetermined while three IMUs clip.
 constexpr double kUnknownSlope = 0.0;
 
 struct ImuReadingSets {
@@ -130,7 +129,7 @@ class TimeWithoutGaps {
   TimeNs last_ns_ = 0, step_ns_ = 1;
 };
 
-/// Only the motion is reset after a gap, because the calibration of the IMUs remains valid.
+/// After a gap between IMU samples, only the motion state is reset, because the calibration of the IMUs remains valid.
 void reset_motion_state(ImuMerge::State& state) {
   for (ImuMerge::Unit& unit : state.imus) unit.window = {};
   state.rate_recovery.running = false;
@@ -202,7 +201,6 @@ void report_silent_imus(const ImuReadingSets& units, SensorHealth& faults) {
   }
 }
 
-/// Returns an error if all IMUs are frozen.
 Status exclude_frozen(ImuReadingSets& units, SensorHealth& faults) {
   const std::size_t before = faults.findings.size();
   for (std::size_t unit = 0; unit < units.index.size(); ++unit) {

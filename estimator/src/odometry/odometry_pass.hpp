@@ -16,7 +16,7 @@
 namespace tumble {
 
 /// Processes IMU samples and lidar sweeps once, in time order. MotionRegimeStream estimates the angular rates.
-/// LidarInertialOdometry processes the samples and sweeps for which rates are available. TumblingOdometry runs one
+/// LidarInertialOdometry then processes the samples and sweeps for which rates are available. TumblingOdometry runs one
 /// OdometryPass live, and SecondMappingPass runs a second OdometryPass with the estimated calibration.
 class OdometryPass {
  public:
@@ -39,9 +39,9 @@ class OdometryPass {
   /// See LidarInertialOdometry::use_map().
   Status use_map(PriorMap map) { return mapper_.use_map(std::move(map)); }
   void use_map_of_pass(const OdometryPass& other) { mapper_.use_map_of_pass(other.mapper_); }
-  /// Returns true if rates are available up to the time `end_ns` of the lidar's clock.
+  /// Returns true if angular rates are available up to the time `end_ns` of the lidar's clock.
   bool has_rates_until(TimeNs end_ns) const;
-  /// Returns the time, in the lidar's clock, up to which rates are available; empty before the first rate.
+  /// Returns the time, in the lidar's clock, up to which angular rates are available; empty before the first rate.
   std::optional<TimeNs> covered_ns() const;
   /// Returns the time stamp of the first IMU sample at or after the lidar time `end_ns` whose rate is not yet
   /// available.
@@ -54,9 +54,10 @@ class OdometryPass {
 
   /// Converts a time from the lidar's clock to the IMU's clock.
   TimeNs oldest_needed_ns(TimeNs lidar_ns) const;
-  /// Passes all rates up to the first sample at or after `time_ns` to the mapper, without waiting for later samples.
+  /// Passes all angular rates up to the first sample at or after `time_ns` to the mapper, without waiting for later
+  /// samples.
   void flush_until(TimeNs time_ns);
-  /// Restarts the rate estimation with other parameters; the mapper continues.
+  /// Restarts the estimation of angular rates with other parameters; the mapper continues.
   void start_rate_estimation(const MotionRegimeStream::Params& rate);
   /// Replaces the mapper by the mapper of `other`. The rate estimation of this OdometryPass continues unchanged. Do not
   /// use `other` afterwards.

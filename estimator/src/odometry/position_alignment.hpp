@@ -29,10 +29,10 @@ class PositionAlignment {
   Status add(const PositionReading& reading, TimeNs done_ns, TimeNs latest_ns, std::size_t most);
   /// Processes a registered sweep and the position readings up to its end. Cost: O(n^2) for n stored positions.
   void add_sweep(const SweepReport& report);
-  /// Discards the processed readings after a change of the world frame W.
+  /// Discards the processed position readings after a change of the world frame W.
   void restart_fit();
   /// Returns the frame of the position readings relative to W, at the end of the last sweep. The result is empty until
-  /// the readings determine the heading within 0.1 rad, and while the readings contradict each other.
+  /// the position readings determine the heading within 0.1 rad, and while the readings contradict each other.
   const std::optional<PositionFrame>& position_frame() const { return position_frame_; }
 
  private:

@@ -192,8 +192,8 @@ Status RollingOdometry::Impl::add_inliers(std::span<const ImuSample> samples) {
   return {};
 }
 
-/// Sets the clip flags of saturated axes. Only confirmed saturation limits count, as defined by ConfirmedSaturation.
-/// Detecting a new saturation limit takes two to ten saturated samples, and these samples are not flagged.
+/// Only confirmed saturation limits lead to clip flags (ConfirmedSaturation). Detecting a new saturation limit takes
+/// two to ten saturated samples, and these samples are not flagged.
 RollingOdometry::Impl::Samples RollingOdometry::Impl::flag_clipped(std::span<const ImuSample> samples) const {
   Samples out;
   std::copy(samples.begin(), samples.end(), out.begin());
@@ -228,7 +228,7 @@ std::size_t RollingOdometry::Impl::rejected_readings() const {
   return out;
 }
 
-/// Sets the readings of IMUs with frozen axes to NaN. Returns an error if no IMU remains.
+/// Returns an error if all IMUs have frozen axes.
 Status RollingOdometry::Impl::exclude_frozen(const Frozen& states, std::span<ImuSample> samples) const {
   bool any = false, received = false;
   for (std::size_t k = 0; k < samples.size(); ++k) {

@@ -30,8 +30,7 @@ struct RollingRestart {
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
-/// Impl contains the state of RollingOdometry. Functions of Impl with the name of a public function are documented in
-/// the public header.
+/// Functions of Impl with the name of a public function are documented in the public header.
 struct RollingOdometry::Impl {
   using Frozen = std::array<FrozenAxes::State, ImuMerge::kImus>;
   using Samples = std::array<ImuSample, ImuMerge::kImus>;
@@ -90,7 +89,6 @@ struct RollingOdometry::Impl {
   ImuTimeAlignment::State imu_time_alignment_state_;
   std::array<std::vector<ImuSample>, ImuMerge::kImus>
       recorded_samples_;  ///< readings of each IMU, with kWholeRecording
-  /// State of ImuMerge, and buffer for its next state.
   HeapValue<ImuMerge::State> imu_merge_state_, merge_state_buffer_;
   HeapValue<RollingSmoother::State> state_;
   std::array<ImuClippingState, ImuMerge::kImus> clipping_states_;

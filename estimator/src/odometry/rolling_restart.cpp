@@ -14,7 +14,7 @@ namespace {
 // standard deviations of the motion in a gap of the IMU data: speed, rate about the vertical, heading after a long gap
 constexpr double kGapSpeed_m_s = 0.5, kGapTurn_rad_s = 1.0, kUnknownHeading_rad = 1.8;
 
-/// Removes the tilt from a pose covariance, because a restart levels the attitude.
+/// A restart levels the attitude, so the covariance of the last tilt does not apply.
 Eigen::Matrix<double, 6, 6> position_and_heading(Eigen::Matrix<double, 6, 6> covariance) {
   covariance.middleRows<2>(3).setZero();
   covariance.middleCols<2>(3).setZero();
@@ -23,7 +23,6 @@ Eigen::Matrix<double, 6, 6> position_and_heading(Eigen::Matrix<double, 6, 6> cov
 
 }  // namespace
 
-/// Starts a new run at the newest pose, after `gap_s` seconds without data.
 void RollingOdometry::Impl::restart_at_newest(double gap_s) {
   const std::size_t before = finished_results_.size();
   end_continuous_run();

@@ -193,7 +193,7 @@ void SecondMappingPass::replace_first_pass_results(OdometryPass& first) {
       (!last_sweep_rejected_ || first_lost)) {
     first.adopt_map(std::move(*replayed_pass_));
     is_applied_ = true;
-    // A later second pass compares its number of rejected sweeps with the number of this second pass.
+    // A later second pass has to compare its number of rejected sweeps with the number of this second pass.
     rejected_in_first_pass_ = rejected_in_second_pass_;
     if (!last_sweep_rejected_) newest = SweepVerdict::registered;
   }

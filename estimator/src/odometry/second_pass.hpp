@@ -21,7 +21,8 @@ namespace tumble {
 /// buffer is processed with the current calibration, and with angular rates smoothed with a lag of `lag_s`. The second
 /// pass processes three buffered sweeps per new sweep. When the second pass ends, its map and pose replace the map and
 /// pose of the first pass. The results of the second pass are discarded if the second pass rejected clearly more sweeps
-/// than the first pass. The results are also discarded if only the second pass rejected the last sweep.
+/// than the first pass. The results of the second pass are also discarded if only the second pass rejected the last
+/// sweep.
 ///
 /// If tracking of the first pass has failed for `lost_s`, an additional early second pass starts immediately, at most
 /// once. SecondMappingPass does not change earlier poses: the reported pose jumps by the error of the first pass.
@@ -41,7 +42,6 @@ class SecondMappingPass {
 
   /// Buffers a sample that the first pass has processed. No memory is allocated.
   void store_input(const ImuSample& sample);
-  /// Buffers a sweep that the first pass has processed.
   void store_input(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points,
                    const std::optional<OdometerReading>& reading, SweepVerdict verdict);
 

@@ -18,7 +18,6 @@ using odometry::rate_stream_params;
 
 namespace {
 
-/// Returns the lidar points that were fired at `from_ns` or later, with times relative to `from_ns`.
 std::vector<LidarPoint> points_after(TimeNs from_ns, TimeNs start_ns, std::span<const LidarPoint> points) {
   std::vector<LidarPoint> out;
   out.reserve(points.size());
@@ -258,7 +257,6 @@ void TumblingOdometry::Impl::restart_rate_estimation() {
   start_rate_estimation();
 }
 
-/// Restarts the run at its newest pose after the clock has stepped back.
 void TumblingOdometry::Impl::restart_at_newest() {
   ++restart_count_;
   PoseState pose;
@@ -279,7 +277,6 @@ void TumblingOdometry::Impl::restart_at_newest() {
   if (!offset_rad_s.isZero(0.0)) set_gyro_offset(offset_rad_s);
 }
 
-/// Restarts a run whose only samples are outliers.
 void TumblingOdometry::Impl::restart_without_first_sample() {
   const std::optional<Eigen::Isometry3d> start = mapper().start();
   std::deque<WaitingSweep> waiting = std::move(waiting_sweeps_);
@@ -295,7 +292,6 @@ void TumblingOdometry::Impl::restart_without_first_sample() {
   outlier_filter_state_ = outliers;
 }
 
-/// Restarts a run that is still at rest, with the measured zero offset of the gyro as nominal bias.
 void TumblingOdometry::Impl::restart_with_gyro_offset(const Eigen::Vector3d& offset_rad_s) {
   const std::optional<Eigen::Isometry3d> start = mapper().start();
   sweeps_before_first_imu_ += waiting_sweeps_.size();
@@ -334,7 +330,6 @@ void TumblingOdometry::Impl::reset(const Eigen::Isometry3d& T_WI) {
 void TumblingOdometry::Impl::start_rate_estimation() {
   MotionRegimeStream::Params params = rate_stream_params(params_);
   params.rate.model.nominal.gyro_bias_rad_s = gyro_offset_rad_s();
-  // An estimated calibration that is out of bounds is discarded.
   if (const RigCalibration learnt = rig(); check_calibration(learnt).ok()) params.rate.model.calibration = learnt;
   odometry_pass_.start_rate_estimation(params);
 }

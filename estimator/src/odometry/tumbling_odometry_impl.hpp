@@ -25,8 +25,7 @@
 
 namespace tumble {
 
-/// Impl contains the state of TumblingOdometry. Functions of Impl with the name of a public function are documented in
-/// the public header.
+/// Functions of Impl with the name of a public function are documented in the public header.
 struct TumblingOdometry::Impl {
   explicit Impl(const Params& params);
 

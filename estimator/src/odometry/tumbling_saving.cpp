@@ -103,7 +103,7 @@ void set_prior_pose(const PoseState& pose, PriorMap& map) {
   map.sigma_rad = std::sqrt(pose.covariance(5, 5));
 }
 
-/// Returns the pose to save. Without localisation, the covariance includes the uncertainty of the start pose.
+/// Without localisation in the prior map, the saved covariance includes the uncertainty of the start pose.
 std::optional<PoseState> newest_or_start_pose(const TumblingOdometry::Impl& odometry) {
   const LidarInertialOdometry& mapper = odometry.mapper();
   const std::optional<Eigen::Isometry3d>& start = mapper.start();
