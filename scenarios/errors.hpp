@@ -8,7 +8,7 @@
 namespace tumble::scenarios {
 
 /// BadInput is the exception for wrong use or invalid input, for example an unknown name, a truncated file, or a value
-/// outside its limits. On BadInput, the program prints the message and exits with status 2.
+/// outside its limits. After BadInput, the program prints the message and exits with status 2.
 class BadInput : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

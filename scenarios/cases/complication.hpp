@@ -18,8 +18,7 @@ struct Complication {
   bool whole = false;                                   ///< `amount` is an integer count
 };
 
-/// Returns all details of a scenario that can be removed. A detail whose parameters already have ideal values is
-/// omitted.
+/// Returns all details of a scenario that can be removed.
 std::vector<Complication> complications(const Scenario& scenario);
 
 void take_away(const Complication& complication, Scenario& scenario);

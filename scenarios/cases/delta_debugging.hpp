@@ -18,10 +18,10 @@ struct LeastSet {
   bool complete = false;            ///< no single item is removable
 };
 
-/// Returns a subset of the items 0 to `count` - 1 with which the run fails. If `complete` is true, each item in `kept`
-/// is necessary: the run succeeds if any single item is removed. The method is delta debugging (Zeller and Hildebrandt,
-/// IEEE TSE 28:183, 2002, algorithm ddmin). The number of trial runs is about 2 log2(count) if the failure needs one
-/// item, and at most O(count^2).
+/// Returns a subset of the items 0 to `count` - 1 with which the simulated run still fails. If `complete` is true, each
+/// item in `kept` is necessary: the run succeeds if any single item is removed. The method is delta debugging (Zeller
+/// and Hildebrandt, IEEE TSE 28:183, 2002, algorithm ddmin). The number of trial runs is about 2 log2(count) if the
+/// failure needs one item, and at most O(count^2).
 LeastSet least_failing_set(std::size_t count, const FailsWith& fails);
 
 using FailsAt = std::function<std::optional<bool>(double value)>;

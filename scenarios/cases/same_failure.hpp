@@ -7,8 +7,7 @@
 
 namespace tumble::scenarios {
 
-/// A run without a value of the failure's metric counts as a success. For example, the rate error at clipped samples
-/// has no value in a run without clipping.
+/// A run without a value of the failure's metric counts as a success.
 class SameFailure {
  public:
   SameFailure(const FailureGoal& failure, const Outcome& outcome);

@@ -21,8 +21,8 @@ struct SensedTriad {
 SensedTriad sensed_rates(const sim::ImuRecord& record, const sim::ImuTruth& truth, double rail_rad_s);
 SensedTriad sensed_forces(const sim::ImuRecord& record, const sim::ImuTruth& truth, double rail_m_s2);
 
-/// ClippedPlane is the plane that contains the saturated readings of a sensing element. The slopes are the element's
-/// sensitivities to the two other axes, in cyclic order.
+/// ClippedPlane is the plane of the readings of a gyro or accelerometer while one sensing element is saturated. The
+/// slopes are the element's sensitivities to the two other axes, in cyclic order.
 struct ClippedPlane {
   double first_slope, second_slope;  // [1]
   double distance, offset;           // rho and b [unit of the readings]

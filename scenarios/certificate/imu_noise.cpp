@@ -20,8 +20,8 @@ struct RestReadings {
   std::vector<Eigen::Vector3d> gyro, accel;
 };
 
-/// The noise check omits filters and all sensor errors except noise and bias, because the other errors are constant at
-/// rest.
+/// At rest, sensor errors other than noise and bias are constant, so the noise check switches off these errors and the
+/// filters.
 sim::SensorSpec resting(const DataSheet& sheet) {
   sim::SensorSpec sensor = imu_of_sheet(sheet);
   for (const char* off :

@@ -19,18 +19,18 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Largest accepted time [s] between the starts of IMU and lidar. If one driver boots slowly, the time between the
-/// starts of IMU and lidar exceeds kApart_s.
+/// Largest accepted time between the first IMU sample and the first lidar sweep [s].
 constexpr double kApart_s = 0.5;
-/// A single lost reading costs no accuracy. Many lost readings indicate a fault of the bus, the driver or the recorder.
+/// A single lost sensor reading costs no accuracy. Many lost readings indicate a fault of the bus, the driver or the
+/// recorder.
 constexpr double kLostShareMax = 0.005;
 constexpr std::int64_t kLeastLost = 2;
-/// A reading is lost if the time step between two readings exceeds 1.5 sample periods.
+/// A sensor reading counts as lost if the time step between two readings exceeds 1.5 sample periods.
 constexpr double kLostStep = 1.5;
 /// The estimators initialise attitude and gyro bias in the first second of a recording.
 constexpr double kStart_s = 1.0;
 constexpr double kRegisteredShareMin = 0.8;
-/// A gyro that saturates below kOfRangeMin times its stated range probably has another range.
+/// A gyro that saturates below kOfRangeMin times its stated range was probably configured with another range.
 constexpr double kOfRangeMin = 0.7;
 
 double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {

@@ -17,7 +17,7 @@ using baselines::RigidOdometry;
 
 constexpr int kPosesPerSweep = 10;
 
-// The prior is very weak, so registration alone determines the pose, as in published methods with constant velocity.
+// The prior of the sweep's pose is very weak, so registration alone determines the pose.
 constexpr double kPriorM = 1.0, kPriorRad = 0.5;
 constexpr double kVelocitySigmaMS = 1e-4;  // registration measures no velocity
 
@@ -29,7 +29,6 @@ RigidOdometry::Params rigid_params() {
   return params;
 }
 
-/// Returns the times at which the trajectory has poses.
 std::vector<TimeNs> pose_times(const sim::LidarRecord& lidar) {
   std::vector<TimeNs> out;
   const std::size_t sweeps = bridge::sweep_count(lidar);

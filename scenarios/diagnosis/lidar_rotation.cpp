@@ -22,12 +22,12 @@ namespace {
 constexpr std::size_t kSpans = 10, kSweepsOfSpan = 12;
 constexpr double kSlowest_rad_s = 0.1, kFastest_rad_s = 2.0;
 constexpr std::size_t kLeastPairs = 12;
-/// Largest accepted difference between the rotations of lidar and gyro, relative to the median rotation. In correct
-/// recordings, the rotations of lidar and gyro differ by about 0.1 of the median rotation.
+/// Largest accepted difference between the rotations that lidar and gyro measure, relative to the median rotation. In
+/// correct recordings, both rotations differ by about 0.1 of the median rotation.
 constexpr double kAgrees = 0.3;
-/// If the stated axes agree within kAgrees, other axes are reported only if their rotation error is below kConclusive
-/// times the error of the stated axes. A delay is reported only if the rotation error with delay is below
-/// kDelayConclusive times the error without delay.
+/// If gyro and lidar agree with the stated IMU axes, other axes are reported only if their error is below kConclusive
+/// times the error of the stated axes. A delay between lidar and gyro is reported only if it reduces the rotation error
+/// to less than kDelayConclusive times the error without delay.
 constexpr double kConclusive = 0.5, kDelayConclusive = 0.6;
 constexpr double kDegreesOfRadian = 57.29577951308232;
 constexpr double kDelayMost_s = 0.5, kDelayStep_s = 0.01, kDelaySaid_s = 0.03;
@@ -266,7 +266,7 @@ std::optional<RotationAgreement> rotation_agreement(const sim::ImuRecord& imu, c
     fit_unit(pairs, delay_s, delayed, delayed_error);
     if (step == 0) fit_unit(pairs, delay_s, at_once, at_once_error);
   }
-  // Among a hundred candidate delays, one delay may fit slightly better by chance.
+  // Among a hundred candidate delays between lidar and gyro, one delay may fit slightly better by chance.
   RotationAgreement out = delayed_error < kDelayConclusive * at_once_error ? delayed : at_once;
   if (out.unit_error > kAgrees) return std::nullopt;
   fit_axes(pairs_at(integral, R_IL, seen, std::llround(1e9 * out.delay_s)), out);

@@ -26,7 +26,7 @@ struct SeenRotation {
 /// seen_rotations() takes about 10 ms per sweep.
 std::vector<SeenRotation> seen_rotations(const sim::LidarRecord& lidar, const PointStore* aside);
 
-/// True axis i is `sign[i]` times axis `axis[i]` of the readings.
+/// True IMU axis i is `sign[i]` times axis `axis[i]` of the IMU readings.
 struct SignedAxes {
   std::array<int, 3> axis{0, 1, 2};
   std::array<int, 3> sign{1, 1, 1};

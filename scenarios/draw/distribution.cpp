@@ -23,7 +23,6 @@ double normal_below(double x) {
   return 0.5 * std::erfc(-x / std::sqrt(2.0));
 }
 
-/// Returns the standard normal quantile for a probability in [0, 1] (inverse of normal_below).
 double normal_score(double probability) {
   if (probability <= 0.0 || probability >= 1.0) return std::copysign(HUGE_VAL, probability - 0.5);
   return -std::sqrt(2.0) * boost::math::erfc_inv(2.0 * probability);

@@ -36,8 +36,7 @@ std::vector<std::string> entries_of(const Numbers& numbers, const std::string& p
   return out;
 }
 
-/// Returns the text of a YAML map in one line or, if the map is long, in lines of up to 120 columns. `start` is the
-/// text before the opening brace of the YAML map.
+/// `start` is the text before the opening brace of the YAML map.
 std::string map_text(const std::string& start, const std::vector<std::string>& entries, const std::string& indent) {
   constexpr std::size_t kColumns = 120;
   std::string out, line = start + "{";

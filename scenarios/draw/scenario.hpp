@@ -61,8 +61,7 @@ std::vector<std::string> scenario_names(const DataRoot& data);
 
 std::vector<std::string> case_names(const DataRoot& data);
 
-/// Loads scenarios/catalogue/NAME.yaml, scenarios/regressions/NAME.yaml, or the file `name` if its name ends in
-/// ".yaml".
+/// Loads scenarios/catalogue/NAME.yaml or scenarios/regressions/NAME.yaml, or the file `name` if it ends in ".yaml".
 Scenario load_scenario(const DataRoot& data, const std::string& name);
 
 /// Draws all random parameters of the scenario with the random seed `seed`. Parameters of sensors come from their data

@@ -90,7 +90,6 @@ const sim::ComponentType& known_type(const YamlNode& node, std::span<const sim::
 
 using Entries = std::vector<std::pair<std::string, YamlNode>>;
 
-/// Returns the component type that the value of `key` names, or the type `base` if the YAML node has no such key.
 const sim::ComponentType& parse_type(const YamlNode& node, const Entries& entries, const std::string& key,
                                      std::span<const sim::ComponentType> types, const std::string& base) {
   if (const YamlNode* const own = find_entry(entries, key)) return known_type(*own, types);
@@ -98,8 +97,7 @@ const sim::ComponentType& parse_type(const YamlNode& node, const Entries& entrie
   return *find_type(types, base);
 }
 
-/// Replaces `part` by the content of the YAML node. If the YAML node has no key `type`, numbers that the node omits
-/// keep their values.
+/// If the YAML node has no key `type`, numbers that the node omits keep their values.
 void parse_part(const YamlNode& node, std::span<const sim::ComponentType> types, Scenario::Part& part) {
   static const std::array<std::string, 1> kOther = {"type"};
   const Entries entries = node.entries();
@@ -134,7 +132,6 @@ Scenario::Sensor parse_sensor(const YamlNode& node, const Registry& registry, Sc
   return out;
 }
 
-/// Replaces the sensors that `list` names, and adds sensors with new names at the end.
 void parse_sensors(const YamlNode& list, const Registry& registry, std::vector<Scenario::Sensor>& sensors) {
   std::map<std::string, int> lines;
   for (const YamlNode& item : list.items()) {

@@ -11,8 +11,6 @@
 
 namespace tumble::scenarios {
 
-/// A LoadBase function loads the base scenario, which the key `extends` names. Error messages state the line of the key
-/// `extends`.
 using LoadBase = std::function<Scenario(const YamlNode& extends)>;
 
 [[noreturn]] Scenario refuse_base(const YamlNode& extends);

@@ -13,8 +13,7 @@ std::string yaml_number(double value, const std::string& place);
 
 std::string yaml_word(const std::string& text);
 
-/// Returns the YAML lines of the key `streams`, which contains the seed of each random stream. If `streams` is empty,
-/// the returned text is empty.
+/// Returns the YAML lines of the key `streams`, which contains the seed of each random stream.
 std::string streams_text(const std::map<std::string, std::uint64_t>& streams);
 
 std::vector<std::string> yaml_stems(const std::filesystem::path& folder);

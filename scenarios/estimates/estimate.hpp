@@ -48,7 +48,7 @@ struct Estimate {
   /// Estimated pose of the lidar in body axes, if the stated pose contradicts the recording; for kind slam.
   std::optional<Eigen::Isometry3d> replaced_T_BL;
   SensorHealth faults;  ///< suspected faults of sensors and estimate
-  /// Covariance that health findings add to the covariance of each rate; empty if there is no health finding.
+  /// Covariance that health findings add to the covariance of each angular rate; empty without health findings.
   std::vector<Eigen::Matrix3d> suspect_rad2_s2;
   std::map<std::string, double> health;      ///< named counters: "rejected_samples", "sweeps_rejected"
   std::map<std::string, double> parameters;  ///< parameters that the user set by name

@@ -20,8 +20,7 @@ using About = HealthFinding::Kind;
 
 bool is_about_readings(const HealthFinding& finding) {
   const About kind = finding.kind;
-  // A health finding about the gyro scale ends if the scale is confirmed later. To confirm the scale, the rotation of
-  // gravity in the accelerometer axes is compared with the rotation that the gyro measures.
+  // A health finding about the scale factor of the gyro ends if the rotation of gravity later confirms this factor.
   if (kind == About::gyro_scale) return !finding.ended;
   return kind == About::frozen_axis || kind == About::frozen_sensor || kind == About::force_at_rest ||
          kind == About::wrong_axes_or_signs || kind == About::inverted_accel_in_flight || kind == About::rotation;

@@ -33,11 +33,9 @@ class AnswerBounds {
   void require_rates(const std::vector<AngularRateState>& rates, const Place& place) const;
   void require_poses(const std::vector<PoseState>& poses, const Place& place) const;
   void require_attitudes(const std::vector<AttitudeState>& attitudes, const Place& place) const;
-  /// Throws BadInput if the time stamps seem to have a wrong unit. For ten or more time stamps, the function compares
-  /// the time span from the smallest to the largest stamp with the duration of the recording. If the time span of the
-  /// stamps and the duration of the recording differ by a factor above 100, the unit is probably wrong. If a time span
-  /// that is too long fits no other unit, require_unit() accepts the stamps, because probably only a few stamps are
-  /// wrong.
+  /// Throws BadInput if the time stamps seem to have a wrong unit. The function compares the time span of at least ten
+  /// stamps with the duration of the recording. If both differ by a factor above 100, the unit is probably wrong. A
+  /// time span that is too long but fits no other unit is accepted, because probably only a few stamps are wrong.
   void require_unit(std::span<const double> stamps_s, const char* unit, const Place& place) const;
   void require_unit(const Estimate& estimate, const char* unit, const Place& place) const;
   void require_slam(const Estimate& estimate) const;

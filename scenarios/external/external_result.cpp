@@ -86,7 +86,7 @@ std::vector<double> stamps_of(const std::filesystem::path& file) {
     stamps_s.push_back(stamp_s);
   }
   constexpr double kOrigin_s = 1e-9 * static_cast<double>(kExportOrigin_ns);
-  // Time stamps near kOrigin_s are in the clock of exported bags, so kOrigin_s is subtracted.
+  // Time stamps near kOrigin_s are in the clock of exported bags.
   if (!stamps_s.empty() && stamps_s.front() > kOrigin_s / 2 && stamps_s.back() < kOrigin_s * 2)
     for (double& stamp_s : stamps_s) stamp_s -= kOrigin_s;
   return stamps_s;

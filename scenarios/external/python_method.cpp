@@ -203,7 +203,7 @@ json of_series(const sim::SeriesRecord& series, Arrays& arrays) {
 class Answer {
  public:
   Answer(const SharedMemory& memory, const AnswerBounds& bounds) {
-    // The Python function can enlarge the shared memory, so the size of the memory is checked.
+    // A faulty Python function can enlarge the shared memory.
     const std::uintmax_t most = bounds.table_bytes() + bounds.map_bytes();
     if (memory.size() > most)
       throw BadInput(

@@ -13,8 +13,8 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kTurnsOtherwise = 0.5, kTurnsAsSaid = 0.15;
-/// Largest accepted rotation difference between estimate and gyro after the correction of a delay, as a fraction of the
-/// rotation. The file reference_check.cpp accepts the same largest rotation difference.
+/// Largest accepted difference between the rotations of estimate and gyro after the correction of a delay, as a
+/// fraction of the rotation. The check of references (reference_check.cpp) has the same limit.
 constexpr double kTurnsOnceCorrected = 0.3;
 
 std::vector<TimedAttitude> attitudes_of(const Estimate& estimate) {
@@ -48,8 +48,8 @@ std::string text_of(const TurningFit& fit, const std::string& frame) {
   return out + (out.empty() ? "the poses" : " and the poses") + " belonged to the frame " + frame;
 }
 
-/// Returns the frames that check_turning() tests, with the frame of the estimate as the first element. If several
-/// frames have equal mountings, check_turning() uses only the first of these frames.
+/// The first returned frame is the frame of the estimate. Of several frames with equal mountings, only the first is
+/// returned.
 std::vector<CandidateFrame> candidates(const Estimate& estimate, const sim::Sensors& sensors) {
   std::vector<CandidateFrame> frames;
   if (sensors.imus.empty()) return frames;

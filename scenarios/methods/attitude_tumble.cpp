@@ -225,8 +225,8 @@ Status run_carried(const sim::Sensors& sensors, const sim::Values& parameters, s
   return status;
 }
 
-/// If the largest probability of hand-held motion in a recording is at least kCarried, HandHeldSmoother also estimates
-/// the rates. For hand-held motion, the rates of HandHeldSmoother are more accurate in clipped intervals.
+/// HandHeldSmoother also estimates the rates if the largest probability of hand-held motion in a recording is at least
+/// kCarried. For hand-held motion, the rates of HandHeldSmoother are more accurate in clipped intervals.
 constexpr double kCarried = 0.5;
 
 Status run_thrown(const sim::Sensors& sensors, const sim::Values& parameters, const std::vector<ImuSample>& samples,
@@ -273,8 +273,8 @@ Estimate run_attitude_tumble_batch(const sim::Sensors& sensors, const sim::Value
   }
   if (!estimate.status.ok()) return estimate;
   report_unknown_attitude(estimate);
-  // The health checks use the input of the attitude smoother, because the output of the smoother always agrees with
-  // gravity at rest.
+  // The health checks use the input of the attitude smoother, because the output of this smoother agrees with gravity
+  // at rest even if the readings are wrong.
   (void)check_imu(sensors, samples, rates_of(recovered), carried_share(recovered.report), estimate);
   return estimate;
 }

@@ -30,8 +30,8 @@ std::uint8_t clip_flags(std::uint8_t sim_bits) {
   return flags;
 }
 
-// The measured and the stated sample period may differ by at most the factor kPeriodsMax. If the time stamps have a
-// wrong unit, the measured and the stated period differ by a factor of 1000.
+// Largest accepted ratio between the measured and the stated sample period of an IMU. Time stamps in a wrong unit give
+// a ratio of 1000 or more.
 constexpr double kPeriodsMax = 20.0;
 
 Status check_period(const sim::ImuRecord& record, std::span<const ImuSample> samples) {
@@ -58,7 +58,7 @@ bool in_range(const sim::ImuRecord& record, const ImuSample& sample) {
   return check_range(record, sample.angular_velocity_rad_s, sample.specific_force_m_s2).ok();
 }
 
-// If too many readings are faulty, all readings count as usable, so that a later check rejects the recording.
+// If too many IMU readings are faulty, all readings count as usable, so that a later check rejects the recording.
 std::vector<bool> find_usable(std::span<const ImuSample> samples) {
   std::vector<bool> usable(samples.size(), true);
   std::vector<TimeNs> stamps_ns;
@@ -79,8 +79,8 @@ std::vector<bool> find_usable(std::span<const ImuSample> samples) {
   return usable;
 }
 
-// Only isolated readings beyond the device's range are removed; frequent readings beyond the range stay, so that a
-// later check rejects the recording.
+// Only isolated IMU readings beyond the range are removed. Frequent readings beyond the range stay, so that a later
+// check rejects the recording.
 void leave_out_faulty(const sim::ImuRecord& record, std::vector<ImuSample>& samples) {
   std::vector<bool> kept = find_usable(samples);
   std::size_t beyond = 0;

@@ -34,8 +34,8 @@ std::vector<std::string> imu_notes(const Imported& recording);
 
 void report_rates(const MotionRegimeSmoother::Report& report, Estimate& result);
 
-/// Adds the estimated saturation limits to `health`, without limits that were copied from another axis or from a data
-/// sheet.
+/// Adds the estimated saturation limits of the gyro to `health`. Limits that were copied from another axis or from a
+/// data sheet are omitted.
 void report_rails(const SaturationLevels& rails, std::map<std::string, double>& health);
 
 std::optional<double> carried_share(const MotionRegimeSmoother::Report& report);

@@ -56,15 +56,13 @@ const Settings<RollingOdometry::Params>& rolling_live_settings() {
   return all;
 }
 
-/// If rolling speed and travel speed of a sphere differ, a short flight counts as part of a slip.
+/// During a short flight, a sphere whose rolling speed differs from its travel speed counts as slipping.
 bool spins(double radius_m, const RollingOdometry::Pose& pose) {
   const double rolling_m_s = radius_m * (pose.pose.orientation_W * pose.angular_velocity_rad_s).head<2>().norm();
   const double speed_m_s = pose.pose.velocity_W_m_s.norm();
   return std::abs(rolling_m_s - speed_m_s) > std::max(kSpinsM_s, kSpinsShare * std::max(rolling_m_s, speed_m_s));
 }
 
-/// A moving contact point is `slip` if the rolling speed of the sphere exceeds the speed of its centre, otherwise
-/// `slide`.
 sim::ContactLabel slip_or_slide(double radius_m, const RollingOdometry::Pose& pose) {
   const Eigen::Vector3d rolling_m_s =
       radius_m * (pose.pose.orientation_W * pose.angular_velocity_rad_s).cross(Eigen::Vector3d::UnitZ());
@@ -78,7 +76,6 @@ sim::ContactLabel contact_label(double radius_m, const RollingOdometry::Pose& po
   return slip_or_slide(radius_m, pose);
 }
 
-/// IMUs without a data sheet get wider priors.
 RollingOdometry::Params stated_params(const sim::Sensors& sensors, const SphereImus& units,
                                       RollingOdometry::Params params) {
   params.radius_m = sensors.sphere_radius_m;

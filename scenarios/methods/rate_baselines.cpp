@@ -100,8 +100,8 @@ Status raw_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples
 
 Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std::vector<AngularRateState>& out) {
   out.clear();
-  // The oracle `rate/oracle` uses the unclipped readings. If the clipped readings are invalid, unclipped_rates() fails
-  // like all other methods.
+  // The oracle `rate/oracle` uses the unclipped readings, but must reject invalid clipped readings like all other
+  // methods.
   std::vector<ImuSample> samples;
   Status status = bridge::primary_imu_samples(sensors, samples);
   if (!status.ok()) return status;

@@ -20,8 +20,8 @@ using RunCore = Estimate (*)(const sim::Sensors&, const sim::Values& parameters,
 
 Method make_method(MethodInfo info, RunCore run);
 
-/// Wraps `run`: the returned function checks the parameter values, adds the default values of `info.settings`, and
-/// calls `run`. The function that with_settings() returns throws BadInput if a parameter is invalid.
+/// Returns a function that checks the parameter values, adds the default values of `info.settings`, and calls `run`.
+/// The returned function throws BadInput if a parameter is invalid.
 RunMethod with_settings(const MethodInfo& info, RunMethod run);
 
 std::span<const Method> methods();

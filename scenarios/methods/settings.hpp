@@ -16,8 +16,8 @@
 #include "sim/parameters.hpp"
 #include "tumble/common/parameters.hpp"
 
-/// Settings converts the fields of a library class's `Params` struct to parameters of a method that a user can set by
-/// name (common/parameters.hpp).
+/// Settings makes the fields of a `Params` struct available as method parameters that a user sets by name
+/// (common/parameters.hpp).
 namespace tumble::scenarios {
 
 namespace detail {
@@ -131,7 +131,6 @@ class Settings : public SettingsTable {
   Params defaults_;
 };
 
-/// Returns settings with the default values of `Params`.
 template <class Params>
 const Settings<Params>& default_settings() {
   static const Settings<Params> all(Params{});

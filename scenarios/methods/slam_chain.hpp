@@ -49,7 +49,7 @@ struct KnownMotion {
 };
 
 struct SlamChain {
-  /// true: a first pass over the recording estimates lidar mounting, clock offset and gravity, and a second pass starts
+  /// true: a first pass over the recording estimates lidar mounting, clock offset and gravity. A second pass starts
   /// with these estimates.
   bool calibration = false;
   const KnownMotion* along = nullptr;  ///< odometer

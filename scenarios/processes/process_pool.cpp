@@ -15,7 +15,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Longest wait for messages before the deadlines are checked [ms].
+/// Longest wait for messages of the child processes before their time limits are checked [ms].
 constexpr int kWaitMs = 200;
 
 struct Running {

@@ -24,7 +24,6 @@ struct PooledWork {
   double limit_s = 0.0;           ///< time limit of the process [s]
 };
 
-/// PooledEnd is the end of one process: everything that the process wrote, and how it ended.
 struct PooledEnd {
   std::size_t index = 0;
   std::string said;   ///< without the text that `on_words` removed

@@ -14,7 +14,7 @@ constexpr std::size_t kLeastForEnds = 10;
 /// A gap of more than a day between a few stamps and the others indicates that the clock was set.
 constexpr std::uint64_t kClockSet_ns = 86'400'000'000'000;
 
-/// Returns the indices of a longest increasing subsequence of the stamps (Fredman 1975).
+/// Algorithm: Fredman, Discrete Mathematics 11:29, 1975.
 std::vector<std::size_t> longest_increasing(std::span<const std::int64_t> stamps_ns) {
   std::vector<std::size_t> first_of_length, after(stamps_ns.size(), kNoIndex);
   for (std::size_t k = stamps_ns.size(); k-- > 0;) {

@@ -12,7 +12,7 @@
 
 namespace tumble::scenarios {
 
-/// Occasional faults of drivers, buses and files affect fewer than 5 % of a sensor's readings. A wrong clock, unit or
+/// Occasional faults of drivers, buses and files affect less than 5 % of a sensor's readings. A wrong clock, unit or
 /// layout affects more than 5 % of the readings, so the recording is rejected.
 inline constexpr double kLeftOutShareMax = 0.05;
 /// A sensor with at least five readings may always have one faulty reading.
@@ -58,7 +58,8 @@ class LeftOut {
 /// Selects time stamps such that the kept stamps increase and the fewest possible stamps are dropped (longest
 /// increasing subsequence). With at least ten stamps, a single stamp at either end is also dropped if its gap to the
 /// other stamps exceeds their time span. Several stamps at one end are dropped only if their gap to the other stamps
-/// also exceeds a day. The cost for N stamps is O(N log N), or O(N) if all increase.
+/// also exceeds a day, which indicates that the clock was set. The cost for N stamps is O(N log N), or O(N) if all
+/// increase.
 std::vector<bool> stamps_in_order(std::span<const std::int64_t> stamps_ns);
 
 /// If `rows` and `kept` differ in size, the sensor does not measure the quantity in `rows`, and `rows` stays unchanged.

@@ -16,9 +16,8 @@ std::pair<std::int64_t, std::int64_t> span_of(const sim::Sensors& sensors);
 
 using StampSpan = std::pair<std::int64_t, std::int64_t>;
 
-/// Returns the first of `shifts_ns` that makes the time span `moved` overlap the time span `fixed`, or nothing if no
-/// shift does. Exported files of a simulation start at kExportOrigin_ns (31 years), but a simulated recording starts at
-/// zero.
+/// Returns the first of `shifts_ns` that makes the shifted time span `moved` overlap the time span `fixed`, or nothing.
+/// Exported files of a simulation start at kExportOrigin_ns (31 years), but a simulated recording starts at zero.
 std::optional<std::int64_t> clock_shift_ns(const StampSpan& moved, const StampSpan& fixed,
                                            std::initializer_list<std::int64_t> shifts_ns);
 

@@ -99,8 +99,7 @@ std::string process_mark(const std::string& pid) {
   return ".tumble-" + std::string(host.data()) + "-" + pid + ".";
 }
 
-/// Removes temporary files that remain after a process on this computer was killed (SIGKILL). Each folder is cleaned
-/// only once per process.
+/// Removes temporary files that remain after a process on this computer was killed (SIGKILL).
 void remove_abandoned(const fs::path& folder) {
   static std::mutex mutex;
   static std::set<fs::path> cleaned;

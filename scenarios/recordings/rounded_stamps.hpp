@@ -12,8 +12,8 @@ namespace tumble::scenarios {
 /// sample period is within 0.02 ms of a whole millisecond, the function returns false.
 bool are_rounded(std::span<const std::int64_t> stamps_ns);
 
-/// Moves each stamp to a line that is fitted to the neighbouring stamps, which are at most half a second away. The line
-/// is fitted only to stamps that no gap separates from the moved stamp. Each stamp moves by at most a millisecond.
+/// Removes the rounding of time stamps. Each stamp moves, by at most a millisecond, to a line that is fitted to the
+/// stamps at most half a second away. Stamps beyond a gap are not used for the fit.
 std::vector<std::int64_t> evened(std::span<const std::int64_t> stamps_ns);
 
 std::int64_t mean_step_ns(std::span<const std::int64_t> stamps_ns);

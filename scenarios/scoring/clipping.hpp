@@ -48,7 +48,7 @@ class ClippingTruth {
   std::size_t known_samples() const;
   std::uint8_t clipped_axes(std::size_t index) const;
   std::uint8_t cross_axes(std::size_t index) const;
-  /// Largest difference, over the axes, between the reading and the unclipped reading (or the reference rate).
+  /// Largest difference, over the axes, between the gyro reading and the unclipped reading (or the reference rate).
   double depth_rad_s(std::size_t index) const;
 
  private:

@@ -93,8 +93,8 @@ bool rotation_error_end(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-// Squared error of the last pose over its covariance, after alignment at the first pose; the mean is 1 if the
-// covariance is consistent.
+// Squared error of the last pose over its covariance (NEES), divided by the six degrees of freedom, after alignment at
+// the first pose. The mean is 1 if the covariance is consistent.
 bool pose_nees(const ScoredEstimate& scored, double& value) {
   if (scored.estimate().sweeps.empty() || scored.estimate().poses.empty()) return false;
   const auto* last_sweep = last_covered(scored);

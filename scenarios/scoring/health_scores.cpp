@@ -64,8 +64,6 @@ Errors tilt_errors(const ScoredEstimate& scored) {
   return out;
 }
 
-/// An estimate is wrong if a tenth of the errors exceed five standard deviations, or half of the errors exceed
-/// `gross_limit`.
 bool are_wrong(const Errors& errors, double gross_limit) {
   return quantile_exceeds(kWrongDeviations, errors.deviations, 0.9) || quantile_exceeds(gross_limit, errors.gross, 0.5);
 }

@@ -86,7 +86,7 @@ bool unique_share(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-// Fraction of the surface seen by the lidar that the map covers; empty without a map or without true hits.
+// Returns the fraction of the surface hit by the lidar that the map covers; nothing without a map or without true hits.
 std::optional<double> covered_share(const ScoredEstimate& scored) {
   if (scored.estimate().map.empty() || scored.truth().lidars.empty()) return std::nullopt;
   const std::vector<Eigen::Vector3f> surface = seen_surface(scored.truth());

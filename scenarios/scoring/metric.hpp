@@ -15,8 +15,8 @@ namespace tumble::scenarios {
 /// of the reference).
 enum class Sense { lower, higher, two_sided, none };
 
-/// A `verdict` is 1 for a failure, otherwise 0. A `time_offset` has a sign; it is stored in seconds and displayed in
-/// milliseconds.
+/// The unit `verdict` means 1 for a failure, otherwise 0. The unit `time_offset` means a signed time, stored in seconds
+/// and displayed in milliseconds.
 enum class Unit { number, share, verdict, rad, rad_s, m, m_s, m_s2, s, time_offset, mib };
 const char* symbol(Unit unit);
 

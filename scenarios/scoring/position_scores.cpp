@@ -22,8 +22,8 @@ bool end_error(const ScoredEstimate& scored, double& value) {
 }
 
 /// Divides the end error by the path length of the body's centre: the centre of a sphere, or else the centre of mass. A
-/// sensor that turns around the body's centre has a longer path, so relative errors in different frames are not
-/// comparable.
+/// sensor that turns around the body's centre has a longer path, so the path of the sensor would give a smaller
+/// relative error.
 bool end_error_share(const ScoredEstimate& scored, double& value) {
   const std::vector<PairedPose>& poses = paired_track(scored).poses;
   if (poses.empty()) return false;

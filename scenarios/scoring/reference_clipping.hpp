@@ -9,9 +9,8 @@
 
 namespace tumble::scenarios {
 
-/// ReferenceRail is the saturation limit of gyro axis j with sign s (+1 or -1). The saturation limit is tilted. While
-/// axis j is saturated, the readings y are on the plane s y_j = rail + slopes * (readings of the other two axes, in
-/// order).
+/// ReferenceRail is the saturation limit of gyro axis j with sign s (+1 or -1). While axis j is saturated, the readings
+/// y are on the plane s y_j = rail + slopes * (readings of the other two axes, in order).
 struct ReferenceRail {
   bool found = false;
   double rail_rad_s = 0.0;

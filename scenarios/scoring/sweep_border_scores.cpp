@@ -6,7 +6,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the norm of the velocity jump at each sweep boundary, without the true change of velocity.
 std::vector<double> border_jumps_m_s(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   std::vector<double> jumps;

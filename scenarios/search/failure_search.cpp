@@ -24,14 +24,12 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// SearchedRun is the result of the method on one simulated run of the search.
 struct SearchedRun {
   std::uint64_t seed = 0;
   OutcomeStatus status = OutcomeStatus::ok;
   double value = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Throws BadInput if the results contain another search on this scenario and method.
 void claim(Results& results, const Scenario& scenario, const Method& method, const FailureGoal& goal,
            const SearchOptions& options) {
   const std::string name = full_name(method.info), key = fmt::format("search {} {}", name, scenario.name);
@@ -46,7 +44,6 @@ void claim(Results& results, const Scenario& scenario, const Method& method, con
   results.set_note(key, text);
 }
 
-/// Evaluator runs the method on random runs of the scenario, and stores each outcome.
 class Evaluator {
  public:
   Evaluator(const DataRoot& data, const Scenario& scenario, const Method& method, const FailureGoal& goal,
@@ -64,7 +61,6 @@ class Evaluator {
   const std::vector<DrawnNumber>& numbers() const { return numbers_; }
   const std::vector<SearchedRun>& runs() const { return runs_; }
 
-  /// Returns the scores, or nothing if the search was stopped.
   std::vector<double> score(std::span<const SplittingPoint> points) {
     std::vector<std::size_t> missing;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -132,7 +128,6 @@ class Evaluator {
     if (options_.on_runs) options_.on_runs(runs, failures_);
   }
 
-  /// Stores the outcome of a run under its index.
   void take(std::size_t index, Message message) {
     const Setting setting{kSearchRun, static_cast<double>(index)};
     SearchedRun& run = stored_[index];
@@ -154,8 +149,7 @@ class Evaluator {
                       index, outcome.message));
   }
 
-  /// Returns the outcome or the rejection that a process wrote. A process that wrote no result crashed, was killed, or
-  /// exceeded its time limit.
+  /// A process that wrote no result crashed, was killed, or exceeded its time limit.
   static Message last_message(const DrawTask& task, const PooledEnd& ended) {
     std::size_t begin = 0;
     for (std::size_t end; (end = ended.said.find('\n', begin)) != std::string::npos; begin = end + 1) {
@@ -186,7 +180,6 @@ double distance_of(const ScoredPoint& draw) {
   return std::sqrt(squares);
 }
 
-/// Report summarises the runs of a search.
 class Report {
  public:
   Report(const Scenario& scenario, const Evaluator& evaluator, double bound, SearchResult& result)

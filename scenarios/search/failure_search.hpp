@@ -19,8 +19,6 @@
 #include "scenarios/sweep/results.hpp"
 #include "scenarios/sweep/sweep.hpp"
 
-/// failure_search.hpp estimates the probability that a method fails on a random run (draw) of a scenario. The search
-/// also finds runs on which the method fails.
 namespace tumble::scenarios {
 
 /// Key under which the results database stores the runs of a search, with the index of the run as value.
@@ -33,7 +31,6 @@ struct SearchOptions {
   int jobs = 1;                                ///< number of processes
   double memory_mib = kWorkerMemoryMib;        ///< memory limit (RLIMIT_DATA) of each process
   const std::atomic<bool>* stop = nullptr;
-  /// Called after each run with the numbers of runs and of failures so far.
   std::function<void(std::size_t runs, std::size_t failures)> on_runs;
 };
 

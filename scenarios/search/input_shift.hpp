@@ -22,7 +22,7 @@ struct InputShift {
 };
 
 /// Compares the values of each random parameter in the draws with the scenario's distribution. The parameter with the
-/// largest shift comes first. Copies of one initial draw depend on each other. `shift` is therefore averaged over the
+/// largest shift comes first. Because copies of one initial draw depend on each other, `shift` is averaged over the
 /// copies of each initial draw, and then over the initial draws. `corrected` is equation (S31) of statistics.md, after
 /// Holm's correction. `draws` must not be empty.
 std::vector<InputShift> input_shifts(std::span<const DrawnNumber> numbers, std::span<const ScoredPoint> draws);

@@ -70,7 +70,6 @@ class Splitting {
   std::vector<ScoredPoint>& draws() { return result_.draws; }
   double score_of(std::size_t member) const { return result_.draws[result_.members[member]].score; }
 
-  /// Scores the draws `fresh` and appends them to `draws`; returns false if the search was stopped.
   bool add(std::vector<ScoredPoint> fresh) {
     std::vector<SplittingPoint> points;
     for (const ScoredPoint& each : fresh) points.push_back(each.point);
@@ -113,8 +112,7 @@ class Splitting {
     return out;
   }
 
-  /// Removes the draws with the lowest scores, and replaces them by copies of other draws. Returns false if the budget
-  /// is too small or no higher scores remain.
+  /// Returns false if the budget is too small or no higher scores remain.
   bool advance() {
     std::vector<double> scores;
     for (std::size_t i = 0; i < result_.members.size(); ++i) scores.push_back(score_of(i));
@@ -152,8 +150,6 @@ class Splitting {
     for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[stream_.bits() % i]);
   }
 
-  /// Applies Metropolis moves to the new copies, whose indices are in `moved`. A move is accepted if the score of the
-  /// new draw is above `level`. Returns false if the search was stopped.
   bool move(const std::vector<std::size_t>& moved, double level) {
     std::size_t taken = 0, reseeded = 0, taken_reseeded = 0;
     for (std::size_t k = 0; k < rate_.moves; ++k) {
@@ -266,9 +262,9 @@ void SplittingEstimate::advance(std::size_t removed, std::span<const std::size_t
   if (left > 1.0) log_correction_ += std::log((left - 1.0) * n * n / (left * (n * n - siblings)));
 }
 
-/// Computes the confidence interval by equation (S30) of statistics.md. The estimate is log-normal, and the median of a
-/// log-normal distribution is below its mean. To correct this difference, the upper limit of the confidence interval is
-/// multiplied by exp(variance / 2). The lower limit of the confidence interval is not corrected.
+/// Computes the confidence interval by equation (S30) of statistics.md. The estimated probability has a log-normal
+/// distribution, whose median is below its mean. The factor exp(variance / 2) therefore corrects the upper limit of the
+/// confidence interval.
 Interval SplittingEstimate::interval(std::span<const std::size_t> members, double risk) const {
   const auto n = static_cast<double>(population_), own = static_cast<double>(members.size());
   const double share = own / n, log_value = log_probability_ + std::log(share);
@@ -290,10 +286,10 @@ Interval SplittingEstimate::of_failure(std::span<const std::size_t> families,
   if (log_probability_ == 0.0)
     return share_interval(static_cast<std::int64_t>(failing.size()), static_cast<std::int64_t>(population_));
   if (2 * failing.size() >= population_) return interval(failing, kRisk);
-  // If fewer than half of the population fails, the estimated probability is not log-normal, so two confidence
-  // intervals are multiplied. The two multiplied intervals are for the probability of the level and for the failing
-  // fraction of the population. Each multiplied interval has half of the error risk. For the failing fraction, all
-  // copies of one initial draw count as one draw.
+  // If fewer than half of the population fails, the estimated probability is not log-normal. The confidence interval is
+  // then the product of two intervals: for the probability that a random draw exceeds the level, and for the fraction
+  // of the population that fails. Each of the two intervals has half of the error risk. In the interval of the failing
+  // fraction, all copies of one initial draw count as one draw.
   const Interval level = interval(families, 0.5 * kRisk);
   const auto n = static_cast<double>(sizes_of(families).size());
   const double share = static_cast<double>(failing.size()) / static_cast<double>(population_), count = share * n;

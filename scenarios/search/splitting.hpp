@@ -23,8 +23,8 @@ struct SplittingPoint {
   std::uint64_t seed() const;
 };
 
-/// ScorePoints returns one score per draw. If ScorePoints returns fewer scores than draws, the search stops and ignores
-/// these scores.
+/// A ScorePoints function returns one score per draw. If it returns fewer scores than draws, the search stops and
+/// ignores these scores.
 using ScorePoints = std::function<std::vector<double>(std::span<const SplittingPoint>)>;
 
 /// Move changes the standard normal numbers of a draw at random, by a step size in (0, 1]. A Move function must
@@ -81,10 +81,10 @@ struct SplittingResult {
 /// quarters of the draws that advance together have scores above the bound.
 ///
 /// The step size of the Metropolis moves increases if more than 40 % of the moves are accepted. The number of moves per
-/// copy follows from the acceptance rate of moves with a new seed. If every move drew a new seed, at least 90 % of the
-/// copies would accept one of their moves. The 95 % interval takes into account that copies of one initial draw depend
-/// on each other. Equal options give equal results for deterministic scores. Scores may be infinite, but not NaN.
-/// Throws BadInput for invalid options or NaN scores.
+/// copy follows from the acceptance rate of moves with a new seed. At least 90 % of the copies should accept a new seed
+/// if every move drew one. The 95 % interval takes into account that copies of one initial draw depend on each other.
+/// Equal options give equal results for deterministic scores. Scores may be infinite, but not NaN. Throws BadInput for
+/// invalid options or NaN scores.
 SplittingResult split(const SplittingOptions& options, const ScorePoints& score);
 
 /// SplittingEstimate accumulates the probability of a level in adaptive multilevel splitting, and the variance of its

@@ -31,13 +31,13 @@ struct FirstOrder {
 };
 
 /// Estimates the first-order (Sobol') index of y with respect to x from existing data (Plischke, Borgonovo, Smith, EJOR
-/// 226:536, 2013). The estimator divides x into equally large classes, and computes the variance of the class means of
-/// y, equation (S18) of statistics.md. Equation (S19) corrects the first-order index for chance, because class means of
-/// y also vary if y is independent of x.
+/// 226:536, 2013). The estimator sorts the runs by x, divides them into equally large classes, and computes the
+/// variance of the class means of y, equation (S18) of statistics.md. Equation (S19) corrects the first-order index for
+/// chance, because class means of y also vary if y is independent of x.
 FirstOrder first_order_index(std::span<const double> x, std::span<const double> y);
 
-/// The 95 % interval is Student's for the mean, from order statistics for the median, and Clopper and Pearson's for the
-/// fraction of ones.
+/// The 95 % interval of a class is Student's for the mean, from order statistics for the median, and Clopper and
+/// Pearson's for the fraction of ones.
 enum class Centre { mean, median, share };
 
 struct DependenceClass {
@@ -48,9 +48,10 @@ struct DependenceClass {
 
 inline constexpr std::size_t kDependenceClassesMax = 8, kDependenceDrawsMin = 12;
 
-/// Computes the partial dependence of y on x: a statistic of y per class of x, equations (S22) and (S23) of
-/// statistics.md. The data of a partial dependence must come from simulated runs with independent random numbers. There
-/// are at most `kDependenceClassesMax` equally large classes of x, with at least `kDependenceDrawsMin` runs each.
+/// Computes the partial dependence of y on x, equations (S22) and (S23) of statistics.md. The runs are sorted by x and
+/// divided into at most `kDependenceClassesMax` equally large classes, with at least `kDependenceDrawsMin` runs each.
+/// For each class, the function computes a statistic of y. The data must come from simulated runs with independent
+/// random numbers.
 std::vector<DependenceClass> partial_dependence(std::span<const double> x, std::span<const double> y, Centre centre);
 
 }  // namespace tumble::scenarios

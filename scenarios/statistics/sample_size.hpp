@@ -5,7 +5,7 @@
 #include <span>
 
 /// Each function computes how many pairs a test needs to detect an effect of the observed size. If the observed effect
-/// is due to chance, the computed number of pairs is too small.
+/// is larger than the true effect by chance, the computed number of pairs is too small.
 namespace tumble::scenarios {
 
 struct Plan {

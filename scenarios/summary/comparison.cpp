@@ -176,8 +176,7 @@ class Comparing {
     return found->second;
   }
 
-  /// Plans the sample size. The planned error risk is the total risk divided by the number of tests, because Holm's
-  /// correction requires this risk for the smallest p-value.
+  /// Holm's correction compares the smallest p-value with the total risk divided by the number of tests.
   Plan plan(std::size_t tests) const {
     return {options_.risk / static_cast<double>(std::max<std::size_t>(tests, 1)), options_.power};
   }

@@ -44,7 +44,8 @@ inline bool one_section(const Contest& a, const Contest& b) {
   return a.scenario == b.scenario && a.kind == b.kind && a.against == b.against;
 }
 
-/// A failed run has the worst value; if both runs failed or have equal values, neither method is better.
+/// A failed run counts as the worst value of a metric. If both methods failed or have equal values, neither method is
+/// better.
 struct MetricComparison {
   Contest contest;
   std::string metric;
@@ -80,9 +81,9 @@ struct Comparison {
   std::vector<FailureComparison> failures;
 };
 
-/// Compares the methods. A metric without a sense (for example a cost, for which neither lower nor higher is better) is
-/// compared only if the caller names the metric. For a metric without a sense, the finding is always
-/// Finding::undecided.
+/// Compares each method with the reference method. A metric without a sense (for example a cost, for which neither
+/// lower nor higher is better) is compared only if the caller names the metric. For a metric without a sense, the
+/// finding is always Finding::undecided.
 Comparison compare(const Summary& summary, const ComparisonOptions& options);
 
 }  // namespace tumble::scenarios

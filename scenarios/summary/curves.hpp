@@ -12,7 +12,7 @@
 
 namespace tumble::scenarios {
 
-/// Failed runs rank worst, so a quantile can be infinite.
+/// Failed runs count as the worst values of a metric, so a quantile of the metric can be infinite.
 struct CurvePoint {
   double x = 0.0;
   std::string label;  ///< label of a bin: "0.5 – 1"

@@ -10,8 +10,8 @@
 #include "scenarios/summary/comparison.hpp"
 #include "scenarios/sweep/results.hpp"
 
-/// A sweep simulates many runs of several scenarios. A sweep can stop early if a confidence sequence shows whether one
-/// method is better than another (docs/maths/statistics.md, "Confidence sequence").
+/// A sweep over many simulated runs can stop early if a confidence sequence shows whether one method is better than
+/// another (docs/maths/statistics.md, "Confidence sequence").
 namespace tumble::scenarios {
 
 inline constexpr const char* kQuestionNote = "until";

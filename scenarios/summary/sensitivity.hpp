@@ -51,7 +51,8 @@ struct SensitivityOptions {
 
 inline constexpr std::size_t kSensitivityDrawsMin = 12, kSensitivityFailuresMin = 5;
 
-/// Rows with too few simulated runs are omitted, and failed runs rank worst.
+/// Combinations of scenario, method and metric with too few simulated runs are omitted. Failed runs count as the worst
+/// values of the metric.
 std::vector<Sensitivity> sensitivities(const Summary& summary, const std::map<std::string, NumbersOfDraws>& numbers,
                                        const SensitivityOptions& options);
 

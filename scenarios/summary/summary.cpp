@@ -29,7 +29,6 @@ const MethodInfo* registered(Kind kind, const std::string& name) {
   return rank < methods().size() ? &methods()[rank].info : nullptr;
 }
 
-/// Returns the baseline method of `kind`, or the first method without access to the truth if `methods` has no baseline.
 std::string choose_baseline(Kind kind, const std::vector<MethodSummary>& methods) {
   for (const MethodSummary& method : methods) {
     const MethodInfo* info = registered(kind, method.method);

@@ -24,7 +24,7 @@ struct Wins {
   std::int64_t count = 0, pairs = 0;
 };
 
-/// Failed outcomes rank worst in all statistics, so the median is infinite if half of the runs fail.
+/// Failed runs count as the worst values in all statistics, so the median is infinite if half of the runs fail.
 struct MetricSummary {
   Interval centre{};  ///< median or fraction, 95 % interval
   double quantile_95 = 0.0;

@@ -83,8 +83,7 @@ bool read_until(Process& process, double deadline_s, std::string& buffer) {
   }
 }
 
-/// Returns true if the method needs lidar data. External methods of other kinds than `rate` receive all sensor data, so
-/// these external methods count as methods that need lidar data.
+/// External methods of other kinds than `rate` receive all sensor data, so they count as methods that need lidar data.
 bool reads_lidars(const MethodInfo& info) {
   return info.kind == Kind::slam || (info.kind != Kind::rate && !info.version.empty());
 }

@@ -9,7 +9,6 @@
 
 namespace tumble::scenarios {
 
-/// Returns whether the score is a pass-fail metric that has failed.
 bool is_failed_verdict(const Score& score);
 
 /// FailureGoal defines the failure of a run by a metric that is worse than a limit. A run whose status is not ok also
@@ -20,10 +19,8 @@ struct FailureGoal {
   double limit = 0.0;  ///< infinite: no value is worse
   bool operator==(const FailureGoal&) const = default;
 
-  /// Returns whether the run failed by its status, by a pass-fail metric, or by the metric of this goal. A run without
-  /// the metric of the goal fails.
   bool holds(const Outcome& outcome) const;
-  /// Returns whether a value of the metric is worse than the limit. NaN is not worse.
+  /// Returns whether a value of the metric is worse than the limit; NaN is not worse.
   bool is_worse(double value) const;
   /// Returns the score of a run, which is larger for worse runs. A run with the status `rejected` or without the metric
   /// has the score -infinity; any other status except ok gives +infinity.
@@ -32,7 +29,6 @@ struct FailureGoal {
   double value_at(double score) const;
   /// Returns the score at `limit`, clamped to finite numbers; a run fails if its score is larger.
   double bound() const;
-  /// Formats the goal as "METRIC > VALUE", or with "<" if higher values are better.
   std::string text() const;
 };
 

@@ -64,7 +64,7 @@ double largest(const Readings& readings) {
   return largest;
 }
 
-/// The stated range exceeds every reading, so no reading counts as clipped.
+/// The stated range must exceed every reading, so that no reading counts as clipped.
 double beyond(double stated, const Readings& readings) {
   return stated > 0.0 ? std::max(stated, 1.1 * largest(readings)) : stated;
 }

@@ -249,7 +249,6 @@ void radius(sim::Sensors& sensors, const sim::Truth&, const sim::Situation&, dou
   sensors.sphere_radius_m += size;
 }
 
-/// The stated range of the IMU exceeds every reading, so no reading counts as clipped.
 void state_no_rail(sim::ImuRecord& imu) {
   double largest = 0.0;
   for (const Eigen::Vector3d& reading : imu.gyro_rad_s) largest = std::max(largest, reading.lpNorm<Eigen::Infinity>());

@@ -30,7 +30,6 @@ Reach reach(const Setting& setting);
 
 bool needs_lidar(const Setting& setting);
 
-/// A key names a parameter of the scenario, an error in the methods' input (`given.`), or a parameter of a method.
 /// Throws BadInput if a key is unknown or does not apply to a scenario, or if a variation has keys of several kinds.
 void check(const Variation& variation, const DataRoot& data, std::span<const std::string> scenarios,
            std::uint64_t seed);
@@ -43,8 +42,7 @@ Method with_setting(const Method& method, const Setting& setting);
 
 bool concerns(const Setting& setting, const MethodInfo& method);
 
-/// GivenError is an error of chosen size in the sensor data or the calibration that methods receive. A GivenError is
-/// added after the simulation, so one simulation serves all sizes of the error.
+/// GivenError is an error of chosen size in the sensor data or the calibration that methods receive.
 struct GivenError {
   sim::Parameter parameter;  ///< size; the default means no error
   bool needs_lidar = false;

@@ -18,7 +18,7 @@ class ClippedBaseline {
  public:
   struct Params {
     SaturationLimitDetector::Params rails = {};
-    bool tilted_rails = false;  ///< tilted saturation limits too, unlike SaturationAwareRateEstimator
+    bool tilted_rails = false;  ///< true: also detects saturation limits that depend on all three gyro outputs
     /// Noise density of the gyro [rad/s/sqrt(Hz)]
     double gyro_noise_density = 5.236e-4;
     double rate_max_rad_s = 50.0;  ///< largest rate about one axis in a gap

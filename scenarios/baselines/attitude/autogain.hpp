@@ -23,9 +23,9 @@ struct AutogainGains {
   double slerp_share = 0.0;     ///< weight of the complementary step (eq 5)
 };
 
-/// Autogain estimates attitude with the published filter for a rolling sphere (Zevering et al., IEEE MFI 2021, eqs
-/// 2-5). Autogain combines Madgwick's correction, whose gain grows with the angular rate, with a complementary
-/// correction, whose weight falls with the angular rate. Autogain estimates neither gyro bias nor heading.
+/// Autogain estimates attitude with the filter for a rolling sphere (Zevering et al., IEEE MFI 2021, eqs 2-5). Autogain
+/// combines Madgwick's correction, whose gain grows with the angular rate, with a complementary correction, whose
+/// weight falls with the angular rate. Autogain estimates neither gyro bias nor heading.
 class Autogain {
  public:
   struct Params {

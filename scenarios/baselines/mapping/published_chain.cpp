@@ -26,9 +26,9 @@ TimeNs rounded_offset(const LidarPoint& point, TimeNs step_ns) {
   return static_cast<TimeNs>(point.offset_ns) / step_ns * step_ns;
 }
 
-/// Returns the time of the pose that the registration of a sweep estimates. The returned time is usually the start of
-/// the sweep. If all points of the sweep have the same time, registered_at() returns this common time. If all points
-/// have the same time, a pose at the start of the sweep would make the velocity feedback of PublishedChain unstable.
+/// Returns the time of the pose that the registration of a sweep estimates, usually the start of the sweep. For a sweep
+/// whose points have equal times, the function returns this time. A pose at the start of such a sweep would make the
+/// velocity feedback of PublishedChain unstable.
 TimeNs registered_at(const Sweep& sweep, TimeNs step_ns) {
   if (sweep.points.empty()) return sweep.start_ns;
   const auto [first, last] = std::minmax_element(

@@ -16,8 +16,8 @@
 
 namespace tumble::baselines {
 
-/// PublishedChain estimates trajectory and map from given angular rates. The method is the published mapping chain
-/// (Deschenes et al., ICRA 2024), with the constants of its launch files.
+/// PublishedChain estimates trajectory and map from lidar sweeps, specific forces and given angular rates. The method
+/// is the mapping chain of Deschenes et al. (ICRA 2024), with the constants of its launch files.
 class PublishedChain {
  public:
   struct Params {

@@ -16,7 +16,7 @@
 namespace tumble::baselines {
 
 /// RigidOdometry deskews each sweep once with the predicted motion and corrects only the pose at the end of the sweep.
-/// RigidOdometry neglects mounting errors and clock offsets, and does not recover after a tracking failure.
+/// RigidOdometry neglects errors of the lidar's mounting and clock, and does not recover after a tracking failure.
 /// Sweeps whose registration failed are inserted into the map at their predicted pose, as in most published methods.
 class RigidOdometry {
  public:

@@ -27,7 +27,7 @@ class TrimmedIcp {
     double trim_max = 0.7;
     double trim_lambda = 2.35;
     /// If true, trimming keeps a fraction of all possible matches (points times `neighbours`) instead of the found
-    /// matches. The code of the ICRA 2024 paper also counts all possible matches.
+    /// matches.
     bool count_unmatched_slots = false;
     int iterations_max = 40;
     double step_m = 0.01;  ///< converged below both bounds
@@ -79,8 +79,8 @@ class TrimmedIcp {
   /// A registration that reaches `iterations_max` iterations counts as success.
   Result align(std::span<const Point> points, const Eigen::Isometry3d& prior, const VoxelMap& map);
 
-  /// Returns the number of matches that the registration keeps, from the squared distances of the matches in ascending
-  /// order (parameter `trim_lambda`).
+  /// Returns how many matches the registration keeps (parameter `trim_lambda`). `sorted_d2` contains the squared
+  /// distances of the matches in ascending order.
   static std::size_t trim(std::span<const float> sorted_d2, std::size_t slots, const Params& params);
 
   /// Clears the cached normals of the map points; required after each change of the map.

@@ -18,7 +18,8 @@
 
 namespace tumble::scenarios {
 
-/// BagCloud becomes the topic "/TRACK/points" (sensor_msgs/PointCloud2: x y z, and error_m if known).
+/// BagCloud is a point cloud of an estimate, written to the topic "/TRACK/points" (sensor_msgs/PointCloud2: x y z, and
+/// error_m if known).
 struct BagCloud {
   std::vector<Eigen::Vector3f> position_W_m;
   std::vector<float> error_m;  ///< parallel to `position_W_m`, or empty
@@ -41,8 +42,8 @@ struct BagTrack {
   std::string name;  ///< letters, digits and _
   std::vector<Pose> poses;
   std::vector<std::int64_t> cloud_time_ns = {};  ///< times of point clouds along the track
-  /// Returns the point cloud with the given index. The exporter calls cloud() when it writes the point cloud, and omits
-  /// point clouds without points.
+  /// The exporter calls cloud() when it writes the point cloud with the given index. Point clouds without points are
+  /// omitted.
   std::function<BagCloud(const BagTrack&, std::size_t)> cloud = {};
 };
 

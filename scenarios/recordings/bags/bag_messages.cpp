@@ -24,7 +24,6 @@ std::array<double, kCount> array_of(const Vector& vector) {
   return out;
 }
 
-/// The variance of an IMU sample is the squared noise density times the output rate.
 std::array<double, 9> covariance_of(double density_sqrt_hz, std::int64_t period_ns) {
   const double variance = density_sqrt_hz * density_sqrt_hz / (static_cast<double>(period_ns) * 1e-9);
   return {variance, 0, 0, 0, variance, 0, 0, 0, variance};
@@ -126,7 +125,8 @@ ros::TransformStamped transform_message(const Eigen::Vector3d& p, const Eigen::Q
 namespace {
 
 constexpr std::int64_t kSaid_ns = 1'000'000;
-/// A header stamp that is more than 10 ms later than its record stamp comes from another clock.
+/// If a header stamp is more than 10 ms later than the record stamp of its message, both stamps come from different
+/// clocks.
 constexpr std::int64_t kAhead_ns = 10'000'000;
 /// If the delay from header to record stamps varies by more than 0.5 s, the clocks drift or the header stamps are not
 /// measurement times.

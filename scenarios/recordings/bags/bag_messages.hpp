@@ -37,9 +37,10 @@ class BagStamps {
     return source_ == StampSource::header && !header_ns_.empty() && header_ns_.back() == header_ns;
   }
 
-  /// Describes the delay from header stamps to record stamps; empty if the delay is always below one millisecond.
+  /// Describes the delay from header stamps to record stamps of the messages; empty if the delay stays below one
+  /// millisecond.
   std::string remark() const;
-  /// Returns true if header stamps are later than record stamps, or at least a second earlier.
+  /// Returns true if header stamps of messages are later than their record stamps, or at least a second earlier.
   bool other_clock() const;
 
  private:

@@ -31,8 +31,7 @@ void read_clouds(const OpenedBag& bag, const std::string& topic, LeftOut& left_o
   bag.read<ros::PointCloud2>(topic, take, &left_out);
 }
 
-/// Adds a caution to `notes` if point times are later than the record stamps of their messages, which is physically
-/// impossible.
+/// Point times that are later than the record stamps of their messages are physically impossible.
 void note_points_to_come(const std::string& topic, const BuiltSweeps& built, const std::vector<std::int64_t>& records,
                          std::vector<std::string>& notes) {
   std::vector<double> ahead_s;

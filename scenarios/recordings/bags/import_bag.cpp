@@ -94,8 +94,8 @@ Eigen::Isometry3d pose_of_reference(const std::string& topic, const std::string&
   return T_BA.value_or(body);
 }
 
-/// The poses of the topic `reading.reference_topic` replace the truth. By default, the frame of the reference poses is
-/// the child_frame_id of the messages, if the bag contains the transform of this frame.
+/// By default, the frame of the reference poses is the child_frame_id of the messages, if the bag contains the
+/// transform of this frame.
 void attach_reference(const OpenedBag& bag, const SensorMountings& places, const BagReading& reading, Imported& out) {
   const std::string& topic = reading.reference_topic;
   NamedPoses found = reference_poses(bag, topic, reading.stamps);

@@ -12,7 +12,6 @@
 
 #include "scenarios/recordings/bags/mcap_records.hpp"
 
-/// The MCAP reader checks every length, position, time and checksum before use.
 namespace tumble::scenarios::mcap {
 
 struct Segment {
@@ -32,9 +31,9 @@ struct Record {
 
 class File {
  public:
-  /// Reads the summary of the MCAP file; without a summary, scans the file. The cost is O(file size). Throws BadInput
-  /// with the offset if the file is damaged, or has a compression other than none, lz4 or zstd. Also throws BadInput if
-  /// a chunk or record is larger than 256 MiB.
+  /// Reads the summary of the MCAP file. A file without a summary is scanned, which costs O(file size). Every length,
+  /// position, time and checksum is checked. Throws BadInput with the offset if the file is damaged, or has a
+  /// compression other than none, lz4 or zstd. Also throws BadInput if a chunk or record is larger than 256 MiB.
   explicit File(const std::filesystem::path& path);
 
   const std::map<std::uint16_t, Schema>& schemas() const { return schemas_; }

@@ -11,9 +11,7 @@
 /// members:
 /// - operator()(uint8 | uint32 | uint64 | float | text | array of doubles) handles one field.
 /// - ros1_only(uint32) handles a field that ROS 2 removed.
-/// - count(number of entries, minimum bytes of an entry) handles the length before a list, and returns the stored
-/// length
-///   when decoding.
+/// - count(number of entries, minimum bytes of an entry) handles the length of a list, and returns the decoded length.
 /// - raw(first byte, bytes) handles a block of bytes.
 namespace tumble::scenarios::ros {
 

@@ -57,8 +57,7 @@ class HeaderLines {
 
   std::uint64_t bytes() const { return bytes_; }
 
-  /// Throws BadInput if the number of points in the header does not fit the remaining file size. `made_of_a_byte` is
-  /// the largest compression factor of the points (1: uncompressed).
+  /// `made_of_a_byte` is the largest compression factor of the points (1: uncompressed).
   void require_room(const CloudHeader& header, std::uint64_t made_of_a_byte = 1) const {
     if (header.points > kCloudPointsMax) {
       fail(fmt::format("the file states {} points; at most {} can be read", header.points, kCloudPointsMax));
@@ -73,8 +72,8 @@ class HeaderLines {
     }
   }
 
-  /// Checks the two sizes that the file stores in front of the compressed points: the number of compressed bytes and
-  /// the number of uncompressed bytes. PCL does not check the sizes of compressed points.
+  /// PCL does not check the two sizes in front of compressed points: the number of compressed bytes and the number of
+  /// uncompressed bytes.
   void require_sizes(const CloudHeader& header) {
     std::array<std::uint32_t, 2> sizes{};
     if (!stream_.read(reinterpret_cast<char*>(sizes.data()), sizeof(sizes)))
@@ -90,8 +89,7 @@ class HeaderLines {
     }
   }
 
-  /// PCL would interpret a line of point data that looks like a header line as part of the header, so such lines are
-  /// rejected.
+  /// PCL would interpret a line of point data that looks like a header line as part of the header.
   void require_end_of_header(std::span<const char* const> words) {
     stream_.clear();
     stream_.seekg(static_cast<std::streamoff>(bytes_));

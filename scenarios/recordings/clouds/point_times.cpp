@@ -23,11 +23,12 @@ namespace {
 constexpr double kSpanMin = 0.02, kSpanMax = 1.5, kShortSpanMin = kSpanMax / 1000.0;
 /// Times after 1973, in seconds since 1970, exceed 1e8.
 constexpr double kEpochMin_s = 1e8;
-/// A sweep with fewer than 100 points may cover only a short part of the sweep period. For few points, a short time
-/// span is therefore compatible with the stated time unit.
+/// A sweep with fewer than 100 points may cover only a short part of the sweep period. Its short time span does not
+/// contradict the stated time unit.
 constexpr double kPointsThatSpan = 100.0;
 
-/// With at least five clouds, point times are absolute if two clouds start more than two periods from time zero.
+/// With at least five clouds, point times count as absolute if two clouds start more than two sweep periods from time
+/// zero.
 constexpr std::size_t kCloudsToCompare = 5;
 
 using tumble::ros::kTimeUnits, tumble::ros::TimeUnit, tumble::ros::stated_unit;

@@ -20,7 +20,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// A single cloud may be incomplete, so several clouds determine the time unit.
+/// A single point cloud may be incomplete, so several clouds determine the unit of the point times.
 constexpr std::ptrdiff_t kProbe = 10;
 constexpr double kByteIntensity = 255.0;
 constexpr double kPointFar_m = 1e6;
@@ -178,7 +178,6 @@ void SweepBuilder::read(Waiting& sweep) {
   if (store_) store_->take(record_);
 }
 
-/// Points with wrong times are removed from `kept`; too many wrong times throw BadInput.
 std::vector<std::int64_t> SweepBuilder::point_times(const Waiting& sweep, std::vector<std::size_t>& kept) {
   if (rule_->field.empty() || kept.empty()) {
     if (!sweep.stamp_ns)

@@ -47,7 +47,7 @@ PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t per
 struct BuiltSweeps {
   sim::LidarRecord lidar;
   std::optional<PointStore> points;
-  /// Time of the last point of each cloud, or the start of a sweep whose points have no times; empty for a skipped
+  /// Time of the last point of each cloud, or start of the sweep if its points have no times. Empty for a skipped
   /// cloud.
   std::vector<std::optional<std::int64_t>> last_point_ns = {};
 };

@@ -54,7 +54,6 @@ constexpr double kCorrelatedSamples = 10.0;  // vibration is correlated over abo
 constexpr double kOutlierSigmas = 3.0;
 constexpr int kRounds = 4;
 
-/// Pair contains the readings of both IMUs at one time.
 struct Pair {
   Rows rows;            // derivative of the force difference with respect to position and bias
   Vector3d difference;  // specific force of the second IMU minus that of the first IMU
@@ -66,8 +65,7 @@ Vector3d largest_readings(const sim::ImuRecord& imu) {
   return out;
 }
 
-/// Returns the readings of both IMUs during fast rotation, in pairs. `rate_difference` becomes the median difference
-/// between the rates of both gyros, as a fraction of the rate.
+/// `rate_difference` becomes the median difference between the rates of both gyros, as a fraction of the rate.
 std::vector<Pair> fast_pairs(const sim::ImuRecord& first, const sim::ImuRecord& second, double& rate_difference) {
   const Vector3d largest = kUnsaturatedRatio * largest_readings(first);
   std::vector<Pair> pairs;
@@ -104,7 +102,7 @@ std::vector<Pair> fast_pairs(const sim::ImuRecord& first, const sim::ImuRecord& 
 }
 
 /// Estimates the position p of a second IMU with the same axes, by least squares. The specific forces of both IMUs
-/// differ by a x p + w x (w x p) plus a bias, with position p, rate w and angular acceleration a. The least-squares fit
+/// differ by a x p + w x (w x p) plus a bias, with angular rate w and angular acceleration a. The least-squares fit
 /// omits samples near the largest gyro reading, because the gyro may be saturated. Cost: O(N) for N samples.
 ImuPosition estimate_imu_position(const sim::ImuRecord& first, const sim::ImuRecord& second) {
   ImuPosition out;
@@ -186,8 +184,7 @@ void say_columns(const ImuColumns& columns, bool stated, std::vector<std::string
   if (!others.empty()) notes.push_back("ignored columns: " + others);
 }
 
-/// Returns the IMU numbers in a table, in the order of their first rows, or nothing for a table of one IMU. A column
-/// with more than eight different numbers contains row numbers and not IMU numbers.
+/// A column with more than eight different numbers contains row numbers and not IMU numbers.
 std::vector<std::string> imus_in(LoggedTable& table, std::size_t id) {
   constexpr std::size_t kImusMax = 8;
   std::vector<std::string> found;
@@ -222,7 +219,6 @@ struct Units {
   GyroUnit gyro;
 };
 
-/// Reads the samples of one IMU without the faulty samples, and adds remarks for the user to `notes`.
 sim::ImuRecord checked_readings(LoggedTable& table, const ImuColumns& columns, const sim::ImuRecord& device,
                                 const std::string& path, const Units& units, std::vector<std::string>& notes) {
   LeftOut left_out("readings");
@@ -239,8 +235,6 @@ sim::ImuRecord checked_readings(LoggedTable& table, const ImuColumns& columns, c
   return imu;
 }
 
-/// Adds IMU number i of the imported table to `out` at its estimated position. An IMU that cannot be read or whose
-/// position cannot be estimated is left out. `out.notes` reports the result.
 template <class Read>
 void add_further_imu(const Read& read, const std::vector<std::string>& imus, std::size_t i, Imported& out) {
   const std::vector<std::string> notes = out.notes;  // the notes on the first IMU hold for all IMUs

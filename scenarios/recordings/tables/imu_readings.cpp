@@ -121,8 +121,6 @@ std::string disorder_text(const std::vector<std::int64_t>& times_ns, std::size_t
       times_ns[reading] - times_ns.front(), times_ns[reading - 1] - times_ns.front());
 }
 
-/// The last reading of a burst keeps its time; the other readings are distributed evenly over the time since the
-/// previous burst.
 std::string even_out_bursts(sim::ImuRecord& imu) {
   std::vector<std::int64_t>& times = imu.time_ns;
   if (times.size() < 2) return "";

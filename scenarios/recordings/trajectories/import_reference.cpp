@@ -252,8 +252,8 @@ namespace {
 constexpr std::int64_t kStepMin_ns = 100000, kStepUsual_ns = 1000000;
 constexpr std::int64_t kSamplesMax = 2000000;
 constexpr std::int64_t kLongestReference_ns = 86400ll * 1000000000;
-/// Poses are differentiated over 2 * kReach_ns, so that the noise of an optical reference at rest is below the
-/// thresholds for rest.
+/// Reference poses are differentiated over 2 * kReach_ns, so that the noise of an optical reference at rest is below
+/// the thresholds for rest.
 constexpr std::int64_t kReach_ns = 70000000;
 
 std::vector<std::int64_t> times_of(const std::vector<ReferencePose>& poses) {

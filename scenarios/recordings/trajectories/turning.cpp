@@ -23,7 +23,7 @@ constexpr double kEnough_rad = 0.2;
 constexpr std::size_t kTurnPairsMin = 6, kTurnPairsMax = 400, kDelayPairsMin = 20;
 constexpr std::uint8_t kGyroClipped = 0b111;
 constexpr double kCoarse_s = 0.02, kFine_s = 0.002;
-/// A delay of 0.3 s is detectable if the delay at least doubles the rotation difference between gyro and attitudes.
+/// A delay of 0.3 s is detectable if it at least doubles the rotation difference between gyro and attitudes.
 constexpr double kShown_s = 0.3, kShows = 2.0, kShowsBy = 0.02;
 /// The direction of gravity is tested only if the stated quaternion convention agrees with the gyro: the rotations
 /// differ by at most 30 %.
@@ -87,8 +87,7 @@ std::optional<AttitudePair> pair_from(std::span<const TimedAttitude> attitudes, 
   return out;
 }
 
-/// Pairs of attitudes with little rotation contain mainly noise. Pairs with little rotation are used only if there are
-/// few other pairs.
+/// Pairs of attitudes with little rotation contain mainly noise, so they are used only if other pairs are few.
 std::vector<AttitudePair> pairs_of(std::span<const TimedAttitude> attitudes) {
   std::vector<AttitudePair> out;
   for (std::size_t first = 0; first < attitudes.size();) {
@@ -262,8 +261,6 @@ double uprightness(const TurningComparison& comparison, const sim::ImuRecord& im
   return up.norm() < kUpMin_m_s2 ? 0.0 : up.z() / up.norm();
 }
 
-/// If several quaternion conventions fit the rotations, the mean specific force is most vertical in the correct
-/// convention.
 void prefer_upright(TurningComparison& comparison, const sim::ImuRecord& imu, TurningFit& fit) {
   if (fit.written == QuaternionConvention::as_stated) return;
   comparison.set_delay(fit.delay_s, 0);

@@ -12,8 +12,8 @@
 
 #include "sim/recording.hpp"
 
-/// A pose file does not state the frame of its poses, its quaternion convention or its clock. A comparison with a gyro
-/// determines frame, quaternion convention and clock of a pose file.
+/// A pose file does not state the frame, the quaternion convention or the clock of its poses. A comparison of the poses
+/// with a gyro determines all three.
 namespace tumble::scenarios {
 
 struct TimedAttitude {
@@ -46,8 +46,8 @@ template <class Fit>
 struct DelayedFit {
   Fit undelayed, delayed;
 
-  /// likely() returns the delayed fit only if the delay reduces the rotation difference to less than half. One of
-  /// several hundred delays may fit better by chance.
+  /// Of several hundred candidate delays, one delay may fit better by chance. A delay therefore counts only if it
+  /// reduces the rotation difference to less than half.
   const Fit& likely() const { return delayed.difference < 0.5 * undelayed.difference - 0.02 ? delayed : undelayed; }
 };
 
@@ -63,7 +63,8 @@ struct TurningCheck {
   std::optional<TurningFit> upright;
 };
 
-/// Valid files have a delay of 0.1 s if stamps belong to the ends of the sweeps and not to the starts.
+/// Stamps of valid poses may be late by a sweep period (0.1 s), if they belong to the ends of the sweeps and not to the
+/// starts.
 inline constexpr double kDelaySearched_s = 5.0, kDelayMax_s = 0.15;
 inline bool is_delayed(double delay_s) {
   return std::abs(delay_s) >= kDelayMax_s;
