@@ -22,8 +22,8 @@ inline std::filesystem::file_status require_file(const std::filesystem::path& pa
   return found;
 }
 
-/// The file type must be checked before the file is opened, because opening a pipe without a writer blocks for ever,
-/// and devices have no end.
+/// The file type must be checked before opening: opening a pipe without a writer blocks for ever, and devices have no
+/// end.
 inline void require_regular_file(const std::filesystem::path& path) {
   switch (require_file(path).type()) {
     case std::filesystem::file_type::regular:

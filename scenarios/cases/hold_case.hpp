@@ -25,9 +25,8 @@ struct CaseResult {
   std::string fault;    ///< reason if the check fails
 };
 
-/// A recorded failure must recur: the new run must have the accepted status, and its metric must be within the factor
-/// `kCaseFactor` of the accepted value. An improvement also fails this check, so that the developer updates the
-/// accepted value.
+/// A recorded failure must recur with the accepted status and with a metric within the factor `kCaseFactor` of the
+/// accepted value. An improvement also fails this check, so that the developer updates the accepted value.
 CaseResult hold_case(const std::string& name, const Expectation& expected, const Outcome& outcome);
 
 Expectation accepted(const Expectation& expected, const Outcome& outcome);

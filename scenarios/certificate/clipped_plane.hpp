@@ -6,8 +6,8 @@
 
 #include "sim/recording.hpp"
 
-/// While the sensing element j is saturated, the readings y are on a plane with the limit rho, the offset b and the
-/// slopes c: y_j = +-rho + b + sum over k != j of c_k y_k.
+/// While the sensing element j of an IMU is saturated, the readings y are on the plane y_j = +-rho + b + sum over k !=
+/// j of c_k y_k. The plane has the limit rho, the offset b and the slopes c.
 namespace tumble::scenarios {
 
 sim::Truth beyond_every_rail(double gyro_rail_rad_s, double accel_rail_m_s2);

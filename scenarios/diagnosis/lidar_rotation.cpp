@@ -25,9 +25,9 @@ constexpr std::size_t kLeastPairs = 12;
 /// Largest accepted difference between the rotations that lidar and gyro measure, relative to the median rotation. In
 /// correct recordings, both rotations differ by about 0.1 of the median rotation.
 constexpr double kAgrees = 0.3;
-/// If gyro and lidar agree with the stated IMU axes, other axes are reported only if their error is below kConclusive
-/// times the error of the stated axes. A delay between lidar and gyro is reported only if it reduces the rotation error
-/// to less than kDelayConclusive times the error without delay.
+/// If gyro and lidar agree with the stated IMU axes, other axes need an error below kConclusive times the error of the
+/// stated axes. A delay between lidar and gyro is reported only if it reduces the rotation error to less than
+/// kDelayConclusive times the error without delay.
 constexpr double kConclusive = 0.5, kDelayConclusive = 0.6;
 constexpr double kDegreesOfRadian = 57.29577951308232;
 constexpr double kDelayMost_s = 0.5, kDelayStep_s = 0.01, kDelaySaid_s = 0.03;

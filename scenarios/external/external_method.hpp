@@ -16,8 +16,8 @@
 
 namespace tumble::scenarios {
 
-/// NoAnswer means that an external program gave no result, because of a crash, a failed start, a time-out, or a lack of
-/// memory or disk space.
+/// NoAnswer means that an external program gave no result: it crashed, did not start, timed out, or lacked memory or
+/// disk space.
 class NoAnswer : public std::runtime_error {
  public:
   enum class Why { crashed, timed_out, machine };

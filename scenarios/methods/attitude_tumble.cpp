@@ -273,8 +273,8 @@ Estimate run_attitude_tumble_batch(const sim::Sensors& sensors, const sim::Value
   }
   if (!estimate.status.ok()) return estimate;
   report_unknown_attitude(estimate);
-  // The health checks use the input of the attitude smoother, because the output of this smoother agrees with gravity
-  // at rest even if the readings are wrong.
+  // The health checks use the input of the attitude smoother. The output of the smoother agrees with gravity at rest
+  // even if the readings are wrong.
   (void)check_imu(sensors, samples, rates_of(recovered), carried_share(recovered.report), estimate);
   return estimate;
 }

@@ -32,7 +32,7 @@ inline constexpr double kGapMaxS = 1.0, kAnyGapS = std::numeric_limits<double>::
 
 /// Maximum ratio of a reading to the stated range of a device. The saturation limit of a real device may exceed its
 /// stated range (MTi-30: by a factor of 1.4). A tilted saturation limit depends on all three outputs of the gyro, so a
-/// single output may exceed the stated range by an even larger factor.
+/// single output may exceed the stated range even more.
 inline constexpr double kStatedRangesMax = OutlierFilter::kMaxReadingToRangeRatio;
 
 inline constexpr double kWildShareMax = 0.01;

@@ -20,7 +20,6 @@ SaturationLimitDetector::Params stated_rails(const sim::ImuRecord& record);
 Status raw_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<AngularRateState>& out);
 Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std::vector<AngularRateState>& out);
 
-/// Settings of rate/saave for a method that also has the parameters `others`.
 Settings<SaturationAwareRateEstimator::Params> other_saave_settings(std::span<const sim::Parameter> others);
 
 /// On error, `out` is empty.

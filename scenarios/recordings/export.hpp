@@ -38,8 +38,8 @@ struct ExportChoices {
 std::vector<std::string> export_recording(const std::filesystem::path& recording, const std::string& format,
                                           const std::filesystem::path& out, const ExportChoices& choices = {});
 
-/// Returns the true mounting T_BA of a frame A on the body: `body`, `centre` (of the sphere's shell), or a sensor by
-/// its exported or original name.
+/// Returns the true mounting T_BA of a frame A on the body. The frame is `body`, `centre` (of the sphere's shell), or a
+/// sensor by its exported or original name.
 Eigen::Isometry3d true_mounting(const sim::Truth& truth, const std::string& frame);
 
 /// Writes the true poses T_WA to a TUM file, one line "t x y z qx qy qz qw" per physics sample. The time t is in

@@ -13,7 +13,7 @@ namespace tumble::scenarios::hdf5 {
 
 namespace {
 
-/// Deflate compresses by at most a factor of 1032; a dataset with a higher ratio is incomplete, and HDF5 would return
+/// Deflate compresses by at most a factor of 1032. A dataset with a higher ratio is incomplete, and HDF5 would return
 /// zeros for the missing part.
 constexpr std::uint64_t kBestDeflation = 1100;
 

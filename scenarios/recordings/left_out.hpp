@@ -58,8 +58,7 @@ class LeftOut {
 /// Selects time stamps such that the kept stamps increase and the fewest possible stamps are dropped (longest
 /// increasing subsequence). With at least ten stamps, a single stamp at either end is also dropped if its gap to the
 /// other stamps exceeds their time span. Several stamps at one end are dropped only if their gap to the other stamps
-/// also exceeds a day, which indicates that the clock was set. The cost for N stamps is O(N log N), or O(N) if all
-/// increase.
+/// also exceeds a day (the clock was set). The cost for N stamps is O(N log N), or O(N) if all increase.
 std::vector<bool> stamps_in_order(std::span<const std::int64_t> stamps_ns);
 
 /// If `rows` and `kept` differ in size, the sensor does not measure the quantity in `rows`, and `rows` stays unchanged.

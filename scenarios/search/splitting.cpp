@@ -37,7 +37,6 @@ void require_sound(const SplittingOptions& options) {
     throw BadInput(fmt::format("the bound of the score is {}; it must be finite", std::to_string(options.bound)));
 }
 
-/// MoveRate adapts the step size and the number of Metropolis moves to the fraction of accepted moves.
 struct MoveRate {
   std::size_t moves = kMovesFirst;
   double step = kStepFirst;
@@ -286,10 +285,10 @@ Interval SplittingEstimate::of_failure(std::span<const std::size_t> families,
   if (log_probability_ == 0.0)
     return share_interval(static_cast<std::int64_t>(failing.size()), static_cast<std::int64_t>(population_));
   if (2 * failing.size() >= population_) return interval(failing, kRisk);
-  // If fewer than half of the population fails, the estimated probability is not log-normal. The confidence interval is
-  // then the product of two intervals: for the probability that a random draw exceeds the level, and for the fraction
-  // of the population that fails. Each of the two intervals has half of the error risk. In the interval of the failing
-  // fraction, all copies of one initial draw count as one draw.
+  // If fewer than half of the population fails, the estimated probability is not log-normal. Two confidence intervals
+  // are then multiplied: of the probability that a random draw exceeds the last level, and of the failing fraction of
+  // the population. Each of the two intervals has half of the error risk. In the interval of the failing fraction, all
+  // copies of one initial draw count as one draw.
   const Interval level = interval(families, 0.5 * kRisk);
   const auto n = static_cast<double>(sizes_of(families).size());
   const double share = static_cast<double>(failing.size()) / static_cast<double>(population_), count = share * n;

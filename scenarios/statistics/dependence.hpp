@@ -31,13 +31,13 @@ struct FirstOrder {
 };
 
 /// Estimates the first-order (Sobol') index of y with respect to x from existing data (Plischke, Borgonovo, Smith, EJOR
-/// 226:536, 2013). The estimator sorts the runs by x, divides them into equally large classes, and computes the
-/// variance of the class means of y, equation (S18) of statistics.md. Equation (S19) corrects the first-order index for
-/// chance, because class means of y also vary if y is independent of x.
+/// 226:536, 2013). The runs are sorted by x and divided into equally large classes. The estimator computes the variance
+/// of the class means of y, equation (S18) of statistics.md. Equation (S19) corrects the first-order index for chance,
+/// because class means of y also vary if y is independent of x.
 FirstOrder first_order_index(std::span<const double> x, std::span<const double> y);
 
-/// The 95 % interval of a class is Student's for the mean, from order statistics for the median, and Clopper and
-/// Pearson's for the fraction of ones.
+/// The 95 % interval of a class is Student's (mean), from order statistics (median), or Clopper and Pearson's (fraction
+/// of ones).
 enum class Centre { mean, median, share };
 
 struct DependenceClass {

@@ -52,8 +52,8 @@ struct MetricComparison {
   std::int64_t pairs = 0, better = 0, worse = 0;
   double median = 0.0, against_median = 0.0;
   /// Median of the paired differences, method minus reference, with its BCa interval (bias-corrected bootstrap). For a
-  /// metric with a target, the difference is the distance of the method from the target minus the distance of the
-  /// reference from the target.
+  /// metric with a target, distances from the target are subtracted: distance of the method minus distance of the
+  /// reference.
   Interval difference{};
   double sign_chance = 1.0, rank_chance = 1.0;  ///< two-sided p-values
   double corrected = 1.0;                       ///< `rank_chance` after Holm's correction
@@ -81,9 +81,8 @@ struct Comparison {
   std::vector<FailureComparison> failures;
 };
 
-/// Compares each method with the reference method. A metric without a sense (for example a cost, for which neither
-/// lower nor higher is better) is compared only if the caller names the metric. For a metric without a sense, the
-/// finding is always Finding::undecided.
+/// Compares each method with the reference method. A metric without a sense, for example a cost, is compared only if
+/// the caller names the metric. For a metric without a sense, the finding is always Finding::undecided.
 Comparison compare(const Summary& summary, const ComparisonOptions& options);
 
 }  // namespace tumble::scenarios

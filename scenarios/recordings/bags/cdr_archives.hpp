@@ -81,7 +81,6 @@ class Ros1Reader {
   std::size_t left_;
 };
 
-/// CdrBound computes an upper bound of the message size in bytes, including padding.
 class CdrBound {
  public:
   void operator()(std::uint8_t) { bytes += 1; }

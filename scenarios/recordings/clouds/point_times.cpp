@@ -23,8 +23,8 @@ namespace {
 constexpr double kSpanMin = 0.02, kSpanMax = 1.5, kShortSpanMin = kSpanMax / 1000.0;
 /// Times after 1973, in seconds since 1970, exceed 1e8.
 constexpr double kEpochMin_s = 1e8;
-/// A sweep with fewer than 100 points may cover only a short part of the sweep period. Its short time span does not
-/// contradict the stated time unit.
+/// A sweep with fewer than 100 points may cover only a short part of the sweep period. The short time span of such a
+/// sweep does not contradict the stated time unit.
 constexpr double kPointsThatSpan = 100.0;
 
 /// With at least five clouds, point times count as absolute if two clouds start more than two sweep periods from time

@@ -105,7 +105,6 @@ void pass_over(VtkWords& words, std::uint64_t count, std::uint64_t each) {
   for (std::uint64_t i = 0; i < count * each; ++i) words.number();
 }
 
-/// Skips the line "VERTICES lines numbers", and as many integers as `numbers` states.
 void pass_vertices(VtkWords& words) {
   words.whole("the number of vertices");
   pass_over(words, words.whole("the vertices' numbers"), 1);

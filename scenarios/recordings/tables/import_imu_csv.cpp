@@ -101,8 +101,8 @@ std::vector<Pair> fast_pairs(const sim::ImuRecord& first, const sim::ImuRecord& 
   return pairs;
 }
 
-/// Estimates the position p of a second IMU with the same axes, by least squares. The specific forces of both IMUs
-/// differ by a x p + w x (w x p) plus a bias, with angular rate w and angular acceleration a. The least-squares fit
+/// Estimates the position p of a second IMU with the same axes, by least squares. At angular rate w and angular
+/// acceleration a, the specific forces of both IMUs differ by a x p + w x (w x p) plus a bias. The least-squares fit
 /// omits samples near the largest gyro reading, because the gyro may be saturated. Cost: O(N) for N samples.
 ImuPosition estimate_imu_position(const sim::ImuRecord& first, const sim::ImuRecord& second) {
   ImuPosition out;

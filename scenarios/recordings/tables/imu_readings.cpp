@@ -195,8 +195,8 @@ GravityRotation gravity_rotation(const sim::ImuRecord& imu, RotationWindows wind
     const bool whole = near(end) && end >= begin + 4 && (length_s >= kRotationWindow_s || turned()) &&
                        length_s < 1.5 * kRotationWindow_s;
     if (whole) {
-      // To reduce noise, the change of the specific force is the mean of the last quarter of the readings minus the
-      // mean of the first quarter.
+      // To reduce noise, the change of the specific force is computed between the means of the first and the last
+      // quarter of the readings.
       const std::size_t quarter = std::max<std::size_t>(1, (end - begin) / 4);
       Eigen::Vector3d first = Eigen::Vector3d::Zero(), last = Eigen::Vector3d::Zero(), middle = Eigen::Vector3d::Zero();
       for (std::size_t k = 0; k < quarter; ++k) first += imu.accel_m_s2[begin + k], last += imu.accel_m_s2[end - k];

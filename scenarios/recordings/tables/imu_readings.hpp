@@ -25,12 +25,12 @@ using ReadingText = std::function<std::string(std::size_t reading)>;
 std::string leave_out_faulty(const ReadingText& where, const ReadingText& disorder, LeftOut& left_out,
                              sim::ImuRecord& imu);
 
-/// Throws BadInput for fewer than two readings, a median specific force outside 3 to 30 m/s^2, or a sample period
+/// Throws BadInput for fewer than two IMU samples, a median specific force outside 3 to 30 m/s^2, or a sample period
 /// outside 20 us to 2 s.
 void finish_readings(const std::string& where, AccelUnit unit, sim::ImuRecord& imu);
 
-/// Returns true if the accelerometer probably reads in g. The median norm of the readings must be 0.9 to 1.1, and at
-/// least a fifth of the norms must be within 2 % of the median.
+/// Returns true if the accelerometer probably reads in g. The median norm of the specific forces must be 0.9 to 1.1,
+/// and a fifth of the norms must be within 2 % of the median.
 bool is_in_g(const sim::ImuRecord& imu);
 
 std::string even_out_stamps(sim::ImuRecord& imu);

@@ -12,8 +12,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// The rotations of reference and gyro contradict each other if they differ by more than 50 %, and agree if they differ
-/// by less than 30 %.
+/// The rotations of reference and gyro contradict each other above a difference of 50 %, and agree below 30 %.
 constexpr double kContradicts = 0.5, kReferenceAgrees = 0.3;
 /// A wrong quaternion convention is reported only if reference and gyro differ by more than 15 % of the rotation. With
 /// the correct quaternion convention, the rotation difference must be less than 40 % of the difference with the stated

@@ -13,7 +13,7 @@
 #include "sim/recording.hpp"
 
 /// A pose file does not state the frame, the quaternion convention or the clock of its poses. A comparison of the poses
-/// with a gyro determines all three.
+/// with a gyro determines frame, quaternion convention and clock.
 namespace tumble::scenarios {
 
 struct TimedAttitude {
@@ -63,8 +63,7 @@ struct TurningCheck {
   std::optional<TurningFit> upright;
 };
 
-/// Stamps of valid poses may be late by a sweep period (0.1 s), if they belong to the ends of the sweeps and not to the
-/// starts.
+/// Stamps of valid poses may be late by a sweep period (0.1 s), because some programs stamp the end of a sweep.
 inline constexpr double kDelaySearched_s = 5.0, kDelayMax_s = 0.15;
 inline bool is_delayed(double delay_s) {
   return std::abs(delay_s) >= kDelayMax_s;
