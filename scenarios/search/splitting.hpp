@@ -23,8 +23,8 @@ struct SplittingPoint {
   std::uint64_t seed() const;
 };
 
-/// A ScorePoints function returns one score per draw. If it returns fewer scores than draws, the search stops and
-/// ignores these scores.
+/// A ScorePoints function returns one score per draw. If the function returns fewer scores than draws, the search stops
+/// and ignores these scores.
 using ScorePoints = std::function<std::vector<double>(std::span<const SplittingPoint>)>;
 
 /// Move changes the standard normal numbers of a draw at random, by a step size in (0, 1]. A Move function must
