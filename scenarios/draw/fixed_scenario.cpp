@@ -36,7 +36,6 @@ std::vector<std::string> entries_of(const Numbers& numbers, const std::string& p
   return out;
 }
 
-/// `start` is the text before the opening brace of the YAML map.
 std::string map_text(const std::string& start, const std::vector<std::string>& entries, const std::string& indent) {
   constexpr std::size_t kColumns = 120;
   std::string out, line = start + "{";

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kTurnsOtherwise = 0.5, kTurnsAsSaid = 0.15;
 /// Largest accepted difference between the rotations of estimate and gyro after the correction of a delay, as a
-/// fraction of the rotation. The check of references (reference_check.cpp) has the same limit.
+/// fraction of the rotation.
 constexpr double kTurnsOnceCorrected = 0.3;
 
 std::vector<TimedAttitude> attitudes_of(const Estimate& estimate) {

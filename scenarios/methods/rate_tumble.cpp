@@ -17,8 +17,7 @@
 
 namespace tumble::scenarios {
 
-// A range or noise density of 0 means that the data sheet lacks the value. For a missing value, the smoother uses its
-// default.
+// A range or noise density of 0 means that the data sheet lacks the value.
 AngularRateSmoother::Params stated_params(const sim::ImuRecord& record, AngularRateSmoother::Params params) {
   AngularRateModelParams& model = params.model;
   model.nominal.lever_arm_m = bridge::lever_arm_I_m(record);

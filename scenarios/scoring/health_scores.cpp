@@ -35,8 +35,8 @@ bool quantile_exceeds(double limit, std::vector<double> values, double share) {
   return quantile(values, share) > limit;
 }
 
-/// A health finding increases the reported covariance of the rates. The normalised errors do not contain this increase,
-/// so that a health finding cannot make a wrong estimate consistent with its covariance.
+/// A health finding increases the reported covariance of the rates. The normalised errors use the covariance without
+/// the increase. A health finding therefore cannot make a wrong estimate consistent with its covariance.
 Errors rate_errors(const ScoredEstimate& scored) {
   const std::vector<Eigen::Matrix3d>& suspect = scored.estimate().suspect_rad2_s2;
   const std::vector<PairedRate>& pairs = paired_rates(scored);

@@ -78,10 +78,9 @@ bool in_contact(const ScoredEstimate& scored, std::int64_t time_ns) {
   return false;
 }
 
-// NormalisedErrors contains squared rate errors divided by their reported variances. `all` contains the normalised
-// errors of all clipped axes. `impact` contains the errors of clipped axes while the robot is in contact, and `flight`
-// contains the errors without contact. `cross_axis` contains the errors of unclipped axes that a clipped sensing
-// element disturbs.
+// NormalisedErrors contains squared rate errors divided by their reported variances. `impact` contains the errors of
+// clipped axes while the robot is in contact, and `flight` contains the errors without contact. `cross_axis` contains
+// the errors of unclipped axes that a clipped sensing element disturbs.
 struct NormalisedErrors {
   std::vector<double> all, flight, impact, cross_axis;
 };

@@ -58,9 +58,8 @@ bool reference_error(const ScoredEstimate& scored, double& value) {
   return quantile_of(errors, 0.01 * kPercent, value);
 }
 
-/// Returns the variance of the reference rate per axis. The standard deviation is 1.4826 times the median absolute
-/// difference between the reference rate and the unclipped gyro readings. The factor 1.4826 assumes normally
-/// distributed differences.
+/// The standard deviation of the reference rate is 1.4826 times the median absolute difference between the reference
+/// rate and the unclipped gyro readings. The factor 1.4826 assumes normally distributed differences.
 Eigen::Vector3d reference_variance(const ScoredEstimate& scored, const ClippingTruth& truth) {
   const auto& reading = scored.sensors().imus.front().gyro_rad_s;
   Eigen::Vector3d variance = Eigen::Vector3d::Zero();

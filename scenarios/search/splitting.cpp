@@ -111,7 +111,6 @@ class Splitting {
     return out;
   }
 
-  /// Returns false if the budget is too small or no higher scores remain.
   bool advance() {
     std::vector<double> scores;
     for (std::size_t i = 0; i < result_.members.size(); ++i) scores.push_back(score_of(i));

@@ -32,7 +32,6 @@ double cubic(double share, double span_s, double from, double slope_from, double
          (u3 - u2) * span_s * slope_to;
 }
 
-// Returns the derivative of the rate at sample k, which is next to a clipped gap.
 double slope_at(const Axis& axis, std::size_t k, int step) {
   if (step < 0 ? k == 0 : k + 1 == axis.samples.size()) return 0.0;
   const std::size_t other = step < 0 ? k - 1 : k + 1;

@@ -192,7 +192,6 @@ class Export {
         return write_pose(pose_of(*writing_.truth, event.index), "truth", body_, stamp);
       case Event::pose: {
         const BagTrack& track = writing_.tracks[event.of];
-        // If the recording has no truth, the poses of the first track become the poses of the body frame.
         const bool body = event.of == 0 && writing_.truth == nullptr;
         return write_pose(track.poses[event.index], track.name, body ? body_ : track.name, stamp);
       }
