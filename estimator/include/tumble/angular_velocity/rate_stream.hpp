@@ -25,14 +25,13 @@ namespace tumble {
 
 /// Estimates angular velocity sample by sample with a fixed lag, also while the gyro is saturated. AngularRateStream
 /// uses the measurement models of AngularRateSmoother over a sliding window of fixed length. By default,
-/// AngularRateStream makes one Gauss-Newton step per sample. At sample rates of 400 Hz and above, one Gauss-Newton step
-/// covers the samples of up to 5 ms. The equations are in docs/maths/rate_stream.md.
+/// AngularRateStream makes one Gauss-Newton step per sample. At sample rates of 400 Hz and above, AngularRateStream
+/// makes one Gauss-Newton step for all samples within 5 ms. The equations are in docs/maths/rate_stream.md.
 ///
-/// AngularRateStream detects saturation limits from the readings. After each detection, AngularRateStream classifies
-/// the samples in the window again as clipped or unclipped. If AngularRateStream starts with the calibration of an
-/// earlier run, its rate error is 1.1 times the rate error of AngularRateSmoother. Without the calibration of an
-/// earlier run, the rate error is 1.6 times the rate error of AngularRateSmoother. The limitations of
-/// AngularRateSmoother also apply to AngularRateStream.
+/// AngularRateStream detects the saturation limits of gyro and accelerometer from the readings. If AngularRateStream
+/// starts with the calibration of an earlier run, its rate error is 1.1 times the rate error of AngularRateSmoother.
+/// Without the calibration of an earlier run, the rate error is 1.6 times the rate error of AngularRateSmoother. The
+/// limitations of AngularRateSmoother also apply to AngularRateStream.
 ///
 /// Cost: O(window) per step. AngularRateStream allocates memory only in start().
 class AngularRateStream {
@@ -46,32 +45,34 @@ class AngularRateStream {
 
   State start() const;
 
-  /// `out` receives the estimate of the sample that is `lag_s` old. While the window fills, `out` is empty. On error
-  /// (`non_finite`, `time_order`, `gap`), the state is unchanged and `out` is empty.
+  /// `out` receives the angular velocity at the sample that is `lag_s` older than `sample`. While the window fills,
+  /// `out` is empty. On error (`non_finite`, `time_order`, `gap`), the state is unchanged and `out` is empty.
   Status push(const ImuSample& sample, State& state, std::optional<AngularRateState>& out) const {
     return push(sample, {}, state, out);
   }
-  /// `auxiliary_imus` contains one reading for each auxiliary IMU of AngularRateModelParams::auxiliary_imus, at the
-  /// time of the sample, or is empty. If the number of readings is wrong, push() returns `insufficient_data`.
+  /// `auxiliary_imus` is empty, or contains one reading per entry of AngularRateModelParams::auxiliary_imus,
+  /// interpolated at the time of `sample`. If the number of readings is wrong, push() returns `insufficient_data`.
   Status push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
               std::optional<AngularRateState>& out) const;
 
-  /// Returns the provisional estimate of the newest sample, or an empty result before the first sample.
+  /// Returns the provisional angular velocity at the newest sample, or an empty result before the first sample.
   std::optional<AngularRateState> newest(const State& state) const;
 
-  /// Appends the estimates of the samples in the window to `out`, oldest first. Call flush() at the end of a run.
+  /// Appends the angular velocities at the samples in the window to `out`, oldest first. Call flush() at the end of a
+  /// run.
   void flush(const State& state, std::vector<AngularRateState>& out) const;
 
-  /// Reports current faults of the IMU. FrozenAxes detects frozen axes. FlightSignCheck detects a wrong sign of the
-  /// accelerometer from the specific force in free flight.
+  /// Reports current faults of the IMU: axes that stopped updating (FrozenAxes), and wrong signs of the accelerometer
+  /// (FlightSignCheck).
   SensorHealth health(const State& state) const;
 
-  /// Returns true if AngularRateStream has not estimated the rig constants since its start or its last reset.
+  /// Returns true while the estimated lever arm is no more accurate than its prior.
   bool is_at_prior(const State& state) const;
 
   RigCalibration calibration(const State& state) const { return {state.rig, inflated_calibration_covariance(state)}; }
 
-  /// Returns the sensor errors that AngularRateStream currently corrects, with their covariance.
+  /// Returns the scale, misalignment, g-sensitivity and delay errors that are currently subtracted from the readings,
+  /// with their covariance.
   KnownSensorErrors sensor_errors(const State& state) const;
 
  private:
@@ -128,9 +129,9 @@ class AngularRateStream {
   AngularRateModel model_;
   SensorErrorUncertainty sensor_error_estimator_;
   std::size_t capacity_;
-  std::size_t samples_per_step_;  ///< number of samples between steps
-  double prior_delay_s_;          ///< prior delay of the accelerometer
-  bool delay_is_estimated_;       ///< true if the delay may differ from the prior delay
+  std::size_t samples_per_step_;  ///< number of samples per Gauss-Newton step
+  double prior_delay_s_;          ///< prior delay of the accelerometer relative to the gyro
+  bool delay_is_estimated_;
 };
 
 }  // namespace tumble

@@ -10,10 +10,10 @@
 namespace tumble {
 
 enum class AngularRateSource : std::uint8_t {
-  measured,              ///< no gyro axis is clipped or suspect
+  measured,              ///< no gyro axis is clipped or possibly clipped
   recovered_in_flight,   ///< clipped; recovered from the centripetal force in free flight
   recovered_in_contact,  ///< clipped; recovered from the specific force during contact
-  lower_bound_only,      ///< clipped or suspect; limited only by a lower bound and by smooth motion
+  lower_bound_only,      ///< clipped or possibly clipped; limited only by a lower bound and by smooth motion
 };
 
 const char* to_string(AngularRateSource source);
@@ -27,7 +27,8 @@ struct AngularRateState {
   AngularRateSource source = AngularRateSource::measured;
 };
 
-/// The 20 constants of body and IMU that AngularRateSmoother and AngularRateStream estimate together with the rates.
+/// The 20 constants of body and IMU that AngularRateSmoother and AngularRateStream estimate together with the angular
+/// velocity.
 struct RigConstants {
   static constexpr int kSize = 20, kGyroMisalignment = 14;
   static constexpr double kMaxConstantMagnitude = 10.0;  ///< maximum magnitude of each constant, in its unit
@@ -47,7 +48,7 @@ struct RigConstants {
   Eigen::Matrix<double, 6, 1> gyro_misalignment = Eigen::Matrix<double, 6, 1>::Zero();
 
   Eigen::Vector3d sensing_direction(int j) const;
-  /// Returns the inertia matrix, scaled to trace 3.
+  /// Returns the inertia matrix about the centre of mass in IMU axes, scaled to trace 3.
   Eigen::Matrix3d inertia_matrix() const;
   /// Returns the five coordinates `inertia` of a symmetric inertia matrix. A positive scale factor of the matrix has no
   /// effect.
@@ -59,8 +60,7 @@ struct RigConstants {
   bool operator==(const RigConstants&) const = default;
 };
 
-/// RigCalibration contains the rig constants that one run estimated, with their covariance. A later run can use a
-/// RigCalibration as prior.
+/// Rig constants that one run estimated, with their covariance, as prior for a later run.
 struct RigCalibration {
   RigConstants constants;
   RigConstants::Matrix covariance = RigConstants::Matrix::Identity();

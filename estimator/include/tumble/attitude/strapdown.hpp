@@ -10,12 +10,12 @@
 namespace tumble {
 
 /// Integrates the gyro to an attitude, starting with the tilt that the accelerometer measures. Strapdown assumes a
-/// constant rate in body axes between two samples. The attitude drifts, because Strapdown ignores gyro biases, and uses
-/// only the first force reading.
+/// constant rate in body axes between two samples. The attitude drifts, because Strapdown does not estimate the gyro
+/// bias. After the first sample, Strapdown does not use the accelerometer.
 class Strapdown {
  public:
   struct Params {
-    double gap_max_s = 1.0;  ///< maximum time between samples; a longer gap is an error
+    double gap_max_s = 1.0;
 
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
@@ -34,8 +34,8 @@ class Strapdown {
 
   explicit Strapdown(const Params& params);
 
-  /// The first sample sets the attitude from its specific force, with yaw 0. On error, the state is unchanged. Cost:
-  /// O(1), no allocation.
+  /// The specific force of the first sample determines the initial tilt; the initial yaw is 0. On error, the state is
+  /// unchanged. Cost: O(1), no allocation.
   Status step(const ImuSample& sample, State& state) const;
 
  private:

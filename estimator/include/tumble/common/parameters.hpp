@@ -44,15 +44,14 @@ inline Field boolean_field(const char* name, const char* meaning, ParameterRank 
 /// bound for parameters without a limit: the largest finite number
 inline constexpr double kUnbounded = std::numeric_limits<double>::max();
 
-/// Number is the concept of arithmetic and enumeration types. A visitor handles parameters of arithmetic and
-/// enumeration types as numbers.
+/// Types of parameters that a visitor handles as numbers: arithmetic types and enumerations.
 template <class T>
 concept Number = std::is_arithmetic_v<std::remove_cvref_t<T>> || std::is_enum_v<std::remove_cvref_t<T>>;
 
 namespace detail {
 
-/// OutOfBoundsParameter describes the first invalid parameter of a struct. `names` contains the prefixes of the
-/// parameter's groups, and then the name of the parameter.
+/// First invalid parameter of a struct. `names` contains the prefixes of the parameter's groups, and then the name of
+/// the parameter.
 struct OutOfBoundsParameter {
   std::array<const char*, 8> names{};
   std::size_t prefix_count = 0;
@@ -101,7 +100,6 @@ void require_valid_fields(const Params& params) {
 
 namespace detail {
 
-/// PrefixedNameVisitor prepends the prefixes of all enclosing groups to each parameter's name.
 template <class Each>
 class PrefixedNameVisitor {
  public:
@@ -151,7 +149,6 @@ bool matches_any(std::string_view name, std::span<const Text> patterns) {
 template <class T>
 class HeapValue {
  public:
-  /// Constructs the value without arguments.
   HeapValue();
   explicit HeapValue(std::unique_ptr<T> value);
   HeapValue(const HeapValue& other);
@@ -170,8 +167,7 @@ class HeapValue {
 };
 
 // The following functions are not inline, because an `extern template` declaration does not prevent the instantiation
-// of inline functions. In a source file with an incomplete type T, the compiler cannot instantiate the functions of
-// HeapValue<T>.
+// of inline functions. Instantiating the functions of HeapValue<T> would require the complete type T.
 template <class T>
 HeapValue<T>::HeapValue() : value_(std::make_unique<T>()) {}
 template <class T>

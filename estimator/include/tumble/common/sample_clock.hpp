@@ -17,17 +17,19 @@ namespace tumble {
 ///
 /// SampleClock fits a line to the time stamps as a function of the sample number, with exponentially decreasing weights
 /// of older time stamps. Source: fading-memory polynomial filter of first degree (Morrison, Introduction to Sequential
-/// Smoothing and Prediction, 1969, ch. 13). The error of an estimated time is 1.1 sqrt(T / kMemory_s) times the jitter
-/// of the time stamps, for the sample period T. An estimated time differs from the time stamp by at most half a sample
-/// period. SampleClock cannot observe, and does not correct, a constant delay of the host.
+/// Smoothing and Prediction, 1969, ch. 13). For the sample period T, the standard deviation of an estimated time is 1.1
+/// sqrt(T / kMemory_s) times the jitter of the time stamps. An estimated time differs from the time stamp by at most
+/// half a sample period. A constant delay between sensor and host is not observable, and remains in the estimated
+/// times.
 ///
-/// SampleClock does not change the first 31 time stamps. SampleClock also leaves time stamps unchanged while their
-/// jitter is outside of [kJitterMin, jitter_max] sample periods, or while their errors are correlated. Set `jitter_max`
-/// to 0 if a host computer triggers the samples at irregular times and assigns exact time stamps.
+/// SampleClock does not change the first 31 time stamps. Later time stamps also remain unchanged while their jitter is
+/// outside of [kJitterMin, jitter_max] sample periods. The same applies if successive deviations of the time stamps
+/// from the fitted line are strongly correlated. Set `jitter_max` to 0 if a host computer triggers the samples at
+/// irregular times and assigns exact time stamps.
 class SampleClock {
  public:
   struct Params {
-    static constexpr double kMemory_s = 2.0;     ///< time constant of the fit
+    static constexpr double kMemory_s = 2.0;     ///< time constant of the weights in the line fit
     static constexpr double kJitterMin = 0.005;  ///< minimum jitter of corrected time stamps, in sample periods
     double jitter_max = 0.15;
 
@@ -43,17 +45,17 @@ class SampleClock {
   struct State {
     std::size_t samples = 0;                              ///< number of valid entries of `start`, before the first fit
     std::array<TimeNs, kFirstLineFitStampCount> start{};  ///< time stamps collected for the first fit
-    std::optional<TimeNs> stamp_ns;                       ///< last time stamp
-    TimeNs time_ns = 0;                                   ///< last estimated sample time
-    bool line_fit_valid = false;                          ///< the line and its sums below are valid
-    double period_ns = 0.0;                               ///< slope of the line: estimated sample period
-    double fit_residual_ns = 0.0;                         ///< value of the line at the last sample minus the time stamp
+    std::optional<TimeNs> stamp_ns;
+    TimeNs time_ns = 0;
+    bool line_fit_valid = false;   ///< the first line was fitted
+    double period_ns = 0.0;        ///< slope of the line: estimated sample period
+    double fit_residual_ns = 0.0;  ///< value of the line at the last sample minus the time stamp
     double sum_of_weights = 0.0, weighted_sample_index_sum = 0.0,
            weighted_squared_sample_index_sum = 0.0;  ///< weighted sums over sample numbers relative to the last sample
     double mean_square_error_ns2 = 0.0,
            successive_error_product_ns2 = 0.0;  ///< mean square prediction error; mean product of successive errors
-    double prediction_error_ns = 0.0;           ///< last prediction error
-    std::size_t outliers = 0;                   ///< number of consecutive prediction errors close to half a period
+    double prediction_error_ns = 0.0;
+    std::size_t outliers = 0;  ///< number of consecutive prediction errors close to half a period
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.

@@ -17,7 +17,7 @@ using TimeNs = std::int64_t;
 /// accepted time stamps fits into TimeNs.
 inline constexpr TimeNs kStampMax_ns = 3'070'000'000'000'000'000;
 
-/// The relative error of seconds() is at most 2^-52 for durations below 104 days.
+/// Converts nanoseconds to seconds, with a relative error of at most 2^-52 for durations below 104 days.
 constexpr double seconds(TimeNs span_ns) {
   return static_cast<double>(span_ns) * 1e-9;
 }
@@ -100,9 +100,8 @@ Eigen::Quaterniond shortest_arc(const Eigen::Vector3d& from, const Eigen::Vector
 }  // namespace tumble::so3
 
 /// A program and the compiled library must use the same memory layout for Eigen's matrices and the standard library's
-/// containers. A program with a different layout, for example because of EIGEN_MAX_STATIC_ALIGN_BYTES or
-/// _GLIBCXX_DEBUG, does not link. If the memory layouts differ, the linker reports that
-/// CompilerSettingsCheck<...>::link_time_check is undefined.
+/// containers. If the layouts differ, for example because of EIGEN_MAX_STATIC_ALIGN_BYTES or _GLIBCXX_DEBUG, the linker
+/// reports that CompilerSettingsCheck<...>::link_time_check is undefined.
 namespace tumble::detail {
 
 #ifdef _GLIBCXX_DEBUG
@@ -129,8 +128,7 @@ using CompiledHere = CompilerSettingsCheck<EIGEN_MAX_STATIC_ALIGN_BYTES, EIGEN_M
 template <>
 const char CompiledHere::link_time_check;  // a declaration; src/common/types.cpp has the definition
 
-/// This reference to `link_time_check` makes the linker compare the memory layout of each source file with the
-/// library's layout.
+/// Each source file references `link_time_check`, so the linker compares the memory layouts of program and library.
 [[gnu::used]] static const char* const kSameCompilerSettings = &CompiledHere::link_time_check;
 
 }  // namespace tumble::detail

@@ -16,26 +16,26 @@
 namespace tumble {
 
 /// Estimates pose and map of a tumbling body from an IMU and a lidar. LidarInertialOdometry integrates the IMU between
-/// sweeps, and deskews each point with the pose at the point's firing time. LidarInertialOdometry registers each sweep
-/// to a voxel map by minimising point-to-plane distances, and then inserts the sweep into the map. The equations are in
-/// docs/maths/mapping.md.
+/// sweeps, and deskews each lidar point with the pose at which the point was measured. LidarInertialOdometry registers
+/// each sweep to a voxel map by minimising point-to-plane distances, and then inserts the sweep into the map. The
+/// equations are in docs/maths/mapping.md.
 ///
 /// The z axis of the world frame points upwards, along the specific force at rest. The first sweep with at least
 /// `matches_min` usable points starts the map. The pose of the IMU at the first IMU sample defines origin and yaw of
-/// the world frame. If the map starts more than 0.5 s after the first IMU sample, the IMU pose at the map's start
-/// defines origin and yaw. If earlier sweeps had too few points to start the map, the IMU pose at the map's start
-/// defines origin and yaw.
+/// the world frame. If an earlier sweep had too few points, or the map starts more than 0.5 s after the first IMU
+/// sample, the IMU pose at the map's start defines origin and yaw.
 ///
 /// Pass IMU samples in time order. Before each sweep, pass the IMU samples up to the end of the sweep.
 /// LidarInertialOdometry starts no threads, uses no files and prints nothing.
 ///
-/// The lidar's mounting, the lidar's time offset and gravity are estimated if their prior standard deviations are not
-/// 0. A fixed-lag smoother refines the poses of the last `window_sweeps` sweeps. To get a consistent map, process the
-/// recording twice, and start the second run with the result of calibration() after the first run.
+/// The pose of the lidar in IMU axes, the time offset between IMU and lidar, and gravity are estimated if their prior
+/// standard deviations are not 0. A fixed-lag smoother refines the poses of the last `window_sweeps` sweeps. To get a
+/// consistent map, process the recording twice, and start the second run with the result of calibration() after the
+/// first run.
 ///
-/// After a rejected sweep (tracking failure), inertial prediction continues. Until tracking is restored, the
-/// registration of each sweep also tries several starting poses around the predicted pose. LidarInertialOdometry does
-/// not model loop closure, moving objects, or IMU biases other than the gyro bias at the start.
+/// After a tracking failure (a rejected sweep), inertial integration continues the pose. Until tracking is restored,
+/// the registration of each sweep also tries several starting poses around the predicted pose. LidarInertialOdometry
+/// does not model loop closure, moving objects, or IMU biases other than the gyro bias at the start.
 class LidarInertialOdometry {
  public:
   using Params = OdometryParams;
@@ -49,22 +49,22 @@ class LidarInertialOdometry {
   LidarInertialOdometry(const LidarInertialOdometry&);
   LidarInertialOdometry& operator=(const LidarInertialOdometry&);
 
-  /// Sets the start position and heading (not the tilt) of the IMU; the default is the origin. Reported covariances
-  /// describe errors relative to the start pose. Call set_start_pose() before the first sweep.
+  /// Sets position and heading of the IMU at the start; the tilt follows from the accelerometer. The default is the
+  /// origin. Reported covariances describe errors relative to the start pose. Call set_start_pose() before the first
+  /// sweep.
   void set_start_pose(const Eigen::Isometry3d& T_WI);
   const std::optional<Eigen::Isometry3d>& start() const;
 
-  /// Correction of the initial attitude. A start in motion needs a correction, because the mean specific force does not
-  /// show the direction of gravity.
+  /// Correction of the initial tilt. After a start in motion, the initial tilt is wrong, because the mean specific
+  /// force does not have the direction of gravity.
   struct StartTilt {
-    Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< correction of the levelled attitude
+    Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< correction of the initial attitude
     double sigma_rad = 0.0;                                        ///< standard deviation of the corrected tilt
   };
-  /// Returns the tilt at the start, computed from the direction of gravity in the map, for a second run over the same
-  /// data. The result is empty after a start at rest, before the map starts, and after localisation in a prior map. If
-  /// the computed tilt is too inaccurate, start_tilt() returns the argument of set_start_tilt(), or an empty value
-  /// without such an argument. A computed tilt is too inaccurate if its standard deviation exceeds half the initial
-  /// standard deviation.
+  /// Returns a correction of the initial tilt for a second run over the same data, computed from the estimated
+  /// direction of gravity in the map. The result is empty after a start at rest, before the map starts, and after
+  /// localisation in a prior map. If the standard deviation of the computed tilt exceeds half the initial standard
+  /// deviation, the result is the argument of set_start_tilt(), or empty without such an argument.
   std::optional<StartTilt> start_tilt() const;
   /// Call set_start_tilt() before the first sweep.
   void set_start_tilt(const StartTilt& tilt);
@@ -79,26 +79,24 @@ class LidarInertialOdometry {
   /// the mapping has already started. On error, the state is unchanged.
   Status use_map(PriorMap map);
   /// Copies the prior map, if any, from `other`, and restarts the localisation. The localisation searches near the pose
-  /// that was passed to set_start_pose(). If no start pose was set, the localisation searches near
-  /// PriorMap::T_prior_map_imu.
+  /// of set_start_pose(), or without a start pose near PriorMap::T_prior_map_imu.
   void use_map_of_pass(const LidarInertialOdometry& other);
   /// Returns `degenerate` if a prior map is set but the robot is not yet localised.
   Status localised() const;
-  /// Transforms poses before the localisation from the local frame to the frame of the prior map, with covariances that
+  /// Transforms poses that were reported before the localisation to the frame of the prior map. The covariances then
   /// include the uncertainty of the localisation. Returns `degenerate` before the localisation.
   Status transform_to_prior_map(std::span<PoseState> poses) const;
-  /// null without a prior map
+  /// Returns the prior map, or null without a prior map.
   const PriorMap* prior_map() const;
 
-  /// `rate` is the estimated angular velocity at the time of the sample. Returns `non_finite` if a number is not
-  /// finite, or `time_order` if the sample is not later than the last sample. Returns `out_of_range` if the time stamps
-  /// of `sample` and `rate` differ, or exceed kStampMax_ns. On error, the state is unchanged.
+  /// Adds an IMU sample. `rate` is the estimated angular velocity at the time of the sample. Returns `non_finite` if a
+  /// number is not finite, or `time_order` if the sample is not later than the last sample. Returns `out_of_range` if
+  /// the time stamps of `sample` and `rate` differ, or exceed kStampMax_ns. On error, the state is unchanged.
   Status add_imu(const ImuSample& sample, const AngularRateState& rate);
 
-  /// Sets an odometer reading for the prediction of the next sweep's pose. The prediction ignores an odometer reading
-  /// that starts more than 20 ms before the end of the last sweep. The prediction also ignores an odometer reading that
-  /// ends more than 20 ms after the end of the next sweep. The odometer reading is fused with the inertial prediction,
-  /// weighted by their covariances. Each sweep uses only the odometer reading of the last call of add_reading().
+  /// Sets an odometer reading for the prediction of the next sweep's pose. An odometer reading that extends beyond the
+  /// next sweep by more than 20 ms is ignored. The odometer reading is fused with the inertial prediction, weighted by
+  /// their covariances. Each sweep uses only the odometer reading of the last call of add_reading().
   Status add_reading(const OdometerReading& reading);
 
   /// Registers a sweep of points fired in [start_ns, end_ns]. Consecutive sweeps must not overlap. A point with NaN
@@ -112,17 +110,18 @@ class LidarInertialOdometry {
   /// pose, and `report.trajectory` is empty.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, SweepReport& report);
 
-  /// Predicts pose and velocity with covariance at the time of the last sample in `samples`, by inertial integration
-  /// from the end of the last sweep. If no sample is later than the last sweep, the result is the pose at the end of
-  /// the last sweep. Returns `ok`, an error of add_imu(), or `empty` before the map has started.
+  /// Predicts pose, velocity and covariance of the IMU at the time of the last sample in `samples`, by inertial
+  /// integration from the end of the last sweep. If no sample is later than the last sweep, the result is the pose at
+  /// the end of the last sweep. Returns `ok`, an error of add_imu(), or `empty` before the map has started.
   /// `velocity_covariance_I_m2_s2` (optional) is defined as in SweepReport. Cost: O(samples since the last sweep).
   Status predict(std::span<const ImuSample> samples, std::span<const AngularRateState> rates, PoseState& pose,
                  Eigen::Matrix3d* velocity_covariance_I_m2_s2 = nullptr) const;
 
-  /// Returns the current calibration. Calibration values that are not estimated have covariance 0.
+  /// Returns the estimated pose of the lidar in IMU axes, time offset and gravity. Values that are not estimated have
+  /// covariance 0.
   LidarImuCalibration calibration() const;
   LidarImuCalibration::Covariance calibration_covariance() const;
-  /// Returns the covariance of the calibration with which the next registration starts. A second run over the same
+  /// Returns the covariance that the next registration uses as prior of the calibration. A second run over the same
   /// recording should start with the results of calibration() and calibration_prior_covariance().
   LidarImuCalibration::Covariance calibration_prior_covariance() const;
 
@@ -130,10 +129,10 @@ class LidarInertialOdometry {
   /// start in motion.
   Status check_vertical() const;
 
-  /// Estimates the pose at a time within the last `window_sweeps` sweeps. Returns `out_of_range` outside these sweeps.
+  /// Estimates the pose of the IMU at a time within the last `window_sweeps` sweeps; other times give `out_of_range`.
   Status pose_at(TimeNs time_ns, PoseState& pose) const;
 
-  /// Returns the current poses of the sweeps that later sweeps still refine (at most `window_sweeps` - 1 sweeps),
+  /// Returns the current IMU poses of the sweeps that later sweeps still refine (at most `window_sweeps` - 1 sweeps),
   /// oldest first. At the end of a run, the poses of all SweepReport::smoothed and then of window_trajectories() are
   /// the whole trajectory.
   std::vector<std::vector<PoseState>> window_trajectories() const;
@@ -141,7 +140,7 @@ class LidarInertialOdometry {
   std::size_t map_bytes() const;
 
   /// Returns the map points within about `map_radius_m` of the robot, and the points of a prior map. Each normal is
-  /// fitted to the nearest neighbours of its point, and points towards the sensor that observed the point. The map
+  /// fitted to the nearest neighbours of its point, and points towards the sensor that observed the point. The result
   /// omits points through which beams of two sweeps passed, for example points on people who have walked away. Cost:
   /// O(number of points).
   std::vector<MapPoint> map() const;

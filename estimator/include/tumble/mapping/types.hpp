@@ -16,7 +16,7 @@
 
 namespace tumble {
 
-/// lidar return in lidar axes L at the time when the laser fired, not deskewed
+/// Lidar return in the axes that the lidar had when the laser fired (not deskewed).
 struct LidarPoint {
   Eigen::Vector3f position_L_m = Eigen::Vector3f::Zero();
   float intensity = 0.0f;       ///< 0 to 1
@@ -24,17 +24,16 @@ struct LidarPoint {
   std::uint16_t ring = 0;       ///< number of the laser, from bottom to top, or of the scan line
 };
 
-/// point of the map, in world axes
+/// Point of the map in world axes.
 struct MapPoint {
   Eigen::Vector3f position_W_m = Eigen::Vector3f::Zero();
   Eigen::Vector3f normal_W = Eigen::Vector3f::Zero();  ///< unit normal; zero if no plane could be fitted
   float sigma_m = 0.0f;                                ///< standard deviation of the position
 };
 
-/// LidarImuCalibration contains the lidar's mounting on the IMU, the time offset between IMU and lidar, and gravity.
-/// The registration refines the calibration during the motion. The error vector contains rotation of T_IL, translation
-/// of T_IL, time offset and gravity, in this order. The rotation error phi is a left perturbation in IMU axes: R_true =
-/// Exp(phi) R.
+/// Pose of the lidar in IMU axes, time offset between IMU and lidar, and gravity. The registration of the sweeps
+/// refines these values. The error vector contains rotation of T_IL, translation of T_IL, time offset and gravity, in
+/// this order. The rotation error phi is a left perturbation in IMU axes: R_true = Exp(phi) R.
 struct LidarImuCalibration {
   static constexpr int kErrorCount = 10;
   using Covariance = Eigen::Matrix<double, kErrorCount, kErrorCount>;
@@ -44,16 +43,16 @@ struct LidarImuCalibration {
   Eigen::Vector3d gravity_W_m_s2 = Eigen::Vector3d(0.0, 0.0, -9.80665);
 
   void add(const Eigen::Matrix<double, kErrorCount, 1>& error);
-  /// Returns the error vector for which `other.add(error)` equals this calibration.
+  /// Returns the error vector whose addition to `other` gives this calibration.
   Eigen::Matrix<double, kErrorCount, 1> minus(const LidarImuCalibration& other) const;
 };
 
-/// `deviations` is the result of LidarImuCalibrationPrior::distance_in_sigmas(). Returns `out_of_range` if `deviations`
-/// exceeds kDistanceMax_sigmas, because the stated calibration is probably wrong.
+/// Returns `out_of_range` if `deviations` (of LidarImuCalibrationPrior::distance_in_sigmas()) exceeds
+/// kDistanceMax_sigmas. The stated calibration is then probably wrong.
 Status distance_verdict(double deviations);
 
-/// LidarImuCalibrationPrior is the calibration that the caller states, with standard deviations of rotation (per axis),
-/// translation (per axis) and time offset. A standard deviation of 0 means that the stated value is exact.
+/// Calibration that the caller states, with standard deviations of the lidar's orientation (per axis), position (per
+/// axis) and time offset. A standard deviation of 0 means that the stated value is exact.
 struct LidarImuCalibrationPrior {
   static constexpr double kDistanceMax_sigmas = 5.0;  ///< largest plausible result of distance_in_sigmas()
 
@@ -66,7 +65,7 @@ struct LidarImuCalibrationPrior {
   double distance_in_sigmas(const LidarImuCalibration& estimated) const;
 };
 
-/// Describes the parameters that state the accuracy of the lidar's mounting and time offset.
+/// Describes the parameters for the standard deviations of the lidar's pose in IMU axes and time offset.
 namespace calibration_fields {
 
 inline constexpr Field kMountSigma_rad{
@@ -93,9 +92,9 @@ inline constexpr Field kTimeOffsetSigma_s{
 
 }  // namespace calibration_fields
 
-/// Odometer readings describe the motion of the robot within a sweep, measured by wheels, legs, a camera or a radar.
-/// Times of odometer readings are in the IMU's clock. The errors of an odometer reading are assumed independent of all
-/// other errors. Wheel slip beyond the stated uncertainty corrupts the estimate.
+/// An odometer reading is a motion or a velocity of the robot, measured by wheels, legs, a camera or a radar. Times are
+/// in the IMU's clock. The error of each odometer reading is assumed independent of all other errors. Wheel slip beyond
+/// the stated uncertainty corrupts the estimate.
 
 struct VelocityReading {
   TimeNs time_ns = 0;
@@ -103,8 +102,8 @@ struct VelocityReading {
   double sigma_m_s = 0.0;                                ///< standard deviation of each axis
 };
 
-/// MotionReading is the measured motion of the IMU I from `from_ns` to `to_ns`. For IMU poses T_OI in a drifting
-/// odometer frame O, the motion is T_OI(from)^-1 T_OI(to).
+/// Measured motion of the IMU I from `from_ns` to `to_ns`. For IMU poses T_OI in a drifting odometer frame O, the
+/// motion is T_OI(from)^-1 T_OI(to).
 struct MotionReading {
   TimeNs from_ns = 0;
   TimeNs to_ns = 0;
@@ -123,33 +122,31 @@ Status check_reading(const OdometerReading& reading);
 TimeNs reading_start_ns(const OdometerReading& reading);
 TimeNs reading_end_ns(const OdometerReading& reading);
 
-/// PositionReading is the measured position of an antenna or tag A on the robot, for example from GPS or beacons. The
-/// position is given in a position frame P with an upward z axis, for example east, north, up. PositionAlignment
-/// assumes that the errors of the readings are independent. If the errors of successive readings are correlated, state
-/// a larger covariance.
+/// Measured position of an antenna or tag A on the robot, for example from GPS or beacons. The position is given in a
+/// position frame P with an upward z axis, for example east, north, up. The errors of successive readings are assumed
+/// independent; state a larger covariance if they are correlated.
 struct PositionReading {
   TimeNs time_ns = 0;  ///< in the IMU's clock
   Eigen::Vector3d antenna_position_P_m = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< in the frame P; the mean variance of the axes is used
+  Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();          ///< in axes of P; only the mean variance is used
   Eigen::Vector3d antenna_lever_arm_I_m = Eigen::Vector3d::Zero();  ///< position of the antenna or tag A in IMU axes
 };
 
-/// PositionFrame is the estimated transform from the odometry frame W of the poses to the position frame P of the
-/// position readings. The transform compensates the drift of the odometry, so poses in the position frame do not drift.
+/// Estimated transform from the odometry frame W of the poses to the frame P of the position readings. The transform
+/// compensates the drift of the odometry, so poses in the frame P do not drift.
 struct PositionFrame {
   Eigen::Isometry3d T_readings_world = Eigen::Isometry3d::Identity();  ///< the rotation is about the vertical
   Eigen::Vector3d reference_point_W_m = Eigen::Vector3d::Zero();
-  /// Covariance of the transform's error in axes of the position frame P. The components of the error are the
-  /// translation of `reference_point_W_m` [m], and the rotation about the vertical through this point [rad].
+  /// Covariance of the transform's error in axes of the frame P: translation of `reference_point_W_m` [m], then
+  /// rotation about the vertical through this point [rad].
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
 
-  /// Converts a pose from the odometry frame W to the position frame P. In the result, the covariance of position and
-  /// heading comes from PositionFrame::covariance, and the covariance of the tilt from `in_W`.
+  /// Converts a pose from the odometry frame W to the frame P. In the result, the covariance of position and heading
+  /// comes from PositionFrame::covariance, and the covariance of the tilt from `in_W`.
   PoseState transform(const PoseState& in_W) const;
 };
 
-/// PriorMap is a map of an earlier run. A new run localises the robot in the prior map. The z axis of the map frame M
-/// points upwards.
+/// Map of an earlier run, in which a new run localises the robot. The z axis of the map frame M points upwards.
 struct PriorMap {
   std::vector<MapPoint> points = {};  ///< points with normals, in the map frame M; to_map_points() computes normals
   /// Start pose of the IMU in the map frame M, if known; only position and heading are used. If the start pose is
@@ -158,7 +155,7 @@ struct PriorMap {
   double sigma_m = 0.0;    ///< standard deviation of the position of T_prior_map_imu per axis; 0: exact
   double sigma_rad = 0.0;  ///< standard deviation of the heading of T_prior_map_imu; 0: exact
   bool extend =
-      true;  ///< true: sweeps extend the map and remove points that they see through; false: the map is constant
+      true;  ///< true: sweeps add points, and remove points through which their beams pass; false: the map is constant
 };
 
 /// Returns `non_finite` if a number is NaN or infinite. Returns `out_of_range` for a negative standard deviation, a
@@ -173,13 +170,13 @@ Status check_prior_map(const PriorMap& map);
 /// the standard deviation of each position. Cost: O(points).
 std::vector<MapPoint> to_map_points(std::span<const Eigen::Vector3f> positions_M_m, float sigma_m = 0.02f);
 
-/// SweepVerdict states whether a sweep's pose comes from the registration or from the inertial prediction. If a
-/// `degenerate` sweep has an eigenvalue_ratio of 0, the whole pose comes from the inertial prediction.
+/// States whether the pose of a sweep comes from the registration or from the inertial prediction. If a `degenerate`
+/// sweep has an eigenvalue_ratio of 0, the whole pose comes from the inertial prediction.
 enum class SweepVerdict : std::uint8_t {
   first,       ///< the sweep started the map
-  registered,  ///< aligned with the map in all six directions
-  degenerate,  ///< aligned where surfaces constrain the pose, predicted elsewhere
-  rejected,    ///< too few matches or too large a correction: pose is predicted
+  registered,  ///< all six degrees of freedom were aligned with the map
+  degenerate,  ///< directions that no surface constrains come from the inertial prediction
+  rejected,    ///< too few matches or too large a correction; the pose is the inertial prediction
 };
 const char* to_string(SweepVerdict verdict);
 
@@ -194,32 +191,32 @@ struct SweepReport {
   /// `smoothed` contains the poses of the previous sweep.
   std::vector<PoseState> smoothed;
   double inlier_ratio = 0.0;      ///< fraction of the registered points that are inliers
-  double eigenvalue_ratio = 0.0;  ///< smallest divided by largest eigenvalue of the scaled normal matrix
-  /// standard deviation of the pose in the least constrained direction, from this sweep's points alone; 0: the sweep
-  /// was not aligned
+  double eigenvalue_ratio = 0.0;  ///< smallest / largest eigenvalue of the scaled information matrix of the pose
+  /// standard deviation of the pose in the least constrained direction, from the lidar points alone; 0: the sweep was
+  /// not aligned
   double least_constrained_sigma_m = 0.0;
-  /// Normalised innovation sqrt(d' P^-1 d / 9), for nine corrections d with the predicted covariance P. The
-  /// registration adds the corrections d to the predicted position, attitude and velocity. If the covariances are
-  /// correct, the mean innovation is at most 1. An innovation of 0 means that the sweep was not aligned.
+  /// Normalised innovation sqrt(d' P^-1 d / 9). The vector d contains the registration's nine corrections of predicted
+  /// position, attitude and velocity, and P is their predicted covariance. With correct covariances, the mean is at
+  /// most 1; 0: the sweep was not aligned.
   double innovation = 0.0;
   /// Standard deviation of the position relative to the nearby map points. The covariance of `pose` also includes the
   /// map's drift and tilt, which grow with the travelled distance.
   double map_sigma_m = 0.0;
   int iterations = 0;
   int consecutive_rejected_sweeps = 0;  ///< consecutive rejected sweeps, including the current sweep
-  /// True after a relocalisation that disagrees with the predicted pose or fits the map poorly, until two further
-  /// sweeps confirm the relocalisation. If a sweep contradicts the relocalisation, the odometry returns to the
-  /// inertially predicted pose.
+  /// True after a relocalisation that disagrees with the inertial prediction or fits the map poorly, until two further
+  /// sweeps confirm the new pose. If a sweep contradicts the new pose, the odometry returns to the pose of the inertial
+  /// prediction.
   bool relocalisation_unconfirmed = false;
   /// Direction in which the lidar constrains the pose least: unit vector of three position and three attitude
   /// components, in world axes. The attitude components are angles, multiplied by the root-mean-square distance of the
   /// points from the IMU, so all six components are lengths.
   Eigen::Matrix<double, 6, 1> least_constrained_direction = Eigen::Matrix<double, 6, 1>::Zero();
   Eigen::Vector3d mean_saturation_deficit_rad_s =
-      Eigen::Vector3d::Zero();        ///< mean correction of the clipped gyro axes
-  std::size_t points_used = 0;        ///< finite returns in range that do not hit the robot
+      Eigen::Vector3d::Zero();        ///< mean correction of the clipped gyro axes: true minus reading
+  std::size_t points_used = 0;        ///< finite returns within the range limits that do not hit the robot
   std::size_t isolated_points = 0;    ///< unused returns that no neighbouring beam confirms
-  std::size_t points_registered = 0;  ///< usable points after sampling, one per voxel
+  std::size_t points_registered = 0;  ///< usable points after downsampling to one point per voxel
   std::size_t map_points_added = 0;
   /// true if the poses are in the frame of the prior map
   bool in_prior_map = false;

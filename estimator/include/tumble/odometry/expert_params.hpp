@@ -14,12 +14,11 @@
 
 namespace tumble {
 
-/// SecondMappingPassParams contains the parameters of the second mapping pass over the first seconds of motion; see
-/// TumblingOdometry.
+/// Parameters of the second mapping pass, which processes the first seconds of motion again; see TumblingOdometry.
 struct SecondMappingPassParams {
-  double after_s = 3.0;  ///< duration of motion before the second pass starts; 0: none
-  double lost_s = 0.4;   ///< duration of tracking failure that starts a second pass; 0: never
-  double lag_s = 0.5;    ///< lag of the rates of the second pass
+  double after_s = 3.0;  ///< duration of motion before the second mapping pass starts; 0: no second pass
+  double lost_s = 0.4;   ///< duration of a tracking failure that starts a second mapping pass; 0: never
+  double lag_s = 0.5;    ///< lag with which the second mapping pass smooths the angular velocity
 
   /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
@@ -34,22 +33,20 @@ struct SecondMappingPassParams {
   }
 };
 
-/// TumblingExpertParams contains the rarely changed parameters of TumblingOdometry. If TumblingParams contains the same
-/// parameter, TumblingOdometry uses the value in TumblingParams. The estimation of rates and the mapping both use the
-/// parameter gravity_m_s2.
+/// Rarely changed parameters of TumblingOdometry. If TumblingParams contains the same parameter, TumblingOdometry uses
+/// the value in TumblingParams.
 struct TumblingExpertParams {
   double gravity_m_s2 = 9.80665;
-  /// Maximum number of sweeps that wait for IMU samples, in addition to the sweeps of the last `lag_s`.
-  /// TumblingOdometry also stores at most sweeps_max registered sweeps until take() returns them. If more than
+  /// Maximum number of sweeps that wait for IMU samples, in addition to the sweeps of the last `lag_s`. If more than
   /// sweeps_max registered sweeps wait for take(), TumblingOdometry drops the oldest sweep.
   std::size_t sweeps_max = 16;
-  /// Parameters of the rate estimation. By default, the prior probability that the IMU does not match its data sheet is
-  /// 0.003. The covariance of each estimated rate includes the uncertainty of the IMU's calibration.
+  /// Parameters of the estimation of angular velocity. By default, the prior probability that the IMU does not match
+  /// its data sheet is 0.003. The covariance of each estimated rate includes the uncertainty of the IMU's calibration.
   MotionRegimeStream::Params rate = default_rate_params();
   /// Parameters of the mapping. By default, gravity's direction and the saturation deficit (true rate minus clipped
   /// reading) are unknowns of the registration.
   OdometryParams mapping = mapping_defaults();
-  /// Parameters of SampleClock, which corrects IMU time stamps that a host computer assigned.
+  /// Parameters of the correction of IMU time stamps that a host computer assigned.
   SampleClock::Params stamps;
   SecondMappingPassParams second_mapping_pass;
   static OdometryParams mapping_defaults();
@@ -72,8 +69,8 @@ struct TumblingExpertParams {
 
 struct MergedRecordings;
 
-/// RollingOdometryExpertParams contains the rarely changed parameters of RollingOdometry. If RollingOdometry::Params
-/// contains the same parameter, RollingOdometry uses the value in RollingOdometry::Params.
+/// Rarely changed parameters of RollingOdometry. If RollingOdometry::Params contains the same parameter,
+/// RollingOdometry uses the value in RollingOdometry::Params.
 struct RollingOdometryExpertParams {
   RollingSmoother::Params rolling;
   SampleClock::Params stamps;  ///< correction of time stamps that a host computer assigned
@@ -85,8 +82,8 @@ struct RollingOdometryExpertParams {
   }
 };
 
-/// Returns the parameters with which RollingSmoother processes merged readings, for programs that use RollingSmoother
-/// without RollingOdometry.
+/// Returns the parameters for processing the merged readings of several IMUs with RollingSmoother, for programs that do
+/// not use RollingOdometry.
 RollingSmoother::Params rolling_smoother_params(const RollingOdometry::Params& params, const MergedRecordings& merged);
 
 }  // namespace tumble

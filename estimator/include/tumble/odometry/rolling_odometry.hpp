@@ -23,9 +23,8 @@ extern template class HeapValue<RollingOdometryExpertParams>;
 
 /// Estimates the pose of a rolling sphere from one to four IMUs, through grip, slip, bumps and slopes. The reported
 /// poses are live, smoothed with the data of the following `lag_s`, or smoothed with the whole recording.
-/// StreamingClippingFinder flags readings that a device clips without reporting saturation. ImuMerge fuses the IMUs.
-/// RollingSmoother (with its RollingFilter) estimates the motion. With kWholeRecording, merge_recordings() flags
-/// clipped readings and fuses the IMUs.
+/// RollingOdometry detects saturated readings that the IMU does not flag, fuses the IMUs to one IMU (ImuMerge), and
+/// estimates the motion with RollingFilter and RollingSmoother.
 ///
 /// The z axis of the world frame points upwards. The first sample defines origin and yaw of the world frame; the origin
 /// is the sphere's centre. The sphere should be at rest for one second at the start.
@@ -42,33 +41,33 @@ class RollingOdometry {
 
   struct ImuSetup {
     ImuDataSheet data_sheet;
-    /// pose of the IMU in sphere axes, relative to the stated centre of the sphere: x_B = T_BI x_I
+    /// pose of the IMU in axes B of the sphere, relative to the stated centre of the sphere: x_B = T_BI x_I
     Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
   };
   struct Params {
     double radius_m = 0.0;       ///< required; has no default
     std::vector<ImuSetup> imus;  ///< 1 to 4 IMUs; required
-    /// Standard deviation of the sphere's true centre relative to the stated centre. The poses T_BI of the IMUs are
-    /// relative to the stated centre. RollingOdometry estimates the true centre.
+    /// Prior standard deviation of the sphere's true centre relative to the stated centre (the origin of T_BI).
+    /// RollingOdometry estimates the true centre.
     double centre_sigma_m = 6e-3;
     double gravity_m_s2 = 9.80665;
-    /// Lag of the poses that take() returns; 0: live poses. With kWholeRecording, add_imus() stores the readings,
-    /// newest() returns nothing, and finish() estimates all poses from the whole recording.
+    /// Lag of the poses that take() returns; 0: live poses. With kWholeRecording, add_imus() only stores the readings,
+    /// newest() returns an empty value, and finish() estimates all poses.
     double lag_s = 0.0;
 
     using Expert = RollingOdometryExpertParams;
-    HeapValue<Expert> expert;  ///< rarely changed parameters, odometry/expert_params.hpp
+    HeapValue<Expert> expert;  ///< rarely changed parameters: odometry/expert_params.hpp
 
     /// Returns the names of parameters that RollingOdometry computes from other parameters and from data sheets.
     /// RollingOdometry ignores values that a user sets for computed parameters.
     static std::span<const char* const> derived_fields();
 
     /// Increases the prior standard deviations for uncalibrated IMUs without data sheet, at unknown positions in the
-    /// sphere. The prior probability of slopes becomes very small, because the accelerometer bias of an uncalibrated
-    /// IMU resembles a slope.
+    /// sphere. A sloped floor becomes very improbable, because the accelerometer bias of an uncalibrated IMU resembles
+    /// a slope.
     void widen_priors_for_unknown_imus();
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning. A caller needs
+    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning. Callers must include
     /// odometry/expert_params.hpp.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
@@ -89,16 +88,16 @@ class RollingOdometry {
   struct Calibration {
     Eigen::Vector3d sphere_centre_B_m =
         Eigen::Vector3d::Zero();  ///< true centre of the sphere, relative to the stated centre
-    /// Estimated radius of the sphere, and its standard deviation. The standard deviation is 0 for live poses, and if
-    /// the radius is not estimated (expert.rolling.filter.radius_sigma_m is 0).
+    /// Estimated radius of the sphere, and its standard deviation. The standard deviation is 0 without smoothing
+    /// (`lag_s` = 0), and if the radius is not estimated (expert.rolling.filter.radius_sigma_m is 0).
     double radius_m = 0.0, radius_sigma_m = 0.0;
   };
   struct Pose {
     PoseState pose;  ///< pose of the sphere's centre; live poses have no attitude covariance
     /// angular velocity of the sphere, in sphere axes
     Eigen::Vector3d angular_velocity_rad_s = Eigen::Vector3d::Zero();
-    /// Covariance of the velocity of the sphere's centre, in sphere axes. If `lag_s` is above 0, the covariance omits
-    /// the uncertainty of the contact mode.
+    /// Covariance of the velocity of the sphere's centre, in sphere axes. If `lag_s` is above 0, the covariance
+    /// neglects that the contact mode (grip, slip or bump) is uncertain.
     Eigen::Matrix3d velocity_covariance_B_m2_s2 = Eigen::Matrix3d::Zero();
     RollingMode mode = RollingMode::grip;
     bool at_rest = false;
@@ -119,9 +118,9 @@ class RollingOdometry {
   /// SampleClock corrects time stamps with jitter. Pass NaN for an IMU without a reading. OutlierFilter rejects
   /// outliers among the readings of each IMU. While OutlierFilter checks a sudden change of a reading, up to five
   /// samples of all IMUs wait, and newest() returns the pose before these samples. On error, the state is unchanged.
-  /// The errors are `insufficient_data` (wrong number of IMUs, or no reading), `time_order`, `degenerate` (no gravity
-  /// in the first sample), `gap` and `out_of_range`. `out_of_range` means that the run has finished, the time stamp
-  /// exceeds kStampMax_ns, or the only IMU with readings has a frozen axis.
+  /// The errors are `insufficient_data` (wrong number of IMUs, or no reading), `time_order`, `degenerate` (the first
+  /// specific force is almost zero), `gap` and `out_of_range`. `out_of_range` means that the run has finished, the time
+  /// stamp exceeds kStampMax_ns, or the only IMU with readings has a frozen axis.
   ///
   /// A single wrong time stamp causes the loss of only one sample. After a gap of more than a second, add_imus()
   /// rejects the first sample, returns `gap`, and restarts with the next sample. If the clock steps back, add_imus()
@@ -139,16 +138,16 @@ class RollingOdometry {
   /// or until a time stamp exceeds the newest accepted time stamp.
   Status add_imu(std::size_t unit, const ImuSample& sample);
 
-  /// Returns the newest pose, estimated from all data so far, or an empty value before the first sample.
+  /// Returns the pose at the newest sample, estimated from all data so far, or an empty value before the first sample.
   std::optional<Pose> newest() const;
 
   /// Returns the oldest pose that take() has not yet returned; empty if there is no such pose. If `lag_s` is 0, the
   /// poses are live; otherwise the poses are smoothed and `lag_s` old.
   std::optional<Pose> take();
 
-  /// Ends the estimation and smooths the remaining poses. After finish(), add_imus() rejects samples until reset().
-  /// Returns `ok`, or the first error of the samples that waited for samples of other IMUs. With kWholeRecording,
-  /// finish() returns `ok`, an error of merge_recordings(), or an error of RollingSmoother::step().
+  /// Ends the run and smooths the remaining poses. After finish(), add_imus() rejects samples until reset(). Returns
+  /// `ok`, or the first error of the samples that waited for samples of other IMUs. With kWholeRecording, finish()
+  /// returns `ok`, an error of merge_recordings(), or an error of RollingSmoother::step().
   Status finish();
 
   /// Starts a new run at the origin and at rest. After reset(), take() still returns the remaining poses of the old
@@ -167,21 +166,23 @@ class RollingOdometry {
   /// before finish(), or if `lag_s` is not kWholeRecording.
   const MergedImuRecording* recording() const;
 
-  /// If `lag_s` is above 0, centre and radius are the estimates at the newest smoothed pose.
+  /// Returns the estimated centre and radius of the sphere; if `lag_s` is above 0, at the time of the newest smoothed
+  /// pose.
   Calibration calibration() const;
 
   /// Returns true if the sphere was already moving at the first samples.
   bool started_in_motion() const;
 
-  /// Returns the state of ImuMerge, which fuses the IMUs (attitude/detail/imu_merge.hpp). The returned state shows
-  /// which IMUs repeat one constant reading (frozen), disagree with the other IMUs, or have a time offset.
+  /// Returns the state of the fusion of several IMUs (attitude/detail/imu_merge.hpp). The state contains which IMUs
+  /// repeat one reading (frozen), contradict the other IMUs, or have a time offset.
   const ImuMergeState& imus() const;
 
   /// Returns the number of readings of all IMUs that OutlierFilter rejected.
   std::size_t rejected_readings() const;
   /// Returns the number of restarts after a gap or after a clock that stepped back.
   std::size_t restart_count() const;
-  /// Returns the jitter of the time stamps [s] while SampleClock corrects them, and otherwise an empty value.
+  /// Returns the jitter of the time stamps [s] while SampleClock corrects the time stamps, and otherwise an empty
+  /// value.
   std::optional<double> estimated_jitter_s() const;
 
   /// Saves calibration, saturation limits of each IMU, and newest pose as bytes with a checksum, for load() after a

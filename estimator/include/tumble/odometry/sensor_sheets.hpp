@@ -8,9 +8,10 @@
 
 namespace tumble {
 
-/// A gyro or accelerometer range of 0 means that the range is unknown. The estimators detect saturation limits from the
-/// readings, with or without a stated range. Manufacturers usually state gyro ranges of 250 to 4000 deg/s. A value of
-/// `gyro_range_rad_s` above 100 rad/s (5730 deg/s) is rejected, because the value is probably in degrees per second.
+/// Values of an IMU's data sheet. A gyro or accelerometer range of 0 means that the range is unknown. The estimators
+/// detect saturation limits from the readings, with or without a stated range. Manufacturers usually state gyro ranges
+/// of 250 to 4000 deg/s. A value of `gyro_range_rad_s` above 100 rad/s (5730 deg/s) is rejected, because the value is
+/// probably in degrees per second.
 struct ImuDataSheet {
   double rate_hz = 100.0;
   double gyro_range_rad_s = 0.0;
@@ -37,8 +38,7 @@ struct ImuDataSheet {
 /// calibration factors can saturate slightly below the stated range.
 double range_below_saturation(double stated_range);
 
-/// LidarDataSheet contains the range limits in the data sheet of a lidar. The estimators drop lidar returns outside of
-/// the stated limits.
+/// Range limits in the data sheet of a lidar. The estimators drop lidar returns outside of the limits.
 struct LidarDataSheet {
   double range_min_m = 0.3;
   double range_max_m = 100.0;
@@ -53,9 +53,8 @@ struct LidarDataSheet {
   }
 };
 
-/// FurtherLidar is a lidar in addition to the lidar of TumblingParams. Relative to the first lidar, the stated mounting
-/// and clock offset of a further lidar must be exact. TumblingOdometry estimates mounting and clock offset for the
-/// first lidar, but not for the further lidars.
+/// Lidar in addition to the first lidar (TumblingParams). Pose and clock offset relative to the first lidar must be
+/// exact, because TumblingOdometry estimates both only for the first lidar.
 struct FurtherLidar {
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
   LidarDataSheet data_sheet;
@@ -63,9 +62,9 @@ struct FurtherLidar {
   double time_offset_s = 0.0;      ///< clock of the first lidar minus clock of this lidar
 };
 
-/// This namespace contains the data sheets of the simulated sensors: `sheets::mti30()` returns the data sheet of the
-/// sensor mti30. The file models/sensors/NAME.yaml states the source of each number of the sensor NAME. The numbers are
-/// in the order of the members of ImuDataSheet and LidarDataSheet.
+/// Data sheets of common sensors: for example, `sheets::mti30()` returns the data sheet of the Xsens MTi-30. The file
+/// models/sensors/NAME.yaml states the source of each number of the sensor NAME. The numbers are in the order of the
+/// members of ImuDataSheet and LidarDataSheet.
 namespace sheets {
 
 /// Data sheet with the name of the sensor. The call operator returns the data sheet.

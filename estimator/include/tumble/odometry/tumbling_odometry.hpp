@@ -28,25 +28,24 @@ struct TumblingParams {
   ImuDataSheet imu;
   /// Lever arm from the body's centre of mass to the IMU, in IMU axes, and its standard deviation per axis. In free
   /// flight, the lever arm relates the angular rate to the measured specific force. TumblingOdometry estimates the
-  /// error of the stated lever arm. The lever arm has no default, because zero would mean an IMU at the centre of mass.
+  /// error of the stated lever arm. The lever arm is required; zero means that the IMU is at the centre of mass.
   Eigen::Vector3d lever_arm_I_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   double lever_arm_sigma_m = 0.01;
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
-  /// Standard deviations of the lidar's orientation and position in T_IL, and of the lidar's time offset. If a standard
-  /// deviation is above 0, TumblingOdometry estimates the corresponding value. A standard deviation of 0 means that the
-  /// stated value is exact.
+  /// Prior standard deviations of the lidar's orientation and position in T_IL, and of the time offset between lidar
+  /// and IMU. A standard deviation of 0 means that the stated value is exact and not estimated.
   double mount_sigma_rad = 0.01;
   double mount_sigma_m = 0.006;
   double time_offset_sigma_s = 0.003;
   LidarDataSheet lidar;
   /// Box in lidar axes that contains the robot; lidar returns inside the box are dropped. The default, an empty Eigen
-  /// box, keeps all returns. The constructor rejects a box with swapped corners.
+  /// box, keeps all returns. Swapped corners are an error.
   Eigen::AlignedBox3d own_body_L;
   std::vector<FurtherLidar> further_lidars;  ///< lidars in addition to the first; see TumblingOdometry::add_sweep()
   double lag_s = 0.2;  ///< delay of reported rates and sweeps: two samples to 10 s, or kWholeRecording
 
   using Expert = TumblingExpertParams;
-  HeapValue<Expert> expert;  ///< rarely changed parameters, odometry/expert_params.hpp
+  HeapValue<Expert> expert;  ///< rarely changed parameters: odometry/expert_params.hpp
 
   LidarImuCalibrationPrior calibration_prior() const {
     LidarImuCalibrationPrior out{{}, mount_sigma_rad, mount_sigma_m, time_offset_sigma_s};
@@ -54,7 +53,7 @@ struct TumblingParams {
     return out;
   }
 
-  /// A caller needs odometry/expert_params.hpp.
+  /// Callers must include odometry/expert_params.hpp.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit.group("imu_", p.imu);
@@ -80,22 +79,22 @@ struct SaturationLevels;
 struct LidarScale;
 
 /// Estimates pose, velocity and map of a tumbling body from a lidar and one IMU, whose gyro may saturate. SampleClock
-/// corrects time stamps that a host computer assigned. MotionRegimeStream estimates the angular velocity of each sample
-/// with a delay of `lag_s`.
+/// corrects time stamps that a host computer assigned. MotionRegimeStream estimates the angular velocity at each IMU
+/// sample with a delay of `lag_s`.
 ///
-/// Three poses of increasing accuracy are reported. The function newest() predicts the IMU's pose at the newest sample
-/// by inertial integration from the last registered sweep. The function take() returns a sweep registered to the map
-/// (`report.pose`), at most `lag_s` after the sweep's end. The final pose of a sweep is in the report of the following
-/// sweep (`report.smoothed`). At ten sweeps per second and the default `lag_s`, the final pose is available at most 0.3
-/// s after the end of its sweep. Time stamps of poses are in the IMU's clock. The earliest sweep with enough points
-/// starts the map, and poses are reported only after the map has started. Start with at least half a second at rest,
-/// which determines the tilt. A gyro with a zero offset above 0.05 rad/s needs a full second at rest, because
-/// TumblingOdometry then subtracts the offset and restarts.
+/// TumblingOdometry reports three poses of increasing accuracy. The function newest() predicts the IMU's pose at the
+/// newest sample by inertial integration from the last registered sweep. The function take() returns a sweep registered
+/// to the map (`report.pose`), at most `lag_s` after the sweep's end. The final pose of a sweep is in the report of the
+/// following sweep (`report.smoothed`). At ten sweeps per second and the default `lag_s`, the final pose is available
+/// at most 0.3 s after the end of its sweep. Time stamps of poses are in the IMU's clock. The earliest sweep with
+/// enough points starts the map, and poses are reported only after the map has started. Start with at least half a
+/// second at rest, which determines the tilt. A gyro with a bias above 0.05 rad/s needs a full second at rest, because
+/// TumblingOdometry then subtracts the bias and restarts.
 ///
 /// Some seconds after motion starts, SecondMappingPass processes the first seconds of motion again with the calibration
 /// estimated so far. If the second pass succeeds, TumblingOdometry continues with the map and pose of
-/// SecondMappingPass. The second pass does not change poses that were already reported. If no sweep arrives for a
-/// second, inertial integration continues, and take() returns a sweep without points.
+/// SecondMappingPass. Poses that were already reported do not change. If no sweep arrives for a second, inertial
+/// integration continues, and take() returns a sweep without points.
 ///
 /// With `lag_s` = kWholeRecording, add_imu() and add_sweep() store the data, and finish() estimates rates, poses and
 /// map from the whole recording. The function finish() estimates the rates with MotionRegimeSmoother, checks the IMU,
@@ -108,10 +107,9 @@ struct LidarScale;
 /// An IMU sample costs one step of MotionRegimeStream, and sometimes the registration of a sweep. After start-up,
 /// add_imu() allocates memory only if the sample completes a sweep. While SecondMappingPass runs, a sweep costs up to
 /// four registrations. The sweep that completes SecondMappingPass costs about five additional registrations. The memory
-/// of TumblingOdometry is bounded, depending on lag, map radius, `sweeps_max` and the buffer of SecondMappingPass. The
-/// map also stores the sensor position of each sweep (12 bytes). The map regularly deletes the sensor positions of
-/// sweeps without remaining map points, unless the robot is localised in a prior map. Without kWholeRecording, each
-/// call of a member function needs at most 64 KiB of stack.
+/// of TumblingOdometry is bounded, depending on lag, map radius, `sweeps_max` and the buffer of SecondMappingPass.
+/// While the robot is localised in a prior map, the memory also grows by 12 bytes per sweep. Without kWholeRecording,
+/// each call of a member function needs at most 64 KiB of stack.
 ///
 /// TumblingOdometry starts no threads, uses no files and prints nothing. A copy of a TumblingOdometry contains the
 /// complete state, so the copy can continue the run. The limitations of MotionRegimeStream and LidarInertialOdometry
@@ -123,10 +121,10 @@ class TumblingOdometry {
   static constexpr double kWholeRecording = Params::kWholeRecording;  ///< value of Params::lag_s
 
   struct Sweep {
-    Status status;  ///< status of add_sweep(); `report.trajectory` is empty without a pose
+    Status status;  ///< result of the registration; `report.trajectory` is empty without a pose
     SweepReport report;
     /// Transform from the world to the frame of the position readings, estimated from readings up to the sweep's end.
-    /// The transform is empty if the readings do not determine the transform.
+    /// Empty while the readings do not determine the transform.
     std::optional<PositionFrame> position_frame;
   };
 
@@ -157,11 +155,11 @@ class TumblingOdometry {
   Status add_imu(const ImuSample& sample);
   /// Processes a sweep of points fired in [start_ns, end_ns]. Call add_sweep() after the last point of the sweep; later
   /// IMU samples may be added first. The points are copied. Points that were fired before the end of the last sweep are
-  /// dropped, because jitter can make the time stamps of sweeps overlap. On error, the state is unchanged. `time_order`
-  /// means that `end_ns` is before `start_ns`, or that more than half of the sweep is before the end of the last sweep.
-  /// `out_of_range` means that a point was fired outside [start_ns, end_ns], or that `end_ns` is more than a second
-  /// after the newest IMU sample. `out_of_range` also means that a time stamp exceeds kStampMax_ns, or that too many
-  /// sweeps wait for IMU samples.
+  /// dropped, because jitter of the time stamps can make successive sweeps overlap. On error, the state is unchanged.
+  /// `time_order` means that `end_ns` is before `start_ns`, or that more than half of the sweep is before the end of
+  /// the last sweep. `out_of_range` means that a point was fired outside [start_ns, end_ns], or that `end_ns` is more
+  /// than a second after the newest IMU sample. `out_of_range` also means that a time stamp exceeds kStampMax_ns, or
+  /// that too many sweeps wait for IMU samples.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
   /// Processes a sweep of one of several lidars. For the first lidar, `lidar` is 0; for `further_lidars[k - 1]`,
   /// `lidar` is k. The points of a further lidar are registered together with the simultaneous sweep of the first
@@ -186,9 +184,9 @@ class TumblingOdometry {
   /// Returns the oldest registered sweep that take() has not yet returned; empty if there is no such sweep.
   std::optional<Sweep> take();
   /// Registers all waiting sweeps that the IMU samples cover. Call finish() at the end of a run or during a halt. After
-  /// finish(), take() returns the registered sweeps. No `report.smoothed` contains the final poses of the last sweeps.
-  /// After finish(), mapper().window_trajectories() returns the final poses of the last sweeps. If more samples are
-  /// added after finish(), the rate estimation restarts with the current calibration.
+  /// finish(), take() returns the registered sweeps. For the last sweeps, mapper().window_trajectories() returns the
+  /// final poses instead of `report.smoothed`. If more samples are added after finish(), the estimation of angular
+  /// velocity restarts with the current calibration.
   ///
   /// With kWholeRecording, finish() processes the whole recording, and later samples and sweeps are rejected until
   /// reset(). After finish() with kWholeRecording, take() returns all sweeps with final poses in `report.pose` and
@@ -209,12 +207,12 @@ class TumblingOdometry {
   /// allocates memory. Cost: O(samples since the last sweep). `velocity_covariance_I_m2_s2` (optional) is the
   /// covariance of the velocity error in IMU axes.
   Status newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2 = nullptr) const;
-  /// Reports the suspected faults of the sensors and of the estimate. Estimation continues after any finding. The
-  /// report of a finding stops at most one minute after the fault has ended. The checks are
-  /// AngularRateStream::health(), ImuPlausibility, RestGravity, LidarScale, LidarInertialOdometry::check_vertical() and
-  /// localised(), Localisation and LidarImuCalibrationPrior. With kWholeRecording, finish() checks the whole recording
-  /// (detail/imu_findings.hpp), and health() reports no finding before finish(). Cost: a few hundred operations.
-  /// Without a finding, health() allocates no memory.
+  /// Reports the suspected faults of the sensors and of the estimate. Estimation continues after any finding. A finding
+  /// disappears at most one minute after the fault has ended. The checks are AngularRateStream::health(),
+  /// ImuPlausibility, RestGravity, LidarScale, LidarInertialOdometry::check_vertical() and localised(), Localisation
+  /// and LidarImuCalibrationPrior. With kWholeRecording, finish() checks the whole recording (detail/imu_findings.hpp),
+  /// and health() reports no finding before finish(). Cost: a few hundred operations. Without a finding, health()
+  /// allocates no memory.
   SensorHealth health() const;
   /// Returns the ratio of displacements measured by the lidar to displacements measured by the IMU, with its standard
   /// deviation (mapping/detail/lidar_scale.hpp).
@@ -224,11 +222,11 @@ class TumblingOdometry {
   const std::optional<PositionFrame>& position_frame() const;
   /// Returns the time of the newest accepted IMU sample.
   std::optional<TimeNs> newest_ns() const;
-  /// Returns the rate of the newest IMU sample, or an empty value before the first sample. While the gyro is saturated,
-  /// the rate of the newest sample is provisional.
+  /// Returns the angular velocity at the newest IMU sample, or an empty value before the first sample. While the gyro
+  /// is saturated, this value is provisional.
   std::optional<AngularRateState> newest_rate() const;
-  /// Returns the newest smoothed rate, which is about `lag_s` old. Returns an empty value during the first `lag_s` of a
-  /// run.
+  /// Returns the newest smoothed angular velocity, which is about `lag_s` old. Returns an empty value during the first
+  /// `lag_s` of a run.
   const std::optional<AngularRateState>& smoothed_rate() const;
   /// Returns the estimated calibration of the IMU on the body (angular_velocity/types.hpp): lever arm, biases,
   /// inertia ratios and gyro axis directions.
@@ -251,12 +249,12 @@ class TumblingOdometry {
   std::optional<double> estimated_jitter_s() const;
   /// Returns the mapper (mapping/lidar_inertial_odometry.hpp), which provides the map and the calibration of the lidar.
   const LidarInertialOdometry& mapper() const;
-  /// Returns the rates of all samples, the results of the checks, and the results of the mapping for a whole recording
-  /// (detail/recording_estimate.hpp). Returns null before finish(), or if `lag_s` is not kWholeRecording.
+  /// Returns the angular velocities at all samples, the health findings, and the results of the mapping for a whole
+  /// recording (detail/recording_estimate.hpp). Returns null before finish(), or if `lag_s` is not kWholeRecording.
   const WholeRecordingEstimate* recording() const;
 
   /// Saves calibration, saturation limits, map and newest pose as bytes with a checksum, for load() after a reboot. The
-  /// calibration consists of rig(), the detected delay and errors of the IMU, and the lidar's mounting and time offset,
+  /// calibration consists of rig(), the detected delay and errors of the IMU, and pose and time offset of the lidar,
   /// each with its uncertainty. The saved map has the format of save_map(). Every machine saves numbers in
   /// little-endian order. Before the robot is localised in a prior map, save() saves the prior map.
   ///

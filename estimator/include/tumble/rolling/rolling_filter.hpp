@@ -16,17 +16,18 @@ namespace tumble {
 /// Estimates the pose of a rolling sphere from one IMU, live, through slip, slide and bumps, on a level or sloped
 /// floor.
 ///
-/// While the sphere grips the floor, the rolling constraint acts as a velocity measurement. With the rolling
-/// constraint, RollingFilter estimates tilt and sensor errors. RollingFilter can integrate the calibrated IMU through
-/// several seconds without grip. Each hypothesis about the past contact modes (grip, slip, bump, incline, rough floor)
-/// has a separate error-state Kalman filter. The equations are in docs/maths/rolling.md.
+/// While the sphere grips the floor, the rolling constraint measures the velocity: centre velocity = angular velocity x
+/// (radius * floor normal). This measurement also determines tilt and sensor errors, so RollingFilter can integrate the
+/// IMU through several seconds of slip. A separate error-state Kalman filter follows each hypothesis about the past
+/// contact modes (grip, slip, bump, incline, rough floor). The equations are in docs/maths/rolling.md.
 ///
-/// While the sphere is at rest, the reported position is constant, unless another hypothesis becomes the most probable
-/// one. Position corrections that RollingFilter computes at rest change the reported position when motion resumes.
+/// While the sphere is at rest, the reported position is constant, unless another hypothesis about the contact modes
+/// becomes the most probable one. Position corrections that RollingFilter computes at rest change the reported position
+/// when motion resumes.
 ///
-/// RollingFilter bridges gaps of up to kGapMax_s between samples. In a gap, the rate is interpolated, the specific
-/// force is unknown, and the covariance grows. While the gyro is saturated, the rolling constraint is not used, and the
-/// covariance of the position grows.
+/// RollingFilter bridges gaps of up to kGapMax_s between samples. In a gap, the angular velocity is interpolated, the
+/// specific force is unknown, and the covariance grows. While the gyro is saturated, the rolling constraint is not
+/// used, and the position covariance grows.
 ///
 /// RollingFilter assumes a rigid, unmoving floor. The heading drifts. The state of RollingFilter needs 430 KiB of
 /// memory.
@@ -38,14 +39,15 @@ class RollingFilter {
   using Vector = Eigen::Matrix<double, kStates, 1>;
   using Covariance = Eigen::Matrix<double, kStates, kStates>;
 
-  /// one possible sequence of contact modes, with the estimate for this sequence
+  /// Possible sequence of contact modes, with the estimate for this sequence.
   struct Hypothesis {
-    Vector x = Vector::Zero();  ///< errors: attitude (W), velocity and position of the IMU, constants
+    Vector x = Vector::Zero();  ///< errors of attitude (world axes), velocity and position of the IMU, and constants
     Covariance covariance = Covariance::Zero();
-    Eigen::Vector3d contact_velocity_W_m_s = Eigen::Vector3d::Zero();  ///< contact velocity at the last time step
+    Eigen::Vector3d contact_velocity_W_m_s =
+        Eigen::Vector3d::Zero();          ///< velocity of the contact point at the last time step
     double log_weight = 0.0;              ///< log probability relative to the most probable hypothesis
-    std::int64_t first_node_of_mode = 0;  ///< node at which the current contact mode began
-    std::int32_t parent = 0;              ///< index of the hypothesis' parent at the previous node
+    std::int64_t first_node_of_mode = 0;  ///< time step at which the current contact mode began
+    std::int32_t parent = 0;              ///< index of the preceding hypothesis at the previous time step
     RollingMode mode = RollingMode::grip;
     bool operator==(const Hypothesis&) const = default;
   };
@@ -55,10 +57,10 @@ class RollingFilter {
     Eigen::Vector3d sphere_centre_W_m = Eigen::Vector3d::Zero();
     Eigen::Vector3d sphere_velocity_W_m_s = Eigen::Vector3d::Zero();
     Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
-    /// position covariance at the last time step of 20 ms, including the spread of the hypotheses
+    /// position covariance at the last time step of 20 ms, including the differences between the hypotheses
     Eigen::Matrix3d position_covariance_m2 = Eigen::Matrix3d::Zero();
     Eigen::Vector3d contact_velocity_m_s =
-        Eigen::Vector3d::Zero();  ///< contact velocity at the last time step, in world axes
+        Eigen::Vector3d::Zero();  ///< velocity of the contact point at the last time step, in world axes
     RollingMode mode = RollingMode::grip;
     double slip_probability = 0.0;  ///< probability that the contact point moves, at the last time step
     double bump_probability = 0.0;  ///< part of slip_probability for modes in which the sphere hops
@@ -66,13 +68,13 @@ class RollingFilter {
     bool spins_in_place = false;  ///< the sphere rotates slowly about the contact point; no update of the gyro bias
     bool uncertain = false;  ///< an event increased the position's standard deviation by more than kEventSigmaGrowth_m
     bool started_in_motion = false;
-    std::int64_t gaps = 0;  ///< number of bridged gaps
+    std::int64_t gaps = 0;  ///< number of bridged gaps between samples
     // The errors of all contact-mode hypotheses are linearised about the nominal trajectory and calibration.
     RollingNominalState nominal;
     RollingNodeIntegrals node_integrals;
     ImuAverage average;  ///< average of the readings that are not yet processed
     Eigen::Matrix3d pruned_position_covariance_m2 =
-        Eigen::Matrix3d::Zero();  ///< position spread of the pruned hypotheses
+        Eigen::Matrix3d::Zero();  ///< contribution of the pruned hypotheses to the position covariance
     RestDetector::State stationary_state;
     Eigen::Vector3d low_passed_rate_rad_s = Eigen::Vector3d::Zero();
     bool position_constrained = false;     ///< the sphere is at rest and the reported position is constant
@@ -88,22 +90,22 @@ class RollingFilter {
 
   explicit RollingFilter(const Params& params);
 
-  /// The specific force of the first sample determines the initial tilt; the initial yaw is 0. The sphere's centre
-  /// starts at the origin. The initial velocity is zero, or the velocity of rolling without slip if the first rate is
-  /// large. The sphere should be at rest for one second after the first sample. On error, the state is unchanged. Cost:
-  /// about 40 kHypotheses kStates^2 operations per time step of 20 ms, no allocation.
+  /// Processes one sample. The specific force of the first sample determines the initial tilt; the initial yaw is 0.
+  /// The sphere's centre starts at the origin. The initial velocity is zero, or the velocity of rolling without slip if
+  /// the first angular velocity is large. The sphere should be at rest for one second after the first sample. On error,
+  /// the state is unchanged. Cost: about 40 kHypotheses kStates^2 operations per time step of 20 ms, no allocation.
   Status step(const ImuSample& sample, State& state) const {
     return step(sample, state, [](const State&) {});
   }
 
-  /// Calls `closed(state)` after each completed node (time step of 20 ms).
+  /// Processes one sample, and calls `closed(state)` after each completed time step of 20 ms.
   template <typename Closed>
   Status step(const ImuSample& sample, State& state, Closed closed) const {
     return step_with_listener(sample, state,
                               Listener{&closed, [](void* to, const State& at) { (*static_cast<Closed*>(to))(at); }});
   }
 
-  /// In the pose covariance of the returned estimate, only the position block is not zero.
+  /// Returns the pose at the last sample. The covariance contains only the position; all other entries are zero.
   static RollingEstimate estimate(const State& state);
 
   static RollingCalibration calibration(const State& state);

@@ -5,7 +5,7 @@
 
 namespace tumble {
 
-/// RollingMode is the mode of contact between the rolling sphere and the floor.
+/// Mode of contact between the rolling sphere and the floor.
 enum class RollingMode : std::uint8_t {
   grip,     ///< the contact point is at rest; the floor is level
   slip,     ///< the contact point moves along the floor: the sphere spins too fast or slides

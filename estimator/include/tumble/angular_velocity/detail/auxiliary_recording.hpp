@@ -12,15 +12,15 @@
 namespace tumble {
 
 struct AuxiliaryRecording {
-  AuxiliaryImu imu;  ///< its sensing directions are ignored; align() estimates them
+  AuxiliaryImu imu;  ///< the sensing directions are ignored and estimated by align()
   SaturationLimitDetector::Params stated_saturation_limits;
   std::vector<ImuSample> samples;
 };
 
-/// Interpolates the readings of additional IMUs at the time stamps of the primary IMU. Appends each IMU, with its
-/// estimated sensing directions, to `model.auxiliary_imus`, and its readings to `out`. Recordings beyond the first
-/// kAuxiliaryImusMax are ignored. Returns `ok`, or the first error of align() for a single IMU. Cost: O(N), plus
-/// ClippingFinder::find().
+/// Interpolates the readings of additional IMUs at the time stamps of the primary IMU. Appends each additional IMU,
+/// with estimated sensing directions, to `model.auxiliary_imus`, and the interpolated readings to `out`. Recordings
+/// beyond the first kAuxiliaryImusMax are ignored. Returns `ok`, or the first error of align() for a single IMU. Cost:
+/// O(N), plus ClippingFinder::find().
 Status align(std::span<const AuxiliaryRecording> recordings, std::span<const ImuSample> primary, double gap_max_s,
              AngularRateModelParams& model, std::vector<std::vector<AuxiliaryReading>>& out);
 

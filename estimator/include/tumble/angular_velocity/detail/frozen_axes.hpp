@@ -14,12 +14,12 @@
 
 namespace tumble {
 
-/// Detects single axes of an IMU that have stopped updating, sample by sample. An axis is frozen if one reading repeats
-/// bit for bit for 0.5 s, and for ten times the longest earlier repetition, while another axis of the sensor changes.
-/// FrozenAxes cannot detect a frozen axis whose readings never changed, or often repeat at rest due to coarse
-/// quantisation.
+/// Detects single gyro or accelerometer axes that have stopped updating, sample by sample. An axis is frozen if one
+/// reading repeats bit for bit for 0.5 s, and for ten times the longest earlier repetition, while another axis of the
+/// sensor changes. FrozenAxes cannot detect a frozen axis whose readings never changed, or often repeat at rest due to
+/// coarse quantisation.
 ///
-/// A saturated axis may repeat one reading and does not count as frozen.
+/// A saturated axis repeats one reading, but does not count as frozen.
 class FrozenAxes {
  public:
   struct ImuRanges {
@@ -27,13 +27,13 @@ class FrozenAxes {
   };
   struct Axis {
     double reading = 0.0;
-    TimeNs since_ns = 0;                        ///< first sample with the current reading
-    double repeated_s = 0.0;                    ///< duration for which the current reading has repeated
-    bool flagged_by_device = false;             ///< the device has flagged the current reading as saturated
-    bool is_frozen = false;                     ///< the axis is frozen at the current reading
-    double longest_s = 0.0;                     ///< longest earlier repetition of a working axis
-    double changing_readings_duration_s = 0.0;  ///< total time with changing readings
-    double smallest_reading_change = 0.0;       ///< smallest observed change; 0: none yet
+    TimeNs since_ns = 0;             ///< first sample with the current reading
+    double repeated_s = 0.0;         ///< time since the current reading first appeared
+    bool flagged_by_device = false;  ///< the device has flagged the current reading as saturated
+    bool is_frozen = false;
+    double longest_s = 0.0;  ///< longest earlier repetition while the axis was not frozen
+    double changing_readings_duration_s = 0.0;
+    double smallest_reading_change = 0.0;  ///< smallest change between two readings so far; 0: none yet
     double min_reading = 0.0, max_reading = 0.0;
     /// minimum, maximum and number of changes of the sensor's two other axes during the repetition
     std::array<double, 2> other_axes_min{}, other_axes_max{}, other_axes_changes{};
@@ -44,7 +44,7 @@ class FrozenAxes {
     std::array<Axis, 6> axes;  ///< gyro x, y, z; accelerometer x, y, z
     std::array<double, 6> previous_readings{};
     TimeNs last_time_ns = 0;
-    double rate_max_so_far_rad_s = 0.0;  ///< largest rate that the gyro has read
+    double rate_max_so_far_rad_s = 0.0;
     bool started = false;
     bool operator==(const State&) const = default;
   };
@@ -52,7 +52,7 @@ class FrozenAxes {
   /// Throws InvalidParams if a range is negative or not finite.
   explicit FrozenAxes(const ImuRanges& imu_ranges);
 
-  /// Cost: O(1), no allocation. Samples that are not finite or out of order are ignored.
+  /// Processes one sample. Samples that are not finite or out of order are ignored. Cost: O(1), no allocation.
   void step(const ImuSample& sample, State& state) const;
 
   static const Axis& axis(Triad triad, int axis, const State& state);
@@ -62,8 +62,8 @@ class FrozenAxes {
   void add_findings(HealthFinding::Kind kind, const std::string& sensor, const State& state,
                     SensorHealth& health) const;
 
-  /// Returns the variance of a rate at `time_ns` due to currently frozen gyro axes. The standard deviation of a frozen
-  /// axis is the largest rate measured so far.
+  /// Returns the additional variance of each rate component at `time_ns` because of frozen gyro axes. The standard
+  /// deviation of a frozen axis is the largest rate measured so far.
   Eigen::Vector3d rate_variance_rad2_s2(TimeNs time_ns, const State& state) const;
 
  private:

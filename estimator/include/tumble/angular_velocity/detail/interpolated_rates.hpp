@@ -11,24 +11,24 @@
 #include "tumble/angular_velocity/detail/rate_stream_state.hpp"
 #include "tumble/common/types.hpp"
 
-/// Interpolates the readings of a gyro that updates more slowly than its log, by a cubic polynomial: rate_stream.md
-/// (R96).
+/// Cubic interpolation between the readings of a gyro that updates more slowly than the log, so that the log repeats
+/// readings: rate_stream.md (R96).
 namespace tumble {
 
-/// rate between two readings of the gyro, including the gyro's bias
+/// Rate between two readings of the gyro, including the gyro bias.
 struct InterpolatedRate {
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();
-  /// variance of the interpolation error, without sensor noise
+  /// variance of the interpolation error, excluding sensor noise
   Eigen::Vector3d variance_rad2_s2 = Eigen::Vector3d::Zero();
 };
 
-/// Returns the interpolated rate of sample `k` in the window of an AngularRateStream. The result is empty if no reading
+/// Returns the interpolated rate at sample `k` in the window of an AngularRateStream. The result is empty if no reading
 /// repeats, the next reading has not yet arrived, or a reading is invalid. Cost: O(samples of three readings).
 std::optional<InterpolatedRate> rate_between_readings(std::span<const AngularRateStreamKnot> window, std::size_t k,
                                                       double period_s);
 
 /// Returns the interpolated rates of a recording, or an empty result if no reading repeats. `hidden` contains one bit
-/// mask of unused axes per sample, next to which the rate is empty. Cost: O(N).
+/// mask of unusable axes per sample; rates that need an unusable reading are empty. Cost: O(N).
 std::vector<std::optional<InterpolatedRate>> rates_between_readings(std::span<const ImuSample> samples,
                                                                     std::span<const std::uint8_t> hidden);
 struct RepeatedReadings;
@@ -37,7 +37,7 @@ std::vector<std::optional<InterpolatedRate>> rates_between_readings(std::span<co
                                                                     std::span<const std::uint8_t> hidden,
                                                                     const std::optional<RepeatedReadings>& repeated);
 
-/// Returns the specific force at the time of each sample, for an accelerometer that updates more slowly than the log.
+/// Returns the interpolated specific force at each sample, for an accelerometer that updates more slowly than the log.
 /// The result is empty if no reading repeats. Cost: O(N).
 std::vector<Eigen::Vector3d> interpolated_forces(std::span<const ImuSample> samples);
 

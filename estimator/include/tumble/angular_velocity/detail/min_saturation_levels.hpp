@@ -6,11 +6,11 @@
 
 namespace tumble {
 
-/// Lower bounds of the saturation limits, per sensing element and sign: rails.md (R75).
+/// Lower bounds of the gyro's saturation limits, per sensing element and sign: rails.md (R75).
 class MinSaturationLevels {
  public:
   void add(const Eigen::Vector3d& rate_rad_s);
-  /// Returns true if the reading of element `axis` is certainly below its saturation limit.
+  /// Returns true if the reading of the sensing element `axis` is certainly below the saturation limit.
   bool is_below_min_saturation_level(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) const;
   bool operator==(const MinSaturationLevels&) const = default;
 

@@ -7,22 +7,23 @@
 
 namespace tumble {
 
-/// Saturation deficit of a reading whose averaging window is saturated during a part of its length.
+/// Saturation deficit (true rate minus reading) of a gyro reading that is the mean over a window, if the gyro is
+/// saturated during a part of the window.
 struct PartialSaturation {
   bool saturated = false;
   double expected_saturation_deficit_rad_s = 0.0;  ///< expected |truth| - |reading|
   double sigma_rad_s = 0.0;                        ///< standard deviation of the saturation deficit
 };
 
-/// Estimates the saturation deficit of a partly saturated reading from its unsaturated neighbour, for a rate with
-/// constant slope: rails.md (R70). `neighbour_rad_s` is the smaller of the neighbours' readings, with a sign for which
-/// the saturation limit is positive.
+/// Estimates the saturation deficit of a partly saturated gyro reading from an unsaturated neighbouring reading, for
+/// constant angular acceleration: rails.md (R70). `neighbour_rad_s` is the smaller one of the two neighbouring
+/// readings, with a sign for which the saturation limit is positive.
 PartialSaturation partial_saturation(double reading_rad_s, double neighbour_rad_s, double rail_rad_s,
                                      double noise_rad_s);
 
-/// Returns the smaller reading of the neighbours `before` and `after`, which may be null: rails.md (R70). `read`
-/// converts the angular velocity of a neighbour to a reading. A neighbour flagged as saturated is used only if most of
-/// its averaging window was unsaturated. Returns the saturation limit if there is no usable neighbour.
+/// Returns the smaller one of the readings of the samples `before` and `after`, which may be null: rails.md (R70).
+/// `read` converts an angular velocity to the reading of a sensing element. A reading flagged as saturated is used only
+/// if most of its averaging window was unsaturated. Returns the saturation limit if there is no usable neighbour.
 template <class Read>
 double unsaturated_neighbour_reading(double reading_rad_s, double rail_rad_s, int axis, const ImuSample* before,
                                      const ImuSample* after, const Read& read) {

@@ -7,36 +7,35 @@
 
 namespace tumble {
 
-/// angular rate and angular acceleration of the body, in IMU axes
 struct AngularRateKnot {
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d acceleration_rad_s2 = Eigen::Vector3d::Zero();
   bool operator==(const AngularRateKnot&) const = default;
 };
 
-/// Residual of three rows, with its derivatives with respect to rate, angular acceleration and rig constants.
+/// Residual with three components, and its derivatives with respect to rate, angular acceleration and rig constants.
 struct AngularRateFactor {
   Eigen::Vector3d residual;
   Eigen::Matrix<double, 3, 6> jacobian_knot;
   Eigen::Matrix<double, 3, RigConstants::kSize> jacobian_calibration;
 };
 
-/// Gyro residual while unsaturated: rate + bias - reading [rad/s].
+/// Residual of an unsaturated gyro reading: rate + bias - reading [rad/s].
 AngularRateFactor gyro_factor(const AngularRateKnot& knot, const RigConstants& rig,
                               const Eigen::Vector3d& reading_rad_s);
 
-/// Residual of the gyro per sensing element while an element clips: the component of (rate + bias - reading) along the
-/// sensing direction [rad/s].
+/// Residuals of the three sensing elements of a gyro while an element clips: component of (rate + bias - reading) along
+/// the sensing direction [rad/s].
 AngularRateFactor sensing_axis_factor(const AngularRateKnot& knot, const RigConstants& rig,
                                       const Eigen::Vector3d& reading_rad_s);
 
-/// Residual of the accelerometer in free flight [m/s^2]: tangential plus centripetal force at the lever arm, plus bias,
-/// minus reading.
+/// Residual of the specific force in free flight [m/s^2]: tangential plus centripetal force at the lever arm, plus
+/// bias, minus reading.
 AngularRateFactor flight_force_factor(const AngularRateKnot& knot, const RigConstants& rig,
                                       const Eigen::Vector3d& reading_m_s2);
 
-/// Residual of an accelerometer in free flight whose readings are `delay_s` late [m/s^2]. `jacobian_delay` (or null)
-/// receives the derivative of the residual with respect to the delay.
+/// Residual of the specific force in free flight [m/s^2], for an accelerometer that is `delay_s` late relative to the
+/// gyro. `jacobian_delay` (or null) receives the derivative of the residual with respect to the delay.
 AngularRateFactor delayed_flight_force_factor(const AngularRateKnot& knot, const RigConstants& rig,
                                               const Eigen::Vector3d& reading_m_s2, double delay_s,
                                               Eigen::Vector3d* jacobian_delay);

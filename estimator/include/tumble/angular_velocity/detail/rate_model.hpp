@@ -13,17 +13,17 @@
 
 namespace tumble {
 
-/// Adds the measurements of samples and the motion between samples to the normal equations of AngularRateSmoother and
+/// Adds sensor readings and the motion model between samples to the normal equations of AngularRateSmoother and
 /// AngularRateStream.
 class AngularRateModel {
  public:
   /// `period_s` is the nominal time between samples, which determines the noise per sample.
   AngularRateModel(const AngularRateModelParams& params, double period_s);
 
-  /// Computes the weight of a sample between contact (0) and free flight (1) at the current estimate. `rig_covariance`,
-  /// the covariance of the calibration, prevents that calibration errors are mistaken for contact. `threshold_factor`
-  /// >= 1 multiplies the contact threshold while the rates are still inaccurate. `jump` is the smaller result of jump()
-  /// between the sample and its two neighbours.
+  /// Computes a weight between 0 (contact) and 1 (free flight) for a sample, from the residuals of specific force and
+  /// Euler's equation. The covariance `rig_covariance` of the rig constants prevents that their errors look like
+  /// contact. `threshold_factor` >= 1 multiplies the contact threshold while the rates are still inaccurate. `jump` is
+  /// the smaller result of jump() between the sample and its two neighbours.
   void compute_flight_weight(const AngularRateObservation& observation, const RigConstants& rig,
                              const RigConstants::Matrix& rig_covariance, double threshold_factor, double jump,
                              AngularRateEstimate& estimate) const;
@@ -32,29 +32,29 @@ class AngularRateModel {
   /// distribution with six degrees of freedom).
   double jump(const AngularRateKnot& from, const AngularRateKnot& to, double dt_s) const;
 
-  /// Moves the unmeasured rates of a sample in contact to the minimum of the contact force, if this minimum is far
-  /// below the current contact force.
+  /// For a sample in contact, changes the rates on saturated axes to the values with minimum contact force, if this
+  /// minimum is far below the current contact force.
   void search_flight_solutions(const AngularRateObservation& observation, const RigConstants& rig,
                                AngularRateEstimate& estimate) const;
 
   void initialise_rate_bounds(const AngularRateObservation& observation, const RigConstants& rig,
                               AngularRateEstimate& estimate) const;
 
-  /// Refines the lower bounds of a sample's clipped rates by expectation propagation (Minka 2001). `damping` in (0, 1]
-  /// is the weight of the new bound.
+  /// Refines the Gaussian approximation of the lower bounds on clipped rates by expectation propagation (Minka 2001).
+  /// `damping` in (0, 1] is the weight of the new approximation.
   void update_bounds(const AngularRateObservation& observation, const RigConstants& rig,
                      const arrow::Conditional& conditional, const RigConstants::Matrix& rig_covariance, double damping,
                      AngularRateEstimate& estimate) const;
 
-  /// `rig_spread` is null, or the covariance of the calibration. If a covariance is passed, the sample has a reduced
-  /// weight and does not update the calibration. Pass a covariance for short flights, because a different calibration
-  /// could explain the same readings as contact.
+  /// Adds the residuals of one sample. `rig_spread` is null, or the covariance of the rig constants for a sample of a
+  /// short flight. With `rig_spread`, the sample has a lower weight and does not update the rig constants. Errors of
+  /// the rig constants could otherwise make contact look like a short flight.
   void add_sample(const AngularRateObservation& observation, const AngularRateEstimate& estimate,
                   const RigConstants& rig, arrow::Block& block, arrow::Corner& corner,
                   const RigConstants::Matrix* rig_spread = nullptr) const;
 
-  /// Adds the derivatives of a sample's gradient with respect to the sensor errors, and the sample's information about
-  /// these errors. Clipped elements and samples in contact contribute no information about SensorErrors.
+  /// Adds a sample's information about SensorErrors, and the derivatives of the sample's gradient with respect to
+  /// SensorErrors. Clipped sensing elements and samples in contact contribute nothing.
   void add_sensor_errors(const AngularRateObservation& observation, const AngularRateEstimate& estimate,
                          const RigConstants& rig, arrow::ErrorMatrix& block, arrow::BorderErrors& border,
                          SensorErrorInformation& evidence, bool rig_spread = false) const;
@@ -64,8 +64,8 @@ class AngularRateModel {
 
   void add_rig_prior(const RigConstants& rig, arrow::Corner& corner) const;
 
-  /// Returns the largest distance of lever arm, gyro bias, accelerometer bias and inertia from their prior, in standard
-  /// deviations.
+  /// Returns the largest distance of lever arm, gyro bias, accelerometer bias and inertia from their priors, in prior
+  /// standard deviations.
   double calibration_mahalanobis(const RigConstants& rig) const;
 
   RigConstants prior_constants() const { return prior_constants_; }
@@ -73,14 +73,14 @@ class AngularRateModel {
 
   Eigen::Matrix<double, 6, 1> unscaled_step(const arrow::StateVector& step) const;
   arrow::StateVector scaled_difference(const Eigen::Matrix<double, 6, 1>& difference) const;
-  /// Returns the covariance to report, which includes the uncertain time of the reading. In contact, the reported
-  /// covariance is larger than the least-squares covariance `covariance_rad2_s2`.
+  /// Returns the covariance of the rate to report: the least-squares covariance plus the effect of the uncertain time
+  /// of the gyro reading. In contact, the covariance is increased further.
   Eigen::Matrix3d output_covariance(const Eigen::Matrix3d& covariance_rad2_s2,
                                     const AngularRateObservation& observation,
                                     const AngularRateEstimate& estimate) const;
   double gyro_sigma_rad_s() const { return gyro_sigma_rad_s_; }
-  /// Returns period_s / model_error_s, at most 1: the weight of one sample, because close samples have equal model
-  /// errors.
+  /// Returns period_s / model_error_s, at most 1: the weight of the information of one sample. Close samples have equal
+  /// errors of the motion model.
   double independent_sample_fraction() const { return independent_sample_fraction_; }
 
  private:
@@ -88,8 +88,8 @@ class AngularRateModel {
     AngularRateFactor factor;
     Eigen::Vector3d information;  ///< information (inverse variance) of each axis or element
   };
-  /// Converts the flight residual to element directions if an accelerometer element clips. Returns variances from
-  /// uncertain sensing directions and from the saturation deficit of the specific force.
+  /// If an accelerometer element clips, converts the residual of the specific force to the directions of the sensing
+  /// elements. Returns the variances that result from uncertain sensing directions and from the saturation deficit.
   static Eigen::Vector3d accel_sensing_axis_readings(const AngularRateObservation& observation,
                                                      AngularRateFactor& flight);
   ForceFactor force_factor(const AngularRateObservation& observation, const AngularRateEstimate& estimate,
@@ -116,12 +116,12 @@ class AngularRateModel {
   double total_accel_variance(const AngularRateObservation& observation) const;
 
   AngularRateModelParams params_;
-  bool uses_raw_readings_ = true;  ///< readings are used unchanged, because no sensor errors are known
-  double time_scale_s_;            ///< factor from angular acceleration to the solver's unit
+  bool uses_raw_readings_ = true;  ///< no sensor errors are known, so the readings need no correction
+  double time_scale_s_;            ///< the solver uses angular acceleration times this factor
   double gyro_sigma_rad_s_;
   double accel_noise_m_s2_;
   double accel_sigma_m_s2_;
-  double independent_sample_fraction_;  ///< result of independent_sample_fraction()
+  double independent_sample_fraction_;
   RigConstants prior_constants_;
   RigConstants::Matrix prior_covariance_;
   RigConstants::Matrix prior_information_;

@@ -15,32 +15,32 @@
 
 namespace tumble {
 
-/// Parameters of AngularRateSmoother and AngularRateStream for the sensors, the body and its motion.
+/// Parameters of sensors, body and motion that AngularRateSmoother and AngularRateStream share.
 struct AngularRateModelParams {
-  /// Prior mean of the rig constants: lever arm, biases, inertia ratios and gyro axis directions. Set the lever arm,
-  /// which has no default, or set `calibration`.
+  /// Prior mean of the rig constants: lever arm, biases, inertia ratios and gyro axis directions. The lever arm is
+  /// required unless `calibration` is set.
   RigConstants nominal = {.lever_arm_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN())};
   double lever_arm_sigma_m = 0.01;
   double gyro_bias_sigma_rad_s = 0.01;
   double accel_bias_sigma_m_s2 = 0.05;
   double inertia_sigma = 0.3;
-  /// prior standard deviation of each cross-axis sensitivity of the gyro, before the device's compensation
+  /// prior standard deviation of each cross-axis sensitivity of the gyro's sensing elements, before the sensor's
+  /// misalignment compensation
   double element_sigma = 0.03;
   /// Calibration from an earlier run, which replaces the prior mean `nominal` and the five prior standard deviations
   /// above.
   std::optional<RigCalibration> calibration = std::nullopt;
 
-  /// Additional IMUs on the body, at most kAuxiliaryImusMax. Each call that adds a sample must also pass the readings
-  /// of the additional IMUs.
+  /// Additional IMUs on the body, at most kAuxiliaryImusMax.
   std::vector<AuxiliaryImu> auxiliary_imus = {};
 
   /// noise density of the gyro [rad/s/sqrt(Hz)]; default: 0.03 deg/s/sqrt(Hz)
   double gyro_noise_density = 5.236e-4;
   /// noise density of the accelerometer [m/s^2/sqrt(Hz)]; default: 60 ug/sqrt(Hz)
   double accel_noise_density = 5.9e-4;
-  /// known sensor errors, which are subtracted from the readings
+  /// known scale, misalignment, g-sensitivity and delay errors, which are subtracted from the readings
   SensorErrors errors = {};
-  /// Largest possible angular rate and angular acceleration of the body, which limit the estimate while the gyro is
+  /// Largest possible angular rate and angular acceleration of the body, as limits of the estimate while the gyro is
   /// clipped.
   static constexpr double kRateMax_rad_s = 50.0;
   static constexpr double kAccelerationMax_rad_s2 = 5000.0;
