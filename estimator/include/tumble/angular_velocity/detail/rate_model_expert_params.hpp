@@ -26,7 +26,7 @@ struct FlightRateParams {
 };
 
 struct ContactRateParams {
-  /// standard deviation of the angular acceleration in contact, per unit of contact force [rad/s^2 per m/s^2]
+  /// assumed angular acceleration per unit of contact force [rad/s^2 per m/s^2]
   static constexpr double kGain_rad_m = 4.0;
   /// factor on the standard deviation of rates during impacts, because their errors are not Gaussian
   static constexpr double kSigmaFactor = 1.3;

@@ -24,10 +24,11 @@ namespace tumble {
 struct AngularRateSmootherParams {
   AngularRateModelParams model = {};
   SaturationLimitDetector::Params saturation_detector = {};
-  /// Maximum Mahalanobis distance of the estimated rig constants from their prior; beyond, AngularRateSmoother fixes
-  /// the rig constants at the prior.
+  /// Maximum Mahalanobis distance of the estimated rig constants from their prior. If the distance is larger, the rig
+  /// constants are fixed at the prior.
   double calibration_mahalanobis_max = 1.5;
-  /// Sensor errors of an earlier run (AngularRateReport::sensor_errors), used only if `error_rounds_max` is above 1.
+  /// Scale, misalignment, g-sensitivity and delay errors from an earlier run (AngularRateReport::sensor_errors). They
+  /// are used only if `error_rounds_max` is above 1.
   std::optional<KnownSensorErrors> calibrated_errors = std::nullopt;
   static constexpr double kGapMax_s = 1.0;  ///< a longer time between two samples is a gap; see estimate()
 
@@ -48,34 +49,32 @@ struct AngularRateSmootherParams {
 struct AngularRateReport {
   int iterations = 0;
   bool converged = false;
-  int restarts = 0;              ///< number of restarts with other initial values after a solution without flight
+  int restarts = 0;              ///< restarts with other initial values, because a solution contained no free flight
   double last_step_rad_s = 0.0;  ///< largest change of a rate in the last iteration
-  RigCalibration calibration;    ///< estimated calibration; can initialise the next run
-  /// Mahalanobis distance of the estimated rig constants from their prior, in standard deviations. A Mahalanobis
-  /// distance far above 1 indicates a wrong prior, or a run without flight that AngularRateSmoother classified as
-  /// flight.
+  RigCalibration calibration;    ///< estimated rig constants, as prior for a later run
+  /// Mahalanobis distance of the estimated rig constants from their prior, in standard deviations. A distance far above
+  /// 1 indicates a wrong prior, or contact that was classified as free flight.
   double calibration_mahalanobis = 0.0;
-  bool calibration_at_prior = false;  ///< the rig constants were fixed at their prior
-  std::array<std::optional<double>, 6>
-      saturation_limits;  ///< saturation limits: gyro [rad/s], accelerometer [m/s^2]; empty: none
-  std::array<bool, 6>
-      saturation_limit_observed{};           ///< the limit was observed on this axis, not inferred from another axis
-  SaturationPlanes gyro_planes;              ///< planes of the gyro's saturated readings, where observed
-  SaturationPlanes accel_saturation_planes;  ///< planes of the accelerometer's saturated readings [m/s^2]
+  bool calibration_at_prior = false;                       ///< the rig constants were fixed at their prior
+  std::array<std::optional<double>, 6> saturation_limits;  ///< gyro [rad/s], accelerometer [m/s^2]; empty: unknown
+  std::array<bool, 6> saturation_limit_observed{};         ///< false: inferred from another axis
+  SaturationPlanes gyro_planes;                            ///< planes that contain the saturated gyro readings
+  SaturationPlanes accel_saturation_planes;                ///< the same for the accelerometer [m/s^2]
   KnownSensorErrors sensor_errors;
   double data_sheet_probability = 1.0, synchronous_triads_probability = 1.0;  ///< see SensorErrorFit
-  /// Standard deviation of a delay common to gyro and accelerometer [s]; 0 if the device agrees with its data sheet.
+  /// Standard deviation of the common delay of gyro and accelerometer [s]; 0 if the IMU agrees with its data sheet.
   double common_delay_sigma_s = 0.0;
   double gyro_update_interval_s = 0.0,
-         accel_update_interval_s = 0.0;            ///< update interval of repeated readings; 0: no repeated readings
-  int correction_iterations = 0;                   ///< number of optimisations with corrected readings
-  bool clips_after_compensation = false;           ///< the gyro clips after misalignment compensation, axis by axis
-  std::array<bool, 6> contradicts_stated_range{};  ///< whether the readings contradict the stated range
+         accel_update_interval_s = 0.0;   ///< update period of a sensor slower than the log; 0: no repeated readings
+  int correction_iterations = 0;          ///< number of optimisations with readings corrected for sensor errors
+  bool clips_after_compensation = false;  ///< the gyro clips each output axis, after its misalignment compensation
+  std::array<bool, 6> contradicts_stated_range{};  ///< readings contradict the range in the data sheet; gyro x, y, z,
+                                                   ///< accelerometer x, y, z
   std::size_t samples = 0, clipped_sample_count = 0, recovered_in_flight = 0, recovered_in_contact = 0,
               lower_bound_only = 0;
-  std::size_t missing_readings = 0;  ///< samples in which a gyro axis overflowed (flipped sign)
-  double flight_fraction = 0.0;      ///< fraction of samples classified as free flight
-  /// Gyro axes that may be saturated at an unknown limit: one byte per sample, bit j for axis j.
+  std::size_t missing_readings = 0;  ///< samples in which a gyro axis overflowed and changed its sign
+  double flight_fraction = 0.0;
+  /// Gyro axes that may be saturated at an unknown limit. One byte per sample; bit j stands for axis j.
   std::vector<std::uint8_t> suspected_saturation_axes;
 };
 
@@ -83,23 +82,23 @@ struct AngularRateReport {
 /// recording.
 ///
 /// AngularRateSmoother estimates the rate and angular acceleration of each sample, and the rig constants of the run
-/// (RigConstants). Unclipped gyro readings measure the rate, and clipped readings give a lower bound on the rate, for
-/// any number of axes. In flight, the specific force and Euler's equation determine the rate. During contact, the
-/// specific force and Euler's equation have lower weights. Between samples, the angular jerk is white noise, whose
-/// density increases with the contact force. The equations are in docs/maths/rate_smoother.md.
+/// (RigConstants). Unclipped gyro readings measure the rate, and clipped readings give a lower bound on the rate. In
+/// free flight, the specific force at the lever arm and Euler's equation determine the rate on clipped axes. During
+/// contact, both have lower weights. Between samples, the angular jerk is white noise, whose density increases with the
+/// contact force. The equations are in docs/maths/rate_smoother.md.
 ///
-/// A Gauss-Newton solver starts from the rates of the published method SaturationAwareRateEstimator. An iteration costs
-/// O(N), including the covariance.
+/// A Gauss-Newton solver starts from the rates of SaturationAwareRateEstimator. An iteration over N samples costs O(N),
+/// including the covariance.
 ///
-/// AngularRateSmoother also estimates the constant errors of gyro and accelerometer (SensorErrors), and repeats the
-/// optimisation with corrected readings. The covariances of rates and rig constants include the remaining uncertainty
-/// of the sensor errors.
+/// AngularRateSmoother also estimates scale, misalignment, g-sensitivity and delay of gyro and accelerometer
+/// (SensorErrors), and repeats the optimisation with corrected readings. The covariances of rates and rig constants
+/// include the remaining uncertainty of the sensor errors.
 ///
-/// While a sensing element clips, AngularRateSmoother processes the gyro element by element, because the device mixes
-/// the clipped element into all output axes.
+/// While a sensing element clips, AngularRateSmoother processes the gyro element by element. The reason is the
+/// misalignment compensation in the gyro, which spreads the error of the clipped element over all output axes.
 ///
-/// The estimated rates refer to the time of the gyro's readings, which are means over the sample's window.
-/// AngularRateSmoother does not model a persistent contact point, or a delay common to gyro and accelerometer.
+/// The estimated rates are means over the averaging windows of the gyro readings. AngularRateSmoother does not model a
+/// persistent contact point, or a common delay of gyro and accelerometer.
 class AngularRateSmoother {
  public:
   using Params = AngularRateSmootherParams;
@@ -108,15 +107,15 @@ class AngularRateSmoother {
   explicit AngularRateSmoother(const Params& params);
 
   /// Returns `ok`, `empty`, `insufficient_data` (less than two samples), `non_finite`, `time_order` or `diverged`. On
-  /// error, the outputs are unchanged. The rates before and after a gap in the samples are independent, with one common
-  /// calibration.
+  /// error, the outputs are unchanged. A gap between two samples separates the rates before and after, but the
+  /// calibration is common.
   Status estimate(std::span<const ImuSample> samples, std::vector<AngularRateState>& out,
                   AngularRateReport& report) const {
     return estimate(samples, {}, out, report);
   }
-  /// Estimates the rates with additional IMUs on the body. `auxiliary_imus` contains one list of readings per entry of
-  /// AngularRateModelParams::auxiliary_imus, computed by align(). Returns `insufficient_data` if the number of lists or
-  /// of readings is wrong.
+  /// Estimates the rates with additional IMUs on the body. `auxiliary_imus` contains one list of readings (from
+  /// align()) per entry of AngularRateModelParams::auxiliary_imus. Returns `insufficient_data` if the number of lists
+  /// or of readings is wrong.
   Status estimate(std::span<const ImuSample> samples, std::span<const std::vector<AuxiliaryReading>> auxiliary_imus,
                   std::vector<AngularRateState>& out, AngularRateReport& report) const;
 

@@ -9,12 +9,14 @@ namespace tumble {
 
 struct RateOptimisationParams {
   int iterations_max = 15;
-  double tolerance_rad_s = 2e-3;                          ///< converged if every rate changes by less than this
-  static constexpr double kStepMax_rad_s = 10.0;          ///< largest change of a rate in one iteration
-  static constexpr double kInitialThresholdFactor = 8.0;  ///< factor on the contact threshold; halved in each iteration
-  /// number of additional iterations with truncated distributions, which make covariances in contact consistent
+  double tolerance_rad_s = 2e-3;                  ///< converged if every rate changes by less than this
+  static constexpr double kStepMax_rad_s = 10.0;  ///< largest change of a rate in one iteration
+  static constexpr double kInitialThresholdFactor =
+      8.0;  ///< factor on FlightRateParams::kThreshold in the first iteration; halved in each iteration
+  /// number of additional iterations that approximate lower bounds by truncated normal distributions, for correct
+  /// covariances in contact
   int bound_iterations = 3;
-  static constexpr double kBoundDamping = 0.5;  ///< weight of a new bound in each additional iteration
+  static constexpr double kBoundDamping = 0.5;  ///< weight of the new lower bound in each additional iteration
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -28,12 +30,11 @@ struct RateOptimisationParams {
 };
 
 struct AngularRateSmootherExpertParams {
-  SaturationPlaneFinder::Params gyro_planes =
-      {};  ///< if no range is stated, the range of AngularRateSmootherParams::rails applies
+  SaturationPlaneFinder::Params gyro_planes = {};  ///< a missing range is taken from AngularRateSmootherParams
   SaturationPlaneFinder::Params accel_saturation_planes = SaturationPlaneFinder::Params::defaults_for_accelerometer();
   RestDetector::Params rest_detector = {};
   RateOptimisationParams optimisation = {};
-  /// maximum number of optimisations with corrected readings; 1: no correction of sensor errors
+  /// maximum number of optimisations with readings corrected for sensor errors; 1: no correction
   int error_rounds_max = 3;
 
   template <class Self, class Visitor>

@@ -7,18 +7,18 @@
 
 namespace tumble {
 
-/// The uncertainty of an uncalibrated rig is increased until enough flight samples (number n, each of `model_error_s`)
-/// have updated the calibration.
+/// Until enough free flight has updated the rig constants (lever arm, biases, inertia ratios), reported covariances are
+/// increased. Below, n is the number of flight samples so far, each of the duration `model_error_s`.
 struct CalibrationInflationParams {
-  /// The calibration's covariance is multiplied by 1 + covariance / (1 + n / samples), up to the prior covariance,
-  /// after n flight samples.
+  /// The covariance of the rig constants is multiplied by 1 + covariance / (1 + n / samples), up to the prior
+  /// covariance.
   double covariance = 60.0;
   static constexpr double kSamples = 30.0;
-  /// The standard deviation of a clipped rate in contact is at least contact / (1 + n / samples) times the saturation
+  /// In contact, the standard deviation of a clipped rate is at least contact / (1 + n / samples) times the saturation
   /// deficit.
   double contact = 0.5;
-  /// Minimum standard deviation of a clipped rate in contact: slopes * (deficit predicted from the slopes before and
-  /// after saturation) - estimated deficit.
+  /// In contact, the standard deviation of a clipped rate is at least slopes * d - (estimated saturation deficit). The
+  /// deficit d is extrapolated from the slopes of the gyro readings before and after saturation.
   double slopes = 1.0;
 
   template <class Self, class Visitor>
@@ -38,19 +38,17 @@ struct CalibrationInflationParams {
 };
 
 struct AngularRateStreamExpertParams {
-  SaturationPlaneFinder::Params gyro_planes =
-      {};  ///< if no range is stated, the range of AngularRateStreamParams::rails applies
+  SaturationPlaneFinder::Params gyro_planes = {};  ///< a missing range is taken from AngularRateStreamParams
   SaturationPlaneFinder::Params accel_saturation_planes = SaturationPlaneFinder::Params::defaults_for_accelerometer();
   RestDetector::Params rest_detector = {};
   static constexpr double kInitialThresholdFactor =
-      8.0;  ///< factor on a clipped sample's contact threshold; halved in each step
+      8.0;  ///< factor on FlightRateParams::kThreshold for a new clipped sample; halved in each step
   static constexpr double kStepMax_rad_s = 10.0;  ///< largest change of a sample's rate in one step
-  int bound_hard_steps = 3;  ///< number of steps until the lower bounds of a sample in contact become soft
-  static constexpr double kBoundDamping = 0.5;  ///< weight of a new lower bound in each step
-  static constexpr std::size_t kFlightRunMin =
-      6;  ///< minimum number of consecutive flight samples that update the calibration
+  int bound_hard_steps = 3;  ///< steps until a sample in contact uses Gaussian approximations of lower bounds
+  static constexpr double kBoundDamping = 0.5;     ///< weight of a new lower bound in each step
+  static constexpr std::size_t kFlightRunMin = 6;  ///< shorter flights, in samples, do not update the rig constants
   CalibrationInflationParams inflation = {};
-  /// prior probability of an uncalibrated device; 0: the device is assumed to match its data sheet
+  /// prior probability of an uncalibrated IMU; 0: the IMU is assumed to match its data sheet
   double uncalibrated = 0.3;
 
   template <class Self, class Visitor>

@@ -13,24 +13,24 @@
 namespace tumble {
 
 struct AngularRateStreamParams {
-  /// The priors of accelerometer bias (2 mg) and inertia are narrower than in AngularRateModelParams, because
-  /// AngularRateStream reports rates early.
+  /// The prior standard deviations of accelerometer bias (2 mg) and inertia are smaller than in AngularRateModelParams,
+  /// because AngularRateStream reports rates before much data has arrived.
   AngularRateModelParams model = {.accel_bias_sigma_m_s2 = 0.02, .inertia_sigma = 0.15};
   SaturationLimitDetector::Params saturation_detector = {};
   double period_s = 0.01;                    ///< nominal time between samples
   double lag_s = 0.2;                        ///< length of the window; [2 period_s, lag_max_s()]
-  double calibration_mahalanobis_max = 1.5;  ///< maximum distance from the prior; a larger one resets the calibration
-  static constexpr double kGapMax_s = 1.0;   ///< longest time between samples; a longer gap is an error
-  double step_s = 0.005;  ///< a Gauss-Newton step follows as many samples as fit into this time; 0: each sample
+  double calibration_mahalanobis_max = 1.5;  ///< a larger distance of the rig constants from their prior resets them
+  static constexpr double kGapMax_s = 1.0;
+  double step_s = 0.005;  ///< time between two Gauss-Newton steps; 0: a step after each sample
 
-  /// Sensor errors from an earlier run, used unchanged instead of model.errors. If empty, AngularRateStream corrects
-  /// the readings by model.errors and estimates the remaining uncertainty.
+  /// Sensor errors from an earlier run, which replace model.errors. Without them, AngularRateStream subtracts
+  /// model.errors and estimates the covariance of the remaining errors.
   std::shared_ptr<const KnownSensorErrors> calibrated_errors;
 
   using Expert = AngularRateStreamExpertParams;
   Expert expert = {};  ///< rarely changed parameters
 
-  /// maximum length of a window: the duration of 4096 samples, but at most 10 s
+  /// longest permitted lag: the duration of 4096 samples, but at most 10 s
   double lag_max_s() const { return std::min(10.0, 4096.0 * period_s); }
 
   template <class Self, class Visitor>

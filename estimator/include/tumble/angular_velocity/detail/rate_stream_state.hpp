@@ -24,55 +24,59 @@
 
 namespace tumble {
 
-/// accelerometer's reading at the time stamp of a sample
+/// Accelerometer reading at the time stamp of a sample, before the correction of the delay between gyro and
+/// accelerometer.
 struct AngularRateStreamForce {
   Eigen::Vector3d force_m_s2 = Eigen::Vector3d::Zero();
-  std::uint8_t device_clip_flags = 0;  ///< flags of the accelerometer
-  std::uint8_t clipped_axes = 0;       ///< clipped axes, as Clipping::accel
+  std::uint8_t device_clip_flags = 0;  ///< accelerometer bits of ImuSample::device_clip_flags
+  std::uint8_t clipped_axes = 0;       ///< same bits as Clipping::accel
   bool operator==(const AngularRateStreamForce&) const = default;
 };
 
 struct AngularRateStreamKnot {
-  AngularRateObservation
-      observation;  ///< with the specific force at the sample's own time; `received_force` has the received force
+  AngularRateObservation observation;  ///< with the specific force at the time of the gyro reading
   AngularRateStreamForce received_force;
-  Clipping clipping_at_axis_limits;  ///< clipping from flags and equal readings; the observation also uses planes
+  Clipping clipping_at_axis_limits;  ///< clipping from clip flags and equal readings, without saturation planes
   AngularRateEstimate estimate;
   Eigen::Matrix3d covariance_rad2_s2 = Eigen::Matrix3d::Zero();
-  /// smaller increase of each axis' magnitude per sample, among the last two samples
+  /// The smaller one of the last two increases of the reading's magnitude per sample, for each gyro axis.
   Eigen::Vector3d plateau_growth_rad_s = Eigen::Vector3d::Zero();
   int knot_age_samples = 0;
-  bool repeats_reading = false;            ///< the gyro repeats the previous reading: RepeatDetector
-  RepeatedReading repeated;                ///< repetition of the gyro's reading; none at rest
-  std::uint8_t possibly_clipped_axes = 0;  ///< axes that may be saturated during a part of the sample: rails.md (R76)
+  bool repeats_reading = false;
+  RepeatedReading repeated;  ///< age of the gyro reading in a log that repeats readings
+  std::uint8_t possibly_clipped_axes =
+      0;  ///< gyro axes that may be saturated during a part of the averaging window: rails.md (R76)
 };
 
-/// See rate_stream.md (R104) to (R107).
+/// Estimate of the delay between gyro and accelerometer: rate_stream.md (R104) to (R107).
 struct AngularRateStreamDelay {
   ImpactDelayCorrelation impacts;
-  double applied_delay_s = 0.0;      ///< delay in use; the prior until a delay is found
-  double estimated_s = 0.0;          ///< latest estimate from impacts and sensor-error evidence
-  bool delay_found = false;          ///< true if the delay differs from the prior
+  double applied_delay_s = 0.0;      ///< delay that corrects the readings; the prior until `delay_found`
+  double estimated_s = 0.0;          ///< latest estimate from impacts and free flight
+  bool delay_found = false;          ///< true if the readings contradict the prior delay
   TriadDelay impact_delay;           ///< latest estimate from impacts alone
-  std::optional<TimeNs> updated_ns;  ///< time of the last estimate from impacts
+  std::optional<TimeNs> updated_ns;  ///< time of the last update of `impact_delay`
   bool operator==(const AngularRateStreamDelay&) const = default;
 };
 
-/// Information about sensor errors from all samples that have left the window: rate_stream.md (R100).
+/// Information about scale, misalignment, g-sensitivity and delay errors from all samples that have left the window:
+/// rate_stream.md (R100).
 struct AngularRateStreamSensorErrors {
   struct WorkMatrices {
     arrow::BorderErrors border_errors, calibration_error_jacobian;
     SensorErrorInformation window_error_evidence;
     SensorErrorUncertainty::WorkMatrices posterior_workspace;
   };
-  arrow::ErrorMatrix prior = arrow::ErrorMatrix::Zero();  ///< derivative of the oldest sample's gradient by the errors
+  arrow::ErrorMatrix prior =
+      arrow::ErrorMatrix::Zero();  ///< derivative of the gradient of the oldest sample with respect to the errors
   arrow::BorderErrors border_errors =
-      arrow::BorderErrors::Zero();  ///< derivative of the calibration's gradient by the errors
+      arrow::BorderErrors::Zero();  ///< derivative of the gradient of the rig constants with respect to the errors
   SensorErrorInformation sensor_error_evidence;
-  SensorErrorUncertainty::Posterior posterior;  ///< latest uncertainty from the evidence
-  std::optional<TimeNs> updated_ns;             ///< time of the latest update
+  SensorErrorUncertainty::Posterior posterior;  ///< latest covariance of the sensor errors
+  std::optional<TimeNs> updated_ns;             ///< time of the latest update of `posterior`
   AngularRateStreamDelay accel_delay_state;
-  std::vector<arrow::ErrorMatrix> sample_jacobian;  ///< buffer: d(sample) / d(errors)
+  std::vector<arrow::ErrorMatrix> sample_jacobian;  ///< buffer: derivative of each sample's rate and angular
+                                                    ///< acceleration with respect to the errors
   WorkMatrices work_matrices;                       ///< buffer
 };
 
@@ -82,31 +86,31 @@ struct AngularRateStreamState {
   RepeatDetector::State repetition_state;
   FrozenAxes::State frozen_axes;
   FlightSignCheck::State flight_sign_check;
-  std::vector<AngularRateStreamKnot> window;  ///< oldest first
+  std::vector<AngularRateStreamKnot> window;  ///< samples of the window, oldest first
   RigConstants rig;
   RigConstants::Matrix rig_covariance;
-  // Gaussian prior on oldest sample and calibration, from all earlier samples
+  // Gaussian prior on the oldest sample and the rig constants, from all earlier samples.
   arrow::Block prior;
   arrow::Corner prior_border_block;
-  /// one element on the heap, for threads with a small stack
+  /// A vector with one element keeps this large state on the heap, for threads with a small stack.
   std::vector<AngularRateStreamSensorErrors> sensor_errors = std::vector<AngularRateStreamSensorErrors>(1);
   std::array<Eigen::Vector3d, 2> reading_extremes_rad_s{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-  MinSaturationLevels min_saturation_levels;  ///< lower bounds from the readings so far
-  /// slope of the readings before possible saturation, and number of possibly saturated samples that have left the
-  /// window
+  MinSaturationLevels min_saturation_levels;
+  /// For each gyro axis: slope of the readings before a possible saturation, and number of possibly saturated samples
+  /// that have left the window.
   Eigen::Vector3d slope_before_clipping_rad_s = Eigen::Vector3d::Zero(),
                   samples_since_clipping_start = Eigen::Vector3d::Zero();
-  std::optional<AngularRateKnot> last_marginalised;  ///< sample that left the window last, and its time
+  std::optional<AngularRateKnot> last_marginalised;  ///< sample that left the window last
   TimeNs last_marginalised_ns = 0;
   AngularRateKnot prior_knot;
   RigConstants prior_rig;
   std::size_t samples = 0;
-  std::size_t samples_since_step = 0;          ///< number of samples since the last Gauss-Newton step
-  std::size_t calibration_samples = 0;         ///< flight samples that left the window and updated the calibration
-  std::size_t consecutive_flight_samples = 0;  ///< consecutive flight samples among the last samples that left
-  std::size_t calibration_reset_count = 0;     ///< number of resets of the calibration
-  std::size_t failures = 0;                    ///< number of steps skipped because the system was not positive definite
-  std::vector<arrow::Block> work_blocks;       ///< buffer, not part of the state
+  std::size_t samples_since_step = 0;
+  std::size_t calibration_samples = 0;         ///< number of flight samples that have updated the rig constants
+  std::size_t consecutive_flight_samples = 0;  ///< length of the current flight, in samples that have left the window
+  std::size_t calibration_reset_count = 0;     ///< number of resets of the rig constants to their prior
+  std::size_t failures = 0;  ///< Gauss-Newton steps skipped because the normal equations were not positive definite
+  std::vector<arrow::Block> work_blocks;  ///< buffer, not part of the state
 };
 
 }  // namespace tumble

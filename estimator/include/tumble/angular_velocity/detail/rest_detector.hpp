@@ -11,8 +11,8 @@
 
 namespace tumble {
 
-/// Detects when an IMU is stationary: the mean rate is within a plausible gyro bias, the specific force may be gravity,
-/// and rate and force are constant up to noise.
+/// Detects when an IMU is stationary. The mean rate must be a plausible gyro bias, the magnitude of the specific force
+/// must be plausible for gravity, and both must be constant up to noise.
 ///
 /// RestDetector first averages the readings over `reading_s` (CallerSettings), so that the parameters do not depend on
 /// the sample rate. White noise of density n [unit/sqrt(Hz)] has the standard deviation n / sqrt(reading_s) after
@@ -20,12 +20,12 @@ namespace tumble {
 /// noise. A steady rotation about the vertical slower than `rate_max_rad_s` also counts as rest.
 class RestDetector {
  public:
-  /// The callers of RestDetector set these values; the users of a method do not.
+  /// Values that the calling estimator sets; they are not parameters for users.
   struct CallerSettings {
-    double force_min_m_s2 = 5.0;  ///< minimum force at rest; excludes flight
-    double force_max_m_s2 = 1e3;  ///< maximum force at rest; excludes impacts
-    double reading_s = 0.01;      ///< averaging time of a reading; 0: each sample
-    double memory_s = 600.0;      ///< time constant of the mean, which follows a drifting bias
+    double force_min_m_s2 = 5.0;  ///< minimum specific force at rest; excludes free flight
+    double force_max_m_s2 = 1e3;  ///< maximum specific force at rest; excludes impacts
+    double reading_s = 0.01;      ///< averaging time of a reading; 0: each sample is a reading
+    double memory_s = 600.0;      ///< time constant of the mean reading, which follows a drifting bias
   };
   struct Params {
     double rate_max_rad_s = 0.05;     ///< maximum difference between mean rate and bias, per axis
@@ -51,11 +51,11 @@ class RestDetector {
     // sums of the latest consecutive readings that stay close to their mean
     Eigen::Vector3d rate_sum_rad_s = Eigen::Vector3d::Zero();
     Eigen::Vector3d force_sum_m_s2 = Eigen::Vector3d::Zero();
-    double weight = 0.0;                  ///< number of readings in the sums; older readings count less
-    TimeNs first_ns = 0;                  ///< time of the first sample in the sums
-    TimeNs last_averaged_reading_ns = 0;  ///< time of the last reading
-    TimeNs small_rate_since_ns = 0;       ///< start of the time in which the mean rate is within the bias bound
-    bool is_stationary = false;           ///< true if the IMU is at rest, up to the last reading
+    double weight = 0.0;  ///< weighted number of readings in the sums
+    TimeNs first_ns = 0;  ///< time of the first sample in the sums
+    TimeNs last_averaged_reading_ns = 0;
+    TimeNs small_rate_since_ns = 0;  ///< time since which the mean rate is a plausible bias
+    bool is_stationary = false;
     // sums of the samples since the last averaged reading
     Eigen::Vector3d pending_rate_rad_s = Eigen::Vector3d::Zero();
     Eigen::Vector3d pending_force_m_s2 = Eigen::Vector3d::Zero();
@@ -76,7 +76,7 @@ class RestDetector {
   bool detect_stationary(const ImuSample& sample, State& state,
                          const Eigen::Vector3d& bias_rad_s = Eigen::Vector3d::Zero()) const;
 
-  /// Processes the mean rate and force over a time span as one reading, independent of `reading_s`.
+  /// Processes the mean rate and specific force over a time span as one reading, independent of `reading_s`.
   bool detect_stationary_from_mean(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2, TimeNs from_ns,
                                    TimeNs to_ns, const Eigen::Vector3d& bias_rad_s, State& state) const;
 

@@ -18,22 +18,21 @@ namespace tumble {
 /// SaturationAwareRateEstimator implements a published method (Deschenes et al., "Saturation-Aware Angular Velocity
 /// Estimation", ICRA 2024, eqs 5-7).
 ///
-/// The recursive stage recovers at most one clipped axis per sample, the first in the order x, y, z. Further clipped
-/// axes of the sample have the variance of an unclipped reading. The smoothing stage smooths the rates of all samples
-/// with a white-noise-on-jerk prior.
+/// The recursive stage recovers at most one clipped axis per sample, the first in the order x, y, z. Other clipped axes
+/// of the sample get the variance of an unclipped reading. The smoothing stage smooths the rates of all samples with a
+/// white-noise-on-jerk prior.
 ///
 /// SaturationAwareRateEstimator assumes free flight, an unclipped accelerometer, no bias, and no angular acceleration
 /// across the rotation axis. If the IMU is close to the rotation axis, the estimate has a large error that
-/// SaturationAwareRateEstimator does not detect. All recovered rates have the same variance. The smoothed rates of
-/// clipped axes may be below the saturation limit.
+/// SaturationAwareRateEstimator does not detect. The smoothed rates of clipped axes may be below the saturation limit.
 class SaturationAwareRateEstimator {
  public:
   struct Params {
     /// Lever arm from the centre of mass to the IMU in IMU axes [m]. The lever arm has no default and must be accurate
     /// to about a millimetre.
     Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-    /// Readings strictly above this rate count as clipped; no default. Choose a saturation point slightly below the
-    /// largest reading of the device.
+    /// Readings above this rate count as clipped. Required; choose a value slightly below the largest reading of the
+    /// gyro.
     double saturation_point_rad_s = 0.0;
     /// variance of an unclipped reading [(rad/s)^2]; default: (0.03 deg/s/sqrt(Hz) * sqrt(100 Hz))^2
     static constexpr double kVarianceMeasured_rad2_s2 = 2.741e-5;
@@ -43,7 +42,6 @@ class SaturationAwareRateEstimator {
     static constexpr double kVarianceRejected_rad2_s2 = 1e6;
     /// power spectral density of the white angular jerk [rad^2/s^5]
     double jerk_psd_rad2_s5 = 1e6;
-    /// maximum time between two samples [s]
     static constexpr double kGapMax_s = 1.0;
 
     template <class Self, class Visitor>
@@ -62,7 +60,7 @@ class SaturationAwareRateEstimator {
   };
 
   struct State {
-    Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< direction of the last accepted rate
+    Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< direction of the last accepted angular velocity
     TimeNs last_time_ns = 0;
     bool started = false;
     bool operator==(const State&) const = default;
@@ -70,9 +68,9 @@ class SaturationAwareRateEstimator {
 
   struct RecoveredRate {
     Eigen::Vector3d rate_rad_s;
-    Eigen::Vector3d variance_rad2_s2;  ///< variance of each axis
-    std::uint8_t clipped_axes = 0;     ///< bit j: the reading of axis j exceeds the saturation point
-    bool accepted = true;              ///< false: the clipped axis could not be recovered
+    Eigen::Vector3d variance_rad2_s2;
+    std::uint8_t clipped_axes = 0;  ///< bit j: the reading of gyro axis j exceeds the saturation point
+    bool accepted = true;           ///< false: the rate about the clipped axis could not be recovered
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.
