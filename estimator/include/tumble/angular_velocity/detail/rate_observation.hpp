@@ -21,7 +21,7 @@ struct AngularRateObservation {
   bool at_rest = false;  ///< RestDetector has detected rest, so the rate is zero
   // Bit masks of gyro axes whose readings need a larger standard deviation. Each axis is in at most one mask.
   std::uint8_t partial_saturation_flags = 0;  ///< saturated during a part of the averaging window: PartialSaturation
-  std::uint8_t rarely_high_axes = 0;          ///< largest readings of an axis with unknown saturation limit
+  std::uint8_t rarely_high_axes = 0;          ///< close to the saturation limit of another axis; own limit unknown
   std::uint8_t suspected_saturation = 0;  ///< readings that may be saturated at an unknown limit; used as lower bounds
   Eigen::Vector3d expected_saturation_deficit_rad_s = Eigen::Vector3d::Zero();  ///< expected true rate minus reading
   Eigen::Vector3d saturation_deficit_sigma_rad_s = Eigen::Vector3d::Zero();

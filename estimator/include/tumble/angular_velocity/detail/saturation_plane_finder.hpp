@@ -13,16 +13,14 @@
 
 namespace tumble {
 
-/// Finds the planes on which the readings of saturated sensing elements lie, in a whole recording of a gyro or
-/// accelerometer. SaturationPlaneFinder needs neither clip flags nor the stated range of the sensor.
+/// Finds the planes that contain the readings of saturated sensing elements (SaturationPlane), in a whole recording of
+/// a gyro or accelerometer. SaturationPlaneFinder needs neither clip flags nor the stated range of the sensor.
 ///
-/// A plane of saturated readings is nearly axis-aligned, and all readings are below the plane, many of them closely.
-/// The equations are in docs/maths/rails.md.
+/// A plane is a saturation limit if no reading is beyond the plane, and unusually many readings are close to it. The
+/// equations are in docs/maths/rails.md.
 ///
-/// SaturationPlaneFinder assumes constant saturation limits, with one limit per sensing element and sign.
-/// SaturationPlaneFinder assumes that the three sensing elements of a sensor are of one type, with similar saturation
-/// limits. SaturationPlaneFinder does not detect readings that overflow and change sign. Sensing elements without a
-/// plane of saturated readings count as unsaturated.
+/// SaturationPlaneFinder assumes that saturation limits are constant, and similar for the three sensing elements of a
+/// sensor. SaturationPlaneFinder does not detect readings that overflow and change sign.
 class SaturationPlaneFinder {
  public:
   struct Params {
@@ -33,23 +31,22 @@ class SaturationPlaneFinder {
       out.distance_min_rad_s = 15.0;
       return out;
     }
-    /// prior standard deviation of each cross-axis sensitivity of a sensing element, before compensation
+    /// prior standard deviation of each cross-axis sensitivity of a sensing element, before the misalignment
+    /// compensation
     static constexpr double kSlopeSigma = 0.03;
     static constexpr double kSlopeMax = 0.12;  ///< largest cross-axis sensitivity
     /// minimum saturation limit [rad/s]; excludes constant readings at rest and in slow motion
     double distance_min_rad_s = 1.5;
-    /// Range of the sensor according to its data sheet [rad/s], if known. SaturationPlaneFinder assumes a saturation
-    /// limit that is not far below the stated range.
+    /// Range in the data sheet [rad/s], if known. Saturation limits far below the stated range are not accepted.
     std::optional<double> stated_range_rad_s = std::nullopt;
-    /// prior standard deviation of SaturationPlane::offset_rad_s and of the differences between elements, relative to
-    /// the limit
+    /// prior standard deviation of SaturationPlane::offset_rad_s, and of the differences between the limits of the
+    /// sensing elements, relative to the limit
     static constexpr double kOffsetSigmaRatio = 0.02;
-    int samples_min = 4;                            ///< minimum number of samples on the plane of one sign
+    int samples_min = 4;                            ///< minimum number of samples on a plane
     static constexpr double kLogOddsBefore = -6.0;  ///< prior log odds of saturation for each element and sign
     static constexpr double kLogOddsMin = 1.0;      ///< minimum log odds for accepting a plane
     static constexpr double kLogOddsKeep = -3.0;    ///< minimum log odds for keeping an accepted plane
-    /// Saturation planes found in an earlier run of the same device. SaturationPlaneFinder uses known planes from the
-    /// start of a run until readings contradict the planes.
+    /// Saturation planes from an earlier run of the sensor, which are used until readings contradict them.
     SaturationPlanes known_limits = {};
 
     template <class Self, class Visitor>
@@ -73,10 +70,10 @@ class SaturationPlaneFinder {
   explicit SaturationPlaneFinder(const Params& params);
 
   /// Finds the planes of saturated readings in the gyro or accelerometer readings of a recording. The samples must be
-  /// finite and in time order. Cost: O(N), plus some hundred tilted planes that are compared with the largest readings.
+  /// finite and in time order. Cost: O(N), plus a comparison of some hundred planes with the largest readings.
   SaturationPlanes find(std::span<const ImuSample> samples, Triad triad = Triad::gyro) const;
-  /// Finds the planes of saturated readings in readings without time stamps [rad/s]. `before` contains the planes that
-  /// were found in a subset of the readings.
+  /// Finds the saturation planes in readings without time stamps [rad/s]. `before` contains the planes that were found
+  /// in earlier readings.
   SaturationPlanes find(std::span<const Eigen::Vector3d> readings_rad_s, const SaturationPlanes& before,
                         Workspace& workspace) const;
 

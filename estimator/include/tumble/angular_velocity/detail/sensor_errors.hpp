@@ -7,8 +7,8 @@
 
 namespace tumble {
 
-/// Constant errors of gyro and accelerometer other than bias and noise. The vector of 29 errors follows the order of
-/// the members, with matrices row by row.
+/// Constant errors of gyro and accelerometer other than bias and noise. A vector of the 29 errors has the order of the
+/// members, with matrices row by row.
 struct SensorErrors {
   static constexpr int kSize = 29, kAccel = 9, kGSensitivity = 18, kDelay = 27, kAccelFilterTimeVariance = 28;
   using Vector = Eigen::Matrix<double, kSize, 1>;
@@ -21,8 +21,8 @@ struct SensorErrors {
   Eigen::Matrix3d g_sensitivity_s_m = Eigen::Matrix3d::Zero();
   /// delay of the accelerometer relative to the gyro [s]
   double accel_delay_s = 0.0;
-  /// variance of the time within an accelerometer reading's averaging window, minus the same variance of a gyro reading
-  /// [s^2]
+  /// Variance of time over the averaging window (impulse response) of the accelerometer, minus the same variance of the
+  /// gyro [s^2].
   double accel_filter_time_variance_s2 = 0.0;
 
   Vector vector() const;
@@ -35,13 +35,14 @@ struct KnownSensorErrors {
   SensorErrors::Matrix covariance = SensorErrors::Matrix::Zero();
 };
 
-/// Returns `out_of_range` if a sensor error exceeds 0.2, or if the covariance has a negative eigenvalue.
+/// Checks sensor errors from earlier runs. Returns `out_of_range` if an error exceeds 0.2, or if the covariance has a
+/// negative eigenvalue.
 Status check_known_errors(const KnownSensorErrors& earlier_runs);
 /// Throws InvalidParams if a sensor error exceeds 0.2, or if the covariance has a negative eigenvalue.
 void require_valid_known_errors(const KnownSensorErrors& earlier_runs);
 
 /// Prior standard deviations of sensor errors, for a calibrated and for an uncalibrated device, in the units of
-/// SensorErrors. The function fit_sensor_errors() estimates which of the two priors fits the readings.
+/// SensorErrors. The function fit_sensor_errors() weights both priors by how well they explain the readings.
 struct SensorErrorPriors {
   /// Standard deviations of scale and misalignment. The defaults of the calibrated device are from the data sheet of
   /// the MTi-300: non-orthogonality 0.05 deg. The defaults of the uncalibrated device are from the MPU-6050: 3 % scale
@@ -83,31 +84,33 @@ struct SensorErrorPriors {
 /// (uncalibrated device).
 SensorErrors::Vector prior_sigmas(const SensorErrorPriors& sizes, double share);
 
-/// Log-likelihood of a run's readings as a quadratic function of the sensor errors, expanded at `linearisation_point`.
-/// `information` is the second derivative of the cost (negative log-likelihood), and `gradient` is its negative first
-/// derivative.
+/// Quadratic approximation of the log-likelihood of a run's readings as a function of the sensor errors, expanded at
+/// `linearisation_point`. `information` is minus the second derivative of the log-likelihood, and `gradient` is the
+/// first derivative.
 struct SensorErrorInformation {
   SensorErrors linearisation_point;
   SensorErrors::Matrix information = SensorErrors::Matrix::Zero();
   SensorErrors::Vector gradient = SensorErrors::Vector::Zero();
 };
 
-/// Multiplies the information about sensor errors that free motion cannot determine by `share`: rate_smoother.md (R39).
+/// Multiplies by `share` the information about those combinations of sensor errors that free motion cannot determine:
+/// rate_smoother.md (R39).
 void discount_unobservable(double share, SensorErrorInformation& evidence);
 
 struct SensorErrorFit {
   KnownSensorErrors fitted_errors;
-  double data_sheet_probability = 1.0;          ///< probability that scale and misalignment are within the data sheet
-  double synchronous_triads_probability = 1.0;  ///< probability that gyro and accelerometer are synchronous
+  double data_sheet_probability = 1.0;          ///< probability that scale and misalignment agree with the data sheet
+  double synchronous_triads_probability = 1.0;  ///< probability that gyro and accelerometer have no relative delay
 };
 
 /// Estimates the sensor errors by Bayesian model averaging over calibrated, intermediate and uncalibrated prior
-/// standard deviations. `earlier_runs` is the result of evidence_from_earlier_runs() for earlier runs of the device.
-/// Cost: O(1), about 30 systems of 29 unknowns.
+/// standard deviations. `earlier_runs` is the result of evidence_from_earlier_runs(). Cost: O(1), about 30 linear
+/// systems of 29 unknowns.
 SensorErrorFit fit_sensor_errors(const SensorErrorInformation& evidence, const SensorErrorPriors& sizes,
                                  const SensorErrorInformation& earlier_runs = {});
 
-/// Converts the sensor errors that one run estimated to measurement information for the next run, without the prior.
+/// Removes the prior from the sensor errors that earlier runs estimated. The result is their information as a
+/// measurement for the next run.
 SensorErrorInformation evidence_from_earlier_runs(const KnownSensorErrors& earlier_runs,
                                                   const SensorErrorPriors& sizes);
 

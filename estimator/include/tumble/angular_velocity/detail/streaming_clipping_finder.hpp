@@ -12,11 +12,11 @@
 
 namespace tumble {
 
-/// Detects saturation limits and planes of saturated readings from all readings so far; causal form of ClippingFinder.
-/// Saturation is detected some samples after its first occurrence, so callers must classify earlier samples again.
+/// Causal form of ClippingFinder: detects saturation limits and saturation planes from all readings so far. A limit is
+/// detected some samples after the first saturation, so callers must classify earlier samples again.
 class StreamingClippingFinder {
  public:
-  static constexpr std::size_t kReadingsMax = 1024;  ///< default of `readings_max`, see StreamingClippingFinder()
+  static constexpr std::size_t kReadingsMax = 1024;
 
   struct Params {
     ClippingFinder::Params clipping;
@@ -28,33 +28,34 @@ class StreamingClippingFinder {
   };
   /// unit of the readings: rad/s for the gyro, m/s^2 for the accelerometer
   struct DistinctReadingMemory {
-    std::vector<Eigen::Vector3d> readings;           ///< distinct readings, in time order
+    std::vector<Eigen::Vector3d> readings;           ///< in time order
     Eigen::Vector3d peak = Eigen::Vector3d::Zero();  ///< largest magnitude of each axis
     std::size_t near_limit_count = 0,
-                near_limit_since_search = 0;  ///< number of readings near the extremes; number not yet searched
-    std::size_t samples_since_search = 0;     ///< readings near the extremes since the last search
-    bool readings_pruned = false;             ///< readings were dropped
+                near_limit_since_search =
+                    0;  ///< number of readings near the extremes; number since the last search for planes
+    std::size_t samples_since_search = 0;
+    bool readings_pruned = false;  ///< true if readings were dropped, because the memory was full
     bool operator==(const DistinctReadingMemory&) const = default;
   };
   struct State {
     SaturationLevels known_limits;
-    std::array<DistinctReadingMemory, 2> distinct_readings;  ///< gyro and accelerometer
+    std::array<DistinctReadingMemory, 2> distinct_readings;  ///< indexed by Triad
     SaturationPlaneFinder::Workspace search_workspace;       ///< buffer, not part of the state
   };
 
-  /// `readings_max` is the maximum number of distinct readings stored per triad. Throws InvalidParams if a parameter is
-  /// out of bounds.
+  /// `readings_max` is the maximum number of stored readings of the gyro, and of the accelerometer. Throws
+  /// InvalidParams if a parameter is out of bounds.
   explicit StreamingClippingFinder(const Params& params, std::size_t readings_max = kReadingsMax);
 
   /// The returned state has all memory that observe_reading() needs.
   State start() const;
 
-  /// The sample must be finite. Returns true if the known saturation limits or planes changed. Cost: O(1), but
+  /// Processes a finite sample. Returns true if a saturation limit or saturation plane changed. Cost: O(1), but
   /// O(`readings_max`) when enough new large readings have arrived.
   bool observe_reading(const ImuSample& sample, State& state) const;
 
-  /// Returns the clipped axes of a finite sample, according to the saturation limits found so far and the flags of the
-  /// device. `before` and `after` are the neighbours of the sample, or null at the ends. Cost: O(1).
+  /// Returns the clipped axes of a finite sample, according to the saturation limits found so far and the clip flags of
+  /// the IMU. `before` and `after` are the neighbouring samples, or null. Cost: O(1).
   Clipping classify_clipping(const ImuSample* before, const ImuSample& sample, const State& state,
                              const ImuSample* after = nullptr) const;
 

@@ -15,18 +15,18 @@ namespace tumble {
 
 struct ClippedReadings {
   Eigen::Matrix3d sensing_directions = Eigen::Matrix3d::Identity();  ///< sensing directions of the gyro, one per row
-  std::vector<ClipSigns> clip_signs;                                 ///< one entry per sample
-  std::vector<std::uint8_t>
-      possibly_clipped_axes;  ///< per sample: bit j is set if gyro element j may be partly saturated
+  std::vector<ClipSigns> clip_signs;
+  std::vector<std::uint8_t> possibly_clipped_axes;  ///< per sample: bit j is set if gyro element j may be saturated
+                                                    ///< during a part of the averaging window
 
   SensingAxisClipSigns clipped_element_signs() const { return {sensing_directions, clip_signs}; }
 
-  /// Marks suspect gyro readings, which may be saturated at an unknown limit, as lower bounds of the rate. Bit j of
-  /// `axes[k]` is set if the reading of gyro axis j in sample k is suspect.
+  /// Marks gyro readings that may be saturated at an unknown limit as lower bounds of the rate. Bit j of `axes[k]`
+  /// marks gyro axis j in sample k.
   void mark_suspected_saturation(std::span<const ImuSample> samples, std::span<const std::uint8_t> axes);
 
-  /// Sets the source of a measured rate to `lower_bound_only` if the gyro reading may be saturated during a part of its
-  /// averaging window. `rates` contains one rate per sample.
+  /// Changes the source of a rate from `measured` to `lower_bound_only` if the gyro may be saturated during a part of
+  /// the averaging window. `rates` contains one rate per sample.
   void mark_partly_saturated(std::span<AngularRateState> rates) const;
 };
 

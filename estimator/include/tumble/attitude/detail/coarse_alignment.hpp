@@ -10,15 +10,15 @@
 
 namespace tumble {
 
-/// CoarseAlignment estimates the vertical after a loss of the attitude, while the body continues to move: attitude.md
-/// (A19), (A20). CoarseAlignment works from any initial attitude, because the method uses no linearisation. The caller
-/// adds the variance of the gyro's error to `tilt_variance_growth_rad2`.
+/// Estimates the vertical from the mean specific force of a moving body after the attitude was lost: attitude.md (A19),
+/// (A20). The method needs no initial attitude, because it uses no linearisation. The caller adds the variance of the
+/// gyro's angle error to `tilt_variance_growth_rad2`.
 struct CoarseAlignment {
   bool running = false;
   double time_s = 0.0;
   double start_velocity_variance_m2_s2 = 0.0;  ///< variance of the velocity at the start, per axis
   double start_tilt_variance_rad2 = 0.0;       ///< variance of the tilt at the start, per axis
-  double tilt_variance_growth_rad2 = 0.0;      ///< growth of the tilt's variance since the start
+  double tilt_variance_growth_rad2 = 0.0;  ///< increase of the tilt's variance since the start, because of gyro errors
   Eigen::Vector3d integrated_force_W_m_s = Eigen::Vector3d::Zero();  ///< integral of the specific force since the start
   bool operator==(const CoarseAlignment&) const = default;
 
@@ -29,16 +29,17 @@ struct CoarseAlignment {
     start_tilt_variance_rad2 = tilt_variance_rad2;
   }
 
-  /// `more_W_m_s` is the specific force integrated over `length_s`, in world axes.
+  /// Adds `more_W_m_s`, the specific force integrated over `length_s`, in world axes.
   void add(const Eigen::Vector3d& more_W_m_s, double length_s) {
     integrated_force_W_m_s += more_W_m_s;
     time_s += length_s;
   }
 
-  /// variance of the tilt per axis, uncorrected
+  /// Returns the variance of the tilt per axis without the correction by levelling().
   double tilt_rad2() const { return start_tilt_variance_rad2 + tilt_variance_growth_rad2; }
 
-  /// Returns the variance of the tilt after levelling(), due to the velocities at start and end and the gyro's errors.
+  /// Returns the variance of the tilt per axis after levelling(), which results from the unknown velocities at start
+  /// and end and from gyro errors.
   double variance_rad2(double velocity_variance_m2_s2, double gravity_m_s2) const {
     const double gravity_m_s = gravity_m_s2 * std::max(time_s, 1e-9);
     const double seen = squared(integrated_force_W_m_s.norm() - gravity_m_s);
@@ -46,7 +47,7 @@ struct CoarseAlignment {
            tilt_variance_growth_rad2;
   }
 
-  /// Returns the rotation in world axes that turns the mean force upwards and keeps the heading.
+  /// Returns the rotation in world axes that turns the mean specific force upwards and keeps the heading.
   Eigen::Quaterniond levelling() const { return tumble::levelling(integrated_force_W_m_s.normalized()); }
   double mean_force_tilt_rad() const {
     return std::atan2(integrated_force_W_m_s.head<2>().norm(), integrated_force_W_m_s.z());

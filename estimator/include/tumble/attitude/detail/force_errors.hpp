@@ -24,7 +24,7 @@ class ForceErrors {
   struct State {
     Vector x = Vector::Zero();
     Covariance error_covariance = Covariance::Zero();
-    // sums over the current averaging interval
+    // Sums over the current averaging interval.
     Eigen::Matrix<double, 3, kImus> force_difference_m_s2 = Eigen::Matrix<double, 3, kImus>::Zero();
     Eigen::Matrix<double, 3, kImus> force_m_s2 = Eigen::Matrix<double, 3, kImus>::Zero();
     Eigen::Matrix3d jacobian_position = Eigen::Matrix3d::Zero();
@@ -37,8 +37,8 @@ class ForceErrors {
 
   explicit ForceErrors(const ImuMergeSetup& setup) : setup_(setup) {}
 
-  /// Processes the forces of all IMUs in common axes C, measured over `dt_s`. Cost: O((kErrorsPerImu count)^2), no
-  /// allocation.
+  /// Processes the specific forces of all IMUs in common axes C, measured over `dt_s`. Cost: O((kErrorsPerImu
+  /// count)^2), no allocation.
   void calibrate(std::span<const Eigen::Vector3d> forces_m_s2, const Eigen::Vector3d& rate_rad_s,
                  const Eigen::Vector3d& acceleration_rad_s2, double dt_s, State& state) const;
 
@@ -51,9 +51,10 @@ class ForceErrors {
  private:
   // prior standard deviations of the bias, of each entry of M, and of the position error
   static constexpr double kBiasSigma_m_s2 = 0.05, kScaleSigma = 4e-3, kPositionSigma_m = 1.5e-3;
-  static constexpr double kNoise_m_s2 = 0.06;  // noise of one force difference, averaged over kCorrelationTime_s
-  static constexpr double kAccelerationNoiseRatio = 0.02;  // additional noise / tangential force a x p
-  static constexpr double kGateSigmas = 5.0;               // largest accepted force difference, in standard deviations
+  static constexpr double kNoise_m_s2 =
+      0.06;  // standard deviation of a force difference, averaged over kCorrelationTime_s
+  static constexpr double kAccelerationNoiseRatio = 0.02;  // additional noise relative to the tangential force
+  static constexpr double kGateSigmas = 5.0;               // largest accepted innovation, in standard deviations
 
   Eigen::Vector3d imu_position_m(int k) const { return setup_.T_mean_imu[static_cast<std::size_t>(k)].translation(); }
   void update(State& state) const;

@@ -8,15 +8,15 @@
 
 namespace tumble {
 
-/// Formulates hand-held motion as a least-squares problem over a chain of states (nodes) at equal time steps. Each
-/// function adds one residual to the normal equations and returns the cost of the residual.
+/// Least-squares problem for hand-held motion, over a chain of states (nodes) at equal time steps. Each add function
+/// adds one residual to the normal equations and returns the cost of the residual.
 namespace hand_held {
 
-inline constexpr int kBlockSize = 18;  ///< size of a node's error vector: see Index
-inline constexpr int kBorderSize = 9;  ///< number of constants: see ConstantsIndex
+inline constexpr int kBlockSize = 18;  ///< size of a node's error vector: Index
+inline constexpr int kBorderSize = 9;  ///< number of constants: ConstantsIndex
 using System = BlockArrowSystem<kBlockSize, kBorderSize>;
 
-/// first index of each part of a node's error vector, with the attitude error phi: q_true = q_WI Exp(phi)
+/// First index of each part of a node's error vector. The attitude error phi is defined by q_true = q_WI Exp(phi).
 enum Index {
   kAttitudeError = 0,
   kRate = 3,
@@ -27,11 +27,11 @@ enum Index {
 };
 enum ConstantsIndex { kGyroBias = 0, kAccelBias = 3, kLever = 6 };
 
-/// The held point is the point of the body at the hand.
+/// State of the body at one time step. The held point is the point of the body at the hand.
 struct Node {
   Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
   Eigen::Vector3d w_WI_I_rad_s = Eigen::Vector3d::Zero();
-  Eigen::Vector3d angular_acceleration_rad_s2 = Eigen::Vector3d::Zero();  ///< derivative of the rate, sensor axes
+  Eigen::Vector3d angular_acceleration_rad_s2 = Eigen::Vector3d::Zero();  ///< in sensor axes
   Eigen::Vector3d a_W_m_s2 = Eigen::Vector3d::Zero();                     ///< acceleration of the held point
   Eigen::Vector3d v_W_m_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
@@ -41,16 +41,16 @@ struct Node {
 struct Constants {
   Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d accel_bias_m_s2 = Eigen::Vector3d::Zero();
-  Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< from the held point to the sensor, sensor axes
+  Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< vector from the held point to the IMU, in sensor axes
   void move(const System::BorderVector& step);
 };
 
-/// Sums over the readings of one sensing element near a node, with times relative to the node.
+/// Sums over the gyro readings of one sensing element near a node; times are relative to the node.
 struct SensingAxisSums {
   double count = 0.0, time_sum_s = 0.0, time_squared_sum_s2 = 0.0, reading_sum = 0.0,
          reading_time_sum = 0.0;  ///< count and sums of unsaturated readings
   double clipped_reading_count = 0.0, clipped_time_s = 0.0,
-         mean_saturation_limit = 0.0;  ///< count, mean time and mean level of clipped readings
+         mean_saturation_limit = 0.0;  ///< count, mean time and mean magnitude of clipped readings
   double saturated_side = 0.0;         ///< sign of the saturation limit
   double unusable_reading_count = 0.0, mean_unusable_reading = 0.0;  ///< count and mean of unusable readings
   double partial_saturation_sigma = 0.0;  ///< standard deviation of readings that may be partly saturated
@@ -58,61 +58,63 @@ struct SensingAxisSums {
 
 struct NodeReadings {
   std::array<SensingAxisSums, 3> gyro;
-  Eigen::Vector3d force_m_s2 = Eigen::Vector3d::Zero();  ///< mean force
+  Eigen::Vector3d force_m_s2 = Eigen::Vector3d::Zero();  ///< mean specific force
   Eigen::Vector3d force_bound_m_s2 =
-      Eigen::Vector3d::Zero();           ///< sign of the saturation limit where an axis clips, otherwise 0
-  double force_reading_count = 0.0;      ///< number of force readings
-  double mean_force_time_s = 0.0;        ///< mean time of the force readings
-  double force_timing_sigma_m_s2 = 0.0;  ///< force error from uncertain reading times
+      Eigen::Vector3d::Zero();           ///< sign of the reading on clipped accelerometer axes, otherwise 0
+  double force_reading_count = 0.0;      ///< number of averaged accelerometer readings
+  double mean_force_time_s = 0.0;        ///< mean time of the accelerometer readings
+  double force_timing_sigma_m_s2 = 0.0;  ///< standard deviation of the force because of uncertain reading times
   bool is_stationary = false;
 };
 
 struct ReadingNoise {
   double gyro_rad_s = 0.0;               ///< standard deviation of one gyro reading
-  double window_rate_sigma_rad_s = 0.0;  ///< standard deviation of (mean rate of a window - rate at its centre)
-  double deficit_error_ratio = 0.0;      ///< error of an unclipped element / saturation deficit of a clipped element
-  double saturation_limit_sigma_rad_s = 0.0;   ///< standard deviation of a saturation limit
-  double bound = 1.0;                          ///< weight of the gyro's lower bounds; 1: full weight
-  double force_bound_weight = 1.0;             ///< weight of the accelerometer's lower bounds; 1: full weight
-  double accel_m_s2 = 0.0;                     ///< standard deviation of one force reading
-  double force_noise_ratio = 0.0;              ///< additional force noise / (magnitude of the specific force - gravity)
-  double stationary_rate_sigma_rad_s = 0.0;    ///< standard deviation of the rate at rest, per node
-  double stationary_velocity_sigma_m_s = 0.0;  ///< standard deviation of the velocity at rest
-  double stationary_acceleration_sigma_m_s2 = 0.0;  ///< standard deviation of the acceleration at rest
+  double window_rate_sigma_rad_s = 0.0;  ///< standard deviation of (mean rate over a window - rate at the centre)
+  double deficit_error_ratio = 0.0;  ///< error of an unclipped gyro element / saturation deficit of a clipped element
+  double saturation_limit_sigma_rad_s = 0.0;  ///< standard deviation of a gyro saturation limit
+  double bound = 1.0;                         ///< weight of the gyro's lower bounds; 1: full weight
+  double force_bound_weight = 1.0;            ///< weight of the accelerometer's lower bounds; 1: full weight
+  double accel_m_s2 = 0.0;                    ///< standard deviation of one accelerometer reading
+  double force_noise_ratio = 0.0;             ///< additional noise / (magnitude of the specific force - gravity)
+  double stationary_rate_sigma_rad_s = 0.0;
+  double stationary_velocity_sigma_m_s = 0.0;
+  double stationary_acceleration_sigma_m_s2 = 0.0;
 };
 
-/// Row i of `rows` is the sensing direction of gyro element i. Clipped readings limit the component of (rate + bias)
-/// along row i from one side.
+/// Adds the gyro readings of one node. Row i of `rows` is the sensing direction of gyro element i. A clipped reading is
+/// a one-sided bound on the component of (rate + bias) along row i.
 double add_gyro(const NodeReadings& readings, const Eigen::Matrix3d& rows, const ReadingNoise& noise, const Node& node,
                 const Constants& constants, System::StateBlock& block, System::BorderBlock& corner);
 
-/// Adds the residual of the specific force of one node, with gravity, the held point's acceleration, and the
-/// centripetal and tangential force at the lever arm.
+/// Adds the specific force of one node: gravity, acceleration of the held point, and centripetal and tangential force
+/// at the lever arm.
 double add_force(const NodeReadings& readings, const Eigen::Vector3d& g_W_m_s2, const ReadingNoise& noise,
                  const Node& node, const Constants& constants, System::StateBlock& block, System::BorderBlock& corner);
 
 double add_rest(const ReadingNoise& noise, const Node& node, System::StateBlock& block);
 
 /// Motion model between two nodes that are `step_s` apart. The angular jerk is white noise. Acceleration, velocity and
-/// position of the held point return to zero, each with a separate time constant.
+/// position of the held point return to zero, with separate time constants.
 class Motion {
  public:
   struct Params {
     double step_s = 0.01;
-    double jerk_rad_s3_sqrts = 0.0;     ///< square root of the power spectral density of the angular jerk
-    double rotation_error_sqrts = 0.0;  ///< random walk of the attitude per rad/s of rotation: scale, misalignment
+    double jerk_rad_s3_sqrts = 0.0;  ///< square root of the power spectral density of the angular jerk
+    double rotation_error_sqrts =
+        0.0;  ///< random walk of the attitude per rad/s of rate, for scale and misalignment errors
     double hand_sigma_m_s2 = 0.0, hand_tau_s = 0.0;
     double velocity_m_s = 0.0, velocity_tau_s = 0.0;
     double position_m = 0.0, position_tau_s = 0.0, position_leak_s = 10.0;
   };
   explicit Motion(const Params& params);
 
-  /// `hand` multiplies the power spectral density of the held point's acceleration. `jerk` multiplies the root power
-  /// spectral density of the angular jerk.
+  /// `hand` is a factor on the power spectral density of the held point's acceleration. `jerk` is a factor on the
+  /// square root of the power spectral density of the angular jerk.
   double add_motion_model(const Node& from, const Node& to, double hand, System::StateBlock& block,
                           System::StateBlock& next, double jerk = 1.0) const;
   double add_bounds(const Node& node, System::StateBlock& block) const;
-  /// The prior fixes the heading. Every other unknown has the stationary variance of its stochastic process.
+  /// Adds the prior of the first node. The heading is fixed; every other unknown has the stationary variance of its
+  /// stochastic process.
   double add_initial_prior(const Node& node, System::StateBlock& block) const;
 
  private:
@@ -126,7 +128,7 @@ class Motion {
   double attitude_error_variance_;
 };
 
-/// Returns the rotation vector between two nodes, for a rate that is a cubic polynomial in time.
+/// Returns the rotation vector between two nodes, for a rate that is a cubic polynomial of time.
 Eigen::Vector3d rotation_between_nodes(const Node& from, const Node& to, double step_s);
 
 }  // namespace hand_held

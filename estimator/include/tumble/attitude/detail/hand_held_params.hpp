@@ -13,8 +13,8 @@ struct HandMotionModelParams {
   static constexpr double kPosition_m = 1.0;       ///< standard deviation of the hand's position
   static constexpr double kPositionTau_s = 1.0;    ///< correlation time of the hand's position
   static constexpr double kPositionLeak_s = 10.0;  ///< time constant with which the hand's position returns to zero
-  double hand_noise_adaptation = 0.8;              ///< weight of the measured acceleration power: 0 (not used) to 1
-  static constexpr double kHandWindow_s = 2.0;     ///< averaging time of the measured acceleration power
+  double hand_noise_adaptation = 0.8;  ///< weight of the measured power of the hand's acceleration: 0 (not used) to 1
+  static constexpr double kHandWindow_s = 2.0;  ///< averaging time of the measured power of the hand's acceleration
   static constexpr double kHandNoiseFloorRatio =
       1.0;  ///< minimum ratio of the adapted to the assumed power spectral density of the hand's acceleration
 
@@ -28,25 +28,25 @@ struct HandMotionModelParams {
   }
 };
 
-/// errors of IMU readings other than white noise
+/// Errors of IMU readings other than white noise.
 struct HandHeldSensorParams {
   static constexpr double kDeficitErrorRatio =
-      0.02;  ///< error of an unclipped element / saturation deficit of a clipped element
-  static constexpr double kRailSigma_rad_s = 0.01;      ///< standard deviation of a saturation limit
-  static constexpr double kAccelErrorRatio = 0.02;      ///< additional force noise / (magnitude of the force - gravity)
+      0.02;  ///< error of an unclipped gyro element / saturation deficit of a clipped element
+  static constexpr double kRailSigma_rad_s = 0.01;  ///< standard deviation of a gyro saturation limit
+  static constexpr double kAccelErrorRatio = 0.02;  ///< additional noise / (magnitude of the specific force - gravity)
   static constexpr double kRotationError_sqrts = 1e-3;  ///< angle random walk per rad/s of rate, from scale errors
   static constexpr double kRecoveredSigma_rad_s =
       1.0;  ///< clipped rates with a smaller standard deviation count as recovered
   static constexpr double kRecoveredTau_s = 0.005;  ///< correlation time of the error of a recovered rate
   static constexpr double kRecoveredScaleSigma =
-      6e-3;  ///< standard deviation of the gyro's scale error next to recovered rates
+      6e-3;  ///< standard deviation of the gyro's scale error in samples next to recovered rates
 };
 
 struct HandHeldExpertParams {
-  double node_s = 0.01;  ///< time between two nodes (states of the estimator)
+  double node_s = 0.01;  ///< time between two nodes (estimated states)
   int iterations_max = 15;
   double gap_max_s = 1.0;
-  /// Factor on the assumed angular jerk, with which HandHeldSmoother computes the reported covariances.
+  /// Factor on the assumed angular jerk for the reported covariances of HandHeldSmoother.
   double jerk_inflation = 4.0;
   RestDetector::Params rest_detector = {};
   HandMotionModelParams hand_motion = {};

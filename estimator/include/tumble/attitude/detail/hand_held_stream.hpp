@@ -13,14 +13,12 @@
 namespace tumble {
 
 /// Estimates attitude and angular velocity of hand-held motion sample by sample, with a fixed lag. HandHeldRateStream
-/// applies the model of HandHeldSmoother to a sliding window of time steps (nodes).
+/// uses the motion model of HandHeldSmoother in a sliding window of time steps (nodes).
 ///
-/// HandHeldRateStream allocates memory only in start(). A run that continues from a copy of the State gives
-/// bit-identical results.
+/// Memory is allocated only in start(). A run that continues from a copy of the State gives bit-identical results.
 ///
 /// Unlike HandHeldSmoother, HandHeldRateStream does not test other numbers of full revolutions during saturation. The
-/// rate covariance includes the error of one additional revolution: carried.md (C41), (C42). After the detection of a
-/// saturation limit, HandHeldRateStream classifies only the readings in the window again.
+/// rate covariance includes the error of one undetected revolution: carried.md (C41), (C42).
 ///
 /// Cost: O(window) per node while a sample in the window is clipped, and a fifth of this cost otherwise.
 class HandHeldRateStream {
@@ -46,12 +44,12 @@ class HandHeldRateStream {
   struct Reading {
     ImuSample sample;
     ClipSigns clip_signs;
-    /// times after the centre of the first sample's averaging window
+    /// centre and end of the sample's averaging window, relative to the centre of the first sample's window
     double window_centre_s = 0.0, end_s = 0.0;
-    std::int64_t node = 0;  ///< node closest to the centre of the averaging window
+    std::int64_t node = 0;  ///< node closest to `window_centre_s`
     bool is_stationary = false;
-    RepeatedReading gyro, accel;               ///< detection state of repeated readings
-    std::optional<AngularRateState> smoothed;  ///< unreported rate of a sample whose node has left the window
+    RepeatedReading gyro, accel;               ///< age of the readings in a log that repeats readings
+    std::optional<AngularRateState> smoothed;  ///< rate of a sample whose node has left the window, not yet returned
   };
   struct Knot {
     hand_held::Node node;
@@ -64,23 +62,22 @@ class HandHeldRateStream {
     Eigen::Matrix3d sensing_directions = Eigen::Matrix3d::Identity();
     hand_held::Constants constants;
     hand_held::System::BorderMatrix constants_covariance = hand_held::System::BorderMatrix::Zero();
-    // Gaussian prior on the oldest node and on the constants (biases, lever arm), from all data that have left the
-    // window.
+    // Gaussian prior on the oldest node and on the constants (biases, lever arm), from all earlier data.
     hand_held::System::StateBlock prior;
     hand_held::System::BorderBlock prior_border_block;
     hand_held::Node prior_node;
     hand_held::Constants prior_constants;
-    double hand_acceleration_power_ratio =
-        1.0;  ///< ratio of measured to assumed acceleration power of the hand, over marginalised nodes
+    double hand_acceleration_power_ratio = 1.0;  ///< measured / assumed power of the hand's acceleration
     RestDetector::State stationary_state;
-    std::int64_t reported_node = -1;  ///< node of the last reported estimate
+    std::int64_t reported_node = -1;  ///< node of the last returned estimate
     Eigen::Matrix3d reported_covariance_rad2_s2 = Eigen::Matrix3d::Zero();
     std::int64_t start_ns = 0;
     std::size_t samples = 0;
-    std::size_t failures = 0;  ///< number of steps skipped because the normal equations were not positive definite
-    /// duration of the current saturation of each gyro element, and time integral of the rate's standard deviation
+    std::size_t failures = 0;  ///< Gauss-Newton steps skipped because the normal equations were not positive definite
+    /// For each gyro element: duration of the current saturation, and integral of the rate's standard deviation over
+    /// this time.
     Eigen::Vector3d clipped_duration_s = Eigen::Vector3d::Zero(), clipped_angle_sigma_rad = Eigen::Vector3d::Zero();
-    std::size_t revolutions_ambiguous = 0;  ///< saturated intervals that may contain an additional revolution
+    std::size_t revolutions_ambiguous = 0;  ///< number of saturated intervals that may contain an undetected revolution
     std::vector<hand_held::System::StateBlock> work_blocks;  ///< buffer, not part of the state
   };
 
@@ -89,12 +86,13 @@ class HandHeldRateStream {
 
   /// The returned state has all memory that push() needs.
   State start() const;
-  /// Resets `state`, except its counters, without allocating memory.
+  /// Restarts the estimation without allocating memory. Counters keep their values.
   void restart(State& state) const;
 
-  /// Computes the rate `out` of the sample that is `lag_s` old; `out` is empty while the window fills or if `wanted` is
-  /// false. `known` contains the current clip signs of the newest samples, up to `sample`. `repeated` states which
-  /// readings of the log repeat an earlier reading (sample and hold); a repeated reading counts once.
+  /// Processes one sample. `out` receives the rate at the sample that is `lag_s` older. While the window fills, or if
+  /// `wanted` is false, `out` is empty. `known` contains the clip signs of the newest samples, including `sample`, with
+  /// the saturation limits known so far. `repeated` states which gyro and accelerometer readings repeat an earlier
+  /// reading (sample and hold), and must not be used twice.
   ///
   /// Returns `ok`, `non_finite`, `time_order`, `gap`, `out_of_range` (no clip signs) or `degenerate` (linearly
   /// dependent sensing directions). On error, `state` is unchanged and `out` is empty.
@@ -102,7 +100,7 @@ class HandHeldRateStream {
               std::optional<AngularRateState>& out, bool wanted = true,
               const RepeatDetector::State& repeated = {}) const;
 
-  /// Appends the rates of the samples in the window that were not yet reported, oldest first.
+  /// Appends the rates at those samples in the window that were not yet returned, oldest first.
   void flush(const State& state, std::vector<AngularRateState>& out) const;
 
  private:

@@ -19,23 +19,23 @@
 
 namespace tumble {
 
-/// Merges several IMUs on one rigid body into one IMU, in common axes C, at the mean position of the IMUs.
+/// Fuses several IMUs on one rigid body to one IMU, in common axes C, at the mean position of the IMUs.
 ///
-/// The merged force is the mean force of the IMUs, corrected for excluded IMUs. While the body rotates, ImuMerge
+/// The fused specific force is the mean over the IMUs, corrected for excluded IMUs. While the body rotates, ImuMerge
 /// estimates bias, scale, misalignment and time offset of each gyro relative to the mean of all gyros. ImuMerge
-/// corrects significant time offsets and accelerometer errors. If all gyros are saturated, the force differences
-/// between three or more IMUs determine the rate. The equations are in docs/maths/imu_merge.md.
+/// corrects significant time offsets and accelerometer errors. If all gyros are saturated, the differences between the
+/// specific forces of three or more IMUs determine the rate. The equations are in docs/maths/imu_merge.md.
 ///
-/// The merged sample has clip flags if saturation prevents a correct rate or force. A reading is saturated if the
-/// device flags the reading, or if the reading exceeds the stated range. The caller must flag readings at lower or
-/// tilted saturation limits beforehand (ClippingFinder).
+/// The fused sample has clip flags if saturation prevents a correct rate or force. Readings count as saturated if they
+/// have a clip flag or exceed the stated range. The caller must flag readings at lower or tilted saturation limits
+/// beforehand (ClippingFinder).
 ///
 /// ImuMerge excludes an IMU with a saturated accelerometer or with a reading that is not finite. ImuMerge also excludes
 /// an IMU that disagrees with three or more agreeing IMUs, permanently if the disagreement lasts. A frozen IMU, which
 /// repeats one reading during motion, is excluded until its readings have changed for 0.5 s.
 ///
 /// The readings are averaged over `kWindow_s`, unless the sample period is at least `kWindow_s`. ImuMerge assumes that
-/// all clocks have the same rate, and does not detect an error that all IMUs share.
+/// the clocks of the IMUs have the same rate, and does not detect an error that all IMUs share.
 class ImuMerge {
  public:
   static constexpr int kImus = ImuMergeState::kImus;
@@ -51,26 +51,26 @@ class ImuMerge {
   /// Throws InvalidParams if the number of IMUs, a range or a mounting is out of bounds.
   explicit ImuMerge(const Setup& setup);
 
-  /// Returns the ratio of measured to expected force differences between IMUs. The expected force differences follow
-  /// from the rotation and the positions of the IMUs. The force ratio is 1 for correct IMUs, -1 for accelerometers with
-  /// inverted sign, and empty before enough rotation.
+  /// Returns the ratio of the measured differences between specific forces to the differences that follow from rotation
+  /// and positions of the IMUs. The ratio is 1 for correct IMUs, -1 for inverted accelerometers, and empty before
+  /// enough rotation.
   static std::optional<double> lever_arm_agreement(const State& state);
 
-  /// Returns `out_of_range` with the duration [s] if all IMUs are frozen. While all IMUs are frozen, step() merges
-  /// their readings unchanged.
+  /// Returns `out_of_range` with the duration [s] if all IMUs repeat one reading. Meanwhile, step() fuses their
+  /// readings unchanged.
   static Status verdict(const State& state);
   static void add_finding(const Unit& unit, const std::string& name, SensorHealth& health);
-  /// Adds warnings about exchanged or inverted axes of all IMUs (MultiImuSignCheck), and about a wrong scale
+  /// Adds findings about axes that are exchanged or inverted in all IMUs (MultiImuSignCheck), and about a wrong scale
   /// (lever_arm_agreement()). `gyro_confirmed` states whether another check confirms the scale of the gyros.
   static void add_findings(const std::optional<MultiImuSignCheck::DetectedMirroring>& mislabelled_axes,
                            const std::optional<double>& lever_arm_agreement, bool gyro_confirmed, SensorHealth& health);
 
   Eigen::Vector3d mean_imu_position_m() const { return mean_imu_position_m_; }
 
-  /// The samples must be simultaneous; the merged sample has the time stamp of the first IMU. `merged` is the mean over
-  /// `kWindow_s` in axes C, or empty between two averages. Returns `insufficient_data` if `samples` does not contain
-  /// `count` samples, or if none of the samples is finite. On error, the state is unchanged and `merged` is empty.
-  /// Cost: O(count), no allocation.
+  /// Processes simultaneous samples of all IMUs. `merged` is the mean over `kWindow_s` in axes C, with the time stamp
+  /// of the first IMU; empty between two means. Returns `insufficient_data` if `samples` does not contain `count`
+  /// samples, or if none of the samples is finite. On error, the state is unchanged and `merged` is empty. Cost:
+  /// O(count), no allocation.
   Status step(std::span<const ImuSample> samples, State& state, std::optional<ImuSample>& merged) const;
 
  private:
@@ -78,7 +78,7 @@ class ImuMerge {
 
   using ImuMask = std::array<bool, kImus>;
 
-  /// mean readings over a window; the clip flags cover the whole window
+  /// Mean reading of each IMU over a window, with the clip flags of all readings.
   using Readings = std::array<ImuSample, kImus>;
 
   void accumulate_window(std::span<const ImuSample> samples, double dt_s, State& state) const;

@@ -8,20 +8,20 @@
 
 namespace tumble {
 
-/// IMUs to merge. The members follow from the data sheets and mountings of the IMUs.
+/// Number, poses and ranges of the IMUs that ImuMerge fuses.
 struct ImuMergeSetup {
-  static constexpr int kImus = 4;  ///< maximum number of IMUs
+  static constexpr int kImus = 4;
   /// pose of each IMU in the common axes C of the rigid body; the first `count` entries are used
   std::array<Eigen::Isometry3d, kImus> T_mean_imu{};
   int count = 1;
   /// An accelerometer reading above this fraction of the range may be saturated during a part of its averaging window.
   static constexpr double kSubsampleSaturationRatio = 0.15;
-  static constexpr double kRateNoise_rad_s = 0.01;  ///< standard deviation of the mean rate over a window
+  static constexpr double kRateNoise_rad_s = 0.01;  ///< standard deviation of a gyro's mean rate over a window
   static constexpr double kWindow_s = 4e-3;         ///< averaging time of the readings
-  static constexpr double kGapMax_s = 1.0;          ///< a longer time between two samples causes an error
-  double gyro_range_rad_s = 1e3;                    ///< readings at or above this rate are saturated
+  static constexpr double kGapMax_s = 1.0;
+  double gyro_range_rad_s = 1e3;  ///< readings at or above this rate are saturated
   double accel_range_m_s2 = 1e5;
-  /// sensing directions of each IMU, as found by SaturationPlaneFinder
+  /// directions of the sensing elements of each IMU, as found by SaturationPlaneFinder
   std::array<SensingDirections, kImus> gyro_sensing_directions{}, accel_sensing_directions{};
 };
 

@@ -14,7 +14,8 @@
 
 namespace tumble {
 
-/// equal consecutive readings of one IMU, with the readings of other IMUs at the first one and the rotation since then
+/// Run of equal readings of one IMU, with the readings of the other IMUs at the start of the run, and the rotation
+/// since then.
 struct RepeatedImuReading {
   Eigen::Vector3d repeated_reading = Eigen::Vector3d::Zero(), other_imus_reading = Eigen::Vector3d::Zero();
   Eigen::Vector3d turned_rad = Eigen::Vector3d::Zero();
@@ -23,17 +24,17 @@ struct RepeatedImuReading {
   bool operator==(const RepeatedImuReading&) const = default;
 };
 
-/// rate errors of one IMU relative to the mean of all IMUs
+/// Errors of one IMU relative to the mean of all IMUs.
 struct MergedImuState {
   static constexpr int kErrorCount = 13;  ///< bias, scale and misalignment, time offset
 
   Eigen::Matrix<double, kErrorCount, 1> x = Eigen::Matrix<double, kErrorCount, 1>::Zero();
   Eigen::Matrix<double, kErrorCount, kErrorCount> covariance = Eigen::Matrix<double, kErrorCount, kErrorCount>::Zero();
-  ImuAverage window;  ///< average of the IMU's readings since the last window
-  /// mean rate and force over the last window; for an absent IMU, predicted from other IMUs
+  ImuAverage window;  ///< average of the readings since the last window
+  /// mean rate and specific force over the last window; predicted from the other IMUs if the IMU is excluded
   Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero(), last_force_m_s2 = Eigen::Vector3d::Zero();
-  double exclusion_left_s = 0.0;           ///< remaining time of exclusion from the mean force
-  std::int64_t excluded_window_count = 0;  ///< number of windows without this IMU
+  double exclusion_left_s = 0.0;  ///< remaining time of exclusion from the mean specific force
+  std::int64_t excluded_window_count = 0;
   RepeatedImuReading repeated_rate, repeated_force;
   double changing_readings_duration_s = 0.0;
   double rate_difference_to_others_rad_s = 0.0, force_disagreement_m_s2 = 0.0, disagreement_s = 0.0;
@@ -53,18 +54,18 @@ struct ImuMergeState {
   std::array<MergedImuState, kImus> imus{};
   ForceErrors::State forces;
   AngularRateRecovery::State rate_recovery;
-  Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();           ///< merged mean rate over the last window
-  Eigen::Vector3d previous_rate_rad_s = Eigen::Vector3d::Zero();  ///< merged mean rate over the window before the last
-  double rotation_rate_rad_s = 0.0;                               ///< mean of the rate over half a second
-  double window_s = 0.0;                                          ///< length of the current window
-  double length_s = 0.0, previous_length_s = 0.0;                 ///< lengths of the last two windows
+  Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();           ///< fused mean rate over the last window
+  Eigen::Vector3d previous_rate_rad_s = Eigen::Vector3d::Zero();  ///< fused mean rate over the window before the last
+  double rotation_rate_rad_s = 0.0;                               ///< mean magnitude of the rate over half a second
+  double window_s = 0.0;
+  double length_s = 0.0, previous_length_s = 0.0;                    ///< lengths of the last two windows
   double lever_arm_correlation = 0.0, lever_arm_effect_power = 0.0;  ///< sums for lever_arm_agreement()
   MultiImuSignCheck imu_sign_check;
   std::int64_t sample_count = 0, window_count = 0;
   int unclipped_windows = kAngularAccelerationWindows;  ///< windows since a gyro was clipped or an IMU absent, at most
                                                         ///< kAngularAccelerationWindows
   TimeNs last_time_ns = 0;
-  bool all_frozen = false;  ///< all IMUs in the last window are frozen
+  bool all_frozen = false;
   bool operator==(const ImuMergeState&) const = default;
 };
 

@@ -8,20 +8,20 @@
 
 namespace tumble {
 
-/// Detects wrong axes that all IMUs share: a flipped axis of the gyros or of the accelerometers, or two swapped axes.
-/// MultiImuSignCheck compares force differences between IMUs at different positions of one rigid body: imu_merge.md
-/// (I9).
+/// Detects axes that are flipped or swapped in all gyros, or in all accelerometers, of several IMUs on one rigid body.
+/// MultiImuSignCheck compares the specific forces at different positions with the measured rotation: imu_merge.md (I9).
 struct MultiImuSignCheck {
   static constexpr std::size_t kMirroredAlternatives =
       12;  ///< gyros, then accelerometers: x, y or z flipped; xy, yz or zx swapped
-  static constexpr double kMinEffectOnForces = 0.3;  ///< minimum effect on the forces; the effect of biases is smaller
+  static constexpr double kMinEffectOnForces =
+      0.3;  ///< minimum relative effect of an alternative on the force differences; biases have less
   static constexpr double kMinExplainedFraction =
-      0.5;  ///< minimum ratio explained / effect; the ratio is 1 if the alternative is correct, and -1 if not
+      0.5;  ///< minimum (explained difference / effect): 1 for a correct alternative, -1 for a wrong one
 
   std::array<double, kMirroredAlternatives> explained_effect_per_alternative{}, effect_per_alternative{};
 
-  /// All inputs are in common axes and cover the time `length_s`. `force_m_s2` and `position_m` are relative to the
-  /// mean of all IMUs. Cost: O(1), no allocation.
+  /// Adds the mean readings of one IMU over `length_s`, in common axes. `force_m_s2` and `position_m` are relative to
+  /// the mean of all IMUs. Cost: O(1), no allocation.
   void add(const Eigen::Vector3d& force_m_s2, const Eigen::Vector3d& position_m, const Eigen::Vector3d& rate_rad_s,
            const Eigen::Vector3d& acceleration_rad_s2, double length_s);
 
@@ -29,8 +29,8 @@ struct MultiImuSignCheck {
     std::size_t mirroring = 0;
     double explained_fraction = 0.0;
   };
-  /// Returns the flip or swap of axes that best explains the force differences, or no value if none reaches
-  /// kMinExplainedFraction.
+  /// Returns the flip or swap of axes that best explains the differences between specific forces, or no value if none
+  /// reaches kMinExplainedFraction.
   std::optional<DetectedMirroring> detected_mirroring() const;
 
   bool operator==(const MultiImuSignCheck&) const = default;

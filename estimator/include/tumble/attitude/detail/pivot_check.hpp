@@ -10,31 +10,31 @@
 
 namespace tumble {
 
-/// Checks whether rates are plausible for a body that never rests but is held by a hand, a hinge, or the ground. A held
-/// body rotates for one or two seconds about a point that hardly moves (the pivot). PivotMotionCheck compares the
-/// integrated force for the measured rates, for relabelled or inverted gyro axes, and for half or twice the rate:
-/// imu_merge.md (I27), (I28), (I29), (I30).
+/// Checks axes, signs and scale of the gyro for a body that never rests, but is held by a hand, a hinge, or the ground.
+/// Such a body rotates for one or two seconds about a point that hardly moves (pivot), so the integral of specific
+/// force plus gravity stays small. PivotMotionCheck compares this integral for the measured rates, relabelled or
+/// inverted gyro axes, and half or twice the rate: imu_merge.md (I27), (I28), (I29), (I30).
 ///
-/// PivotMotionCheck uses only unsaturated rates. PivotMotionCheck does not detect wrong rates of a body that flies or
-/// rolls, and wrong axis labels of a body that rotates about a single axis. PivotMotionCheck does not detect that all
-/// three axes of the accelerometer are flipped.
+/// PivotMotionCheck uses only unsaturated rates. The check does not detect faults if the body flies or rolls, wrong
+/// axis labels if the body rotates about a single axis, or flips of all three accelerometer axes.
 struct PivotMotionCheck {
-  int reading = 0;                      ///< index of the best gyro alternative; 0: unchanged gyro
-  double log_evidence = 0.0;            ///< evidence against the unchanged rates: sum of logarithms
-  std::size_t comparable_segments = 0;  ///< segments that the alternative or the unchanged rates explain
+  int reading = 0;                      ///< index of the best alternative of gyro axes and signs; 0: unchanged
+  double log_evidence = 0.0;            ///< log evidence against the unchanged rates
+  std::size_t comparable_segments = 0;  ///< time segments that the alternative or the unchanged rates explain
   std::size_t better_explained_segments = 0,
-              worse_explained_segments = 0;  ///< segments that the alternative explains better or worse
-  double scale = 1.0;                        ///< best scale of the rates, from segments with a near pivot
+              worse_explained_segments = 0;  ///< number of segments that the alternative explains better, and worse
+  double scale = 1.0;                        ///< best scale factor of the rates, from segments with a near pivot
   double scale_sigma = std::numeric_limits<double>::infinity();
   std::size_t gyro_scale_segments = 0,
-              segments_explained_unchanged = 0;  ///< segments that determine the scale; explained segments
+              segments_explained_unchanged =
+                  0;  ///< number of segments that determine the scale; number of explained segments
 
-  /// The ranges are from the data sheet; 0: unknown. Cost: O(samples).
+  /// Checks a recording. The ranges are from the data sheet; 0: unknown. Cost: O(samples).
   static PivotMotionCheck of(std::span<const ImuSample> samples, double gravity_m_s2, double gyro_range_rad_s,
                              double accel_range_m_s2);
 
-  /// Returns `out_of_range` if inverted, relabelled or rescaled gyro axes explain clearly more time segments, or if the
-  /// gyro's scale is wrong.
+  /// Returns `out_of_range` if inverted, relabelled or rescaled gyro axes explain clearly more time segments than the
+  /// measured rates.
   Status verdict() const;
 };
 

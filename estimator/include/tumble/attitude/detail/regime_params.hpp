@@ -11,8 +11,8 @@ namespace tumble {
 struct MotionRegimeParams {
   MotionRegimeEvidence::Params evidence;
   SpinTracker::Params spin;
-  double hand_held_probability_min = 0.02;  ///< minimum probability of hand-held motion for which its estimator runs
-  static constexpr double kSegmentGapMax_s = 0.1;  ///< clipped samples closer together than this form one segment
+  double hand_held_probability_min = 0.02;  ///< below this probability of hand-held motion, its estimator does not run
+  static constexpr double kSegmentGapMax_s = 0.1;  ///< clipped samples with shorter gaps form one segment
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {

@@ -15,10 +15,10 @@
 namespace tumble {
 
 /// Estimates the angular velocity of a body in flight, in contact or hand-held, over a whole recording.
-/// AngularRateSmoother estimates the rates for flight and contact. Where the body was probably hand-held while the gyro
-/// clipped, HandHeldSmoother estimates the rates for hand-held motion. MotionRegimeSmoother combines the rates of both
-/// smoothers by the probability of hand-held motion (MotionRegimeEvidence), which is constant during each saturated
-/// interval. SpinTracker replaces the rate of a saturated axis during a steady spin.
+/// AngularRateSmoother estimates the rates for flight and contact. HandHeldSmoother estimates the rates for saturated
+/// intervals in which the body was probably hand-held. Both rates are combined by the probability of hand-held motion
+/// (MotionRegimeEvidence), which is constant in each saturated interval. SpinTracker replaces the rate of a saturated
+/// axis during a steady spin.
 class MotionRegimeSmoother {
  public:
   struct Params : MotionRegimeParams {
@@ -34,19 +34,19 @@ class MotionRegimeSmoother {
   };
   struct Report {
     AngularRateReport rate;
-    bool regimes_estimated = false;          ///< MotionRegimeSmoother estimated the probabilities below
+    bool regimes_estimated = false;          ///< false: the probabilities below were not estimated
     RegimeProbabilities probabilities{};     ///< mean probabilities over all samples
     double hand_held_probability_max = 0.0;  ///< largest probability of hand-held motion in a clipped segment
     bool hand_held_smoother_ran = false;     ///< HandHeldSmoother succeeded; `hand_held` contains its report
     HandHeldSmoother::Report hand_held;
-    std::size_t spin_samples = 0;  ///< number of saturated samples that are probably in a steady spin
+    std::size_t spin_samples = 0;  ///< saturated samples that are probably in a steady spin
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit MotionRegimeSmoother(const Params& params);
 
-  /// Returns the status of AngularRateSmoother; on error, `rates` is empty. If HandHeldSmoother fails, `rates` contains
-  /// the result of AngularRateSmoother.
+  /// Estimates the rates at all samples. Returns the status of AngularRateSmoother; on error, `rates` is empty. If
+  /// HandHeldSmoother fails, `rates` contains the result of AngularRateSmoother.
   Status estimate(std::span<const ImuSample> samples, std::vector<AngularRateState>& rates, Report& report) const {
     return estimate(samples, {}, rates, report);
   }

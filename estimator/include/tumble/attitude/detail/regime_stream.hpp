@@ -14,11 +14,10 @@
 namespace tumble {
 
 /// Estimates the angular velocity of a body in flight, in contact or hand-held, sample by sample, with a fixed lag.
-/// AngularRateStream estimates the rates for flight and contact, and detects the saturation limits. Where the body is
-/// probably hand-held while the gyro clips, HandHeldRateStream estimates the rates for hand-held motion.
-/// MotionRegimeStream combines the rates of AngularRateStream and HandHeldRateStream by the probability of hand-held
-/// motion. An unclipped sample always has the rate of AngularRateStream. SpinTracker replaces the rate of a saturated
-/// axis during a steady spin.
+/// AngularRateStream estimates the rates for flight and contact, and detects the saturation limits. HandHeldRateStream
+/// estimates the rates of clipped samples for hand-held motion. Both rates of a clipped sample are combined by the
+/// probability of hand-held motion. Unclipped samples have the rate of AngularRateStream. SpinTracker replaces the rate
+/// of a saturated axis during a steady spin.
 ///
 /// HandHeldRateStream runs only while the probability of hand-held motion is at least `hand_held_probability_min`.
 class MotionRegimeStream {
@@ -42,17 +41,17 @@ class MotionRegimeStream {
     AngularRateStream::State rate;
     HandHeldRateStream::State hand_held;
     SpinTracker::State spin;
-    std::size_t spin_samples = 0;       ///< number of reported saturated samples that are probably in a steady spin
-    std::vector<ClipSigns> clip_signs;  ///< clip signs of AngularRateStream's window; buffer
+    std::size_t spin_samples = 0;       ///< saturated samples that are probably in a steady spin
+    std::vector<ClipSigns> clip_signs;  ///< buffer: clip signs of the samples in the window
     RegimeProbabilities probabilities{1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0};
     RegimeProbabilities regime_probability_sum{};  ///< sum over all reported samples
     std::size_t reported_sample_count = 0;         ///< number of reported samples
-    std::size_t combined_samples = 0;              ///< number of reported samples combined with HandHeldRateStream
-    std::size_t hand_held_start_count = 0;         ///< number of starts of HandHeldRateStream
-    std::size_t calibration_reset_count = 0;       ///< last value of AngularRateStream's counter of calibration resets
+    std::size_t combined_samples = 0;  ///< number of samples whose rate includes the result of HandHeldRateStream
+    std::size_t hand_held_start_count = 0;
+    std::size_t calibration_reset_count = 0;  ///< last value of AngularRateStreamState::calibration_reset_count
     double calibration_reset_rate =
         0.0;  ///< number of calibration resets of AngularRateStream, decaying with the time constant `rate.lag_s`
-    bool hand_held_stream_running = false;  ///< true if HandHeldRateStream is running
+    bool hand_held_stream_running = false;
     /// probabilities of hand-held motion in the last `kSegmentGapMax_s`; the oldest entry is the smallest
     std::vector<ReportedRegimeProbability> recent_probabilities;
     TimeNs reported_ns = 0;            ///< time of the last reported sample
@@ -65,15 +64,14 @@ class MotionRegimeStream {
   /// The returned state has all memory that push() needs.
   State start() const;
 
-  /// Processes one sample like AngularRateStream::push(), and combines the rates of AngularRateStream and
-  /// HandHeldRateStream.
+  /// Processes one sample; arguments and errors are those of AngularRateStream::push().
   Status push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
               std::optional<AngularRateState>& out) const;
   Status push(const ImuSample& sample, State& state, std::optional<AngularRateState>& out) const {
     return push(sample, {}, state, out);
   }
 
-  /// Appends the rates of the samples in the window that were not yet reported, oldest first.
+  /// Appends the rates at those samples in the window that were not yet returned, oldest first.
   void flush(const State& state, std::vector<AngularRateState>& out) const;
 
   const AngularRateStream& rate() const { return rate_; }

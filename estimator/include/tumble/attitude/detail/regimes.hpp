@@ -12,7 +12,7 @@
 
 namespace tumble {
 
-/// Probabilities of three kinds of motion at one sample, with the sum 1.
+/// Probabilities of free flight, contact and hand-held motion at one sample, with the sum 1.
 struct RegimeProbabilities {
   double flight = 0.0, contact = 0.0, hand_held = 0.0;
 };
@@ -20,13 +20,13 @@ struct RegimeProbabilities {
 /// Estimates the kind of motion (free flight, contact or hand-held) of each sample of a recording from the specific
 /// force.
 ///
-/// The residual force is the specific force minus the effect of rotation at the lever arm. The residual force is zero
-/// in free flight. In hand-held motion, the residual force is gravity plus a bounded acceleration in any direction. In
-/// contact, the residual force can have any magnitude. A Markov chain models the transitions between flight, contact
-/// and hand-held motion. Readings within kMemory_s count as one independent observation.
+/// The residual force is the specific force minus centripetal and tangential force at the lever arm. The residual force
+/// is zero in free flight, and has any magnitude in contact. In hand-held motion, the residual force is gravity plus a
+/// bounded acceleration. A Markov chain models the transitions between the kinds of motion. Readings within kMemory_s
+/// count as one independent observation.
 ///
-/// MotionRegimeEvidence does not use the attitude. MotionRegimeEvidence does not model ropes, buoyancy, and aerodynamic
-/// forces above 0.3 m/s^2.
+/// MotionRegimeEvidence does not use the attitude, and does not model ropes, buoyancy, and aerodynamic forces above 0.3
+/// m/s^2.
 class MotionRegimeEvidence {
  public:
   static constexpr double kMemory_s = 0.05;
@@ -42,14 +42,14 @@ class MotionRegimeEvidence {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit MotionRegimeEvidence(const Params& params);
 
-  /// `rates` contains the angular velocity of each sample, estimated for flight and contact. `lever_arm_m` is the
-  /// vector from the centre of mass to the IMU, in IMU axes. Returns `ok`, `empty` if there are no samples, or
-  /// `out_of_range` if `rates` does not have one element per sample. Cost: O(N).
+  /// Estimates the probabilities at all samples. `rates` contains the angular velocity at each sample, estimated for
+  /// flight and contact. `lever_arm_m` is the vector from the centre of mass to the IMU, in IMU axes. Returns `ok`,
+  /// `empty` if there are no samples, or `out_of_range` if `rates` does not have one element per sample. Cost: O(N).
   Status find(std::span<const ImuSample> samples, std::span<const AngularRateState> rates,
               const Eigen::Vector3d& lever_arm_m, const Eigen::Matrix3d& lever_arm_covariance_m2,
               std::vector<RegimeProbabilities>& out) const;
 
-  /// Returns the probabilities at `sample`, which is `dt_s` later than the probabilities `before`.
+  /// Returns the probabilities at `sample`, from the probabilities `before` at the time `dt_s` earlier.
   /// `angular_acceleration_rad_s2` is the time derivative of the rate, in IMU axes. Cost: O(1).
   RegimeProbabilities next(const RegimeProbabilities& before, double dt_s, const ImuSample& sample,
                            const AngularRateState& rate, const Eigen::Vector3d& angular_acceleration_rad_s2,
@@ -62,7 +62,7 @@ class MotionRegimeEvidence {
   Params params_;
 };
 
-/// Combines two estimates of a rate, where `share` is the probability that `second` is correct. The result has the mean
+/// Combines two estimates of a rate, where `share` is the probability that `second` is correct. The result has the rate
 /// of the more probable estimate, and a covariance that includes the difference between both estimates.
 AngularRateState mix_rate_states(const AngularRateState& first, const AngularRateState& second, double share);
 

@@ -11,15 +11,14 @@
 
 namespace tumble {
 
-/// Checks estimated rates and the accelerometer with the specific force at rest, which must have the magnitude of
-/// gravity. A wrong magnitude reveals another unit of the accelerometer, for example g. Between two rests, the specific
-/// force rotated by the estimated rates must integrate to gravity times the duration: imu_merge.md (I23), (I24), (I25),
-/// (I26).
+/// Checks accelerometer and estimated rates with the body at rest. The specific force at rest must have the magnitude
+/// of gravity; a wrong magnitude reveals a wrong unit, for example g. Between two rests, the specific force, rotated by
+/// the estimated rates, must integrate to zero velocity change after gravity is subtracted: imu_merge.md (I23), (I24),
+/// (I25), (I26).
 ///
 /// RestGravity does not detect wrong rates if the body returns to its initial attitude, rotates about the vertical, or
-/// rests less than twice. RestGravity does not detect an accelerometer with all axes flipped. RestGravity mistakes a
-/// body that falls for a second without rotation, and never rests, for a wrong accelerometer. If one rest is on the
-/// ground and another in a steadily moving vehicle, RestGravity mistakes correct rates for wrong rates.
+/// rests less than twice. An accelerometer with all axes flipped is not detected. False alarms occur if a body that
+/// never rests falls for a second without rotation, or if one rest is in a moving vehicle and the other is not.
 class RestGravity {
  public:
   struct Setup {
@@ -29,45 +28,49 @@ class RestGravity {
   struct GravityMagnitudeState {
     RestDetector::State stationary_state, stationary_weightless, stationary_above_gravity;
     double rest_s = 0.0, stationary_force_integral_m_s =
-                             0.0;  ///< total duration of rests, and integral of the specific force at rest
-    double weightless_s = 0.0;     ///< duration of rests without force
+                             0.0;  ///< total duration of rests, and integral of the force magnitude over these rests
+    double weightless_s = 0.0;     ///< duration of rests with a specific force close to zero
     TimeNs last_time_ns = 0;
     bool started = false, is_stationary = false;
     bool operator==(const GravityMagnitudeState&) const = default;
   };
   struct State : GravityMagnitudeState {
     Eigen::Vector3d last_rest_force_m_s2 =
-        Eigen::Vector3d::Zero();  ///< force at the last rest in sensor axes; 0: no rest yet
+        Eigen::Vector3d::Zero();  ///< specific force at the last rest, in sensor axes; 0: no rest yet
     Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< rotation since the last rest
     double angle_since_last_rest_rad = 0.0,
-           angle_variance_rad2 = 0.0;  ///< angle since the last rest, and variance of its error
-    Eigen::Vector3d integrated_force_m_s = Eigen::Vector3d::Zero();  ///< integrated force since the last rest
+           angle_variance_rad2 = 0.0;  ///< rotation angle since the last rest, and variance of the angle's error
+    Eigen::Vector3d integrated_force_m_s = Eigen::Vector3d::Zero();  ///< integrated specific force since the last rest
     double span_s = 0.0,
-           integrated_saturation_deficit_m_s = 0.0;  ///< time since the last rest; integrated saturation deficit
+           integrated_saturation_deficit_m_s =
+               0.0;  ///< time since the last rest; integrated saturation deficit of the accelerometer
     double unmeasured_duration_s = 0.0,
-           unmeasured_rotation_variance = 0.0;  ///< duration and variance of the current run of unmeasured samples
+           unmeasured_rotation_variance =
+               0.0;  ///< duration and angle variance of the current run of samples without measured rate
     double worst_velocity_error_ratio = 0.0,
-           worst_pair_error_limit = 0.0;  ///< velocity error of the worst pair, and limit
-    std::size_t compared_rest_pairs = 0;  ///< number of compared pairs of rests
+           worst_pair_error_limit =
+               0.0;  ///< velocity error between two rests for the worst pair of rests, and its limit
+    std::size_t compared_rest_pairs = 0;
   };
 
   /// Throws InvalidParams if gravity is beyond [1e-12, 100] m/s^2, or if the range is negative or not finite.
   explicit RestGravity(const Setup& setup);
 
-  /// Cost: O(1), no allocation. Samples that are not finite or out of order are ignored.
+  /// Processes one sample with its estimated rate. Samples that are not finite or out of order are ignored. Cost: O(1),
+  /// no allocation.
   void step(const ImuSample& sample, const AngularRateState& rate, State& state) const;
-  /// Checks only the magnitude of the specific force at rest.
+  /// Processes one sample for the check of the magnitude only.
   void step(const ImuSample& sample, GravityMagnitudeState& state) const {
     (void)detect_stationary_periods(sample, state);
   }
 
-  /// Reduces the weight of old rests to a minute, so that a warning ends after its cause.
+  /// Reduces the weight of rests older than about a minute, so that a finding ends after its cause.
   static void limit_memory(GravityMagnitudeState& state);
 
   /// Returns `out_of_range` if the mean magnitude of the specific force at rest differs from gravity by more than 15 %.
   Status gravity_magnitude_verdict(const GravityMagnitudeState& state) const;
-  /// Returns the error of gravity_magnitude_verdict(), if any. Otherwise returns `out_of_range` if the velocity,
-  /// integrated between two rests, contradicts zero velocity at both rests.
+  /// Returns the error of gravity_magnitude_verdict(), if any. Otherwise returns `out_of_range` if the integrated
+  /// velocity change between two rests is not zero.
   Status verdict(const State& state) const;
 
  private:
