@@ -14,7 +14,7 @@ struct MultiImuSignCheck {
   static constexpr std::size_t kMirroredAlternatives =
       12;  ///< gyros, then accelerometers: x, y or z flipped; xy, yz or zx swapped
   static constexpr double kMinEffectOnForces =
-      0.3;  ///< minimum relative effect of an alternative on the force differences; biases have less
+      0.3;  ///< minimum effect of an alternative on the force differences; the effect of biases is smaller
   static constexpr double kMinExplainedFraction =
       0.5;  ///< minimum (explained difference / effect): 1 for a correct alternative, -1 for a wrong one
 

@@ -11,9 +11,9 @@
 namespace tumble {
 
 /// Checks axes, signs and scale of the gyro for a body that never rests, but is held by a hand, a hinge, or the ground.
-/// Such a body rotates for one or two seconds about a point that hardly moves (pivot), so the integral of specific
-/// force plus gravity stays small. PivotMotionCheck compares this integral for the measured rates, relabelled or
-/// inverted gyro axes, and half or twice the rate: imu_merge.md (I27), (I28), (I29), (I30).
+/// Such a body rotates for one or two seconds about a point that hardly moves (pivot). PivotMotionCheck compares the
+/// integrated specific force with its prediction for rotation about a pivot. The alternatives are the measured rates,
+/// relabelled or inverted gyro axes, and half or twice the rate: imu_merge.md (I27), (I28), (I29), (I30).
 ///
 /// PivotMotionCheck uses only unsaturated rates. The check does not detect faults if the body flies or rolls, wrong
 /// axis labels if the body rotates about a single axis, or flips of all three accelerometer axes.
@@ -34,7 +34,7 @@ struct PivotMotionCheck {
                              double accel_range_m_s2);
 
   /// Returns `out_of_range` if inverted, relabelled or rescaled gyro axes explain clearly more time segments than the
-  /// measured rates.
+  /// measured rates, or if the gyro's scale is wrong.
   Status verdict() const;
 };
 

@@ -45,7 +45,7 @@ class MotionRegimeStream {
     std::vector<ClipSigns> clip_signs;  ///< buffer: clip signs of the samples in the window
     RegimeProbabilities probabilities{1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0};
     RegimeProbabilities regime_probability_sum{};  ///< sum over all reported samples
-    std::size_t reported_sample_count = 0;         ///< number of reported samples
+    std::size_t reported_sample_count = 0;
     std::size_t combined_samples = 0;  ///< number of samples whose rate includes the result of HandHeldRateStream
     std::size_t hand_held_start_count = 0;
     std::size_t calibration_reset_count = 0;  ///< last value of AngularRateStreamState::calibration_reset_count

@@ -12,20 +12,20 @@
 
 namespace tumble {
 
-/// SpinRate is the rate about the spin axis at one sample.
+/// Rate about the spin axis at one sample.
 struct SpinRate {
-  int axis = -1;  ///< gyro axis of the spin; -1: the body does not spin
+  int axis = -1;  ///< gyro axis closest to the spin axis; -1: the body does not spin
   double rate_rad_s = 0.0, variance_rad2_s2 = 0.0;
   double probability = 0.0;  ///< probability of a steady spin
-  bool saturated = false;    ///< the gyro axis of the spin is saturated or possibly saturated
+  bool saturated = false;    ///< the reading of this gyro axis is saturated or possibly saturated
 };
 
-/// SpinFilter is the state of one Kalman filter; spin_models.hpp defines the components of `x`.
+/// State of one Kalman filter; spin_models.hpp defines the components of `x`.
 template <int N>
 struct SpinFilter {
   Eigen::Matrix<double, N, 1> x = Eigen::Matrix<double, N, 1>::Zero();
   Eigen::Matrix<double, N, N> covariance = Eigen::Matrix<double, N, N>::Zero();
-  double variance_ratio = 1.0;  ///< ratio of the measured to the assumed variance of the readings across the spin axis
+  double variance_ratio = 1.0;  ///< measured / assumed variance of the readings across the spin axis
 };
 
 /// Estimates the rate of a steady spin while the gyro axis of the spin is saturated, from the readings across the spin
@@ -54,7 +54,7 @@ class SpinTracker {
                                 "minimum probability of a steady spin that changes the rate of a saturated axis"});
     }
   };
-  /// Hypotheses are a steady spin and readings without relation to the spin.
+  /// Both filters for one effect: with a steady spin, and with readings that do not depend on the spin.
   template <int N>
   struct Hypotheses {
     SpinFilter<N> spin, independent_filter;
@@ -71,19 +71,19 @@ class SpinTracker {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit SpinTracker(const Params& params);
 
-  /// Processes the next finite sample. Bit j of `saturated_axes` states that the reading of gyro axis j is saturated or
-  /// possibly saturated, and bit 3 + j that the reading of accelerometer axis j is saturated.
-  /// With further IMUs on the body (`further_imus`), only the modulation of the rate is used.
+  /// Processes the next finite sample. Bit j of `saturated_axes` marks gyro axis j as saturated or possibly saturated,
+  /// and bit 3 + j marks accelerometer axis j as saturated. With further IMUs on the body (`further_imus`), only the
+  /// modulation of the rate is used.
   SpinRate step(const ImuSample& sample, std::uint8_t saturated_axes, State& state, bool further_imus = false) const;
 
-  /// Returns the rate of the spin at each sample of a recording, from all earlier and later samples of the spin. The
-  /// argument `saturated_axes` contains one value per sample. Memory: about 2 kB per sample of the longest spin.
+  /// Returns the spin rate at each sample of a recording, from all earlier and later samples of the spin.
+  /// `saturated_axes` contains one value per sample. Memory: about 2 kB per sample of the longest spin.
   std::vector<SpinRate> smooth(std::span<const ImuSample> samples, std::span<const std::uint8_t> saturated_axes,
                                bool further_imus = false) const;
 
-  /// Combines a rate with the rate of the spin by the probability of a steady spin. The result equals `rate` if the
-  /// spin axis is unsaturated, or if the probability is below `probability_min`. The result also equals `rate` if
-  /// further IMUs measured `rate` (`further_imus`) with a smaller variance.
+  /// Combines an estimated rate with the spin rate by the probability of a steady spin. The result equals `rate` if the
+  /// spin axis is unsaturated, if the probability is below `probability_min`, or if further IMUs (`further_imus`) give
+  /// `rate` a smaller variance.
   AngularRateState combine_with_spin_rate(const AngularRateState& rate, const SpinRate& spin,
                                           bool further_imus = false) const;
 

@@ -6,8 +6,8 @@
 
 namespace tumble {
 
-/// On error, returns the status of check_stamp_order() and leaves `dt_s` unchanged. No pair of time stamps causes an
-/// overflow if `gap_max_s` is at most 1e9.
+/// Computes the time `dt_s` between two time stamps, without overflow if `gap_max_s` is at most 1e9. On error, returns
+/// the status of check_stamp_order() and leaves `dt_s` unchanged.
 Status elapsed_time_since_last(TimeNs time_ns, TimeNs last_time_ns, double gap_max_s, double& dt_s);
 
 }  // namespace tumble

@@ -20,13 +20,15 @@ struct TumbleAttitudeState {
   Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();
   Eigen::Vector2d v_W_m_s = Eigen::Vector2d::Zero();
   Eigen::Vector2d displacement_W_m = Eigen::Vector2d::Zero();
-  /// Covariance of the errors in this order: tilt error (phi_x, phi_y) in world axes, bias in IMU axes, velocity,
-  /// displacement, heading error phi_z. The attitude error is defined by q_true = Exp(phi) q_WI.
+  /// Covariance of the errors in this order: tilt (phi_x, phi_y) in world axes, gyro bias in IMU axes, velocity,
+  /// displacement, heading phi_z. The attitude error phi is defined by q_true = Exp(phi) q_WI.
   Covariance covariance = Covariance::Zero();
-  ImuAverage average;  ///< average of the readings that are not yet processed
-  Eigen::Matrix3d recovered_covariance_rad2_s2 = Eigen::Matrix3d::Zero();   ///< mean rate covariance in `average`
-  Eigen::Quaterniond last_processed_q_WI = Eigen::Quaterniond::Identity();  ///< attitude at the last processed average
-  // integrals since the last node
+  ImuAverage average;  ///< average of the readings that the filter has not yet processed
+  Eigen::Matrix3d recovered_covariance_rad2_s2 =
+      Eigen::Matrix3d::Zero();  ///< mean covariance of the recovered rates in `average`
+  Eigen::Quaterniond last_processed_q_WI =
+      Eigen::Quaterniond::Identity();  ///< attitude at the end of the last processed average
+  // Integrals since the last measurement update.
   Eigen::Matrix3d integrated_rotation_matrix_s = Eigen::Matrix3d::Zero();
   Eigen::Vector3d force_integral_W_m_s = Eigen::Vector3d::Zero();
   double squared_rate_integral_rad2_s = 0.0;
@@ -40,8 +42,8 @@ struct TumbleAttitudeState {
   CoarseAlignment alignment;
   RestDetector::State stationary_state;
   bool at_rest = false;
-  // state of a rolling sphere
-  Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();  ///< rate of the last sample, minus the bias
+  // State of a rolling sphere.
+  Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();  ///< rate of the last sample, minus the gyro bias
   double slip_duration_s = 0.0, grip_duration_s = 0.0;
   bool slipping = false;
   TimeNs last_time_ns = 0;
@@ -51,8 +53,8 @@ struct TumbleAttitudeState {
 
 struct TumbleAttitudeParams {
   static constexpr double kRecoveredTau_s = 0.05;  ///< correlation time of the error of a recovered rate
-  /// Random walks of the rate and velocity of tumbling bodies during a gap. On hills, stairs and cliffs, the true
-  /// random walks over 0.05 to 0.5 s are 3.0 to 11.4 rad/s and 2.4 to 4.1 m/s per sqrt(s) (docs/figures.md).
+  /// Random walks of the rate and velocity of tumbling bodies during a gap. On simulated hills, stairs and cliffs, rate
+  /// and velocity change by 3.0 to 11.4 rad/s and 2.4 to 4.1 m/s per sqrt(s) (docs/figures.md).
   static constexpr double kGapRateWalk_rad_s_sqrts = 7.0;
   static constexpr double kGapVelocityWalk_m_s_sqrts = 3.3;
   double gravity_m_s2 = 9.80665;
@@ -68,30 +70,25 @@ struct TumbleAttitudeParams {
   }
 };
 
-/// Estimates attitude from gyro and accelerometer, assuming that the velocity of the body is bounded, and zero at rest.
+/// Estimates attitude from gyro and accelerometer, for a body whose velocity is bounded, and zero at rest.
 ///
-/// TumbleAttitude integrates the gyro. Weak pseudo-measurements of zero velocity and zero displacement correct tilt and
-/// gyro bias every 0.04 s. At rest, TumbleAttitude measures the gyro bias and keeps the attitude constant. The
-/// equations are in docs/maths/attitude.md.
+/// TumbleAttitude integrates gyro and accelerometer. Every 0.04 s, weak pseudo-measurements of zero velocity and zero
+/// displacement correct tilt and gyro bias. At rest, TumbleAttitude measures the gyro bias and keeps the attitude
+/// constant. The equations are in docs/maths/attitude.md.
 ///
-/// The extent of the motion is not known in advance, and ranges from a few centimetres to a whole hillside.
-/// TumbleAttitude accepts a large velocity or displacement as real motion if the tilt variance cannot explain the
-/// value. After accepting a large motion, TumbleAttitude increases the assumed standard deviation of velocity or
-/// displacement for 3 s.
+/// If the tilt variance cannot explain a large velocity or displacement, the motion is real. TumbleAttitude then
+/// increases the assumed standard deviation of velocity or displacement for 3 s.
 ///
-/// The centre of a rolling sphere of radius r has the velocity r w x n, with the rate w and the floor's normal n. The
-/// IMU's velocity differs from the centre's velocity by w x (R rho), with the attitude R and the lever arm rho. The
-/// rolling constraint predicts the integral of the specific force. The integral determines tilt and bias, and does not
-/// need the derivative of the rate. A velocity that does not fit the rolling constraint indicates slip. During slip,
-/// TumbleAttitude pauses its corrections for at most 3 s.
+/// For a rolling sphere, the rolling constraint predicts the velocity of the IMU from the rate, and so the integral of
+/// the specific force. This prediction replaces the pseudo-measurements. A velocity that does not fit the rolling
+/// constraint indicates slip. During slip, TumbleAttitude pauses the corrections for at most 3 s.
 ///
-/// TumbleAttitude averages the readings of a fast IMU over 4 ms, and extrapolates the attitude between averages.
-/// In a gap longer than 0.05 s, TumbleAttitude interpolates the rate and keeps the velocity, with increased
-/// variances. A body that is at rest before and after a gap is assumed to be at rest during the gap. If a gap increases
-/// the tilt's standard deviation to 0.3 rad, the linearisation of the Kalman filter is invalid. A coarse
-/// alignment then estimates the tilt in parallel to the Kalman filter. Until the coarse alignment ends, the reported
-/// tilt variance is at least the variance after the gap. If Kalman filter and coarse alignment disagree, the filter
-/// restarts from the alignment.
+/// In a gap between samples longer than 0.05 s, TumbleAttitude interpolates the rate and keeps the velocity, with
+/// increased variances. A body that is at rest before and after a gap is assumed to be at rest during the gap. If a gap
+/// increases the tilt's standard deviation to 0.3 rad, the linearisation of the Kalman filter may be invalid. A coarse
+/// alignment (CoarseAlignment) then estimates the tilt in parallel to the Kalman filter. Until the coarse alignment
+/// ends, the reported tilt variance is at least the variance after the gap. If Kalman filter and coarse alignment
+/// disagree, the filter restarts from the alignment.
 ///
 /// The attitude is wrong if the body accelerates in one direction for many seconds. The heading drifts, because
 /// TumbleAttitude has no heading reference. Bias and scale errors of the accelerometer cause a tilt error.
@@ -102,8 +99,8 @@ class TumbleAttitude {
 
   explicit TumbleAttitude(const Params& params);
 
-  /// The first sample sets the attitude from its specific force, with yaw 0. On error, the state is unchanged. Cost:
-  /// O(1), no allocation.
+  /// Processes one sample. The specific force of the first sample determines the initial tilt; the initial yaw is 0. On
+  /// error, the state is unchanged. Cost: O(1), no allocation.
   Status step(const ImuSample& sample, State& state) const { return step(sample, Eigen::Matrix3d::Zero(), state); }
   /// Processes a sample whose rate was recovered from saturation. `rate_covariance_rad2_s2` is the covariance of the
   /// rate in sensor axes, or zero for a measured rate. The error of a recovered rate has the correlation time

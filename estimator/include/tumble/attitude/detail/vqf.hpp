@@ -13,15 +13,15 @@
 
 namespace tumble {
 
-/// LowPass is a second-order Butterworth low-pass filter (bilinear transform, corner frequency sqrt(2) / (2 pi tau)).
-/// Until the time tau has passed, the output is the mean of all inputs.
+/// Second-order Butterworth low-pass filter (bilinear transform, corner frequency sqrt(2) / (2 pi tau)). Until the time
+/// tau has passed, the output is the mean of all inputs.
 template <int Rows>
 struct LowPass {
   using Vector = Eigen::Matrix<double, Rows, 1>;
 
   Vector value = Vector::Zero();
-  Vector normalised_derivative = Vector::Zero();  ///< derivative divided by the corner's angular frequency
-  Vector input = Vector::Zero();                  ///< the last input
+  Vector normalised_derivative = Vector::Zero();  ///< derivative divided by the angular corner frequency
+  Vector input = Vector::Zero();
   double averaged_duration_s = 0.0;
   double samples = 0.0;
 
@@ -50,8 +50,8 @@ inline double low_pass_prewarp(double tau_s, double dt_s) {
   return std::tan(std::min(dt_s / (std::numbers::sqrt2 * tau_s), 1.5));
 }
 
-/// VqfParams contains the parameters of Vqf, named as in the publication. The parameters for which the authors use one
-/// value for all devices are constants in the source.
+/// Parameters of Vqf, named as in the publication. Parameters for which the authors use one value for all IMUs are
+/// constants in the source.
 struct VqfParams {
   double tau_s = 3.0;  ///< time constant of the low-pass filter on the specific force
   bool rest_bias_estimation = true;
@@ -75,14 +75,14 @@ struct VqfParams {
 /// Estimates attitude from gyro and accelerometer with the versatile quaternion filter (VQF). Source: Laidig and Seel,
 /// "VQF", Information Fusion 91, 2023.
 ///
-/// Vqf integrates the gyro to a nearly inertial frame N, and low-pass filters the specific force in frame N to obtain
-/// the vertical. A Kalman filter estimates the gyro bias, at rest and in motion. Vqf estimates neither the heading nor,
-/// in motion, the bias about the vertical.
+/// Gyro integration gives the attitude relative to a nearly inertial frame N. The low-pass filtered specific force in
+/// frame N gives the vertical. A Kalman filter estimates the gyro bias, at rest and in motion. Vqf estimates neither
+/// the heading nor, in motion, the bias about the vertical.
 class Vqf {
  public:
   using Params = VqfParams;
   struct State {
-    Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();  ///< estimated attitude, q_WN * q_NI
+    Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();  ///< estimated attitude: q_WN * q_NI
     Eigen::Quaterniond attitude_without_correction =
         Eigen::Quaterniond::Identity();  ///< attitude from the gyro only, with the bias subtracted
     Eigen::Quaterniond inclination_correction = Eigen::Quaterniond::Identity();
@@ -102,8 +102,9 @@ class Vqf {
 
   explicit Vqf(const Params& params);
 
-  /// The first sample sets the attitude from its specific force, with yaw 0. If the specific force is below 1e-6 m/s^2,
-  /// step() integrates the gyro without a correction. On error, the state is unchanged. Cost: O(1), no allocation.
+  /// Processes one sample. The specific force of the first sample determines the initial tilt; the initial yaw is 0. If
+  /// the specific force is below 1e-6 m/s^2, step() integrates the gyro without a correction. On error, the state is
+  /// unchanged. Cost: O(1), no allocation.
   Status step(const ImuSample& sample, State& state) const;
 
  private:

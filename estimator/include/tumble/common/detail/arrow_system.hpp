@@ -22,23 +22,23 @@ struct BlockArrowSystem {
   using BorderMatrix = Eigen::Matrix<double, Border, Border>;
   using BorderVector = Eigen::Matrix<double, Border, 1>;
 
-  /// Before elimination, a block row contains D, E, B and g of the matrix above. After elimination, the block row
-  /// contains L^-1, L^-1 E, L^-1 B and L^-1 g, with D = L L'.
+  /// Row of blocks D, E, B and g of the normal equations. After elimination, the row contains L^-1, L^-1 E, L^-1 B and
+  /// L^-1 g, with the Cholesky factor L of D.
   struct StateBlock {
     StateMatrix diagonal = StateMatrix::Zero();
-    StateMatrix coupling_to_next_state =
-        StateMatrix::Zero();  ///< coupling of this block (rows) to the next block (columns)
+    StateMatrix coupling_to_next_state = StateMatrix::Zero();  ///< coupling of this block to the next block
     CrossMatrix border_coupling = CrossMatrix::Zero();
     StateVector gradient = StateVector::Zero();
   };
 
-  /// border block C and its gradient; after elimination, the Schur complements of both
+  /// Border block C and its gradient; after elimination, the Schur complements of both.
   struct BorderBlock {
     BorderMatrix matrix = BorderMatrix::Zero();
     BorderVector gradient = BorderVector::Zero();
   };
 
-  /// distribution of a block for a known border: covariance, and derivative of the mean by the border
+  /// Normal distribution of a block for a known border: covariance, and derivative of the mean with respect to the
+  /// border.
   struct StateGivenNextState {
     StateMatrix state;
     CrossMatrix border_jacobian;
@@ -48,16 +48,16 @@ struct BlockArrowSystem {
   /// false if the block is not positive definite.
   static bool eliminate(StateBlock& block, StateBlock* next, BorderBlock& corner);
 
-  /// Computes the step of the border and its covariance, after all blocks are eliminated. Returns false if the corner
-  /// is not positive definite.
+  /// Computes the solution for the border and its covariance, after all blocks are eliminated. Returns false if the
+  /// corner is not positive definite.
   static bool solve_border_block(const BorderBlock& corner, BorderVector& step, BorderMatrix& covariance);
 
-  /// Returns the step of an eliminated block from the steps of the next block (null for the last block) and of the
-  /// border.
+  /// Returns the solution for an eliminated block, from the solutions for the next block (null for the last block) and
+  /// for the border.
   static StateVector back_substitute(const StateBlock& block, const StateVector* next_step,
                                      const BorderVector& border_step);
 
-  /// `next` is null for the last block.
+  /// Returns the distribution of an eliminated block. `next` is null for the last block.
   static StateGivenNextState state_given_next_state(const StateBlock& block, const StateGivenNextState* next);
 
  private:
@@ -65,7 +65,7 @@ struct BlockArrowSystem {
   static void subtract_squared_coupling(const CrossMatrix& border, BorderMatrix& corner);
 };
 
-// Replaces `a` with the inverse of its Cholesky factor. For small blocks, plain loops over columns are several times
+// Replaces `a` by the inverse of its Cholesky factor. For small blocks, plain loops over columns are several times
 // faster than Eigen's general triangular solvers.
 template <int State, int Border>
 bool BlockArrowSystem<State, Border>::invert_cholesky_factor(StateMatrix& a) {
@@ -94,7 +94,6 @@ bool BlockArrowSystem<State, Border>::invert_cholesky_factor(StateMatrix& a) {
   return true;
 }
 
-// Computes only one triangle of the symmetric product.
 template <int State, int Border>
 void BlockArrowSystem<State, Border>::subtract_squared_coupling(const CrossMatrix& border, BorderMatrix& corner) {
   constexpr int kHead = Border > 16 ? 12 : Border > 8 ? 8 : Border - 1, kTail = Border - kHead;

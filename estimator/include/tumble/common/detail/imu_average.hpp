@@ -9,15 +9,15 @@
 namespace tumble {
 
 /// Averages IMU readings over time windows of one length, so that a filter does not depend on the sample rate of the
-/// IMU. ImuAverage neglects coning and sculling within the window.
+/// IMU. Coning and sculling within the window are neglected.
 struct ImuAverage {
-  ImuSample mean;                ///< time stamp of the last reading, clip flags of all readings
+  ImuSample mean;                ///< with the time stamp of the last reading and the clip flags of all readings
   double length_s = 0.0;         ///< total duration of the readings
-  double rate_peak_rad_s = 0.0;  ///< largest component of a single reading
+  double rate_peak_rad_s = 0.0;  ///< largest rate component of a single reading
   double force_peak_m_s2 = 0.0;
   std::int64_t readings = 0;
 
-  /// `sample` is a mean over the time `dt_s` before its time stamp.
+  /// Adds a reading, which is the mean over the time `dt_s` before its time stamp.
   void add(const ImuSample& sample, double dt_s) {
     length_s += dt_s;
     if (++readings == 1) {
@@ -33,7 +33,7 @@ struct ImuAverage {
     force_peak_m_s2 = std::max(force_peak_m_s2, sample.specific_force_m_s2.cwiseAbs().maxCoeff());
   }
 
-  /// Returns true if another reading of length `dt_s` would make the length less close to `window_s`.
+  /// Returns true if the length is closer to `window_s` now than after another reading of length `dt_s`.
   bool full(double window_s, double dt_s) const { return length_s >= window_s - 0.5 * dt_s; }
 
   bool operator==(const ImuAverage& other) const {

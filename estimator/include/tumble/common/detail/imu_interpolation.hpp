@@ -10,14 +10,14 @@ namespace tumble {
 
 struct ImuSamplePair {
   std::size_t index_before = 0,
-              index_after = 0;        ///< neighbouring samples; outside the recording, the two samples at the end
-  double interpolation_weight = 0.0;  ///< interpolation weight; outside of [0, 1] outside the recording
-  double length_s = 0.0;              ///< time between the two neighbouring samples
+              index_after = 0;        ///< neighbouring samples; outside of the recording, the two samples at its end
+  double interpolation_weight = 0.0;  ///< weight of the later sample; not within [0, 1] outside of the recording
+  double length_s = 0.0;              ///< time between the neighbouring samples
   bool is_inside_recording() const { return interpolation_weight >= 0.0 && interpolation_weight <= 1.0; }
 };
 
-/// Interpolates the readings of one IMU linearly at the time stamps of another IMU. ImuInterpolation neglects different
-/// averaging windows of the two IMUs, and rotation within a window.
+/// Interpolates the readings of one IMU linearly at the time stamps of another IMU. Different averaging windows of the
+/// two IMUs, and rotation within a window, are neglected.
 class ImuInterpolation {
  public:
   /// The constructor needs at least two samples with increasing time stamps, which must outlive the object.

@@ -7,8 +7,8 @@
 namespace tumble {
 
 // Measurement updates of a Kalman filter (Kalman, Journal of Basic Engineering 82, 1960). All functions return the
-// correction of the state of N numbers, and update its covariance P (N x N, positive semidefinite). The cost is O(N^2)
-// per measured number, without allocation for fixed N.
+// correction of the state vector with N components, and update its covariance P. The cost is O(N^2) per measured
+// number, without allocation for fixed N.
 
 /// `row` (N numbers) is the derivative of the measurement with respect to the state, and `innovation` is the
 /// measurement minus its prediction.

@@ -8,9 +8,9 @@
 
 namespace tumble {
 
-/// ParallelFor is a function of the caller that runs body(0) to body(count - 1) once each, in any order and on any
-/// threads. A ParallelFor returns when all calls of `body` are done. Without a ParallelFor, the calling thread does all
-/// work. Results are bit-identical for any number of threads.
+/// Function of the caller that runs body(0) to body(count - 1) once each, in any order and on any threads, and returns
+/// when all calls are done. Without a ParallelFor, the calling thread does all work. Results are bit-identical for any
+/// number of threads.
 using ParallelFor = std::function<void(std::size_t count, const std::function<void(std::size_t)>& body)>;
 
 inline void run_parallel(const ParallelFor& parallel_for, std::size_t count,

@@ -14,42 +14,43 @@
 
 namespace tumble {
 
-/// ratio of displacements measured by the lidar to displacements measured by the IMU
+/// Ratio of displacements measured by the lidar to displacements measured by the IMU.
 struct LidarScale {
   double scale = 1.0;
   double sigma = std::numeric_limits<double>::infinity();
-  std::size_t velocity_change_count = 0;  ///< number of compared velocity changes
+  std::size_t velocity_change_count = 0;
 
-  /// Returns true if the scale differs from 1 by more than 2 % and by more than five standard deviations.
+  /// Returns true if the ratio differs from 1 by more than 2 % and by more than five standard deviations.
   bool is_inconsistent() const;
   Status verdict() const;
 };
 
-/// Estimates the scale of the lidar's ranges over the sweeps of a run, by a robust regression (Huber, 1964) of velocity
-/// changes. The velocity changes from the lidar poses, over two consecutive spans of 0.4 s, are compared with the
-/// integrated acceleration of the IMU. Spans with a saturated accelerometer or with unconstrained sweeps are skipped.
-/// Without acceleration, the scale is not observable. The standard deviation includes the correlation of overlapping
-/// spans (Newey and West, 1987), and an acceleration error of 0.05 m/s^2 from bias and tilt. Cost: O(N).
+/// Estimates the scale of the lidar's ranges over the sweeps of a run. Velocity changes from lidar poses, between two
+/// consecutive intervals of 0.4 s, are compared with the integrated acceleration of the IMU by robust regression
+/// (Huber, 1964). Intervals with a saturated accelerometer or with unconstrained sweeps are skipped. Without
+/// acceleration, the scale is not observable. The standard deviation includes the correlation of overlapping intervals
+/// (Newey and West, 1987), and an acceleration error of 0.05 m/s^2 from bias and tilt. Cost: O(N).
 LidarScale find_sweep_scale(std::span<const ImuSample> samples, std::span<const SweepReport> sweeps,
                             double gravity_m_s2);
 
 /// Estimates the scale of the lidar's ranges live, from at most 1000 velocity changes of the last minute.
 class LidarScaleEstimator {
  public:
-  /// change of velocity from one time span to the next
+  /// Change of the mean velocity from one interval of 0.4 s to the next.
   struct VelocityChange {
     TimeNs time_ns = 0;
     Eigen::Vector3d imu_velocity_change_m_s = Eigen::Vector3d::Zero(),
                     lidar_velocity_change_m_s = Eigen::Vector3d::Zero();
   };
 
-  /// The buffer for `samples_max` samples should cover two seconds; with more samples between two sweeps, the sweep is
-  /// skipped.
+  /// `samples_max` is the size of the buffer for IMU samples, which should cover two seconds. A sweep with more samples
+  /// since the previous sweep is skipped.
   LidarScaleEstimator(double gravity_m_s2, std::size_t samples_max);
 
-  /// The samples must be in time order, with flags of saturated axes. No memory is allocated.
+  /// Adds an IMU sample with clip flags. Time stamps must increase. No memory is allocated.
   void add(const ImuSample& sample);
-  /// Call add() for all samples up to the end of the sweep first. Cost: O(changes).
+  /// Adds the report of a sweep, after all IMU samples up to the end of the sweep. Cost: O(number of stored velocity
+  /// changes).
   void add(const SweepReport& sweep);
 
   const LidarScale& scale() const { return scale_; }
@@ -58,7 +59,7 @@ class LidarScaleEstimator {
   double gravity_m_s2_;
   std::size_t samples_max_;
   std::vector<ImuSample> samples_;
-  std::deque<SweepReport> sweeps_;  ///< sweeps of two spans; only pose, attitudes and verdict
+  std::deque<SweepReport> sweeps_;  ///< sweeps of the last two intervals; contains only pose, attitudes and verdict
   std::deque<VelocityChange> velocity_changes_;
   LidarScale scale_;
 };

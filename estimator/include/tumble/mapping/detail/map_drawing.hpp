@@ -11,23 +11,24 @@
 
 namespace tumble::mapping {
 
-/// Numbers the scan lines of sweeps: sweeps at a constant attitude share line numbers.
+/// Assigns numbers to the scan lines of the lidar. Sweeps with equal attitude of the lidar have equal numbers, because
+/// their rings coincide.
 class ScanLines {
  public:
-  /// Returns the line number of ring 0 of a sweep with the given spin axis, or VoxelMap::kUnknownScanLine if the device
-  /// does not report rings.
+  /// Returns the number of ring 0 for a sweep with the given spin axis of the lidar, or VoxelMap::kUnknownScanLine if
+  /// the lidar does not report rings.
   std::uint32_t line_number_offset(const Eigen::Vector3d& spin_axis_W, bool has_ring_numbers);
   static std::uint32_t line(std::uint32_t base, std::uint16_t ring) {
     return base == VoxelMap::kUnknownScanLine ? base : base | ring;
   }
 
  private:
-  Eigen::Vector3d axis_W_ = Eigen::Vector3d::Zero();  // spin axis of the sweeps that share lines
+  Eigen::Vector3d axis_W_ = Eigen::Vector3d::Zero();  // spin axis of the sweeps with equal numbers
   std::uint32_t attitude_ = 0;                        // number of attitude changes
 };
 
-/// Returns the points of a map, with normals fitted to nearest neighbours and pointing to the observing sensor. Cost:
-/// O(n).
+/// Returns the points of a map. Normals are fitted to nearest neighbours, and point to the sensor that observed the
+/// point. Cost: O(n).
 std::vector<MapPoint> to_map_points(const VoxelMap& map, std::span<const Eigen::Vector3f> seen_from_W_m, int neighbours,
                                     double match_distance_m);
 
