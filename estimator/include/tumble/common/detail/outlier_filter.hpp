@@ -50,7 +50,7 @@ class OutlierFilter {
   std::span<const ImuSample> filter_sample(const ImuSample& next, State& state) const;
 
   /// Returns true if `next` and earlier samples show that the first samples of a run are outliers. The run should then
-  /// restart with `next`. Call first_is_outlier() before filter_sample().
+  /// restart without these outliers. Call first_is_outlier() before filter_sample().
   bool first_is_outlier(const ImuSample& next, const State& state) const;
 
   /// Returns true if a finite sample must not be used yet (delayed), or not at all (implausibly large). Call

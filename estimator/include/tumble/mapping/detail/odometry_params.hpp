@@ -10,8 +10,8 @@
 
 namespace tumble {
 
-/// At rest, the rate differs from the bias and from its mean by at most kRate_rad_s. The specific force at rest differs
-/// from gravity and from its mean by at most kForce_m_s2.
+/// Limits for the detection of rest at the start. The rate must differ from the gyro bias and from its mean by at most
+/// kRate_rad_s, and the specific force from gravity and from its mean by at most kForce_m_s2.
 struct StationaryBounds {
   static constexpr double kLevellingMax_s = 0.5;  ///< maximum duration of the initial rest that determines the tilt
   static constexpr double kRate_rad_s = 0.05;
@@ -19,21 +19,21 @@ struct StationaryBounds {
 };
 
 struct OdometryStart {
-  /// standard deviation of the initial tilt in the registration; larger than in WorldCovarianceParams, for starts in
-  /// motion
+  /// standard deviation of the initial tilt as prior of the registration; larger than in WorldCovarianceParams, for
+  /// starts in motion
   static constexpr double kLevelSigma_rad = 0.01;
-  static constexpr double kBiasRest_s = 0.1;  ///< minimum duration of a rest that determines the gyro's bias
+  static constexpr double kBiasRest_s = 0.1;  ///< minimum duration of a rest that determines the gyro bias
 };
 
 struct Standstill {
   static constexpr double kSigma_m_s =
       0.05;  ///< standard deviation of the velocity while the IMU measures only gravity
-  /// Maximum estimated speed of a robot that is treated as stationary while the IMU measures only gravity and no
-  /// surface constrains the pose. The zero velocity prevents slow drift in a world without features.
+  /// If the IMU measures only gravity and no surface constrains the pose, slower estimated motion than this counts as
+  /// rest. The zero velocity prevents slow drift in a world without features.
   static constexpr double kCreepMax_m_s = 0.5;
 };
 
-/// Standard deviations of the errors of inertial integration over kSpan_s, in addition to the uncertainty in
+/// Standard deviations of the errors of inertial integration over kSweepInterval_s, in addition to the covariance in
 /// AngularRateState. Smaller standard deviations constrain the pose more strongly in a world with few features.
 struct InertialNoiseParams {
   static constexpr double kSweepInterval_s = 0.1;  ///< time between two sweeps of most lidars
@@ -44,11 +44,12 @@ struct InertialNoiseParams {
   static constexpr double kRotationNoiseRatio = 0.001;
   /// velocity error relative to the integral of the specific force
   static constexpr double kForceShare = 0.03;
-  /// Random walks of velocity and rate over a gap of the IMU: mapping.md (R43), (R44). For tumbling rigs and gaps of
-  /// 0.05 to 0.5 s, the true random walks are 2.4 to 4.1 m/s and 3 to 11 rad/s per sqrt(s).
+  /// Random walks of velocity and rate during a gap between IMU samples: mapping.md (R43), (R44). Tumbling robots
+  /// change by 2.4 to 4.1 m/s and 3 to 11 rad/s per sqrt(s).
   static constexpr double kGapVelocityWalk_m_s_sqrt_s = 3.0;
   static constexpr double kGapRateWalk_rad_s_sqrt_s = 9.0;
-  static constexpr double kRateSigmaMax_rad_s = 5.0;  ///< upper bound of the standard deviation in AngularRateState
+  static constexpr double kRateSigmaMax_rad_s =
+      5.0;  ///< larger standard deviations in AngularRateState are limited to this value
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -61,14 +62,14 @@ struct InertialNoiseParams {
   }
 };
 
-/// SaturatedImuParams contains the parameters of a saturated IMU. Accelerometer readings are saturated if they are at
-/// or above `accel_m_s2` or if the device flags them.
+/// Parameters for a saturated gyro or accelerometer. Accelerometer readings count as saturated if they are at or above
+/// `accel_m_s2`, or have a clip flag.
 ///
-/// If `estimate_deficit` is true, the registration estimates the saturation deficit of the rate on clipped axes, at
-/// SweepTrajectory::kKnots knots per sweep. The saturation deficit changes only clipped samples, in proportion to the
-/// reported uncertainty of the rate. The prior standard deviation of the saturation deficit is the reported
-/// uncertainty, but at least 1 rad/s, correlated over 0.3 s. If saturation lasts across the boundary of two sweeps, the
-/// saturation deficit is continuous at the boundary.
+/// If `estimate_deficit` is true, the registration estimates the saturation deficit (true minus estimated rate on
+/// clipped gyro axes) at SweepTrajectory::kKnots times per sweep. The prior standard deviation of the saturation
+/// deficit is that of the rate in AngularRateState, but at least 1 rad/s, correlated over 0.3 s. The saturation deficit
+/// changes only clipped samples, in proportion to the standard deviation of their rate, and is continuous from sweep to
+/// sweep.
 struct SaturatedImuParams {
   double accel_m_s2 = 1e5;
   static constexpr double kRateSigma_rad_s = 3.0;  ///< standard deviation of a clipped rate that was not recovered
@@ -85,14 +86,14 @@ struct SaturatedImuParams {
 
 struct MatchingParams {
   static constexpr int kNeighbours = 12;           ///< number of nearest neighbours for a plane fit
-  static constexpr std::size_t kMatchesMin = 100;  ///< minimum number of matches; sweeps with fewer are rejected
+  static constexpr std::size_t kMatchesMin = 100;  ///< sweeps with fewer matched points are rejected
   double distance_m = 1.0;                         ///< maximum distance of matched map points
-  std::size_t agreeing_matches_min = 30;           ///< minimum number of matches if the result agrees with the prior
-  double correction_max_m = 15.0;                  ///< a larger correction of the prior is rejected
-  double correction_max_rad = 1.1;                 ///< a larger correction of the prior is rejected
-  /// growth rate of a point's standard deviation since the start of the sweep
+  std::size_t agreeing_matches_min = 30;  ///< the same limit if the registered pose agrees with the inertial prediction
+  double correction_max_m = 15.0;         ///< a larger correction of the prior is rejected
+  double correction_max_rad = 1.1;        ///< a larger correction of the prior is rejected
+  /// growth rate of a point's standard deviation during the sweep, for errors of the deskewing
   double skew_sigma_m_s = 0.25;
-  /// standard deviation of the pose from the sweep's points alone, above which a sweep is `degenerate`
+  /// A sweep is `degenerate` if the standard deviation of the pose from the lidar points alone exceeds this value.
   static constexpr double kDegenerateSigma_m = 0.15;
 
   template <class Self, class Visitor>
@@ -115,23 +116,23 @@ struct MatchingParams {
   }
 };
 
-/// TrackingLimits contains the limits for sweeps without a registration, and for tracking failure.
+/// Limits for sweeps that could not be registered.
 struct TrackingLimits {
-  /// A sweep with too few matches still extends the map, as `degenerate`, up to this standard deviation of its
-  /// inertial prediction. Such sweeps occur because a lidar at rest scans only rings, which give no planes until the
-  /// lidar rotates. The map excludes points that are too uncertain because of their range and the
-  /// uncertain attitude.
+  /// A sweep with too few matches is `degenerate` and still extends the map, if the standard deviation of its predicted
+  /// position is below this value. Such sweeps occur because the rings of a lidar at rest do not determine planes.
+  /// Points that are too uncertain because of their range and the uncertain attitude are not inserted.
   static constexpr double kExtendSigmaMax_m = 0.1;
-  /// Maximum number of consecutive sweeps with points but without registration. After kLostSweepsMax sweeps,
-  /// LidarInertialOdometry continues by inertial prediction and reports `degenerate`.
+  /// After this number of consecutive sweeps with points but without registration, LidarInertialOdometry continues by
+  /// inertial integration and reports `degenerate`.
   static constexpr int kLostSweepsMax = 30;
 };
 
 struct LocalMapParams {
-  static constexpr double kPruneRatio = 0.1;  ///< distant points are deleted after a motion of kPruneRatio * radius_m
-  double voxel_m = 0.5;                       ///< edge of a cell of the map's hash table
-  double spacing_m = 0.1;                     ///< edge of the cubes that contain at most one map point
-  double radius_m = 100.0;                    ///< points within this distance of the sensor are kept
+  static constexpr double kPruneRatio =
+      0.1;                  ///< points beyond radius_m are deleted after each motion of kPruneRatio * radius_m
+  double voxel_m = 0.5;     ///< edge of a cell of the map's hash table
+  double spacing_m = 0.1;   ///< edge of the cubes that contain at most one map point
+  double radius_m = 100.0;  ///< points within this distance of the sensor are kept
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -147,7 +148,7 @@ struct LocalMapParams {
   }
 };
 
-/// See docs/maths/mapping.md, heading "Reported covariance".
+/// Errors of the map that the reported covariance includes: docs/maths/mapping.md, heading "Reported covariance".
 struct WorldCovarianceParams {
   double tilt_sigma_rad = 0.002;  ///< standard deviation of the tilt at the start: accelerometer bias of 2 mg
 
@@ -160,7 +161,7 @@ struct WorldCovarianceParams {
 
 struct OdometryExpertParams {
   double gravity_m_s2 = 9.80665;
-  /// standard deviation of the horizontal part of gravity; 0: fixed direction of gravity
+  /// prior standard deviation of the horizontal part of gravity; 0: fixed direction of gravity
   double gravity_sigma_m_s2 = 0.0;
   /// number of newest sweeps that the fixed-lag smoother refines together; 1: no smoothing
   int window_sweeps = 2;
@@ -192,15 +193,16 @@ struct OdometryExpertParams {
 struct OdometryParams {
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
   double time_offset_s = 0.0;                              ///< IMU clock minus lidar clock
-  /// standard deviations of T_IL and of the time offset; 0: exact, not estimated
+  /// prior standard deviations of T_IL and of the time offset; 0: exact, not estimated
   double mount_sigma_rad = 0.0;
   double mount_sigma_m = 0.0;
   double time_offset_sigma_s = 0.0;
-  double range_min_m = 0.3;        ///< minimum range of a usable return
-  double range_max_m = 100.0;      ///< maximum range of a usable return
-  Eigen::AlignedBox3d own_body_L;  ///< bounding box of the robot's own body, whose returns are dropped; may be empty
-  double sweep_voxel_m = 0.25;     ///< edge of the voxels; the registration uses one point per voxel
-  /// threads of the caller for the registration; empty: the calling thread
+  double range_min_m = 0.3;    ///< minimum range of a usable return
+  double range_max_m = 100.0;  ///< maximum range of a usable return
+  Eigen::AlignedBox3d
+      own_body_L;               ///< bounding box of the robot in lidar axes; returns inside are dropped; may be empty
+  double sweep_voxel_m = 0.25;  ///< edge of the voxels; the registration uses one point per voxel
+  /// runs the registration on threads of the caller; empty: on the calling thread
   ParallelFor parallel_for;
 
   using Expert = OdometryExpertParams;

@@ -18,29 +18,30 @@ namespace tumble {
 
 enum class RegistrationVerdict : std::uint8_t {
   converged,
-  too_few_matches,  ///< too few matches; the result is the prior
-  diverged,         ///< no convergence, too large a correction, or too few fitting matches; the result is the prior
+  too_few_matches,  ///< too few matched points; the result is the prior
+  diverged,         ///< no convergence, too large a correction, or too few inliers; the result is the prior
 };
 
 struct RegistrationResult {
   RegistrationVerdict verdict = RegistrationVerdict::too_few_matches;
   RegistrationUnknowns::Estimate mean;
-  RegistrationUnknowns::Matrix covariance = RegistrationUnknowns::Matrix::Zero();  ///< covariance of all unknowns
-  /// Covariance of the cost gradient with respect to the unknowns, measured from the residuals (cluster-robust
-  /// covariance, Liang and Zeger, 1986). Points within a cube of 1 m share the map's errors, and
-  /// points farther apart are independent. If all points were independent, the covariance would equal
-  /// correlation_discount times the points' contribution to the normal matrix.
+  RegistrationUnknowns::Matrix covariance = RegistrationUnknowns::Matrix::Zero();
+  /// Covariance of the cost gradient with respect to the unknowns, measured from the point-to-plane residuals
+  /// (cluster-robust covariance, Liang and Zeger, 1986). Points within a cube of 1 m have correlated errors, because
+  /// they share errors of the map. If all points were independent, the covariance would equal correlation_discount
+  /// times the points' contribution to the normal matrix.
   RegistrationUnknowns::Matrix score_covariance = RegistrationUnknowns::Matrix::Zero();
-  /// Apparent information in the Gauss-Newton normal equations that comes from noise of the fitted plane normals.
-  /// Source: errors in variables (Fuller, Measurement Error Models, 1987, section 2.2).
+  /// Part of the information in the normal equations that results only from noise of the fitted plane normals. Source:
+  /// errors in variables (Fuller, Measurement Error Models, 1987, section 2.2).
   RegistrationUnknowns::Matrix surface_normal_noise_information = RegistrationUnknowns::Matrix::Zero();
   std::size_t points = 0, matches = 0, inliers = 0;
-  double correction_m = 0.0;  ///< position correction at the start, even if rejected as too large
+  double correction_m =
+      0.0;  ///< correction of the position at the start of the trajectory, even if rejected as too large
   double correction_rad = 0.0;
   int iterations = 0;
-  /// Ascending eigenvalues and eigenvectors (columns) of the pose's information from the lidar, without the prior. The
-  /// attitude is scaled to metres by the root-mean-square lever arm. The information matrix of the pose is scaled so
-  /// that its translation part has trace 1.
+  /// Ascending eigenvalues and eigenvectors (columns) of the information matrix of the pose from the lidar points,
+  /// without the prior. The attitude is scaled to metres by the root-mean-square distance of the points. The matrix is
+  /// scaled so that its translation part has trace 1.
   Eigen::Matrix<double, 6, 1> eigenvalues = Eigen::Matrix<double, 6, 1>::Zero();
   Eigen::Matrix<double, 6, 6> directions = Eigen::Matrix<double, 6, 6>::Identity();
   /// Standard deviation of the pose in its least constrained direction, without the inertial prediction.
@@ -55,14 +56,14 @@ class OuterProducts;
 /// Registers a sweep to a map by point-to-plane distances, and estimates the motion within the sweep:
 /// docs/maths/mapping.md.
 ///
-/// The unknowns are position, attitude and velocity of the IMU at the start of the trajectory. The saturation deficit
-/// (true rate minus clipped reading) and the calibration are additional unknowns if their prior is uncertain. Each
-/// Gauss-Newton iteration deskews the points with the current estimate. The cost is the sum of robustly weighted
-/// squared distances to planes through the nearest map points, and the squared Mahalanobis distance from the prior. The
-/// prior determines the directions that no surface constrains.
+/// The unknowns are position, attitude and velocity of the IMU at the start of the trajectory. Additional unknowns with
+/// an uncertain prior are the saturation deficit (true minus estimated rate), pose and time offset of the lidar, and
+/// gravity. Each Gauss-Newton iteration deskews the points with the current estimate. The cost is the sum of robustly
+/// weighted squared distances to planes through the nearest map points, plus the squared Mahalanobis distance from the
+/// prior (inertial prediction).
 class Registration {
   static constexpr std::size_t kPointsPerPartialSum =
-      128;  // points per partial sum; independent of the number of threads
+      128;  // number of points per partial sum; fixed, so that sums do not depend on the number of threads
 
  public:
   using Params = RegistrationParams;
@@ -78,17 +79,17 @@ class Registration {
 
   explicit Registration(const Params& params);
 
-  /// Aligns the points of a sweep to a map. `points` must have been computed with the calibration of `prior`.
-  /// `trajectory` is rebuilt from `prior` and `samples` up to `end_ns`, and contains the aligned motion. Returns `ok`
-  /// or an error of SweepTrajectory::build().
+  /// Aligns the points of a sweep to a map. `points` must be computed with the lidar calibration in `prior`.
+  /// `trajectory` receives the aligned motion from the start of `prior` to `end_ns`. Returns `ok` or an error of
+  /// SweepTrajectory::build().
   Status align(const Prior& prior, std::span<const MotionSample> samples, TimeNs end_ns,
                std::span<const SweepPoint> points, const VoxelMap& map, SweepTrajectory& trajectory, Result& result);
 
-  /// Returns the variance of a lidar return along its ray, including the motion distortion that remains after
-  /// deskewing.
+  /// Returns the variance of a lidar return, including the motion distortion that remains after deskewing.
   double point_variance_m2(const SweepPoint& point) const;
 
-  /// Computes the distance of a point from a plane, and its derivatives with respect to all unknowns. Public for tests.
+  /// Computes the distance of a lidar point from a plane, and the derivatives of this distance with respect to all
+  /// unknowns. Public for tests.
   static double residual(const SweepTrajectory& trajectory, const LidarImuCalibration& calibration,
                          const SweepPoint& point, const PlaneFit& plane, std::size_t& hint, Vector& derivative);
 
@@ -97,11 +98,11 @@ class Registration {
     PlaneFit plane;
     Eigen::Vector3f search_position_W_m = Eigen::Vector3f::Zero();
     float map_variance_m2 = 0.0f;
-    float farthest_neighbour_m =
-        std::numeric_limits<float>::infinity();  // distance to the farthest neighbour, if all neighbours were found
+    float farthest_neighbour_m = std::numeric_limits<float>::infinity();  // distance to the farthest neighbour;
+                                                                          // infinite if too few neighbours were found
     bool plane_searched = false;
   };
-  /// normal equations of the estimated unknowns, summed over the matches of one iteration
+  /// Normal equations of the estimated unknowns, summed over the matches of one iteration.
   struct Sums {
     Matrix normal_matrix = Matrix::Zero();
     Vector gradient = Vector::Zero();
@@ -146,7 +147,7 @@ class Registration {
   std::vector<float> residual_distances_m_, sorted_distances_;
   std::vector<Sums> partial_sums_;  // one per block of points
   SpatialHash point_cluster_index_{1 << 10};
-  std::vector<Vector> point_cluster_gradients_;  // gradients of the point clusters
+  std::vector<Vector> point_cluster_gradients_;
 };
 
 }  // namespace tumble

@@ -9,24 +9,24 @@
 
 namespace tumble {
 
-/// Parameters that the callers of Registration set, but not the users of a method.
+/// Values that the calling estimator sets; they are not parameters for users.
 struct RegistrationExpertParams {
   int iterations_max = 30;
-  std::size_t matches_min = 100;   ///< minimum number of matches
-  double correction_max_m = 15.0;  ///< a registration with a larger correction of the prior is rejected
+  std::size_t matches_min = 100;   ///< minimum number of matched points
+  double correction_max_m = 15.0;  ///< a larger correction of the predicted pose is rejected
   double correction_max_rad = 1.1;
   double step_m = 5e-4;  ///< converged if a step is below `step_m` and `step_rad`
   double step_rad = 1e-4;
   double step_s = 1e-5;       ///< convergence limit for a step of the time offset
-  double rematch_m = 0.05;    ///< motion of a point after which its plane is searched again
+  double rematch_m = 0.05;    ///< the plane of a point is searched again after a motion of the point by this distance
   double kernel_min_m = 0.1;  ///< minimum width of the robust kernel (Geman-McClure)
-  /// weight of the information of one point; below 1 because neighbouring returns are correlated
+  /// weight of the information of one point; below 1, because errors of neighbouring returns are correlated
   double correlation_discount = 0.1;
-  /// Minimum number of matches for accepting a registration that agrees with the prior but has fewer than
-  /// `matches_min` matches or matches for less than a tenth of its points. The large default of agreeing_matches_needed
-  /// disables the exception for agreeing registrations.
+  /// A registration with fewer than `matches_min` matches, or with matches for less than a tenth of its points, is
+  /// accepted if it agrees with the prior and has at least this many matches. The large default disables this
+  /// exception.
   std::size_t agreeing_matches_needed = 1'000'000'000;
-  /// minimum fraction of matches within three standard deviations
+  /// minimum fraction of matched points within three standard deviations of their plane
   double inlier_ratio_min = 0.6;
   PlaneFitBounds plane;
 };
@@ -36,10 +36,11 @@ struct RegistrationParams {
   int neighbours = 8;             ///< number of nearest neighbours for a plane fit
   double match_distance_m = 1.0;  ///< maximum distance of matched map points
   static constexpr double kRangeSigma_m =
-      0.02;  ///< standard deviation of the range: max(kRangeSigma_m, kRangeSigmaRatio * range)
+      0.02;  ///< the standard deviation of a range is max(kRangeSigma_m, kRangeSigmaRatio * range)
   static constexpr double kRangeSigmaRatio = 0.0015;
-  double skew_sigma_m_s = 0.25;  ///< growth rate of a point's standard deviation during the sweep; 0: none
-  ParallelFor parallel_for;      ///< threads for neighbour search and sums; empty: the calling thread
+  double skew_sigma_m_s =
+      0.25;  ///< growth rate of a point's standard deviation during the sweep, for errors of the deskewing
+  ParallelFor parallel_for;  ///< runs neighbour search and sums on threads of the caller; empty: on the calling thread
 
   using Expert = RegistrationExpertParams;
   Expert expert = {};  ///< rarely changed parameters

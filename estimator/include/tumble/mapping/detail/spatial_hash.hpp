@@ -32,10 +32,10 @@ class SpatialHash {
   /// Inserts a key if the key is new, and returns the stored value. Cost: amortised O(1).
   std::uint32_t insert(std::uint64_t key, std::uint32_t value);
 
-  /// Returns true if the key was new.
+  /// Inserts a key, and returns true if the key was new.
   bool add(std::uint64_t key);
 
-  /// Removes all keys and keeps the memory.
+  /// Removes all keys without freeing memory.
   void clear();
   std::size_t size() const { return size_; }
   std::size_t bytes() const {

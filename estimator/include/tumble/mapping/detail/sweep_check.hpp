@@ -10,7 +10,7 @@
 
 namespace tumble::mapping {
 
-/// Returns `out_of_range` if a point's time is after the end of the sweep.
+/// Returns `out_of_range` if a point was fired after the end of the sweep, which takes `span_ns`.
 Status check_time_offsets(TimeNs span_ns, std::span<const LidarPoint> points);
 
 /// Returns `empty` (no points), `non_finite` (no finite point), `insufficient_data` (no point in range) or `degenerate`

@@ -12,23 +12,23 @@
 
 namespace tumble {
 
-/// nearest points of a map, nearest first
+/// Nearest points of a map, nearest first.
 struct NearestNeighbours {
   static constexpr int kMaxNeighbours = 32;
   int count = 0;
   std::array<float, kMaxNeighbours> distance2_m2;
-  std::array<std::uint32_t, kMaxNeighbours> index;  ///< index of the point in its VoxelMap
+  std::array<std::uint32_t, kMaxNeighbours> index;
 };
 
-/// Stores map points in world axes and finds nearest neighbours. VoxelMap keeps at most one point per cube of edge
-/// `spacing_m`. Coordinates are single-precision floats, which limits the width of a map to a few kilometres.
+/// Stores map points in world axes, at most one per cube of edge `spacing_m`, and finds nearest neighbours. Coordinates
+/// are single-precision floats, which limits the width of a map to a few kilometres.
 class VoxelMap {
  public:
   static constexpr std::uint32_t kUnknownScanLine = 0xffffffffu;
   static constexpr std::uint32_t kNoPoint = 0xffffffffu;
 
   struct Params {
-    double voxel_m = 0.5;    ///< edge of a cell; the search is fastest at a few times spacing_m
+    double voxel_m = 0.5;    ///< edge of a cell; nearest-neighbour search is fastest at a few times spacing_m
     double spacing_m = 0.1;  ///< edge of a cube that keeps at most one point; 0 keeps all points
 
     template <class Self, class Visitor>
@@ -44,20 +44,19 @@ class VoxelMap {
   explicit VoxelMap(const Params& params);
 
   /// Adds a point if the cube at its position is empty, and returns whether the point was added. `sigma_m` is the
-  /// standard deviation of the point's position. `sweep` and `line` are labels, which sweep() and line() return. Points
-  /// that are not finite or beyond 2^20 cells are rejected.
+  /// standard deviation of the point's position. `sweep` and `line` are numbers that sweep() and line() return. Points
+  /// that are not finite or beyond 2^20 cells from the origin are rejected.
   bool insert(const Eigen::Vector3f& position_W_m, float sigma_m, std::uint32_t sweep,
               std::uint32_t line = kUnknownScanLine) {
     return add(position_W_m, sigma_m, sweep, line) != kNoPoint;
   }
 
-  /// Returns the index of the new point, or kNoPoint if the point was rejected.
+  /// Adds a point like insert(), and returns its index, or kNoPoint if the point was rejected.
   std::uint32_t add(const Eigen::Vector3f& position_W_m, float sigma_m, std::uint32_t sweep, std::uint32_t line);
-  /// Returns true if add() would reject a point. Call is_occupied() first if the properties of a point are expensive to
-  /// compute.
+  /// Returns true if add() would reject a point at this position.
   bool is_occupied(const Eigen::Vector3f& position_W_m) const;
 
-  /// Returns false and leaves the point unchanged if the new position is in another cell.
+  /// Moves a point. Returns false and leaves the point unchanged if the new position is in another cell.
   bool move(std::uint32_t index, const Eigen::Vector3f& position_W_m);
 
   /// Counts a sweep whose beam passed through the position of a point (`through` is true) or hit the point again
@@ -68,9 +67,8 @@ class VoxelMap {
   /// cost grows with the number of cells within the distance of the k-th neighbour.
   void nearest(const Eigen::Vector3f& query_W_m, int k, float radius_m, NearestNeighbours& found) const;
 
-  /// Deletes the points farther than `radius_m` from `plane_centre_W_m`. The indices of points change, and the
-  /// remaining sweeps are renumbered in order. Returns the old number of each remaining sweep. Cost: O(number of
-  /// points).
+  /// Deletes the points farther than `radius_m` from `centre_W_m`. The indices of points change, and sweeps with
+  /// remaining points are renumbered in order. Returns the old numbers of these sweeps. Cost: O(number of points).
   std::vector<std::uint32_t> remove_points_beyond(const Eigen::Vector3f& centre_W_m, float radius_m);
 
   /// Deletes the points of `first_sweep` and of later sweeps. The indices of points change, but not the numbers of
@@ -86,10 +84,10 @@ class VoxelMap {
   Eigen::Vector3f position_W_m(std::uint32_t index) const;
   float sigma_m(std::uint32_t index) const { return sigma_m_[index]; }
   std::uint32_t sweep(std::uint32_t index) const { return sweep_[index]; }
-  /// Returns the scan line of a point. Lidar returns of one ring share a scan line while the sensor's attitude is
-  /// constant.
+  /// Returns the scan line number of a point. Returns of one lidar ring have the same number while the lidar's attitude
+  /// is constant.
   std::uint32_t line(std::uint32_t index) const { return line_[index]; }
-  /// Returns the number of sweeps that saw through the point minus the number of sweeps that observed the point,
+  /// Returns the number of sweeps whose beams passed through the point, minus the number of sweeps that hit the point,
   /// limited to [0, 255].
   std::uint8_t seen_through_count(std::uint32_t index) const { return seen_through_counts_[index]; }
 
@@ -122,12 +120,13 @@ class VoxelMap {
 
   Params params_;
   float cells_per_m_ = 0.0f;
-  float cubes_per_m_ = 0.0f;  // cubes per metre, or cells per metre if all points are kept
+  float cubes_per_m_ =
+      0.0f;  // inverse edge length of the cubes with one point each, or of the cells if all points are kept
   SpatialHash voxel_group_index_;
   SpatialHash occupied_cubes_;
   std::vector<VoxelGroup> voxel_groups_;
   std::vector<PointChunk> point_chunks_;
-  std::vector<float> sigma_m_;  // one per slot of the chunks; negative: free slot
+  std::vector<float> sigma_m_;  // one per slot; negative: free slot
   std::vector<std::uint32_t> sweep_, line_;
   std::vector<std::uint8_t> seen_through_counts_;
   std::size_t free_slots_ = 0;
