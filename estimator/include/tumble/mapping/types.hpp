@@ -213,7 +213,7 @@ struct SweepReport {
   /// points from the IMU, so all six components are lengths.
   Eigen::Matrix<double, 6, 1> least_constrained_direction = Eigen::Matrix<double, 6, 1>::Zero();
   Eigen::Vector3d mean_saturation_deficit_rad_s =
-      Eigen::Vector3d::Zero();        ///< mean correction of the clipped gyro axes: true minus reading
+      Eigen::Vector3d::Zero();        ///< mean correction of the rate on clipped gyro axes
   std::size_t points_used = 0;        ///< finite returns within the range limits that do not hit the robot
   std::size_t isolated_points = 0;    ///< unused returns that no neighbouring beam confirms
   std::size_t points_registered = 0;  ///< usable points after downsampling to one point per voxel

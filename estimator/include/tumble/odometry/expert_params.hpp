@@ -43,8 +43,8 @@ struct TumblingExpertParams {
   /// Parameters of the estimation of angular velocity. By default, the prior probability that the IMU does not match
   /// its data sheet is 0.003. The covariance of each estimated rate includes the uncertainty of the IMU's calibration.
   MotionRegimeStream::Params rate = default_rate_params();
-  /// Parameters of the mapping. By default, gravity's direction and the saturation deficit (true rate minus clipped
-  /// reading) are unknowns of the registration.
+  /// Parameters of the mapping. By default, the direction of gravity and the errors of rates on clipped gyro axes are
+  /// unknowns of the registration.
   OdometryParams mapping = mapping_defaults();
   /// Parameters of the correction of IMU time stamps that a host computer assigned.
   SampleClock::Params stamps;

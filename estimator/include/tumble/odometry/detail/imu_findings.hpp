@@ -24,35 +24,35 @@ struct ImuDescription {
   double gravity_m_s2 = 9.80665;
   /// lever arm from the centre of mass to the IMU, in IMU axes
   Eigen::Vector3d lever_arm_I_m = Eigen::Vector3d::Zero();
-  /// several IMUs are merged into one, which reports rates beyond the range of one IMU
+  /// true: the samples are the fused readings of several IMUs, whose rates may exceed the range of each IMU
   bool is_merged = false;
 };
 
 struct ImuHealthReport {
   SensorHealth health;
-  std::vector<FrozenAxis> frozen_axes;  ///< intervals of the findings `frozen_axis`, sorted by axis and time
+  std::vector<FrozenAxis> frozen_axes;  ///< intervals with a frozen axis, sorted by axis and time
 };
 
-/// `gyro_range_rad_s` is the range in the data sheet; 0: unknown.
+/// Returns the setup of the check of gyro against gravity. `gyro_range_rad_s` is from the data sheet; 0: unknown.
 ImuPlausibility::Setup plausibility_setup(double gravity_m_s2, double gyro_range_rad_s);
 
-/// Returns whether the rotation of gravity confirms the gyro's scale. If the gyro's scale is confirmed and forces
-/// contradict each other, the cause is a mounting or an accelerometer.
+/// Returns true if the rotation of gravity, measured by the accelerometer, confirms the gyro's scale. If forces of
+/// several IMUs then contradict each other, the cause is a mounting or an accelerometer.
 bool confirms_gyro(const ImuPlausibility& plausibility, const ImuPlausibility::State& state);
 
 void add_findings(const ImuPlausibility& plausibility, const ImuPlausibility::State& state, const std::string& sensor,
                   SensorHealth& health);
 
-/// Checks units, signs and axes of the readings: magnitude and rotation of gravity, and rotation about a pivot. Cost:
-/// about 1 ms per second of data at 100 Hz.
+/// Checks units, signs and axes of gyro and accelerometer with the magnitude and rotation of gravity, and with rotation
+/// about a pivot (PivotMotionCheck). Cost: about 1 ms per second of data at 100 Hz.
 SensorHealth check_readings(const ImuDescription& imu, std::span<const ImuSample> samples);
 
 /// Cost: O(N).
 ImuHealthReport check_frozen(const ImuDescription& imu, std::span<const ImuSample> samples);
 
-/// Checks readings, forces in flight, the motion from each rest to the next rest, and frozen axes. `carried_share` is
-/// the fraction of hand-held samples. If the body was never hand-held, flights also reveal flipped and swapped axes,
-/// and include flights with a clipped axis.
+/// Runs all checks: check_readings(), specific force in free flight, motion from rest to rest, and frozen axes.
+/// `carried_share` is the fraction of hand-held samples. If the body was never hand-held, the flight check also detects
+/// single flipped or swapped axes, and uses flights with a clipped gyro axis.
 ImuHealthReport check_recording(const ImuDescription& imu, std::span<const ImuSample> samples,
                                 std::span<const AngularRateState> rates, std::optional<double> carried_share);
 
@@ -63,18 +63,18 @@ struct MergedImuRecording {
 
 struct MergedImuChecks {
   RestGravity rest_gravity;
-  ImuPlausibility plausibility;  ///< check of the merged readings
-  std::array<RestGravity::GravityMagnitudeState, ImuMerge::kImus> rest_gravity_state{};  ///< one state per IMU
+  ImuPlausibility plausibility;  ///< check of the fused readings
+  std::array<RestGravity::GravityMagnitudeState, ImuMerge::kImus> rest_gravity_state{};
   ImuPlausibility::State plausibility_state{};
 };
 
-/// Checks faults of single IMUs, the merged readings, and the differences between the IMUs. The differences also reveal
-/// an inverted sign and exchanged axes. Cost: O(N).
+/// Checks single IMUs, the fused readings, and the differences between the IMUs, which also show inverted signs and
+/// exchanged axes. Cost: O(N).
 SensorHealth check_merged_imus(const ImuDescription& imu, const MergedRecordings& merged);
 
-/// Returns the covariance that the findings add to each rate, or an empty list without such findings. If the readings
-/// contradict each other, the standard deviation is the rate itself. For example, a flipped sign gives an error of
-/// twice the rate. While a gyro axis is frozen, the standard deviation is the largest reading of the recording. Cost:
+/// Returns the covariance that suspected faults add to each rate, or an empty list without such faults. If readings
+/// contradict each other, the standard deviation is the rate itself; a flipped sign, for example, gives an error of
+/// twice the rate. While a gyro axis is frozen, the standard deviation is the largest rate of the recording. Cost:
 /// O(N).
 std::vector<Eigen::Matrix3d> suspected_error_covariance(const ImuHealthReport& findings,
                                                         std::span<const ImuSample> samples,

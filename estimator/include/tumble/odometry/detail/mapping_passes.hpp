@@ -17,15 +17,15 @@
 
 namespace tumble {
 
-/// Sets the clip flags of saturated accelerometer readings that the device did not flag. Returns the saturation limits
-/// of the recording. Cost: O(N), plus the search of ClippingFinder.
+/// Sets the clip flags of saturated accelerometer readings without clip flag. Returns the saturation limits of the
+/// recording. Cost: O(N), plus the search of ClippingFinder.
 SaturationLevels flag_saturated_forces(const SaturationLimitDetector::Params& stated, std::span<ImuSample> samples);
 
 struct MappingInput {
-  std::span<const ImuSample> samples;       ///< samples after flag_saturated_forces()
-  std::span<const AngularRateState> rates;  ///< one per sample
+  std::span<const ImuSample> samples;       ///< after flag_saturated_forces()
+  std::span<const AngularRateState> rates;  ///< one rate per sample
   std::size_t sweeps = 0;
-  std::function<WaitingSweep(std::size_t)> sweep;  ///< function that returns the sweep with the given index
+  std::function<WaitingSweep(std::size_t)> sweep;  ///< returns the sweep with the given index
   /// Returns the odometer reading for a sweep from `from_ns` to `to_ns`; may be empty.
   std::function<std::optional<OdometerReading>(TimeNs from_ns, TimeNs to_ns)> reading = {};
   std::optional<Eigen::Isometry3d> start = std::nullopt;  ///< see LidarInertialOdometry::set_start_pose()
@@ -38,41 +38,44 @@ struct MappedSweep {
   SweepReport report;  ///< final poses; without a pose, `report.trajectory` is empty
 };
 
-/// The map and all sweeps come from the last pass.
+/// Result of the last pass over a recording.
 struct MappedRecording {
   explicit MappedRecording(const LidarInertialOdometry::Params& params);
 
-  Status status;  ///< error of a sample or of an odometer reading that ended the pass
+  Status status;  ///< error of the IMU sample or odometer reading that ended the pass
   std::vector<MappedSweep> sweeps;
-  std::size_t unfinished_sweeps = 0;  ///< unused sweeps that end after the last sample
+  std::size_t unfinished_sweeps = 0;  ///< number of sweeps that end after the last IMU sample, and are not used
   LidarInertialOdometry mapper;
-  Localisation localisation;  ///< tracking failures over all sweeps
+  Localisation localisation;  ///< detected tracking failures
   int mapping_pass_count = 1;
-  /// distance between the last calibration and the stated calibration (LidarImuCalibrationPrior::distance_in_sigmas)
+  /// LidarImuCalibrationPrior::distance_in_sigmas() of the last calibration
   double calibration_deviations = 0.0;
   bool calibration_converged = false;
-  /// The stated calibration contradicts the recording, and the last pass started from the estimated calibration.
+  /// true: the recording contradicts the stated calibration, so the last pass started from the estimated calibration
   bool calibration_replaced = false;
 
-  /// The estimated calibration differs from the stated calibration by more than the stated uncertainty allows.
+  /// Returns true if the estimated calibration differs from the stated calibration by more than the stated standard
+  /// deviations allow.
   bool calibration_is_off() const;
   /// Adds findings about the scale of the lidar's ranges, the vertical, tracking, and the calibration of the lidar.
   void add_findings(const LidarScale& scale, SensorHealth& health) const;
 };
 
-/// If the IMU covers most of the last sweep, the sweep is cut at the last sample.
+/// Processes a recording once. If the last IMU sample is before the end of the last sweep, but covers most of it, the
+/// sweep is cut.
 MappedRecording map_in_one_pass(const MappingInput& input, const LidarInertialOdometry::Params& params);
 
 /// Processes a recording until the lidar's calibration has converged: mapping.md, "Second pass". The first pass
-/// estimates the calibration. The last pass starts from the estimated calibration and builds a consistent map. If the
-/// first pass contradicts the stated calibration, further passes treat the mounting as uncertain. If the calibration
-/// changes by more than its uncertainty allows, another pass starts from the new value, at most three times. Passes
-/// also end if more than one sweep in five is rejected, because such a pass does not determine the calibration.
+/// estimates pose and time offset of the lidar. The last pass starts from these values and builds a consistent map. If
+/// the first pass contradicts the stated lidar pose, further passes treat this pose as uncertain. At most three passes
+/// are repeated because the calibration changed by more than its standard deviation allows. Passes also end if more
+/// than one sweep in five is rejected, because such a pass does not determine the calibration.
 MappedRecording map_with_calibration(const MappingInput& input, const LidarInertialOdometry::Params& params);
 
-/// Returns the largest of the changes of rotation, translation and time offset from the stated to the estimated
-/// calibration, in standard deviations of a change from a correct stated value (Hausman test): mapping.md, "Second
-/// pass". In slow motion, this test finds a wrong mounting before LidarImuCalibrationPrior::distance_in_sigmas() does.
+/// Tests the stated pose and time offset of the lidar against the estimates (Hausman test): mapping.md, "Second pass".
+/// Returns the largest normalised change: change of rotation, translation or time offset, divided by its standard
+/// deviation for a correct stated value. In slow motion, this test detects a wrong lidar pose earlier than
+/// LidarImuCalibrationPrior::distance_in_sigmas().
 double calibration_contradiction(const LidarImuCalibrationPrior& stated, const LidarInertialOdometry& mapper);
 
 LidarScale find_sweep_scale(std::span<const ImuSample> samples, const MappedRecording& mapped, double gravity_m_s2);

@@ -18,7 +18,7 @@
 
 namespace tumble {
 
-/// all readings of one of several IMUs on a body, in time order
+/// All readings of one of several IMUs on a body, in time order.
 struct ImuRecording {
   ImuDataSheet data_sheet;
   Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
@@ -26,37 +26,36 @@ struct ImuRecording {
 };
 
 struct MergedRecordings {
-  /// calibration of one IMU relative to the mean of all IMUs
+  /// Calibration of one IMU relative to the mean of all IMUs.
   struct MergedImu {
-    std::size_t imu_index = 0;                              ///< index of the IMU
-    double time_offset_s = 0.0, time_offset_sigma_s = 0.0;  ///< positive: the IMU is late
+    std::size_t imu_index = 0;
+    double time_offset_s = 0.0, time_offset_sigma_s = 0.0;  ///< positive: the IMU lags behind the mean
     double rate_bias_rad_s = 0.0;                           ///< norm of the gyro bias
   };
-  std::vector<ImuSample> samples;                         ///< samples of the merged IMU, in body axes
-  Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< position of the merged IMU, in body axes
-  std::vector<MergedImu> imus;                            ///< units in use
-  /// Excluded IMUs (units) that are silent, frozen, or in disagreement with the other units. A unit with a frozen axis
+  std::vector<ImuSample> samples;                         ///< fused samples, in body axes
+  Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< mean position of the IMUs, in body axes
+  std::vector<MergedImu> imus;                            ///< IMUs in use
+  /// IMUs that are silent, frozen, or contradict the other IMUs, and are therefore excluded. An IMU with a frozen axis
   /// is excluded only during the fault.
   SensorHealth faults;
   std::size_t excluded_readings = 0;          ///< readings that ImuMerge excluded
   std::optional<double> lever_arm_agreement;  ///< ImuMerge::lever_arm_agreement
   std::optional<MultiImuSignCheck::DetectedMirroring>
-      mislabelled_axes;  ///< mislabelled axes of the IMUs, as found by ImuMerge
+      mislabelled_axes;  ///< flipped or swapped axes that all IMUs share
 };
 
-/// Returns default parameters with the ranges of a data sheet.
 ClippingFinder::Params clipping_finder_params(const ImuDataSheet& sheet);
-/// Returns the confirmed saturation limits of an IMU with the saturation levels `detected`.
+/// Selects from the saturation limits `detected` those that a frozen IMU cannot imitate.
 ConfirmedSaturation confirmed_saturation(const SaturationLevels& detected, const ImuDataSheet& sheet);
 
-/// Returns the name of a unit in findings: "imu_1" for index 0, or "imu" if there is only one unit.
+/// Returns the name of an IMU in health findings: "imu_1" for index 0, or "imu" if there is only one IMU.
 std::string imu_name(std::size_t unit, std::size_t units);
 
-/// Merges the recordings of up to ImuMerge::kImus units on one body, with the saturation limits and faults of the whole
-/// recording. ClippingFinder flags the clipped readings, ImuTimeAlignment resamples the units to common times, and
-/// ImuMerge merges the units. A unit is excluded while an axis is frozen or readings are missing. If ImuMerge finds a
-/// frozen or contradicting unit, a second pass excludes the unit from the start of the fault. Units without samples are
-/// ignored. `setup` states the ranges; the function sets the number, mountings and sensing elements of the units.
+/// Fuses the recordings of up to ImuMerge::kImus IMUs on one body, with the saturation limits and faults of the whole
+/// recording. ClippingFinder flags the clipped readings, ImuTimeAlignment resamples the IMUs to common times, and
+/// ImuMerge fuses them. An IMU is excluded while an axis is frozen or readings are missing. If ImuMerge detects a
+/// frozen or contradicting IMU, a second pass excludes this IMU from the start of the fault. IMUs without samples are
+/// ignored. `setup` states the ranges; the function sets the number, poses and sensing elements of the IMUs.
 ///
 /// Returns `empty` if no IMU has a sample, or an error of ImuMerge. Returns `out_of_range` with the axis if frozen axes
 /// leave no IMU; `out.faults` then lists the excluded IMUs. Cost: O(N).

@@ -16,22 +16,22 @@
 
 namespace tumble {
 
-/// results of TumblingOdometry for a whole recording, in addition to the sweeps of take()
+/// Results of TumblingOdometry for a whole recording, in addition to the sweeps of take().
 struct WholeRecordingEstimate {
   explicit WholeRecordingEstimate(const LidarInertialOdometry::Params& mapping) : mapped_recording(mapping) {}
 
-  std::vector<TimeNs> stamps_ns;  ///< received time stamps of the used samples; `rates` contains corrected times
+  std::vector<TimeNs>
+      stamps_ns;  ///< received time stamps of the used samples; `rates` contains the times that SampleClock estimated
   std::vector<AngularRateState>
-      rates;  ///< one per used sample; the covariances include `suspected_error_covariance_rad2_s2`
-  std::vector<Eigen::Matrix3d>
-      suspected_error_covariance_rad2_s2;  ///< see suspected_error_covariance(); empty without a finding
-  MotionRegimeSmoother::Report report;     ///< report of the rate estimation, with the calibration of the IMU
+      rates;  ///< one per used sample; covariances include `suspected_error_covariance_rad2_s2`
+  std::vector<Eigen::Matrix3d> suspected_error_covariance_rad2_s2;  ///< result of suspected_error_covariance()
+  MotionRegimeSmoother::Report report;  ///< report of the rate estimation, with the rig constants
   SaturationLevels saturation_levels;
   ImuHealthReport findings;
   SensorHealth health;               ///< findings about IMU, lidar and estimate
-  MappedRecording mapped_recording;  ///< mapper and passes; TumblingOdometry::take() returns the sweeps
-  LidarScale scale;                  ///< scale of the lidar's ranges
-  double corrected_jitter_s = 0.0;   ///< largest corrected jitter of the time stamps
+  MappedRecording mapped_recording;  ///< without the sweeps, which TumblingOdometry::take() returns
+  LidarScale scale;
+  double corrected_jitter_s = 0.0;  ///< largest corrected jitter of the time stamps
 };
 
 }  // namespace tumble

@@ -11,36 +11,37 @@
 
 namespace tumble {
 
-inline constexpr double kLidarSilent_s = 1.0;  ///< silence of the lidar after which an empty sweep is inserted
+inline constexpr double kLidarSilent_s = 1.0;  ///< after this time without a sweep, an empty sweep is inserted
 
-/// A sweep waits for the rates of its samples.
+/// Sweep that waits until the rates of its IMU samples are estimated.
 struct WaitingSweep {
   TimeNs start_ns = 0, end_ns = 0;
   std::vector<LidarPoint> points;
 };
 
-/// Odometer readings wait until their sweep ends. A copy contains the complete state.
+/// Odometer readings that wait until their sweep is registered. A copy contains the complete state.
 class WaitingReadings {
  public:
-  /// maximum number of waiting readings: 500 Hz over the longest silence of the lidar plus a lag of a second
+  /// maximum number of waiting readings: 500 Hz over the longest time without a sweep (1 s) plus a lag of 1 s
   static constexpr std::size_t kReadingsMax = 1024;
-  /// time by which a reading may extend beyond its sweep, because clocks differ
+  /// time by which an odometer reading may extend beyond its sweep, because clocks differ
   static constexpr auto kExtrapolation_ns = static_cast<TimeNs>(1e9 * SweepTrajectory::kExtrapolation_s);
 
   /// Stores an odometer reading; readings may arrive in any order. The reading's time must be after `done_ns`, the end
   /// of the last registered sweep, and at most `latest_ns`. Returns an error of check_reading(), `time_order` if the
-  /// reading's sweep is already registered, or `out_of_range` (too late, or more than `most` waiting readings).
+  /// reading's sweep is already registered, or `out_of_range` (time after `latest_ns`, or more than `most` waiting
+  /// readings).
   Status add(const OdometerReading& reading, TimeNs done_ns, TimeNs latest_ns, std::size_t most = kReadingsMax);
 
-  /// Returns the last odometer reading of the sweep, because the errors of several readings are correlated. All
-  /// readings up to `end_ns` are deleted.
+  /// Returns the last odometer reading within a sweep, and deletes all readings up to `end_ns`. Earlier readings of the
+  /// sweep are not used, because the errors of successive readings are correlated.
   std::optional<OdometerReading> take_readings_in(TimeNs from_ns, TimeNs end_ns);
 
   /// Returns the last odometer reading within a sweep, like take_readings_in(), but keeps all readings. Cost: O(log n).
   std::optional<OdometerReading> find(TimeNs from_ns, TimeNs end_ns) const;
 
  private:
-  std::deque<OdometerReading> waiting_readings_;  ///< waiting readings in the order of their middle times
+  std::deque<OdometerReading> waiting_readings_;  ///< sorted by the middle of the reading's time interval
 };
 
 }  // namespace tumble

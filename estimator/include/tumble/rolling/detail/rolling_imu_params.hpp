@@ -10,10 +10,10 @@ namespace tumble {
 /// A prior standard deviation of 0 marks an exact quantity.
 struct RollingPriorParams {
   double tilt_sigma_rad = 6e-3;
-  static constexpr double kVelocitySigma_m_s = 2e-3;  ///< initial velocity
-  double gyro_bias_sigma_rad_s = 8.7e-4;              ///< 0.05 deg/s
+  static constexpr double kVelocitySigma_m_s = 2e-3;
+  double gyro_bias_sigma_rad_s = 8.7e-4;  ///< 0.05 deg/s
   double accel_bias_sigma_m_s2 = 0.04;
-  double accel_scale_sigma = 3.5e-3;  ///< each entry of the scale and misalignment matrix
+  double accel_scale_sigma = 3.5e-3;  ///< of each entry of the accelerometer's scale and misalignment matrix
   double gyro_scale_sigma = 2.5e-3;
   double accel_delay_sigma_s = 3e-3;  ///< delay of the accelerometer relative to the gyro
 
@@ -51,12 +51,12 @@ struct RollingImuNoiseParams {
 };
 
 struct RollingSaturationParams {
-  /// Standard deviation of rates that ImuMerge recovered. A rate counts as recovered if it is beyond the range and has
-  /// no clip flag. Without a value, ImuMerge recovers no rates.
+  /// Standard deviation of rates that ImuMerge recovered from saturation. A rate counts as recovered if it is beyond
+  /// the gyro's range and has no clip flag. Without a value, ImuMerge recovers no rates.
   std::optional<double> recovered_rate_sigma_rad_s = {};
-  /// Standard deviation of the force deficit due to saturation shorter than a sample, relative to the specific force. A
-  /// short impact may saturate the accelerometer within a sample although the mean stays below the range. The full
-  /// standard deviation applies above 0.6 of the range; below 0.3 of the range, the standard deviation is zero.
+  /// A short impact may saturate the accelerometer within a sample although the mean reading is below the range. This
+  /// value is the standard deviation of the resulting error, relative to the specific force. It applies to readings
+  /// above 0.6 of the range, and decreases to zero at 0.3 of the range.
   double subsample_saturation_ratio = 0.25;
 
   template <class Self, class Visitor>
@@ -67,12 +67,11 @@ struct RollingSaturationParams {
   }
 };
 
-/// RollingGapParams contains the limits of gaps in the readings. If two readings are further apart than
-/// kGapMinDuration_s, the specific force between the readings is unknown. RollingFilter interpolates the rate linearly.
+/// Limits of gaps between IMU readings. In a gap, the specific force is unknown, and RollingFilter interpolates the
+/// rate linearly.
 struct RollingGapParams {
-  static constexpr double kGapMinDuration_s =
-      0.06;  ///< a longer time between two readings is a gap, in which the force is unknown
-  static constexpr double kGapMax_s = 1.0;  ///< a longer gap ends the run
+  static constexpr double kGapMinDuration_s = 0.06;  ///< a longer time between two readings is a gap
+  static constexpr double kGapMax_s = 1.0;           ///< a longer gap ends the run
 };
 
 }  // namespace tumble

@@ -14,11 +14,11 @@
 namespace tumble {
 
 struct RollingExpertParams {
-  static constexpr double kNode_s = 0.02;  ///< time between two measurement updates
+  static constexpr double kNode_s = 0.02;  ///< time between two measurement updates (nodes)
   /// averaging time of the readings; 0: no averaging
   double reading_s = 4e-3;
-  /// The rest detector processes the mean reading of each time step `kNode_s`. With a rate limit of 0.02 instead of
-  /// 0.0115 rad/s per axis, the drift of a sphere that comes to rest would be 1.5 times as large.
+  /// The rest detector processes the mean reading of each time step `kNode_s`. A larger limit of the rate would
+  /// increase the drift of a sphere that comes to rest.
   RestDetector::Params rest_detector = {.rate_max_rad_s = 0.0115,
                                         .rate_spread_rad_s = 0.016,
                                         .force_spread_m_s2 = 0.15,
@@ -48,11 +48,11 @@ struct RollingParams {
   double lever_arm_sigma_m = 2e-3;
   std::optional<Eigen::Quaterniond> q_WI_start = {};  ///< attitude at the first sample; empty: tilt from gravity
   double gravity_m_s2 = 9.80665;
-  /// readings at or above the range are clipped, in addition to flagged readings
+  /// readings at or above the range count as clipped, in addition to readings with clip flags
   double gyro_range_rad_s = 1e3;
   double accel_range_m_s2 = 1e5;
   /// Calibration from an earlier run, which replaces the prior of the sensor errors, the lever arm and the radius. The
-  /// prior variances of the biases are added to the calibrated variances, because biases change at every switch-on.
+  /// variances of the biases are increased by their prior variances, because biases change at every switch-on.
   std::shared_ptr<const RollingCalibration> calibration = {};
 
   using Expert = RollingExpertParams;

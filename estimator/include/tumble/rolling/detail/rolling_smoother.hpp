@@ -16,10 +16,10 @@ namespace tumble {
 
 namespace rolling {
 
-/// contact modes of the most probable hypothesis at one node
+/// Contact mode of the most probable hypothesis at one time step.
 struct ModePathNode;
 
-/// Kalman filter along the most probable contact modes
+/// Kalman filter for the most probable sequence of contact modes.
 struct ModePathFilter {
   RollingNominalState nominal;
   RollingFilter::Covariance covariance = RollingFilter::Covariance::Zero();
@@ -27,12 +27,12 @@ struct ModePathFilter {
   bool operator==(const ModePathFilter&) const = default;
 };
 
-/// position in the stored samples from which RollingReadings continues
+/// Position in the stored samples.
 struct ReadingCursor {
-  TimeNs time_ns = 0;  ///< end of the last reading
+  TimeNs time_ns = 0;
   Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
   std::size_t next = 0;
-  Eigen::Vector3d rate_before_gap_rad_s = Eigen::Vector3d::Zero();  ///< rate before the gap
+  Eigen::Vector3d rate_before_gap_rad_s = Eigen::Vector3d::Zero();
   TimeNs gap_start_ns = 0;
   int gap_step_index = 0;
   bool operator==(const ReadingCursor&) const = default;
@@ -58,7 +58,8 @@ class RollingSmoother {
 
   struct Params {
     RollingParams filter = {};
-    /// ratio of the smoother's to RollingFilter's process noise; the reported covariance ignores this ratio
+    /// process noise of the smoother, relative to the process noise of RollingFilter; does not affect the reported
+    /// covariance
     static constexpr double kFinalPassNoiseRatio = 0.65;
     double lag_s = kWholeRecordingLag;       ///< delay of an estimate behind the newest sample
     static constexpr double kBlock_s = 0.2;  ///< RollingSmoother reports estimates in blocks of this duration
@@ -76,20 +77,20 @@ class RollingSmoother {
     }
   };
 
-  /// contact modes of all hypotheses at a node, and the parent of each hypothesis at the previous node
+  /// Contact modes of all hypotheses at a time step, and for each the preceding hypothesis at the previous time step.
   struct NodeModes {
     std::array<std::uint8_t, RollingFilter::kHypotheses> parent{};
     std::array<RollingMode, RollingFilter::kHypotheses> mode{};
     Eigen::Matrix3d position_spread_m2 = Eigen::Matrix3d::Zero();
-    double rest_s = 0.0;  ///< duration of the rest so far
+    double rest_s = 0.0;
     bool at_rest = false;
     bool spins_in_place = false;
     bool operator==(const NodeModes&) const = default;
   };
-  /// state of the smoother at the last node with reported estimates
+  /// State of the smoother at the last time step with reported estimates.
   struct FinalSmoothingState {
     rolling::SmoothingCheckpoint checkpoint;
-    double slip_start_variance_m2 = 0.0;  ///< position variance at the start of the event
+    double slip_start_variance_m2 = 0.0;  ///< position variance at the start of the slip or bump
     Eigen::Vector3d constrained_sphere_centre_W_m =
         Eigen::Vector3d::Zero();        ///< reported position while `position_constrained`
     bool position_constrained = false;  ///< the sphere is at rest and the reported position is constant
@@ -99,10 +100,10 @@ class RollingSmoother {
   struct State {
     RollingFilter::State live_filter;
     FinalSmoothingState committed_state;
-    std::vector<ImuSample> samples;  ///< samples after the committed node
+    std::vector<ImuSample> samples;  ///< samples after the last time step with reported estimates
     std::vector<NodeModes> node_modes;
-    RollingNominalState constants;  ///< constants at the newest smoothed node
-    double radius_sigma_m = 0.0;    ///< standard deviation of the radius at the newest smoothed node
+    RollingNominalState constants;  ///< estimated constants at the newest smoothed time step
+    double radius_sigma_m = 0.0;    ///< standard deviation of the radius at the newest smoothed time step
     bool operator==(const State& other) const;
   };
 
@@ -111,17 +112,18 @@ class RollingSmoother {
   /// Returns the filter that updates State::live.
   const RollingFilter& filter() const { return filter_; }
 
-  /// Appends the estimates that are older than `lag_s` to `out`. On error, the state is unchanged.
+  /// Processes one sample, and appends the smoothed estimates that are older than `lag_s` to `out`. On error, the state
+  /// is unchanged.
   ///
   /// The first call allocates the memory for the samples of the last `lag_s`. Later calls allocate memory only for
-  /// `out` and for smoothing, at the last sample of a block of `kBlock_s`. Smoothing temporarily needs 14 KiB per node
-  /// of lag and block, or 4 MiB plus 0.3 KiB per node if there are many nodes. The memory of the state grows with the
-  /// duration (64 bytes per sample, 152 per node) with kWholeRecordingLag, above rate_max_hz, or beyond a million
-  /// samples in `lag_s`.
+  /// `out` and for smoothing, at the last sample of a block of `kBlock_s`. Smoothing temporarily needs 14 KiB per time
+  /// step of lag and block, or 4 MiB plus 0.3 KiB per time step for long lags. With kWholeRecordingLag, above
+  /// rate_max_hz, or with more than a million samples in `lag_s`, the state grows by 64 bytes per sample and 152 bytes
+  /// per time step.
   Status step(const ImuSample& sample, State& state, std::vector<RollingEstimate>& out) const;
 
   /// Smooths the remaining estimates with all data, and passes the estimates to `take` in time order. For a whole run
-  /// of N nodes, finish() temporarily needs 4 MiB + N * 0.3 KiB of memory.
+  /// of N time steps, finish() temporarily needs 4 MiB + N * 0.3 KiB of memory.
   using EstimateCallback = std::function<void(const RollingEstimate&)>;
   void finish(State& state, const EstimateCallback& take) const;
   void finish(State& state, std::vector<RollingEstimate>& out) const;
