@@ -12,10 +12,10 @@ namespace engine {
 struct World;
 }
 
-/// The model is constant; copies of a BuiltSituation share the model, also between threads.
+/// World and robot as a MuJoCo model. Copies of a BuiltSituation share the constant model, also between threads.
 class BuiltSituation {
  public:
-  /// The construction of a BuiltSituation takes milliseconds for a floor and tenths of a second for a hill.
+  /// Takes milliseconds for a floor, and tenths of a second for a hill.
   BuiltSituation(ResolvedSituation situation, const std::filesystem::path& models);
 
   const ResolvedSituation& situation() const;

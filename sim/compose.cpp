@@ -23,13 +23,12 @@ using SpecPtr = std::unique_ptr<mjSpec, SpecDeleter>;
 constexpr double kStep_s = 0.0005;
 constexpr int kFewPairs = 100;
 
-/// A lack of memory throws std::bad_alloc and not InvalidSituation, because a larger machine may be able to simulate
-/// the situation.
+/// A lack of memory is not an InvalidSituation, because a larger machine may be able to simulate the situation.
 void refuse_for_memory(std::string_view message) {
   if (message.find("ould not allocate") != std::string_view::npos) throw std::bad_alloc();
 }
 
-/// MuJoCo's default error handlers write a log file, and end the process on an error.
+/// Replaces the default error handlers of MuJoCo, which write a log file and end the process on an error.
 void install_handlers() {
   static const bool kInstalled = [] {
     mju_user_warning = [](const char*) {};
@@ -56,8 +55,8 @@ int count_pairs(const mjModel& model) {
 }
 
 /// Returns true if MuJoCo finds the contacts in the same order with and without its bounding-volume tree. With the
-/// bounding-volume tree, MuJoCo sorts the two geoms of a contact by type number. For a robot with several geoms,
-/// sorts_as_asked() returns false without comparing the orders of contacts.
+/// tree, MuJoCo sorts the two geoms of a contact by type number. For a robot with several geoms, the result is false
+/// without a comparison.
 bool sorts_as_asked(const mjModel& model) {
   int robot = -1;
   for (int i = 0; i < model.ngeom; ++i) {
@@ -86,7 +85,7 @@ bool moves_freely(const mjModel& model) {
          none(model.dof_frictionloss, model.nv);
 }
 
-/// The disabled computations of MuJoCo do not change the motion, which stays bit-identical.
+/// Disables computations of MuJoCo that are not needed. The motion stays bit-identical.
 void spare_work(mjModel& model) {
   model.opt.enableflags |= mjENBL_SLEEP;
   std::fill(model.tree_sleep_policy, model.tree_sleep_policy + model.ntree, static_cast<int>(mjSLEEP_NEVER));

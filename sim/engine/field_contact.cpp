@@ -15,7 +15,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// MuJoCo divides a cell of a height field into two triangles, along the diagonal from the first to the last corner.
+/// Cell of a height field, which MuJoCo divides into two triangles along the diagonal from the first to the last
+/// corner.
 class Cell {
  public:
   Cell(const Field& field, int row, int column, const Strut& strut, const Part& over)

@@ -6,10 +6,11 @@
 
 namespace tumble::sim::engine {
 
-/// Before update_bodies() is called, MuJoCo's bodies have the poses of the last integration stage of a step.
+/// Computes the poses of MuJoCo's bodies from the joint angles. After a step, the bodies still have the poses of the
+/// last integration stage.
 void update_bodies(const mjModel& model, mjData& data);
 
-/// The caller must call update_bodies() before state_on_joints().
+/// Returns the motion of a body that is attached by joints. Call update_bodies() first.
 BodyState state_on_joints(const mjModel& model, const mjData& data, int body);
 
 BodyState state_at_rest(const World& world);

@@ -6,7 +6,7 @@
 namespace tumble::sim::engine {
 
 World copy_of(const World& world) {
-  // The structured binding lists all members of World, so that a new member without a copy causes a compiler error.
+  // If World gets a new member, this structured binding does not compile, so the copy below cannot miss the member.
   const auto& [model, body, free, surfaces, geoms, patches, half_extent_m, start_W_m, com_offset_m, radius_m] = world;
   ModelPtr own(mj_copyModel(nullptr, model.get()));
   if (!own) throw std::bad_alloc();

@@ -28,15 +28,15 @@ struct FrictionPatch {
 
 struct World {
   ModelPtr model;
-  /// Id of the body that carries the sensors, whose inertial frame is B
+  /// id of MuJoCo's body that carries the sensors; its inertial frame is the body frame B
   int robot_body = -1;
-  bool free = true;                   ///< false: attached by joints
+  bool free = true;                   ///< false: joints attach the robot to the world
   std::vector<std::string> surfaces;  ///< surface id -> name
   std::vector<int> surface_geom;      ///< static geoms visible to lidars
   std::vector<FrictionPatch> patches;
   double half_extent_m = 0;  ///< limit of |x| and |y|
   Eigen::Vector3d start_W_m = Eigen::Vector3d::Zero();
-  /// True centre of mass in the robot's design frame, in body axes
+  /// position of the true centre of mass relative to the nominal centre of mass, in body axes
   Eigen::Vector3d com_offset_m = Eigen::Vector3d::Zero();
   double sphere_radius_m = 0;  ///< 0 if the robot is not a sphere
 };

@@ -11,9 +11,9 @@ namespace {
 using Eigen::Vector3d;
 using Box = Eigen::Matrix<double, 6, 1>;
 
-/// With a margin of 0.5 m around the robot, one bounding-volume tree is valid for hundreds of steps.
+/// margin around the robot; 0.5 m make one bounding-volume tree valid for hundreds of simulation steps
 constexpr double kMargin_m = 0.5;
-/// Motion of a robot in one step of 0.5 ms at 400 m/s.
+/// largest motion of a robot in one simulation step: 0.5 ms at 400 m/s
 constexpr double kStep_m = 0.2;
 
 Box everything() {

@@ -8,9 +8,9 @@
 
 namespace tumble::sim::engine {
 
-/// NearGeoms restricts MuJoCo's bounding-volume tree of the world to geoms that a free robot may touch soon; the
-/// destructor restores the original tree. The restriction changes neither contacts nor their order, so the motion stays
-/// bit-identical.
+/// Restricts MuJoCo's bounding-volume tree of the world to geoms that a free robot may touch soon, which saves
+/// computing time. Contacts and their order do not change, so the motion stays bit-identical. The destructor restores
+/// the original tree.
 class NearGeoms {
  public:
   /// `model` must outlive this object, and must not be copied while this object exists.
@@ -35,11 +35,11 @@ class NearGeoms {
   int plant(Nodes first, Nodes last);
 
   mjModel& model_;
-  double reach_m_ = -1.0;  ///< negative: object does nothing
+  double reach_m_ = -1.0;  ///< negative: the tree is not restricted
   Eigen::Vector3d asked_W_m_;
   std::vector<Leaf> leaves_, near_;
   int planted_ = 0;
-  std::vector<int> own_child_, own_geom_;  ///< tree of MuJoCo's compiler
+  std::vector<int> own_child_, own_geom_;  ///< original tree
   std::vector<mjtNum> own_box_;
 };
 

@@ -12,7 +12,8 @@
 
 namespace tumble::sim::engine {
 
-/// A warning of MuJoCo ends the run, because lost contacts or invalid numbers would falsify the data.
+/// Simulates the robot's motion in steps with MuJoCo. A warning of MuJoCo ends the run, because lost contacts or
+/// invalid numbers would falsify the data.
 class Physics {
  public:
   /// Each step() may change the floor friction and the bounding-volume tree in the model of `world`. `world` must
@@ -32,8 +33,8 @@ class Physics {
   /// Throws SimulationFailure for a warning of MuJoCo, a non-finite state, or a robot that left its world.
   void step(const Wrench& wrench);
 
-  /// MuJoCo computes contacts at the last stage of RK4. The robot's position at the last RK4 stage differs from its
-  /// position after the step by an error of second order in the step.
+  /// Appends the current contacts. MuJoCo computes contacts at the last stage of RK4, where the position differs from
+  /// the position after the step by an error of second order.
   void append_contacts(std::int64_t time_ns, std::vector<ContactTruth>& contacts) const;
 
  private:

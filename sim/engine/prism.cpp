@@ -58,8 +58,8 @@ class AxisBox {
   Vector3d low_m_, high_m_;
 };
 
-/// Finds the closest points of two line segments, the axis p + s u and an edge q + t v, with s and t in [0, 1]. The
-/// method is from Ericson, Real-Time Collision Detection, 5.1.9.
+/// Finds the closest points of two line segments: p + s u and q + t v, with s and t in [0, 1]. Source: Ericson,
+/// Real-Time Collision Detection, 5.1.9.
 void meet_edge(const Vector3d& p, const Vector3d& u, const Vector3d& q, const Vector3d& v, Pair& closest) {
   const Vector3d r = p - q;
   const double a = u.squaredNorm(), e = v.squaredNorm(), b = u.dot(v), c = u.dot(r), f = v.dot(r);

@@ -14,14 +14,14 @@ struct AllanPoint {
   double tau_s = 0.0;
   double deviation = 0.0;   ///< in the unit of the series
   std::size_t cluster = 0;  ///< tau / period
-  std::size_t samples = 0;  ///< in each series
-  std::size_t series = 1;   ///< independent series
+  std::size_t samples = 0;  ///< number of samples in each series
+  std::size_t series = 1;   ///< number of independent series
 };
 
-/// The dominant noise at an averaging time determines the degrees of freedom of the Allan variance.
+/// Dominant noise at an averaging time, which determines the degrees of freedom of the Allan variance.
 enum class AllanNoise {
   white,    ///< N / sqrt(tau): angle random walk
-  flicker,  ///< minimum: bias instability
+  flicker,  ///< minimum of the Allan deviation: bias instability
   walk,     ///< K sqrt(tau / 3): bias random walk
 };
 

@@ -11,13 +11,12 @@ namespace tumble::sim {
 
 namespace {
 
-// With a ratio of 10 between successive correlation times, the Allan deviation is flat within 2 %.
+// ratio of successive correlation times of the Gauss-Markov processes; with 10, the Allan deviation is flat within 2 %
 constexpr double kRatio = 10.0;
 
-/// Returns the standard deviation sigma of each Gauss-Markov process. The sum of the Gauss-Markov processes
-/// approximates flicker noise, because successive correlation times have the ratio kRatio. At frequency f, the sum of
-/// the Gauss-Markov processes has the spectrum sigma^2 / (f ln kRatio). Flicker noise with the Allan deviation `floor`
-/// has the spectrum floor^2 / (2 f ln 2).
+/// Returns the standard deviation sigma of each Gauss-Markov process. At frequency f, the sum of the processes has the
+/// spectrum sigma^2 / (f ln kRatio). Flicker noise with the Allan deviation `floor` has the spectrum floor^2 / (2 f ln
+/// 2).
 double sigma_of_one(double floor) {
   return floor * std::sqrt(std::log(kRatio) / (2.0 * std::numbers::ln2));
 }

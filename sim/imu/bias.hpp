@@ -8,15 +8,15 @@
 
 namespace tumble::sim {
 
-/// Bias simulates the bias of a triad, independent for each axis, as the sum of three parts:
+/// Simulates the bias of a gyro or accelerometer, independently for each axis, as the sum of three parts:
 /// - a turn-on value (normal, drawn once),
 /// - in-run instability: flicker noise over three decades, from four first-order Gauss-Markov processes of equal size,
 ///   with correlation times a factor of ten apart (Keshner, "1/f noise", Proceedings of the IEEE 70, 1982),
 /// - a random walk.
 ///
-/// The Allan deviation of the in-run instability is flat at `in_run` within 5 % for averaging times from 1/200 to 1/2
-/// of `in_run_s`. Data sheets call `in_run` the "in-run bias stability" (IEEE Std 952-1997, annex C). The model of the
-/// bias excludes temperature and any dependence on earlier motion.
+/// The Allan deviation of the in-run instability is flat within 5 % for averaging times from 1/200 to 1/2 of
+/// `in_run_s`. Data sheets call this minimum "in-run bias stability" (IEEE Std 952-1997, annex C). The bias does not
+/// depend on temperature or earlier motion.
 class Bias {
  public:
   struct Params {

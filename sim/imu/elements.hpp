@@ -9,25 +9,25 @@
 
 namespace tumble::sim {
 
-/// Elements models the sensing elements of a triad (gyroscope or accelerometer), each with its own axis, scale, zero
-/// offset and saturation level. The three sensing elements measure s = M u + o, with signal u in device axes,
-/// misalignment matrix M and zero offset o. The saturation function c limits the signal of each sensing element to its
-/// saturation level. From the limited signals c(s), the device computes the reading M^-1 (c(s) - o), which corrects
-/// misalignment and offset.
+/// Simulates the three sensing elements of a gyro or accelerometer, each with its own axis, scale, zero offset and
+/// saturation level. The sensing elements measure s = M u + o, with the true signal u in device axes, misalignment
+/// matrix M and zero offset o. The saturation function c limits the signal of each sensing element to its saturation
+/// level. From the limited signals c(s), the device computes the reading M^-1 (c(s) - o), which corrects misalignment
+/// and offset.
 ///
-/// - While only one sensing element is saturated, the readings of the triad are on a plane, perpendicular to the axis
-///   of the sensing element.
+/// - While only one sensing element is saturated, the readings (x, y, z) are on a plane, perpendicular to the axis of
+///   the sensing element.
 /// - The saturation deficit is the signal of a sensing element minus its saturation level. A saturated sensing element
 ///   also changes the readings of the other axes, in proportion to its saturation deficit.
 ///
-/// Saturated readings of two real gyros are on planes with slopes of up to 0.05 relative to the other two axes. The
-/// midpoints between upper and lower saturation limit are offset from zero by up to 0.14 rad/s
-/// (scenarios/certificate/real_rails.cpp). Elements assumes that the device has the exact misalignment matrix and zero
-/// offset, and that the zero offset does not drift within a recording.
+/// For two real gyros, the slopes of these planes relative to the output axes are up to 0.05, and the offsets of their
+/// saturation limits up to 0.14 rad/s (scenarios/certificate/real_rails.cpp). The simulation assumes that the device
+/// has the exact misalignment matrix and zero offset, and that the zero offset does not drift within a recording.
 class Elements {
  public:
   struct Params {
-    /// Standard deviation of the off-diagonal entries of the misalignment matrix M, truncated at three deviations
+    /// standard deviation of the off-diagonal entries of the misalignment matrix M; the distribution is truncated at
+    /// three standard deviations
     double misalignment = 0.0;
     double scale = 0.0;   ///< standard deviation of the diagonal of M, around 1
     double offset = 0.0;  ///< standard deviation of o [signal unit]
@@ -42,7 +42,8 @@ class Elements {
   const Eigen::Vector3d& offset() const { return offset_; }
   bool axis_aligned() const { return axis_aligned_; }
 
-  /// Sets bit `first_bit + i` of `flags` if sensing element i saturated.
+  /// Limits a signal in device axes to the saturation levels, and sets bit `first_bit + i` of `flags` if sensing
+  /// element i saturated.
   Eigen::Vector3d clip(const Eigen::Vector3d& signal, Rail& rail, int first_bit, std::uint8_t& flags) const;
 
   Eigen::Vector3d with_elements_of(const Eigen::Vector3d& other, std::uint8_t mask,

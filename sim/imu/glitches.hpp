@@ -11,13 +11,13 @@
 
 namespace tumble::sim {
 
-/// Glitches replaces one axis of single samples by a wrong reading, as an error on the device's bus does. The wrong
-/// reading of a glitch is independent of the signal, and uniform within 1.5 times the stated range. The glitch model
-/// excludes runs of several wrong samples, and wrong time stamps.
+/// Replaces one axis of single samples by a wrong reading, as an error on the IMU's data bus does. The wrong reading is
+/// independent of the signal, and uniform within 1.5 times the stated range. Runs of several wrong samples and wrong
+/// time stamps are not simulated.
 class Glitches {
  public:
   Glitches(const Values& values, const Stream& stream);
-  /// Call spoil() once for each IMU sample, delivered or lost.
+  /// Call once for each IMU sample, delivered or lost.
   void spoil(TriadReading& gyro, TriadReading& accel);
 
  private:

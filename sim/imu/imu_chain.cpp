@@ -8,7 +8,7 @@ namespace tumble::sim {
 
 namespace {
 
-/// TriadChain updates the slowly changing bias only every 10 ms, which saves four fifths of the random numbers.
+/// update period of the slowly changing bias; saves four fifths of the random numbers
 constexpr double kBiasPeriod_s = 0.01;
 
 int steps_of_bias(double rate_hz) {

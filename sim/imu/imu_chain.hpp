@@ -16,26 +16,27 @@ namespace tumble::sim {
 
 struct TriadReading {
   Eigen::Vector3d delivered;
-  Eigen::Vector3d unclipped;  ///< same errors, without saturation
-  Eigen::Vector3d bias;       ///< at the end of the window
+  Eigen::Vector3d unclipped;  ///< reading with the same errors, but without saturation
+  Eigen::Vector3d bias;       ///< at the end of the averaging window
 };
 
-/// The stages have this order: analogue low-pass, scale and misalignment, bias, external additions (g-sensitivity),
-/// white noise of the active range, sensing elements with saturation, compensation of the elements, quantum, digital
-/// low-pass, mean over the window.
+/// Simulates the errors of a gyro or accelerometer in this order: analogue low-pass, scale and misalignment, bias,
+/// external additions (g-sensitivity), white noise of the active range, sensing elements with saturation, compensation
+/// of the elements, quantum, digital low-pass, mean over the window.
 ///
-/// If a triad rotates, the mean of its readings over the window differs from the increment of the motion divided by the
-/// window length (coning, sculling). The ideal reading is the increment of the motion divided by the window length.
-/// TriadChain averages only the sensor errors over the window, and adds the mean error to the ideal reading. If a
-/// sensing element saturated in the averaging window, its reading is the mean of the signal after all stages. A second
-/// chain with equal stages and noise, but without saturation, computes the unclipped reading.
+/// The ideal reading is the rotation or velocity increment over the averaging window, divided by the window length. For
+/// a rotating IMU, this value differs from the mean of the signal (coning, sculling). TriadChain therefore adds only
+/// the mean sensor error to the ideal reading. If a sensing element saturated in the window, the reading is the mean of
+/// the signal after all stages. A second chain with equal stages and noise, but without saturation, computes the
+/// unclipped reading.
 class TriadChain {
  public:
   /// `prefix` and `unit` select the parameters: "gyro" and "rad_s", or "accel" and "m_s2".
   TriadChain(const Values& values, const std::string& prefix, const std::string& unit, double rate_hz, int steps,
              std::uint64_t seed, const std::string& stream_name);
 
-  /// `ideal` is the ideal mean of the signal over the physics step; `added` is added to the signal before the noise.
+  /// `ideal` is the true mean of the signal over the physics step; `added` (g-sensitivity) is added to the signal
+  /// before the noise.
   void step(const Eigen::Vector3d& ideal, const Eigen::Vector3d& added);
   TriadReading take(const Eigen::Vector3d& exact, int first_bit, std::uint8_t& flags);
 

@@ -130,8 +130,8 @@ class Compass {
 };
 
 struct Pace {
-  int steps = 1;   ///< of the error chain
-  int shares = 1;  ///< above 1 for fast devices
+  int steps = 1;   ///< steps of the error simulation per physics step
+  int shares = 1;  ///< readings per physics step; above 1 for fast IMUs
 };
 
 Pace pace_of(const SensorSpec& sensor, double step_ns) {
@@ -158,8 +158,8 @@ Ideal ideal_between(const BodyState& before, const BodyState& after, const Eigen
   return {R_IB * mean_rate_B(before, after), R_IB * specific_force_B(before, after, T_BI.translation(), gravity_m_s2)};
 }
 
-/// The attitudes at the ends of the averaging window determine the rotation only up to full turns. The physics steps
-/// within the averaging window determine the number of full turns.
+/// Adds full turns to a mean rate over an averaging window. The attitudes at start and end of the window determine the
+/// rotation only up to full turns; the mean rate over the physics steps determines their number.
 Eigen::Vector3d unwound(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& mean_of_steps_rad_s, double time_s) {
   constexpr double kRevolution_rad = 6.283185307179586;
   const double norm = rate_rad_s.norm();

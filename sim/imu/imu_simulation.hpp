@@ -16,21 +16,21 @@ struct GivenElements {
   std::optional<Elements> gyro, accel;
 };
 
-/// The ideal rate of an averaging window is the rotation between the attitudes at the window's ends, divided by the
-/// duration. The ideal specific force is the mean acceleration of the sensor minus gravity, in the axes halfway between
-/// the attitudes at the window's ends. The integral of the ideal readings is the true motion at any output rate, also
-/// through impacts.
+/// Simulates the readings of an IMU. The ideal rate is the rotation over the averaging window, divided by its duration.
+/// The ideal specific force is the mean acceleration of the IMU minus gravity, in the axes halfway through the
+/// rotation. The ideal readings integrate to the true motion at any output rate, also through impacts.
 ///
-/// The unclipped readings in ImuTruth have the same noise as the readings, but no saturation. The IMU model excludes
-/// temperature, vibration rectification and bending of the mount.
+/// The unclipped readings in ImuTruth have the same noise as the readings, but no saturation. Temperature, vibration
+/// rectification and bending of the mount are not simulated.
 ///
-/// Clip flags mark windows in which a sensing element saturated at any moment; a saturated tilted element also makes
-/// the readings of unflagged axes wrong.
+/// A clip flag marks the axis of a sensing element that saturated at any moment of the window. Because of misalignment
+/// compensation, readings of unflagged axes are then also wrong.
 void simulate_imu(const Truth& truth, const SensorSpec& sensor, const Eigen::Isometry3d& T_BI, double gravity_m_s2,
                   std::uint64_t seed, ImuRecord& record, ImuTruth& imu_truth, const GivenElements& given = {});
 
-/// The sensor errors are simulated at the rate `chain_rate_hz` instead of the physics rate. The simulation of an hour
-/// at 500 Hz takes about a second. The bandwidths of the device must be 0 or below half of `chain_rate_hz`.
+/// Simulates the readings of an IMU at rest. The sensor errors are simulated at the rate `chain_rate_hz` instead of the
+/// physics rate. The simulation of an hour at 500 Hz takes about a second. The bandwidths of the device must be 0 or
+/// below half of `chain_rate_hz`.
 void simulate_imu_at_rest(const SensorSpec& sensor, double duration_s, double chain_rate_hz, double gravity_m_s2,
                           std::uint64_t seed, ImuRecord& record, ImuTruth& imu_truth);
 

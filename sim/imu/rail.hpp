@@ -9,14 +9,14 @@
 
 namespace tumble::sim {
 
-/// Rail models the saturation of a triad's output in these forms:
+/// Simulates the saturation of the output axes of a gyro or accelerometer in these forms:
 /// - `clamp`: the output stops at `level`, which may exceed the stated range.
 /// - `plateau`: the level differs between axes and signs, and between clipping events.
 /// - `wrap`: a reading beyond the level appears with the opposite sign, as when a 16-bit word overflows.
 /// - `slow_recovery`: a clipped axis accumulates an offset with the sign of the signal, up to `recovery_share` of the
 ///   level, with time constant `recovery_s`.
 ///
-/// The saturation model excludes levels that depend on temperature, and devices that stop after saturation.
+/// Saturation levels that depend on temperature, and sensors that stop after saturation, are not simulated.
 class Rail {
  public:
   struct Params {

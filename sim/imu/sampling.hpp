@@ -22,7 +22,7 @@ class Sampling {
   };
   struct Reading {
     Eigen::Vector3d delivered = Eigen::Vector3d::Zero(), unclipped = Eigen::Vector3d::Zero();
-    std::uint8_t railed = 0;  ///< bits of saturated elements
+    std::uint8_t railed = 0;  ///< bit i: sensing element i is saturated
   };
 
   Sampling(const Params& params, double rate_hz, Stream stream);
@@ -35,7 +35,7 @@ class Sampling {
   Reading mean() const;
 
   double readings_per_step_ = 0.0, phase_ = 0.0;
-  std::vector<Reading> ring_;  ///< empty if switched off
+  std::vector<Reading> ring_;  ///< ring buffer; empty if switched off
   std::size_t next_ = 0, filled_ = 0;
   Reading held_;
   bool holding_ = false;

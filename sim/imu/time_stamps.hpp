@@ -10,14 +10,14 @@
 
 namespace tumble::sim {
 
-/// TimeStamps converts the true end of each averaging window to the host's time stamp, or to no stamp if the sample is
-/// lost. The time stamps have a constant offset and white jitter, truncated at three standard deviations. Lost samples
-/// form runs of geometric length (Gilbert's model), independent of the signal. The time stamp model excludes a clock
-/// with a rate error, and samples in the wrong order.
+/// Converts the true end of each averaging window to the host's time stamp, or to no time stamp if the sample is lost.
+/// The time stamps have a constant offset and white jitter, truncated at three standard deviations. Lost samples form
+/// runs of geometric length (Gilbert's model), independent of the signal. A rate error of the clock, and samples in the
+/// wrong order, are not simulated.
 class TimeStamps {
  public:
   TimeStamps(const Values& values, const std::string& place, std::int64_t period_ns, const Stream& stream);
-  /// Call stamp() once for each averaging window.
+  /// Call once for each averaging window.
   std::optional<std::int64_t> stamp(std::int64_t window_end_ns);
 
  private:
