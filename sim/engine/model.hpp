@@ -36,7 +36,8 @@ struct World {
   std::vector<FrictionPatch> patches;
   double half_extent_m = 0;  ///< limit of |x| and |y|
   Eigen::Vector3d start_W_m = Eigen::Vector3d::Zero();
-  /// position of the true centre of mass relative to the nominal centre of mass, in body axes
+  /// position of the true centre of mass relative to the nominal one (sphere: relative to the geometric centre), in
+  /// body axes
   Eigen::Vector3d com_offset_m = Eigen::Vector3d::Zero();
   double sphere_radius_m = 0;  ///< 0 if the robot is not a sphere
 };

@@ -130,8 +130,8 @@ class Compass {
 };
 
 struct Pace {
-  int steps = 1;   ///< steps of the error simulation per physics step
-  int shares = 1;  ///< readings per physics step; above 1 for fast IMUs
+  int steps = 1;   ///< steps of the error simulation per output reading
+  int shares = 1;  ///< output readings per physics step; above 1 for fast IMUs
 };
 
 Pace pace_of(const SensorSpec& sensor, double step_ns) {

@@ -20,14 +20,15 @@ struct ChannelFirings {
 struct FiringBlock {
   std::int64_t first_slot = 0;
   int slots = 0;
-  std::array<std::int64_t, kLanes> start_ns{};      ///< true, since the recording's start
-  std::array<std::uint32_t, kLanes> reported_ns{};  ///< reported, since the sweep's start
-  std::array<int, kLanes> cell{};                   ///< see BeamPattern::cells()
+  std::array<std::int64_t, kLanes> start_ns{};      ///< true firing time since the recording's start
+  std::array<std::uint32_t, kLanes> reported_ns{};  ///< reported firing time since the sweep's start
+  std::array<int, kLanes> cell{};                   ///< azimuth cell: BeamPattern::cells()
   std::array<ChannelFirings, kMaxChannels> channel;
 };
 
-/// A slot is one sequence of all channels (spinning lidar), or one instant at which all units fire (rosette). The slot
-/// with the number k starts at k times the slot period. Slot numbers continue from sweep to sweep.
+/// Times and directions of the laser pulses of a lidar. A slot is one firing sequence of all lasers (spinning lidar),
+/// or one instant at which all units fire (rosette). The slot with the number k starts at k times the slot period. Slot
+/// numbers continue from sweep to sweep.
 class BeamPattern {
  public:
   virtual ~BeamPattern() = default;
@@ -45,7 +46,7 @@ class BeamPattern {
 
   virtual void fire(std::int64_t sweep, std::int64_t slot, int slots, FiringBlock& block) const = 0;
 
-  /// Returns the number of azimuth cells; 0 for a firing pattern that does not repeat in each sweep.
+  /// Returns the number of azimuth cells, or 0 if the firing pattern does not repeat in each sweep.
   virtual int cells() const { return 0; }
   virtual double cell_half_angle_rad() const { return 0.0; }
   virtual void fire_cells(int /*first*/, FiringBlock& /*block*/) const {}
@@ -53,14 +54,14 @@ class BeamPattern {
  protected:
   std::int64_t sweep_period_ns_ = 0, slot_period_ns_ = 0, firing_period_ns_ = 0;
   int channels_ = kMaxChannels;
-  int banks_ = 1;  ///< slots for different rings
+  int banks_ = 1;  ///< number of slots in which all rings fire once
   std::array<std::uint16_t, kMaxChannels> ring_{};
 };
 
-/// SpinningPattern is the firing pattern of a spinning lidar, in which a column of lasers rotates about the z axis. The
-/// azimuth of a spinning lidar is zero (along the lidar's x axis) at the start of each sweep, and increases clockwise
-/// seen from above. Channel c of sequence k fires at the time k P + c p, with the sequence period P and the firing
-/// period p. Timing and geometry are from the RoboSense RS-16 User's Guide v4.0 and the published driver.
+/// Firing pattern of a spinning lidar, in which a column of lasers rotates about the z axis. The azimuth is zero (along
+/// the lidar's x axis) at the start of each sweep, and increases clockwise seen from above. Laser c of sequence k fires
+/// at the time k P + c p, with the sequence period P and the firing period p. Timing and geometry are from the
+/// RoboSense RS-16 User's Guide v4.0 and the published driver.
 class SpinningPattern final : public BeamPattern {
  public:
   explicit SpinningPattern(const Values& values);
@@ -76,13 +77,12 @@ class SpinningPattern final : public BeamPattern {
   double rate_rad_ns_, sense_, mirror_radius_m_, mirror_drop_m_;
   bool driver_stamp_fault_;
   std::array<double, kMaxChannels> cos_elevation_, sin_elevation_, cos_lag_,
-      sin_lag_;  ///< of the azimuth within a sequence
+      sin_lag_;  ///< cosine and sine of the azimuth change within a sequence, for each laser
 };
 
-/// ColumnPattern is the firing pattern of a lidar with up to 128 evenly spaced rings, in which a column of lasers
-/// rotates about the z axis. A column fires in banks of 16 rings from bottom to top, evenly distributed over the
-/// column's period. Elevations may rise by a fraction of the ring spacing from sweep to sweep, which approximates
-/// patterns that do not repeat.
+/// Firing pattern of a lidar with up to 128 evenly spaced rings, in which a column of lasers rotates about the z axis.
+/// A column fires in banks of 16 rings from bottom to top, evenly distributed over the column's period. Elevations may
+/// increase by a fraction of the ring spacing from sweep to sweep, which approximates patterns that do not repeat.
 class ColumnPattern final : public BeamPattern {
  public:
   explicit ColumnPattern(const Values& values);
@@ -92,10 +92,10 @@ class ColumnPattern final : public BeamPattern {
   double rate_rad_ns_, sense_, lowest_rad_, spacing_rad_, shift_share_;
 };
 
-/// RosettePattern is the firing pattern of a rosette lidar with one or several units, in which two prisms that rotate
-/// at constant rates deflect the beam. The lateral deflection of the beam is the sum of three rotating vectors, with
-/// the rates w1 and w2 of the two prisms and the rate 2 w1 - w2. The ring number is the number of the lidar unit, from
-/// right (negative yaw) to left.
+/// Firing pattern of a rosette lidar with one or several units. In each unit, two prisms that rotate at constant rates
+/// deflect the beam. The lateral deflection of the beam is the sum of three rotating vectors, with the rates w1 and w2
+/// of the two prisms and the rate 2 w1 - w2. The ring number is the number of the lidar unit, from right (negative yaw)
+/// to left.
 class RosettePattern final : public BeamPattern {
  public:
   explicit RosettePattern(const Values& values);
@@ -104,7 +104,7 @@ class RosettePattern final : public BeamPattern {
  private:
   struct Term {
     double amplitude, rate_rad_ns;
-    std::array<double, kLanes> cos_lag, sin_lag;  ///< of the prisms in the block
+    std::array<double, kLanes> cos_lag, sin_lag;  ///< cosine and sine of the prism angles within a block
   };
   std::array<Term, 3> terms_;
   std::array<double, 3> cos_yaw_, sin_yaw_;

@@ -20,7 +20,7 @@ Shape widened(Shape shape, double margin_m) {
       size = Vector3d(size.x() + margin_m, size.y() + margin_m, margin_m);
       break;
     case ShapeKind::ellipsoid:
-      // The enlarged ellipsoid encloses the original ellipsoid with a margin of at least `margin_m` on all sides.
+      // The enlarged ellipsoid has a distance of at least `margin_m` from the original ellipsoid.
       size *= 1.0 + margin_m / size.minCoeff();
       break;
     case ShapeKind::capsule:

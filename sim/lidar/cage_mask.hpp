@@ -9,7 +9,7 @@
 
 namespace tumble::sim {
 
-/// The mask contains every firing that hits the robot's own cage; the other firings need no test against the cage.
+/// Marks every laser pulse that may hit the robot's own cage. All other pulses need no test against the cage.
 class CageMask {
  public:
   CageMask(const SceneGeometry& cage, const BeamPattern& pattern);

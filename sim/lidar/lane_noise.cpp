@@ -35,8 +35,8 @@ struct Words {
   }
 }
 
-/// Converts a random word to a number in (0, 1]. Numbers near 0 have the full relative precision of float, so that
-/// their logarithm is accurate.
+/// Converts a random word to a number in (0, 1]. The logarithm of a number near 0 is accurate, because the number has
+/// the full relative precision of float.
 float unit_of(std::uint32_t word) {
   return (static_cast<float>(static_cast<std::int32_t>(word >> 1)) + 0.5f) * 0x1p-31f;
 }

@@ -14,8 +14,8 @@ struct LaneNoise {
   alignas(64) float uniform[kLanes];  ///< in (0, 1)
 };
 
-/// LaneNoiseSource draws random numbers for sixteen lanes at a time by Philox 4x32-10 and Box-Muller (1958) in single
-/// precision. The random numbers depend only on (stream, index, lane).
+/// Draws random numbers for sixteen rays (lanes) at a time by Philox 4x32-10 and Box-Muller (1958), in single
+/// precision. The numbers depend only on stream, index and lane.
 class LaneNoiseSource {
  public:
   explicit LaneNoiseSource(const Stream& stream);

@@ -7,8 +7,8 @@
 
 namespace tumble::sim {
 
-/// Among hits at equal ranges, NearestHits keeps the hit with the lowest geometry number, so that the order of calls is
-/// irrelevant.
+/// Nearest hit of each ray. Among hits at equal ranges, the hit with the lowest geometry number counts, so that the
+/// order of calls is irrelevant.
 class NearestHits {
  public:
   static constexpr unsigned int kNone = ~0u;

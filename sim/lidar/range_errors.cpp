@@ -8,8 +8,8 @@ namespace tumble::sim {
 
 namespace {
 
-// Above certain_signal_, a lidar return is always detected, because its loss probability is below the resolution of the
-// random numbers.
+// Returns with a signal above certain_signal_ are never lost, because their loss probability is below the resolution of
+// the random numbers.
 constexpr double kSure = 0.99;
 constexpr double kCertainOdds = 0x1p25;
 
@@ -38,8 +38,8 @@ RangeErrors::RangeErrors(const Values& values, std::uint64_t seed, std::string_v
 bool RangeErrors::is_detected(float signal, double uniform) const {
   if (uniform >= kept_share_) return false;
   if (detection2_m2_ == 0.0 || signal >= certain_signal_) return true;
-  // The random number of a return that is not lost is uniform in [0, kept_share_), so uniform / kept_share_ is uniform
-  // in [0, 1).
+  // For a return that is not lost, `uniform` is uniformly distributed in [0, kept_share_), so u is uniformly
+  // distributed in [0, 1).
   const double u = uniform / kept_share_;
   if (u < kSure && signal >= sure_signal_) return true;
   const double odds = std::pow(signal, steepness_);

@@ -15,10 +15,10 @@ struct Returns {
   alignas(64) float intensity[kLanes];  ///< 0..1
 };
 
-/// RangeErrors applies range errors in this order: loss of weak returns (by range, incidence, reflectivity), random
-/// loss, white noise, range limits, quantum. The simulated intensity is reflectivity times the cosine of incidence, as
-/// in devices that compensate for range. The model of range errors excludes range bias by incidence or intensity,
-/// cross-talk, and several returns per firing.
+/// Simulates the range errors of a lidar in this order: loss of weak returns (by range, incidence, reflectivity),
+/// random loss, white noise, range limits, quantum. The simulated intensity is reflectivity times the cosine of
+/// incidence, as in devices that compensate for range. Range bias by incidence or intensity, cross-talk, and several
+/// returns per laser pulse are not simulated.
 class RangeErrors {
  public:
   RangeErrors(const Values& values, std::uint64_t seed, std::string_view stream_name);

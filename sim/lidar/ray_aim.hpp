@@ -6,8 +6,8 @@
 
 namespace tumble::sim {
 
-/// Within a slot (50 us), the pose is extrapolated with the rate at the middle of the slot. At 20 rad/s, the
-/// extrapolation error is (rate dt)^2 / 2 = 1e-7 rad.
+/// Lidar poses at the firing times of a block. Within a slot (50 us), the pose is extrapolated with the angular
+/// velocity at the middle of the slot. At 20 rad/s, the extrapolation error is (rate dt)^2 / 2 = 1e-7 rad.
 class BlockPoses {
  public:
   void follow(const BeamPattern& pattern, const FiringBlock& block, TrackCursor& track);
@@ -22,7 +22,7 @@ class BlockPoses {
 
   alignas(64) double pose_[kPose][kLanes], rate_[kPose][kLanes];
   int broken_count_ = 0;
-  int broken_lane_[kLanes];  ///< lanes with a change of rate
+  int broken_lane_[kLanes];  ///< lanes within which the angular velocity changes
   Pose34 broken_pose_[kLanes][kMaxChannels];
 };
 

@@ -30,14 +30,14 @@ struct SceneDeleter {
 using DevicePtr = std::unique_ptr<RTCDeviceTy, DeviceDeleter>;
 using ScenePtr = std::unique_ptr<RTCSceneTy, SceneDeleter>;
 
-/// By default, Embree chooses the kernel by CPU, and the results of different kernels differ in the last bits.
+/// Embree must use the same kernel on every CPU, because the results of different kernels differ in the last bits.
 constexpr const char* kDevice =
     // The option "threads=1" would limit oneTBB in the whole process while the Embree device exists.
     "start_threads=0,set_affinity=0,isa=avx2,frequency_level=simd256,ignore_config_files=1";
 constexpr int kKernelLanes = 8;
 static_assert(kKernelLanes == kShapeLanes && NearestHits::kNone == RTC_INVALID_GEOMETRY_ID);
-/// RayScene recomputes the range to each face that Embree reports. Embree searches a ray only up to kReach times the
-/// smallest recomputed range so far.
+/// The range to each face that Embree reports is recomputed with higher accuracy. Embree searches a ray up to kReach
+/// times the smallest recomputed range so far.
 constexpr float kReach = 1.0f + 4e-6f;
 
 struct MeshLabel {
@@ -109,7 +109,7 @@ double meet_face(const MeshLabel& mesh, unsigned int face, const Ray& ray, bool 
     const bool in_second =
         beside_first == beside_second ? second_half : (across.dot(ray.direction) >= 0.0) == beside_second;
     if (in_second)
-      a = d;  // same orientation
+      a = d;  // keeps the orientation of the surface
     else
       c = d;
   }
@@ -168,9 +168,9 @@ bool approach_shape(RTCPointQueryFunctionArguments* args) {
 struct RayScene::Impl {
   DevicePtr device;
   ScenePtr scene;
-  std::vector<SceneShape> bounded;    ///< in the order of Embree's primitives
+  std::vector<SceneShape> bounded;    ///< indexed by Embree's primitive id
   std::vector<SceneShape> unbounded;  ///< infinite planes
-  std::vector<MeshLabel> meshes;      ///< by Embree's geometry id
+  std::vector<MeshLabel> meshes;      ///< indexed by Embree's geometry id
   unsigned int shape_geometry = RTC_INVALID_GEOMETRY_ID;
 
   void add_mesh(const SceneMesh& mesh);
@@ -233,7 +233,7 @@ RayScene::RayScene(const SceneGeometry& geometry) : impl_(std::make_unique<Impl>
   }
   for (const SceneMesh& part : geometry.meshes) impl_->add_mesh(part);
   impl_->add_shapes();
-  // The task arena has one thread, because building the scene must not use threads that the caller did not provide.
+  // Building the scene must not use threads that the caller did not provide.
   tbb::task_arena(1).execute([this] { rtcCommitScene(impl_->scene.get()); });
   const RTCError error = rtcGetDeviceError(impl_->device.get());
   if (error != RTC_ERROR_NONE) throw std::runtime_error("lidar: Embree error " + std::to_string(error));

@@ -9,24 +9,24 @@
 
 namespace tumble::sim {
 
-/// The rays that are cast together belong to one lidar channel at successive times, and have similar directions.
+/// number of rays that are cast together: successive rays of one laser, with similar directions
 inline constexpr int kLanes = 16;
 
 struct RayPacket {
   int count = kLanes;
   alignas(64) float origin_x[kLanes], origin_y[kLanes], origin_z[kLanes];
   alignas(64) float direction_x[kLanes], direction_y[kLanes], direction_z[kLanes];  ///< unit vectors
-  /// Input: maximum range of the ray; output: range of the hit, or unchanged without a hit
+  /// input: maximum range of the ray; output: range of the hit, or unchanged without a hit
   alignas(64) float range[kLanes];
-  alignas(64) float cosine[kLanes];  ///< of the angle of incidence
+  alignas(64) float cosine[kLanes];  ///< cosine of the angle of incidence
   alignas(64) float reflectivity[kLanes];
-  alignas(64) std::int32_t surface_id[kLanes];  ///< input: kNothing or earlier hit
+  alignas(64) std::int32_t surface_id[kLanes];  ///< input: kNothing, or the surface of an earlier hit
 };
 
 inline constexpr std::int32_t kNothing = -1;
 
-/// Several threads may call const members of RayScene. RayScene uses float coordinates: at 50 m from the origin, a hit
-/// is accurate to about 1e-5 m. The hits are bit-identical on every x86-64 CPU with AVX2 and FMA.
+/// Casts rays against the world with Embree. Several threads may call const members. Coordinates are floats: at 50 m
+/// from the origin, a hit is accurate to about 1e-5 m. Hits are bit-identical on every x86-64 CPU with AVX2 and FMA.
 class RayScene {
  public:
   explicit RayScene(const SceneGeometry& geometry);

@@ -12,7 +12,7 @@
 
 namespace tumble::sim {
 
-/// Surface id of a return from the robot's own struts; ids of 0 or more are indices of engine::World::surfaces
+/// surface id of a return from the robot's own cage; ids of 0 or more are indices of engine::World::surfaces
 inline constexpr std::int32_t kOwnCage = -2;
 
 struct TriangleMesh {
@@ -39,12 +39,12 @@ struct SceneGeometry {
 /// `open` selects only the top of a height field; `closed` adds the side walls and the base, which mj_ray also hits.
 enum class HeightFieldSides { open, closed };
 
-/// Returns the geoms of engine::World::surface_geom in world axes, each with its index in surface_geom as surface id.
-/// Visual geoms (contype and conaffinity zero) and invisible geoms (alpha zero, as in mj_ray) are omitted.
+/// Returns the shapes and meshes of engine::World::surface_geom in world axes; the index in surface_geom is the surface
+/// id. Visual geoms (contype and conaffinity zero) and invisible geoms (alpha zero, as in mj_ray) are omitted.
 SceneGeometry static_geometry(const engine::World& world, HeightFieldSides sides);
 
-/// Primitives that contain the origin of the lidar frame (the housing of the lidar, or a shell around it) are omitted,
-/// because they are transparent.
+/// Returns the shapes of the robot's own cage in lidar axes. Shapes that contain the origin of the lidar frame (housing
+/// of the lidar, or a shell around it) are omitted, because they are transparent.
 SceneGeometry cage_geometry(const engine::World& world, const Eigen::Isometry3d& T_BL);
 
 Eigen::Isometry3d geom_pose(const mjData& data, int geom);
@@ -52,7 +52,8 @@ Eigen::Isometry3d geom_pose(const mjData& data, int geom);
 void append_geom(const mjModel& model, int geom, const Eigen::Isometry3d& T_FS, std::int32_t surface_id,
                  HeightFieldSides sides, SceneGeometry& scene);
 
-/// Luminance (ITU-R BT.709) of the geom's colour times the mean colour of its texture, limited to 0.05..0.95.
+/// Returns the luminance (ITU-R BT.709) of the geom's colour times the mean colour of its texture, limited to
+/// 0.05..0.95.
 float geom_reflectivity(const mjModel& model, int geom);
 
 }  // namespace tumble::sim

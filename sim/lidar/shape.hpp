@@ -8,8 +8,8 @@ namespace tumble::sim {
 
 enum class ShapeKind : std::uint8_t { plane, sphere, capsule, ellipsoid, cylinder, box };
 
-/// A plane has half sizes x, y (0: infinite) and the normal z. A capsule and a cylinder have a radius and a half length
-/// along z.
+/// Geometric primitive in its own frame. The size of a plane (normal z) is its half sizes x, y (0: infinite). The size
+/// of a capsule or cylinder is radius and half length along z.
 struct Shape {
   ShapeKind kind = ShapeKind::sphere;
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
@@ -17,11 +17,11 @@ struct Shape {
   Eigen::Vector3d p_FS_m = Eigen::Vector3d::Zero();
 };
 
-/// A ray hits a plane only from its front, as in mj_ray.
+/// Returns the range at which a ray hits the shape. A ray hits a plane only from its front, as in mj_ray.
 double cast_ray(const Shape& shape, const Eigen::Vector3d& origin_F_m, const Eigen::Vector3d& direction_F,
                 Eigen::Vector3d& normal_F);
 
-/// Distance of a point, inside or outside, from the surface [m], with a relative error of at most 1e-9.
+/// Returns the distance of a point, inside or outside, from the surface [m], with a relative error of at most 1e-9.
 double surface_distance(const Shape& shape, const Eigen::Vector3d& point_F_m);
 
 bool contains(const Shape& shape, const Eigen::Vector3d& point_F_m);

@@ -44,8 +44,8 @@ struct LocalRays {
   }
 }
 
-/// The slab method is from Kay and Kajiya, SIGGRAPH 1986. A ray from outside hits the box at the last slab that the ray
-/// enters; a ray from inside, at the first slab that the ray leaves.
+/// Slab method (Kay and Kajiya, SIGGRAPH 1986): a ray from outside hits the box where it enters the last slab, a ray
+/// from inside where it leaves the first slab.
 [[gnu::target("avx2")]] void cast_on_box(const Shape& shape, const LocalRays& rays, ShapeHits& hits) {
   alignas(64) double enter[kShapeLanes], enter_axis[kShapeLanes], enter_sign[kShapeLanes];
   alignas(64) double leave[kShapeLanes], leave_axis[kShapeLanes], leave_sign[kShapeLanes], misses[kShapeLanes];

@@ -55,7 +55,7 @@ struct SweepCaster::Workspace {
   ChannelFirings bent;
   std::array<RayPacket, kMaxBeamRays> beam;
   std::array<ChannelReturns, kMaxChannels> channel;
-  int active_count = 0;  ///< with at least one return
+  int active_count = 0;  ///< number of channels with at least one return
   std::array<int, kMaxChannels> active;
 };
 
@@ -69,7 +69,8 @@ SweepCaster::SweepCaster(const engine::World& world, const SensorSpec& sensor, c
       cage_(cage_geometry_),
       cage_mask_(cage_geometry_, *pattern_),
       T_BL_(T_BL),
-      // Range noise can move a hit from just beyond the range limit into the lidar's range.
+      // Rays are longer than the range limit, because range noise can move a hit from beyond the limit into the lidar's
+      // range.
       reach_m_(static_cast<float>(sensor.values.at("range_max_m") + 10.0 * sensor.values.at("range_noise_m"))),
       motion_(motion) {}
 
@@ -119,8 +120,7 @@ void SweepCaster::cast_block(Workspace& work) const {
     } else {
       for (int k = 0; k < spread_.rays(); ++k) {
         spread_.bend(firings, k, work.bent);
-        // The cage mask is valid only for the central ray of a beam, so every ray of a wide beam is tested against the
-        // cage.
+        // Every ray of a wide beam is tested against the cage, because the cage mask is valid only for the central ray.
         cast_channel(work.block, work.poses, c, !cage_.empty(), work.bent, work.beam[k]);
       }
       spread_.merge(work.beam, out.echoes);

@@ -13,18 +13,17 @@ namespace tumble::sim {
 
 using Pose34 = Eigen::Matrix<double, 3, 4>;
 
-/// TrackCursor interpolates the true pose of a lidar between the samples of the body's motion: position linearly,
-/// attitude at a constant rate about a fixed axis. For samples at an interval dt, the interpolation error of the
-/// position is the acceleration times dt^2 / 8. With dt = 0.5 ms and an acceleration of 400 m/s^2, the position error
-/// is 13 um.
+/// Interpolates the true pose of a lidar between the samples of the body's motion: position linearly, attitude at a
+/// constant rate about a fixed axis. With a sample interval of 0.5 ms and an acceleration of 400 m/s^2, the position
+/// error is 13 um (acceleration times dt^2 / 8).
 class TrackCursor {
  public:
-  /// at() interpolates the attitude by Rodrigues' formula. `turned` is R_WB K T_BL, and `rotated_twice` is R_WB K K
-  /// T_BL, with the cross-product matrix K of the body's rotation over the interval.
+  /// Terms of Rodrigues' formula for one interval. `turned` is R_WB K T_BL, and `rotated_twice` is R_WB K K T_BL, with
+  /// the cross-product matrix K of the body's rotation over the interval.
   struct Interval {
     std::int64_t start_ns = 0, end_ns = 0;
     double per_ns = 0.0, per_s = 0.0;
-    double angle2 = 0.0;  ///< over the whole interval
+    double angle2 = 0.0;  ///< squared rotation angle over the whole interval
     Eigen::Vector3d step_m = Eigen::Vector3d::Zero();
     Pose34 start = Pose34::Zero(), turned = Pose34::Zero(), rotated_twice = Pose34::Zero();
 
@@ -32,8 +31,8 @@ class TrackCursor {
     double share(std::int64_t time_ns) const { return static_cast<double>(time_ns - start_ns) * per_ns; }
   };
 
-  /// For squared angles below kSmall2, the series of sin(a)/a and (1 - cos(a))/a^2 are accurate to 1e-16. An angle of
-  /// 0.02 rad is the rotation at 40 rad/s within 0.5 ms.
+  /// For squared angles below kSmall2 (40 rad/s over 0.5 ms), the series of sin(a)/a and (1 - cos(a))/a^2 are accurate
+  /// to 1e-16.
   static constexpr double kSmall2 = 4e-4;
   static double sinc_of_small(double angle2) {
     return 1.0 - angle2 / 6.0 * (1.0 - angle2 / 20.0 * (1.0 - angle2 / 42.0));
@@ -49,7 +48,7 @@ class TrackCursor {
     T_BL_ << T_BL.linear(), T_BL.translation();
   }
 
-  /// The reference that interval() returns is valid until the next call.
+  /// Returns the interval that contains a time. The reference is valid until the next call.
   const Interval& interval(std::int64_t time_ns) {
     if (!now_.holds(time_ns)) enter_interval(time_ns);
     return now_;

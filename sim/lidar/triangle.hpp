@@ -6,7 +6,7 @@
 
 namespace tumble::sim {
 
-/// Distance from a point to a triangle with its interior [m]; for a degenerate triangle, to its edges.
+/// Returns the distance from a point to a triangle with its interior [m]; for a degenerate triangle, to its edges.
 float triangle_distance(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c,
                         const Eigen::Vector3f& point);
 

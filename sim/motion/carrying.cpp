@@ -17,7 +17,7 @@ Eigen::Vector3d turn(const Eigen::Quaterniond& from, const Eigen::Quaterniond& t
 Wrench carry_along(const HoldingHand& hand, const Eigen::Matrix3d& inertia_B_kg_m2, const BodyState& state,
                    const HandHeldPath& path) {
   constexpr double kDifference_s = 1e-3;  // for derivatives of the path
-  // The spring and damper between hand and body must transmit the hand's tremor, so their natural frequency is high.
+  // High natural frequency of the spring and damper between hand and body, so that they transmit the hand's tremor.
   constexpr double kFrequency_rad_s = 60.0;
   constexpr double kStiffness_1_s2 = kFrequency_rad_s * kFrequency_rad_s, kDamping_1_s = 2.0 * kFrequency_rad_s;
   const HandHeldPose before = path(state.time_s - kDifference_s), now = path(state.time_s),

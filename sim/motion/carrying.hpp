@@ -14,17 +14,17 @@ struct HandHeldPose {
   Eigen::Quaterniond q;
 };
 
-/// The path of the hand is differentiated twice numerically, so its velocity must be continuous.
+/// Path of the hand; its velocity must be continuous, because the path is differentiated twice numerically.
 using HandHeldPath = std::function<HandHeldPose(double time_s)>;
 
-/// Wrench (force and torque) of a hand that carries a robot along a path: feed-forward of the path's acceleration, plus
-/// a spring and a damper.
+/// Returns the force and torque of a hand that carries a robot along a path: feed-forward of the path's acceleration,
+/// plus a spring and a damper.
 Wrench carry_along(const HoldingHand& hand, const Eigen::Matrix3d& inertia_B_kg_m2, const BodyState& state,
                    const HandHeldPath& path);
 
 Eigen::Matrix3d carried_inertia_B_kg_m2(const HoldingHand& hand);
 
-/// Smooth step from 0 at u = 0 to 1 at u = 1 with continuous acceleration: 10 u^3 - 15 u^4 + 6 u^5.
+/// Smooth step from 0 at u = 0 to 1 at u = 1, with continuous acceleration: 10 u^3 - 15 u^4 + 6 u^5.
 double eased(double u);
 
 }  // namespace tumble::sim

@@ -51,9 +51,9 @@ constexpr std::array<Parameter, kHandParameters.size() + N> with_hand(const std:
   return all;
 }
 
-/// Hand moves a sphere with a horizontal force at the sphere's centre. The force of the hand is the sum of a spring and
-/// a damper to a moving reference position, the feed-forward force of rolling, and tremor. On floor patches with
-/// different friction, the hand adds bursts of torque.
+/// Hand that moves a sphere with a horizontal force at the sphere's centre. The force is the sum of spring and damper
+/// to a moving reference position, feed-forward of the rolling motion, and tremor. On floor patches with different
+/// friction, the hand adds bursts of torque.
 class Hand {
  public:
   /// `world` must outlive the hand.
@@ -61,7 +61,8 @@ class Hand {
 
   double radius_m() const { return radius_m_; }
   BodyState at_rest(const Eigen::Vector3d& p_G_m) const;
-  /// Times must increase between calls of wrench(), because the function stores when a burst of torque began.
+  /// Returns the force and torque of the hand. Times must increase from call to call, because the start of a burst of
+  /// torque is stored.
   Wrench wrench(const BodyState& state, const Reference& reference);
 
  private:

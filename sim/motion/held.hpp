@@ -9,11 +9,11 @@
 
 namespace tumble::sim {
 
-/// HoldingHand holds a robot still in the air, with critically damped springs for position and attitude. A force at the
-/// centre of mass carries the weight of the robot.
+/// Hand that holds a robot still in the air, with critically damped springs for position and attitude, and a force that
+/// carries the weight.
 class HoldingHand {
  public:
-  /// The lowest point of the robot is `height_m` above the ground at the start.
+  /// `height_m` is the height of the robot's lowest point above the ground at the start.
   HoldingHand(const engine::World& world, const Eigen::Quaterniond& q_WB, const Eigen::Vector3d& offset_W_m,
               double height_m);
 

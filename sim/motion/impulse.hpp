@@ -21,7 +21,7 @@ inline constexpr std::array kImpulseParameters = {
               "change of the angular velocity about the vertical, caused by the push (angular impulse over inertia)"},
 };
 
-/// Linear and angular impulse in world axes [N s, N m s] that starts the motion of a body at rest.
+/// Returns the linear and angular impulse in world axes [N s, N m s] that starts the motion of a body at rest.
 Wrench whole_impulse(const Values& values, double mass_kg, const Eigen::Matrix3d& inertia_W_kg_m2);
 
 }  // namespace tumble::sim

@@ -10,13 +10,13 @@
 
 namespace tumble::sim {
 
-/// A Motion applies a wrench (force and torque) to the robot. A Motion never sets a velocity, because the simulated
+/// Motion of the robot, caused by a wrench (force and torque). A Motion never sets a velocity, because the simulated
 /// accelerometers would not measure the jump.
 class Motion {
  public:
   virtual ~Motion() = default;
   virtual BodyState start() const = 0;
-  /// Wrench (force and torque) from `state.time_s` to the next step; before time 0, the robot settles into its
+  /// Returns the force and torque from `state.time_s` to the next step. Before time 0, the robot settles into its
   /// contacts.
   virtual Wrench wrench(const BodyState& state) = 0;
 };

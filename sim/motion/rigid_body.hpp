@@ -8,7 +8,8 @@
 
 namespace tumble::sim {
 
-/// Height of the centre of mass at which a body with attitude `q_WB` is `gap_m` above horizontal ground at height 0.
+/// Returns the height of the centre of mass at which the lowest point of a body with attitude `q_WB` is at height
+/// `gap_m`.
 double clearance_m(const mjModel& model, int body, const Eigen::Quaterniond& q_WB, double gap_m);
 
 Eigen::Matrix3d inertia_W_kg_m2(const mjModel& model, int body, const Eigen::Quaterniond& q_WB);

@@ -7,9 +7,8 @@
 
 namespace tumble::sim {
 
-/// Tremor is the random unsteadiness of a hand as a smooth function of time: a sum of sinusoids of random phase. The
-/// frequencies of the sinusoids are log-uniform between two limits, and the amplitudes are inversely proportional to
-/// the frequency.
+/// Random tremor of a hand as a smooth function of time: a sum of sinusoids with random phases. Their frequencies are
+/// log-uniform between two limits, and their amplitudes are inversely proportional to the frequency.
 class Tremor {
  public:
   Tremor(Stream& stream, double rms, double lowest_hz, double highest_hz);

@@ -70,7 +70,7 @@ std::vector<Stroke> plan_strokes(const Values& values, Stream& stream) {
   return strokes;
 }
 
-/// In the motion Twirl, a hand holds the robot at one point and twirls it about x, stroke by stroke.
+/// A hand holds the robot at one point and twirls the robot about x, stroke by stroke.
 class Twirl : public Motion {
  public:
   Twirl(const Values& values, const engine::World& world)

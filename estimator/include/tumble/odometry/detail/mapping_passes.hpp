@@ -67,9 +67,9 @@ MappedRecording map_in_one_pass(const MappingInput& input, const LidarInertialOd
 
 /// Processes a recording until the lidar's calibration has converged: mapping.md, "Second pass". The first pass
 /// estimates pose and time offset of the lidar. The last pass starts from these values and builds a consistent map. If
-/// the first pass contradicts the stated lidar pose, further passes treat this pose as uncertain. If the last pass
-/// changed the calibration by more than five standard deviations, another pass follows, at most three times. Passes
-/// also end if more than one sweep in five is rejected, because such a pass does not determine the calibration.
+/// the first pass contradicts the stated lidar pose, further passes treat this pose as uncertain. If a pass changes the
+/// calibration by more than five prior standard deviations, another pass follows, at most three times. Passes also end
+/// if more than one sweep in five is rejected, because such a pass does not determine the calibration.
 MappedRecording map_with_calibration(const MappingInput& input, const LidarInertialOdometry::Params& params);
 
 /// Tests the stated pose and time offset of the lidar against the estimates (Hausman test): mapping.md, "Second pass".
