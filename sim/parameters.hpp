@@ -11,9 +11,9 @@
 
 namespace tumble::sim {
 
-/// Parameter describes a number that the user can set; a switch is 0 (off) or 1 (on).
+/// Number that the user can set; a switch is 0 (off) or 1 (on).
 struct Parameter {
-  std::string_view name;  ///< ends in its unit: slope_rad
+  std::string_view name;  ///< name with the unit as suffix, for example "slope_rad"
   double default_value;
   double low;
   double high;

@@ -15,7 +15,7 @@ struct ImuRecord {
   std::string name;
   std::string device;  ///< for example "mti30"
   std::int64_t period_ns = 0;
-  double stated_gyro_range_rad_s = 0.0;  ///< the saturation limit may differ
+  double stated_gyro_range_rad_s = 0.0;  ///< range in the data sheet; the saturation limit may differ
   double stated_accel_range_m_s2 = 0.0;
   double gyro_noise_rad_s_sqrt_hz = 0.0;  ///< from the data sheet
   double accel_noise_m_s2_sqrt_hz = 0.0;
@@ -23,20 +23,20 @@ struct ImuRecord {
   std::vector<std::int64_t> time_ns;                       ///< end of each sample's window
   std::vector<Eigen::Vector3d> gyro_rad_s;
   std::vector<Eigen::Vector3d> accel_m_s2;        ///< specific force
-  std::vector<std::uint8_t> clip_flags;           ///< gyro x y z, accel x y z
+  std::vector<std::uint8_t> clip_flags;           ///< bits: gyro x, y, z, accelerometer x, y, z
   std::vector<Eigen::Vector3d> magnetic_field_t;  ///< in IMU axes, one per sample
-  /// Undisturbed magnetic field of the Earth at the place of the recording; 0: unknown
+  /// undisturbed magnetic field of the Earth at the place of the recording; 0: unknown
   Eigen::Vector3d earth_field_W_t = Eigen::Vector3d::Zero();
 };
 
 enum class PointTimes : std::uint8_t {
   measured,  ///< each point has its own time in offset_ns
-  /// All points belong to the start of the sweep, because the lidar is a flash or the sweep is deskewed; offset_ns is 0
+  /// all points belong to the start of the sweep (flash lidar or deskewed sweep); offset_ns is 0
   not_skewed,
   unknown  ///< unknown motion distortion; offset_ns is 0
 };
 
-/// A lidar firing without a hit gives no point.
+/// Sweeps of a lidar. A laser pulse without a return gives no point.
 struct LidarRecord {
   std::string name;
   std::string device;
@@ -44,18 +44,18 @@ struct LidarRecord {
   std::int64_t sweep_period_ns = 0;
   PointTimes point_times = PointTimes::measured;
   std::vector<std::int64_t> sweep_start_ns;
-  std::vector<std::uint64_t> sweep_first;  ///< first points, then point count
+  std::vector<std::uint64_t> sweep_first;  ///< index of the first point of each sweep, then the total number of points
   std::vector<Eigen::Vector3f> position_L_m;
   std::vector<float> range_m;
   std::vector<float> intensity;          ///< 0..1
-  std::vector<std::uint32_t> offset_ns;  ///< firing since the sweep's start
+  std::vector<std::uint32_t> offset_ns;  ///< firing time since the sweep's start
   std::vector<std::uint16_t> ring;
 };
 
 struct Quantity {
   std::string name;            ///< ends in its unit: "pressure_pa"
   std::string unit;            ///< for example "Pa"
-  double noise = 0.0;          ///< data sheet's deviation; 0: not stated
+  double noise = 0.0;          ///< standard deviation in the data sheet; 0: not stated
   std::vector<double> values;  ///< one per time stamp of the sensor
 };
 
@@ -81,7 +81,7 @@ struct Sensors {
   double gravity_m_s2 = 9.80665;
   std::vector<ImuRecord> imus;  ///< primary IMU first; `imu_reference`: comparison
   std::vector<LidarRecord> lidars;
-  std::vector<SeriesRecord> series;  ///< neither IMU nor lidar
+  std::vector<SeriesRecord> series;  ///< sensors other than IMU and lidar
 };
 
 }  // namespace tumble::sim

@@ -35,8 +35,8 @@ Eigen::Isometry3d site_pose(const engine::World& world, const SensorSpec& sensor
   return T_BX;
 }
 
-/// Sensor calibration that an estimator receives: the mounting in the design frame plus the calibration error. The
-/// origin of the design frame is the nominal centre of mass (for a sphere the geometric centre).
+/// Returns the sensor pose that an estimator receives: the pose in the design frame plus the calibration error. The
+/// origin of the design frame is the nominal centre of mass, or the geometric centre of a sphere.
 Eigen::Isometry3d given_pose(const engine::World& world, const SensorSpec& sensor, const Eigen::Isometry3d& T_BX) {
   const Values& error = sensor.mount_error;
   Eigen::Isometry3d given = T_BX;
@@ -51,7 +51,7 @@ Eigen::Isometry3d given_pose(const engine::World& world, const SensorSpec& senso
 
 Recording simulate(const BuiltSituation& built, int threads) {
   const Situation& situation = built.situation();
-  // The world is a copy, because the floor's friction changes with the robot's position.
+  // This simulation needs a copy of the world, because the floor's friction changes with the robot's position.
   engine::World world = engine::copy_of(built.world());
   const auto motion = find_motion_type(situation.motion.type).make(situation.motion.values, world);
   std::vector<Eigen::Isometry3d> mountings;

@@ -14,10 +14,10 @@ class SimulationFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The recording is independent of `threads`, the number of threads for the lidar.
+/// Simulates one recording. The result does not depend on `threads`, the number of threads for the lidar.
 Recording simulate(const BuiltSituation& built, int threads = 1);
 
-/// Initial pose of the robot's body frame, before the body settles into its contacts.
+/// Returns the initial pose of the robot's body frame, before the robot settles into its contacts.
 Eigen::Isometry3d start_pose(const BuiltSituation& built);
 
 }  // namespace tumble::sim

@@ -15,17 +15,17 @@ namespace tumble::sim {
 
 struct SensorSpec {
   std::string name;    ///< unique: "imu", "imu_reference", "lidar"
-  std::string kind;    ///< registry entry: "imu", "spinning_lidar", "barometer"
+  std::string kind;    ///< type of sensor: "imu", "spinning_lidar", "barometer"
   std::string device;  ///< source of the values ("mti30")
-  std::string site;    ///< of the robot's MJCF
-  Values values;       ///< data sheet with the scenario's changes
-  /// Calibration error of the sensor's mounting: x_m y_m z_m (B axes), roll_rad pitch_rad yaw_rad (small angles, I
-  /// axes)
+  std::string site;    ///< site of the robot's MJCF file that carries the sensor
+  Values values;       ///< values of the data sheet, with changes of the scenario
+  /// error of the sensor pose that an estimator receives: x_m y_m z_m (B axes), roll_rad pitch_rad yaw_rad (small
+  /// angles, I axes)
   Values mount_error;
   bool operator==(const SensorSpec&) const = default;
 };
 
-/// Situation is one simulated case with every number fixed; equal situations give bit-identical recordings.
+/// One simulated case with all numbers fixed; equal situations give bit-identical recordings.
 struct Situation {
   std::string scenario;
   std::uint64_t seed = 0;
@@ -34,8 +34,8 @@ struct Situation {
   Component robot;
   Component motion;
   std::vector<SensorSpec> sensors;
-  /// `streams` contains the seeds of single random streams: "world" for the shape of the world, and a sensor's name for
-  /// the errors of the sensor. All other streams use `seed`.
+  /// Seeds of single random streams: "world" for the shape of the world, and a sensor's name for the errors of the
+  /// sensor. All other streams use `seed`.
   std::map<std::string, std::uint64_t> streams;
   bool operator==(const Situation&) const = default;
 
@@ -45,7 +45,7 @@ struct Situation {
   }
 };
 
-/// Name of the world's random stream in Situation::streams
+/// name of the world's random stream in Situation::streams
 inline constexpr const char* kWorldStream = "world";
 
 std::span<const ComponentType> world_types();
@@ -54,7 +54,7 @@ std::span<const ComponentType> motion_types();
 std::span<const ComponentType> sensor_types();
 std::span<const Parameter> mount_error_parameters();
 
-/// Only resolve() creates a ResolvedSituation, so each ResolvedSituation is complete and checked.
+/// Complete and checked situation; only resolve() creates it.
 class ResolvedSituation {
  public:
   const Situation* operator->() const { return &situation_; }

@@ -104,7 +104,7 @@ class RosettePattern final : public BeamPattern {
  private:
   struct Term {
     double amplitude, rate_rad_ns;
-    std::array<double, kLanes> cos_lag, sin_lag;  ///< cosine and sine of the prism angles within a block
+    std::array<double, kLanes> cos_lag, sin_lag;  ///< cosine and sine of the vector's rotation within a block
   };
   std::array<Term, 3> terms_;
   std::array<double, 3> cos_yaw_, sin_yaw_;

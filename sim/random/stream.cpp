@@ -30,7 +30,8 @@ std::uint64_t join(std::uint32_t low, std::uint32_t high) {
 }  // namespace
 
 Stream::Stream(std::uint64_t seed, std::string_view name) {
-  // One Philox block combines seed and hash of the stream's name, so that similar seeds and names give unrelated keys.
+  // A Philox block combines the seed with a hash of the stream's name, so that similar seeds and names give unrelated
+  // keys.
   const std::uint64_t hash = fnv1a(name);
   const auto folded = philox4x32_10({static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32), 0, 0},
                                     {static_cast<std::uint32_t>(hash), static_cast<std::uint32_t>(hash >> 32)});

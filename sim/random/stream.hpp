@@ -7,9 +7,8 @@
 
 namespace tumble::sim {
 
-/// The stream is counter-based (Philox 4x32-10, Salmon et al., SC 2011): each number depends only on its index, not on
-/// threads and order. Stream contains its own distributions of random numbers, because standard libraries implement
-/// distributions differently.
+/// Counter-based stream of random numbers (Philox 4x32-10, Salmon et al., SC 2011): each number depends only on its
+/// index, not on threads or order. Distributions are implemented here, because they differ between standard libraries.
 class Stream {
  public:
   Stream(std::uint64_t seed, std::string_view name);

@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kFieldGrid_m = 1.0, kFieldStep_m = 0.2, kPlaneGrid_m = 0.5, kPlaneHalf_m = 10.0;
-constexpr double kLift_m = 0.012;  // lines above the surface stay visible
+constexpr double kLift_m = 0.012;  // height of lines above the surface, so that they stay visible
 constexpr float kGridColour[4] = {0.12f, 0.14f, 0.10f, 0.30f};
 constexpr double kGridPixels = 2.0;
 constexpr std::size_t kManyPoints = 4000;

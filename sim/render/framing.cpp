@@ -25,8 +25,7 @@ std::vector<Ball> content(const View& view, double robot_radius_m) {
     balls.push_back({T_WB.translation(), robot_radius_m});
     near.extend(T_WB.translation());
   }
-  // With robots in the view, the framing ignores distant paths, because a diverged estimate must not make the robots
-  // tiny.
+  // If robots are in the view, distant paths are ignored, because a diverged estimate would make the robots tiny.
   if (!near.isEmpty()) {
     const Vector3d margin = Vector3d::Constant(kNear_m + 0.25 * near.diagonal().norm());
     near = Eigen::AlignedBox3d(near.min() - margin, near.max() + margin);
@@ -48,7 +47,7 @@ std::vector<Ball> content(const View& view, double robot_radius_m) {
 }  // namespace
 
 Framing frame(const View& view, double robot_radius_m, double fovy_rad) {
-  constexpr double kMargin = 0.82;     // of half width and height
+  constexpr double kMargin = 0.82;     // part of half width and height that the content fills
   constexpr double kSmallest_m = 1.2;  // the surroundings stay visible
   constexpr double kOverview_m = 25.0;
   const std::vector<Ball> balls = content(view, robot_radius_m);

@@ -34,7 +34,8 @@ struct DrawnPoints {
   double radius_m = 0.02;
 };
 
-/// The camera looks at the point `look_at_W_m`; if this point is NaN, the camera frames the robots and nearby paths.
+/// Camera and content of a picture. The camera looks at the point `look_at_W_m`; if this point is NaN, the camera
+/// frames the robots and nearby paths.
 struct View {
   std::vector<Eigen::Isometry3d> robots_T_WB;
   std::vector<DrawnPath> paths;
@@ -42,7 +43,7 @@ struct View {
   int width = 1280;
   int height = 720;
   Eigen::Vector3d look_at_W_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-  double distance_m = 0.0;  ///< 0: frames the content
+  double distance_m = 0.0;  ///< distance of the camera; 0: frames the content
   double azimuth_rad = 1.9;
   double elevation_rad = -0.45;
 };

@@ -8,7 +8,8 @@
 
 namespace tumble::sim {
 
-/// Any thread may use the renderer, but only one thread at a time, because an OSMesa context is current in one thread.
+/// Renders pictures of a world. Only one thread at a time may use a SceneRenderer, because an OSMesa context is current
+/// in one thread.
 class SceneRenderer {
  public:
   SceneRenderer(engine::World world, int shadow_pixels);

@@ -16,8 +16,8 @@ struct Tessellation {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// Round primitives have `segments` facets about their axis (even, at least 4), with all vertices on the shape. A plane
-/// becomes a rectangle; the half width of an unbounded side is `unbounded_m`.
+/// Converts a shape to triangles. Round shapes get `segments` facets about their axis (even, at least 4), with all
+/// vertices on the shape. A plane becomes a rectangle; an infinite side gets the half width `unbounded_m`.
 Tessellation tessellate(const Shape& shape, int segments, double unbounded_m);
 
 }  // namespace tumble::sim

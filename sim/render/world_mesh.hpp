@@ -21,7 +21,7 @@ struct MeshPart {
 };
 
 /// Returns the visible parts of the world in world axes, without ceilings and near walls that would hide the inside.
-/// Round parts have `segments` facets about their axis, capsules half as many.
+/// Round parts get `segments` facets about their axis, and capsules half as many.
 std::vector<MeshPart> world_mesh(const BuiltSituation& built, int segments = 12);
 
 std::vector<MeshPart> robot_mesh(const BuiltSituation& built, int segments = 20);

@@ -29,10 +29,10 @@ inline constexpr std::array kSeriesParameters = {
               "recording"},
 };
 
-/// Sizes of the errors of a reading, relative to the true mean over the averaging window; 0 switches an error off
+/// Sizes of the errors of a reading, relative to the true mean over the averaging window; 0 switches an error off.
 struct ReadingErrors {
   double noise = 0.0;  ///< standard deviation per reading
-  /// Standard deviation of an error that is constant over a recording
+  /// standard deviation of an error that is constant over a recording
   double bias = 0.0;
   double low = -std::numeric_limits<double>::infinity();  ///< limits of the output range
   double high = std::numeric_limits<double>::infinity();
@@ -43,13 +43,13 @@ struct Measured {
   std::string name;  ///< ends in its unit: "pressure_pa"
   std::string unit;
   ReadingErrors errors;
-  std::function<double(std::size_t k)> exact;  ///< true, at physics sample k
+  std::function<double(std::size_t k)> exact;  ///< true value at physics sample k
 };
 
-/// A reading is the mean over an averaging window with bias, white noise, range, quantum, time stamps and losses. A
-/// sample that the device loses is also missing in the truth. Throws InvalidSituation if the output period is not a
-/// whole number of physics steps. The simulation excludes temperature errors, drift, and low-pass filters other than
-/// the averaging window.
+/// Simulates a sensor with scalar readings: mean over an averaging window, bias, white noise, range limits,
+/// quantisation, time stamps and lost samples. A lost sample is also missing in the truth. Throws InvalidSituation if
+/// the output period is not a whole number of physics steps. Temperature errors, drift, and other low-pass filters are
+/// not simulated.
 void simulate_series(const SensorContext& context, const std::vector<Measured>& quantities,
                      const std::vector<std::string>& constants, Recording& recording);
 

@@ -16,7 +16,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kRayReach_m = 1e4;
-/// If two surfaces have coincident faces (the end of a wall within a door's reveal), a ray may hit either surface.
+/// largest distance of coincident faces of two surfaces (for example, the end of a wall at a door frame), of which a
+/// ray may hit either
 constexpr double kCoincident_m = 1e-4;
 
 class EngineRays {

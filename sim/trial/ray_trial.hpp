@@ -10,17 +10,17 @@ namespace tumble::sim {
 struct RayDisagreement {
   std::int64_t rays = 0;
   std::int64_t hits = 0;
-  /// Number of rays for which the lidar and MuJoCo hit different surfaces, or only one of them has a hit
+  /// number of rays for which the lidar simulation and MuJoCo hit different surfaces, or only one of them has a hit
   std::int64_t other_surface = 0;
-  double largest_difference_m = 0.0;  ///< on the same surface
+  double largest_difference_m = 0.0;  ///< largest difference of the ranges to the same surface
 };
 
 struct RayTrialOptions {
   int rays = 2000;
   std::uint64_t seed = 1;
-  /// Displacement of the lidar's rays: a deliberate error that the comparison with MuJoCo's rays must detect
+  /// displacement of the lidar's rays: a deliberate error that the comparison with MuJoCo must detect
   double mirror_shift_m = 0.0;
-  int surface_shift = 0;  ///< another deliberate error
+  int surface_shift = 0;  ///< change of the surface ids: another deliberate error
 };
 
 /// Casts random rays in all directions with the lidar's ray scene and with MuJoCo, without the robot. Half of the rays

@@ -12,7 +12,8 @@
 
 namespace tumble::sim {
 
-/// The simulation uses `runge_kutta_4`; `euler` and `implicit` demonstrate the errors of other integrators.
+/// Numerical integrator. simulate() uses `runge_kutta_4`; `euler` and `implicit` demonstrate the errors of other
+/// integrators.
 enum class Integrator { runge_kutta_4, euler, implicit };
 
 struct TrialOptions {
@@ -20,8 +21,8 @@ struct TrialOptions {
   Integrator integrator = Integrator::runge_kutta_4;
 };
 
-/// Trial simulates a robot in its world step by step, with the same model and physics engine as simulate(). The robot
-/// starts at its initial pose, without first coming to rest; the motion and sensors of `built` are ignored.
+/// Simulates a robot in its world step by step, with the same model and physics engine as simulate(). The robot starts
+/// at its initial pose, without first coming to rest. Motion and sensors of `built` are ignored.
 class Trial {
  public:
   explicit Trial(const BuiltSituation& built, const TrialOptions& options = {});

@@ -14,7 +14,7 @@ struct Sums {
   double weight = 0.0, slip = 0.0, overspin = 0.0;
 };
 
-/// Returns two speeds of a contact, both weighted by the normal force:
+/// Returns two speeds at a contact, weighted by the normal force:
 ///
 /// - `slip`: the speed at which the contact point slides
 /// - `overspin`: the speed of the contact point relative to the centre of mass, minus the tangential speed of the

@@ -69,7 +69,7 @@ class Side {
     mjsGeom* geom = add_surface(spec_, world_, name_ + what + std::to_string(count_++), mjGEOM_BOX,
                                 {0.5 * (from_m + to_m), side_ * (half_m + 0.5 * (near_m + far_m)), 0.5 * top_m},
                                 {0.5 * (to_m - from_m), 0.5 * (far_m - near_m), 0.5 * top_m}, 0.0, colour);
-    if (side_ < 0) geom->group = kUnseenInPictures;  // cameras look from the right side
+    if (side_ < 0) geom->group = kUnseenInPictures;  // pictures are taken from the right side
   }
 
   void add_bare(double length_m) {

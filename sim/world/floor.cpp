@@ -99,7 +99,7 @@ void add_obstacles(mjSpec* spec, engine::World& world, const Values& values) {
 
 void build_floor(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World& world) {
   Stream stream(seed, "terrain");
-  Stream uneven(seed, "terrain.unevenness");  // keeps the furniture of a seed
+  Stream uneven(seed, "terrain.unevenness");  // a separate stream, so that the furniture of a seed does not change
   const double half_m = values.at("room_half_m");
   add_ground(spec, world, values, half_m, half_m, nullptr, {0.62f, 0.6f, 0.57f, 1.0f}, uneven);
   add_room(spec, world, values, stream);

@@ -24,11 +24,12 @@ inline constexpr std::array kGroundParameters = {
               "longest wavelength of the unevenness; the height of a wave is proportional to its wavelength"},
 };
 
-/// MuJoCo uses the larger friction of two touching geoms, and the sphere has no friction.
+/// Sets the friction of the ground. MuJoCo uses the larger friction of two touching geoms, and the simulated sphere has
+/// no friction.
 void set_ground_contact(mjsGeom* geom, const Values& values);
 
-/// The unevenness only lowers the floor, so that no object starts inside the ground. Returns false if the floor is a
-/// plane.
+/// Adds an uneven floor. The unevenness only lowers the floor, so that no object starts inside the ground. Returns
+/// false if the floor is a plane.
 bool add_ground(mjSpec* spec, engine::World& world, const Values& values, double half_x_m, double half_y_m,
                 const std::function<double(double, double)>& profile_m, const Colour& colour, Stream& stream);
 

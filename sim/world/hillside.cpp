@@ -13,7 +13,7 @@ namespace tumble::sim::hillside {
 
 namespace {
 
-constexpr double kReach_m = 18.0;  // from objects to the rim
+constexpr double kReach_m = 18.0;  // distance from objects to the rim of the world
 
 double from_start_m(double x_m, double y_m) {
   return std::hypot(x_m - kStart_x_m, y_m);
@@ -31,8 +31,8 @@ void roughen(Ground& ground, const Values& values, std::uint64_t seed, const Sha
   if (values.at("relief_m") > 0.0) rough.transform([&](double x, double y, double) { return relief.height_m(x, y); });
   if (values.at("bump_height_m") > 0.0)
     add_bumps(rough, bump_stream, static_cast<int>(values.at("bump_count")), values.at("bump_height_m"));
-  // The relief fades to zero in a disc around the start. If the relief is constant along y, the relief fades in a strip
-  // along y, because a disc would be a feature for the lidar.
+  // The relief fades to zero in a disc around the start. If the relief is constant along y, it fades in a strip along y
+  // instead, because the lidar would see a disc as a feature.
   const bool ruled = values.at("relief_ruled") > 0.5;
   int node = 0;
   ground.transform([&](double x, double y, double height_m) {

@@ -29,7 +29,7 @@ constexpr std::array kOwnTubeParameters = {
 };
 constexpr std::array kTubeParameters = joined(kGroundParameters, kOwnTubeParameters);
 constexpr Colour kRock = {0.42f, 0.36f, 0.33f, 1.0f};
-constexpr double kOver_m = 0.5;  // no gap at the walls
+constexpr double kOver_m = 0.5;  // overlap, so that there is no gap at the walls
 
 double middle_m(const Values& values, double x_m) {
   return values.at("bend_m") * std::sin(2.0 * std::numbers::pi * x_m / values.at("bend_length_m"));
@@ -40,7 +40,7 @@ double ground_m(const Values& values, double x_m, double y_m) {
   return values.at("gutter_m") * u * u;
 }
 
-/// The shell of the tube has no contacts, because MuJoCo would use the convex hull of the shell's mesh. The ground and
+/// Adds the shell of the tube without contacts, because MuJoCo would use the convex hull of the mesh. The ground and
 /// the ends keep the robot inside the tube.
 void add_shell(mjSpec* spec, engine::World& world, const Values& values, int side, const Relief& rough) {
   constexpr double kRing_m = 0.1;
@@ -52,7 +52,7 @@ void add_shell(mjSpec* spec, engine::World& world, const Values& values, int sid
     const double x_m = values.at("length_m") * (static_cast<double>(ring) / rings - 0.5);
     for (int step = 0; step <= kSteps; ++step) {
       const double angle = -kBelow_rad + (std::numbers::pi / 2 + kBelow_rad) * step / kSteps;
-      // The coordinate across the tube is the arc length from the crown, where both halves meet.
+      // The coordinate across the tube is the arc length from the top, where both halves meet.
       const double arc_m = side * (std::numbers::pi / 2 - angle) * values.at("half_width_m");
       const double scale = 1.0 + rough.height_m(x_m, arc_m) / values.at("half_width_m");
       vertices.push_back(static_cast<float>(x_m));
@@ -66,7 +66,7 @@ void add_shell(mjSpec* spec, engine::World& world, const Values& values, int sid
   for (int ring = 0; ring < rings; ++ring) {
     for (int step = 0; step < kSteps; ++step) {
       const int here = ring * (kSteps + 1) + step, next = here + kSteps + 1;
-      // Pictures show a face only from the side on which its corners are anticlockwise: here the inner side.
+      // The corners are anticlockwise seen from inside, because pictures show only this side of a face.
       const int first = side > 0 ? next : here + 1, second = side > 0 ? here + 1 : next;
       for (const int corner : {here, first, next + 1, here, next + 1, second}) faces.push_back(corner);
     }

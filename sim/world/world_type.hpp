@@ -11,7 +11,7 @@ namespace tumble::sim {
 
 struct WorldType {
   ComponentType component;
-  /// Random numbers come from streams of `seed` named "terrain" or "terrain.*".
+  /// Builds the world. Random numbers come from streams of `seed` named "terrain" or "terrain.*".
   void (*build)(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World& world);
 };
 

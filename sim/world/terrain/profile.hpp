@@ -3,20 +3,19 @@
 
 namespace tumble::sim {
 
-/// SlopeProfile is a slope that falls along +x between a level top at height 0 and a level run-out, with two rounded
-/// corners (softplus).
+/// Slope that falls along +x from a level top at height 0 to a level run-out, with two rounded corners (softplus).
 struct SlopeProfile {
   double edge_x_m = 0.0;     ///< x of the upper corner
   double slope_rad = 0.6;    ///< steepness, below a right angle
-  double drop_m = 3.0;       ///< from the run-out to the top
+  double drop_m = 3.0;       ///< height of the top above the run-out
   double rounding_m = 0.25;  ///< bending length of a corner, above 0
 
   double length_m() const;  ///< horizontal length of the slope
   double height_m(double x_m) const;
 };
 
-/// LedgeProfile describes terraces below a level top at height 0. Each drop has the horizontal length `face_m` and is
-/// followed by a sloping ledge.
+/// Terraces below a level top at height 0. Each drop has the horizontal length `face_m` and is followed by a sloping
+/// ledge.
 struct LedgeProfile {
   double edge_x_m = 0.0;  ///< x of the first drop
   int drops = 2;          ///< number of drops, at least 1

@@ -8,17 +8,17 @@
 
 namespace tumble::sim {
 
-/// The power of a rough surface per wave number k (all directions) is proportional to k^-exponent for wavelengths
-/// within [shortest_m, longest_m], and zero otherwise.
+/// Spectrum of a rough surface. The power per wave number k (all directions) is proportional to k^-exponent for
+/// wavelengths within [shortest_m, longest_m], and zero otherwise.
 struct ReliefSpectrum {
-  double rms_m = 0.1;       ///< root mean square, at least 0
+  double rms_m = 0.1;       ///< root mean square of the height, at least 0
   double shortest_m = 1.0;  ///< above 0
   double longest_m = 9.0;   ///< at least shortest_m
   double exponent = 3.0;    ///< 3: amplitude proportional to wavelength
   bool ruled = false;       ///< the height depends only on x
 };
 
-/// Relief is a random surface: a sum of plane waves with random phases and directions, and log-uniform wavelengths.
+/// Random surface: a sum of plane waves with random phases and directions, and log-uniform wavelengths.
 class Relief {
  public:
   Relief(Stream& stream, const ReliefSpectrum& spectrum);
@@ -31,8 +31,8 @@ class Relief {
   std::vector<Wave> waves_;
 };
 
-/// The height of a Gaussian bump is uniform in +-height_m. The standard deviation (width) of a Gaussian bump is uniform
-/// in [0.2, 0.7] m.
+/// Adds Gaussian bumps. Their heights are uniform in +-height_m, and their widths (standard deviations) are uniform in
+/// [0.2, 0.7] m.
 void add_bumps(Ground& ground, Stream& stream, int count, double height_m);
 
 }  // namespace tumble::sim

@@ -13,11 +13,11 @@ namespace tumble::sim {
 struct RockField {
   int count = 0;
   double largest_m = 0.3;  ///< largest half axis
-  /// Horizontal half axes of the rocks are uniform in [smallest_share, 1] * largest_m, heights in [0.75 smallest_share,
-  /// 0.7] * largest_m
+  /// Horizontal half axes are uniform in [smallest_share, 1] * largest_m, heights in [0.75 smallest_share, 0.7] *
+  /// largest_m.
   double smallest_share = 0.4;
   Rectangle area;
-  Disc clear;  ///< free of rocks
+  Disc clear;  ///< disc without rocks
 };
 
 struct Rock {

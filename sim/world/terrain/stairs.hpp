@@ -14,7 +14,7 @@ struct Flight {
   double tread_m = 0.29;
   double half_width_m = 2.0;
 
-  double slope_rad() const;  ///< through the edges
+  double slope_rad() const;  ///< slope of the plane through the edges
   double drop_m() const { return steps * rise_m; }
   double length_m() const { return steps * tread_m; }
 };

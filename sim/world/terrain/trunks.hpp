@@ -14,9 +14,9 @@ struct Stand {
   int count = 0;
   double largest_radius_m = 0.15;  ///< uniform from 0.4 times this value
   double spacing_m = 0.8;          ///< minimum distance between two axes
-  double lane_half_width_m = 0.0;  ///< no tree near y = 0
+  double lane_half_width_m = 0.0;  ///< no tree is closer to y = 0
   Rectangle area;
-  Disc clear;  ///< free of trees
+  Disc clear;  ///< disc without trees
 };
 
 struct Trunk {
