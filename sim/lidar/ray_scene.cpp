@@ -36,8 +36,8 @@ constexpr const char* kDevice =
     "start_threads=0,set_affinity=0,isa=avx2,frequency_level=simd256,ignore_config_files=1";
 constexpr int kKernelLanes = 8;
 static_assert(kKernelLanes == kShapeLanes && NearestHits::kNone == RTC_INVALID_GEOMETRY_ID);
-/// The range to each face that Embree reports is recomputed with higher accuracy. Embree searches a ray up to kReach
-/// times the smallest recomputed range so far.
+/// The range to each face that Embree reports is recomputed. Embree searches a ray up to kReach times the smallest
+/// recomputed range so far.
 constexpr float kReach = 1.0f + 4e-6f;
 
 struct MeshLabel {

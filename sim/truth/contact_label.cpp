@@ -17,8 +17,8 @@ struct Sums {
 /// Returns two speeds at a contact, weighted by the normal force:
 ///
 /// - `slip`: the speed at which the contact point slides
-/// - `overspin`: the speed of the contact point relative to the centre of mass, minus the tangential speed of the
-///   centre
+/// - `overspin`: the speed of the contact point relative to the geometric centre, minus the tangential speed of the
+///   geometric centre
 Sums weigh(const Truth& truth, const ContactTruth& contact) {
   const std::size_t k = static_cast<std::size_t>(contact.time_ns / truth.period_ns);
   const Eigen::Vector3d w_W = truth.q_WB[k] * truth.w_WB_B_rad_s[k];
