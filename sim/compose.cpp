@@ -89,7 +89,7 @@ bool moves_freely(const mjModel& model) {
 void spare_work(mjModel& model) {
   model.opt.enableflags |= mjENBL_SLEEP;
   std::fill(model.tree_sleep_policy, model.tree_sleep_policy + model.ntree, static_cast<int>(mjSLEEP_NEVER));
-  model.opt.disableflags |= mjDSBL_ISLAND;  // the robot is a single island
+  model.opt.disableflags |= mjDSBL_ISLAND;
   // A height field is below the whole robot, so a test of the field's bounding box would exclude no contact.
   for (int i = 0; i < model.ngeom; ++i) {
     if (model.geom_type[i] == mjGEOM_HFIELD)

@@ -31,7 +31,7 @@ struct ImuTruth {
   std::vector<Eigen::Vector3d> specific_force_m_s2;   ///< mean over the window, in axes halfway through the rotation
   std::vector<Eigen::Vector3d> gyro_unclipped_rad_s;  ///< readings with all errors except saturation
   std::vector<Eigen::Vector3d> accel_unclipped_m_s2;
-  std::vector<Eigen::Vector3d> gyro_bias_rad_s;  ///< bias at each sample
+  std::vector<Eigen::Vector3d> gyro_bias_rad_s;
   std::vector<Eigen::Vector3d> accel_bias_m_s2;
   /// Directions of the three sensing elements, along which saturation acts: rows of the misalignment matrix M
   /// (sim/imu/elements.hpp). Empty if the sensing elements are aligned with the output axes.
@@ -68,12 +68,12 @@ struct Truth {
   std::vector<Eigen::Vector3d> w_WB_B_rad_s;
   std::vector<Eigen::Vector3d> f_B_m_s2;  ///< mean specific force of the centre of mass over a step
   std::vector<ContactLabel> label;
-  std::vector<ContactTruth> contacts;                ///< any number of contacts per physics sample
+  std::vector<ContactTruth> contacts;
   Eigen::Vector3d p_BG_m = Eigen::Vector3d::Zero();  ///< geometric centre of a sphere, in body axes
   std::vector<std::string> surfaces;                 ///< name of surface id i: "terrain", "rock_3", "trunk_7"
-  std::vector<ImuTruth> imus;                        ///< in the order of Sensors::imus
+  std::vector<ImuTruth> imus;
   std::vector<LidarTruth> lidars;
-  std::vector<SeriesTruth> series;  ///< in the order of Sensors::series
+  std::vector<SeriesTruth> series;
 };
 
 struct Recording {

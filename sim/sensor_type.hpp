@@ -14,9 +14,9 @@ namespace tumble::sim {
 
 struct SensorContext {
   const engine::World& world;
-  const SensorSpec& sensor;             ///< sensor with resolved parameters
-  const Eigen::Isometry3d& T_BX;        ///< true mounting of the sensor's frame X
-  const Eigen::Isometry3d& given_T_BX;  ///< calibration that an estimator receives
+  const SensorSpec& sensor;
+  const Eigen::Isometry3d& T_BX;        ///< true pose of the sensor
+  const Eigen::Isometry3d& given_T_BX;  ///< pose that an estimator receives
   double gravity_m_s2;
   std::uint64_t seed;
   int threads;

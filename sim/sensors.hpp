@@ -17,7 +17,7 @@ struct ImuRecord {
   std::int64_t period_ns = 0;
   double stated_gyro_range_rad_s = 0.0;  ///< range in the data sheet; the saturation limit may differ
   double stated_accel_range_m_s2 = 0.0;
-  double gyro_noise_rad_s_sqrt_hz = 0.0;  ///< from the data sheet
+  double gyro_noise_rad_s_sqrt_hz = 0.0;
   double accel_noise_m_s2_sqrt_hz = 0.0;
   Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();  ///< for the estimator, with errors
   std::vector<std::int64_t> time_ns;                       ///< end of each sample's window
@@ -47,14 +47,14 @@ struct LidarRecord {
   std::vector<std::uint64_t> sweep_first;  ///< index of the first point of each sweep, then the total number of points
   std::vector<Eigen::Vector3f> position_L_m;
   std::vector<float> range_m;
-  std::vector<float> intensity;          ///< 0..1
+  std::vector<float> intensity;
   std::vector<std::uint32_t> offset_ns;  ///< firing time since the sweep's start
   std::vector<std::uint16_t> ring;
 };
 
 struct Quantity {
-  std::string name;            ///< ends in its unit: "pressure_pa"
-  std::string unit;            ///< for example "Pa"
+  std::string name;  ///< ends in its unit: "pressure_pa"
+  std::string unit;
   double noise = 0.0;          ///< standard deviation in the data sheet; 0: not stated
   std::vector<double> values;  ///< one per time stamp of the sensor
 };
@@ -66,7 +66,7 @@ struct Constant {
 
 struct SeriesRecord {
   std::string name;
-  std::string kind;  ///< kind of sensor: "barometer"
+  std::string kind;  ///< for example "barometer"
   std::string device;
   std::int64_t period_ns = 0;
   Eigen::Isometry3d T_BX = Eigen::Isometry3d::Identity();  ///< for the estimator, with errors
@@ -81,7 +81,7 @@ struct Sensors {
   double gravity_m_s2 = 9.80665;
   std::vector<ImuRecord> imus;  ///< primary IMU first; `imu_reference`: comparison
   std::vector<LidarRecord> lidars;
-  std::vector<SeriesRecord> series;  ///< sensors other than IMU and lidar
+  std::vector<SeriesRecord> series;
 };
 
 }  // namespace tumble::sim

@@ -18,7 +18,7 @@ struct SensorSpec {
   std::string kind;    ///< type of sensor: "imu", "spinning_lidar", "barometer"
   std::string device;  ///< source of the values ("mti30")
   std::string site;    ///< site of the robot's MJCF file that carries the sensor
-  Values values;       ///< values of the data sheet, with changes of the scenario
+  Values values;       ///< data sheet with the changes of the scenario
   /// error of the sensor pose that an estimator receives: x_m y_m z_m (B axes), roll_rad pitch_rad yaw_rad (small
   /// angles, I axes)
   Values mount_error;

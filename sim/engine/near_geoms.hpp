@@ -39,7 +39,7 @@ class NearGeoms {
   Eigen::Vector3d asked_W_m_;
   std::vector<Leaf> leaves_, near_;
   int planted_ = 0;
-  std::vector<int> own_child_, own_geom_;  ///< original tree
+  std::vector<int> own_child_, own_geom_;
   std::vector<mjtNum> own_box_;
 };
 

@@ -12,10 +12,10 @@ namespace tumble::sim {
 
 struct AllanPoint {
   double tau_s = 0.0;
-  double deviation = 0.0;   ///< in the unit of the series
+  double deviation = 0.0;
   std::size_t cluster = 0;  ///< tau / period
-  std::size_t samples = 0;  ///< number of samples in each series
-  std::size_t series = 1;   ///< number of independent series
+  std::size_t samples = 0;  ///< per series
+  std::size_t series = 1;
 };
 
 /// Dominant noise at an averaging time, which determines the degrees of freedom of the Allan variance.

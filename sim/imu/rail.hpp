@@ -34,8 +34,8 @@ class Rail {
  private:
   struct Axis {
     std::array<double, 2> base{}, level{};  ///< positive and negative side
-    std::array<bool, 2> event{};            ///< true while a clipping event lasts
-    double offset = 0.0;                    ///< offset after clipping
+    std::array<bool, 2> event{};
+    double offset = 0.0;
   };
   double apply(double input, Axis& axis, bool& acted);
   double draw_level(double base);

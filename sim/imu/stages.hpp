@@ -25,7 +25,7 @@ class DelayLine {
   Eigen::Vector3d operator()(const Eigen::Vector3d& input);
 
  private:
-  double fraction_ = 0.0;              ///< part of the delay below one sample, in samples
+  double fraction_ = 0.0;
   std::vector<Eigen::Vector3d> past_;  ///< ring buffer; empty if off
   std::size_t next_ = 0;
   bool started_ = false;

@@ -9,12 +9,12 @@
 
 namespace tumble::sim {
 
-/// Maximum number of lidar beams (channels) that fire in one sequence
+/// maximum number of lasers (channels) that fire in one sequence
 inline constexpr int kMaxChannels = 16;
 
 struct ChannelFirings {
   alignas(64) double origin_x_m[kLanes], origin_y_m[kLanes], origin_z_m[kLanes];
-  alignas(64) double direction_x[kLanes], direction_y[kLanes], direction_z[kLanes];  ///< unit vectors
+  alignas(64) double direction_x[kLanes], direction_y[kLanes], direction_z[kLanes];
 };
 
 struct FiringBlock {

@@ -168,9 +168,9 @@ bool approach_shape(RTCPointQueryFunctionArguments* args) {
 struct RayScene::Impl {
   DevicePtr device;
   ScenePtr scene;
-  std::vector<SceneShape> bounded;    ///< indexed by Embree's primitive id
-  std::vector<SceneShape> unbounded;  ///< infinite planes
-  std::vector<MeshLabel> meshes;      ///< indexed by Embree's geometry id
+  std::vector<SceneShape> bounded;  ///< indexed by Embree's primitive id
+  std::vector<SceneShape> unbounded;
+  std::vector<MeshLabel> meshes;  ///< indexed by Embree's geometry id
   unsigned int shape_geometry = RTC_INVALID_GEOMETRY_ID;
 
   void add_mesh(const SceneMesh& mesh);

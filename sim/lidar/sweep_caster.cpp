@@ -55,7 +55,7 @@ struct SweepCaster::Workspace {
   ChannelFirings bent;
   std::array<RayPacket, kMaxBeamRays> beam;
   std::array<ChannelReturns, kMaxChannels> channel;
-  int active_count = 0;  ///< number of channels with at least one return
+  int active_count = 0;
   std::array<int, kMaxChannels> active;
 };
 

@@ -19,7 +19,7 @@ class HoldingHand {
 
   BodyState start() const { return start_; }
   Wrench hold(const BodyState& state) const;
-  Eigen::Vector3d weight_n() const { return weight_n_; }  ///< force that carries the robot
+  Eigen::Vector3d weight_n() const { return weight_n_; }
   double mass_kg() const { return mass_kg_; }
   const Eigen::Matrix3d& inertia_W_kg_m2() const { return inertia_W_kg_m2_; }
 

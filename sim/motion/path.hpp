@@ -18,11 +18,11 @@ inline constexpr int kPathShapes = 4;
 
 struct PathPlan {
   PathShape shape = PathShape::line;
-  double length_m = 1.0;     ///< without the sway of a line
-  double heading_rad = 0.0;  ///< rotation of the path about the vertical
+  double length_m = 1.0;  ///< without the sway of a line
+  double heading_rad = 0.0;
   /// Line only: amplitude of the lateral sway, which fades over the first and last half metre
   double sway_m = 0.0;
-  double sway_length_m = 4.0;  ///< wavelength of the sway
+  double sway_length_m = 4.0;
 };
 
 std::vector<Eigen::Vector2d> plan_path(const PathPlan& plan, Stream& stream);

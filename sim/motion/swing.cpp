@@ -104,7 +104,7 @@ class Swing : public Motion {
 
  private:
   double lift_s_, hold_s_, release_s_;
-  double mass_kg_;  ///< mass of all segments
+  double mass_kg_;
   BodyState start_;
   std::vector<Lift> lifts_;
 };

@@ -35,7 +35,7 @@ Picture film_strip(std::span<const Picture> pictures, int columns) {
   const int width = pictures[0].width, height = pictures[0].height;
   const int rows = (static_cast<int>(pictures.size()) + columns - 1) / columns;
   columns = std::min(columns, static_cast<int>(pictures.size()));
-  constexpr int kGap = 4;  // white space between pictures, in pixels
+  constexpr int kGap = 4;
   Picture strip{columns * (width + kGap) - kGap, rows * (height + kGap) - kGap, {}};
   strip.rgb.assign(3 * static_cast<std::size_t>(strip.width) * static_cast<std::size_t>(strip.height), 255);
   for (std::size_t i = 0; i < pictures.size(); ++i) {

@@ -43,7 +43,7 @@ struct View {
   int width = 1280;
   int height = 720;
   Eigen::Vector3d look_at_W_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-  double distance_m = 0.0;  ///< distance of the camera; 0: frames the content
+  double distance_m = 0.0;  ///< 0: the camera frames the content
   double azimuth_rad = 1.9;
   double elevation_rad = -0.45;
 };

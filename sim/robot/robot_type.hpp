@@ -11,7 +11,7 @@ namespace tumble::sim {
 
 struct RobotType {
   ComponentType component;
-  std::string_view file;  ///< file in the folder of models
+  std::string_view file;
   void (*shape)(mjSpec* spec, const Values& values, engine::World& world);
   /// body of the MJCF file that carries all sensor sites, with its origin at its centre of mass
   std::string_view sensor_body = "robot";

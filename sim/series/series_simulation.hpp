@@ -31,12 +31,12 @@ inline constexpr std::array kSeriesParameters = {
 
 /// Sizes of the errors of a reading, relative to the true mean over the averaging window; 0 switches an error off.
 struct ReadingErrors {
-  double noise = 0.0;  ///< standard deviation per reading
+  double noise = 0.0;
   /// standard deviation of an error that is constant over a recording
   double bias = 0.0;
-  double low = -std::numeric_limits<double>::infinity();  ///< limits of the output range
+  double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
-  double quantum = 0.0;  ///< resolution of the output
+  double quantum = 0.0;
 };
 
 struct Measured {

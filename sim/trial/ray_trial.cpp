@@ -16,8 +16,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kRayReach_m = 1e4;
-/// largest distance of coincident faces of two surfaces (for example, the end of a wall at a door frame), of which a
-/// ray may hit either
+/// If two surfaces have faces within this distance (for example, the end of a wall at a door frame), a ray may hit
+/// either.
 constexpr double kCoincident_m = 1e-4;
 
 class EngineRays {

@@ -32,10 +32,10 @@ class Trial {
   double step_s() const;
   double mass_kg() const;
   double gravity_m_s2() const;
-  Eigen::Matrix3d inertia_B_kg_m2() const;  ///< about the centre of mass
-  double sphere_radius_m() const;           ///< 0: no sphere
-  Eigen::Vector3d p_BG_m() const;           ///< geometric centre in body axes
-  double half_extent_m() const;             ///< limit of |x| and |y|
+  Eigen::Matrix3d inertia_B_kg_m2() const;
+  double sphere_radius_m() const;  ///< 0: no sphere
+  Eigen::Vector3d p_BG_m() const;
+  double half_extent_m() const;  ///< limit of |x| and |y|
 
   BodyState state() const;
   void set_state(const BodyState& state);

@@ -57,7 +57,7 @@ void require_above_ground(const engine::World& world, const Truth& truth, const 
   const double period_s = static_cast<double>(truth.period_ns) * 1e-9;
   Spell spell;
   for (std::size_t k = 0; k <= truth.p_WB_m.size(); ++k) {
-    double depth_m = 0.0;  // depth in an additional last step
+    double depth_m = 0.0;
     if (k < truth.p_WB_m.size()) {
       const Vector3d p_W_m = truth.p_WB_m[k] + truth.q_WB[k] * p_BX_m;
       for (const Terrain& terrain : ground) depth_m = std::max(depth_m, terrain.depth_m(p_W_m));

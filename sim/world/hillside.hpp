@@ -14,7 +14,7 @@ inline constexpr double kHalfExtent_m = 20.0;
 /// Number of grid nodes per side of the ground, with cells of 20 cm. With cells of 10 cm, a strut that an impact pushes
 /// some centimetres into the ground would stay wedged for seconds.
 inline constexpr int kSide = 201;
-inline constexpr double kEdge_m = -8.0;    ///< x of the upper edge
+inline constexpr double kEdge_m = -8.0;
 inline constexpr double kSetBack_m = 0.8;  ///< robot's start behind the edge
 inline constexpr double kStart_x_m = kEdge_m - kSetBack_m;
 

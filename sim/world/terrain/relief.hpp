@@ -11,7 +11,7 @@ namespace tumble::sim {
 /// Spectrum of a rough surface. The power per wave number k (all directions) is proportional to k^-exponent for
 /// wavelengths within [shortest_m, longest_m], and zero otherwise.
 struct ReliefSpectrum {
-  double rms_m = 0.1;       ///< root mean square of the height, at least 0
+  double rms_m = 0.1;
   double shortest_m = 1.0;  ///< above 0
   double longest_m = 9.0;   ///< at least shortest_m
   double exponent = 3.0;    ///< 3: amplitude proportional to wavelength

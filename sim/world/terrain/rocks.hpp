@@ -12,12 +12,12 @@ namespace tumble::sim {
 
 struct RockField {
   int count = 0;
-  double largest_m = 0.3;  ///< largest half axis
+  double largest_m = 0.3;
   /// Horizontal half axes are uniform in [smallest_share, 1] * largest_m, heights in [0.75 smallest_share, 0.7] *
   /// largest_m.
   double smallest_share = 0.4;
   Rectangle area;
-  Disc clear;  ///< disc without rocks
+  Disc clear;
 };
 
 struct Rock {

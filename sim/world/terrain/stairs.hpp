@@ -8,8 +8,8 @@
 namespace tumble::sim {
 
 struct Flight {
-  double edge_x_m = 0.0;  ///< x of the first riser
-  int steps = 12;         ///< number of risers, at least 1
+  double edge_x_m = 0.0;
+  int steps = 12;  ///< number of risers, at least 1
   double rise_m = 0.17;
   double tread_m = 0.29;
   double half_width_m = 2.0;

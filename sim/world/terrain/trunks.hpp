@@ -16,7 +16,7 @@ struct Stand {
   double spacing_m = 0.8;          ///< minimum distance between two axes
   double lane_half_width_m = 0.0;  ///< no tree is closer to y = 0
   Rectangle area;
-  Disc clear;  ///< disc without trees
+  Disc clear;
 };
 
 struct Trunk {

@@ -22,7 +22,7 @@ using Block = System::StateBlock;
 using Corner = System::BorderBlock;
 using Conditional = System::StateGivenNextState;
 
-inline constexpr int kErrorCount = 29;  ///< number of SensorErrors, which all samples share
+inline constexpr int kErrorCount = 29;  ///< number of sensor errors: SensorErrors
 
 /// Derivative of a block's gradient with respect to the sensor errors; after back-substitution, derivative of the
 /// block's Gauss-Newton step.

@@ -17,7 +17,7 @@ struct SaturationLevels {
   SaturationLimitDetector::State
       axis_limit_state;          ///< saturation limits per output axis, from equal readings or the data sheet
   SaturationPlanes gyro_planes;  ///< planes that contain the saturated gyro readings; empty if not observed
-  SaturationPlanes accel_saturation_planes;    ///< planes that contain the saturated accelerometer readings
+  SaturationPlanes accel_saturation_planes;
   bool gyro_clips_after_compensation = false;  ///< the gyro clips each output axis, after its misalignment compensation
   bool accel_clips_after_compensation = false;  ///< the accelerometer clips each output axis
 
@@ -43,13 +43,13 @@ std::uint8_t clip_flags(const Clipping& clipping);
 /// Saturation limits that a frozen sensor cannot imitate. Limits from equal readings are excluded, because a frozen
 /// sensor also repeats one reading.
 struct ConfirmedSaturation {
-  SaturationPlanes gyro, accel;                           ///< tilted saturation planes
+  SaturationPlanes gyro, accel;
   double gyro_range_rad_s = 0.0, accel_range_m_s2 = 0.0;  ///< range from the data sheet; 0: unknown
   std::uint8_t flags(const ImuSample& sample, const Clipping& judged) const;
 };
 
-/// Finds the clipped readings of a recording from three sources: clip flags of the sensor, equal readings at a
-/// saturation limit (SaturationLimitDetector), and tilted saturation planes (SaturationPlaneFinder).
+/// Finds the clipped readings of a recording from clip flags of the sensor, equal readings (SaturationLimitDetector),
+/// and tilted saturation planes (SaturationPlaneFinder).
 class ClippingFinder {
  public:
   struct Params {

@@ -37,17 +37,16 @@ class FlightSignCheck {
     Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero(), force_m_s2 = Eigen::Vector3d::Zero();
     /// sign of the saturated reading of each gyro axis; 0: unsaturated
     Eigen::Vector3d saturation_sign = Eigen::Vector3d::Zero();
-    bool is_unsaturated = false;  ///< false if an axis was saturated during a part of the window
+    bool is_unsaturated = false;
     bool operator==(const AveragedReading&) const = default;
   };
   struct State {
     ImuAverage average;
     std::array<AveragedReading, 2> last_readings{};  ///< oldest first
     int readings = 0;
+    std::array<double, kMirroredAlternatives> current_flight_duration_s{};
     std::array<double, kMirroredAlternatives>
-        current_flight_duration_s{};  ///< duration of the current flight, for each sign hypothesis
-    std::array<double, kMirroredAlternatives>
-        flight_duration_s{};        ///< total duration of all flights, for each sign hypothesis
+        flight_duration_s{};        ///< total duration of flight, for each sign hypothesis
     TimeNs last_flight_end_ns = 0;  ///< end of the last flight that fits inverted axes
     TimeNs last_time_ns = 0;
     bool started = false;

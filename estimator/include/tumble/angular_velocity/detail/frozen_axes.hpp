@@ -14,10 +14,10 @@
 
 namespace tumble {
 
-/// Detects single gyro or accelerometer axes that have stopped updating, sample by sample. An axis is frozen if one
-/// reading repeats bit for bit for 0.5 s, and for ten times the longest earlier repetition, while another axis of the
-/// sensor changes. FrozenAxes cannot detect a frozen axis whose readings never changed, or often repeat at rest due to
-/// coarse quantisation.
+/// Detects single gyro or accelerometer axes that have stopped updating, sample by sample. An axis is frozen if it
+/// repeats one reading for 0.5 s, and for ten times the longest earlier repetition, while another axis of the sensor
+/// changes. FrozenAxes cannot detect a frozen axis whose readings never changed, or often repeat at rest due to coarse
+/// quantisation.
 ///
 /// A saturated axis repeats one reading, but does not count as frozen.
 class FrozenAxes {
@@ -27,9 +27,9 @@ class FrozenAxes {
   };
   struct Axis {
     double reading = 0.0;
-    TimeNs since_ns = 0;             ///< first sample with the current reading
-    double repeated_s = 0.0;         ///< time since the current reading first appeared
-    bool flagged_by_device = false;  ///< the device has flagged the current reading as saturated
+    TimeNs since_ns = 0;
+    double repeated_s = 0.0;  ///< time since the current reading first appeared
+    bool flagged_by_device = false;
     bool is_frozen = false;
     double longest_s = 0.0;  ///< longest earlier repetition while the axis was not frozen
     double changing_readings_duration_s = 0.0;
@@ -37,7 +37,7 @@ class FrozenAxes {
     double min_reading = 0.0, max_reading = 0.0;
     /// minimum, maximum and number of changes of the sensor's two other axes during the repetition
     std::array<double, 2> other_axes_min{}, other_axes_max{}, other_axes_changes{};
-    double samples = 0.0;  ///< number of repeated samples
+    double samples = 0.0;
     bool operator==(const Axis&) const = default;
   };
   struct State {
@@ -58,7 +58,7 @@ class FrozenAxes {
   static const Axis& axis(Triad triad, int axis, const State& state);
 
   static bool any_frozen(const State& state);
-  /// Adds a warning (`frozen_axis` or `imu_frozen`) for each currently frozen axis.
+  /// Adds a finding for each currently frozen axis.
   void add_findings(HealthFinding::Kind kind, const std::string& sensor, const State& state,
                     SensorHealth& health) const;
 
@@ -78,10 +78,9 @@ class FrozenAxes {
 struct FrozenAxis {
   Triad triad = Triad::gyro;
   int axis = 0;
-  TimeNs from_ns = 0, to_ns = 0;  ///< first and last sample with this reading
+  TimeNs from_ns = 0, to_ns = 0;
 };
 
-/// Adds a warning about an interval in which an axis is frozen.
 void add_finding(HealthFinding::Kind kind, const std::string& sensor, const FrozenAxis& interval, SensorHealth& health);
 
 /// Returns the intervals with frozen axes, sorted by axis and time. Cost: O(N).

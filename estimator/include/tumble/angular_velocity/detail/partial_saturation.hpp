@@ -7,12 +7,12 @@
 
 namespace tumble {
 
-/// Saturation deficit (true rate minus reading) of a gyro reading that is the mean over a window, if the gyro is
-/// saturated during a part of the window.
+/// Saturation deficit (true rate minus reading) of a gyro reading, if the gyro is saturated during a part of the
+/// averaging window.
 struct PartialSaturation {
   bool saturated = false;
-  double expected_saturation_deficit_rad_s = 0.0;  ///< expected |truth| - |reading|
-  double sigma_rad_s = 0.0;                        ///< standard deviation of the saturation deficit
+  double expected_saturation_deficit_rad_s = 0.0;  ///< expected |true rate| - |reading|
+  double sigma_rad_s = 0.0;
 };
 
 /// Estimates the saturation deficit of a partly saturated gyro reading from an unsaturated neighbouring reading, for

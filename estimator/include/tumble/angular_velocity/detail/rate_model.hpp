@@ -32,8 +32,8 @@ class AngularRateModel {
   /// distribution with six degrees of freedom).
   double jump(const AngularRateKnot& from, const AngularRateKnot& to, double dt_s) const;
 
-  /// For a sample in contact, changes the rates on saturated axes to the values with minimum contact force, if this
-  /// minimum is far below the current contact force.
+  /// For a sample in contact, changes the rates on saturated axes to those with minimum contact force, if the minimum
+  /// is far below the current contact force.
   void search_flight_solutions(const AngularRateObservation& observation, const RigConstants& rig,
                                AngularRateEstimate& estimate) const;
 
@@ -86,7 +86,7 @@ class AngularRateModel {
  private:
   struct ForceFactor {
     AngularRateFactor factor;
-    Eigen::Vector3d information;  ///< information (inverse variance) of each axis or element
+    Eigen::Vector3d information;
   };
   /// If an accelerometer element clips, converts the residual of the specific force to the directions of the sensing
   /// elements. Returns the variances that result from uncertain sensing directions and from the saturation deficit.

@@ -10,7 +10,7 @@ struct FlightRateParams {
   double sigma_m_s2 =
       0.02;  ///< standard deviation of the specific force in flight, besides noise: air drag, accelerometer errors
   double euler_sigma_rad_s2 = 0.3;  ///< error of the angular acceleration from Euler's equation without torque
-  static constexpr double kJerkPsd_rad2_s5 = 1e4;  ///< power spectral density of the white angular jerk
+  static constexpr double kJerkPsd_rad2_s5 = 1e4;
   static constexpr double kThreshold =
       5.0;  ///< a sample with larger flight residuals, in standard deviations, is in contact
 
@@ -44,7 +44,7 @@ struct AngularRateModelExpertParams {
   static constexpr double kModelError_s = 0.01;
   /// standard deviation of the zero-rate measurement per sample at rest; covers vibration and false detections of rest
   static constexpr double kRestSigma_rad_s = 0.01;
-  SensorErrorPriors error_priors = {};  ///< uncertainty of AngularRateModelParams::errors
+  SensorErrorPriors error_priors = {};
   /// relative scale and misalignment error of the accelerometer
   static constexpr double kAccelScaleError = 1e-3;
   /// Standard deviation of the time of a gyro reading, due to the gyro's bandwidth and clock.

@@ -46,7 +46,7 @@ struct AngularRateModelParams {
   static constexpr double kAccelerationMax_rad_s2 = 5000.0;
 
   using Expert = AngularRateModelExpertParams;
-  Expert expert = {};  ///< rarely changed parameters
+  Expert expert = {};
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {

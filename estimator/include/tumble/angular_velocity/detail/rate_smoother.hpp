@@ -30,10 +30,10 @@ struct AngularRateSmootherParams {
   /// Scale, misalignment, g-sensitivity and delay errors from an earlier run (AngularRateReport::sensor_errors). They
   /// are used only if `error_rounds_max` is above 1.
   std::optional<KnownSensorErrors> calibrated_errors = std::nullopt;
-  static constexpr double kGapMax_s = 1.0;  ///< a longer time between two samples is a gap; see estimate()
+  static constexpr double kGapMax_s = 1.0;
 
   using Expert = AngularRateSmootherExpertParams;
-  Expert expert = {};  ///< rarely changed parameters
+  Expert expert = {};
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -49,17 +49,17 @@ struct AngularRateSmootherParams {
 struct AngularRateReport {
   int iterations = 0;
   bool converged = false;
-  int restarts = 0;              ///< restarts with other initial values, because a solution contained no free flight
-  double last_step_rad_s = 0.0;  ///< largest change of a rate in the last iteration
-  RigCalibration calibration;    ///< estimated rig constants, as prior for a later run
+  int restarts = 0;  ///< restarts with other initial values, because a solution contained no free flight
+  double last_step_rad_s = 0.0;
+  RigCalibration calibration;
   /// Mahalanobis distance of the estimated rig constants from their prior, in standard deviations. A distance far above
   /// 1 indicates a wrong prior, or contact that was classified as free flight.
   double calibration_mahalanobis = 0.0;
   bool calibration_at_prior = false;                       ///< the rig constants were fixed at their prior
   std::array<std::optional<double>, 6> saturation_limits;  ///< gyro [rad/s], accelerometer [m/s^2]; empty: unknown
   std::array<bool, 6> saturation_limit_observed{};         ///< false: inferred from another axis
-  SaturationPlanes gyro_planes;                            ///< planes that contain the saturated gyro readings
-  SaturationPlanes accel_saturation_planes;                ///< the same for the accelerometer [m/s^2]
+  SaturationPlanes gyro_planes;
+  SaturationPlanes accel_saturation_planes;
   KnownSensorErrors sensor_errors;
   double data_sheet_probability = 1.0, synchronous_triads_probability = 1.0;  ///< see SensorErrorFit
   /// Standard deviation of the common delay of gyro and accelerometer [s]; 0 if the IMU agrees with its data sheet.

@@ -9,8 +9,8 @@ namespace tumble {
 
 struct RateOptimisationParams {
   int iterations_max = 15;
-  double tolerance_rad_s = 2e-3;                  ///< converged if every rate changes by less than this
-  static constexpr double kStepMax_rad_s = 10.0;  ///< largest change of a rate in one iteration
+  double tolerance_rad_s = 2e-3;
+  static constexpr double kStepMax_rad_s = 10.0;
   static constexpr double kInitialThresholdFactor =
       8.0;  ///< factor on FlightRateParams::kThreshold in the first iteration; halved in each iteration
   /// number of additional iterations that approximate lower bounds by truncated normal distributions, for correct

@@ -43,7 +43,7 @@ struct AngularRateStreamExpertParams {
   RestDetector::Params rest_detector = {};
   static constexpr double kInitialThresholdFactor =
       8.0;  ///< factor on FlightRateParams::kThreshold for a new clipped sample; halved in each step
-  static constexpr double kStepMax_rad_s = 10.0;  ///< largest change of a sample's rate in one step
+  static constexpr double kStepMax_rad_s = 10.0;
   int bound_hard_steps = 3;  ///< steps until a sample in contact uses Gaussian approximations of lower bounds
   static constexpr double kBoundDamping = 0.5;     ///< weight of a new lower bound in each step
   static constexpr std::size_t kFlightRunMin = 6;  ///< shorter flights, in samples, do not update the rig constants

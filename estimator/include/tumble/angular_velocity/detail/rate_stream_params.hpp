@@ -17,7 +17,7 @@ struct AngularRateStreamParams {
   /// because AngularRateStream reports rates before much data has arrived.
   AngularRateModelParams model = {.accel_bias_sigma_m_s2 = 0.02, .inertia_sigma = 0.15};
   SaturationLimitDetector::Params saturation_detector = {};
-  double period_s = 0.01;                    ///< nominal time between samples
+  double period_s = 0.01;
   double lag_s = 0.2;                        ///< length of the window; [2 period_s, lag_max_s()]
   double calibration_mahalanobis_max = 1.5;  ///< a larger distance of the rig constants from their prior resets them
   static constexpr double kGapMax_s = 1.0;
@@ -28,7 +28,7 @@ struct AngularRateStreamParams {
   std::shared_ptr<const KnownSensorErrors> calibrated_errors;
 
   using Expert = AngularRateStreamExpertParams;
-  Expert expert = {};  ///< rarely changed parameters
+  Expert expert = {};
 
   /// longest permitted lag: the duration of 4096 samples, but at most 10 s
   double lag_max_s() const { return std::min(10.0, 4096.0 * period_s); }

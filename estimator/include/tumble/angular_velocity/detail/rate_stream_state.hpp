@@ -29,7 +29,7 @@ namespace tumble {
 struct AngularRateStreamForce {
   Eigen::Vector3d force_m_s2 = Eigen::Vector3d::Zero();
   std::uint8_t device_clip_flags = 0;  ///< accelerometer bits of ImuSample::device_clip_flags
-  std::uint8_t clipped_axes = 0;       ///< same bits as Clipping::accel
+  std::uint8_t clipped_axes = 0;
   bool operator==(const AngularRateStreamForce&) const = default;
 };
 
@@ -51,11 +51,11 @@ struct AngularRateStreamKnot {
 /// Estimate of the delay between gyro and accelerometer: rate_stream.md (R104) to (R107).
 struct AngularRateStreamDelay {
   ImpactDelayCorrelation impacts;
-  double applied_delay_s = 0.0;      ///< delay that corrects the readings; the prior until `delay_found`
-  double estimated_s = 0.0;          ///< latest estimate from impacts and free flight
-  bool delay_found = false;          ///< true if the readings contradict the prior delay
-  TriadDelay impact_delay;           ///< latest estimate from impacts alone
-  std::optional<TimeNs> updated_ns;  ///< time of the last update of `impact_delay`
+  double applied_delay_s = 0.0;  ///< delay that corrects the readings; the prior until `delay_found`
+  double estimated_s = 0.0;      ///< latest estimate from impacts and free flight
+  bool delay_found = false;      ///< true if the readings contradict the prior delay
+  TriadDelay impact_delay;
+  std::optional<TimeNs> updated_ns;
   bool operator==(const AngularRateStreamDelay&) const = default;
 };
 
@@ -72,8 +72,8 @@ struct AngularRateStreamSensorErrors {
   arrow::BorderErrors border_errors =
       arrow::BorderErrors::Zero();  ///< derivative of the gradient of the rig constants with respect to the errors
   SensorErrorInformation sensor_error_evidence;
-  SensorErrorUncertainty::Posterior posterior;  ///< latest covariance of the sensor errors
-  std::optional<TimeNs> updated_ns;             ///< time of the latest update of `posterior`
+  SensorErrorUncertainty::Posterior posterior;
+  std::optional<TimeNs> updated_ns;
   AngularRateStreamDelay accel_delay_state;
   std::vector<arrow::ErrorMatrix> sample_jacobian;  ///< buffer: derivative of each sample's rate and angular
                                                     ///< acceleration with respect to the errors
@@ -86,7 +86,7 @@ struct AngularRateStreamState {
   RepeatDetector::State repetition_state;
   FrozenAxes::State frozen_axes;
   FlightSignCheck::State flight_sign_check;
-  std::vector<AngularRateStreamKnot> window;  ///< samples of the window, oldest first
+  std::vector<AngularRateStreamKnot> window;  ///< oldest first
   RigConstants rig;
   RigConstants::Matrix rig_covariance;
   // Gaussian prior on the oldest sample and the rig constants, from all earlier samples.
@@ -100,7 +100,7 @@ struct AngularRateStreamState {
   /// that have left the window.
   Eigen::Vector3d slope_before_clipping_rad_s = Eigen::Vector3d::Zero(),
                   samples_since_clipping_start = Eigen::Vector3d::Zero();
-  std::optional<AngularRateKnot> last_marginalised;  ///< sample that left the window last
+  std::optional<AngularRateKnot> last_marginalised;
   TimeNs last_marginalised_ns = 0;
   AngularRateKnot prior_knot;
   RigConstants prior_rig;
@@ -108,9 +108,9 @@ struct AngularRateStreamState {
   std::size_t samples_since_step = 0;
   std::size_t calibration_samples = 0;         ///< number of flight samples that have updated the rig constants
   std::size_t consecutive_flight_samples = 0;  ///< length of the current flight, in samples that have left the window
-  std::size_t calibration_reset_count = 0;     ///< number of resets of the rig constants to their prior
+  std::size_t calibration_reset_count = 0;
   std::size_t failures = 0;  ///< Gauss-Newton steps skipped because the normal equations were not positive definite
-  std::vector<arrow::Block> work_blocks;  ///< buffer, not part of the state
+  std::vector<arrow::Block> work_blocks;  ///< buffer
 };
 
 }  // namespace tumble

@@ -37,7 +37,7 @@ class RepeatDetector {
  public:
   struct RepetitionMemory {
     Eigen::Vector3d reading = Eigen::Vector3d::Zero();
-    double equal_samples = 0.0;  ///< number of consecutive samples with the current reading
+    double equal_samples = 0.0;
     double moving = 0.0,
            repeated = 0.0;  ///< number of samples in motion, and of repetitions among them; both decay slowly
     RepeatedReading now;

@@ -11,8 +11,8 @@
 
 namespace tumble {
 
-/// Detects when an IMU is stationary. The mean rate must be a plausible gyro bias, the magnitude of the specific force
-/// must be plausible for gravity, and both must be constant up to noise.
+/// Detects when an IMU is stationary. The mean rate must be a plausible gyro bias, the specific force must be a
+/// plausible gravity, and both must be constant up to noise.
 ///
 /// RestDetector first averages the readings over `reading_s` (CallerSettings), so that the parameters do not depend on
 /// the sample rate. White noise of density n [unit/sqrt(Hz)] has the standard deviation n / sqrt(reading_s) after
@@ -31,7 +31,7 @@ class RestDetector {
     double rate_max_rad_s = 0.05;     ///< maximum difference between mean rate and bias, per axis
     double rate_spread_rad_s = 0.03;  ///< maximum distance of a reading from the mean reading, per axis
     double force_spread_m_s2 = 0.15;  ///< maximum distance of a reading from the mean reading, per axis
-    double rest_s = 0.4;              ///< minimum duration of a rest
+    double rest_s = 0.4;
     CallerSettings caller_settings = {};
 
     template <class Self, class Visitor>
@@ -51,8 +51,8 @@ class RestDetector {
     // sums of the latest consecutive readings that stay close to their mean
     Eigen::Vector3d rate_sum_rad_s = Eigen::Vector3d::Zero();
     Eigen::Vector3d force_sum_m_s2 = Eigen::Vector3d::Zero();
-    double weight = 0.0;  ///< weighted number of readings in the sums
-    TimeNs first_ns = 0;  ///< time of the first sample in the sums
+    double weight = 0.0;
+    TimeNs first_ns = 0;
     TimeNs last_averaged_reading_ns = 0;
     TimeNs small_rate_since_ns = 0;  ///< time since which the mean rate is a plausible bias
     bool is_stationary = false;

@@ -60,7 +60,7 @@ class SaturationAwareRateEstimator {
   };
 
   struct State {
-    Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< direction of the last accepted angular velocity
+    Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
     TimeNs last_time_ns = 0;
     bool started = false;
     bool operator==(const State&) const = default;

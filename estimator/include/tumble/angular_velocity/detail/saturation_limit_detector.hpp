@@ -12,8 +12,8 @@
 namespace tumble {
 
 struct Clipping {
-  std::uint8_t gyro = 0;           ///< bit j: gyro axis j is saturated; the true rate is at least the reading
-  std::uint8_t accel = 0;          ///< bit j: accelerometer axis j is saturated
+  std::uint8_t gyro = 0;  ///< bit j: gyro axis j is saturated; the true rate is at least the reading
+  std::uint8_t accel = 0;
   std::uint8_t unusable_gyro = 0;  ///< bit j: gyro axis j overflowed and changed its sign
   bool operator==(const Clipping&) const = default;
 };
@@ -43,7 +43,7 @@ class SaturationLimitDetector {
   /// State of one axis; the order of the axes is gyro x, y, z, accelerometer x, y, z.
   struct Channel {
     double plateau_limit = 0.0;  ///< saturation limit from a plateau; 0: no plateau yet
-    double peak = 0.0;           ///< largest magnitude of all readings so far
+    double peak = 0.0;
     double plateau_first_reading = 0.0;
     int run_length = 0;
     double previous_reading = 0.0;

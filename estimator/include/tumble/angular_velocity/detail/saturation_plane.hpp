@@ -10,19 +10,19 @@
 
 namespace tumble {
 
-/// While one sensing element of a gyro is saturated, the readings (x, y, z) are on one of two parallel planes: row .
-/// reading = offset -+ limit. The planes are tilted relative to the output axes if the sensor clips first, and then
-/// compensates scale and misalignment. The compensation of the element's bias shifts both planes. For an accelerometer,
-/// the unit is m/s^2 instead of rad/s.
+/// While one sensing element of a gyro is saturated, the readings (x, y, z) are on one of two planes: row . reading =
+/// offset -+ limit. The planes are tilted relative to the output axes if the sensor clips first, and then compensates
+/// scale and misalignment. The compensation of the element's bias shifts both planes. For an accelerometer, the unit is
+/// m/s^2 instead of rad/s.
 struct SaturationPlane {
   /// sensing direction of the element: 1 along its own axis j, and the cross-axis sensitivity along each other axis
   Eigen::Vector3d row = Eigen::Vector3d::Zero();
-  double saturation_limit_rad_s = 0.0;  ///< saturation limit of the sensing element
-  double offset_rad_s = 0.0;            ///< shift of both planes; close to 0 if only one plane was observed
+  double saturation_limit_rad_s = 0.0;
+  double offset_rad_s = 0.0;  ///< shift of both planes; close to 0 if only one plane was observed
   /// covariance of the sensitivities to axes (j+1) % 3 and (j+2) % 3, limit, and offset, in this order
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
-  std::array<int, 2> samples{};   ///< number of samples on the plane of negative and of positive saturation
-  std::array<int, 2> segments{};  ///< number of runs of consecutive samples on each plane
+  std::array<int, 2> samples{};   ///< on the plane of negative, and of positive saturation
+  std::array<int, 2> segments{};  ///< runs of consecutive samples on each plane
   double deviation_rad_s = 0.0;   ///< root mean square distance of the samples from the plane
   double tolerance_rad_s = 0.0;   ///< readings less than this below the plane count as clipped
   double log_odds = 0.0;          ///< log odds of saturation against unsaturated motion

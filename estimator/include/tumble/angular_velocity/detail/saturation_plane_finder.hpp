@@ -34,7 +34,7 @@ class SaturationPlaneFinder {
     /// prior standard deviation of each cross-axis sensitivity of a sensing element, before the misalignment
     /// compensation
     static constexpr double kSlopeSigma = 0.03;
-    static constexpr double kSlopeMax = 0.12;  ///< largest cross-axis sensitivity
+    static constexpr double kSlopeMax = 0.12;
     /// minimum saturation limit [rad/s]; excludes constant readings at rest and in slow motion
     double distance_min_rad_s = 1.5;
     /// Range in the data sheet [rad/s], if known. Saturation limits far below the stated range are not accepted.
@@ -42,10 +42,10 @@ class SaturationPlaneFinder {
     /// prior standard deviation of SaturationPlane::offset_rad_s, and of the differences between the limits of the
     /// sensing elements, relative to the limit
     static constexpr double kOffsetSigmaRatio = 0.02;
-    int samples_min = 4;                            ///< minimum number of samples on a plane
+    int samples_min = 4;
     static constexpr double kLogOddsBefore = -6.0;  ///< prior log odds of saturation for each element and sign
-    static constexpr double kLogOddsMin = 1.0;      ///< minimum log odds for accepting a plane
-    static constexpr double kLogOddsKeep = -3.0;    ///< minimum log odds for keeping an accepted plane
+    static constexpr double kLogOddsMin = 1.0;      ///< minimum for accepting a plane
+    static constexpr double kLogOddsKeep = -3.0;    ///< minimum for keeping a plane after more readings
     /// Saturation planes from an earlier run of the sensor, which are used until readings contradict them.
     SaturationPlanes known_limits = {};
 

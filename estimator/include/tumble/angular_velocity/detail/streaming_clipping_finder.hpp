@@ -28,8 +28,8 @@ class StreamingClippingFinder {
   };
   /// unit of the readings: rad/s for the gyro, m/s^2 for the accelerometer
   struct DistinctReadingMemory {
-    std::vector<Eigen::Vector3d> readings;           ///< in time order
-    Eigen::Vector3d peak = Eigen::Vector3d::Zero();  ///< largest magnitude of each axis
+    std::vector<Eigen::Vector3d> readings;  ///< in time order
+    Eigen::Vector3d peak = Eigen::Vector3d::Zero();
     std::size_t near_limit_count = 0,
                 near_limit_since_search =
                     0;  ///< number of readings near the extremes; number since the last search for planes
@@ -40,7 +40,7 @@ class StreamingClippingFinder {
   struct State {
     SaturationLevels known_limits;
     std::array<DistinctReadingMemory, 2> distinct_readings;  ///< indexed by Triad
-    SaturationPlaneFinder::Workspace search_workspace;       ///< buffer, not part of the state
+    SaturationPlaneFinder::Workspace search_workspace;       ///< buffer
   };
 
   /// `readings_max` is the maximum number of stored readings of the gyro, and of the accelerometer. Throws
@@ -68,7 +68,7 @@ class StreamingClippingFinder {
   SaturationPlanes search_saturation_planes(Triad triad, State& state) const;
 
   SaturationLimitDetector axis_limit_detector_;
-  std::array<std::array<SaturationPlaneFinder, 2>, 2> plane_finders_;  // gyro and accelerometer, as in ClippingFinder
+  std::array<std::array<SaturationPlaneFinder, 2>, 2> plane_finders_;
   std::size_t readings_max_;
 };
 

@@ -16,10 +16,10 @@ namespace tumble {
 struct CoarseAlignment {
   bool running = false;
   double time_s = 0.0;
-  double start_velocity_variance_m2_s2 = 0.0;  ///< variance of the velocity at the start, per axis
-  double start_tilt_variance_rad2 = 0.0;       ///< variance of the tilt at the start, per axis
+  double start_velocity_variance_m2_s2 = 0.0;
+  double start_tilt_variance_rad2 = 0.0;
   double tilt_variance_growth_rad2 = 0.0;  ///< increase of the tilt's variance since the start, because of gyro errors
-  Eigen::Vector3d integrated_force_W_m_s = Eigen::Vector3d::Zero();  ///< integral of the specific force since the start
+  Eigen::Vector3d integrated_force_W_m_s = Eigen::Vector3d::Zero();
   bool operator==(const CoarseAlignment&) const = default;
 
   void start_alignment(double velocity_variance_m2_s2, double tilt_variance_rad2) {

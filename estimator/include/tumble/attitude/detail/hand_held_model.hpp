@@ -31,8 +31,8 @@ enum ConstantsIndex { kGyroBias = 0, kAccelBias = 3, kLever = 6 };
 struct Node {
   Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
   Eigen::Vector3d w_WI_I_rad_s = Eigen::Vector3d::Zero();
-  Eigen::Vector3d angular_acceleration_rad_s2 = Eigen::Vector3d::Zero();  ///< in sensor axes
-  Eigen::Vector3d a_W_m_s2 = Eigen::Vector3d::Zero();                     ///< acceleration of the held point
+  Eigen::Vector3d angular_acceleration_rad_s2 = Eigen::Vector3d::Zero();
+  Eigen::Vector3d a_W_m_s2 = Eigen::Vector3d::Zero();  ///< acceleration of the held point
   Eigen::Vector3d v_W_m_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
   void move(const System::StateVector& step);
@@ -52,17 +52,17 @@ struct SensingAxisSums {
   double clipped_reading_count = 0.0, clipped_time_s = 0.0,
          mean_saturation_limit = 0.0;  ///< count, mean time and mean magnitude of clipped readings
   double saturated_side = 0.0;         ///< sign of the saturation limit
-  double unusable_reading_count = 0.0, mean_unusable_reading = 0.0;  ///< count and mean of unusable readings
+  double unusable_reading_count = 0.0, mean_unusable_reading = 0.0;
   double partial_saturation_sigma = 0.0;  ///< standard deviation of readings that may be partly saturated
 };
 
 struct NodeReadings {
   std::array<SensingAxisSums, 3> gyro;
-  Eigen::Vector3d force_m_s2 = Eigen::Vector3d::Zero();  ///< mean specific force
+  Eigen::Vector3d force_m_s2 = Eigen::Vector3d::Zero();
   Eigen::Vector3d force_bound_m_s2 =
-      Eigen::Vector3d::Zero();           ///< sign of the reading on clipped accelerometer axes, otherwise 0
-  double force_reading_count = 0.0;      ///< number of averaged accelerometer readings
-  double mean_force_time_s = 0.0;        ///< mean time of the accelerometer readings
+      Eigen::Vector3d::Zero();  ///< sign of the reading on clipped accelerometer axes, otherwise 0
+  double force_reading_count = 0.0;
+  double mean_force_time_s = 0.0;
   double force_timing_sigma_m_s2 = 0.0;  ///< standard deviation of the force because of uncertain reading times
   bool is_stationary = false;
 };
@@ -71,11 +71,11 @@ struct ReadingNoise {
   double gyro_rad_s = 0.0;               ///< standard deviation of one gyro reading
   double window_rate_sigma_rad_s = 0.0;  ///< standard deviation of (mean rate over a window - rate at the centre)
   double deficit_error_ratio = 0.0;  ///< error of an unclipped gyro element / saturation deficit of a clipped element
-  double saturation_limit_sigma_rad_s = 0.0;  ///< standard deviation of a gyro saturation limit
-  double bound = 1.0;                         ///< weight of the gyro's lower bounds; 1: full weight
-  double force_bound_weight = 1.0;            ///< weight of the accelerometer's lower bounds; 1: full weight
-  double accel_m_s2 = 0.0;                    ///< standard deviation of one accelerometer reading
-  double force_noise_ratio = 0.0;             ///< additional noise / (magnitude of the specific force - gravity)
+  double saturation_limit_sigma_rad_s = 0.0;
+  double bound = 1.0;               ///< weight of the gyro's lower bounds; 1: full weight
+  double force_bound_weight = 1.0;  ///< weight of the accelerometer's lower bounds; 1: full weight
+  double accel_m_s2 = 0.0;          ///< standard deviation of one accelerometer reading
+  double force_noise_ratio = 0.0;   ///< additional noise / (magnitude of the specific force - gravity)
   double stationary_rate_sigma_rad_s = 0.0;
   double stationary_velocity_sigma_m_s = 0.0;
   double stationary_acceleration_sigma_m_s2 = 0.0;

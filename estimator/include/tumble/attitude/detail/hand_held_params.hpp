@@ -32,18 +32,18 @@ struct HandMotionModelParams {
 struct HandHeldSensorParams {
   static constexpr double kDeficitErrorRatio =
       0.02;  ///< error of an unclipped gyro element / saturation deficit of a clipped element
-  static constexpr double kRailSigma_rad_s = 0.01;  ///< standard deviation of a gyro saturation limit
+  static constexpr double kRailSigma_rad_s = 0.01;
   static constexpr double kAccelErrorRatio = 0.02;  ///< additional noise / (magnitude of the specific force - gravity)
   static constexpr double kRotationError_sqrts = 1e-3;  ///< angle random walk per rad/s of rate, from scale errors
   static constexpr double kRecoveredSigma_rad_s =
       1.0;  ///< clipped rates with a smaller standard deviation count as recovered
-  static constexpr double kRecoveredTau_s = 0.005;  ///< correlation time of the error of a recovered rate
+  static constexpr double kRecoveredTau_s = 0.005;
   static constexpr double kRecoveredScaleSigma =
       6e-3;  ///< standard deviation of the gyro's scale error in samples next to recovered rates
 };
 
 struct HandHeldExpertParams {
-  double node_s = 0.01;  ///< time between two nodes (estimated states)
+  double node_s = 0.01;  ///< time between two nodes
   int iterations_max = 15;
   double gap_max_s = 1.0;
   /// Factor on the assumed angular jerk for the reported covariances of HandHeldSmoother.
@@ -77,7 +77,7 @@ struct HandHeldParams {
   double hand_sigma_m_s2 = 5.0;      ///< standard deviation of the hand's acceleration
 
   using Expert = HandHeldExpertParams;
-  Expert expert = {};  ///< rarely changed parameters
+  Expert expert = {};
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {

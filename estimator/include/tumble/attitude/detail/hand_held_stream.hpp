@@ -25,7 +25,7 @@ class HandHeldRateStream {
  public:
   struct Params {
     HandHeldSmoother::Params body;  ///< `iterations_max` is ignored
-    double period_s = 0.01;         ///< nominal time between samples
+    double period_s = 0.01;
     double lag_s = 0.2;
     double window_s = 0.6;
 
@@ -56,9 +56,9 @@ class HandHeldRateStream {
     hand_held::NodeReadings readings;
   };
   struct State {
-    std::vector<Reading> readings;  ///< readings of the nodes in the window, oldest first
-    std::vector<Knot> window;       ///< nodes in the window, oldest first
-    std::int64_t first_node = 0;    ///< number of the oldest node in the window
+    std::vector<Reading> readings;  ///< of the nodes in `window`
+    std::vector<Knot> window;       ///< oldest first
+    std::int64_t first_node = 0;
     Eigen::Matrix3d sensing_directions = Eigen::Matrix3d::Identity();
     hand_held::Constants constants;
     hand_held::System::BorderMatrix constants_covariance = hand_held::System::BorderMatrix::Zero();
@@ -69,7 +69,7 @@ class HandHeldRateStream {
     hand_held::Constants prior_constants;
     double hand_acceleration_power_ratio = 1.0;  ///< measured / assumed power of the hand's acceleration
     RestDetector::State stationary_state;
-    std::int64_t reported_node = -1;  ///< node of the last returned estimate
+    std::int64_t reported_node = -1;
     Eigen::Matrix3d reported_covariance_rad2_s2 = Eigen::Matrix3d::Zero();
     std::int64_t start_ns = 0;
     std::size_t samples = 0;
@@ -78,7 +78,7 @@ class HandHeldRateStream {
     /// this time.
     Eigen::Vector3d clipped_duration_s = Eigen::Vector3d::Zero(), clipped_angle_sigma_rad = Eigen::Vector3d::Zero();
     std::size_t revolutions_ambiguous = 0;  ///< number of saturated intervals that may contain an undetected revolution
-    std::vector<hand_held::System::StateBlock> work_blocks;  ///< buffer, not part of the state
+    std::vector<hand_held::System::StateBlock> work_blocks;  ///< buffer
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.

@@ -17,7 +17,7 @@ struct ImuMergeSetup {
   /// An accelerometer reading above this fraction of the range may be saturated during a part of its averaging window.
   static constexpr double kSubsampleSaturationRatio = 0.15;
   static constexpr double kRateNoise_rad_s = 0.01;  ///< standard deviation of a gyro's mean rate over a window
-  static constexpr double kWindow_s = 4e-3;         ///< averaging time of the readings
+  static constexpr double kWindow_s = 4e-3;
   static constexpr double kGapMax_s = 1.0;
   double gyro_range_rad_s = 1e3;  ///< readings at or above this rate are saturated
   double accel_range_m_s2 = 1e5;

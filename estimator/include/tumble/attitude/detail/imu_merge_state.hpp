@@ -30,7 +30,7 @@ struct MergedImuState {
 
   Eigen::Matrix<double, kErrorCount, 1> x = Eigen::Matrix<double, kErrorCount, 1>::Zero();
   Eigen::Matrix<double, kErrorCount, kErrorCount> covariance = Eigen::Matrix<double, kErrorCount, kErrorCount>::Zero();
-  ImuAverage window;  ///< average of the readings since the last window
+  ImuAverage window;
   /// mean rate and specific force over the last window; predicted from the other IMUs if the IMU is excluded
   Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero(), last_force_m_s2 = Eigen::Vector3d::Zero();
   double exclusion_left_s = 0.0;  ///< remaining time of exclusion from the mean specific force
@@ -40,7 +40,7 @@ struct MergedImuState {
   double rate_difference_to_others_rad_s = 0.0, force_disagreement_m_s2 = 0.0, disagreement_s = 0.0;
   TimeNs disagreement_since_ns = 0;
   bool is_frozen = false, disagrees = false;
-  std::int64_t missing_samples = 0;  ///< number of samples that were not finite
+  std::int64_t missing_samples = 0;
   TimeNs frozen_since_ns = 0, disagrees_since_ns = 0, missing_since_ns = 0;
   bool is_excluded() const { return is_frozen || disagrees; }
   double offset_s() const { return x[kErrorCount - 1]; }
@@ -49,16 +49,16 @@ struct MergedImuState {
 
 struct ImuMergeState {
   static constexpr int kImus = ImuMergeSetup::kImus;
-  static constexpr int kAngularAccelerationWindows = 3;  ///< windows needed for an angular acceleration
+  static constexpr int kAngularAccelerationWindows = 3;
 
   std::array<MergedImuState, kImus> imus{};
   ForceErrors::State forces;
   AngularRateRecovery::State rate_recovery;
-  Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();           ///< fused mean rate over the last window
-  Eigen::Vector3d previous_rate_rad_s = Eigen::Vector3d::Zero();  ///< fused mean rate over the window before the last
+  Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();           ///< fused rate over the last window
+  Eigen::Vector3d previous_rate_rad_s = Eigen::Vector3d::Zero();  ///< fused rate over the window before
   double rotation_rate_rad_s = 0.0;                               ///< mean magnitude of the rate over half a second
   double window_s = 0.0;
-  double length_s = 0.0, previous_length_s = 0.0;                    ///< lengths of the last two windows
+  double length_s = 0.0, previous_length_s = 0.0;
   double lever_arm_correlation = 0.0, lever_arm_effect_power = 0.0;  ///< sums for lever_arm_agreement()
   MultiImuSignCheck imu_sign_check;
   std::int64_t sample_count = 0, window_count = 0;

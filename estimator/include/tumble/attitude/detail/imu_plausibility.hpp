@@ -40,13 +40,13 @@ class ImuPlausibility {
         Eigen::Quaterniond::Identity();  ///< rotation within the window, from the gyro
     double length_s = 0.0;
     bool window_started = false, force_is_constant = false;
-    bool in_range = true;                  ///< all samples of the window are within the gyro's range
+    bool in_range = true;
     double moving_force_duration_s = 0.0;  ///< time in which the specific force excluded rest
     double unexplained_force_rotation_rad2 =
         0.0;  ///< squared rotation of the specific force that the gyro does not explain
     double force_rotation_square_sum_rad2 = 0.0,
            gyro_rotation_square_sum_rad2 = 0.0;  ///< sums over the windows in which the specific force rotates
-    double rotated_window_count = 0.0;           ///< number of these windows
+    double rotated_window_count = 0.0;
     TimeNs last_time_ns = 0;
     bool started = false;
     bool operator==(const State&) const = default;
@@ -65,8 +65,8 @@ class ImuPlausibility {
   /// imu_merge.md (I20). The ratio is 1 for a correct gyro, 2 for a gyro with half the scale, -1 for an inverted gyro,
   /// and 1 while unknown.
   double force_to_gyro_rotation_ratio(const State& state) const;
-  /// Returns the correlation between both rotations, from gyro and accelerometer: 1 for a gyro of any positive scale,
-  /// -1 for an inverted gyro, about 0 for swapped axes, and 1 while unknown.
+  /// Returns the correlation between the rotations from gyro and accelerometer. The correlation is 1 for a gyro of any
+  /// positive scale, -1 for an inverted gyro, about 0 for swapped axes, and 1 while unknown.
   double rotation_agreement(const State& state) const;
   /// Returns the longest time for which the gyro or the accelerometer was frozen [s].
   double frozen_s(const State& state) const;

@@ -15,11 +15,11 @@ namespace tumble {
 /// integrated specific force with its prediction for rotation about a pivot. The alternatives are the measured rates,
 /// relabelled or inverted gyro axes, and half or twice the rate: imu_merge.md (I27), (I28), (I29), (I30).
 ///
-/// PivotMotionCheck uses only unsaturated rates. The check does not detect faults if the body flies or rolls, wrong
-/// axis labels if the body rotates about a single axis, or flips of all three accelerometer axes.
+/// PivotMotionCheck uses only unsaturated rates. The check does not detect faults if the body flies or rolls. It also
+/// misses wrong axis labels during rotation about a single axis, and flips of all three accelerometer axes.
 struct PivotMotionCheck {
   int reading = 0;                      ///< index of the best alternative of gyro axes and signs; 0: unchanged
-  double log_evidence = 0.0;            ///< log evidence against the unchanged rates
+  double log_evidence = 0.0;            ///< against the unchanged rates
   std::size_t comparable_segments = 0;  ///< time segments that the alternative or the unchanged rates explain
   std::size_t better_explained_segments = 0,
               worse_explained_segments = 0;  ///< number of segments that the alternative explains better, and worse

@@ -45,9 +45,9 @@ class AngularRateRecovery {
   void step(std::span<const ImuSample> units, double dt_s, State& state, ImuSample& merged) const;
 
  private:
-  static constexpr double kLeverArmSigma_m = 1.5e-3;               // prior standard deviation of each IMU position
-  static constexpr double kAccelerationWalk_rad_s2_sqrts = 200.0;  // random walk of the angular acceleration
-  static constexpr double kForceWalk_m_s2_sqrts = 25.0;            // random walk of the specific force
+  static constexpr double kLeverArmSigma_m = 1.5e-3;  // prior standard deviation of each IMU position
+  static constexpr double kAccelerationWalk_rad_s2_sqrts = 200.0;
+  static constexpr double kForceWalk_m_s2_sqrts = 25.0;
   static constexpr double kRecoveredSigma_rad_s =
       1.0;  // rates with a larger standard deviation remain flagged as clipped
   // Noise of a gyro reading: a constant, and a fraction of the reading.
@@ -66,7 +66,7 @@ class AngularRateRecovery {
   void measure_rates(std::span<const ImuSample> units, double dt_s, State& state) const;
   void measure_forces(std::span<const ImuSample> units, double dt_s, State& state) const;
 
-  ImuMergeSetup setup_;  // with the poses of the IMUs relative to their mean position
+  ImuMergeSetup setup_;  // with poses relative to the mean position of the IMUs
 };
 
 }  // namespace tumble

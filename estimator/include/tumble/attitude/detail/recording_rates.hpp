@@ -27,12 +27,12 @@ struct RecoveredRates {
   std::vector<AngularRateSource> sources;  ///< one per sample
   bool estimated = false;                  ///< true if a reading clips, and MotionRegimeSmoother succeeded
   std::size_t replaced_reading_count = 0;  ///< number of clipped or possibly clipped readings that were replaced
-  MotionRegimeSmoother::Report report;     ///< valid if `estimated`
+  MotionRegimeSmoother::Report report;
   SaturationLevels saturation_levels;
 };
 
 enum class ReadingsToReplace : std::uint8_t {
-  clipped,  ///< readings with a clipped axis
+  clipped,
   /// readings with a clipped or possibly clipped axis; all readings if the gyro updates more slowly than the log
   unreliable_readings,
 };

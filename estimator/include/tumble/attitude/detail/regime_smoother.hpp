@@ -34,10 +34,10 @@ class MotionRegimeSmoother {
   };
   struct Report {
     AngularRateReport rate;
-    bool regimes_estimated = false;          ///< false: the probabilities below were not estimated
-    RegimeProbabilities probabilities{};     ///< mean probabilities over all samples
+    bool regimes_estimated = false;  ///< false: the probabilities below were not estimated
+    RegimeProbabilities probabilities{};
     double hand_held_probability_max = 0.0;  ///< largest probability of hand-held motion in a clipped segment
-    bool hand_held_smoother_ran = false;     ///< HandHeldSmoother succeeded; `hand_held` contains its report
+    bool hand_held_smoother_ran = false;     ///< true: `hand_held` contains the report of HandHeldSmoother
     HandHeldSmoother::Report hand_held;
     std::size_t spin_samples = 0;  ///< saturated samples that are probably in a steady spin
   };

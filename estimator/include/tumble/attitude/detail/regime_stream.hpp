@@ -42,20 +42,20 @@ class MotionRegimeStream {
     HandHeldRateStream::State hand_held;
     SpinTracker::State spin;
     std::size_t spin_samples = 0;       ///< saturated samples that are probably in a steady spin
-    std::vector<ClipSigns> clip_signs;  ///< buffer: clip signs of the samples in the window
+    std::vector<ClipSigns> clip_signs;  ///< buffer
     RegimeProbabilities probabilities{1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0};
-    RegimeProbabilities regime_probability_sum{};  ///< sum over all reported samples
+    RegimeProbabilities regime_probability_sum{};
     std::size_t reported_sample_count = 0;
     std::size_t combined_samples = 0;  ///< number of samples whose rate includes the result of HandHeldRateStream
     std::size_t hand_held_start_count = 0;
-    std::size_t calibration_reset_count = 0;  ///< last value of AngularRateStreamState::calibration_reset_count
+    std::size_t calibration_reset_count = 0;
     double calibration_reset_rate =
         0.0;  ///< number of calibration resets of AngularRateStream, decaying with the time constant `rate.lag_s`
     bool hand_held_stream_running = false;
     /// probabilities of hand-held motion in the last `kSegmentGapMax_s`; the oldest entry is the smallest
     std::vector<ReportedRegimeProbability> recent_probabilities;
-    TimeNs reported_ns = 0;            ///< time of the last reported sample
-    std::optional<TimeNs> clipped_ns;  ///< last reported clipped sample
+    TimeNs reported_ns = 0;
+    std::optional<TimeNs> clipped_ns;
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.

@@ -12,13 +12,13 @@
 namespace tumble {
 
 /// Checks accelerometer and estimated rates with the body at rest. The specific force at rest must have the magnitude
-/// of gravity; a wrong magnitude reveals a wrong unit, for example g. Between two rests, the specific force, rotated by
-/// the estimated rates, must integrate to zero velocity change after gravity is subtracted: imu_merge.md (I23), (I24),
-/// (I25), (I26).
+/// of gravity; a wrong magnitude reveals a wrong unit, for example g. Between two rests, the integrated velocity change
+/// must be zero: imu_merge.md (I23), (I24), (I25), (I26). The integral uses the specific force, rotated by the
+/// estimated rates.
 ///
 /// RestGravity does not detect wrong rates if the body returns to its initial attitude, rotates about the vertical, or
 /// rests less than twice. An accelerometer with all axes flipped is not detected. False alarms occur if a body that
-/// never rests falls for a second without rotation, or if one rest is in a moving vehicle and the other is not.
+/// never rests falls for a second without rotation. They also occur if only one of two rests is in a moving vehicle.
 class RestGravity {
  public:
   struct Setup {
@@ -37,10 +37,10 @@ class RestGravity {
   struct State : GravityMagnitudeState {
     Eigen::Vector3d last_rest_force_m_s2 =
         Eigen::Vector3d::Zero();  ///< specific force at the last rest, in sensor axes; 0: no rest yet
-    Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< rotation since the last rest
+    Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
     double angle_since_last_rest_rad = 0.0,
            angle_variance_rad2 = 0.0;  ///< rotation angle since the last rest, and variance of the angle's error
-    Eigen::Vector3d integrated_force_m_s = Eigen::Vector3d::Zero();  ///< integrated specific force since the last rest
+    Eigen::Vector3d integrated_force_m_s = Eigen::Vector3d::Zero();
     double span_s = 0.0,
            integrated_saturation_deficit_m_s =
                0.0;  ///< time since the last rest; integrated saturation deficit of the accelerometer

@@ -17,7 +17,7 @@ struct SpinRate {
   int axis = -1;  ///< gyro axis closest to the spin axis; -1: the body does not spin
   double rate_rad_s = 0.0, variance_rad2_s2 = 0.0;
   double probability = 0.0;  ///< probability of a steady spin
-  bool saturated = false;    ///< the reading of this gyro axis is saturated or possibly saturated
+  bool saturated = false;    ///< this gyro axis is saturated or possibly saturated
 };
 
 /// State of one Kalman filter; spin_models.hpp defines the components of `x`.

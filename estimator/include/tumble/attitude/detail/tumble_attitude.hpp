@@ -26,8 +26,7 @@ struct TumbleAttitudeState {
   ImuAverage average;  ///< average of the readings that the filter has not yet processed
   Eigen::Matrix3d recovered_covariance_rad2_s2 =
       Eigen::Matrix3d::Zero();  ///< mean covariance of the recovered rates in `average`
-  Eigen::Quaterniond last_processed_q_WI =
-      Eigen::Quaterniond::Identity();  ///< attitude at the end of the last processed average
+  Eigen::Quaterniond last_processed_q_WI = Eigen::Quaterniond::Identity();
   // Integrals since the last measurement update.
   Eigen::Matrix3d integrated_rotation_matrix_s = Eigen::Matrix3d::Zero();
   Eigen::Vector3d force_integral_W_m_s = Eigen::Vector3d::Zero();
@@ -52,7 +51,7 @@ struct TumbleAttitudeState {
 };
 
 struct TumbleAttitudeParams {
-  static constexpr double kRecoveredTau_s = 0.05;  ///< correlation time of the error of a recovered rate
+  static constexpr double kRecoveredTau_s = 0.05;
   /// Random walks of the rate and velocity of tumbling bodies during a gap. On simulated hills, stairs and cliffs, rate
   /// and velocity change by 3.0 to 11.4 rad/s and 2.4 to 4.1 m/s per sqrt(s) (docs/figures.md).
   static constexpr double kGapRateWalk_rad_s_sqrts = 7.0;

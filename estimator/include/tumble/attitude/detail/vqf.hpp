@@ -82,7 +82,7 @@ class Vqf {
  public:
   using Params = VqfParams;
   struct State {
-    Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();  ///< estimated attitude: q_WN * q_NI
+    Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();  ///< q_WN * q_NI
     Eigen::Quaterniond attitude_without_correction =
         Eigen::Quaterniond::Identity();  ///< attitude from the gyro only, with the bias subtracted
     Eigen::Quaterniond inclination_correction = Eigen::Quaterniond::Identity();

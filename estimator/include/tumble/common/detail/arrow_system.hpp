@@ -26,7 +26,7 @@ struct BlockArrowSystem {
   /// L^-1 g, with the Cholesky factor L of D.
   struct StateBlock {
     StateMatrix diagonal = StateMatrix::Zero();
-    StateMatrix coupling_to_next_state = StateMatrix::Zero();  ///< coupling of this block to the next block
+    StateMatrix coupling_to_next_state = StateMatrix::Zero();
     CrossMatrix border_coupling = CrossMatrix::Zero();
     StateVector gradient = StateVector::Zero();
   };

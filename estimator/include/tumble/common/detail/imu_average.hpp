@@ -11,8 +11,8 @@ namespace tumble {
 /// Averages IMU readings over time windows of one length, so that a filter does not depend on the sample rate of the
 /// IMU. Coning and sculling within the window are neglected.
 struct ImuAverage {
-  ImuSample mean;                ///< with the time stamp of the last reading and the clip flags of all readings
-  double length_s = 0.0;         ///< total duration of the readings
+  ImuSample mean;  ///< with the time stamp of the last reading and the clip flags of all readings
+  double length_s = 0.0;
   double rate_peak_rad_s = 0.0;  ///< largest rate component of a single reading
   double force_peak_m_s2 = 0.0;
   std::int64_t readings = 0;

@@ -12,7 +12,7 @@ struct ImuSamplePair {
   std::size_t index_before = 0,
               index_after = 0;        ///< neighbouring samples; outside of the recording, the two samples at its end
   double interpolation_weight = 0.0;  ///< weight of the later sample; not within [0, 1] outside of the recording
-  double length_s = 0.0;              ///< time between the neighbouring samples
+  double length_s = 0.0;
   bool is_inside_recording() const { return interpolation_weight >= 0.0 && interpolation_weight <= 1.0; }
 };
 

@@ -21,7 +21,7 @@ class OutlierFilter {
  public:
   /// larger readings never pass (57 000 deg/s, 10 000 g)
   static constexpr double kRateMax_rad_s = 1000.0, kForceMax_m_s2 = 1e5;
-  static constexpr std::size_t kDelayedMax = 5;  ///< longest sequence of outliers that is detected
+  static constexpr std::size_t kDelayedMax = 5;
   /// maximum reading, as a multiple of the range in the data sheet
   static constexpr double kMaxReadingToRangeRatio = 2.0;
 
@@ -37,7 +37,7 @@ class OutlierFilter {
     std::array<ImuSample, 2> recent_inliers{};  ///< last samples that passed, oldest first
     std::size_t count = 0;                      ///< samples that passed since the start, at most 3
     std::array<ImuSample, kDelayedMax> delayed_sample{};
-    std::size_t delayed_count = 0;  ///< number of valid samples in `delayed`
+    std::size_t delayed_count = 0;
     std::size_t rejected = 0;
 
     std::span<const ImuSample> delayed_samples() const { return {delayed_sample.data(), delayed_count}; }
@@ -61,7 +61,7 @@ class OutlierFilter {
   /// false.
   static void mark_accepted(const ImuSample& sample, State& state);
 
-  /// Rejects the delayed samples at the end of a run.
+  /// Rejects the delayed samples. Call finish() at the end of a run.
   static void finish(State& state);
 
  private:

@@ -16,10 +16,10 @@ namespace tumble {
 /// Usable lidar return, in the axes that the IMU had when the laser fired.
 struct SweepPoint {
   Eigen::Vector3f x_I_m = Eigen::Vector3f::Zero();
-  Eigen::Vector3f point_L_m = Eigen::Vector3f::Zero();  ///< measured position, in lidar axes
+  Eigen::Vector3f point_L_m = Eigen::Vector3f::Zero();  ///< in lidar axes
   float t_s = 0.0f;           ///< firing time after the start of the SweepTrajectory, in the IMU's clock
   float sweep_time_s = 0.0f;  ///< firing time after the start of the sweep
-  float range_m = 0.0f;       ///< distance from the lidar
+  float range_m = 0.0f;
   std::uint16_t ring = 0;
 };
 
@@ -34,7 +34,7 @@ struct PointCounts {
   std::size_t received = 0;
   std::size_t finite = 0;  ///< number of returns with finite coordinates; a laser pulse without return may be NaN
   std::size_t usable_points = 0;
-  bool has_ring_numbers = false;  ///< false if the device does not report ring numbers
+  bool has_ring_numbers = false;
 };
 
 /// Selects the usable lidar returns of a sweep and transforms each return to IMU axes. `sweep_start_s` is the start of

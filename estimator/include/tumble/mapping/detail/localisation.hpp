@@ -45,7 +45,7 @@ class Localisation {
   std::size_t aligned_sweeps_ = 0;  ///< number of sweeps in the means below
   double mean_inlier_ratio_ = 0.0, mean_innovation_ = 0.0;
   double smallest_inlier_ratio_ = 1.0;  ///< smallest mean inlier ratio that failed the check
-  double sigma_m_ = 0.0;                ///< standard deviation of the newest position relative to the map
+  double sigma_m_ = 0.0;                ///< newest position relative to the map
   TimeNs newest_ns_ = 0;
   std::optional<TimeNs> lost_since_ns_;  ///< first sweep of the current period with an uncertain position
   std::optional<TimeNs> last_contradicted_sweep_ns_,

@@ -24,7 +24,7 @@ class ScanLines {
 
  private:
   Eigen::Vector3d axis_W_ = Eigen::Vector3d::Zero();  // spin axis of the sweeps with equal numbers
-  std::uint32_t attitude_ = 0;                        // number of attitude changes
+  std::uint32_t attitude_ = 0;
 };
 
 /// Returns the points of a map. Normals are fitted to nearest neighbours, and point to the sensor that observed the

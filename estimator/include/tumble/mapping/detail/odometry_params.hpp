@@ -10,8 +10,8 @@
 
 namespace tumble {
 
-/// Limits for the detection of rest at the start. The rate must differ from the gyro bias and from its mean by at most
-/// kRate_rad_s, and the specific force from gravity and from its mean by at most kForce_m_s2.
+/// Limits for the detection of rest at the start. The rate must differ from the gyro bias and its mean by at most
+/// kRate_rad_s. The specific force must differ from gravity and its mean by at most kForce_m_s2.
 struct StationaryBounds {
   static constexpr double kLevellingMax_s = 0.5;  ///< maximum duration of the initial rest that determines the tilt
   static constexpr double kRate_rad_s = 0.05;
@@ -85,9 +85,9 @@ struct SaturatedImuParams {
 };
 
 struct MatchingParams {
-  static constexpr int kNeighbours = 12;           ///< number of nearest neighbours for a plane fit
+  static constexpr int kNeighbours = 12;
   static constexpr std::size_t kMatchesMin = 100;  ///< sweeps with fewer matched points are rejected
-  double distance_m = 1.0;                         ///< maximum distance of matched map points
+  double distance_m = 1.0;
   std::size_t agreeing_matches_min = 30;  ///< the same limit if the registered pose agrees with the inertial prediction
   double correction_max_m = 15.0;         ///< a larger correction of the prior is rejected
   double correction_max_rad = 1.1;        ///< a larger correction of the prior is rejected
@@ -197,16 +197,16 @@ struct OdometryParams {
   double mount_sigma_rad = 0.0;
   double mount_sigma_m = 0.0;
   double time_offset_sigma_s = 0.0;
-  double range_min_m = 0.3;    ///< minimum range of a usable return
-  double range_max_m = 100.0;  ///< maximum range of a usable return
+  double range_min_m = 0.3;
+  double range_max_m = 100.0;
   Eigen::AlignedBox3d
       own_body_L;               ///< bounding box of the robot in lidar axes; returns inside are dropped; may be empty
-  double sweep_voxel_m = 0.25;  ///< edge of the voxels; the registration uses one point per voxel
+  double sweep_voxel_m = 0.25;  ///< the registration uses one point per voxel with this edge
   /// runs the registration on threads of the caller; empty: on the calling thread
   ParallelFor parallel_for;
 
   using Expert = OdometryExpertParams;
-  Expert expert;  ///< rarely changed parameters
+  Expert expert;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {

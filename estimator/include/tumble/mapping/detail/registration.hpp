@@ -18,7 +18,7 @@ namespace tumble {
 
 enum class RegistrationVerdict : std::uint8_t {
   converged,
-  too_few_matches,  ///< too few matched points; the result is the prior
+  too_few_matches,  ///< the result is the prior
   diverged,         ///< no convergence, too large a correction, or too few inliers; the result is the prior
 };
 
@@ -145,7 +145,7 @@ class Registration {
   std::vector<SweepPoint> transformed_points_;
   std::vector<Match> matches_;
   std::vector<float> residual_distances_m_, sorted_distances_;
-  std::vector<Sums> partial_sums_;  // one per block of points
+  std::vector<Sums> partial_sums_;
   SpatialHash point_cluster_index_{1 << 10};
   std::vector<Vector> point_cluster_gradients_;
 };

@@ -22,11 +22,11 @@ struct MotionSample {
   TimeNs time_ns = 0;
   Eigen::Vector3d w_WI_I_rad_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d f_I_m_s2 = Eigen::Vector3d::Zero();
-  Eigen::Vector3d rate_sigma_rad_s = Eigen::Vector3d::Zero();  ///< standard deviation of the rate, in IMU axes
-  std::uint8_t clipped_axes = 0;                               ///< bit j: gyro axis j was saturated
-  std::uint8_t accel_saturated_axes = 0;                       ///< bit j: accelerometer axis j was saturated
-  bool at_rest = false;                 ///< the sample belongs to the rest at the start of the run
-  std::optional<TimeNs> rest_start_ns;  ///< start of the current rest, detected from the IMU alone
+  Eigen::Vector3d rate_sigma_rad_s = Eigen::Vector3d::Zero();
+  std::uint8_t clipped_axes = 0;          ///< bit j: gyro axis j was saturated
+  std::uint8_t accel_saturated_axes = 0;  ///< bit j: accelerometer axis j was saturated
+  bool at_rest = false;                   ///< within the rest at the start of the run
+  std::optional<TimeNs> rest_start_ns;    ///< start of the current rest, detected from the IMU alone
   bool bridges_gap = false;  ///< bridges a gap between IMU samples: unknown specific force, constant velocity
 };
 
@@ -52,7 +52,7 @@ struct MotionState {
 class SweepTrajectory {
  public:
   static constexpr int kKnots = 3;
-  static constexpr int kDeficitUnknowns = 3 * kKnots;  ///< three axes per support point
+  static constexpr int kDeficitUnknowns = 3 * kKnots;
   using Deficit = Eigen::Matrix<double, 3, kKnots>;
   using DeficitJacobian = Eigen::Matrix<double, 3, kDeficitUnknowns>;
 
@@ -127,14 +127,12 @@ class SweepTrajectory {
   struct Interval {
     double start_s, length_s;
     Eigen::Quaterniond q_WI;
-    Eigen::Vector3d rate_I_rad_s, specific_force_W_m_s2;  // rate in body axes; mean specific force in world axes
+    Eigen::Vector3d rate_I_rad_s, specific_force_W_m_s2;
     Eigen::Vector3d preintegrated_velocity_m_s,
         preintegrated_position_m;       // single and double integral of the specific force up to start_s
     Eigen::Vector3d clipped_axis_sign;  // factor on the saturation deficit of each axis; 0: axis not clipped
-    Eigen::Matrix<double, kKnots, 1> knot_weight =
-        Eigen::Matrix<double, kKnots, 1>::Zero();  // interpolation weight of the deficit at each knot
-    DeficitJacobian attitude_jacobian, velocity_jacobian, position_jacobian,
-        acceleration_jacobian;  // derivatives at start_s
+    Eigen::Matrix<double, kKnots, 1> knot_weight = Eigen::Matrix<double, kKnots, 1>::Zero();
+    DeficitJacobian attitude_jacobian, velocity_jacobian, position_jacobian, acceleration_jacobian;
   };
   const Interval& interval_at(double t_s, std::size_t& hint) const;
   static DeficitJacobian saturation_deficit_jacobian_within(const Interval& now, double s);

@@ -12,7 +12,7 @@ namespace tumble {
 /// Order of the registration's unknowns: position, attitude (left perturbation in world axes) and velocity of the IMU
 /// at the start of the trajectory; saturation deficit of the gyro; LidarImuCalibration.
 struct RegistrationUnknowns {
-  static constexpr int kMotionSize = 9;                     ///< position, attitude, velocity
+  static constexpr int kMotionSize = 9;
   static constexpr int kFirstDeficitUnknown = kMotionSize;  ///< saturation deficit, one support point after another
   static constexpr int kFirstCalibrationUnknown =
       kFirstDeficitUnknown + SweepTrajectory::kDeficitUnknowns;  ///< LidarImuCalibration

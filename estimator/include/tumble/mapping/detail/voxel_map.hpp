@@ -103,7 +103,7 @@ class VoxelMap {
     static constexpr int kBits = 3, kMask = (1 << kBits) - 1;  // a group has 8 cells along each edge
     static std::size_t row_index_of(int y, int z);
     static std::size_t cell_index_of(const Eigen::Vector3i& cell);
-    static Eigen::Vector3i of(const Eigen::Vector3i& cell);  // group of a cell
+    static Eigen::Vector3i of(const Eigen::Vector3i& cell);
 
     std::array<std::uint32_t, 1u << (3 * kBits)> first;  // chunk of each cell
     std::array<std::uint8_t, 1u << (2 * kBits)> rows{};  // bit mask of the occupied cells along x

@@ -63,7 +63,7 @@ struct MergedImuRecording {
 
 struct MergedImuChecks {
   RestGravity rest_gravity;
-  ImuPlausibility plausibility;  ///< check of the fused readings
+  ImuPlausibility plausibility;
   std::array<RestGravity::GravityMagnitudeState, ImuMerge::kImus> rest_gravity_state{};
   ImuPlausibility::State plausibility_state{};
 };

@@ -22,10 +22,10 @@ namespace tumble {
 SaturationLevels flag_saturated_forces(const SaturationLimitDetector::Params& stated, std::span<ImuSample> samples);
 
 struct MappingInput {
-  std::span<const ImuSample> samples;       ///< after flag_saturated_forces()
-  std::span<const AngularRateState> rates;  ///< one rate per sample
+  std::span<const ImuSample> samples;  ///< after flag_saturated_forces()
+  std::span<const AngularRateState> rates;
   std::size_t sweeps = 0;
-  std::function<WaitingSweep(std::size_t)> sweep;  ///< returns the sweep with the given index
+  std::function<WaitingSweep(std::size_t)> sweep;
   /// Returns the odometer reading for a sweep from `from_ns` to `to_ns`; may be empty.
   std::function<std::optional<OdometerReading>(TimeNs from_ns, TimeNs to_ns)> reading = {};
   std::optional<Eigen::Isometry3d> start = std::nullopt;  ///< see LidarInertialOdometry::set_start_pose()
@@ -46,7 +46,7 @@ struct MappedRecording {
   std::vector<MappedSweep> sweeps;
   std::size_t unfinished_sweeps = 0;  ///< number of sweeps that end after the last IMU sample, and are not used
   LidarInertialOdometry mapper;
-  Localisation localisation;  ///< detected tracking failures
+  Localisation localisation;
   int mapping_pass_count = 1;
   /// LidarImuCalibrationPrior::distance_in_sigmas() of the last calibration
   double calibration_deviations = 0.0;

@@ -30,7 +30,7 @@ struct MergedRecordings {
   struct MergedImu {
     std::size_t imu_index = 0;
     double time_offset_s = 0.0, time_offset_sigma_s = 0.0;  ///< positive: the IMU lags behind the mean
-    double rate_bias_rad_s = 0.0;                           ///< norm of the gyro bias
+    double rate_bias_rad_s = 0.0;
   };
   std::vector<ImuSample> samples;                         ///< fused samples, in body axes
   Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< mean position of the IMUs, in body axes
@@ -38,8 +38,8 @@ struct MergedRecordings {
   /// IMUs that are silent, frozen, or contradict the other IMUs, and are therefore excluded. An IMU with a frozen axis
   /// is excluded only during the fault.
   SensorHealth faults;
-  std::size_t excluded_readings = 0;          ///< readings that ImuMerge excluded
-  std::optional<double> lever_arm_agreement;  ///< ImuMerge::lever_arm_agreement
+  std::size_t excluded_readings = 0;
+  std::optional<double> lever_arm_agreement;
   std::optional<MultiImuSignCheck::DetectedMirroring>
       mislabelled_axes;  ///< flipped or swapped axes that all IMUs share
 };

@@ -24,14 +24,14 @@ struct WholeRecordingEstimate {
       stamps_ns;  ///< received time stamps of the used samples; `rates` contains the times that SampleClock estimated
   std::vector<AngularRateState>
       rates;  ///< one per used sample; covariances include `suspected_error_covariance_rad2_s2`
-  std::vector<Eigen::Matrix3d> suspected_error_covariance_rad2_s2;  ///< result of suspected_error_covariance()
+  std::vector<Eigen::Matrix3d> suspected_error_covariance_rad2_s2;
   MotionRegimeSmoother::Report report;  ///< report of the rate estimation, with the rig constants
   SaturationLevels saturation_levels;
   ImuHealthReport findings;
-  SensorHealth health;               ///< findings about IMU, lidar and estimate
+  SensorHealth health;
   MappedRecording mapped_recording;  ///< without the sweeps, which TumblingOdometry::take() returns
   LidarScale scale;
-  double corrected_jitter_s = 0.0;  ///< largest corrected jitter of the time stamps
+  double corrected_jitter_s = 0.0;
 };
 
 }  // namespace tumble

@@ -23,9 +23,9 @@ struct RollingModeParams {
   double slip_begins_per_s = 0.5;
   static constexpr double kSlipEndsPerS = 2.0;  ///< rate of transitions from slip to grip
   double bump_begins_per_s = 0.3;
-  static constexpr double kBumpEndsPerS = 5.0;      ///< rate of transitions from bump to grip
-  double incline_begins_per_s = 0.001;              ///< rate of transitions from the level floor to a slope
-  static constexpr double kEventShortest_s = 0.06;  ///< minimum duration of slip or bump
+  static constexpr double kBumpEndsPerS = 5.0;  ///< rate of transitions from bump to grip
+  double incline_begins_per_s = 0.001;          ///< rate of transitions from the level floor to a slope
+  static constexpr double kEventShortest_s = 0.06;
   /// RollingEstimate::uncertain is set if a slip or bump increases the horizontal standard deviation of the position by
   /// more than this value.
   static constexpr double kEventSigmaGrowth_m = 0.03;

@@ -36,9 +36,9 @@ struct RollingPriorParams {
 };
 
 struct RollingImuNoiseParams {
-  double attitude_walk_rad_sqrts = 1e-4;                   ///< 0.006 deg/sqrt(s)
-  double rate_error_sqrts = 6e-4;                          ///< angle random walk per rad/s of rotation
-  static constexpr double kVelocityWalk_m_s_sqrts = 6e-3;  ///< velocity random walk
+  double attitude_walk_rad_sqrts = 1e-4;  ///< 0.006 deg/sqrt(s)
+  double rate_error_sqrts = 6e-4;         ///< angle random walk per rad/s of rotation
+  static constexpr double kVelocityWalk_m_s_sqrts = 6e-3;
   double gyro_bias_walk_rad_s_sqrts = 1.7e-5;
 
   template <class Self, class Visitor>

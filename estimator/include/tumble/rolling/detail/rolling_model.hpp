@@ -61,9 +61,9 @@ struct RollingNodeIntegrals {
   Eigen::Vector3d rate_integral_I_rad = Eigen::Vector3d::Zero(), force_integral_I_m_s = Eigen::Vector3d::Zero();
   double squared_rate_integral_rad2_s = 0.0;
   double rate_clipped_s = 0.0,
-         force_clipped_s = 0.0;   ///< duration of saturated gyro readings; of saturated accelerometer readings
-  double recovered_rate_s = 0.0;  ///< duration of readings with a recovered rate
-  double impact_m_s = 0.0;        ///< integral of | |f| - g |, with specific force f, as far as above its usual level
+         force_clipped_s = 0.0;  ///< duration of saturated gyro readings; of saturated accelerometer readings
+  double recovered_rate_s = 0.0;
+  double impact_m_s = 0.0;  ///< integral of | |f| - g |, with specific force f, as far as above its usual level
   double unexplained_impact_m_s = 0.0;  ///< part of impact_m_s that rotation does not explain
   Eigen::Vector3d partial_saturation_W_m_s = Eigen::Vector3d::Zero();  ///< standard deviation of the integrated force,
                                                                        ///< because of saturation shorter than a sample

@@ -41,7 +41,7 @@ struct RollingExpertParams {
 };
 
 struct RollingParams {
-  double radius_m = 0.0;        ///< required; has no default
+  double radius_m = 0.0;        ///< required
   double radius_sigma_m = 0.0;  ///< 0: the radius is exact
   Eigen::Vector3d lever_arm_m =
       Eigen::Vector3d::Zero();  ///< lever arm from the sphere's centre to the IMU, in sensor axes
@@ -56,7 +56,7 @@ struct RollingParams {
   std::shared_ptr<const RollingCalibration> calibration = {};
 
   using Expert = RollingExpertParams;
-  Expert expert = {};  ///< rarely changed parameters
+  Expert expert = {};
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {

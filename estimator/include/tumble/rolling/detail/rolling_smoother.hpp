@@ -91,9 +91,8 @@ class RollingSmoother {
   struct FinalSmoothingState {
     rolling::SmoothingCheckpoint checkpoint;
     double slip_start_variance_m2 = 0.0;  ///< position variance at the start of the slip or bump
-    Eigen::Vector3d constrained_sphere_centre_W_m =
-        Eigen::Vector3d::Zero();        ///< reported position while `position_constrained`
-    bool position_constrained = false;  ///< the sphere is at rest and the reported position is constant
+    Eigen::Vector3d constrained_sphere_centre_W_m = Eigen::Vector3d::Zero();
+    bool position_constrained = false;
     bool started = false;
     bool operator==(const FinalSmoothingState&) const = default;
   };
