@@ -71,9 +71,9 @@ struct Truth {
   std::vector<ContactTruth> contacts;
   Eigen::Vector3d p_BG_m = Eigen::Vector3d::Zero();  ///< geometric centre of a sphere, in body axes
   std::vector<std::string> surfaces;                 ///< name of surface id i: "terrain", "rock_3", "trunk_7"
-  std::vector<ImuTruth> imus;
+  std::vector<ImuTruth> imus;                        ///< in the order of Sensors::imus
   std::vector<LidarTruth> lidars;
-  std::vector<SeriesTruth> series;
+  std::vector<SeriesTruth> series;  ///< in the order of Sensors::series
 };
 
 struct Recording {

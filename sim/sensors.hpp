@@ -47,7 +47,7 @@ struct LidarRecord {
   std::vector<std::uint64_t> sweep_first;  ///< index of the first point of each sweep, then the total number of points
   std::vector<Eigen::Vector3f> position_L_m;
   std::vector<float> range_m;
-  std::vector<float> intensity;
+  std::vector<float> intensity;          ///< 0 to 1
   std::vector<std::uint32_t> offset_ns;  ///< firing time since the sweep's start
   std::vector<std::uint16_t> ring;
 };

@@ -12,7 +12,7 @@ namespace tumble::sim {
 
 struct AllanPoint {
   double tau_s = 0.0;
-  double deviation = 0.0;
+  double deviation = 0.0;   ///< in the unit of the series
   std::size_t cluster = 0;  ///< tau / period
   std::size_t samples = 0;  ///< per series
   std::size_t series = 1;

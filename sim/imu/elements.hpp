@@ -20,9 +20,8 @@ namespace tumble::sim {
 /// - The saturation deficit is the signal of a sensing element minus its saturation level. A saturated sensing element
 ///   also changes the readings of the other axes, in proportion to its saturation deficit.
 ///
-/// For two real gyros, these planes have slopes of up to 0.05 relative to the output axes, and offsets of up to 0.14
-/// rad/s (scenarios/certificate/real_rails.cpp). The simulation assumes that the device has the exact misalignment
-/// matrix and zero offset, and that the zero offset does not drift within a recording.
+/// The simulation assumes that the device has the exact misalignment matrix and zero offset, and that the zero offset
+/// does not drift within a recording.
 class Elements {
  public:
   struct Params {

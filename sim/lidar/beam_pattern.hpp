@@ -14,7 +14,7 @@ inline constexpr int kMaxChannels = 16;
 
 struct ChannelFirings {
   alignas(64) double origin_x_m[kLanes], origin_y_m[kLanes], origin_z_m[kLanes];
-  alignas(64) double direction_x[kLanes], direction_y[kLanes], direction_z[kLanes];
+  alignas(64) double direction_x[kLanes], direction_y[kLanes], direction_z[kLanes];  ///< unit vectors
 };
 
 struct FiringBlock {

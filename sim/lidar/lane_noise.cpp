@@ -41,8 +41,8 @@ float unit_of(std::uint32_t word) {
   return (static_cast<float>(static_cast<std::int32_t>(word >> 1)) + 0.5f) * 0x1p-31f;
 }
 
-/// With x = 2^e m and m in [0.71, 1.41], the logarithm of m is the series of 2 atanh((m - 1) / (m + 1)), with a
-/// relative error of 2e-7.
+/// With x = 2^e m and m in [0.71, 1.41], log(m) is the series of 2 atanh((m - 1) / (m + 1)), with a relative error of
+/// 2e-7.
 float log_of(float x) {
   const std::int32_t bits = std::bit_cast<std::int32_t>(x) - 0x3f3504f3;
   const std::int32_t exponent = bits >> 23;

@@ -12,7 +12,7 @@ namespace tumble::sim {
 struct Returns {
   bool kept[kLanes];
   alignas(64) float range_m[kLanes];
-  alignas(64) float intensity[kLanes];
+  alignas(64) float intensity[kLanes];  ///< 0 to 1
 };
 
 /// Simulates the range errors of a lidar in this order: loss of weak returns (by range, incidence, reflectivity),

@@ -15,7 +15,7 @@ inline constexpr int kLanes = 16;
 struct RayPacket {
   int count = kLanes;
   alignas(64) float origin_x[kLanes], origin_y[kLanes], origin_z[kLanes];
-  alignas(64) float direction_x[kLanes], direction_y[kLanes], direction_z[kLanes];
+  alignas(64) float direction_x[kLanes], direction_y[kLanes], direction_z[kLanes];  ///< unit vectors
   /// input: maximum range of the ray; output: range of the hit, or unchanged without a hit
   alignas(64) float range[kLanes];
   alignas(64) float cosine[kLanes];  ///< of the angle of incidence

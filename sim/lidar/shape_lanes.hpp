@@ -14,7 +14,7 @@ struct ShapeHits {
 
 struct ShapeRays {
   const float *origin_x_m, *origin_y_m, *origin_z_m;
-  const float *direction_x, *direction_y, *direction_z;
+  const float *direction_x, *direction_y, *direction_z;  ///< unit vectors
 };
 
 void cast_rays(const Shape& shape, const ShapeRays& rays, const int* wanted, ShapeHits& hits);

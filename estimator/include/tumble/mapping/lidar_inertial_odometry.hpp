@@ -22,16 +22,15 @@ namespace tumble {
 ///
 /// The z axis of the world frame points upwards, along the specific force at rest. The first sweep with at least
 /// `matches_min` usable points starts the map. The pose of the IMU at the first IMU sample defines origin and yaw of
-/// the world frame. If an earlier sweep had too few points, or the map starts more than 0.5 s after the first IMU
-/// sample, the IMU pose at the map's start defines origin and yaw.
+/// the world frame. The IMU pose at the map's start defines origin and yaw instead, if the map starts more than 0.5 s
+/// after the first IMU sample, or if earlier sweeps had too few points.
 ///
 /// Pass IMU samples in time order. Before each sweep, pass the IMU samples up to the end of the sweep.
 /// LidarInertialOdometry starts no threads, uses no files and prints nothing.
 ///
-/// The pose of the lidar in IMU axes, the time offset between IMU and lidar, and gravity are estimated if their prior
-/// standard deviations are not 0. A fixed-lag smoother refines the poses of the last `window_sweeps` sweeps. To get a
-/// consistent map, process the recording twice, and start the second run with the result of calibration() after the
-/// first run.
+/// Lidar pose in IMU axes, time offset between IMU and lidar, and gravity are estimated if their prior standard
+/// deviations are not 0. A fixed-lag smoother refines the poses of the last `window_sweeps` sweeps. To get a consistent
+/// map, process the recording twice, and start the second run with the result of calibration() after the first run.
 ///
 /// After a tracking failure (a rejected sweep), inertial integration continues the pose. Until tracking is restored,
 /// the registration of each sweep also tries several starting poses around the predicted pose. LidarInertialOdometry
@@ -63,8 +62,8 @@ class LidarInertialOdometry {
   };
   /// Returns a correction of the initial tilt for a second run over the same data, computed from the estimated
   /// direction of gravity in the map. The result is empty after a start at rest, before the map starts, and after
-  /// localisation in a prior map. If the standard deviation of the computed tilt exceeds half the initial standard
-  /// deviation, the result is the argument of set_start_tilt(), or empty without such an argument.
+  /// localisation in a prior map. If the standard deviation of the computed tilt exceeds half the initial one, the
+  /// result is the argument of set_start_tilt(), if any.
   std::optional<StartTilt> start_tilt() const;
   /// Call set_start_tilt() before the first sweep.
   void set_start_tilt(const StartTilt& tilt);

@@ -20,7 +20,6 @@ struct SecondMappingPassParams {
   double lost_s = 0.4;   ///< duration of a tracking failure that starts a second mapping pass; 0: never
   double lag_s = 0.5;    ///< lag with which the second mapping pass smooths the angular velocity
 
-  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.after_s, {"after_s", "s", 0.0, 100.0,

@@ -67,8 +67,7 @@ class RollingOdometry {
     /// a slope.
     void widen_priors_for_unknown_imus();
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning. Callers must include
-    /// odometry/expert_params.hpp.
+    /// Callers must include odometry/expert_params.hpp.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.radius_m, {"radius_m", "m", 1e-3, 100.0, "radius of the sphere", ParameterRank::common_use});

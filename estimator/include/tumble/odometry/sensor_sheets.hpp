@@ -43,7 +43,6 @@ struct LidarDataSheet {
   double range_min_m = 0.3;
   double range_max_m = 100.0;
 
-  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.range_min_m,

@@ -68,8 +68,7 @@ struct AngularRateReport {
          accel_update_interval_s = 0.0;   ///< update period of a sensor slower than the log; 0: no repeated readings
   int correction_iterations = 0;          ///< number of optimisations with readings corrected for sensor errors
   bool clips_after_compensation = false;  ///< the gyro clips each output axis, after its misalignment compensation
-  std::array<bool, 6> contradicts_stated_range{};  ///< readings contradict the range in the data sheet; gyro x, y, z,
-                                                   ///< accelerometer x, y, z
+  std::array<bool, 6> contradicts_stated_range{};  ///< in the order of saturation_limits
   std::size_t samples = 0, clipped_sample_count = 0, recovered_in_flight = 0, recovered_in_contact = 0,
               lower_bound_only = 0;
   std::size_t missing_readings = 0;  ///< samples in which a gyro axis overflowed and changed its sign

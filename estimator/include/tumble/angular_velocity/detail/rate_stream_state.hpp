@@ -75,8 +75,7 @@ struct AngularRateStreamSensorErrors {
   SensorErrorUncertainty::Posterior posterior;
   std::optional<TimeNs> updated_ns;
   AngularRateStreamDelay accel_delay_state;
-  std::vector<arrow::ErrorMatrix> sample_jacobian;  ///< buffer: derivative of each sample's rate and angular
-                                                    ///< acceleration with respect to the errors
+  std::vector<arrow::ErrorMatrix> sample_jacobian;  ///< buffer
   WorkMatrices work_matrices;                       ///< buffer
 };
 

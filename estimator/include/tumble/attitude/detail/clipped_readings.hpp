@@ -16,8 +16,7 @@ namespace tumble {
 struct ClippedReadings {
   Eigen::Matrix3d sensing_directions = Eigen::Matrix3d::Identity();  ///< of the gyro, one per row
   std::vector<ClipSigns> clip_signs;
-  std::vector<std::uint8_t> possibly_clipped_axes;  ///< per sample: bit j is set if gyro element j may be saturated
-                                                    ///< during a part of the averaging window
+  std::vector<std::uint8_t> possibly_clipped_axes;  ///< bit j: gyro element j may be partly saturated
 
   SensingAxisClipSigns clipped_element_signs() const { return {sensing_directions, clip_signs}; }
 

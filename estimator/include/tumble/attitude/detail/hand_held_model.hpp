@@ -31,8 +31,8 @@ enum ConstantsIndex { kGyroBias = 0, kAccelBias = 3, kLever = 6 };
 struct Node {
   Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
   Eigen::Vector3d w_WI_I_rad_s = Eigen::Vector3d::Zero();
-  Eigen::Vector3d angular_acceleration_rad_s2 = Eigen::Vector3d::Zero();
-  Eigen::Vector3d a_W_m_s2 = Eigen::Vector3d::Zero();  ///< acceleration of the held point
+  Eigen::Vector3d angular_acceleration_rad_s2 = Eigen::Vector3d::Zero();  ///< in sensor axes
+  Eigen::Vector3d a_W_m_s2 = Eigen::Vector3d::Zero();                     ///< acceleration of the held point
   Eigen::Vector3d v_W_m_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
   void move(const System::StateVector& step);

@@ -58,9 +58,9 @@ class HandHeldSmoother {
     int iterations = 0;
     bool converged = false;
     double cost = 0.0;
-    /// The number of full revolutions during a long saturation can be ambiguous. Counts of saturated intervals: several
-    /// numbers of revolutions compared (`tested`); another number fitted better (`corrected`); another number has odds
-    /// of at least 1 to 1000 (`ambiguous`).
+    /// The number of full revolutions during a long saturation can be ambiguous. The following members count saturated
+    /// intervals. For `revolutions_tested`, several numbers of revolutions were compared. For `revolutions_corrected`,
+    /// another number fitted better. For `revolutions_ambiguous`, another number has odds of at least 1 to 1000.
     int revolutions_tested = 0, revolutions_corrected = 0, revolutions_ambiguous = 0;
     /// number of comparisons in which the solver failed, so that the previous solution was kept
     int revolutions_failed = 0;

@@ -15,7 +15,7 @@ namespace tumble {
 /// Estimates attitude and angular velocity of hand-held motion sample by sample, with a fixed lag. HandHeldRateStream
 /// uses the motion model of HandHeldSmoother in a sliding window of time steps (nodes).
 ///
-/// Memory is allocated only in start(). A run that continues from a copy of the State gives bit-identical results.
+/// Memory is allocated only in start().
 ///
 /// Unlike HandHeldSmoother, HandHeldRateStream does not test other numbers of full revolutions during saturation. The
 /// rate covariance includes the error of one undetected revolution: carried.md (C41), (C42).

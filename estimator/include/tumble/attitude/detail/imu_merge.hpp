@@ -22,9 +22,9 @@ namespace tumble {
 /// Fuses several IMUs on one rigid body to one IMU, in common axes C, at the mean position of the IMUs.
 ///
 /// The fused specific force is the mean over the IMUs, corrected for excluded IMUs. While the body rotates, ImuMerge
-/// estimates bias, scale, misalignment and time offset of each gyro relative to the mean of all gyros. ImuMerge
-/// corrects significant time offsets and accelerometer errors. If all gyros are saturated, the differences between the
-/// specific forces of three or more IMUs determine the rate. The equations are in docs/maths/imu_merge.md.
+/// estimates bias, scale, misalignment and time offset of each gyro relative to the mean of all gyros. Significant time
+/// offsets and accelerometer errors are corrected. If all gyros are saturated, the differences between the specific
+/// forces of three or more IMUs determine the rate. The equations are in docs/maths/imu_merge.md.
 ///
 /// The fused sample has clip flags if saturation prevents a correct rate or force. Readings count as saturated if they
 /// have a clip flag or exceed the stated range. The caller must flag readings at lower or tilted saturation limits

@@ -62,8 +62,7 @@ struct ImuMergeState {
   double lever_arm_correlation = 0.0, lever_arm_effect_power = 0.0;  ///< sums for lever_arm_agreement()
   MultiImuSignCheck imu_sign_check;
   std::int64_t sample_count = 0, window_count = 0;
-  int unclipped_windows = kAngularAccelerationWindows;  ///< windows since a gyro was clipped or an IMU absent, at most
-                                                        ///< kAngularAccelerationWindows
+  int unclipped_windows = kAngularAccelerationWindows;  ///< windows since a gyro clipped or an IMU was absent
   TimeNs last_time_ns = 0;
   bool all_frozen = false;
   bool operator==(const ImuMergeState&) const = default;

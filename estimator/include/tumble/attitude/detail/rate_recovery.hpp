@@ -40,8 +40,8 @@ class AngularRateRecovery {
   /// Processes the readings `units` of all IMUs, each in its own axes, `dt_s` after the previous readings. IMUs whose
   /// readings are not finite are ignored. `merged` contains the mean of the used IMUs in axes C, and receives the
   /// recovered rate and force. The gyro flags of `merged` are set if the rate could not be recovered. The accelerometer
-  /// flags are set if most accelerometers are saturated, or if one accelerometer and a gyro are saturated. All other
-  /// clip flags are cleared. Cost: O(count), no allocation.
+  /// flags are set if most accelerometers are saturated, or if one accelerometer and a gyro are saturated. Cost:
+  /// O(count), no allocation.
   void step(std::span<const ImuSample> units, double dt_s, State& state, ImuSample& merged) const;
 
  private:

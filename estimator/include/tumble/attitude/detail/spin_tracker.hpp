@@ -47,7 +47,6 @@ class SpinTracker {
   struct Params {
     double probability_min = 0.1;
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.probability_min, {"probability_min", "1", 0.0, 1.0,

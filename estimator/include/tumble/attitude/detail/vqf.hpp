@@ -58,7 +58,6 @@ struct VqfParams {
   bool motion_bias_estimation = true;  ///< if both bias estimations are off, Vqf is the authors' basic filter
   double gap_max_s = 1.0;
 
-  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.tau_s,

@@ -9,8 +9,8 @@
 
 namespace tumble {
 
-/// Order of the registration's unknowns: position, attitude (left perturbation in world axes) and velocity of the IMU
-/// at the start of the trajectory; saturation deficit of the gyro; LidarImuCalibration.
+/// Unknowns of the registration in this order: position, attitude (left perturbation in world axes) and velocity of the
+/// IMU at the start of the trajectory, saturation deficit of the gyro, LidarImuCalibration.
 struct RegistrationUnknowns {
   static constexpr int kMotionSize = 9;
   static constexpr int kFirstDeficitUnknown = kMotionSize;  ///< saturation deficit, one support point after another

@@ -65,8 +65,7 @@ struct RollingNodeIntegrals {
   double recovered_rate_s = 0.0;
   double impact_m_s = 0.0;  ///< integral of | |f| - g |, with specific force f, as far as above its usual level
   double unexplained_impact_m_s = 0.0;  ///< part of impact_m_s that rotation does not explain
-  Eigen::Vector3d partial_saturation_W_m_s = Eigen::Vector3d::Zero();  ///< standard deviation of the integrated force,
-                                                                       ///< because of saturation shorter than a sample
+  Eigen::Vector3d partial_saturation_W_m_s = Eigen::Vector3d::Zero();  ///< standard deviation due to short saturation
   // Duration of a gap between readings, and variances that the gap adds to angle, rate (times duration) and velocity.
   double gap_s = 0.0, gap_angle_variance_rad2 = 0.0, gap_rate_variance_rad2_s = 0.0, gap_speed_variance_m2_s2 = 0.0;
   double node_interval_s = 0.0;
