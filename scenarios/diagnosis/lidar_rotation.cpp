@@ -100,17 +100,17 @@ class Integral {
 };
 
 struct Pairs {
-  std::vector<Eigen::Vector3d> seen, said;
+  std::vector<Eigen::Vector3d> lidar, gyro;  ///< rotation vectors between two sweeps [rad]
   double rotation_rad = 0.0;
 
   template <class Error>
   double share(Error&& error) const {
     std::vector<double> errors;
-    for (std::size_t k = 0; k < seen.size(); ++k) errors.push_back(error(k));
+    for (std::size_t k = 0; k < lidar.size(); ++k) errors.push_back(error(k));
     return upper_median(std::move(errors)) / rotation_rad;
   }
   double share_by(const Eigen::Matrix3d& matrix) const {
-    return share([&](std::size_t k) { return (seen[k] - matrix * said[k]).norm(); });
+    return share([&](std::size_t k) { return (lidar[k] - matrix * gyro[k]).norm(); });
   }
 };
 
@@ -119,11 +119,11 @@ Pairs pairs_at(const Integral& integral, const Eigen::Matrix3d& R_IL, std::span<
   Pairs out;
   std::vector<double> angles;
   for (const SeenRotation& each : seen) {
-    const auto said = integral.between(each.from_ns - delay_ns, each.to_ns - delay_ns);
-    if (!said) continue;
-    out.seen.emplace_back(R_IL * each.rotation_L_rad);
-    out.said.push_back(*said);
-    angles.push_back(out.seen.back().norm());
+    const auto gyro = integral.between(each.from_ns - delay_ns, each.to_ns - delay_ns);
+    if (!gyro) continue;
+    out.lidar.emplace_back(R_IL * each.rotation_L_rad);
+    out.gyro.push_back(*gyro);
+    angles.push_back(out.lidar.back().norm());
   }
   if (!angles.empty()) out.rotation_rad = upper_median(std::move(angles));
   return out;
@@ -132,7 +132,7 @@ Pairs pairs_at(const Integral& integral, const Eigen::Matrix3d& R_IL, std::span<
 /// Solves Wahba's problem (1965) by singular values for an orthogonal matrix with the determinant 1 or -1.
 Eigen::Matrix3d best_orthogonal(const Pairs& pairs, double determinant) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-  for (std::size_t k = 0; k < pairs.seen.size(); ++k) sum += pairs.seen[k] * pairs.said[k].transpose();
+  for (std::size_t k = 0; k < pairs.lidar.size(); ++k) sum += pairs.lidar[k] * pairs.gyro[k].transpose();
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const double found = (svd.matrixU() * svd.matrixV().transpose()).determinant();
   const Eigen::Vector3d signs(1.0, 1.0, found * determinant < 0.0 ? -1.0 : 1.0);
@@ -141,11 +141,11 @@ Eigen::Matrix3d best_orthogonal(const Pairs& pairs, double determinant) {
 
 void fit_unit(const Pairs& pairs, double delay_s, RotationAgreement& best, double& best_error) {
   RotationAgreement at;
-  at.pairs = pairs.seen.size();
+  at.pairs = pairs.lidar.size();
   at.delay_s = delay_s;
   for (const double unit : {1.0, kDegreesOfRadian, 1.0 / kDegreesOfRadian}) {
     const double error =
-        pairs.share([&](std::size_t k) { return std::abs(pairs.seen[k].norm() - unit * pairs.said[k].norm()); });
+        pairs.share([&](std::size_t k) { return std::abs(pairs.lidar[k].norm() - unit * pairs.gyro[k].norm()); });
     if (error < at.unit_error) at.unit = unit, at.unit_error = error;
   }
   const double error = std::min(pairs.share_by(at.unit * best_orthogonal(pairs, 1.0)),
@@ -262,7 +262,7 @@ std::optional<RotationAgreement> rotation_agreement(const sim::ImuRecord& imu, c
   for (int step = -steps; step <= steps; ++step) {
     const double delay_s = kDelayStep_s * step;
     const Pairs pairs = pairs_at(integral, R_IL, seen, std::llround(1e9 * delay_s));
-    if (pairs.seen.size() < kLeastPairs) continue;
+    if (pairs.lidar.size() < kLeastPairs) continue;
     fit_unit(pairs, delay_s, delayed, delayed_error);
     if (step == 0) fit_unit(pairs, delay_s, at_once, at_once_error);
   }

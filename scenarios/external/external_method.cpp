@@ -196,12 +196,13 @@ std::string reported_version(Command command, const std::string& place) {
   command.time_limit_s = kVersionLimit_s;
   const CommandEnd end = run_command(command);
   if (end.how != CommandEnd::How::done) throw BadInput(place + with_output_tail(end.reason, end));
-  const std::string said = read_text_file(command.transcript);
-  if (said.empty())
+  const std::string transcript = read_text_file(command.transcript);
+  if (transcript.empty())
     throw BadInput(
         fmt::format("{}the version command printed nothing; it must print a text that identifies this version", place));
   return fmt::format("{}; the digest of the complete output is {:016x}",
-                     said.substr(0, std::min(said.find('\n'), kFirstLineMax)), XXH3_64bits(said.data(), said.size()));
+                     transcript.substr(0, std::min(transcript.find('\n'), kFirstLineMax)),
+                     XXH3_64bits(transcript.data(), transcript.size()));
 }
 
 namespace {

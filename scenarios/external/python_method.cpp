@@ -71,10 +71,10 @@ Estimate call_python(const ExternalDescription& description, const sim::Sensors&
 
 std::string python_version(const ExternalDescription& description) {
   const ScratchFolder scratch("method");
-  const std::string said =
+  const std::string output =
       reported_version(interpreter(description, scratch, {"-c", kVersions}), description.file.string() + ": ");
   const std::string text = read_text_file(description.python);
-  return fmt::format("{}; {} {:016x}", said, description.python.filename().string(),
+  return fmt::format("{}; {} {:016x}", output, description.python.filename().string(),
                      XXH3_64bits(text.data(), text.size()));
 }
 

@@ -22,7 +22,7 @@ struct Running {
   std::size_t index;
   double deadline_s;  ///< deadline as a time of now_s()
   Process process;
-  std::string said;
+  std::string output;
 };
 
 /// Returns false if the operating system refuses to start a process while other processes of the pool are running. The
@@ -66,8 +66,8 @@ void run_in_processes(const std::function<std::optional<PooledWork>()>& next, co
     if (running.empty()) return;
     wait_for_words(running);
     for (auto each = running.begin(); each != running.end();) {
-      const bool open = each->process.read_available(each->said);
-      if (options.on_words) options.on_words(each->index, each->said);
+      const bool open = each->process.read_available(each->output);
+      if (options.on_output) options.on_output(each->index, each->output);
       const bool late = open && now_s() > each->deadline_s;
       if (open && !late) {
         ++each;
@@ -75,7 +75,7 @@ void run_in_processes(const std::function<std::optional<PooledWork>()>& next, co
       }
       if (late) each->process.kill();
       const Process::End end = each->process.wait();
-      on_end({each->index, std::move(each->said), late, end});
+      on_end({each->index, std::move(each->output), late, end});
       each = running.erase(each);
     }
     end_round();

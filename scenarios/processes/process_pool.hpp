@@ -15,7 +15,7 @@ struct PoolOptions {
   int jobs = 1;  ///< number of processes at a time
   const std::atomic<bool>* stop = nullptr;
   /// Called when a process may have written text, with all of the text; may remove what it has used.
-  std::function<void(std::size_t index, std::string& said)> on_words = {};
+  std::function<void(std::size_t index, std::string& output)> on_output = {};
   std::function<void()> on_round = {};  ///< called several times per second
 };
 
@@ -26,8 +26,8 @@ struct PooledWork {
 
 struct PooledEnd {
   std::size_t index = 0;
-  std::string said;   ///< without the text that `on_words` removed
-  bool late = false;  ///< the process was killed at its time limit
+  std::string output;  ///< without the text that `on_output` removed
+  bool late = false;   ///< the process was killed at its time limit
   Process::End end;
 };
 

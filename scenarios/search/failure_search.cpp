@@ -152,8 +152,8 @@ class Evaluator {
   /// A process that wrote no result crashed, was killed, or exceeded its time limit.
   static Message last_message(const DrawTask& task, const PooledEnd& ended) {
     std::size_t begin = 0;
-    for (std::size_t end; (end = ended.said.find('\n', begin)) != std::string::npos; begin = end + 1) {
-      const std::optional<Message> message = from_line(ended.said.substr(begin, end - begin));
+    for (std::size_t end; (end = ended.output.find('\n', begin)) != std::string::npos; begin = end + 1) {
+      const std::optional<Message> message = from_line(ended.output.substr(begin, end - begin));
       if (message && (message->outcome || message->rejected)) return *message;
     }
     const OutcomeStatus status = ended.late ? OutcomeStatus::timeout : ended_as(ended.end);

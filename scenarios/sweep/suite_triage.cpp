@@ -65,7 +65,7 @@ bool read_rows(const std::string& text, const FailureGoal& failure, DrawTriage& 
 }
 
 void conclude(const PooledEnd& ended, const FailureGoal& failure, DrawTriage& draw) {
-  if (read_rows(ended.said, failure, draw)) return;
+  if (read_rows(ended.output, failure, draw)) return;
   draw.error_code = ended.late
                         ? "the simulated run did not end within its time limit"
                         : fmt::format("the process that computed the simulated run failed: {}", ended.end.describe());

@@ -113,7 +113,7 @@ class Sweep {
     std::map<std::size_t, DrawTask> running;
     std::size_t begun = 0;
     PoolOptions pool{options_.jobs, options_.stop, {}, [this] { report(); }};
-    pool.on_words = [&](std::size_t index, std::string& said) { hear(said, running.at(index)); };
+    pool.on_output = [&](std::size_t index, std::string& output) { store_results(output, running.at(index)); };
     const auto next_work = [&]() -> std::optional<PooledWork> {
       std::optional<DrawTask> task = next();
       if (!task) return std::nullopt;
@@ -148,10 +148,10 @@ class Sweep {
     return std::nullopt;
   }
 
-  /// Stores the results in the complete lines of `said`, and removes these lines.
-  void hear(std::string& said, DrawTask& draw) {
-    for (std::size_t newline; (newline = said.find('\n')) != std::string::npos; said.erase(0, newline + 1)) {
-      if (const std::optional<Message> message = from_line(said.substr(0, newline))) take(*message, draw);
+  /// Stores the results in the complete lines of `output`, and removes these lines.
+  void store_results(std::string& output, DrawTask& draw) {
+    for (std::size_t newline; (newline = output.find('\n')) != std::string::npos; output.erase(0, newline + 1)) {
+      if (const std::optional<Message> message = from_line(output.substr(0, newline))) take(*message, draw);
     }
   }
 

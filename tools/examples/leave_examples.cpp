@@ -165,7 +165,7 @@ bool make_all(const scenarios::DataRoot& data, const fs::path& folder, double ti
   };
   scenarios::run_in_processes(next_work, {options.jobs, options.stop}, [&](const scenarios::PooledEnd& ended) {
     Making& making = *begun[ended.index];
-    making.text = ended.said;
+    making.text = ended.output;
     making.done = !ended.late && ended.end.normal && making.text.starts_with('{');
     if (ended.late) making.text = "the simulated run exceeded its time limit";
     if (!ended.late && !ended.end.normal) making.text = "its process " + ended.end.describe();

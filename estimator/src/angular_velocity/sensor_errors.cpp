@@ -156,10 +156,10 @@ void discount_unobservable(double share, SensorErrorInformation& evidence) {
   }
   // Reduces the information along the unobservable directions. No full matrix is stored, because the thread that runs
   // AngularRateStream may have a small stack.
-  Eigen::Matrix<double, 5, SensorErrors::kSize> said = unobservable.transpose().lazyProduct(evidence.information);
-  evidence.information.noalias() -= (1.0 - share) * unobservable.lazyProduct(said);
-  said = unobservable.transpose().lazyProduct(evidence.information.transpose());
-  evidence.information.noalias() -= (1.0 - share) * said.transpose().lazyProduct(unobservable.transpose());
+  Eigen::Matrix<double, 5, SensorErrors::kSize> components = unobservable.transpose().lazyProduct(evidence.information);
+  evidence.information.noalias() -= (1.0 - share) * unobservable.lazyProduct(components);
+  components = unobservable.transpose().lazyProduct(evidence.information.transpose());
+  evidence.information.noalias() -= (1.0 - share) * components.transpose().lazyProduct(unobservable.transpose());
   const Eigen::Matrix<double, 5, 1> pulled = unobservable.transpose().lazyProduct(evidence.gradient);
   evidence.gradient.noalias() -= (1.0 - share) * unobservable.lazyProduct(pulled);
 }

@@ -66,7 +66,7 @@ std::string in_ns(std::int64_t time_ns) {
   return std::to_string(time_ns) + " ns";
 }
 
-std::string said(const PointTimeRule& rule) {
+std::string rule_text(const PointTimeRule& rule) {
   const char* unit = rule.unit_ns == 1e9 ? "s" : rule.unit_ns == 1e6 ? "ms" : rule.unit_ns == 1e3 ? "us" : "ns";
   return rule.absolute
              ? fmt::format("the point times come from field '{}', which counts {} on the lidar's clock", rule.field,
@@ -370,7 +370,7 @@ BuiltSweeps SweepBuilder::finish(const std::string& where, std::vector<std::stri
   if (record_.sweep_period_ns <= 0)
     throw BadInput(
         fmt::format("{}: there is only one sweep, so its period is unknown; state the period (--sweep-period)", where));
-  if (rule_ && !rule_->field.empty()) notes.push_back(said(*rule_));
+  if (rule_ && !rule_->field.empty()) notes.push_back(rule_text(*rule_));
   const bool overlaps = step_ns > 0 && static_cast<double>(stated_ns) > kOverlapMost * static_cast<double>(step_ns);
   if (stated_ns > 0 && (overlaps || stated_ns < longest_ns_)) {
     notes.push_back(

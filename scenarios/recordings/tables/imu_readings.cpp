@@ -174,7 +174,7 @@ std::string gaps_text(const sim::ImuRecord& imu) {
 
 GravityRotation gravity_rotation(const sim::ImuRecord& imu, RotationWindows windows) {
   GravityRotation turn;
-  double said2 = 0.0, seen2 = 0.0, both = 0.0;
+  double predicted2 = 0.0, seen2 = 0.0, both = 0.0;
   const std::size_t count = imu.time_ns.size();
   const auto near = [&](std::size_t k) {
     return std::abs(imu.accel_m_s2[k].norm() / kStandardGravity_m_s2 - 1.0) < kNearGravity;
@@ -203,17 +203,17 @@ GravityRotation gravity_rotation(const sim::ImuRecord& imu, RotationWindows wind
       for (std::size_t k = begin; k <= end; ++k) middle += imu.accel_m_s2[k];
       const Eigen::Vector3d seen = (last - first) / static_cast<double>(quarter);
       const double share = 1.0 - static_cast<double>(quarter - 1) / static_cast<double>(end - begin);
-      const Eigen::Vector3d said = -share * angle.cross(middle / static_cast<double>(end - begin + 1));
+      const Eigen::Vector3d predicted = -share * angle.cross(middle / static_cast<double>(end - begin + 1));
       if (seen.norm() > kLeastRotation * kStandardGravity_m_s2 && seen.norm() < kMostRotation * kStandardGravity_m_s2) {
         ++turn.windows;
-        both += said.dot(seen), said2 += said.squaredNorm(), seen2 += seen.squaredNorm();
+        both += predicted.dot(seen), predicted2 += predicted.squaredNorm(), seen2 += seen.squaredNorm();
       }
     }
     begin = std::max(end, begin + 1);
   }
-  if (said2 > 0.0 && seen2 > 0.0) {
-    turn.ratio = both / said2;
-    turn.correlation = both / std::sqrt(said2 * seen2);
+  if (predicted2 > 0.0 && seen2 > 0.0) {
+    turn.ratio = both / predicted2;
+    turn.correlation = both / std::sqrt(predicted2 * seen2);
   }
   return turn;
 }

@@ -144,7 +144,7 @@ class TurningComparison {
   TurningFit fit(std::size_t reading) const {
     const Reading& each = readings_[reading];
     return {each.written, each.frame, delay_s_,
-            share([&](const Measured& said) { return angle_rad(each.seen_I[said.pair], said.turn); })};
+            share([&](const Measured& measured) { return angle_rad(each.seen_I[measured.pair], measured.turn); })};
   }
 
   TurningFit best() const {
@@ -159,8 +159,8 @@ class TurningComparison {
   /// gravity.
   Eigen::Vector3d force(const TurningFit& fit, const sim::ImuRecord& imu) const {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (const Measured& said : measured_) {
-      const TimedAttitude& attitude = *pairs_[said.pair].before;
+    for (const Measured& measured : measured_) {
+      const TimedAttitude& attitude = *pairs_[measured.pair].before;
       const auto at = std::ranges::lower_bound(imu.time_ns, attitude.time_ns - std::llround(1e9 * fit.delay_s));
       const auto k = static_cast<std::size_t>(at - imu.time_ns.begin());
       if (k == imu.time_ns.size()) continue;
@@ -182,13 +182,14 @@ class TurningComparison {
   /// The best mounting of the IMU solves Wahba's problem (1965), by singular values.
   MountingFit mounting() const {
     Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-    for (const Measured& said : measured_) sum += seen_A(said.pair) * so3::logarithm(said.turn).transpose();
+    for (const Measured& measured : measured_) sum += seen_A(measured.pair) * so3::logarithm(measured.turn).transpose();
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
     const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
     const Eigen::Matrix3d R_AI =
         svd.matrixU() * Eigen::Vector3d(1.0, 1.0, sign).asDiagonal() * svd.matrixV().transpose();
-    return {Eigen::Quaterniond(R_AI), delay_s_,
-            share([&](const Measured& said) { return (seen_A(said.pair) - R_AI * so3::logarithm(said.turn)).norm(); })};
+    return {Eigen::Quaterniond(R_AI), delay_s_, share([&](const Measured& measured) {
+              return (seen_A(measured.pair) - R_AI * so3::logarithm(measured.turn)).norm();
+            })};
   }
 
  private:
@@ -223,7 +224,7 @@ class TurningComparison {
   template <class Error>
   double share(Error&& error) const {
     std::vector<double> errors;
-    for (const Measured& said : measured_) errors.push_back(error(said));
+    for (const Measured& measured : measured_) errors.push_back(error(measured));
     return errors.empty() ? kNoFit : upper_median(std::move(errors)) / rotation_rad_;
   }
 

@@ -70,7 +70,7 @@ TEST_F(DrawProcessTest, MemoryIsLimited) {
       [&](const PooledEnd& ended) {
         EXPECT_TRUE(ended.end.normal) << ended.end.describe();
         EXPECT_GT(ended.end.peak_mib, 1.0);
-        std::istringstream lines(ended.said);
+        std::istringstream lines(ended.output);
         for (std::string line; std::getline(lines, line);) {
           const std::optional<Message> message = from_line(line);
           ASSERT_TRUE(message) << line;
@@ -91,10 +91,10 @@ TEST(ProcessPool, HandsOverWhatWasWrittenWhileTheProcessesRun) {
   std::vector<std::size_t> ended;
   std::string endless;
   PoolOptions options{2, &stop, {}, {}};
-  options.on_words = [&](std::size_t index, std::string& said) {
+  options.on_output = [&](std::size_t index, std::string& output) {
     if (index != 0) return;
-    endless += said;
-    said.clear();
+    endless += output;
+    output.clear();
     stop = stop || (!endless.empty() && ended.size() == 2);
   };
   run_in_processes(
@@ -104,7 +104,7 @@ TEST(ProcessPool, HandsOverWhatWasWrittenWhileTheProcessesRun) {
         while (index == 0) pause();
       },
       [&](const PooledEnd& end) {
-        EXPECT_EQ(end.said, "process " + std::to_string(end.index));
+        EXPECT_EQ(end.output, "process " + std::to_string(end.index));
         EXPECT_TRUE(end.end.normal);
         ended.push_back(end.index);
       });
