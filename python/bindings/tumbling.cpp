@@ -313,12 +313,12 @@ void bind_tumbling(nb::module_& m) {
           "the antenna, in a frame P with z up. covariance (3, 3), m^2. lever_arm (3,), m: antenna in IMU axes. Poses\n"
           "and map do not change; Sweep.pose_in_position_frame is the pose in P, which does not drift.")
       .def(
-          "use_map",
+          "set_prior_map",
           [](BoundTumblingOdometry& self, const MapPoints& map, nb::handle T_MI, double sigma_m, double sigma_rad,
              bool extend) {
             PriorMap prior{.points = map.rows, .sigma_m = sigma_m, .sigma_rad = sigma_rad, .extend = extend};
             if (!T_MI.is_none()) prior.T_prior_map_imu = pose_of(T_MI, "T_MI");
-            require(self.run([&](TumblingOdometry& odometry) { return odometry.use_map(std::move(prior)); }));
+            require(self.run([&](TumblingOdometry& odometry) { return odometry.set_prior_map(std::move(prior)); }));
           },
           nb::arg("map"), nb::arg("T_MI") = nb::none(), nb::arg("sigma_m") = 0.0, nb::arg("sigma_rad") = 0.0,
           nb::arg("extend") = true,

@@ -130,7 +130,7 @@ Status TumblingAdapter::reset(const std::optional<StartPose>& start) {
     map.sigma_rad = start->sigma_rad;
   }
   odometry_.reset();
-  return odometry_.use_map(std::move(map));
+  return odometry_.set_prior_map(std::move(map));
 }
 
 Status TumblingAdapter::load_map(std::span<const std::byte> bytes) {

@@ -223,7 +223,7 @@ Estimate run(SlamOutput output, const Settings<TumblingOdometry::Params>& settin
   settings.apply(parameters, params);
   params.own_body_L = params.expert->mapping.own_body_L;
   TumblingOdometry odometry(params);
-  if (map != nullptr) estimate.status = odometry.use_map(*map);
+  if (map != nullptr) estimate.status = odometry.set_prior_map(*map);
   if (!estimate.status.ok()) return estimate;
   Collector collector(output, sensors.imus.front().name, estimate);
   estimate.status = replay(sensors, samples, output == SlamOutput::whole, odometry, collector, on_sweep, estimate);

@@ -100,7 +100,7 @@ StateEstimate transformed_to_pose(const Eigen::Isometry3d& T_WI, const StateEsti
                                   transformed_to_pose(T_WI, error).covariance);
 }
 
-StateEstimate with_start_tilt(const LidarInertialOdometry::StartTilt& tilt, const StateEstimate& estimate) {
+StateEstimate with_start_tilt(const LidarInertialOdometry::StartTiltCorrection& tilt, const StateEstimate& estimate) {
   const Eigen::Matrix3d R = tilt.rotation.toRotationMatrix();
   MotionState state = estimate.mean.state;
   state.q_WI = (tilt.rotation * state.q_WI).normalized();

@@ -20,7 +20,7 @@ MotionState transformed_to_pose(const Eigen::Isometry3d& T_WI, const MotionState
 StateEstimate transformed_to_pose(const Eigen::Isometry3d& T_WI, const StateEstimate& estimate);
 
 /// Replaces roll and pitch by `tilt`, whose errors are independent of all other errors.
-StateEstimate with_start_tilt(const LidarInertialOdometry::StartTilt& tilt, const StateEstimate& estimate);
+StateEstimate with_start_tilt(const LidarInertialOdometry::StartTiltCorrection& tilt, const StateEstimate& estimate);
 
 /// Returns the dead-reckoned state in a frame with the origin and the yaw of the IMU's present pose. A weak prior on
 /// the robot's speed bounds the errors of tilt and velocity during minutes of motion. `step_s` is the time since the

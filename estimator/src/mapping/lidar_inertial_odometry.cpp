@@ -50,29 +50,29 @@ void LidarInertialOdometry::set_start_pose(const Eigen::Isometry3d& T_WI) {
   impl_->start_pose = T_WI;
 }
 
-const std::optional<Eigen::Isometry3d>& LidarInertialOdometry::start() const {
+const std::optional<Eigen::Isometry3d>& LidarInertialOdometry::start_pose() const {
   return impl_->start_pose;
 }
 
-std::optional<LidarInertialOdometry::StartTilt> LidarInertialOdometry::start_tilt() const {
+std::optional<LidarInertialOdometry::StartTiltCorrection> LidarInertialOdometry::start_tilt_correction() const {
   constexpr double kBetter = 0.5;  // maximum ratio of the standard deviations of the new tilt and the initial tilt
   namespace u = mapping::unknowns;
   const Eigen::Vector3d& gravity = impl_->sweep_boundary.state_estimate.mean.calibration.gravity_W_m_s2;
   const double variance =
       u::variances(impl_->sweep_boundary.state_estimate.state_error_covariance, u::gravity).head<2>().maxCoeff();
-  StartTilt out;
+  StartTiltCorrection out;
   out.sigma_rad = std::sqrt(variance) / std::max(gravity.norm(), 1e-3);
-  const bool in_motion = impl_->start_tilt || impl_->world_covariance.tilt_sigma_rad() >
-                                                  impl_->params.expert.world_covariance.tilt_sigma_rad;
+  const bool in_motion = impl_->start_tilt_correction || impl_->world_covariance.tilt_sigma_rad() >
+                                                             impl_->params.expert.world_covariance.tilt_sigma_rad;
   if (!mapping::has_started(impl_->tracking) || impl_->localiser.is_localised() || !in_motion) return std::nullopt;
-  if (!(out.sigma_rad <= kBetter * impl_->world_covariance.tilt_sigma_rad())) return impl_->start_tilt;
+  if (!(out.sigma_rad <= kBetter * impl_->world_covariance.tilt_sigma_rad())) return impl_->start_tilt_correction;
   out.rotation = Eigen::Quaterniond::FromTwoVectors(gravity, -Eigen::Vector3d::UnitZ());
-  if (impl_->start_tilt) out.rotation = (out.rotation * impl_->start_tilt->rotation).normalized();
+  if (impl_->start_tilt_correction) out.rotation = (out.rotation * impl_->start_tilt_correction->rotation).normalized();
   return out;
 }
 
-void LidarInertialOdometry::set_start_tilt(const StartTilt& tilt) {
-  impl_->start_tilt = tilt;
+void LidarInertialOdometry::set_start_tilt_correction(const StartTiltCorrection& tilt) {
+  impl_->start_tilt_correction = tilt;
 }
 
 Status LidarInertialOdometry::add_imu(const ImuSample& sample, const AngularRateState& rate) {
@@ -82,8 +82,8 @@ Status LidarInertialOdometry::add_imu(const ImuSample& sample, const AngularRate
   return {};
 }
 
-Status LidarInertialOdometry::add_reading(const OdometerReading& reading) {
-  const Status status = check_reading(reading);
+Status LidarInertialOdometry::set_odometer_reading(const OdometerReading& reading) {
+  const Status status = check_odometer_reading(reading);
   if (status.ok()) impl_->odometer_reading = reading;
   return status;
 }

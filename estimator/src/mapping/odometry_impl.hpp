@@ -93,7 +93,7 @@ struct LidarInertialOdometry::Impl {
   std::vector<PoseState> poses_of(const mapping::WindowSweep& sweep) const;
   Params params;
   std::optional<Eigen::Isometry3d> start_pose;  // position and heading of the IMU where the map starts
-  std::optional<StartTilt> start_tilt;
+  std::optional<StartTiltCorrection> start_tilt_correction;
   mapping::TrackingState tracking;
   mapping::InertialTrack inertial_track;
   mapping::SweepBoundary sweep_boundary;            // boundary between the last sweep and the next sweep

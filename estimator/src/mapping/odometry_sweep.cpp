@@ -106,7 +106,7 @@ Status LidarInertialOdometry::Impl::initialise_inclination() {
   if (start_pose) levelled = mapping::transformed_to_pose(*start_pose, levelled);
   if (!inertial_track.starts_at_rest(OdometryStart::kBiasRest_s)) {
     StateEstimate in_motion = mapping::estimate_before_map(params, levelled);
-    if (start_tilt) in_motion = mapping::with_start_tilt(*start_tilt, in_motion);
+    if (start_tilt_correction) in_motion = mapping::with_start_tilt(*start_tilt_correction, in_motion);
     world_covariance = mapping::world_at_first_sweep(params, in_motion);
     sweep_boundary.state_estimate = mapping::estimate_at_first_sweep(params, in_motion);
     return {};
@@ -143,8 +143,8 @@ Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, st
     odometer_reading = sweep_reading;
     if (start_pose)
       sweep_boundary.state_estimate = mapping::transformed_to_pose(*start_pose, sweep_boundary.state_estimate);
-    if (start_tilt)
-      sweep_boundary.state_estimate = mapping::with_start_tilt(*start_tilt, sweep_boundary.state_estimate);
+    if (start_tilt_correction)
+      sweep_boundary.state_estimate = mapping::with_start_tilt(*start_tilt_correction, sweep_boundary.state_estimate);
     world_covariance = mapping::world_at_first_sweep(params, sweep_boundary.state_estimate);
     sweep_boundary.state_estimate = mapping::estimate_at_first_sweep(params, sweep_boundary.state_estimate);
     return {};

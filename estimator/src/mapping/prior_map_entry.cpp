@@ -7,7 +7,7 @@
 
 namespace tumble {
 
-Status LidarInertialOdometry::use_map(PriorMap map) {
+Status LidarInertialOdometry::set_prior_map(PriorMap map) {
   if (const Status status = check_prior_map(map); !status.ok()) return status;
   if (mapping::has_started(impl_->tracking))
     return {ErrorCode::time_order, "number of sweeps before the prior map", 1.0, 0.0};
@@ -16,7 +16,7 @@ Status LidarInertialOdometry::use_map(PriorMap map) {
   return {};
 }
 
-void LidarInertialOdometry::use_map_of_pass(const LidarInertialOdometry& other) {
+void LidarInertialOdometry::copy_prior_map(const LidarInertialOdometry& other) {
   impl_->localiser = other.impl_->localiser;
   impl_->localiser.restart(impl_->start_pose);
   const PriorMap* const map = prior_map();

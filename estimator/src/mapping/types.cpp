@@ -34,7 +34,7 @@ double LidarImuCalibrationPrior::distance_in_sigmas(const LidarImuCalibration& e
                    share(std::abs(by[6]), time_offset_sigma_s)});
 }
 
-Status distance_verdict(double deviations) {
+Status check_calibration_distance(double deviations) {
   constexpr double kMost = LidarImuCalibrationPrior::kDistanceMax_sigmas;
   if (deviations <= kMost) return {};
   return {ErrorCode::out_of_range,
@@ -72,7 +72,7 @@ Status check(const MotionReading& reading) {
 
 }  // namespace
 
-Status check_reading(const OdometerReading& reading) {
+Status check_odometer_reading(const OdometerReading& reading) {
   return std::visit([](const auto& kind) { return check(kind); }, reading);
 }
 

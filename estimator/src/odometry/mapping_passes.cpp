@@ -35,7 +35,7 @@ class MappingPass {
   MappingPass(const MappingInput& input, const LidarInertialOdometry::Params& params)
       : input_(input), offset_ns_(static_cast<TimeNs>(std::llround(params.time_offset_s * 1e9))), out_(params) {
     if (input.start) out_.mapper.set_start_pose(*input.start);
-    if (input.start_tilt) out_.mapper.set_start_tilt(*input.start_tilt);
+    if (input.start_tilt_correction) out_.mapper.set_start_tilt_correction(*input.start_tilt_correction);
   }
 
   MappedRecording map_recording() {
@@ -85,7 +85,7 @@ class MappingPass {
   void add_reading(TimeNs to_ns) {
     if (!input_.reading || !last_pose_time_ns_) return;
     if (const auto reading = input_.reading(*last_pose_time_ns_, to_ns))
-      out_.status = out_.mapper.add_reading(*reading);
+      out_.status = out_.mapper.set_odometer_reading(*reading);
   }
 
   void add_points(const WaitingSweep& sweep) {
@@ -180,7 +180,7 @@ void MappedRecording::add_findings(const LidarScale& scale, SensorHealth& health
   health.add(HealthFinding::Kind::vertical_unknown, mapper.check_vertical(), "");
   health.add(HealthFinding::Kind::tracking_lost, localisation.verdict(), "");
   if (calibration_is_off())
-    health.add(HealthFinding::Kind::lidar_calibration, distance_verdict(calibration_deviations), "lidar");
+    health.add(HealthFinding::Kind::lidar_calibration, check_calibration_distance(calibration_deviations), "lidar");
 }
 
 double calibration_contradiction(const LidarImuCalibrationPrior& stated, const LidarInertialOdometry& mapper) {
@@ -209,7 +209,7 @@ MappedRecording map_with_calibration(const MappingInput& input, const LidarInert
   int passes = 1;
   MappingInput levelled = input;  // input with the start tilt that the previous pass estimated
   const auto again = [&] {
-    levelled.start_tilt = out.mapper.start_tilt();
+    levelled.start_tilt_correction = out.mapper.start_tilt_correction();
     out = map_in_one_pass(levelled, started);
     ++passes;
   };
@@ -233,7 +233,8 @@ MappedRecording map_with_calibration(const MappingInput& input, const LidarInert
     start_from_calibration(out.mapper.calibration(), started);
     set_sigmas(out.mapper.calibration_prior_covariance().diagonal().cwiseSqrt(), started);
     again();
-  } else if (determines_lidar_calibration(out) && !levelled.start_tilt && out.mapper.start_tilt()) {
+  } else if (determines_lidar_calibration(out) && !levelled.start_tilt_correction &&
+             out.mapper.start_tilt_correction()) {
     again();
   }
   out.mapping_pass_count = passes;

@@ -115,7 +115,8 @@ std::optional<TimeNs> OdometryPass::covering_ns(TimeNs end_ns) const {
 Status OdometryPass::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
                                const std::optional<OdometerReading>& reading,
                                LidarInertialOdometry::SweepReport& report) {
-  if (reading) (void)mapper_.add_reading(*reading);  // add_reading() cannot fail, because add() checked the reading
+  // set_odometer_reading() cannot fail, because add() checked the reading
+  if (reading) (void)mapper_.set_odometer_reading(*reading);
   const Status status = mapper_.add_sweep(start_ns, end_ns, points, report);
   if (report.trajectory.empty()) return status;
   scale_.add(report);
@@ -166,7 +167,7 @@ void OdometryPass::start_rate_estimation(const MotionRegimeStream::Params& rate)
 }
 
 void OdometryPass::adopt_map(OdometryPass&& other) {
-  if (mapper_.prior_map() != nullptr) other.mapper_.use_map_of_pass(mapper_);
+  if (mapper_.prior_map() != nullptr) other.mapper_.copy_prior_map(mapper_);
   mapper_ = std::move(other.mapper_);
   scale_ = std::move(other.scale_);
   localisation_ = other.localisation_;

@@ -17,8 +17,8 @@ TumblingOdometry::TumblingOdometry(TumblingOdometry&&) noexcept = default;
 TumblingOdometry& TumblingOdometry::operator=(TumblingOdometry&&) noexcept = default;
 TumblingOdometry::~TumblingOdometry() = default;
 
-Status TumblingOdometry::use_map(PriorMap map) {
-  return impl_->odometry_pass_.use_map(std::move(map));
+Status TumblingOdometry::set_prior_map(PriorMap map) {
+  return impl_->odometry_pass_.set_prior_map(std::move(map));
 }
 Status TumblingOdometry::add_imu(const ImuSample& sample) {
   return impl_->add_imu(sample);

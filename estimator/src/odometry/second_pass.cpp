@@ -134,7 +134,7 @@ bool SecondMappingPass::start_second_pass(const OdometryPass& first) {
     return false;
   }
   replayed_pass_.emplace(rate, mapping);
-  if (first.mapper().start()) replayed_pass_->set_start_pose(*first.mapper().start());
+  if (first.mapper().start_pose()) replayed_pass_->set_start_pose(*first.mapper().start_pose());
   next_sample_ = next_sweep_ = rejected_in_second_pass_ = 0;
   started_by_tracking_failure_ = seconds(sweeps_.back().end_ns - buffer_start_ns()) < params_.after_s;
   return true;

@@ -175,7 +175,7 @@ SensorHealth TumblingOdometry::Impl::health() const {
   out.add(Kind::tracking_lost, localisation.current_verdict(), "", "", localisation.lost_since_ns());
   const double deviations = std::max(stated_calibration_.distance_in_sigmas(mapper().calibration()),
                                      calibration_contradiction(stated_calibration_, mapper()));
-  out.add(Kind::lidar_calibration, distance_verdict(deviations), "lidar");
+  out.add(Kind::lidar_calibration, check_calibration_distance(deviations), "lidar");
   return out;
 }
 
@@ -263,7 +263,7 @@ void TumblingOdometry::Impl::restart_at_newest() {
   const bool located = newest(pose).ok();
   OutlierFilter::finish(outlier_filter_state_);
   if (newest_rate()) flush_all();
-  Eigen::Isometry3d T_WI = mapper().start().value_or(Eigen::Isometry3d::Identity());
+  Eigen::Isometry3d T_WI = mapper().start_pose().value_or(Eigen::Isometry3d::Identity());
   if (located) {
     T_WI.linear() = pose.orientation_W.toRotationMatrix();
     T_WI.translation() = pose.position_W_m;
@@ -278,7 +278,7 @@ void TumblingOdometry::Impl::restart_at_newest() {
 }
 
 void TumblingOdometry::Impl::restart_without_first_sample() {
-  const std::optional<Eigen::Isometry3d> start = mapper().start();
+  const std::optional<Eigen::Isometry3d> start = mapper().start_pose();
   std::deque<WaitingSweep> waiting = std::move(waiting_sweeps_);
   FurtherLidars further = std::move(further_lidars_);
   OutlierFilter::State outliers = outlier_filter_state_;
@@ -293,7 +293,7 @@ void TumblingOdometry::Impl::restart_without_first_sample() {
 }
 
 void TumblingOdometry::Impl::restart_with_gyro_offset(const Eigen::Vector3d& offset_rad_s) {
-  const std::optional<Eigen::Isometry3d> start = mapper().start();
+  const std::optional<Eigen::Isometry3d> start = mapper().start_pose();
   sweeps_before_first_imu_ += waiting_sweeps_.size();
   reset();
   if (start) odometry_pass_.set_start_pose(*start);
@@ -317,14 +317,14 @@ void TumblingOdometry::Impl::reset() {
   fresh->sweeps_before_first_imu_ = sweeps_before_first_imu_;
   fresh->outlier_filter_state_.rejected = outlier_filter_state_.rejected;
   fresh->finished_results_ = std::move(finished_results_);
-  fresh->odometry_pass_.use_map_of_pass(odometry_pass_);
+  fresh->odometry_pass_.copy_prior_map(odometry_pass_);
   *this = std::move(*fresh);
 }
 
 void TumblingOdometry::Impl::reset(const Eigen::Isometry3d& T_WI) {
   reset();
   odometry_pass_.set_start_pose(T_WI);
-  odometry_pass_.use_map_of_pass(odometry_pass_);
+  odometry_pass_.copy_prior_map(odometry_pass_);
 }
 
 void TumblingOdometry::Impl::start_rate_estimation() {

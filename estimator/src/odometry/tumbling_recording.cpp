@@ -89,7 +89,7 @@ Status TumblingOdometry::Impl::finish_whole_recording(const SweepProgress& on_sw
                                return waiting_sweeps_[k];
                              },
                              [this](TimeNs from_ns, TimeNs to_ns) { return readings_.find(from_ns, to_ns); },
-                             odometry_pass_.mapper().start()};
+                             odometry_pass_.mapper().start_pose()};
     whole->mapped_recording = map_with_calibration(input, mapping);
     whole->scale = find_sweep_scale(samples, whole->mapped_recording, params_.expert->gravity_m_s2);
   }

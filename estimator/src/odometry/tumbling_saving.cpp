@@ -106,7 +106,7 @@ void set_prior_pose(const PoseState& pose, PriorMap& map) {
 /// Without localisation in the prior map, the saved covariance includes the uncertainty of the start pose.
 std::optional<PoseState> newest_or_start_pose(const TumblingOdometry::Impl& odometry) {
   const LidarInertialOdometry& mapper = odometry.mapper();
-  const std::optional<Eigen::Isometry3d>& start = mapper.start();
+  const std::optional<Eigen::Isometry3d>& start = mapper.start_pose();
   const bool in_map = mapper.localised().ok();
   PoseState out;
   const bool moved = odometry.newest(out).ok() || mapper.predict({}, {}, out).ok();
@@ -192,7 +192,7 @@ Status TumblingOdometry::Impl::load(std::span<const std::byte> bytes, std::optio
     set_prior_pose(*saved.pose, map);
     fresh->odometry_pass_.set_start_pose(*map.T_prior_map_imu);
   }
-  if (check_prior_map(map).ok()) (void)fresh->odometry_pass_.use_map(std::move(map));
+  if (check_prior_map(map).ok()) (void)fresh->odometry_pass_.set_prior_map(std::move(map));
   *this = std::move(*fresh);
   if (last_pose) *last_pose = saved.pose;
   return {};

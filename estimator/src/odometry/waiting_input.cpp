@@ -15,7 +15,7 @@ TimeNs middle_ns(const OdometerReading& reading) {
 }  // namespace
 
 Status WaitingReadings::add(const OdometerReading& reading, TimeNs done_ns, TimeNs latest_ns, std::size_t most) {
-  if (const Status status = check_reading(reading); !status.ok()) return status;
+  if (const Status status = check_odometer_reading(reading); !status.ok()) return status;
   const bool motion = std::holds_alternative<MotionReading>(reading);
   const char* const first = motion ? "from_ns" : "time_ns";
   const char* const last = motion ? "to_ns" : "time_ns";

@@ -99,12 +99,12 @@ def tumbling(recording: Recording, on_sample: Callable[[_tumble.TumblingOdometry
     program's method `slam/tumble_lag`. With lag_s=1e9, the call estimates the whole recording at once, as `slam/tumble` does.
 
     on_sample   function that is called with the odometry after each sample; newest() returns the live pose
-    map         map of an earlier run, in which the robot is localised without a start pose (TumblingOdometry.use_map)
+    map         map of an earlier run, in which the robot is localised without a start pose (TumblingOdometry.set_prior_map)
     options     keywords of TumblingOdometry; they override the values of the recording
     """
     odometry = _tumble.TumblingOdometry(**tumbling_options(recording, **options))
     if map is not None:
-        odometry.use_map(map)
+        odometry.set_prior_map(map)
     imu, lidar = recording.imus[0], recording.sweeps
     done: list[_tumble.Sweep] = []
     given = 0

@@ -61,7 +61,7 @@ class TumblingAdapter {
   /// Registers and publishes the sweeps that wait for later samples, at the end of a recording.
   void finish();
   /// Starts a new run. `start` gives position and heading of the base. Without `start`, the run starts at the origin,
-  /// or anywhere in the prior map. Returns `ok`, or an error of TumblingOdometry::use_map().
+  /// or anywhere in the prior map. Returns `ok`, or an error of TumblingOdometry::set_prior_map().
   Status reset(const std::optional<StartPose>& start = std::nullopt);
   /// Starts a new run that localises the robot in a map saved by tumble::save_map(). Returns `ok`, or an error of
   /// tumble::load_map() or reset(). After an error of tumble::load_map(), the run continues.

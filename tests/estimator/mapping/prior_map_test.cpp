@@ -70,7 +70,7 @@ int run_until_localised(RoomRig& rig, int last = kLocalised) {
 
 TEST(PriorMap, ARunIsLocalisedWithoutAPose) {
   RoomRig rig(true_params(), second_motion());
-  ASSERT_TRUE(rig.odometry.use_map({.points = map_of_pillars()}).ok());
+  ASSERT_TRUE(rig.odometry.set_prior_map({.points = map_of_pillars()}).ok());
   EXPECT_EQ(rig.odometry.localised().error_code, ErrorCode::degenerate);
   const int sweeps = run_until_localised(rig);
   ASSERT_TRUE(rig.odometry.localised().ok()) << rig.odometry.localised().message();
@@ -93,7 +93,7 @@ TEST(PriorMap, ARunIsLocalisedWithoutAPose) {
 
 TEST(PriorMap, EarlierPosesAreTransformedToTheFrameOfTheMap) {
   RoomRig rig(true_params(), second_motion());
-  ASSERT_TRUE(rig.odometry.use_map({.points = map_of_pillars()}).ok());
+  ASSERT_TRUE(rig.odometry.set_prior_map({.points = map_of_pillars()}).ok());
   std::vector<PoseState> poses;
   for (int k = 0; k < kLocalised && !rig.odometry.localised().ok(); ++k) {
     EXPECT_EQ(rig.odometry.transform_to_prior_map(poses).error_code, ErrorCode::degenerate);
@@ -120,7 +120,7 @@ TEST(PriorMap, AnApproximateOrAGivenPoseLimitsTheSearch) {
     map.T_prior_map_imu->translation() += error_m * Eigen::Vector3d(0.6, -0.8, 0.0);
     map.sigma_m = error_m;
     map.sigma_rad = 0.1 * error_m;
-    ASSERT_TRUE(rig.odometry.use_map(map).ok());
+    ASSERT_TRUE(rig.odometry.set_prior_map(map).ok());
     const int sweeps = run_until_localised(rig);
     ASSERT_TRUE(rig.odometry.localised().ok()) << error_m;
     rig.run(sweeps, sweeps + 2);
@@ -133,7 +133,7 @@ TEST(PriorMap, AWrongGivenPoseIsNotAccepted) {
   RoomRig rig(true_params(), second_motion());
   PriorMap map{.points = map_of_pillars(), .T_prior_map_imu = T_MW() * rig.motion.pose(0.0)};
   map.T_prior_map_imu->translation() += Eigen::Vector3d(6.0, 0.0, 0.0);
-  ASSERT_TRUE(rig.odometry.use_map(map).ok());
+  ASSERT_TRUE(rig.odometry.set_prior_map(map).ok());
   run_until_localised(rig);
   EXPECT_EQ(rig.odometry.localised().error_code, ErrorCode::degenerate);
 }
@@ -144,7 +144,7 @@ TEST(PriorMap, AMapOfAnotherPlaceIsNotAccepted) {
     other.pillars[k].centre_m += 2.5 * Eigen::Vector2d(std::cos(2.0 * double(k)), std::sin(2.0 * double(k)));
   for (Room::Plane& plane : other.planes) plane.point_m.x() *= 1.2;
   RoomRig rig(true_params(), second_motion(), other);
-  ASSERT_TRUE(rig.odometry.use_map({.points = map_of_pillars()}).ok());
+  ASSERT_TRUE(rig.odometry.set_prior_map({.points = map_of_pillars()}).ok());
   run_until_localised(rig, 25);
   EXPECT_EQ(rig.odometry.localised().error_code, ErrorCode::degenerate);
   EXPECT_FALSE(rig.report.in_prior_map);
@@ -155,7 +155,7 @@ TEST(PriorMap, TwoEqualPlacesAreAmbiguous) {
   RoomRig mapped(true_params(), test::slower(), Room::box());  // the room is symmetric under half a rotation
   mapped.run(0, kMapped);
   RoomRig rig(true_params(), second_motion(), Room::box());
-  ASSERT_TRUE(rig.odometry.use_map({.points = moved(mapped.odometry.map(), T_MW())}).ok());
+  ASSERT_TRUE(rig.odometry.set_prior_map({.points = moved(mapped.odometry.map(), T_MW())}).ok());
   run_until_localised(rig, 25);
   EXPECT_EQ(rig.odometry.localised().error_code, ErrorCode::degenerate);
 }
@@ -163,7 +163,7 @@ TEST(PriorMap, TwoEqualPlacesAreAmbiguous) {
 TEST(PriorMap, AFrozenMapStaysEqualAndAnExtendedMapGrows) {
   for (const bool extend : {false, true}) {
     RoomRig rig(true_params(), second_motion());
-    ASSERT_TRUE(rig.odometry.use_map({.points = map_of_pillars(), .extend = extend}).ok());
+    ASSERT_TRUE(rig.odometry.set_prior_map({.points = map_of_pillars(), .extend = extend}).ok());
     const int sweeps = run_until_localised(rig);
     rig.run(sweeps, sweeps + 6);
     ASSERT_TRUE(rig.report.in_prior_map);
@@ -184,7 +184,7 @@ TEST(PriorMap, AFrozenMapStaysEqualAndAnExtendedMapGrows) {
 
 TEST(PriorMap, LaterSweepsDoNotChangeEarlierReportsAndACopyContinues) {
   RoomRig rig(true_params(), second_motion());
-  ASSERT_TRUE(rig.odometry.use_map({.points = map_of_pillars()}).ok());
+  ASSERT_TRUE(rig.odometry.set_prior_map({.points = map_of_pillars()}).ok());
   rig.run(0, 8);
   RoomRig other(true_params(), second_motion());
   other.odometry = rig.odometry;
@@ -202,7 +202,7 @@ TEST(PriorMap, PointsWithoutNormalsSuffice) {
   for (const MapPoint& point : map_of_pillars()) positions.push_back(point.position_W_m);
   positions.push_back(Eigen::Vector3f::Constant(std::nanf("")));
   RoomRig rig(true_params(), second_motion());
-  ASSERT_TRUE(rig.odometry.use_map({.points = to_map_points(positions)}).ok());
+  ASSERT_TRUE(rig.odometry.set_prior_map({.points = to_map_points(positions)}).ok());
   const int sweeps = run_until_localised(rig);
   ASSERT_TRUE(rig.odometry.localised().ok());
   rig.run(sweeps, sweeps + 2);
@@ -211,19 +211,19 @@ TEST(PriorMap, PointsWithoutNormalsSuffice) {
 
 TEST(PriorMap, UnusableMapsAreRefused) {
   RoomRig rig(true_params());
-  EXPECT_EQ(rig.odometry.use_map({}).error_code, ErrorCode::insufficient_data);
+  EXPECT_EQ(rig.odometry.set_prior_map({}).error_code, ErrorCode::insufficient_data);
   PriorMap map{.points = map_of_pillars()};
   map.points[5].normal_W *= 2.0f;
-  EXPECT_EQ(rig.odometry.use_map(map).error_code, ErrorCode::out_of_range);
+  EXPECT_EQ(rig.odometry.set_prior_map(map).error_code, ErrorCode::out_of_range);
   map.points[5] = {Eigen::Vector3f::Constant(std::nanf("")), Eigen::Vector3f::UnitZ(), 0.1f};
-  EXPECT_EQ(rig.odometry.use_map(map).error_code, ErrorCode::non_finite);
+  EXPECT_EQ(rig.odometry.set_prior_map(map).error_code, ErrorCode::non_finite);
   map.points = map_of_pillars();
   map.sigma_m = -1.0;
-  EXPECT_EQ(rig.odometry.use_map(map).error_code, ErrorCode::out_of_range);
+  EXPECT_EQ(rig.odometry.set_prior_map(map).error_code, ErrorCode::out_of_range);
   EXPECT_EQ(rig.odometry.prior_map(), nullptr);
   EXPECT_TRUE(rig.odometry.localised().ok());
   rig.run(0, 1);
-  EXPECT_EQ(rig.odometry.use_map({.points = map_of_pillars()}).error_code, ErrorCode::time_order);
+  EXPECT_EQ(rig.odometry.set_prior_map({.points = map_of_pillars()}).error_code, ErrorCode::time_order);
 }
 
 }  // namespace

@@ -273,16 +273,16 @@ TEST(OdometerReading, OfAMotionFindsWhatASaturationLimitHid) {
 
 TEST(OdometerReading, IsCheckedByItself) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(check_reading(VelocityReading{0, {1.0, 0.0, 0.0}, 0.1}).ok());
-  EXPECT_EQ(check_reading(VelocityReading{0, {nan, 0.0, 0.0}, 0.1}).error_code, ErrorCode::non_finite);
-  EXPECT_EQ(check_reading(VelocityReading{0, {1.0, 0.0, 0.0}, nan}).error_code, ErrorCode::non_finite);
-  EXPECT_EQ(check_reading(VelocityReading{0, {1.0, 0.0, 0.0}, 0.0}).error_code, ErrorCode::out_of_range);
+  EXPECT_TRUE(check_odometer_reading(VelocityReading{0, {1.0, 0.0, 0.0}, 0.1}).ok());
+  EXPECT_EQ(check_odometer_reading(VelocityReading{0, {nan, 0.0, 0.0}, 0.1}).error_code, ErrorCode::non_finite);
+  EXPECT_EQ(check_odometer_reading(VelocityReading{0, {1.0, 0.0, 0.0}, nan}).error_code, ErrorCode::non_finite);
+  EXPECT_EQ(check_odometer_reading(VelocityReading{0, {1.0, 0.0, 0.0}, 0.0}).error_code, ErrorCode::out_of_range);
   MotionReading good{0, 1, Eigen::Isometry3d::Identity(), Eigen::Matrix<double, 6, 6>::Identity()};
-  EXPECT_TRUE(check_reading(good).ok());
+  EXPECT_TRUE(check_odometer_reading(good).ok());
   const auto refusal = [&](const auto& change) {
     MotionReading reading = good;
     change(reading);
-    return check_reading(reading);
+    return check_odometer_reading(reading);
   };
   EXPECT_EQ(refusal([](MotionReading& r) { r.to_ns = 0; }).error_code, ErrorCode::time_order);
   EXPECT_EQ(refusal([&](MotionReading& r) { r.relative_pose.translation().y() = nan; }).error_code,

@@ -147,7 +147,7 @@ TEST(Window, APoseAheadIsTheInertialPriorAndChangesNothing) {
   // an odometer reading is fused with its stated uncertainty
   Odometry told(run.odometry);
   const Eigen::Vector3d v_I_m_s(3.0, 0.0, 0.0);
-  ASSERT_TRUE(told.add_reading(VelocityReading{12 * test::kSweep_ns, v_I_m_s, 0.001}).ok());
+  ASSERT_TRUE(told.set_odometer_reading(VelocityReading{12 * test::kSweep_ns, v_I_m_s, 0.001}).ok());
   PoseState led;
   ASSERT_TRUE(told.predict(ahead, rates, led).ok());
   EXPECT_GT((led.position_W_m - pose.position_W_m).norm(), 0.1);

@@ -74,7 +74,7 @@ const std::vector<MapPoint>& map_of_first_run() {
 
 TEST(PriorMapRun, HealthReportsThatARunIsNotLocalisedUntilItIs) {
   RoomRun run(-0.7);
-  ASSERT_TRUE(run.odometry.use_map({.points = map_of_first_run()}).ok());
+  ASSERT_TRUE(run.odometry.set_prior_map({.points = map_of_first_run()}).ok());
   run.feed(0, 5);
   EXPECT_NE(std::string(run.odometry.health().worst().field).find("too few to localise the run"), std::string::npos);
   EXPECT_FALSE(run.newest.in_prior_map);
@@ -87,7 +87,7 @@ TEST(PriorMapRun, HealthReportsThatARunIsNotLocalisedUntilItIs) {
 
 TEST(PriorMapRun, ResetKeepsTheMapAndLocalisesAgain) {
   RoomRun run(-0.7);
-  ASSERT_TRUE(run.odometry.use_map({.points = map_of_first_run()}).ok());
+  ASSERT_TRUE(run.odometry.set_prior_map({.points = map_of_first_run()}).ok());
   run.odometry.reset();
   EXPECT_NE(run.odometry.mapper().prior_map(), nullptr);
   run.odometry.reset(Eigen::Isometry3d::Identity());
@@ -99,7 +99,7 @@ TEST(PriorMapRun, ResetKeepsTheMapAndLocalisesAgain) {
 
 TEST(PriorMapRun, AClockStepBeforeLocalisationStartsTheSearchAgain) {
   RoomRun run(-0.7);
-  ASSERT_TRUE(run.odometry.use_map({.points = map_of_first_run()}).ok());
+  ASSERT_TRUE(run.odometry.set_prior_map({.points = map_of_first_run()}).ok());
   run.feed(0, 2, 20'000'000'000);
   ASSERT_FALSE(run.odometry.mapper().localised().ok());
   run.feed(2, 30);
@@ -153,7 +153,7 @@ TEST(SavedRun, ARunSavedInMotionKeepsItsMap) {
 
 TEST(SavedRun, AConstantMapStaysConstant) {
   RoomRun before(-0.7), after(-0.7);
-  ASSERT_TRUE(before.odometry.use_map({.points = map_of_first_run(), .extend = false}).ok());
+  ASSERT_TRUE(before.odometry.set_prior_map({.points = map_of_first_run(), .extend = false}).ok());
   before.feed(0, 25);
   ASSERT_TRUE(before.newest.in_prior_map);
   ASSERT_TRUE(after.odometry.load(before.odometry.save()).ok());

@@ -52,7 +52,7 @@ class LidarInertialOdometry {
   /// origin. Reported covariances describe errors relative to the start pose. Call set_start_pose() before the first
   /// sweep.
   void set_start_pose(const Eigen::Isometry3d& T_WI);
-  const std::optional<Eigen::Isometry3d>& start() const;
+  const std::optional<Eigen::Isometry3d>& start_pose() const;
 
   /// Correction of the initial tilt. After a start in motion, the initial tilt is wrong, because the mean specific
   /// force does not have the direction of gravity.
@@ -69,14 +69,14 @@ class LidarInertialOdometry {
   void set_start_tilt(const StartTilt& tilt);
 
   /// Sets the map of an earlier run as prior map, and starts the localisation of the robot in the prior map. Call
-  /// use_map() before the first sweep.
+  /// set_prior_map() before the first sweep.
   ///
   /// Before localisation, poses are not in the frame of the prior map, and localised() returns `degenerate`. After
   /// localisation, poses and covariances are in the frame of the prior map, and SweepReport::in_prior_map is true. If
-  /// `map.T_prior_map_imu` is set, use_map() passes this pose to set_start_pose(). All points of the prior map are
-  /// kept, also beyond `map_radius_m` from the robot. Returns `ok`, an error of check_prior_map(), or `time_order` if
-  /// the mapping has already started. On error, the state is unchanged.
-  Status use_map(PriorMap map);
+  /// `map.T_prior_map_imu` is set, set_prior_map() passes this pose to set_start_pose(). All points of the prior map
+  /// are kept, also beyond `map_radius_m` from the robot. Returns `ok`, an error of check_prior_map(), or `time_order`
+  /// if the mapping has already started. On error, the state is unchanged.
+  Status set_prior_map(PriorMap map);
   /// Copies the prior map, if any, from `other`, and restarts the localisation. The localisation searches near the pose
   /// of set_start_pose(), or without a start pose near PriorMap::T_prior_map_imu.
   void use_map_of_pass(const LidarInertialOdometry& other);

@@ -265,10 +265,10 @@ class TumblingOdometry {
   /// Starts a new run from the bytes that save() returned, and discards the previous state of the object. The saved
   /// calibration replaces the calibration in the parameters, also after a later reset(). The saved biases get the
   /// uncertainty of the prior, because biases change at every switch-on. If at least 100 points of the saved map have
-  /// normals, load() calls use_map() with the saved map. The new run starts at the saved pose and localises the robot
-  /// around this pose. Until the robot is localised, health() reports the missing localisation. If the robot may have
-  /// moved by more than a metre since save(), call reset(pose) after load(). With kWholeRecording, the new run starts
-  /// at the saved pose with a new map.
+  /// normals, load() calls set_prior_map() with the saved map. The new run starts at the saved pose and localises the
+  /// robot around this pose. Until the robot is localised, health() reports the missing localisation. If the robot may
+  /// have moved by more than a metre since save(), call reset(pose) after load(). With kWholeRecording, the new run
+  /// starts at the saved pose with a new map.
   ///
   /// `last_pose` receives the saved pose with its time in the clock of the saved run. If no pose was saved, `last_pose`
   /// is empty. On error, the object is unchanged, and the returned status names the field, the saved value and the

@@ -29,8 +29,8 @@ struct MappingInput {
   /// Returns the odometer reading for a sweep from `from_ns` to `to_ns`; may be empty.
   std::function<std::optional<OdometerReading>(TimeNs from_ns, TimeNs to_ns)> reading = {};
   std::optional<Eigen::Isometry3d> start = std::nullopt;  ///< see LidarInertialOdometry::set_start_pose()
-  /// See LidarInertialOdometry::set_start_tilt().
-  std::optional<LidarInertialOdometry::StartTilt> start_tilt = std::nullopt;
+  /// See LidarInertialOdometry::set_start_tilt_correction().
+  std::optional<LidarInertialOdometry::StartTiltCorrection> start_tilt_correction = std::nullopt;
 };
 
 struct MappedSweep {
