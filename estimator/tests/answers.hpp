@@ -49,13 +49,13 @@ inline std::vector<double> answers(TumblingOdometry odometry) {
   Answers out;
   PoseState pose;
   if (odometry.newest(pose).ok()) out.add(pose);
-  for (const std::optional<AngularRateState>& rate : {odometry.newest_rate(), odometry.smoothed_rate()}) {
+  for (const std::optional<AngularRateState>& rate : {odometry.newest_rate(), odometry.newest_smoothed_rate()}) {
     if (!rate) continue;
     out.add(rate->w_WI_I_rad_s);
     out.add(rate->covariance_rad2_s2);
   }
-  out.add(odometry.rig().constants.vector());
-  out.add(odometry.rig().covariance);
+  out.add(odometry.rig_calibration().constants.vector());
+  out.add(odometry.rig_calibration().covariance);
   out.add(odometry.saturation_levels());
   out.add(odometry.health());
   out.add(odometry.estimated_jitter_s().value_or(0.0));
@@ -69,8 +69,9 @@ inline std::vector<double> answers(TumblingOdometry odometry) {
   out.add(odometry.mapper().calibration().T_IL.matrix());
   out.add(odometry.mapper().calibration().gravity_W_m_s2);
   out.add(odometry.mapper().calibration_covariance());
-  for (const std::size_t count : {odometry.restart_count(), odometry.rejected_readings(), odometry.rejected_samples(),
-                                  odometry.dropped_sweeps(), odometry.sweeps_before_first_imu()})
+  for (const std::size_t count :
+       {odometry.restart_count(), odometry.rejected_readings(), odometry.samples_rejected_by_mapper(),
+        odometry.dropped_sweeps(), odometry.sweeps_before_first_imu()})
     out.add(static_cast<double>(count));
   return out.numbers;
 }
@@ -87,7 +88,7 @@ inline std::vector<double> answers(RollingOdometry odometry) {
   out.add(odometry.calibration().sphere_centre_B_m);
   out.add(odometry.calibration().radius_m);
   out.add(odometry.health());
-  for (const MergedImuState& unit : odometry.imus().imus) out.add(unit.x);
+  for (const MergedImuState& unit : odometry.imu_merge_state().imus) out.add(unit.x);
   odometry.finish();
   while (const std::optional<RollingOdometry::Pose> pose = odometry.take()) add(*pose);
   out.add(static_cast<double>(odometry.restart_count()));

@@ -104,11 +104,11 @@ TEST(Gaps, RatesOfTheWholeRecordingContinueWithOneCalibration) {
   for (std::size_t k = 0; k < imu.size(); ++k)
     EXPECT_EQ(odometry.add_imu(imu[k]).error_code, k == 100 ? ErrorCode::gap : ErrorCode::none) << k;
   ASSERT_TRUE(odometry.finish().ok());
-  ASSERT_EQ(odometry.recording()->rates.size(), imu.size() - 1);
+  ASSERT_EQ(odometry.whole_recording_result()->rates.size(), imu.size() - 1);
   double apart_rad_s = 0.0;
   for (std::size_t k = 110; k < imu.size(); ++k) {
-    const Eigen::Vector3d apart =
-        odometry.recording()->rates[k - 1].w_WI_I_rad_s - reference.recording()->rates[k].w_WI_I_rad_s;
+    const Eigen::Vector3d apart = odometry.whole_recording_result()->rates[k - 1].w_WI_I_rad_s -
+                                  reference.whole_recording_result()->rates[k].w_WI_I_rad_s;
     apart_rad_s = std::max(apart_rad_s, apart.norm());
   }
   EXPECT_LT(apart_rad_s, 0.05);  // the gap shortens the rest that determines the gyro's bias by 0.2 s

@@ -49,7 +49,7 @@ TEST(Health, NamesAFrozenAxis) {
     if (k < from) {
       EXPECT_TRUE(odometry.health().ok()) << odometry.health().message();
     }
-    if (const auto& rate = odometry.smoothed_rate())
+    if (const auto& rate = odometry.newest_smoothed_rate())
       widest_rad_s = std::max(widest_rad_s, std::sqrt(rate->covariance_rad2_s2(0, 0)));
   }
   ASSERT_FALSE(odometry.health().ok());

@@ -89,13 +89,14 @@ TEST(SavedTumblingOdometry, KeepsCalibrationAndSaturationLimits) {
   const ThrownBody body = body_that_comes_to_rest();
   TumblingOdometry rebooted(params_to_estimate(body));
   ASSERT_TRUE(rebooted.load(saved_run().save()).ok());
-  const RigConstants before = saved_run().rig().constants;
+  const RigConstants before = saved_run().rig_calibration().constants;
   EXPECT_NE(before.lever_arm_m, body.lever_arm_I_m) << "else the run estimated nothing";
-  EXPECT_EQ(rebooted.rig().constants, before);
-  const Eigen::Matrix3d kept = rebooted.rig().covariance.topLeftCorner<3, 3>();
-  const Eigen::Matrix3d found = saved_run().rig().covariance.topLeftCorner<3, 3>();
+  EXPECT_EQ(rebooted.rig_calibration().constants, before);
+  const Eigen::Matrix3d kept = rebooted.rig_calibration().covariance.topLeftCorner<3, 3>();
+  const Eigen::Matrix3d found = saved_run().rig_calibration().covariance.topLeftCorner<3, 3>();
   EXPECT_TRUE(kept.isApprox(found, 1e-9));
-  EXPECT_GT(rebooted.rig().covariance(3, 3), saved_run().rig().covariance(3, 3)) << "biases change at a switch-on";
+  EXPECT_GT(rebooted.rig_calibration().covariance(3, 3), saved_run().rig_calibration().covariance(3, 3))
+      << "biases change at a switch-on";
   const LidarImuCalibration lidar = rebooted.mapper().calibration();
   EXPECT_EQ(lidar.T_IL.matrix(), saved_run().mapper().calibration().T_IL.matrix());
   bool any = false;
@@ -107,10 +108,10 @@ TEST(SavedTumblingOdometry, KeepsCalibrationAndSaturationLimits) {
   EXPECT_TRUE(any) << "else the run detected nothing";
   // also after a restart of the run, and after it is saved again
   rebooted.reset(Eigen::Isometry3d::Identity());
-  EXPECT_EQ(rebooted.rig().constants, before);
+  EXPECT_EQ(rebooted.rig_calibration().constants, before);
   TumblingOdometry again(params_to_estimate(body));
   ASSERT_TRUE(again.load(rebooted.save()).ok());
-  EXPECT_EQ(again.rig().constants, before);
+  EXPECT_EQ(again.rig_calibration().constants, before);
   EXPECT_EQ(again.mapper().calibration().T_IL.matrix(), lidar.T_IL.matrix());
   EXPECT_EQ(again.mapper().prior_map()->points.size(), saved_run().mapper().map().size());
 }

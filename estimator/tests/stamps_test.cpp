@@ -34,7 +34,7 @@ std::vector<AngularRateState> rates_of(TumblingOdometry& odometry, const std::ve
   std::vector<AngularRateState> out;
   for (const ImuSample& sample : imu) {
     EXPECT_TRUE(odometry.add_imu(sample).ok());
-    const std::optional<AngularRateState>& rate = odometry.smoothed_rate();
+    const std::optional<AngularRateState>& rate = odometry.newest_smoothed_rate();
     if (rate && (out.empty() || rate->time_ns > out.back().time_ns)) out.push_back(*rate);
   }
   return out;

@@ -45,7 +45,7 @@ void feed_as_they_end(const std::vector<ImuSample>& imu, const std::vector<Throw
       run.sweeps.push_back(std::move(*sweep));
       run.came_ns.push_back(imu[k].time_ns);
     }
-    const std::optional<AngularRateState>& rate = odometry.smoothed_rate();
+    const std::optional<AngularRateState>& rate = odometry.newest_smoothed_rate();
     if (rate && (run.rates.empty() || rate->time_ns > run.rates.back().time_ns)) run.rates.push_back(*rate);
   }
 }
@@ -226,7 +226,7 @@ TEST(TumblingOdometry, GoesOnAfterAGapBeyondTheStreamsBound) {
   ASSERT_TRUE(odometry.add_imu(imu[151]).ok());
   EXPECT_EQ(odometry.restart_count(), 1u);
   feed_as_they_end(imu, sweeps, 152, imu.size(), odometry, results);
-  EXPECT_EQ(odometry.rejected_samples(), 0u);
+  EXPECT_EQ(odometry.samples_rejected_by_mapper(), 0u);
   odometry.finish();
   while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) results.sweeps.push_back(std::move(*sweep));
   EXPECT_EQ(results.sweeps.size(), sweeps.size());
@@ -245,8 +245,8 @@ TEST(TumblingOdometry, GoesOnAfterItWasFinished) {
   feed_as_they_end(imu, sweeps, 0, 200, odometry, results);
   odometry.finish();
   odometry.finish();
-  ASSERT_TRUE(odometry.smoothed_rate());
-  EXPECT_EQ(odometry.smoothed_rate()->time_ns, imu[199].time_ns);
+  ASSERT_TRUE(odometry.newest_smoothed_rate());
+  EXPECT_EQ(odometry.newest_smoothed_rate()->time_ns, imu[199].time_ns);
   PoseState pose;
   EXPECT_TRUE(odometry.newest(pose).ok());
   EXPECT_EQ(odometry.add_imu(imu[199]).error_code, ErrorCode::time_order);
@@ -254,7 +254,7 @@ TEST(TumblingOdometry, GoesOnAfterItWasFinished) {
   odometry.finish();
   while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) results.sweeps.push_back(std::move(*sweep));
   EXPECT_EQ(results.sweeps.size(), sweeps.size());
-  EXPECT_EQ(odometry.rejected_samples(), 0u);
+  EXPECT_EQ(odometry.samples_rejected_by_mapper(), 0u);
   EXPECT_LT(position_error_m(body, results.sweeps.back().report.pose), 0.1);
 }
 

@@ -63,7 +63,7 @@ TEST(TumblingRecording, EstimatesAThrowBeyondTheRail) {
   EXPECT_LT(recorded_error_m(body, sweeps.back().report.pose), 0.02);
   EXPECT_GT(odometry.mapper().map().size(), 1000u);
   EXPECT_TRUE(odometry.health().ok()) << odometry.health().message();
-  const WholeRecordingEstimate* const whole = odometry.recording();
+  const WholeRecordingEstimate* const whole = odometry.whole_recording_result();
   ASSERT_NE(whole, nullptr);
   ASSERT_EQ(whole->rates.size(), imu.size());
   EXPECT_TRUE(whole->health.ok());
@@ -71,7 +71,7 @@ TEST(TumblingRecording, EstimatesAThrowBeyondTheRail) {
   EXPECT_GE(whole->mapped_recording.mapping_pass_count,
             2);  // the last pass starts from the calibration of the first pass
   EXPECT_TRUE(whole->mapped_recording.calibration_converged);
-  EXPECT_EQ(odometry.rig().constants, whole->report.rate.calibration.constants);
+  EXPECT_EQ(odometry.rig_calibration().constants, whole->report.rate.calibration.constants);
 
   // rates of clipped samples are more accurate than the readings
   const double to_s = body.rest_s + body.push_s + body.flight_s;
@@ -96,7 +96,7 @@ TEST(TumblingRecording, AnswersAfterFinishOnly) {
   PoseState pose;
   EXPECT_EQ(odometry.newest(pose).error_code, ErrorCode::empty);
   EXPECT_FALSE(odometry.take());
-  EXPECT_EQ(odometry.recording(), nullptr);
+  EXPECT_EQ(odometry.whole_recording_result(), nullptr);
   ASSERT_TRUE(odometry.finish().ok());
   EXPECT_FALSE(take_recorded(odometry).empty());
   ImuSample later = imu.back();
@@ -104,7 +104,7 @@ TEST(TumblingRecording, AnswersAfterFinishOnly) {
   EXPECT_EQ(odometry.add_imu(later).error_code, ErrorCode::out_of_range);
   EXPECT_EQ(odometry.add_sweep(later.time_ns, later.time_ns, {}).error_code, ErrorCode::out_of_range);
   odometry.reset();
-  EXPECT_EQ(odometry.recording(), nullptr);
+  EXPECT_EQ(odometry.whole_recording_result(), nullptr);
   EXPECT_TRUE(odometry.add_imu(later).ok());
 }
 
@@ -120,9 +120,9 @@ TEST(TumblingRecording, ALastSweepIsCutAtTheLastSample) {
   };
   TumblingOdometry most(whole_params(body)), little(whole_params(body));
   EXPECT_EQ(estimate_recording(body, until(0.7), most).size(), sweeps.size());
-  EXPECT_EQ(most.recording()->mapped_recording.unfinished_sweeps, 0u);
+  EXPECT_EQ(most.whole_recording_result()->mapped_recording.unfinished_sweeps, 0u);
   EXPECT_EQ(estimate_recording(body, until(0.3), little).size(), sweeps.size() - 1);
-  EXPECT_EQ(little.recording()->mapped_recording.unfinished_sweeps, 1u);
+  EXPECT_EQ(little.whole_recording_result()->mapped_recording.unfinished_sweeps, 1u);
 }
 
 TEST(TumblingRecording, OneWrongItemCostsOneItem) {
@@ -144,7 +144,7 @@ TEST(TumblingRecording, OneWrongItemCostsOneItem) {
   ASSERT_TRUE(odometry.finish().ok());
   EXPECT_EQ(refused, 3u);
   EXPECT_EQ(odometry.rejected_readings(), 1u);
-  EXPECT_EQ(odometry.recording()->rates.size(), clean.size() - 4);
+  EXPECT_EQ(odometry.whole_recording_result()->rates.size(), clean.size() - 4);
   const PoseState pose = take_recorded(odometry).back().report.pose;
   EXPECT_LT((pose.position_W_m - expected.position_W_m).norm(), 0.005);
 }
@@ -179,7 +179,7 @@ TEST(TumblingRecording, SavesItsResults) {
   std::optional<PoseState> last;
   const Status status = loaded.load(odometry.save(), &last);
   ASSERT_TRUE(status.ok()) << status.message();
-  EXPECT_EQ(loaded.rig().constants.lever_arm_m, odometry.rig().constants.lever_arm_m);
+  EXPECT_EQ(loaded.rig_calibration().constants.lever_arm_m, odometry.rig_calibration().constants.lever_arm_m);
   EXPECT_EQ(loaded.mapper().calibration().T_IL.matrix(), odometry.mapper().calibration().T_IL.matrix());
   const auto sweeps = take_recorded(odometry);
   ASSERT_TRUE(last);
@@ -201,7 +201,7 @@ TEST(TumblingRecording, ReportsAFrozenAxis) {
   }
   record_all(imu, body.sweeps(), odometry);
   (void)odometry.finish();
-  ASSERT_NE(odometry.recording(), nullptr);
+  ASSERT_NE(odometry.whole_recording_result(), nullptr);
   const SensorHealth health = odometry.health();
   const auto& all = health.findings;
   const auto frozen = std::find_if(all.begin(), all.end(), [](const HealthFinding& finding) {
@@ -211,14 +211,15 @@ TEST(TumblingRecording, ReportsAFrozenAxis) {
   EXPECT_STREQ(frozen->axis, "gyro_z");
   EXPECT_EQ(frozen->since_ns, imu[131].time_ns);
   EXPECT_FALSE(odometry.health().ok());
-  EXPECT_EQ(odometry.recording()->suspected_error_covariance_rad2_s2.size(), odometry.recording()->rates.size());
+  EXPECT_EQ(odometry.whole_recording_result()->suspected_error_covariance_rad2_s2.size(),
+            odometry.whole_recording_result()->rates.size());
 }
 
 TEST(TumblingRecording, ARecordingWithoutSamplesIsAnError) {
   const ThrownBody body;
   TumblingOdometry odometry(whole_params(body));
   EXPECT_EQ(odometry.finish().error_code, ErrorCode::empty);
-  EXPECT_EQ(odometry.recording(), nullptr);
+  EXPECT_EQ(odometry.whole_recording_result(), nullptr);
 }
 
 }  // namespace

@@ -310,7 +310,7 @@ void bind_rolling_odometry(nb::module_& m) {
           "units",
           [](Object& self) {
             return self.run([](BoundRollingOdometry& rolling) {
-              const auto& all = rolling.odometry.imus().imus;
+              const auto& all = rolling.odometry.imu_merge_state().imus;
               return std::vector<MergedImuState>(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(rolling.units));
             });
           },

@@ -149,15 +149,15 @@ void bind_accessors(Class& bound) {
           },
           "Returns the rate of the newest sample, provisional where the gyro clips; no row before the first sample.")
       .def(
-          "smoothed_rate",
+          "newest_smoothed_rate",
           [](BoundTumblingOdometry& self) {
-            return rates_of(self.run([](TumblingOdometry& odometry) { return odometry.smoothed_rate(); }));
+            return rates_of(self.run([](TumblingOdometry& odometry) { return odometry.newest_smoothed_rate(); }));
           },
           "Returns the latest rate of the fixed-lag smoother, lag_s old; no row during the first lag_s.")
       .def(
-          "rig",
+          "rig_calibration",
           [](BoundTumblingOdometry& self) {
-            return self.run([](TumblingOdometry& odometry) { return odometry.rig(); });
+            return self.run([](TumblingOdometry& odometry) { return odometry.rig_calibration(); });
           },
           "Returns the estimated calibration of the IMU: lever arm, biases, elements. Pass it to the next run as "
           "`calibration`.")
@@ -202,9 +202,9 @@ void bind_accessors(Class& bound) {
           },
           "number of gaps in the IMU samples after which rate estimation restarted")
       .def_prop_ro(
-          "rejected_samples",
+          "samples_rejected_by_mapper",
           [](BoundTumblingOdometry& self) {
-            return self.run([](TumblingOdometry& odometry) { return odometry.rejected_samples(); });
+            return self.run([](TumblingOdometry& odometry) { return odometry.samples_rejected_by_mapper(); });
           },
           "number of samples that the mapper rejected with their rates: 0 in normal operation")
       .def_prop_ro(
@@ -226,9 +226,9 @@ void bind_accessors(Class& bound) {
           },
           "standard deviation of the IMU's stamps about a regular clock, while that clock replaces them; else None")
       .def_prop_ro(
-          "sweep_scale",
+          "lidar_scale",
           [](BoundTumblingOdometry& self) {
-            return self.run([](TumblingOdometry& odometry) { return odometry.sweep_scale(); });
+            return self.run([](TumblingOdometry& odometry) { return odometry.lidar_scale(); });
           },
           "ratio of the lidar's scale to the IMU's scale, estimated from the motion so far")
       .def_prop_ro(
@@ -281,7 +281,7 @@ void bind_tumbling(nb::module_& m) {
       "box\n"
       "in lidar axes; returns within the box belong to the robot. further_lidars: tuples (LidarDataSheet, T_IL[, "
       "own_body_L]).\n"
-      "calibration is rig() of an earlier run. Options: "
+      "calibration is rig_calibration() of an earlier run. Options: "
       "see\n"
       "parameters(). World: z up, origin and yaw of the IMU at the first sample. The body must be stationary for the\n"
       "first half second.");
@@ -357,7 +357,7 @@ void bind_tumbling(nb::module_& m) {
           [](BoundTumblingOdometry& self) {
             Rates out;
             self.run([&](TumblingOdometry& odometry) {
-              if (odometry.recording()) out.rows = odometry.recording()->rates;
+              if (odometry.whole_recording_result()) out.rows = odometry.whole_recording_result()->rates;
               return true;
             });
             return out;

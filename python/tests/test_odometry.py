@@ -29,14 +29,14 @@ def test_jitter_of_host_stamps_is_estimated(hill, slip):
 
 def test_diagnostics_of_tumbling_odometry(hill):
     odometry = tumble.TumblingOdometry(**tumble.tumbling_options(hill))
-    assert odometry.newest_ns is None and odometry.rejected_samples == 0
-    assert np.isinf(odometry.sweep_scale.sigma) and odometry.sweep_scale.changes == 0 and not odometry.sweep_scale.is_inconsistent
+    assert odometry.newest_ns is None and odometry.samples_rejected_by_mapper == 0
+    assert np.isinf(odometry.lidar_scale.sigma) and odometry.lidar_scale.changes == 0 and not odometry.lidar_scale.is_inconsistent
     assert odometry.calibration_covariance().shape == (10, 10) and not odometry.calibration_covariance().any(), "nothing is estimated yet"
     odometry = tumble.tumbling(hill).odometry
-    assert odometry.newest_ns == hill.imus[0].time_ns[-1] and odometry.rejected_samples == 0
+    assert odometry.newest_ns == hill.imus[0].time_ns[-1] and odometry.samples_rejected_by_mapper == 0
     after = odometry.calibration_covariance()
     assert np.allclose(after, after.T) and np.all(np.linalg.eigvalsh(after) > 0.0)
-    assert 0.9 < odometry.sweep_scale.scale < 1.1
+    assert 0.9 < odometry.lidar_scale.scale < 1.1
 
 
 def test_diagnostics_of_the_units_of_rolling_odometry(slip):

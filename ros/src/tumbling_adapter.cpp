@@ -145,7 +145,7 @@ std::string TumblingAdapter::map_file(const std::string& path) const {
 }
 
 void TumblingAdapter::publish_rate() {
-  const std::optional<AngularRateState>& rate = odometry_.smoothed_rate();
+  const std::optional<AngularRateState>& rate = odometry_.newest_smoothed_rate();
   if (!rate || samples_.empty() || (!rates_.empty() && rates_.back().time_ns == rate->time_ns)) return;
   if (!rates_.empty() && rate->time_ns < rates_.back().time_ns) rates_.clear();  // the clock stepped back
   rates_.push_back(*rate);
@@ -223,7 +223,7 @@ void TumblingAdapter::publish_diagnostics() {
 
 std::string TumblingAdapter::calibration_yaml() const {
   const Eigen::Isometry3d T_BL = params_.T_BI * odometry_.mapper().calibration().T_IL;
-  const Eigen::Vector3d arm = odometry_.rig().constants.lever_arm_m;
+  const Eigen::Vector3d arm = odometry_.rig_calibration().constants.lever_arm_m;
   return "/**:\n  ros__parameters:\n    T_base_imu: " + pose_text(params_.T_BI) +
          "\n    T_base_lidar: " + pose_text(T_BL) + "\n    lever_arm_m: " + list_text({arm.x(), arm.y(), arm.z()}) +
          "\n";

@@ -157,7 +157,7 @@ Estimate roll_along(const char* method, const Settings<RollingOdometry::Params>&
   RollingOdometry odometry(params);
   estimate.status = replay_imus(units.recordings, odometry, params.radius_m, units.names, estimate);
   estimate.health["imus"] = static_cast<double>(params.imus.size());
-  if (odometry.recording() != nullptr) report_lever_arm(*odometry.recording(), estimate);
+  if (odometry.whole_recording_result() != nullptr) report_lever_arm(*odometry.whole_recording_result(), estimate);
   report_beyond_range(units.beyond_range, estimate);
   report_counters(odometry, params, estimate);
   return estimate;

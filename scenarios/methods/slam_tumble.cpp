@@ -227,7 +227,7 @@ Estimate run(SlamOutput output, const Settings<TumblingOdometry::Params>& settin
   if (!estimate.status.ok()) return estimate;
   Collector collector(output, sensors.imus.front().name, estimate);
   estimate.status = replay(sensors, samples, output == SlamOutput::whole, odometry, collector, on_sweep, estimate);
-  if (odometry.recording()) report_whole(*odometry.recording(), sensors, estimate);
+  if (odometry.whole_recording_result()) report_whole(*odometry.whole_recording_result(), sensors, estimate);
   if (!estimate.status.ok()) return estimate;
   const std::size_t left_out = sensors.imus.front().time_ns.size() - samples.size();
   const std::size_t rejected = left_out + odometry.rejected_readings();

@@ -84,7 +84,7 @@ TEST(TumblingAdapter, PublishesTheLibrarysResultsBitForBit) {
       [&](const ImuSample& sample) {
         const auto before = odometry.newest_ns();
         odometry.add_imu(sample);
-        const auto& rate = odometry.smoothed_rate();
+        const auto& rate = odometry.newest_smoothed_rate();
         if (rate && (rates.empty() || rates.back().time_ns != rate->time_ns)) rates.push_back(*rate);
         take();
         PoseState pose;

@@ -145,7 +145,7 @@ void OdometryPass::process_angular_rate(const AngularRateState& rate) {
   if (last_mapped_ns_ && rate.time_ns <= *last_mapped_ns_) return;
   last_mapped_ns_ = rate.time_ns;
   scale_.add(sample);
-  if (!mapper_.add_imu(sample, limit_rate_covariance(rate, sample)).ok()) ++rejected_samples_;
+  if (!mapper_.add_imu(sample, limit_rate_covariance(rate, sample)).ok()) ++samples_rejected_by_mapper_;
 }
 
 void OdometryPass::flush_until(TimeNs time_ns) {

@@ -68,10 +68,10 @@ class OdometryPass {
   const LidarInertialOdometry& mapper() const { return mapper_; }
   /// Returns `out_of_range` if the magnitude of the specific force at rest contradicts gravity.
   Status check_force_at_rest() const { return rest_gravity_.gravity_magnitude_verdict(rest_gravity_state_); }
-  const LidarScale& sweep_scale() const { return scale_.scale(); }
+  const LidarScale& lidar_scale() const { return scale_.scale(); }
   const Localisation& localisation() const { return localisation_; }
-  const std::optional<AngularRateState>& smoothed_rate() const { return smoothed_; }
-  std::size_t rejected_samples() const { return rejected_samples_; }
+  const std::optional<AngularRateState>& newest_smoothed_rate() const { return smoothed_; }
+  std::size_t samples_rejected_by_mapper() const { return samples_rejected_by_mapper_; }
 
  private:
   void process_angular_rate(const AngularRateState& rate);
@@ -85,7 +85,7 @@ class OdometryPass {
   WaitingInputQueue pending_;  ///< samples whose rates are not yet available
   std::optional<AngularRateState> smoothed_;
   std::optional<TimeNs> last_mapped_ns_;  ///< time of the last sample passed to the mapper
-  std::size_t rejected_samples_ = 0;
+  std::size_t samples_rejected_by_mapper_ = 0;
   RestGravity rest_gravity_;
   RestGravity::GravityMagnitudeState rest_gravity_state_;
 };

@@ -57,8 +57,8 @@ Status TumblingOdometry::newest(PoseState& pose, Eigen::Matrix3d* velocity_covar
 SensorHealth TumblingOdometry::health() const {
   return impl_->health();
 }
-const LidarScale& TumblingOdometry::sweep_scale() const {
-  return impl_->sweep_scale();
+const LidarScale& TumblingOdometry::lidar_scale() const {
+  return impl_->lidar_scale();
 }
 const std::optional<PositionFrame>& TumblingOdometry::position_frame() const {
   return impl_->positions_.position_frame();
@@ -69,11 +69,11 @@ std::optional<TimeNs> TumblingOdometry::newest_ns() const {
 std::optional<AngularRateState> TumblingOdometry::newest_rate() const {
   return impl_->newest_rate();
 }
-const std::optional<AngularRateState>& TumblingOdometry::smoothed_rate() const {
-  return impl_->odometry_pass_.smoothed_rate();
+const std::optional<AngularRateState>& TumblingOdometry::newest_smoothed_rate() const {
+  return impl_->odometry_pass_.newest_smoothed_rate();
 }
-RigCalibration TumblingOdometry::rig() const {
-  return impl_->rig();
+RigCalibration TumblingOdometry::rig_calibration() const {
+  return impl_->rig_calibration();
 }
 const SaturationLevels& TumblingOdometry::saturation_levels() const {
   return impl_->saturation_levels();
@@ -87,8 +87,8 @@ std::size_t TumblingOdometry::rejected_readings() const {
 bool TumblingOdometry::second_mapping_pass_applied() const {
   return impl_->second_mapping_pass_.is_applied();
 }
-std::size_t TumblingOdometry::rejected_samples() const {
-  return impl_->odometry_pass_.rejected_samples();
+std::size_t TumblingOdometry::samples_rejected_by_mapper() const {
+  return impl_->odometry_pass_.samples_rejected_by_mapper();
 }
 std::size_t TumblingOdometry::dropped_sweeps() const {
   return impl_->dropped_sweeps_;
@@ -102,7 +102,7 @@ std::optional<double> TumblingOdometry::estimated_jitter_s() const {
 const LidarInertialOdometry& TumblingOdometry::mapper() const {
   return impl_->mapper();
 }
-const WholeRecordingEstimate* TumblingOdometry::recording() const {
+const WholeRecordingEstimate* TumblingOdometry::whole_recording_result() const {
   return impl_->whole_recording_result_.get();
 }
 std::vector<std::byte> TumblingOdometry::save() const {
@@ -143,7 +143,7 @@ void RollingOdometry::reset(const Eigen::Isometry3d& T_WG) {
 SensorHealth RollingOdometry::health() const {
   return impl_->health();
 }
-const MergedImuRecording* RollingOdometry::recording() const {
+const MergedImuRecording* RollingOdometry::whole_recording_result() const {
   return impl_->whole_recording_result_.get();
 }
 RollingOdometry::Calibration RollingOdometry::calibration() const {
@@ -152,7 +152,7 @@ RollingOdometry::Calibration RollingOdometry::calibration() const {
 bool RollingOdometry::started_in_motion() const {
   return impl_->state_->live_filter.started_in_motion;
 }
-const ImuMergeState& RollingOdometry::imus() const {
+const ImuMergeState& RollingOdometry::imu_merge_state() const {
   return *impl_->imu_merge_state_;
 }
 std::size_t RollingOdometry::rejected_readings() const {

@@ -170,7 +170,7 @@ void SecondMappingPass::run_second_pass(OdometryPass& first, std::size_t sweeps)
     if (!replayed_pass_->has_rates_until(sweep.end_ns)) {
       tail = true;
       replayed_pass_->flush_until(
-          std::max(first.smoothed_rate()->time_ns, replayed_pass_->oldest_needed_ns(sweep.end_ns)));
+          std::max(first.newest_smoothed_rate()->time_ns, replayed_pass_->oldest_needed_ns(sweep.end_ns)));
     }
     if (!replayed_pass_->has_rates_until(
             sweep.end_ns)) {  // the clocks differ by more than assumed: wait for the next sweep
@@ -186,7 +186,7 @@ void SecondMappingPass::run_second_pass(OdometryPass& first, std::size_t sweeps)
 }
 
 void SecondMappingPass::replace_first_pass_results(OdometryPass& first) {
-  replayed_pass_->flush_until(first.smoothed_rate()->time_ns);
+  replayed_pass_->flush_until(first.newest_smoothed_rate()->time_ns);
   SweepVerdict& newest = sweeps_.back().verdict;
   const bool first_lost = newest == SweepVerdict::rejected;
   if (rejected_in_second_pass_ <= rejected_in_first_pass_ + sweeps_.size() / kSweepsPerExtraRejection &&

@@ -168,7 +168,7 @@ SensorHealth TumblingOdometry::Impl::health() const {
   SensorHealth out = odometry_pass_.rates().rate().health(odometry_pass_.rate_stream_state().rate);
   out.add(Kind::force_at_rest, odometry_pass_.check_force_at_rest(), "imu");
   add_findings(plausibility_, plausibility_state_, "imu", out);
-  out.add(Kind::lidar_scale, odometry_pass_.sweep_scale().verdict(), "lidar");
+  out.add(Kind::lidar_scale, odometry_pass_.lidar_scale().verdict(), "lidar");
   out.add(Kind::vertical_unknown, mapper().check_vertical(), "");
   out.add(Kind::not_localised, mapper().localised(), "");
   const Localisation& localisation = odometry_pass_.localisation();

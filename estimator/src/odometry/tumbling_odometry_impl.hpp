@@ -40,11 +40,11 @@ struct TumblingOdometry::Impl {
   void reset(const Eigen::Isometry3d& T_WI);
   Status newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2 = nullptr) const;
   SensorHealth health() const;
-  const LidarScale& sweep_scale() const;
+  const LidarScale& lidar_scale() const;
   std::optional<AngularRateState> newest_rate() const {
     return odometry_pass_.rates().rate().newest(odometry_pass_.rate_stream_state().rate);
   }
-  RigCalibration rig() const;
+  RigCalibration rig_calibration() const;
   const SaturationLevels& saturation_levels() const;
   std::optional<double> estimated_jitter_s() const;
   const LidarInertialOdometry& mapper() const;

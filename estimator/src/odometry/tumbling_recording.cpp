@@ -109,11 +109,11 @@ const LidarInertialOdometry& TumblingOdometry::Impl::mapper() const {
   return whole_recording_result_ ? whole_recording_result_->mapped_recording.mapper : odometry_pass_.mapper();
 }
 
-const LidarScale& TumblingOdometry::Impl::sweep_scale() const {
-  return whole_recording_result_ ? whole_recording_result_->scale : odometry_pass_.sweep_scale();
+const LidarScale& TumblingOdometry::Impl::lidar_scale() const {
+  return whole_recording_result_ ? whole_recording_result_->scale : odometry_pass_.lidar_scale();
 }
 
-RigCalibration TumblingOdometry::Impl::rig() const {
+RigCalibration TumblingOdometry::Impl::rig_calibration() const {
   return whole_recording_result_ ? whole_recording_result_->report.rate.calibration
                                  : odometry_pass_.rates().rate().calibration(odometry_pass_.rate_stream_state().rate);
 }

@@ -139,7 +139,7 @@ std::vector<std::byte> TumblingOdometry::Impl::save_with_pose(const std::optiona
   const AngularRateStreamParams& used = odometry_pass_.rates().params().rate;
   const bool estimated =
       whole_recording_result_ ? !whole_recording_result_->report.rate.calibration_at_prior : !stream.is_at_prior(state);
-  if (estimated || used.model.calibration) out->rig = rig();
+  if (estimated || used.model.calibration) out->rig = rig_calibration();
   if (out->rig && !check_calibration(*out->rig).ok()) out->rig.reset();
   if (whole_recording_result_ && estimated) out->sensor_errors = whole_recording_result_->report.rate.sensor_errors;
   if (!whole_recording_result_ && (state.sensor_errors.front().accel_delay_state.delay_found || used.calibrated_errors))

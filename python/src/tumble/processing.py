@@ -74,7 +74,7 @@ class Tumble(Shown):
     sweeps: list[_tumble.SweepReport]  #: reports of the sweeps that have poses, in order of registration
     refused: list[str]  #: error messages of the sweeps without poses
     map: _tumble.MapPoints  #: map within mapping_map_radius_m of the sensor
-    odometry: _tumble.TumblingOdometry  #: the estimator, with its calibration: rig(), calibration()
+    odometry: _tumble.TumblingOdometry  #: the estimator, with its calibration: rig_calibration(), calibration()
 
 
 WHOLE_RECORDING = 1e9  # value of lag_s [s] for an estimate of the whole recording

@@ -163,7 +163,7 @@ class RollingOdometry {
 
   /// Returns the merged readings and the health findings of a whole recording (detail/imu_findings.hpp). Returns null
   /// before finish(), or if `lag_s` is not kWholeRecording.
-  const MergedImuRecording* recording() const;
+  const MergedImuRecording* whole_recording_result() const;
 
   /// Returns the estimated centre and radius of the sphere; if `lag_s` is above 0, at the time of the newest smoothed
   /// pose.

@@ -216,7 +216,7 @@ class TumblingOdometry {
   SensorHealth health() const;
   /// Returns the ratio of displacements measured by the lidar to displacements measured by the IMU, with its standard
   /// deviation (mapping/detail/lidar_scale.hpp).
-  const LidarScale& sweep_scale() const;
+  const LidarScale& lidar_scale() const;
   /// Returns the newest Sweep::position_frame, which transforms the pose of newest() to the frame of the position
   /// readings. Returns an empty value with kWholeRecording.
   const std::optional<PositionFrame>& position_frame() const;
@@ -230,7 +230,7 @@ class TumblingOdometry {
   const std::optional<AngularRateState>& smoothed_rate() const;
   /// Returns the estimated calibration of the IMU on the body (angular_velocity/types.hpp): lever arm, biases,
   /// inertia ratios and gyro axis directions.
-  RigCalibration rig() const;
+  RigCalibration rig_calibration() const;
   const SaturationLevels& saturation_levels() const;
   /// Returns the number of restarts after a gap or after a clock that stepped back.
   std::size_t restart_count() const;
@@ -238,10 +238,10 @@ class TumblingOdometry {
   std::size_t rejected_readings() const;
   /// Returns true if SecondMappingPass has replaced the map and the pose.
   bool second_mapping_pass_applied() const;
-  /// The following counters are 0 in normal operation. The function rejected_samples() counts IMU samples that the
-  /// mapper rejected. The function dropped_sweeps() counts sweeps that take() did not return in time. The function
-  /// sweeps_before_first_imu() counts sweeps that ended before the first IMU sample.
-  std::size_t rejected_samples() const;
+  /// The following counters are 0 in normal operation. The function samples_rejected_by_mapper() counts IMU samples
+  /// that the mapper rejected. The function dropped_sweeps() counts sweeps that take() did not return in time. The
+  /// function sweeps_before_first_imu() counts sweeps that ended before the first IMU sample.
+  std::size_t samples_rejected_by_mapper() const;
   std::size_t dropped_sweeps() const;
   std::size_t sweeps_before_first_imu() const;
   /// Returns the jitter of the IMU's time stamps about a regular clock [s] while SampleClock corrects them, and
