@@ -36,7 +36,7 @@ void bind_report(nb::module_& m) {
       .def_prop_ro(
           "trajectory", [](const Report& r) { return Poses{r.trajectory}; }, "poses at the IMU times within the sweep")
       .def_prop_ro(
-          "smoothed", [](const Report& r) { return Poses{r.smoothed}; },
+          "smoothed_trajectory", [](const Report& r) { return Poses{r.smoothed_trajectory}; },
           "final (smoothed) poses of the sweep that leaves the window when this one enters; empty while the window\n"
           "fills")
       .def_ro("inlier_ratio", &Report::inlier_ratio)
@@ -45,7 +45,7 @@ void bind_report(nb::module_& m) {
               "standard deviation in the direction that the surfaces constrain least")
       .def_prop_ro("least_constrained_direction",
                    [](const Report& r) { return whole<6>(r.least_constrained_direction.data()); })
-      .def_ro("innovation", &Report::innovation,
+      .def_ro("normalised_innovation", &Report::normalised_innovation,
               "correction divided by the standard deviation of the prior, per square root of the number of unknowns")
       .def_ro("iterations", &Report::iterations)
       .def_ro("consecutive_rejected_sweeps", &Report::consecutive_rejected_sweeps,
@@ -53,7 +53,7 @@ void bind_report(nb::module_& m) {
       .def_prop_ro("saturation_deficit_rad_s",
                    [](const Report& r) { return whole<3>(r.mean_saturation_deficit_rad_s.data()); })
       .def_ro("points_used", &Report::points_used)
-      .def_ro("isolated_points", &Report::isolated_points)
+      .def_ro("isolated_points_dropped", &Report::isolated_points_dropped)
       .def_ro("points_registered", &Report::points_registered)
       .def_ro("map_points_added", &Report::map_points_added)
       .def_ro("in_prior_map", &Report::in_prior_map, "True if the poses are in the frame of the prior map");

@@ -171,7 +171,7 @@ void TumblingAdapter::publish_sweeps() {
     if (publisher_.wants(Output::points)) publish_points(report);
     last_ = report;
     last_->trajectory.clear();
-    last_->smoothed.clear();
+    last_->smoothed_trajectory.clear();
   }
 }
 

@@ -85,7 +85,7 @@ class Collector {
         count_trouble(sweep->status, estimate_);
         continue;
       }
-      std::vector<PoseState> smoothed = std::move(sweep->report.smoothed);
+      std::vector<PoseState> smoothed = std::move(sweep->report.smoothed_trajectory);
       const bool in_prior_map = sweep->report.in_prior_map;
       if (in_prior_map && !first_in_prior_map_) first_in_prior_map_ = estimate_.sweeps.size();
       const TimeNs end_ns = sweep->report.pose.time_ns;

@@ -36,26 +36,27 @@ void Localisation::add(const SweepReport& sweep) {
   if (!map_started_) return;
   const double variance_m2 = sweep.pose.covariance.topLeftCorner<3, 3>().trace();
   largest_sigma_m_ = std::max(largest_sigma_m_, std::sqrt(variance_m2));
-  second_largest_innovation_ = std::max(second_largest_innovation_, std::min(largest_innovation_, sweep.innovation));
-  largest_innovation_ = std::max(largest_innovation_, sweep.innovation);
+  second_largest_innovation_ =
+      std::max(second_largest_innovation_, std::min(largest_innovation_, sweep.normalised_innovation));
+  largest_innovation_ = std::max(largest_innovation_, sweep.normalised_innovation);
   observe_fit(sweep);
-  sigma_m_ = sweep.map_sigma_m;
+  sigma_m_ = sweep.position_in_map_sigma_m;
   newest_ns_ = sweep.pose.time_ns;
   if (!(sigma_m_ > distance_when_localised_m_))
     lost_since_ns_.reset();
   else if (!lost_since_ns_)
     lost_since_ns_ = newest_ns_;
-  if (!(sweep.innovation > innovation_max())) return;
+  if (!(sweep.normalised_innovation > innovation_max())) return;
   previous_contradicted_sweep_ns_ = last_contradicted_sweep_ns_;
   last_contradicted_sweep_ns_ = newest_ns_;
 }
 
 void Localisation::observe_fit(const SweepReport& sweep) {
-  if (!(sweep.innovation > 0.0)) return;
+  if (!(sweep.normalised_innovation > 0.0)) return;
   aligned_sweeps_ = std::min(aligned_sweeps_ + 1, kMeanSweepsMax);
   const double share = 1.0 / static_cast<double>(aligned_sweeps_);
   mean_inlier_ratio_ += share * (sweep.inlier_ratio - mean_inlier_ratio_);
-  mean_innovation_ += share * (std::min(1.0, sweep.innovation) - mean_innovation_);
+  mean_innovation_ += share * (std::min(1.0, sweep.normalised_innovation) - mean_innovation_);
   if (!fit_verdict().ok()) smallest_inlier_ratio_ = std::min(smallest_inlier_ratio_, mean_inlier_ratio_);
 }
 

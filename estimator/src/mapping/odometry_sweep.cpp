@@ -50,7 +50,7 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   const Status points_status = points.select_returns(params, returns, end_ns - start_ns, before.calibration,
                                                      seconds(start_ns - sweep_boundary.time_ns()), counts);
   report.points_used = counts.usable_points;
-  report.isolated_points = counts.isolated;
+  report.isolated_points_dropped = counts.isolated;
   const auto placed = std::make_unique<SweepRegistration>();
   if (points_status.ok()) register_to_map(*prediction, motion, points, trajectory, report, *placed);
   if (alternative && mapping::contradicts_tracking(tracking, placed->outcome)) {  // repeat without the relocalisation
@@ -131,7 +131,7 @@ Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, st
   const Status selected =
       sweep_scratch.points.select_returns(params, returns, end_ns - start_ns, calibration, 0.0, counts);
   report.points_used = counts.usable_points;
-  report.isolated_points = counts.isolated;
+  report.isolated_points_dropped = counts.isolated;
   const std::size_t points = selected.ok() ? sweep_scratch.points.all().size() : 0;
   const bool usable = points >= MatchingParams::kMatchesMin;
   if (usable && !inertial_track.sweep_boundary_ns() &&
@@ -214,9 +214,9 @@ void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, 
   report.inlier_ratio = attempt.inlier_ratio;
   if (placed.alignment) {
     const Registration::Result& aligned = *placed.alignment;
-    report.innovation = mapping::innovation(prediction, aligned.mean);
+    report.normalised_innovation = mapping::innovation(prediction, aligned.mean);
     placed.agrees_with_prediction =
-        mapping::agrees_with_prediction(params, prediction, aligned.mean, report.innovation);
+        mapping::agrees_with_prediction(params, prediction, aligned.mean, report.normalised_innovation);
     report.eigenvalue_ratio = aligned.eigenvalues[5] > 0.0 ? aligned.eigenvalues[0] / aligned.eigenvalues[5] : 0.0;
     report.least_constrained_direction = aligned.directions.col(0);
     report.least_constrained_sigma_m = aligned.least_constrained_sigma_m;
@@ -268,7 +268,7 @@ void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Swe
     world_covariance.add_drift(report.least_constrained_sigma_m, report.least_constrained_direction);
   report.trajectory = poses_along(sweep.trajectory, motion.end_ns, sweep.start.state_error_covariance);
   const Registration::Matrix to_end = mapping::unknowns_at(sweep.trajectory, sweep.trajectory.duration_s());
-  report.map_sigma_m =
+  report.position_in_map_sigma_m =
       world_covariance.sigma_in_map_m(mapping::propagate_pose_and_mounting(to_end, sweep.start.state_error_covariance),
                                       report.trajectory.back().position_W_m);
   append_to_lag_window(sweep, motion, sweep_boundary, window).inserted = std::move(inserted);
@@ -276,7 +276,7 @@ void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Swe
     window.smooth();
     window.move_inserted_sweeps(map);
   }
-  if (window.is_full()) report.smoothed = poses_of(window.sweeps().front());
+  if (window.is_full()) report.smoothed_trajectory = poses_of(window.sweeps().front());
   mapping::sweep_boundary_after(params, sweep.start, motion, sweep.trajectory, aligned, sweep_boundary);
   report.pose = sweep_boundary.state_estimate.mean.state.pose();
   report.pose.covariance = report.trajectory.back().covariance;

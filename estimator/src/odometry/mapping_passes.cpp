@@ -94,7 +94,7 @@ class MappingPass {
     if (added.report.trajectory.empty()) return;
     last_pose_time_ns_ = added.report.pose.time_ns;
     last_end_ns_ = sweep.end_ns;
-    apply_smoothed_poses(std::exchange(added.report.smoothed, {}));
+    apply_smoothed_poses(std::exchange(added.report.smoothed_trajectory, {}));
   }
 
   void apply_smoothed_poses(std::vector<PoseState> smoothed) {

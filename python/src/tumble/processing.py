@@ -141,7 +141,7 @@ def tumbling(recording: Recording, on_sample: Callable[[_tumble.TumblingOdometry
     if whole:
         final = [report.trajectory for report in placed]
     else:
-        final = [*(report.smoothed for report in placed if len(report.smoothed) > 0), odometry.window_trajectory()]
+        final = [*(report.smoothed_trajectory for report in placed if len(report.smoothed_trajectory) > 0), odometry.window_trajectory()]
     return Tumble(poses=_tumble.Poses.joined(final), sweeps=placed,
                   refused=[sweep.message for sweep in done if not sweep.placed], map=odometry.map(), odometry=odometry)
 

@@ -165,7 +165,7 @@ TEST(LidarInertialOdometry, AnExactlyDegenerateAlignmentCounts) {
   EXPECT_EQ(report.eigenvalue_ratio, 0.0);
   EXPECT_GT(report.iterations, 0);
   EXPECT_NEAR(report.pose.position_W_m.z(), -0.005, 0.002);
-  EXPECT_GT(report.innovation, 0.0);
+  EXPECT_GT(report.normalised_innovation, 0.0);
 }
 
 TEST(LidarInertialOdometry, LevelsAtRest) {

@@ -15,7 +15,7 @@ SweepReport sweep(double sigma_m, double innovation, double inlier_ratio = 0.6) 
   report.verdict = SweepVerdict::registered;
   report.pose.covariance.setZero();
   report.pose.covariance.diagonal().head<3>().setConstant(sigma_m * sigma_m / 3.0);
-  report.innovation = innovation;
+  report.normalised_innovation = innovation;
   report.inlier_ratio = inlier_ratio;
   return report;
 }
@@ -102,7 +102,7 @@ TEST(Localisation, APresentFindingEnds) {
   TimeNs time_ns = 0;
   const auto add = [&](double map_sigma_m, double innovation, double world_sigma_m = 0.1) {
     SweepReport report = sweep(world_sigma_m, innovation);
-    report.map_sigma_m = map_sigma_m;
+    report.position_in_map_sigma_m = map_sigma_m;
     report.pose.time_ns = time_ns += 100'000'000;
     localisation.add(report);
   };

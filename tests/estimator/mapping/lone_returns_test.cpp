@@ -143,7 +143,7 @@ TEST(LoneReturns, KeepDustOutOfTheMap) {
     test::feed_imu(odometry, sweep);
     const auto points = dusty(test::room_tumble().sweeps[static_cast<std::size_t>(sweep)], sweep, nullptr);
     ASSERT_TRUE(test::add_sweep(odometry, sweep, points, report).ok());
-    alone += report.isolated_points;
+    alone += report.isolated_points_dropped;
   }
   EXPECT_LT(test::error_of(report.pose).m, 0.05);
   EXPECT_GT(alone, 10'000u);

@@ -201,7 +201,7 @@ struct SweepReport {
   double innovation = 0.0;
   /// Standard deviation of the position relative to the nearby map points. The covariance of `pose` also includes the
   /// map's drift and tilt, which grow with the travelled distance.
-  double map_sigma_m = 0.0;
+  double position_in_map_sigma_m = 0.0;
   int iterations = 0;
   int consecutive_rejected_sweeps = 0;  ///< consecutive rejected sweeps, including the current sweep
   /// True after a relocalisation that disagrees with the inertial prediction or fits the map poorly, until two further
