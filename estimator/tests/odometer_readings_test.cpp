@@ -188,7 +188,7 @@ Eigen::Vector3d after_second_pass(bool with_readings) {
   const ThrownBody body;
   MotionRegimeStream::Params rate = TumblingOdometry::Params::Expert::default_rate_params();
   rate.rate.model.nominal.lever_arm_m = body.lever_arm_I_m;
-  const LidarInertialOdometry::Params mapping = TumblingOdometry::Params::Expert::mapping_defaults();
+  const LidarInertialOdometry::Params mapping = TumblingOdometry::Params::Expert::default_mapping_params();
   OdometryPass first(rate, mapping);
   SecondMappingPass again(SecondMappingPass::Params{}, rate, mapping);
   const std::vector<ThrownBody::Sweep> sweeps = body.sweeps();

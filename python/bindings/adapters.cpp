@@ -82,7 +82,7 @@ struct Bound {
 
 template <class Params>
 std::vector<const char*> derived() {
-  const auto all = Params::derived_fields();
+  const auto all = Params::computed_parameter_names();
   return {all.begin(), all.end()};
 }
 

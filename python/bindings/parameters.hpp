@@ -55,12 +55,12 @@ class Keywords {
   std::vector<std::string> known_;
 };
 
-/// Calls `each(name, value, field)` for each field of `params` except the hidden fields (`matches_any`). Hidden fields
-/// are derived from other fields.
+/// Calls `each(name, value, field)` for each field of `params` except the hidden fields (`matches_any_pattern`). Hidden
+/// fields are derived from other fields.
 template <class Params, class Each>
 void visit_shown(Params& params, const std::vector<const char*>& hidden, Each each) {
   visit_by_name(params, [&](const std::string& name, auto& value, const Field& field) {
-    if (!matches_any<const char*>(name, hidden)) each(name, value, field);
+    if (!matches_any_pattern<const char*>(name, hidden)) each(name, value, field);
   });
 }
 
@@ -98,7 +98,7 @@ std::vector<Parameter> list_fields(const Params& params, const std::vector<const
       number = nb::int_(static_cast<long long>(value));
     }
     out.push_back({name, field.unit, number, field.low, field.high, field.description,
-                   field.audience == ParameterRank::common_use});
+                   field.audience == ParameterAudience::common_use});
   });
   return out;
 }

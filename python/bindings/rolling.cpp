@@ -130,8 +130,8 @@ void bind_filter(nb::module_& m) {
 
 /// Returns the names of the parameters that RollingOdometry sets itself.
 const std::vector<const char*>& derived_rolling_parameters() {
-  static const std::vector<const char*> all(RollingOdometry::Params::derived_fields().begin(),
-                                            RollingOdometry::Params::derived_fields().end());
+  static const std::vector<const char*> all(RollingOdometry::Params::computed_parameter_names().begin(),
+                                            RollingOdometry::Params::computed_parameter_names().end());
   return all;
 }
 

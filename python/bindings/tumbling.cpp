@@ -31,7 +31,7 @@ using Sweep = TumblingOdometry::Sweep;
 /// Returns the names of the parameters that TumblingOdometry computes itself or reads from data sheets.
 const std::vector<const char*>& derived_tumbling_parameters() {
   static const std::vector<const char*> all = [] {
-    const auto derived = TumblingOdometry::Params::Expert::derived_fields();
+    const auto derived = TumblingOdometry::Params::Expert::computed_parameter_names();
     std::vector<const char*> out(derived.begin(), derived.end());
     out.insert(out.end(), {"imu_*", "range_*"});
     return out;

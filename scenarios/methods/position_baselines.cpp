@@ -28,7 +28,7 @@ struct RestParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.rest_s, {"rest_s", "s", 0.01, 60.0,
                      "duration of the initial rest; the mean readings during this rest give gyro bias and tilt",
-                     ParameterRank::common_use});
+                     ParameterAudience::common_use});
   }
 };
 

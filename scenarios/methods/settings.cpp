@@ -24,8 +24,8 @@ std::string suffix_of(std::string_view unit) {
   return out;
 }
 
-bool matches_any(const std::string& name, const std::vector<std::string>& patterns) {
-  return tumble::matches_any<std::string>(name, patterns);
+bool matches_any_pattern(const std::string& name, const std::vector<std::string>& patterns) {
+  return tumble::matches_any_pattern<std::string>(name, patterns);
 }
 
 }  // namespace
@@ -48,16 +48,16 @@ std::string SettingsTable::name_of(const std::string& field_name) const {
 }
 
 void SettingsTable::add(const std::string& field_name, double value, const Field& field, bool whole) {
-  if (matches_any(field_name, options_.fixed)) return;
+  if (matches_any_pattern(field_name, options_.fixed)) return;
   sim::Parameter row{
       texts_.emplace_back(name_of(field_name)), value, field.low, field.high, field.unit, field.description};
-  const bool stated = matches_any(field_name, options_.stated);
+  const bool stated = matches_any_pattern(field_name, options_.stated);
   if (stated) {
     row.doc = texts_.emplace_back(fmt::format("{}; default: the value in the recording, if any", field.description));
     stated_.insert(row.name);
   }
   if (whole) whole_.insert(row.name);
-  if (!stated && (field.audience == ParameterRank::common_use || matches_any(field_name, options_.first)))
+  if (!stated && (field.audience == ParameterAudience::common_use || matches_any_pattern(field_name, options_.first)))
     first_.insert(row.name);
   rows_.push_back(row);
 }
@@ -69,7 +69,7 @@ void SettingsTable::sort_rows() {
 }
 
 bool SettingsTable::applies(const std::string& field_name, const sim::Values& values, std::string& name) const {
-  if (matches_any(field_name, options_.fixed)) return false;
+  if (matches_any_pattern(field_name, options_.fixed)) return false;
   name = name_of(field_name);
   return !stated_.contains(name) || values.has(name);
 }

@@ -28,7 +28,7 @@ LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const
   odometry.T_IL = bridge::T_IL(sensors.imus.front(), sensors.lidars.front());
   odometry.expert.gravity_m_s2 = sensors.gravity_m_s2;
   const double accel_range_m_s2 = sensors.imus.front().stated_accel_range_m_s2;
-  if (accel_range_m_s2 > 0.0) odometry.expert.saturated_imu.accel_m_s2 = range_below_saturation(accel_range_m_s2);
+  if (accel_range_m_s2 > 0.0) odometry.expert.saturated_imu.accel_m_s2 = max_unsaturated_reading(accel_range_m_s2);
   if (chain.along) {
     odometry.expert.matching.correction_max_m = chain.along->correction_max_m;
     odometry.expert.matching.correction_max_rad = chain.along->correction_max_rad;

@@ -74,8 +74,10 @@ Status merge_imus(const sim::Sensors& sensors, MergedImus& out) {
   out.beyond_range = units.beyond_range;
   ImuMerge::Setup setup;
   for (const ImuRecording& unit : units.recordings) {
-    setup.gyro_range_rad_s = std::min(setup.gyro_range_rad_s, range_below_saturation(unit.data_sheet.gyro_range_rad_s));
-    setup.accel_range_m_s2 = std::min(setup.accel_range_m_s2, range_below_saturation(unit.data_sheet.accel_range_m_s2));
+    setup.gyro_range_rad_s =
+        std::min(setup.gyro_range_rad_s, max_unsaturated_reading(unit.data_sheet.gyro_range_rad_s));
+    setup.accel_range_m_s2 =
+        std::min(setup.accel_range_m_s2, max_unsaturated_reading(unit.data_sheet.accel_range_m_s2));
   }
   return merge_recordings(units.recordings, setup, out.merged);
 }

@@ -82,7 +82,7 @@ void check_stationary_gravity(const ImuDescription& imu, std::span<const ImuSamp
 ImuPlausibility::Setup plausibility_setup(double gravity_m_s2, double gyro_range_rad_s) {
   ImuPlausibility::Setup setup;
   setup.gravity_m_s2 = std::max(gravity_m_s2, 1e-3);
-  if (gyro_range_rad_s > 0.0) setup.gyro_range_rad_s = range_below_saturation(gyro_range_rad_s);
+  if (gyro_range_rad_s > 0.0) setup.gyro_range_rad_s = max_unsaturated_reading(gyro_range_rad_s);
   return setup;
 }
 

@@ -27,7 +27,7 @@ void require_stated_params(RollingOdometry::Params params) {
 
 }  // namespace
 
-std::span<const char* const> RollingOdometry::Params::derived_fields() {
+std::span<const char* const> RollingOdometry::Params::computed_parameter_names() {
   static constexpr const char* kNames[] = {
       "rolling_radius_m",         "rolling_gravity_m_s2",     "rolling_lever_arm_m", "rolling_lever_arm_sigma_m",
       "rolling_gyro_range_rad_s", "rolling_accel_range_m_s2", "rolling_lag_s"};
@@ -61,8 +61,8 @@ ImuMerge::Setup merge_setup(const RollingOdometry::Params& params) {
     require_in_interval("T_BI translation", unit.T_BI.translation().norm(), 0.0, params.radius_m);
     out.T_mean_imu[k] = unit.T_BI;
     const ImuDataSheet& sheet = unit.data_sheet;
-    out.gyro_range_rad_s = std::min(out.gyro_range_rad_s, range_below_saturation(sheet.gyro_range_rad_s));
-    out.accel_range_m_s2 = std::min(out.accel_range_m_s2, range_below_saturation(sheet.accel_range_m_s2));
+    out.gyro_range_rad_s = std::min(out.gyro_range_rad_s, max_unsaturated_reading(sheet.gyro_range_rad_s));
+    out.accel_range_m_s2 = std::min(out.accel_range_m_s2, max_unsaturated_reading(sheet.accel_range_m_s2));
   }
   return out;
 }

@@ -7,7 +7,7 @@
 
 namespace tumble {
 
-double range_below_saturation(double stated_range) {
+double max_unsaturated_reading(double stated_range) {
   return stated_range > 0.0 ? (1.0 - kNearRailRatio) * stated_range : std::numeric_limits<double>::infinity();
 }
 

@@ -12,7 +12,7 @@ constexpr double kGravitySigma_m_s2 = 0.03;
 
 }  // namespace
 
-std::span<const char* const> TumblingExpertParams::derived_fields() {
+std::span<const char* const> TumblingExpertParams::computed_parameter_names() {
   static constexpr const char* kNames[] = {"rate_lever_arm_sigma_m",
                                            "rate_gyro_noise_density",
                                            "rate_accel_noise_density",
@@ -39,7 +39,7 @@ MotionRegimeStream::Params TumblingExpertParams::default_rate_params() {
   return out;
 }
 
-OdometryParams TumblingExpertParams::mapping_defaults() {
+OdometryParams TumblingExpertParams::default_mapping_params() {
   LidarInertialOdometry::Params out;
   out.expert.gravity_sigma_m_s2 = kGravitySigma_m_s2;
   out.expert.saturated_imu.estimate_deficit = true;
@@ -86,7 +86,7 @@ LidarInertialOdometry::Params mapper_params(const TumblingOdometry::Params& para
   out.range_max_m = params.lidar.range_max_m;
   out.own_body_L = params.own_body_L;
   if (params.imu.accel_range_m_s2 > 0.0)
-    out.expert.saturated_imu.accel_m_s2 = range_below_saturation(params.imu.accel_range_m_s2);
+    out.expert.saturated_imu.accel_m_s2 = max_unsaturated_reading(params.imu.accel_range_m_s2);
   return out;
 }
 

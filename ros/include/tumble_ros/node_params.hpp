@@ -21,9 +21,9 @@ struct AdapterParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.diagnostics_period_s,
-          {"diagnostics_period_s", "s", 0.1, 1e6,
-           "time between two publications of the diagnostics, by the stamps of the IMU", ParameterRank::common_use});
+    visit(p.diagnostics_period_s, {"diagnostics_period_s", "s", 0.1, 1e6,
+                                   "time between two publications of the diagnostics, by the stamps of the IMU",
+                                   ParameterAudience::common_use});
   }
 };
 
@@ -43,13 +43,15 @@ struct TumblingAdapterParams {
     visit.group("", p.odometry);
     visit(p.map_period_s,
           {"map_period_s", "s", 0.1, 1e6, "time between two publications of the map, by the stamps of the IMU",
-           ParameterRank::common_use});
+           ParameterAudience::common_use});
     visit(p.prior_map_extend,
           {"prior_map_extend", "1", 0, 1, "true: sweeps extend the prior map; false: the prior map stays unchanged",
-           ParameterRank::common_use});
+           ParameterAudience::common_use});
     visit.group("", p.adapter);
   }
-  static std::span<const char* const> derived_fields() { return TumblingParams::Expert::derived_fields(); }
+  static std::span<const char* const> computed_parameter_names() {
+    return TumblingParams::Expert::computed_parameter_names();
+  }
 };
 
 /// RollingAdapterParams contains the parameters of RollingAdapter. The base frame is the frame of the sphere, with its
@@ -63,15 +65,17 @@ struct RollingAdapterParams {
     visit.group("", p.odometry);
     visit.group("", p.adapter);
   }
-  static std::span<const char* const> derived_fields() { return RollingOdometry::Params::derived_fields(); }
+  static std::span<const char* const> computed_parameter_names() {
+    return RollingOdometry::Params::computed_parameter_names();
+  }
 };
 
 /// Calls `each(name, value, field)` for each number that a node declares as a parameter.
 template <class Params, class Each>
 void visit_parameters(Params& params, Each each) {
-  const auto derived = std::remove_cv_t<Params>::derived_fields();
+  const auto derived = std::remove_cv_t<Params>::computed_parameter_names();
   visit_by_name(params, [&](const std::string& name, auto& value, const Field& field) {
-    if (!matches_any(std::string_view(name), derived)) each(name, value, field);
+    if (!matches_any_pattern(std::string_view(name), derived)) each(name, value, field);
   });
 }
 

@@ -45,24 +45,25 @@ class Autogain {
           p.profile,
           {"profile", "1", 0.0, 2.0,
            "dependence of the gain on the rate: 0: eq. 2 of the MFI 2021 paper; 1: the code of its authors; 2: smooth",
-           ParameterRank::common_use});
-      visit(p.gain_rad_s,
-            {"gain_rad_s", "rad/s", 0.0, 10.0, "Madgwick gain at full rate (Theta, eq. 4)", ParameterRank::common_use});
+           ParameterAudience::common_use});
+      visit(p.gain_rad_s, {"gain_rad_s", "rad/s", 0.0, 10.0, "Madgwick gain at full rate (Theta, eq. 4)",
+                           ParameterAudience::common_use});
       visit(p.tau_s, {"tau_s", "s", 1e-3, 1e4, "time constant of the complementary step at rest (eq. 5)",
-                      ParameterRank::common_use});
-      visit(p.lower_rad_s, {"lower_rad_s", "rad/s", 0.0, 100.0,
-                            "rate below which the accelerometer has full weight (eq. 2)", ParameterRank::common_use});
+                      ParameterAudience::common_use});
+      visit(p.lower_rad_s,
+            {"lower_rad_s", "rad/s", 0.0, 100.0, "rate below which the accelerometer has full weight (eq. 2)",
+             ParameterAudience::common_use});
       visit(p.upper_rad_s,
             {"upper_rad_s", "rad/s", 1e-9, 100.0,
-             "rate above which the gyro has full weight, added to lower_rad_s (eq. 2)", ParameterRank::common_use});
+             "rate above which the gyro has full weight, added to lower_rad_s (eq. 2)", ParameterAudience::common_use});
       visit(p.roll_error_2021,
             boolean_field("roll_error_2021", "1: never correct the roll angle, as in the code of the MFI 2021 paper",
-                          ParameterRank::common_use));
+                          ParameterAudience::common_use));
       visit(p.tilt_form,
             boolean_field("tilt_form",
                           "1: the complementary step is the smallest rotation; 0: the step turns towards a "
                           "target in roll, pitch and yaw",
-                          ParameterRank::common_use));
+                          ParameterAudience::common_use));
       visit(p.gap_max_s,
             {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap causes an error"});
     }

@@ -24,7 +24,7 @@ class Complementary {
       visit(p.tau_s,
             {"tau_s", "s", 1e-3, 1e4,
              "time constant of the accelerometer correction: 0.02 per sample at 125 Hz (Zevering et al., MFI 2021)",
-             ParameterRank::common_use});
+             ParameterAudience::common_use});
       visit(p.gap_max_s,
             {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap causes an error"});
     }

@@ -22,7 +22,7 @@ class Madgwick {
     static void fields(Self& p, Visitor& visit) {
       visit(p.gain_rad_s,
             {"gain_rad_s", "rad/s", 0.0, 10.0, "gain of the tilt correction, as a quaternion rate (Madgwick, eq. 33)",
-             ParameterRank::common_use});
+             ParameterAudience::common_use});
       visit(p.gap_max_s,
             {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap causes an error"});
     }

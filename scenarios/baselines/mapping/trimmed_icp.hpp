@@ -40,7 +40,7 @@ class TrimmedIcp {
       visit(p.neighbours, {"neighbours", "1", 1, 32, "number of matches per point"});
       visit(p.match_distance_m,
             {"match_distance_m", "m", 1e-3, 4.0, "maximum distance between a point and its matches in the map",
-             ParameterRank::common_use});
+             ParameterAudience::common_use});
       visit(p.normal_neighbours, {"normal_neighbours", "1", 3, 32, "number of map points used for each normal"});
       visit(p.trim_min, {"trim_min", "1", 1e-3, 1.0, "minimum share of matches that trimming keeps"});
       visit(p.trim_max, {"trim_max", "1", 1e-3, 1.0, "maximum share of matches that trimming keeps"});
@@ -52,7 +52,7 @@ class TrimmedIcp {
           boolean_field("trim_counts_unmatched",
                         "1: compute the kept share relative to all possible matches, including missing matches, as in "
                         "the code of the ICRA 2024 paper; 0: relative to the found matches",
-                        ParameterRank::common_use));
+                        ParameterAudience::common_use));
       visit(p.iterations_max, {"iterations_max", "1", 1, 1000, "maximum number of Gauss-Newton steps"});
       visit(p.step_m, {"step_m", "m", 0.0, 1.0, "position step below which the registration has converged"});
       visit(p.step_rad, {"step_rad", "rad", 0.0, 1.0, "rotation step below which the registration has converged"});

@@ -41,38 +41,38 @@ class AutogainFusion {
       visit(p.limiter,
             {"limiter", "1", 0.0, 100.0,
              "maximum ratio of the integrated velocity to the rolling velocity; 1.1 in the code of the MFI 2021 paper",
-             ParameterRank::common_use});
-      visit(p.rotation_weight,
-            {"rotation_weight", "1", 0.0, 10.0, "weight of the rolling velocity (eq. 13)", ParameterRank::common_use});
+             ParameterAudience::common_use});
+      visit(p.rotation_weight, {"rotation_weight", "1", 0.0, 10.0, "weight of the rolling velocity (eq. 13)",
+                                ParameterAudience::common_use});
       visit(p.acceleration_weight, {"acceleration_weight", "1", 0.0, 10.0,
-                                    "weight of the integrated acceleration (eq. 13)", ParameterRank::common_use});
+                                    "weight of the integrated acceleration (eq. 13)", ParameterAudience::common_use});
       visit.group("autogain_", p.autogain);
       visit(
           p.integrate_in_body,
           boolean_field("integrate_in_body",
                         "true: integrate the acceleration (eq. 7) in the rotating body frame, without the term w x v; "
                         "false: in the world frame",
-                        ParameterRank::common_use));
+                        ParameterAudience::common_use));
       visit(p.direction_only,
             boolean_field(
                 "direction_only",
                 "true, as in the code of the MFI 2021 paper: subtract gravity of length 1 from the direction of the "
                 "specific force, without multiplying by g",
-                ParameterRank::common_use));
+                ParameterAudience::common_use));
       visit(p.recursive_coupling,
             boolean_field(
                 "recursive_coupling",
                 "true, as in the code of the MFI 2021 paper: eq. 8 scales the integrated velocity again at each sample",
-                ParameterRank::common_use));
+                ParameterAudience::common_use));
       visit(p.limit_per_axis, boolean_field("limit_per_axis",
                                             "true: limit the integrated velocity along each horizontal axis of the "
                                             "world; false: limit its horizontal norm",
-                                            ParameterRank::common_use));
+                                            ParameterAudience::common_use));
       visit(p.shrink_per_axis,
             boolean_field("shrink_per_axis",
                           "true: eq. 12 subtracts v_z^2 from the square of each horizontal velocity; false: once from "
                           "the squared horizontal speed",
-                          ParameterRank::common_use));
+                          ParameterAudience::common_use));
       visit(p.vertical_by_norm,
             boolean_field(
                 "vertical_by_norm",

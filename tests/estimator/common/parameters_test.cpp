@@ -35,7 +35,7 @@ struct Outer {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.tau_s, {"tau_s", "s", 1e-3, 10.0, "a time", ParameterRank::common_use});
+    visit(p.tau_s, {"tau_s", "s", 1e-3, 10.0, "a time", ParameterAudience::common_use});
     visit(p.least, {"least", "1", 0, 1e9, "a number of things"});
     visit(p.on, boolean_field("on", "a switch"));
     visit(p.kind, {"kind", "1", 0, 1, "a choice"});
@@ -117,11 +117,11 @@ TEST(Fields, AreVisitedByTheirWholeNamesAndSetThroughThem) {
 
 TEST(Fields, ANameIsAmongPatternsWholeOrByItsBeginning) {
   const std::vector<std::string> patterns = {"left_*", "tau_s"};
-  EXPECT_TRUE(matches_any<std::string>("left_count", patterns));
-  EXPECT_TRUE(matches_any<std::string>("tau_s", patterns));
-  EXPECT_FALSE(matches_any<std::string>("tau_s_more", patterns));
-  EXPECT_FALSE(matches_any<std::string>("right_left_count", patterns));
-  EXPECT_FALSE(matches_any<std::string>("", patterns));
+  EXPECT_TRUE(matches_any_pattern<std::string>("left_count", patterns));
+  EXPECT_TRUE(matches_any_pattern<std::string>("tau_s", patterns));
+  EXPECT_FALSE(matches_any_pattern<std::string>("tau_s_more", patterns));
+  EXPECT_FALSE(matches_any_pattern<std::string>("right_left_count", patterns));
+  EXPECT_FALSE(matches_any_pattern<std::string>("", patterns));
 }
 
 }  // namespace

@@ -121,7 +121,7 @@ struct Numbers {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.count, {"count", "1", 1, 8, "a number of things"});
-    visit(p.share, {"share", "1", 0.0, 1.0, "a share", ParameterRank::common_use});
+    visit(p.share, {"share", "1", 0.0, 1.0, "a share", ParameterAudience::common_use});
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.0, 100.0, "strength of gravity"});
     visit(p.arm_m, {"arm_m", "m", -1.0, 1.0, "an arm"});
   }

@@ -25,8 +25,8 @@
 /// that users do not enter as plain numbers, for example poses and calibrations.
 namespace tumble {
 
-/// Most users adapt only the parameters of rank `common_use`.
-enum class ParameterRank : std::uint8_t { common_use, expert_use };
+/// Most users adapt only the parameters with the audience `common_use`.
+enum class ParameterAudience : std::uint8_t { common_use, expert_use };
 
 /// All strings in a Field must have static lifetime.
 struct Field {
@@ -34,11 +34,12 @@ struct Field {
   const char* unit;         ///< unit; "1" if dimensionless
   double low, high;         ///< inclusive bounds; for a vector, of each coordinate
   const char* description;  ///< one sentence that states the parameter's effect and source
-  ParameterRank audience = ParameterRank::expert_use;
+  ParameterAudience audience = ParameterAudience::expert_use;
 };
 
-inline Field boolean_field(const char* name, const char* meaning, ParameterRank rank = ParameterRank::expert_use) {
-  return {name, "1", 0.0, 1.0, meaning, rank};
+inline Field boolean_field(const char* name, const char* meaning,
+                           ParameterAudience audience = ParameterAudience::expert_use) {
+  return {name, "1", 0.0, 1.0, meaning, audience};
 }
 
 /// bound for parameters without a limit: the largest finite number
@@ -135,7 +136,7 @@ void visit_by_name(Params& params, Each each) {
 /// Returns true if `name` matches one of `patterns`. A pattern that ends in '*' matches every name that starts with the
 /// text before the '*'. A pattern without '*' at its end matches only a name that is equal to the pattern.
 template <class Text>
-bool matches_any(std::string_view name, std::span<const Text> patterns) {
+bool matches_any_pattern(std::string_view name, std::span<const Text> patterns) {
   return std::any_of(patterns.begin(), patterns.end(), [&](std::string_view pattern) {
     if (!pattern.ends_with('*')) return name == pattern;
     return name.starts_with(pattern.substr(0, pattern.size() - 1));

@@ -74,21 +74,21 @@ inline constexpr Field kMountSigma_rad{
     0.0,
     1.0,
     "prior standard deviation of the lidar's orientation relative to the IMU; 0: exact, no estimate",
-    ParameterRank::common_use};
+    ParameterAudience::common_use};
 inline constexpr Field kMountSigma_m{
     "mount_sigma_m",
     "m",
     0.0,
     1.0,
     "prior standard deviation of the lidar's position relative to the IMU; 0: exact, no estimate",
-    ParameterRank::common_use};
+    ParameterAudience::common_use};
 inline constexpr Field kTimeOffsetSigma_s{
     "time_offset_sigma_s",
     "s",
     0.0,
     0.02,
     "prior standard deviation of the time offset between lidar and IMU; 0: no offset, no estimate",
-    ParameterRank::common_use};
+    ParameterAudience::common_use};
 
 }  // namespace calibration_fields
 

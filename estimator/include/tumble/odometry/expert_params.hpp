@@ -48,7 +48,7 @@ struct TumblingExpertParams {
   /// Parameters of the correction of IMU time stamps that a host computer assigned.
   SampleClock::Params stamps;
   SecondMappingPassParams second_mapping_pass;
-  static OdometryParams mapping_defaults();
+  static OdometryParams default_mapping_params();
   static MotionRegimeStream::Params default_rate_params();
   /// Returns the names of parameters that TumblingOdometry computes from other parameters. A name that ends in '*'
   /// stands for all names that start with the text before the '*'. TumblingOdometry ignores values that a user sets for
@@ -57,7 +57,7 @@ struct TumblingExpertParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.0, 100.0, "strength of gravity", ParameterRank::common_use});
+    visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.0, 100.0, "strength of gravity", ParameterAudience::common_use});
     visit(p.sweeps_max, {"sweeps_max", "1", 1, 1e6, "maximum number of sweeps that wait for IMU data"});
     visit.group("rate_", p.rate);
     visit.group("mapping_", p.mapping);

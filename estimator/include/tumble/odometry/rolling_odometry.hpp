@@ -70,17 +70,18 @@ class RollingOdometry {
     /// Callers must include odometry/expert_params.hpp.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
-      visit(p.radius_m, {"radius_m", "m", 1e-3, 100.0, "radius of the sphere", ParameterRank::common_use});
+      visit(p.radius_m, {"radius_m", "m", 1e-3, 100.0, "radius of the sphere", ParameterAudience::common_use});
       visit(
           p.centre_sigma_m,
           {"centre_sigma_m", "m", 0.0, 10.0,
            "standard deviation of the position of the stated centre, which is the reference point of the IMU positions",
-           ParameterRank::common_use});
-      visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.1, 100.0, "strength of gravity", ParameterRank::common_use});
+           ParameterAudience::common_use});
+      visit(p.gravity_m_s2,
+            {"gravity_m_s2", "m/s^2", 0.1, 100.0, "strength of gravity", ParameterAudience::common_use});
       visit(p.lag_s, {"lag_s", "s", 0.0, kWholeRecording,
                       "delay after which a smoothed pose is reported; a longer delay makes poses more accurate; 0: "
                       "live; 1e9: the whole recording",
-                      ParameterRank::common_use});
+                      ParameterAudience::common_use});
       visit.group("", *p.expert);
     }
   };

@@ -21,15 +21,15 @@ struct ImuDataSheet {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.rate_hz, {"rate_hz", "Hz", 1.0, 1e5, "samples per second", ParameterRank::common_use});
+    visit(p.rate_hz, {"rate_hz", "Hz", 1.0, 1e5, "samples per second", ParameterAudience::common_use});
     visit(p.gyro_range_rad_s, {"gyro_range_rad_s", "rad/s", 0.0, 100.0, "stated range of the gyro; 0: not stated",
-                               ParameterRank::common_use});
+                               ParameterAudience::common_use});
     visit(p.accel_range_m_s2, {"accel_range_m_s2", "m/s^2", 0.0, 1e5,
-                               "stated range of the accelerometer; 0: not stated", ParameterRank::common_use});
+                               "stated range of the accelerometer; 0: not stated", ParameterAudience::common_use});
     visit(p.gyro_noise_rad_s_sqrt_hz, {"gyro_noise_rad_s_sqrt_hz", "rad/s/sqrt(Hz)", 1e-9, 1.0,
-                                       "noise density of the gyro", ParameterRank::common_use});
+                                       "noise density of the gyro", ParameterAudience::common_use});
     visit(p.accel_noise_m_s2_sqrt_hz, {"accel_noise_m_s2_sqrt_hz", "m/s^2/sqrt(Hz)", 1e-9, 100.0,
-                                       "noise density of the accelerometer", ParameterRank::common_use});
+                                       "noise density of the accelerometer", ParameterAudience::common_use});
   }
 };
 
@@ -46,9 +46,9 @@ struct LidarDataSheet {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.range_min_m,
-          {"range_min_m", "m", 0.0, 10.0, "minimum range; nearer returns are dropped", ParameterRank::common_use});
+          {"range_min_m", "m", 0.0, 10.0, "minimum range; nearer returns are dropped", ParameterAudience::common_use});
     visit(p.range_max_m,
-          {"range_max_m", "m", 0.0, 1e4, "maximum range; farther returns are dropped", ParameterRank::common_use});
+          {"range_max_m", "m", 0.0, 1e4, "maximum range; farther returns are dropped", ParameterAudience::common_use});
   }
 };
 

@@ -58,9 +58,9 @@ struct TumblingParams {
   static void fields(Self& p, Visitor& visit) {
     visit.group("imu_", p.imu);
     visit(p.lever_arm_I_m, {"lever_arm_m", "m", -10.0, 10.0, "lever arm from the centre of mass to the IMU, IMU axes",
-                            ParameterRank::common_use});
+                            ParameterAudience::common_use});
     visit(p.lever_arm_sigma_m,
-          {"lever_arm_sigma_m", "m", 1e-9, 10.0, "standard deviation of the lever arm", ParameterRank::common_use});
+          {"lever_arm_sigma_m", "m", 1e-9, 10.0, "standard deviation of the lever arm", ParameterAudience::common_use});
     visit(p.mount_sigma_rad, calibration_fields::kMountSigma_rad);
     visit(p.mount_sigma_m, calibration_fields::kMountSigma_m);
     visit(p.time_offset_sigma_s, calibration_fields::kTimeOffsetSigma_s);
@@ -68,7 +68,7 @@ struct TumblingParams {
     visit(p.lag_s, {"lag_s", "s", 0.0, kWholeRecording,
                     "maximum time for which a sweep waits for later data, at most 10 s; a longer time adds delay and "
                     "makes poses more accurate; 1e9: the whole recording",
-                    ParameterRank::common_use});
+                    ParameterAudience::common_use});
     visit.group("", *p.expert);
   }
 };

@@ -17,11 +17,11 @@ struct FlightRateParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.sigma_m_s2, {"flight_sigma_m_s2", "m/s^2", 1e-6, 100.0,
-                         "standard deviation of the force error of the flight model", ParameterRank::common_use});
+                         "standard deviation of the force error of the flight model", ParameterAudience::common_use});
     visit(p.euler_sigma_rad_s2,
           {"euler_sigma_rad_s2", "rad/s^2", 1e-6, 1e6,
            "standard deviation of the angular acceleration that Euler's equation without torque does not explain",
-           ParameterRank::common_use});
+           ParameterAudience::common_use});
   }
 };
 

@@ -50,21 +50,22 @@ struct AngularRateModelParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.lever_arm_sigma_m,
-          {"lever_arm_sigma_m", "m", 1e-9, 10.0,
-           "prior standard deviation of the lever arm from the centre of mass to the IMU", ParameterRank::common_use});
+    visit(p.lever_arm_sigma_m, {"lever_arm_sigma_m", "m", 1e-9, 10.0,
+                                "prior standard deviation of the lever arm from the centre of mass to the IMU",
+                                ParameterAudience::common_use});
     visit(p.gyro_bias_sigma_rad_s, {"gyro_bias_sigma_rad_s", "rad/s", 1e-9, 10.0,
-                                    "prior standard deviation of the gyro bias", ParameterRank::common_use});
-    visit(p.accel_bias_sigma_m_s2, {"accel_bias_sigma_m_s2", "m/s^2", 1e-9, 10.0,
-                                    "prior standard deviation of the accelerometer bias", ParameterRank::common_use});
+                                    "prior standard deviation of the gyro bias", ParameterAudience::common_use});
+    visit(p.accel_bias_sigma_m_s2,
+          {"accel_bias_sigma_m_s2", "m/s^2", 1e-9, 10.0, "prior standard deviation of the accelerometer bias",
+           ParameterAudience::common_use});
     visit(p.inertia_sigma,
           {"inertia_sigma", "1", 1e-9, 10.0,
            "prior standard deviation of the inertia ratios; the prior mean is a body with equal moments of inertia",
-           ParameterRank::common_use});
+           ParameterAudience::common_use});
     visit(p.element_sigma, {"element_sigma", "1", 1e-9, 0.2,
                             "prior standard deviation of each cross-axis sensitivity of the gyro's sensing elements, "
                             "before the device's compensation",
-                            ParameterRank::common_use});
+                            ParameterAudience::common_use});
     visit(p.gyro_noise_density,
           {"gyro_noise_density", "rad/s/sqrt(Hz)", 1e-9, 1.0,
            "noise density of the gyro; a larger value gives gyro readings less weight; default: 0.03 deg/s/sqrt(Hz)"});

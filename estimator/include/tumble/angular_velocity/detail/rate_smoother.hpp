@@ -41,7 +41,7 @@ struct AngularRateSmootherParams {
     visit(p.calibration_mahalanobis_max, {"calibration_mahalanobis_max", "1", 0.1, 1e6,
                                           "maximum Mahalanobis distance between the estimated rig constants and their "
                                           "prior; a larger distance fixes the constants at the prior",
-                                          ParameterRank::common_use});
+                                          ParameterAudience::common_use});
     visit.group("", p.expert);
   }
 };

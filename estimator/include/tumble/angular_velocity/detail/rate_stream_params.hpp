@@ -40,11 +40,11 @@ struct AngularRateStreamParams {
     visit(p.lag_s, {"lag_s", "s", 2e-5, 10.0,
                     "age of a sample when its estimate is reported; a larger value adds delay and makes the estimate "
                     "more accurate",
-                    ParameterRank::common_use});
+                    ParameterAudience::common_use});
     visit(p.calibration_mahalanobis_max, {"calibration_mahalanobis_max", "1", 0.1, 1e6,
                                           "maximum Mahalanobis distance between the estimated rig constants and their "
                                           "prior; a larger distance resets the calibration to the prior",
-                                          ParameterRank::common_use});
+                                          ParameterAudience::common_use});
     visit(p.step_s, {"step_s", "s", 0.0, 0.1,
                      "time between two Gauss-Newton steps, rounded down to whole samples; a larger value costs less "
                      "computing time; 0: one step per sample"});

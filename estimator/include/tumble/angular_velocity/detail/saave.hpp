@@ -51,11 +51,11 @@ class SaturationAwareRateEstimator {
       visit(p.saturation_point_rad_s,
             {"saturation_point_rad_s", "rad/s", 0.01, 1000.0,
              "readings beyond this value count as clipped; choose a value slightly below the gyro's saturation limit",
-             ParameterRank::common_use});
+             ParameterAudience::common_use});
       visit(p.jerk_psd_rad2_s5,
             {"jerk_psd_rad2_s5", "rad^2/s^5", 1e-12, 1e12,
              "power spectral density of the smoother's white angular jerk (ICRA 2024 paper, sec. IV)",
-             ParameterRank::common_use});
+             ParameterAudience::common_use});
     }
   };
 

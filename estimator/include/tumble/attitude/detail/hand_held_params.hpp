@@ -24,7 +24,7 @@ struct HandMotionModelParams {
           {"hand_noise_adaptation", "1", 0.0, 1.0,
            "share by which the assumed acceleration of the hand adapts to the measured acceleration; "
            "0: constant assumed acceleration",
-           ParameterRank::common_use});
+           ParameterAudience::common_use});
   }
 };
 
@@ -53,14 +53,15 @@ struct HandHeldExpertParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.node_s, {"node_s", "s", 1e-3, 0.1, "time between two nodes of the smoother", ParameterRank::common_use});
+    visit(p.node_s,
+          {"node_s", "s", 1e-3, 0.1, "time between two nodes of the smoother", ParameterAudience::common_use});
     visit(p.iterations_max,
-          {"iterations_max", "1", 1, 1000, "maximum number of Gauss-Newton steps", ParameterRank::common_use});
+          {"iterations_max", "1", 1, 1000, "maximum number of Gauss-Newton steps", ParameterAudience::common_use});
     visit(p.gap_max_s,
           {"gap_max_s", "s", 1e-300, 1e4, "maximum time between two samples; a longer gap causes an error"});
     visit(p.jerk_inflation, {"jerk_inflation", "1", 1.0, 100.0,
                              "factor on the assumed angular jerk in the computation of the reported covariances",
-                             ParameterRank::common_use});
+                             ParameterAudience::common_use});
     visit.group("rest_", p.rest_detector);
     visit.group("", p.hand_motion);
   }
@@ -85,18 +86,20 @@ struct HandHeldParams {
     visit(p.gyro_noise_density, {"gyro_noise_density", "rad/s/sqrt(Hz)", 1e-6, 1.0, "noise density of the gyro"});
     visit(p.accel_noise_density,
           {"accel_noise_m_s2_sqrt_hz", "m/s^2/sqrt(Hz)", 1e-5, 10.0,
-           "noise density of the specific force, including unmodelled errors", ParameterRank::common_use});
+           "noise density of the specific force, including unmodelled errors", ParameterAudience::common_use});
     visit(p.gyro_bias_sigma_rad_s, {"gyro_bias_sigma_rad_s", "rad/s", 1e-6, 10.0,
-                                    "prior standard deviation of the gyro bias", ParameterRank::common_use});
-    visit(p.accel_bias_sigma_m_s2, {"accel_bias_sigma_m_s2", "m/s^2", 1e-6, 10.0,
-                                    "prior standard deviation of the accelerometer bias", ParameterRank::common_use});
+                                    "prior standard deviation of the gyro bias", ParameterAudience::common_use});
+    visit(p.accel_bias_sigma_m_s2,
+          {"accel_bias_sigma_m_s2", "m/s^2", 1e-6, 10.0, "prior standard deviation of the accelerometer bias",
+           ParameterAudience::common_use});
     visit(p.lever_arm_sigma_m,
           {"lever_arm_sigma_m", "m", 1e-6, 10.0, "prior standard deviation of the lever arm from the hand-held point",
-           ParameterRank::common_use});
+           ParameterAudience::common_use});
     visit(p.jerk_rad_s3_sqrts, {"jerk_rad_s3_sqrts", "rad/s^3 sqrt(s)", 1e-2, 1e6,
-                                "root power spectral density of the angular jerk", ParameterRank::common_use});
-    visit(p.hand_sigma_m_s2, {"hand_sigma_m_s2", "m/s^2", 1e-3, 1e3,
-                              "standard deviation of the hand-held point's acceleration", ParameterRank::common_use});
+                                "root power spectral density of the angular jerk", ParameterAudience::common_use});
+    visit(p.hand_sigma_m_s2,
+          {"hand_sigma_m_s2", "m/s^2", 1e-3, 1e3, "standard deviation of the hand-held point's acceleration",
+           ParameterAudience::common_use});
     visit.group("", p.expert);
   }
 };

@@ -62,11 +62,11 @@ struct VqfParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.tau_s,
           {"tau_s", "s", 1e-3, 1e4, "time constant of the low-pass filter on the specific force in the inertial frame",
-           ParameterRank::common_use});
+           ParameterAudience::common_use});
     visit(p.rest_bias_estimation,
-          boolean_field("rest_bias_estimation", "1: estimate the gyro bias at rest", ParameterRank::common_use));
+          boolean_field("rest_bias_estimation", "1: estimate the gyro bias at rest", ParameterAudience::common_use));
     visit(p.motion_bias_estimation, boolean_field("motion_bias_estimation", "1: also estimate the gyro bias in motion",
-                                                  ParameterRank::common_use));
+                                                  ParameterAudience::common_use));
     visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap causes an error"});
   }
 };

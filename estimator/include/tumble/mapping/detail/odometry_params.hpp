@@ -55,10 +55,10 @@ struct InertialNoiseParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.sigma_m,
           {"prior_sigma_m", "m", 1e-9, 1e3, "standard deviation of the position after 0.1 s of inertial prediction",
-           ParameterRank::common_use});
+           ParameterAudience::common_use});
     visit(p.sigma_rad,
           {"prior_sigma_rad", "rad", 1e-9, 1e3, "standard deviation of the attitude after 0.1 s of inertial prediction",
-           ParameterRank::common_use});
+           ParameterAudience::common_use});
   }
 };
 
@@ -99,7 +99,7 @@ struct MatchingParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.distance_m, {"match_distance_m", "m", 1e-3, 10.0,
-                         "maximum distance between a point and its matches in the map", ParameterRank::common_use});
+                         "maximum distance between a point and its matches in the map", ParameterAudience::common_use});
     visit(p.agreeing_matches_min,
           {"matches_agreeing_min", "1", 1, 1e9,
            "minimum number of matches of an accepted sweep whose registration agrees with the predicted pose; other "
@@ -137,12 +137,12 @@ struct LocalMapParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.voxel_m, {"map_voxel_m", "m", 0.01, 10.0, "edge length of a voxel of the map's hash table",
-                      ParameterRank::common_use});
+                      ParameterAudience::common_use});
     visit(
         p.spacing_m,
         {"map_spacing_m", "m", 0.0, 10.0,
          "edge length of the cube that stores at most one map point; a larger value makes the map smaller and coarser",
-         ParameterRank::common_use});
+         ParameterAudience::common_use});
     visit(p.radius_m, {"map_radius_m", "m", 0.0, 1e5,
                        "radius around the sensor within which map points are kept, accurate to 10 %"});
   }
@@ -177,7 +177,7 @@ struct OdometryExpertParams {
     visit(p.gravity_sigma_m_s2,
           {"gravity_sigma_m_s2", "m/s^2", 0.0, 10.0,
            "standard deviation of gravity's horizontal part after initial levelling; 0: fixed direction of gravity",
-           ParameterRank::common_use});
+           ParameterAudience::common_use});
     visit.group("", p.map);
     visit.group("", p.matching);
     visit.group("", p.prior);
@@ -185,7 +185,7 @@ struct OdometryExpertParams {
     visit(p.window_sweeps, {"window_sweeps", "1", 1, 8,
                             "number of newest sweeps that are refined together; each pose is final after this number "
                             "minus one of later sweeps",
-                            ParameterRank::common_use});
+                            ParameterAudience::common_use});
     visit.group("world_", p.world_covariance);
   }
 };
@@ -226,7 +226,7 @@ struct OdometryParams {
     visit(p.sweep_voxel_m, {"sweep_voxel_m", "m", 0.01, 10.0,
                             "edge length of the voxels; one point per voxel is registered, so a larger value is "
                             "faster and coarser",
-                            ParameterRank::common_use});
+                            ParameterAudience::common_use});
     visit.group("", p.expert);
   }
 };

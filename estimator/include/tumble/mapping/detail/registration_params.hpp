@@ -47,10 +47,10 @@ struct RegistrationParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.neighbours,
-          {"neighbours", "1", 3, 32, "number of map points used for each plane fit", ParameterRank::common_use});
+          {"neighbours", "1", 3, 32, "number of map points used for each plane fit", ParameterAudience::common_use});
     visit(p.match_distance_m,
           {"match_distance_m", "m", 1e-3, kMatchDistanceMax_m,
-           "maximum distance between a point and its matches in the map", ParameterRank::common_use});
+           "maximum distance between a point and its matches in the map", ParameterAudience::common_use});
     visit(p.skew_sigma_m_s,
           {"skew_sigma_m_s", "m/s", 0.0, 1e3,
            "growth of a point's standard deviation with the time since the start of the sweep; 0: no growth"});

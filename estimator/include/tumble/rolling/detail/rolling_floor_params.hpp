@@ -32,12 +32,12 @@ struct RollingModeParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.slip_begins_per_s,
-          {"slip_begins_per_s", "1/s", 1e-12, 1e3, "rate of transitions from grip to slip", ParameterRank::common_use});
-    visit(p.bump_begins_per_s,
-          {"bump_begins_per_s", "1/s", 1e-12, 1e3, "rate of transitions from grip to bump", ParameterRank::common_use});
+    visit(p.slip_begins_per_s, {"slip_begins_per_s", "1/s", 1e-12, 1e3, "rate of transitions from grip to slip",
+                                ParameterAudience::common_use});
+    visit(p.bump_begins_per_s, {"bump_begins_per_s", "1/s", 1e-12, 1e3, "rate of transitions from grip to bump",
+                                ParameterAudience::common_use});
     visit(p.incline_begins_per_s, {"incline_begins_per_s", "1/s", 1e-12, 1e3,
-                                   "rate of transitions from level floor to slope", ParameterRank::common_use});
+                                   "rate of transitions from level floor to slope", ParameterAudience::common_use});
   }
 };
 

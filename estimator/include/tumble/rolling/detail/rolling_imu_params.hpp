@@ -19,12 +19,14 @@ struct RollingPriorParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.tilt_sigma_rad, {"tilt_sigma_rad", "rad", 0.0, 1e3,
-                             "prior standard deviation of the tilt from the first sample", ParameterRank::common_use});
+    visit(p.tilt_sigma_rad,
+          {"tilt_sigma_rad", "rad", 0.0, 1e3, "prior standard deviation of the tilt from the first sample",
+           ParameterAudience::common_use});
     visit(p.gyro_bias_sigma_rad_s, {"gyro_bias_sigma_rad_s", "rad/s", 0.0, 1e3,
-                                    "prior standard deviation of the gyro bias", ParameterRank::common_use});
-    visit(p.accel_bias_sigma_m_s2, {"accel_bias_sigma_m_s2", "m/s^2", 0.0, 1e3,
-                                    "prior standard deviation of the accelerometer bias", ParameterRank::common_use});
+                                    "prior standard deviation of the gyro bias", ParameterAudience::common_use});
+    visit(p.accel_bias_sigma_m_s2,
+          {"accel_bias_sigma_m_s2", "m/s^2", 0.0, 1e3, "prior standard deviation of the accelerometer bias",
+           ParameterAudience::common_use});
     visit(p.accel_scale_sigma,
           {"accel_scale_sigma", "1", 0.0, 1e3,
            "prior standard deviation of each entry of the accelerometer's scale and misalignment"});

@@ -62,10 +62,10 @@ struct RollingParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.radius_m, {"radius_m", "m", 1e-12, 10.0, "radius of the sphere"});
     visit(p.radius_sigma_m, {"radius_sigma_m", "m", 0.0, 1e3, "prior standard deviation of the radius; 0: exact",
-                             ParameterRank::common_use});
+                             ParameterAudience::common_use});
     visit(p.lever_arm_m, {"lever_arm_m", "m", -10.0, 10.0, "lever arm from the centre to the IMU, sensor axes"});
-    visit(p.lever_arm_sigma_m,
-          {"lever_arm_sigma_m", "m", 0.0, 1e3, "prior standard deviation of the lever arm", ParameterRank::common_use});
+    visit(p.lever_arm_sigma_m, {"lever_arm_sigma_m", "m", 0.0, 1e3, "prior standard deviation of the lever arm",
+                                ParameterAudience::common_use});
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
     visit(p.gyro_range_rad_s, {"gyro_range_rad_s", "rad/s", 1e-12, 1e3,
                                "measuring range of the gyro; readings at or above this value count as saturated"});

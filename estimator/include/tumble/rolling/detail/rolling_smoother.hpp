@@ -71,7 +71,7 @@ class RollingSmoother {
       visit(p.lag_s,
             {"lag_s", "s", 1e-3, 1e9,
              "maximum delay of a pose; a longer delay makes poses more accurate; 1e9: until the end of the run",
-             ParameterRank::common_use});
+             ParameterAudience::common_use});
       visit(p.rate_max_hz,
             {"rate_max_hz", "Hz", 1e-3, 1e5, "sample rate for which the memory of the delay is allocated in advance"});
     }
