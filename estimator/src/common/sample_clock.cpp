@@ -94,7 +94,7 @@ SampleClock::SampleClock(const Params& params) : params_(params) {
 bool SampleClock::corrects_stamps(const State& state) const {
   if (!state.line_fit_valid) return false;
   const double jitter = std::sqrt(state.mean_square_error_ns2) / state.period_ns;
-  return jitter >= params_.kJitterMin && jitter <= params_.jitter_max &&
+  return jitter >= params_.kJitterMin_periods && jitter <= params_.jitter_max &&
          state.successive_error_product_ns2 <= kErrorCorrelationMax * state.mean_square_error_ns2;
 }
 
@@ -110,8 +110,8 @@ Status SampleClock::push(TimeNs stamp_ns, State& state, TimeNs& time_ns) const {
   if (state.line_fit_valid) {
     update_line(step_ns, stamp_ns, state);
   } else {
-    state.start[state.samples++] = stamp_ns;
-    if (state.samples == kFirstLineFitStampCount) start_line_fit(state);
+    state.first_stamps_ns[state.first_stamp_count++] = stamp_ns;
+    if (state.first_stamp_count == kFirstLineFitStampCount) start_line_fit(state);
   }
   time_ns = stamp_ns;
   if (corrects_stamps(state) && std::abs(stamp_ns) < kLast_ns) {
@@ -130,8 +130,8 @@ Status SampleClock::push(TimeNs stamp_ns, State& state, TimeNs& time_ns) const {
 void SampleClock::start_line_fit(State& state) const {
   StateOffsets x_ns{};
   for (std::size_t k = 0; k < kFirstLineFitStampCount; ++k)
-    x_ns[k] = difference_ns(state.start[k], state.start.front());
-  state.samples = 0;
+    x_ns[k] = difference_ns(state.first_stamps_ns[k], state.first_stamps_ns.front());
+  state.first_stamp_count = 0;
   Numbers numbers = sample_index_from_steps(x_ns, median_step(x_ns));
   FittedLine line = fit(x_ns, numbers);
   numbers = sample_index_from_fit(x_ns, numbers, line);
@@ -146,7 +146,7 @@ void SampleClock::start_line_fit(State& state) const {
   state.weighted_squared_sample_index_sum = line.weighted_squared_sample_index_sum;
   state.mean_square_error_ns2 = line.mean_square_error_ns2;
   state.successive_error_product_ns2 = state.prediction_error_ns = 0.0;
-  state.outliers = 0;
+  state.consecutive_outliers = 0;
 }
 
 /// See sample_clock.md (S1), (S2), (S3). The line fit restarts if the number of sample periods between the last two
@@ -155,21 +155,24 @@ void SampleClock::update_line(double step_ns, TimeNs stamp_ns, State& state) con
   const double passed_ns = step_ns - state.fit_residual_ns;
   const double number = std::max(1.0, std::round(passed_ns / state.period_ns));
   const double prediction_error_ns = passed_ns - number * state.period_ns;
-  const double jitter_ns = std::max(std::sqrt(state.mean_square_error_ns2), params_.kJitterMin * state.period_ns);
+  const double jitter_ns =
+      std::max(std::sqrt(state.mean_square_error_ns2), params_.kJitterMin_periods * state.period_ns);
   const double before = state.sum_of_weights * state.weighted_squared_sample_index_sum -
                         state.weighted_sample_index_sum * state.weighted_sample_index_sum;
   const double extrapolation_sigma_ns = number * jitter_ns * std::sqrt(state.sum_of_weights / before);
-  state.outliers = std::abs(prediction_error_ns) > kStray * state.period_ns ? state.outliers + 1 : 0;
+  state.consecutive_outliers =
+      std::abs(prediction_error_ns) > kStray * state.period_ns ? state.consecutive_outliers + 1 : 0;
   const bool lost = extrapolation_sigma_ns > kSampleNumberSigmaMax * state.period_ns ||
-                    state.outliers > kConsecutiveOutliersMax || jitter_ns > kPeriodJitterMax * state.period_ns;
+                    state.consecutive_outliers > kConsecutiveOutliersMax ||
+                    jitter_ns > kPeriodJitterMax * state.period_ns;
   if (lost) {
     state.line_fit_valid = false;
-    state.start.front() = stamp_ns;
-    state.samples = 1;
+    state.first_stamps_ns.front() = stamp_ns;
+    state.first_stamp_count = 1;
     return;
   }
   const double limited_ns = std::clamp(prediction_error_ns, -kOutlier * jitter_ns, kOutlier * jitter_ns);
-  const double forget_fraction = std::min(0.5, 1e-9 * number * state.period_ns / params_.kMemory_s);
+  const double forget_fraction = std::min(0.5, 1e-9 * number * state.period_ns / params_.kFitTimeConstant_s);
   state.mean_square_error_ns2 += forget_fraction * (limited_ns * limited_ns - state.mean_square_error_ns2);
   state.successive_error_product_ns2 +=
       forget_fraction * (limited_ns * state.prediction_error_ns - state.successive_error_product_ns2);

@@ -81,7 +81,7 @@ TEST(SampleClock, ErrsByWhatItsMemoryLeaves) {
   for (const double period_ns : {10e6, 4e6, 1e6}) {
     const double jitter_ns = 0.1 * period_ns;
     const std::vector<TimeNs> times_ns = regular(40'000, period_ns);
-    const double stated_ns = jitter_ns * std::sqrt(1.25 * period_ns * 1e-9 / SampleClock::Params::kMemory_s);
+    const double stated_ns = jitter_ns * std::sqrt(1.25 * period_ns * 1e-9 / SampleClock::Params::kFitTimeConstant_s);
     const double measured_ns = spread_ns(times_of(jittered(times_ns, jitter_ns)), times_ns, 5000);
     EXPECT_NEAR(measured_ns / stated_ns, 1.0, 0.15) << period_ns;  // some hundred memories, so 7 % of random error
   }
