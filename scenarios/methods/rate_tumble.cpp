@@ -200,7 +200,7 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   joined.flush(all, estimate.rates);
   report_gaps(samples, estimate);
   const AngularRateStream::State& state = all.rate;
-  estimate.health["calibration_at_prior"] = stream.is_at_prior(state) ? 1.0 : 0.0;
+  estimate.health["calibration_at_prior"] = stream.calibration_is_prior(state) ? 1.0 : 0.0;
   estimate.health["accel_delay_s"] = stream.sensor_errors(state).errors.accel_delay_s;
   report_rails(state.clipping_state.known_limits, estimate.health);
   const std::optional<double> carried_share =

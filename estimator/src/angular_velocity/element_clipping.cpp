@@ -174,10 +174,11 @@ RigCalibration calibration_prior_from_planes(const AngularRateModel& before, con
                                              bool upright) {
   RigCalibration out{before.prior_constants(), before.prior_covariance()};
   for (int j = 0; j < 3; ++j) {
-    const Eigen::Index first = RigConstants::kGyroMisalignment + 2 * j;
+    const Eigen::Index first = RigConstants::kGyroMisalignmentIndex + 2 * j;
     const auto estimated = estimated_slopes(planes, upright, j, out.covariance.block<2, 2>(first, first));
     if (!estimated) continue;
-    out.constants.gyro_misalignment.segment<2>(first - RigConstants::kGyroMisalignment) = estimated->cross_axis_slopes;
+    out.constants.gyro_misalignment.segment<2>(first - RigConstants::kGyroMisalignmentIndex) =
+        estimated->cross_axis_slopes;
     out.covariance.middleRows<2>(first).setZero();
     out.covariance.middleCols<2>(first).setZero();
     out.covariance.block<2, 2>(first, first) = estimated->covariance;

@@ -91,8 +91,8 @@ AngularRateFactor sensing_axis_factor(const AngularRateKnot& knot, const RigCons
     f.residual[j] = row.dot(off);
     f.jacobian_knot.row(j).head<3>() = row;
     f.jacobian_calibration.row(j).segment<3>(3) = row;
-    f.jacobian_calibration(j, RigConstants::kGyroMisalignment + 2 * j) = off[(j + 1) % 3];
-    f.jacobian_calibration(j, RigConstants::kGyroMisalignment + 2 * j + 1) = off[(j + 2) % 3];
+    f.jacobian_calibration(j, RigConstants::kGyroMisalignmentIndex + 2 * j) = off[(j + 1) % 3];
+    f.jacobian_calibration(j, RigConstants::kGyroMisalignmentIndex + 2 * j + 1) = off[(j + 2) % 3];
   }
   return f;
 }

@@ -14,7 +14,7 @@ constexpr int kGyroBias = 3;
 // a fixed sensing direction (covariance `rig_spread`) reduces the weight of the residual: rate_stream.md (R92).
 void add_row(const AngularRateFactor& gyro, int j, double age, double information, double pull,
              const RigConstants::Matrix* rig_spread, arrow::Block& block, arrow::Corner& corner) {
-  const int first = RigConstants::kGyroMisalignment + 2 * j;
+  const int first = RigConstants::kGyroMisalignmentIndex + 2 * j;
   if (rig_spread != nullptr) {
     const Eigen::RowVector2d by_slopes = gyro.jacobian_calibration.block<1, 2>(j, first);
     const Eigen::Matrix2d unknown = rig_spread->block<2, 2>(first, first);

@@ -102,7 +102,7 @@ void AngularRateModel::add_sensor_errors(const AngularRateObservation& observati
     block.bottomRows<3>().noalias() += observation.gyro_age_s / time_scale_s_ * sees.transpose() * pull;
     border.middleRows<3>(kGyroBias).noalias() -= sees.transpose() * pull;
     if (is_element_clipped) {
-      const int first = RigConstants::kGyroMisalignment + 2 * j;
+      const int first = RigConstants::kGyroMisalignmentIndex + 2 * j;
       border.middleRows<2>(first).noalias() -= gyro.jacobian_calibration.block<1, 2>(j, first).transpose() * pull;
     }
     add(by_errors, information, gyro.residual[j] - part);

@@ -60,7 +60,7 @@ constexpr double kDeviceMahalanobisMax = 2.33;
 
 // All calibration constants except the gyro's sensing directions are held at their prior.
 AngularRateModelParams fixed_calibration(const AngularRateModelParams& params, const AngularRateModel& model) {
-  constexpr int kFirst = RigConstants::kGyroMisalignment, kCount = RigConstants::kSize - kFirst;
+  constexpr int kFirst = RigConstants::kGyroMisalignmentIndex, kCount = RigConstants::kSize - kFirst;
   AngularRateModelParams out = params;
   out.calibration = RigCalibration{model.prior_constants(), 1e-12 * RigConstants::Matrix::Identity()};
   out.calibration->covariance.block<kCount, kCount>(kFirst, kFirst) =
@@ -106,7 +106,7 @@ Status optimise_or_fix_rig_prior(const AngularRateSmoother::Params& params, cons
   }
   health.calibration_mahalanobis = mahalanobis;
   // A fixed calibration is still uncertain, so the covariance of the rates includes the covariance of the calibration.
-  constexpr int kOpen = RigConstants::kGyroMisalignment;
+  constexpr int kOpen = RigConstants::kGyroMisalignmentIndex;
   fit.solution.rig_covariance.topLeftCorner<kOpen, kOpen>() =
       health.calibration.covariance.topLeftCorner<kOpen, kOpen>();
   return {};

@@ -101,7 +101,7 @@ AngularRateStream::State AngularRateStream::start() const {
   return state;
 }
 
-bool AngularRateStream::is_at_prior(const State& state) const {
+bool AngularRateStream::calibration_is_prior(const State& state) const {
   const RigConstants::Matrix before = start().rig_covariance;
   return !(state.rig_covariance.topLeftCorner<3, 3>().trace() < before.topLeftCorner<3, 3>().trace());
 }
@@ -120,7 +120,7 @@ Status AngularRateStream::push(const ImuSample& sample, std::span<const Auxiliar
     if (!status.ok()) return status;
   }
   const bool due = ++state.samples_since_step >= samples_per_step_;
-  if (due) marginalise_leaving(state);
+  if (due) marginalise_oldest_knots(state);
   append_knot(sample, auxiliary_imus, state);
   if (due) update_delay(state);
   if (!due) {
@@ -132,7 +132,7 @@ Status AngularRateStream::push(const ImuSample& sample, std::span<const Auxiliar
   return {};
 }
 
-void AngularRateStream::marginalise_leaving(State& state) const {
+void AngularRateStream::marginalise_oldest_knots(State& state) const {
   state.samples_since_step = 0;
   std::size_t count = 0;
   for (; state.window.size() - count >= capacity_; ++count) {
@@ -161,7 +161,7 @@ void AngularRateStream::marginalise(std::size_t first, State& state) const {
   arrow::Corner corner;
   add_prior(state, model_, oldest.estimate.knot, block, corner);
   const double after_it = model_.jump(oldest.estimate.knot, next.estimate.knot, seconds_between(oldest, next));
-  const double jump = std::min(rate_change_before_window(oldest, state), after_it);
+  const double jump = std::min(rate_change_since_marginalised(oldest, state), after_it);
   model_.compute_flight_weight(oldest.observation, state.rig, RigConstants::Matrix::Zero(), 1.0, jump, oldest.estimate);
   // Short flights do not update the calibration. A short contact may be mistaken for flight, because the 20 calibration
   // constants can fit any few readings.
@@ -182,7 +182,7 @@ void AngularRateStream::marginalise(std::size_t first, State& state) const {
   if (arrow::System::eliminate(block, &after, corner)) {
     state.prior = after;
     state.prior_border_block = corner;
-    store_errors(block, errors, state);
+    marginalise_sensor_errors(block, errors, state);
   } else {
     reset_prior(state);
     ++state.failures;
@@ -198,7 +198,7 @@ void AngularRateStream::marginalise(std::size_t first, State& state) const {
   }
 }
 
-double AngularRateStream::rate_change_before_window(const Knot& oldest, const State& state) const {
+double AngularRateStream::rate_change_since_marginalised(const Knot& oldest, const State& state) const {
   if (!state.last_marginalised) return std::numeric_limits<double>::max();
   return model_.jump(*state.last_marginalised, oldest.estimate.knot,
                      seconds(oldest.observation.sample.time_ns - state.last_marginalised_ns));
@@ -227,13 +227,13 @@ void AngularRateStream::append_knot(const ImuSample& sample, std::span<const Aux
   knot.estimate.knot.rate_rad_s = sample.angular_velocity_rad_s;
   knot.covariance_rad2_s2 = std::pow(params_.model.kRateMax_rad_s, 2) * Eigen::Matrix3d::Identity();
   state.window.push_back(knot);
-  state.window.back().plateau_growth_rad_s = plateau_growth_of_readings(state.window);
+  state.window.back().plateau_growth_rad_s = min_recent_increase_rad_s(state.window);
   const std::size_t paired = pair_newest_force(state);
   ++state.samples;
   if (knot.clipping_at_axis_limits.unusable_gyro == 0) state.min_saturation_levels.add(sample.angular_velocity_rad_s);
   if (changed) reclassify_window_clipping(state);
   classify_clipping_from(changed ? 0 : paired, state);
-  accumulate_impacts(state);
+  add_impact_to_delay_correlation(state);
   state.reading_extremes_rad_s[0] = state.reading_extremes_rad_s[0].cwiseMin(sample.angular_velocity_rad_s);
   state.reading_extremes_rad_s[1] = state.reading_extremes_rad_s[1].cwiseMax(sample.angular_velocity_rad_s);
   mark_possible_saturation(state);
@@ -283,7 +283,7 @@ void AngularRateStream::predict_new_knot(Knot& knot, const Knot& previous, const
 
 void AngularRateStream::compute_flight_weight(State& state) const {
   constexpr double kNone = std::numeric_limits<double>::max();
-  double before = rate_change_before_window(state.window.front(), state);
+  double before = rate_change_since_marginalised(state.window.front(), state);
   for (std::size_t k = 0; k < state.window.size(); ++k) {
     Knot& knot = state.window[k];
     double after = kNone;

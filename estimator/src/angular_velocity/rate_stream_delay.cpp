@@ -91,7 +91,7 @@ std::size_t AngularRateStream::pair_newest_force(State& state) const {
 }
 
 // See rate_stream.md (R104).
-void AngularRateStream::accumulate_impacts(State& state) const {
+void AngularRateStream::add_impact_to_delay_correlation(State& state) const {
   if (!delay_is_estimated_ || state.window.size() < ForceNormIntegral::kReadings) return;
   const std::size_t first = state.window.size() - ForceNormIntegral::kReadings, after = first + kBeside + 1;
   const Knot &a = state.window[after - 1], &b = state.window[after];
@@ -114,7 +114,7 @@ void AngularRateStream::accumulate_impacts(State& state) const {
 }
 
 // Repeated readings would falsify the correlation of force and rate change.
-TriadDelay AngularRateStream::guessed_delay(const State& state) const {
+TriadDelay AngularRateStream::estimate_delay_from_impacts(const State& state) const {
   const ImpactDelayCorrelation& impacts = state.sensor_errors.front().accel_delay_state.impacts;
   if (repeats_readings(state) || impacts.intervals < kIntervalsMin) return {};
   return impacts.estimate_delay(params_.period_s, params_.period_s);
@@ -130,7 +130,7 @@ void AngularRateStream::update_delay(State& state) const {
   const auto correlates = [&](double at_s) { return delay.impacts.force_correlation_at(at_s, params_.period_s); };
   if (delay.delay_found && correlates(prior_delay_s_) - correlates(delay.applied_delay_s) > kCorrelationGainMin)
     return apply_delay(prior_delay_s_, false, state);
-  if (const TriadDelay guess = guessed_delay(state); guess.sigma_s > 0.0) {
+  if (const TriadDelay guess = estimate_delay_from_impacts(state); guess.sigma_s > 0.0) {
     const bool gains =
         correlates(guess.delay_s) - correlates(prior_delay_s_) > kCorrelationGainMin &&
         std::abs(guess.delay_s - prior_delay_s_) < kReach * params_.model.expert.error_priors.delay_uncalibrated_s;

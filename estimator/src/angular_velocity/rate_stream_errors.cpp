@@ -30,7 +30,8 @@ bool has_moved_states(const AngularRateStream::Knot& knot) {
 }  // namespace
 
 // See rate_stream.md (R100).
-void AngularRateStream::store_errors(const arrow::Block& block, arrow::ErrorMatrix& errors, State& state) const {
+void AngularRateStream::marginalise_sensor_errors(const arrow::Block& block, arrow::ErrorMatrix& errors,
+                                                  State& state) const {
   AngularRateStreamSensorErrors& device = state.sensor_errors.front();
   device.prior.setZero();
   arrow::eliminate_sensor_errors(block, errors, &device.prior, device.border_errors);

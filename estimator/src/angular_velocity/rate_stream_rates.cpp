@@ -39,7 +39,7 @@ double AngularRateStream::saturation_deficit_from_slopes_rad_s(std::size_t at, i
 }
 
 // See rate_stream.md (R98), (R99).
-Eigen::Matrix3d AngularRateStream::suspected_error_covariance(std::size_t at, const State& state) const {
+Eigen::Matrix3d AngularRateStream::inflated_rate_covariance(std::size_t at, const State& state) const {
   const Knot& knot = state.window[at];
   Eigen::Matrix3d out = knot.covariance_rad2_s2;
   if (knot.estimate.flight_weight >= 0.5) return out;
@@ -58,7 +58,7 @@ Eigen::Matrix3d AngularRateStream::suspected_error_covariance(std::size_t at, co
 }
 
 // If the log repeats readings, the rate of a sample also depends on the next new reading.
-bool AngularRateStream::may_be_partly_saturated(std::size_t at, const State& state) const {
+bool AngularRateStream::is_possibly_saturated(std::size_t at, const State& state) const {
   const std::vector<Knot>& window = state.window;
   if (window[at].possibly_clipped_axes != 0) return true;
   if (!window[at].repeated.is_slower_than_samples()) return false;
@@ -74,7 +74,7 @@ void AngularRateStream::extrapolate_estimate(std::size_t at, double late_s, cons
                                              AngularRateState& out) const {
   const auto reported = [&](std::size_t k) {
     const Knot& knot = state.window[k];
-    return model_.output_covariance(suspected_error_covariance(k, state), knot.observation, knot.estimate);
+    return model_.output_covariance(inflated_rate_covariance(k, state), knot.observation, knot.estimate);
   };
   for (; at + 1 < state.window.size(); ++at) {
     const Knot &from = state.window[at], &to = state.window[at + 1];
@@ -98,7 +98,7 @@ void AngularRateStream::extrapolate_estimate(std::size_t at, double late_s, cons
 
 AngularRateState AngularRateStream::rate_state_of_knot(std::size_t at, const State& state) const {
   const Knot& knot = state.window[at];
-  const Eigen::Matrix3d covariance = suspected_error_covariance(at, state);
+  const Eigen::Matrix3d covariance = inflated_rate_covariance(at, state);
   AngularRateState out;
   out.time_ns = knot.observation.sample.time_ns;
   out.w_WI_I_rad_s = knot.estimate.knot.rate_rad_s;
@@ -116,7 +116,7 @@ AngularRateState AngularRateStream::rate_state_of_knot(std::size_t at, const Sta
   out.covariance_rad2_s2.diagonal() += frozen_axes_.rate_variance_rad2_s2(out.time_ns, state.frozen_axes);
   out.clipped_axes = knot.observation.clipping.gyro | knot.observation.clipping.unusable_gyro;
   out.source = rate_source_of(knot.observation, knot.estimate, covariance);
-  if (out.source == AngularRateSource::measured && may_be_partly_saturated(at, state))
+  if (out.source == AngularRateSource::measured && is_possibly_saturated(at, state))
     out.source = AngularRateSource::lower_bound_only;
   return out;
 }

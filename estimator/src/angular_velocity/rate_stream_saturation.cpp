@@ -121,7 +121,8 @@ void AngularRateStream::classify_clipping_from(std::size_t changed, State& state
 }
 
 // See rate_stream.md (R93).
-bool AngularRateStream::may_clip(const ImuSample& sample, int axis, int sign, const State& state) const {
+bool AngularRateStream::is_near_saturation_limit(const ImuSample& sample, int axis, int sign,
+                                                 const State& state) const {
   const Vector3d& y = sample.angular_velocity_rad_s;
   const SaturationPlanes planes = state.clipping_state.known_limits.saturation_planes_in_use();
   const auto& plane = planes.sensing_axis[static_cast<std::size_t>(axis)];
@@ -165,7 +166,9 @@ void AngularRateStream::mark_possible_saturation(State& state) const {
     for (std::size_t k = 0; k < state.window.size();) {
       const int sign = state.window[k].observation.sample.angular_velocity_rad_s[j] < 0.0 ? -1 : 1;
       std::size_t end = k;
-      while (end < state.window.size() && may_clip(state.window[end].observation.sample, j, sign, state)) ++end;
+      while (end < state.window.size() &&
+             is_near_saturation_limit(state.window[end].observation.sample, j, sign, state))
+        ++end;
       const bool goes_on = k == 0 && end > k && (stood >> j & 1u) != 0;
       const auto readings = std::count_if(state.window.begin() + static_cast<std::ptrdiff_t>(k),
                                           state.window.begin() + static_cast<std::ptrdiff_t>(end),
@@ -220,7 +223,7 @@ void AngularRateStream::mark_suspected_plateau(int axis, std::size_t first, std:
 }
 
 // Returns the smaller of two consecutive increases of the gyro reading, because an impact causes one large increase.
-Vector3d AngularRateStream::plateau_growth_of_readings(const std::vector<Knot>& window) {
+Vector3d AngularRateStream::min_recent_increase_rad_s(const std::vector<Knot>& window) {
   const std::optional<std::size_t> one = reading_before(window.size() - 1, window);
   const std::optional<std::size_t> two = one ? reading_before(*one, window) : std::nullopt;
   if (!two) return Vector3d::Zero();
@@ -249,7 +252,7 @@ void AngularRateStream::add_saturation_plane_prior(const State& state, arrow::Co
   const SaturationLevels& rails = state.clipping_state.known_limits;
   const SaturationPlanes planes = rails.saturation_planes_in_use();
   for (int j = 0; j < 3; ++j) {
-    const Eigen::Index first = RigConstants::kGyroMisalignment + 2 * j;
+    const Eigen::Index first = RigConstants::kGyroMisalignmentIndex + 2 * j;
     const auto prior_slopes = estimated_slopes(planes, rails.gyro_clips_after_compensation, j,
                                                model_.prior_covariance().block<2, 2>(first, first));
     if (!prior_slopes) continue;

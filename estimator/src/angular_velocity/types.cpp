@@ -34,8 +34,9 @@ const Eigen::Matrix3d& RigConstants::inertia_basis_matrix(int i) {
 // See rate_smoother.md (R3).
 Eigen::Matrix3d RigConstants::inertia_matrix() const {
   const double half = 0.5 * std::numbers::sqrt2, sixth = std::numbers::inv_sqrt3 * half;
-  const double a = half * inertia[0], b = sixth * inertia[1];
-  const double xy = half * inertia[2], xz = half * inertia[3], yz = half * inertia[4];
+  const double a = half * inertia_coordinates[0], b = sixth * inertia_coordinates[1];
+  const double xy = half * inertia_coordinates[2], xz = half * inertia_coordinates[3],
+               yz = half * inertia_coordinates[4];
   Eigen::Matrix3d J;
   J << 1.0 + a + b, xy, xz, xy, 1.0 - a + b, yz, xz, yz, 1.0 - 2.0 * b;
   return J;
@@ -59,7 +60,7 @@ Eigen::Vector3d RigConstants::sensing_direction(int j) const {
 // See rate_smoother.md (R2).
 RigConstants::Vector RigConstants::vector() const {
   Vector v;
-  v << lever_arm_m, gyro_bias_rad_s, accel_bias_m_s2, inertia, gyro_misalignment;
+  v << lever_arm_m, gyro_bias_rad_s, accel_bias_m_s2, inertia_coordinates, gyro_misalignment;
   return v;
 }
 
@@ -67,8 +68,8 @@ void RigConstants::add(const Vector& step) {
   lever_arm_m += step.segment<3>(0);
   gyro_bias_rad_s += step.segment<3>(3);
   accel_bias_m_s2 += step.segment<3>(6);
-  inertia += step.segment<5>(9);
-  gyro_misalignment += step.segment<6>(kGyroMisalignment);
+  inertia_coordinates += step.segment<5>(9);
+  gyro_misalignment += step.segment<6>(kGyroMisalignmentIndex);
 }
 
 Status check_rig_constants(const RigConstants& rig) {

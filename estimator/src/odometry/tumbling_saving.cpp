@@ -30,7 +30,7 @@ void visit_rig(Visit& visit, Rig& rig) {
   visit("lever_arm_m", rig.constants.lever_arm_m, -kMost, kMost);
   visit("gyro_bias_rad_s", rig.constants.gyro_bias_rad_s, -kMost, kMost);
   visit("accel_bias_m_s2", rig.constants.accel_bias_m_s2, -kMost, kMost);
-  visit("inertia", rig.constants.inertia, -kMost, kMost);
+  visit("inertia", rig.constants.inertia_coordinates, -kMost, kMost);
   visit("gyro elements", rig.constants.gyro_misalignment, -kMost, kMost);
   visit("calibration covariance", rig.covariance);
 }
@@ -137,8 +137,8 @@ std::vector<std::byte> TumblingOdometry::Impl::save_with_pose(const std::optiona
   const AngularRateStream& stream = odometry_pass_.rates().rate();
   const AngularRateStream::State& state = odometry_pass_.rate_stream_state().rate;
   const AngularRateStreamParams& used = odometry_pass_.rates().params().rate;
-  const bool estimated =
-      whole_recording_result_ ? !whole_recording_result_->report.rate.calibration_at_prior : !stream.is_at_prior(state);
+  const bool estimated = whole_recording_result_ ? !whole_recording_result_->report.rate.calibration_at_prior
+                                                 : !stream.calibration_is_prior(state);
   if (estimated || used.model.calibration) out->rig = rig_calibration();
   if (out->rig && !check_calibration(*out->rig).ok()) out->rig.reset();
   if (whole_recording_result_ && estimated) out->sensor_errors = whole_recording_result_->report.rate.sensor_errors;

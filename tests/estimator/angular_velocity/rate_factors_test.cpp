@@ -105,7 +105,7 @@ TEST(RateFactors, VanishOnATorqueFreeBody) {
   rig.lever_arm_m = {-0.022, -0.085, 0.055};
   rig.gyro_bias_rad_s = {0.1, 0.2, 0.3};
   rig.accel_bias_m_s2 = {0.5, -0.4, 0.3};
-  rig.inertia = RigConstants::inertia_basis_coordinates(R_IB * moments.asDiagonal() * R_IB.transpose());
+  rig.inertia_coordinates = RigConstants::inertia_basis_coordinates(R_IB * moments.asDiagonal() * R_IB.transpose());
   const Vector3d lever_B = R_IB.transpose() * rig.lever_arm_m;
   for (double t : {0.0, 0.3, 1.7}) {
     const AngularRateKnot knot{R_IB * body.rate(t), R_IB * body.acceleration(t)};
@@ -125,9 +125,9 @@ TEST(RateFactors, AScaleOfTheGyroShowsByTheAccelerationAlone) {
   const Vector3d moments(2.0, 2.4, 3.0);
   RigConstants rig, other;
   rig.lever_arm_m = {-0.022, -0.085, 0.055};
-  rig.inertia = RigConstants::inertia_basis_coordinates(moments.asDiagonal());
+  rig.inertia_coordinates = RigConstants::inertia_basis_coordinates(moments.asDiagonal());
   other.lever_arm_m = rig.lever_arm_m / ((1.0 + k) * (1.0 + k));
-  other.inertia = rig.inertia / (1.0 + k);
+  other.inertia_coordinates = rig.inertia_coordinates / (1.0 + k);
   for (const Vector3d& start : {Vector3d(3.0, 12.0, -5.0), Vector3d(0.0, 0.0, 14.0)}) {
     const oracles::TorqueFreeRotation body(moments, start);
     for (const double t : {0.0, 0.3, 1.7}) {
@@ -153,9 +153,9 @@ TEST(RigConstants, InertiaIsFreeOfScaleAndItsCoordinatesComeBack) {
   Eigen::Matrix3d J;
   J << 3.0, 0.1, -0.2, 0.1, 2.5, 0.3, -0.2, 0.3, 2.0;
   RigConstants rig;
-  rig.inertia = RigConstants::inertia_basis_coordinates(J);
+  rig.inertia_coordinates = RigConstants::inertia_basis_coordinates(J);
   EXPECT_LT((rig.inertia_matrix() - 3.0 / J.trace() * J).norm(), 1e-14);
-  EXPECT_LT((RigConstants::inertia_basis_coordinates(7.0 * J) - rig.inertia).norm(), 1e-14);
+  EXPECT_LT((RigConstants::inertia_basis_coordinates(7.0 * J) - rig.inertia_coordinates).norm(), 1e-14);
   EXPECT_EQ(RigConstants{}.inertia_matrix(), Eigen::Matrix3d::Identity());
 }
 

@@ -102,7 +102,7 @@ TEST(AngularRateStream, TheShapeOfABoxIsExpectedAndThatOfARodIsNot) {
   const AngularRateModel model(params.model, params.period_s);
   const auto mahalanobis = [&](const Vector3d& moments) {
     RigConstants rig = model.prior_constants();
-    rig.inertia = RigConstants::inertia_basis_coordinates(moments.asDiagonal());
+    rig.inertia_coordinates = RigConstants::inertia_basis_coordinates(moments.asDiagonal());
     return model.calibration_mahalanobis(rig);
   };
   EXPECT_NEAR(mahalanobis({8.0, 13.0, 13.0}), 1.07, 0.01);  // ratio of sides 3 : 2 : 2

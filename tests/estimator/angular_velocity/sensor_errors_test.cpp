@@ -128,7 +128,7 @@ TEST(SensorErrors, MoveTheGradientAsTheModelHasIt) {
   AngularRateEstimate estimate;
   RigConstants rig;
   rig.lever_arm_m = {-0.022, -0.085, 0.055};
-  rig.inertia << 0.05, -0.03, 0.02, 0.01, -0.02;
+  rig.inertia_coordinates << 0.05, -0.03, 0.02, 0.01, -0.02;
   estimate.knot = {{4.0, -6.0, 3.0}, {10.0, 20.0, -15.0}};
   estimate.flight_weight = 1.0;
   o.sample.angular_velocity_rad_s = estimate.knot.rate_rad_s;

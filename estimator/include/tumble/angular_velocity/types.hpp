@@ -30,7 +30,7 @@ struct AngularRateState {
 /// The 20 constants of body and IMU that AngularRateSmoother and AngularRateStream estimate together with the angular
 /// velocity.
 struct RigConstants {
-  static constexpr int kSize = 20, kGyroMisalignment = 14;
+  static constexpr int kSize = 20, kGyroMisalignmentIndex = 14;
   static constexpr double kMaxConstantMagnitude = 10.0;  ///< maximum magnitude of each constant, in its unit
   using Vector = Eigen::Matrix<double, kSize, 1>;
   using Matrix = Eigen::Matrix<double, kSize, kSize>;
@@ -39,9 +39,9 @@ struct RigConstants {
   Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();  ///< bias: reading minus true value
   Eigen::Vector3d accel_bias_m_s2 = Eigen::Vector3d::Zero();  ///< bias: reading minus true value
   /// Coordinates of the body's inertia matrix about the centre of mass, in IMU axes. The inertia matrix is scaled to
-  /// trace 3, and is the identity matrix plus the sum of inertia[i] * inertia_basis_matrix(i). If the principal moments
-  /// are equal, all five coordinates are zero.
-  Eigen::Matrix<double, 5, 1> inertia = Eigen::Matrix<double, 5, 1>::Zero();
+  /// trace 3, and is the identity matrix plus the sum of inertia_coordinates[i] * inertia_basis_matrix(i). If the
+  /// principal moments are equal, all five coordinates are zero.
+  Eigen::Matrix<double, 5, 1> inertia_coordinates = Eigen::Matrix<double, 5, 1>::Zero();
   /// Cross-axis sensitivities of the gyro's sensing elements, before the device's compensation. The sensing direction
   /// of element j has the components 1 on axis j, gyro_misalignment[2j] on axis (j+1) % 3 and gyro_misalignment[2j+1]
   /// on axis (j+2) % 3. The cross-axis sensitivities are observable only while a sensing element clips.
