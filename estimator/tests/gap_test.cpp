@@ -160,7 +160,7 @@ TEST(Gaps, ASphereContinuesAndItsCovarianceKnowsTheGap) {
       const RolledWithGap rest = roll_with_gap(1.2, 1.3, gap_s - 0.1, lag_s);
       EXPECT_EQ(rest.restarts, gap_s > 1.0 ? 1u : 0u) << lag_s << " " << gap_s;
       EXPECT_LT(rest.error_m, 0.01 * test::kPathLength_m) << lag_s << " " << gap_s;
-      EXPECT_EQ(rest.last.uncertain, gap_s > 1.0);
+      EXPECT_EQ(rest.last.position_uncertain, gap_s > 1.0);
     }
     const RolledWithGap moving = roll_with_gap(2.0, 3.2, 0.0, lag_s);
     EXPECT_EQ(moving.restarts, 1u) << lag_s;
@@ -168,7 +168,7 @@ TEST(Gaps, ASphereContinuesAndItsCovarianceKnowsTheGap) {
     EXPECT_LT(moving.error_m, test::kPathLength_m) << lag_s;  // the error is smaller than the path
     EXPECT_LT(moving.error_m, 3.0 * moving.sigma_m) << lag_s;
     EXPECT_GT(moving.yaw_sigma_rad, 0.5) << lag_s;
-    EXPECT_TRUE(moving.last.uncertain);
+    EXPECT_TRUE(moving.last.position_uncertain);
   }
 }
 

@@ -73,7 +73,7 @@ TEST(SavedRollingOdometry, ContinuesAtTheSavedPoseWithTheCalibration) {
     const RollingOdometry::Pose pose = *rebooted.newest();
     EXPECT_LT((pose.pose.position_W_m - last->position_W_m).norm(), 2e-3);
     EXPECT_LT(fresh.newest()->pose.position_W_m.norm(), 2e-3) << "negative control: without load()";
-    EXPECT_TRUE(pose.uncertain);
+    EXPECT_TRUE(pose.position_uncertain);
     EXPECT_GE(pose.pose.covariance(0, 0), last->covariance(0, 0));
     const RollingOdometry::Calibration found = before.calibration(), kept = rebooted.calibration();
     EXPECT_LT((found.sphere_centre_B_m - kCentre_m).norm(), 0.5 * kCentre_m.norm()) << "else the run estimated nothing";

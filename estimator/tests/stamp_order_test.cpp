@@ -227,8 +227,8 @@ TEST(StampOrder, ASphereContinuesAtItsNewestPoseAfterAGap) {
   EXPECT_EQ(odometry.restart_count(), 1u);
   EXPECT_EQ(poses.size(), imu.size() - 1);
   EXPECT_NEAR(poses.back().pose.position_W_m.x(), test::kPathLength_m, 0.02 * test::kPathLength_m);
-  EXPECT_FALSE(poses.front().uncertain);
-  EXPECT_TRUE(poses.back().uncertain);
+  EXPECT_FALSE(poses.front().position_uncertain);
+  EXPECT_TRUE(poses.back().position_uncertain);
 }
 
 }  // namespace

@@ -75,7 +75,7 @@ std::string_view Online::pose() {
   const int length = std::snprintf(text_, kLineMax, "%lld %.6f %.6f %.6f %.9f %.9f %.9f %.9f %s %.6f%s",
                                    static_cast<long long>(s.last_time_ns), s.sphere_centre_W_m.x(),
                                    s.sphere_centre_W_m.y(), s.sphere_centre_W_m.z(), s.q_WI.x(), s.q_WI.y(), s.q_WI.z(),
-                                   s.q_WI.w(), name(s.mode), sigma_m, s.uncertain ? " uncertain" : "");
+                                   s.q_WI.w(), name(s.mode), sigma_m, s.position_uncertain ? " uncertain" : "");
   return {text_, std::min(static_cast<std::size_t>(std::max(length, 0)), kLineMax - 1)};
 }
 

@@ -177,7 +177,8 @@ void bind_rolling_of_results(nb::module_& m) {
       .def_prop_ro(
           "at_rest", [](const R& s) { return column<bool>(s.rows, [](auto& r) { return &r.at_rest; }); }, "(N,) bool")
       .def_prop_ro(
-          "uncertain", [](const R& s) { return column<bool>(s.rows, [](auto& r) { return &r.uncertain; }); },
+          "position_uncertain",
+          [](const R& s) { return column<bool>(s.rows, [](auto& r) { return &r.position_uncertain; }); },
           "(N,) bool: True for samples in an event that made the position uncertain");
 }
 

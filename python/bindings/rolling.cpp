@@ -167,7 +167,7 @@ RollingEstimate as_estimate(const RollingOdometry::Pose& p) {
           p.velocity_covariance_B_m2_s2,
           p.mode,
           p.at_rest,
-          p.uncertain};
+          p.position_uncertain};
 }
 
 /// Returns the samples of all IMUs. The input is one triple of arrays, or lists with one array per IMU. All IMUs share

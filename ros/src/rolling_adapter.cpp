@@ -53,8 +53,8 @@ void RollingAdapter::publish_diagnostics(TimeNs time_ns) {
   const SensorHealth health = odometry_.health();
   const std::optional<RollingOdometry::Pose> newest = odometry_.newest();
   Diagnostics out;
-  out.ok = health.ok() && newest && !newest->uncertain;
-  out.message = !health.ok() ? health.message() : newest && newest->uncertain ? "position is uncertain" : "ok";
+  out.ok = health.ok() && newest && !newest->position_uncertain;
+  out.message = !health.ok() ? health.message() : newest && newest->position_uncertain ? "position is uncertain" : "ok";
   if (!newest) out.message = "no pose yet";
   add_findings(out, health);
   add_input(out, "imu", imu_);

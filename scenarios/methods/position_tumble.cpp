@@ -88,11 +88,11 @@ RollingOdometry::Params stated_params(const sim::Sensors& sensors, const SphereI
 void append_pose(const RollingOdometry::Pose& pose, double radius_m, Estimate& estimate) {
   estimate.poses.push_back(pose.pose);
   estimate.contacts.push_back(contact_label(radius_m, pose));
-  estimate.uncertain.push_back(pose.uncertain);
+  estimate.uncertain.push_back(pose.position_uncertain);
   const auto count = [&](const char* key, bool counts) {
     if (counts) estimate.health[key] += 1.0;
   };
-  count("samples_uncertain", pose.uncertain);
+  count("samples_uncertain", pose.position_uncertain);
   count("samples_slip", pose.mode == RollingMode::slip);
   count("samples_bump", pose.mode == RollingMode::bump);
   count("samples_incline", pose.mode == RollingMode::incline);
@@ -254,7 +254,7 @@ void smooth(const Prepared& prepared, Estimate& estimate) {
                  .angular_velocity_rad_s = e.w_WI_I_rad_s,
                  .mode = e.mode,
                  .at_rest = e.at_rest,
-                 .uncertain = e.uncertain},
+                 .position_uncertain = e.position_uncertain},
                 prepared.params.filter.radius_m, estimate);
   };
   std::for_each(done.begin(), done.end(), take);

@@ -36,7 +36,7 @@ RollingOdometry::Pose as_pose(const RollingEstimate& estimate) {
   out.velocity_covariance_B_m2_s2 = estimate.velocity_covariance_I_m2_s2;
   out.mode = estimate.mode;
   out.at_rest = estimate.at_rest;
-  out.uncertain = estimate.uncertain;
+  out.position_uncertain = estimate.position_uncertain;
   return out;
 }
 

@@ -61,7 +61,7 @@ void RollingOdometry::Impl::initialise_pose() {
 }
 
 RollingEstimate RollingOdometry::Impl::transform_to_world(RollingEstimate estimate) const {
-  estimate.uncertain = estimate.uncertain || restart_.has_value();
+  estimate.position_uncertain = estimate.position_uncertain || restart_.has_value();
   if (!T_world_run_origin_) return estimate;
   const Eigen::Matrix3d R = T_world_run_origin_->linear();
   Eigen::Matrix<double, 6, 6> both = Eigen::Matrix<double, 6, 6>::Zero();

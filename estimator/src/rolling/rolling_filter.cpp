@@ -38,8 +38,8 @@ Status RollingFilter::step_with_listener(const ImuSample& sample, State& state, 
     if (dt_s > RollingGapParams::kGapMinDuration_s) {
       bridge_gap(sample, dt_s, state, listener);
     } else {
-      state.average.add(sample, dt_s);
-      if (state.average.full(params_.expert.reading_s, dt_s)) process_averaged_reading(state, listener);
+      state.imu_average.add(sample, dt_s);
+      if (state.imu_average.full(params_.expert.reading_s, dt_s)) process_averaged_reading(state, listener);
     }
   } else {
     Eigen::Quaterniond q_WI = params_.q_WI_start.value_or(Eigen::Quaterniond::Identity());
@@ -49,7 +49,7 @@ Status RollingFilter::step_with_listener(const ImuSample& sample, State& state, 
     start(sample, q_WI, state);
   }
   state.last_time_ns = sample.time_ns;
-  report(state);
+  update_reported_pose(state);
   return {};
 }
 
@@ -64,8 +64,8 @@ void RollingFilter::start(const ImuSample& sample, const Eigen::Quaterniond& q_W
 }
 
 void RollingFilter::process_averaged_reading(State& state, Listener listener) const {
-  const ImuAverage reading = state.average;
-  state.average = {};
+  const ImuAverage reading = state.imu_average;
+  state.imu_average = {};
   // The rate at a node's end is interpolated between two readings, so the next reading completes the node.
   if (state.node_integrals.node_interval_s >= params_.expert.kNode_s - 0.5 * reading.length_s) {
     complete_filter_node(reading.mean.angular_velocity_rad_s, state);
@@ -76,7 +76,7 @@ void RollingFilter::process_averaged_reading(State& state, Listener listener) co
 }
 
 void RollingFilter::bridge_gap(const ImuSample& sample, double gap_s, State& state, Listener listener) const {
-  if (state.average.readings > 0) process_averaged_reading(state, listener);
+  if (state.imu_average.readings > 0) process_averaged_reading(state, listener);
   ImuSample before;
   before.angular_velocity_rad_s = state.last_rate_rad_s;
   const int pieces = rolling::gap_step_count(params_, gap_s);
@@ -121,10 +121,10 @@ void RollingFilter::complete_filter_node(const Eigen::Vector3d& next_rate_rad_s,
         state.pruned_position_covariance_m2;
     state.position_covariance_m2 += state.pruned_position_covariance_m2;
   }
-  flag_uncertain(state);
+  flag_uncertain_position(state);
   weigh_modes(state);
   move_linearisation_point(heading_lost, state);
-  constrain_position(state);
+  keep_position_at_rest(state);
   state.node_integrals = {};
   ++state.node_index;
 }
@@ -171,11 +171,11 @@ Eigen::Matrix3d RollingFilter::hypothesis_position_covariance(const State& state
   return spread / total;
 }
 
-void RollingFilter::flag_uncertain(State& state) const {
+void RollingFilter::flag_uncertain_position(State& state) const {
   const double variance_m2 = state.position_covariance_m2(0, 0) + state.position_covariance_m2(1, 1);
   const bool event = may_slip(state.hypotheses[0].mode);
   if (!event) state.variance_before_slip_m2 = variance_m2;
-  state.uncertain =
+  state.position_uncertain =
       event && variance_m2 - state.variance_before_slip_m2 > squared(RollingModeParams::kEventSigmaGrowth_m);
 }
 
@@ -193,17 +193,17 @@ void RollingFilter::weigh_modes(State& state) {
 }
 
 /// While the sphere is at rest, the reported position remains constant.
-void RollingFilter::constrain_position(State& state) const {
+void RollingFilter::keep_position_at_rest(State& state) const {
   const bool quiet = seconds(state.stationary_state.small_rate_since_ns) >=
                          std::min(rolling::kConstrainAfter_s, params_.expert.rest_detector.rest_s) &&
                      !may_slip(state.hypotheses[0].mode);
   const bool revised = state.hypotheses[0].parent != 0;
   const bool stands = quiet && !revised && state.sphere_velocity_W_m_s.norm() < rolling::kConstrainSpeed_m_s;
-  if (!stands || !state.position_constrained) {
-    state.position_constrained = false;
-    report(state);
+  if (!stands || !state.reported_position_constant) {
+    state.reported_position_constant = false;
+    update_reported_pose(state);
   }
-  state.position_constrained = stands;
+  state.reported_position_constant = stands;
 }
 
 /// After the correction, the states of all hypotheses are relative to the best hypothesis.
@@ -220,16 +220,16 @@ void RollingFilter::move_linearisation_point(bool heading_lost, State& state) co
 }
 
 const Eigen::Vector3d& RollingFilter::newest_rate_rad_s(const State& state) {
-  return state.average.readings > 0 ? state.average.mean.angular_velocity_rad_s : state.last_rate_rad_s;
+  return state.imu_average.readings > 0 ? state.imu_average.mean.angular_velocity_rad_s : state.last_rate_rad_s;
 }
 
-void RollingFilter::report(State& state) const {
-  const RollingNominalState nominal = rolling::extrapolate_nominal(params_, state.average, state.nominal);
+void RollingFilter::update_reported_pose(State& state) const {
+  const RollingNominalState nominal = rolling::extrapolate_nominal(params_, state.imu_average, state.nominal);
   const Eigen::Vector3d& rate = newest_rate_rad_s(state);
   const Eigen::Vector3d arm_W = nominal.q_WI * (params_.lever_arm_m + nominal.lever_arm_error_m);
   const Eigen::Vector3d w_W = nominal.q_WI * (rate - nominal.gyro_bias_rad_s);
   state.q_WI = nominal.q_WI;
-  if (!state.position_constrained) state.sphere_centre_W_m = nominal.p_WI_m - arm_W;
+  if (!state.reported_position_constant) state.sphere_centre_W_m = nominal.p_WI_m - arm_W;
   state.sphere_velocity_W_m_s = nominal.v_WI_m_s - w_W.cross(arm_W);
   state.mode = state.hypotheses[0].mode;
   state.contact_velocity_m_s = state.hypotheses[0].contact_velocity_W_m_s;
@@ -273,7 +273,7 @@ RollingEstimate RollingFilter::estimate(const State& state) {
   }
   out.mode = most_probable_mode(state);
   out.at_rest = state.at_rest;
-  out.uncertain = state.uncertain;
+  out.position_uncertain = state.position_uncertain;
   return out;
 }
 

@@ -47,13 +47,14 @@ Eigen::Matrix<double, 6, 6> pose_covariance(const rolling::FilterNodeRecord& nod
 }
 
 /// While the sphere is at rest, the reported position remains constant.
-void constrain_position(const rolling::ModePathNode& node, RollingSmoother::FinalSmoothingState& committed,
-                        RollingEstimate& estimate) {
+void keep_position_at_rest(const rolling::ModePathNode& node, RollingSmoother::FinalSmoothingState& committed,
+                           RollingEstimate& estimate) {
   const bool stands = node.holds_constant_position && !may_slip(node.mode) &&
                       estimate.sphere_velocity_W_m_s.norm() < rolling::kConstrainSpeed_m_s;
-  if (stands && !committed.position_constrained) committed.constrained_sphere_centre_W_m = estimate.sphere_centre_W_m;
+  if (stands && !committed.reported_position_constant)
+    committed.constrained_sphere_centre_W_m = estimate.sphere_centre_W_m;
   if (stands) estimate.sphere_centre_W_m = committed.constrained_sphere_centre_W_m;
-  committed.position_constrained = stands;
+  committed.reported_position_constant = stands;
 }
 
 RollingSmoother::EstimateCallback append_estimates_to(std::vector<RollingEstimate>& out) {
@@ -223,9 +224,9 @@ void RollingSmoother::smooth_window(const ModePath& path, std::size_t emitted, S
   pass.report_smoothed(emitted, [&](const rolling::FinalSmoothingPass::Smoothed& at) {
     RollingEstimate estimate = estimate_at(params_, at);
     if (at.node != nullptr) {
-      estimate.uncertain = events.uncertain[at.index];
+      estimate.position_uncertain = events.uncertain[at.index];
       if (params_.lag_s < kWholeRecordingLag)
-        constrain_position(at.node->mode_path_node, state.committed_state, estimate);
+        keep_position_at_rest(at.node->mode_path_node, state.committed_state, estimate);
     }
     take(estimate);
   });

@@ -202,7 +202,7 @@ TEST(RollingFilter, CallsAnEventUncertainByHowMuchItsSigmaGrows) {
     for (std::size_t k = 0; k < truth.samples.size(); ++k) {
       EXPECT_TRUE(filter.step(truth.samples[k], *state).ok());
       const double time_s = seconds(truth.samples[k].time_ns);
-      (time_s > 2.78 && time_s < 3.75 ? inside : outside) += state->uncertain;
+      (time_s > 2.78 && time_s < 3.75 ? inside : outside) += state->position_uncertain;
     }
     return std::pair(inside, outside);
   };

@@ -103,7 +103,7 @@ class RollingOdometry {
     bool at_rest = false;
     /// True after a restart, and during a slip or bump that increases the standard deviation of the position by more
     /// than RollingModeParams::kEventSigmaGrowth_m.
-    bool uncertain = false;
+    bool position_uncertain = false;
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.
@@ -194,8 +194,8 @@ class RollingOdometry {
   /// Starts a new run from the bytes that save() returned, and discards the previous state of the object. The saved
   /// calibration and saturation limits replace the initial values in the parameters, also after a later reset(). The
   /// saved biases get the initial uncertainty, because biases change at every switch-on. The new run starts at the
-  /// saved pose, with the saved covariance of this pose. All poses of the new run have the flag `uncertain`. If the
-  /// sphere may have moved since save(), call reset(pose) after load().
+  /// saved pose, with the saved covariance of this pose. All poses of the new run have the flag `position_uncertain`.
+  /// If the sphere may have moved since save(), call reset(pose) after load().
   ///
   /// `last_pose` receives the saved pose with its time in the clock of the saved run. If no pose was saved, `last_pose`
   /// is empty. On error, the object is unchanged, and the returned status names the field, the saved value and the

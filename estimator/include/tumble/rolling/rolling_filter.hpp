@@ -66,19 +66,20 @@ class RollingFilter {
     double bump_probability = 0.0;  ///< part of slip_probability for modes in which the sphere hops
     bool at_rest = false;
     bool spins_in_place = false;  ///< the sphere rotates slowly about the contact point; no update of the gyro bias
-    bool uncertain = false;  ///< an event increased the position's standard deviation by more than kEventSigmaGrowth_m
+    bool position_uncertain =
+        false;  ///< an event increased the position's standard deviation by more than kEventSigmaGrowth_m
     bool started_in_motion = false;
     std::int64_t gaps = 0;  ///< number of bridged gaps between samples
     // The errors of all contact-mode hypotheses are linearised about the nominal trajectory and calibration.
     RollingNominalState nominal;
     RollingNodeIntegrals node_integrals;
-    ImuAverage average;  ///< average of the readings that are not yet processed
+    ImuAverage imu_average;  ///< average of the readings that are not yet processed
     Eigen::Matrix3d pruned_position_covariance_m2 =
         Eigen::Matrix3d::Zero();  ///< contribution of the pruned hypotheses to the position covariance
     RestDetector::State stationary_state;
     Eigen::Vector3d low_passed_rate_rad_s = Eigen::Vector3d::Zero();
-    bool position_constrained = false;     ///< the sphere is at rest and the reported position is constant
-    double variance_before_slip_m2 = 0.0;  ///< horizontal position variance at the last time step without an event
+    bool reported_position_constant = false;  ///< the sphere is at rest and the reported position is constant
+    double variance_before_slip_m2 = 0.0;     ///< horizontal position variance at the last time step without an event
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
     std::array<Hypothesis, kHypotheses> hypotheses{};
     int hypothesis_count = 0;
@@ -127,9 +128,9 @@ class RollingFilter {
   void correct_at_rest(State& state) const;
   void choose_modes(const Eigen::Vector3d& rate_I_rad_s, bool heading_lost, State& state) const;
   void move_linearisation_point(bool heading_lost, State& state) const;
-  void report(State& state) const;
-  void flag_uncertain(State& state) const;
-  void constrain_position(State& state) const;
+  void update_reported_pose(State& state) const;
+  void flag_uncertain_position(State& state) const;
+  void keep_position_at_rest(State& state) const;
   static RollingMode most_probable_mode(const State& state);
   static const Eigen::Vector3d& newest_rate_rad_s(const State& state);
   static Eigen::Matrix3d hypothesis_position_covariance(const State& state, int first);
