@@ -23,7 +23,8 @@ bool is_about_readings(const HealthFinding& finding) {
   // A health finding about the scale factor of the gyro ends if the rotation of gravity later confirms this factor.
   if (kind == About::gyro_scale) return !finding.ended;
   return kind == About::frozen_axis || kind == About::frozen_sensor || kind == About::force_at_rest ||
-         kind == About::wrong_axes_or_signs || kind == About::inverted_accel_in_flight || kind == About::rotation;
+         kind == About::wrong_axes_or_signs || kind == About::inverted_accel_in_flight ||
+         kind == About::inconsistent_rotation;
 }
 
 bool is_about_place(const HealthFinding& finding) {

@@ -50,7 +50,7 @@ bool check_readings(const ImuDescription& imu, std::span<const ImuSample> sample
   if (!imu.is_merged) {  // several IMUs are assumed to be on a sphere, which does not rotate about a pivot
     const PivotMotionCheck pivots =
         PivotMotionCheck::of(samples, imu.gravity_m_s2, imu.gyro_range_rad_s, imu.accel_range_m_s2);
-    health.add(Kind::rotation, pivots.verdict(), kImu);
+    health.add(Kind::inconsistent_rotation, pivots.verdict(), kImu);
   }
   return confirms_gyro(plausibility, state);
 }
@@ -73,7 +73,7 @@ void check_stationary_gravity(const ImuDescription& imu, std::span<const ImuSamp
   const RestGravity gravity = rest_gravity(imu);
   RestGravity::State state;
   for (std::size_t k = 0; k < std::min(samples.size(), rates.size()); ++k) gravity.step(samples[k], rates[k], state);
-  health.add(gravity.gravity_magnitude_verdict(state).ok() ? Kind::rotation : Kind::force_at_rest,
+  health.add(gravity.gravity_magnitude_verdict(state).ok() ? Kind::inconsistent_rotation : Kind::force_at_rest,
              gravity.verdict(state), kImu);
 }
 
@@ -88,8 +88,8 @@ ImuPlausibility::Setup plausibility_setup(double gravity_m_s2, double gyro_range
 
 void add_findings(const ImuPlausibility& plausibility, const ImuPlausibility::State& state, const std::string& sensor,
                   SensorHealth& health) {
-  health.add(plausibility.frozen_s(state) > 0.0 ? Kind::frozen_sensor : Kind::rotation, plausibility.verdict(state),
-             sensor);
+  health.add(plausibility.frozen_s(state) > 0.0 ? Kind::frozen_sensor : Kind::inconsistent_rotation,
+             plausibility.verdict(state), sensor);
 }
 
 bool confirms_gyro(const ImuPlausibility& plausibility, const ImuPlausibility::State& state) {

@@ -93,7 +93,7 @@ TEST(Findings, AnEndedFindingIsReportedAsEarlier) {
 TEST(SensorHealthOfALiveRun, AGyroScaleThatGravityConfirmsLaterIsNoFault) {
   SensorHealth run, now;
   now.add(finding(About::gyro_scale));
-  now.add(finding(About::rotation));
+  now.add(finding(About::inconsistent_rotation));
   run.merge_current_findings(now);
   EXPECT_TRUE(run.findings[0].invalidates_estimate());
   run.merge_current_findings({});

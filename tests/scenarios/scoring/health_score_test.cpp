@@ -43,7 +43,7 @@ TEST(HealthScores, AFindingReportsAWrongEstimateUnlessItConcernsAnUnusedImu) {
   Estimate wrong = fast_rates(0.1);
   add_finding(finding(HealthFinding::Kind::imu_silent), wrong);
   EXPECT_EQ(scores(Kind::rate, wrong, rig()).at("health_reported"), 0.0);
-  add_finding(finding(HealthFinding::Kind::rotation), wrong);
+  add_finding(finding(HealthFinding::Kind::inconsistent_rotation), wrong);
   const auto values = scores(Kind::rate, wrong, rig());
   EXPECT_EQ(values.at("health_reported"), 1.0);
   EXPECT_EQ(values.at("health_silently_wrong"), 0.0);
@@ -62,7 +62,7 @@ TEST(HealthScores, ARunOfOursThatReportsItselfDivergedAndKeepsItsScores) {
   EXPECT_EQ(assessed("rate/tumble").status, OutcomeStatus::ok);
   add_finding(finding(HealthFinding::Kind::frozen_axis), estimate);
   EXPECT_EQ(assessed("rate/tumble").status, OutcomeStatus::ok) << "its covariance includes the fault";
-  add_finding(finding(HealthFinding::Kind::rotation), estimate);
+  add_finding(finding(HealthFinding::Kind::inconsistent_rotation), estimate);
   const Outcome diverged = assessed("rate/tumble");
   EXPECT_EQ(diverged.status, OutcomeStatus::diverged);
   EXPECT_TRUE(diverged.message.starts_with("health: imu: the gyro contradicts")) << diverged.message;
