@@ -37,8 +37,8 @@ class OdometryPass {
   /// See LidarInertialOdometry::set_start_pose().
   void set_start_pose(const Eigen::Isometry3d& T_WI) { mapper_.set_start_pose(T_WI); }
   /// See LidarInertialOdometry::use_map().
-  Status use_map(PriorMap map) { return mapper_.use_map(std::move(map)); }
-  void use_map_of_pass(const OdometryPass& other) { mapper_.use_map_of_pass(other.mapper_); }
+  Status set_prior_map(PriorMap map) { return mapper_.set_prior_map(std::move(map)); }
+  void copy_prior_map(const OdometryPass& other) { mapper_.copy_prior_map(other.mapper_); }
   /// Returns true if angular rates are available up to the time `end_ns` of the lidar's clock.
   bool has_rates_until(TimeNs end_ns) const;
   /// Returns the time, in the lidar's clock, up to which angular rates are available; empty before the first rate.

@@ -330,7 +330,8 @@ void TumblingOdometry::Impl::reset(const Eigen::Isometry3d& T_WI) {
 void TumblingOdometry::Impl::start_rate_estimation() {
   MotionRegimeStream::Params params = rate_stream_params(params_);
   params.rate.model.nominal.gyro_bias_rad_s = gyro_offset_rad_s();
-  if (const RigCalibration learnt = rig(); check_calibration(learnt).ok()) params.rate.model.calibration = learnt;
+  if (const RigCalibration learnt = rig_calibration(); check_calibration(learnt).ok())
+    params.rate.model.calibration = learnt;
   odometry_pass_.start_rate_estimation(params);
 }
 

@@ -67,7 +67,7 @@ class AngularRateStream {
   SensorHealth health(const State& state) const;
 
   /// Returns true while the estimated lever arm is no more accurate than its prior.
-  bool is_at_prior(const State& state) const;
+  bool calibration_is_prior(const State& state) const;
 
   RigCalibration calibration(const State& state) const { return {state.rig, inflated_calibration_covariance(state)}; }
 

@@ -29,8 +29,8 @@ namespace tumble {
 class SampleClock {
  public:
   struct Params {
-    static constexpr double kMemory_s = 2.0;     ///< time constant of the weights in the line fit
-    static constexpr double kJitterMin = 0.005;  ///< minimum jitter of corrected time stamps, in sample periods
+    static constexpr double kFitTimeConstant_s = 2.0;    ///< time constant of the weights in the line fit
+    static constexpr double kJitterMin_periods = 0.005;  ///< minimum jitter of corrected time stamps, in sample periods
     double jitter_max = 0.15;
 
     template <class Self, class Visitor>
@@ -43,8 +43,8 @@ class SampleClock {
   static constexpr std::size_t kFirstLineFitStampCount = 32;  ///< number of time stamps used for the first line fit
 
   struct State {
-    std::size_t samples = 0;                              ///< number of valid entries of `start`, before the first fit
-    std::array<TimeNs, kFirstLineFitStampCount> start{};  ///< time stamps collected for the first fit
+    std::size_t first_stamp_count = 0;  ///< number of valid entries of `start`, before the first fit
+    std::array<TimeNs, kFirstLineFitStampCount> first_stamps_ns{};  ///< time stamps collected for the first fit
     std::optional<TimeNs> stamp_ns;
     TimeNs time_ns = 0;
     bool line_fit_valid = false;   ///< the first line was fitted
@@ -55,7 +55,7 @@ class SampleClock {
     double mean_square_error_ns2 = 0.0,
            successive_error_product_ns2 = 0.0;  ///< mean square prediction error; mean product of successive errors
     double prediction_error_ns = 0.0;
-    std::size_t outliers = 0;  ///< number of consecutive prediction errors close to half a period
+    std::size_t consecutive_outliers = 0;  ///< number of consecutive prediction errors close to half a period
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.

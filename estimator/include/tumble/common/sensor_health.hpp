@@ -22,14 +22,15 @@ struct HealthFinding {
     force_at_rest,             ///< the specific force at rest has another magnitude than gravity, or another unit
     wrong_axes_or_signs,       ///< axes are exchanged or inverted
     inverted_accel_in_flight,  ///< the specific force in free flight fits an accelerometer with inverted axes
-    rotation,           ///< measured gravity, or motion about a pivot, contradicts the rotation that the gyro measures
-    gyro_scale,         ///< accelerometer differences between several IMUs contradict the scale of the gyros
-    lidar_scale,        ///< motion measured by the lidar has another scale than motion measured by the IMU
-    lidar_calibration,  ///< pose or time offset of the lidar relative to the IMU differ from the stated values
-    attitude_unknown,   ///< the direction of gravity is unknown; value: duration [s]
-    vertical_unknown,   ///< the direction of gravity in the map is uncertain after a start in motion
-    tracking_lost,      ///< the pose in the map is uncertain, or registered poses contradict the inertial prediction
-    not_localised,      ///< the robot is not localised in the prior map
+    inconsistent_rotation,     ///< measured gravity, or motion about a pivot, contradicts the rotation that the gyro
+                               ///< measures
+    gyro_scale,                ///< accelerometer differences between several IMUs contradict the scale of the gyros
+    lidar_scale,               ///< motion measured by the lidar has another scale than motion measured by the IMU
+    lidar_calibration,         ///< pose or time offset of the lidar relative to the IMU differ from the stated values
+    attitude_unknown,          ///< the direction of gravity is unknown; value: duration [s]
+    vertical_unknown,          ///< the direction of gravity in the map is uncertain after a start in motion
+    tracking_lost,  ///< the pose in the map is uncertain, or registered poses contradict the inertial prediction
+    not_localised,  ///< the robot is not localised in the prior map
   };
   static constexpr Kind kLast = Kind::not_localised;
 

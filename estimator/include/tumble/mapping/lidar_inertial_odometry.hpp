@@ -56,7 +56,7 @@ class LidarInertialOdometry {
 
   /// Correction of the initial tilt. After a start in motion, the initial tilt is wrong, because the mean specific
   /// force does not have the direction of gravity.
-  struct StartTilt {
+  struct StartTiltCorrection {
     Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< correction of the initial attitude
     double sigma_rad = 0.0;                                        ///< standard deviation of the corrected tilt
   };
@@ -64,9 +64,9 @@ class LidarInertialOdometry {
   /// direction of gravity in the map. The result is empty after a start at rest, before the map starts, and after
   /// localisation in a prior map. If the standard deviation of the computed tilt exceeds half the initial one, the
   /// result is the argument of set_start_tilt(), if any.
-  std::optional<StartTilt> start_tilt() const;
+  std::optional<StartTiltCorrection> start_tilt_correction() const;
   /// Call set_start_tilt() before the first sweep.
-  void set_start_tilt(const StartTilt& tilt);
+  void set_start_tilt_correction(const StartTiltCorrection& tilt);
 
   /// Sets the map of an earlier run as prior map, and starts the localisation of the robot in the prior map. Call
   /// set_prior_map() before the first sweep.
@@ -79,7 +79,7 @@ class LidarInertialOdometry {
   Status set_prior_map(PriorMap map);
   /// Copies the prior map, if any, from `other`, and restarts the localisation. The localisation searches near the pose
   /// of set_start_pose(), or without a start pose near PriorMap::T_prior_map_imu.
-  void use_map_of_pass(const LidarInertialOdometry& other);
+  void copy_prior_map(const LidarInertialOdometry& other);
   /// Returns `degenerate` if a prior map is set but the robot is not yet localised.
   Status localised() const;
   /// Transforms poses that were reported before the localisation to the frame of the prior map. The covariances then
@@ -96,7 +96,7 @@ class LidarInertialOdometry {
   /// Sets an odometer reading for the prediction of the next sweep's pose. An odometer reading that extends beyond the
   /// next sweep by more than 20 ms is ignored. The odometer reading is fused with the inertial prediction, weighted by
   /// their covariances. Each sweep uses only the odometer reading of the last call of add_reading().
-  Status add_reading(const OdometerReading& reading);
+  Status set_odometer_reading(const OdometerReading& reading);
 
   /// Registers a sweep of points fired in [start_ns, end_ns]. Consecutive sweeps must not overlap. A point with NaN
   /// coordinates is a laser pulse without a return.

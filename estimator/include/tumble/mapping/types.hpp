@@ -49,7 +49,7 @@ struct LidarImuCalibration {
 
 /// Returns `out_of_range` if `deviations` (of LidarImuCalibrationPrior::distance_in_sigmas()) exceeds
 /// kDistanceMax_sigmas. The stated calibration is then probably wrong.
-Status distance_verdict(double deviations);
+Status check_calibration_distance(double deviations);
 
 /// Calibration that the caller states, with standard deviations of the lidar's orientation (per axis), position (per
 /// axis) and time offset. A standard deviation of 0 means that the stated value is exact.
@@ -118,7 +118,7 @@ using OdometerReading = std::variant<VelocityReading, MotionReading>;
 /// Returns `non_finite` if a number is not finite. Returns `out_of_range` if a standard deviation is not above 0, a
 /// covariance is not positive definite, or a rotation matrix is not orthonormal. Returns `time_order` if a motion ends
 /// before or at its start.
-Status check_reading(const OdometerReading& reading);
+Status check_odometer_reading(const OdometerReading& reading);
 TimeNs reading_start_ns(const OdometerReading& reading);
 TimeNs reading_end_ns(const OdometerReading& reading);
 
@@ -189,7 +189,7 @@ struct SweepReport {
   /// Final poses of the oldest sweep in the window of the fixed-lag smoother. Later sweeps no longer change these
   /// poses. The vector is empty until `window_sweeps` sweeps have arrived. With the default `window_sweeps` of 2,
   /// `smoothed` contains the poses of the previous sweep.
-  std::vector<PoseState> smoothed;
+  std::vector<PoseState> smoothed_trajectory;
   double inlier_ratio = 0.0;      ///< fraction of the registered points that are inliers
   double eigenvalue_ratio = 0.0;  ///< smallest / largest eigenvalue of the scaled information matrix of the pose
   /// standard deviation of the pose in the least constrained direction, from the lidar points alone; 0: the sweep was
@@ -198,7 +198,7 @@ struct SweepReport {
   /// Normalised innovation sqrt(d' P^-1 d / 9). The vector d contains the registration's nine corrections of predicted
   /// position, attitude and velocity, and P is their predicted covariance. With correct covariances, the mean is at
   /// most 1; 0: the sweep was not aligned.
-  double innovation = 0.0;
+  double normalised_innovation = 0.0;
   /// Standard deviation of the position relative to the nearby map points. The covariance of `pose` also includes the
   /// map's drift and tilt, which grow with the travelled distance.
   double position_in_map_sigma_m = 0.0;
@@ -213,10 +213,10 @@ struct SweepReport {
   /// points from the IMU, so all six components are lengths.
   Eigen::Matrix<double, 6, 1> least_constrained_direction = Eigen::Matrix<double, 6, 1>::Zero();
   Eigen::Vector3d mean_saturation_deficit_rad_s =
-      Eigen::Vector3d::Zero();        ///< mean correction of the rate on clipped gyro axes
-  std::size_t points_used = 0;        ///< finite returns within the range limits that do not hit the robot
-  std::size_t isolated_points = 0;    ///< unused returns that no neighbouring beam confirms
-  std::size_t points_registered = 0;  ///< usable points after downsampling to one point per voxel
+      Eigen::Vector3d::Zero();              ///< mean correction of the rate on clipped gyro axes
+  std::size_t points_used = 0;              ///< finite returns within the range limits that do not hit the robot
+  std::size_t isolated_points_dropped = 0;  ///< unused returns that no neighbouring beam confirms
+  std::size_t points_registered = 0;        ///< usable points after downsampling to one point per voxel
   std::size_t map_points_added = 0;
   /// true if the poses are in the frame of the prior map
   bool in_prior_map = false;

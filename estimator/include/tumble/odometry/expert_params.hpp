@@ -44,7 +44,7 @@ struct TumblingExpertParams {
   MotionRegimeStream::Params rate = default_rate_params();
   /// Parameters of the mapping. By default, the direction of gravity and the errors of rates on clipped gyro axes are
   /// unknowns of the registration.
-  OdometryParams mapping = mapping_defaults();
+  OdometryParams mapping = default_mapping_params();
   /// Parameters of the correction of IMU time stamps that a host computer assigned.
   SampleClock::Params stamps;
   SecondMappingPassParams second_mapping_pass;
@@ -53,7 +53,7 @@ struct TumblingExpertParams {
   /// Returns the names of parameters that TumblingOdometry computes from other parameters. A name that ends in '*'
   /// stands for all names that start with the text before the '*'. TumblingOdometry ignores values that a user sets for
   /// computed parameters.
-  static std::span<const char* const> derived_fields();
+  static std::span<const char* const> computed_parameter_names();
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {

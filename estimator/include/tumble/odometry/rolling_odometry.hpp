@@ -60,7 +60,7 @@ class RollingOdometry {
 
     /// Returns the names of parameters that RollingOdometry computes from other parameters and from data sheets.
     /// RollingOdometry ignores values that a user sets for computed parameters.
-    static std::span<const char* const> derived_fields();
+    static std::span<const char* const> computed_parameter_names();
 
     /// Increases the prior standard deviations for uncalibrated IMUs without data sheet, at unknown positions in the
     /// sphere. A sloped floor becomes very improbable, because the accelerometer bias of an uncalibrated IMU resembles
@@ -175,7 +175,7 @@ class RollingOdometry {
 
   /// Returns the state of the fusion of several IMUs (attitude/detail/imu_merge.hpp). The state contains which IMUs
   /// repeat one reading (frozen), contradict the other IMUs, or have a time offset.
-  const ImuMergeState& imus() const;
+  const ImuMergeState& imu_merge_state() const;
 
   /// Returns the number of readings of all IMUs that OutlierFilter rejected.
   std::size_t rejected_readings() const;

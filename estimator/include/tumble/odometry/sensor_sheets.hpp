@@ -36,7 +36,7 @@ struct ImuDataSheet {
 /// Returns the largest reading that is certainly unsaturated: 98 % of a range from a data sheet. Returns infinity if
 /// the range is unknown (0). The 2 % are a margin for scale errors: a device that multiplies its readings by
 /// calibration factors can saturate slightly below the stated range.
-double range_below_saturation(double stated_range);
+double max_unsaturated_reading(double stated_range);
 
 /// Range limits in the data sheet of a lidar. The estimators drop lidar returns outside of the limits.
 struct LidarDataSheet {

@@ -143,7 +143,7 @@ class TumblingOdometry {
   /// frame of the prior map. The function reset() keeps the prior map and localises the robot again. If a prior map is
   /// set, the argument of reset(pose) is a pose in the frame of the prior map. Returns `ok` or an error of
   /// LidarInertialOdometry::use_map().
-  Status use_map(PriorMap map);
+  Status set_prior_map(PriorMap map);
   /// Processes an IMU sample, and registers each sweep that ended at least `lag_s` before the sample. Time stamps must
   /// increase. Returns `non_finite`, `out_of_range`, `time_order` or `gap` if the sample is rejected. A single wrong
   /// time stamp causes the loss of only one sample. After a gap of more than a second, add_imu() rejects the first
@@ -227,7 +227,7 @@ class TumblingOdometry {
   std::optional<AngularRateState> newest_rate() const;
   /// Returns the newest smoothed angular velocity, which is about `lag_s` old. Returns an empty value during the first
   /// `lag_s` of a run.
-  const std::optional<AngularRateState>& smoothed_rate() const;
+  const std::optional<AngularRateState>& newest_smoothed_rate() const;
   /// Returns the estimated calibration of the IMU on the body (angular_velocity/types.hpp): lever arm, biases,
   /// inertia ratios and gyro axis directions.
   RigCalibration rig_calibration() const;
@@ -251,7 +251,7 @@ class TumblingOdometry {
   const LidarInertialOdometry& mapper() const;
   /// Returns the angular velocities at all samples, the health findings, and the results of the mapping for a whole
   /// recording (detail/recording_estimate.hpp). Returns null before finish(), or if `lag_s` is not kWholeRecording.
-  const WholeRecordingEstimate* recording() const;
+  const WholeRecordingEstimate* whole_recording_result() const;
 
   /// Saves calibration, saturation limits, map and newest pose as bytes with a checksum, for load() after a reboot. The
   /// calibration consists of rig(), the detected delay and errors of the IMU, and pose and time offset of the lidar,

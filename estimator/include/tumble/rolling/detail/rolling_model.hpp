@@ -21,7 +21,8 @@ struct RollingEstimate {
   Eigen::Matrix3d velocity_covariance_I_m2_s2 = Eigen::Matrix3d::Zero();
   RollingMode mode = RollingMode::grip;
   bool at_rest = false;
-  bool uncertain = false;  ///< the position is uncertain after a slip or bump: RollingModeParams::kEventSigmaGrowth_m
+  bool position_uncertain =
+      false;  ///< the position is uncertain after a slip or bump: RollingModeParams::kEventSigmaGrowth_m
 };
 
 /// Nominal motion and calibration, about which the error-state Kalman filters are linearised.

@@ -92,7 +92,7 @@ class RollingSmoother {
     rolling::SmoothingCheckpoint checkpoint;
     double slip_start_variance_m2 = 0.0;  ///< position variance at the start of the slip or bump
     Eigen::Vector3d constrained_sphere_centre_W_m = Eigen::Vector3d::Zero();
-    bool position_constrained = false;
+    bool reported_position_constant = false;
     bool started = false;
     bool operator==(const FinalSmoothingState&) const = default;
   };
