@@ -65,10 +65,10 @@ Method slam_published();
 Method slam_tumble_lag();
 Method slam_tumble_live();
 
-/// Returns a copy of slam/tumble_lag or slam/tumble_live that localises in a prior map (TumblingOdometry::use_map), or
-/// nothing for other methods. The health value `prior_map_sweep` is the number of the sweep at which the run was
-/// localised in the prior map, or 0. Before the localisation, poses of slam/tumble_live are in a local frame. At the
-/// end of the run, slam/tumble_lag transforms earlier poses to the frame of the prior map.
+/// Returns a copy of slam/tumble_lag or slam/tumble_live that localises in a prior map
+/// (TumblingOdometry::set_prior_map), or nothing for other methods. The health value `prior_map_sweep` is the number of
+/// the sweep at which the run was localised in the prior map, or 0. Before the localisation, poses of slam/tumble_live
+/// are in a local frame. At the end of the run, slam/tumble_lag transforms earlier poses to the frame of the prior map.
 std::optional<Method> localised_in(const Method& method, std::shared_ptr<const PriorMap> map);
 
 /// Settings and parameter values of a method that runs a position method first.

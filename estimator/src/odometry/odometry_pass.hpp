@@ -36,7 +36,7 @@ class OdometryPass {
   Status add_imu(const ImuSample& sample);
   /// See LidarInertialOdometry::set_start_pose().
   void set_start_pose(const Eigen::Isometry3d& T_WI) { mapper_.set_start_pose(T_WI); }
-  /// See LidarInertialOdometry::use_map().
+  /// See LidarInertialOdometry::set_prior_map().
   Status set_prior_map(PriorMap map) { return mapper_.set_prior_map(std::move(map)); }
   void copy_prior_map(const OdometryPass& other) { mapper_.copy_prior_map(other.mapper_); }
   /// Returns true if angular rates are available up to the time `end_ns` of the lidar's clock.

@@ -23,9 +23,9 @@ namespace tumble {
 /// times.
 ///
 /// SampleClock does not change the first 31 time stamps. Later time stamps also remain unchanged while their jitter is
-/// outside of [kJitterMin, jitter_max] sample periods. The same applies if successive deviations of the time stamps
-/// from the fitted line are strongly correlated. Set `jitter_max` to 0 if a host computer triggers the samples at
-/// irregular times and assigns exact time stamps.
+/// outside of [kJitterMin_periods, jitter_max] sample periods. The same applies if successive deviations of the time
+/// stamps from the fitted line are strongly correlated. Set `jitter_max` to 0 if a host computer triggers the samples
+/// at irregular times and assigns exact time stamps.
 class SampleClock {
  public:
   struct Params {

@@ -63,9 +63,9 @@ class LidarInertialOdometry {
   /// Returns a correction of the initial tilt for a second run over the same data, computed from the estimated
   /// direction of gravity in the map. The result is empty after a start at rest, before the map starts, and after
   /// localisation in a prior map. If the standard deviation of the computed tilt exceeds half the initial one, the
-  /// result is the argument of set_start_tilt(), if any.
+  /// result is the argument of set_start_tilt_correction(), if any.
   std::optional<StartTiltCorrection> start_tilt_correction() const;
-  /// Call set_start_tilt() before the first sweep.
+  /// Call set_start_tilt_correction() before the first sweep.
   void set_start_tilt_correction(const StartTiltCorrection& tilt);
 
   /// Sets the map of an earlier run as prior map, and starts the localisation of the robot in the prior map. Call
@@ -95,7 +95,7 @@ class LidarInertialOdometry {
 
   /// Sets an odometer reading for the prediction of the next sweep's pose. An odometer reading that extends beyond the
   /// next sweep by more than 20 ms is ignored. The odometer reading is fused with the inertial prediction, weighted by
-  /// their covariances. Each sweep uses only the odometer reading of the last call of add_reading().
+  /// their covariances. Each sweep uses only the odometer reading of the last call of set_odometer_reading().
   Status set_odometer_reading(const OdometerReading& reading);
 
   /// Registers a sweep of points fired in [start_ns, end_ns]. Consecutive sweeps must not overlap. A point with NaN

@@ -125,8 +125,8 @@ class RollingOdometry {
   /// A single wrong time stamp causes the loss of only one sample. After a gap of more than a second, add_imus()
   /// rejects the first sample, returns `gap`, and restarts with the next sample. If the clock steps back, add_imus()
   /// rejects samples for 0.2 s, returns `time_order`, and then restarts. A restart completes the poses of the old run,
-  /// and starts a new run at the newest pose, like reset(pose). Poses after a restart have the flag `uncertain`, and
-  /// their covariance includes the unknown motion during the gap.
+  /// and starts a new run at the newest pose, like reset(pose). Poses after a restart have the flag
+  /// `position_uncertain`, and their covariance includes the unknown motion during the gap.
   Status add_imus(std::span<const ImuSample> samples);
   /// Processes a sample of a sphere with one IMU. Returns `ok` or an error of add_imus().
   Status add_imu(const ImuSample& sample) { return add_imus({&sample, 1}); }

@@ -138,11 +138,11 @@ class TumblingOdometry {
   ~TumblingOdometry();
 
   /// Sets the map of an earlier run as prior map, and starts the localisation of the robot in the prior map. Call
-  /// use_map() before the first sweep. Until the robot is localised, poses are not in the frame of the prior map, and
-  /// health() reports the missing localisation. After localisation, `report.in_prior_map` is true, and poses are in the
-  /// frame of the prior map. The function reset() keeps the prior map and localises the robot again. If a prior map is
-  /// set, the argument of reset(pose) is a pose in the frame of the prior map. Returns `ok` or an error of
-  /// LidarInertialOdometry::use_map().
+  /// set_prior_map() before the first sweep. Until the robot is localised, poses are not in the frame of the prior map,
+  /// and health() reports the missing localisation. After localisation, `report.in_prior_map` is true, and poses are in
+  /// the frame of the prior map. The function reset() keeps the prior map and localises the robot again. If a prior map
+  /// is set, the argument of reset(pose) is a pose in the frame of the prior map. Returns `ok` or an error of
+  /// LidarInertialOdometry::set_prior_map().
   Status set_prior_map(PriorMap map);
   /// Processes an IMU sample, and registers each sweep that ended at least `lag_s` before the sample. Time stamps must
   /// increase. Returns `non_finite`, `out_of_range`, `time_order` or `gap` if the sample is rejected. A single wrong
@@ -288,10 +288,10 @@ class TumblingOdometry {
 /// in little-endian order. A point needs 28 bytes. Cost: O(points).
 std::vector<std::byte> save_map(std::span<const MapPoint> points);
 
-/// Reads map points from the bytes that save_map() returned, for LidarInertialOdometry::use_map(). On error, `points`
-/// is unchanged, and the returned status names the field, the value and the bound. The error `insufficient_data` means
-/// truncated bytes. The errors `non_finite` and `out_of_range` mean damaged bytes, bytes without a map, another format
-/// version, or points that check_map_points() rejects.
+/// Reads map points from the bytes that save_map() returned, for LidarInertialOdometry::set_prior_map(). On error,
+/// `points` is unchanged, and the returned status names the field, the value and the bound. The error
+/// `insufficient_data` means truncated bytes. The errors `non_finite` and `out_of_range` mean damaged bytes, bytes
+/// without a map, another format version, or points that check_map_points() rejects.
 Status load_map(std::span<const std::byte> bytes, std::vector<MapPoint>& points);
 
 }  // namespace tumble

@@ -28,9 +28,9 @@ class WaitingReadings {
   static constexpr auto kExtrapolation_ns = static_cast<TimeNs>(1e9 * SweepTrajectory::kExtrapolation_s);
 
   /// Stores an odometer reading; readings may arrive in any order. The reading's time must be after `done_ns`, the end
-  /// of the last registered sweep, and at most `latest_ns`. Returns an error of check_reading(), `time_order` if the
-  /// reading's sweep is already registered, or `out_of_range` (time after `latest_ns`, or more than `most` waiting
-  /// readings).
+  /// of the last registered sweep, and at most `latest_ns`. Returns an error of check_odometer_reading(), `time_order`
+  /// if the reading's sweep is already registered, or `out_of_range` (time after `latest_ns`, or more than `most`
+  /// waiting readings).
   Status add(const OdometerReading& reading, TimeNs done_ns, TimeNs latest_ns, std::size_t most = kReadingsMax);
 
   /// Returns the last odometer reading within a sweep, and deletes all readings up to `end_ns`. Earlier readings of the
