@@ -27,8 +27,7 @@ struct SampleInterval {
 
 SampleInterval between(const Vector3d& value, const Vector3d& change, const ImuSamplePair& near, double noise,
                        double error, const AuxiliaryImu& auxiliary_imu) {
-  // The standard deviation of the interpolated reading includes the interpolation error and the clock error of the
-  // auxiliary IMU.
+  // The standard deviation of an auxiliary IMU's interpolated reading includes interpolation error and clock error.
   const double crooked =
       near.interpolation_weight * (1.0 - near.interpolation_weight) + auxiliary_imu.clock_error_s / near.length_s;
   const double scaled = auxiliary_imu.scale_error * value.norm();

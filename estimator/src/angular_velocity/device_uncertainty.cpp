@@ -25,7 +25,7 @@ void set_normal_equations(const SensorErrorInformation& evidence, const Vector& 
   }
 }
 
-// See rate_stream.md (R102). Returns NaN if the information matrix is indefinite.
+// See rate_stream.md (R102).
 double log_odds(const SensorErrorInformation& evidence, const Vector& deviation, Matrix& system) {
   set_normal_equations(evidence, deviation, kOddsEvidenceWeight, system);
   const Eigen::LLT<Eigen::Ref<Matrix>> factor(system);
@@ -40,8 +40,8 @@ bool corrected_covariance(const SensorErrorInformation& evidence, const Vector& 
   constexpr int kRest = SensorErrors::kSize - SensorErrors::kGSensitivity;
   constexpr double kSensorErrorEvidenceWeight = SensorErrorUncertainty::kSensorErrorEvidenceWeight;
   set_normal_equations(evidence, deviation, kSensorErrorEvidenceWeight, work.normal_matrix);
-  // Estimated scale and misalignment errors are kept at zero (heuristic). Errors of the free-flight equations change
-  // the residuals in a similar way as scale and misalignment errors.
+  // Estimated scale and misalignment errors are kept at zero (heuristic), because errors of the free-flight equations
+  // change the residuals similarly.
   Vector mean = Vector::Zero();
   const Eigen::Matrix<double, kRest, kRest> rest = work.normal_matrix.bottomRightCorner<kRest, kRest>();
   mean.tail<kRest>() =
@@ -50,7 +50,7 @@ bool corrected_covariance(const SensorErrorInformation& evidence, const Vector& 
   const Eigen::LLT<Eigen::Ref<Matrix>> factor(work.normal_matrix);
   if (factor.info() != Eigen::Success) return false;
   for (int j = 0; j < SensorErrors::kSize;
-       ++j) {  // column by column, because a product of all columns would use more stack
+       ++j) {  // solved column by column, because a product of all columns would use more stack
     const Vector column = factor.solve(deviation[j] * Vector::Unit(j));
     work.corrected_covariance.col(j) = deviation.cwiseProduct(column) + mean[j] * mean;
   }

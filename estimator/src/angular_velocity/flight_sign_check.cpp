@@ -14,16 +14,18 @@ namespace tumble {
 
 namespace {
 
-constexpr double kFlightReading_s = 0.01;  // averaging time of readings, so that the sample rate does not matter
+constexpr double kFlightReading_s = 0.01;  // averaging time of IMU readings, independent of the sample rate
 constexpr double kLeverArmMax_m = 1e3;     // maximum coordinate of a stated lever arm
-constexpr double kForceMin_m_s2 = 2.5;     // a smaller force of the rotation is mostly noise and bias
-constexpr double kTolerance = 0.25;        // tolerance of the agreement, as a fraction of the force of free flight
-constexpr double kRun_s = 0.02;            // minimum duration of agreement, which excludes chance on the ground
-constexpr double kFlightGapMax_s = 0.1;    // a longer gap resets the current run
+constexpr double kForceMin_m_s2 = 2.5;     // a smaller specific force of the rotation is mostly noise and bias
+// tolerated deviation from free flight, as a fraction of the predicted specific force
+constexpr double kTolerance = 0.25;
+// minimum duration of agreement with free flight, so that motion on the ground rarely agrees by chance
+constexpr double kRun_s = 0.02;
+constexpr double kFlightGapMax_s = 0.1;  // a longer data gap restarts the duration of agreement
 constexpr double kAlternativeMin_s = 0.1, kAlternativeRatioMin = 4.0, kThrownRatioMin = 2.0;
-constexpr double kGroupsPerSide =
-    0.05;                           // minimum squared component of the lever arm across a saturated axis, as a fraction
-constexpr double kBelowRail = 0.1;  // fraction of the saturation level by which a recovered rate may be below the level
+constexpr double kGroupsPerSide = 0.05;  // minimum fraction of the squared lever arm that is perpendicular to a
+                                         // saturated axis
+constexpr double kBelowRail = 0.1;       // tolerated fraction by which a recovered rate is below the saturation level
 
 struct MirroredAxes {
   std::array<double, 3> mirror_signs;

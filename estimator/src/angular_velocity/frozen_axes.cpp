@@ -23,12 +23,13 @@ constexpr double kAxisFrozen_s = 0.5;  // longest time for which a working axis 
 // earlier repetition.
 constexpr double kMinRepetitionRatio = 10.0;
 constexpr double kPossibleRailRatio = 0.9;  // fraction of the stated range above which a reading may be saturated
-constexpr double kExtremeRatio = 0.5;       // the same fraction for the extreme reading of an axis
+// fraction of the stated range above which an axis' extreme reading may be saturated
+constexpr double kExtremeRatio = 0.5;
 constexpr double kMotionQuanta = 50.0;
 constexpr double kRotating_rad_s = 0.3;    // change of another gyro axis that indicates motion
 constexpr double kMotionForce_m_s2 = 1.0;  // change of another accelerometer axis that indicates motion
 constexpr double kChanging =
-    0.2;  // minimum fraction of samples in which another axis changes, for a log five times faster than the sensor
+    0.2;  // minimum fraction of samples in which another axis changes; allows logs that repeat each reading five times
 constexpr bool is_gyro(std::size_t channel) {
   return channel < 3;
 }

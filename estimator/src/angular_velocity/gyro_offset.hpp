@@ -20,7 +20,7 @@ class GyroOffset {
 
   struct State {
     RestDetector::State stationary_state;
-    std::optional<TimeNs> first_ns;  ///< time of the first sample
+    std::optional<TimeNs> first_ns;
     bool offset_decided = false;
   };
 

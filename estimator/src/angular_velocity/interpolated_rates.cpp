@@ -19,7 +19,7 @@ constexpr double kReadingTimeSigma_samples = 0.29, kClockedReadingSigma_samples 
 struct TimedReading {
   double time_s = 0.0;
   Vector3d rate_rad_s = Vector3d::Zero();
-  bool read = false;  ///< all axes are measured
+  bool read = false;
 };
 
 Vector3d rate_of_change(const TimedReading& a, const TimedReading& b) {

@@ -10,7 +10,7 @@ namespace tumble {
 
 namespace {
 
-// A gyro's filter may lower the first and last saturated readings: one hand-held device read up to 2 % below its level.
+// A gyro's low-pass filter may lower the first and last saturated readings, by up to 2 % in one hand-held device.
 constexpr std::size_t kReach = 2;
 constexpr double kRoundedPeakRatio = 0.03;
 

@@ -103,7 +103,7 @@ void inflate_covariance_at_plateaus(const SaturationPlanes& planes, const MinSat
         if (first == 0 || last + 1 == count || first == last) continue;
         const double rise =
             rise_above_plateau(static_cast<double>(last - first + 1), top - value(first - 1), top - value(last + 1));
-        if (!(rise > 0.0)) continue;  // no maximum
+        if (!(rise > 0.0)) continue;  // the readings have no maximum
         if (least.is_below_min_saturation_level(observations[first].sample.angular_velocity_rad_s, axis)) continue;
         for (std::size_t i = first; i <= last; ++i) {
           AngularRateObservation& o = observations[i];

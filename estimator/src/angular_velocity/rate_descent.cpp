@@ -27,7 +27,7 @@ constexpr double kStepDeviations = 0.1;
 constexpr double kVarianceUnknown = 100.0;  // variance of a clipped axis at the start, (rad/s)^2
 
 // Computes initial rates with a smoother and the published rate recovery (SaturationAwareRateEstimator). Clipped
-// readings are lower bounds of the rates. The samples must be valid.
+// readings are lower bounds of the rates.
 std::vector<AngularRateEstimate> first_guess(std::span<const AngularRateObservation> observations,
                                              const AngularRateModelParams& model, const AngularRateModel& derived) {
   double smallest = model.kRateMax_rad_s;
@@ -130,7 +130,7 @@ bool run_gauss_newton(const AngularRateSmoother::Params& params, const AngularRa
 }
 
 // Returns the sum of the square roots of all flight weights, which measures the agreement with free flight:
-// rate_smoother.md (R31). `share` receives the fraction of flight samples among the samples with a clipped axis.
+// rate_smoother.md (R31). `share` receives the fraction of free-flight samples among the samples with a clipped axis.
 double explained_force_fraction(std::span<const AngularRateObservation> observations,
                                 std::span<const AngularRateEstimate> estimates, double& share) {
   double sum = 0.0, unmeasured_axes = 0.0, flight = 0.0;

@@ -17,8 +17,8 @@ class GaussNewtonRateStep {
   /// Returns false if the normal equations are not positive definite.
   bool factorise(const AngularRateModel& model, std::span<const AngularRateEstimate> estimates,
                  const RigConstants& rig);
-  /// Adds the last step, scaled so that no angular rate changes by more than step_max. Returns the largest change of an
-  /// angular rate in the step before scaling.
+  /// Adds the last Gauss-Newton step, scaled so that no angular rate changes by more than step_max. Returns the largest
+  /// change of an angular rate in the step before scaling.
   double apply(const AngularRateModel& model, double step_max, std::span<AngularRateEstimate> estimates,
                RigConstants& rig) const;
 
@@ -64,8 +64,8 @@ struct RateSolution {
 };
 
 /// Returns false if the normal equations are not positive definite. If most clipped samples are classified as contact,
-/// solve() repeats the optimisation with other contact thresholds. A wrong initial lever arm may have led to a local
-/// minimum.
+/// solve() repeats the optimisation with other flight thresholds. Other flight thresholds help if a wrong initial lever
+/// arm has led to a local minimum.
 bool solve(const AngularRateSmoother::Params& params, const AngularRateModel& model,
            std::span<const AngularRateObservation> observations, RateSolution& solution, AngularRateReport& health);
 

@@ -52,7 +52,6 @@ RigConstants::Matrix covariance_of(const AngularRateModelParams& p) {
 // additional standard deviation [rad/s] of a partly saturated gyro reading during ground contact
 constexpr double kSubsampleInContact = 0.25;
 
-// indices in RigConstants::vector()
 constexpr int kLever = 0, kAccelBias = 6, kInertia = 9;
 
 Eigen::Matrix3d flight_force_covariance(const AngularRateFactor& f, const RigConstants::Matrix& rig) {
@@ -211,9 +210,9 @@ double AngularRateModel::gyro_information(const AngularRateObservation& observat
   return 1.0 / (lost * lost + impact * impact);
 }
 
-// In contact, the contact force is modelled as an additional error of the measured specific force. The additional error
-// in contact has zero mean, and its standard deviation is proportional to the estimated contact force: rate_smoother.md
-// (R20).
+// In contact, the contact force is modelled as an additional error of the measured specific force. The error of the
+// specific force due to contact has zero mean, and a standard deviation proportional to the estimated contact force:
+// rate_smoother.md (R20).
 AngularRateModel::ForceFactor AngularRateModel::force_factor(const AngularRateObservation& observation,
                                                              const AngularRateEstimate& estimate,
                                                              const RigConstants& rig) const {

@@ -39,7 +39,7 @@ Eigen::Matrix3d axes_of_auxiliary(const Eigen::Matrix3d& R_CI, const SensingDire
 }
 
 // Returns the standard deviation of a reading due to an uncertain sensing direction. `most` is an upper bound of the
-// rate or force along the other axes.
+// rate or specific force along the other axes.
 double sensing_direction_sigma(const SensingDirections& elements, bool is_element_clipped, int j, double most) {
   return is_element_clipped ? elements.cross_axis_slope_sigma[j] * most : 0.0;
 }

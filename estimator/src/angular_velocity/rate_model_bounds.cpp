@@ -48,9 +48,8 @@ GaussianMoments truncated_gaussian_moments(const GaussianMoments& from, double b
 }
 
 // Returns a new Gaussian factor that approximates the lower bound `bound` by expectation propagation: rate_smoother.md
-// (R22), (R25). `now` is the previous Gaussian factor, which `marginal` includes. `share` in (0, 1] is the weight of
-// the new factor in the average of new and previous factor. `variance_max` limits the variance of the cavity
-// distribution, which is `marginal` divided by the factor `now`.
+// (R22), (R25). `share` in (0, 1] is the weight of the new factor in the average of new and previous factor.
+// `variance_max` limits the variance of the cavity distribution, which is `marginal` divided by the factor `now`.
 GaussianLikelihoodApproximation refined_bound_approximation(const GaussianMoments& marginal,
                                                             const GaussianLikelihoodApproximation& now, double bound,
                                                             double bound_variance, double variance_max, double share) {

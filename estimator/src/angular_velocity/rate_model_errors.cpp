@@ -7,8 +7,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Below this flight weight, the force residual does not change the calibration, because a contact force could cause a
-// large error of the calibration.
+// Below this flight weight, the specific-force residual does not change the calibration, because contact forces would
+// falsify the calibration.
 constexpr double kRigWeightMin = 0.05;
 
 }  // namespace
@@ -110,14 +110,14 @@ void AngularRateModel::add_sensor_errors(const AngularRateObservation& observati
 
   if (rig_spread || has_no_error_information(estimate)) return;
   if (observation.clipping.accel != 0 && observation.accel_sensing_directions.has_misaligned_axes())
-    return;  // tilted elements mix the axes
+    return;  // misaligned sensing elements mix the output axes
   auto [flight, information] = force_factor(observation, estimate, rig);
   Vector3d jacobian_delay;
   (void)this->flight(observation, estimate.knot, rig, &jacobian_delay);
   const Vector3d curvature = flight_angular_jerk(estimate.knot, rig);
   flight.jacobian_knot.rightCols<3>() /= time_scale_s_;
   for (int j = 0; j < 3; ++j) {
-    if (flight.jacobian_knot.row(j).isZero()) continue;  // the lower bound of the element is satisfied
+    if (flight.jacobian_knot.row(j).isZero()) continue;  // the lower bound from the saturated element is satisfied
     Row by_errors = Row::Zero();
     by_errors.segment<3>(SensorErrors::kAccel + 3 * j) = force.transpose();
     by_errors[SensorErrors::kDelay] = jacobian_delay[j];

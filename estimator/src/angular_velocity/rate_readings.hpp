@@ -15,9 +15,9 @@ namespace tumble {
 /// `known_params` contains the prior calibration. The priors of the cross-axis sensitivities are from the detected
 /// planes of saturated readings (SaturationPlane).
 struct AngularRateReadings {
-  std::vector<AngularRateObservation> observations;  ///< one per sample
+  std::vector<AngularRateObservation> observations;
   AngularRateModelParams known_params;
-  SaturationPlanes gyro_planes;  ///< planes of saturated readings of the gyro that are used
+  SaturationPlanes gyro_planes;  ///< accepted planes of saturated gyro readings
   std::optional<RepeatedReadings> gyro_repeated;
 };
 

@@ -82,7 +82,6 @@ double mahalanobis_of(const AngularRateModelParams& known, const AngularRateMode
   return AngularRateModel(wider, period_s).calibration_mahalanobis(solution.rig);
 }
 
-// If the estimated calibration is implausible, a second optimisation holds the calibration at its prior.
 Status optimise_or_fix_rig_prior(const AngularRateSmoother::Params& params, const AngularRateModelParams& known,
                                  double period_s, std::span<const AngularRateObservation> observations, bool struck,
                                  AngularRateFit& fit, AngularRateReport& health) {
@@ -159,14 +158,15 @@ SensorErrorFit fit_errors_at(const SensorErrors& given, SensorErrorInformation e
 
 struct CorrectionIterations {
   const AngularRateSmoother::Params& params;
-  const AngularRateModelParams& params_with_stated_errors;  ///< parameters with the sensor errors that the user states
+  const AngularRateModelParams& params_with_stated_errors;
   std::span<const ImuSample> samples;
   std::span<const Clipping> clipping_per_sample;
   double period_s = 0.0;
   bool estimated = false;
   bool triads_asynchronous = false;  ///< gyro or accelerometer repeats readings
-  TriadDelay impact_delay = {};      ///< delay from impacts; empty if the data sheet states the delay
-  std::vector<double> age_s = {};    ///< age of the accelerometer's readings in the log
+  /// delay between gyro and accelerometer, estimated from impacts; empty if the data sheet states the delay
+  TriadDelay impact_delay = {};
+  std::vector<double> age_s = {};  ///< age of the accelerometer readings in the log
   SensorErrorPriors error_prior_sigmas =
       {};  ///< standard deviations of the data sheet, enlarged for asynchronous triads
 
@@ -248,10 +248,10 @@ Status collect_error_evidence(const CorrectionIterations& rounds, const SensorEr
 }
 
 struct CorrectionIterationState {
-  SensorErrors errors;  ///< errors corrected in the last optimisation
+  SensorErrors errors;  ///< sensor errors corrected in the last optimisation
   SensorErrorInformation calibration_evidence;
   SensorErrorFit sensor_error_fit;
-  bool is_plausible = true;  ///< the errors are plausible for a device
+  bool is_plausible = true;  ///< whether the sensor errors are plausible for a device
 };
 
 Status iterate_corrections(const CorrectionIterations& rounds, std::span<AngularRateObservation> observations,
@@ -264,7 +264,7 @@ Status iterate_corrections(const CorrectionIterations& rounds, std::span<Angular
   InitialErrors start = initial_calibration(has_calibration ? learnt->errors : given, rounds);
   rounds_state.errors = start.errors;
   health.correction_iterations = 0;
-  for (int round = 1;; ++round) {  // counts from the last restart; the report counts all rounds
+  for (int round = 1;; ++round) {  // counts iterations since the last restart; the report counts all iterations
     ++health.correction_iterations;
     if (Status status = optimise_corrected_readings(rounds, rounds_state.errors, observations, fit, health);
         !status.ok())

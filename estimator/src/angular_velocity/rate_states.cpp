@@ -35,7 +35,7 @@ Eigen::Matrix3d sensor_error_covariance(const arrow::ErrorMatrix& moved, const S
   return std::min(1.0, most / std::max(out.trace(), 1e-300)) * out;
 }
 
-// If a gyro reading may be saturated, the contact force determines the angular acceleration.
+// If a gyro reading may be saturated, the angular acceleration is estimated from the contact force.
 double rate_change_rad_s2(const AngularRateModelParams& params, std::span<const AngularRateObservation> observations,
                           std::span<const AngularRateEstimate> estimates, std::size_t k) {
   const AngularRateObservation &from = observations[k], &to = observations[k + 1];
@@ -136,7 +136,7 @@ std::vector<AngularRateState> rate_states_of_recording(const AngularRateSmoother
     const AngularRateEstimate& estimate = solution.estimates[k];
     AngularRateState& state = states[k];
     state = extrapolated_state(observations, solution.estimates, covariances, k, gyro_late_s);
-    // Outside flight, interpolated readings are more accurate than the white-jerk model.
+    // Outside free flight, interpolated readings are more accurate than the white-jerk model.
     const bool by_readings = estimate.flight_weight < 0.5 && !o.at_rest && gyro_late_s == 0.0;
     if (by_readings && !own.empty() && own[k]) {
       const Vector3d g_sensitivity = errors.g_sensitivity_s_m * samples[k].specific_force_m_s2;

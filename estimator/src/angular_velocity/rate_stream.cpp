@@ -142,7 +142,7 @@ void AngularRateStream::marginalise_oldest_knots(State& state) const {
   state.window.erase(state.window.begin(), state.window.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
-// The covariance of clipped axes follows from the possible motion since the previous sample.
+// For clipped axes, the covariance assumes the largest possible angular acceleration since the previous sample.
 void AngularRateStream::predict_covariance(State& state) const {
   Knot& newest = state.window.back();
   const Knot& before = state.window[state.window.size() - std::min<std::size_t>(2, state.window.size())];
@@ -163,8 +163,8 @@ void AngularRateStream::marginalise(std::size_t first, State& state) const {
   const double after_it = model_.jump(oldest.estimate.knot, next.estimate.knot, seconds_between(oldest, next));
   const double jump = std::min(rate_change_since_marginalised(oldest, state), after_it);
   model_.compute_flight_weight(oldest.observation, state.rig, RigConstants::Matrix::Zero(), 1.0, jump, oldest.estimate);
-  // Short flights do not update the calibration. A short contact may be mistaken for flight, because the 20 calibration
-  // constants can fit any few readings.
+  // Free flights of few samples do not update the calibration. A short contact may be mistaken for free flight, because
+  // the 20 calibration constants can fit any few readings.
   std::size_t run = state.consecutive_flight_samples;
   const auto needed = params_.expert.kFlightRunMin;
   const auto flies = [](const Knot& knot) { return knot.estimate.flight_weight >= 0.5; };
@@ -192,7 +192,7 @@ void AngularRateStream::marginalise(std::size_t first, State& state) const {
   state.prior_knot = next.estimate.knot;
   state.prior_rig = state.rig;
   if (model_.calibration_mahalanobis(state.rig) > params_.calibration_mahalanobis_max) {
-    // An implausible calibration means that contact was classified as flight.
+    // An implausible calibration indicates that contact was classified as free flight.
     reset_rig(state);
     ++state.calibration_reset_count;
   }
@@ -239,8 +239,8 @@ void AngularRateStream::append_knot(const ImuSample& sample, std::span<const Aux
   mark_possible_saturation(state);
 }
 
-// The initial rate is the predicted rate or the rate from the centripetal force, whichever gives the larger flight
-// weight.
+// The initial rate of a clipped sample is the predicted rate or the rate from the centripetal force, whichever gives
+// the larger flight weight.
 void AngularRateStream::predict_new_knot(Knot& knot, const Knot& previous, const State& state) const {
   const double dt_s = seconds_between(previous, knot);
   const AngularRateKnot& before = previous.estimate.knot;

@@ -16,7 +16,7 @@ constexpr double kMemory = 2000.0;
 constexpr TimeNs kUpdatePeriod_ns = 50'000'000;
 constexpr double kDelayChangeMin_s = 3e-4;
 constexpr double kContradictionOdds = 0.05, kGuessSigmasMax = 3.0;
-// The first few impacts may correlate with the rate change by chance.
+// The first few impacts may correlate with rate changes by chance.
 constexpr double kIntervalsMin = 150.0, kCorrelationGainMin = 0.06;
 // maximum accelerometer delay, in prior standard deviations of the delay
 constexpr double kReach = 3.0;
@@ -68,7 +68,8 @@ void AngularRateStream::pair_force_with_rate(std::size_t k, State& state) const 
   Knot& knot = state.window[k];
   const auto last = static_cast<std::ptrdiff_t>(state.window.size()) - 1;
   const std::ptrdiff_t own = static_cast<std::ptrdiff_t>(k), wanted = own + force_delay_samples(state);
-  const std::ptrdiff_t at = wanted < 0 ? own : std::min(wanted, last);  // only forces in the window are available
+  // only specific forces in the window are available
+  const std::ptrdiff_t at = wanted < 0 ? own : std::min(wanted, last);
   const Knot& source = state.window[static_cast<std::size_t>(at)];
   AngularRateObservation& o = knot.observation;
   o.sample.specific_force_m_s2 = source.received_force.force_m_s2;
@@ -144,7 +145,7 @@ void AngularRateStream::update_delay(State& state) const {
   if (delay.delay_found && std::abs(delay.estimated_s - delay.applied_delay_s) > kDelayChangeMin_s) refine_delay(state);
 }
 
-// A new delay invalidates the calibration that was estimated with the previous delay.
+// A new accelerometer delay invalidates the calibration that was estimated with the previous delay.
 void AngularRateStream::apply_delay(double delay_s, bool found, State& state) const {
   AngularRateStreamDelay& delay = state.sensor_errors.front().accel_delay_state;
   delay.applied_delay_s = delay.estimated_s = delay_s;

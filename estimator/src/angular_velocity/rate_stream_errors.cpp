@@ -100,8 +100,8 @@ void AngularRateStream::add_sensor_error_covariance(const arrow::BorderVector& r
   AngularRateStreamDelay& delay = device.accel_delay_state;
   if (delay.delay_found) {
     if (const TriadDelay& guess = delay.impact_delay; guess.sigma_s > 0.0) {
-      // SensorErrorUncertainty multiplies all information by kSensorErrorEvidenceWeight. Dividing by
-      // kSensorErrorEvidenceWeight cancels this factor for the delay estimated from impacts.
+      // The information is divided by kSensorErrorEvidenceWeight, because SensorErrorUncertainty multiplies all
+      // information by this weight.
       const double information =
           1.0 / (SensorErrorUncertainty::kSensorErrorEvidenceWeight * guess.sigma_s * guess.sigma_s);
       window_error_evidence.information(SensorErrors::kDelay, SensorErrors::kDelay) += information;

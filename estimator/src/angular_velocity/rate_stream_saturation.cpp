@@ -30,7 +30,6 @@ bool is_near_limit_of_other_axis(const SaturationPlanes& planes, double peak_rad
   });
 }
 
-// Returns nothing if `window` does not contain the previous reading.
 std::optional<std::size_t> reading_before(std::size_t k, const std::vector<AngularRateStream::Knot>& window) {
   while (k > 0 && window[k].repeats_reading) --k;
   if (k == 0) return std::nullopt;

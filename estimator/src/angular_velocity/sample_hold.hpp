@@ -15,10 +15,11 @@ namespace tumble {
 /// RepeatedReadings describes a gyro or accelerometer whose sample rate is lower than the rate of the log (sample and
 /// hold).
 struct RepeatedReadings {
-  double period_s = 0.0;                 ///< time between two readings
-  double regular_clock_fraction = 0.0;   ///< fraction of samples whose repetitions a regular clock predicts
+  double period_s = 0.0;  ///< time between two readings
+  /// fraction of samples whose repetitions a clock with constant period predicts
+  double regular_clock_fraction = 0.0;
   std::vector<double> age_s;             ///< per sample: age of its reading in addition to window_lag_s
-  std::vector<bool> repeats_per_sample;  ///< per sample: reading equals that of the previous sample
+  std::vector<bool> repeats_per_sample;  ///< per sample: whether the reading equals the previous sample's reading
   /// A gyro averages over its period, an accelerometer over an unknown part of its period: carried.md (C11), (C12).
   double window_lag_s = 0.0;
 
@@ -27,9 +28,10 @@ struct RepeatedReadings {
   double reading_age_s(std::size_t sample) const { return age_s[sample] + window_lag_s; }
 };
 
-/// Detects repeated readings by fitting a regular clock of the sensor. Cost: O(N), plus a test of about 5000 candidate
-/// clocks on at most 1000 samples. Returns nothing if fewer than 30 samples exceed 0.3 rad/s, or if less than a
-/// twentieth of these samples are repetitions. `age_s` is zero if no regular clock predicts 90 % of the samples.
+/// Detects whether the log repeats readings of a sensor, and estimates period and phase of the sensor's clock from the
+/// repetitions. Cost: O(N), plus a test of about 5000 candidate clocks on at most 1000 samples. Returns nothing if
+/// fewer than 30 gyro readings exceed 0.3 rad/s, or if the sensor repeats less than 5 % of its readings meanwhile.
+/// `age_s` is zero if no clock with constant period predicts the repetitions of 90 % of the samples.
 std::optional<RepeatedReadings> find_repeated(std::span<const ImuSample> samples, Triad triad);
 
 struct Neighbours {

@@ -106,7 +106,7 @@ std::optional<CurvatureAtSegment> curvature_at_segment(const DistinctReadings& r
 }
 
 // Returns the log likelihood of saturation from the change of slope where the saturation starts or ends: rails.md
-// (R64). An impact changes the slope of the readings on all axes.
+// (R64).
 double end_kink_evidence(const DistinctReadings& readings, const SaturationPlaneCandidate& facet, const Segment& s,
                          bool after) {
   const std::vector<Vector3d>& rates = readings.rates;

@@ -9,7 +9,8 @@ namespace tumble {
 
 struct DistinctReadings {
   std::vector<Eigen::Vector3d>& rates;
-  Eigen::Vector3d noise = Eigen::Vector3d::Zero();               ///< lower quantile of the noise of all windows [rad/s]
+  /// gyro noise: lower quantile over short time windows [rad/s]
+  Eigen::Vector3d noise = Eigen::Vector3d::Zero();
   Eigen::Vector3d min_reading_change = Eigen::Vector3d::Zero();  ///< smallest change between two readings [rad/s]
   Eigen::Vector3d peak = Eigen::Vector3d::Zero();                ///< largest magnitude of each axis [rad/s]
 };
@@ -23,7 +24,7 @@ struct SaturationPlaneCandidate {
   Eigen::Vector3d row = Eigen::Vector3d::Zero();
   double plane_distance = 0.0;
   double noise_sigma_rad_s = 0.0, plane_tolerance_rad_s = 0.0;
-  int segments = 0;  ///< number of runs of readings on the plane, without rounded maxima
+  int segments = 0;  ///< number of segments of successive readings on the plane, without rounded maxima of the motion
 };
 
 /// Returns the log-likelihood ratio between saturation and natural causes (maxima of the motion, constant rates) for

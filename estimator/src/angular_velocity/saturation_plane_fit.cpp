@@ -18,7 +18,7 @@ constexpr double kGridStep = 0.01;  // step of the search grid over cross-axis s
 constexpr int kRefinements = 10;
 constexpr double kSlabDeviations = 4.0, kSlabRatioMin = 2e-4, kSlabRatioMax = 0.006;
 
-// Collects readings that may be saturated, for any cross-axis sensitivities up to `max_cross_axis_slope`.
+// Collects readings that may be saturated, for any cross-axis sensitivities up to `steepest`.
 double candidates(const DistinctReadings& readings, int axis, int sign, double steepest, double slab,
                   std::vector<std::size_t>& out) {
   double sure = -std::numeric_limits<double>::max();
@@ -42,8 +42,7 @@ void collect_plane_inliers(const DistinctReadings& readings, double from, Satura
   }
 }
 
-// Fits a plane to the saturated readings by least squares, with a prior on the cross-axis sensitivities: rails.md
-// (R58). Cauchy weights reduce the effect of partly saturated readings, which are below the plane.
+// Cauchy weights reduce the effect of partly saturated readings, which are below the plane.
 void fit(const DistinctReadings& readings, const PlaneSlopePrior& prior, double deviation,
          SaturationPlaneCandidate& facet, Workspace& workspace) {
   const int axis = facet.axis;

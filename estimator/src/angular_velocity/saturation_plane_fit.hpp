@@ -33,7 +33,7 @@ inline Eigen::Vector2d other_axes_readings(const Eigen::Vector3d& y, int axis) {
 }
 
 /// Returns the largest projection of the reading `y` onto a sensing direction with cross-axis sensitivities up to
-/// `max_cross_axis_slope`.
+/// `steepest`.
 inline double highest_value(const Eigen::Vector3d& y, int axis, int sign, double steepest) {
   return sign * y[axis] + steepest * other_axes_readings(y, axis).lpNorm<1>();
 }
@@ -50,7 +50,7 @@ std::optional<ExtremeReading> find_extreme_reading(const SaturationPlaneFinder::
                                                    const PlaneSlopePrior& prior, double slope_range,
                                                    SaturationPlaneFinder::Workspace& workspace);
 
-/// Returns the cross-axis sensitivities of the plane that has the most readings closely below it: rails.md (R57).
+/// Returns the cross-axis sensitivities of the plane that has the most readings just below the plane: rails.md (R57).
 Eigen::Vector2d search_cross_axis_slopes(const DistinctReadings& readings, const ExtremeReading& extreme,
                                          double slope_max, const PlaneSlopePrior& prior,
                                          SaturationPlaneFinder::Workspace& workspace);

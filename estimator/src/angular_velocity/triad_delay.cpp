@@ -19,9 +19,9 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-using Unknown = Eigen::Matrix<double, 6, 1>;  // lever arm, accelerometer bias
+using Unknown = Eigen::Matrix<double, 6, 1>;  // unknowns: lever arm, accelerometer bias
 
-constexpr int kMaxDelay_samples = ImpactDelayCorrelation::kDelayMax_samples;  // largest tested delay, in samples
+constexpr int kMaxDelay_samples = ImpactDelayCorrelation::kDelayMax_samples;
 constexpr int kDelaysPerSample =
     4;  // delays per sample on the coarse grid, and on the finer grid around the best delay
 constexpr double kRateMin_rad_s = 2.0;
@@ -29,7 +29,7 @@ constexpr std::size_t kSamplesMin = 20, kSamplesMax = 2000;
 constexpr double kLeverSigma_m = 0.02, kBiasSigma_m_s2 = 0.3;
 // Two readings within kApart_s of each other count as one reading with time jitter.
 constexpr double kApart_s = 1e-4;
-// widths [m/s^2] of the robust kernel for the flight residuals in successive iterations
+// widths [m/s^2] of the robust kernel for the free-flight residuals of the specific force, in successive iterations
 constexpr double kKernelWidths_m_s2[] = {3.0, 1.5, 0.8, 0.4, 0.25, 0.2};
 // minimum significant decrease of the robust cost; each sample contributes at most 1 to this cost
 constexpr double kGainMin = 0.4;
@@ -66,7 +66,7 @@ TriadReadings readings_of(std::span<const ImuSample> samples, std::span<const Cl
 
 struct RotationSample {
   double time_s;
-  Matrix3d jacobian_lever;  ///< [alpha]x + [w]x [w]x
+  Matrix3d jacobian_lever;  ///< derivative of the specific force with respect to the lever arm: [alpha]x + [w]x [w]x
 };
 
 bool force_at(const TriadReadings& force, double time_s, std::size_t& from, Vector3d& out) {
@@ -98,7 +98,7 @@ std::vector<RotationSample> rotation_samples(const TriadReadings& gyro) {
   return out;
 }
 
-// Returns the robust cost of the flight residuals, minimised over lever arm and bias: rate_smoother.md (R10).
+// Returns the robust cost of the free-flight residuals, minimised over lever arm and bias: rate_smoother.md (R10).
 double alignment_cost(const TriadReadings& accel, std::span<const RotationSample> instants, const Vector3d& lever_arm_m,
                       double delay_s) {
   Unknown prior, at, information;
@@ -131,7 +131,6 @@ double alignment_cost(const TriadReadings& accel, std::span<const RotationSample
   return sum;
 }
 
-// The norm of the specific force is assumed linear between readings and constant after the last reading.
 class ForceIntegral {
  public:
   explicit ForceIntegral(const TriadReadings& force)

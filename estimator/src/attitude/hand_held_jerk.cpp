@@ -54,7 +54,6 @@ void add_jerk_from_curvature(const GyroReadings& rates, const Eigen::Matrix3d& r
     densities[i] = counts[i] > 0.0 ? std::max(0.0, densities[i] / counts[i]) : 0.0;
 }
 
-// Returns false if reading k or k + 1 is saturated, or if a reading is missing between them.
 bool unclipped_slope_of(const GyroReadings& rates, const Eigen::Matrix3d& rows, std::size_t k, Eigen::Index axis,
                         double& slope, double& at_s) {
   if (!is_free(rates, k, axis) || !is_free(rates, k + 1, axis)) return false;

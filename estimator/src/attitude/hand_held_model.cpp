@@ -65,7 +65,6 @@ GyroSensingAxisRow predict_gyro(const Eigen::RowVector3d& m, const Node& node, c
   return rows;
 }
 
-// Sums the saturation deficits |estimated rate - reading| of the clipped and unusable elements other than `except`.
 double clipped_axis_deficit(const NodeReadings& readings, const std::array<GyroSensingAxisRow, 3>& rows, int except) {
   double sum = 0.0;
   for (int i = 0; i < 3; ++i) {

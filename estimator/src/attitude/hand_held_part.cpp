@@ -11,10 +11,10 @@ namespace tumble::hand_held {
 
 namespace {
 
-// The iteration has converged if the cost changes by less than kCostChange. A change of the cost by kCostChange
+// The optimisation has converged if the cost changes by less than kCostChange. A change of the cost by kCostChange
 // multiplies the odds between two solutions by 1.1.
 constexpr double kCostChange = 0.2;
-constexpr int kStepsMax = 30;  // maximum number of iterations
+constexpr int kStepsMax = 30;
 
 NodeMessage message(const Node& about, const System::StateBlock& block) {
   return {about, block.diagonal, block.gradient};

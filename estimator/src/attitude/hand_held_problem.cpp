@@ -11,14 +11,16 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kRestSigma_rad_s = 0.01;  // standard deviation of the rate at rest, per node
+constexpr double kRestSigma_rad_s = 0.01;  // standard deviation of the rate at rest, per time step (node)
 constexpr double kRestSigma_m_s = 0.02;    // standard deviation of the velocity at rest
 constexpr double kRestSigma_m_s2 = 0.1;    // standard deviation of the acceleration at rest
 
 // largest change of an attitude for which the linearisation is valid
 constexpr double kRotationMax_rad = 0.8;
-constexpr double kConvergenceTolerance = 1e-3;  // attitudes [rad]; ten times for rates [rad/s]
-constexpr int kFirstAdaptIteration = 3;         // iterations before the hand's acceleration density is estimated
+// largest attitude step at convergence [rad]; ten times larger for rates [rad/s]
+constexpr double kConvergenceTolerance = 1e-3;
+// iterations before the spectral density of the hand's acceleration is estimated
+constexpr int kFirstAdaptIteration = 3;
 constexpr int kLastAdaptIteration = 8;
 constexpr int kHalvings = 4;          // maximum number of times that a step is halved if the cost increases
 constexpr double kCostRiseMax = 0.2;  // tolerated increase of the cost, corresponding to odds of 1.1

@@ -93,19 +93,20 @@ class HandHeldProblem {
   HandHeldSmoother::Params params_;
   Eigen::Matrix3d sensing_directions_;
   std::span<const NodeReadings> readings_;
-  std::span<const double> measured_jerk_;  // NodeData::jerk
+  std::span<const double> measured_jerk_;
   Motion motion_;
-  double period_s_ = 0.0;  // period of the gyro's readings, without repetitions
+  double period_s_ = 0.0;  // sample period of the gyro, without repeated readings
   ReadingNoise noise_;
   Eigen::Vector3d g_W_m_s2_;
   std::optional<ProblemSegment>
       problem_segment_;  // if set, this problem is a part of another problem, with fixed constants
   std::vector<Node> nodes_;
   Constants constants_;
-  std::vector<double> jerk_;  // factor on the root density of the jerk, per node
+  std::vector<double> jerk_;  // factor on the root spectral density of the angular jerk, per node
   std::vector<double>
-      hand_acceleration_factors_;  // factor on the density of the hand's acceleration, per step between nodes
-  std::vector<double> hand_power_cumulative_;  // cumulative sum of the squared multipliers
+      hand_acceleration_factors_;  // factor on the spectral density of the hand's acceleration, per step between nodes
+  // cumulative sum of squared hand accelerations, relative to the assumed mean square
+  std::vector<double> hand_power_cumulative_;
   std::vector<System::StateBlock> state_blocks_;
   std::vector<System::StateVector> state_steps_;
   System::BorderVector border_unknowns_step_ = System::BorderVector::Zero();

@@ -47,8 +47,8 @@ double since_s(std::span<const ImuSample> samples, std::size_t from, std::size_t
 }
 
 constexpr double kMinClockAgreement = 0.9;
-// In recordings of pendulums, averaging windows of 20 ms were partly saturated. In recordings of hand-held wands,
-// averaging windows of 10 ms were not partly saturated.
+// Readings with averaging windows of 20 ms (pendulums) were saturated for a part of the window, readings with 10 ms
+// (hand-held wands) were not.
 constexpr double kLongWindow = 1.5;
 
 TimeNs nanoseconds(double s) {
@@ -79,7 +79,6 @@ void add_gyro_reading(double z, double t, int sign, SensingAxisSums& e) {
   e.reading_time_sum += z * t;
 }
 
-/// Replaces a clipped segment of one sensing element by a cubic.
 void interpolate_segment(std::span<const ImuSample> samples, const std::vector<double>& raw, std::size_t begin,
                          std::size_t end, int sign, std::vector<double>& filled) {
   if (begin < 2 || end + 1 >= raw.size()) return;
@@ -183,7 +182,8 @@ void correct_partial_saturation(double noise_rad_s, const Eigen::Matrix3d& rows,
   for (std::size_t k = 0; k < count; ++k) rates.samples[k].angular_velocity_rad_s += inverse * lost[k];
 }
 
-// Recovered rates have correlated errors: carried.md (C15).
+// Increases the standard deviation of rates recovered from saturation, because their errors are correlated: carried.md
+// (C15).
 void recovered_readings(const HandHeldSmoother::Params& params, const SensingAxisClipSigns& clipped,
                         GyroReadings& rates) {
   const double nodes = std::sqrt(2.0 * HandHeldSensorParams::kRecoveredTau_s / params.expert.node_s);

@@ -21,10 +21,10 @@ struct AveragingWindows {
   std::vector<std::size_t> node_of;  ///< nearest node to the centre of each window
 };
 
-/// TimedReadings contains each reading of the log once, with corrected times of repeated readings.
+/// TimedReadings contains each reading of a sensor once, even if the recording repeats readings.
 struct TimedReadings {
-  std::vector<ImuSample> samples;     ///< stamped at the end of their windows
-  std::vector<ClipSigns> clip_signs;  ///< one per sample
+  std::vector<ImuSample> samples;  ///< with time stamps at the end of the averaging windows
+  std::vector<ClipSigns> clip_signs;
   AveragingWindows averaging_windows;
   std::vector<std::size_t> reading_index_of_sample;  ///< index of the reading of each IMU sample
 };
@@ -37,7 +37,7 @@ struct GyroReadings : TimedReadings {
 struct NodeData {
   AveragingWindows samples;
   GyroReadings rates;
-  std::vector<NodeReadings> nodes;  ///< nodes at equal time steps from the first sample's centre
+  std::vector<NodeReadings> nodes;  ///< time steps of equal length from the first sample's centre
   /// root of the spectral density of angular jerk, per element of `nodes` [rad/s^3 sqrt(s)]; 0: no estimate
   std::vector<double> jerk;
 };
@@ -45,7 +45,7 @@ struct NodeData {
 NodeData collect_node_data(const HandHeldSmoother::Params& params, std::span<const ImuSample> samples,
                            const SensingAxisClipSigns& clipped);
 
-inline constexpr double kLongest = 1.5;  ///< longest averaging window, in sample periods
+inline constexpr double kLongest = 1.5;  ///< longest averaging window of a reading, in sample periods
 
 /// Estimates the root of the spectral density of angular jerk [rad/s^3 sqrt(s)] near each time step (node) of the
 /// smoother: carried.md (C24), (C25). Cost: O(N). If the readings near a time step do not determine the jerk, the

@@ -93,7 +93,7 @@ Status HandHeldRateStream::push(const ImuSample& sample, const SensingAxisClipSi
   const Reading& latest = state.readings.back();
   const auto end = [&] { return state.first_node + static_cast<std::int64_t>(state.window.size()); };
   const bool begun = latest.node >= end();
-  while (latest.node > end()) {  // creates nodes without samples
+  while (latest.node > end()) {  // creates time steps (nodes) without samples
     extend_nodes(state);
     predict_newest(state);
   }
@@ -163,14 +163,14 @@ bool HandHeldRateStream::update_clip_signs(const SensingAxisClipSigns& known, St
   return changed;
 }
 
-// push() adds the newest reading.
+// Omits the newest reading, because push() adds the newest reading.
 void HandHeldRateStream::rebuild_window(State& state) const {
   for (Knot& knot : state.window) knot.readings = {};
   for (const Reading& reading : std::span(state.readings).first(state.readings.size() - 1)) add(reading, state);
 }
 
-// A slow sensor's averaging window ended at an unknown time since the previous sample: rate_stream.md (R95). A slow
-// accelerometer averages over an unknown part of its period: carried.md (C12).
+// The averaging window of a slow sensor ended at an unknown time since the previous sample: rate_stream.md (R95). A
+// slow accelerometer averages over an unknown part of its period: carried.md (C12).
 void HandHeldRateStream::add(const Reading& reading, State& state) const {
   const double node_s = params_.body.expert.node_s;
   const auto readings_at = [&](std::int64_t node) -> hand_held::NodeReadings* {

@@ -45,8 +45,7 @@ std::size_t HandHeldRateStream::first_unreported_reading(const State& state) con
   return state.readings.size() - std::min(state.readings.size(), delay_ + 1);
 }
 
-// If the sample rate is lower than stated, a node may leave the window of HandHeldRateStream before its rate is
-// reported.
+// If the sample rate is lower than stated, a time step (node) may leave the window before its rate is reported.
 void HandHeldRateStream::store_oldest_rates(State& state) const {
   const std::size_t first = first_unreported_reading(state);
   for (std::size_t k = first; k < state.readings.size() && state.readings[k].node <= state.first_node; ++k) {

@@ -25,7 +25,7 @@ constexpr double kRateTolerance_rad_s = 0.15, kForceTolerance_m_s2 = 3.0;
 constexpr double kHiddenForce_m_s2 = 3.0;  // largest force error attributed to saturation during a part of the window
 constexpr double kRotating_rad_s2 = 1.0;   // minimum angular acceleration for estimating a time offset
 constexpr double kCertainDeviations = 4.0;
-constexpr int kMinImusForRecovery = 3;          // minimum number of IMUs for recovering a rate from accelerometers
+constexpr int kMinImusForRecovery = 3;
 constexpr double kUnsaturatedForceRatio = 0.8;  // accelerometer errors are estimated up to this fraction of the range
 constexpr int kOffset = ImuMerge::kErrorCount - 1;
 // The lever arm effect is the specific force that rotation causes at the IMU's distance from the mean IMU position.
@@ -38,7 +38,7 @@ constexpr double kWindowMax_s = 0.05;  // maximum window for a central differenc
 
 // After an impact, a contradicting accelerometer is excluded for kSuspect_s, because impacts come in groups.
 constexpr double kSuspect_s = 0.04;
-// standard deviation of the angular acceleration in a time window, as a fraction of its change since the previous
+// standard deviation of the angular acceleration in a time window, as a fraction of the change since the previous
 // window
 constexpr double kAccelerationSigmaRatio = 0.3;
 
@@ -124,7 +124,7 @@ ImuSample ImuMerge::merge(State& state) const {
   Readings readings{};
   ImuMask finite{}, present{};
   Vectors raw_rates, raw_forces, rates{}, forces{};
-  raw_rates.fill(Eigen::Vector3d::Zero());  // units without readings keep zero
+  raw_rates.fill(Eigen::Vector3d::Zero());  // IMUs without readings keep zero
   raw_forces.fill(Eigen::Vector3d::Zero());
   for (std::size_t k = 0; k < count; ++k) {
     finite[k] = state.imus[k].window.readings > 0;
@@ -135,7 +135,7 @@ ImuSample ImuMerge::merge(State& state) const {
     raw_forces[k] = R_CI * readings[k].specific_force_m_s2;
   }
   detect_frozen_units(finite, raw_rates, raw_forces, h, time_ns, state);
-  const double since_s = 0.5 * (h + state.length_s);  // time between the middles of the last two windows
+  const double since_s = 0.5 * (h + state.length_s);  // time between the middles of the last two averaging windows
   for (std::size_t k = 0; k < count; ++k) {
     const Unit& unit = state.imus[k];
     present[k] = finite[k] && !unit.is_excluded();
@@ -167,7 +167,7 @@ ImuSample ImuMerge::merge(State& state) const {
   if (std::count(present.begin(), present.end(), true) >= kMinImusForRecovery) {
     recover_saturated_rate(readings, present, h, state, merged);
   } else {
-    state.rate_recovery.running = false;  // a prediction across a gap in the data is invalid
+    state.rate_recovery.running = false;  // a prediction across a data gap is invalid
   }
   const auto suspect = [](const Unit& unit) { return unit.exclusion_left_s > 0.0; };
   if (2 * std::count_if(state.imus.begin(), state.imus.begin() + setup_.count, suspect) > setup_.count) {
@@ -197,7 +197,7 @@ ImuMerge::ImuMask ImuMerge::select_agreeing_imus(const Readings& readings, const
   const auto kept = std::count(used.begin(), used.end(), true);
   // If no majority of the IMUs agrees, the correct IMUs cannot be identified, and all available IMUs are used.
   if (units < kMinImusForRecovery ? kept == 0 : 2 * kept <= units && kept < units) used = present;
-  const bool apart = state.window_count > 0 && h > 0.0;  // derivatives from the last window exist
+  const bool apart = state.window_count > 0 && h > 0.0;  // derivatives from the last averaging window exist
   if (units >= kMinImusForRecovery && apart && middle_rate.cwiseAbs().maxCoeff() < setup_.gyro_range_rad_s) {
     exclude_partly_saturated(readings, present, forces, middle_rate, h, state, used);
   }
@@ -355,7 +355,8 @@ void ImuMerge::calibrate(const Vectors& rates, State& state) const {
     const Eigen::Vector3d from_mean_m = setup_.T_mean_imu[k].translation() - mean_imu_position_m_,
                           by_rotation = jacobian_position * from_mean_m;
     state.imu_sign_check.add(forces[k] - mean_force, from_mean_m, mean, acceleration, state.length_s);
-    state.lever_arm_correlation += state.length_s * by_rotation.dot(forces[k]);  // the mean force cancels
+    // the lever arm effects of all IMUs sum to zero, so the mean force cancels
+    state.lever_arm_correlation += state.length_s * by_rotation.dot(forces[k]);
     state.lever_arm_effect_power += state.length_s * by_rotation.squaredNorm();
   }
   if (acceleration.norm() < kRotating_rad_s2) return;

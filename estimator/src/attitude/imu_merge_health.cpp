@@ -20,13 +20,12 @@ constexpr double kMisfitTau_s = 0.5;
 constexpr double kComparableRateRatio = 0.8;  // fraction of the gyro's range up to which IMUs are compared
 
 constexpr double kArmShareMin = 0.5;  // smallest plausible lever_arm_agreement() if the gyros are confirmed
-// lever_arm_agreement() is the ratio of measured to expected force differences between the IMUs. A deviation of 6 %
-// from 1 corresponds to a gyro scale error of 3 %, because the centripetal force grows with the squared rate. In runs
-// without faults, the ratio of measured to expected force differences was 0.999 to 1.002.
+// A gyro scale error of 3 % changes lever_arm_agreement() by 6 %, because the centripetal force grows with the squared
+// rate.
 constexpr double kArmShareOff = 0.06;
 
-constexpr double kAxisContributionMin =
-    0.02;  // another axis counts as clipped if a clipped axis contributes more than this fraction to it
+constexpr double kAxisContributionMin = 0.02;  // an axis of the common frame counts as clipped if a clipped axis of an
+                                               // IMU contributes more than this fraction
 
 /// Returns the component of the IMU's rotation perpendicular to the repeated accelerometer reading. The reading is
 /// mostly gravity, and a rotation perpendicular to gravity should change the reading of the accelerometer.

@@ -11,29 +11,38 @@ namespace tumble {
 
 namespace {
 
-constexpr double kGravityWindow_s = 0.2;  // window over which the rotations of force and gyro are compared
-constexpr double kForceReading_s = 0.02;  // averaging time of the readings, so that the sample rate does not matter
-constexpr double kWindowGapMax_s = 0.1;   // an unmeasured rotation may hide in a longer gap
-constexpr double kChangeMax = 0.12;    // largest change of a steady force in a window, as a share of the specific force
-constexpr double kGravityNear = 0.25;  // directions are compared if force and gravity differ by less than this share
+// window over which the rotation of the specific force is compared with the gyro's rotation
+constexpr double kGravityWindow_s = 0.2;
+constexpr double kForceReading_s = 0.02;  // averaging time of the IMU readings, independent of the sample rate
+constexpr double kWindowGapMax_s = 0.1;   // in a longer data gap, the gyro may miss a rotation
+// largest relative change of the specific force's magnitude in a window with constant force
+constexpr double kChangeMax = 0.12;
+// directions are compared if specific force and gravity differ by less than this fraction
+constexpr double kGravityNear = 0.25;
 // On pendulums and hand-held wands, the rotation of the measured gravity is 0.75 to 1.21 times the gyro's rotation.
 constexpr double kSlopeMin = 0.65, kSlopeMax = 1.5;
-constexpr double kRotationMin_rad2 = 0.5, kRotationMin_rad = 0.15;  // minimum rotation in total, and of a window
+// minimum rotation in total (mean-square sum), and of one window
+constexpr double kRotationMin_rad2 = 0.5, kRotationMin_rad = 0.15;
 // A push, or the centripetal force in flight, may rotate the measured force for a few windows of 0.2 s.
 constexpr double kRotatedWindowsMin = 5.0;
 // A scale error of the gyro is reported only if a scaled gyro rotation explains the rotation of the measured force much
 // better. Scaling the gyro must reduce the sum of squared unexplained force rotations to less than the fraction
-// kScaledResidualMax: imu_merge.md (I21). A regression gives the ratio of the measured force's rotation to the gyro's
-// rotation: imu_merge.md (I20). Pushes of the body often cause a ratio between 0 and 1. For a ratio between 0 and 1,
-// the stricter limit kReducedResidualMax applies.
+// kScaledResidualMax: imu_merge.md (I21). A regression gives the ratio of specific-force rotation to gyro rotation:
+// imu_merge.md (I20).
+// Pushes of the body often cause a ratio of specific-force rotation to gyro rotation between 0 and 1. For a ratio
+// between 0 and 1, the stricter limit kReducedResidualMax applies.
 constexpr double kScaledResidualMax = 0.75, kReducedResidualMax = 0.33;
-constexpr double kSlow_rad_s = 0.4;  // zero offset of a gyro, and rocking on the ground while pushes tilt the force
+// rate of slow rocking on the ground or of a gyro offset, below which pushes may tilt the specific force
+constexpr double kSlow_rad_s = 0.4;
 constexpr double kFrozen_s = 1.0, kRepetitionRatio = 10.0;
-constexpr double kUnmeasuredMin = 0.5;      // share of gravity's rotation that a gyro without changing readings leaves
-constexpr double kStandstillRad2 = 1e-6;    // largest squared rotation of a gyro at rest
-constexpr double kNonRestForceRatio = 0.5;  // difference from gravity that excludes rest, as a fraction of gravity
-constexpr double kPushedMin_s = 0.2;        // minimum duration of a force that excludes rest
-constexpr double kDirectionForceRatioMin = 0.05;  // minimum force with a usable direction, as a fraction of gravity
+// minimum fraction of the specific force's rotation that a frozen gyro does not explain
+constexpr double kUnmeasuredMin = 0.5;
+constexpr double kStandstillRad2 = 1e-6;  // largest squared rotation of a gyro at rest
+// minimum difference of specific force and gravity that excludes rest, as a fraction of gravity
+constexpr double kNonRestForceRatio = 0.5;
+constexpr double kPushedMin_s = 0.2;  // minimum duration of a specific force that excludes rest
+// minimum specific force with a usable direction, as a fraction of gravity
+constexpr double kDirectionForceRatioMin = 0.05;
 
 // See imu_merge.md (I20).
 double force_gyro_rotation_product_rad2(const ImuPlausibility::State& state) {
@@ -109,9 +118,8 @@ void ImuPlausibility::process_averaged_reading(State& state) const {
   if (std::abs(force.norm() - setup_.gravity_m_s2) > kNonRestForceRatio * setup_.gravity_m_s2)
     state.moving_force_duration_s += length_s;
   if (state.window_started) {
-    // Each force is a mean over an averaging interval. The rotation between two mean forces is the rotation from the
-    // middle of the first interval to the middle of the last interval. The gyro rotation from the end of the first
-    // interval to the end of the last interval approximates the rotation between the mean forces.
+    // The rotation between two averaged specific forces is the rotation between the middles of the averaging intervals.
+    // The gyro rotation between the ends of the averaging intervals approximates the rotation between the middles.
     state.gyro_rotation_in_window = (state.gyro_rotation_in_window * so3::exp(turned)).normalized();
     state.length_s += length_s;
     const double start = state.window_start_force_m_s2.norm();
@@ -189,13 +197,12 @@ double ImuPlausibility::rotation_agreement(const State& state) const {
                    std::max(state.gyro_rotation_square_sum_rad2, kStandstillRad2));
 }
 
-/// See imu_merge.md (I21). Pushes of the body also rotate the measured force, but no gyro scale explains this rotation.
+/// See imu_merge.md (I21).
 bool ImuPlausibility::fits_better(const State& state) const {
   const double slope = force_to_gyro_rotation_ratio(state), agreement = rotation_agreement(state);
   const double left = state.force_rotation_square_sum_rad2 * (1.0 - agreement * agreement);
-  // Pushes of the body often change the ratio of the force's rotation to the gyro's rotation, but rarely to values
-  // below 0 or above 1.5. During slow rotation, pushes may cause any ratio of the force's rotation to the gyro's
-  // rotation.
+  // Pushes of the body often change the ratio of specific-force rotation to gyro rotation, but rarely to values below 0
+  // or above 1.5. During slow rotation, pushes may cause any ratio of specific-force rotation to gyro rotation.
   const double slow_rad = kSlow_rad_s * kGravityWindow_s;
   const bool pushed = (slope > 0.0 && slope < 1.0) ||
                       state.gyro_rotation_square_sum_rad2 < state.rotated_window_count * slow_rad * slow_rad;

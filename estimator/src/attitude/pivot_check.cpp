@@ -26,7 +26,6 @@ struct AxisLabels {
   std::array<double, 3> axis_signs = {1., 1., 1.};  ///< sign of each axis; the first sign is 1
   bool all_rates_inverted = false;                  ///< all three rates are inverted
 
-  /// Returns the specific force in the axes of the gyro.
   Eigen::Vector3d in_corrected_axes(const Eigen::Vector3d& force) const {
     return {axis_signs[0] * force[axis[0]], axis_signs[1] * force[axis[1]], axis_signs[2] * force[axis[2]]};
   }
@@ -56,19 +55,23 @@ constexpr std::array<AxisLabels, kAxisLabels> kAllAxisLabels = all_axis_labels()
 constexpr double kPivotReading_s =
     0.01;                           // averaging time of readings, so that the cost is independent of the sample rate
 constexpr double kSegment_s = 2.0;  // a hand holds a pivot still for about this time
-constexpr double kSegmentRotationMin_rad = 1.0;  // less rotation in a segment does not distinguish the alternatives
-constexpr double kExplained_m_s = 0.3;           // rms velocity of the pivot below which rates explain a segment
-constexpr double kPivotNoise_m_s = 0.03;  // rms velocity due to noise: below it, two alternatives fit equally well
-constexpr double kSegmentGapMax_s = 0.1;  // an unmeasured impact may hide in a longer gap
+constexpr double kSegmentRotationMin_rad = 1.0;  // with less rotation, a segment cannot distinguish the gyro hypotheses
+// largest rms velocity of the pivot with which gyro rates explain a segment
+constexpr double kExplained_m_s = 0.3;
+// rms pivot velocity due to noise, below which two gyro hypotheses fit equally well
+constexpr double kPivotNoise_m_s = 0.03;
+constexpr double kSegmentGapMax_s = 0.1;  // an impact may hide in a longer data gap
 // The segments overlap by half, so six segments contain as much information as three independent segments.
 constexpr double kEvidenceMin = 5.0, kMeanEvidenceMin = 0.6, kBetterSegmentsMin = 6.0, kBetterWorseRatioMin = 4.0;
-constexpr double kPivotDistanceMax_m = 0.25;  // a pivot further away is a rod, whose length the scale would absorb
+// with a longer lever arm, a lever arm error would appear as a gyro scale error
+constexpr double kPivotDistanceMax_m = 0.25;
 constexpr double kScaleErrorMin = 0.025, kScaleErrorMinSigmas = 5.0;
 constexpr double kScaleSegmentsMin = 10.0, kScaleSegmentFractionMin = 0.5;
 constexpr double kScaleStep = 0.05;
 constexpr std::size_t kHalf = kAxisLabels, kTwice = kAxisLabels + 1;  // indices of the gyro scales 1/2 and 2
 constexpr std::size_t kLower = kAxisLabels + 2, kUpper = kAxisLabels + 3, kReadings = kAxisLabels + 4;
-constexpr std::size_t kCompared = kLower;  // number of hypotheses that differ clearly from the unchanged rates
+// number of compared gyro hypotheses, without the small scale changes kLower and kUpper
+constexpr std::size_t kCompared = kLower;
 // A gyro hypothesis is a possible gyro fault, for example swapped axes or a wrong scale. A time segment favours a gyro
 // hypothesis if correcting the fault reduces the logarithm of the squared velocity residual by more than
 // kClearLogRatio.
@@ -120,7 +123,7 @@ class Segments {
   std::array<double, kCompared> log_evidence{};
   std::array<std::size_t, kCompared> compared_segment_count{}, better_segment_count{}, worse_segment_count{};
   std::vector<GyroScaleVote> gyro_scale_votes;
-  std::size_t unchanged_explained_count = 0;  // number of segments that the unchanged rates explain
+  std::size_t unchanged_explained_count = 0;
 
  private:
   void process_segment() {
@@ -179,7 +182,7 @@ void conclude_gyro_scale(const std::vector<GyroScaleVote>& votes, PivotMotionChe
     spread += off * off;
   }
   found.scale = 1.0 + step;
-  found.scale_sigma = std::sqrt(2.0 * spread) / weight;  // each moment belongs to two segments
+  found.scale_sigma = std::sqrt(2.0 * spread) / weight;  // the segments overlap, so each sample counts twice
 }
 
 }  // namespace

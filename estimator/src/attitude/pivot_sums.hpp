@@ -13,8 +13,8 @@ namespace tumble {
 /// PivotMotionFit is a fitted rotation about a body point (pivot) that moves at constant velocity: imu_merge.md (I27).
 struct PivotMotionFit {
   double residual_m_s = 0.0;  ///< root mean square of the components of the unexplained velocity
-  double gravity_m_s2 = 0.0;  ///< magnitude of the constant force in world axes
-  double arm_m = 0.0;         ///< distance from the pivot to the sensor
+  double gravity_m_s2 = 0.0;  ///< magnitude of the fitted specific force that is constant in world axes
+  double arm_m = 0.0;         ///< distance from the pivot to the IMU
 };
 
 class PivotMotionSums {
@@ -41,7 +41,7 @@ class PivotMotionSums {
   }
 
   PivotMotionFit fit() const {
-    constexpr double kArm = 0.01;  // s^-2: keeps the lever arm short if the body hardly rotates
+    constexpr double kArm = 0.01;  // regularisation [s^-2] that keeps the lever arm short if the body hardly rotates
     using Nine = Eigen::Matrix<double, 9, 1>;
     const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
     Eigen::Matrix<double, 9, 9> normal;
@@ -57,7 +57,8 @@ class PivotMotionSums {
 
  private:
   Eigen::Quaterniond rotation_ = Eigen::Quaterniond::Identity();
-  Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();  ///< integral of the forces, in sensor axes at the start
+  /// integral of the specific forces, in sensor axes at the start
+  Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();
   double sample_count_ = 0.0, time_sum_ = 0.0, squared_time_sum_ = 0.0, squared_velocity_sum_ = 0.0;
   Eigen::Matrix3d arm_jacobian_sum_ = Eigen::Matrix3d::Zero(), time_arm_jacobian_sum_ = Eigen::Matrix3d::Zero(),
                   squared_arm_jacobian_sum_ = Eigen::Matrix3d::Zero();

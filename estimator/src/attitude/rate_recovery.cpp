@@ -23,8 +23,8 @@ void update_rate_state(const Row& row, double innovation, double variance, Angul
   state.x += scalar_update(row, innovation, variance, state.error_covariance);
 }
 
-// SaturatedReading contains the reading of one gyro or accelerometer. If a sensing element clips, `reading` contains
-// the components along the sensing directions instead of the output axes: rails.md (R52).
+// If a sensing element clips, `reading` contains the components along the sensing directions instead of the output
+// axes: rails.md (R52).
 struct SaturatedReading {
   Eigen::Matrix3d sensing_directions_mean_frame;
   Eigen::Vector3d reading, cross_axis_slope_sigma = Eigen::Vector3d::Zero();
@@ -168,7 +168,7 @@ void AngularRateRecovery::measure_rates(std::span<const ImuSample> units, double
       const double reading = seen.reading[axis];
       const double missing = reading - seen.sensing_directions_mean_frame.row(axis).dot(state.x.segment<3>(kRate));
       if (seen.is_saturated[static_cast<std::size_t>(axis)] && missing * reading < 0.0)
-        continue;  // the predicted reading is beyond the saturation level, as required
+        continue;  // the predicted rate already exceeds the saturation level, so the lower bound adds no information
       Row row = Row::Zero();
       row.segment<3>(kRate) = seen.sensing_directions_mean_frame.row(axis);
       const double sigma = kRateNoise_rad_s + kRateNoiseRatio * std::abs(reading);

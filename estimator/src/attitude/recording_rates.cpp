@@ -22,7 +22,6 @@ bool any_clips(std::span<const ClipSigns> signs) {
                      [](const ClipSigns& sign) { return sign.gyro != std::array<std::int8_t, 3>{}; });
 }
 
-/// gyro bias: mean of reading minus estimated rate
 Eigen::Vector3d bias_rad_s(std::span<const ImuSample> samples, std::span<const AngularRateState> rates,
                            ReadingsToReplace replaced) {
   double kept = 0.0;

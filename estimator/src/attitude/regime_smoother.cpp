@@ -19,7 +19,8 @@ bool unusable_axis_count(const AngularRateReport& report, const AngularRateState
   return rate.clipped_axes != 0 || report.suspected_saturation_axes[k] != 0;
 }
 
-/// See carried.md (C37). The readings of a slow accelerometer are older than the rates.
+/// See carried.md (C37). Interpolates the specific forces, because the readings of a slow accelerometer are older than
+/// the gyro's rates.
 std::vector<ImuSample> interpolate_forces(std::span<const ImuSample> samples) {
   std::vector<ImuSample> out(samples.begin(), samples.end());
   const std::vector<Eigen::Vector3d> forces = interpolated_forces(samples);
@@ -29,7 +30,7 @@ std::vector<ImuSample> interpolate_forces(std::span<const ImuSample> samples) {
 
 /// Returns the saturated accelerometer axes as bits 3 (x) to 5 (z), the format that SpinTracker expects.
 std::uint8_t saturated_forces(const ImuSample& sample, const AngularRateReport& report) {
-  constexpr double kMargin = 0.95;  // the saturation limits differ between the axes
+  constexpr double kMargin = 0.95;  // tolerance, because the saturation limits differ between the axes
   unsigned out = 0;
   for (int j = 0; j < 3; ++j) {
     const std::optional<double>& rail = report.saturation_limits[static_cast<std::size_t>(3 + j)];
@@ -110,7 +111,7 @@ void MotionRegimeSmoother::join_hand_held_rates(std::span<const ImuSample> sampl
   }
 }
 
-/// Replaces the rates by the rates of HandHeldSmoother. Gaps divide the recording into parts, and each part is
+/// Replaces the rates by the rates of HandHeldSmoother. Data gaps divide the recording into parts, and each part is
 /// estimated separately. `report` describes the last part of the recording with a successful estimate.
 bool MotionRegimeSmoother::estimate_hand_held(std::span<const ImuSample> samples, const ClippedReadings& known,
                                               std::vector<AngularRateState>& rates,

@@ -9,7 +9,8 @@ namespace tumble {
 
 namespace {
 
-constexpr double kAccelerationSpan_s = 0.01;  // = kModelError_s of the rate model
+// half time span of a rate difference; equal to kModelError_s of the rate model
+constexpr double kAccelerationSpan_s = 0.01;
 constexpr double kResetFraction = 0.5;
 
 HandHeldRateStream::Params with_common_params(const MotionRegimeStream::Params& params) {
@@ -33,7 +34,7 @@ ClipSigns clip_signs_of(const AngularRateObservation& observation) {
   return clip_signs(observation.sample, clipping);
 }
 
-// `share` is the weight of HandHeldRateStream in the combined rate.
+// `share` is the weight of HandHeldRateStream's rate.
 AngularRateState mixed_rate(const AngularRateState& rate, const AngularRateState& hand_held, double share) {
   AngularRateState out = mix_rate_states(rate, hand_held, share);
   out.clipped_axes = rate.clipped_axes;
@@ -142,8 +143,8 @@ RegimeProbabilities MotionRegimeStream::next(const RegimeProbabilities& before, 
                                              std::span<const AngularRateStream::Knot> window, std::size_t k,
                                              const RigCalibration& rig, bool unstable) const {
   const AngularRateStream::Knot& knot = window[k];
-  // An unstable calibration was probably fitted to contact forces. With an unstable calibration, rate and force agree
-  // in any motion, so a clipped sample does not change the probabilities.
+  // An unstable calibration of the lever arm was probably fitted to contact forces. With an unstable calibration, rate
+  // and specific force agree in any motion, so a clipped sample does not change the probabilities.
   if (unstable && knot.observation.unmeasured_axes() != 0) return before;
   AngularRateState rate;
   rate.w_WI_I_rad_s = knot.estimate.knot.rate_rad_s;
@@ -160,7 +161,7 @@ std::size_t MotionRegimeStream::index_of(const AngularRateState& rate, const Sta
   return k;
 }
 
-// Repeated resets of the calibration indicate motion without flight.
+// Repeated resets of the calibration indicate motion without free flight.
 bool MotionRegimeStream::calibration_is_unstable(const State& state) const {
   const AngularRateStream::Params& rate = params_.rate;
   return state.calibration_reset_rate > kResetFraction * rate.lag_s / std::max(rate.period_s, rate.step_s);
@@ -225,7 +226,6 @@ void MotionRegimeStream::flush(const State& state, std::vector<AngularRateState>
   }
 }
 
-// At the end of the data, combines the rates of AngularRateStream with the rates of HandHeldRateStream.
 void MotionRegimeStream::flush_hand_held_rates(std::span<AngularRateState> out, State& last) const {
   if (!last.hand_held_stream_running || !(last.probabilities.hand_held > params_.hand_held_probability_min)) return;
   std::vector<AngularRateState> hand_held;

@@ -15,15 +15,18 @@ namespace {
 
 // The limits of the rest detector are wide enough for any unit of the specific force and any plausible gyro bias.
 constexpr RestDetector::Params kRests{.rate_max_rad_s = 0.15, .caller_settings = {.force_min_m_s2 = 0.3}};
-constexpr double kMagnitudeErrorMax = 0.15;  // covers 80 mg of bias and 3 % of scale
+// relative error of measured gravity; covers 80 mg of accelerometer bias and 3 % of scale error
+constexpr double kMagnitudeErrorMax = 0.15;
 // The tolerance of the angle between measured and expected gravity covers gyro bias and pushes at rest.
 constexpr double kAngleMax_sigmas = 5.0, kAngleToleranceMin_rad = 0.3, kAngleToleranceMax_rad = 0.6;
-constexpr double kCorrelation_s = 0.1;        // minimum correlation time of a rate's error
-constexpr double kSpanRotationMin_rad = 1.0;  // less rotation between two rests hides most faults
-constexpr double kSpanMax_s = 60.0;           // the bias of a gyro drifts, so longer spans are not compared
-constexpr double kRestGapMax_s = 0.1;         // an unmeasured impact may hide in a longer gap
-constexpr double kRested_s = 1.0;             // total duration of rest that the check of gravity's magnitude needs
-constexpr double kWrongUnitRatio = 3.0;  // minimum factor for naming a wrong unit; no scale error or bias reaches it
+constexpr double kCorrelation_s = 0.1;  // minimum correlation time of a gyro rate's error
+// with less rotation between two rests, most sensor faults remain undetected
+constexpr double kSpanRotationMin_rad = 1.0;
+constexpr double kSpanMax_s = 60.0;    // longest time between compared rests, because the gyro bias drifts
+constexpr double kRestGapMax_s = 0.1;  // an impact may hide in a longer data gap
+constexpr double kRested_s = 1.0;      // total duration of rest that the check of gravity's magnitude needs
+// minimum factor between measured and expected gravity that indicates a wrong unit
+constexpr double kWrongUnitRatio = 3.0;
 
 RestDetector::Params without_force_limits() {
   RestDetector::Params rests = kRests;
@@ -111,7 +114,8 @@ void RestGravity::step(const ImuSample& sample, const AngularRateState& rate, St
       state.unmeasured_rotation_variance = 0.0;
 }
 
-/// See imu_merge.md (I25). A reading is the mean over its averaging window, and is valid at the window's middle.
+/// See imu_merge.md (I25). An accelerometer reading is the mean over its averaging window, and is valid at the window's
+/// middle.
 void RestGravity::integrate_rotation(const ImuSample& sample, const AngularRateState& rate, double dt_s,
                                      State& state) const {
   const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * rate.w_WI_I_rad_s);

@@ -21,11 +21,15 @@ using Vector9 = Eigen::Matrix<double, 9, 1>;
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kBeyondSigmas = 3.0;      // a segment is tested if its mean rate is this close to the level
-constexpr double kRevolutionCost = 100.0;  // limit of a revolution's jerk cost: ten standard deviations
-constexpr double kSurroundings_s = 0.3;    // duration before and after a segment that is solved with the segment
-constexpr double kAcceptLogOdds = 3.0;     // log odds (20 to 1) for a change; the cost excludes model errors
-constexpr int kExtraRevolutionsMax = 2;    // maximum number of revolutions more or less than in the optimised solution
+// a clipped segment is tested if its mean rate exceeds the saturation level by less
+constexpr double kBeyondSigmas = 3.0;
+// largest jerk cost (ten standard deviations) of a plausible additional revolution
+constexpr double kRevolutionCost = 100.0;
+// duration before and after a clipped segment that is optimised with the segment
+constexpr double kSurroundings_s = 0.3;
+// log odds (20 to 1) for changing the number of revolutions; the cost excludes model errors
+constexpr double kAcceptLogOdds = 3.0;
+constexpr int kExtraRevolutionsMax = 2;  // maximum number of revolutions more or less than in the optimised solution
 constexpr int kRounds = 3;
 
 /// range of nodes [first, last] in which all readings of a sensing element are clipped or unusable
@@ -43,7 +47,6 @@ struct RevolutionAlternatives {
   std::vector<std::pair<double, std::vector<Node>>> alternative_nodes;
 };
 
-/// Returns the cost of the angular jerk that one additional revolution within `steps` node intervals requires.
 double revolution_cost(const HandHeldProblem& problem, std::size_t steps) {
   return hand_held::revolution_cost(static_cast<double>(steps) * problem.node_interval_s(),
                                     problem.jerk_rad_s3_sqrts());
@@ -80,7 +83,6 @@ std::vector<Segment> possibly_wrong_segments(const HandHeldProblem& problem) {
   return out;
 }
 
-/// Adds `turns` revolutions about `axis` between nodes a and b as a smooth bump of the rate.
 std::vector<Node> with_extra_revolutions(const HandHeldProblem& part, const Vector3d& axis, double turns, std::size_t a,
                                          std::size_t b) {
   std::vector<Node> nodes(part.nodes().begin(), part.nodes().end());
@@ -140,8 +142,8 @@ std::vector<Hypothesis> hypotheses(const HandHeldProblem& whole, const Segment& 
   return out;
 }
 
-/// `found` contains solutions with different numbers of revolutions, best first. `accepted_alternative` is the index of
-/// the solution with the present number of revolutions.
+/// `revolution_hypotheses` contains solutions with different numbers of revolutions, best first. `accepted_alternative`
+/// is the index of the solution with the present number of revolutions.
 struct TestedRevolutionSegment {
   std::size_t from = 0;
   std::vector<Hypothesis> revolution_hypotheses;

@@ -19,16 +19,16 @@ struct RigidBodyImuForces {
 
   std::array<bool, kImuCount> imu_present{};
   std::array<Eigen::Vector3d, kImuCount> position_m{}, force_m_s2{};
-  std::array<double, kImuCount> peak_m_s2{};          ///< largest component of the IMU's readings in the window
-  std::array<double, kImuCount> force_change_m_s2{};  ///< change of the specific force since the last window
+  std::array<double, kImuCount> peak_m_s2{};  ///< largest component of the IMU's readings in the window
+  std::array<double, kImuCount> force_change_m_s2{};
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero(), acceleration_rad_s2 = Eigen::Vector3d::Zero();
   double uncertainty_rad_s2 = 0.0;         ///< standard deviation of the angular acceleration
-  double unsaturated_peak_max_m_s2 = 0.0;  ///< two IMUs with smaller readings are unsaturated
-  double tolerated_saturation_m_s2 = 0.0;  ///< tolerated disagreement with all other IMUs
+  double unsaturated_peak_max_m_s2 = 0.0;  ///< an IMU with smaller readings counts as unsaturated
+  double tolerated_saturation_m_s2 = 0.0;  ///< tolerated specific-force difference to other IMUs
 
   struct AgreeingImuForces {
     std::size_t imu = 0;
-    int agreeing_imu_count = -1;  ///< number of other IMUs that agree with `imu`
+    int agreeing_imu_count = -1;
   };
 
   Eigen::Vector3d misfit(std::size_t k, std::size_t j) const {
@@ -70,7 +70,8 @@ struct RigidBodyImuForces {
         b += d.cross(misfit(k, j));
       }
     }
-    return A.completeOrthogonalDecomposition().solve(b);  // IMUs on one line leave one component undetermined
+    // IMUs on one line leave one component of the angular acceleration undetermined
+    return A.completeOrthogonalDecomposition().solve(b);
   }
 };
 

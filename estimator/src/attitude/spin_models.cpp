@@ -16,26 +16,25 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
 constexpr int kRate = 0, kAcceleration = 1;
-constexpr int kTurning = 2, kFixed = 4;               // of Modulation
-constexpr int kArm = 2, kForce = 4, kWorldForce = 6;  // of Centripetal
+constexpr int kTurning = 2, kFixed = 4;               // state indices of Modulation
+constexpr int kArm = 2, kForce = 4, kWorldForce = 6;  // state indices of Centripetal
 constexpr double kJerk_rad_s3_sqrts = 50.0;           // root density of the angular jerk about the spin axis
-// The rate perpendicular to the spin axis is the sum of a world-fixed part (constant in world axes) and a body-fixed
-// part (constant in body axes): carried.md (C44). Both parts change as random walks with the root density
-// kWalk_rad_s_sqrts. Vibration adds an error with the standard deviation kVibration_rad_s to the readings. Vibration
-// errors are correlated over time, so all readings within kReadingInterval_s together count as one reading.
+// The world-fixed and the body-fixed part of the rate perpendicular to the spin axis are random walks with the root
+// density kWalk_rad_s_sqrts. Vibration adds an error with the standard deviation kVibration_rad_s to the gyro readings.
+// Vibration errors are correlated over time, so all readings within kReadingInterval_s together count as one reading.
 // SpinFilter::variance_ratio scales the variances of random walk and vibration: carried.md (C46).
 constexpr double kWalk_rad_s_sqrts = 1.0, kVibration_rad_s = 0.3;
 // size of the body: prior standard deviation of the lever arm from the spin axis to the IMU
 constexpr double kBodySize_m = 0.3;
-constexpr double kReadingInterval_s = 0.01;   // time within which vibration is correlated
+constexpr double kReadingInterval_s = 0.01;
 constexpr double kScaleMemory_s = 0.5;        // averaging time of the variance ratio
 constexpr double kVarianceRatioMax = 1e3;     // bounds of the variance ratio
-constexpr double kReadingSigma_rad_s = 0.02;  // of an unsaturated reading
-constexpr double kRailSigma_rad_s = 0.1;      // of a lower bound
+constexpr double kReadingSigma_rad_s = 0.02;  // standard deviation of an unsaturated gyro reading
+constexpr double kRailSigma_rad_s = 0.1;      // standard deviation of a saturated gyro reading as a lower bound
 constexpr double kStartSigma_rad_s = 1.0, kStartSigma_rad_s2 = 10.0, kStartSaturatedRatio = 0.5;
 constexpr double kForceSigma_m_s2 = 0.3, kForceWalk_m_s2_sqrts = 0.1, kVibration_m_s2 = 0.5;
-// The air force is smooth. A variance ratio of the residuals above kSmoothVarianceRatioMax indicates contact or
-// vibration, and contradicts a spin in the air.
+// In the air, external forces change smoothly. A variance ratio of the residuals above kSmoothVarianceRatioMax
+// indicates contact or vibration, and contradicts a spin in the air.
 constexpr double kSmoothVarianceRatioMax = 20.0, kContradiction = 1e3;
 // ratio of the root densities of the angular jerk in Centripetal and in Modulation; the rate of a spin in the air
 // changes slowly
@@ -74,7 +73,6 @@ SpinFilter<N> start_filter(const SpinReading& reading) {
   return out;
 }
 
-// Predicts rate and angular acceleration in `out.x`, and the covariance with the derivatives `out.transition_matrix`.
 template <int N>
 void predict_spin(const SpinFilter<N>& filter, double jerk_rad_s3_sqrts, double dt_s, SpinPrediction<N>& out) {
   out.transition_matrix(kRate, kAcceleration) = dt_s;
@@ -88,9 +86,8 @@ void predict_spin(const SpinFilter<N>& filter, double jerk_rad_s3_sqrts, double 
 }
 
 // If `related` is 1, rotates the two-dimensional vector at the state index `part` by the negative spin angle. If
-// `related` is 0, the vector remains unchanged. Writes the derivatives of the rotated vector with respect to the state
-// to `out.transition_matrix`. In the axes of the body, a vector that is constant in the world turns by minus the angle
-// of the spin.
+// `related` is 0, the vector remains unchanged. In the axes of the body, a vector that is constant in the world turns
+// by minus the angle of the spin.
 template <int N>
 void turn_part(const SpinFilter<N>& filter, int part, double related, double dt_s, SpinPrediction<N>& out) {
   const auto& x = filter.x;

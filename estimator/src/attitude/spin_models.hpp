@@ -26,7 +26,7 @@ struct SpinReading {
   double rate_rad_s = 0.0;
   bool saturated = false;
   Eigen::Vector2d across = Eigen::Vector2d::Zero();  ///< gyro [rad/s] or accelerometer [m/s^2]
-  bool across_valid = false;                         ///< both axes are unsaturated
+  bool across_valid = false;
   double dt_s = 0.0;
 };
 

@@ -18,8 +18,8 @@ constexpr int kRate = 0;
 constexpr double kRateMin_rad_s = 6.0;   // minimum rate of a steady spin
 constexpr double kMemory_s = 0.2;        // readings within this time count as one independent observation
 constexpr double kChanges_hz = 0.02;     // assumed frequency of starts and ends of a steady spin
-constexpr double kGapMax_s = 0.5;        // the spin restarts after a longer gap
-constexpr double kAxisHysteresis = 1.2;  // ratio of two rates at which the spin axis changes
+constexpr double kGapMax_s = 0.5;        // a new spin starts after a longer data gap
+constexpr double kAxisHysteresis = 1.2;  // the spin axis changes if another axis has a rate larger by this factor
 constexpr double kStartProbability = 0.01;
 // relative standard deviations of the spin rates from gyro and from accelerometer, due to precession of the spin axis
 constexpr double kRatioSigma = 0.01, kForceRatioSigma = 0.02;
@@ -31,23 +31,22 @@ double probability_of_change(double dt_s) {
   return 1.0 - std::exp(-kChanges_hz * dt_s);
 }
 
-/// RecordedSpin contains the data of one sample that smooth_spin() needs.
 template <int N>
 struct RecordedSpin {
   SpinPrediction<N> predicted;
   SpinFilter<N> filter;
-  double probability = 0.0;  // from earlier samples
+  double probability = 0.0;  // probability of a spin, given this and all earlier samples
   double likelihood_ratio = 1.0, spin_change_probability = 0.0;
 };
 
-// Smooths one spin: a backward pass over the states (Rauch, Tung, Striebel, AIAA Journal 3, 1965), and the backward
-// recursion of carried.md (C37) for the probabilities.
+// Smooths the states of one spin by a backward pass (Rauch, Tung, Striebel, AIAA Journal 3, 1965). A backward recursion
+// smooths the spin's probability: carried.md (C37).
 template <int N>
 void smooth_spin(std::span<const RecordedSpin<N>> run, std::span<SpinRate> out) {
   if (run.empty()) return;
   Eigen::Matrix<double, N, 1> x = run.back().filter.x;
   Eigen::Matrix<double, N, N> P = run.back().filter.covariance;
-  Eigen::Vector2d backward = Eigen::Vector2d::Ones();  // spin, other motion
+  Eigen::Vector2d backward = Eigen::Vector2d::Ones();  // backward likelihoods of spin and of other motion
   for (std::size_t k = run.size() - 1; k-- > 0;) {
     const RecordedSpin<N>& next = run[k + 1];
     const Eigen::Matrix<double, N, N> gain =
@@ -79,7 +78,7 @@ SpinTracker::SpinTracker(const Params& params) : params_(params) {
   require_valid_fields(params);
 }
 
-// Selects the gyro axis of the spin. Returns whether a spin starts at this sample.
+// Returns whether a spin starts at this sample.
 bool SpinTracker::select_spin_axis(const ImuSample& sample, State& state) const {
   const Eigen::Vector3d size = sample.angular_velocity_rad_s.cwiseAbs();
   Eigen::Index largest = 0;
@@ -91,8 +90,7 @@ bool SpinTracker::select_spin_axis(const ImuSample& sample, State& state) const 
   return state.axis >= 0;
 }
 
-// Predicts and updates the filters of one spin model with one sample. `record` receives the data that smooth_spin()
-// needs.
+// `record` receives the data that smooth_spin() needs.
 template <class Model, class Recorder>
 SpinRate SpinTracker::advance_spin_filter(const Model& model, const ImuSample& sample, std::uint8_t saturated_axes,
                                           double dt_s, bool first, int axis, Hypotheses<Model::kStates>& hypotheses,

@@ -15,19 +15,19 @@ namespace tumble {
 
 namespace {
 
-constexpr double kRollingVelocitySigma_m_s = 0.03;  // when rolling without slip, per node
+constexpr double kRollingVelocitySigma_m_s = 0.03;  // velocity error of rolling without slip, per filter step
 constexpr double kGyroNoise_rad_sqrts = 1e-3;       // angle random walk, including unmodelled errors
 constexpr double kRateError_sqrts = 4e-3;           // angle random walk per rad/s of rate, from scale and timing errors
-constexpr double kBiasWalk_rad_s_sqrts = 2e-6;      // random walk of the bias
+constexpr double kBiasWalk_rad_s_sqrts = 2e-6;      // random walk of the gyro bias
 constexpr double kAccelerationNoise_m_s_sqrts = 0.01;  // velocity random walk
 constexpr double kVelocity_m_sqrts = 1.0;              // standard deviation of the mean velocity over 1 s of motion
 constexpr double kDisplacement_m_sqrts = 0.3;          // standard deviation of the mean displacement over 1 s
 constexpr double kDisplacementTau_s = 10.0;            // time constant with which the displacement decays to zero
-constexpr double kMotionTau_s = 3.0;  // correlation time of velocity and displacement, averaging time of their size
+constexpr double kMotionTau_s = 3.0;  // correlation time of velocity and displacement, averaging time of variances
 // A slip starts above the velocity residual kSlipVelocity_m_s, and can end only below kSlipVelocity_m_s / 2.
 constexpr double kSlipVelocity_m_s = 0.12;
-constexpr double kSlipQuiet_s = 0.2;     // duration of small velocity residuals after which slip ends
-constexpr double kSlipTimeout_s = 3.0;   // maximum duration of a slip
+constexpr double kSlipQuiet_s = 0.2;  // duration of small velocity residuals after which slip ends
+constexpr double kSlipTimeout_s = 3.0;
 constexpr double kGapMin_s = 0.05;       // minimum time between two samples that counts as a gap
 constexpr double kNode_s = 0.04;         // time between two corrections
 constexpr double kReading_s = 4e-3;      // averaging time of the readings
@@ -42,9 +42,9 @@ constexpr RestDetector::Params kRestDetector = {
     .rest_s = 1.0,
     .caller_settings = {.reading_s = 0.0,  // the readings are already averaged
                         .memory_s = 1.0}};
-constexpr double kRestVelocitySigma_m_s = 0.005;   // standard deviation of the velocity at rest, per node
+constexpr double kRestVelocitySigma_m_s = 0.005;   // standard deviation of the velocity at rest, per filter step
 constexpr double kRestRateSigma_rad_sqrts = 2e-3;  // standard deviation of the rate measured at rest, mean over 1 s
-constexpr double kRestRateSigmas = 3.0;  // maximum difference of mean rate and bias at rest, in standard deviations
+constexpr double kRestRateSigmas = 3.0;  // maximum difference of mean gyro rate and bias, in standard deviations
 constexpr double kGyroBiasSigmaStart_rad_s = 8.7266e-3;  // prior standard deviation of the gyro bias: 0.5 deg/s
 constexpr double kTiltSigmaStart_rad = 0.01;
 constexpr double kVelocitySigmaStart_m_s = 0.1;
@@ -134,7 +134,7 @@ Status TumbleAttitude::step(const ImuSample& sample, const Eigen::Matrix3d& rate
 Eigen::Matrix3d TumbleAttitude::attitude_covariance_rad2(const State& state) {
   constexpr std::array kAttitude = {kTilt, kTilt + 1, kHeading};
   Eigen::Matrix3d covariance = state.covariance(kAttitude, kAttitude);
-  if (state.alignment.running) {  // an alignment must not depend on the filter's corrections
+  if (state.alignment.running) {  // the reported tilt of a coarse alignment must not depend on the filter's corrections
     covariance.topLeftCorner<2, 2>() = reported_tilt_variance_rad2(state) * Eigen::Matrix2d::Identity();
     covariance.topRightCorner<2, 1>().setZero();
     covariance.bottomLeftCorner<1, 2>().setZero();
@@ -194,7 +194,7 @@ void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& r
   const Eigen::Vector3d from = state.rate_rad_s;
   Eigen::Vector3d to = after.angular_velocity_rad_s - state.bias_rad_s;
   if (state.at_rest) to.setZero();
-  ImuSample straight = after;  // without force except gravity, the velocity is constant
+  ImuSample straight = after;  // assumes that the specific force only balances gravity, so the velocity is constant
   straight.angular_velocity_rad_s = 0.5 * (from + to) + state.bias_rad_s;
   const Eigen::Quaterniond q_mid = state.q_WI * so3::exp(0.25 * gap_s * (from + to));
   straight.specific_force_m_s2 = q_mid.conjugate() * Eigen::Vector3d(0.0, 0.0, params_.gravity_m_s2);

@@ -14,14 +14,17 @@ namespace {
 using Eigen::Vector3d;
 
 // docs/maths/outliers.md explains these thresholds.
-constexpr double kRateMin_rad_s = 1.0;                // smallest jump of a gyro reading that is an outlier
-constexpr double kForceMin_m_s2 = 30.0;               // smallest jump of an accelerometer reading that is an outlier
-constexpr double kOutlierRatio = 3.0;                 // minimum ratio of an outlier to the difference of its neighbours
-constexpr double kAccelerationPerForce_rad_m = 40.0;  // largest angular acceleration of a robot per unit of force
-constexpr double kLever_m = 10.0;                     // largest force of a robot per unit of angular acceleration
-constexpr double kRateJumpMax_rad_s = 50.0;           // largest plausible jump of the rate in a single sample
-constexpr double kVelocityJumpMax_m_s = 20.0;         // largest plausible jump of the velocity in a single sample
-constexpr double kNear_s = 0.1;                       // maximum time between compared neighbours
+constexpr double kRateMin_rad_s = 1.0;   // smallest jump of a gyro reading that is an outlier
+constexpr double kForceMin_m_s2 = 30.0;  // smallest jump of an accelerometer reading that is an outlier
+// minimum ratio of an outlier's jump to the difference between its neighbours
+constexpr double kOutlierRatio = 3.0;
+// largest angular acceleration of a robot per unit of specific force
+constexpr double kAccelerationPerForce_rad_m = 40.0;
+// largest specific force of a robot per unit of angular acceleration
+constexpr double kLever_m = 10.0;
+constexpr double kRateJumpMax_rad_s = 50.0;    // largest plausible jump of the rate in a single sample
+constexpr double kVelocityJumpMax_m_s = 20.0;  // largest plausible jump of the velocity in a single sample
+constexpr double kNear_s = 0.1;                // maximum time between compared neighbouring readings
 // If two successive time stamps differ by more than kStampStepMax_periods sample periods, the second time stamp may be
 // an outlier. The outlier filter delays a sample with a suspect time stamp until the next sample arrives. If the next
 // time stamp is not later than the delayed sample's time stamp, the filter rejects the delayed sample.
@@ -245,7 +248,7 @@ bool OutlierFilter::is_outlier(std::size_t index, const ImuSample& after, const 
 std::vector<bool> find_inliers(const OutlierFilter& filter, std::span<const ImuSample> samples) {
   std::vector<bool> out(samples.size(), false);
   OutlierFilter::State state;
-  std::vector<std::size_t> delayed;  // indices of state.delayed
+  std::vector<std::size_t> delayed;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (filter.first_is_outlier(samples[k], state)) {
       std::fill(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(delayed.front()), false);

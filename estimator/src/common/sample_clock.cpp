@@ -11,15 +11,18 @@ namespace tumble {
 
 namespace {
 
-constexpr double kOutlier = 4.0;  // largest error of an accepted stamp, in standard deviations
-constexpr double kStray = 0.4;    // error of a stamp, in periods, above which the sample number is uncertain
+constexpr double kOutlier = 4.0;  // largest error of an accepted time stamp, in standard deviations
+// error of a time stamp, in sample periods, above which the sample's number is uncertain
+constexpr double kStray = 0.4;
 constexpr std::size_t kConsecutiveOutliersMax = 8;
-constexpr double kPeriodJitterMax = 0.25;  // maximum jitter in periods; random stamps have 0.29
+// maximum jitter of time stamps in sample periods; uniformly random stamps have 0.29
+constexpr double kPeriodJitterMax = 0.25;
 // If successive residuals have a larger correlation than kErrorCorrelationMax, the line fitted to the time stamps does
 // not follow the clock.
 constexpr double kErrorCorrelationMax = 0.5;
-constexpr double kStepMin_periods = 0.25;      // minimum time between two samples, in periods
-constexpr double kSampleNumberSigmaMax = 0.1;  // maximum uncertainty of the sample number after a gap, in periods
+constexpr double kStepMin_periods = 0.25;  // minimum time between two corrected time stamps, in sample periods
+// maximum uncertainty of the sample number after a data gap, in sample periods
+constexpr double kSampleNumberSigmaMax = 0.1;
 
 constexpr double kPeriodMax_ns = 1e11;
 constexpr TimeNs kLast_ns = TimeNs{1} << 62;  // larger stamps remain uncorrected, to avoid overflow
@@ -31,8 +34,8 @@ double difference_ns(TimeNs later_ns, TimeNs earlier_ns) {
 struct FittedLine {
   double period_ns = 0.0, last_ns = 0.0;
   double weighted_sample_index_sum = 0.0,
-         weighted_squared_sample_index_sum = 0.0;  ///< sums over the sample numbers, counted from the last stamp
-  double mean_square_error_ns2 = 0.0;              ///< variance of the stamps about the line
+         weighted_squared_sample_index_sum = 0.0;  ///< sums over the sample numbers, counted from the last time stamp
+  double mean_square_error_ns2 = 0.0;              ///< variance of the time stamps about the line
 };
 
 using StateOffsets =

@@ -82,7 +82,7 @@ double HealthFinding::confidence() const {
 /// After a failure of attitude, vertical or localisation has ended, later estimates are correct again. A tracking
 /// failure makes all later poses wrong.
 bool HealthFinding::invalidates_estimate() const {
-  // The rotation of gravity later confirms or corrects a suspect gyro scale.
+  // The rotation of measured gravity later confirms or corrects a suspect gyro scale.
   const bool recovers = kind == Kind::attitude_unknown || kind == Kind::vertical_unknown ||
                         kind == Kind::not_localised || kind == Kind::gyro_scale;
   return fault_description(kind).makes_estimate_unusable && !(ended && recovers);

@@ -12,30 +12,30 @@ namespace tumble::rolling {
 
 /// FinalSmoothingPass runs a Kalman filter with known contact modes forward, and a smoother backward.
 ///
-/// The backward pass needs more than 10 KiB per node, so FinalSmoothingPass divides the nodes into segments. For each
-/// segment, FinalSmoothingPass stores only the state of the filter at the start, and the adjoint variables of the
-/// backward pass at the end. During the backward pass, all other data of a segment are recomputed with bit-identical
-/// results. If the window has several segments, the filter runs three times: forward, for the backward pass, and for
-/// the reported estimates. A FinalSmoothingPass is too large for the stack (four filters of 13 KiB).
+/// The backward smoother needs more than 10 KiB per filter step (node), so FinalSmoothingPass processes the nodes in
+/// segments. For each segment, FinalSmoothingPass stores only the filter state at the start and the smoother's adjoint
+/// variables at the end. The backward pass recomputes all other data of a segment, with bit-identical results. If the
+/// window has several segments, the filter runs three times: forward, for the backward pass, and for the reported
+/// estimates. A FinalSmoothingPass is too large for the stack (four filters of 13 KiB).
 class FinalSmoothingPass {
  public:
   static constexpr std::size_t kNodesPerSegment =
-      128;  ///< number of nodes per segment; the backward pass needs 1.6 MiB
+      128;  ///< number of filter steps (nodes) per segment; a segment needs 1.6 MiB
 
   struct Smoothed {
     const SampleMotion& point;
     const RollingNominalState& nominal;
-    Reported smoothed_error;       ///< smoothed error of the nominal trajectory at the sample
-    const FilterNodeRecord* node;  ///< node with the covariance of the sample; null if the window has no node
+    Reported smoothed_error;  ///< smoothed error of the nominal trajectory at the sample
+    /// filter step whose covariance applies to the sample; null if the window has no complete filter step
+    const FilterNodeRecord* node;
     std::size_t index;
   };
 
-  /// All arguments must outlive the pass. `segment` is the number of nodes per segment. Only the filter records of one
-  /// segment are stored at the same time.
+  /// All arguments must outlive the pass. `segment` is the number of nodes per segment.
   FinalSmoothingPass(const RollingParams& params, std::span<const ImuSample> samples,
                      std::span<const ModePathNode> path, std::size_t segment = kNodesPerSegment);
 
-  /// After run(), cut() returns the filter after the first `cut` nodes.
+  /// Filters and smooths all nodes. Afterwards, cut_checkpoint() returns the filter state after the first `cut` nodes.
   void run_to_cut(const SmoothingCheckpoint& start, std::size_t cut);
 
   std::size_t nodes() const { return horizontal_variance_m2_.size(); }
@@ -70,8 +70,8 @@ class FinalSmoothingPass {
   std::vector<double> horizontal_variance_m2_;
   std::size_t cut_node_ = 0;
   SmoothingCheckpoint cut_checkpoint_, end_checkpoint_;
-  SmoothingCheckpoint recomputation_checkpoint_;  ///< filter for a segment that is recomputed
-  Adjoint adjoint_;                               ///< state of the backward pass
+  SmoothingCheckpoint recomputation_checkpoint_;
+  Adjoint adjoint_;
   // index of the segment whose filter records are in `node_records_`; a segment has `length_` successive nodes
   std::size_t loaded_ = 0;
   std::vector<FilterNodeRecord> node_records_;

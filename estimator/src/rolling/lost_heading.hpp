@@ -10,14 +10,14 @@
 /// rolling.md (R34) to (R36).
 namespace tumble::rolling {
 
-/// minimum standard deviation of the heading at which the filter is corrected
+/// heading standard deviation above which measurements must not reduce the heading's variance
 inline constexpr double kLostHeading_rad = 0.1;
 
 inline bool heading_lost(const Covariance& P) {
   return P(kAttitude + 2, kAttitude + 2) > squared(kLostHeading_rad);
 }
 
-/// If the whole run is rotated, a contact point at rest stays at rest: rolling.md (R35).
+/// Removes the effect of the heading error on the contact velocity: rolling.md (R35).
 inline void remove_heading_component(Contact& c) {
   c.measurement_jacobian.col(kAttitude + 2) -= Eigen::Vector3d::UnitZ().cross(c.contact_velocity_W_m_s);
 }
@@ -39,7 +39,6 @@ inline void remove_heading_covariance(const Vector& turned, Covariance& P) {
   P += (P.col(kAttitude + 2) * turned.transpose()).eval();
 }
 
-/// Transforms one error vector x from the old to the corrected nominal trajectory.
 inline void remove_heading_error(const Vector& turned, Vector& x) {
   x += x[kAttitude + 2] * turned;
 }

@@ -9,8 +9,8 @@
 /// `row` is a Row, or the index of a single state. Each call of `take` may change the state `x` and its covariance `P`.
 namespace tumble::rolling {
 
-/// The contact point is at rest, or moves along the floor during slip: rolling.md (R17), (R20). An unknown velocity of
-/// the sphere is assumed to be small.
+/// During grip, the contact point is at rest; during slip, the contact point moves along the floor: rolling.md (R17),
+/// (R20). If the velocity of the sphere is very uncertain, a weak pseudo-measurement of zero velocity is added.
 template <class EstimateCallback>
 void contact_measurement_rows(const Contact& c, RollingMode mode, double node_s, const Eigen::Vector3d& v_WI_m_s,
                               const Vector& x, const Covariance& P, EstimateCallback&& take) {

@@ -17,7 +17,8 @@ namespace {
 
 constexpr double kSlowRateTau_s = 0.3;
 constexpr double kEventProbability = 0.5;  // minimum probability of a reported slip or bump
-constexpr double kSpinSigmas = 4.0;        // a larger rate at rest, in standard deviations of the bias, is a rotation
+// at rest, a gyro rate beyond this many standard deviations of the gyro bias is a rotation in place
+constexpr double kSpinSigmas = 4.0;
 
 static_assert(RollingFilter::kStates == rolling::kStates);
 
@@ -115,7 +116,7 @@ void RollingFilter::complete_filter_node(const Eigen::Vector3d& next_rate_rad_s,
   }
   state.position_covariance_m2 = state.hypotheses[0].covariance.block<3, 3>(rolling::kPosition, rolling::kPosition) +
                                  hypothesis_position_covariance(state, rolling::kPosition);
-  // The differences between the hypotheses about past motion increase the covariance of the current position.
+  // Position differences to discarded hypotheses increase the position covariance of the remaining hypothesis.
   if (state.at_rest && state.hypothesis_count == 1) {
     state.hypotheses[0].covariance.block<3, 3>(rolling::kPosition, rolling::kPosition) +=
         state.pruned_position_covariance_m2;
@@ -131,13 +132,13 @@ void RollingFilter::complete_filter_node(const Eigen::Vector3d& next_rate_rad_s,
 
 void RollingFilter::detect_rest(State& state) const {
   const double h = state.node_integrals.node_interval_s;
-  if (state.node_integrals.gap_s > 0.0) {  // two readings do not show rest in the gap between them
+  if (state.node_integrals.gap_s > 0.0) {  // the readings before and after a data gap do not prove rest within the gap
     state.stationary_state = {};
     state.at_rest = state.spins_in_place = false;
     return;
   }
   const Eigen::Vector3d w_mean = state.node_integrals.rate_integral_I_rad / h + state.nominal.gyro_bias_rad_s;
-  const TimeNs from_ns = state.stationary_state.last_averaged_reading_ns;  // the last node ended where this node starts
+  const TimeNs from_ns = state.stationary_state.last_averaged_reading_ns;  // end of the previous filter step
   state.at_rest = rest_detector_.detect_stationary_from_mean(w_mean, state.node_integrals.force_integral_I_m_s / h,
                                                              from_ns, from_ns + std::llround(1e9 * h),
                                                              state.nominal.gyro_bias_rad_s, state.stationary_state);
@@ -206,7 +207,7 @@ void RollingFilter::keep_position_at_rest(State& state) const {
   state.reported_position_constant = stands;
 }
 
-/// After the correction, the states of all hypotheses are relative to the best hypothesis.
+/// After the correction, the error states of all hypotheses are relative to the best hypothesis.
 void RollingFilter::move_linearisation_point(bool heading_lost, State& state) const {
   const Vector x = state.hypotheses[0].x, turned = rolling::heading_component(x);
   rolling::move_linearisation_point(x, state.nominal);
@@ -235,8 +236,8 @@ void RollingFilter::update_reported_pose(State& state) const {
   state.contact_velocity_m_s = state.hypotheses[0].contact_velocity_W_m_s;
 }
 
-/// The total weight of all hypotheses decides between gripping and slipping. A single best hypothesis would not
-/// suffice, because several hypotheses may have the same current contact mode.
+/// The summed weight of all hypotheses decides between grip and slip, because several hypotheses may have the same
+/// contact mode.
 RollingMode RollingFilter::most_probable_mode(const State& state) {
   const bool event = state.slip_probability >= kEventProbability;
   if (event == may_slip(state.mode)) return state.mode;
@@ -248,7 +249,7 @@ RollingCalibration RollingFilter::calibration(const State& state) {
   RollingCalibration out{
       rolling::constants_of(state.nominal),
       state.hypotheses[0].covariance.bottomRightCorner<RollingCalibration::kSize, RollingCalibration::kSize>()};
-  constexpr int kSlope = rolling::kSlope - rolling::kGyroBias;  // the slope belongs to the floor
+  constexpr int kSlope = rolling::kSlope - rolling::kGyroBias;  // the floor slope is no calibration constant
   out.constants.segment<2>(kSlope).setZero();
   out.covariance.middleRows<2>(kSlope).setZero();
   out.covariance.middleCols<2>(kSlope).setZero();

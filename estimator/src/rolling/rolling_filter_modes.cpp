@@ -19,19 +19,20 @@ namespace tumble {
 namespace {
 
 constexpr double kSpeedMax_m_s = 2.5;  // maximum speed of the sphere; grip at a higher speed is rejected
-// Mean velocity change per node by impacts that the model does not explain, while the sphere stays on the floor.
+// mean velocity change by unexplained impacts per filter step, while the sphere stays on the floor
 constexpr double kUnexplainedImpact_m_s = 0.03;
-constexpr double kSlipBumpPerS = 0.2;                            // from slip to bump, and from bump to slip
+// rate of mode changes from slip to bump, and from bump to slip
+constexpr double kSlipBumpPerS = 0.2;
 constexpr double kInclineEndsPerS = 0.1;                         // rate of changes from a slope to the level floor
 constexpr double kRoughBeginsPerS = 0.02, kRoughEndsPerS = 0.1;  // rates of changes to and from a rough floor
 
-constexpr double kPruneLogWeight = -120.0;  // minimum log weight of a hypothesis, relative to the best hypothesis
-constexpr double kRestLogLikelihoodMin =
-    -60.0;                             // smallest log likelihood at rest; limits the effect of a single bad node
-constexpr double kModeAgeMax_s = 1.0;  // maximum age of a mode; older modes count as equally old
-// During slip, the change of the contact velocity per node is a mixture of three Gaussians with the standard deviations
-// kPlateau_m_s, kSteady_m_s and kJump_m_s. Because kPlateau_m_s is smaller than the velocity noise in the mode grip, a
-// slip at constant velocity is more probable in the mode slip.
+constexpr double kPruneLogWeight = -120.0;       // minimum log weight of a hypothesis, relative to the best hypothesis
+constexpr double kRestLogLikelihoodMin = -60.0;  // lower limit of the log likelihood of a filter step at rest, so that
+                                                 // one outlier has little effect
+constexpr double kModeAgeMax_s = 1.0;            // contact modes that started longer ago count as equally old
+// During slip, the change of the contact velocity per filter step has a density with three Gaussian components. The
+// standard deviations of the three Gaussians are kPlateau_m_s, kSteady_m_s and kJump_m_s. Because kPlateau_m_s is less
+// than the contact velocity's noise during grip, a slip at constant velocity is more probable as slip than as grip.
 constexpr double kPlateau_m_s = 0.004, kSteady_m_s = 0.01, kJump_m_s = 0.08, kPlateauFraction = 0.4,
                  kSteadyFraction = 0.35;
 constexpr double kRollOverSigma_m_s = 0.03, kHitSigma_m_s = 0.3, kRollOverFraction = 0.7;
@@ -41,7 +42,7 @@ constexpr std::int64_t kAgesApart = 4;
 // kMinDissentingHypotheses hypotheses whose current mode started before the current mode of the best hypothesis.
 constexpr std::size_t kMinDissentingHypotheses = 6;
 constexpr double kRoughCost = 0.2;
-// The foot of a ramp is a bump, so a slope is more probable after a bump.
+// The start of a ramp is detected as a bump, so a slope is more probable after a bump.
 constexpr double kInclineAfterBump = 4.0;
 constexpr RollingMode kModes[] = {RollingMode::grip, RollingMode::slip, RollingMode::bump, RollingMode::incline,
                                   RollingMode::uneven};
@@ -91,9 +92,9 @@ double log_likelihood_stationary(const rolling::Contact& c, const RollingFilter:
   Eigen::LLT<Eigen::Matrix3d> factor;
   double log_det = 0.0, cost = 0.0;
   if (mode == RollingMode::uneven) {
-    // The contact velocity has a larger variance in the mode uneven than in the mode grip. The larger variance would
-    // reduce the normalised likelihood of every node on a rough floor. For the mode uneven, the likelihood is therefore
-    // normalised with the variance of the mode grip, and its logarithm is reduced by kRoughCost.
+    // On a rough floor, the larger contact velocity variance of the mode uneven would reduce the likelihood of every
+    // filter step. For the mode uneven, the likelihood is therefore normalised with the variance of the mode grip, and
+    // its logarithm is reduced by kRoughCost.
     log_det = log_det_with(rolling::contact_variance(c, RollingMode::grip), factor);
     cost = kRoughCost;
   }
@@ -158,7 +159,7 @@ std::span<const ModeCandidate> propose_mode_changes(const RollingParams& params,
       const bool bound = may_slip(h.mode) && state.node_index - h.first_node_of_mode < shortest;
       if (mode != h.mode && bound) continue;
       if (too_fast && !may_slip(mode)) continue;
-      double likelihood = 0.0;  // a gap is no evidence of a mode
+      double likelihood = 0.0;  // a data gap gives no evidence for a contact mode
       if (!in_gap)
         likelihood = may_slip(mode) ? log_likelihood_moving(c, h, mode, u) : log_likelihood_stationary(c, h, mode);
       const double impact =
@@ -175,8 +176,8 @@ std::span<const ModeCandidate> propose_mode_changes(const RollingParams& params,
   return {out.data(), total};
 }
 
-/// Rounds the index of the node at which a contact mode started, more coarsely for older modes. After the rounding,
-/// hypotheses whose contact modes started at similar times count as equal.
+/// Rounds the index of the filter step at which a contact mode started, more coarsely for older modes. After the
+/// rounding, hypotheses whose contact modes started at similar times count as equal.
 std::int64_t mode_beginning_node(std::int64_t mode_start_node, std::int64_t node, double node_s) {
   const auto mode_age_max_nodes = static_cast<std::int64_t>(kModeAgeMax_s / node_s);
   const std::int64_t age = std::min(node - mode_start_node, mode_age_max_nodes);
@@ -218,7 +219,6 @@ void rearrange_hypotheses(const Origins& from, std::size_t count, std::span<Roll
     waits[k] = from[k] != k;
     readers[from[k]] += waits[k] ? 1 : 0;
   }
-  // Hypothesis k may be overwritten only after all required copies of hypothesis k have been made.
   for (std::size_t first = 0; first < count; ++first) {
     for (std::size_t k = first; k < count && waits[k] && readers[k] == 0; k = from[k]) {
       all[k] = all[from[k]];
@@ -226,8 +226,7 @@ void rearrange_hypotheses(const Origins& from, std::size_t count, std::span<Roll
       --readers[from[k]];
     }
   }
-  // The remaining copies are cyclic: for example, hypothesis 1 replaces hypothesis 2, and hypothesis 2 replaces
-  // hypothesis 1.
+  // The remaining copies form cycles, so each cycle needs one temporary copy.
   for (std::size_t first = 0; first < count; ++first) {
     if (!waits[first]) continue;
     const RollingFilter::Hypothesis kept = all[first];
@@ -286,7 +285,8 @@ void RollingFilter::correct_at_rest(State& state) const {
     double likelihood = 0.0;
     rolling::stationary_measurement_rows(
         state.node_integrals, state.nominal, state.spins_in_place, [&](int index, double measured, double variance) {
-          if (index < rolling::kPosition)  // a velocity is evidence of a mode, a bias is not
+          // only the velocity gives evidence for a contact mode, the gyro bias does not
+          if (index < rolling::kPosition)
             likelihood += gaussian_log_density(measured - h.x[index], h.covariance(index, index) + variance);
           rolling::update(index, measured, variance, h.x, h.covariance);
         });
@@ -305,7 +305,7 @@ void RollingFilter::correct_at_rest(State& state) const {
     return std::tuple(-state.hypotheses[a].log_weight, a) < std::tuple(-state.hypotheses[b].log_weight, b);
   });
   rearrange_hypotheses(order, count, state.hypotheses);
-  // After some time at rest, all hypotheses agree about the present state.
+  // After kModeAgeMax_s at rest, all hypotheses have the same current motion, so only the best hypothesis is kept.
   const bool rested = seconds(state.stationary_state.small_rate_since_ns) > kModeAgeMax_s;
   if (rested && state.hypothesis_count > 1)
     state.pruned_position_covariance_m2 = hypothesis_position_covariance(state, rolling::kPosition);

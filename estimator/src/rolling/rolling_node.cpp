@@ -15,10 +15,10 @@ namespace {
 // Root densities of random walks: radius on a rough floor, slope, accelerometer bias, and velocity per squared rate.
 constexpr double kRoughRadiusWalk_m_sqrts = 1e-4, kSlopeWalk_sqrts = 0.02, kAccelBiasWalk_m_s2_sqrts = 2e-3,
                  kVelocityWalkPerRate2_sqrts = 4e-5;
-constexpr double kImpactSigmaRatio = 0.06;  // timing and direction of an impact, relative to its velocity change
+constexpr double kImpactSigmaRatio = 0.06;  // velocity error by an impact, as a fraction of its velocity change
 constexpr double kClippedRateSigma_rad_s = 5.0, kClippedForceSigma_m_s2 = 4.0;  // error of a saturated reading
 constexpr double kSteepest = 0.95;  // maximum sine of a slope, so that the normal points up
-constexpr double kLevelSlopeSigma = 1e-3, kStartRate_rad_s = 0.1;  // rate of the first sample at a start in motion
+constexpr double kLevelSlopeSigma = 1e-3, kStartRate_rad_s = 0.1;  // minimum first gyro rate for a start in motion
 
 double vertical_component(const Eigen::Vector2d& slope) {
   return std::sqrt(1.0 - std::min(slope.squaredNorm(), squared(kSteepest)));
@@ -29,23 +29,23 @@ Eigen::Vector3d floor_normal(const Eigen::Vector2d& slope) {
 }
 
 constexpr double kNoImpactForce_m_s2 = 3.0;  // maximum difference of specific force and gravity without an impact
-constexpr double kImuOffset_m = 0.02;        // distance of an IMU from the centre that explains forces in fast rotation
-constexpr double kPartialRangeMin = 0.3, kPartialRangeMax = 0.6;  // as fractions of the accelerometer's range
-constexpr double kForceTilt_rad = 0.35;                           // direction error of the mean force in motion
-constexpr double kLostTilt_rad = kForceTilt_rad;  // the specific force levels a tilt with a larger standard deviation
-constexpr double kUncertainTilt_rad = 0.1;        // limit of the tilt at rest, where the specific force is gravity
+constexpr double kImuOffset_m = 0.02;        // assumed IMU distance from the sphere's centre, for centripetal force
+constexpr double kPartialRangeMin = 0.3, kPartialRangeMax = 0.6;  // peaks (fraction of range) with possible saturation
+constexpr double kForceTilt_rad = 0.35;                           // tilt error of the mean specific force in motion
+constexpr double kLostTilt_rad = kForceTilt_rad;  // tilt standard deviation above which specific force levels the tilt
+constexpr double kUncertainTilt_rad = 0.1;        // tilt limit at rest, where the specific force is gravity
 constexpr double kRestTilt_rad = 5e-3, kLostSpeed_m_s = 1.0;
-constexpr double kPushForceRatio = 0.15;  // minimum difference of force and gravity in a push or fast rotation, in g
-constexpr double kRecoveredTau_s = 0.1;   // correlation time of the error of a recovered rate
-constexpr double kFastRate_rad_s = 6.0;   // above this rate, the specific force rotates too far per node for levelling
+constexpr double kPushForceRatio = 0.15;  // minimum |specific force - gravity| of a push or fast rotation, in g
+constexpr double kRecoveredTau_s = 0.1;   // correlation time of the error of a rate recovered from saturation
+constexpr double kFastRate_rad_s = 6.0;   // above this rate, the specific force rotates too fast for levelling
 constexpr double kUnsureSpeed_m_s = 0.1, kSpeedWindow_s = 1.0, kSpeedSigma_m_s = 1.0;
 constexpr double kStartTilt_rad = 0.15;  // tilt error of a start in motion, caused by a push of 1.5 m/s^2
 // Constants of rolling.md (R31). Low rates before and after a data gap indicate that the sphere was hardly pushed
 // during the gap. Below kGapRate_rad_s, the uncertainty of the rate in a data gap is therefore smaller.
 constexpr double kGapRate_rad_s = 1.0, kGapStill_rad_s2 = 0.5, kGapAcceleration_rad_s2 = 15.0;
 constexpr double kGapVelocityChangeRatio =
-    0.5;  // unknown velocity change in a gap, as a fraction of the rolling velocity's change
-constexpr double kGapTimeSigmaRatio = 0.15;  // uncertain time of a rate change within a gap, as a fraction of the gap
+    0.5;  // unknown velocity change in a data gap, as a fraction of the rolling velocity's change
+constexpr double kGapTimeSigmaRatio = 0.15;  // uncertain time of a rate change in a gap, as a fraction of the gap
 
 }  // namespace
 
@@ -117,7 +117,7 @@ namespace {
 
 struct SaturatedForce {
   Eigen::Vector3d force_m_s2 = Eigen::Vector3d::Zero();
-  Eigen::Vector3d lower_bound_m_s2 = Eigen::Vector3d::Zero();  ///< components for which the reading is a lower bound
+  Eigen::Vector3d lower_bound_m_s2 = Eigen::Vector3d::Zero();
 };
 
 /// A saturated accelerometer reading is a lower bound of the force. The assumed force is the larger of two values: the
@@ -185,7 +185,7 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   nominal.v_WI_m_s += gained;
   sums.integrated_rotation_s += R_T;
   for (int axis = 0; axis < 3; ++axis) sums.rotation_rate_integral.middleCols<3>(3 * axis) += w_raw[axis] * R_T;
-  if (!has_unknown_rate) {  // with an unknown rate, errors of force and attitude do not affect the velocity
+  if (!has_unknown_rate) {  // without a known rate, errors of specific force and attitude do not affect the velocity
     sums.integrated_rotation_with_force_s += R_T;
     sums.force_integral_W_m_s += R_T * f;
     for (int axis = 0; axis < 3; ++axis) sums.rotation_by_force_integral.middleCols<3>(3 * axis) += f_raw[axis] * R_T;
@@ -239,7 +239,7 @@ ImuAverage gap_step_average(const RollingParams& params, const ImuSample& before
       acceleration * gap_s * gap_s * gap_s / 12.0 + kGapTimeSigmaRatio * change.norm() * gap_s;
   uncertainty.rotation_variance_rad2 = mean_force_tilt_rad * mean_force_tilt_rad / pieces;
   uncertainty.rate_variance_rad2_s =
-      squared(mean_force_tilt_rad / gap_s) * gap_s;  // rolling.md (R32); common to all pieces, hence a factor gap_s
+      squared(mean_force_tilt_rad / gap_s) * gap_s;  // rolling.md (R32); same rate error in all pieces of the gap
   uncertainty.speed_variance_m2_s2 =
       squared(kGapVelocityChangeRatio * params.radius_m * change.norm()) / pieces;  // rolling.md (R33)
   ImuAverage piece;
@@ -339,8 +339,7 @@ Contact contact(const RollingParams& params, const RollingNominalState& nominal,
   return out;
 }
 
-/// Returns the variance of a pseudo-measurement of zero velocity, or nothing if the velocity is certain enough:
-/// rolling.md (R20).
+/// See rolling.md (R20).
 std::optional<double> velocity_variance_if_lost(double node_s, const Covariance& P) {
   if (P(kVelocity, kVelocity) + P(kVelocity + 1, kVelocity + 1) < squared(kUnsureSpeed_m_s)) return std::nullopt;
   return squared(kSpeedSigma_m_s) * kSpeedWindow_s / node_s;
@@ -383,7 +382,7 @@ bool reset_tilt(const RollingParams& params, const RollingNodeIntegrals& sums, b
   P.leftCols<6>().setZero();
   const double tilt_sigma_rad = at_rest ? std::max(params.expert.prior.tilt_sigma_rad, kRestTilt_rad) : kForceTilt_rad;
   P.diagonal().segment<2>(kAttitude).setConstant(squared(tilt_sigma_rad));
-  P(kAttitude + 2, kAttitude + 2) = squared(kLostSpeed_m_s);  // practically unknown, but small enough for linearisation
+  P(kAttitude + 2, kAttitude + 2) = squared(kLostSpeed_m_s);  // practically unknown heading, but linearisation is valid
   P.diagonal().segment<3>(kVelocity).setConstant(
       squared(at_rest ? RollingContactParams::kRestVelocitySigma_m_s : kLostSpeed_m_s));
   return true;

@@ -25,16 +25,18 @@ using Moving = Eigen::Matrix<double, 9, kStates>;
 /// The reported position of a sphere is constant if its speed has been below kConstrainSpeed_m_s for kConstrainAfter_s.
 inline constexpr double kConstrainAfter_s = 0.1, kConstrainSpeed_m_s = 0.02;
 
-/// Contact is the velocity u of the contact point on the nominal trajectory, and the derivative of u with respect to
-/// the error state.
+/// Contact is the velocity of the contact point on the nominal trajectory, with its Jacobian with respect to the error
+/// state.
 struct Contact {
   Eigen::Vector3d contact_velocity_W_m_s;
   Eigen::Matrix<double, 3, kStates> measurement_jacobian;
   double grip_variance = 0.0;
-  double gap_extra_variance = 0.0;             ///< additional variance due to a gap, in every direction
-  double rolling_speed_m_s = 0.0;              ///< speed of the centre if the sphere rolls without slip
-  Eigen::Vector3d normal_height_derivative_W;  ///< derivative of u with respect to the normal's third component
-  Eigen::Vector2d floor_slope;                 ///< slope of the floor on the nominal trajectory
+  /// additional variance of the contact velocity due to a data gap, in every direction
+  double gap_extra_variance = 0.0;
+  double rolling_speed_m_s = 0.0;  ///< speed of the centre if the sphere rolls without slip
+  /// derivative of the contact velocity with respect to the vertical component of the floor's normal
+  Eigen::Vector3d normal_height_derivative_W;
+  Eigen::Vector2d floor_slope;
 
   /// Returns the contact velocity for the error state `x`. The contact velocity is a nonlinear function of the slope
   /// error, because the floor normal has unit length. The contact velocity is linear in all other errors.
@@ -47,7 +49,7 @@ Eigen::Vector3d contact_variance(const Contact& c, RollingMode mode);
 
 bool starts_in_motion(const Eigen::Vector3d& rate_I_rad_s);
 
-/// The initial state has a levelled or stated attitude, the centre at the origin, and zero or rolling velocity.
+/// Returns the initial state with the attitude `q_WI`, the sphere's centre at the origin, and zero or rolling velocity.
 RollingNominalState start_nominal(const RollingParams& params, const Eigen::Quaterniond& q_WI,
                                   const Eigen::Vector3d& rate_I_rad_s);
 void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s, Covariance& P);
@@ -57,7 +59,7 @@ enum class Force { force_measured, force_unknown };
 void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominalState& nominal,
                RollingNodeIntegrals& sums, Force known = Force::force_measured);
 
-/// Extrapolates the nominal trajectory by the mean of the unprocessed readings.
+/// Extrapolates the nominal trajectory by the mean of the IMU readings that no filter step has used yet.
 RollingNominalState extrapolate_nominal(const RollingParams& params, const ImuAverage& reading,
                                         const RollingNominalState& nominal);
 
@@ -75,7 +77,7 @@ void integrate_gap(const RollingParams& params, const ImuAverage& piece, const G
 /// Returns the matrix B: during one filter step (node), the errors of attitude, velocity and position change by B times
 /// the error state.
 Moving transition(const RollingNodeIntegrals& sums);
-/// `noise_ratio` multiplies the root densities of the velocity and of rate-dependent attitude errors.
+/// `noise_ratio` multiplies the root densities of velocity noise and of rate-dependent attitude noise.
 void predict(const RollingParams& params, const RollingNodeIntegrals& sums, const Moving& B, Vector& x, Covariance& P,
              double noise_ratio = 1.0);
 
@@ -90,13 +92,13 @@ Contact contact(const RollingParams& params, const RollingNominalState& nominal,
 void update_slope_for_mode(RollingMode from, RollingMode to, double h_s, const RollingNominalState& nominal, Vector& x,
                            Covariance& P);
 
-/// Returns the variance of a pseudo-measurement of zero velocity, or nothing if the velocity is certain enough.
+/// Returns the variance of a pseudo-measurement of zero velocity, or nothing if the velocity variance is small.
 std::optional<double> velocity_variance_if_lost(double node_s, const Covariance& P);
 
 bool resets_floor_slope(RollingMode from, RollingMode to);
 
-/// Aligns an uncertain tilt with the mean specific force of the node, and resets the velocity. Returns false without a
-/// reset if the tilt is certain enough, or if the specific force is unusable.
+/// If the tilt is uncertain, levels the attitude with the mean specific force of the filter step, and resets the
+/// velocity. Returns false without a reset if the tilt is certain enough, or if the specific force is unusable.
 bool reset_tilt(const RollingParams& params, const RollingNodeIntegrals& sums, bool at_rest,
                 RollingNominalState& nominal, Covariance& P);
 

@@ -61,7 +61,7 @@ RollingSmoother::EstimateCallback append_estimates_to(std::vector<RollingEstimat
   return [&out](const RollingEstimate& estimate) { out.push_back(estimate); };
 }
 
-/// The final pass starts at the last node whose estimates were reported, or at the first sample.
+/// The final smoothing pass starts at the last filter step whose estimates were reported, or at the first sample.
 void start_window(const RollingParams& filter, const RollingSmoother::State& state,
                   rolling::SmoothingCheckpoint& start) {
   start = state.committed_state.checkpoint;
@@ -79,7 +79,7 @@ void start_window(const RollingParams& filter, const RollingSmoother::State& sta
 struct SlipAndBumpEvents {
   std::vector<bool> uncertain;
   double committed_position_variance_m2 =
-      0.0;  ///< slip_start_variance_m2 (see FinalSmoothingState) after the node `emitted`
+      0.0;  ///< value of FinalSmoothingState::slip_start_variance_m2 after the last reported node
 };
 
 SlipAndBumpEvents find_slip_and_bump_events(const RollingSmoother::Params& params,
@@ -193,7 +193,7 @@ RollingSmoother::ModePath RollingSmoother::most_probable_path(const State& state
   ModePath path(state.node_modes.size());
   const double constrain_after_s = std::min(rolling::kConstrainAfter_s, params_.filter.expert.rest_detector.rest_s);
   std::size_t which = 0;
-  double lasts_s = 0.0;  // duration of the rest that contains the node
+  double lasts_s = 0.0;  // duration of the rest period that contains the node
   for (std::size_t n = path.size(); n-- > 0;) {
     const NodeModes& step = state.node_modes[n];
     rolling::ModePathNode& node = path[n];
@@ -232,7 +232,7 @@ void RollingSmoother::smooth_window(const ModePath& path, std::size_t emitted, S
   });
 
   if (emitted <= pass.nodes()) {
-    FinalSmoothingState& last = state.committed_state;  // the constant position of the last reported node remains
+    FinalSmoothingState& last = state.committed_state;  // keeps the constrained position of the last reported node
     last.checkpoint = pass.cut_checkpoint();
     const std::size_t used = std::exchange(last.checkpoint.reading.next, 0);
     last.slip_start_variance_m2 = events.committed_position_variance_m2;
@@ -240,7 +240,7 @@ void RollingSmoother::smooth_window(const ModePath& path, std::size_t emitted, S
     state.samples.erase(state.samples.begin(), state.samples.begin() + static_cast<std::ptrdiff_t>(used));
     state.node_modes.erase(state.node_modes.begin(), state.node_modes.begin() + static_cast<std::ptrdiff_t>(emitted));
   } else {
-    state.committed_state.checkpoint.reading.gap_step_index = 0;  // the gap has ended
+    state.committed_state.checkpoint.reading.gap_step_index = 0;  // the data gap has ended
     state.samples.clear();
     state.node_modes.clear();
   }

@@ -176,7 +176,7 @@ void backward_pass(Adjoint& adjoint, std::span<FilterNodeRecord> nodes) {
       adjoint_vector -= H.transpose() * (K.dot(adjoint_vector) + node.innovation[k] / node.variance[k]);
       const Row seen = H * (K.dot(through) + 1.0 / node.variance[k]);
       adjoint_matrix += H.transpose().lazyProduct(seen) - H.transpose().lazyProduct(through.transpose()) -
-                        through.lazyProduct(H);  // avoids a temporary matrix of 13 KiB per measurement
+                        through.lazyProduct(H);  // lazyProduct() avoids a temporary matrix of 13 KiB per measurement
     }
     if (node.resets_floor_slope) {
       adjoint_vector.segment<2>(kSlope).setZero();

@@ -14,8 +14,8 @@ namespace tumble::rolling {
 struct ModePathNode {
   RollingMode mode = RollingMode::grip;
   bool at_rest = false;
-  bool spins_in_place = false;           ///< the sphere is at rest, but rotates about the contact point
-  bool holds_constant_position = false;  ///< the sphere has rested long enough for a constant reported position
+  bool spins_in_place = false;  ///< the sphere is at rest, but rotates about the contact point
+  bool holds_constant_position = false;
   Eigen::Matrix3d position_spread_m2 = Eigen::Matrix3d::Zero();
 };
 
@@ -33,17 +33,18 @@ struct FilterNodeRecord {
   bool resets_floor_slope = false;
   bool tilt_reset = false;
   bool heading_lost = false;
-  Eigen::Matrix<double, kReported, kStates> covariance_rows;  ///< rows of P after the update, for the reported states
-  Reported correction;                                        ///< correction of the nominal state by the update
-  Vector heading_correction;    ///< heading_component() of the correction, if the heading is lost
-  RollingNominalState nominal;  ///< nominal state after the update
+  /// rows of the error covariance after the update, for the reported states
+  Eigen::Matrix<double, kReported, kStates> covariance_rows;
+  Reported correction;        ///< correction of the nominal state by the update
+  Vector heading_correction;  ///< heading_component() of the correction, if the heading is lost
+  RollingNominalState nominal;
   ModePathNode mode_path_node;
   TimeNs time_ns = 0;
   Reported smoothed;
   Eigen::Matrix<double, kReported, kReported> smoothed_covariance;
 };
 
-/// RollingReading is one input of the live filter: an average of IMU readings, or a piece of a gap.
+/// RollingReading is one input of the live filter: an average of IMU readings, or a part of a data gap.
 struct RollingReading {
   ImuAverage average;
   GapUncertainty uncertainty;
