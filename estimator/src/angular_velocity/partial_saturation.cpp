@@ -18,12 +18,11 @@ constexpr double kDeficitSigmaRatio = 0.5, kDepthSigmaRatio = 0.25, kDepthMax = 
 PartialSaturation partial_saturation(double reading_rad_s, double neighbour_rad_s, double rail_rad_s,
                                      double noise_rad_s) {
   const double depth = rail_rad_s - reading_rad_s, slope = reading_rad_s - neighbour_rad_s;
-  // The device clips the sum of rate and noise. Noise therefore lowers a fully saturated reading by less than a tenth
-  // of the noise's standard deviation.
+  // Noise lowers a fully saturated reading by less than a tenth of the noise's standard deviation, because the device
+  // clips the sum of rate and noise.
   if (!(depth > 0.1 * noise_rad_s)) return {};
-  // If the device compensates misalignment after clipping, rotation about the other axes slowly changes a fully
-  // saturated reading. Only a change between two readings that exceeds the noise therefore indicates partial
-  // saturation.
+  // With misalignment compensation after clipping, rotation about other axes slowly changes a fully saturated reading,
+  // so only changes above the noise count.
   if (!(slope > noise_rad_s)) return {};
   double share = 0.0;  // rails.md (R71)
   if (slope > 2.0 * depth) {

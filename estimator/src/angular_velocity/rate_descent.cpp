@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// If few clipped samples count as flight, the optimisation restarts with the flight threshold multiplied by these
+// If few clipped samples count as free flight, the optimisation restarts with the flight threshold multiplied by these
 // factors.
 constexpr double kRestartThresholds[] = {16.0, 0.25};
 constexpr double kFlightShareExpected = 0.5;
@@ -26,8 +26,7 @@ constexpr double kStepDeviations = 0.1;
 
 constexpr double kVarianceUnknown = 100.0;  // variance of a clipped axis at the start, (rad/s)^2
 
-// Computes initial rates with a smoother and the published rate recovery (SaturationAwareRateEstimator). Clipped
-// readings are lower bounds of the rates.
+// Computes initial rates with a smoother and the published rate recovery (SaturationAwareRateEstimator).
 std::vector<AngularRateEstimate> first_guess(std::span<const AngularRateObservation> observations,
                                              const AngularRateModelParams& model, const AngularRateModel& derived) {
   double smallest = model.kRateMax_rad_s;
@@ -129,8 +128,8 @@ bool run_gauss_newton(const AngularRateSmoother::Params& params, const AngularRa
   return true;
 }
 
-// Returns the sum of the square roots of all flight weights, which measures the agreement with free flight:
-// rate_smoother.md (R31). `share` receives the fraction of free-flight samples among the samples with a clipped axis.
+// Returns the sum of the square roots of all flight weights, as a measure of the agreement with free flight:
+// rate_smoother.md (R31).
 double explained_force_fraction(std::span<const AngularRateObservation> observations,
                                 std::span<const AngularRateEstimate> estimates, double& share) {
   double sum = 0.0, unmeasured_axes = 0.0, flight = 0.0;

@@ -195,8 +195,8 @@ double AngularRateModel::gyro_information(const AngularRateObservation& observat
                                           const AngularRateEstimate& estimate, int axis) const {
   if (observation.gyro_repeats) return 0.0;
   if (observation.gyro_age_s > 0.0) {
-    // A gyro reading measures the rate `gyro_age_s` before its time stamp. During `gyro_age_s`, a contact force may
-    // change the rate: rate_smoother.md (R7).
+    // A gyro reading measures the rate `gyro_age_s` before its time stamp, and a contact force may have changed the
+    // rate since: rate_smoother.md (R7).
     const double change =
         params_.expert.contact.kGain_rad_m * estimate.contact_force_m_s2.norm() * observation.gyro_age_s;
     const double lost = (observation.partly_saturated_axes() >> axis & 1u) != 0

@@ -38,8 +38,7 @@ Eigen::Matrix3d axes_of_auxiliary(const Eigen::Matrix3d& R_CI, const SensingDire
   return is_element_clipped ? Eigen::Matrix3d(elements.sensing_directions * R_CI) : R_CI;
 }
 
-// Returns the standard deviation of a reading due to an uncertain sensing direction. `most` is an upper bound of the
-// rate or specific force along the other axes.
+// Returns the standard deviation of a reading due to an uncertain sensing direction.
 double sensing_direction_sigma(const SensingDirections& elements, bool is_element_clipped, int j, double most) {
   return is_element_clipped ? elements.cross_axis_slope_sigma[j] * most : 0.0;
 }

@@ -10,8 +10,8 @@ namespace {
 constexpr int kGyroBias = 3;
 
 // Adds the residual of one sensing element to the normal equations: rate_smoother.md (R8). `age` is the age of the gyro
-// reading divided by time_scale_s_. If `rig_spread` is set, the sensing direction is not estimated. The uncertainty of
-// a fixed sensing direction (covariance `rig_spread`) reduces the weight of the residual: rate_stream.md (R92).
+// reading divided by time_scale_s_. The uncertainty of a fixed sensing direction (covariance `rig_spread`) reduces the
+// weight of the residual: rate_stream.md (R92).
 void add_row(const AngularRateFactor& gyro, int j, double age, double information, double pull,
              const RigConstants::Matrix* rig_spread, arrow::Block& block, arrow::Corner& corner) {
   const int first = RigConstants::kGyroMisalignmentIndex + 2 * j;

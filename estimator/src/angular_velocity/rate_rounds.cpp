@@ -12,7 +12,6 @@ namespace tumble {
 
 namespace {
 
-// Beyond the ends of the recording, the first or last specific force is used.
 void shift_force_by_delay(std::span<const ImuSample> samples, std::span<const Clipping> clippings, std::ptrdiff_t shift,
                           std::span<const double> accel_age_s, std::span<AngularRateObservation> observations) {
   const auto last = static_cast<std::ptrdiff_t>(samples.size()) - 1;
@@ -174,7 +173,7 @@ struct CorrectionIterations {
   bool is_delay_unknown() const {
     return estimated && stated_error_priors().delay_uncalibrated_s > stated_error_priors().delay_s;
   }
-  /// Returns whether the body has impacts and flight, and is therefore not hand-held.
+  /// Returns whether the body has impacts and free flight, and is therefore not hand-held.
   bool has_impact_delay() const { return impact_delay.sigma_s > 0.0; }
 };
 

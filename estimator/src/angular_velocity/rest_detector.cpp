@@ -70,7 +70,6 @@ bool RestDetector::detect_stationary_from_mean(const Eigen::Vector3d& rate_rad_s
     state.rate_sum_rad_s.setZero();
     state.force_sum_m_s2.setZero();
   } else if (seconds(to_ns - state.first_ns) > params_.caller_settings.memory_s) {
-    // Exponential weights average rate and force over about memory_s seconds.
     const double keep = 1.0 - std::min(1.0, step_s / params_.caller_settings.memory_s);
     state.weight *= keep;
     state.rate_sum_rad_s *= keep;

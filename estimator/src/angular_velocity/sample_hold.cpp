@@ -67,8 +67,7 @@ ClockPhaseSegment best_clock_phases(double period, std::span<const std::size_t> 
   return out;
 }
 
-// Returns the clock (period and phase) of the sensor that best predicts which samples repeat a reading. If several
-// clocks are equally good, returns a clock with the middle of their periods and the middle of their phases.
+// Returns the clock (period and phase) of the sensor that best predicts which samples repeat a reading.
 Clock best_matching_clock(const Clock& first, double reach, int periods, std::span<const std::size_t> moving,
                           const std::vector<bool>& repeats, double& found) {
   ClockPhaseSegment best{moving.size()};

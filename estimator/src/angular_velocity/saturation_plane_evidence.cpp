@@ -54,9 +54,8 @@ Segment next_segment(std::span<const std::size_t> inliers, std::size_t& at) {
   return out;
 }
 
-// Compares the scatter of readings about a line with the gyro noise. Returns the log-likelihood ratio of two
-// hypotheses, saturated and unsaturated readings: rails.md (R65). Saturated readings contain no noise if the device
-// adds the noise before it clips.
+// Returns the log-likelihood ratio of two hypotheses, saturated and unsaturated readings: rails.md (R65). Saturated
+// readings contain no noise if the device adds the noise before it clips.
 double plane_thickness_log_likelihood(const DistinctReadings& readings, const SaturationPlaneCandidate& facet,
                                       const Segment& s) {
   if (s.size() <= kThinLostFreedom) return 0.0;

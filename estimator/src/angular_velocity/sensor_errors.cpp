@@ -80,8 +80,8 @@ Hypothesis posterior(const Matrix& information, const Matrix& earlier_runs, cons
   Vector sharpened = scaled_h;
   all.solve_vector(sharpened);
   out.log_odds = log_prior + 0.5 * scaled_h.dot(sharpened) - all.half_log_determinant();
-  // Estimated scale and misalignment errors are kept at zero (heuristic). Errors of the free-flight equations change
-  // the residuals in a similar way as scale and misalignment errors.
+  // Estimated scale and misalignment errors are kept at zero (heuristic), because errors of the free-flight equations
+  // change the residuals similarly.
   Vector mean = Vector::Zero();
   mean.tail<kRest>() = scaled_h.tail<kRest>();
   dense::Cholesky(sharp.bottomRightCorner<kRest, kRest>()).solve_vector(mean.tail<kRest>());

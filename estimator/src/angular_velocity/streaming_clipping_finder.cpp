@@ -17,7 +17,8 @@ using Eigen::Vector3d;
 
 constexpr double kNearExtremeRatio = 0.9, kStoreRatio = 0.85;
 constexpr std::size_t kBeside = 4;
-// The first readings of a run determine the gyro's noise.
+// The memory keeps the first and the latest kLatestReadings readings, because the first readings of a run determine the
+// gyro's noise.
 constexpr std::size_t kLatestReadings = 48;
 // The search for saturation repeats when the number of large readings has grown by the fraction 1 /
 // kSearchGrowthDivisor.

@@ -20,7 +20,7 @@ using so3::hat;
 using GyroRow = Eigen::Matrix<double, 1, 6>;
 // derivative of a residual with respect to the calibration constants
 using BorderRow = Eigen::Matrix<double, 1, kBorderSize>;
-// derivative of the force residual with respect to attitude, rate, angular acceleration and hand acceleration
+// derivative of the specific-force residual with respect to attitude, rate, angular acceleration and hand acceleration
 using ForceState = Eigen::Matrix<double, 3, 12>;
 using ForceBorder = Eigen::Matrix<double, 3, kBorderSize>;
 
@@ -112,7 +112,6 @@ double add_bound(const SensingAxisSums& e, const GyroSensingAxisRow& rows, doubl
   return minus_two_log_normal_cdf(u);
 }
 
-// Adds a zero-mean prior with inverse variance `w` to the three state components from index `i`.
 double add_zero_prior(const Vector3d& value, double w, int i, System::StateBlock& block) {
   block.diagonal.diagonal().segment<3>(i).array() += w;
   block.gradient.segment<3>(i) -= w * value;
@@ -167,8 +166,8 @@ double add_gyro(const NodeReadings& readings, const Matrix3d& rows, const Readin
     const SensingAxisSums& e = readings.gyro[static_cast<std::size_t>(i)];
     const GyroSensingAxisRow& element = elements[static_cast<std::size_t>(i)];
     if (e.count > 0.0) {
-      // While another sensing element clips, an error of the sensing directions shifts all readings of a time step
-      // equally. Averaging the readings of a time step does not reduce a common shift of these readings.
+      // While another sensing element clips, sensing direction errors shift all readings of a time step equally, so
+      // averaging does not reduce the shift.
       const double tilt = noise.deficit_error_ratio * clipped_axis_deficit(readings, elements, i);
       cost += add_unclipped_readings(
           e, element,

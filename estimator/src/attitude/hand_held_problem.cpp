@@ -56,9 +56,8 @@ ReadingNoise reading_noise(const HandHeldSmoother::Params& p, double period_s) {
 
 namespace {
 
-// The reported covariance neglects the lower bounds from saturated readings. The mean rate of an averaging window
-// differs from the rate at the window's centre. For a window of length P and the jerk density q, the variance of the
-// difference is q P^3/320: carried.md (C26).
+// The reported covariance neglects the lower bounds from saturated readings. With averaging windows of length P and the
+// jerk density q, mean rate and rate at the window's centre differ with the variance q P^3/320: carried.md (C26).
 ReadingNoise noise_from_data_sheet(const HandHeldSmoother::Params& params, ReadingNoise noise, double period_s) {
   noise.bound = 0.0;
   noise.window_rate_sigma_rad_s = params.jerk_rad_s3_sqrts * std::sqrt(period_s * period_s * period_s / 320.0);

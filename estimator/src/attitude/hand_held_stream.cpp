@@ -227,9 +227,8 @@ Node HandHeldRateStream::first_node(const State& state) const {
   return out;
 }
 
-// Each unsaturated sensing element measures one component of the rate. For a clipped sensing element, the component is
-// predicted from the previous node. The magnitude of the predicted component must be between the saturation level and
-// kFillRatioMax times the saturation level.
+// The rate component of a clipped sensing element is predicted from the previous time step. The magnitude of the
+// predicted rate component must be between the saturation level and kFillRatioMax times the saturation level.
 void HandHeldRateStream::predict(const Node& before, const Eigen::Matrix3d& rows, Knot& knot) const {
   const double h = params_.body.expert.node_s;
   Node& node = knot.node;

@@ -230,7 +230,7 @@ ImuSample ImuMerge::mean_of_selected_imus(const Vectors& rates, const Vectors& f
   return merged;
 }
 
-/// Returns the ratio of the measured to the expected force differences between the IMUs: imu_merge.md (I8).
+/// Returns the ratio of measured to expected specific-force differences between the IMUs: imu_merge.md (I8).
 std::optional<double> ImuMerge::lever_arm_agreement(const State& state) {
   if (state.lever_arm_effect_power < kArmSquareMin_m2_s3) return std::nullopt;
   return state.lever_arm_correlation / state.lever_arm_effect_power;
@@ -240,8 +240,7 @@ void ImuMerge::close_comparison_windows(const ImuMask& present, const Vectors& r
                                         bool all_used, const ImuSample& merged, State& state) const {
   const double length_s = state.window_count > 0 ? state.window_s : Setup::kWindow_s;
   const bool follows = state.window_count > 1 && length_s < kWindowMax_s;
-  // An IMU that repeats its reading may be frozen. If all IMUs repeat their readings, the rate is constant and no IMU
-  // is frozen.
+  // An IMU that repeats its reading may be frozen, unless all IMUs repeat their readings at a constant rate.
   const auto end = state.imus.begin() + setup_.count;
   const auto any_repeats = [&](Repetition Unit::*hold) {
     const auto holding = std::count_if(state.imus.begin(), end,

@@ -24,11 +24,10 @@ constexpr double kArmShareMin = 0.5;  // smallest plausible lever_arm_agreement(
 // rate.
 constexpr double kArmShareOff = 0.06;
 
-constexpr double kAxisContributionMin = 0.02;  // an axis of the common frame counts as clipped if a clipped axis of an
-                                               // IMU contributes more than this fraction
+constexpr double kAxisContributionMin = 0.02;  // smallest contribution of a clipped axis that flags another axis
 
-/// Returns the component of the IMU's rotation perpendicular to the repeated accelerometer reading. The reading is
-/// mostly gravity, and a rotation perpendicular to gravity should change the reading of the accelerometer.
+/// Returns the component of the IMU's rotation perpendicular to the repeated accelerometer reading. A rotation
+/// perpendicular to gravity should change an accelerometer reading, which is mostly gravity.
 double rotation_across_force_rad(const ImuMerge::Repetition& hold) {
   return hold.turned_rad.cross(hold.repeated_reading.stableNormalized()).norm();
 }

@@ -21,16 +21,16 @@ constexpr double kChangeMax = 0.12;
 constexpr double kGravityNear = 0.25;
 // On pendulums and hand-held wands, the rotation of the measured gravity is 0.75 to 1.21 times the gyro's rotation.
 constexpr double kSlopeMin = 0.65, kSlopeMax = 1.5;
-// minimum rotation in total (mean-square sum), and of one window
+// minimum rotation in total (sum of squares), and of one window
 constexpr double kRotationMin_rad2 = 0.5, kRotationMin_rad = 0.15;
-// A push, or the centripetal force in flight, may rotate the measured force for a few windows of 0.2 s.
+// A push, or the centripetal force in free flight, may rotate the measured specific force for a few windows of 0.2 s.
 constexpr double kRotatedWindowsMin = 5.0;
-// A scale error of the gyro is reported only if a scaled gyro rotation explains the rotation of the measured force much
+// A scale error of the gyro is reported only if a scaled gyro rotation explains the rotation of the specific force much
 // better. Scaling the gyro must reduce the sum of squared unexplained force rotations to less than the fraction
 // kScaledResidualMax: imu_merge.md (I21). A regression gives the ratio of specific-force rotation to gyro rotation:
 // imu_merge.md (I20).
-// Pushes of the body often cause a ratio of specific-force rotation to gyro rotation between 0 and 1. For a ratio
-// between 0 and 1, the stricter limit kReducedResidualMax applies.
+// Pushes of the body often make the specific force rotate less than the gyro measures, so the limit kReducedResidualMax
+// for such ratios is stricter.
 constexpr double kScaledResidualMax = 0.75, kReducedResidualMax = 0.33;
 // rate of slow rocking on the ground or of a gyro offset, below which pushes may tilt the specific force
 constexpr double kSlow_rad_s = 0.4;
@@ -169,9 +169,9 @@ void ImuPlausibility::limit_memory(State& state) {
     *sum *= share;
 }
 
-/// A sensor whose reading never changed counts as frozen only while the body moves. A rotating force, or a force that
-/// excludes rest, proves that the body moves. An accelerometer that reads zero for longer than a free fall is frozen if
-/// the gyro measures rotation.
+/// A sensor whose reading never changed counts as frozen only while the body moves. A rotating specific force, or a
+/// specific force that excludes rest, proves that the body moves. An accelerometer that reads zero for longer than a
+/// free fall is frozen if the gyro measures rotation.
 double ImuPlausibility::frozen_s(const State& state) const {
   const auto never_moved = [&](const RepeatedReadingTime& hold) {
     return hold.changing_readings_duration_s == 0.0 && hold.repeated_s >= kFrozen_s;

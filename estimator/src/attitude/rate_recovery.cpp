@@ -137,7 +137,7 @@ void AngularRateRecovery::start(const ImuSample& merged, State& state) const {
 /// See imu_merge.md (I14), (I15).
 void AngularRateRecovery::predict(double dt_s, State& state) const {
   const Eigen::Vector3d rate = state.x.segment<3>(kRate), force = state.x.segment<3>(kForce);
-  // A force that is constant in the world rotates in the body axes C.
+  // A specific force that is constant in the world rotates in the body axes C.
   const Eigen::Matrix3d turn = so3::exp(-dt_s * rate).toRotationMatrix();
   Eigen::Matrix<double, kArms, kArms> F = Eigen::Matrix<double, kArms, kArms>::Identity();
   F.block<3, 3>(kRate, kAcceleration) = dt_s * Eigen::Matrix3d::Identity();

@@ -31,8 +31,8 @@ double log_gaussian(double squared_norm, double variance) {
   return -1.5 * std::log(kTwoPi * variance) - 0.5 * squared_norm / variance;
 }
 
-// Returns the log density of a measured force of norm n, if the true force has norm g and any direction: carried.md
-// (C34).
+// Returns the log density of a measured specific force of norm n, if the true specific force has norm g and any
+// direction: carried.md (C34).
 double log_density_near_gravity(double n, double g, double variance) {
   const double x = n * g / variance;
   const double log_sinh_x = x < 1e-3 ? 0.0 : x - std::log(2.0 * x) + std::log1p(-std::exp(-2.0 * x));
@@ -50,8 +50,8 @@ double log_density_hand_held(double n, double g, double hand_variance, double gr
   return larger + std::log(((kRoughly - 1.0) * std::exp(gentle - larger) + std::exp(rough - larger)) / kRoughly);
 }
 
-// During contact, the body rolls gently with the prior probability `kRolls`, or has an impact with any force:
-// carried.md (C33).
+// During contact, the body rolls gently with the prior probability `kRolls`, or has an impact with a specific force of
+// any magnitude: carried.md (C33).
 constexpr double kRolls = 0.5;
 
 double log_density_in_contact(double left, double n, double g, double variance) {
@@ -83,7 +83,7 @@ MotionRegimeEvidence::MotionRegimeEvidence(const Params& params) : params_(param
   require_valid_fields(params);
 }
 
-// Returns the likelihoods of flight, contact and hand-held motion: carried.md (C30), (C31), (C32), (C33), (C35).
+// Returns the likelihoods of free flight, contact and hand-held motion: carried.md (C30), (C31), (C32), (C33), (C35).
 Vector3d MotionRegimeEvidence::likelihood(double dt_s, const ImuSample& sample, const AngularRateState& rate,
                                           const Vector3d& alpha, const Vector3d& lever_arm_m,
                                           double lever_arm_variance_m2) const {

@@ -129,7 +129,7 @@ void RestGravity::integrate_rotation(const ImuSample& sample, const AngularRateS
   if (at_range || (sample.device_clip_flags & kClipAccel) != 0) state.integrated_saturation_deficit_m_s += dt_s * peak;
 }
 
-/// Errors within one clipped segment are correlated: imu_merge.md (I23).
+/// Rate errors within one clipped segment are correlated: imu_merge.md (I23).
 void RestGravity::end_segment(State& state) const {
   state.angle_variance_rad2 +=
       std::max(kCorrelation_s, state.unmeasured_duration_s) * state.unmeasured_rotation_variance;

@@ -21,7 +21,8 @@ using Vector9 = Eigen::Matrix<double, 9, 1>;
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
 constexpr double kPi = std::numbers::pi;
-// a clipped segment is tested if its mean rate exceeds the saturation level by less
+// A clipped segment is tested if its mean rate exceeds the saturation level by less than kBeyondSigmas standard
+// deviations.
 constexpr double kBeyondSigmas = 3.0;
 // largest jerk cost (ten standard deviations) of a plausible additional revolution
 constexpr double kRevolutionCost = 100.0;

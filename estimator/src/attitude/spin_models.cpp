@@ -24,7 +24,7 @@ constexpr double kJerk_rad_s3_sqrts = 50.0;           // root density of the ang
 // Vibration errors are correlated over time, so all readings within kReadingInterval_s together count as one reading.
 // SpinFilter::variance_ratio scales the variances of random walk and vibration: carried.md (C46).
 constexpr double kWalk_rad_s_sqrts = 1.0, kVibration_rad_s = 0.3;
-// size of the body: prior standard deviation of the lever arm from the spin axis to the IMU
+// prior standard deviation of the lever arm from the spin axis to the IMU, about the size of the body
 constexpr double kBodySize_m = 0.3;
 constexpr double kReadingInterval_s = 0.01;
 constexpr double kScaleMemory_s = 0.5;        // averaging time of the variance ratio
@@ -33,8 +33,8 @@ constexpr double kReadingSigma_rad_s = 0.02;  // standard deviation of an unsatu
 constexpr double kRailSigma_rad_s = 0.1;      // standard deviation of a saturated gyro reading as a lower bound
 constexpr double kStartSigma_rad_s = 1.0, kStartSigma_rad_s2 = 10.0, kStartSaturatedRatio = 0.5;
 constexpr double kForceSigma_m_s2 = 0.3, kForceWalk_m_s2_sqrts = 0.1, kVibration_m_s2 = 0.5;
-// In the air, external forces change smoothly. A variance ratio of the residuals above kSmoothVarianceRatioMax
-// indicates contact or vibration, and contradicts a spin in the air.
+// In the air, external forces change smoothly, so a variance ratio of the residuals above kSmoothVarianceRatioMax
+// indicates contact or vibration.
 constexpr double kSmoothVarianceRatioMax = 20.0, kContradiction = 1e3;
 // ratio of the root densities of the angular jerk in Centripetal and in Modulation; the rate of a spin in the air
 // changes slowly
@@ -85,9 +85,8 @@ void predict_spin(const SpinFilter<N>& filter, double jerk_rad_s3_sqrts, double 
   out.covariance(kAcceleration, kAcceleration) += jerk;
 }
 
-// If `related` is 1, rotates the two-dimensional vector at the state index `part` by the negative spin angle. If
-// `related` is 0, the vector remains unchanged. In the axes of the body, a vector that is constant in the world turns
-// by minus the angle of the spin.
+// If `related` is 1, rotates the two-dimensional vector at the state index `part` by the negative spin angle. In the
+// axes of the body, a vector that is constant in the world turns by minus the angle of the spin.
 template <int N>
 void turn_part(const SpinFilter<N>& filter, int part, double related, double dt_s, SpinPrediction<N>& out) {
   const auto& x = filter.x;
@@ -101,8 +100,7 @@ void turn_part(const SpinFilter<N>& filter, int part, double related, double dt_
   out.x.template segment<2>(part) = turn * x.template segment<2>(part);
 }
 
-// Updates a filter with the readings perpendicular to the spin axis. Returns the log likelihood of these readings:
-// carried.md (C46), (C47).
+// Returns the log likelihood of the readings perpendicular to the spin axis: carried.md (C46), (C47).
 template <int N>
 double update_across(const Eigen::Matrix<double, 2, N>& H, const Vector2d& innovation, double sigma, double dt_s,
                      SpinFilter<N>& filter) {
@@ -117,9 +115,9 @@ double update_across(const Eigen::Matrix<double, 2, N>& H, const Vector2d& innov
   return -0.5 * (squared_norm + std::log(S.determinant()));
 }
 
-// A saturated reading is a lower bound of the rate's magnitude. A saturated reading changes the estimate only if the
-// estimated magnitude is below the reading. After an overflow, the reading has the wrong sign and no information. If
-// `keeps_variance` is true, a saturated reading does not reduce the variance.
+// A saturated gyro reading is a lower bound of the rate's magnitude, and changes the estimate only if the estimated
+// magnitude is smaller. After an overflow, the reading has the wrong sign and no information. If `keeps_variance` is
+// true, a saturated reading does not reduce the variance.
 template <int N>
 void update_rate(const SpinReading& reading, bool keeps_variance, SpinFilter<N>& filter) {
   const double innovation = reading.rate_rad_s - filter.x[kRate];

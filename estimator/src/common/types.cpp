@@ -99,8 +99,7 @@ Eigen::Quaterniond exp(const Eigen::Vector3d& phi) {
 }
 
 Eigen::Vector3d logarithm(const Eigen::Quaterniond& q) {
-  // A half turn has two rotation vectors, v and -v. For a half turn, the first non-zero component of the result is
-  // positive, so that q and -q have the same logarithm.
+  // For a half turn, the first non-zero component of the result is positive, so that q and -q have the same logarithm.
   double sign = q.w() < 0.0 ? -1.0 : 1.0;
   if (q.w() == 0.0) {
     const double lead = q.x() != 0.0 ? q.x() : (q.y() != 0.0 ? q.y() : q.z());

@@ -27,8 +27,7 @@ constexpr double kInclineEndsPerS = 0.1;                         // rate of chan
 constexpr double kRoughBeginsPerS = 0.02, kRoughEndsPerS = 0.1;  // rates of changes to and from a rough floor
 
 constexpr double kPruneLogWeight = -120.0;       // minimum log weight of a hypothesis, relative to the best hypothesis
-constexpr double kRestLogLikelihoodMin = -60.0;  // lower limit of the log likelihood of a filter step at rest, so that
-                                                 // one outlier has little effect
+constexpr double kRestLogLikelihoodMin = -60.0;  // limits the effect of a single outlier at rest (log likelihood)
 constexpr double kModeAgeMax_s = 1.0;            // contact modes that started longer ago count as equally old
 // During slip, the change of the contact velocity per filter step has a density with three Gaussian components. The
 // standard deviations of the three Gaussians are kPlateau_m_s, kSteady_m_s and kJump_m_s. Because kPlateau_m_s is less

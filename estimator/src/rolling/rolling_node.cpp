@@ -40,8 +40,8 @@ constexpr double kRecoveredTau_s = 0.1;   // correlation time of the error of a 
 constexpr double kFastRate_rad_s = 6.0;   // above this rate, the specific force rotates too fast for levelling
 constexpr double kUnsureSpeed_m_s = 0.1, kSpeedWindow_s = 1.0, kSpeedSigma_m_s = 1.0;
 constexpr double kStartTilt_rad = 0.15;  // tilt error of a start in motion, caused by a push of 1.5 m/s^2
-// Constants of rolling.md (R31). Low rates before and after a data gap indicate that the sphere was hardly pushed
-// during the gap. Below kGapRate_rad_s, the uncertainty of the rate in a data gap is therefore smaller.
+// Constants of rolling.md (R31). If the rates around a data gap are below kGapRate_rad_s, the sphere was hardly pushed
+// in the gap, so the rate in the gap is less uncertain.
 constexpr double kGapRate_rad_s = 1.0, kGapStill_rad_s2 = 0.5, kGapAcceleration_rad_s2 = 15.0;
 constexpr double kGapVelocityChangeRatio =
     0.5;  // unknown velocity change in a data gap, as a fraction of the rolling velocity's change
@@ -120,8 +120,8 @@ struct SaturatedForce {
   Eigen::Vector3d lower_bound_m_s2 = Eigen::Vector3d::Zero();
 };
 
-/// A saturated accelerometer reading is a lower bound of the force. The assumed force is the larger of two values: the
-/// reading, and the force at constant velocity of the sphere's centre (rolling.md, R8).
+/// A saturated accelerometer reading is a lower bound of the specific force. The assumed specific force is the larger
+/// of two values: the reading, and the value at constant velocity of the sphere's centre (rolling.md, R8).
 SaturatedForce saturated_force(const ImuSample& sample, const Eigen::Vector3d& read_m_s2,
                                const Eigen::Vector3d& kept_m_s2) {
   int largest = 0;

@@ -22,8 +22,8 @@ bool equal(const ImuSample& a, const ImuSample& b) {
          a.specific_force_m_s2 == b.specific_force_m_s2;
 }
 
-/// Returns the factor that converts a variance of the final pass to the reported variance. The final pass assumes
-/// reduced noise, so its variances are too small.
+/// Returns the factor that converts a variance of the final pass, which assumes reduced noise, to the reported
+/// variance.
 double stated_distance_sigma(const RollingSmoother::Params& params) {
   return 1.0 / (params.kFinalPassNoiseRatio * params.kFinalPassNoiseRatio);
 }
