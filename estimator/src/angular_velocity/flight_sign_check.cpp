@@ -15,8 +15,8 @@ namespace tumble {
 namespace {
 
 constexpr double kFlightReading_s = 0.01;  // averaging time of IMU readings, independent of the sample rate
-constexpr double kLeverArmMax_m = 1e3;     // maximum coordinate of a stated lever arm
-constexpr double kForceMin_m_s2 = 2.5;     // a smaller specific force of the rotation is mostly noise and bias
+constexpr double kLeverArmMax_m = 1e3;
+constexpr double kForceMin_m_s2 = 2.5;  // a smaller specific force of the rotation is mostly noise and bias
 // tolerated deviation from free flight, as a fraction of the predicted specific force
 constexpr double kTolerance = 0.25;
 // minimum duration of agreement with free flight, so that motion on the ground rarely agrees by chance

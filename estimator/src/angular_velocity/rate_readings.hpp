@@ -17,11 +17,11 @@ namespace tumble {
 struct AngularRateReadings {
   std::vector<AngularRateObservation> observations;
   AngularRateModelParams known_params;
-  SaturationPlanes gyro_planes;  ///< accepted planes of saturated gyro readings
+  SaturationPlanes gyro_planes;
   std::optional<RepeatedReadings> gyro_repeated;
 };
 
-/// Classifies at least two samples. Cost: O(N).
+/// Converts at least two samples to observations, with their clipping and repetitions. Cost: O(N).
 AngularRateReadings read_samples(const AngularRateSmoother::Params& params, const ClippingFinder& rails,
                                  const ClippingFinder::ClippingSearchResult& found, const std::vector<bool>& rest,
                                  std::span<const ImuSample> samples,

@@ -250,7 +250,7 @@ struct CorrectionIterationState {
   SensorErrors errors;  ///< sensor errors corrected in the last optimisation
   SensorErrorInformation calibration_evidence;
   SensorErrorFit sensor_error_fit;
-  bool is_plausible = true;  ///< whether the sensor errors are plausible for a device
+  bool is_plausible = true;
 };
 
 Status iterate_corrections(const CorrectionIterations& rounds, std::span<AngularRateObservation> observations,

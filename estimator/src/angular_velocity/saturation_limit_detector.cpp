@@ -10,7 +10,7 @@ namespace tumble {
 
 namespace {
 
-constexpr int kPlateauSamples = 4;  // minimum number of readings of a plateau
+constexpr int kPlateauSamples = 4;
 // largest spread of the readings of a plateau, relative to the saturation limit
 constexpr double kPlateauSpreadRatio = 2e-5;
 // A plateau is a run of equal readings. A gyro plateau below kLowGyroPlateau_rad_s must have at least twice

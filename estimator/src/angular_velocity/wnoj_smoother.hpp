@@ -39,7 +39,7 @@ class WnojSmoother {
   struct Smoothed {
     Eigen::Vector3d rate_rad_s;
     Eigen::Vector3d acceleration_rad_s2;
-    Eigen::Vector3d variance_rad2_s2;  ///< posterior variance of the rate, per axis
+    Eigen::Vector3d variance_rad2_s2;
   };
 
   /// Throws InvalidParams if the jerk density is out of bounds.

@@ -16,9 +16,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using so3::hat;
 
-// derivative of a residual with respect to rate and angular acceleration
 using GyroRow = Eigen::Matrix<double, 1, 6>;
-// derivative of a residual with respect to the calibration constants
 using BorderRow = Eigen::Matrix<double, 1, kBorderSize>;
 // derivative of the specific-force residual with respect to attitude, rate, angular acceleration and hand acceleration
 using ForceState = Eigen::Matrix<double, 3, 12>;

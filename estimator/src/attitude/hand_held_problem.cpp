@@ -12,8 +12,8 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr double kRestSigma_rad_s = 0.01;  // standard deviation of the rate at rest, per time step (node)
-constexpr double kRestSigma_m_s = 0.02;    // standard deviation of the velocity at rest
-constexpr double kRestSigma_m_s2 = 0.1;    // standard deviation of the acceleration at rest
+constexpr double kRestSigma_m_s = 0.02;
+constexpr double kRestSigma_m_s2 = 0.1;
 
 // largest change of an attitude for which the linearisation is valid
 constexpr double kRotationMax_rad = 0.8;

@@ -15,7 +15,7 @@ constexpr double kUnitFrozen_s = 0.1, kOthersRate_rad_s = 0.03, kOthersForce_m_s
 constexpr double kUnfreeze_s = 0.5;
 // The tolerated difference between a gyro and the median of all gyros grows with the rate, because of scale errors.
 constexpr double kDisagreeRate_rad_s = 0.1, kDisagreeRateRatio = 0.06, kDisagreeForce_m_s2 = 1.0, kDisagrees_s = 0.3;
-constexpr int kMinImusForFault = 3;  // minimum number of IMUs for identifying the faulty IMU
+constexpr int kMinImusForFault = 3;
 constexpr double kMisfitTau_s = 0.5;
 constexpr double kComparableRateRatio = 0.8;  // fraction of the gyro's range up to which IMUs are compared
 

@@ -24,7 +24,7 @@ namespace {
 struct AxisLabels {
   std::array<int, 3> axis = {0, 1, 2};              ///< index of the accelerometer reading along x, y, z of the gyro
   std::array<double, 3> axis_signs = {1., 1., 1.};  ///< sign of each axis; the first sign is 1
-  bool all_rates_inverted = false;                  ///< all three rates are inverted
+  bool all_rates_inverted = false;
 
   Eigen::Vector3d in_corrected_axes(const Eigen::Vector3d& force) const {
     return {axis_signs[0] * force[axis[0]], axis_signs[1] * force[axis[1]], axis_signs[2] * force[axis[2]]};

@@ -88,7 +88,7 @@ AngularRateRecovery::SaturatedSensors AngularRateRecovery::find_saturated_sensor
     }
     clipped += force;
   }
-  // While all gyros are unsaturated, the mean of the unsaturated accelerometers is more accurate than
+  // While all gyros are unsaturated, the mean of the unsaturated accelerometers is more accurate than the force of
   // AngularRateRecovery.
   out.force = clipped > 0 && (out.rate || 2 * clipped > received);
   return out;
@@ -96,8 +96,8 @@ AngularRateRecovery::SaturatedSensors AngularRateRecovery::find_saturated_sensor
 
 void AngularRateRecovery::step(std::span<const ImuSample> units, double dt_s, State& state, ImuSample& merged) const {
   const SaturatedSensors met = find_saturated_sensors(units);
-  // Accelerometers saturate where gravity and centripetal force add up, so the unsaturated accelerometers have a biased
-  // mean.
+  // Accelerometers saturate where gravity and centripetal force add up, so the mean of the unsaturated accelerometers
+  // is biased.
   merged.device_clip_flags = met.force ? kClipAccelX | kClipAccelY | kClipAccelZ : 0;
   const bool fast =
       merged.angular_velocity_rad_s.cwiseAbs().maxCoeff() >= kMinSaturatedRangeFraction * setup_.gyro_range_rad_s;

@@ -14,7 +14,7 @@ namespace tumble {
 
 namespace {
 
-/// Partly saturated readings do not count as unusable.
+/// Readings that are saturated for a part of the averaging window do not count as unusable.
 bool unusable_axis_count(const AngularRateReport& report, const AngularRateState& rate, std::size_t k) {
   return rate.clipped_axes != 0 || report.suspected_saturation_axes[k] != 0;
 }

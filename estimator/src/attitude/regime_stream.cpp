@@ -18,7 +18,8 @@ HandHeldRateStream::Params with_common_params(const MotionRegimeStream::Params& 
   out.period_s = params.rate.period_s;
   out.lag_s = params.rate.lag_s;
   out.window_s = std::max(out.window_s, out.lag_s + 4.0 * out.body.expert.node_s);
-  // HandHeldRateStream must report each sample within its window of window_s seconds.
+  // The longest accepted data gap is limited, because each sample must be reported while in the window of
+  // HandHeldRateStream.
   out.body.expert.gap_max_s = std::min(out.body.expert.gap_max_s, out.window_s - out.lag_s);
   return out;
 }

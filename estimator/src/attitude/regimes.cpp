@@ -16,12 +16,12 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
-constexpr double kContactMin_m_s2 = 1.0, kContactMax_m_s2 = 1000.0;  // smallest and largest contact force
+constexpr double kContactMin_m_s2 = 1.0, kContactMax_m_s2 = 1000.0;
 // unmodelled specific force in free flight, from drag and the sensor's bandwidth
 constexpr double kFlightForceSigma_m_s2 = 0.3;
 // additional standard deviation, relative to the specific force of the rotation
 constexpr double kFlightForceShare = 0.05;
-constexpr double kHandSigma_m_s2 = 5.0;   // standard deviation of a hand's acceleration
+constexpr double kHandSigma_m_s2 = 5.0;
 constexpr double kHandDistance_m = 0.05;  // distance of the IMU from the hand
 constexpr double kRestRate_rad_s = 0.5;   // readings with a lower rate do not change the probabilities
 constexpr double kContacts_hz = 5.0;      // mean number of changes between flight and contact per second

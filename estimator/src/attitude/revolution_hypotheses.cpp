@@ -255,7 +255,7 @@ void test_revolutions(HandHeldProblem& problem, HandHeldSmoother::Report& report
     const std::vector<TestedRevolutionSegment> tested = test_revolution_segments(problem, segments, parts, fallen);
     const auto taken = std::count_if(tested.begin(), tested.end(),
                                      [](const TestedRevolutionSegment& each) { return each.needs_another_solution; });
-    open = remaining_revolution_hypotheses(tested, true);  // replaces the alternatives of the previous round
+    open = remaining_revolution_hypotheses(tested, true);
     if (taken == 0) break;
     const HandHeldProblem::Solution before = problem.solution();
     const HandHeldSmoother::Report report_before = report;

@@ -41,8 +41,6 @@ constexpr double kSmoothVarianceRatioMax = 20.0, kContradiction = 1e3;
 constexpr double kForceJerkRatio = 0.3;
 constexpr double kWorldForceSigma_m_s2 = 3.0, kWorldForceWalk_m_s2_sqrts = 1.0;
 
-// Returns the components of `v` along the two axes perpendicular to the spin axis, in the order of a right-handed
-// frame.
 Vector2d across(const Eigen::Vector3d& v, int axis) {
   return {v[(axis + 1) % 3], v[(axis + 2) % 3]};
 }

@@ -90,7 +90,6 @@ bool SpinTracker::select_spin_axis(const ImuSample& sample, State& state) const 
   return state.axis >= 0;
 }
 
-// `record` receives the data that smooth_spin() needs.
 template <class Model, class Recorder>
 SpinRate SpinTracker::advance_spin_filter(const Model& model, const ImuSample& sample, std::uint8_t saturated_axes,
                                           double dt_s, bool first, int axis, Hypotheses<Model::kStates>& hypotheses,

@@ -28,9 +28,9 @@ constexpr double kMotionTau_s = 3.0;  // correlation time of velocity and displa
 constexpr double kSlipVelocity_m_s = 0.12;
 constexpr double kSlipQuiet_s = 0.2;  // duration of small velocity residuals after which slip ends
 constexpr double kSlipTimeout_s = 3.0;
-constexpr double kGapMin_s = 0.05;       // minimum time between two samples that counts as a gap
-constexpr double kNode_s = 0.04;         // time between two corrections
-constexpr double kReading_s = 4e-3;      // averaging time of the readings
+constexpr double kGapMin_s = 0.05;  // minimum time between two samples that counts as a gap
+constexpr double kNode_s = 0.04;    // time between two corrections
+constexpr double kReading_s = 4e-3;
 constexpr double kSampleGapMax_s = 1.0;  // a longer time between two samples causes an error
 // Standard deviations of the tilt, per axis. Coarse alignment starts above kLostTilt_rad, where the linearised filter
 // is invalid, and ends below kAlignedTilt_rad.
@@ -209,7 +209,7 @@ void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& r
     state.covariance.diagonal().segment<2>(kVelocity).array() += squared(Params::kGapVelocityWalk_m_s_sqrts) * gap_s;
   }
   predict_node(state);
-  // A sphere that gripped before the gap is assumed to roll without slip after the gap.
+  // A sphere that gripped before a data gap is assumed to roll without slip after the gap.
   if (params_.radius_m > 0.0 && !state.slipping) state.v_W_m_s = velocity_from_rotation(state);
   // correct_with_mean_force() changes the tilt variance, so the tilt variance is computed first.
   const double tilt = reported_tilt_variance_rad2(state);

@@ -35,7 +35,7 @@ struct FittedLine {
   double period_ns = 0.0, last_ns = 0.0;
   double weighted_sample_index_sum = 0.0,
          weighted_squared_sample_index_sum = 0.0;  ///< sums over the sample numbers, counted from the last time stamp
-  double mean_square_error_ns2 = 0.0;              ///< variance of the time stamps about the line
+  double mean_square_error_ns2 = 0.0;
 };
 
 using StateOffsets =

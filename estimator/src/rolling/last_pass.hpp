@@ -25,7 +25,7 @@ class FinalSmoothingPass {
   struct Smoothed {
     const SampleMotion& point;
     const RollingNominalState& nominal;
-    Reported smoothed_error;  ///< smoothed error of the nominal trajectory at the sample
+    Reported smoothed_error;
     /// filter step whose covariance applies to the sample; null if the window has no complete filter step
     const FilterNodeRecord* node;
     std::size_t index;

@@ -87,7 +87,6 @@ RollingNominalState start_nominal(const RollingParams& params, const Eigen::Quat
   return nominal;
 }
 
-/// The rows of the prior covariance have the order of the error state in rolling.md (R1).
 void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s, Covariance& P) {
   P.setZero();
   auto prior = P.diagonal();

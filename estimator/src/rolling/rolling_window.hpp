@@ -24,7 +24,8 @@ inline constexpr int kReported = 12;
 using Reported = Eigen::Matrix<double, kReported, 1>;
 
 struct FilterNodeRecord {
-  static constexpr int kMaxMeasurements = 6;  ///< maximum number of measurements, for a node at rest
+  /// a node at rest has measurements of three velocities and three gyro biases
+  static constexpr int kMaxMeasurements = 6;
   Moving moving_jacobian;
   std::array<Row, kMaxMeasurements> measurement_rows;
   std::array<Vector, kMaxMeasurements> gain;
@@ -35,7 +36,7 @@ struct FilterNodeRecord {
   bool heading_lost = false;
   /// rows of the error covariance after the update, for the reported states
   Eigen::Matrix<double, kReported, kStates> covariance_rows;
-  Reported correction;        ///< correction of the nominal state by the update
+  Reported correction;
   Vector heading_correction;  ///< heading_component() of the correction, if the heading is lost
   RollingNominalState nominal;
   ModePathNode mode_path_node;
