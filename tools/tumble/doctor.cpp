@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <iterator>
 #include <memory>
@@ -10,6 +11,7 @@
 
 #include "scenarios/diagnosis/diagnosis.hpp"
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/number_text.hpp"
 #include "tools/tumble/chosen_method.hpp"
 #include "tools/tumble/odometry_options.hpp"
 #include "tools/tumble/verbs.hpp"
@@ -24,6 +26,14 @@ void append_findings(std::vector<RecordingFinding> more, std::vector<RecordingFi
   std::move(more.begin(), more.end(), std::back_inserter(out));
 }
 
+std::string pose_option(const Eigen::Isometry3d& T_BL) {
+  using scenarios::rounded;
+  const Eigen::Vector3d at_m = T_BL.translation();
+  const Eigen::Quaterniond q(T_BL.linear());
+  return fmt::format("--T-body-lidar {} {} {} {} {} {} {}", rounded(at_m.x()), rounded(at_m.y()), rounded(at_m.z()),
+                     rounded(q.x()), rounded(q.y()), rounded(q.z()), rounded(q.w()));
+}
+
 std::vector<RecordingFinding> findings_of_odometry(const Session& session, const OdometryOptions& options,
                                                    OpenRecording& recording) {
   const sim::Sensors& sensors = recording.content.sensors;
@@ -34,7 +44,7 @@ std::vector<RecordingFinding> findings_of_odometry(const Session& session, const
       scenarios::findings_in_estimate(estimate, method, sensors.lidars.front().sweep_start_ns.size());
   if (estimate.replaced_T_BL)
     out.push_back({method, "the stated pose or clock of the lidar contradicts the recording",
-                   "--T-body-lidar with the estimated pose: " + pose_text(*estimate.replaced_T_BL)});
+                   pose_option(*estimate.replaced_T_BL) + " (estimated from the recording)"});
   return out;
 }
 
