@@ -23,17 +23,17 @@ bool next_number(std::string_view& rest, Number& value) {
   return rest.empty() || rest.front() == ' ' || rest.front() == '\t' || rest.front() == ',';
 }
 
-const char* name(tumble::RollingMode mode) {
+const char* name(tumble::ContactMode mode) {
   switch (mode) {
-    case tumble::RollingMode::grip:
+    case tumble::ContactMode::grip:
       return "grip";
-    case tumble::RollingMode::slip:
+    case tumble::ContactMode::slip:
       return "slip";
-    case tumble::RollingMode::bump:
+    case tumble::ContactMode::bump:
       return "bump";
-    case tumble::RollingMode::incline:
+    case tumble::ContactMode::incline:
       return "incline";
-    case tumble::RollingMode::uneven:
+    case tumble::ContactMode::uneven:
       return "rough";
   }
   return "?";

@@ -173,7 +173,7 @@ void bind_rolling_of_results(nb::module_& m) {
           [](const R& s) {
             return column<std::uint8_t>(s.rows, [](auto& r) { return reinterpret_cast<const std::uint8_t*>(&r.mode); });
           },
-          "(N,) uint8: 0 grip, 1 slip, 2 bump, 3 incline, 4 rough (`RollingMode`)")
+          "(N,) uint8: 0 grip, 1 slip, 2 bump, 3 incline, 4 rough (`ContactMode`)")
       .def_prop_ro(
           "at_rest", [](const R& s) { return column<bool>(s.rows, [](auto& r) { return &r.at_rest; }); }, "(N,) bool")
       .def_prop_ro(

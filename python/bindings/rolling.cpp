@@ -324,12 +324,12 @@ void bind_rolling_odometry(nb::module_& m) {
 }  // namespace
 
 void bind_rolling(nb::module_& m) {
-  nb::enum_<RollingMode>(m, "RollingMode", nb::is_arithmetic(), "Type of contact between sphere and floor.")
-      .value("grip", RollingMode::grip, "the contact point does not slide, and the floor is level")
-      .value("slip", RollingMode::slip, "the contact point slides along the floor")
-      .value("bump", RollingMode::bump, "the contact point also moves up or down")
-      .value("incline", RollingMode::incline, "the contact point does not slide, and the floor is a slope")
-      .value("rough", RollingMode::uneven, "the contact point does not slide, and the floor is uneven");
+  nb::enum_<ContactMode>(m, "ContactMode", nb::is_arithmetic(), "Type of contact between sphere and floor.")
+      .value("grip", ContactMode::grip, "the contact point does not slide, and the floor is level")
+      .value("slip", ContactMode::slip, "the contact point slides along the floor")
+      .value("bump", ContactMode::bump, "the contact point also moves up or down")
+      .value("incline", ContactMode::incline, "the contact point does not slide, and the floor is a slope")
+      .value("rough", ContactMode::uneven, "the contact point does not slide, and the floor is uneven");
   bind_filter(m);
   bind_rolling_smoother(m);
   bind_unit(m);

@@ -72,7 +72,7 @@ sim::ContactLabel slip_or_slide(double radius_m, const RollingOdometry::Pose& po
 
 sim::ContactLabel contact_label(double radius_m, const RollingOdometry::Pose& pose) {
   if (!may_slip(pose.mode)) return sim::ContactLabel::grip;
-  if (pose.mode == RollingMode::bump && !spins(radius_m, pose)) return sim::ContactLabel::air;
+  if (pose.mode == ContactMode::bump && !spins(radius_m, pose)) return sim::ContactLabel::air;
   return slip_or_slide(radius_m, pose);
 }
 
@@ -93,10 +93,10 @@ void append_pose(const RollingOdometry::Pose& pose, double radius_m, Estimate& e
     if (counts) estimate.health[key] += 1.0;
   };
   count("samples_uncertain", pose.position_uncertain);
-  count("samples_slip", pose.mode == RollingMode::slip);
-  count("samples_bump", pose.mode == RollingMode::bump);
-  count("samples_incline", pose.mode == RollingMode::incline);
-  count("samples_rough", pose.mode == RollingMode::uneven);
+  count("samples_slip", pose.mode == ContactMode::slip);
+  count("samples_bump", pose.mode == ContactMode::bump);
+  count("samples_incline", pose.mode == ContactMode::incline);
+  count("samples_rough", pose.mode == ContactMode::uneven);
   count("samples_rest", pose.at_rest);
 }
 

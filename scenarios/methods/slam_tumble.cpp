@@ -96,7 +96,7 @@ class Collector {
   }
   void conclude(const TumblingOdometry& odometry) {
     if (output_ != SlamOutput::whole) {
-      const bool in_prior_map = odometry.mapper().prior_map() != nullptr && odometry.mapper().localised().ok();
+      const bool in_prior_map = odometry.mapper().prior_map() != nullptr && odometry.mapper().check_localised().ok();
       for (std::vector<PoseState>& open : odometry.mapper().window_trajectories())
         apply_next(std::move(open), in_prior_map);
     }

@@ -231,11 +231,11 @@ TEST(TumblingAdapter, LocalisesInASavedMap) {
   TumblingAdapter adapter(adapter_params(body), second);
   EXPECT_FALSE(adapter.load_map(std::as_bytes(std::span("ply"))).ok());
   ASSERT_TRUE(adapter.load_map(std::as_bytes(std::span(bytes))).ok());
-  EXPECT_FALSE(adapter.odometry().mapper().localised().ok());
+  EXPECT_FALSE(adapter.odometry().mapper().check_localised().ok());
   const Eigen::Isometry3d near = Eigen::Translation3d(0.3, 0.2, 0.0) * T_OB;
   EXPECT_TRUE(adapter.reset(ros::StartPose{near, 0.3, 0.1}).ok());
   play_to(adapter, body, 0);
-  EXPECT_TRUE(adapter.odometry().mapper().localised().ok());
+  EXPECT_TRUE(adapter.odometry().mapper().check_localised().ok());
   EXPECT_LT((second.sweeps.back().T_OB.translation() - first.sweeps.back().T_OB.translation()).norm(), 0.15)
       << "both runs end at the same pose of one map";
 }

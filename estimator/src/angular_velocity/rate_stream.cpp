@@ -69,28 +69,28 @@ AngularRateStream::AngularRateStream(const Params& params)
       flight_axis_sign_check_({.lever_arm_m = params.model.nominal.lever_arm_m,
                                .gyro_range_rad_s = params.saturation_detector.stated_gyro_range_rad_s.value_or(0.0)}),
       model_(model_params_with_corrections(params), params.period_s),
-      sensor_error_estimator_(params.model.expert.error_priors, params.expert.uncalibrated) {
+      sensor_error_uncertainty_(params.model.expert.error_priors, params.expert.uncalibrated) {
   require_valid_fields(params);
   if (params.calibrated_errors) require_valid_known_errors(*params.calibrated_errors);
   require_in_interval("lag_s", params.lag_s, 2.0 * params.period_s, params.lag_max_s());
-  capacity_ = static_cast<std::size_t>(std::lround(params.lag_s / params.period_s)) + 1;
-  prior_delay_s_ = model_params_with_corrections(params).errors.accel_delay_s;
+  window_knots_ = static_cast<std::size_t>(std::lround(params.lag_s / params.period_s)) + 1;
+  prior_accelerometer_delay_s_ = model_params_with_corrections(params).errors.accel_delay_s;
   const SensorErrorPriors& sizes = params.model.expert.error_priors;
   delay_is_estimated_ =
       !params.calibrated_errors && sizes.delay_uncalibrated_s > sizes.delay_s && params.expert.uncalibrated > 0.0;
   samples_per_step_ =
-      std::clamp(static_cast<std::size_t>(params.step_s / params.period_s + 1e-6), std::size_t{1}, capacity_);
+      std::clamp(static_cast<std::size_t>(params.step_s / params.period_s + 1e-6), std::size_t{1}, window_knots_);
 }
 
 AngularRateStream::State AngularRateStream::start() const {
   State state;
   state.clipping_state = clipping_finder_.start();
-  state.window.reserve(capacity_ + samples_per_step_);
-  state.work_blocks.resize(capacity_ + samples_per_step_);
+  state.window.reserve(window_knots_ + samples_per_step_);
+  state.work_blocks.resize(window_knots_ + samples_per_step_);
   AngularRateStreamSensorErrors& device = state.sensor_errors.front();
-  device.sample_jacobian.resize(capacity_ + samples_per_step_);
-  sensor_error_estimator_.reset(device.posterior);
-  device.accel_delay_state.applied_delay_s = device.accel_delay_state.estimated_s = prior_delay_s_;
+  device.sample_jacobian.resize(window_knots_ + samples_per_step_);
+  sensor_error_uncertainty_.reset(device.posterior);
+  device.accel_delay_state.applied_delay_s = device.accel_delay_state.estimated_s = prior_accelerometer_delay_s_;
   if (params_.calibrated_errors) {
     device.posterior.covariance = params_.calibrated_errors->covariance;
     device.posterior.uncalibrated_probability = 0.0;
@@ -128,14 +128,14 @@ Status AngularRateStream::push(const ImuSample& sample, std::span<const Auxiliar
   } else if (compute_flight_weight(state); !step(state)) {
     ++state.failures;
   }
-  if (state.window.size() >= capacity_) out = rate_state_of_knot(state.window.size() - capacity_, state);
+  if (state.window.size() >= window_knots_) out = rate_state_of_knot(state.window.size() - window_knots_, state);
   return {};
 }
 
 void AngularRateStream::marginalise_oldest_knots(State& state) const {
   state.samples_since_step = 0;
   std::size_t count = 0;
-  for (; state.window.size() - count >= capacity_; ++count) {
+  for (; state.window.size() - count >= window_knots_; ++count) {
     store_slope_before_clipping(state.window[count], state.window[count + 1], state);
     marginalise(count, state);
   }
@@ -184,7 +184,7 @@ void AngularRateStream::marginalise(std::size_t first, State& state) const {
     state.prior_border_block = corner;
     marginalise_sensor_errors(block, errors, state);
   } else {
-    reset_prior(state);
+    discard_marginalised_information(state);
     ++state.failures;
   }
   state.last_marginalised = oldest.estimate.knot;
@@ -312,7 +312,7 @@ bool AngularRateStream::step(State& state) const {
   arrow::Corner corner;
   blocks[0] = {};
   add_prior(state, model_, state.window[0].estimate.knot, blocks[0], corner);
-  add_saturation_plane_prior(state, corner);
+  add_misalignment_prior(state, corner);
   for (std::size_t k = 0; k < count; ++k) {
     const Knot& knot = state.window[k];
     model_.add_sample(knot.observation, knot.estimate, state.rig, blocks[k], corner);

@@ -76,13 +76,13 @@ void AngularRateStream::pair_force_with_rate(std::size_t k, State& state) const 
   o.sample.device_clip_flags =
       static_cast<std::uint8_t>((o.sample.device_clip_flags & kClipGyro) | source.received_force.device_clip_flags);
   knot.clipping_at_axis_limits.accel = source.received_force.clipped_axes;
-  o.accel_age_s =
-      (state.sensor_errors.front().accel_delay_state.applied_delay_s - prior_delay_s_) - seconds_to(knot, source);
+  o.accel_age_s = (state.sensor_errors.front().accel_delay_state.applied_delay_s - prior_accelerometer_delay_s_) -
+                  seconds_to(knot, source);
 }
 
 std::size_t AngularRateStream::pair_newest_force(State& state) const {
   const std::size_t newest = state.window.size() - 1;
-  if (state.sensor_errors.front().accel_delay_state.applied_delay_s == prior_delay_s_ &&
+  if (state.sensor_errors.front().accel_delay_state.applied_delay_s == prior_accelerometer_delay_s_ &&
       force_delay_samples(state) == 0)
     return newest;
   const auto waiting = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, force_delay_samples(state)));
@@ -127,26 +127,28 @@ void AngularRateStream::update_delay(State& state) const {
   const TimeNs now_ns = state.window.back().observation.sample.time_ns;
   if (!delay_is_estimated_ || (delay.updated_ns && now_ns - *delay.updated_ns < kUpdatePeriod_ns)) return;
   delay.updated_ns = now_ns;
-  if (delay.delay_found && repeats_readings(state)) return apply_delay(prior_delay_s_, false, state);
+  if (delay.delay_found && repeats_readings(state))
+    return set_accelerometer_delay(prior_accelerometer_delay_s_, false, state);
   const auto correlates = [&](double at_s) { return delay.impacts.force_correlation_at(at_s, params_.period_s); };
-  if (delay.delay_found && correlates(prior_delay_s_) - correlates(delay.applied_delay_s) > kCorrelationGainMin)
-    return apply_delay(prior_delay_s_, false, state);
+  if (delay.delay_found &&
+      correlates(prior_accelerometer_delay_s_) - correlates(delay.applied_delay_s) > kCorrelationGainMin)
+    return set_accelerometer_delay(prior_accelerometer_delay_s_, false, state);
   if (const TriadDelay guess = estimate_delay_from_impacts(state); guess.sigma_s > 0.0) {
-    const bool gains =
-        correlates(guess.delay_s) - correlates(prior_delay_s_) > kCorrelationGainMin &&
-        std::abs(guess.delay_s - prior_delay_s_) < kReach * params_.model.expert.error_priors.delay_uncalibrated_s;
-    const bool plain = gains && sensor_error_estimator_.data_sheet_odds(guess.delay_s - prior_delay_s_, guess.sigma_s) <
-                                    kContradictionOdds;
+    const bool gains = correlates(guess.delay_s) - correlates(prior_accelerometer_delay_s_) > kCorrelationGainMin &&
+                       std::abs(guess.delay_s - prior_accelerometer_delay_s_) <
+                           kReach * params_.model.expert.error_priors.delay_uncalibrated_s;
+    const bool plain = gains && sensor_error_uncertainty_.data_sheet_odds(guess.delay_s - prior_accelerometer_delay_s_,
+                                                                          guess.sigma_s) < kContradictionOdds;
     const bool far = std::abs(guess.delay_s - delay.applied_delay_s) > kGuessSigmasMax * guess.sigma_s;
     delay.impact_delay = guess;
-    if (plain && (!delay.delay_found || far)) return apply_delay(guess.delay_s, true, state);
-    if (!plain && delay.delay_found) return apply_delay(prior_delay_s_, false, state);
+    if (plain && (!delay.delay_found || far)) return set_accelerometer_delay(guess.delay_s, true, state);
+    if (!plain && delay.delay_found) return set_accelerometer_delay(prior_accelerometer_delay_s_, false, state);
   }
   if (delay.delay_found && std::abs(delay.estimated_s - delay.applied_delay_s) > kDelayChangeMin_s) refine_delay(state);
 }
 
 // A new accelerometer delay invalidates the calibration that was estimated with the previous delay.
-void AngularRateStream::apply_delay(double delay_s, bool found, State& state) const {
+void AngularRateStream::set_accelerometer_delay(double delay_s, bool found, State& state) const {
   AngularRateStreamDelay& delay = state.sensor_errors.front().accel_delay_state;
   delay.applied_delay_s = delay.estimated_s = delay_s;
   delay.delay_found = found;

@@ -39,7 +39,7 @@ void AngularRateStream::marginalise_sensor_errors(const arrow::Block& block, arr
   device.sensor_error_evidence.gradient.noalias() += errors.transpose().lazyProduct(block.gradient);
 }
 
-void AngularRateStream::reset_prior(State& state) const {
+void AngularRateStream::discard_marginalised_information(State& state) const {
   state.prior = {};
   state.prior_border_block = {};
   model_.add_rig_prior(state.rig, state.prior_border_block);
@@ -53,7 +53,7 @@ void AngularRateStream::reset_prior(State& state) const {
 void AngularRateStream::reset_rig(State& state) const {
   state.rig = state.prior_rig = model_.prior_constants();
   state.rig_covariance = model_.prior_covariance();
-  reset_prior(state);
+  discard_marginalised_information(state);
   state.calibration_samples = 0;
 }
 
@@ -107,11 +107,11 @@ void AngularRateStream::add_sensor_error_covariance(const arrow::BorderVector& r
       window_error_evidence.information(SensorErrors::kDelay, SensorErrors::kDelay) += information;
       window_error_evidence.gradient[SensorErrors::kDelay] += information * (guess.delay_s - delay.applied_delay_s);
     }
-    delay.estimated_s = std::clamp(
-        delay.applied_delay_s + sensor_error_estimator_.delay_correction_s(window_error_evidence, max_accel_delay_s()),
-        -max_accel_delay_s(), max_accel_delay_s());
+    delay.estimated_s = std::clamp(delay.applied_delay_s + sensor_error_uncertainty_.delay_correction_s(
+                                                               window_error_evidence, max_accel_delay_s()),
+                                   -max_accel_delay_s(), max_accel_delay_s());
   }
-  sensor_error_estimator_.update(window_error_evidence, posterior_workspace, device.posterior, delay.delay_found);
+  sensor_error_uncertainty_.update(window_error_evidence, posterior_workspace, device.posterior, delay.delay_found);
 }
 
 Matrix3d AngularRateStream::sensor_error_rate_covariance(std::size_t k, const State& state) const {
@@ -120,7 +120,7 @@ Matrix3d AngularRateStream::sensor_error_rate_covariance(std::size_t k, const St
   const AngularRateStreamSensorErrors& device = state.sensor_errors.front();
   Matrix3d out =
       rate_covariance_from_errors(device.sample_jacobian[k], device.posterior.covariance, params_.model.kRateMax_rad_s);
-  const double shared_s2 = sensor_error_estimator_.common_delay_variance_s2(device.posterior);
+  const double shared_s2 = sensor_error_uncertainty_.common_delay_variance_s2(device.posterior);
   const Eigen::Vector3d& alpha = knot.estimate.knot.acceleration_rad_s2;
   const double struck = params_.model.expert.contact.kGain_rad_m * knot.estimate.contact_force_m_s2.norm();
   out += shared_s2 * (alpha * alpha.transpose() + struck * struck * Matrix3d::Identity());

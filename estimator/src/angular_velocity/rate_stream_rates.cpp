@@ -127,7 +127,7 @@ std::optional<AngularRateState> AngularRateStream::newest(const State& state) co
 }
 
 void AngularRateStream::flush(const State& state, std::vector<AngularRateState>& out) const {
-  const std::size_t given = state.window.size() + 1 - std::min(capacity_, state.window.size() + 1);
+  const std::size_t given = state.window.size() + 1 - std::min(window_knots_, state.window.size() + 1);
   for (std::size_t k = given; k < state.window.size(); ++k) out.push_back(rate_state_of_knot(k, state));
 }
 

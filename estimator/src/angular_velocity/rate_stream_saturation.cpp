@@ -247,7 +247,7 @@ void AngularRateStream::store_slope_before_clipping(const Knot& leaving, const K
   }
 }
 
-void AngularRateStream::add_saturation_plane_prior(const State& state, arrow::Corner& corner) const {
+void AngularRateStream::add_misalignment_prior(const State& state, arrow::Corner& corner) const {
   const SaturationLevels& rails = state.clipping_state.known_limits;
   const SaturationPlanes planes = rails.saturation_planes_in_use();
   for (int j = 0; j < 3; ++j) {

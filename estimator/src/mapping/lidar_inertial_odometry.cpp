@@ -152,7 +152,7 @@ LidarImuCalibration::Covariance LidarInertialOdometry::calibration_covariance() 
                                       mapping::unknowns::calibration);
 }
 
-LidarImuCalibration::Covariance LidarInertialOdometry::calibration_prior_covariance() const {
+LidarImuCalibration::Covariance LidarInertialOdometry::next_calibration_prior_covariance() const {
   return mapping::unknowns::sub_block(impl_->sweep_boundary.state_estimate.prior_weight_covariance,
                                       mapping::unknowns::calibration);
 }

@@ -23,7 +23,7 @@ void LidarInertialOdometry::copy_prior_map(const LidarInertialOdometry& other) {
   if (!impl_->start_pose && map != nullptr && map->T_prior_map_imu) set_start_pose(*map->T_prior_map_imu);
 }
 
-Status LidarInertialOdometry::localised() const {
+Status LidarInertialOdometry::check_localised() const {
   return impl_->localiser.status();
 }
 

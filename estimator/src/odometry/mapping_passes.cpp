@@ -190,7 +190,7 @@ double calibration_contradiction(const LidarImuCalibrationPrior& stated, const L
       stated.time_offset_sigma_s;
   constexpr double kRegular = 1e-4;  // fraction of the prior variance; keeps S positive if a pass adds no information
   const Matrix7 S = Matrix7(((1.0 + kRegular) * sigma.cwiseAbs2().array() + 1e-18).matrix().asDiagonal()) -
-                    mapper.calibration_prior_covariance().topLeftCorner<7, 7>();
+                    mapper.next_calibration_prior_covariance().topLeftCorner<7, 7>();
   const auto change = mapper.calibration().minus(stated.calibration);
   const auto mahalanobis2 = [](const auto& x, const auto& P) { return x.dot(P.ldlt().solve(x)); };
   const Eigen::Vector3d rotation = change.head<3>(), translation = change.segment<3>(3);
@@ -231,7 +231,7 @@ MappedRecording map_with_calibration(const MappingInput& input, const LidarInert
   const bool converged = determines_lidar_calibration(out) && moved <= LidarImuCalibrationPrior::kDistanceMax_sigmas;
   if (converged) {
     start_from_calibration(out.mapper.calibration(), started);
-    set_sigmas(out.mapper.calibration_prior_covariance().diagonal().cwiseSqrt(), started);
+    set_sigmas(out.mapper.next_calibration_prior_covariance().diagonal().cwiseSqrt(), started);
     again();
   } else if (determines_lidar_calibration(out) && !levelled.start_tilt_correction &&
              out.mapper.start_tilt_correction()) {

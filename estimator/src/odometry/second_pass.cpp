@@ -117,7 +117,7 @@ LidarInertialOdometry::Params SecondMappingPass::calibrated_mapping_params(const
   LidarInertialOdometry::Params out = mapping_;
   if (kSweepsPerRejection * rejected_in_first_pass_ > sweeps_.size()) return out;
   const LidarImuCalibration learnt = first.mapper().calibration();
-  const auto sigma = first.mapper().calibration_prior_covariance().diagonal().cwiseSqrt().eval();
+  const auto sigma = first.mapper().next_calibration_prior_covariance().diagonal().cwiseSqrt().eval();
   out.T_IL = learnt.T_IL;
   out.time_offset_s = learnt.time_offset_s;
   out.mount_sigma_rad = sigma.head<3>().maxCoeff();

@@ -170,7 +170,7 @@ SensorHealth TumblingOdometry::Impl::health() const {
   add_findings(plausibility_, plausibility_state_, "imu", out);
   out.add(Kind::lidar_scale, odometry_pass_.lidar_scale().verdict(), "lidar");
   out.add(Kind::vertical_unknown, mapper().check_vertical(), "");
-  out.add(Kind::not_localised, mapper().localised(), "");
+  out.add(Kind::not_localised, mapper().check_localised(), "");
   const Localisation& localisation = odometry_pass_.localisation();
   out.add(Kind::tracking_lost, localisation.current_verdict(), "", "", localisation.lost_since_ns());
   const double deviations = std::max(stated_calibration_.distance_in_sigmas(mapper().calibration()),
@@ -204,7 +204,7 @@ void TumblingOdometry::Impl::register_sweep(TimeNs start_ns, TimeNs end_ns, std:
   out.position_frame = positions_.position_frame();
   second_mapping_pass_.store_input(start_ns, end_ns, std::move(points), reading, out.report.verdict);
   // The second pass has no prior map, so its frame differs from the localised first pass.
-  if (mapper().prior_map() != nullptr && mapper().localised().ok()) second_mapping_pass_.abandon_second_pass();
+  if (mapper().prior_map() != nullptr && mapper().check_localised().ok()) second_mapping_pass_.abandon_second_pass();
   const bool applied_before = second_mapping_pass_.is_applied();
   second_mapping_pass_.replay_next_input(odometry_pass_);
   if (second_mapping_pass_.is_applied() != applied_before) positions_.restart_fit();
@@ -269,7 +269,7 @@ void TumblingOdometry::Impl::restart_at_newest() {
     T_WI.translation() = pose.position_W_m;
   }
   const Eigen::Vector3d offset_rad_s = gyro_offset_rad_s();
-  if (mapper().localised().ok()) {
+  if (mapper().check_localised().ok()) {
     reset(T_WI);
   } else {
     reset();  // the newest pose is not in the frame of the prior map

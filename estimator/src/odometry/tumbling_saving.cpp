@@ -107,7 +107,7 @@ void set_prior_pose(const PoseState& pose, PriorMap& map) {
 std::optional<PoseState> newest_or_start_pose(const TumblingOdometry::Impl& odometry) {
   const LidarInertialOdometry& mapper = odometry.mapper();
   const std::optional<Eigen::Isometry3d>& start = mapper.start_pose();
-  const bool in_map = mapper.localised().ok();
+  const bool in_map = mapper.check_localised().ok();
   PoseState out;
   const bool moved = odometry.newest(out).ok() || mapper.predict({}, {}, out).ok();
   if (!start && (!moved || !in_map)) return std::nullopt;
@@ -145,13 +145,13 @@ std::vector<std::byte> TumblingOdometry::Impl::save_with_pose(const std::optiona
   if (!whole_recording_result_ && (state.sensor_errors.front().accel_delay_state.delay_found || used.calibrated_errors))
     out->sensor_errors = stream.sensor_errors(state);
   out->saturation_levels = saturation_levels();
-  const auto sigma = mapper().calibration_prior_covariance().diagonal().cwiseSqrt().eval();
+  const auto sigma = mapper().next_calibration_prior_covariance().diagonal().cwiseSqrt().eval();
   out->lidar = {mapper().calibration(), sigma.head<3>().maxCoeff(), sigma.segment<3>(3).maxCoeff(), sigma[6]};
 
   const PriorMap* const prior = mapper().prior_map();
   out->extend = prior == nullptr || prior->extend;
   out->pose = pose;
-  return write_saved_state(*out, mapper().localised().ok() ? mapper().map() : prior->points);
+  return write_saved_state(*out, mapper().check_localised().ok() ? mapper().map() : prior->points);
 }
 
 Status TumblingOdometry::Impl::load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose) {

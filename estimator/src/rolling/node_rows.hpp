@@ -12,14 +12,14 @@ namespace tumble::rolling {
 /// During grip, the contact point is at rest; during slip, the contact point moves along the floor: rolling.md (R17),
 /// (R20). If the velocity of the sphere is very uncertain, a weak pseudo-measurement of zero velocity is added.
 template <class EstimateCallback>
-void contact_measurement_rows(const Contact& c, RollingMode mode, double node_s, const Eigen::Vector3d& v_WI_m_s,
+void contact_measurement_rows(const Contact& c, ContactMode mode, double node_s, const Eigen::Vector3d& v_WI_m_s,
                               const Vector& x, const Covariance& P, EstimateCallback&& take) {
   // The part of the contact velocity that is not linear in the error state is subtracted from the measurement.
   const Eigen::Vector3d u = c.velocity(x) - c.measurement_jacobian * x, variance = contact_variance(c, mode);
   if (!may_slip(mode)) {
     for (int axis = 0; axis < 2; ++axis) take(Row(c.measurement_jacobian.row(axis)), -u[axis], variance[axis]);
   }
-  if (mode != RollingMode::bump) take(Row(c.measurement_jacobian.row(2)), -u.z(), variance.z());
+  if (mode != ContactMode::bump) take(Row(c.measurement_jacobian.row(2)), -u.z(), variance.z());
   if (const auto lost = velocity_variance_if_lost(node_s, P)) {
     for (int axis = 0; axis < 2; ++axis) take(kVelocity + axis, -v_WI_m_s[axis], *lost);
   }

@@ -127,7 +127,7 @@ void RollingFilter::complete_filter_node(const Eigen::Vector3d& next_rate_rad_s,
   move_linearisation_point(heading_lost, state);
   keep_position_at_rest(state);
   state.node_integrals = {};
-  ++state.node_index;
+  ++state.step_count;
 }
 
 void RollingFilter::detect_rest(State& state) const {
@@ -177,7 +177,7 @@ void RollingFilter::flag_uncertain_position(State& state) const {
   const bool event = may_slip(state.hypotheses[0].mode);
   if (!event) state.variance_before_slip_m2 = variance_m2;
   state.position_uncertain =
-      event && variance_m2 - state.variance_before_slip_m2 > squared(RollingModeParams::kEventSigmaGrowth_m);
+      event && variance_m2 - state.variance_before_slip_m2 > squared(ContactModeParams::kEventSigmaGrowth_m);
 }
 
 void RollingFilter::weigh_modes(State& state) {
@@ -187,7 +187,7 @@ void RollingFilter::weigh_modes(State& state) {
     const double weight = std::exp(h.log_weight - state.hypotheses[0].log_weight);
     total += weight;
     if (may_slip(h.mode)) slipping += weight;
-    if (h.mode == RollingMode::bump) hopping += weight;
+    if (h.mode == ContactMode::bump) hopping += weight;
   }
   state.slip_probability = slipping / total;
   state.bump_probability = hopping / total;
@@ -238,11 +238,11 @@ void RollingFilter::update_reported_pose(State& state) const {
 
 /// The summed weight of all hypotheses decides between grip and slip, because several hypotheses may have the same
 /// contact mode.
-RollingMode RollingFilter::most_probable_mode(const State& state) {
+ContactMode RollingFilter::most_probable_mode(const State& state) {
   const bool event = state.slip_probability >= kEventProbability;
   if (event == may_slip(state.mode)) return state.mode;
-  if (!event) return RollingMode::grip;
-  return 2.0 * state.bump_probability > state.slip_probability ? RollingMode::bump : RollingMode::slip;
+  if (!event) return ContactMode::grip;
+  return 2.0 * state.bump_probability > state.slip_probability ? ContactMode::bump : ContactMode::slip;
 }
 
 RollingCalibration RollingFilter::calibration(const State& state) {

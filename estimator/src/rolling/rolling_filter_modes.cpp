@@ -43,9 +43,9 @@ constexpr std::size_t kMinDissentingHypotheses = 6;
 constexpr double kRoughCost = 0.2;
 // The start of a ramp is detected as a bump, so a slope is more probable after a bump.
 constexpr double kInclineAfterBump = 4.0;
-constexpr RollingMode kModes[] = {RollingMode::grip, RollingMode::slip, RollingMode::bump, RollingMode::incline,
-                                  RollingMode::uneven};
-static_assert(std::size(kModes) == kRollingModes);
+constexpr ContactMode kModes[] = {ContactMode::grip, ContactMode::slip, ContactMode::bump, ContactMode::incline,
+                                  ContactMode::uneven};
+static_assert(std::size(kModes) == kContactModes);
 
 double gaussian_log_density(double value, double variance) {
   return -0.5 * (value * value / variance + std::log(2.0 * std::numbers::pi * variance));
@@ -71,7 +71,7 @@ double log_normalised_square(double square) {
 }
 
 /// See rolling.md (R23).
-double log_likelihood_stationary(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode) {
+double log_likelihood_stationary(const rolling::Contact& c, const RollingFilter::Hypothesis& h, ContactMode mode) {
   RollingFilter::Vector x = h.x;
   Eigen::Matrix<double, 3, rolling::kStates> H = c.measurement_jacobian;
   const bool slope_reset = rolling::resets_floor_slope(h.mode, mode);
@@ -80,7 +80,7 @@ double log_likelihood_stationary(const rolling::Contact& c, const RollingFilter:
     H.middleCols<2>(rolling::kSlope).setZero();
   }
   Eigen::Matrix3d S = H * h.covariance * H.transpose();
-  if (slope_reset && mode == RollingMode::incline) {
+  if (slope_reset && mode == ContactMode::incline) {
     const Eigen::Matrix<double, 3, 2> by_slope = c.measurement_jacobian.middleCols<2>(rolling::kSlope);
     S += squared(RollingContactParams::kSlopeSigma) * by_slope * by_slope.transpose();
   }
@@ -90,25 +90,25 @@ double log_likelihood_stationary(const rolling::Contact& c, const RollingFilter:
   };
   Eigen::LLT<Eigen::Matrix3d> factor;
   double log_det = 0.0, cost = 0.0;
-  if (mode == RollingMode::uneven) {
+  if (mode == ContactMode::uneven) {
     // On a rough floor, the larger contact velocity variance of the mode uneven would reduce the likelihood of every
     // filter step. For the mode uneven, the likelihood is therefore normalised with the variance of the mode grip, and
     // its logarithm is reduced by kRoughCost.
-    log_det = log_det_with(rolling::contact_variance(c, RollingMode::grip), factor);
+    log_det = log_det_with(rolling::contact_variance(c, ContactMode::grip), factor);
     cost = kRoughCost;
   }
   const double own = log_det_with(rolling::contact_variance(c, mode), factor);
-  if (mode != RollingMode::uneven) log_det = own;
+  if (mode != ContactMode::uneven) log_det = own;
   const double square = factor.matrixL().solve(c.velocity(x)).squaredNorm();
   return -cost - 0.5 * (square + log_det + 3.0 * std::log(2.0 * std::numbers::pi));
 }
 
 /// See rolling.md (R24), (R25).
-double log_likelihood_moving(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode,
+double log_likelihood_moving(const rolling::Contact& c, const RollingFilter::Hypothesis& h, ContactMode mode,
                              const Eigen::Vector3d& u) {
   const Eigen::Vector3d change = u - h.contact_velocity_W_m_s;
   const double horizontal = log_normalised_square(change.head<2>().squaredNorm());
-  if (mode == RollingMode::bump) return horizontal + log_floor_rise(change.z());
+  if (mode == ContactMode::bump) return horizontal + log_floor_rise(change.z());
   const double check_vertical =
       c.measurement_jacobian.row(2) * h.covariance * c.measurement_jacobian.row(2).transpose() +
       squared(RollingContactParams::kVerticalSigma_m_s);
@@ -116,32 +116,32 @@ double log_likelihood_moving(const rolling::Contact& c, const RollingFilter::Hyp
 }
 
 /// See rolling.md (R22).
-double log_transition(const RollingParams& params, RollingMode from, RollingMode to, double h_s) {
+double log_transition(const RollingParams& params, ContactMode from, ContactMode to, double h_s) {
   const auto& modes = params.expert.modes;
-  const auto rate = [&](RollingMode a, RollingMode b) {
-    if (b == RollingMode::incline) {
-      return modes.incline_begins_per_s * (a == RollingMode::bump ? kInclineAfterBump : 1.0);
+  const auto rate = [&](ContactMode a, ContactMode b) {
+    if (b == ContactMode::incline) {
+      return modes.incline_begins_per_s * (a == ContactMode::bump ? kInclineAfterBump : 1.0);
     }
-    if (b == RollingMode::uneven) return kRoughBeginsPerS;
-    if (b == RollingMode::slip) return a == RollingMode::bump ? kSlipBumpPerS : modes.slip_begins_per_s;
-    if (b == RollingMode::bump) return a == RollingMode::slip ? kSlipBumpPerS : modes.bump_begins_per_s;
-    if (a == RollingMode::incline) return kInclineEndsPerS;
-    if (a == RollingMode::uneven) return kRoughEndsPerS;
-    return a == RollingMode::slip ? modes.kSlipEndsPerS : modes.kBumpEndsPerS;
+    if (b == ContactMode::uneven) return kRoughBeginsPerS;
+    if (b == ContactMode::slip) return a == ContactMode::bump ? kSlipBumpPerS : modes.slip_begins_per_s;
+    if (b == ContactMode::bump) return a == ContactMode::slip ? kSlipBumpPerS : modes.bump_begins_per_s;
+    if (a == ContactMode::incline) return kInclineEndsPerS;
+    if (a == ContactMode::uneven) return kRoughEndsPerS;
+    return a == ContactMode::slip ? modes.kSlipEndsPerS : modes.kBumpEndsPerS;
   };
   if (from != to) return std::log(rate(from, to) * h_s);
   double leaving = 0.0;
-  for (const RollingMode other : kModes) leaving += other == from ? 0.0 : rate(from, other);
+  for (const ContactMode other : kModes) leaving += other == from ? 0.0 : rate(from, other);
   return -leaving * h_s;
 }
 
 struct ModeCandidate {
   double log_weight = 0.0;
   int parent = 0;
-  RollingMode mode = RollingMode::grip;
-  std::int64_t first_node_of_mode = 0;
+  ContactMode mode = ContactMode::grip;
+  std::int64_t first_step_of_mode = 0;
 };
-using Candidates = std::array<ModeCandidate, kRollingModes * RollingFilter::kHypotheses>;
+using Candidates = std::array<ModeCandidate, kContactModes * RollingFilter::kHypotheses>;
 
 /// Returns all pairs of a hypothesis and a next contact mode, most probable first.
 std::span<const ModeCandidate> propose_mode_changes(const RollingParams& params, const rolling::Contact& c,
@@ -154,17 +154,17 @@ std::span<const ModeCandidate> propose_mode_changes(const RollingParams& params,
   for (int parent = 0; parent < state.hypothesis_count; ++parent) {
     const RollingFilter::Hypothesis& h = state.hypotheses[static_cast<std::size_t>(parent)];
     const Eigen::Vector3d u = c.velocity(h.x);
-    for (const RollingMode mode : kModes) {
-      const bool bound = may_slip(h.mode) && state.node_index - h.first_node_of_mode < shortest;
+    for (const ContactMode mode : kModes) {
+      const bool bound = may_slip(h.mode) && state.step_count - h.first_step_of_mode < shortest;
       if (mode != h.mode && bound) continue;
       if (too_fast && !may_slip(mode)) continue;
       double likelihood = 0.0;  // a data gap gives no evidence for a contact mode
       if (!in_gap)
         likelihood = may_slip(mode) ? log_likelihood_moving(c, h, mode, u) : log_likelihood_stationary(c, h, mode);
       const double impact =
-          mode == RollingMode::bump ? 0.0 : state.node_integrals.unexplained_impact_m_s / kUnexplainedImpact_m_s;
+          mode == ContactMode::bump ? 0.0 : state.node_integrals.unexplained_impact_m_s / kUnexplainedImpact_m_s;
       out[total++] = {h.log_weight + log_transition(params, h.mode, mode, node_s) + likelihood - impact, parent, mode,
-                      mode == h.mode ? h.first_node_of_mode : state.node_index};
+                      mode == h.mode ? h.first_step_of_mode : state.step_count};
     }
   }
   // std::stable_sort would allocate memory, so candidates of equal weight are sorted by hypothesis and mode.
@@ -195,11 +195,11 @@ KeptHypotheses keep_probable_candidates(std::span<const ModeCandidate> candidate
   for (const ModeCandidate& candidate : candidates) {
     if (kept.count == kept.candidates.size() || candidate.log_weight < candidates[0].log_weight + kPruneLogWeight)
       break;
-    const bool has_earlier_mode = candidate.first_node_of_mode < candidates[0].first_node_of_mode;
+    const bool has_earlier_mode = candidate.first_step_of_mode < candidates[0].first_step_of_mode;
     if (kept.count + kMinDissentingHypotheses >= kept.candidates.size() && !has_earlier_mode) continue;
-    const std::int64_t since = mode_beginning_node(candidate.first_node_of_mode, node, node_s);
+    const std::int64_t since = mode_beginning_node(candidate.first_step_of_mode, node, node_s);
     const auto same = [&](const ModeCandidate& other) {
-      return other.mode == candidate.mode && mode_beginning_node(other.first_node_of_mode, node, node_s) == since;
+      return other.mode == candidate.mode && mode_beginning_node(other.first_step_of_mode, node, node_s) == since;
     };
     if (std::any_of(kept.candidates.begin(), kept.candidates.begin() + static_cast<std::ptrdiff_t>(kept.count), same))
       continue;
@@ -248,7 +248,7 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, bool headi
   const double node_s = state.node_integrals.node_interval_s;
   Candidates candidates;
   const std::span<const ModeCandidate> ordered = propose_mode_changes(params_, c, state, candidates);
-  const KeptHypotheses kept = keep_probable_candidates(ordered, state.node_index, node_s);
+  const KeptHypotheses kept = keep_probable_candidates(ordered, state.step_count, node_s);
   Origins parents{};
   for (std::size_t k = 0; k < kept.count; ++k) parents[k] = static_cast<std::size_t>(kept.candidates[k].parent);
   rearrange_hypotheses(parents, kept.count, state.hypotheses);
@@ -263,7 +263,7 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, bool headi
     h.contact_velocity_W_m_s = c.velocity(h.x);
     h.log_weight = candidate.log_weight - ordered[0].log_weight;
     h.mode = candidate.mode;
-    h.first_node_of_mode = candidate.first_node_of_mode;
+    h.first_step_of_mode = candidate.first_step_of_mode;
     h.parent = candidate.parent;
   }
   keep_most_probable_hypotheses(kept.count, state);
@@ -292,8 +292,8 @@ void RollingFilter::correct_at_rest(State& state) const {
     h.log_weight += std::max(likelihood, kRestLogLikelihoodMin);
     h.parent = k;
     if (may_slip(h.mode)) {
-      h.first_node_of_mode = state.node_index;
-      h.mode = RollingMode::grip;
+      h.first_step_of_mode = state.step_count;
+      h.mode = ContactMode::grip;
     }
     h.contact_velocity_W_m_s.setZero();
   }

@@ -50,9 +50,9 @@ constexpr double kGapTimeSigmaRatio = 0.15;  // uncertain time of a rate change 
 }  // namespace
 
 /// See rolling.md (R18), (R19).
-Eigen::Vector3d contact_variance(const Contact& c, RollingMode mode) {
+Eigen::Vector3d contact_variance(const Contact& c, ContactMode mode) {
   const double rough =
-      mode == RollingMode::uneven ? squared(RollingContactParams::kRoughShare * c.rolling_speed_m_s) : 0.0;
+      mode == ContactMode::uneven ? squared(RollingContactParams::kRoughShare * c.rolling_speed_m_s) : 0.0;
   return {c.grip_variance, c.grip_variance,
           squared(RollingContactParams::kVerticalSigma_m_s) + rough + c.gap_extra_variance};
 }
@@ -344,21 +344,21 @@ std::optional<double> velocity_variance_if_lost(double node_s, const Covariance&
   return squared(kSpeedSigma_m_s) * kSpeedWindow_s / node_s;
 }
 
-bool resets_floor_slope(RollingMode from, RollingMode to) {
+bool resets_floor_slope(ContactMode from, ContactMode to) {
   return from != to && !may_slip(to);
 }
 
 /// See rolling.md (R21).
-void update_slope_for_mode(RollingMode from, RollingMode to, double h_s, const RollingNominalState& nominal, Vector& x,
+void update_slope_for_mode(ContactMode from, ContactMode to, double h_s, const RollingNominalState& nominal, Vector& x,
                            Covariance& P) {
-  if (from == RollingMode::incline && to == from) {
+  if (from == ContactMode::incline && to == from) {
     P.diagonal().segment<2>(kSlope).array() += squared(kSlopeWalk_sqrts) * h_s;
   }
-  if (to == RollingMode::uneven) P(kRadius, kRadius) += squared(kRoughRadiusWalk_m_sqrts) * h_s;
+  if (to == ContactMode::uneven) P(kRadius, kRadius) += squared(kRoughRadiusWalk_m_sqrts) * h_s;
   if (!resets_floor_slope(from, to)) return;
   P.middleRows<2>(kSlope).setZero();
   P.middleCols<2>(kSlope).setZero();
-  const double sigma = to == RollingMode::incline ? RollingContactParams::kSlopeSigma : kLevelSlopeSigma;
+  const double sigma = to == ContactMode::incline ? RollingContactParams::kSlopeSigma : kLevelSlopeSigma;
   P.diagonal().segment<2>(kSlope).setConstant(squared(sigma));
   x.segment<2>(kSlope) = -nominal.floor_slope;
 }

@@ -45,7 +45,7 @@ struct Contact {
 
 /// Returns the variance of the contact velocity. In the mode `slip`, only the variance of the vertical component is
 /// valid.
-Eigen::Vector3d contact_variance(const Contact& c, RollingMode mode);
+Eigen::Vector3d contact_variance(const Contact& c, ContactMode mode);
 
 bool starts_in_motion(const Eigen::Vector3d& rate_I_rad_s);
 
@@ -89,13 +89,13 @@ Contact contact(const RollingParams& params, const RollingNominalState& nominal,
 
 /// In the mode `incline`, the slope of the floor is a random walk. A change to a mode with resting contact point resets
 /// the slope.
-void update_slope_for_mode(RollingMode from, RollingMode to, double h_s, const RollingNominalState& nominal, Vector& x,
+void update_slope_for_mode(ContactMode from, ContactMode to, double h_s, const RollingNominalState& nominal, Vector& x,
                            Covariance& P);
 
 /// Returns the variance of a pseudo-measurement of zero velocity, or nothing if the velocity variance is small.
 std::optional<double> velocity_variance_if_lost(double node_s, const Covariance& P);
 
-bool resets_floor_slope(RollingMode from, RollingMode to);
+bool resets_floor_slope(ContactMode from, ContactMode to);
 
 /// If the tilt is uncertain, levels the attitude with the mean specific force of the filter step, and resets the
 /// velocity. Returns false without a reset if the tilt is certain enough, or if the specific force is unusable.

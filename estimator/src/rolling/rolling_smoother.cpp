@@ -104,7 +104,7 @@ SlipAndBumpEvents find_slip_and_bump_events(const RollingSmoother::Params& param
     }
     const double after_m2 = stated_distance_sigma(params) * horizontal_variance_m2[std::min(b, count - 1)];
     const bool grew =
-        after_m2 - before_m2 > RollingModeParams::kEventSigmaGrowth_m * RollingModeParams::kEventSigmaGrowth_m;
+        after_m2 - before_m2 > ContactModeParams::kEventSigmaGrowth_m * ContactModeParams::kEventSigmaGrowth_m;
     for (std::size_t n = a; n < b; ++n) out.uncertain[n] = grew;
     a = b;
   }

@@ -12,7 +12,7 @@
 namespace tumble::rolling {
 
 struct ModePathNode {
-  RollingMode mode = RollingMode::grip;
+  ContactMode mode = ContactMode::grip;
   bool at_rest = false;
   bool spins_in_place = false;  ///< the sphere is at rest, but rotates about the contact point
   bool holds_constant_position = false;

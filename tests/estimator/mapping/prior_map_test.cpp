@@ -61,7 +61,7 @@ double error_in_map_m(const RoomRig& rig) {
 /// Runs until the run is localised, at most to sweep `last`, and returns the number of sweeps.
 int run_until_localised(RoomRig& rig, int last = kLocalised) {
   int k = 0;
-  while (k < last && !rig.odometry.localised().ok()) {
+  while (k < last && !rig.odometry.check_localised().ok()) {
     rig.run(k, k + 1);
     ++k;
   }
@@ -71,9 +71,9 @@ int run_until_localised(RoomRig& rig, int last = kLocalised) {
 TEST(PriorMap, ARunIsLocalisedWithoutAPose) {
   RoomRig rig(true_params(), second_motion());
   ASSERT_TRUE(rig.odometry.set_prior_map({.points = map_of_pillars()}).ok());
-  EXPECT_EQ(rig.odometry.localised().error_code, ErrorCode::degenerate);
+  EXPECT_EQ(rig.odometry.check_localised().error_code, ErrorCode::degenerate);
   const int sweeps = run_until_localised(rig);
-  ASSERT_TRUE(rig.odometry.localised().ok()) << rig.odometry.localised().message();
+  ASSERT_TRUE(rig.odometry.check_localised().ok()) << rig.odometry.check_localised().message();
   EXPECT_FALSE(rig.report.in_prior_map);  // poses of the accepting sweep are still in the local frame
   EXPECT_LT(rig.error_m(), 0.06);
 
@@ -95,7 +95,7 @@ TEST(PriorMap, EarlierPosesAreTransformedToTheFrameOfTheMap) {
   RoomRig rig(true_params(), second_motion());
   ASSERT_TRUE(rig.odometry.set_prior_map({.points = map_of_pillars()}).ok());
   std::vector<PoseState> poses;
-  for (int k = 0; k < kLocalised && !rig.odometry.localised().ok(); ++k) {
+  for (int k = 0; k < kLocalised && !rig.odometry.check_localised().ok(); ++k) {
     EXPECT_EQ(rig.odometry.transform_to_prior_map(poses).error_code, ErrorCode::degenerate);
     rig.run(k, k + 1);
     poses.push_back(rig.report.pose);
@@ -122,7 +122,7 @@ TEST(PriorMap, AnApproximateOrAGivenPoseLimitsTheSearch) {
     map.sigma_rad = 0.1 * error_m;
     ASSERT_TRUE(rig.odometry.set_prior_map(map).ok());
     const int sweeps = run_until_localised(rig);
-    ASSERT_TRUE(rig.odometry.localised().ok()) << error_m;
+    ASSERT_TRUE(rig.odometry.check_localised().ok()) << error_m;
     rig.run(sweeps, sweeps + 2);
     EXPECT_TRUE(rig.report.in_prior_map);
     EXPECT_LT(error_in_map_m(rig), 0.06) << error_m;
@@ -135,7 +135,7 @@ TEST(PriorMap, AWrongGivenPoseIsNotAccepted) {
   map.T_prior_map_imu->translation() += Eigen::Vector3d(6.0, 0.0, 0.0);
   ASSERT_TRUE(rig.odometry.set_prior_map(map).ok());
   run_until_localised(rig);
-  EXPECT_EQ(rig.odometry.localised().error_code, ErrorCode::degenerate);
+  EXPECT_EQ(rig.odometry.check_localised().error_code, ErrorCode::degenerate);
 }
 
 TEST(PriorMap, AMapOfAnotherPlaceIsNotAccepted) {
@@ -146,7 +146,7 @@ TEST(PriorMap, AMapOfAnotherPlaceIsNotAccepted) {
   RoomRig rig(true_params(), second_motion(), other);
   ASSERT_TRUE(rig.odometry.set_prior_map({.points = map_of_pillars()}).ok());
   run_until_localised(rig, 25);
-  EXPECT_EQ(rig.odometry.localised().error_code, ErrorCode::degenerate);
+  EXPECT_EQ(rig.odometry.check_localised().error_code, ErrorCode::degenerate);
   EXPECT_FALSE(rig.report.in_prior_map);
   EXPECT_LT(rig.error_m(), 0.06);  // in the local frame
 }
@@ -157,7 +157,7 @@ TEST(PriorMap, TwoEqualPlacesAreAmbiguous) {
   RoomRig rig(true_params(), second_motion(), Room::box());
   ASSERT_TRUE(rig.odometry.set_prior_map({.points = moved(mapped.odometry.map(), T_MW())}).ok());
   run_until_localised(rig, 25);
-  EXPECT_EQ(rig.odometry.localised().error_code, ErrorCode::degenerate);
+  EXPECT_EQ(rig.odometry.check_localised().error_code, ErrorCode::degenerate);
 }
 
 TEST(PriorMap, AFrozenMapStaysEqualAndAnExtendedMapGrows) {
@@ -204,7 +204,7 @@ TEST(PriorMap, PointsWithoutNormalsSuffice) {
   RoomRig rig(true_params(), second_motion());
   ASSERT_TRUE(rig.odometry.set_prior_map({.points = to_map_points(positions)}).ok());
   const int sweeps = run_until_localised(rig);
-  ASSERT_TRUE(rig.odometry.localised().ok());
+  ASSERT_TRUE(rig.odometry.check_localised().ok());
   rig.run(sweeps, sweeps + 2);
   EXPECT_LT(error_in_map_m(rig), 0.06);
 }
@@ -221,7 +221,7 @@ TEST(PriorMap, UnusableMapsAreRefused) {
   map.sigma_m = -1.0;
   EXPECT_EQ(rig.odometry.set_prior_map(map).error_code, ErrorCode::out_of_range);
   EXPECT_EQ(rig.odometry.prior_map(), nullptr);
-  EXPECT_TRUE(rig.odometry.localised().ok());
+  EXPECT_TRUE(rig.odometry.check_localised().ok());
   rig.run(0, 1);
   EXPECT_EQ(rig.odometry.set_prior_map({.points = map_of_pillars()}).error_code, ErrorCode::time_order);
 }

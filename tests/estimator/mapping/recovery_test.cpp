@@ -68,7 +68,7 @@ TEST(Calibration, FindsMountingAndClock) {
   Odometry odometry(params);
   run_miscalibrated(odometry, turning(), 40);
   // the first map was built with the wrong calibration; its calibration result starts a second map
-  const auto learnt_sigma = odometry.calibration_prior_covariance().diagonal().cwiseSqrt().eval();
+  const auto learnt_sigma = odometry.next_calibration_prior_covariance().diagonal().cwiseSqrt().eval();
   params.T_IL = odometry.calibration().T_IL;
   params.time_offset_s = odometry.calibration().time_offset_s;
   params.mount_sigma_rad = learnt_sigma.head<3>().maxCoeff();

@@ -91,7 +91,7 @@ TEST(PriorMapRun, ResetKeepsTheMapAndLocalisesAgain) {
   run.odometry.reset();
   EXPECT_NE(run.odometry.mapper().prior_map(), nullptr);
   run.odometry.reset(Eigen::Isometry3d::Identity());
-  EXPECT_FALSE(run.odometry.mapper().localised().ok());
+  EXPECT_FALSE(run.odometry.mapper().check_localised().ok());
   run.feed(0, 25);
   EXPECT_TRUE(run.newest.in_prior_map);
   EXPECT_LT(run.error_in_room_m(), 0.1);
@@ -101,7 +101,7 @@ TEST(PriorMapRun, AClockStepBeforeLocalisationStartsTheSearchAgain) {
   RoomRun run(-0.7);
   ASSERT_TRUE(run.odometry.set_prior_map({.points = map_of_first_run()}).ok());
   run.feed(0, 2, 20'000'000'000);
-  ASSERT_FALSE(run.odometry.mapper().localised().ok());
+  ASSERT_FALSE(run.odometry.mapper().check_localised().ok());
   run.feed(2, 30);
   EXPECT_EQ(run.odometry.restart_count(), 1U);
   EXPECT_TRUE(run.newest.in_prior_map);
@@ -122,7 +122,7 @@ TEST(SavedRun, ANewObjectLocalisesInTheSavedMapAtTheSavedPose) {
   ASSERT_TRUE(loaded.ok()) << loaded.message();
   ASSERT_TRUE(last);
   EXPECT_LT((last->position_W_m - elsewhere().translation()).norm(), 0.05);
-  EXPECT_FALSE(after.odometry.mapper().localised().ok());
+  EXPECT_FALSE(after.odometry.mapper().check_localised().ok());
   after.feed(0, 30);
   EXPECT_TRUE(after.newest.in_prior_map);
   EXPECT_LT(after.error_in_room_m(elsewhere()), 0.1);

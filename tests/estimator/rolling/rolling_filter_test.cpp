@@ -99,7 +99,7 @@ Result filtered(const RollingTruth& truth, const Contact& contact, const Rolling
     const Status status = filter.step(truth.samples[k], *state);
     EXPECT_TRUE(status.ok()) << k << ": " << status.message();
     const bool may_slip = contact(seconds(truth.samples[k].time_ns)).norm() > 0.05;
-    const bool found = state->mode != RollingMode::grip;
+    const bool found = state->mode != ContactMode::grip;
     if (may_slip && hit == 0 && !found) result.delay_s += 0.004;
     hit += may_slip && found;
     missed += may_slip && !found;

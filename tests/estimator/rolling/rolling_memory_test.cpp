@@ -112,8 +112,8 @@ TEST(RollingMemory, TheSizeOfTheBufferChangesNoBit) {
   const testing::RollingTruth truth = path(10.0);
   constexpr std::size_t kNodes = 499;
   std::vector<rolling::ModePathNode> path(kNodes);
-  for (std::size_t n = 150; n < 170; ++n) path[n].mode = RollingMode::slip;
-  for (std::size_t n = 300; n < kNodes; ++n) path[n].mode = RollingMode::incline;
+  for (std::size_t n = 150; n < 170; ++n) path[n].mode = ContactMode::slip;
+  for (std::size_t n = 300; n < kNodes; ++n) path[n].mode = ContactMode::incline;
   const std::vector<double> at_once = told(truth.samples, path, 1000);
   ASSERT_GT(at_once.size(), 100'000u);
   for (const std::size_t segment : {1, 7, 128, 498, 499}) {

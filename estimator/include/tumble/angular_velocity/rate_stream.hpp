@@ -79,7 +79,7 @@ class AngularRateStream {
   void marginalise_oldest_knots(State& state) const;
   void marginalise(std::size_t first, State& state) const;
   void marginalise_sensor_errors(const arrow::Block& block, arrow::ErrorMatrix& errors, State& state) const;
-  void reset_prior(State& state) const;
+  void discard_marginalised_information(State& state) const;
   void reset_rig(State& state) const;
   double max_accel_delay_s() const { return ImpactDelayCorrelation::kDelayMax_samples * params_.period_s; }
   std::ptrdiff_t force_delay_samples(const State& state) const;
@@ -88,7 +88,7 @@ class AngularRateStream {
   void add_impact_to_delay_correlation(State& state) const;
   TriadDelay estimate_delay_from_impacts(const State& state) const;
   void update_delay(State& state) const;
-  void apply_delay(double delay_s, bool found, State& state) const;
+  void set_accelerometer_delay(double delay_s, bool found, State& state) const;
   void refine_delay(State& state) const;
   void add_sensor_error_covariance(const arrow::BorderVector& rig_step, State& state) const;
   Eigen::Matrix3d sensor_error_rate_covariance(std::size_t k, const State& state) const;
@@ -108,7 +108,7 @@ class AngularRateStream {
   void mark_suspected_plateau(int axis, std::size_t first, std::size_t last, State& state) const;
   static Eigen::Vector3d min_recent_increase_rad_s(const std::vector<Knot>& window);
   static void store_slope_before_clipping(const Knot& leaving, const Knot& next, State& state);
-  void add_saturation_plane_prior(const State& state, arrow::Corner& corner) const;
+  void add_misalignment_prior(const State& state, arrow::Corner& corner) const;
   void predict_new_knot(Knot& knot, const Knot& previous, const State& state) const;
   void compute_flight_weight(State& state) const;
   bool step(State& state) const;
@@ -127,10 +127,10 @@ class AngularRateStream {
   FrozenAxes frozen_axes_;
   FlightSignCheck flight_axis_sign_check_;
   AngularRateModel model_;
-  SensorErrorUncertainty sensor_error_estimator_;
-  std::size_t capacity_;
-  std::size_t samples_per_step_;  ///< number of samples per Gauss-Newton step
-  double prior_delay_s_;          ///< prior delay of the accelerometer relative to the gyro
+  SensorErrorUncertainty sensor_error_uncertainty_;
+  std::size_t window_knots_;
+  std::size_t samples_per_step_;        ///< number of samples per Gauss-Newton step
+  double prior_accelerometer_delay_s_;  ///< prior delay of the accelerometer relative to the gyro
   bool delay_is_estimated_;
 };
 

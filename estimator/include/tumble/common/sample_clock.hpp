@@ -18,9 +18,9 @@ namespace tumble {
 /// SampleClock fits a line to the time stamps as a function of the sample number, with exponentially decreasing weights
 /// of older time stamps. Source: fading-memory polynomial filter of first degree (Morrison, Introduction to Sequential
 /// Smoothing and Prediction, 1969, ch. 13). For the sample period T, the standard deviation of an estimated time is 1.1
-/// sqrt(T / kMemory_s) times the jitter of the time stamps. An estimated time differs from the time stamp by at most
-/// half a sample period. A constant delay between sensor and host is not observable, and remains in the estimated
-/// times.
+/// sqrt(T / kFitTimeConstant_s) times the jitter of the time stamps. An estimated time differs from the time stamp by
+/// at most half a sample period. A constant delay between sensor and host is not observable, and remains in the
+/// estimated times.
 ///
 /// SampleClock does not change the first 31 time stamps. Later time stamps also remain unchanged while their jitter is
 /// outside of [kJitterMin_periods, jitter_max] sample periods. The same applies if successive deviations of the time

@@ -71,17 +71,17 @@ class LidarInertialOdometry {
   /// Sets the map of an earlier run as prior map, and starts the localisation of the robot in the prior map. Call
   /// set_prior_map() before the first sweep.
   ///
-  /// Before localisation, poses are not in the frame of the prior map, and localised() returns `degenerate`. After
-  /// localisation, poses and covariances are in the frame of the prior map, and SweepReport::in_prior_map is true. If
-  /// `map.T_prior_map_imu` is set, set_prior_map() passes this pose to set_start_pose(). All points of the prior map
-  /// are kept, also beyond `map_radius_m` from the robot. Returns `ok`, an error of check_prior_map(), or `time_order`
-  /// if the mapping has already started. On error, the state is unchanged.
+  /// Before localisation, poses are not in the frame of the prior map, and check_localised() returns `degenerate`.
+  /// After localisation, poses and covariances are in the frame of the prior map, and SweepReport::in_prior_map is
+  /// true. If `map.T_prior_map_imu` is set, set_prior_map() passes this pose to set_start_pose(). All points of the
+  /// prior map are kept, also beyond `map_radius_m` from the robot. Returns `ok`, an error of check_prior_map(), or
+  /// `time_order` if the mapping has already started. On error, the state is unchanged.
   Status set_prior_map(PriorMap map);
   /// Copies the prior map, if any, from `other`, and restarts the localisation. The localisation searches near the pose
   /// of set_start_pose(), or without a start pose near PriorMap::T_prior_map_imu.
   void copy_prior_map(const LidarInertialOdometry& other);
   /// Returns `degenerate` if a prior map is set but the robot is not yet localised.
-  Status localised() const;
+  Status check_localised() const;
   /// Transforms poses that were reported before the localisation to the frame of the prior map. The covariances then
   /// include the uncertainty of the localisation. Returns `degenerate` before the localisation.
   Status transform_to_prior_map(std::span<PoseState> poses) const;
@@ -121,8 +121,8 @@ class LidarInertialOdometry {
   LidarImuCalibration calibration() const;
   LidarImuCalibration::Covariance calibration_covariance() const;
   /// Returns the covariance that the next registration uses as prior of the calibration. A second run over the same
-  /// recording should start with the results of calibration() and calibration_prior_covariance().
-  LidarImuCalibration::Covariance calibration_prior_covariance() const;
+  /// recording should start with the results of calibration() and next_calibration_prior_covariance().
+  LidarImuCalibration::Covariance next_calibration_prior_covariance() const;
 
   /// Returns `out_of_range` while the standard deviation of gravity's direction exceeds 0.02 rad, for example after a
   /// start in motion.
@@ -132,8 +132,8 @@ class LidarInertialOdometry {
   Status pose_at(TimeNs time_ns, PoseState& pose) const;
 
   /// Returns the current IMU poses of the sweeps that later sweeps still refine (at most `window_sweeps` - 1 sweeps),
-  /// oldest first. At the end of a run, the poses of all SweepReport::smoothed and then of window_trajectories() are
-  /// the whole trajectory.
+  /// oldest first. At the end of a run, the poses of all SweepReport::smoothed_trajectory and then of
+  /// window_trajectories() are the whole trajectory.
   std::vector<std::vector<PoseState>> window_trajectories() const;
 
   std::size_t map_bytes() const;

@@ -12,7 +12,7 @@
 #include "tumble/common/status.hpp"
 #include "tumble/common/types.hpp"
 #include "tumble/odometry/sensor_sheets.hpp"
-#include "tumble/rolling/rolling_mode.hpp"
+#include "tumble/rolling/contact_mode.hpp"
 
 namespace tumble {
 
@@ -99,10 +99,10 @@ class RollingOdometry {
     /// Covariance of the velocity of the sphere's centre, in sphere axes. If `lag_s` is above 0, the covariance
     /// neglects that the contact mode (grip, slip or bump) is uncertain.
     Eigen::Matrix3d velocity_covariance_B_m2_s2 = Eigen::Matrix3d::Zero();
-    RollingMode mode = RollingMode::grip;
+    ContactMode mode = ContactMode::grip;
     bool at_rest = false;
     /// True after a restart, and during a slip or bump that increases the standard deviation of the position by more
-    /// than RollingModeParams::kEventSigmaGrowth_m.
+    /// than ContactModeParams::kEventSigmaGrowth_m.
     bool position_uncertain = false;
   };
 

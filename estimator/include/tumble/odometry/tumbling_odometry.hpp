@@ -85,9 +85,9 @@ struct LidarScale;
 /// TumblingOdometry reports three poses of increasing accuracy. The function newest() predicts the IMU's pose at the
 /// newest sample by inertial integration from the last registered sweep. The function take() returns a sweep registered
 /// to the map (`report.pose`), at most `lag_s` after the sweep's end. The final pose of a sweep is in the report of the
-/// following sweep (`report.smoothed`). At ten sweeps per second and the default `lag_s`, the final pose is available
-/// at most 0.3 s after the end of its sweep. Time stamps of poses are in the IMU's clock. The earliest sweep with
-/// enough points starts the map, and poses are reported only after the map has started. Start with at least half a
+/// following sweep (`report.smoothed_trajectory`). At ten sweeps per second and the default `lag_s`, the final pose is
+/// available at most 0.3 s after the end of its sweep. Time stamps of poses are in the IMU's clock. The earliest sweep
+/// with enough points starts the map, and poses are reported only after the map has started. Start with at least half a
 /// second at rest, which determines the tilt. A gyro with a bias above 0.05 rad/s needs a full second at rest, because
 /// TumblingOdometry then subtracts the bias and restarts.
 ///
@@ -185,8 +185,8 @@ class TumblingOdometry {
   std::optional<Sweep> take();
   /// Registers all waiting sweeps that the IMU samples cover. Call finish() at the end of a run or during a halt. After
   /// finish(), take() returns the registered sweeps. For the last sweeps, mapper().window_trajectories() returns the
-  /// final poses instead of `report.smoothed`. If more samples are added after finish(), the estimation of angular
-  /// velocity restarts with the current calibration.
+  /// final poses instead of `report.smoothed_trajectory`. If more samples are added after finish(), the estimation of
+  /// angular velocity restarts with the current calibration.
   ///
   /// With kWholeRecording, finish() processes the whole recording, and later samples and sweeps are rejected until
   /// reset(). After finish() with kWholeRecording, take() returns all sweeps with final poses in `report.pose` and
@@ -209,10 +209,10 @@ class TumblingOdometry {
   Status newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2 = nullptr) const;
   /// Reports the suspected faults of the sensors and of the estimate. Estimation continues after any finding. A finding
   /// disappears at most one minute after the fault has ended. The checks are AngularRateStream::health(),
-  /// ImuPlausibility, RestGravity, LidarScale, LidarInertialOdometry::check_vertical() and localised(), Localisation
-  /// and LidarImuCalibrationPrior. With kWholeRecording, finish() checks the whole recording (detail/imu_findings.hpp),
-  /// and health() reports no finding before finish(). Cost: a few hundred operations. Without a finding, health()
-  /// allocates no memory.
+  /// ImuPlausibility, RestGravity, LidarScale, LidarInertialOdometry::check_vertical() and check_localised(),
+  /// Localisation and LidarImuCalibrationPrior. With kWholeRecording, finish() checks the whole recording
+  /// (detail/imu_findings.hpp), and health() reports no finding before finish(). Cost: a few hundred operations.
+  /// Without a finding, health() allocates no memory.
   SensorHealth health() const;
   /// Returns the ratio of displacements measured by the lidar to displacements measured by the IMU, with its standard
   /// deviation (mapping/detail/lidar_scale.hpp).
@@ -254,8 +254,8 @@ class TumblingOdometry {
   const WholeRecordingEstimate* whole_recording_result() const;
 
   /// Saves calibration, saturation limits, map and newest pose as bytes with a checksum, for load() after a reboot. The
-  /// calibration consists of rig(), the detected delay and errors of the IMU, and pose and time offset of the lidar,
-  /// each with its uncertainty. The saved map has the format of save_map(). Every machine saves numbers in
+  /// calibration consists of rig_calibration(), the detected delay and errors of the IMU, and pose and time offset of
+  /// the lidar, each with its uncertainty. The saved map has the format of save_map(). Every machine saves numbers in
   /// little-endian order. Before the robot is localised in a prior map, save() saves the prior map.
   ///
   /// The saved bytes contain no velocity, filter states, health findings, counters, odometer readings, position

@@ -46,9 +46,9 @@ class RollingFilter {
     Eigen::Vector3d contact_velocity_W_m_s =
         Eigen::Vector3d::Zero();          ///< velocity of the contact point at the last time step
     double log_weight = 0.0;              ///< log probability relative to the most probable hypothesis
-    std::int64_t first_node_of_mode = 0;  ///< time step at which the current contact mode began
+    std::int64_t first_step_of_mode = 0;  ///< time step at which the current contact mode began
     std::int32_t parent = 0;              ///< index of the preceding hypothesis at the previous time step
-    RollingMode mode = RollingMode::grip;
+    ContactMode mode = ContactMode::grip;
     bool operator==(const Hypothesis&) const = default;
   };
 
@@ -61,7 +61,7 @@ class RollingFilter {
     Eigen::Matrix3d position_covariance_m2 = Eigen::Matrix3d::Zero();
     Eigen::Vector3d contact_velocity_m_s =
         Eigen::Vector3d::Zero();  ///< velocity of the contact point at the last time step, in world axes
-    RollingMode mode = RollingMode::grip;
+    ContactMode mode = ContactMode::grip;
     double slip_probability = 0.0;  ///< probability that the contact point moves, at the last time step
     double bump_probability = 0.0;  ///< part of slip_probability for modes in which the sphere hops
     bool at_rest = false;
@@ -83,7 +83,7 @@ class RollingFilter {
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
     std::array<Hypothesis, kHypotheses> hypotheses{};
     int hypothesis_count = 0;
-    std::int64_t node_index = 0;
+    std::int64_t step_count = 0;
     TimeNs last_time_ns = 0;
     bool started = false;
     bool operator==(const State&) const = default;
@@ -131,7 +131,7 @@ class RollingFilter {
   void update_reported_pose(State& state) const;
   void flag_uncertain_position(State& state) const;
   void keep_position_at_rest(State& state) const;
-  static RollingMode most_probable_mode(const State& state);
+  static ContactMode most_probable_mode(const State& state);
   static const Eigen::Vector3d& newest_rate_rad_s(const State& state);
   static Eigen::Matrix3d hypothesis_position_covariance(const State& state, int first);
   static void weigh_modes(State& state);

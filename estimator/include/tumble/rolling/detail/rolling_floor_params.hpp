@@ -19,7 +19,7 @@ struct RollingContactParams {
       3e-3;  ///< standard deviation of the mean rate over a time step at rest
 };
 
-struct RollingModeParams {
+struct ContactModeParams {
   double slip_begins_per_s = 0.5;
   static constexpr double kSlipEndsPerS = 2.0;  ///< rate of transitions from slip to grip
   double bump_begins_per_s = 0.3;

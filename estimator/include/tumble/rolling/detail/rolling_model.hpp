@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 
 #include "tumble/common/types.hpp"
-#include "tumble/rolling/rolling_mode.hpp"
+#include "tumble/rolling/contact_mode.hpp"
 
 namespace tumble {
 
@@ -19,10 +19,10 @@ struct RollingEstimate {
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   /// covariance of the velocity of the sphere's centre, in IMU axes
   Eigen::Matrix3d velocity_covariance_I_m2_s2 = Eigen::Matrix3d::Zero();
-  RollingMode mode = RollingMode::grip;
+  ContactMode mode = ContactMode::grip;
   bool at_rest = false;
   bool position_uncertain =
-      false;  ///< the position is uncertain after a slip or bump: RollingModeParams::kEventSigmaGrowth_m
+      false;  ///< the position is uncertain after a slip or bump: ContactModeParams::kEventSigmaGrowth_m
 };
 
 /// Nominal motion and calibration, about which the error-state Kalman filters are linearised.

@@ -27,7 +27,7 @@ struct RollingExpertParams {
   RollingPriorParams prior = {};
   RollingImuNoiseParams noise = {};
   RollingSaturationParams saturation = {};
-  RollingModeParams modes = {};
+  ContactModeParams modes = {};
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {

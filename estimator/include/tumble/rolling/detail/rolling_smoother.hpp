@@ -23,7 +23,7 @@ struct ModePathNode;
 struct ModePathFilter {
   RollingNominalState nominal;
   RollingFilter::Covariance covariance = RollingFilter::Covariance::Zero();
-  RollingMode mode = RollingMode::grip;
+  ContactMode mode = ContactMode::grip;
   bool operator==(const ModePathFilter&) const = default;
 };
 
@@ -80,7 +80,7 @@ class RollingSmoother {
   /// Contact modes of all hypotheses at a time step, and for each the preceding hypothesis at the previous time step.
   struct NodeModes {
     std::array<std::uint8_t, RollingFilter::kHypotheses> parent{};
-    std::array<RollingMode, RollingFilter::kHypotheses> mode{};
+    std::array<ContactMode, RollingFilter::kHypotheses> mode{};
     Eigen::Matrix3d position_spread_m2 = Eigen::Matrix3d::Zero();
     double rest_s = 0.0;
     bool at_rest = false;
