@@ -48,8 +48,8 @@ std::string text_of(const TurningFit& fit, const std::string& frame) {
   return out + (out.empty() ? "the poses" : " and the poses") + " belonged to the frame " + frame;
 }
 
-/// The first returned frame is the frame of the estimate. Of several frames with equal mountings, only the first is
-/// returned.
+/// Returns the frame of the estimate first, then the frames of IMU, lidar and body, each with its mounting. The result
+/// is empty if the mounting of the estimate's frame is unknown.
 std::vector<CandidateFrame> candidates(const Estimate& estimate, const sim::Sensors& sensors) {
   std::vector<CandidateFrame> frames;
   if (sensors.imus.empty()) return frames;

@@ -97,8 +97,8 @@ struct ReferenceSource {
 Imported import_trajectory(const ReferenceSource& source);
 
 /// Uses the poses of a file as the truth of `recording`, up to the end of the sensor data. The time stamps of the poses
-/// must come from the same clock as the time stamps of the imported sensor data. In the clock of the imported sensor
-/// data, time 0 of `recording` has the time stamp `origin_ns`. A KITTI file must have one pose per sweep.
+/// must come from the same clock as the time stamps of the imported sensor data. `RecordingInfo::origin_ns` is the time
+/// stamp of time 0 of `recording` in the source clock. A KITTI file must have one pose per sweep.
 void attach_reference(Imported& recording, const ReferenceSource& source);
 
 /// Adds IMUs that use the same clock as `recording`. If the IMU recording starts earlier, its time 0 becomes time 0 of

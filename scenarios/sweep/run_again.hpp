@@ -23,8 +23,8 @@ std::string recording_note(const std::string& name);
 bool is_place_note(const std::string& key);
 
 /// Returns the command that repeats a run: `tumble run SCENARIO --seed N --method KIND/NAME`. If the run has a varied
-/// parameter, the command contains `--vary KEY=VALUE`. The words of the command line are quoted for a POSIX shell; a
-/// word in capitals replaces missing information.
+/// parameter, the command contains `--vary KEY=VALUE`. The returned command can be pasted into a POSIX shell. If the
+/// recording's path is unknown, the command contains the placeholder FOLDER.
 std::string command_again(const RunKey& run, const std::map<std::string, std::string>& notes);
 
 Setting setting_from(const std::string& text);

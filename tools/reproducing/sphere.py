@@ -340,10 +340,11 @@ acceleration.
 ## Jitter at standstill: Madgwick against complementary
 
 {jitter}
-An attitude step is the rotation of the estimated attitude between two successive samples (figure 2 of the MFI
-paper). An attitude step of Madgwick's filter is at most 2 · gain · sample time. With gain 0.2, this limit is 0.092° at
-our sample time of 4 ms, and 0.229° at 10 ms. Madgwick's filter alternates between two attitudes: successive steps have
-a correlation of {lag1} in our simulation, and −0.83 in the MFI paper's data.
+An attitude step is the rotation of the estimated attitude between two successive samples (figure 2 of the MFI paper).
+The accelerometer correction of Madgwick's filter rotates the attitude by at most 2 · gain · sample time. With gain 0.2,
+the limit of a correction is 0.092° at our sample time of 4 ms, and 0.229° at 10 ms. Madgwick's filter alternates
+between two attitudes: successive steps have a correlation of {lag1} in our simulation, and −0.83 in the MFI paper's
+data.
 
 ![steps at standstill](sphere_jitter.png)
 

@@ -17,7 +17,8 @@ bool AngularRateModel::has_no_error_information(const AngularRateEstimate& estim
   return estimate.flight_weight < kRigWeightMin;
 }
 
-// A contact force must not change the calibration or the rates of unclipped axes.
+// Removes the influence of the specific force on the calibration and on the rates of unclipped axes. A contact force
+// would otherwise cause errors in calibration and rates.
 void AngularRateModel::exclude_from_calibration(const AngularRateObservation& o, AngularRateFactor& flight) {
   flight.jacobian_calibration.setZero();
   for (int j = 0; j < 3; ++j) {

@@ -21,7 +21,8 @@ struct AngularRateReadings {
   std::optional<RepeatedReadings> gyro_repeated;
 };
 
-/// Converts at least two samples to observations, with their clipping and repetitions. Cost: O(N).
+/// Converts IMU samples (at least two) to observations, and marks clipped and repeated readings. Cost: O(number of
+/// samples).
 AngularRateReadings read_samples(const AngularRateSmoother::Params& params, const ClippingFinder& rails,
                                  const ClippingFinder::ClippingSearchResult& found, const std::vector<bool>& rest,
                                  std::span<const ImuSample> samples,

@@ -123,7 +123,8 @@ void add_impact_delay(const TriadDelay& guess, SensorErrorInformation& evidence)
 
 constexpr double kContradictionOdds = 0.05;
 
-// A device with a wrong scale may also have an unstated accelerometer delay, and vice versa.
+// Compares the product of two odds with a limit, because a wrong IMU may have wrong scale factors, a delay between
+// accelerometer and gyro, or both.
 bool contradicts_data_sheet(const SensorErrorFit& device, const SensorErrorPriors& sizes, bool triads_asynchronous) {
   const SensorErrorFit before = fit_sensor_errors({}, sizes);
   const auto odds = [](double p) { return std::max(p, 1e-12) / std::max(1.0 - p, 1e-12); };

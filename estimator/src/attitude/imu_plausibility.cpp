@@ -21,7 +21,7 @@ constexpr double kChangeMax = 0.12;
 constexpr double kGravityNear = 0.25;
 // On pendulums and hand-held wands, the rotation of the measured gravity is 0.75 to 1.21 times the gyro's rotation.
 constexpr double kSlopeMin = 0.65, kSlopeMax = 1.5;
-// minimum rotation in total (sum of squares), and of one window
+// minimum sum of squared rotations over all windows, and minimum rotation of one window
 constexpr double kRotationMin_rad2 = 0.5, kRotationMin_rad = 0.15;
 // A push, or the centripetal force in free flight, may rotate the measured specific force for a few windows of 0.2 s.
 constexpr double kRotatedWindowsMin = 5.0;

@@ -248,8 +248,8 @@ void test_revolutions(HandHeldProblem& problem, HandHeldSmoother::Report& report
   std::vector<ProblemSegment> parts = with_neighbouring_nodes(problem, segments);
   std::vector<RevolutionAlternatives> open;
   std::vector<bool> fallen(parts.size(), false);
-  // The test of one clipped segment linearises the motion outside the segment. A new number of revolutions in one
-  // clipped segment changes the motion outside the other segments, so all segments are tested again.
+  // The test of a clipped segment linearises the motion outside this segment. If the test changes the number of
+  // revolutions, the motion outside the other segments changes too, so all segments are tested again.
   for (int round = 0; round < kRounds; ++round) {
     if (!problem.condense_other_nodes(parts)) break;
     const std::vector<TestedRevolutionSegment> tested = test_revolution_segments(problem, segments, parts, fallen);

@@ -24,7 +24,7 @@ struct FramePose {
   Eigen::Isometry3d T_prior_map_world = Eigen::Isometry3d::Identity();
   std::size_t covered_point_count = 0;   ///< surface points near the prior map's surfaces
   std::size_t agreeing_point_count = 0;  ///< covered points on the prior map's surfaces, with similar normals
-  /// covariance of the pose in axes of the prior map's frame M: displacement and rotation about the sensor
+  /// 6x6 covariance of the sensor's position error and rotation error, in axes of the prior map
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 
   double agreement_ratio() const {

@@ -57,7 +57,8 @@ class HeaderLines {
 
   std::uint64_t bytes() const { return bytes_; }
 
-  /// `made_of_a_byte` is the largest compression factor of the points (1: uncompressed).
+  /// Throws if the file is too short for the stated number of points. `made_of_a_byte` is the largest possible
+  /// compression factor of point data (1: uncompressed).
   void require_room(const CloudHeader& header, std::uint64_t made_of_a_byte = 1) const {
     if (header.points > kCloudPointsMax) {
       fail(fmt::format("the file states {} points; at most {} can be read", header.points, kCloudPointsMax));

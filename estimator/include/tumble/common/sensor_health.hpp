@@ -41,7 +41,7 @@ struct HealthFinding {
   double value = 0.0;                   ///< measured value of the tested quantity
   double bound = 0.0;                   ///< violated limit of the tested quantity
   std::optional<TimeNs> since_ns = {};  ///< start of the fault; empty if unknown
-  /// true if the fault has ended; health() of a live run reports only current faults
+  /// true if the fault has ended; always false in the result of TumblingOdometry::health() during a run
   bool ended = false;
 
   /// Returns how far `value` is beyond `bound`, from 0 (at the bound) to 1 (far beyond the bound); not a probability.

@@ -51,8 +51,8 @@ inline bool is_finite(const ImuSample& sample) {
 /// and otherwise `ok`.
 Status check_sample(const ImuSample& sample);
 
-/// Returns `time_order` if `time_ns` is not later than `previous_ns`. Returns `gap`, with the gap in seconds, if the
-/// time stamps are more than `gap_max_s` apart.
+/// Returns `time_order` if `time_ns` is not later than `previous_ns`. Returns `gap` if `time_ns` is more than
+/// `gap_max_s` after `previous_ns`; Status::value is the time difference in seconds.
 Status check_stamp_order(TimeNs time_ns, TimeNs previous_ns, double gap_max_s);
 
 /// attitude of a sensor or body A in the world frame W at one time

@@ -187,8 +187,8 @@ struct SweepReport {
   Eigen::Matrix3d velocity_covariance_I_m2_s2 = Eigen::Matrix3d::Zero();
   std::vector<PoseState> trajectory;  ///< IMU poses within the sweep, corrected by the registration
   /// Final poses of the oldest sweep in the window of the fixed-lag smoother. Later sweeps no longer change these
-  /// poses. The vector is empty until `window_sweeps` sweeps have arrived. With the default `window_sweeps` of 2,
-  /// `smoothed_trajectory` contains the poses of the previous sweep.
+  /// poses. The vector is empty until `window_sweeps` sweeps have arrived. If `window_sweeps` is 2 (the default),
+  /// `smoothed_trajectory` contains the final poses of the sweep before this sweep.
   std::vector<PoseState> smoothed_trajectory;
   double inlier_ratio = 0.0;      ///< fraction of the registered points that are inliers
   double eigenvalue_ratio = 0.0;  ///< smallest / largest eigenvalue of the scaled information matrix of the pose

@@ -101,8 +101,8 @@ struct LidarScale;
 /// and repeats the mapping until the lidar's calibration has converged. With kWholeRecording, there are no live poses,
 /// and take() returns all sweeps after finish(). With kWholeRecording, if the clock steps back, add_imu() rejects
 /// samples and returns `time_order` until the time stamps exceed the newest accepted time stamp. With kWholeRecording,
-/// the recording continues after a gap in the data. The function finish() needs more stack and memory than other
-/// functions.
+/// samples after a gap in the data belong to the same recording. The function finish() needs more stack and memory than
+/// other functions.
 ///
 /// An IMU sample costs one step of MotionRegimeStream, and sometimes the registration of a sweep. After start-up,
 /// add_imu() allocates memory only if the sample completes a sweep. While SecondMappingPass runs, a sweep costs up to
@@ -165,8 +165,9 @@ class TumblingOdometry {
   /// `lidar` is k. The points of a further lidar are registered together with the simultaneous sweep of the first
   /// lidar. The points of a further lidar must arrive within `lag_s` after the end of the first lidar's sweep. A
   /// `lag_s` of two sweep periods is long enough for lidars without synchronisation. Limitation: the range limits and
-  /// the box `own_body_L` of the first lidar also apply to the points of further lidars. Returns `ok`, an error of
-  /// add_sweep() for the first lidar, or `out_of_range` for an unknown lidar.
+  /// the box `own_body_L` of the first lidar also apply to the points of further lidars. Returns `out_of_range` if
+  /// `lidar` is larger than the number of further lidars. Otherwise, returns `ok` or the same errors as add_sweep()
+  /// without the argument `lidar`.
   Status add_sweep(std::size_t lidar, TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
   /// Processes an odometer reading (mapping/types.hpp). An odometer reading must arrive before its sweep is registered,
   /// which happens `lag_s` after the end of the sweep. If several odometer readings belong to one sweep,

@@ -94,7 +94,8 @@ class RollingFilter {
   /// Processes one sample. The specific force of the first sample determines the initial tilt; the initial yaw is 0.
   /// The sphere's centre starts at the origin. The initial velocity is zero, or the velocity of rolling without slip if
   /// the first angular velocity is large. The sphere should be at rest for one second after the first sample. On error,
-  /// the state is unchanged. Cost: about 40 kHypotheses kStates^2 operations per time step of 20 ms, no allocation.
+  /// the state is unchanged. Cost: about 40 * kHypotheses * kStates^2 floating-point operations per time step of 20 ms;
+  /// no memory allocation.
   Status step(const ImuSample& sample, State& state) const {
     return step(sample, state, [](const State&) {});
   }
