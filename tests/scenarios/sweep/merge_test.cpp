@@ -112,7 +112,7 @@ TEST_F(MergeTest, TwoAnswersOfOneBuildAreRefusedAndNothingIsLeft) {
   EXPECT_FALSE(std::filesystem::exists(out_));
   EXPECT_EQ(files(), 2u);
   const auto c = make("c.db", {row(1, OutcomeStatus::diverged, "one")});
-  EXPECT_THAT(complaint({a, c}), HasSubstr("has status diverged and estimate digest"));
+  EXPECT_THAT(complaint({a, c}), HasSubstr("has status diverged and digest"));
   // an existing output keeps its content
   make("out.db", {row(9, OutcomeStatus::ok)});
   EXPECT_NE(complaint({a, b}), "");
