@@ -78,7 +78,7 @@ TEST(NamedCase, WhatIsWrongIsNamedWithItsPlace) {
   EXPECT_THAT(complaint_after("  seed: 18446744073709551615\n", ""), HasSubstr("seed"));
   EXPECT_THAT(complaint_after("seed: 18446744073709551615", "seed: -1"), HasSubstr("seed"));
   EXPECT_THAT(complaint_after("duration_s: 10", "duration_s: {uniform: [5, 6]}"),
-              HasSubstr("its number duration_s is random"));
+              HasSubstr("the number duration_s is random"));
 }
 
 /// CaseFiles has a temporary folder with the models of this repository.

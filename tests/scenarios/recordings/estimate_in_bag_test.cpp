@@ -186,9 +186,9 @@ TEST_F(InBag, FilesAreNamedAfterTheirMethods) {
   for (const BagTrack& track : writing.tracks) EXPECT_EQ(track.cloud_time_ns.size(), 3u);
   write_estimate(folder_ / "c", "mine", Kind::slam, estimate_, std::string(32, 'a'));
   const std::filesystem::path other[] = {folder_ / "c"};
-  EXPECT_THAT(
-      fixture::complaint([&] { add_estimates(other, recording_.sensors, writing); }),
-      testing::AllOf(HasSubstr("c: the estimate was made from another recording"), HasSubstr(std::string(32, 'a'))));
+  EXPECT_THAT(fixture::complaint([&] { add_estimates(other, recording_.sensors, writing); }),
+              testing::AllOf(HasSubstr("c: the estimate was made from a recording with digest"),
+                             HasSubstr(std::string(32, 'a'))));
 }
 
 }  // namespace

@@ -227,12 +227,10 @@ TEST_F(HostileBag, AMessageThatPromisesTooMuchAllocatesNothing) {
     update.bind(2, query.getColumn(0).getInt());
     query.reset();
     update.exec();
-    EXPECT_THAT(
-        fixture::complaint([&] { import_ros2_bag(bag, {}); }),
-        field_count
-            ? HasSubstr("message 0 of /lidar/points: the message states 4294967280 entries of 13 bytes")
-            : HasSubstr(
-                  "message 0 of /lidar/points: the cloud of 1 x 4294967280 points with 26 bytes each does not match"));
+    EXPECT_THAT(fixture::complaint([&] { import_ros2_bag(bag, {}); }),
+                field_count
+                    ? HasSubstr("message 0 of /lidar/points: the message states 4294967280 entries of 13 bytes")
+                    : HasSubstr("message 0 of /lidar/points: the cloud has 1 x 4294967280 points of 26 bytes each"));
   }
 }
 

@@ -286,7 +286,8 @@ TEST_F(LoggerTable, AFurtherImuIsPlacedByTheRotation) {
   // the central difference of the rate has an error of 1e-4 rad/s^2
   EXPECT_LT((imported.sensors.imus[1].T_BI.translation() - imported.sensors.imus[0].T_BI.translation() - arm).norm(),
             1e-4);
-  EXPECT_THAT(imported.notes, Contains(HasSubstr("IMU B is at 0.03 -0.02 0.05 m from IMU A")));
+  EXPECT_THAT(imported.notes,
+              Contains(HasSubstr("the estimated position of IMU B is 0.03 -0.02 0.05 m relative to IMU A")));
   // negative control: a gyro that disagrees belongs to other axes
   const Imported other = import(two_imus(arm, -1.0, 2.0));
   EXPECT_EQ(other.sensors.imus.size(), 1u);

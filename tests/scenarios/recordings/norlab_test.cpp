@@ -167,7 +167,7 @@ TEST_F(Vtk, WhatIsNoneIsRefusedWithItsLine) {
   EXPECT_THAT(complaint_of(head_ + "POINTS 4000000000 float\n1 2 3\n"),
               HasSubstr("a.vtk:5: the file states 4000000000 points"));
   EXPECT_THAT(complaint_of(head_ + "POINTS 9 float\n1 2 3\n"),
-              HasSubstr("a.vtk:5: the VTK file states 9 times 3 numbers, but only 7 bytes"));
+              HasSubstr("a.vtk:5: the VTK file states 9 rows of 3 numbers, but only 7 bytes"));
   EXPECT_THAT(complaint_of(head_ + points_ + points_), HasSubstr("a.vtk:8: POINTS occurs twice"));
   EXPECT_THAT(complaint_of(head_ + points_ + "POINT_DATA 3\n"),
               HasSubstr("POINT_DATA states 3 points, but POINTS states 2"));
