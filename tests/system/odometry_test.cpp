@@ -192,7 +192,7 @@ TEST(Odometry, WritesAllFilesOfABagThatNeedsARepair) {
   EXPECT_LT(summary["path_m"].get<double>(), 8.0);
   const auto found = [&](const std::string& item) {
     for (const json& each : document["found"])
-      if (each["item"] == item) return each["found"].get<std::string>() + " | " + each["sure"].get<std::string>();
+      if (each["item"] == item) return each["found"].get<std::string>() + " | " + each["source"].get<std::string>();
     return std::string("missing");
   };
   EXPECT_THAT(found("data sheet of the lidar"), HasSubstr("rs16"));

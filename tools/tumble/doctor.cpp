@@ -66,8 +66,13 @@ std::vector<RecordingFinding> findings_of(const Session& session, const Odometry
           {recording.options.path.filename().string(), fmt::format("the recording has no {}", name), "", false});
   }
   const bool rolls = sensors.robot == "sphere" || sensors.robot == "pendulum";
-  if (!sensors.imus.empty() && !sensors.lidars.empty() && !rolls)
-    append_findings(findings_of_odometry(session, options, recording), out);
+  if (sensors.imus.empty() || sensors.lidars.empty() || rolls) return out;
+  std::vector<RecordingFinding> consequences = findings_of_odometry(session, options, recording);
+  if (std::ranges::any_of(out, &RecordingFinding::fault)) {
+    for (RecordingFinding& each : consequences)
+      each.repair = "first repair the faults above, because they may cause this finding";
+  }
+  append_findings(std::move(consequences), out);
   return out;
 }
 

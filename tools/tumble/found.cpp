@@ -125,8 +125,8 @@ class Found {
   std::vector<sim::ImuRecord>& imus() { return recording_.content.sensors.imus; }
   std::vector<sim::LidarRecord>& lidars() { return recording_.content.sensors.lidars; }
 
-  void add(std::string item, std::string found, std::string sure, std::string option) {
-    items_.push_back({std::move(item), std::move(found), std::move(sure), std::move(option)});
+  void add(std::string item, std::string found, std::string source, std::string option) {
+    items_.push_back({std::move(item), std::move(found), std::move(source), std::move(option)});
   }
 
   static const char* source_of(std::size_t count, const std::vector<std::string>& topics) {
@@ -246,20 +246,20 @@ std::string pose_text(const Eigen::Isometry3d& T) {
 
 bool states_lidar_pose(const std::vector<FoundItem>& items) {
   return std::ranges::any_of(items,
-                             [](const FoundItem& each) { return each.item == kLidarPose && each.sure == kStated; });
+                             [](const FoundItem& each) { return each.item == kLidarPose && each.source == kStated; });
 }
 
 Table found_table(const std::vector<FoundItem>& items) {
-  Table table("", {"item", "sure", "change with", "found"});
+  Table table("", {"item", "source", "change with", "found"});
   table.wrap_last();
-  for (const FoundItem& each : items) table.add_row({each.item, each.sure, each.option, each.found});
+  for (const FoundItem& each : items) table.add_row({each.item, each.source, each.option, each.found});
   return table;
 }
 
 nlohmann::json found_document(const std::vector<FoundItem>& items) {
   nlohmann::json out = nlohmann::json::array();
   for (const FoundItem& each : items)
-    out.push_back({{"item", each.item}, {"found", each.found}, {"sure", each.sure}, {"option", each.option}});
+    out.push_back({{"item", each.item}, {"found", each.found}, {"source", each.source}, {"option", each.option}});
   return out;
 }
 

@@ -14,7 +14,7 @@ namespace tumble::tools {
 struct FoundItem {
   std::string item;
   std::string found;   ///< with evidence
-  std::string sure;    ///< stated, measured, inferred or assumed
+  std::string source;  ///< stated, measured, inferred or assumed
   std::string option;  ///< changes the property
 };
 

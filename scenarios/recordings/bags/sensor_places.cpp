@@ -65,7 +65,7 @@ void SensorMountings::mounting_in_body(const std::string& topic, const Eigen::Is
         fmt::format("{}: /tf_static contains the sensor's pose in '{}': {}", topic, body, pose_text(stated)));
   } else if (!(T_BA.matrix() - stated.matrix()).isZero(kSame)) {
     notes.push_back(
-        fmt::format("{}: caution: /tf_static states the sensor's pose in '{}' as {}, but your option states {}. The "
+        fmt::format("{}: /tf_static states the sensor's pose in '{}' as {}, but your option states {}. The "
                     "import uses your option",
                     topic, body, pose_text(stated), pose_text(T_BA)));
   }

@@ -124,9 +124,9 @@ TEST_P(Frames, AStatedPlaceHoldsAndAContradictionShowsBoth) {
   stated.sweeps.device.T_BL.translation() = Eigen::Vector3d(0.5, 0.25, 0.125);
   const Imported held = GetParam().read(path_, stated);
   EXPECT_EQ(held.sensors.lidars[0].T_BL.translation(), Eigen::Vector3d(0.5, 0.25, 0.125));
-  EXPECT_THAT(held.notes, Contains(testing::AllOf(
-                              HasSubstr("/lidar/points: caution: /tf_static states the sensor's pose in 'body' as"),
-                              HasSubstr("but your option states (0.5 "))));
+  EXPECT_THAT(held.notes,
+              Contains(testing::AllOf(HasSubstr("/lidar/points: /tf_static states the sensor's pose in 'body' as"),
+                                      HasSubstr("but your option states (0.5 "))));
   // the same position stated twice is no contradiction
   stated.sweeps.device.T_BL = recording_.sensors.lidars[0].T_BL;
   EXPECT_THAT(GetParam().read(path_, stated).notes, testing::Not(Contains(HasSubstr("caution: /tf_static"))));
