@@ -199,7 +199,7 @@ std::string delay_text(const RotationAgreement& found) {
   if (std::abs(found.delay_s) < kDelaySaid_s) return "";
   return fmt::format(
       "caution: the lidar measures rotations {}{} than the gyro; check that both sensors use one clock and that sweep "
-      "stamps are start times. After correction of the time offset: ",
+      "stamps are start times, and try '--stamps record' with a bag. After correction of the time offset: ",
       rounded(std::abs(found.delay_s)), found.delay_s > 0.0 ? " s later" : " s earlier");
 }
 

@@ -25,7 +25,7 @@ double innovation_max() {
 }
 
 Status misfit(double inlier_ratio) {
-  return {ErrorCode::out_of_range, "mean fraction of a sweep's points that fit the map, while the innovation is large",
+  return {ErrorCode::out_of_range, "mean fraction of points on the map, in sweeps with a large innovation",
           inlier_ratio, kInlierRatioMin};
 }
 

@@ -211,10 +211,11 @@ std::string BagStamps::remark() const {
   if (least_ns > -kSaid_ns && most_ns < kSaid_ns) return "";
   const bool changes = between(least_ns, most_ns) > kSteady_ns;
   const std::string taken = source_ == StampSource::header ? "headers" : "records";
+  const bool ahead = most_ns < 0;  // impossible if sensor and recorder use one clock
   return fmt::format(
-      "{}the record stamps of the messages are {} to {} later than the header stamps{}; this import uses the stamps of "
-      "the {}",
-      other_clock() || changes ? "caution: " : "", seconds_text(least_ns), seconds_text(most_ns),
+      "{}the {} stamps of the messages are {} to {} later than the {} stamps{}; this import uses the stamps of the {}",
+      other_clock() || changes ? "caution: " : "", ahead ? "header" : "record",
+      seconds_text(ahead ? -most_ns : least_ns), seconds_text(ahead ? -least_ns : most_ns), ahead ? "record" : "header",
       other_clock() ? "; the clocks of sensor and recorder may differ"
       : changes     ? "; the clock of the sensor or of the recorder may drift"
                     : "",

@@ -59,7 +59,7 @@ TEST(Localisation, SweepsWhosePointsDoNotFitTheMapAreReported) {
   for (int k = 0; k < 60; ++k) localisation.add(sweep(0.1, 0.05, 0.1));  // grass
   EXPECT_TRUE(localisation.verdict().ok());
   for (int k = 0; k < 60; ++k) localisation.add(sweep(0.1, 0.35, 0.1));
-  EXPECT_NE(std::string(localisation.current_verdict().field).find("fit the map"), std::string::npos);
+  EXPECT_NE(std::string(localisation.current_verdict().field).find("points on the map"), std::string::npos);
   for (int k = 0; k < 60; ++k) localisation.add(sweep(0.1, 0.05, 0.6));
   EXPECT_TRUE(localisation.current_verdict().ok());
   EXPECT_FALSE(localisation.verdict().ok());
