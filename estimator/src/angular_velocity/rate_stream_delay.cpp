@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "tumble/angular_velocity/rate_stream.hpp"
+#include "rate_stream_impl.hpp"
 
 namespace tumble {
 
@@ -59,12 +59,12 @@ class ForceNormIntegral {
 
 }  // namespace
 
-std::ptrdiff_t AngularRateStream::force_delay_samples(const State& state) const {
-  return std::lround(state.sensor_errors.front().accel_delay_state.applied_delay_s / params_.period_s);
+std::ptrdiff_t AngularRateStream::Impl::force_delay_samples(const State& state) const {
+  return std::lround(state.sensor_errors.front().accel_delay_state.applied_delay_s / params.period_s);
 }
 
 // See rate_stream.md (R105).
-void AngularRateStream::pair_force_with_rate(std::size_t k, State& state) const {
+void AngularRateStream::Impl::pair_force_with_rate(std::size_t k, State& state) const {
   Knot& knot = state.window[k];
   const auto last = static_cast<std::ptrdiff_t>(state.window.size()) - 1;
   const std::ptrdiff_t own = static_cast<std::ptrdiff_t>(k), wanted = own + force_delay_samples(state);
@@ -76,13 +76,13 @@ void AngularRateStream::pair_force_with_rate(std::size_t k, State& state) const 
   o.sample.device_clip_flags =
       static_cast<std::uint8_t>((o.sample.device_clip_flags & kClipGyro) | source.received_force.device_clip_flags);
   knot.clipping_at_axis_limits.accel = source.received_force.clipped_axes;
-  o.accel_age_s = (state.sensor_errors.front().accel_delay_state.applied_delay_s - prior_accelerometer_delay_s_) -
+  o.accel_age_s = (state.sensor_errors.front().accel_delay_state.applied_delay_s - prior_accelerometer_delay_s) -
                   seconds_to(knot, source);
 }
 
-std::size_t AngularRateStream::pair_newest_force(State& state) const {
+std::size_t AngularRateStream::Impl::pair_newest_force(State& state) const {
   const std::size_t newest = state.window.size() - 1;
-  if (state.sensor_errors.front().accel_delay_state.applied_delay_s == prior_accelerometer_delay_s_ &&
+  if (state.sensor_errors.front().accel_delay_state.applied_delay_s == prior_accelerometer_delay_s &&
       force_delay_samples(state) == 0)
     return newest;
   const auto waiting = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, force_delay_samples(state)));
@@ -92,8 +92,8 @@ std::size_t AngularRateStream::pair_newest_force(State& state) const {
 }
 
 // See rate_stream.md (R104).
-void AngularRateStream::add_impact_to_delay_correlation(State& state) const {
-  if (!delay_is_estimated_ || state.window.size() < ForceNormIntegral::kReadings) return;
+void AngularRateStream::Impl::add_impact_to_delay_correlation(State& state) const {
+  if (!delay_is_estimated || state.window.size() < ForceNormIntegral::kReadings) return;
   const std::size_t first = state.window.size() - ForceNormIntegral::kReadings, after = first + kBeside + 1;
   const Knot &a = state.window[after - 1], &b = state.window[after];
   const Eigen::Vector3d &begin = a.observation.sample.angular_velocity_rad_s,
@@ -102,7 +102,7 @@ void AngularRateStream::add_impact_to_delay_correlation(State& state) const {
       !ImpactDelayCorrelation::counts(begin, end))
     return;
   const ForceNormIntegral force(state.window, after, first);
-  const double span_s = seconds_to(a, b), step_s = params_.period_s / ImpactDelayCorrelation::kDelaysPerSample;
+  const double span_s = seconds_to(a, b), step_s = params.period_s / ImpactDelayCorrelation::kDelaysPerSample;
   ImpactDelayCorrelation::DelayGrid mean;
   std::size_t from = 0, to = 0;
   for (int i = 0; i < ImpactDelayCorrelation::kDelayCount; ++i) {
@@ -115,40 +115,40 @@ void AngularRateStream::add_impact_to_delay_correlation(State& state) const {
 }
 
 // Repeated readings would falsify the correlation of force and rate change.
-TriadDelay AngularRateStream::estimate_delay_from_impacts(const State& state) const {
+TriadDelay AngularRateStream::Impl::estimate_delay_from_impacts(const State& state) const {
   const ImpactDelayCorrelation& impacts = state.sensor_errors.front().accel_delay_state.impacts;
   if (repeats_readings(state) || impacts.intervals < kIntervalsMin) return {};
-  return impacts.estimate_delay(params_.period_s, params_.period_s);
+  return impacts.estimate_delay(params.period_s, params.period_s);
 }
 
 // See rate_stream.md (R106).
-void AngularRateStream::update_delay(State& state) const {
+void AngularRateStream::Impl::update_delay(State& state) const {
   AngularRateStreamDelay& delay = state.sensor_errors.front().accel_delay_state;
   const TimeNs now_ns = state.window.back().observation.sample.time_ns;
-  if (!delay_is_estimated_ || (delay.updated_ns && now_ns - *delay.updated_ns < kUpdatePeriod_ns)) return;
+  if (!delay_is_estimated || (delay.updated_ns && now_ns - *delay.updated_ns < kUpdatePeriod_ns)) return;
   delay.updated_ns = now_ns;
   if (delay.delay_found && repeats_readings(state))
-    return set_accelerometer_delay(prior_accelerometer_delay_s_, false, state);
-  const auto correlates = [&](double at_s) { return delay.impacts.force_correlation_at(at_s, params_.period_s); };
+    return set_accelerometer_delay(prior_accelerometer_delay_s, false, state);
+  const auto correlates = [&](double at_s) { return delay.impacts.force_correlation_at(at_s, params.period_s); };
   if (delay.delay_found &&
-      correlates(prior_accelerometer_delay_s_) - correlates(delay.applied_delay_s) > kCorrelationGainMin)
-    return set_accelerometer_delay(prior_accelerometer_delay_s_, false, state);
+      correlates(prior_accelerometer_delay_s) - correlates(delay.applied_delay_s) > kCorrelationGainMin)
+    return set_accelerometer_delay(prior_accelerometer_delay_s, false, state);
   if (const TriadDelay guess = estimate_delay_from_impacts(state); guess.sigma_s > 0.0) {
-    const bool gains = correlates(guess.delay_s) - correlates(prior_accelerometer_delay_s_) > kCorrelationGainMin &&
-                       std::abs(guess.delay_s - prior_accelerometer_delay_s_) <
-                           kReach * params_.model.expert.error_priors.delay_uncalibrated_s;
-    const bool plain = gains && sensor_error_uncertainty_.data_sheet_odds(guess.delay_s - prior_accelerometer_delay_s_,
-                                                                          guess.sigma_s) < kContradictionOdds;
+    const bool gains = correlates(guess.delay_s) - correlates(prior_accelerometer_delay_s) > kCorrelationGainMin &&
+                       std::abs(guess.delay_s - prior_accelerometer_delay_s) <
+                           kReach * params.model.expert.error_priors.delay_uncalibrated_s;
+    const bool plain = gains && sensor_error_uncertainty.data_sheet_odds(guess.delay_s - prior_accelerometer_delay_s,
+                                                                         guess.sigma_s) < kContradictionOdds;
     const bool far = std::abs(guess.delay_s - delay.applied_delay_s) > kGuessSigmasMax * guess.sigma_s;
     delay.impact_delay = guess;
     if (plain && (!delay.delay_found || far)) return set_accelerometer_delay(guess.delay_s, true, state);
-    if (!plain && delay.delay_found) return set_accelerometer_delay(prior_accelerometer_delay_s_, false, state);
+    if (!plain && delay.delay_found) return set_accelerometer_delay(prior_accelerometer_delay_s, false, state);
   }
   if (delay.delay_found && std::abs(delay.estimated_s - delay.applied_delay_s) > kDelayChangeMin_s) refine_delay(state);
 }
 
 // A new accelerometer delay invalidates the calibration that was estimated with the previous delay.
-void AngularRateStream::set_accelerometer_delay(double delay_s, bool found, State& state) const {
+void AngularRateStream::Impl::set_accelerometer_delay(double delay_s, bool found, State& state) const {
   AngularRateStreamDelay& delay = state.sensor_errors.front().accel_delay_state;
   delay.applied_delay_s = delay.estimated_s = delay_s;
   delay.delay_found = found;
@@ -165,7 +165,7 @@ void AngularRateStream::set_accelerometer_delay(double delay_s, bool found, Stat
 }
 
 // See rate_stream.md (R107).
-void AngularRateStream::refine_delay(State& state) const {
+void AngularRateStream::Impl::refine_delay(State& state) const {
   AngularRateStreamSensorErrors& device = state.sensor_errors.front();
   const std::ptrdiff_t before = force_delay_samples(state);
   const double step_s = device.accel_delay_state.estimated_s - device.accel_delay_state.applied_delay_s;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tumble/angular_velocity/rate_stream.hpp"
+#include "rate_stream_impl.hpp"
 
 namespace tumble {
 
@@ -30,8 +30,8 @@ bool has_moved_states(const AngularRateStream::Knot& knot) {
 }  // namespace
 
 // See rate_stream.md (R100).
-void AngularRateStream::marginalise_sensor_errors(const arrow::Block& block, arrow::ErrorMatrix& errors,
-                                                  State& state) const {
+void AngularRateStream::Impl::marginalise_sensor_errors(const arrow::Block& block, arrow::ErrorMatrix& errors,
+                                                        State& state) const {
   AngularRateStreamSensorErrors& device = state.sensor_errors.front();
   device.prior.setZero();
   arrow::eliminate_sensor_errors(block, errors, &device.prior, device.border_errors);
@@ -39,10 +39,10 @@ void AngularRateStream::marginalise_sensor_errors(const arrow::Block& block, arr
   device.sensor_error_evidence.gradient.noalias() += errors.transpose().lazyProduct(block.gradient);
 }
 
-void AngularRateStream::discard_marginalised_information(State& state) const {
+void AngularRateStream::Impl::discard_marginalised_information(State& state) const {
   state.prior = {};
   state.prior_border_block = {};
-  model_.add_rig_prior(state.rig, state.prior_border_block);
+  model.add_rig_prior(state.rig, state.prior_border_block);
   AngularRateStreamSensorErrors& device = state.sensor_errors.front();
   device.prior.setZero();
   device.border_errors.setZero();
@@ -50,23 +50,24 @@ void AngularRateStream::discard_marginalised_information(State& state) const {
   device.sensor_error_evidence.gradient.setZero();
 }
 
-void AngularRateStream::reset_rig(State& state) const {
-  state.rig = state.prior_rig = model_.prior_constants();
-  state.rig_covariance = model_.prior_covariance();
+void AngularRateStream::Impl::reset_rig(State& state) const {
+  state.rig = state.prior_rig = model.prior_constants();
+  state.rig_covariance = model.prior_covariance();
   discard_marginalised_information(state);
   state.calibration_samples = 0;
 }
 
 KnownSensorErrors AngularRateStream::sensor_errors(const State& state) const {
   const AngularRateStreamSensorErrors& device = state.sensor_errors.front();
-  KnownSensorErrors out{params_.calibrated_errors ? params_.calibrated_errors->errors : params_.model.errors,
-                        device.posterior.covariance};
+  KnownSensorErrors out{
+      impl_->params.calibrated_errors ? impl_->params.calibrated_errors->errors : impl_->params.model.errors,
+      device.posterior.covariance};
   out.errors.accel_delay_s = device.accel_delay_state.applied_delay_s;
   return out;
 }
 
 // See rate_stream.md (R101). The caller must factorise the normal equations at the current estimates and calibration.
-void AngularRateStream::add_sensor_error_covariance(const arrow::BorderVector& rig_step, State& state) const {
+void AngularRateStream::Impl::add_sensor_error_covariance(const arrow::BorderVector& rig_step, State& state) const {
   AngularRateStreamSensorErrors& device = state.sensor_errors.front();
   const std::size_t count = state.window.size();
   if (std::none_of(state.window.begin(), state.window.end(), has_moved_states)) {
@@ -81,7 +82,7 @@ void AngularRateStream::add_sensor_error_covariance(const arrow::BorderVector& r
   std::fill_n(errors.begin() + 1, count - 1, arrow::ErrorMatrix::Zero());
   for (std::size_t k = 0; k < count; ++k) {
     const Knot& knot = state.window[k];
-    model_.add_sensor_errors(knot.observation, knot.estimate, state.rig, errors[k], border, window_error_evidence);
+    model.add_sensor_errors(knot.observation, knot.estimate, state.rig, errors[k], border, window_error_evidence);
     arrow::eliminate_sensor_errors(state.work_blocks[k], errors[k], k + 1 == count ? nullptr : &errors[k + 1], border);
     window_error_evidence.information.noalias() -= errors[k].transpose().lazyProduct(errors[k]);
     window_error_evidence.gradient.noalias() += errors[k].transpose().lazyProduct(state.work_blocks[k].gradient);
@@ -92,11 +93,11 @@ void AngularRateStream::add_sensor_error_covariance(const arrow::BorderVector& r
                                               k + 1 == count ? nullptr : &errors[k + 1], calibration_by_errors);
 
   const TimeNs now_ns = state.window.back().observation.sample.time_ns;
-  if (params_.calibrated_errors || (device.updated_ns && now_ns - *device.updated_ns < kUpdatePeriod_ns)) return;
+  if (params.calibrated_errors || (device.updated_ns && now_ns - *device.updated_ns < kUpdatePeriod_ns)) return;
   device.updated_ns = now_ns;
   window_error_evidence.information.noalias() -= border.transpose().lazyProduct(calibration_by_errors);
   window_error_evidence.gradient.noalias() += border.transpose().lazyProduct(rig_step);
-  discount_unobservable(model_.independent_sample_fraction(), window_error_evidence);
+  discount_unobservable(model.independent_sample_fraction(), window_error_evidence);
   AngularRateStreamDelay& delay = device.accel_delay_state;
   if (delay.delay_found) {
     if (const TriadDelay& guess = delay.impact_delay; guess.sigma_s > 0.0) {
@@ -107,22 +108,22 @@ void AngularRateStream::add_sensor_error_covariance(const arrow::BorderVector& r
       window_error_evidence.information(SensorErrors::kDelay, SensorErrors::kDelay) += information;
       window_error_evidence.gradient[SensorErrors::kDelay] += information * (guess.delay_s - delay.applied_delay_s);
     }
-    delay.estimated_s = std::clamp(delay.applied_delay_s + sensor_error_uncertainty_.delay_correction_s(
-                                                               window_error_evidence, max_accel_delay_s()),
-                                   -max_accel_delay_s(), max_accel_delay_s());
+    delay.estimated_s = std::clamp(
+        delay.applied_delay_s + sensor_error_uncertainty.delay_correction_s(window_error_evidence, max_accel_delay_s()),
+        -max_accel_delay_s(), max_accel_delay_s());
   }
-  sensor_error_uncertainty_.update(window_error_evidence, posterior_workspace, device.posterior, delay.delay_found);
+  sensor_error_uncertainty.update(window_error_evidence, posterior_workspace, device.posterior, delay.delay_found);
 }
 
-Matrix3d AngularRateStream::sensor_error_rate_covariance(std::size_t k, const State& state) const {
+Matrix3d AngularRateStream::Impl::sensor_error_rate_covariance(std::size_t k, const State& state) const {
   const Knot& knot = state.window[k];
   if (!has_moved_states(knot)) return Matrix3d::Zero();
   const AngularRateStreamSensorErrors& device = state.sensor_errors.front();
   Matrix3d out =
-      rate_covariance_from_errors(device.sample_jacobian[k], device.posterior.covariance, params_.model.kRateMax_rad_s);
-  const double shared_s2 = sensor_error_uncertainty_.common_delay_variance_s2(device.posterior);
+      rate_covariance_from_errors(device.sample_jacobian[k], device.posterior.covariance, params.model.kRateMax_rad_s);
+  const double shared_s2 = sensor_error_uncertainty.common_delay_variance_s2(device.posterior);
   const Eigen::Vector3d& alpha = knot.estimate.knot.acceleration_rad_s2;
-  const double struck = params_.model.expert.contact.kGain_rad_m * knot.estimate.contact_force_m_s2.norm();
+  const double struck = params.model.expert.contact.kGain_rad_m * knot.estimate.contact_force_m_s2.norm();
   out += shared_s2 * (alpha * alpha.transpose() + struck * struck * Matrix3d::Identity());
   return out;
 }

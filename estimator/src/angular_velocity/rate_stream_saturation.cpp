@@ -6,8 +6,8 @@
 #include "element_clipping.hpp"
 #include "near_saturation_limits.hpp"
 #include "possible_saturation.hpp"
+#include "rate_stream_impl.hpp"
 #include "tumble/angular_velocity/detail/rail_ratios.hpp"
-#include "tumble/angular_velocity/rate_stream.hpp"
 
 namespace tumble {
 
@@ -61,7 +61,7 @@ NeighbouringSamples neighbour_readings(std::size_t k, const AngularRateStream::S
 
 }  // namespace
 
-void AngularRateStream::reclassify_window_clipping(State& state) const {
+void AngularRateStream::Impl::reclassify_window_clipping(State& state) const {
   SaturationLimitDetector::State& axis_aligned_rails = state.clipping_state.known_limits.axis_limit_state;
   for (SaturationLimitDetector::Channel& channel : axis_aligned_rails.channels) channel.is_clipped = false;
   for (Knot& knot : state.window) {
@@ -69,7 +69,7 @@ void AngularRateStream::reclassify_window_clipping(State& state) const {
     sample.specific_force_m_s2 = knot.received_force.force_m_s2;
     sample.device_clip_flags =
         static_cast<std::uint8_t>((sample.device_clip_flags & kClipGyro) | knot.received_force.device_clip_flags);
-    knot.clipping_at_axis_limits = clipping_finder_.axis_limit_detector().classify_clipping(sample, axis_aligned_rails);
+    knot.clipping_at_axis_limits = clipping_finder.axis_limit_detector().classify_clipping(sample, axis_aligned_rails);
     knot.received_force.clipped_axes = knot.clipping_at_axis_limits.accel;
   }
   for (std::size_t k = 0; force_delay_samples(state) != 0 && k < state.window.size(); ++k)
@@ -77,13 +77,13 @@ void AngularRateStream::reclassify_window_clipping(State& state) const {
 }
 
 // A new reading may show whether the previous reading is clipped.
-void AngularRateStream::classify_clipping_from(std::size_t changed, State& state) const {
+void AngularRateStream::Impl::classify_clipping_from(std::size_t changed, State& state) const {
   const std::size_t first = reading_before(changed, state.window).value_or(0);
   const SaturationLevels& rails = state.clipping_state.known_limits;
   const SaturationPlanes planes = rails.saturation_planes_in_use(),
                          accel_planes = rails.saturation_planes_in_use(Triad::accelerometer);
-  const SensingDirections accel_rows = rails.rows(Triad::accelerometer, params_.model.element_sigma);
-  const double noise = model_.gyro_sigma_rad_s();
+  const SensingDirections accel_rows = rails.rows(Triad::accelerometer, params.model.element_sigma);
+  const double noise = model.gyro_sigma_rad_s();
   for (std::size_t k = first; k < state.window.size(); ++k) {
     Knot& knot = state.window[k];
     AngularRateObservation& now = knot.observation;
@@ -95,15 +95,15 @@ void AngularRateStream::classify_clipping_from(std::size_t changed, State& state
     const std::uint8_t read = now.unmeasured_axes();
     Clipping by_axis_aligned_rails = knot.clipping_at_axis_limits;
     if (sample_after != nullptr) {
-      clipping_finder_.axis_limit_detector().add_rising_edge_at_limit(now.sample, *sample_after,
-                                                                      state.window[k + 1].clipping_at_axis_limits,
-                                                                      rails.axis_limit_state, by_axis_aligned_rails);
+      clipping_finder.axis_limit_detector().add_rising_edge_at_limit(now.sample, *sample_after,
+                                                                     state.window[k + 1].clipping_at_axis_limits,
+                                                                     rails.axis_limit_state, by_axis_aligned_rails);
     }
     now.clipping = clipping_from_planes(planes, Triad::gyro, by_axis_aligned_rails, before, now.sample, after);
     now.clipping =
         clipping_from_planes(accel_planes, Triad::accelerometer, now.clipping, sample_before, now.sample, sample_after);
     now.accel_sensing_directions = accel_rows;
-    mark_partial_saturation(planes, clipping_finder_.axis_limit_detector(), rails.axis_limit_state, noise, before, now,
+    mark_partial_saturation(planes, clipping_finder.axis_limit_detector(), rails.axis_limit_state, noise, before, now,
                             after);
     knot.possibly_clipped_axes = rails.gyro_clips_after_compensation
                                      ? std::uint8_t{0}
@@ -120,8 +120,8 @@ void AngularRateStream::classify_clipping_from(std::size_t changed, State& state
 }
 
 // See rate_stream.md (R93).
-bool AngularRateStream::is_near_saturation_limit(const ImuSample& sample, int axis, int sign,
-                                                 const State& state) const {
+bool AngularRateStream::Impl::is_near_saturation_limit(const ImuSample& sample, int axis, int sign,
+                                                       const State& state) const {
   const Vector3d& y = sample.angular_velocity_rad_s;
   const SaturationPlanes planes = state.clipping_state.known_limits.saturation_planes_in_use();
   const auto& plane = planes.sensing_axis[static_cast<std::size_t>(axis)];
@@ -133,21 +133,21 @@ bool AngularRateStream::is_near_saturation_limit(const ImuSample& sample, int ax
   }
   const double extreme = std::abs(state.reading_extremes_rad_s[sign > 0 ? 1 : 0][axis]);
   const bool high =
-      extreme >= params_.expert.gyro_planes.distance_min_rad_s && is_near_limit_of_other_axis(planes, extreme);
+      extreme >= params.expert.gyro_planes.distance_min_rad_s && is_near_limit_of_other_axis(planes, extreme);
   return high && std::abs(y[axis]) >= (1.0 - kNearRailRatio) * extreme;
 }
 
-void AngularRateStream::mark_undetected_clipping(std::size_t k, State& state) const {
+void AngularRateStream::Impl::mark_undetected_clipping(std::size_t k, State& state) const {
   AngularRateObservation& now = state.window[k].observation;
   now.rarely_high_axes = 0;
   if (state.clipping_state.known_limits.gyro_clips_after_compensation) return;
   const auto [before, after] = neighbour_readings(k, state);
   inflate_covariance_near_limits(state.clipping_state.known_limits.saturation_planes_in_use(),
-                                 state.min_saturation_levels, model_.gyro_sigma_rad_s(), before, now, after);
+                                 state.min_saturation_levels, model.gyro_sigma_rad_s(), before, now, after);
 }
 
 // A later, larger reading or a newly detected saturation level may show that suspect readings are unsaturated.
-void AngularRateStream::clear_suspected_saturation(State& state) const {
+void AngularRateStream::Impl::clear_suspected_saturation(State& state) const {
   for (std::size_t k = 0; k < state.window.size(); ++k) {
     if (state.window[k].observation.possibly_saturated_axes() == 0) continue;
     state.window[k].observation.suspected_saturation = 0;
@@ -156,11 +156,11 @@ void AngularRateStream::clear_suspected_saturation(State& state) const {
 }
 
 // Marks runs of three or more unflagged readings that may be saturated.
-void AngularRateStream::mark_possible_saturation(State& state) const {
+void AngularRateStream::Impl::mark_possible_saturation(State& state) const {
   const unsigned stood = state.window.front().observation.suspected_saturation;
   clear_suspected_saturation(state);
   for (int j = 0; j < 3; ++j) {
-    if (clipping_finder_.axis_limit_detector().saturation_limit(state.clipping_state.known_limits.axis_limit_state, j))
+    if (clipping_finder.axis_limit_detector().saturation_limit(state.clipping_state.known_limits.axis_limit_state, j))
       continue;
     for (std::size_t k = 0; k < state.window.size();) {
       const int sign = state.window[k].observation.sample.angular_velocity_rad_s[j] < 0.0 ? -1 : 1;
@@ -180,7 +180,7 @@ void AngularRateStream::mark_possible_saturation(State& state) const {
 
 // Returns the slope of the readings per sample at the ends of a run of possibly saturated readings. Each slope is the
 // smaller of two consecutive rate changes, because an impact causes a single large change.
-double AngularRateStream::plateau_slope(int axis, std::size_t first, std::size_t last, const State& state) {
+double AngularRateStream::Impl::plateau_slope(int axis, std::size_t first, std::size_t last, const State& state) {
   const auto size = [&](std::size_t k) {
     return std::abs(state.window[k].observation.sample.angular_velocity_rad_s[axis]);
   };
@@ -195,7 +195,8 @@ double AngularRateStream::plateau_slope(int axis, std::size_t first, std::size_t
 }
 
 // Estimates the saturation deficit from the slopes before and after the suspect readings: rate_stream.md (R94).
-void AngularRateStream::mark_suspected_plateau(int axis, std::size_t first, std::size_t last, State& state) const {
+void AngularRateStream::Impl::mark_suspected_plateau(int axis, std::size_t first, std::size_t last,
+                                                     State& state) const {
   const auto size = [&](std::size_t k) {
     return std::abs(state.window[k].observation.sample.angular_velocity_rad_s[axis]);
   };
@@ -209,7 +210,7 @@ void AngularRateStream::mark_suspected_plateau(int axis, std::size_t first, std:
   const double samples =
       static_cast<double>(last - first + 1) + (first > 0 ? 0.0 : state.samples_since_clipping_start[axis]);
   const double cut = 0.25 * samples * slope;
-  const double noise = model_.gyro_sigma_rad_s();
+  const double noise = model.gyro_sigma_rad_s();
   if (cut < kHeightRatioMin * (highest - lowest) || cut < kHeightNoiseSigmas * noise) return;
   for (std::size_t k = first; k <= last; ++k) {
     AngularRateObservation& observation = state.window[k].observation;
@@ -222,7 +223,7 @@ void AngularRateStream::mark_suspected_plateau(int axis, std::size_t first, std:
 }
 
 // Returns the smaller of two consecutive increases of the gyro reading, because an impact causes one large increase.
-Vector3d AngularRateStream::min_recent_increase_rad_s(const std::vector<Knot>& window) {
+Vector3d AngularRateStream::Impl::min_recent_increase_rad_s(const std::vector<Knot>& window) {
   const std::optional<std::size_t> one = reading_before(window.size() - 1, window);
   const std::optional<std::size_t> two = one ? reading_before(*one, window) : std::nullopt;
   if (!two) return Vector3d::Zero();
@@ -236,7 +237,7 @@ Vector3d AngularRateStream::min_recent_increase_rad_s(const std::vector<Knot>& w
 }
 
 // Stores the slope of the gyro readings before a saturation when these readings leave the window of AngularRateStream.
-void AngularRateStream::store_slope_before_clipping(const Knot& leaving, const Knot& next, State& state) {
+void AngularRateStream::Impl::store_slope_before_clipping(const Knot& leaving, const Knot& next, State& state) {
   const auto hidden = [](const Knot& knot, int j) {
     return ((knot.observation.clipping.gyro | knot.observation.partly_saturated_axes()) >> j & 1) != 0;
   };
@@ -247,13 +248,13 @@ void AngularRateStream::store_slope_before_clipping(const Knot& leaving, const K
   }
 }
 
-void AngularRateStream::add_misalignment_prior(const State& state, arrow::Corner& corner) const {
+void AngularRateStream::Impl::add_misalignment_prior(const State& state, arrow::Corner& corner) const {
   const SaturationLevels& rails = state.clipping_state.known_limits;
   const SaturationPlanes planes = rails.saturation_planes_in_use();
   for (int j = 0; j < 3; ++j) {
     const Eigen::Index first = RigConstants::kGyroMisalignmentIndex + 2 * j;
     const auto prior_slopes = estimated_slopes(planes, rails.gyro_clips_after_compensation, j,
-                                               model_.prior_covariance().block<2, 2>(first, first));
+                                               model.prior_covariance().block<2, 2>(first, first));
     if (!prior_slopes) continue;
     const Eigen::Matrix2d information = prior_slopes->covariance.inverse();
     corner.matrix.block<2, 2>(first, first) += information;
