@@ -17,7 +17,6 @@
 #include "tumble/odometry/expert_params.hpp"
 #include "tumble/odometry/rolling_odometry.hpp"
 #include "tumble/rolling/detail/rolling_smoother.hpp"
-#include "tumble/rolling/rolling_filter.hpp"
 
 namespace tumble::python {
 
@@ -63,68 +62,6 @@ void bind_rolling_smoother(nb::module_& m) {
           },
           "Ends the estimation and returns the remaining poses.")
       .def_static("parameters", [] { return list_fields(RollingSmoother::Params{}); });
-  bind_copy<Object>(bound);
-}
-
-void bind_filter(nb::module_& m) {
-  using Live = Streaming<RollingFilter>;
-  using Object = Guarded<Live>;
-  nb::class_<Object> bound(
-      m, "RollingFilter",
-      "Estimates the pose of a rolling sphere from one IMU, live: each pose depends on earlier samples only.\n"
-      "RollingSmoother also uses later samples.\n\n"
-      "RollingFilter(radius_m=..., lever_arm_m=(x, y, z), **options): the arguments of RollingSmoother. parameters() "
-      "lists the options.");
-  bound
-      .def(
-          "__init__",
-          [](Object* self, const nb::kwargs& options) {
-            Keywords keywords("RollingFilter", options);
-            keywords.need("radius_m");
-            RollingFilter::Params params;
-            read_fields(keywords, params);
-            keywords.done();
-            new (self) Object(Live(params));
-          },
-          nb::arg("options"), takes_options())
-      .def(
-          "add_imu",
-          [](Object& self, const ArrayLike& time_ns, const ArrayLike& gyro, const ArrayLike& accel,
-             const ArrayLike& clip_flags) {
-            const auto step = [](Live& at, const ImuSample& sample, RollingPoses& out) {
-              const Status status = at.filter.step(sample, *at.state);
-              if (status.ok()) out.rows.push_back(RollingFilter::estimate(*at.state));
-              return status;
-            };
-            return feed<RollingPoses>(self, samples_of(time_ns, gyro, accel, clip_flags), step);
-          },
-          nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"), nb::arg("clip_flags") = nb::none(),
-          "Adds one sample or many. Returns the pose at each. The covariance contains the position only; all other "
-          "entries\n"
-          "are zero.")
-      .def_prop_ro(
-          "slip_probability",
-          [](Object& self) { return self.run([](Live& at) { return at.state->slip_probability; }); },
-          "probability that the contact point slides, over all hypotheses")
-      .def_prop_ro(
-          "bump_probability",
-          [](Object& self) { return self.run([](Live& at) { return at.state->bump_probability; }); },
-          "part of slip_probability in which the sphere also leaves the floor")
-      .def_prop_ro(
-          "contact_velocity",
-          [](Object& self) {
-            const Eigen::Vector3d v = self.run([](Live& at) { return at.state->contact_velocity_m_s; });
-            return owned(std::vector<double>(v.begin(), v.end()));
-          },
-          nb::rv_policy::automatic, "(3,), m/s, W: velocity of the point of the sphere that touches the floor")
-      .def_prop_ro(
-          "gaps", [](Object& self) { return self.run([](Live& at) { return at.state->gaps; }); },
-          "number of bridged gaps between samples")
-      .def_prop_ro(
-          "started_in_motion",
-          [](Object& self) { return self.run([](Live& at) { return at.state->started_in_motion; }); },
-          "True if the sphere moved at the first samples; the initial attitude then has a larger uncertainty")
-      .def_static("parameters", [] { return list_fields(RollingFilter::Params{}); });
   bind_copy<Object>(bound);
 }
 
@@ -307,6 +244,12 @@ void bind_rolling_odometry(nb::module_& m) {
           },
           "standard deviation of the stamps about a regular clock, while that clock replaces them; else None")
       .def_prop_ro(
+          "started_in_motion",
+          [](Object& self) {
+            return self.run([](BoundRollingOdometry& rolling) { return rolling.odometry.started_in_motion(); });
+          },
+          "True if the sphere moved at the first samples; the initial attitude then has a larger uncertainty")
+      .def_prop_ro(
           "units",
           [](Object& self) {
             return self.run([](BoundRollingOdometry& rolling) {
@@ -330,7 +273,6 @@ void bind_rolling(nb::module_& m) {
       .value("bump", ContactMode::bump, "the contact point also moves up or down")
       .value("incline", ContactMode::incline, "the contact point does not slide, and the floor is a slope")
       .value("rough", ContactMode::uneven, "the contact point does not slide, and the floor is uneven");
-  bind_filter(m);
   bind_rolling_smoother(m);
   bind_unit(m);
   bind_rolling_odometry(m);

@@ -17,7 +17,6 @@ STREAMS = {
     "tumble": tumble.TumbleAttitude,
     "strapdown": tumble.Strapdown,
     "rolling": lambda: tumble.RollingSmoother(radius_m=0.145, lag_s=0.2),
-    "rolling_live": lambda: tumble.RollingFilter(radius_m=0.145),
 }
 BATCHES = {
     "smoother": lambda *s: tumble.AngularRateSmoother(lever_arm_m=LEVER).estimate(*s),

@@ -15,7 +15,6 @@ NEEDED = {
     "Saave": {"lever_arm_m": (0.0, 0.0, 0.0), "saturation_point_rad_s": 10.0},
     "HandHeldSmoother": {}, "Vqf": {}, "TumbleAttitude": {}, "Strapdown": {}, "ImuDataSheet": {}, "LidarDataSheet": {},
     "RollingSmoother": {"radius_m": 0.145},
-    "RollingFilter": {"radius_m": 0.145},
     "RollingOdometry": {"units": [(tumble.sheets.phidget1044(), np.eye(4))], "radius_m": 0.145},
     "LidarInertialOdometry": {"T_IL": np.eye(4)},
     "TumblingOdometry": {"imu": tumble.sheets.mti30(), "T_IL": np.eye(4), "lever_arm_m": (0.0, 0.0, 0.0)},
@@ -120,7 +119,7 @@ def test_refuses_another_sheet(key):
                          ids=["beyond_a_double", "beyond_a_text", "complex", "two", "none_at_all", "text", "class", "list"])
 @pytest.mark.parametrize("make", [
     lambda v: tumble.ImuDataSheet(gyro_range_rad_s=v), lambda v: tumble.MotionRegimeStream(lever_arm_m=(0, 0, 0), gyro_range_rad_s=v),
-    lambda v: tumble.RollingFilter(radius_m=v)])
+    lambda v: tumble.RollingSmoother(radius_m=v)])
 def test_what_is_no_number_is_refused(make, value):
     """Values that Python cannot convert to a float are rejected."""
     with pytest.raises(tumble.TumbleError) as caught:

@@ -113,29 +113,26 @@ def test_rolling_is_the_programs(slip, estimates):
     assert np.linalg.norm(ended[:2]) < 0.02 * way
 
 
-def test_rolling_filter(slip, estimates, recordings, tmp_path):
-    """With one IMU, RollingFilter, RollingOdometry and the program's method give identical results."""
-    imu, sure = slip.imus[0], 0.98
+def test_rolling_odometry_live(slip, estimates, recordings, tmp_path):
+    """With one IMU, RollingOdometry and the program's method give identical results."""
+    imu = slip.imus[0]
     alone = dataclasses.replace(slip, imus=[imu], truth=None)
     tumble.write(tmp_path / "alone.h5", alone)
     recordings["alone"] = tmp_path / "alone.h5"
     expected = estimates("position/tumble_live", "alone").poses
-    live = tumble.RollingFilter(
-        radius_m=slip.sphere_radius_m, lever_arm_m=imu.lever_arm_m, lever_arm_sigma_m=6e-3, gravity_m_s2=slip.gravity_m_s2,
-        gyro_range_rad_s=sure * imu.gyro_range_rad_s, accel_range_m_s2=sure * imu.accel_range_m_s2)
-    own = live.add_imu(*imu.samples)
+    own = tumble.rolling(alone)
     assert same(own.position, expected.position) and same(own.quaternion, expected.quaternion)
-    odometry = tumble.rolling(alone)
-    assert same(own.position, odometry.position) and same(own.covariance, odometry.covariance) and same(own.mode, odometry.mode)
-    other = tumble.RollingFilter(radius_m=1.01 * slip.sphere_radius_m, lever_arm_m=imu.lever_arm_m).add_imu(*imu.samples)
+    other = tumble.rolling(alone, radius_m=1.01 * slip.sphere_radius_m)
     assert not same(other.position, expected.position), "the negative control"
-    assert 0.0 <= live.bump_probability <= live.slip_probability <= 1.0 and live.contact_velocity.shape == (3,)
-    assert live.gaps == 0 and not live.started_in_motion
-    late = tumble.RollingFilter(radius_m=slip.sphere_radius_m)
-    moving = int(np.argmax(np.linalg.norm(imu.gyro, axis=1) > 3.0))
-    late.add_imu(*(rows[moving : moving + 50] for rows in imu.samples))
-    late.add_imu(*(rows[moving + 100 : moving + 150] for rows in imu.samples))
-    assert late.started_in_motion and late.gaps == 1
+
+
+def test_rolling_odometry_states_a_start_in_motion(slip):
+    imu = slip.imus[0]
+    for first, moving in [(0, False), (int(np.argmax(np.linalg.norm(imu.gyro, axis=1) > 3.0)), True)]:
+        odometry = tumble.RollingOdometry(units=[(tumble.ImuDataSheet(rate_hz=1e9 / np.diff(imu.time_ns).mean()), np.eye(4))],
+                                          radius_m=slip.sphere_radius_m)
+        odometry.add_imu(*(rows[first : first + 50] for rows in imu.samples[:3]))
+        assert odometry.started_in_motion == moving
 
 
 def test_rolling_smoother_over_the_run(slip):

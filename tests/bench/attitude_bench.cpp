@@ -10,9 +10,9 @@
 #include "scenarios/baselines/attitude/autogain.hpp"
 #include "scenarios/baselines/attitude/complementary.hpp"
 #include "scenarios/baselines/attitude/madgwick.hpp"
+#include "tumble/attitude/detail/strapdown.hpp"
 #include "tumble/attitude/detail/tumble_attitude.hpp"
 #include "tumble/attitude/detail/vqf.hpp"
-#include "tumble/attitude/strapdown.hpp"
 #ifdef TUMBLE_HAS_VQF
 #include "vqf.hpp"
 #endif

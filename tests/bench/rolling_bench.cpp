@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The program measures the position estimate of a rolling sphere, per sample on one core at 250 Hz, along an L-shaped
-// path with a period of slip. It runs the live filter, the same with the text input and output of the online example,
-// and the smoother with a lag. `held_bytes` is the memory of one running instance; `allocations` counts the allocations
-// after the first sample.
+// path with a period of slip. It runs the live filter, and the smoother with a lag. `held_bytes` is the memory of one
+// running instance; `allocations` counts the allocations after the first sample.
 #include <benchmark/benchmark.h>
 
-#include <cstdio>
 #include <memory>
-#include <string>
 #include <vector>
 
-#include "examples/online/online.hpp"
 #include "scenarios/baselines/rolling/rolling_odometry.hpp"
 #include "tests/allocation_counter.hpp"
 #include "tests/estimator/rolling/rolling_truth.hpp"
@@ -58,28 +54,6 @@ void live_filter(benchmark::State& state) {
   report(state, sizeof(tumble::RollingFilter::State), asked);
 }
 BENCHMARK(live_filter)->Unit(benchmark::kMillisecond);
-
-void online_example(benchmark::State& state) {
-  std::vector<std::string> lines;
-  char text[256];
-  for (const tumble::ImuSample& s : truth().samples) {
-    const Eigen::Vector3d &w = s.angular_velocity_rad_s, &f = s.specific_force_m_s2;
-    std::snprintf(text, sizeof text, "%lld %.9g %.9g %.9g %.9g %.9g %.9g", static_cast<long long>(s.time_ns), w.x(),
-                  w.y(), w.z(), f.x(), f.y(), f.z());
-    lines.emplace_back(text);
-  }
-  std::size_t asked = 0, bytes = 0;
-  for (auto _ : state) {
-    const std::size_t held_before = tumble::test::allocations.bytes;
-    online::Online program{tumble::RollingParams{.radius_m = tumble::testing::kRadius_m}};
-    bytes = tumble::test::allocations.bytes - held_before + sizeof program;
-    const std::size_t before = tumble::test::allocations.count;
-    for (const std::string& line : lines) benchmark::DoNotOptimize(program.take(line));
-    asked = tumble::test::allocations.count - before;
-  }
-  report(state, bytes, asked);
-}
-BENCHMARK(online_example)->Unit(benchmark::kMillisecond);
 
 void smoother_with_lag(benchmark::State& state) {
   tumble::RollingSmoother::Params params;

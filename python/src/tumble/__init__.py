@@ -8,7 +8,7 @@ x y z w, and rotate sensor or body axes to the world (z up). Invalid input raise
 Odometry        TumblingOdometry (an IMU that may clip and a lidar), RollingOdometry (IMUs in a sphere), sheets: data sheets of sensors
 Rates           MotionRegimeSmoother, AngularRateSmoother, HandHeldSmoother, Saave (whole recordings), MotionRegimeStream, AngularRateStream (live), find_rails
 Attitude        TumbleAttitude, Vqf, Strapdown
-Sphere          RollingSmoother, RollingFilter (live)
+Sphere          RollingOdometry (live, lag or whole recording), RollingSmoother
 Mapper          LidarInertialOdometry
 Recordings      read and write recordings with ground truth; rate, tumbling and rolling process a whole recording
 Data sets       read_broad, read_repoimu, read_airbrakes
@@ -41,7 +41,6 @@ from ._tumble import (
     MotionRegimeSmoother,
     MotionRegimeStream,
     RigCalibration,
-    RollingFilter,
     ContactMode,
     RollingOdometry,
     RollingPoses,
@@ -75,7 +74,7 @@ __version__ = importlib.metadata.version("tumble")
 __all__ = [
     "Attitudes", "HandHeldReport", "HandHeldSmoother", "Contacts", "Estimate", "HealthFinding", "Imu", "ImuDataSheet", "ImuTruth", "Lidar",
     "LidarInertialOdometry", "LidarDataSheet", "LidarTruth", "MapPoints", "Parameter", "Pose", "Poses", "ProgramError", "SaturationPlane", "Rails", "AngularRateReport", "AngularRateSmoother", "AngularRateSource",
-    "AngularRateStream", "RateTable", "Rates", "Recording", "RegimeReport", "MotionRegimeSmoother", "MotionRegimeStream", "RigCalibration", "RollingFilter", "ContactMode", "RollingOdometry",
+    "AngularRateStream", "RateTable", "Rates", "Recording", "RegimeReport", "MotionRegimeSmoother", "MotionRegimeStream", "RigCalibration", "ContactMode", "RollingOdometry",
     "RollingPoses", "RollingSmoother", "Saave", "Series", "SeriesTruth", "SphereUnit", "Strapdown", "Sweep", "LidarImuCalibration", "SweepReport", "SweepScale", "SweepVerdict", "Trajectory",
     "Truth", "Tumble", "TumbleAttitude", "TumbleError", "TumblingOdometry", "Vqf", "call", "describe_method", "estimate",
     "find_rails", "odometry", "plot", "point_errors", "program", "rails_parameters", "rate", "read", "read_airbrakes", "read_broad", "read_estimate", "read_repoimu", "read_tum", "record", "results", "rolling", "run",

@@ -48,6 +48,17 @@ MemoryUse memory_use(double duration_s) {
   return out;
 }
 
+TEST(RollingMemory, TheLiveFilterAllocatesNothingPerSample) {
+  const testing::RollingTruth truth = path(8.0);
+  const RollingFilter filter({.radius_m = testing::kRadius_m, .lever_arm_m = kLeverArm});
+  const auto state = std::make_unique<RollingFilter::State>();
+  const std::size_t before = test::allocations.count;
+  for (const ImuSample& sample : truth.samples) ASSERT_TRUE(filter.step(sample, *state).ok());
+  EXPECT_EQ(test::allocations.count, before);
+  (void)path(0.1);
+  EXPECT_GT(test::allocations.count, before) << "negative control";
+}
+
 // The cost of a node is the growth from a run to one of twice the length; a node's record alone is more than 10 KiB.
 TEST(RollingMemory, AWholeRunHoldsLittleForEachNode) {
   const MemoryUse one = memory_use(60.0), two = memory_use(120.0);
