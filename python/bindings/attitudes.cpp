@@ -10,9 +10,9 @@
 #include "parameters.hpp"
 #include "results.hpp"
 #include "streams.hpp"
+#include "tumble/attitude/detail/strapdown.hpp"
 #include "tumble/attitude/detail/tumble_attitude.hpp"
 #include "tumble/attitude/detail/vqf.hpp"
-#include "tumble/attitude/strapdown.hpp"
 
 namespace tumble::python {
 

@@ -13,7 +13,7 @@
 #include "arrays.hpp"
 #include "saving.hpp"
 #include "trouble.hpp"
-#include "tumble/common/sensor_health.hpp"
+#include "tumble/common/status.hpp"
 #include "tumble/mapping/types.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
 

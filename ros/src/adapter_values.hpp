@@ -6,7 +6,7 @@
 #include <sstream>
 #include <string>
 
-#include "tumble/common/sensor_health.hpp"
+#include "tumble/common/status.hpp"
 #include "tumble_ros/publisher.hpp"
 #include "tumble_ros/schedule.hpp"
 

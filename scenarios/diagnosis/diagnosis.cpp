@@ -13,7 +13,7 @@
 #include "scenarios/recordings/number_text.hpp"
 #include "tumble/angular_velocity/detail/clipping_finder.hpp"
 #include "tumble/angular_velocity/detail/rest_detector.hpp"
-#include "tumble/common/sensor_health.hpp"
+#include "tumble/common/status.hpp"
 
 namespace tumble::scenarios {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "tumble/common/sensor_health.hpp"
+#include "tumble/common/status.hpp"
 
 namespace tumble::scenarios {
 

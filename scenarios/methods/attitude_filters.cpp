@@ -5,8 +5,8 @@
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/settings.hpp"
+#include "tumble/attitude/detail/strapdown.hpp"
 #include "tumble/attitude/detail/vqf.hpp"
-#include "tumble/attitude/strapdown.hpp"
 
 namespace tumble::scenarios {
 

@@ -5,7 +5,7 @@
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/settings.hpp"
 #include "scenarios/methods/sphere_imus.hpp"
-#include "tumble/attitude/strapdown.hpp"
+#include "tumble/attitude/detail/strapdown.hpp"
 
 namespace tumble::scenarios {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/attitude/strapdown.hpp"
+#include "tumble/attitude/detail/strapdown.hpp"
 
 #include <cmath>
 

@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "tumble/attitude/detail/strapdown.hpp"
 #include "tumble/attitude/detail/timing.hpp"
-#include "tumble/attitude/strapdown.hpp"
 #include "tumble/common/detail/scalar_update.hpp"
 #include "tumble/common/detail/squared.hpp"
 #include "tumble/common/types.hpp"

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
+#include "tumble/attitude/detail/strapdown.hpp"
 #include "tumble/attitude/detail/tilt.hpp"
 #include "tumble/attitude/detail/timing.hpp"
-#include "tumble/attitude/strapdown.hpp"
 #include "tumble/common/detail/scalar_update.hpp"
 #include "tumble/common/types.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/common/sensor_health.hpp"
+#include "tumble/common/status.hpp"
 
 #include <algorithm>
 #include <array>

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tumble/attitude/strapdown.hpp"
+#include "tumble/attitude/detail/strapdown.hpp"
 #include "unknowns.hpp"
 
 namespace tumble::mapping {

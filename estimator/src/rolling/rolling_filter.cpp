@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/rolling/rolling_filter.hpp"
+#include "tumble/rolling/detail/rolling_filter.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include "lost_heading.hpp"
 #include "rolling_node.hpp"
 #include "rolling_window.hpp"
+#include "tumble/attitude/detail/strapdown.hpp"
 #include "tumble/attitude/detail/timing.hpp"
-#include "tumble/attitude/strapdown.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble {

@@ -12,7 +12,7 @@
 #include "lost_heading.hpp"
 #include "node_rows.hpp"
 #include "rolling_node.hpp"
-#include "tumble/rolling/rolling_filter.hpp"
+#include "tumble/rolling/detail/rolling_filter.hpp"
 
 namespace tumble {
 

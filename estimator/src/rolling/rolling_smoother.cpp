@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "last_pass.hpp"
-#include "tumble/attitude/strapdown.hpp"
+#include "tumble/attitude/detail/strapdown.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble {

@@ -7,8 +7,8 @@
 #include "scenarios/baselines/attitude/force_min.hpp"
 #include "scenarios/baselines/attitude/madgwick_step.hpp"
 #include "scenarios/baselines/attitude/tilt_correction.hpp"
+#include "tumble/attitude/detail/strapdown.hpp"
 #include "tumble/attitude/detail/timing.hpp"
-#include "tumble/attitude/strapdown.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble::baselines {

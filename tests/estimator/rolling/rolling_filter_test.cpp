@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/rolling/rolling_filter.hpp"
+#include "tumble/rolling/detail/rolling_filter.hpp"
 
 #include <gtest/gtest.h>
 

@@ -12,7 +12,7 @@
 #include "estimator/attitude/filter_contract.hpp"
 #include "scenarios/baselines/sphere_log.hpp"
 #include "stand_ins/stand_ins.hpp"
-#include "tumble/attitude/strapdown.hpp"
+#include "tumble/attitude/detail/strapdown.hpp"
 
 namespace tumble::baselines {
 namespace {

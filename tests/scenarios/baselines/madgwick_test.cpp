@@ -10,7 +10,7 @@
 #include <numbers>
 
 #include "estimator/attitude/filter_contract.hpp"
-#include "tumble/attitude/strapdown.hpp"
+#include "tumble/attitude/detail/strapdown.hpp"
 
 namespace tumble::baselines {
 namespace {

@@ -9,7 +9,6 @@
 #include "tumble/angular_velocity/detail/rate_stream_params.hpp"
 #include "tumble/angular_velocity/detail/rate_stream_state.hpp"
 #include "tumble/angular_velocity/types.hpp"
-#include "tumble/common/sensor_health.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/common/types.hpp"
 

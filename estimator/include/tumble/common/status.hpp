@@ -2,10 +2,15 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace tumble {
+
+/// integer nanoseconds since the start of the recording
+using TimeNs = std::int64_t;
 
 enum class ErrorCode : std::uint8_t {
   none,
@@ -41,5 +46,69 @@ class InvalidParams : public std::invalid_argument {
 
 /// Throws InvalidParams if `value` is NaN or outside of [low, high].
 void require_in_interval(const char* field, double value, double low, double high);
+
+/// One suspected fault of a sensor or of the estimate, as reported by health() of the odometry classes.
+struct HealthFinding {
+  enum class Kind : std::uint8_t {
+    frozen_axis,               ///< one axis of a gyro or an accelerometer repeats one reading
+    frozen_sensor,             ///< all axes of a gyro or an accelerometer, or all IMUs, repeat one reading
+    imu_frozen,                ///< one of several IMUs repeats one reading, on `axis` or on all axes
+    imu_silent,                ///< one of several IMUs delivers no readings
+    imu_disagrees,             ///< rate or specific force of one of several IMUs contradicts the other IMUs
+    force_at_rest,             ///< the specific force at rest has another magnitude than gravity, or another unit
+    wrong_axes_or_signs,       ///< axes are exchanged or inverted
+    inverted_accel_in_flight,  ///< the specific force in free flight fits an accelerometer with inverted axes
+    inconsistent_rotation,     ///< measured gravity, or motion about a pivot, contradicts the rotation that the gyro
+                               ///< measures
+    gyro_scale,                ///< accelerometer differences between several IMUs contradict the scale of the gyros
+    lidar_scale,               ///< motion measured by the lidar has another scale than motion measured by the IMU
+    lidar_calibration,         ///< pose or time offset of the lidar relative to the IMU differ from the stated values
+    attitude_unknown,          ///< the direction of gravity is unknown; value: duration [s]
+    vertical_unknown,          ///< the direction of gravity in the map is uncertain after a start in motion
+    tracking_lost,  ///< the pose in the map is uncertain, or registered poses contradict the inertial prediction
+    not_localised,  ///< the robot is not localised in the prior map
+  };
+  static constexpr Kind kLast = Kind::not_localised;
+
+  Kind kind = Kind::frozen_axis;
+  std::string sensor;                   ///< "imu": all IMUs; "imu_2": second of several IMUs; "lidar"; "": the estimate
+  const char* axis = "";                ///< "gyro_x" to "accel_z", if one axis is suspect
+  const char* quantity = "";            ///< static string: the tested quantity, with its unit
+  double value = 0.0;                   ///< measured value of the tested quantity
+  double bound = 0.0;                   ///< violated limit of the tested quantity
+  std::optional<TimeNs> since_ns = {};  ///< start of the fault; empty if unknown
+  /// true if the fault has ended; always false in the result of TumblingOdometry::health() during a run
+  bool ended = false;
+
+  /// Returns how far `value` is beyond `bound`, from 0 (at the bound) to 1 (far beyond the bound); not a probability.
+  double confidence() const;
+  Status status() const { return {ErrorCode::out_of_range, quantity, value, bound}; }
+  /// Returns true if the fault makes the estimate unusable.
+  bool invalidates_estimate() const;
+};
+
+const char* to_string(HealthFinding::Kind kind);
+/// Returns one sentence that names the sensor, the fault, and the tested quantity with value and limit.
+std::string to_text(const HealthFinding& finding);
+
+/// Suspected faults, most important first.
+struct SensorHealth {
+  std::vector<HealthFinding> findings;
+
+  bool ok() const { return findings.empty(); }
+  Status worst() const { return ok() ? Status{} : findings.front().status(); }
+  operator Status() const { return worst(); }
+  std::string message() const { return ok() ? "ok" : to_text(findings.front()); }
+  bool invalidates_estimate() const;
+
+  /// Adds a finding unless `status` is ok. If a finding of the same kind, sensor and axis exists, add() only marks the
+  /// existing finding as not ended.
+  void add(HealthFinding::Kind kind, const Status& status, std::string sensor, const char* axis = "",
+           std::optional<TimeNs> since_ns = {});
+  void add(HealthFinding finding);
+  void add(const SensorHealth& other);
+  /// Adds the findings of `now`, the newest result of health(), and marks all other findings as ended.
+  void merge_current_findings(const SensorHealth& now);
+};
 
 }  // namespace tumble

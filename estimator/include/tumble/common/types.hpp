@@ -10,9 +10,6 @@
 
 namespace tumble {
 
-/// integer nanoseconds since the start of the recording
-using TimeNs = std::int64_t;
-
 /// Largest magnitude of a time stamp that the odometry classes accept: 97 years. A sum or difference of up to three
 /// accepted time stamps fits into TimeNs.
 inline constexpr TimeNs kStampMax_ns = 3'070'000'000'000'000'000;
@@ -72,6 +69,15 @@ struct PoseState {
   /// Covariance of the position error [m] and the attitude error phi [rad], both in world axes; zero if not estimated.
   /// The attitude error is defined by q_true = Exp(phi) * q_WA.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+};
+
+/// Mode of contact between the rolling sphere and the floor.
+enum class ContactMode : std::uint8_t {
+  grip,     ///< the contact point is at rest; the floor is level
+  slip,     ///< the contact point moves along the floor: the sphere spins too fast or slides
+  bump,     ///< the contact point also rises or falls: an obstacle, or flight
+  incline,  ///< the contact point is at rest; the floor has an estimated slope
+  uneven,   ///< the contact point is at rest; the floor rises and falls about the level
 };
 
 }  // namespace tumble

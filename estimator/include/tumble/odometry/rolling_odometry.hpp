@@ -8,11 +8,9 @@
 #include <vector>
 
 #include "tumble/common/parameters.hpp"
-#include "tumble/common/sensor_health.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/common/types.hpp"
 #include "tumble/odometry/sensor_sheets.hpp"
-#include "tumble/rolling/contact_mode.hpp"
 
 namespace tumble {
 

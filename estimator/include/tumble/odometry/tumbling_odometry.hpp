@@ -11,7 +11,6 @@
 
 #include "tumble/angular_velocity/types.hpp"
 #include "tumble/common/parameters.hpp"
-#include "tumble/common/sensor_health.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/common/types.hpp"
 #include "tumble/mapping/types.hpp"

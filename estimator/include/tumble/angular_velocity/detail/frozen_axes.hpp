@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/triad.hpp"
-#include "tumble/common/sensor_health.hpp"
+#include "tumble/common/status.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble {

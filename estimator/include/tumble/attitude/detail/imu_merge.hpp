@@ -13,7 +13,6 @@
 #include "tumble/attitude/detail/imu_merge_state.hpp"
 #include "tumble/attitude/detail/multi_imu_sign_check.hpp"
 #include "tumble/attitude/detail/rate_recovery.hpp"
-#include "tumble/common/sensor_health.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/common/types.hpp"
 

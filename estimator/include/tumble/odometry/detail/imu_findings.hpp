@@ -13,7 +13,7 @@
 #include "tumble/attitude/detail/imu_merge.hpp"
 #include "tumble/attitude/detail/imu_plausibility.hpp"
 #include "tumble/attitude/detail/rest_gravity.hpp"
-#include "tumble/common/sensor_health.hpp"
+#include "tumble/common/status.hpp"
 #include "tumble/common/types.hpp"
 #include "tumble/odometry/detail/merge_recordings.hpp"
 

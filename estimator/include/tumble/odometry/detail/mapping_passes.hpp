@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/clipping_finder.hpp"
-#include "tumble/common/sensor_health.hpp"
+#include "tumble/common/status.hpp"
 #include "tumble/mapping/detail/lidar_scale.hpp"
 #include "tumble/mapping/detail/localisation.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"

@@ -11,7 +11,6 @@
 #include "tumble/angular_velocity/detail/clipping_finder.hpp"
 #include "tumble/attitude/detail/imu_merge.hpp"
 #include "tumble/attitude/detail/multi_imu_sign_check.hpp"
-#include "tumble/common/sensor_health.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/common/types.hpp"
 #include "tumble/odometry/sensor_sheets.hpp"

@@ -8,7 +8,7 @@
 #include "tumble/angular_velocity/detail/clipping_finder.hpp"
 #include "tumble/angular_velocity/types.hpp"
 #include "tumble/attitude/detail/regime_smoother.hpp"
-#include "tumble/common/sensor_health.hpp"
+#include "tumble/common/status.hpp"
 #include "tumble/common/types.hpp"
 #include "tumble/mapping/detail/lidar_scale.hpp"
 #include "tumble/odometry/detail/imu_findings.hpp"

@@ -4,9 +4,15 @@
 #include <Eigen/Geometry>
 
 #include "tumble/common/types.hpp"
-#include "tumble/rolling/contact_mode.hpp"
 
 namespace tumble {
+
+inline constexpr int kContactModes = 5;
+
+/// Returns true if the contact point may move along the floor in the contact mode `mode`.
+inline bool may_slip(ContactMode mode) {
+  return mode == ContactMode::slip || mode == ContactMode::bump;
+}
 
 /// Pose of a rolling sphere's centre G at one sample, with the contact mode.
 struct RollingEstimate {

@@ -10,7 +10,7 @@
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/common/types.hpp"
-#include "tumble/rolling/rolling_filter.hpp"
+#include "tumble/rolling/detail/rolling_filter.hpp"
 
 namespace tumble {
 
