@@ -54,8 +54,8 @@ inline std::vector<double> answers(TumblingOdometry odometry) {
     out.add(rate->w_WI_I_rad_s);
     out.add(rate->covariance_rad2_s2);
   }
-  out.add(odometry.rig_calibration().constants.vector());
-  out.add(odometry.rig_calibration().covariance);
+  out.add(odometry.body_imu_calibration().constants.vector());
+  out.add(odometry.body_imu_calibration().covariance);
   out.add(odometry.saturation_levels());
   out.add(odometry.health());
   out.add(odometry.estimated_jitter_s().value_or(0.0));
@@ -66,9 +66,9 @@ inline std::vector<double> answers(TumblingOdometry odometry) {
     for (const PoseState& each : sweep->report.trajectory) out.add(each);
   }
   for (const MapPoint& point : odometry.mapper().map()) out.add(point.position_W_m);
-  out.add(odometry.mapper().calibration().T_IL.matrix());
-  out.add(odometry.mapper().calibration().gravity_W_m_s2);
-  out.add(odometry.mapper().calibration_covariance());
+  out.add(odometry.mapper().lidar_calibration().T_IL.matrix());
+  out.add(odometry.mapper().lidar_calibration().gravity_W_m_s2);
+  out.add(odometry.mapper().lidar_calibration_covariance());
   for (const std::size_t count :
        {odometry.restart_count(), odometry.rejected_readings(), odometry.samples_rejected_by_mapper(),
         odometry.dropped_sweeps(), odometry.sweeps_before_first_imu()})
@@ -85,8 +85,8 @@ inline std::vector<double> answers(RollingOdometry odometry) {
     out.add(static_cast<double>(pose.mode));
   };
   if (const std::optional<RollingOdometry::Pose> pose = odometry.newest()) add(*pose);
-  out.add(odometry.calibration().sphere_centre_B_m);
-  out.add(odometry.calibration().radius_m);
+  out.add(odometry.sphere_calibration().sphere_centre_B_m);
+  out.add(odometry.sphere_calibration().radius_m);
   out.add(odometry.health());
   for (const MergedImuState& unit : odometry.imu_merge_state().imus) out.add(unit.x);
   odometry.finish();

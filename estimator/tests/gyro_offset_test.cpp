@@ -43,11 +43,11 @@ TEST(GyroOffset, ALargeOffsetDoesNotMoveTheThrow) {
   const Eigen::Isometry3d T_WI = body.T_WI(seconds(pose.time_ns));
   EXPECT_LT((pose.position_W_m - T_WI.translation()).norm(), 0.05);
   EXPECT_LT(pose.orientation_W.angularDistance(Eigen::Quaterniond(T_WI.linear())), 0.02);
-  EXPECT_LT((odometry.rig_calibration().constants.gyro_bias_rad_s - kOffset_rad_s).norm(), 5e-3);
+  EXPECT_LT((odometry.body_imu_calibration().constants.gyro_bias_rad_s - kOffset_rad_s).norm(), 5e-3);
   // a loaded run starts with the offset
   TumblingOdometry loaded(params_of(body));
   ASSERT_TRUE(loaded.load(odometry.save()).ok());
-  EXPECT_LT((loaded.rig_calibration().constants.gyro_bias_rad_s - kOffset_rad_s).norm(), 5e-3);
+  EXPECT_LT((loaded.body_imu_calibration().constants.gyro_bias_rad_s - kOffset_rad_s).norm(), 5e-3);
 }
 
 TEST(GyroOffset, TheBatchRemovesALargeOffset) {

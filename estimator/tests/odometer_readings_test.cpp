@@ -33,8 +33,8 @@ VelocityReading velocity_of(const ThrownBody& body, TimeNs time_ns, double sigma
   return {time_ns, body.T_WI(t).linear().transpose() * v_W, sigma_m_s};
 }
 
-MotionReading motion_of(const ThrownBody& body, TimeNs from_ns, TimeNs to_ns, double sigma_m, double sigma_rad) {
-  MotionReading out{from_ns, to_ns, body.T_WI(seconds(from_ns)).inverse() * body.T_WI(seconds(to_ns)), {}};
+RelativePoseReading motion_of(const ThrownBody& body, TimeNs from_ns, TimeNs to_ns, double sigma_m, double sigma_rad) {
+  RelativePoseReading out{from_ns, to_ns, body.T_WI(seconds(from_ns)).inverse() * body.T_WI(seconds(to_ns)), {}};
   out.covariance.setZero();
   out.covariance.diagonal() << Eigen::Vector3d::Constant(sigma_m * sigma_m),
       Eigen::Vector3d::Constant(sigma_rad * sigma_rad);
@@ -49,7 +49,7 @@ void true_velocity(const ThrownBody& body, const ThrownBody::Sweep& sweep, Tumbl
   EXPECT_TRUE(odometry.add_velocity(velocity_of(body, sweep.end_ns - 30'000'000, 0.02)).ok());
 }
 void true_motion(const ThrownBody& body, const ThrownBody::Sweep& sweep, TumblingOdometry& odometry) {
-  EXPECT_TRUE(odometry.add_motion(motion_of(body, sweep.start_ns, sweep.end_ns, 0.005, 0.005)).ok());
+  EXPECT_TRUE(odometry.add_relative_pose(motion_of(body, sweep.start_ns, sweep.end_ns, 0.005, 0.005)).ok());
 }
 void wrong_velocity(const ThrownBody& body, const ThrownBody::Sweep& sweep, TumblingOdometry& odometry) {
   VelocityReading reading = velocity_of(body, sweep.end_ns, 0.01);
@@ -173,7 +173,7 @@ TEST(OdometerReadings, AReadingBelongsToItsSweepWhileItWaits) {
   // adds the reading of the previous sweep, which waits
   const AddReading late = [&](const ThrownBody& of, const ThrownBody::Sweep& sweep, TumblingOdometry& odometry) {
     if (sweep.start_ns < kTenth_ns) return;
-    (void)odometry.add_motion(motion_of(of, sweep.start_ns - kTenth_ns, sweep.start_ns, 0.005, 0.005));
+    (void)odometry.add_relative_pose(motion_of(of, sweep.start_ns - kTenth_ns, sweep.start_ns, 0.005, 0.005));
     if (sweep.end_ns == sweeps.back().end_ns) true_motion(of, sweep, odometry);
   };
   expect_same(first, course_of(body, sweeps, late, after));
@@ -259,21 +259,21 @@ TEST(OdometerReadings, ErrorsAreValuesAndChangeNothing) {
     EXPECT_EQ(odometry.add_velocity({time_ns, Eigen::Vector3d::Zero(), 0.1}).error_code, ErrorCode::out_of_range);
   EXPECT_EQ(odometry.add_velocity({-kFar_ns, Eigen::Vector3d::Zero(), 0.1}).error_code, ErrorCode::time_order);
   const auto motion = [&](TimeNs from_ns, TimeNs to_ns) { return motion_of(body, from_ns, to_ns, 0.01, 0.01); };
-  EXPECT_EQ(odometry.add_motion(motion(now_ns, now_ns)).error_code, ErrorCode::time_order);
-  EXPECT_EQ(odometry.add_motion(motion(done_ns - 50'000'000, now_ns)).error_code, ErrorCode::time_order);
-  MotionReading reading = motion(done_ns, now_ns);
+  EXPECT_EQ(odometry.add_relative_pose(motion(now_ns, now_ns)).error_code, ErrorCode::time_order);
+  EXPECT_EQ(odometry.add_relative_pose(motion(done_ns - 50'000'000, now_ns)).error_code, ErrorCode::time_order);
+  RelativePoseReading reading = motion(done_ns, now_ns);
   reading.covariance(3, 3) = 0.0;
-  EXPECT_EQ(odometry.add_motion(reading).error_code, ErrorCode::out_of_range);
+  EXPECT_EQ(odometry.add_relative_pose(reading).error_code, ErrorCode::out_of_range);
   for (const auto& [from_ns, to_ns] : {std::pair(-kFar_ns, now_ns), std::pair(done_ns, kFar_ns)}) {
     reading = motion(done_ns, now_ns);
     reading.from_ns = from_ns;
     reading.to_ns = to_ns;
-    EXPECT_FALSE(odometry.add_motion(reading).ok());
+    EXPECT_FALSE(odometry.add_relative_pose(reading).ok());
   }
   EXPECT_EQ(test::answers(odometry), before);
 
   // a reading that spans two sweeps belongs to neither; the number of waiting readings is limited
-  EXPECT_TRUE(odometry.add_motion(motion(done_ns + 50'000'000, done_ns + 150'000'000)).ok());
+  EXPECT_TRUE(odometry.add_relative_pose(motion(done_ns + 50'000'000, done_ns + 150'000'000)).ok());
   Status status;
   std::size_t waiting = 1;
   for (; status.ok() && waiting < 5000; ++waiting)
@@ -293,7 +293,8 @@ TEST(OdometerReadings, AReadingThatNoSweepUsesChangesNoBit) {
   const AddReading spanning_two_sweeps = [&](const ThrownBody& of, const ThrownBody::Sweep& sweep,
                                              TumblingOdometry& odometry) {
     accepted +=
-        odometry.add_motion(motion_of(of, sweep.end_ns - 50'000'000, sweep.end_ns + 50'000'001, 0.01, 0.01)).ok();
+        odometry.add_relative_pose(motion_of(of, sweep.end_ns - 50'000'000, sweep.end_ns + 50'000'001, 0.01, 0.01))
+            .ok();
   };
   expect_same(course_of(body, body.sweeps(), nothing, plain),
               course_of(body, body.sweeps(), spanning_two_sweeps, asked));

@@ -72,7 +72,7 @@ TEST(Positions, DetermineTheFrameInClosedForm) {
     EXPECT_TRUE(sweep >= 2 || !alignment.position_frame()) << "the heading is unknown";
   }
   ASSERT_TRUE(alignment.position_frame());
-  EXPECT_TRUE(alignment.position_frame()->T_readings_world.isApprox(kT_PW, 1e-5));  // linear interpolation over 10 ms
+  EXPECT_TRUE(alignment.position_frame()->T_PW.isApprox(kT_PW, 1e-5));  // linear interpolation over 10 ms
   const PoseState pose = truth(20.0), in_P = alignment.position_frame()->transform(pose);
   EXPECT_LT((in_P.position_W_m - kT_PW * pose.position_W_m).norm(), 1e-3);
   EXPECT_LT(in_P.orientation_W.angularDistance(Eigen::Quaterniond(kT_PW.linear()) * pose.orientation_W), 1e-4);
@@ -141,7 +141,7 @@ TEST(Positions, BoundTheDrift) {
     }
     const SweepReport report = report_of(sweep, drift);
     alignment.add_sweep(report);
-    if (sweep == 300) first = alignment.position_frame().value().T_readings_world;
+    if (sweep == 300) first = alignment.position_frame().value().T_PW;
     if (sweep < 300) continue;
     ASSERT_TRUE(alignment.position_frame()) << sweep;
     const Eigen::Vector3d p_PI_m = kT_PW * truth(seconds(report.pose.time_ns)).position_W_m;

@@ -75,10 +75,10 @@ TEST(SavedRollingOdometry, ContinuesAtTheSavedPoseWithTheCalibration) {
     EXPECT_LT(fresh.newest()->pose.position_W_m.norm(), 2e-3) << "negative control: without load()";
     EXPECT_TRUE(pose.position_uncertain);
     EXPECT_GE(pose.pose.covariance(0, 0), last->covariance(0, 0));
-    const RollingOdometry::Calibration found = before.calibration(), kept = rebooted.calibration();
+    const RollingOdometry::SphereCalibration found = before.sphere_calibration(), kept = rebooted.sphere_calibration();
     EXPECT_LT((found.sphere_centre_B_m - kCentre_m).norm(), 0.5 * kCentre_m.norm()) << "else the run estimated nothing";
     EXPECT_LT((kept.sphere_centre_B_m - found.sphere_centre_B_m).norm(), 0.2 * kCentre_m.norm());
-    EXPECT_LT(fresh.calibration().sphere_centre_B_m.norm(), 0.2 * kCentre_m.norm()) << "negative control";
+    EXPECT_LT(fresh.sphere_calibration().sphere_centre_B_m.norm(), 0.2 * kCentre_m.norm()) << "negative control";
     // rolls the same path again
     feed_units(kAtRest + 10, count, rebooted);
     const TimeNs later_ns = three_imus(false)[0].back().time_ns;

@@ -72,7 +72,7 @@ TEST(SavedTumblingOdometry, ContinuesAtTheSavedPoseWithTheSavedMap) {
   const Status status = rebooted.load(saved_run().save(), &last);
   ASSERT_TRUE(status.ok()) << status.message();
   ASSERT_TRUE(last);
-  EXPECT_EQ(last->time_ns, *saved_run().newest_ns());
+  EXPECT_EQ(last->time_ns, *saved_run().newest_imu_time_ns());
   EXPECT_GT(body.T_WI(3.0).translation().norm(), 1.0) << "else the saved pose is the origin";
   EXPECT_LT(truth_distance_m(body, *last), 0.05);
   EXPECT_FALSE(rebooted.health().ok()) << "not localised yet";
@@ -89,16 +89,16 @@ TEST(SavedTumblingOdometry, KeepsCalibrationAndSaturationLimits) {
   const ThrownBody body = body_that_comes_to_rest();
   TumblingOdometry rebooted(params_to_estimate(body));
   ASSERT_TRUE(rebooted.load(saved_run().save()).ok());
-  const RigConstants before = saved_run().rig_calibration().constants;
+  const BodyImuConstants before = saved_run().body_imu_calibration().constants;
   EXPECT_NE(before.lever_arm_m, body.lever_arm_I_m) << "else the run estimated nothing";
-  EXPECT_EQ(rebooted.rig_calibration().constants, before);
-  const Eigen::Matrix3d kept = rebooted.rig_calibration().covariance.topLeftCorner<3, 3>();
-  const Eigen::Matrix3d found = saved_run().rig_calibration().covariance.topLeftCorner<3, 3>();
+  EXPECT_EQ(rebooted.body_imu_calibration().constants, before);
+  const Eigen::Matrix3d kept = rebooted.body_imu_calibration().covariance.topLeftCorner<3, 3>();
+  const Eigen::Matrix3d found = saved_run().body_imu_calibration().covariance.topLeftCorner<3, 3>();
   EXPECT_TRUE(kept.isApprox(found, 1e-9));
-  EXPECT_GT(rebooted.rig_calibration().covariance(3, 3), saved_run().rig_calibration().covariance(3, 3))
+  EXPECT_GT(rebooted.body_imu_calibration().covariance(3, 3), saved_run().body_imu_calibration().covariance(3, 3))
       << "biases change at a switch-on";
-  const LidarImuCalibration lidar = rebooted.mapper().calibration();
-  EXPECT_EQ(lidar.T_IL.matrix(), saved_run().mapper().calibration().T_IL.matrix());
+  const LidarImuCalibration lidar = rebooted.mapper().lidar_calibration();
+  EXPECT_EQ(lidar.T_IL.matrix(), saved_run().mapper().lidar_calibration().T_IL.matrix());
   bool any = false;
   for (std::size_t c = 0; c < 6; ++c) {
     const double limit = saved_run().saturation_levels().axis_limit_state.channels[c].plateau_limit;
@@ -108,11 +108,11 @@ TEST(SavedTumblingOdometry, KeepsCalibrationAndSaturationLimits) {
   EXPECT_TRUE(any) << "else the run detected nothing";
   // also after a restart of the run, and after it is saved again
   rebooted.reset(Eigen::Isometry3d::Identity());
-  EXPECT_EQ(rebooted.rig_calibration().constants, before);
+  EXPECT_EQ(rebooted.body_imu_calibration().constants, before);
   TumblingOdometry again(params_to_estimate(body));
   ASSERT_TRUE(again.load(rebooted.save()).ok());
-  EXPECT_EQ(again.rig_calibration().constants, before);
-  EXPECT_EQ(again.mapper().calibration().T_IL.matrix(), lidar.T_IL.matrix());
+  EXPECT_EQ(again.body_imu_calibration().constants, before);
+  EXPECT_EQ(again.mapper().lidar_calibration().T_IL.matrix(), lidar.T_IL.matrix());
   EXPECT_EQ(again.mapper().prior_map()->points.size(), saved_run().mapper().map().size());
 }
 

@@ -134,7 +134,7 @@ TEST(SecondMappingPass, CatchesUpWhereTheClocksDifferByMoreThanWasKnown) {
     }
     EXPECT_TRUE(odometry.second_mapping_pass_applied()) << off_ns;
     EXPECT_EQ(odometry.samples_rejected_by_mapper(), 0u) << off_ns;
-    const double learnt_s = odometry.mapper().calibration().time_offset_s;
+    const double learnt_s = odometry.mapper().lidar_calibration().time_offset_s;
     EXPECT_NEAR(learnt_s, 1e-9 * double(off_ns), 0.002) << "else this test asks nothing";
   }
 }

@@ -125,9 +125,9 @@ std::size_t tumble_over(const test::ThrownBody& body, bool error_code, TumblingO
       if (error_code && next % 8 > 4) {
         for (LidarPoint& point : sweeps[next].points) point.position_L_m *= 1.7f;
       }
-      MotionReading motion{sweeps[next].start_ns, sweeps[next].end_ns, Eigen::Isometry3d::Identity(), {}};
+      RelativePoseReading motion{sweeps[next].start_ns, sweeps[next].end_ns, Eigen::Isometry3d::Identity(), {}};
       motion.covariance = 100.0 * Eigen::Matrix<double, 6, 6>::Identity();
-      EXPECT_TRUE(odometry.add_motion(motion).ok());
+      EXPECT_TRUE(odometry.add_relative_pose(motion).ok());
       (void)odometry.add_sweep(sweeps[next].start_ns, sweeps[next].end_ns, sweeps[next].points);
       PoseState pose;
       (void)odometry.newest(pose);

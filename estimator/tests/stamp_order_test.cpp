@@ -170,7 +170,7 @@ TEST(StampOrder, AResetMapStartsAtTheGivenPose) {
   std::vector<TumblingOdometry::Sweep> first, second, third;
   feed(body, 0, 10'000'000'000, 0, odometry, first);
   odometry.reset();
-  EXPECT_FALSE(odometry.newest_ns());
+  EXPECT_FALSE(odometry.newest_imu_time_ns());
   feed(body, 0, 10'000'000'000, 0, odometry, second);
   odometry.reset(elsewhere());
   TumblingOdometry copy = odometry;

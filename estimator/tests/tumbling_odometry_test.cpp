@@ -158,8 +158,8 @@ TEST(TumblingOdometry, TheWordsComeInTime) {
       const TimeNs end_ns = run.sweeps[k].report.pose.time_ns, late_ns = run.came_ns[k] - end_ns;
       EXPECT_TRUE(late_ns >= lag_ns - sample_ns && late_ns <= lag_ns) << later_ns << ' ' << late_ns;
       if (k < 1 || !run.sweeps[k - 1].status.ok()) continue;  // each sweep reports the final poses of the previous one
-      ASSERT_FALSE(run.sweeps[k].report.smoothed_trajectory.empty());
-      EXPECT_EQ(run.sweeps[k].report.smoothed_trajectory.back().time_ns, end_ns - kSweep_ns);
+      ASSERT_FALSE(run.sweeps[k].report.final_poses_of_earlier_sweep.empty());
+      EXPECT_EQ(run.sweeps[k].report.final_poses_of_earlier_sweep.back().time_ns, end_ns - kSweep_ns);
     }
   }
 }

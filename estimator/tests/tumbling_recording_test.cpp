@@ -10,6 +10,7 @@
 
 #include "thrown_body.hpp"
 #include "thrown_params.hpp"
+#include "tumble/mapping/detail/odometer_reading.hpp"
 #include "tumble/odometry/detail/recording_estimate.hpp"
 #include "tumble/odometry/detail/waiting_input.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
@@ -71,7 +72,7 @@ TEST(TumblingRecording, EstimatesAThrowBeyondTheRail) {
   EXPECT_GE(whole->mapped_recording.mapping_pass_count,
             2);  // the last pass starts from the calibration of the first pass
   EXPECT_TRUE(whole->mapped_recording.calibration_converged);
-  EXPECT_EQ(odometry.rig_calibration().constants, whole->report.rate.calibration.constants);
+  EXPECT_EQ(odometry.body_imu_calibration().constants, whole->report.rate.calibration.constants);
 
   // rates of clipped samples are more accurate than the readings
   const double to_s = body.rest_s + body.push_s + body.flight_s;
@@ -153,7 +154,7 @@ TEST(TumblingRecording, FindsTheOdometerReadingThatALiveRunTakes) {
   constexpr TimeNs kMs = 1'000'000;
   WaitingReadings taken;
   for (TimeNs at = 20 * kMs; at < 1000 * kMs; at += 70 * kMs) {
-    MotionReading motion;
+    RelativePoseReading motion;
     motion.from_ns = at;
     motion.to_ns = at + 60 * kMs;  // some motions span two sweeps
     motion.covariance.setIdentity();
@@ -179,8 +180,8 @@ TEST(TumblingRecording, SavesItsResults) {
   std::optional<PoseState> last;
   const Status status = loaded.load(odometry.save(), &last);
   ASSERT_TRUE(status.ok()) << status.message();
-  EXPECT_EQ(loaded.rig_calibration().constants.lever_arm_m, odometry.rig_calibration().constants.lever_arm_m);
-  EXPECT_EQ(loaded.mapper().calibration().T_IL.matrix(), odometry.mapper().calibration().T_IL.matrix());
+  EXPECT_EQ(loaded.body_imu_calibration().constants.lever_arm_m, odometry.body_imu_calibration().constants.lever_arm_m);
+  EXPECT_EQ(loaded.mapper().lidar_calibration().T_IL.matrix(), odometry.mapper().lidar_calibration().T_IL.matrix());
   const auto sweeps = take_recorded(odometry);
   ASSERT_TRUE(last);
   EXPECT_LT((last->position_W_m - sweeps.back().report.pose.position_W_m).norm(), 0.05);

@@ -36,7 +36,7 @@ void bind_report(nb::module_& m) {
       .def_prop_ro(
           "trajectory", [](const Report& r) { return Poses{r.trajectory}; }, "poses at the IMU times within the sweep")
       .def_prop_ro(
-          "smoothed_trajectory", [](const Report& r) { return Poses{r.smoothed_trajectory}; },
+          "final_poses_of_earlier_sweep", [](const Report& r) { return Poses{r.final_poses_of_earlier_sweep}; },
           "final (smoothed) poses of the sweep that leaves the window when this one enters; empty while the window\n"
           "fills")
       .def_ro("inlier_ratio", &Report::inlier_ratio)
@@ -50,8 +50,8 @@ void bind_report(nb::module_& m) {
       .def_ro("iterations", &Report::iterations)
       .def_ro("consecutive_rejected_sweeps", &Report::consecutive_rejected_sweeps,
               "number of consecutive rejected sweeps, including this one")
-      .def_prop_ro("saturation_deficit_rad_s",
-                   [](const Report& r) { return whole<3>(r.mean_saturation_deficit_rad_s.data()); })
+      .def_prop_ro("mean_clipping_correction_rad_s",
+                   [](const Report& r) { return whole<3>(r.mean_clipping_correction_rad_s.data()); })
       .def_ro("points_used", &Report::points_used)
       .def_ro("isolated_points_dropped", &Report::isolated_points_dropped)
       .def_ro("points_registered", &Report::points_registered)
@@ -162,7 +162,8 @@ void bind_mapping(nb::module_& m) {
            "position (N, 3), m: in lidar axes at the time of each point. offset_ns (N,): time after start_ns. If\n"
            "registration fails, the verdict is `rejected` and the pose is the inertial prior.")
       .def(
-          "calibration", [](Object& self) { return self.run([](auto& mapper) { return mapper.calibration(); }); },
+          "lidar_calibration",
+          [](Object& self) { return self.run([](auto& mapper) { return mapper.lidar_calibration(); }); },
           "Returns the current estimates of T_IL, clock offset and gravity.")
       .def(
           "pose_at",

@@ -18,12 +18,12 @@ namespace {
 /// kListedMax is the maximum number of keywords that an error message lists.
 constexpr std::size_t kListedMax = 12;
 
-std::string bounds_text(const Field& field) {
+std::string bounds_text(const ParameterInfo& field) {
   const nb::object text = nb::str("within [{:g}, {:g}]").attr("format")(field.low, field.high);
   return nb::cast<std::string>(text);
 }
 
-void require_within_field(const std::string& name, const Field& field, double value) {
+void require_within_field(const std::string& name, const ParameterInfo& field, double value) {
   if (value >= field.low && value <= field.high) return;  // false for NaN
   raise_input("out_of_range", name, nb::float_(value), nb::str(bounds_text(field).c_str()));
 }
@@ -58,7 +58,7 @@ nb::object Keywords::need(const std::string& name) {
   return value;
 }
 
-void Keywords::read(const std::string& name, const Field& field, bool whole, double& out) {
+void Keywords::read(const std::string& name, const ParameterInfo& field, bool whole, double& out) {
   const nb::object given = take(name);
   if (!given.is_valid()) return;
   const double value = number_of(given, name);
@@ -67,7 +67,7 @@ void Keywords::read(const std::string& name, const Field& field, bool whole, dou
   out = value;
 }
 
-void Keywords::read(const std::string& name, const Field& field, Eigen::Vector3d& out) {
+void Keywords::read(const std::string& name, const ParameterInfo& field, Eigen::Vector3d& out) {
   const nb::object given = take(name);
   if (!given.is_valid()) return;
   const Eigen::Vector3d value = vector_of(given, name);

@@ -43,8 +43,8 @@ class Keywords {
   /// Same as take(), but raises TumbleError `empty` if no value is given.
   nb::object need(const std::string& name);
   /// Reads a number and checks the bounds of its field.
-  void read(const std::string& name, const Field& field, bool whole, double& out);
-  void read(const std::string& name, const Field& field, Eigen::Vector3d& out);
+  void read(const std::string& name, const ParameterInfo& field, bool whole, double& out);
+  void read(const std::string& name, const ParameterInfo& field, Eigen::Vector3d& out);
   /// Raises TumbleError `unknown` for the first unknown keyword. The message names the nearest known keyword, and lists
   /// all known keywords if they are few.
   void done() const;
@@ -59,7 +59,7 @@ class Keywords {
 /// fields are derived from other fields.
 template <class Params, class Each>
 void visit_shown(Params& params, const std::vector<const char*>& hidden, Each each) {
-  visit_by_name(params, [&](const std::string& name, auto& value, const Field& field) {
+  for_each_parameter(params, [&](const std::string& name, auto& value, const ParameterInfo& field) {
     if (!matches_any_pattern<const char*>(name, hidden)) each(name, value, field);
   });
 }
@@ -67,7 +67,7 @@ void visit_shown(Params& params, const std::vector<const char*>& hidden, Each ea
 /// Reads all given keywords into the fields of `params`.
 template <class Params>
 void read_fields(Keywords& keywords, Params& params, const std::vector<const char*>& hidden = {}) {
-  visit_shown(params, hidden, [&](const std::string& name, auto& value, const Field& field) {
+  visit_shown(params, hidden, [&](const std::string& name, auto& value, const ParameterInfo& field) {
     using Value = std::remove_cvref_t<decltype(value)>;
     if constexpr (std::is_same_v<Value, Eigen::Vector3d>) {
       keywords.read(name, field, value);
@@ -85,7 +85,7 @@ nb::object as_object(const Eigen::Vector3d& value);
 template <class Params>
 std::vector<Parameter> list_fields(const Params& params, const std::vector<const char*>& hidden = {}) {
   std::vector<Parameter> out;
-  visit_shown(params, hidden, [&](const std::string& name, const auto& value, const Field& field) {
+  visit_shown(params, hidden, [&](const std::string& name, const auto& value, const ParameterInfo& field) {
     using Value = std::remove_cvref_t<decltype(value)>;
     nb::object number;
     if constexpr (std::is_same_v<Value, Eigen::Vector3d>) {

@@ -20,10 +20,10 @@ namespace {
 
 using Found = ClippingFinder::ClippingSearchResult;
 
-constexpr Field kGyroRange{"gyro_range_rad_s", "rad/s", 1e-9, 1e3, "range that the data sheet states"};
-constexpr Field kAccelRange{"accel_range_m_s2", "m/s^2", 1e-9, 1e5, "range that the data sheet states"};
+constexpr ParameterInfo kGyroRange{"gyro_range_rad_s", "rad/s", 1e-9, 1e3, "range that the data sheet states"};
+constexpr ParameterInfo kAccelRange{"accel_range_m_s2", "m/s^2", 1e-9, 1e5, "range that the data sheet states"};
 
-std::optional<double> range_of(Keywords& keywords, const Field& field) {
+std::optional<double> range_of(Keywords& keywords, const ParameterInfo& field) {
   const nb::object given = keywords.take(field.name);
   if (!given.is_valid() || given.is_none()) return std::nullopt;
   double value = 0.0;

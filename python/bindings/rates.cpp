@@ -140,7 +140,7 @@ void bind_batch(nb::module_& m) {
       "Estimates the angular velocity of a tumbling body through gyro saturation, over a whole recording.\n\n"
       "AngularRateSmoother(lever_arm_m=(x, y, z), gyro_range_rad_s=None, accel_range_m_s2=None,\n"
       "calibration=None, **options): lever_arm_m is from the centre of mass to the IMU, in IMU axes.\n"
-      "The ranges are those of the data sheet, or None. calibration is a RigCalibration of an earlier run.\n"
+      "The ranges are those of the data sheet, or None. calibration is a BodyImuCalibration of an earlier run.\n"
       "parameters() lists the options. The model covers flight and contact. For hand-held motion use "
       "MotionRegimeSmoother "
       "or\n"
@@ -253,9 +253,10 @@ auto bind_stream(nb::module_& m, const char* name, const char* doc,
           },
           "Returns the provisional rate of the newest sample. Returns no row before the first sample.")
       .def(
-          "calibration",
+          "body_imu_calibration",
           [rate, rate_state](Object& self) {
-            return self.run([&](Streaming<Stream>& at) { return rate(at.filter).calibration(rate_state(*at.state)); });
+            return self.run(
+                [&](Streaming<Stream>& at) { return rate(at.filter).body_imu_calibration(rate_state(*at.state)); });
           },
           "Returns the calibration of the rig estimated so far.")
       .def(

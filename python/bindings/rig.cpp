@@ -14,22 +14,22 @@ namespace tumble::python {
 
 namespace {
 
-/// Reads calibration constants in the order of RigConstants, and their covariance.
-RigCalibration rig_from(nb::handle constants, nb::handle covariance) {
-  constexpr int kSize = RigConstants::kSize;
+/// Reads calibration constants in the order of BodyImuConstants, and their covariance.
+BodyImuCalibration rig_from(nb::handle constants, nb::handle covariance) {
+  constexpr int kSize = BodyImuConstants::kSize;
   const std::vector<double> vector = numbers_of(constants, "constants", kSize);
   const nb::object rows = as_array(covariance, "covariance").attr("reshape")(-1);
   const std::vector<double> flat = numbers_of(rows, "covariance", static_cast<std::size_t>(kSize) * kSize);
   for (const double each : vector) {
     if (!std::isfinite(each)) raise_input("non_finite", "constants", nb::float_(each), nb::str("finite"));
   }
-  RigCalibration out;
-  out.constants.add(Eigen::Map<const RigConstants::Vector>(vector.data()));
+  BodyImuCalibration out;
+  out.constants.add(Eigen::Map<const BodyImuConstants::Vector>(vector.data()));
   out.covariance =
-      Eigen::Map<const RigConstants::Matrix>(flat.data()).transpose();  // numpy stores rows, Eigen stores columns
+      Eigen::Map<const BodyImuConstants::Matrix>(flat.data()).transpose();  // numpy stores rows, Eigen stores columns
   const bool symmetric = (out.covariance - out.covariance.transpose()).cwiseAbs().maxCoeff() <=
                          1e-9 * out.covariance.cwiseAbs().maxCoeff();
-  if (!symmetric || Eigen::LLT<RigConstants::Matrix>(out.covariance).info() != Eigen::Success) {
+  if (!symmetric || Eigen::LLT<BodyImuConstants::Matrix>(out.covariance).info() != Eigen::Success) {
     raise_input("out_of_range", "covariance", nb::str("not a covariance"), nb::str("symmetric and positive definite"));
   }
   return out;
@@ -37,15 +37,16 @@ RigCalibration rig_from(nb::handle constants, nb::handle covariance) {
 
 }  // namespace
 
-RigCalibration rig_of(nb::handle given, const char* field) {
-  RigCalibration out;
-  if (!nb::try_cast(given, out)) raise_input("type", field, given.type(), nb::str("a RigCalibration"));
+BodyImuCalibration rig_of(nb::handle given, const char* field) {
+  BodyImuCalibration out;
+  if (!nb::try_cast(given, out)) raise_input("type", field, given.type(), nb::str("a BodyImuCalibration"));
   return out;
 }
 
 void bind_rig(nb::module_& m) {
-  using R = RigCalibration;
-  nb::class_<R>(m, "RigCalibration", "Calibration of the rig estimated by one run, which another run can start from.")
+  using R = BodyImuCalibration;
+  nb::class_<R>(m, "BodyImuCalibration",
+                "Calibration of the rig estimated by one run, which another run can start from.")
       .def(
           "__init__",
           [](R* self, const ArrayLike& constants, const ArrayLike& covariance) {
@@ -56,7 +57,7 @@ void bind_rig(nb::module_& m) {
       .def_prop_ro(
           "constants",
           [](const R& r) {
-            const RigConstants::Vector v = r.constants.vector();
+            const BodyImuConstants::Vector v = r.constants.vector();
             return owned(std::vector<double>(v.data(), v.data() + v.size()));
           },
           nb::rv_policy::automatic, "(20,): lever arm, gyro bias, accelerometer bias, inertia (5), elements (6)")

@@ -7,8 +7,8 @@
 
 namespace tumble::python {
 
-/// Converts a RigCalibration of Python to the library's type. Raises TumbleError `type` for anything else.
-RigCalibration rig_of(nanobind::handle given, const char* field);
+/// Converts a BodyImuCalibration of Python to the library's type. Raises TumbleError `type` for anything else.
+BodyImuCalibration rig_of(nanobind::handle given, const char* field);
 
 void bind_rig(nanobind::module_& m);
 

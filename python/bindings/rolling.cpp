@@ -272,7 +272,7 @@ void bind_rolling(nb::module_& m) {
       .value("slip", ContactMode::slip, "the contact point slides along the floor")
       .value("bump", ContactMode::bump, "the contact point also moves up or down")
       .value("incline", ContactMode::incline, "the contact point does not slide, and the floor is a slope")
-      .value("rough", ContactMode::uneven, "the contact point does not slide, and the floor is uneven");
+      .value("rough", ContactMode::rough, "the contact point does not slide, and the floor is uneven");
   bind_rolling_smoother(m);
   bind_unit(m);
   bind_rolling_odometry(m);

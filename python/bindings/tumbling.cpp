@@ -155,28 +155,28 @@ void bind_accessors(Class& bound) {
           },
           "Returns the latest rate of the fixed-lag smoother, lag_s old; no row during the first lag_s.")
       .def(
-          "rig_calibration",
+          "body_imu_calibration",
           [](BoundTumblingOdometry& self) {
-            return self.run([](TumblingOdometry& odometry) { return odometry.rig_calibration(); });
+            return self.run([](TumblingOdometry& odometry) { return odometry.body_imu_calibration(); });
           },
           "Returns the estimated calibration of the IMU: lever arm, biases, elements. Pass it to the next run as "
           "`calibration`.")
       .def(
-          "calibration",
+          "lidar_calibration",
           [](BoundTumblingOdometry& self) {
-            return self.run([](TumblingOdometry& odometry) { return odometry.mapper().calibration(); });
+            return self.run([](TumblingOdometry& odometry) { return odometry.mapper().lidar_calibration(); });
           },
           "Returns the current estimates of T_IL, clock offset and gravity.")
       .def(
-          "calibration_covariance",
+          "lidar_calibration_covariance",
           [](BoundTumblingOdometry& self) {
             const auto P =
-                self.run([](TumblingOdometry& odometry) { return odometry.mapper().calibration_covariance(); });
+                self.run([](TumblingOdometry& odometry) { return odometry.mapper().lidar_calibration_covariance(); });
             constexpr int kErrorCount = LidarImuCalibration::kErrorCount;
             const nb::object all = nb::cast(owned(std::vector<double>(P.data(), P.data() + P.size())));
             return nb::cast<Doubles>(all.attr("reshape")(kErrorCount, kErrorCount).attr("copy")());
           },
-          "Returns the covariance (N, N) of the errors of calibration(); 0 for values that are not estimated.")
+          "Returns the covariance (N, N) of the errors of lidar_calibration(); 0 for values that are not estimated.")
       .def(
           "window_trajectory",
           [](BoundTumblingOdometry& self) {
@@ -214,9 +214,9 @@ void bind_accessors(Class& bound) {
           },
           "number of samples that were rejected because their readings or stamps are outliers")
       .def_prop_ro(
-          "newest_ns",
+          "newest_imu_time_ns",
           [](BoundTumblingOdometry& self) {
-            return self.run([](TumblingOdometry& odometry) { return odometry.newest_ns(); });
+            return self.run([](TumblingOdometry& odometry) { return odometry.newest_imu_time_ns(); });
           },
           "time of the newest accepted sample; None before the first")
       .def_prop_ro(
@@ -281,7 +281,7 @@ void bind_tumbling(nb::module_& m) {
       "box\n"
       "in lidar axes; returns within the box belong to the robot. further_lidars: tuples (LidarDataSheet, T_IL[, "
       "own_body_L]).\n"
-      "calibration is rig_calibration() of an earlier run. Options: "
+      "calibration is body_imu_calibration() of an earlier run. Options: "
       "see\n"
       "parameters(). World: z up, origin and yaw of the IMU at the first sample. The body must be stationary for the\n"
       "first half second.");
@@ -314,14 +314,17 @@ void bind_tumbling(nb::module_& m) {
           "and map do not change; Sweep.pose_in_position_frame is the pose in P, which does not drift.")
       .def(
           "set_prior_map",
-          [](BoundTumblingOdometry& self, const MapPoints& map, nb::handle T_MI, double sigma_m, double sigma_rad,
-             bool extend) {
-            PriorMap prior{.points = map.rows, .sigma_m = sigma_m, .sigma_rad = sigma_rad, .extend = extend};
-            if (!T_MI.is_none()) prior.T_prior_map_imu = pose_of(T_MI, "T_MI");
+          [](BoundTumblingOdometry& self, const MapPoints& map, nb::handle T_MI, double start_position_sigma_m,
+             double start_heading_sigma_rad, bool extend) {
+            PriorMap prior{.points = map.rows,
+                           .start_position_sigma_m = start_position_sigma_m,
+                           .start_heading_sigma_rad = start_heading_sigma_rad,
+                           .extend = extend};
+            if (!T_MI.is_none()) prior.T_MI = pose_of(T_MI, "T_MI");
             require(self.run([&](TumblingOdometry& odometry) { return odometry.set_prior_map(std::move(prior)); }));
           },
-          nb::arg("map"), nb::arg("T_MI") = nb::none(), nb::arg("sigma_m") = 0.0, nb::arg("sigma_rad") = 0.0,
-          nb::arg("extend") = true,
+          nb::arg("map"), nb::arg("T_MI") = nb::none(), nb::arg("start_position_sigma_m") = 0.0,
+          nb::arg("start_heading_sigma_rad") = 0.0, nb::arg("extend") = true,
           "Localises the run in the map of an earlier run; call it before the first sweep. T_MI (4, 4): pose of the "
           "IMU "
           "in\n"

@@ -18,7 +18,7 @@ tumbled = tumble.tumbling(recording)  # data in the order of a live robot; Tumbl
 length_m = np.linalg.norm(np.diff(tumbled.poses.position, axis=0), axis=1).sum()
 names = [sweep.verdict.name for sweep in tumbled.sweeps]
 print(f"{len(tumbled.poses)} poses over {length_m:.1f} m; sweeps:", {name: names.count(name) for name in sorted(set(names))})
-print(f"a map of {len(tumbled.map)} points; estimated lever arm, m: {np.round(tumbled.odometry.rig_calibration().lever_arm_m, 4)}")
+print(f"a map of {len(tumbled.map)} points; estimated lever arm, m: {np.round(tumbled.odometry.body_imu_calibration().lever_arm_m, 4)}")
 
 tumble.write_tum("tumble.tum", tumbled.poses)
 sharp = tumbled.map.sigma < 0.05

@@ -280,11 +280,11 @@ def test_errors_and_rigs_travel(spin):
     assert np.array_equal(rig.constants, report.calibration.constants)
     assert np.array_equal(rig.covariance, report.calibration.covariance)
     stream = tumble.MotionRegimeStream(lever_arm_m=LEVER, calibration=rig)
-    assert np.array_equal(stream.calibration().lever_arm_m, rig.lever_arm_m)
+    assert np.array_equal(stream.body_imu_calibration().lever_arm_m, rig.lever_arm_m)
     with pytest.raises(tumble.TumbleError, match="positive definite"):
-        tumble.RigCalibration(rig.constants, -rig.covariance)
+        tumble.BodyImuCalibration(rig.constants, -rig.covariance)
     with pytest.raises(tumble.TumbleError, match="shape|must be"):
-        tumble.RigCalibration(rig.constants[:5], rig.covariance)
+        tumble.BodyImuCalibration(rig.constants[:5], rig.covariance)
     with pytest.raises(tumble.TumbleError) as caught:
         tumble.MotionRegimeStream(lever_arm_m=LEVER, calibration=3)
     assert caught.value.field == "calibration"
@@ -373,6 +373,6 @@ def test_mapper_alone(hill):
         assert np.linalg.norm(report.pose.position) < 0.02, "it still rests"
         assert len(odometry.map()) > 1000
     assert mapper.pose_at(hill.sweeps[until - 1].end_ns).matrix.shape == (4, 4)
-    assert mapper.calibration().T_IL.shape == (4, 4)
+    assert mapper.lidar_calibration().T_IL.shape == (4, 4)
     with pytest.raises(tumble.TumbleError, match="time_order"):
         mapper.add_sweep(0, 1, np.zeros((1, 3), np.float32), [0])

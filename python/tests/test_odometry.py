@@ -29,12 +29,12 @@ def test_jitter_of_host_stamps_is_estimated(hill, slip):
 
 def test_diagnostics_of_tumbling_odometry(hill):
     odometry = tumble.TumblingOdometry(**tumble.tumbling_options(hill))
-    assert odometry.newest_ns is None and odometry.samples_rejected_by_mapper == 0
+    assert odometry.newest_imu_time_ns is None and odometry.samples_rejected_by_mapper == 0
     assert np.isinf(odometry.lidar_scale.sigma) and odometry.lidar_scale.changes == 0 and not odometry.lidar_scale.is_inconsistent
-    assert odometry.calibration_covariance().shape == (10, 10) and not odometry.calibration_covariance().any(), "nothing is estimated yet"
+    assert odometry.lidar_calibration_covariance().shape == (10, 10) and not odometry.lidar_calibration_covariance().any(), "nothing is estimated yet"
     odometry = tumble.tumbling(hill).odometry
-    assert odometry.newest_ns == hill.imus[0].time_ns[-1] and odometry.samples_rejected_by_mapper == 0
-    after = odometry.calibration_covariance()
+    assert odometry.newest_imu_time_ns == hill.imus[0].time_ns[-1] and odometry.samples_rejected_by_mapper == 0
+    after = odometry.lidar_calibration_covariance()
     assert np.allclose(after, after.T) and np.all(np.linalg.eigvalsh(after) > 0.0)
     assert 0.9 < odometry.lidar_scale.scale < 1.1
 
@@ -100,7 +100,7 @@ def test_a_gap_does_not_end_a_call(hill, slip):
     kept = (imu.time_ns < 1_000_000_000) | (imu.time_ns > 3_000_000_000)
     odometry = tumble.TumblingOdometry(**tumble.tumbling_options(hill))
     odometry.add_imu(imu.time_ns[kept], imu.gyro[kept], imu.accel[kept])
-    assert odometry.gaps == 1 and odometry.newest_ns == imu.time_ns[-1]
+    assert odometry.gaps == 1 and odometry.newest_imu_time_ns == imu.time_ns[-1]
     with pytest.raises(tumble.TumbleError, match="time_order"):
         odometry.add_imu(imu.time_ns[:2], imu.gyro[:2], imu.accel[:2])
     kept = (unit.time_ns < 1_000_000_000) | (unit.time_ns > 3_000_000_000)

@@ -85,7 +85,7 @@ def test_tumbling(hill, estimates):
     assert [s.iterations for s in own.sweeps] == expected.sweeps["iterations"].astype(int).tolist()
     assert [s.inlier_ratio for s in own.sweeps] == expected.sweeps["inlier_share"].tolist()
     assert len(own.map) > 10000 and own.odometry.second_pass_applied == bool(expected.health["second_pass_applied"])
-    assert own.odometry.rig_calibration().covariance.shape == (20, 20)
+    assert own.odometry.body_imu_calibration().covariance.shape == (20, 20)
 
 
 def test_tumbling_sample_by_sample(hill, estimates):

@@ -108,7 +108,7 @@ void OdometryNode::subscribe(const std::string& topic, std::size_t depth, std::f
 
 template <class Params>
 void OdometryNode::declare_numbers(Params& params) {
-  visit_parameters(params, [&](const std::string& name, auto& value, const Field& field) {
+  visit_parameters(params, [&](const std::string& name, auto& value, const ParameterInfo& field) {
     using Value = std::remove_cvref_t<decltype(value)>;
     rcl_interfaces::msg::ParameterDescriptor described;
     described.description = std::string(field.description) + " [" + field.unit + "]";

@@ -52,14 +52,14 @@ TumblingAdapter::TumblingAdapter(const Params& params, Publisher& publisher)
 }
 
 Status TumblingAdapter::on_imu(const ImuSample& sample) {
-  const std::optional<TimeNs> before_ns = odometry_.newest_ns();
+  const std::optional<TimeNs> before_ns = odometry_.newest_imu_time_ns();
   const Status status = imu_.count(odometry_.add_imu(sample));
   if (status.ok()) samples_.push_back(sample);
   if (samples_.size() > kSamplesKept) samples_.pop_front();
   add_sweeps();
   publish_rate();
   publish_sweeps();
-  if (odometry_.newest_ns() != before_ns && publisher_.wants(Output::odometry_imu)) publish_newest();
+  if (odometry_.newest_imu_time_ns() != before_ns && publisher_.wants(Output::odometry_imu)) publish_newest();
   if (diagnostics_.is_due(sample.time_ns)) publish_diagnostics();
   if (last_ && publisher_.wants(Output::map) && map_.is_due(sample.time_ns)) publisher_.map(sample.time_ns, map());
   return status;
@@ -74,7 +74,7 @@ Status TumblingAdapter::on_cloud(const PointCloudView& cloud) {
 }
 
 bool TumblingAdapter::is_early(const TimedSweep& sweep) const {
-  const std::optional<TimeNs> newest_ns = odometry_.newest_ns();
+  const std::optional<TimeNs> newest_ns = odometry_.newest_imu_time_ns();
   return !newest_ns || sweep.end_ns - *newest_ns > kEarly_ns;
 }
 
@@ -125,9 +125,9 @@ Status TumblingAdapter::reset(const std::optional<StartPose>& start) {
   }
   PriorMap map{.points = prior_map_, .extend = params_.prior_map_extend};
   if (start) {
-    map.T_prior_map_imu = start->T_OB * params_.T_BI;
-    map.sigma_m = start->sigma_m;
-    map.sigma_rad = start->sigma_rad;
+    map.T_MI = start->T_OB * params_.T_BI;
+    map.start_position_sigma_m = start->sigma_m;
+    map.start_heading_sigma_rad = start->sigma_rad;
   }
   odometry_.reset();
   return odometry_.set_prior_map(std::move(map));
@@ -171,12 +171,12 @@ void TumblingAdapter::publish_sweeps() {
     if (publisher_.wants(Output::points)) publish_points(report);
     last_ = report;
     last_->trajectory.clear();
-    last_->smoothed_trajectory.clear();
+    last_->final_poses_of_earlier_sweep.clear();
   }
 }
 
 void TumblingAdapter::publish_points(const SweepReport& report) {
-  const LidarImuCalibration calibration = odometry_.mapper().calibration();
+  const LidarImuCalibration calibration = odometry_.mapper().lidar_calibration();
   const TimeNs offset_ns = std::llround(1e9 * calibration.time_offset_s);
   const TimeNs end_ns = report.pose.time_ns - offset_ns;
   const auto raw = nearest(sweeps_, end_ns, [](const TimedSweep& each) { return each.end_ns; });
@@ -218,12 +218,12 @@ void TumblingAdapter::publish_diagnostics() {
     add(out, "inlier ratio of the last sweep", last_->inlier_ratio);
     add(out, "consecutive rejected sweeps", last_->consecutive_rejected_sweeps);
   }
-  publisher_.diagnostics(odometry_.newest_ns().value_or(0), out);
+  publisher_.diagnostics(odometry_.newest_imu_time_ns().value_or(0), out);
 }
 
 std::string TumblingAdapter::calibration_yaml() const {
-  const Eigen::Isometry3d T_BL = params_.T_BI * odometry_.mapper().calibration().T_IL;
-  const Eigen::Vector3d arm = odometry_.rig_calibration().constants.lever_arm_m;
+  const Eigen::Isometry3d T_BL = params_.T_BI * odometry_.mapper().lidar_calibration().T_IL;
+  const Eigen::Vector3d arm = odometry_.body_imu_calibration().constants.lever_arm_m;
   return "/**:\n  ros__parameters:\n    T_base_imu: " + pose_text(params_.T_BI) +
          "\n    T_base_lidar: " + pose_text(T_BL) + "\n    lever_arm_m: " + list_text({arm.x(), arm.y(), arm.z()}) +
          "\n";

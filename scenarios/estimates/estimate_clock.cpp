@@ -36,7 +36,7 @@ void move_to_clock(std::int64_t origin_ns, const StampSpan& span, Estimate& esti
   for (auto& sweep : estimate.sweeps) {
     sweep.pose.time_ns += by_ns;
     shift(sweep.trajectory, by_ns);
-    shift(sweep.smoothed_trajectory, by_ns);
+    shift(sweep.final_poses_of_earlier_sweep, by_ns);
   }
 }
 

@@ -104,7 +104,7 @@ std::uintmax_t AnswerBounds::table_bytes() const {
   return rows_ * kBytesPerRow;
 }
 
-std::uintmax_t AnswerBounds::map_bytes() const {
+std::uintmax_t AnswerBounds::map_memory_bytes() const {
   return points_ * kBytesPerPoint;
 }
 

@@ -22,7 +22,7 @@ class AnswerBounds {
   /// Returns the size limit of a table: 1 KiB per row, with 10 000 rows plus 4 rows per IMU sample and per lidar sweep.
   std::uintmax_t table_bytes() const;
   /// Returns the size limit of a map: 32 bytes per point, with 10 000 points plus 4 points per lidar point.
-  std::uintmax_t map_bytes() const;
+  std::uintmax_t map_memory_bytes() const;
 
   void require_size(const std::filesystem::path& file, std::uintmax_t bytes) const;
 

@@ -123,7 +123,7 @@ void require_sizes(const AnswerBounds& bounds, ExternalDescription::Output outpu
   }
   for (const std::string name : kEstimateFiles) {
     if (!std::filesystem::exists(path / name)) continue;
-    bounds.require_size(path / name, name == "map.ply" ? bounds.map_bytes() : bounds.table_bytes());
+    bounds.require_size(path / name, name == "map.ply" ? bounds.map_memory_bytes() : bounds.table_bytes());
   }
 }
 
@@ -194,7 +194,7 @@ Estimate read_external_result(const ExternalDescription& description, const std:
       break;
   }
   if (description.kind == Kind::slam && std::filesystem::exists(map)) {
-    bounds.require_size(map, bounds.map_bytes());
+    bounds.require_size(map, bounds.map_memory_bytes());
     estimate.map = read_points(map);
   }
   require_sense(bounds, estimate, description.output, output);

@@ -204,7 +204,7 @@ class Answer {
  public:
   Answer(const SharedMemory& memory, const AnswerBounds& bounds) {
     // A faulty Python function can enlarge the shared memory.
-    const std::uintmax_t most = bounds.table_bytes() + bounds.map_bytes();
+    const std::uintmax_t most = bounds.table_bytes() + bounds.map_memory_bytes();
     if (memory.size() > most)
       throw BadInput(
           fmt::format("the result of the Python function has {} bytes; for this recording, it may have at most {}",

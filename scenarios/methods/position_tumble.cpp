@@ -96,7 +96,7 @@ void append_pose(const RollingOdometry::Pose& pose, double radius_m, Estimate& e
   count("samples_slip", pose.mode == ContactMode::slip);
   count("samples_bump", pose.mode == ContactMode::bump);
   count("samples_incline", pose.mode == ContactMode::incline);
-  count("samples_rough", pose.mode == ContactMode::uneven);
+  count("samples_rough", pose.mode == ContactMode::rough);
   count("samples_rest", pose.at_rest);
 }
 
@@ -141,7 +141,7 @@ void report_counters(const RollingOdometry& odometry, const RollingOdometry::Par
   if (odometry.restart_count() > 0) estimate.health["gaps"] = static_cast<double>(odometry.restart_count());
   if (odometry.rejected_readings() > 0)
     estimate.health["rejected_readings"] = static_cast<double>(odometry.rejected_readings());
-  if (params.lag_s > 0.0) estimate.centre_B_m = odometry.calibration().sphere_centre_B_m;
+  if (params.lag_s > 0.0) estimate.centre_B_m = odometry.sphere_calibration().sphere_centre_B_m;
 }
 
 Estimate roll_along(const char* method, const Settings<RollingOdometry::Params>& settings, const sim::Sensors& sensors,

@@ -157,8 +157,8 @@ MotionRegimeStream::Params stream_params(const sim::Sensors& sensors, const sim:
 }
 
 void restart_after_gap(MotionRegimeStream::Params& params, MotionRegimeStream& joined, MotionRegimeStream::State& all) {
-  const RigCalibration calibration = joined.rate().calibration(all.rate);
-  if (check_calibration(calibration).ok()) params.rate.model.calibration = calibration;
+  const BodyImuCalibration calibration = joined.rate().body_imu_calibration(all.rate);
+  if (check_body_imu_calibration(calibration).ok()) params.rate.model.calibration = calibration;
   joined = MotionRegimeStream(params);
   const FrozenAxes::State frozen = all.rate.frozen_axes;
   const FlightSignCheck::State sense = all.rate.flight_sign_check;
@@ -200,7 +200,7 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   joined.flush(all, estimate.rates);
   report_gaps(samples, estimate);
   const AngularRateStream::State& state = all.rate;
-  estimate.health["calibration_at_prior"] = stream.calibration_is_prior(state) ? 1.0 : 0.0;
+  estimate.health["calibration_at_prior"] = stream.lever_arm_is_prior(state) ? 1.0 : 0.0;
   estimate.health["accel_delay_s"] = stream.sensor_errors(state).errors.accel_delay_s;
   report_rails(state.clipping_state.known_limits, estimate.health);
   const std::optional<double> carried_share =

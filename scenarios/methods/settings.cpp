@@ -30,7 +30,7 @@ bool matches_any_pattern(const std::string& name, const std::vector<std::string>
 
 }  // namespace
 
-std::array<std::string, 3> detail::coordinate_names(const std::string& name, const Field& field) {
+std::array<std::string, 3> detail::coordinate_names(const std::string& name, const ParameterInfo& field) {
   const std::string suffix = suffix_of(field.unit);
   const bool ends = name.ends_with(suffix);
   const std::string stem = ends ? name.substr(0, name.size() - suffix.size()) : name;
@@ -47,7 +47,7 @@ std::string SettingsTable::name_of(const std::string& field_name) const {
   return taken ? options_.prefix + field_name : field_name;
 }
 
-void SettingsTable::add(const std::string& field_name, double value, const Field& field, bool whole) {
+void SettingsTable::add(const std::string& field_name, double value, const ParameterInfo& field, bool whole) {
   if (matches_any_pattern(field_name, options_.fixed)) return;
   sim::Parameter row{
       texts_.emplace_back(name_of(field_name)), value, field.low, field.high, field.unit, field.description};

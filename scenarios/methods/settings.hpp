@@ -22,11 +22,11 @@ namespace tumble::scenarios {
 
 namespace detail {
 
-std::array<std::string, 3> coordinate_names(const std::string& name, const Field& field);
+std::array<std::string, 3> coordinate_names(const std::string& name, const ParameterInfo& field);
 
 template <class Params, class Each>
 void visit_numbers(Params& params, Each each) {
-  visit_by_name(params, [&each](const std::string& name, auto& value, const Field& field) {
+  for_each_parameter(params, [&each](const std::string& name, auto& value, const ParameterInfo& field) {
     using Value = std::remove_cvref_t<decltype(value)>;
     if constexpr (std::is_same_v<Value, Eigen::Vector3d>) {
       const std::array<std::string, 3> names = coordinate_names(name, field);
@@ -68,7 +68,7 @@ class SettingsTable {
 
  protected:
   explicit SettingsTable(SettingsOptions options);
-  void add(const std::string& field_name, double value, const Field& field, bool whole);
+  void add(const std::string& field_name, double value, const ParameterInfo& field, bool whole);
   void sort_rows();
   bool applies(const std::string& field_name, const sim::Values& values, std::string& name) const;
 
@@ -93,14 +93,14 @@ class Settings : public SettingsTable {
  public:
   explicit Settings(const Params& defaults, SettingsOptions options = {})
       : SettingsTable(std::move(options)), defaults_(defaults) {
-    detail::visit_numbers(defaults_, [this](const std::string& name, const auto& value, const Field& field,
+    detail::visit_numbers(defaults_, [this](const std::string& name, const auto& value, const ParameterInfo& field,
                                             bool whole) { add(name, static_cast<double>(value), field, whole); });
     sort_rows();
   }
   const Params& defaults() const { return defaults_; }
 
   void apply(const sim::Values& values, Params& params) const {
-    detail::visit_numbers(params, [&](const std::string& field_name, auto& value, const Field&, bool) {
+    detail::visit_numbers(params, [&](const std::string& field_name, auto& value, const ParameterInfo&, bool) {
       using Value = std::remove_cvref_t<decltype(value)>;
       std::string name;
       if (!applies(field_name, values, name)) return;
@@ -121,7 +121,7 @@ class Settings : public SettingsTable {
   std::map<std::string, double> numbers(const sim::Values& values) const override {
     std::map<std::string, double> out;
     const Params params = read(values);
-    detail::visit_numbers(params, [&](const std::string& name, const auto& value, const Field&, bool) {
+    detail::visit_numbers(params, [&](const std::string& name, const auto& value, const ParameterInfo&, bool) {
       out[name] = static_cast<double>(value);
     });
     return out;

@@ -140,10 +140,10 @@ class RolledMotion {
         params_(params),
         loosely_(loosely) {}
 
-  std::optional<MotionReading> between(TimeNs from_ns, TimeNs to_ns) const {
+  std::optional<RelativePoseReading> between(TimeNs from_ns, TimeNs to_ns) const {
     const std::vector<PoseState>& poses = rolled_.poses;
     if (poses.empty() || from_ns < poses.front().time_ns || to_ns > poses.back().time_ns || from_ns >= to_ns) return {};
-    MotionReading motion;
+    RelativePoseReading motion;
     motion.from_ns = from_ns;
     motion.to_ns = to_ns;
     motion.relative_pose = pose_of_imu(from_ns).inverse(Eigen::Isometry) * pose_of_imu(to_ns);

@@ -85,7 +85,7 @@ class Collector {
         count_trouble(sweep->status, estimate_);
         continue;
       }
-      std::vector<PoseState> smoothed = std::move(sweep->report.smoothed_trajectory);
+      std::vector<PoseState> smoothed = std::move(sweep->report.final_poses_of_earlier_sweep);
       const bool in_prior_map = sweep->report.in_prior_map;
       if (in_prior_map && !first_in_prior_map_) first_in_prior_map_ = estimate_.sweeps.size();
       const TimeNs end_ns = sweep->report.pose.time_ns;
@@ -196,7 +196,7 @@ void report_whole(const WholeRecordingEstimate& whole, const sim::Sensors& senso
   count_sources(estimate.rates, estimate.health);
   if (whole.mapped_recording.calibration_replaced) {
     estimate.health["lidar_calibration_replaced"] = 1.0;
-    estimate.replaced_T_BL = sensors.imus.front().T_BI * whole.mapped_recording.mapper.calibration().T_IL;
+    estimate.replaced_T_BL = sensors.imus.front().T_BI * whole.mapped_recording.mapper.lidar_calibration().T_IL;
   }
   if (whole.corrected_jitter_s > 0.0) estimate.health["time_stamps_corrected_s"] = whole.corrected_jitter_s;
   for (std::size_t left = whole.mapped_recording.unfinished_sweeps; left > 0; --left) leave_out_unfinished(estimate);

@@ -47,7 +47,7 @@ void add_sweep(NumberHasher& hasher, const LidarInertialOdometry::SweepReport& s
   hasher.add(sweep.eigenvalue_ratio);
   hasher.add(static_cast<std::int32_t>(sweep.iterations));
   hasher.add_matrix(sweep.least_constrained_direction);
-  hasher.add_matrix(sweep.mean_saturation_deficit_rad_s);
+  hasher.add_matrix(sweep.mean_clipping_correction_rad_s);
   for (const std::size_t count : {sweep.points_used, sweep.points_registered, sweep.map_points_added}) {
     hasher.add(static_cast<std::uint64_t>(count));
   }

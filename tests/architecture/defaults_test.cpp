@@ -133,13 +133,13 @@ TEST(Defaults, OfTheLibraryKnowNoRobotAndNoDraw) {
 TEST(Defaults, OneThatDoesIsFound) {
   const Known harness = known();
   for (const char* source :
-       {"RigConstants nominal = {.lever_arm_m = {-0.022, -0.085, 0.055}};", "double radius_m = 0.145;",
+       {"BodyImuConstants nominal = {.lever_arm_m = {-0.022, -0.085, 0.055}};", "double radius_m = 0.145;",
         "/// Noise density (MTi-30: 0.03 deg/s/sqrt(Hz)).", "/// behind the VN-100", "double gyro_range = 7.853981634;",
         "// tried: cliff 15075 from 22.6 m to 7.6 cm", "// the draws of seed 9", "kDepth_m = 0.04638; // a mirror"})
     EXPECT_FALSE(told_by(source, harness).empty()) << source;
   for (const char* source :
        {"double gravity_m_s2 = 9.80665;", "double rough_share = 0.055;", "/// MTi-300 sheet: 0.05 deg",
-        "double radius_m = 0.0;  ///< has no default", "const RigConstants place{.lever_arm_m = p_I_m};"})
+        "double radius_m = 0.0;  ///< has no default", "const BodyImuConstants place{.lever_arm_m = p_I_m};"})
     EXPECT_TRUE(told_by(source, harness).empty()) << source;
 }
 

@@ -188,10 +188,10 @@ void ten_minutes_of_small_sweeps(benchmark::State& state) {
       const double taken_ms = since_ms(start);
       if (i >= kSettled && i < kSettled + kMinute) {
         first_ms.push_back(taken_ms);
-        first_bytes = std::max(first_bytes, odometry.map_bytes());
+        first_bytes = std::max(first_bytes, odometry.map_memory_bytes());
       } else if (i >= kCount - kMinute) {
         last_ms.push_back(taken_ms);
-        last_bytes = std::max(last_bytes, odometry.map_bytes());
+        last_bytes = std::max(last_bytes, odometry.map_memory_bytes());
       }
     }
     state.counters["first_minute_ms"] = median(first_ms);

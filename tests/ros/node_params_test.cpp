@@ -18,7 +18,7 @@ template <class Params>
 std::set<std::string> names() {
   std::set<std::string> out;
   Params params;
-  ros::visit_parameters(params, [&](const std::string& name, auto&, const Field& field) {
+  ros::visit_parameters(params, [&](const std::string& name, auto&, const ParameterInfo& field) {
     EXPECT_TRUE(out.insert(name).second) << name << " is declared twice";
     EXPECT_STRNE(field.description, "") << name;
   });

@@ -82,13 +82,13 @@ TEST(TumblingAdapter, PublishesTheLibrarysResultsBitForBit) {
   play(
       body, kEpoch_ns,
       [&](const ImuSample& sample) {
-        const auto before = odometry.newest_ns();
+        const auto before = odometry.newest_imu_time_ns();
         odometry.add_imu(sample);
         const auto& rate = odometry.newest_smoothed_rate();
         if (rate && (rates.empty() || rates.back().time_ns != rate->time_ns)) rates.push_back(*rate);
         take();
         PoseState pose;
-        if (odometry.newest_ns() != before && odometry.newest(pose).ok()) newest.push_back(pose);
+        if (odometry.newest_imu_time_ns() != before && odometry.newest(pose).ok()) newest.push_back(pose);
       },
       [&](TimeNs start_ns, const std::vector<LidarPoint>& points) {
         // a sweep ends at its last point

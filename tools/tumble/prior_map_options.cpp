@@ -28,9 +28,8 @@ std::shared_ptr<const PriorMap> read_map_of(const PriorMapOptions& options) {
     throw BadInput(fmt::format("--map-pose has {} numbers; it needs X Y Z HEADING or X Y Z HEADING SIGMA_M SIGMA_RAD",
                                pose.size()));
   if (!pose.empty()) {
-    map->T_prior_map_imu =
-        Eigen::Translation3d(pose[0], pose[1], pose[2]) * Eigen::AngleAxisd(pose[3], Eigen::Vector3d::UnitZ());
-    if (pose.size() == kWithSigmas) map->sigma_m = pose[4], map->sigma_rad = pose[5];
+    map->T_MI = Eigen::Translation3d(pose[0], pose[1], pose[2]) * Eigen::AngleAxisd(pose[3], Eigen::Vector3d::UnitZ());
+    if (pose.size() == kWithSigmas) map->start_position_sigma_m = pose[4], map->start_heading_sigma_rad = pose[5];
   }
   if (const Status status = check_prior_map(*map); !status.ok())
     throw BadInput(options.map.string() + ": " + status.message());

@@ -170,14 +170,14 @@ std::optional<EstimatedCrossAxisSlopes> estimated_slopes(const SaturationPlanes&
   return EstimatedCrossAxisSlopes{{rail->row[(element + 1) % 3], rail->row[(element + 2) % 3]}, estimated};
 }
 
-RigCalibration calibration_prior_from_planes(const AngularRateModel& before, const SaturationPlanes& planes,
-                                             bool upright) {
-  RigCalibration out{before.prior_constants(), before.prior_covariance()};
+BodyImuCalibration calibration_prior_from_planes(const AngularRateModel& before, const SaturationPlanes& planes,
+                                                 bool upright) {
+  BodyImuCalibration out{before.prior_constants(), before.prior_covariance()};
   for (int j = 0; j < 3; ++j) {
-    const Eigen::Index first = RigConstants::kGyroMisalignmentIndex + 2 * j;
+    const Eigen::Index first = BodyImuConstants::kGyroMisalignmentIndex + 2 * j;
     const auto estimated = estimated_slopes(planes, upright, j, out.covariance.block<2, 2>(first, first));
     if (!estimated) continue;
-    out.constants.gyro_misalignment.segment<2>(first - RigConstants::kGyroMisalignmentIndex) =
+    out.constants.gyro_misalignment.segment<2>(first - BodyImuConstants::kGyroMisalignmentIndex) =
         estimated->cross_axis_slopes;
     out.covariance.middleRows<2>(first).setZero();
     out.covariance.middleCols<2>(first).setZero();

@@ -54,7 +54,7 @@ struct EstimatedCrossAxisSlopes {
 std::optional<EstimatedCrossAxisSlopes> estimated_slopes(const SaturationPlanes& planes, bool upright, int element,
                                                          const Eigen::Matrix2d& before);
 
-RigCalibration calibration_prior_from_planes(const AngularRateModel& before, const SaturationPlanes& planes,
-                                             bool upright);
+BodyImuCalibration calibration_prior_from_planes(const AngularRateModel& before, const SaturationPlanes& planes,
+                                                 bool upright);
 
 }  // namespace tumble

@@ -68,7 +68,7 @@ std::vector<AngularRateEstimate> first_guess(std::span<const AngularRateObservat
 
 // See rate_smoother.md (R16) to (R19).
 void compute_flight_weights(const AngularRateModel& model, std::span<const AngularRateObservation> observations,
-                            const RigConstants& rig, const RigConstants::Matrix& rig_covariance,
+                            const BodyImuConstants& rig, const BodyImuConstants::Matrix& rig_covariance,
                             double threshold_factor, std::span<AngularRateEstimate> estimates) {
   double before = std::numeric_limits<double>::max();
   for (std::size_t k = 0; k < estimates.size(); ++k) {
@@ -147,7 +147,7 @@ double explained_force_fraction(std::span<const AngularRateObservation> observat
 
 // See rate_smoother.md (R26).
 bool GaussNewtonRateStep::factorise(const AngularRateModel& model, std::span<const AngularRateEstimate> estimates,
-                                    const RigConstants& rig) {
+                                    const BodyImuConstants& rig) {
   border_block_ = {};
   model.add_rig_prior(rig, border_block_);
   state_blocks_[0] = {};
@@ -173,7 +173,7 @@ double GaussNewtonRateStep::newton_decrement() const {
 }
 
 double GaussNewtonRateStep::apply(const AngularRateModel& model, double step_max,
-                                  std::span<AngularRateEstimate> estimates, RigConstants& rig) const {
+                                  std::span<AngularRateEstimate> estimates, BodyImuConstants& rig) const {
   double largest = 0.0;
   arrow::StateVector step;
   for (std::size_t k = state_blocks_.size(); k-- > 0;) {
@@ -192,7 +192,7 @@ double GaussNewtonRateStep::apply(const AngularRateModel& model, double step_max
 
 // See rate_smoother.md (R37), (R38), (R39).
 GaussNewtonRateStep::SensorErrorDerivatives GaussNewtonRateStep::error_derivatives(
-    const AngularRateModel& model, std::span<const AngularRateEstimate> estimates, const RigConstants& rig) const {
+    const AngularRateModel& model, std::span<const AngularRateEstimate> estimates, const BodyImuConstants& rig) const {
   SensorErrorDerivatives out;
   out.sample_error_jacobian.assign(state_blocks_.size(), arrow::ErrorMatrix::Zero());
   arrow::BorderErrors border = arrow::BorderErrors::Zero();

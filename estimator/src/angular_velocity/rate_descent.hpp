@@ -16,11 +16,11 @@ class GaussNewtonRateStep {
 
   /// Returns false if the normal equations are not positive definite.
   bool factorise(const AngularRateModel& model, std::span<const AngularRateEstimate> estimates,
-                 const RigConstants& rig);
+                 const BodyImuConstants& rig);
   /// Adds the last Gauss-Newton step, scaled so that no angular rate changes by more than step_max. Returns the largest
   /// change of an angular rate in the step before scaling.
   double apply(const AngularRateModel& model, double step_max, std::span<AngularRateEstimate> estimates,
-               RigConstants& rig) const;
+               BodyImuConstants& rig) const;
 
   /// Calls use(k, conditional) for each sample k from last to first. `conditional` is the distribution of the sample's
   /// rate and angular acceleration for known calibration constants.
@@ -42,9 +42,9 @@ class GaussNewtonRateStep {
   };
   SensorErrorDerivatives error_derivatives(const AngularRateModel& model,
                                            std::span<const AngularRateEstimate> estimates,
-                                           const RigConstants& rig) const;
+                                           const BodyImuConstants& rig) const;
 
-  const RigConstants::Matrix& rig_covariance() const { return rig_covariance_; }
+  const BodyImuConstants::Matrix& rig_covariance() const { return rig_covariance_; }
   /// Returns the squared length of the last step, in standard deviations of the estimate: rate_smoother.md (R30).
   double newton_decrement() const;
 
@@ -53,13 +53,13 @@ class GaussNewtonRateStep {
   std::vector<arrow::Block> state_blocks_;
   arrow::Corner border_block_;
   arrow::BorderVector calibration_step_;
-  RigConstants::Matrix rig_covariance_;
+  BodyImuConstants::Matrix rig_covariance_;
 };
 
 struct RateSolution {
   std::vector<AngularRateEstimate> estimates;
-  RigConstants rig;
-  RigConstants::Matrix rig_covariance;
+  BodyImuConstants rig;
+  BodyImuConstants::Matrix rig_covariance;
   GaussNewtonRateStep iteration;
 };
 

@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 namespace {
 
 // Returns a matrix with the columns S_i v, where S_i are the five basis matrices of the inertia
-// (RigConstants::inertia_basis_matrix).
+// (BodyImuConstants::inertia_basis_matrix).
 Eigen::Matrix<double, 3, 5> inertia_basis_products(const Vector3d& v) {
   constexpr double kHalf = 0.5 * std::numbers::sqrt2, kSixth = std::numbers::inv_sqrt3 * kHalf;
   Eigen::Matrix<double, 3, 5> out;
@@ -31,7 +31,7 @@ struct Jerk {
 };
 
 // Returns the angular jerk of a body without torque: rate_smoother.md (R11).
-Jerk jerk_of(const AngularRateKnot& knot, const RigConstants& rig) {
+Jerk jerk_of(const AngularRateKnot& knot, const BodyImuConstants& rig) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2;
   Jerk out;
   out.J = rig.inertia_matrix();
@@ -70,7 +70,7 @@ AngularRateKnot knot_before(double delay_s, const AngularRateKnot& knot, const J
 }  // namespace
 
 // See rate_smoother.md (R6). The caller propagates `knot` to the time of the gyro reading: rate_smoother.md (R7).
-AngularRateFactor gyro_factor(const AngularRateKnot& knot, const RigConstants& rig, const Vector3d& reading_rad_s) {
+AngularRateFactor gyro_factor(const AngularRateKnot& knot, const BodyImuConstants& rig, const Vector3d& reading_rad_s) {
   AngularRateFactor f;
   f.residual = knot.rate_rad_s + rig.gyro_bias_rad_s - reading_rad_s;
   f.jacobian_knot << Matrix3d::Identity(), Matrix3d::Zero();
@@ -80,7 +80,7 @@ AngularRateFactor gyro_factor(const AngularRateKnot& knot, const RigConstants& r
 }
 
 // See rate_smoother.md (R8), rails.md (R52).
-AngularRateFactor sensing_axis_factor(const AngularRateKnot& knot, const RigConstants& rig,
+AngularRateFactor sensing_axis_factor(const AngularRateKnot& knot, const BodyImuConstants& rig,
                                       const Vector3d& reading_rad_s) {
   const Vector3d off = knot.rate_rad_s + rig.gyro_bias_rad_s - reading_rad_s;
   AngularRateFactor f;
@@ -91,14 +91,14 @@ AngularRateFactor sensing_axis_factor(const AngularRateKnot& knot, const RigCons
     f.residual[j] = row.dot(off);
     f.jacobian_knot.row(j).head<3>() = row;
     f.jacobian_calibration.row(j).segment<3>(3) = row;
-    f.jacobian_calibration(j, RigConstants::kGyroMisalignmentIndex + 2 * j) = off[(j + 1) % 3];
-    f.jacobian_calibration(j, RigConstants::kGyroMisalignmentIndex + 2 * j + 1) = off[(j + 2) % 3];
+    f.jacobian_calibration(j, BodyImuConstants::kGyroMisalignmentIndex + 2 * j) = off[(j + 1) % 3];
+    f.jacobian_calibration(j, BodyImuConstants::kGyroMisalignmentIndex + 2 * j + 1) = off[(j + 2) % 3];
   }
   return f;
 }
 
 // See rate_smoother.md (R10).
-AngularRateFactor flight_force_factor(const AngularRateKnot& knot, const RigConstants& rig,
+AngularRateFactor flight_force_factor(const AngularRateKnot& knot, const BodyImuConstants& rig,
                                       const Vector3d& reading_m_s2) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2, &t = rig.lever_arm_m;
   AngularRateFactor f;
@@ -113,7 +113,7 @@ AngularRateFactor flight_force_factor(const AngularRateKnot& knot, const RigCons
 }
 
 // See rate_smoother.md (R12).
-AngularRateFactor delayed_flight_force_factor(const AngularRateKnot& knot, const RigConstants& rig,
+AngularRateFactor delayed_flight_force_factor(const AngularRateKnot& knot, const BodyImuConstants& rig,
                                               const Vector3d& reading_m_s2, double delay_s, Vector3d* jacobian_delay) {
   const Jerk jerk = jerk_of(knot, rig);
   const JerkDerivatives derivatives = jerk_derivatives_of(jerk, knot);
@@ -132,7 +132,7 @@ AngularRateFactor delayed_flight_force_factor(const AngularRateKnot& knot, const
 }
 
 // See rate_smoother.md (R12).
-AngularRateFactor delayed_flight_calibration_jacobian(const AngularRateKnot& knot, const RigConstants& rig,
+AngularRateFactor delayed_flight_calibration_jacobian(const AngularRateKnot& knot, const BodyImuConstants& rig,
                                                       const Vector3d& reading_m_s2, double delay_s) {
   AngularRateFactor f = flight_force_factor(knot_before(delay_s, knot, jerk_of(knot, rig)), rig, reading_m_s2);
   f.jacobian_knot.setZero();
@@ -140,7 +140,7 @@ AngularRateFactor delayed_flight_calibration_jacobian(const AngularRateKnot& kno
 }
 
 // See rate_smoother.md (R13).
-Vector3d flight_angular_jerk(const AngularRateKnot& knot, const RigConstants& rig) {
+Vector3d flight_angular_jerk(const AngularRateKnot& knot, const BodyImuConstants& rig) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2, &t = rig.lever_arm_m;
   const Jerk jerk = jerk_of(knot, rig);
   const Vector3d& j = jerk.value;
@@ -150,7 +150,7 @@ Vector3d flight_angular_jerk(const AngularRateKnot& knot, const RigConstants& ri
 }
 
 // See rate_smoother.md (R14).
-AngularRateFactor euler_equation_factor(const AngularRateKnot& knot, const RigConstants& rig) {
+AngularRateFactor euler_equation_factor(const AngularRateKnot& knot, const BodyImuConstants& rig) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2;
   const Matrix3d J = rig.inertia_matrix();
   const Vector3d momentum = J * w;

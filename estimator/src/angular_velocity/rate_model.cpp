@@ -34,15 +34,15 @@ void check(const AngularRateModelParams& p) {
   for (const double value : p.errors.vector()) require_in_interval("sensor errors", value, -0.2, 0.2);
   require_in_interval("auxiliary_imus", p.auxiliary_imus.size(), 0, kAuxiliaryImusMax);
   for (const AuxiliaryImu& auxiliary_imu : p.auxiliary_imus) check(auxiliary_imu);
-  const Status rig = check_rig_constants(p.calibration ? p.calibration->constants : p.nominal);
+  const Status rig = check_body_imu_constants(p.calibration ? p.calibration->constants : p.nominal);
   if (!rig.ok())
-    require_in_interval(rig.field, rig.value, -RigConstants::kMaxConstantMagnitude,
-                        RigConstants::kMaxConstantMagnitude);
+    require_in_interval(rig.field, rig.value, -BodyImuConstants::kMaxConstantMagnitude,
+                        BodyImuConstants::kMaxConstantMagnitude);
 }
 
-RigConstants::Matrix covariance_of(const AngularRateModelParams& p) {
+BodyImuConstants::Matrix covariance_of(const AngularRateModelParams& p) {
   if (p.calibration) return 0.5 * (p.calibration->covariance + p.calibration->covariance.transpose());
-  RigConstants::Vector variance;
+  BodyImuConstants::Vector variance;
   variance << Vector3d::Constant(p.lever_arm_sigma_m), Vector3d::Constant(p.gyro_bias_sigma_rad_s),
       Vector3d::Constant(p.accel_bias_sigma_m_s2), Eigen::Matrix<double, 5, 1>::Constant(p.inertia_sigma),
       Eigen::Matrix<double, 6, 1>::Constant(p.element_sigma);
@@ -54,7 +54,7 @@ constexpr double kSubsampleInContact = 0.25;
 
 constexpr int kLever = 0, kAccelBias = 6, kInertia = 9;
 
-Eigen::Matrix3d flight_force_covariance(const AngularRateFactor& f, const RigConstants::Matrix& rig) {
+Eigen::Matrix3d flight_force_covariance(const AngularRateFactor& f, const BodyImuConstants::Matrix& rig) {
   const Eigen::Matrix3d T = f.jacobian_calibration.middleCols<3>(kLever),
                         B = f.jacobian_calibration.middleCols<3>(kAccelBias);
   const Eigen::Matrix3d between = rig.block<3, 3>(kLever, kAccelBias);
@@ -67,7 +67,7 @@ Eigen::Matrix3d flight_force_covariance(const AngularRateFactor& f, const RigCon
   return S;
 }
 
-Eigen::Matrix3d euler_equation_covariance(const AngularRateFactor& f, const RigConstants::Matrix& rig) {
+Eigen::Matrix3d euler_equation_covariance(const AngularRateFactor& f, const BodyImuConstants::Matrix& rig) {
   const Eigen::Matrix<double, 3, 5> I = f.jacobian_calibration.middleCols<5>(kInertia);
   const Eigen::Matrix<double, 3, 5> IC = I.lazyProduct(rig.block<5, 5>(kInertia, kInertia));
   return IC.lazyProduct(I.transpose());
@@ -83,7 +83,7 @@ double normalised(const AngularRateFactor& f, Eigen::Matrix3d spread, double sig
 
 // See rate_smoother.md (R32).
 template <int kFirst, int kCount>
-double mahalanobis(const RigConstants::Vector& moved, const RigConstants::Matrix& covariance) {
+double mahalanobis(const BodyImuConstants::Vector& moved, const BodyImuConstants::Matrix& covariance) {
   const Eigen::Matrix<double, kCount, 1> part = moved.segment<kCount>(kFirst);
   const Eigen::Matrix<double, kCount, kCount> spread = covariance.block<kCount, kCount>(kFirst, kFirst);
   return std::sqrt(part.dot(spread.llt().solve(part)) / kCount);
@@ -151,11 +151,11 @@ AngularRateModel::AngularRateModel(const AngularRateModelParams& params, double 
   if (!factor.ok() || !prior_covariance_.allFinite()) {
     throw InvalidParams("calibration covariance", prior_covariance_.trace(), "positive definite");
   }
-  prior_information_ = factor.inverse<RigConstants::Matrix>();
+  prior_information_ = factor.inverse<BodyImuConstants::Matrix>();
 }
 
-void AngularRateModel::compute_flight_weight(const AngularRateObservation& observation, const RigConstants& rig,
-                                             const RigConstants::Matrix& rig_covariance, double threshold_factor,
+void AngularRateModel::compute_flight_weight(const AngularRateObservation& observation, const BodyImuConstants& rig,
+                                             const BodyImuConstants::Matrix& rig_covariance, double threshold_factor,
                                              double jump, AngularRateEstimate& estimate) const {
   AngularRateFactor flight = flight_force_calibration_jacobian(observation, estimate.knot, rig);
   const Vector3d hidden = accel_sensing_axis_readings(observation, flight);
@@ -215,7 +215,7 @@ double AngularRateModel::gyro_information(const AngularRateObservation& observat
 // rate_smoother.md (R20).
 AngularRateModel::ForceFactor AngularRateModel::force_factor(const AngularRateObservation& observation,
                                                              const AngularRateEstimate& estimate,
-                                                             const RigConstants& rig) const {
+                                                             const BodyImuConstants& rig) const {
   const double flight2 = total_accel_variance(observation);
   const double share = observation.unmeasured_axes() != 0 ? params_.expert.contact.kForceShare : 0.0;
   const double contact2 =
@@ -230,7 +230,7 @@ AngularRateModel::ForceFactor AngularRateModel::force_factor(const AngularRateOb
 }
 
 void AngularRateModel::add_gyro(const AngularRateObservation& observation, const AngularRateEstimate& estimate,
-                                const RigConstants& rig, arrow::Block& block, arrow::Corner& corner) const {
+                                const BodyImuConstants& rig, arrow::Block& block, arrow::Corner& corner) const {
   const AngularRateFactor gyro =
       gyro_factor(knot_at_reading(observation, estimate), rig, corrected_rate(observation, estimate));
   const double age = observation.gyro_age_s / time_scale_s_;
@@ -253,8 +253,8 @@ void AngularRateModel::add_gyro(const AngularRateObservation& observation, const
 }
 
 void AngularRateModel::add_sample(const AngularRateObservation& observation, const AngularRateEstimate& estimate,
-                                  const RigConstants& rig, arrow::Block& block, arrow::Corner& corner,
-                                  const RigConstants::Matrix* rig_spread) const {
+                                  const BodyImuConstants& rig, arrow::Block& block, arrow::Corner& corner,
+                                  const BodyImuConstants::Matrix* rig_spread) const {
   if (observation.has_clipped_sensing_axis()) {
     add_sensing_axis_readings(observation, estimate, rig, block, corner, rig_spread);
   } else {
@@ -336,13 +336,13 @@ void AngularRateModel::add_motion_model(const AngularRateEstimate& from, const A
   }
 }
 
-void AngularRateModel::add_rig_prior(const RigConstants& rig, arrow::Corner& corner) const {
+void AngularRateModel::add_rig_prior(const BodyImuConstants& rig, arrow::Corner& corner) const {
   corner.matrix += prior_information_;
   corner.gradient -= prior_information_ * (rig.vector() - prior_constants_.vector());
 }
 
-double AngularRateModel::calibration_mahalanobis(const RigConstants& rig) const {
-  const RigConstants::Vector moved = rig.vector() - prior_constants_.vector();
+double AngularRateModel::calibration_mahalanobis(const BodyImuConstants& rig) const {
+  const BodyImuConstants::Vector moved = rig.vector() - prior_constants_.vector();
   const double lever = mahalanobis<0, 3>(moved, prior_covariance_), gyro = mahalanobis<3, 3>(moved, prior_covariance_),
                accel = mahalanobis<6, 3>(moved, prior_covariance_),
                inertia = mahalanobis<9, 5>(moved, prior_covariance_);

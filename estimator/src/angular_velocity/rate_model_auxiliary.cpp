@@ -46,7 +46,7 @@ double sensing_direction_sigma(const SensingDirections& elements, bool is_elemen
 }  // namespace
 
 void AngularRateModel::add_auxiliary_imus(const AngularRateObservation& observation,
-                                          const AngularRateEstimate& estimate, const RigConstants& rig,
+                                          const AngularRateEstimate& estimate, const BodyImuConstants& rig,
                                           arrow::Block& block) const {
   for (std::size_t i = 0; i < params_.auxiliary_imus.size(); ++i) {
     const AuxiliaryImu& mount = params_.auxiliary_imus[i];

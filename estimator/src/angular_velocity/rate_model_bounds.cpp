@@ -64,7 +64,7 @@ GaussianLikelihoodApproximation refined_bound_approximation(const GaussianMoment
 
 }  // namespace
 
-void AngularRateModel::search_flight_solutions(const AngularRateObservation& observation, const RigConstants& rig,
+void AngularRateModel::search_flight_solutions(const AngularRateObservation& observation, const BodyImuConstants& rig,
                                                AngularRateEstimate& estimate) const {
   const int unmeasured_axes = observation.unmeasured_axes();
   if (unmeasured_axes == 0 || observation.clipping.accel != 0) return;
@@ -107,7 +107,7 @@ void AngularRateModel::search_flight_solutions(const AngularRateObservation& obs
   estimate.contact_force_m_s2 = -flight.residual;
 }
 
-void AngularRateModel::initialise_rate_bounds(const AngularRateObservation& observation, const RigConstants& rig,
+void AngularRateModel::initialise_rate_bounds(const AngularRateObservation& observation, const BodyImuConstants& rig,
                                               AngularRateEstimate& estimate) const {
   estimate.use_soft_bounds = true;
   const AngularRateFactor off =
@@ -122,9 +122,10 @@ void AngularRateModel::initialise_rate_bounds(const AngularRateObservation& obse
   }
 }
 
-void AngularRateModel::update_bounds(const AngularRateObservation& observation, const RigConstants& rig,
-                                     const arrow::Conditional& conditional, const RigConstants::Matrix& rig_covariance,
-                                     double damping, AngularRateEstimate& estimate) const {
+void AngularRateModel::update_bounds(const AngularRateObservation& observation, const BodyImuConstants& rig,
+                                     const arrow::Conditional& conditional,
+                                     const BodyImuConstants::Matrix& rig_covariance, double damping,
+                                     AngularRateEstimate& estimate) const {
   if ((observation.unmeasured_axes() & observation.clipping.gyro) == 0) return;
   const AngularRateFactor off =
       sensing_axis_factor(knot_at_reading(observation, estimate), rig, corrected_rate(observation, estimate));
@@ -132,9 +133,9 @@ void AngularRateModel::update_bounds(const AngularRateObservation& observation, 
     if ((observation.unmeasured_axes() & observation.clipping.gyro & 1u << j) == 0) continue;
     const double sign = observation.sample.angular_velocity_rad_s[j] < 0.0 ? -1.0 : 1.0;
     const Vector3d row = off.jacobian_knot.row(j).head<3>();
-    Eigen::Matrix<double, 1, RigConstants::kSize> jacobian_calibration = off.jacobian_calibration.row(j);
+    Eigen::Matrix<double, 1, BodyImuConstants::kSize> jacobian_calibration = off.jacobian_calibration.row(j);
     for (int i = 0; i < 3; ++i) jacobian_calibration += row[i] * conditional.border_jacobian.row(i);
-    const Eigen::Matrix<double, 1, RigConstants::kSize> cross = jacobian_calibration.lazyProduct(rig_covariance);
+    const Eigen::Matrix<double, 1, BodyImuConstants::kSize> cross = jacobian_calibration.lazyProduct(rig_covariance);
     const Vector3d by_state = conditional.state.topLeftCorner<3, 3>().lazyProduct(row);
     // See rate_smoother.md (R22), (R35).
     const GaussianMoments marginal{sign * off.residual[j], row.dot(by_state) + cross.dot(jacobian_calibration)};

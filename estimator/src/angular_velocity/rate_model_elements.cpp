@@ -13,8 +13,8 @@ constexpr int kGyroBias = 3;
 // reading divided by time_scale_s_. The uncertainty of a fixed sensing direction (covariance `rig_spread`) reduces the
 // weight of the residual: rate_stream.md (R92).
 void add_row(const AngularRateFactor& gyro, int j, double age, double information, double pull,
-             const RigConstants::Matrix* rig_spread, arrow::Block& block, arrow::Corner& corner) {
-  const int first = RigConstants::kGyroMisalignmentIndex + 2 * j;
+             const BodyImuConstants::Matrix* rig_spread, arrow::Block& block, arrow::Corner& corner) {
+  const int first = BodyImuConstants::kGyroMisalignmentIndex + 2 * j;
   if (rig_spread != nullptr) {
     const Eigen::RowVector2d by_slopes = gyro.jacobian_calibration.block<1, 2>(j, first);
     const Eigen::Matrix2d unknown = rig_spread->block<2, 2>(first, first);
@@ -51,9 +51,9 @@ void add_row(const AngularRateFactor& gyro, int j, double age, double informatio
 }  // namespace
 
 void AngularRateModel::add_sensing_axis_readings(const AngularRateObservation& observation,
-                                                 const AngularRateEstimate& estimate, const RigConstants& rig,
+                                                 const AngularRateEstimate& estimate, const BodyImuConstants& rig,
                                                  arrow::Block& block, arrow::Corner& corner,
-                                                 const RigConstants::Matrix* rig_spread) const {
+                                                 const BodyImuConstants::Matrix* rig_spread) const {
   const AngularRateFactor gyro =
       sensing_axis_factor(knot_at_reading(observation, estimate), rig, corrected_rate(observation, estimate));
   for (int j = 0; j < 3; ++j) {

@@ -42,7 +42,7 @@ Vector3d AngularRateModel::corrected_rate(const AngularRateObservation& observat
 }
 
 AngularRateFactor AngularRateModel::flight(const AngularRateObservation& observation, const AngularRateKnot& knot,
-                                           const RigConstants& rig, Vector3d* jacobian_delay) const {
+                                           const BodyImuConstants& rig, Vector3d* jacobian_delay) const {
   const Vector3d& reading = observation.sample.specific_force_m_s2;
   const double delay_s = params_.errors.accel_delay_s + observation.accel_age_s;
   if (uses_raw_readings_ && delay_s == 0.0 && jacobian_delay == nullptr) return flight_force_factor(knot, rig, reading);
@@ -56,7 +56,7 @@ AngularRateFactor AngularRateModel::flight(const AngularRateObservation& observa
 
 AngularRateFactor AngularRateModel::flight_force_calibration_jacobian(const AngularRateObservation& observation,
                                                                       const AngularRateKnot& knot,
-                                                                      const RigConstants& rig) const {
+                                                                      const BodyImuConstants& rig) const {
   const Vector3d& reading = observation.sample.specific_force_m_s2;
   const double delay_s = params_.errors.accel_delay_s + observation.accel_age_s;
   if (uses_raw_readings_ && delay_s == 0.0) return flight_force_factor(knot, rig, reading);
@@ -68,7 +68,7 @@ AngularRateFactor AngularRateModel::flight_force_calibration_jacobian(const Angu
 
 // See rate_smoother.md (R36), (R38).
 void AngularRateModel::add_sensor_errors(const AngularRateObservation& observation, const AngularRateEstimate& estimate,
-                                         const RigConstants& rig, arrow::ErrorMatrix& block,
+                                         const BodyImuConstants& rig, arrow::ErrorMatrix& block,
                                          arrow::BorderErrors& border, SensorErrorInformation& evidence,
                                          bool rig_spread) const {
   constexpr int kGyroBias = 3, kAccelBias = 6;
@@ -103,7 +103,7 @@ void AngularRateModel::add_sensor_errors(const AngularRateObservation& observati
     block.bottomRows<3>().noalias() += observation.gyro_age_s / time_scale_s_ * sees.transpose() * pull;
     border.middleRows<3>(kGyroBias).noalias() -= sees.transpose() * pull;
     if (is_element_clipped) {
-      const int first = RigConstants::kGyroMisalignmentIndex + 2 * j;
+      const int first = BodyImuConstants::kGyroMisalignmentIndex + 2 * j;
       border.middleRows<2>(first).noalias() -= gyro.jacobian_calibration.block<1, 2>(j, first).transpose() * pull;
     }
     add(by_errors, information, gyro.residual[j] - part);

@@ -59,9 +59,9 @@ constexpr double kDeviceMahalanobisMax = 2.33;
 
 // All calibration constants except the gyro's sensing directions are held at their prior.
 AngularRateModelParams fixed_calibration(const AngularRateModelParams& params, const AngularRateModel& model) {
-  constexpr int kFirst = RigConstants::kGyroMisalignmentIndex, kCount = RigConstants::kSize - kFirst;
+  constexpr int kFirst = BodyImuConstants::kGyroMisalignmentIndex, kCount = BodyImuConstants::kSize - kFirst;
   AngularRateModelParams out = params;
-  out.calibration = RigCalibration{model.prior_constants(), 1e-12 * RigConstants::Matrix::Identity()};
+  out.calibration = BodyImuCalibration{model.prior_constants(), 1e-12 * BodyImuConstants::Matrix::Identity()};
   out.calibration->covariance.block<kCount, kCount>(kFirst, kFirst) =
       model.prior_covariance().block<kCount, kCount>(kFirst, kFirst);
   return out;
@@ -75,7 +75,7 @@ double mahalanobis_of(const AngularRateModelParams& known, const AngularRateMode
   const arrow::BorderErrors moved =
       again.error_derivatives(model, solution.estimates, solution.rig).calibration_error_jacobian;
   AngularRateModelParams wider = known;
-  wider.calibration = RigCalibration{model.prior_constants(), model.prior_covariance()};
+  wider.calibration = BodyImuCalibration{model.prior_constants(), model.prior_covariance()};
   wider.calibration->covariance +=
       moved * fit_sensor_errors({}, known.expert.error_priors).fitted_errors.covariance * moved.transpose();
   return AngularRateModel(wider, period_s).calibration_mahalanobis(solution.rig);
@@ -104,7 +104,7 @@ Status optimise_or_fix_rig_prior(const AngularRateSmoother::Params& params, cons
   }
   health.calibration_mahalanobis = mahalanobis;
   // A fixed calibration is still uncertain, so the covariance of the rates includes the covariance of the calibration.
-  constexpr int kOpen = RigConstants::kGyroMisalignmentIndex;
+  constexpr int kOpen = BodyImuConstants::kGyroMisalignmentIndex;
   fit.solution.rig_covariance.topLeftCorner<kOpen, kOpen>() =
       health.calibration.covariance.topLeftCorner<kOpen, kOpen>();
   return {};
@@ -190,7 +190,7 @@ CorrectionIterations make_correction_iterations(const AngularRateSmoother::Param
   if (out.triads_asynchronous)
     out.error_prior_sigmas.delay_s =
         std::max(out.error_prior_sigmas.delay_s, out.error_prior_sigmas.delay_uncalibrated_s);
-  const RigConstants rig = known.calibration ? known.calibration->constants : known.nominal;
+  const BodyImuConstants rig = known.calibration ? known.calibration->constants : known.nominal;
   if (out.is_delay_unknown()) out.impact_delay = guess_triad_delay(samples, clippings, rig.lever_arm_m);
   out.age_s.resize(samples.size());
   for (std::size_t k = 0; k < out.age_s.size(); ++k) out.age_s[k] = observations[k].accel_age_s;

@@ -104,12 +104,12 @@ AngularRateStream::State AngularRateStream::start() const {
   return state;
 }
 
-RigCalibration AngularRateStream::calibration(const State& state) const {
+BodyImuCalibration AngularRateStream::body_imu_calibration(const State& state) const {
   return {state.rig, impl_->inflated_calibration_covariance(state)};
 }
 
-bool AngularRateStream::calibration_is_prior(const State& state) const {
-  const RigConstants::Matrix before = start().rig_covariance;
+bool AngularRateStream::lever_arm_is_prior(const State& state) const {
+  const BodyImuConstants::Matrix before = start().rig_covariance;
   return !(state.rig_covariance.topLeftCorner<3, 3>().trace() < before.topLeftCorner<3, 3>().trace());
 }
 
@@ -170,7 +170,8 @@ void AngularRateStream::Impl::marginalise(std::size_t first, State& state) const
   add_prior(state, model, oldest.estimate.knot, block, corner);
   const double after_it = model.jump(oldest.estimate.knot, next.estimate.knot, seconds_between(oldest, next));
   const double jump = std::min(rate_change_since_marginalised(oldest, state), after_it);
-  model.compute_flight_weight(oldest.observation, state.rig, RigConstants::Matrix::Zero(), 1.0, jump, oldest.estimate);
+  model.compute_flight_weight(oldest.observation, state.rig, BodyImuConstants::Matrix::Zero(), 1.0, jump,
+                              oldest.estimate);
   // Free flights of few samples do not update the calibration. A short contact may be mistaken for free flight, because
   // the 20 calibration constants can fit any few readings.
   std::size_t run = state.consecutive_flight_samples;
@@ -361,13 +362,13 @@ bool AngularRateStream::Impl::step(State& state) const {
 }
 
 // See rate_stream.md (R97).
-RigConstants::Matrix AngularRateStream::Impl::inflated_calibration_covariance(const State& state) const {
+BodyImuConstants::Matrix AngularRateStream::Impl::inflated_calibration_covariance(const State& state) const {
   if (params.model.calibration) return state.rig_covariance;
   const double samples = static_cast<double>(state.calibration_samples) * model.independent_sample_fraction() /
                          params.expert.inflation.kSamples;
   const double largest = std::sqrt(1.0 + params.expert.inflation.covariance / (1.0 + samples));
-  RigConstants::Vector factor;
-  for (int i = 0; i < RigConstants::kSize; ++i) {
+  BodyImuConstants::Vector factor;
+  for (int i = 0; i < BodyImuConstants::kSize; ++i) {
     // The variance of the gyro bias is not inflated, because readings at rest determine this bias.
     const bool of_gyro = i >= 3 && i < 6;
     const double before = std::sqrt(model.prior_covariance()(i, i) / state.rig_covariance(i, i));

@@ -59,7 +59,7 @@ struct AngularRateStream::Impl {
   void predict_new_knot(Knot& knot, const Knot& previous, const State& state) const;
   void compute_flight_weight(State& state) const;
   bool step(State& state) const;
-  RigConstants::Matrix inflated_calibration_covariance(const State& state) const;
+  BodyImuConstants::Matrix inflated_calibration_covariance(const State& state) const;
   bool is_possibly_saturated(std::size_t at, const State& state) const;
   bool in_long_flight(std::size_t at, const State& state) const;
   double saturation_deficit_from_slopes_rad_s(std::size_t at, int axis, const State& state) const;

@@ -252,7 +252,7 @@ void AngularRateStream::Impl::add_misalignment_prior(const State& state, arrow::
   const SaturationLevels& rails = state.clipping_state.known_limits;
   const SaturationPlanes planes = rails.saturation_planes_in_use();
   for (int j = 0; j < 3; ++j) {
-    const Eigen::Index first = RigConstants::kGyroMisalignmentIndex + 2 * j;
+    const Eigen::Index first = BodyImuConstants::kGyroMisalignmentIndex + 2 * j;
     const auto prior_slopes = estimated_slopes(planes, rails.gyro_clips_after_compensation, j,
                                                model.prior_covariance().block<2, 2>(first, first));
     if (!prior_slopes) continue;

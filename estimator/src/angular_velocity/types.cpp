@@ -26,13 +26,13 @@ std::array<Eigen::Matrix3d, 5> make_inertia_basis() {
 
 }  // namespace
 
-const Eigen::Matrix3d& RigConstants::inertia_basis_matrix(int i) {
+const Eigen::Matrix3d& BodyImuConstants::inertia_basis_matrix(int i) {
   static const std::array<Eigen::Matrix3d, 5> kBasis = make_inertia_basis();
   return kBasis[static_cast<std::size_t>(i)];
 }
 
 // See rate_smoother.md (R3).
-Eigen::Matrix3d RigConstants::inertia_matrix() const {
+Eigen::Matrix3d BodyImuConstants::inertia_matrix() const {
   const double half = 0.5 * std::numbers::sqrt2, sixth = std::numbers::inv_sqrt3 * half;
   const double a = half * inertia_coordinates[0], b = sixth * inertia_coordinates[1];
   const double xy = half * inertia_coordinates[2], xz = half * inertia_coordinates[3],
@@ -42,14 +42,14 @@ Eigen::Matrix3d RigConstants::inertia_matrix() const {
   return J;
 }
 
-Eigen::Matrix<double, 5, 1> RigConstants::inertia_basis_coordinates(const Eigen::Matrix3d& inertia) {
+Eigen::Matrix<double, 5, 1> BodyImuConstants::inertia_basis_coordinates(const Eigen::Matrix3d& inertia) {
   const Eigen::Matrix3d J = 3.0 / inertia.trace() * inertia;
   Eigen::Matrix<double, 5, 1> coordinates;
   for (int i = 0; i < 5; ++i) coordinates[i] = J.cwiseProduct(inertia_basis_matrix(i)).sum();
   return coordinates;
 }
 
-Eigen::Vector3d RigConstants::sensing_direction(int j) const {
+Eigen::Vector3d BodyImuConstants::sensing_direction(int j) const {
   Eigen::Vector3d row;
   row[j] = 1.0;
   row[(j + 1) % 3] = gyro_misalignment[2 * j];
@@ -58,34 +58,34 @@ Eigen::Vector3d RigConstants::sensing_direction(int j) const {
 }
 
 // See rate_smoother.md (R2).
-RigConstants::Vector RigConstants::vector() const {
+BodyImuConstants::Vector BodyImuConstants::vector() const {
   Vector v;
   v << lever_arm_m, gyro_bias_rad_s, accel_bias_m_s2, inertia_coordinates, gyro_misalignment;
   return v;
 }
 
-void RigConstants::add(const Vector& step) {
-  lever_arm_m += step.segment<3>(0);
-  gyro_bias_rad_s += step.segment<3>(3);
-  accel_bias_m_s2 += step.segment<3>(6);
-  inertia_coordinates += step.segment<5>(9);
-  gyro_misalignment += step.segment<6>(kGyroMisalignmentIndex);
+void BodyImuConstants::add(const Vector& increment) {
+  lever_arm_m += increment.segment<3>(0);
+  gyro_bias_rad_s += increment.segment<3>(3);
+  accel_bias_m_s2 += increment.segment<3>(6);
+  inertia_coordinates += increment.segment<5>(9);
+  gyro_misalignment += increment.segment<6>(kGyroMisalignmentIndex);
 }
 
-Status check_rig_constants(const RigConstants& rig) {
-  constexpr double kMaxConstantMagnitude = RigConstants::kMaxConstantMagnitude;
+Status check_body_imu_constants(const BodyImuConstants& rig) {
+  constexpr double kMaxConstantMagnitude = BodyImuConstants::kMaxConstantMagnitude;
   const auto beyond = [](double value) { return !(std::abs(value) <= kMaxConstantMagnitude); };
-  const RigConstants::Vector all = rig.vector();
+  const BodyImuConstants::Vector all = rig.vector();
   const auto first = std::find_if(all.begin(), all.end(), beyond);
   if (first == all.end()) return {};
   const char* const name = first - all.begin() < rig.lever_arm_m.size() ? "lever_arm_m" : "rig constants";
   return {ErrorCode::out_of_range, name, *first, std::copysign(kMaxConstantMagnitude, *first)};
 }
 
-Status check_calibration(const RigCalibration& calibration) {
-  if (const Status status = check_rig_constants(calibration.constants); !status.ok()) return status;
-  const RigConstants::Matrix& P = calibration.covariance;
-  const RigConstants::Matrix symmetric = 0.5 * (P + P.transpose());
+Status check_body_imu_calibration(const BodyImuCalibration& calibration) {
+  if (const Status status = check_body_imu_constants(calibration.constants); !status.ok()) return status;
+  const BodyImuConstants::Matrix& P = calibration.covariance;
+  const BodyImuConstants::Matrix symmetric = 0.5 * (P + P.transpose());
   if (symmetric.allFinite() && dense::Cholesky(symmetric).ok()) return {};
   return {ErrorCode::degenerate, "calibration covariance", symmetric.trace(), 0.0};
 }

@@ -77,7 +77,7 @@ void MotionRegimeSmoother::join_spin_rates(std::span<const ImuSample> samples, b
 
 void MotionRegimeSmoother::join_hand_held_rates(std::span<const ImuSample> samples,
                                                 std::vector<AngularRateState>& rates, Report& report) const {
-  const RigCalibration& rig = report.rate.calibration;
+  const BodyImuCalibration& rig = report.rate.calibration;
   const Eigen::Matrix3d lever_covariance = rig.covariance.topLeftCorner<3, 3>();
   std::vector<RegimeProbabilities> probabilities;
   if (!regime_evidence_

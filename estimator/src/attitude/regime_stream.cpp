@@ -142,7 +142,7 @@ SensingAxisClipSigns MotionRegimeStream::update_clip_signs(State& state) const {
 
 RegimeProbabilities MotionRegimeStream::next(const RegimeProbabilities& before, double dt_s,
                                              std::span<const AngularRateStream::Knot> window, std::size_t k,
-                                             const RigCalibration& rig, bool unstable) const {
+                                             const BodyImuCalibration& rig, bool unstable) const {
   const AngularRateStream::Knot& knot = window[k];
   // An unstable calibration of the lever arm was probably fitted to contact forces. With an unstable calibration, rate
   // and specific force agree in any motion, so a clipped sample does not change the probabilities.
@@ -173,7 +173,7 @@ void MotionRegimeStream::update_probabilities(const AngularRateState& rate, Stat
   const double dt_s =
       state.reported_sample_count == 0 ? MotionRegimeEvidence::kMemory_s : seconds(rate.time_ns - state.reported_ns);
   state.probabilities = next(state.probabilities, dt_s, state.rate.window, index_of(rate, state),
-                             rate_.calibration(state.rate), calibration_is_unstable(state));
+                             rate_.body_imu_calibration(state.rate), calibration_is_unstable(state));
   const auto dropped = static_cast<double>(state.rate.calibration_reset_count - state.calibration_reset_count);
   state.calibration_reset_count = state.rate.calibration_reset_count;
   state.calibration_reset_rate = std::exp(-dt_s / params_.rate.lag_s) * state.calibration_reset_rate + dropped;
@@ -204,7 +204,7 @@ double MotionRegimeStream::hand_held_weight(const AngularRateState& rate, State&
   if (out < params_.hand_held_probability_min || !before) return out;
   // Samples after the reported sample update only a copy of the probabilities, because their rates are not final.
   RegimeProbabilities probabilities = state.probabilities;
-  const RigCalibration rig = rate_.calibration(state.rate);
+  const BodyImuCalibration rig = rate_.body_imu_calibration(state.rate);
   const bool unstable = calibration_is_unstable(state);
   for (std::size_t k = here + 1; k < window.size(); ++k) {
     const TimeNs now_ns = window[k].observation.sample.time_ns;

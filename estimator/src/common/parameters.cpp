@@ -5,7 +5,7 @@
 
 namespace tumble::detail {
 
-void BoundsChecker::check(double value, const Field& field) {
+void BoundsChecker::check(double value, const ParameterInfo& field) {
   if (!out_.status.ok() || (value >= field.low && value <= field.high)) return;
   out_.names.at(out_.prefix_count++) = field.name;
   const bool above = value > field.high;

@@ -8,6 +8,7 @@
 
 #include "odometry_impl.hpp"
 #include "tumble/common/detail/sample_check.hpp"
+#include "tumble/mapping/detail/odometer_reading.hpp"
 #include "unknowns.hpp"
 
 namespace tumble {
@@ -141,23 +142,23 @@ Status LidarInertialOdometry::predict(std::span<const ImuSample> samples, std::s
   return {};
 }
 
-LidarImuCalibration LidarInertialOdometry::calibration() const {
+LidarImuCalibration LidarInertialOdometry::lidar_calibration() const {
   LidarImuCalibration out = impl_->sweep_boundary.state_estimate.mean.calibration;
   out.time_offset_s += impl_->params.time_offset_s;
   return out;
 }
 
-LidarImuCalibration::Covariance LidarInertialOdometry::calibration_covariance() const {
+LidarImuCalibration::Covariance LidarInertialOdometry::lidar_calibration_covariance() const {
   return mapping::unknowns::sub_block(impl_->sweep_boundary.state_estimate.state_error_covariance,
                                       mapping::unknowns::calibration);
 }
 
-LidarImuCalibration::Covariance LidarInertialOdometry::next_calibration_prior_covariance() const {
+LidarImuCalibration::Covariance LidarInertialOdometry::next_lidar_calibration_prior_covariance() const {
   return mapping::unknowns::sub_block(impl_->sweep_boundary.state_estimate.prior_weight_covariance,
                                       mapping::unknowns::calibration);
 }
 
-Status LidarInertialOdometry::check_vertical() const {
+Status LidarInertialOdometry::check_gravity_direction() const {
   constexpr double kMost_rad = 0.02;
   namespace u = mapping::unknowns;
   const double variance =
@@ -191,7 +192,7 @@ std::vector<std::vector<PoseState>> LidarInertialOdometry::window_trajectories()
   return all;
 }
 
-std::size_t LidarInertialOdometry::map_bytes() const {
+std::size_t LidarInertialOdometry::map_memory_bytes() const {
   return impl_->map.bytes();
 }
 

@@ -220,7 +220,7 @@ void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, 
     report.eigenvalue_ratio = aligned.eigenvalues[5] > 0.0 ? aligned.eigenvalues[0] / aligned.eigenvalues[5] : 0.0;
     report.least_constrained_direction = aligned.directions.col(0);
     report.least_constrained_sigma_m = aligned.least_constrained_sigma_m;
-    report.mean_saturation_deficit_rad_s = aligned.mean.saturation_deficit_rad_s.rowwise().mean();
+    report.mean_clipping_correction_rad_s = aligned.mean.saturation_deficit_rad_s.rowwise().mean();
   }
   mapping::judge_registration(tracking, scene.points.size(), prior_certain, attempt, placed);
 }
@@ -276,7 +276,7 @@ void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Swe
     window.smooth();
     window.move_inserted_sweeps(map);
   }
-  if (window.is_full()) report.smoothed_trajectory = poses_of(window.sweeps().front());
+  if (window.is_full()) report.final_poses_of_earlier_sweep = poses_of(window.sweeps().front());
   mapping::sweep_boundary_after(params, sweep.start, motion, sweep.trajectory, aligned, sweep_boundary);
   report.pose = sweep_boundary.state_estimate.mean.state.pose();
   report.pose.covariance = report.trajectory.back().covariance;

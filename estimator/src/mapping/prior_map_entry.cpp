@@ -11,7 +11,7 @@ Status LidarInertialOdometry::set_prior_map(PriorMap map) {
   if (const Status status = check_prior_map(map); !status.ok()) return status;
   if (mapping::has_started(impl_->tracking))
     return {ErrorCode::time_order, "number of sweeps before the prior map", 1.0, 0.0};
-  if (map.T_prior_map_imu) set_start_pose(*map.T_prior_map_imu);
+  if (map.T_MI) set_start_pose(*map.T_MI);
   impl_->localiser = mapping::MapLocaliser(std::move(map));
   return {};
 }
@@ -20,7 +20,7 @@ void LidarInertialOdometry::copy_prior_map(const LidarInertialOdometry& other) {
   impl_->localiser = other.impl_->localiser;
   impl_->localiser.restart(impl_->start_pose);
   const PriorMap* const map = prior_map();
-  if (!impl_->start_pose && map != nullptr && map->T_prior_map_imu) set_start_pose(*map->T_prior_map_imu);
+  if (!impl_->start_pose && map != nullptr && map->T_MI) set_start_pose(*map->T_MI);
 }
 
 Status LidarInertialOdometry::check_localised() const {

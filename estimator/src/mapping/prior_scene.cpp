@@ -351,11 +351,13 @@ Status check_prior_map(const PriorMap& map) {
   const auto with_normal = static_cast<std::size_t>(std::count_if(map.points.begin(), map.points.end(), has_normal));
   if (with_normal < kLeast)
     return {ErrorCode::insufficient_data, "prior map's points with normals", double(with_normal), double(kLeast)};
-  if (!std::isfinite(map.sigma_m) || !std::isfinite(map.sigma_rad) ||
-      (map.T_prior_map_imu && !map.T_prior_map_imu->matrix().allFinite()))
+  if (!std::isfinite(map.start_position_sigma_m) || !std::isfinite(map.start_heading_sigma_rad) ||
+      (map.T_MI && !map.T_MI->matrix().allFinite()))
     return {ErrorCode::non_finite, "pose in the prior map", std::nan(""), 0.0};
-  if (map.sigma_m < 0.0) return {ErrorCode::out_of_range, "sigma_m", map.sigma_m, 0.0};
-  if (map.sigma_rad < 0.0) return {ErrorCode::out_of_range, "sigma_rad", map.sigma_rad, 0.0};
+  if (map.start_position_sigma_m < 0.0)
+    return {ErrorCode::out_of_range, "start_position_sigma_m", map.start_position_sigma_m, 0.0};
+  if (map.start_heading_sigma_rad < 0.0)
+    return {ErrorCode::out_of_range, "start_heading_sigma_rad", map.start_heading_sigma_rad, 0.0};
   return {};
 }
 

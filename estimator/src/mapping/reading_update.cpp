@@ -9,6 +9,7 @@
 #include "../common/symmetric.hpp"
 #include "prediction.hpp"
 #include "tumble/common/types.hpp"
+#include "tumble/mapping/detail/odometer_reading.hpp"
 #include "unknowns.hpp"
 
 namespace tumble::mapping {
@@ -123,7 +124,8 @@ PredictedReading predict_reading(const VelocityReading& reading, const SweepMoti
 }
 
 /// See mapping.md (R36).
-PredictedReading predict_reading(const MotionReading& reading, const SweepMotion& sweep, const StateOffsets& offsets) {
+PredictedReading predict_reading(const RelativePoseReading& reading, const SweepMotion& sweep,
+                                 const StateOffsets& offsets) {
   PredictedReading out = zero_innovation<kMost>();
   const MotionInstant from = sweep.at(reading.from_ns, offsets), to = sweep.at(reading.to_ns, offsets);
   const Eigen::Matrix3d to_I = from.q_WI.toRotationMatrix().transpose();

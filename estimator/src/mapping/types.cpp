@@ -7,6 +7,7 @@
 
 #include "../common/dense.hpp"
 #include "tumble/common/types.hpp"
+#include "tumble/mapping/detail/odometer_reading.hpp"
 
 namespace tumble {
 
@@ -34,7 +35,7 @@ double LidarImuCalibrationPrior::distance_in_sigmas(const LidarImuCalibration& e
                    share(std::abs(by[6]), time_offset_sigma_s)});
 }
 
-Status check_calibration_distance(double deviations) {
+Status check_lidar_calibration_distance(double deviations) {
   constexpr double kMost = LidarImuCalibrationPrior::kDistanceMax_sigmas;
   if (deviations <= kMost) return {};
   return {ErrorCode::out_of_range,
@@ -56,7 +57,7 @@ Status check(const VelocityReading& reading) {
   return {};
 }
 
-Status check(const MotionReading& reading) {
+Status check(const RelativePoseReading& reading) {
   if (!reading.relative_pose.matrix().allFinite()) return not_finite("T_from_to");
   if (!reading.covariance.allFinite()) return not_finite("covariance");
   if (reading.to_ns <= reading.from_ns)
@@ -77,20 +78,20 @@ Status check_odometer_reading(const OdometerReading& reading) {
 }
 
 TimeNs reading_start_ns(const OdometerReading& reading) {
-  const auto* const motion = std::get_if<MotionReading>(&reading);
+  const auto* const motion = std::get_if<RelativePoseReading>(&reading);
   return motion != nullptr ? motion->from_ns : std::get_if<VelocityReading>(&reading)->time_ns;
 }
 
 TimeNs reading_end_ns(const OdometerReading& reading) {
-  const auto* const motion = std::get_if<MotionReading>(&reading);
+  const auto* const motion = std::get_if<RelativePoseReading>(&reading);
   return motion != nullptr ? motion->to_ns : std::get_if<VelocityReading>(&reading)->time_ns;
 }
 
 PoseState PositionFrame::transform(const PoseState& in_W) const {
   PoseState out = in_W;
-  const Eigen::Matrix3d R = T_readings_world.linear();
+  const Eigen::Matrix3d R = T_PW.linear();
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
-  out.position_W_m = T_readings_world * in_W.position_W_m;
+  out.position_W_m = T_PW * in_W.position_W_m;
   out.orientation_W = (Eigen::Quaterniond(R) * in_W.orientation_W).normalized();
   out.velocity_W_m_s = R * in_W.velocity_W_m_s;
   Eigen::Matrix<double, 6, 4> J = Eigen::Matrix<double, 6, 4>::Zero();

@@ -94,7 +94,7 @@ class MappingPass {
     if (added.report.trajectory.empty()) return;
     last_pose_time_ns_ = added.report.pose.time_ns;
     last_end_ns_ = sweep.end_ns;
-    apply_smoothed_poses(std::exchange(added.report.smoothed_trajectory, {}));
+    apply_smoothed_poses(std::exchange(added.report.final_poses_of_earlier_sweep, {}));
   }
 
   void apply_smoothed_poses(std::vector<PoseState> smoothed) {
@@ -117,7 +117,7 @@ class MappingPass {
 
 using Params = LidarInertialOdometry::Params;
 
-LidarImuCalibrationPrior calibration_prior(const Params& started, const Params& given) {
+LidarImuCalibrationPrior lidar_calibration_prior(const Params& started, const Params& given) {
   LidarImuCalibrationPrior out;
   out.calibration.T_IL = started.T_IL;
   out.calibration.time_offset_s = started.time_offset_s;
@@ -177,10 +177,11 @@ bool MappedRecording::calibration_is_off() const {
 
 void MappedRecording::add_findings(const LidarScale& scale, SensorHealth& health) const {
   health.add(HealthFinding::Kind::lidar_scale, scale.verdict(), "lidar");
-  health.add(HealthFinding::Kind::vertical_unknown, mapper.check_vertical(), "");
+  health.add(HealthFinding::Kind::vertical_unknown, mapper.check_gravity_direction(), "");
   health.add(HealthFinding::Kind::tracking_lost, localisation.verdict(), "");
   if (calibration_is_off())
-    health.add(HealthFinding::Kind::lidar_calibration, check_calibration_distance(calibration_deviations), "lidar");
+    health.add(HealthFinding::Kind::lidar_calibration, check_lidar_calibration_distance(calibration_deviations),
+               "lidar");
 }
 
 double calibration_contradiction(const LidarImuCalibrationPrior& stated, const LidarInertialOdometry& mapper) {
@@ -190,8 +191,8 @@ double calibration_contradiction(const LidarImuCalibrationPrior& stated, const L
       stated.time_offset_sigma_s;
   constexpr double kRegular = 1e-4;  // fraction of the prior variance; keeps S positive if a pass adds no information
   const Matrix7 S = Matrix7(((1.0 + kRegular) * sigma.cwiseAbs2().array() + 1e-18).matrix().asDiagonal()) -
-                    mapper.next_calibration_prior_covariance().topLeftCorner<7, 7>();
-  const auto change = mapper.calibration().minus(stated.calibration);
+                    mapper.next_lidar_calibration_prior_covariance().topLeftCorner<7, 7>();
+  const auto change = mapper.lidar_calibration().minus(stated.calibration);
   const auto mahalanobis2 = [](const auto& x, const auto& P) { return x.dot(P.ldlt().solve(x)); };
   const Eigen::Vector3d rotation = change.head<3>(), translation = change.segment<3>(3);
   return std::sqrt(std::max({0.0, mahalanobis2(rotation, S.topLeftCorner<3, 3>()),
@@ -213,9 +214,9 @@ MappedRecording map_with_calibration(const MappingInput& input, const LidarInert
     out = map_in_one_pass(levelled, started);
     ++passes;
   };
-  const bool contradicts =
-      determines_lidar_calibration(out) && calibration_contradiction(calibration_prior(started, started), out.mapper) >
-                                               LidarImuCalibrationPrior::kDistanceMax_sigmas;
+  const bool contradicts = determines_lidar_calibration(out) &&
+                           calibration_contradiction(lidar_calibration_prior(started, started), out.mapper) >
+                               LidarImuCalibrationPrior::kDistanceMax_sigmas;
   if (contradicts) {
     given = with_uncertain_mounting(params);
     started = given;
@@ -223,22 +224,23 @@ MappedRecording map_with_calibration(const MappingInput& input, const LidarInert
   }
   double moved = 0.0;
   while (determines_lidar_calibration(out)) {
-    moved = calibration_prior(started, given).distance_in_sigmas(out.mapper.calibration());
+    moved = lidar_calibration_prior(started, given).distance_in_sigmas(out.mapper.lidar_calibration());
     if (moved <= LidarImuCalibrationPrior::kDistanceMax_sigmas || passes > kExtraPassesMax) break;
-    start_from_calibration(out.mapper.calibration(), started);
+    start_from_calibration(out.mapper.lidar_calibration(), started);
     again();
   }
   const bool converged = determines_lidar_calibration(out) && moved <= LidarImuCalibrationPrior::kDistanceMax_sigmas;
   if (converged) {
-    start_from_calibration(out.mapper.calibration(), started);
-    set_sigmas(out.mapper.next_calibration_prior_covariance().diagonal().cwiseSqrt(), started);
+    start_from_calibration(out.mapper.lidar_calibration(), started);
+    set_sigmas(out.mapper.next_lidar_calibration_prior_covariance().diagonal().cwiseSqrt(), started);
     again();
   } else if (determines_lidar_calibration(out) && !levelled.start_tilt_correction &&
              out.mapper.start_tilt_correction()) {
     again();
   }
   out.mapping_pass_count = passes;
-  out.calibration_deviations = calibration_prior(params, params).distance_in_sigmas(out.mapper.calibration());
+  out.calibration_deviations =
+      lidar_calibration_prior(params, params).distance_in_sigmas(out.mapper.lidar_calibration());
   out.calibration_converged = converged;
   out.calibration_replaced = converged && contradicts;
   return out;

@@ -53,8 +53,8 @@ PositionFrame fit_position_frame(const std::deque<PositionAlignment::PositionPai
   out.reference_point_W_m = mean_W_m;
   out.covariance.diagonal() << Eigen::Vector3d::Constant(1.0 / weight),
       spread > 0.0 ? 1.0 / spread : std::numeric_limits<double>::max();
-  out.T_readings_world.linear() = so3::exp(std::atan2(sine, cosine) * kUp).toRotationMatrix();
-  out.T_readings_world.translation() = mean_P_m - out.T_readings_world.linear() * mean_W_m;
+  out.T_PW.linear() = so3::exp(std::atan2(sine, cosine) * kUp).toRotationMatrix();
+  out.T_PW.translation() = mean_P_m - out.T_PW.linear() * mean_W_m;
   return out;
 }
 
@@ -130,8 +130,7 @@ void PositionAlignment::fit() {
   while (inliers.size() >= least) {
     const PositionFrame found = fit_position_frame(inliers);
     const auto misfit = [&](const PositionPair& pair) {
-      return (found.T_readings_world * pair.antenna_position_W_m - pair.antenna_position_P_m).squaredNorm() /
-             pair.variance_m2;
+      return (found.T_PW * pair.antenna_position_W_m - pair.antenna_position_P_m).squaredNorm() / pair.variance_m2;
     };
     const auto worst =
         std::max_element(inliers.begin(), inliers.end(),

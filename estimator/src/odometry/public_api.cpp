@@ -33,7 +33,7 @@ Status TumblingOdometry::add_sweep(std::size_t lidar, TimeNs start_ns, TimeNs en
 Status TumblingOdometry::add_velocity(const VelocityReading& velocity) {
   return impl_->add_reading(velocity);
 }
-Status TumblingOdometry::add_motion(const MotionReading& motion) {
+Status TumblingOdometry::add_relative_pose(const RelativePoseReading& motion) {
   return impl_->add_reading(motion);
 }
 Status TumblingOdometry::add_position(const PositionReading& position) {
@@ -72,8 +72,8 @@ std::optional<AngularRateState> TumblingOdometry::newest_rate() const {
 const std::optional<AngularRateState>& TumblingOdometry::newest_smoothed_rate() const {
   return impl_->odometry_pass_.newest_smoothed_rate();
 }
-RigCalibration TumblingOdometry::rig_calibration() const {
-  return impl_->rig_calibration();
+BodyImuCalibration TumblingOdometry::body_imu_calibration() const {
+  return impl_->body_imu_calibration();
 }
 const SaturationLevels& TumblingOdometry::saturation_levels() const {
   return impl_->saturation_levels();
@@ -122,8 +122,8 @@ RollingOdometry::~RollingOdometry() = default;
 Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
   return impl_->add_imus(samples);
 }
-Status RollingOdometry::add_imu(std::size_t unit, const ImuSample& sample) {
-  return impl_->add_imu(unit, sample);
+Status RollingOdometry::add_imu(std::size_t imu_index, const ImuSample& sample) {
+  return impl_->add_imu(imu_index, sample);
 }
 std::optional<RollingOdometry::Pose> RollingOdometry::newest() const {
   return impl_->newest();
@@ -146,8 +146,8 @@ SensorHealth RollingOdometry::health() const {
 const MergedImuRecording* RollingOdometry::whole_recording_result() const {
   return impl_->whole_recording_result_.get();
 }
-RollingOdometry::Calibration RollingOdometry::calibration() const {
-  return impl_->calibration();
+RollingOdometry::SphereCalibration RollingOdometry::sphere_calibration() const {
+  return impl_->sphere_calibration();
 }
 bool RollingOdometry::started_in_motion() const {
   return impl_->state_->live_filter.started_in_motion;

@@ -263,7 +263,7 @@ std::optional<RollingOdometry::Pose> RollingOdometry::Impl::take() {
   return out;
 }
 
-RollingOdometry::Calibration RollingOdometry::Impl::calibration() const {
+RollingOdometry::SphereCalibration RollingOdometry::Impl::sphere_calibration() const {
   const bool newest = is_live_ || (!finished_ && !state_->committed_state.started);
   const RollingNominalState& constants = newest ? state_->live_filter.nominal : state_->constants;
   return {-constants.lever_arm_error_m, params_.radius_m + constants.radius_error_m, state_->radius_sigma_m};

@@ -51,7 +51,7 @@ struct RollingOdometry::Impl {
   void reset();
   void reset(const Eigen::Isometry3d& T_WG);
   SensorHealth health() const;
-  Calibration calibration() const;
+  SphereCalibration sphere_calibration() const;
   std::size_t rejected_readings() const;
   std::optional<double> estimated_jitter_s() const;
   std::vector<std::byte> save() const;

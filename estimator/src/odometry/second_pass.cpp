@@ -107,7 +107,7 @@ MotionRegimeStream::Params SecondMappingPass::rate_params_with_delay() const {
 MotionRegimeStream::Params SecondMappingPass::calibrated_rate(const OdometryPass& first) const {
   MotionRegimeStream::Params out = rate_params_with_delay();
   const AngularRateStream::State& state = first.rate_stream_state().rate;
-  out.rate.model.calibration = first.rates().rate().calibration(state);
+  out.rate.model.calibration = first.rates().rate().body_imu_calibration(state);
   out.rate.model.calibration->covariance *= kInflation;
   start_from_saturation_levels(state.clipping_state.known_limits, out.rate);
   return out;
@@ -116,8 +116,8 @@ MotionRegimeStream::Params SecondMappingPass::calibrated_rate(const OdometryPass
 LidarInertialOdometry::Params SecondMappingPass::calibrated_mapping_params(const OdometryPass& first) const {
   LidarInertialOdometry::Params out = mapping_;
   if (kSweepsPerRejection * rejected_in_first_pass_ > sweeps_.size()) return out;
-  const LidarImuCalibration learnt = first.mapper().calibration();
-  const auto sigma = first.mapper().next_calibration_prior_covariance().diagonal().cwiseSqrt().eval();
+  const LidarImuCalibration learnt = first.mapper().lidar_calibration();
+  const auto sigma = first.mapper().next_lidar_calibration_prior_covariance().diagonal().cwiseSqrt().eval();
   out.T_IL = learnt.T_IL;
   out.time_offset_s = learnt.time_offset_s;
   out.mount_sigma_rad = sigma.head<3>().maxCoeff();
@@ -129,7 +129,7 @@ LidarInertialOdometry::Params SecondMappingPass::calibrated_mapping_params(const
 bool SecondMappingPass::start_second_pass(const OdometryPass& first) {
   const MotionRegimeStream::Params rate = calibrated_rate(first);
   const LidarInertialOdometry::Params mapping = calibrated_mapping_params(first);
-  if (!check_calibration(*rate.rate.model.calibration).ok() || !check_odometry_params(mapping).ok()) {
+  if (!check_body_imu_calibration(*rate.rate.model.calibration).ok() || !check_odometry_params(mapping).ok()) {
     abandon_second_pass();  // the estimated calibration is out of bounds
     return false;
   }

@@ -43,7 +43,7 @@ constexpr double kSweepsMax_hz = 20.0;  // maximum sweep rate of a lidar, for th
 
 TumblingOdometry::Impl::Impl(const Params& params)
     : params_(params),
-      stated_calibration_(params.calibration_prior()),
+      stated_calibration_(params.lidar_calibration_prior()),
       stamp_order_(params.expert->rate.rate.kGapMax_s),
       outlier_filter_(outlier_params(params)),
       sample_clock_(params.expert->stamps),
@@ -169,13 +169,13 @@ SensorHealth TumblingOdometry::Impl::health() const {
   out.add(Kind::force_at_rest, odometry_pass_.check_force_at_rest(), "imu");
   add_findings(plausibility_, plausibility_state_, "imu", out);
   out.add(Kind::lidar_scale, odometry_pass_.lidar_scale().verdict(), "lidar");
-  out.add(Kind::vertical_unknown, mapper().check_vertical(), "");
+  out.add(Kind::vertical_unknown, mapper().check_gravity_direction(), "");
   out.add(Kind::not_localised, mapper().check_localised(), "");
   const Localisation& localisation = odometry_pass_.localisation();
   out.add(Kind::tracking_lost, localisation.current_verdict(), "", "", localisation.lost_since_ns());
-  const double deviations = std::max(stated_calibration_.distance_in_sigmas(mapper().calibration()),
+  const double deviations = std::max(stated_calibration_.distance_in_sigmas(mapper().lidar_calibration()),
                                      calibration_contradiction(stated_calibration_, mapper()));
-  out.add(Kind::lidar_calibration, check_calibration_distance(deviations), "lidar");
+  out.add(Kind::lidar_calibration, check_lidar_calibration_distance(deviations), "lidar");
   return out;
 }
 
@@ -330,7 +330,7 @@ void TumblingOdometry::Impl::reset(const Eigen::Isometry3d& T_WI) {
 void TumblingOdometry::Impl::start_rate_estimation() {
   MotionRegimeStream::Params params = rate_stream_params(params_);
   params.rate.model.nominal.gyro_bias_rad_s = gyro_offset_rad_s();
-  if (const RigCalibration learnt = rig_calibration(); check_calibration(learnt).ok())
+  if (const BodyImuCalibration learnt = body_imu_calibration(); check_body_imu_calibration(learnt).ok())
     params.rate.model.calibration = learnt;
   odometry_pass_.start_rate_estimation(params);
 }

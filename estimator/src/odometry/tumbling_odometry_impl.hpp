@@ -44,7 +44,7 @@ struct TumblingOdometry::Impl {
   std::optional<AngularRateState> newest_rate() const {
     return odometry_pass_.rates().rate().newest(odometry_pass_.rate_stream_state().rate);
   }
-  RigCalibration rig_calibration() const;
+  BodyImuCalibration body_imu_calibration() const;
   const SaturationLevels& saturation_levels() const;
   std::optional<double> estimated_jitter_s() const;
   const LidarInertialOdometry& mapper() const;

@@ -113,9 +113,10 @@ const LidarScale& TumblingOdometry::Impl::lidar_scale() const {
   return whole_recording_result_ ? whole_recording_result_->scale : odometry_pass_.lidar_scale();
 }
 
-RigCalibration TumblingOdometry::Impl::rig_calibration() const {
-  return whole_recording_result_ ? whole_recording_result_->report.rate.calibration
-                                 : odometry_pass_.rates().rate().calibration(odometry_pass_.rate_stream_state().rate);
+BodyImuCalibration TumblingOdometry::Impl::body_imu_calibration() const {
+  return whole_recording_result_
+             ? whole_recording_result_->report.rate.calibration
+             : odometry_pass_.rates().rate().body_imu_calibration(odometry_pass_.rate_stream_state().rate);
 }
 
 const SaturationLevels& TumblingOdometry::Impl::saturation_levels() const {

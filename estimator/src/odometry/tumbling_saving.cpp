@@ -16,7 +16,7 @@ namespace {
 struct SavedTumblingState {
   Eigen::Vector3d lever_arm_I_m = Eigen::Vector3d::Zero();        ///< stated lever arm
   Eigen::Isometry3d stated_T_IL = Eigen::Isometry3d::Identity();  ///< stated mounting of the lidar
-  std::optional<RigCalibration> rig;                              ///< empty if the rig constants were not estimated
+  std::optional<BodyImuCalibration> rig;                          ///< empty if the rig constants were not estimated
   std::optional<KnownSensorErrors> sensor_errors;
   SaturationLevels saturation_levels;
   LidarImuCalibrationPrior lidar;  ///< estimated mounting and time offset, with standard deviations
@@ -26,7 +26,7 @@ struct SavedTumblingState {
 
 template <class Visit, class Rig>
 void visit_rig(Visit& visit, Rig& rig) {
-  constexpr double kMost = RigConstants::kMaxConstantMagnitude;
+  constexpr double kMost = BodyImuConstants::kMaxConstantMagnitude;
   visit("lever_arm_m", rig.constants.lever_arm_m, -kMost, kMost);
   visit("gyro_bias_rad_s", rig.constants.gyro_bias_rad_s, -kMost, kMost);
   visit("accel_bias_m_s2", rig.constants.accel_bias_m_s2, -kMost, kMost);
@@ -85,7 +85,7 @@ Status read(std::span<const std::byte> bytes, const Eigen::Vector3d& lever_arm_I
   in.require_equal("T_IL", saved.stated_T_IL.matrix(), T_IL.matrix());
   if (!in.status().ok()) return in.status();
   if (saved.rig) {
-    if (const Status status = check_calibration(*saved.rig); !status.ok()) return status;
+    if (const Status status = check_body_imu_calibration(*saved.rig); !status.ok()) return status;
   }
   if (saved.sensor_errors) {
     if (const Status status = check_known_errors(*saved.sensor_errors); !status.ok()) return status;
@@ -98,9 +98,9 @@ void set_prior_pose(const PoseState& pose, PriorMap& map) {
   Eigen::Isometry3d T_MI = Eigen::Isometry3d::Identity();
   T_MI.linear() = pose.orientation_W.toRotationMatrix();
   T_MI.translation() = pose.position_W_m;
-  map.T_prior_map_imu = T_MI;
-  map.sigma_m = std::sqrt(pose.covariance.diagonal().head<3>().maxCoeff());
-  map.sigma_rad = std::sqrt(pose.covariance(5, 5));
+  map.T_MI = T_MI;
+  map.start_position_sigma_m = std::sqrt(pose.covariance.diagonal().head<3>().maxCoeff());
+  map.start_heading_sigma_rad = std::sqrt(pose.covariance(5, 5));
 }
 
 /// Without localisation in the prior map, the saved covariance includes the uncertainty of the start pose.
@@ -118,8 +118,8 @@ std::optional<PoseState> newest_or_start_pose(const TumblingOdometry::Impl& odom
   }
   if (in_map) return out;
   const PriorMap& map = *mapper.prior_map();
-  out.covariance.diagonal().head<3>().array() += map.sigma_m * map.sigma_m;
-  out.covariance(5, 5) += map.sigma_rad * map.sigma_rad;
+  out.covariance.diagonal().head<3>().array() += map.start_position_sigma_m * map.start_position_sigma_m;
+  out.covariance(5, 5) += map.start_heading_sigma_rad * map.start_heading_sigma_rad;
   return out;
 }
 
@@ -138,15 +138,15 @@ std::vector<std::byte> TumblingOdometry::Impl::save_with_pose(const std::optiona
   const AngularRateStream::State& state = odometry_pass_.rate_stream_state().rate;
   const AngularRateStreamParams& used = odometry_pass_.rates().params().rate;
   const bool estimated = whole_recording_result_ ? !whole_recording_result_->report.rate.calibration_at_prior
-                                                 : !stream.calibration_is_prior(state);
-  if (estimated || used.model.calibration) out->rig = rig_calibration();
-  if (out->rig && !check_calibration(*out->rig).ok()) out->rig.reset();
+                                                 : !stream.lever_arm_is_prior(state);
+  if (estimated || used.model.calibration) out->rig = body_imu_calibration();
+  if (out->rig && !check_body_imu_calibration(*out->rig).ok()) out->rig.reset();
   if (whole_recording_result_ && estimated) out->sensor_errors = whole_recording_result_->report.rate.sensor_errors;
   if (!whole_recording_result_ && (state.sensor_errors.front().accel_delay_state.delay_found || used.calibrated_errors))
     out->sensor_errors = stream.sensor_errors(state);
   out->saturation_levels = saturation_levels();
-  const auto sigma = mapper().next_calibration_prior_covariance().diagonal().cwiseSqrt().eval();
-  out->lidar = {mapper().calibration(), sigma.head<3>().maxCoeff(), sigma.segment<3>(3).maxCoeff(), sigma[6]};
+  const auto sigma = mapper().next_lidar_calibration_prior_covariance().diagonal().cwiseSqrt().eval();
+  out->lidar = {mapper().lidar_calibration(), sigma.head<3>().maxCoeff(), sigma.segment<3>(3).maxCoeff(), sigma[6]};
 
   const PriorMap* const prior = mapper().prior_map();
   out->extend = prior == nullptr || prior->extend;
@@ -190,7 +190,7 @@ Status TumblingOdometry::Impl::load(std::span<const std::byte> bytes, std::optio
   map.extend = saved.extend;
   if (saved.pose) {
     set_prior_pose(*saved.pose, map);
-    fresh->odometry_pass_.set_start_pose(*map.T_prior_map_imu);
+    fresh->odometry_pass_.set_start_pose(*map.T_MI);
   }
   if (check_prior_map(map).ok()) (void)fresh->odometry_pass_.set_prior_map(std::move(map));
   *this = std::move(*fresh);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/odometry/detail/waiting_input.hpp"
+#include "tumble/mapping/detail/odometer_reading.hpp"
 
 #include <algorithm>
 
@@ -16,7 +17,7 @@ TimeNs middle_ns(const OdometerReading& reading) {
 
 Status WaitingReadings::add(const OdometerReading& reading, TimeNs done_ns, TimeNs latest_ns, std::size_t most) {
   if (const Status status = check_odometer_reading(reading); !status.ok()) return status;
-  const bool motion = std::holds_alternative<MotionReading>(reading);
+  const bool motion = std::holds_alternative<RelativePoseReading>(reading);
   const char* const first = motion ? "from_ns" : "time_ns";
   const char* const last = motion ? "to_ns" : "time_ns";
   const TimeNs from_ns = reading_start_ns(reading), to_ns = reading_end_ns(reading),

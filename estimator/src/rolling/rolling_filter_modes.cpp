@@ -44,7 +44,7 @@ constexpr double kRoughCost = 0.2;
 // The start of a ramp is detected as a bump, so a slope is more probable after a bump.
 constexpr double kInclineAfterBump = 4.0;
 constexpr ContactMode kModes[] = {ContactMode::grip, ContactMode::slip, ContactMode::bump, ContactMode::incline,
-                                  ContactMode::uneven};
+                                  ContactMode::rough};
 static_assert(std::size(kModes) == kContactModes);
 
 double gaussian_log_density(double value, double variance) {
@@ -90,7 +90,7 @@ double log_likelihood_stationary(const rolling::Contact& c, const RollingFilter:
   };
   Eigen::LLT<Eigen::Matrix3d> factor;
   double log_det = 0.0, cost = 0.0;
-  if (mode == ContactMode::uneven) {
+  if (mode == ContactMode::rough) {
     // On a rough floor, the larger contact velocity variance of the mode uneven would reduce the likelihood of every
     // filter step. For the mode uneven, the likelihood is therefore normalised with the variance of the mode grip, and
     // its logarithm is reduced by kRoughCost.
@@ -98,7 +98,7 @@ double log_likelihood_stationary(const rolling::Contact& c, const RollingFilter:
     cost = kRoughCost;
   }
   const double own = log_det_with(rolling::contact_variance(c, mode), factor);
-  if (mode != ContactMode::uneven) log_det = own;
+  if (mode != ContactMode::rough) log_det = own;
   const double square = factor.matrixL().solve(c.velocity(x)).squaredNorm();
   return -cost - 0.5 * (square + log_det + 3.0 * std::log(2.0 * std::numbers::pi));
 }
@@ -109,10 +109,10 @@ double log_likelihood_moving(const rolling::Contact& c, const RollingFilter::Hyp
   const Eigen::Vector3d change = u - h.contact_velocity_W_m_s;
   const double horizontal = log_normalised_square(change.head<2>().squaredNorm());
   if (mode == ContactMode::bump) return horizontal + log_floor_rise(change.z());
-  const double check_vertical =
+  const double check_gravity_direction =
       c.measurement_jacobian.row(2) * h.covariance * c.measurement_jacobian.row(2).transpose() +
       squared(RollingContactParams::kVerticalSigma_m_s);
-  return horizontal + gaussian_log_density(u.z(), check_vertical);
+  return horizontal + gaussian_log_density(u.z(), check_gravity_direction);
 }
 
 /// See rolling.md (R22).
@@ -122,11 +122,11 @@ double log_transition(const RollingParams& params, ContactMode from, ContactMode
     if (b == ContactMode::incline) {
       return modes.incline_begins_per_s * (a == ContactMode::bump ? kInclineAfterBump : 1.0);
     }
-    if (b == ContactMode::uneven) return kRoughBeginsPerS;
+    if (b == ContactMode::rough) return kRoughBeginsPerS;
     if (b == ContactMode::slip) return a == ContactMode::bump ? kSlipBumpPerS : modes.slip_begins_per_s;
     if (b == ContactMode::bump) return a == ContactMode::slip ? kSlipBumpPerS : modes.bump_begins_per_s;
     if (a == ContactMode::incline) return kInclineEndsPerS;
-    if (a == ContactMode::uneven) return kRoughEndsPerS;
+    if (a == ContactMode::rough) return kRoughEndsPerS;
     return a == ContactMode::slip ? modes.kSlipEndsPerS : modes.kBumpEndsPerS;
   };
   if (from != to) return std::log(rate(from, to) * h_s);

@@ -52,7 +52,7 @@ constexpr double kGapTimeSigmaRatio = 0.15;  // uncertain time of a rate change 
 /// See rolling.md (R18), (R19).
 Eigen::Vector3d contact_variance(const Contact& c, ContactMode mode) {
   const double rough =
-      mode == ContactMode::uneven ? squared(RollingContactParams::kRoughShare * c.rolling_speed_m_s) : 0.0;
+      mode == ContactMode::rough ? squared(RollingContactParams::kRoughShare * c.rolling_speed_m_s) : 0.0;
   return {c.grip_variance, c.grip_variance,
           squared(RollingContactParams::kVerticalSigma_m_s) + rough + c.gap_extra_variance};
 }
@@ -354,7 +354,7 @@ void update_slope_for_mode(ContactMode from, ContactMode to, double h_s, const R
   if (from == ContactMode::incline && to == from) {
     P.diagonal().segment<2>(kSlope).array() += squared(kSlopeWalk_sqrts) * h_s;
   }
-  if (to == ContactMode::uneven) P(kRadius, kRadius) += squared(kRoughRadiusWalk_m_sqrts) * h_s;
+  if (to == ContactMode::rough) P(kRadius, kRadius) += squared(kRoughRadiusWalk_m_sqrts) * h_s;
   if (!resets_floor_slope(from, to)) return;
   P.middleRows<2>(kSlope).setZero();
   P.middleCols<2>(kSlope).setZero();

@@ -40,7 +40,7 @@ from ._tumble import (
     RegimeReport,
     MotionRegimeSmoother,
     MotionRegimeStream,
-    RigCalibration,
+    BodyImuCalibration,
     ContactMode,
     RollingOdometry,
     RollingPoses,
@@ -74,7 +74,7 @@ __version__ = importlib.metadata.version("tumble")
 __all__ = [
     "Attitudes", "HandHeldReport", "HandHeldSmoother", "Contacts", "Estimate", "HealthFinding", "Imu", "ImuDataSheet", "ImuTruth", "Lidar",
     "LidarInertialOdometry", "LidarDataSheet", "LidarTruth", "MapPoints", "Parameter", "Pose", "Poses", "ProgramError", "SaturationPlane", "Rails", "AngularRateReport", "AngularRateSmoother", "AngularRateSource",
-    "AngularRateStream", "RateTable", "Rates", "Recording", "RegimeReport", "MotionRegimeSmoother", "MotionRegimeStream", "RigCalibration", "ContactMode", "RollingOdometry",
+    "AngularRateStream", "RateTable", "Rates", "Recording", "RegimeReport", "MotionRegimeSmoother", "MotionRegimeStream", "BodyImuCalibration", "ContactMode", "RollingOdometry",
     "RollingPoses", "RollingSmoother", "Saave", "Series", "SeriesTruth", "SphereUnit", "Strapdown", "Sweep", "LidarImuCalibration", "SweepReport", "SweepScale", "SweepVerdict", "Trajectory",
     "Truth", "Tumble", "TumbleAttitude", "TumbleError", "TumblingOdometry", "Vqf", "call", "describe_method", "estimate",
     "find_rails", "odometry", "plot", "point_errors", "program", "rails_parameters", "rate", "read", "read_airbrakes", "read_broad", "read_estimate", "read_repoimu", "read_tum", "record", "results", "rolling", "run",

@@ -74,7 +74,7 @@ class Tumble(Shown):
     sweeps: list[_tumble.SweepReport]  #: reports of the sweeps that have poses, in order of registration
     refused: list[str]  #: error messages of the sweeps without poses
     map: _tumble.MapPoints  #: map within mapping_map_radius_m of the sensor
-    odometry: _tumble.TumblingOdometry  #: the estimator, with its calibration: rig_calibration(), calibration()
+    odometry: _tumble.TumblingOdometry  #: the estimator, with its calibration: body_imu_calibration(), lidar_calibration()
 
 
 WHOLE_RECORDING = 1e9  # value of lag_s [s] for an estimate of the whole recording
@@ -141,7 +141,7 @@ def tumbling(recording: Recording, on_sample: Callable[[_tumble.TumblingOdometry
     if whole:
         final = [report.trajectory for report in placed]
     else:
-        final = [*(report.smoothed_trajectory for report in placed if len(report.smoothed_trajectory) > 0), odometry.window_trajectory()]
+        final = [*(report.final_poses_of_earlier_sweep for report in placed if len(report.final_poses_of_earlier_sweep) > 0), odometry.window_trajectory()]
     return Tumble(poses=_tumble.Poses.joined(final), sweeps=placed,
                   refused=[sweep.message for sweep in done if not sweep.placed], map=odometry.map(), odometry=odometry)
 

@@ -74,7 +74,7 @@ struct RollingAdapterParams {
 template <class Params, class Each>
 void visit_parameters(Params& params, Each each) {
   const auto derived = std::remove_cv_t<Params>::computed_parameter_names();
-  visit_by_name(params, [&](const std::string& name, auto& value, const Field& field) {
+  for_each_parameter(params, [&](const std::string& name, auto& value, const ParameterInfo& field) {
     if (!matches_any_pattern(std::string_view(name), derived)) each(name, value, field);
   });
 }

@@ -26,10 +26,11 @@ class ClippedBaseline {
 
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
-      visit(p.tilted_rails,
-            boolean_field("tilted_rails",
-                          "1: also search for tilted saturation limits; 0: treat each axis separately, as published",
-                          ParameterAudience::common_use));
+      visit(
+          p.tilted_rails,
+          boolean_parameter("tilted_rails",
+                            "1: also search for tilted saturation limits; 0: treat each axis separately, as published",
+                            ParameterAudience::common_use));
       visit(p.gyro_noise_density, {"gyro_noise_density", "rad/s/sqrt(Hz)", 1e-9, 1.0, "noise density of the gyro"});
       visit(p.rate_max_rad_s, {"rate_max_rad_s", "rad/s", 1.0, 1e4, "largest estimated rate"});
       visit(p.gap_max_s,

@@ -56,14 +56,15 @@ class Autogain {
       visit(p.upper_rad_s,
             {"upper_rad_s", "rad/s", 1e-9, 100.0,
              "rate above which the gyro has full weight, added to lower_rad_s (eq. 2)", ParameterAudience::common_use});
-      visit(p.roll_error_2021,
-            boolean_field("roll_error_2021", "1: never correct the roll angle, as in the code of the MFI 2021 paper",
-                          ParameterAudience::common_use));
+      visit(
+          p.roll_error_2021,
+          boolean_parameter("roll_error_2021", "1: never correct the roll angle, as in the code of the MFI 2021 paper",
+                            ParameterAudience::common_use));
       visit(p.tilt_form,
-            boolean_field("tilt_form",
-                          "1: the complementary step is the smallest rotation; 0: the step turns towards a "
-                          "target in roll, pitch and yaw",
-                          ParameterAudience::common_use));
+            boolean_parameter("tilt_form",
+                              "1: the complementary step is the smallest rotation; 0: the step turns towards a "
+                              "target in roll, pitch and yaw",
+                              ParameterAudience::common_use));
       visit(p.gap_max_s,
             {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap causes an error"});
     }

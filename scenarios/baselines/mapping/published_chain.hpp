@@ -40,20 +40,21 @@ class PublishedChain {
              "growth of a point's standard deviation with the time since the start of the sweep; 0: no growth",
              ParameterAudience::common_use});
       visit(p.late_velocity,
-            boolean_field("late_velocity",
-                          "1: take the mean velocity since the last sweep as the velocity at the end of the sweep, as "
-                          "in the launch files; 0: take it as the velocity in the middle between both sweeps",
-                          ParameterAudience::common_use));
+            boolean_parameter(
+                "late_velocity",
+                "1: take the mean velocity since the last sweep as the velocity at the end of the sweep, as "
+                "in the launch files; 0: take it as the velocity in the middle between both sweeps",
+                ParameterAudience::common_use));
       visit(p.voxel_averages_time,
-            boolean_field("voxel_averages_time",
-                          "1: average the times of the points in a voxel, as in the launch files; 0: average the "
-                          "variances that follow from these times",
-                          ParameterAudience::common_use));
+            boolean_parameter("voxel_averages_time",
+                              "1: average the times of the points in a voxel, as in the launch files; 0: average the "
+                              "variances that follow from these times",
+                              ParameterAudience::common_use));
       visit(p.abort_ends_mapping,
-            boolean_field("abort_ends_mapping",
-                          "1: a failed registration ends mapping, as in the launch files; 0: the pose of the sweep "
-                          "comes from odometry only",
-                          ParameterAudience::common_use));
+            boolean_parameter("abort_ends_mapping",
+                              "1: a failed registration ends mapping, as in the launch files; 0: the pose of the sweep "
+                              "comes from odometry only",
+                              ParameterAudience::common_use));
       visit.group("", p.icp);
       visit(p.own_body_L.min(),
             {"own_body_min_m", "m", -kUnbounded, kUnbounded,

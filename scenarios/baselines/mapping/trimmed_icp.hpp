@@ -47,12 +47,12 @@ class TrimmedIcp {
       visit(p.trim_lambda, {"trim_lambda", "1", 0.0, 100.0,
                             "exponent lambda of the kept share s of matches; trimming selects the s that minimises the "
                             "rms distance divided by s^lambda"});
-      visit(
-          p.count_unmatched_slots,
-          boolean_field("trim_counts_unmatched",
-                        "1: compute the kept share relative to all possible matches, including missing matches, as in "
-                        "the code of the ICRA 2024 paper; 0: relative to the found matches",
-                        ParameterAudience::common_use));
+      visit(p.count_unmatched_slots,
+            boolean_parameter(
+                "trim_counts_unmatched",
+                "1: compute the kept share relative to all possible matches, including missing matches, as in "
+                "the code of the ICRA 2024 paper; 0: relative to the found matches",
+                ParameterAudience::common_use));
       visit(p.iterations_max, {"iterations_max", "1", 1, 1000, "maximum number of Gauss-Newton steps"});
       visit(p.step_m, {"step_m", "m", 0.0, 1.0, "position step below which the registration has converged"});
       visit(p.step_rad, {"step_rad", "rad", 0.0, 1.0, "rotation step below which the registration has converged"});

@@ -47,34 +47,35 @@ class AutogainFusion {
       visit(p.acceleration_weight, {"acceleration_weight", "1", 0.0, 10.0,
                                     "weight of the integrated acceleration (eq. 13)", ParameterAudience::common_use});
       visit.group("autogain_", p.autogain);
-      visit(
-          p.integrate_in_body,
-          boolean_field("integrate_in_body",
-                        "true: integrate the acceleration (eq. 7) in the rotating body frame, without the term w x v; "
-                        "false: in the world frame",
-                        ParameterAudience::common_use));
+      visit(p.integrate_in_body,
+            boolean_parameter(
+                "integrate_in_body",
+                "true: integrate the acceleration (eq. 7) in the rotating body frame, without the term w x v; "
+                "false: in the world frame",
+                ParameterAudience::common_use));
       visit(p.direction_only,
-            boolean_field(
+            boolean_parameter(
                 "direction_only",
                 "true, as in the code of the MFI 2021 paper: subtract gravity of length 1 from the direction of the "
                 "specific force, without multiplying by g",
                 ParameterAudience::common_use));
       visit(p.recursive_coupling,
-            boolean_field(
+            boolean_parameter(
                 "recursive_coupling",
                 "true, as in the code of the MFI 2021 paper: eq. 8 scales the integrated velocity again at each sample",
                 ParameterAudience::common_use));
-      visit(p.limit_per_axis, boolean_field("limit_per_axis",
-                                            "true: limit the integrated velocity along each horizontal axis of the "
-                                            "world; false: limit its horizontal norm",
-                                            ParameterAudience::common_use));
+      visit(p.limit_per_axis, boolean_parameter("limit_per_axis",
+                                                "true: limit the integrated velocity along each horizontal axis of the "
+                                                "world; false: limit its horizontal norm",
+                                                ParameterAudience::common_use));
       visit(p.shrink_per_axis,
-            boolean_field("shrink_per_axis",
-                          "true: eq. 12 subtracts v_z^2 from the square of each horizontal velocity; false: once from "
-                          "the squared horizontal speed",
-                          ParameterAudience::common_use));
+            boolean_parameter(
+                "shrink_per_axis",
+                "true: eq. 12 subtracts v_z^2 from the square of each horizontal velocity; false: once from "
+                "the squared horizontal speed",
+                ParameterAudience::common_use));
       visit(p.vertical_by_norm,
-            boolean_field(
+            boolean_parameter(
                 "vertical_by_norm",
                 "true, as in the code of the MFI 2021 paper: limit the vertical speed by the horizontal rolling speed; "
                 "false: by the mean of the rolling speeds along x and y"));

@@ -75,7 +75,7 @@ TEST(RateElements, WhatIsLearntOfTheElementsIsNearTheTruth) {
   ASSERT_TRUE(report.gyro_planes.any_plane_found());
   double known = 0.0;
   for (int i = 0; i < 6; ++i) {
-    const int j = i / 2, k = (j + 1 + i % 2) % 3, at = RigConstants::kGyroMisalignmentIndex + i;
+    const int j = i / 2, k = (j + 1 + i % 2) % 3, at = BodyImuConstants::kGyroMisalignmentIndex + i;
     const double sigma = std::sqrt(report.calibration.covariance(at, at));
     EXPECT_LT(std::abs(report.calibration.constants.gyro_misalignment[i] - options.gyro_rows(j, k)), 4.0 * sigma + 1e-3)
         << i;

@@ -14,18 +14,18 @@ namespace tumble {
 namespace {
 
 using Eigen::Vector3d;
-using Derivative = Eigen::Matrix<double, 3, 6 + RigConstants::kSize>;
-using Factor = std::function<AngularRateFactor(const AngularRateKnot&, const RigConstants&)>;
+using Derivative = Eigen::Matrix<double, 3, 6 + BodyImuConstants::kSize>;
+using Factor = std::function<AngularRateFactor(const AngularRateKnot&, const BodyImuConstants&)>;
 
 struct Point {
   AngularRateKnot knot;
-  RigConstants rig;
+  BodyImuConstants rig;
 };
 
 Point random_point(oracles::Gaussian& noise) {
   Point p;
   p.knot = {10.0 * noise.vector(), 100.0 * noise.vector()};
-  RigConstants::Vector v;
+  BodyImuConstants::Vector v;
   for (double& x : v) x = 0.1 * noise();
   p.rig.add(v);
   return p;
@@ -46,7 +46,7 @@ Derivative numeric(const Factor& factor, const Point& p) {
       Point q = p;
       if (i < 3) q.knot.rate_rad_s[i] += h;
       if (i >= 3 && i < 6) q.knot.acceleration_rad_s2[i - 3] += h;
-      if (i >= 6) q.rig.add(h * RigConstants::Vector::Unit(i - 6));
+      if (i >= 6) q.rig.add(h * BodyImuConstants::Vector::Unit(i - 6));
       return factor(q.knot, q.rig).residual;
     };
     d.col(i) = (moved(kStep) - moved(-kStep)) / (2.0 * kStep);
@@ -62,10 +62,10 @@ double disagreement(const Derivative& a, const Derivative& b) {
 const Vector3d kReading = {3.0, -40.0, 7.0};
 
 std::vector<Factor> factors() {
-  return {[](const AngularRateKnot& k, const RigConstants& r) { return gyro_factor(k, r, kReading); },
-          [](const AngularRateKnot& k, const RigConstants& r) { return sensing_axis_factor(k, r, kReading); },
-          [](const AngularRateKnot& k, const RigConstants& r) { return flight_force_factor(k, r, kReading); },
-          [](const AngularRateKnot& k, const RigConstants& r) { return euler_equation_factor(k, r); }};
+  return {[](const AngularRateKnot& k, const BodyImuConstants& r) { return gyro_factor(k, r, kReading); },
+          [](const AngularRateKnot& k, const BodyImuConstants& r) { return sensing_axis_factor(k, r, kReading); },
+          [](const AngularRateKnot& k, const BodyImuConstants& r) { return flight_force_factor(k, r, kReading); },
+          [](const AngularRateKnot& k, const BodyImuConstants& r) { return euler_equation_factor(k, r); }};
 }
 
 TEST(RateFactors, DerivativesAreThoseOfTheResiduals) {
@@ -101,11 +101,11 @@ TEST(RateFactors, VanishOnATorqueFreeBody) {
   const Eigen::Matrix3d R_IB = Eigen::AngleAxisd(0.7, Vector3d(1, 2, -1).normalized()).toRotationMatrix();
   const Vector3d moments(2.0, 2.4, 3.0);
   const oracles::TorqueFreeRotation body(moments, {3.0, 12.0, -5.0});
-  RigConstants rig;
+  BodyImuConstants rig;
   rig.lever_arm_m = {-0.022, -0.085, 0.055};
   rig.gyro_bias_rad_s = {0.1, 0.2, 0.3};
   rig.accel_bias_m_s2 = {0.5, -0.4, 0.3};
-  rig.inertia_coordinates = RigConstants::inertia_basis_coordinates(R_IB * moments.asDiagonal() * R_IB.transpose());
+  rig.inertia_coordinates = BodyImuConstants::inertia_basis_coordinates(R_IB * moments.asDiagonal() * R_IB.transpose());
   const Vector3d lever_B = R_IB.transpose() * rig.lever_arm_m;
   for (double t : {0.0, 0.3, 1.7}) {
     const AngularRateKnot knot{R_IB * body.rate(t), R_IB * body.acceleration(t)};
@@ -114,7 +114,8 @@ TEST(RateFactors, VanishOnATorqueFreeBody) {
     EXPECT_LT(gyro_factor(knot, rig, gyro).residual.norm(), 1e-12);
     EXPECT_LT(flight_force_factor(knot, rig, accel).residual.norm(), 1e-12);
     EXPECT_LT(euler_equation_factor(knot, rig).residual.norm(), 1e-10);
-    EXPECT_GT(euler_equation_factor(knot, RigConstants{}).residual.norm(), 1.0);  // a sphere would rotate differently
+    EXPECT_GT(euler_equation_factor(knot, BodyImuConstants{}).residual.norm(),
+              1.0);  // a sphere would rotate differently
   }
 }
 
@@ -123,9 +124,9 @@ TEST(RateFactors, VanishOnATorqueFreeBody) {
 TEST(RateFactors, AScaleOfTheGyroShowsByTheAccelerationAlone) {
   constexpr double k = 0.01;
   const Vector3d moments(2.0, 2.4, 3.0);
-  RigConstants rig, other;
+  BodyImuConstants rig, other;
   rig.lever_arm_m = {-0.022, -0.085, 0.055};
-  rig.inertia_coordinates = RigConstants::inertia_basis_coordinates(moments.asDiagonal());
+  rig.inertia_coordinates = BodyImuConstants::inertia_basis_coordinates(moments.asDiagonal());
   other.lever_arm_m = rig.lever_arm_m / ((1.0 + k) * (1.0 + k));
   other.inertia_coordinates = rig.inertia_coordinates / (1.0 + k);
   for (const Vector3d& start : {Vector3d(3.0, 12.0, -5.0), Vector3d(0.0, 0.0, 14.0)}) {
@@ -149,18 +150,18 @@ TEST(RateFactors, AScaleOfTheGyroShowsByTheAccelerationAlone) {
   }
 }
 
-TEST(RigConstants, InertiaIsFreeOfScaleAndItsCoordinatesComeBack) {
+TEST(BodyImuConstants, InertiaIsFreeOfScaleAndItsCoordinatesComeBack) {
   Eigen::Matrix3d J;
   J << 3.0, 0.1, -0.2, 0.1, 2.5, 0.3, -0.2, 0.3, 2.0;
-  RigConstants rig;
-  rig.inertia_coordinates = RigConstants::inertia_basis_coordinates(J);
+  BodyImuConstants rig;
+  rig.inertia_coordinates = BodyImuConstants::inertia_basis_coordinates(J);
   EXPECT_LT((rig.inertia_matrix() - 3.0 / J.trace() * J).norm(), 1e-14);
-  EXPECT_LT((RigConstants::inertia_basis_coordinates(7.0 * J) - rig.inertia_coordinates).norm(), 1e-14);
-  EXPECT_EQ(RigConstants{}.inertia_matrix(), Eigen::Matrix3d::Identity());
+  EXPECT_LT((BodyImuConstants::inertia_basis_coordinates(7.0 * J) - rig.inertia_coordinates).norm(), 1e-14);
+  EXPECT_EQ(BodyImuConstants{}.inertia_matrix(), Eigen::Matrix3d::Identity());
 }
 
 // Returns the rotation without torque after some time, at fourth order in small steps.
-AngularRateKnot turned(AngularRateKnot knot, const RigConstants& rig, double time_s) {
+AngularRateKnot turned(AngularRateKnot knot, const BodyImuConstants& rig, double time_s) {
   const Eigen::Matrix3d J = rig.inertia_matrix();
   const auto slope = [&](const Vector3d& w) -> Vector3d { return -J.inverse() * w.cross(Vector3d(J * w)); };
   constexpr int kSteps = 20;
@@ -184,7 +185,7 @@ TEST(LateFlight, DerivativesAreThoseOfTheResidual) {
   for (int i = 0; i < 20; ++i) {
     const Point p = flying_point(noise);
     const double delay_s = 0.005 * noise();
-    const Factor factor = [&](const AngularRateKnot& k, const RigConstants& r) {
+    const Factor factor = [&](const AngularRateKnot& k, const BodyImuConstants& r) {
       return delayed_flight_force_factor(k, r, kReading, delay_s, nullptr);
     };
     // a polynomial of low degree in all unknowns except the inertia: differences have an error of the squared step
@@ -229,7 +230,7 @@ TEST(LateFlight, ByTheRigAloneIsTheSameToTheBit) {
     EXPECT_EQ(part.residual, whole.residual);
     EXPECT_EQ(part.jacobian_calibration.leftCols<9>(), whole.jacobian_calibration.leftCols<9>());
     EXPECT_TRUE(part.jacobian_knot.isZero(0.0));
-    EXPECT_TRUE(part.jacobian_calibration.rightCols<RigConstants::kSize - 9>().isZero(0.0));
+    EXPECT_TRUE(part.jacobian_calibration.rightCols<BodyImuConstants::kSize - 9>().isZero(0.0));
     EXPECT_FALSE(whole.jacobian_calibration.middleCols<5>(9).isZero(0.0) && delay_s > 0.0) << "by inertia too";
   }
 }

@@ -163,7 +163,7 @@ TEST(RateSmootherInput, RefusesParametersOutsideOfTheirBounds) {
   refused([](AngularRateSmoother::Params& p) { p.model.lever_arm_sigma_m = 0.0; });
   refused([](AngularRateSmoother::Params& p) { p.saturation_detector.stated_gyro_range_rad_s = -1.0; });
   refused([](AngularRateSmoother::Params& p) {
-    p.model.calibration = RigCalibration{{}, -RigConstants::Matrix::Identity()};
+    p.model.calibration = BodyImuCalibration{{}, -BodyImuConstants::Matrix::Identity()};
   });
 }
 

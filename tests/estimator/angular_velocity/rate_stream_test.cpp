@@ -101,8 +101,8 @@ TEST(AngularRateStream, TheShapeOfABoxIsExpectedAndThatOfARodIsNot) {
   const auto params = with_lever_arm<AngularRateStream::Params>();
   const AngularRateModel model(params.model, params.period_s);
   const auto mahalanobis = [&](const Vector3d& moments) {
-    RigConstants rig = model.prior_constants();
-    rig.inertia_coordinates = RigConstants::inertia_basis_coordinates(moments.asDiagonal());
+    BodyImuConstants rig = model.prior_constants();
+    rig.inertia_coordinates = BodyImuConstants::inertia_basis_coordinates(moments.asDiagonal());
     return model.calibration_mahalanobis(rig);
   };
   EXPECT_NEAR(mahalanobis({8.0, 13.0, 13.0}), 1.07, 0.01);  // ratio of sides 3 : 2 : 2
@@ -298,11 +298,11 @@ TEST(AngularRateStream, RefusesParametersOutsideOfTheirBounds) {
 
 TEST(AngularRateStream, AnImpossibleCalibrationIsReportedAsAValueToo) {
   const auto told = [](auto change) {
-    RigCalibration rig;
+    BodyImuCalibration rig;
     change(rig);
     auto params = with_lever_arm<AngularRateStream::Params>();
     params.model.calibration = rig;
-    const Status status = check_calibration(rig);
+    const Status status = check_body_imu_calibration(rig);
     if (status.ok()) {
       EXPECT_NO_THROW(AngularRateStream{params});
     } else {
@@ -310,15 +310,16 @@ TEST(AngularRateStream, AnImpossibleCalibrationIsReportedAsAValueToo) {
     }
     return status;
   };
-  EXPECT_TRUE(told([](RigCalibration&) {}).ok());
-  const Status far = told([](RigCalibration& rig) { rig.constants.lever_arm_m.z() = -11.0; });
+  EXPECT_TRUE(told([](BodyImuCalibration&) {}).ok());
+  const Status far = told([](BodyImuCalibration& rig) { rig.constants.lever_arm_m.z() = -11.0; });
   EXPECT_STREQ(far.field, "lever_arm_m");
   EXPECT_EQ(far.value, -11.0);
   EXPECT_EQ(far.bound, -10.0);
-  EXPECT_STREQ(told([](RigCalibration& rig) { rig.constants.gyro_misalignment[5] = std::nan(""); }).field,
+  EXPECT_STREQ(told([](BodyImuCalibration& rig) { rig.constants.gyro_misalignment[5] = std::nan(""); }).field,
                "rig constants");
-  EXPECT_EQ(told([](RigCalibration& rig) { rig.covariance(3, 3) = 0.0; }).error_code, ErrorCode::degenerate);
-  EXPECT_EQ(told([](RigCalibration& rig) { rig.covariance(0, 1) = std::nan(""); }).error_code, ErrorCode::degenerate);
+  EXPECT_EQ(told([](BodyImuCalibration& rig) { rig.covariance(3, 3) = 0.0; }).error_code, ErrorCode::degenerate);
+  EXPECT_EQ(told([](BodyImuCalibration& rig) { rig.covariance(0, 1) = std::nan(""); }).error_code,
+            ErrorCode::degenerate);
 }
 
 }  // namespace

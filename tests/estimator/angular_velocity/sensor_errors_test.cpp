@@ -126,7 +126,7 @@ TEST(SensorErrors, MoveTheGradientAsTheModelHasIt) {
   oracles::Gaussian noise(3);
   AngularRateObservation o;
   AngularRateEstimate estimate;
-  RigConstants rig;
+  BodyImuConstants rig;
   rig.lever_arm_m = {-0.022, -0.085, 0.055};
   rig.inertia_coordinates << 0.05, -0.03, 0.02, 0.01, -0.02;
   estimate.knot = {{4.0, -6.0, 3.0}, {10.0, 20.0, -15.0}};

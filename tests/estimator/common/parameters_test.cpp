@@ -37,7 +37,7 @@ struct Outer {
   static void fields(Self& p, Visitor& visit) {
     visit(p.tau_s, {"tau_s", "s", 1e-3, 10.0, "a time", ParameterAudience::common_use});
     visit(p.least, {"least", "1", 0, 1e9, "a number of things"});
-    visit(p.on, boolean_field("on", "a switch"));
+    visit(p.on, boolean_parameter("on", "a switch"));
     visit(p.kind, {"kind", "1", 0, 1, "a choice"});
     visit(p.arm_m, {"arm_m", "m", -1.0, 1.0, "an arm"});
     visit.group("left_", p.left);
@@ -103,7 +103,7 @@ TEST(Fields, NaNIsOutOfAnyBounds) {
 TEST(Fields, AreVisitedByTheirWholeNamesAndSetThroughThem) {
   Outer params;
   std::vector<std::string> names;
-  visit_by_name(params, [&](const std::string& name, auto& value, const Field& field) {
+  for_each_parameter(params, [&](const std::string& name, auto& value, const ParameterInfo& field) {
     names.push_back(name);
     EXPECT_TRUE(name.ends_with(field.name));
     if constexpr (std::is_same_v<decltype(value), int&>) value = name == "left_count" ? 1 : 4;

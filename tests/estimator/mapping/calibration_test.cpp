@@ -31,8 +31,8 @@ TEST(LidarImuCalibrationPrior, CountsTheLargestOfTurnShiftAndDelayInItsDeviation
 }
 
 TEST(LidarImuCalibrationPrior, ALargeDistanceIsOutOfRange) {
-  EXPECT_TRUE(check_calibration_distance(kGiven.distance_in_sigmas(turned(0.049))).ok());
-  const Status wrong = check_calibration_distance(kGiven.distance_in_sigmas(turned(0.051)));
+  EXPECT_TRUE(check_lidar_calibration_distance(kGiven.distance_in_sigmas(turned(0.049))).ok());
+  const Status wrong = check_lidar_calibration_distance(kGiven.distance_in_sigmas(turned(0.051)));
   EXPECT_EQ(wrong.error_code, ErrorCode::out_of_range);
   EXPECT_NEAR(wrong.value, 5.1, 1e-9);
   EXPECT_EQ(wrong.bound, LidarImuCalibrationPrior::kDistanceMax_sigmas);

@@ -75,7 +75,7 @@ TEST(LidarInertialOdometry, FindsTheDeficitOfClippedAxesByItself) {
   const test::PoseError end = error_of(reports.back().pose);
   EXPECT_LT(end.m, 0.15);
   EXPECT_LT(end.rad, 0.02);
-  EXPECT_GT(reports.back().mean_saturation_deficit_rad_s.maxCoeff(), 1.0);
+  EXPECT_GT(reports.back().mean_clipping_correction_rad_s.maxCoeff(), 1.0);
 }
 
 TEST(LidarInertialOdometry, RestartsBitByBitFromACopy) {

@@ -25,9 +25,9 @@ TEST(LocalMapSoak, StaysFlatOverTenMinutes) {
     ASSERT_TRUE(odometry.add_sweep(corridor.start_ns(), corridor.end_ns(), corridor.points(), report).ok());
     lost += report.verdict == SweepVerdict::rejected;
     if (k < kSettled) {
-      bytes_early = std::max(bytes_early, odometry.map_bytes());
+      bytes_early = std::max(bytes_early, odometry.map_memory_bytes());
     } else {
-      bytes_late = std::max(bytes_late, odometry.map_bytes());
+      bytes_late = std::max(bytes_late, odometry.map_memory_bytes());
     }
     if (k == kSettled) points_early = odometry.map().size();
   }
@@ -56,9 +56,9 @@ TEST(LocalMapSoak, GrowsWhereItForgetsNothing) {
       ASSERT_TRUE(odometry.add_imu(sample, test::believe(sample)).ok());
     }
     ASSERT_TRUE(odometry.add_sweep(corridor.start_ns(), corridor.end_ns(), corridor.points(), report).ok());
-    if (k == 500) bytes_early = odometry.map_bytes();
+    if (k == 500) bytes_early = odometry.map_memory_bytes();
   }
-  EXPECT_GT(static_cast<double>(odometry.map_bytes()), 2.1 * static_cast<double>(bytes_early));
+  EXPECT_GT(static_cast<double>(odometry.map_memory_bytes()), 2.1 * static_cast<double>(bytes_early));
 }
 
 }  // namespace

@@ -116,10 +116,10 @@ TEST(PriorMap, EarlierPosesAreTransformedToTheFrameOfTheMap) {
 TEST(PriorMap, AnApproximateOrAGivenPoseLimitsTheSearch) {
   for (const double error_m : {0.0, 1.5}) {
     RoomRig rig(true_params(), second_motion());
-    PriorMap map{.points = map_of_pillars(), .T_prior_map_imu = T_MW() * rig.motion.pose(0.0)};
-    map.T_prior_map_imu->translation() += error_m * Eigen::Vector3d(0.6, -0.8, 0.0);
-    map.sigma_m = error_m;
-    map.sigma_rad = 0.1 * error_m;
+    PriorMap map{.points = map_of_pillars(), .T_MI = T_MW() * rig.motion.pose(0.0)};
+    map.T_MI->translation() += error_m * Eigen::Vector3d(0.6, -0.8, 0.0);
+    map.start_position_sigma_m = error_m;
+    map.start_heading_sigma_rad = 0.1 * error_m;
     ASSERT_TRUE(rig.odometry.set_prior_map(map).ok());
     const int sweeps = run_until_localised(rig);
     ASSERT_TRUE(rig.odometry.check_localised().ok()) << error_m;
@@ -131,8 +131,8 @@ TEST(PriorMap, AnApproximateOrAGivenPoseLimitsTheSearch) {
 
 TEST(PriorMap, AWrongGivenPoseIsNotAccepted) {
   RoomRig rig(true_params(), second_motion());
-  PriorMap map{.points = map_of_pillars(), .T_prior_map_imu = T_MW() * rig.motion.pose(0.0)};
-  map.T_prior_map_imu->translation() += Eigen::Vector3d(6.0, 0.0, 0.0);
+  PriorMap map{.points = map_of_pillars(), .T_MI = T_MW() * rig.motion.pose(0.0)};
+  map.T_MI->translation() += Eigen::Vector3d(6.0, 0.0, 0.0);
   ASSERT_TRUE(rig.odometry.set_prior_map(map).ok());
   run_until_localised(rig);
   EXPECT_EQ(rig.odometry.check_localised().error_code, ErrorCode::degenerate);
@@ -218,7 +218,7 @@ TEST(PriorMap, UnusableMapsAreRefused) {
   map.points[5] = {Eigen::Vector3f::Constant(std::nanf("")), Eigen::Vector3f::UnitZ(), 0.1f};
   EXPECT_EQ(rig.odometry.set_prior_map(map).error_code, ErrorCode::non_finite);
   map.points = map_of_pillars();
-  map.sigma_m = -1.0;
+  map.start_position_sigma_m = -1.0;
   EXPECT_EQ(rig.odometry.set_prior_map(map).error_code, ErrorCode::out_of_range);
   EXPECT_EQ(rig.odometry.prior_map(), nullptr);
   EXPECT_TRUE(rig.odometry.check_localised().ok());

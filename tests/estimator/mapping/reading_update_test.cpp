@@ -14,6 +14,7 @@
 #include "estimator/src/mapping/prediction.hpp"
 #include "estimator/src/mapping/unknowns.hpp"
 #include "tumble/common/types.hpp"
+#include "tumble/mapping/detail/odometer_reading.hpp"
 
 namespace tumble::mapping {
 namespace {
@@ -189,7 +190,7 @@ TEST(OdometerReading, OfAMotionIsTheJointUpdateByDifferences) {
     const TimeNs from_ns = span.first, to_ns = span.second;
     SCOPED_TRACE(from_ns);
     Case c(kScale);
-    MotionReading reading;
+    RelativePoseReading reading;
     reading.from_ns = from_ns;
     reading.to_ns = to_ns;
     reading.relative_pose = read_motion(c, from_ns, to_ns, Registration::Vector::Zero(), Eigen::VectorXd::Zero(9));
@@ -256,7 +257,7 @@ TEST(OdometerReading, OfAMotionFindsWhatASaturationLimitHid) {
   for (MotionSample& sample : c.samples) sample.clipped_axes = 1;
   u::variances(c.boundary.state_estimate.prior_weight_covariance, u::deficit).setConstant(25.0);
   c.prediction.boundary_jacobian.setIdentity();
-  MotionReading reading;
+  RelativePoseReading reading;
   reading.from_ns = kStart_ns;
   reading.to_ns = kEnd_ns;
   Registration::Vector hidden = Registration::Vector::Zero();
@@ -277,21 +278,22 @@ TEST(OdometerReading, IsCheckedByItself) {
   EXPECT_EQ(check_odometer_reading(VelocityReading{0, {nan, 0.0, 0.0}, 0.1}).error_code, ErrorCode::non_finite);
   EXPECT_EQ(check_odometer_reading(VelocityReading{0, {1.0, 0.0, 0.0}, nan}).error_code, ErrorCode::non_finite);
   EXPECT_EQ(check_odometer_reading(VelocityReading{0, {1.0, 0.0, 0.0}, 0.0}).error_code, ErrorCode::out_of_range);
-  MotionReading good{0, 1, Eigen::Isometry3d::Identity(), Eigen::Matrix<double, 6, 6>::Identity()};
+  RelativePoseReading good{0, 1, Eigen::Isometry3d::Identity(), Eigen::Matrix<double, 6, 6>::Identity()};
   EXPECT_TRUE(check_odometer_reading(good).ok());
   const auto refusal = [&](const auto& change) {
-    MotionReading reading = good;
+    RelativePoseReading reading = good;
     change(reading);
     return check_odometer_reading(reading);
   };
-  EXPECT_EQ(refusal([](MotionReading& r) { r.to_ns = 0; }).error_code, ErrorCode::time_order);
-  EXPECT_EQ(refusal([&](MotionReading& r) { r.relative_pose.translation().y() = nan; }).error_code,
+  EXPECT_EQ(refusal([](RelativePoseReading& r) { r.to_ns = 0; }).error_code, ErrorCode::time_order);
+  EXPECT_EQ(refusal([&](RelativePoseReading& r) { r.relative_pose.translation().y() = nan; }).error_code,
             ErrorCode::non_finite);
-  EXPECT_EQ(refusal([&](MotionReading& r) { r.covariance(0, 4) = nan; }).error_code, ErrorCode::non_finite);
-  EXPECT_STREQ(refusal([](MotionReading& r) { r.relative_pose.linear() *= 1.001; }).field, "T_from_to");
-  EXPECT_STREQ(refusal([](MotionReading& r) { r.relative_pose.linear() *= -1.0; }).field, "T_from_to");
-  EXPECT_STREQ(refusal([](MotionReading& r) { r.covariance(2, 2) = 0.0; }).field, "covariance");
-  EXPECT_STREQ(refusal([](MotionReading& r) { r.covariance(1, 0) = r.covariance(0, 1) = 1.5; }).field, "covariance");
+  EXPECT_EQ(refusal([&](RelativePoseReading& r) { r.covariance(0, 4) = nan; }).error_code, ErrorCode::non_finite);
+  EXPECT_STREQ(refusal([](RelativePoseReading& r) { r.relative_pose.linear() *= 1.001; }).field, "T_from_to");
+  EXPECT_STREQ(refusal([](RelativePoseReading& r) { r.relative_pose.linear() *= -1.0; }).field, "T_from_to");
+  EXPECT_STREQ(refusal([](RelativePoseReading& r) { r.covariance(2, 2) = 0.0; }).field, "covariance");
+  EXPECT_STREQ(refusal([](RelativePoseReading& r) { r.covariance(1, 0) = r.covariance(0, 1) = 1.5; }).field,
+               "covariance");
 }
 
 }  // namespace

@@ -68,9 +68,9 @@ TEST(Calibration, FindsMountingAndClock) {
   Odometry odometry(params);
   run_miscalibrated(odometry, turning(), 40);
   // the first map was built with the wrong calibration; its calibration result starts a second map
-  const auto learnt_sigma = odometry.next_calibration_prior_covariance().diagonal().cwiseSqrt().eval();
-  params.T_IL = odometry.calibration().T_IL;
-  params.time_offset_s = odometry.calibration().time_offset_s;
+  const auto learnt_sigma = odometry.next_lidar_calibration_prior_covariance().diagonal().cwiseSqrt().eval();
+  params.T_IL = odometry.lidar_calibration().T_IL;
+  params.time_offset_s = odometry.lidar_calibration().time_offset_s;
   params.mount_sigma_rad = learnt_sigma.head<3>().maxCoeff();
   params.mount_sigma_m = learnt_sigma.segment<3>(3).maxCoeff();
   params.time_offset_sigma_s = learnt_sigma[6];
@@ -79,8 +79,8 @@ TEST(Calibration, FindsMountingAndClock) {
   LidarImuCalibration truth;
   truth.T_IL = true_params().T_IL;
   truth.time_offset_s = 0.004;
-  const auto error = odometry.calibration().minus(truth);
-  const auto sigma = odometry.calibration_covariance().diagonal().cwiseSqrt().eval();
+  const auto error = odometry.lidar_calibration().minus(truth);
+  const auto sigma = odometry.lidar_calibration_covariance().diagonal().cwiseSqrt().eval();
   // stated: errors of 0.018 rad, 10 mm, 4 ms; measured: 0.0022 rad, 0.4 mm, 0.44 ms
   EXPECT_LT(error.head<3>().norm(), 0.003);
   EXPECT_LT(error.segment<3>(3).norm(), 0.005);
@@ -90,10 +90,10 @@ TEST(Calibration, FindsMountingAndClock) {
 
 TEST(Calibration, IsLeftAloneWhereItIsExact) {
   Odometry odometry(true_params());
-  const LidarImuCalibration before = odometry.calibration();
+  const LidarImuCalibration before = odometry.lidar_calibration();
   run_miscalibrated(odometry, slower(), 6);
-  EXPECT_EQ(odometry.calibration().minus(before).head<7>().norm(), 0.0);
-  EXPECT_EQ(odometry.calibration_covariance().norm(), 0.0);
+  EXPECT_EQ(odometry.lidar_calibration().minus(before).head<7>().norm(), 0.0);
+  EXPECT_EQ(odometry.lidar_calibration_covariance().norm(), 0.0);
 }
 
 TEST(Recovery, FindsItselfAfterThreeSecondsUnderACover) {

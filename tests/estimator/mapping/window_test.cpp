@@ -83,7 +83,7 @@ TEST(Window, TheSweepsAfterItPlaceASweepThatSawNothing) {
   run.sweeps(15, 18, 15, 16);  // only a clipped gyro
   run.sweeps(18, 19);
   const PoseState& at_once = run.reports[15].trajectory.back();
-  const PoseState& smoothed = run.reports[17].smoothed_trajectory.back();
+  const PoseState& smoothed = run.reports[17].final_poses_of_earlier_sweep.back();
   ASSERT_EQ(at_once.time_ns, smoothed.time_ns);
   EXPECT_LT(run.error_rad(smoothed), 0.5 * run.error_rad(at_once));
   EXPECT_LT(smoothed.covariance.diagonal().tail<3>().sum(), at_once.covariance.diagonal().tail<3>().sum());
@@ -96,7 +96,7 @@ TEST(Window, OfOneLeavesASweepAsItWas) {
   Drive run(params);
   run.sweeps(0, 12);
   for (std::size_t k = 0; k < run.reports.size(); ++k) {
-    const std::vector<PoseState>& smoothed = run.reports[k].smoothed_trajectory;
+    const std::vector<PoseState>& smoothed = run.reports[k].final_poses_of_earlier_sweep;
     const std::vector<PoseState>& before = run.reports[k].trajectory;
     ASSERT_EQ(smoothed.size(), before.size());
     for (std::size_t i = 0; i < smoothed.size(); ++i) {
@@ -113,7 +113,7 @@ TEST(Window, SettledAndOpenSweepsAreTheWholeTrajectory) {
   run.sweeps(0, 12);
   std::vector<PoseState> all;
   for (const Odometry::SweepReport& report : run.reports) {
-    all.insert(all.end(), report.smoothed_trajectory.begin(), report.smoothed_trajectory.end());
+    all.insert(all.end(), report.final_poses_of_earlier_sweep.begin(), report.final_poses_of_earlier_sweep.end());
   }
   EXPECT_EQ(all.back().time_ns, 9 * test::kSweep_ns);
   const auto open = run.odometry.window_trajectories();

@@ -17,7 +17,7 @@ namespace {
 class Compare {
  public:
   explicit Compare(sim::Values device) : device_(std::move(device)) {}
-  void operator()(double value, const Field& field) {
+  void operator()(double value, const ParameterInfo& field) {
     const std::string name = std::string(field.name) == "rate_hz" ? "output_rate_hz" : field.name;
     ASSERT_TRUE(device_.has(name)) << name;
     different_ += value != device_.at(name);

@@ -58,9 +58,9 @@ class AngularRateStream {
   SensorHealth health(const State& state) const;
 
   /// Returns true while the estimated lever arm is no more accurate than its prior.
-  bool calibration_is_prior(const State& state) const;
+  bool lever_arm_is_prior(const State& state) const;
 
-  RigCalibration calibration(const State& state) const;
+  BodyImuCalibration body_imu_calibration(const State& state) const;
 
   /// Returns the scale, misalignment, g-sensitivity and delay errors that are currently subtracted from the readings,
   /// with their covariance.

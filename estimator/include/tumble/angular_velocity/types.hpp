@@ -29,7 +29,7 @@ struct AngularRateState {
 
 /// The 20 constants of body and IMU that AngularRateSmoother and AngularRateStream estimate together with the angular
 /// velocity.
-struct RigConstants {
+struct BodyImuConstants {
   static constexpr int kSize = 20, kGyroMisalignmentIndex = 14;
   static constexpr double kMaxConstantMagnitude = 10.0;  ///< maximum magnitude of each constant, in its unit
   using Vector = Eigen::Matrix<double, kSize, 1>;
@@ -56,19 +56,19 @@ struct RigConstants {
   static const Eigen::Matrix3d& inertia_basis_matrix(int i);
 
   Vector vector() const;
-  void add(const Vector& step);
-  bool operator==(const RigConstants&) const = default;
+  void add(const Vector& increment);
+  bool operator==(const BodyImuConstants&) const = default;
 };
 
 /// Rig constants that one run estimated, with their covariance, as prior for a later run.
-struct RigCalibration {
-  RigConstants constants;
-  RigConstants::Matrix covariance = RigConstants::Matrix::Identity();
+struct BodyImuCalibration {
+  BodyImuConstants constants;
+  BodyImuConstants::Matrix covariance = BodyImuConstants::Matrix::Identity();
 };
 
-/// Returns `out_of_range` if the magnitude of a rig constant exceeds RigConstants::kMaxConstantMagnitude.
-Status check_rig_constants(const RigConstants& rig);
-/// Returns `ok`, an error of check_rig_constants(), or `degenerate` if the covariance is not positive definite.
-Status check_calibration(const RigCalibration& calibration);
+/// Returns `out_of_range` if the magnitude of a rig constant exceeds BodyImuConstants::kMaxConstantMagnitude.
+Status check_body_imu_constants(const BodyImuConstants& rig);
+/// Returns `ok`, an error of check_body_imu_constants(), or `degenerate` if the covariance is not positive definite.
+Status check_body_imu_calibration(const BodyImuCalibration& calibration);
 
 }  // namespace tumble

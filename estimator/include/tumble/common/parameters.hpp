@@ -20,16 +20,16 @@
 /// tables and file readers call `fields` with a visitor.
 ///
 /// The declaration is `template <class Self, class Visitor> static void fields(Self& p, Visitor& visit)`. `Self` may be
-/// a const type. `fields` calls `visit(p.member, Field)` for each number, boolean, enumeration and Vector3d of the
-/// struct. `fields` calls `visit.group("prefix_", p.member)` for each nested `Params` struct. `fields` skips members
-/// that users do not enter as plain numbers, for example poses and calibrations.
+/// a const type. `fields` calls `visit(p.member, ParameterInfo)` for each number, boolean, enumeration and Vector3d of
+/// the struct. `fields` calls `visit.group("prefix_", p.member)` for each nested `Params` struct. `fields` skips
+/// members that users do not enter as plain numbers, for example poses and calibrations.
 namespace tumble {
 
 /// Most users adapt only the parameters with the audience `common_use`.
 enum class ParameterAudience : std::uint8_t { common_use, expert_use };
 
-/// All strings in a Field must have static lifetime.
-struct Field {
+/// All strings in a ParameterInfo must have static lifetime.
+struct ParameterInfo {
   const char* name;         ///< name with its unit as suffix, used in tables and messages
   const char* unit;         ///< unit; "1" if dimensionless
   double low, high;         ///< inclusive bounds; for a vector, of each coordinate
@@ -37,8 +37,8 @@ struct Field {
   ParameterAudience audience = ParameterAudience::expert_use;
 };
 
-inline Field boolean_field(const char* name, const char* meaning,
-                           ParameterAudience audience = ParameterAudience::expert_use) {
+inline ParameterInfo boolean_parameter(const char* name, const char* meaning,
+                                       ParameterAudience audience = ParameterAudience::expert_use) {
   return {name, "1", 0.0, 1.0, meaning, audience};
 }
 
@@ -66,10 +66,10 @@ class BoundsChecker {
   explicit BoundsChecker(OutOfBoundsParameter& out) : out_(out) {}
 
   template <Number T>
-  void operator()(const T& value, const Field& field) {
+  void operator()(const T& value, const ParameterInfo& field) {
     check(static_cast<double>(value), field);
   }
-  void operator()(const Eigen::Vector3d& value, const Field& field) {
+  void operator()(const Eigen::Vector3d& value, const ParameterInfo& field) {
     for (const double coordinate : value) check(coordinate, field);
   }
   template <class Params>
@@ -81,7 +81,7 @@ class BoundsChecker {
   }
 
  private:
-  void check(double value, const Field& field);
+  void check(double value, const ParameterInfo& field);
 
   OutOfBoundsParameter& out_;
 };
@@ -107,7 +107,7 @@ class PrefixedNameVisitor {
   explicit PrefixedNameVisitor(Each& each) : callback_(each) {}
 
   template <class T>
-  void operator()(T& value, const Field& field) {
+  void operator()(T& value, const ParameterInfo& field) {
     callback_(prefix_ + field.name, value, field);
   }
   template <class Params>
@@ -128,7 +128,7 @@ class PrefixedNameVisitor {
 /// Calls `each(name, value, field)` for each parameter in the struct `params`, in order of declaration. `name` is a
 /// std::string: the prefixes of the parameter's groups, followed by the parameter's name.
 template <class Params, class Each>
-void visit_by_name(Params& params, Each each) {
+void for_each_parameter(Params& params, Each each) {
   detail::PrefixedNameVisitor<Each> visitor(each);
   std::remove_cv_t<Params>::fields(params, visitor);
 }

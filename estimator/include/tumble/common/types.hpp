@@ -77,7 +77,7 @@ enum class ContactMode : std::uint8_t {
   slip,     ///< the contact point moves along the floor: the sphere spins too fast or slides
   bump,     ///< the contact point also rises or falls: an obstacle, or flight
   incline,  ///< the contact point is at rest; the floor has an estimated slope
-  uneven,   ///< the contact point is at rest; the floor rises and falls about the level
+  rough,    ///< the contact point is at rest; the floor rises and falls about the level
 };
 
 }  // namespace tumble

@@ -30,7 +30,8 @@ namespace tumble {
 ///
 /// Lidar pose in IMU axes, time offset between IMU and lidar, and gravity are estimated if their prior standard
 /// deviations are not 0. A fixed-lag smoother refines the poses of the last `window_sweeps` sweeps. To get a consistent
-/// map, process the recording twice, and start the second run with the result of calibration() after the first run.
+/// map, process the recording twice, and start the second run with the result of lidar_calibration() after the first
+/// run.
 ///
 /// After a tracking failure (a rejected sweep), inertial integration continues the pose. Until tracking is restored,
 /// the registration of each sweep also tries several starting poses around the predicted pose. LidarInertialOdometry
@@ -73,12 +74,12 @@ class LidarInertialOdometry {
   ///
   /// Before localisation, poses are not in the frame of the prior map, and check_localised() returns `degenerate`.
   /// After localisation, poses and covariances are in the frame of the prior map, and SweepReport::in_prior_map is
-  /// true. If `map.T_prior_map_imu` is set, set_prior_map() passes this pose to set_start_pose(). All points of the
+  /// true. If `map.T_MI` is set, set_prior_map() passes this pose to set_start_pose(). All points of the
   /// prior map are kept, also beyond `map_radius_m` from the robot. Returns `ok`, an error of check_prior_map(), or
   /// `time_order` if the mapping has already started. On error, the state is unchanged.
   Status set_prior_map(PriorMap map);
   /// Copies the prior map, if any, from `other`, and restarts the localisation. The localisation searches near the pose
-  /// of set_start_pose(), or without a start pose near PriorMap::T_prior_map_imu.
+  /// of set_start_pose(), or without a start pose near PriorMap::T_MI.
   void copy_prior_map(const LidarInertialOdometry& other);
   /// Returns `degenerate` if a prior map is set but the robot is not yet localised.
   Status check_localised() const;
@@ -118,25 +119,25 @@ class LidarInertialOdometry {
 
   /// Returns the estimated pose of the lidar in IMU axes, time offset and gravity. Values that are not estimated have
   /// covariance 0.
-  LidarImuCalibration calibration() const;
-  LidarImuCalibration::Covariance calibration_covariance() const;
+  LidarImuCalibration lidar_calibration() const;
+  LidarImuCalibration::Covariance lidar_calibration_covariance() const;
   /// Returns the covariance that the next registration uses as prior of the calibration. A second run over the same
-  /// recording should start with the results of calibration() and next_calibration_prior_covariance().
-  LidarImuCalibration::Covariance next_calibration_prior_covariance() const;
+  /// recording should start with the results of lidar_calibration() and next_lidar_calibration_prior_covariance().
+  LidarImuCalibration::Covariance next_lidar_calibration_prior_covariance() const;
 
   /// Returns `out_of_range` while the standard deviation of gravity's direction exceeds 0.02 rad, for example after a
   /// start in motion.
-  Status check_vertical() const;
+  Status check_gravity_direction() const;
 
   /// Estimates the pose of the IMU at a time within the last `window_sweeps` sweeps; other times give `out_of_range`.
   Status pose_at(TimeNs time_ns, PoseState& pose) const;
 
   /// Returns the current IMU poses of the sweeps that later sweeps still refine (at most `window_sweeps` - 1 sweeps),
-  /// oldest first. At the end of a run, the poses of all SweepReport::smoothed_trajectory and then of
+  /// oldest first. At the end of a run, the poses of all SweepReport::final_poses_of_earlier_sweep and then of
   /// window_trajectories() are the whole trajectory.
   std::vector<std::vector<PoseState>> window_trajectories() const;
 
-  std::size_t map_bytes() const;
+  std::size_t map_memory_bytes() const;
 
   /// Returns the map points within about `map_radius_m` of the robot, and the points of a prior map. Each normal is
   /// fitted to the nearest neighbours of its point, and points towards the sensor that observed the point. The result

@@ -47,9 +47,9 @@ struct LidarImuCalibration {
   Eigen::Matrix<double, kErrorCount, 1> minus(const LidarImuCalibration& other) const;
 };
 
-/// Returns `out_of_range` if `deviations` (of LidarImuCalibrationPrior::distance_in_sigmas()) exceeds
+/// Returns `out_of_range` if `distance_in_sigmas` (of LidarImuCalibrationPrior::distance_in_sigmas()) exceeds
 /// kDistanceMax_sigmas. The stated calibration is then probably wrong.
-Status check_calibration_distance(double deviations);
+Status check_lidar_calibration_distance(double distance_in_sigmas);
 
 /// Calibration that the caller states, with standard deviations of the lidar's orientation (per axis), position (per
 /// axis) and time offset. A standard deviation of 0 means that the stated value is exact.
@@ -66,23 +66,23 @@ struct LidarImuCalibrationPrior {
 };
 
 /// Describes the parameters for the standard deviations of the lidar's pose in IMU axes and time offset.
-namespace calibration_fields {
+namespace lidar_calibration_fields {
 
-inline constexpr Field kMountSigma_rad{
+inline constexpr ParameterInfo kMountSigma_rad{
     "mount_sigma_rad",
     "rad",
     0.0,
     1.0,
     "prior standard deviation of the lidar's orientation relative to the IMU; 0: exact, no estimate",
     ParameterAudience::common_use};
-inline constexpr Field kMountSigma_m{
+inline constexpr ParameterInfo kMountSigma_m{
     "mount_sigma_m",
     "m",
     0.0,
     1.0,
     "prior standard deviation of the lidar's position relative to the IMU; 0: exact, no estimate",
     ParameterAudience::common_use};
-inline constexpr Field kTimeOffsetSigma_s{
+inline constexpr ParameterInfo kTimeOffsetSigma_s{
     "time_offset_sigma_s",
     "s",
     0.0,
@@ -90,7 +90,7 @@ inline constexpr Field kTimeOffsetSigma_s{
     "prior standard deviation of the time offset between lidar and IMU; 0: no offset, no estimate",
     ParameterAudience::common_use};
 
-}  // namespace calibration_fields
+}  // namespace lidar_calibration_fields
 
 /// An odometer reading is a motion or a velocity of the robot, measured by wheels, legs, a camera or a radar. Times are
 /// in the IMU's clock. The error of each odometer reading is assumed independent of all other errors. Wheel slip beyond
@@ -104,7 +104,7 @@ struct VelocityReading {
 
 /// Measured motion of the IMU I from `from_ns` to `to_ns`. For IMU poses T_OI in a drifting odometer frame O, the
 /// motion is T_OI(from)^-1 T_OI(to).
-struct MotionReading {
+struct RelativePoseReading {
   TimeNs from_ns = 0;
   TimeNs to_ns = 0;
   Eigen::Isometry3d relative_pose = Eigen::Isometry3d::Identity();
@@ -113,14 +113,7 @@ struct MotionReading {
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
-using OdometerReading = std::variant<VelocityReading, MotionReading>;
-
-/// Returns `non_finite` if a number is not finite. Returns `out_of_range` if a standard deviation is not above 0, a
-/// covariance is not positive definite, or a rotation matrix is not orthonormal. Returns `time_order` if a motion ends
-/// before or at its start.
-Status check_odometer_reading(const OdometerReading& reading);
-TimeNs reading_start_ns(const OdometerReading& reading);
-TimeNs reading_end_ns(const OdometerReading& reading);
+using OdometerReading = std::variant<VelocityReading, RelativePoseReading>;
 
 /// Measured position of an antenna or tag A on the robot, for example from GPS or beacons. The position is given in a
 /// position frame P with an upward z axis, for example east, north, up. The errors of successive readings are assumed
@@ -135,7 +128,7 @@ struct PositionReading {
 /// Estimated transform from the odometry frame W of the poses to the frame P of the position readings. The transform
 /// compensates the drift of the odometry, so poses in the frame P do not drift.
 struct PositionFrame {
-  Eigen::Isometry3d T_readings_world = Eigen::Isometry3d::Identity();  ///< the rotation is about the vertical
+  Eigen::Isometry3d T_PW = Eigen::Isometry3d::Identity();  ///< the rotation is about the vertical
   Eigen::Vector3d reference_point_W_m = Eigen::Vector3d::Zero();
   /// Covariance of the transform's error in axes of the frame P: translation of `reference_point_W_m` [m], then
   /// rotation about the vertical through this point [rad].
@@ -151,9 +144,9 @@ struct PriorMap {
   std::vector<MapPoint> points = {};  ///< points with normals, in the map frame M; to_map_points() computes normals
   /// Start pose of the IMU in the map frame M, if known; only position and heading are used. If the start pose is
   /// unknown, the run may start anywhere in the map.
-  std::optional<Eigen::Isometry3d> T_prior_map_imu = std::nullopt;
-  double sigma_m = 0.0;    ///< standard deviation of the position of T_prior_map_imu per axis; 0: exact
-  double sigma_rad = 0.0;  ///< standard deviation of the heading of T_prior_map_imu; 0: exact
+  std::optional<Eigen::Isometry3d> T_MI = std::nullopt;
+  double start_position_sigma_m = 0.0;   ///< standard deviation of the position of T_MI per axis; 0: exact
+  double start_heading_sigma_rad = 0.0;  ///< standard deviation of the heading of T_MI; 0: exact
   bool extend =
       true;  ///< true: sweeps add points, and remove points through which their beams pass; false: the map is constant
 };
@@ -188,8 +181,8 @@ struct SweepReport {
   std::vector<PoseState> trajectory;  ///< IMU poses within the sweep, corrected by the registration
   /// Final poses of the oldest sweep in the window of the fixed-lag smoother. Later sweeps no longer change these
   /// poses. The vector is empty until `window_sweeps` sweeps have arrived. If `window_sweeps` is 2 (the default),
-  /// `smoothed_trajectory` contains the final poses of the sweep before this sweep.
-  std::vector<PoseState> smoothed_trajectory;
+  /// `final_poses_of_earlier_sweep` contains the final poses of the sweep before this sweep.
+  std::vector<PoseState> final_poses_of_earlier_sweep;
   double inlier_ratio = 0.0;      ///< fraction of the registered points that are inliers
   double eigenvalue_ratio = 0.0;  ///< smallest / largest eigenvalue of the scaled information matrix of the pose
   /// standard deviation of the pose in the least constrained direction, from the lidar points alone; 0: the sweep was
@@ -212,7 +205,7 @@ struct SweepReport {
   /// components, in world axes. The attitude components are angles, multiplied by the root-mean-square distance of the
   /// points from the IMU, so all six components are lengths.
   Eigen::Matrix<double, 6, 1> least_constrained_direction = Eigen::Matrix<double, 6, 1>::Zero();
-  Eigen::Vector3d mean_saturation_deficit_rad_s =
+  Eigen::Vector3d mean_clipping_correction_rad_s =
       Eigen::Vector3d::Zero();              ///< mean correction of the rate on clipped gyro axes
   std::size_t points_used = 0;              ///< finite returns within the range limits that do not hit the robot
   std::size_t isolated_points_dropped = 0;  ///< unused returns that no neighbouring beam confirms

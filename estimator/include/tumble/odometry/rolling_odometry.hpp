@@ -83,7 +83,7 @@ class RollingOdometry {
       visit.group("", *p.expert);
     }
   };
-  struct Calibration {
+  struct SphereCalibration {
     Eigen::Vector3d sphere_centre_B_m =
         Eigen::Vector3d::Zero();  ///< true centre of the sphere, relative to the stated centre
     /// Estimated radius of the sphere, and its standard deviation. The standard deviation is 0 without smoothing
@@ -129,12 +129,12 @@ class RollingOdometry {
   /// Processes a sample of a sphere with one IMU. Returns `ok` or an error of add_imus().
   Status add_imu(const ImuSample& sample) { return add_imus({&sample, 1}); }
 
-  /// Processes a sample of the IMU with the index `unit`, if the samples of the IMUs are not simultaneous.
+  /// Processes a sample of the IMU with the index `imu_index`, if the samples of the IMUs are not simultaneous.
   /// RollingOdometry resamples the readings of all IMUs to common times, which delays the poses by at most 0.05 s.
   /// RollingOdometry treats an IMU without readings as absent. Returns `ok`, an error of add_imus(), or `out_of_range`
   /// for an invalid IMU number. If the clock of an IMU steps back, add_imu() rejects samples of this IMU until reset(),
   /// or until a time stamp exceeds the newest accepted time stamp.
-  Status add_imu(std::size_t unit, const ImuSample& sample);
+  Status add_imu(std::size_t imu_index, const ImuSample& sample);
 
   /// Returns the pose at the newest sample, estimated from all data so far, or an empty value before the first sample.
   std::optional<Pose> newest() const;
@@ -166,7 +166,7 @@ class RollingOdometry {
 
   /// Returns the estimated centre and radius of the sphere; if `lag_s` is above 0, at the time of the newest smoothed
   /// pose.
-  Calibration calibration() const;
+  SphereCalibration sphere_calibration() const;
 
   /// Returns true if the sphere was already moving at the first samples.
   bool started_in_motion() const;

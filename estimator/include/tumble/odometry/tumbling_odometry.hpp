@@ -46,7 +46,7 @@ struct TumblingParams {
   using Expert = TumblingExpertParams;
   HeapValue<Expert> expert;  ///< rarely changed parameters: odometry/expert_params.hpp
 
-  LidarImuCalibrationPrior calibration_prior() const {
+  LidarImuCalibrationPrior lidar_calibration_prior() const {
     LidarImuCalibrationPrior out{{}, mount_sigma_rad, mount_sigma_m, time_offset_sigma_s};
     out.calibration.T_IL = T_IL;
     return out;
@@ -60,9 +60,9 @@ struct TumblingParams {
                             ParameterAudience::common_use});
     visit(p.lever_arm_sigma_m,
           {"lever_arm_sigma_m", "m", 1e-9, 10.0, "standard deviation of the lever arm", ParameterAudience::common_use});
-    visit(p.mount_sigma_rad, calibration_fields::kMountSigma_rad);
-    visit(p.mount_sigma_m, calibration_fields::kMountSigma_m);
-    visit(p.time_offset_sigma_s, calibration_fields::kTimeOffsetSigma_s);
+    visit(p.mount_sigma_rad, lidar_calibration_fields::kMountSigma_rad);
+    visit(p.mount_sigma_m, lidar_calibration_fields::kMountSigma_m);
+    visit(p.time_offset_sigma_s, lidar_calibration_fields::kTimeOffsetSigma_s);
     visit.group("", p.lidar);
     visit(p.lag_s, {"lag_s", "s", 0.0, kWholeRecording,
                     "maximum time for which a sweep waits for later data, at most 10 s; a longer time adds delay and "
@@ -84,11 +84,11 @@ struct LidarScale;
 /// TumblingOdometry reports three poses of increasing accuracy. The function newest() predicts the IMU's pose at the
 /// newest sample by inertial integration from the last registered sweep. The function take() returns a sweep registered
 /// to the map (`report.pose`), at most `lag_s` after the sweep's end. The final pose of a sweep is in the report of the
-/// following sweep (`report.smoothed_trajectory`). At ten sweeps per second and the default `lag_s`, the final pose is
-/// available at most 0.3 s after the end of its sweep. Time stamps of poses are in the IMU's clock. The earliest sweep
-/// with enough points starts the map, and poses are reported only after the map has started. Start with at least half a
-/// second at rest, which determines the tilt. A gyro with a bias above 0.05 rad/s needs a full second at rest, because
-/// TumblingOdometry then subtracts the bias and restarts.
+/// following sweep (`report.final_poses_of_earlier_sweep`). At ten sweeps per second and the default `lag_s`, the final
+/// pose is available at most 0.3 s after the end of its sweep. Time stamps of poses are in the IMU's clock. The
+/// earliest sweep with enough points starts the map, and poses are reported only after the map has started. Start with
+/// at least half a second at rest, which determines the tilt. A gyro with a bias above 0.05 rad/s needs a full second
+/// at rest, because TumblingOdometry then subtracts the bias and restarts.
 ///
 /// Some seconds after motion starts, SecondMappingPass processes the first seconds of motion again with the calibration
 /// estimated so far. If the second pass succeeds, TumblingOdometry continues with the map and pose of
@@ -174,7 +174,7 @@ class TumblingOdometry {
   /// yet), `non_finite`, `time_order` (the sweep is already registered) or `out_of_range`. `out_of_range` means an
   /// invalid standard deviation, a time stamp more than a second ahead of the newest sample, or 1024 waiting readings.
   Status add_velocity(const VelocityReading& velocity);
-  Status add_motion(const MotionReading& motion);
+  Status add_relative_pose(const RelativePoseReading& motion);
   /// Processes a position reading, for example from GPS or a beacon. Position readings do not change the poses or the
   /// map. Position readings determine Sweep::position_frame, which transforms poses to a frame without drift. Position
   /// readings may arrive in any order, but each reading must arrive before the sweep at the reading's time is
@@ -185,8 +185,8 @@ class TumblingOdometry {
   std::optional<Sweep> take();
   /// Registers all waiting sweeps that the IMU samples cover. Call finish() at the end of a run or during a halt. After
   /// finish(), take() returns the registered sweeps. For the last sweeps, mapper().window_trajectories() returns the
-  /// final poses instead of `report.smoothed_trajectory`. If more samples are added after finish(), the estimation of
-  /// angular velocity restarts with the current calibration.
+  /// final poses instead of `report.final_poses_of_earlier_sweep`. If more samples are added after finish(), the
+  /// estimation of angular velocity restarts with the current calibration.
   ///
   /// With kWholeRecording, finish() processes the whole recording, and later samples and sweeps are rejected until
   /// reset(). After finish() with kWholeRecording, take() returns all sweeps with final poses in `report.pose` and
@@ -209,7 +209,7 @@ class TumblingOdometry {
   Status newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2 = nullptr) const;
   /// Reports the suspected faults of the sensors and of the estimate. Estimation continues after any finding. A finding
   /// disappears at most one minute after the fault has ended. The checks are AngularRateStream::health(),
-  /// ImuPlausibility, RestGravity, LidarScale, LidarInertialOdometry::check_vertical() and check_localised(),
+  /// ImuPlausibility, RestGravity, LidarScale, LidarInertialOdometry::check_gravity_direction() and check_localised(),
   /// Localisation and LidarImuCalibrationPrior. With kWholeRecording, finish() checks the whole recording
   /// (detail/imu_findings.hpp), and health() reports no finding before finish(). Cost: a few hundred operations.
   /// Without a finding, health() allocates no memory.
@@ -221,7 +221,7 @@ class TumblingOdometry {
   /// readings. Returns an empty value with kWholeRecording.
   const std::optional<PositionFrame>& position_frame() const;
   /// Returns the time of the newest accepted IMU sample.
-  std::optional<TimeNs> newest_ns() const;
+  std::optional<TimeNs> newest_imu_time_ns() const;
   /// Returns the angular velocity at the newest IMU sample, or an empty value before the first sample. While the gyro
   /// is saturated, this value is provisional.
   std::optional<AngularRateState> newest_rate() const;
@@ -230,7 +230,7 @@ class TumblingOdometry {
   const std::optional<AngularRateState>& newest_smoothed_rate() const;
   /// Returns the estimated calibration of the IMU on the body (angular_velocity/types.hpp): lever arm, biases,
   /// inertia ratios and gyro axis directions.
-  RigCalibration rig_calibration() const;
+  BodyImuCalibration body_imu_calibration() const;
   const SaturationLevels& saturation_levels() const;
   /// Returns the number of restarts after a gap or after a clock that stepped back.
   std::size_t restart_count() const;
@@ -254,9 +254,9 @@ class TumblingOdometry {
   const WholeRecordingEstimate* whole_recording_result() const;
 
   /// Saves calibration, saturation limits, map and newest pose as bytes with a checksum, for load() after a reboot. The
-  /// calibration consists of rig_calibration(), the detected delay and errors of the IMU, and pose and time offset of
-  /// the lidar, each with its uncertainty. The saved map has the format of save_map(). Every machine saves numbers in
-  /// little-endian order. Before the robot is localised in a prior map, save() saves the prior map.
+  /// calibration consists of body_imu_calibration(), the detected delay and errors of the IMU, and pose and time offset
+  /// of the lidar, each with its uncertainty. The saved map has the format of save_map(). Every machine saves numbers
+  /// in little-endian order. Before the robot is localised in a prior map, save() saves the prior map.
   ///
   /// The saved bytes contain no velocity, filter states, health findings, counters, odometer readings, position
   /// readings, or buffer of SecondMappingPass. The saved bytes also omit sweeps that wait for IMU samples or for

@@ -10,7 +10,7 @@ namespace tumble {
 namespace arrow {
 
 inline constexpr int kBlockSize = 6;    ///< unknowns per sample: rate and scaled angular acceleration
-inline constexpr int kBorderSize = 20;  ///< unknowns that all samples share: RigConstants
+inline constexpr int kBorderSize = 20;  ///< unknowns that all samples share: BodyImuConstants
 
 using System = BlockArrowSystem<kBlockSize, kBorderSize>;
 using StateMatrix = System::StateMatrix;
@@ -38,7 +38,7 @@ void eliminate_sensor_errors(const Block& block, ErrorMatrix& errors, ErrorMatri
 ErrorMatrix back_substitute_errors(const Block& block, const ErrorMatrix& errors, const ErrorMatrix* next_moved,
                                    const BorderErrors& border_moved);
 
-/// Returns the covariance of a sample's angular rate, including the uncertainty of the border (RigConstants).
+/// Returns the covariance of a sample's angular rate, including the uncertainty of the border (BodyImuConstants).
 Eigen::Matrix3d rate_covariance(const Conditional& conditional, const BorderMatrix& border_covariance);
 
 }  // namespace arrow

@@ -19,7 +19,7 @@ namespace tumble {
 struct AngularRateModelParams {
   /// Prior mean of the rig constants: lever arm, biases, inertia ratios and gyro axis directions. The lever arm is
   /// required unless `calibration` is set.
-  RigConstants nominal = {.lever_arm_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN())};
+  BodyImuConstants nominal = {.lever_arm_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN())};
   double lever_arm_sigma_m = 0.01;
   double gyro_bias_sigma_rad_s = 0.01;
   double accel_bias_sigma_m_s2 = 0.05;
@@ -29,7 +29,7 @@ struct AngularRateModelParams {
   double element_sigma = 0.03;
   /// Calibration from an earlier run, which replaces the prior mean `nominal` and the five prior standard deviations
   /// above.
-  std::optional<RigCalibration> calibration = std::nullopt;
+  std::optional<BodyImuCalibration> calibration = std::nullopt;
 
   /// Additional IMUs on the body, at most kAuxiliaryImusMax.
   std::vector<AuxiliaryImu> auxiliary_imus = {};

@@ -51,7 +51,7 @@ struct AngularRateReport {
   bool converged = false;
   int restarts = 0;  ///< restarts with other initial values, because a solution contained no free flight
   double last_step_rad_s = 0.0;
-  RigCalibration calibration;
+  BodyImuCalibration calibration;
   /// Mahalanobis distance of the estimated rig constants from their prior, in standard deviations. A distance far above
   /// 1 indicates a wrong prior, or contact that was classified as free flight.
   double calibration_mahalanobis = 0.0;
@@ -81,8 +81,8 @@ struct AngularRateReport {
 /// recording.
 ///
 /// AngularRateSmoother estimates the rate and angular acceleration of each sample, and the rig constants of the run
-/// (RigConstants). Unclipped gyro readings measure the rate, and clipped readings give a lower bound on the rate. In
-/// free flight, the specific force at the lever arm and Euler's equation determine the rate on clipped axes. During
+/// (BodyImuConstants). Unclipped gyro readings measure the rate, and clipped readings give a lower bound on the rate.
+/// In free flight, the specific force at the lever arm and Euler's equation determine the rate on clipped axes. During
 /// contact, both have lower weights. Between samples, the angular jerk is white noise, whose density increases with the
 /// contact force. The equations are in docs/maths/rate_smoother.md.
 ///

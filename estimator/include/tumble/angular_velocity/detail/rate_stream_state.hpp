@@ -86,8 +86,8 @@ struct AngularRateStreamState {
   FrozenAxes::State frozen_axes;
   FlightSignCheck::State flight_sign_check;
   std::vector<AngularRateStreamKnot> window;  ///< oldest first
-  RigConstants rig;
-  RigConstants::Matrix rig_covariance;
+  BodyImuConstants rig;
+  BodyImuConstants::Matrix rig_covariance;
   // Gaussian prior on the oldest sample and the rig constants, from all earlier samples.
   arrow::Block prior;
   arrow::Corner prior_border_block;
@@ -102,7 +102,7 @@ struct AngularRateStreamState {
   std::optional<AngularRateKnot> last_marginalised;
   TimeNs last_marginalised_ns = 0;
   AngularRateKnot prior_knot;
-  RigConstants prior_rig;
+  BodyImuConstants prior_rig;
   std::size_t samples = 0;
   std::size_t samples_since_step = 0;
   std::size_t calibration_samples = 0;         ///< number of flight samples that have updated the rig constants

@@ -82,8 +82,8 @@ class MotionRegimeStream {
   std::size_t index_of(const AngularRateState& rate, const State& state) const;
   bool calibration_is_unstable(const State& state) const;
   RegimeProbabilities next(const RegimeProbabilities& before, double dt_s,
-                           std::span<const AngularRateStream::Knot> window, std::size_t k, const RigCalibration& rig,
-                           bool unstable) const;
+                           std::span<const AngularRateStream::Knot> window, std::size_t k,
+                           const BodyImuCalibration& rig, bool unstable) const;
   void update_probabilities(const AngularRateState& rate, State& state) const;
   double hand_held_weight(const AngularRateState& rate, State& state) const;
   void flush_hand_held_rates(std::span<AngularRateState> out, State& last) const;

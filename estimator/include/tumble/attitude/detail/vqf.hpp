@@ -63,10 +63,11 @@ struct VqfParams {
     visit(p.tau_s,
           {"tau_s", "s", 1e-3, 1e4, "time constant of the low-pass filter on the specific force in the inertial frame",
            ParameterAudience::common_use});
-    visit(p.rest_bias_estimation,
-          boolean_field("rest_bias_estimation", "1: estimate the gyro bias at rest", ParameterAudience::common_use));
-    visit(p.motion_bias_estimation, boolean_field("motion_bias_estimation", "1: also estimate the gyro bias in motion",
-                                                  ParameterAudience::common_use));
+    visit(p.rest_bias_estimation, boolean_parameter("rest_bias_estimation", "1: estimate the gyro bias at rest",
+                                                    ParameterAudience::common_use));
+    visit(p.motion_bias_estimation,
+          boolean_parameter("motion_bias_estimation", "1: also estimate the gyro bias in motion",
+                            ParameterAudience::common_use));
     visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap causes an error"});
   }
 };

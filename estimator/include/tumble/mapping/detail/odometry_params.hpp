@@ -79,8 +79,9 @@ struct SaturatedImuParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.accel_m_s2,
           {"accel_rail_m_s2", "m/s^2", 1e-9, 1e5, "accelerometer readings from this value on count as saturated"});
-    visit(p.estimate_deficit, boolean_field("estimate_saturation_deficit",
-                                            "1: estimate the saturation deficit of clipped axes in the registration"));
+    visit(p.estimate_deficit,
+          boolean_parameter("estimate_saturation_deficit",
+                            "1: estimate the saturation deficit of clipped axes in the registration"));
   }
 };
 
@@ -212,9 +213,9 @@ struct OdometryParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.time_offset_s,
           {"time_offset_s", "s", -1.0, 1.0, "time of the IMU's clock minus time of the lidar's clock"});
-    visit(p.mount_sigma_rad, calibration_fields::kMountSigma_rad);
-    visit(p.mount_sigma_m, calibration_fields::kMountSigma_m);
-    visit(p.time_offset_sigma_s, calibration_fields::kTimeOffsetSigma_s);
+    visit(p.mount_sigma_rad, lidar_calibration_fields::kMountSigma_rad);
+    visit(p.mount_sigma_m, lidar_calibration_fields::kMountSigma_m);
+    visit(p.time_offset_sigma_s, lidar_calibration_fields::kTimeOffsetSigma_s);
     visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "minimum range; nearer returns are dropped"});
     visit(p.range_max_m, {"range_max_m", "m", 0.0, 1e4, "maximum range; farther returns are dropped"});
     visit(p.own_body_L.min(),
