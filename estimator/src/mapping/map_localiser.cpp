@@ -71,8 +71,8 @@ void MapLocaliser::propose_map_pose(const std::vector<SurfacePoint>& points, con
   SearchRegion region;
   if (map().T_MI) {  // the given start pose also defines frame W, so W and M have nearly equal headings
     region.p_WI_m = region.centre_in_prior_map_m = map().T_MI->translation();
-    region.search_radius_m = std::max(kSigmas * map().sigma_m, kMinReach_m);
-    region.search_angle_rad = std::max(kSigmas * map().sigma_rad, kMinReach_rad);
+    region.search_radius_m = std::max(kSigmas * map().start_position_sigma_m, kMinReach_m);
+    region.search_angle_rad = std::max(kSigmas * map().start_heading_sigma_rad, kMinReach_rad);
   }
   std::size_t tried = 0;
   const std::vector<FramePose> found = prior_scene_->find_candidate_poses(

@@ -63,7 +63,7 @@ const LidarScale& TumblingOdometry::lidar_scale() const {
 const std::optional<PositionFrame>& TumblingOdometry::position_frame() const {
   return impl_->positions_.position_frame();
 }
-std::optional<TimeNs> TumblingOdometry::newest_ns() const {
+std::optional<TimeNs> TumblingOdometry::newest_imu_time_ns() const {
   return impl_->newest_ns_;
 }
 std::optional<AngularRateState> TumblingOdometry::newest_rate() const {

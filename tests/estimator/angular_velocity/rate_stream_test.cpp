@@ -11,6 +11,7 @@
 #include "estimator/angular_velocity/streamed_rates.hpp"
 #include "estimator/angular_velocity/tumble_recording.hpp"
 #include "tests/allocation_counter.hpp"
+#include "tumble/angular_velocity/detail/rate_model.hpp"
 #include "tumble/angular_velocity/detail/rate_smoother.hpp"
 
 namespace tumble {
