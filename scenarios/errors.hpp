@@ -14,6 +14,13 @@ class BadInput : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// WrongOption is the exception for an option whose value cannot apply to the recording, for example a topic that the
+/// bag does not contain. The user must change the command, so `tumble doctor` does not report a fault of the recording.
+class WrongOption : public BadInput {
+ public:
+  using BadInput::BadInput;
+};
+
 inline void require_length(const std::string& place, const char* field, std::size_t found, std::size_t expected) {
   if (found == expected) return;
   throw BadInput(place + "." + field + " has " + std::to_string(found) + " entries; it must have " +

@@ -2,9 +2,11 @@
 #include "sim/parameters.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <numeric>
 #include <sstream>
+#include <utility>
 #include <vector>
 
 namespace tumble::sim {
@@ -26,6 +28,12 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
+std::string lower_case(std::string_view text) {
+  std::string out(text);
+  std::ranges::transform(out, out.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return out;
+}
+
 bool is_whole(std::string_view name) {
   return name.ends_with("_count") || name == "shape";
 }
@@ -38,17 +46,28 @@ double Values::at(std::string_view name) const {
   return found->second;
 }
 
-std::string nearest_name(std::string_view name, std::span<const std::string> known) {
+std::string did_you_mean(std::string_view name, std::span<const std::string> known) {
+  constexpr std::size_t kMost = 3;
+  const std::string given = lower_case(name);
+  std::vector<std::string> longer;
   std::string best;
-  std::size_t best_distance = std::max<std::size_t>(2, name.size() / 2) + 1;
+  std::size_t best_distance = std::max<std::size_t>(2, given.size() / 2) + 1;
   for (const std::string& candidate : known) {
-    const std::size_t distance = edit_distance(name, candidate);
-    if (distance < best_distance && distance < std::max(name.size(), candidate.size())) {
+    const std::string lower = lower_case(candidate);
+    if (given.size() > 1 && lower.starts_with(given)) longer.push_back(candidate);
+    const std::size_t distance = edit_distance(given, lower);
+    if (distance < best_distance && distance < std::max(given.size(), lower.size())) {
       best_distance = distance;
       best = candidate;
     }
   }
-  return best;
+  std::ranges::sort(longer, {}, [](const std::string& each) { return std::pair(each.size(), each); });
+  const bool one_letter_missing = best_distance <= 1;
+  if (longer.empty() || one_letter_missing) longer = {best};
+  longer.resize(std::min(longer.size(), kMost));
+  std::string out;
+  for (const std::string& each : longer) out += (out.empty() ? "did you mean '" : " or '") + each + "'";
+  return longer.front().empty() ? "" : out + "?";
 }
 
 Values resolve(const std::string& place, const Values& given, std::span<const Parameter> known) {
@@ -61,9 +80,8 @@ Values resolve(const std::string& place, const Values& given, std::span<const Pa
     if (parameter == known.end()) {
       std::vector<std::string> names;
       for (const Parameter& p : known) names.emplace_back(p.name);
-      const std::string near = nearest_name(name, names);
-      throw InvalidSituation(place + ": unknown key '" + name + "'" +
-                             (near.empty() ? "" : "; did you mean '" + near + "'?"));
+      const std::string near = did_you_mean(name, names);
+      throw InvalidSituation(place + ": unknown key '" + name + "'" + (near.empty() ? "" : "; " + near));
     }
     if (!(value >= parameter->low && value <= parameter->high)) {
       std::ostringstream text;

@@ -49,7 +49,10 @@ class Values {
 
 Values resolve(const std::string& place, const Values& given, std::span<const Parameter> known);
 
-std::string nearest_name(std::string_view name, std::span<const std::string> known);
+/// Returns "did you mean 'a' or 'b'?", or an empty text if no known name is similar. The candidates are up to three
+/// known names that start with `name`; without such names, the known name with the smallest edit distance. Letter case
+/// is ignored.
+std::string did_you_mean(std::string_view name, std::span<const std::string> known);
 
 struct ComponentType {
   std::string name;

@@ -17,9 +17,8 @@ const Type& find_entry(std::span<const Type* const> registry, std::string_view n
     if (entry->component.name == name) return *entry;
     names.push_back(entry->component.name);
   }
-  const std::string near = nearest_name(name, names);
-  throw InvalidSituation(what + ": unknown type '" + std::string(name) + "'" +
-                         (near.empty() ? "" : "; did you mean '" + near + "'?"));
+  const std::string near = did_you_mean(name, names);
+  throw InvalidSituation(what + ": unknown type '" + std::string(name) + "'" + (near.empty() ? "" : "; " + near));
 }
 
 template <typename Type>

@@ -17,11 +17,11 @@ Eigen::Isometry3d site_pose(const engine::World& world, const SensorSpec& sensor
   if (site < 0) {
     std::vector<std::string> names;
     for (int i = 0; i < model.nsite; ++i) names.emplace_back(mj_id2name(&model, mjOBJ_SITE, i));
-    const std::string near = nearest_name(sensor.site, names);
+    const std::string near = did_you_mean(sensor.site, names);
     std::string known;
     for (const std::string& name : names) known += (known.empty() ? "" : " ") + name;
     throw InvalidSituation("sensors." + sensor.name + ": the robot has no site '" + sensor.site + "'" +
-                           (near.empty() ? " (known: " + known + ")" : "; did you mean '" + near + "'?"));
+                           (near.empty() ? " (known: " + known + ")" : "; " + near));
   }
   if (model.site_bodyid[site] != world.robot_body) {
     throw InvalidSituation("sensors." + sensor.name + ": site '" + sensor.site +

@@ -92,8 +92,8 @@ std::string read_text_file(const std::filesystem::path& path) {
 }
 
 std::string suggestion(const std::string& name, std::span<const std::string> known) {
-  const std::string near = sim::nearest_name(name, known);
-  if (!near.empty()) return fmt::format("; did you mean '{}'?", near);
+  const std::string near = sim::did_you_mean(name, known);
+  if (!near.empty()) return "; " + near;
   if (known.empty()) return "; there are no valid names";
   std::string text = "; known names:";
   for (const std::string& each : known) text += " " + each;

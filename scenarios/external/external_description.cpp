@@ -205,7 +205,7 @@ std::vector<std::string> placeholders_in(const std::string& word) {
     const std::string name = (*it)[1];
     if (std::find(known.begin(), known.end(), name) == known.end())
       throw BadInput("unknown placeholder '{" + name + "}'" +
-                     (sim::nearest_name(name, known).empty() ? suggestion(name, known)
+                     (sim::did_you_mean(name, known).empty() ? suggestion(name, known)
                                                              : suggestion(name, known) + " (known placeholders: " +
                                                                    fmt::format("{}", fmt::join(known, " ")) + ")"));
     out.push_back(name);

@@ -76,9 +76,8 @@ std::vector<MethodPointer> find_within(const std::string& name, double time_limi
     known.push_back(full_name(method.info));
   }
   if (found.empty()) {
-    const std::string near = sim::nearest_name(name, known);
-    throw BadInput("unknown method '" + name + "'; " +
-                   (near.empty() ? "see 'tumble list methods'" : "did you mean '" + near + "'?"));
+    const std::string near = sim::did_you_mean(name, known);
+    throw BadInput("unknown method '" + name + "'; " + (near.empty() ? "see 'tumble list methods'" : near));
   }
   return found;
 }

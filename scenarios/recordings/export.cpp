@@ -134,9 +134,9 @@ ExportNotes export_recording(const path& recording, const std::string& format, c
   }
   std::string known;
   for (const std::string& name : export_formats()) known += " " + name;
-  const std::string near = sim::nearest_name(format, export_formats());
+  const std::string near = sim::did_you_mean(format, export_formats());
   throw BadInput(fmt::format("unknown export format '{}'{} (known formats:{})", format,
-                             near.empty() ? "" : fmt::format(" (did you mean '{}'?)", near), known));
+                             near.empty() ? "" : " (" + near + ")", known));
 }
 
 }  // namespace tumble::scenarios

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/summary/selection.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <iterator>
 #include <map>
@@ -20,9 +18,8 @@ namespace {
 void require_named(const std::string& what, std::span<const std::string> names, const std::set<std::string>& known) {
   for (const std::string& name : names) {
     if (known.contains(name)) continue;
-    const std::string near = sim::nearest_name(name, std::vector<std::string>(known.begin(), known.end()));
-    throw BadInput("the results contain no " + what + " '" + name + "'" +
-                   (near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
+    const std::string near = sim::did_you_mean(name, std::vector<std::string>(known.begin(), known.end()));
+    throw BadInput("the results contain no " + what + " '" + name + "'" + (near.empty() ? "" : "; " + near));
   }
 }
 

@@ -36,6 +36,11 @@ TEST(RequireKnown, NamesTheNearestOrAll) {
   EXPECT_NO_THROW(said("qx")());
   EXPECT_THAT(said("stamp"), ThrowsMessage<BadInput>("unknown column 'stamp'; did you mean 'stamp_s'?"));
   EXPECT_THAT(said("qy"), ThrowsMessage<BadInput>(HasSubstr("did you mean 'qx'?")));
+  const std::vector<std::string> sheets = {"os1_128", "os1_64", "rs16"};
+  EXPECT_THAT([&] { require_known("device", "os1", sheets); },
+              ThrowsMessage<BadInput>("unknown device 'os1'; did you mean 'os1_64' or 'os1_128'?"));
+  EXPECT_THAT([&] { require_known("device", "OS1-64", sheets); },
+              ThrowsMessage<BadInput>("unknown device 'OS1-64'; did you mean 'os1_64'?"));
   for (const char* far : {"t", "", "gy"})
     EXPECT_THAT(said(far), ThrowsMessage<BadInput>(HasSubstr("; known: qx stamp_s"))) << far;
 }

@@ -71,10 +71,10 @@ bool shard_seeds(const Shard& shard, std::uint64_t& first, std::uint64_t& last) 
 
 void require_known(const std::string& what, const std::string& name, std::span<const std::string> known) {
   if (std::find(known.begin(), known.end(), name) != known.end()) return;
-  const std::string near = sim::nearest_name(name, known);
+  const std::string near = sim::did_you_mean(name, known);
   std::string line = "unknown " + what + " '" + name + "'";
   if (!near.empty()) {
-    line += fmt::format("; did you mean '{}'?", near);
+    line += "; " + near;
   } else {
     line += "; known:";
     for (const std::string& each : known) line += " " + each;

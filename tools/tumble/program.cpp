@@ -65,10 +65,10 @@ std::string usage_line(const CLI::App& app, const CLI::ParseError& error) {
     for (const CLI::Option* each : verb.get_options()) {
       for (const std::string& name : each->get_lnames()) known.push_back("--" + name);
     }
-    const std::string near = sim::nearest_name(*option, known);
-    if (near == *option)
-      return fmt::format("{}'{}' must follow the verb: tumble {} {}", place, near, verb.get_name(), near);
-    return place + "unknown option '" + *option + "'" + (near.empty() ? "" : fmt::format("; did you mean '{}'?", near));
+    if (std::ranges::find(known, *option) != known.end())
+      return fmt::format("{0}'{1}' must follow the verb: tumble {2} {1}", place, *option, verb.get_name());
+    const std::string near = sim::did_you_mean(*option, known);
+    return place + "unknown option '" + *option + "'" + (near.empty() ? "" : "; " + near);
   }
   std::string reason = error.what();
   std::replace(reason.begin(), reason.end(), '\n', ' ');

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
+#include "scenarios/recordings/bags/sensor_places.hpp"
 #include "scenarios/recordings/left_out.hpp"
 #include "sim/parameters.hpp"
 
@@ -23,33 +25,48 @@ struct OpenedBag {
   std::string place;
   std::vector<BagTopic> topics;
 
-  const BagTopic& topic(const std::string& name) const {
+  using FitsType = bool (*)(const std::string& type);
+
+  /// Finds a topic by its name, with or without the first slash, or by the name of its sensor in a recording.
+  const BagTopic& topic(const std::string& name, FitsType fits = nullptr) const {
     std::vector<std::string> names;
     for (const BagTopic& each : topics) {
       if (each.name == name) return each;
-      names.push_back(each.name);
+      if (fits == nullptr || fits(each.type)) names.push_back(each.name);
     }
-    const std::string near = sim::nearest_name(name, names);
-    throw BadInput(place + ": there is no topic '" + name + "'" +
-                   (near.empty() ? "" : "; did you mean '" + near + "'?") + " (existing topics:" + topic_list() + ")");
+    for (const BagTopic& each : topics) {
+      if (std::ranges::count(names, each.name) > 0 && (each.name == "/" + name || sensor_name(each.name) == name))
+        return each;
+    }
+    const std::string near = sim::did_you_mean(name, names);
+    throw WrongOption(place + ": there is no topic '" + name + "'" + (near.empty() ? "" : "; " + near) +
+                      topic_list(fits));
   }
 
-  std::string topic_list() const {
+  /// Lists the topics of fitting types; without such topics, all topics.
+  std::string topic_list(FitsType fits = nullptr) const {
     std::string out;
-    for (const BagTopic& each : topics) out += (out.empty() ? " " : ", ") + each.name + " " + each.type;
-    return out.empty() ? " none" : out;
+    for (const BagTopic& each : topics) {
+      if (fits == nullptr || fits(each.type)) out += (out.empty() ? " " : ", ") + each.name + " " + each.type;
+    }
+    if (fits != nullptr && out.empty()) return topic_list();
+    return (fits != nullptr ? " (topics of a fitting type:" : " (existing topics:") + (out.empty() ? " none" : out) +
+           ")";
   }
 
   std::string place_of(const std::string& name, std::size_t message) const {
     return place + ": message " + std::to_string(message) + " of " + name;
   }
 
-  std::vector<std::string> chosen(const std::vector<std::string>& names, bool (*fits)(const std::string& type),
+  std::vector<std::string> chosen(const std::vector<std::string>& names, FitsType fits,
                                   const std::string& wanted) const {
-    std::vector<std::string> out = names;
+    std::vector<std::string> out;
     for (const std::string& name : names) {
-      if (!fits(topic(name).type))
-        throw BadInput(place + ": topic '" + name + "' is of type " + topic(name).type + "; it must be " + wanted);
+      const BagTopic& found = topic(name, fits);
+      if (!fits(found.type))
+        throw WrongOption(place + ": topic '" + found.name + "' is of type " + found.type + "; it must be " + wanted +
+                          topic_list(fits));
+      out.push_back(found.name);
     }
     for (const BagTopic& each : topics) {
       if (names.empty() && fits(each.type)) out.push_back(each.name);

@@ -42,9 +42,9 @@ std::string choose_field(const Cloud& cloud, const SweepReading& reading, const 
     if (cloud.find(reading.time_field) != nullptr) return reading.time_field;
     std::string all;
     for (const std::string& name : cloud.names) all += " " + name;
-    const std::string near = sim::nearest_name(reading.time_field, cloud.names);
-    throw BadInput(fmt::format("{}: the points have no field '{}'{} (existing fields:{})", where, reading.time_field,
-                               near.empty() ? "" : fmt::format(" (did you mean '{}'?)", near), all));
+    const std::string near = sim::did_you_mean(reading.time_field, cloud.names);
+    throw WrongOption(fmt::format("{}: the points have no field '{}'{} (existing fields:{})", where, reading.time_field,
+                                  near.empty() ? "" : " (" + near + ")", all));
   }
   tumble::ros::TimeFieldChoice choice;
   for (const std::string& name : cloud.names) choice.offer(name);
@@ -153,7 +153,7 @@ PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t per
       std::find_if(kTimeUnits.begin(), kTimeUnits.end(), [&](const TimeUnit& each) { return unit == name_of(each); });
   const double span = upper_median(spans), period = static_cast<double>(period_ns);
   if (!unit.empty() && named == kTimeUnits.end())
-    throw BadInput(fmt::format("the unit of point times is '{}'; it must be s, ms, us or ns", unit));
+    throw WrongOption(fmt::format("the unit of point times is '{}'; it must be s, ms, us or ns", unit));
   if (unit.empty()) named = stated_unit(rule.field);
   if (named != nullptr && named != kTimeUnits.end() && upper_median(points) >= kPointsThatSpan)
     require_no_other_unit(*named, span, period, rule.field, where);

@@ -159,9 +159,9 @@ const Dialect& dialect_of(const std::string& peer) {
     if (dialect.name == peer) return dialect;
     known += " " + dialect.name;
   }
-  const std::string near = sim::nearest_name(peer, peer_dialects());
+  const std::string near = sim::did_you_mean(peer, peer_dialects());
   throw BadInput(fmt::format("the export target '{}' is unknown{} (known targets:{})", peer,
-                             near.empty() ? "" : fmt::format(" (did you mean '{}'?)", near), known));
+                             near.empty() ? "" : " (" + near + ")", known));
 }
 
 void require_finite(const sim::LidarRecord& lidar, const PointStore& aside) {
