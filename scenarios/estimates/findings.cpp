@@ -74,10 +74,14 @@ bool has_implausible_readings(const Estimate& estimate) {
   return any_of(estimate, is_about_readings);
 }
 
-bool report_localised(Estimate& estimate) {
-  const bool localised = !any_of(estimate, is_about_place);
-  estimate.health["localised"] = localised ? 1.0 : 0.0;
-  return localised;
+bool has_consistent_poses(const Estimate& estimate) {
+  return !any_of(estimate, is_about_place);
+}
+
+void report_localised(Estimate& estimate) {
+  const bool missing = any_of(
+      estimate, [](const HealthFinding& finding) { return finding.kind == About::not_localised && !finding.ended; });
+  estimate.health["localised"] = missing ? 0.0 : 1.0;
 }
 
 bool is_current(const HealthFinding& finding) {

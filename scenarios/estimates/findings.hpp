@@ -20,8 +20,11 @@ void add_findings(const SensorHealth& health, std::span<const std::string> names
 
 bool has_finding(HealthFinding::Kind kind, const Estimate& estimate, const std::string& sensor = "");
 bool has_implausible_readings(const Estimate& estimate);
-/// The health entry `localised` becomes false if a health finding contradicts the pose in the map.
-bool report_localised(Estimate& estimate);
+/// Sets the health entry `localised` of a run with a prior map: 1 if no health finding reports a missing localisation.
+void report_localised(Estimate& estimate);
+
+/// Returns false if a health finding contradicts the poses in the map.
+bool has_consistent_poses(const Estimate& estimate);
 
 /// Returns true if the fault has not ended at the end of the run, or if the fault makes the estimate unusable.
 bool is_current(const HealthFinding& finding);

@@ -102,10 +102,11 @@ class Collector {
     }
     if (output_ == SlamOutput::live) replace_by_live();
     if (output_ == SlamOutput::lag && first_in_prior_map_) transform_to_prior_map(odometry.mapper());
-    if (odometry.mapper().prior_map() != nullptr)
-      estimate_.health["prior_map_sweep"] = static_cast<double>(first_in_prior_map_.value_or(0));
+    const bool has_prior_map = odometry.mapper().prior_map() != nullptr;
+    if (has_prior_map) estimate_.health["prior_map_sweep"] = static_cast<double>(first_in_prior_map_.value_or(0));
     found_.merge_current_findings(odometry.health());
     add_findings(found_, names_, estimate_);
+    if (has_prior_map) report_localised(estimate_);
     scenarios::conclude(odometry.mapper(), estimate_);
   }
 

@@ -92,10 +92,10 @@ void apply_smoothed(std::vector<PoseState> smoothed, SweepReport& sweep) {
 bool conclude(const LidarInertialOdometry& odometry, Estimate& estimate) {
   for (const SweepReport& sweep : estimate.sweeps) append_poses(sweep.trajectory, estimate);
   if (!estimate.sweeps.empty()) report_end(estimate);
-  const bool localised = !estimate.sweeps.empty() && report_localised(estimate);
+  const bool consistent = !estimate.sweeps.empty() && has_consistent_poses(estimate);
   estimate.map = odometry.map();
   estimate.status = any_registered(estimate.sweeps);
-  return localised && estimate.status.ok();
+  return consistent && estimate.status.ok();
 }
 
 }  // namespace tumble::scenarios

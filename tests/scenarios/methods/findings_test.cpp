@@ -31,11 +31,12 @@ TEST(Findings, HaveEntriesInTheHealth) {
   using Rows = std::map<std::string, double>;
   EXPECT_EQ(estimate_with(finding(About::frozen_axis, "imu", "gyro_z")).health, (Rows{{"imu_implausible", 1.0}}));
   EXPECT_EQ(estimate_with(finding(About::imu_frozen, "imu_2", "gyro_z")).health, Rows{});
-  Estimate lost = estimate_with(finding(About::tracking_lost)), fine;
-  EXPECT_FALSE(report_localised(lost));
+  EXPECT_FALSE(has_consistent_poses(estimate_with(finding(About::tracking_lost))));
+  EXPECT_TRUE(has_consistent_poses({}));
+  Estimate lost = estimate_with(finding(About::not_localised)), found;
+  report_localised(lost), report_localised(found);
   EXPECT_EQ(lost.health, (Rows{{"localised", 0.0}}));
-  EXPECT_TRUE(report_localised(fine));
-  EXPECT_EQ(fine.health, (Rows{{"localised", 1.0}}));
+  EXPECT_EQ(found.health, (Rows{{"localised", 1.0}}));
 }
 
 TEST(Findings, AreAddedOnceWithTheNamesOfTheRecording) {
