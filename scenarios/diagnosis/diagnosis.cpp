@@ -187,7 +187,8 @@ Saturation saturation_of(const sim::ImuRecord& imu) {
   return saturation_beyond(stated_rails(imu), imu);
 }
 
-std::vector<RecordingFinding> findings_in_readings(const sim::Sensors& sensors) {
+std::vector<RecordingFinding> findings_in_readings(const sim::Sensors& sensors,
+                                                   std::span<const std::vector<std::string>> cloud_fields) {
   std::vector<RecordingFinding> out;
   const auto add = [&](std::optional<RecordingFinding> finding) {
     if (finding) out.push_back(std::move(*finding));
@@ -198,13 +199,17 @@ std::vector<RecordingFinding> findings_in_readings(const sim::Sensors& sensors) 
     add(moving_start(imu));
     add_saturation(imu, out);
   }
-  for (const sim::LidarRecord& lidar : sensors.lidars) {
+  for (std::size_t k = 0; k < sensors.lidars.size(); ++k) {
+    const sim::LidarRecord& lidar = sensors.lidars[k];
     add(lost_items(lidar.name, "sweeps", lidar.sweep_period_ns, lidar.sweep_start_ns));
     if (lidar.point_times == sim::PointTimes::unknown)
       out.push_back(
           {lidar.name, "the points have no times, so sweeps cannot be deskewed",
-           "set --time-field NAME to the field that contains the point times, or enable point times in the lidar's "
-           "driver"});
+           fmt::format(
+               "set --time-field NAME to the field that contains the point times{}, or enable point times in the "
+               "lidar's driver",
+               k < cloud_fields.size() ? fmt::format(" (fields of the cloud: {})", fmt::join(cloud_fields[k], ", "))
+                                       : "")});
   }
   return out;
 }

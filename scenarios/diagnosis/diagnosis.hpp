@@ -30,7 +30,9 @@ struct Saturation {
 };
 Saturation saturation_of(const sim::ImuRecord& imu);
 
-std::vector<RecordingFinding> findings_in_readings(const sim::Sensors& sensors);
+/// @param cloud_fields  Field names of the clouds of each lidar, or empty if unknown.
+std::vector<RecordingFinding> findings_in_readings(const sim::Sensors& sensors,
+                                                   std::span<const std::vector<std::string>> cloud_fields = {});
 
 /// @param method  Name of the method that computed the estimate.
 std::vector<RecordingFinding> findings_in_estimate(const Estimate& estimate, const std::string& method,

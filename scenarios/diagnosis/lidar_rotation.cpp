@@ -33,6 +33,9 @@ constexpr double kDegreesOfRadian = 57.29577951308232;
 constexpr double kDelayMost_s = 0.5, kDelayStep_s = 0.01, kDelaySaid_s = 0.03;
 constexpr std::int64_t kGap_ns = 100'000'000;
 constexpr double kInverted = 0.2;
+/// Record stamps vary by some 10 ms, so they replace header stamps only if the header stamps are wrong by at least 0.1
+/// s.
+constexpr double kRecordsBetter_s = 0.1;
 
 sim::LidarRecord span_alone(const sim::LidarRecord& lidar, const PointStore* aside, std::size_t first,
                             std::size_t last) {
@@ -199,8 +202,41 @@ std::string delay_text(const RotationAgreement& found) {
   if (std::abs(found.delay_s) < kDelaySaid_s) return "";
   return fmt::format(
       "caution: the lidar measures rotations {}{} than the gyro; check that both sensors use one clock and that sweep "
-      "stamps are start times, and try '--stamps record' with a bag. After correction of the time offset: ",
+      "stamps are start times. After correction of the time offset: ",
       rounded(std::abs(found.delay_s)), found.delay_s > 0.0 ? " s later" : " s earlier");
+}
+
+/// Throws RepairableInput if only the record stamps of a bag make the clocks of lidar and gyro agree.
+void require_common_clock(const std::string& where, const sim::Sensors& sensors,
+                          const std::optional<RotationAgreement>& agreement, std::optional<double> record_shift_s) {
+  if (!record_shift_s) return;
+  const double delay_s = agreement ? agreement->delay_s : -*record_shift_s;
+  const double least_s = agreement ? kRecordsBetter_s : kDelayMost_s;
+  if (std::abs(delay_s) < least_s || std::abs(delay_s + *record_shift_s) > 0.5 * std::abs(delay_s)) return;
+  throw RepairableInput(
+      fmt::format("{}: the header stamps of '{}' and '{}' do not agree: the lidar's header stamps are {} s too {}. Two "
+                  "clocks, or stamps at the end of the sweep, may be the cause. The record stamps agree (set '--stamps "
+                  "record')",
+                  where, sensors.lidars.front().name, sensors.imus.front().name, rounded(std::abs(*record_shift_s)),
+                  delay_s > 0.0 ? "late" : "early"),
+      {"--stamps", "record"});
+}
+
+bool is_mirrored(const RotationAgreement& found) {
+  return found.axes.matrix().determinant() < 0.0 &&
+         (found.turned_error > kAgrees || kConclusive * found.turned_error > found.axes_error);
+}
+
+std::string mirrored_text(const RotationAgreement& found) {
+  const SignedAxes& axes = found.axes;
+  const auto wrong = std::ranges::find(axes.sign, -1);
+  const bool one_sign = axes.axis == std::array{0, 1, 2} && std::ranges::count(axes.sign, -1) == 1;
+  const std::string which = one_sign ? fmt::format("the sign of the {} axis is wrong", "xyz"[wrong - axes.sign.begin()])
+                                     : fmt::format("the correct axes are {} of the readings", axes.text());
+  return fmt::format(
+      "caution: the axes of the IMU are mirrored (left-handed): {}. The rotations of lidar and gyro differ{} by {}, "
+      "and with the correct axes by {}. No rotation and no option repairs mirrored axes; correct the IMU's driver",
+      which, pairs_text(found), percent(found.error_as_read), percent(found.axes_error));
 }
 
 std::string axes_text(const RotationAgreement& found) {
@@ -211,6 +247,7 @@ std::string axes_text(const RotationAgreement& found) {
             ? ": units, signs and axes agree"
             : ": the units agree; this motion does not rotate about all axes, so some axes are not checked");
   }
+  if (found.axes_error <= kAgrees && is_mirrored(found)) return mirrored_text(found);
   if (found.axes_error <= kAgrees) {
     return fmt::format(
         "caution: the rotations of lidar and gyro differ{} (difference {}). The rotations would agree if the lidar's "
@@ -287,7 +324,8 @@ std::optional<Eigen::Matrix3d> better_attitude(const sim::ImuRecord& imu, const 
   const Eigen::Matrix3d axes = found.axes.matrix();
   const bool by_axes =
       found.axes_error <= kAgrees && axes.determinant() > 0.0 && kConclusive * found.next_error > found.axes_error;
-  if (agrees || found.unit != 1.0 || (!by_axes && found.turned_error > kAgrees)) return std::nullopt;
+  if (agrees || found.unit != 1.0 || is_mirrored(found) || (!by_axes && found.turned_error > kAgrees))
+    return std::nullopt;
   const Eigen::Matrix3d M = by_axes ? axes : found.turned.toRotationMatrix();
   return imu.T_BI.linear() * M.transpose() * bridge::T_IL(imu, lidar).linear();
 }
@@ -303,20 +341,25 @@ Eigen::Isometry3d better_pose(const sim::LidarRecord& lidar, const Eigen::Matrix
   return out;
 }
 
-std::string pose_text(const sim::LidarRecord& lidar, const Eigen::Isometry3d& better_BL) {
-  const Eigen::Quaterniond q(better_BL.linear());
-  const Eigen::Vector3d p = better_BL.translation();
-  const auto text = [](double number) { return rounded(std::abs(number) < 1e-9 ? 0.0 : number); };
-  return fmt::format("{} (set '--T-body-lidar {} {} {} {} {} {} {}')",
+std::string better_pose_text(const sim::LidarRecord& lidar, const Eigen::Isometry3d& better_BL) {
+  return fmt::format("{} (set '{}')",
                      is_inverse(lidar.T_BL.linear(), better_BL.linear())
                          ? "; the stated pose may be inverted: the pose of the body in the lidar frame instead of the "
                            "pose of the lidar in the body frame. If only the stated orientation is wrong, keep the "
                            "stated position"
                          : "",
-                     text(p.x()), text(p.y()), text(p.z()), text(q.x()), text(q.y()), text(q.z()), text(q.w()));
+                     lidar_pose_option(better_BL));
 }
 
 }  // namespace
+
+std::string lidar_pose_option(const Eigen::Isometry3d& T_BL) {
+  Eigen::Matrix<double, 7, 1> numbers;
+  numbers << T_BL.translation(), Eigen::Quaterniond(T_BL.linear()).coeffs();
+  std::string out = "--T-body-lidar";
+  for (const double number : numbers) out += " " + rounded(std::abs(number) < 1e-9 ? 0.0 : number);
+  return out;
+}
 
 LidarRotationCheck check_lidar_rotation(const std::string& where, const Imported& recording, GyroUnit unit) {
   LidarRotationCheck out;
@@ -326,15 +369,21 @@ LidarRotationCheck check_lidar_rotation(const std::string& where, const Imported
   const std::vector<SeenRotation> seen =
       seen_rotations(lidar, recording.points.empty() ? nullptr : &recording.points.front());
   for (const sim::ImuRecord& imu : sensors.imus) {
-    const auto agreement = rotation_agreement(imu, lidar, seen);
+    auto agreement = rotation_agreement(imu, lidar, seen);
+    // Without point times, the points of a sweep were measured half a period after the stamp on average.
+    if (agreement && agreement->delay_s != 0.0 && lidar.point_times == sim::PointTimes::unknown)
+      agreement->delay_s += 0.5 * seconds(lidar.sweep_period_ns);
+    if (&imu == &sensors.imus.front()) require_common_clock(where, sensors, agreement, recording.record_shift_s);
     if (!agreement) continue;
     std::string text = agreement_text(where + ": '" + imu.name + "'", *agreement, unit);
     if (&imu == &sensors.imus.front()) {
       out.primary = agreement;
       if (const auto R_BL = better_attitude(imu, lidar, *agreement)) {
         out.better_BL = better_pose(lidar, *R_BL);
-        text += pose_text(lidar, *out.better_BL);
+        text += better_pose_text(lidar, *out.better_BL);
       }
+    } else if (text.starts_with("caution") && sensors.imus.front().name.starts_with('/')) {
+      text += fmt::format(" (set '--imu-topic {}' to use only this IMU)", sensors.imus.front().name);
     }
     if (!text.empty()) out.notes.push_back(imu.name + ": " + text);
   }

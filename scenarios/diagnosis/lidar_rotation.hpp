@@ -60,12 +60,16 @@ std::optional<RotationAgreement> rotation_agreement(const sim::ImuRecord& imu, c
 /// agree.
 std::string agreement_text(const std::string& where, const RotationAgreement& agreement, GyroUnit unit);
 
+/// Returns the option --T-body-lidar with position [m] and quaternion x y z w.
+std::string lidar_pose_option(const Eigen::Isometry3d& T_BL);
+
 struct LidarRotationCheck {
   std::vector<std::string> notes;              ///< at most one for each IMU
   std::optional<RotationAgreement> primary;    ///< for the primary IMU; empty if undetermined
   std::optional<Eigen::Isometry3d> better_BL;  ///< makes lidar and primary IMU agree
 };
 
+/// Throws RepairableInput if record stamps of a bag must replace the header stamps.
 LidarRotationCheck check_lidar_rotation(const std::string& where, const Imported& recording, GyroUnit unit);
 
 }  // namespace tumble::scenarios

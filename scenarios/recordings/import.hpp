@@ -19,6 +19,10 @@ struct Imported {
   std::vector<PointStore> points;       ///< points on disk, or empty
   std::optional<sim::Truth> reference;  ///< see FORMAT.md, "References"
   std::vector<std::string> notes;
+  std::vector<std::vector<std::string>> cloud_fields;  ///< of each lidar in files or bags
+  /// Shift of the lidar's clock relative to the clock of the primary IMU [s], if record stamps of a bag replaced the
+  /// header stamps. Empty if the user chose the stamps.
+  std::optional<double> record_shift_s;
 };
 
 enum class AccelUnit { m_s2, g };

@@ -77,6 +77,7 @@ void start_clock(Imported& recording) {
 
 void add_lidar(Imported& recording, BuiltSweeps built) {
   recording.sensors.lidars.push_back(std::move(built.lidar));
+  recording.cloud_fields.push_back(std::move(built.fields));
   if (built.points) recording.points.push_back(std::move(*built.points));
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <iterator>
 #include <memory>
@@ -11,7 +10,6 @@
 
 #include "scenarios/diagnosis/diagnosis.hpp"
 #include "scenarios/errors.hpp"
-#include "scenarios/recordings/number_text.hpp"
 #include "tools/tumble/chosen_method.hpp"
 #include "tools/tumble/odometry_options.hpp"
 #include "tools/tumble/verbs.hpp"
@@ -26,14 +24,6 @@ void append_findings(std::vector<RecordingFinding> more, std::vector<RecordingFi
   std::move(more.begin(), more.end(), std::back_inserter(out));
 }
 
-std::string pose_option(const Eigen::Isometry3d& T_BL) {
-  using scenarios::rounded;
-  const Eigen::Vector3d at_m = T_BL.translation();
-  const Eigen::Quaterniond q(T_BL.linear());
-  return fmt::format("--T-body-lidar {} {} {} {} {} {} {}", rounded(at_m.x()), rounded(at_m.y()), rounded(at_m.z()),
-                     rounded(q.x()), rounded(q.y()), rounded(q.z()), rounded(q.w()));
-}
-
 std::vector<RecordingFinding> findings_of_odometry(const Session& session, const OdometryOptions& options,
                                                    OpenRecording& recording) {
   const sim::Sensors& sensors = recording.content.sensors;
@@ -44,7 +34,7 @@ std::vector<RecordingFinding> findings_of_odometry(const Session& session, const
       scenarios::findings_in_estimate(estimate, method, sensors.lidars.front().sweep_start_ns.size());
   if (estimate.replaced_T_BL)
     out.push_back({method, "the stated pose or clock of the lidar contradicts the recording",
-                   pose_option(*estimate.replaced_T_BL) + " (estimated from the recording)"});
+                   scenarios::lidar_pose_option(*estimate.replaced_T_BL) + " (estimated from the recording)"});
   return out;
 }
 
@@ -59,7 +49,7 @@ std::vector<RecordingFinding> findings_of(const Session& session, const Odometry
     if (each.where.empty()) each.where = recording.options.path.filename().string();
   }
   const sim::Sensors& sensors = recording.content.sensors;
-  append_findings(scenarios::findings_in_readings(sensors), out);
+  append_findings(scenarios::findings_in_readings(sensors, recording.content.cloud_fields), out);
   for (const auto& [missing, name] : {std::pair{sensors.imus.empty(), "IMU"}, {sensors.lidars.empty(), "lidar"}}) {
     if (missing)
       out.push_back(
@@ -85,6 +75,8 @@ int run_doctor(const Session& session, const OdometryOptions& options) {
   std::optional<OpenRecording> recording;
   try {
     recording = open_recording(session, input);
+  } catch (const scenarios::WrongOption&) {
+    throw;
   } catch (const scenarios::BadInput& error) {
     if (!std::filesystem::exists(input.path)) throw;
     findings.push_back({input.path.filename().string(), error.what(), scenarios::recommended_option(error.what())});

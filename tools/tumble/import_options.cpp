@@ -198,7 +198,7 @@ void require_fitting(const ImportOptions& options, const std::string& format) {
   const bool bag = is_bag(format), csv = format == "csv" || !options.imu.empty();
   const bool sweeps = is_sweeps(format) && (format != "kitti" || std::filesystem::is_directory(options.path));
   const auto refuse = [&](bool given, const std::string& option, const std::string& why) {
-    if (given) throw BadInput(option + ": " + why);
+    if (given) throw scenarios::WrongOption(option + ": " + why);
   };
   refuse(!options.accel_unit.empty() && !csv && !bag, "--accel-unit",
          "this option applies only to IMU readings in a CSV file or bag");
@@ -327,12 +327,13 @@ scenarios::BagReading bag_reading(const Session& session, const ImportOptions& o
   reading.lidar_placed = !options.T_body_lidar.empty();
   if (!options.accel_unit.empty()) reading.accel_unit = accel_unit(options);
   reading.gyro_unit = gyro_unit(options);
-  if (!options.stamps.empty()) {
+  reading.stamps_stated = !options.stamps.empty();
+  if (reading.stamps_stated) {
     require_known("stamps", options.stamps, std::vector<std::string>{"header", "record"});
     if (options.stamps == "record") reading.stamps = scenarios::StampSource::record;
   }
   reading.sweeps = sweep_reading(session, options);
-  reading.leave_out_topics = options.leave_out_topics;
+  reading.for_odometry = options.for_odometry;
   return reading;
 }
 

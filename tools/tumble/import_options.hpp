@@ -29,7 +29,7 @@ struct ImportOptions {
   bool sorted = false;
   std::vector<std::string> imu_topics, lidar_topics;
   std::string reference_topic, stamps;
-  bool leave_out_topics = false;  ///< if another topic is readable
+  bool for_odometry = false;  ///< see BagReading
 };
 
 void declare_sensors(VerbOptions& verb, ImportOptions& options);

@@ -12,7 +12,9 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/imu_check.hpp"
+#include "scenarios/recordings/bags/sensor_places.hpp"
 #include "scenarios/recordings/lower_extension.hpp"
+#include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/recordings/tables/csv_text.hpp"
 #include "scenarios/recordings/trajectories/reference.hpp"
 #include "scenarios/regular_file.hpp"
@@ -86,10 +88,25 @@ void open_own(const Session& session, OpenRecording& out) {
   out.content.info = scenarios::read_info(path);
   out.content.sensors = scenarios::read_sensors(path);
   if (out.content.info.has_truth) out.truth = scenarios::read_truth(path);
+  out.digest = scenarios::digest(out.content.sensors, nullptr);
   apply_mounting(session, out.options, out.content.sensors);
   out.rotation = scenarios::check_lidar_rotation(path, out.content, scenarios::GyroUnit::rad_s);
   out.content.notes = out.rotation.notes;
   for (std::string& note : scenarios::imu_notes(out.content)) out.content.notes.push_back(std::move(note));
+}
+
+/// In `tumble odometry`, the sensors of a bag have the names of their topics; `tumble import` shortens these names.
+std::string digest_as_stored(sim::Sensors& sensors) {
+  std::vector<std::pair<std::string*, std::string>> names;
+  const auto shorten = [&](std::string& name) {
+    names.emplace_back(&name, name);
+    name = scenarios::sensor_name(name);
+  };
+  for (sim::ImuRecord& imu : sensors.imus) shorten(imu.name);
+  for (sim::LidarRecord& lidar : sensors.lidars) shorten(lidar.name);
+  std::string digest = scenarios::digest(sensors, nullptr);
+  for (auto& [name, topic] : names) *name = std::move(topic);
+  return digest;
 }
 
 }  // namespace
@@ -120,7 +137,7 @@ Imported import_recording(const Session& session, const ImportOptions& options, 
 OpenRecording open_recording(const Session& session, ImportOptions options) {
   OpenRecording out;
   out.options = std::move(options);
-  out.options.leave_out_topics = true;
+  out.options.for_odometry = true;
   out.format = format_of(out.options);
   if (out.format == "recording") {
     open_own(session, out);
@@ -131,6 +148,7 @@ OpenRecording open_recording(const Session& session, ImportOptions options) {
     try {
       out.content = import_recording(session, out.options, out.format, out.rotation);
       out.truth = std::exchange(out.content.reference, std::nullopt);
+      out.digest = digest_as_stored(out.content.sensors);
       return out;
     } catch (const scenarios::RepairableInput& error) {
       if (!set_option(error.repair(), out.options)) throw;

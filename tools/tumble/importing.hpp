@@ -27,6 +27,7 @@ struct OpenRecording {
   scenarios::Imported content;
   std::optional<sim::Truth> truth;  ///< for display only
   std::vector<Repair> repairs;
+  std::string digest;  ///< of the sensors as `tumble import` stores them
   scenarios::LidarRotationCheck rotation;
 };
 

@@ -101,9 +101,11 @@ struct BagReading {
   std::optional<AccelUnit> accel_unit;  ///< empty: m/s^2, or g by the readings
   GyroUnit gyro_unit = GyroUnit::rad_s;
   StampSource stamps = StampSource::header;
+  bool stamps_stated = false;  ///< the user chooses `stamps`
   SweepReading sweeps;
-  /// true: an unreadable topic is skipped with a note, if another topic of the same kind is readable.
-  bool leave_out_topics = false;
+  /// true: sensors have the names of their topics, and an unreadable topic is skipped with a note, if another topic of
+  /// the same kind is readable.
+  bool for_odometry = false;
 };
 
 /// A ROS 1 bag is a file, or a folder of its parts, which are merged by time; encrypted bags are not supported. A ROS 2

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "scenarios/recordings/bags/bag_messages.hpp"
 #include "scenarios/recordings/tables/imu_readings.hpp"
 
@@ -29,10 +31,10 @@ std::string repeats_text(std::size_t repeated) {
                      repeated);
 }
 
-sim::ImuRecord read_imu(const OpenedBag& bag, SensorMountings& places, const std::string& topic,
-                        const BagReading& reading, std::vector<std::string>& notes) {
+ImuTopic read_imu(const OpenedBag& bag, SensorMountings& places, const std::string& topic, const BagReading& reading,
+                  std::vector<std::string>& notes) {
   sim::ImuRecord imu = without_readings(reading.imu);
-  imu.name = sensor_name(topic);
+  imu.name = reading.for_odometry ? topic : sensor_name(topic);
   std::string frame;
   BagStamps stamps(reading.stamps);
   LeftOut left_out("readings");
@@ -60,7 +62,7 @@ sim::ImuRecord read_imu(const OpenedBag& bag, SensorMountings& places, const std
       [&](const ros::Imu& message, const MessageOrigin& origin) { left_out.guard([&] { take(message, origin); }); },
       &left_out);
   const std::string where = bag.place + ": topic " + topic;
-  if (imu.time_ns.empty() && left_out.count() == 0 && reading.imu_topics.empty()) return imu;
+  if (imu.time_ns.empty() && left_out.count() == 0 && reading.imu_topics.empty()) return {imu};
   const std::string bursts = leave_out_faulty([&](std::size_t k) { return bag.place_of(topic, numbers[k]); },
                                               [&](std::size_t k) { return stamps.disorder(k); }, left_out, imu);
   const std::string lost = left_out.note(imu.time_ns.size());
@@ -76,7 +78,7 @@ sim::ImuRecord read_imu(const OpenedBag& bag, SensorMountings& places, const std
   if (const auto stated = places.of(frame); stated && reading.imu_placed && imu.T_BI.linear().isIdentity())
     imu.T_BI.linear() = stated->linear();
   places.place(topic, frame, "--lever-arm", reading.imu_placed, imu.T_BI, notes);
-  return imu;
+  return {std::move(imu), stamps.lag_ns().first};
 }
 
 }  // namespace tumble::scenarios

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -10,10 +11,15 @@
 
 namespace tumble::scenarios {
 
+struct ImuTopic {
+  sim::ImuRecord imu;
+  std::int64_t record_lag_ns = 0;  ///< smallest delay from header stamp to record stamp
+};
+
 /// If the topic has no messages, the function returns a record without readings, or throws BadInput if the caller chose
 /// the topics.
-sim::ImuRecord read_imu(const OpenedBag& bag, SensorMountings& places, const std::string& topic,
-                        const BagReading& reading, std::vector<std::string>& notes);
+ImuTopic read_imu(const OpenedBag& bag, SensorMountings& places, const std::string& topic, const BagReading& reading,
+                  std::vector<std::string>& notes);
 
 std::string repeats_text(std::size_t repeated);
 

@@ -210,16 +210,18 @@ std::string BagStamps::remark() const {
   const auto [least_ns, most_ns] = lag_ns();
   if (least_ns > -kSaid_ns && most_ns < kSaid_ns) return "";
   const bool changes = between(least_ns, most_ns) > kSteady_ns;
-  const std::string taken = source_ == StampSource::header ? "headers" : "records";
+  const bool by_header = source_ == StampSource::header;
   const bool ahead = most_ns < 0;  // impossible if sensor and recorder use one clock
   return fmt::format(
       "{}the {} stamps of the messages are {} to {} later than the {} stamps{}; this import uses the stamps of the {}",
-      other_clock() || changes ? "caution: " : "", ahead ? "header" : "record",
+      by_header && (other_clock() || changes) ? "caution: " : "", ahead ? "header" : "record",
       seconds_text(ahead ? -most_ns : least_ns), seconds_text(ahead ? -least_ns : most_ns), ahead ? "record" : "header",
       other_clock() ? "; the clocks of sensor and recorder may differ"
       : changes     ? "; the clock of the sensor or of the recorder may drift"
                     : "",
-      taken);
+      !by_header                         ? "records"
+      : changes && least_ns < -kAhead_ns ? "headers (set '--stamps record', because the header stamps jump)"
+                                         : "headers");
 }
 
 }  // namespace tumble::scenarios

@@ -42,10 +42,10 @@ class BagStamps {
   std::string remark() const;
   /// Returns true if header stamps of messages are later than their record stamps, or at least a second earlier.
   bool other_clock() const;
+  /// Returns the smallest and the largest delay from header stamp to record stamp.
+  std::pair<std::int64_t, std::int64_t> lag_ns() const;
 
  private:
-  std::pair<std::int64_t, std::int64_t> lag_ns() const;  ///< smallest and largest delay
-
   StampSource source_;
   std::vector<std::int64_t> header_ns_, record_ns_;
 };

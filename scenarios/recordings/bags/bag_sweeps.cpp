@@ -95,6 +95,7 @@ CloudHeaders read_headers(const OpenedBag& bag, const std::string& topic, const 
   out.remark = stamps.remark();
   if (repeated > 0) out.remark += (out.remark.empty() ? "" : "; ") + repeats_text(repeated);
   out.follow_records = !stamps.other_clock();
+  out.record_lag_ns = stamps.lag_ns().first;
   if (reading.stamps == StampSource::record) {
     for (auto& start : out.starts) {
       if (start) *start -= out.period_ns;
@@ -109,7 +110,7 @@ CloudHeaders read_headers(const OpenedBag& bag, const std::string& topic, const 
 BuiltSweeps read_lidar(const OpenedBag& bag, SensorMountings& places, const std::string& topic,
                        const CloudHeaders& headers, const BagReading& reading, std::vector<std::string>& notes) {
   SweepReading sweeps = reading.sweeps;
-  sweeps.device.name = sensor_name(topic);
+  sweeps.device.name = reading.for_odometry ? topic : sensor_name(topic);
   SweepBuilder builder(std::move(sweeps), headers.period_ns, headers.left_out);
   double clocks_apart_s = 0.0;
   std::vector<std::int64_t> records;
@@ -142,6 +143,7 @@ BuiltSweeps read_lidar(const OpenedBag& bag, SensorMountings& places, const std:
                     "counts the point times from the header stamp",
                     topic, std::to_string(clocks_apart_s)));
   }
+  built.record_lag_ns = headers.record_lag_ns - headers.period_ns;
   places.place(topic, headers.frame, "--T-body-lidar", reading.lidar_placed, built.lidar.T_BL, notes);
   return built;
 }

@@ -22,7 +22,8 @@ struct CloudHeaders {
   std::vector<std::optional<std::int64_t>> starts;
   LeftOut left_out{"clouds"};
   std::string remark;
-  bool follow_records = true;  ///< record stamps are later, same clock
+  bool follow_records = true;      ///< record stamps are later, same clock
+  std::int64_t record_lag_ns = 0;  ///< smallest delay from header stamp to record stamp
   std::string frame;
   bool left_out_as_map(const BagReading& reading) const {
     return reading.lidar_topics.empty() && (frame == "world" || frame == "map" || frame == "odom");

@@ -64,13 +64,18 @@ NamedPoses read_poses(const OpenedBag& bag, const std::string& topic, StampSourc
   return out;
 }
 
+bool is_reference_type(const std::string& type) {
+  return type == kOdometry || type == kPoseStamped || type == kTransformStamped;
+}
+
 NamedPoses reference_poses(const OpenedBag& bag, const std::string& topic, StampSource source) {
   const std::string type = bag.topic(topic).type;
   if (type == kOdometry) return read_poses<ros::Odometry>(bag, topic, source);
   if (type == kPoseStamped) return read_poses<ros::PoseStamped>(bag, topic, source);
   if (type == kTransformStamped) return read_poses<ros::TransformStamped>(bag, topic, source);
-  throw BadInput(fmt::format("{}: the reference topic '{}' has the type {}; its type must be {}, {} or {}", bag.place,
-                             topic, type, kOdometry, kPoseStamped, kTransformStamped));
+  throw WrongOption(fmt::format("{}: the reference topic '{}' has the type {}; its type must be {}, {} or {}{}",
+                                bag.place, topic, type, kOdometry, kPoseStamped, kTransformStamped,
+                                bag.topic_list(is_reference_type)));
 }
 
 Eigen::Isometry3d pose_of_reference(const std::string& topic, const std::string& frame, const SensorMountings& places,
@@ -97,7 +102,7 @@ Eigen::Isometry3d pose_of_reference(const std::string& topic, const std::string&
 /// By default, the frame of the reference poses is the child_frame_id of the messages, if the bag contains the
 /// transform of this frame.
 void attach_reference(const OpenedBag& bag, const SensorMountings& places, const BagReading& reading, Imported& out) {
-  const std::string& topic = reading.reference_topic;
+  const std::string& topic = bag.topic(reading.reference_topic, is_reference_type).name;
   NamedPoses found = reference_poses(bag, topic, reading.stamps);
   const Eigen::Isometry3d T_BA = pose_of_reference(topic, found.frame, places, reading, out);
   attach_poses(out, std::move(found.poses), T_BA, bag.place + ": topic " + topic);
@@ -202,25 +207,32 @@ class TopicsOfKind {
   const char* option_;
 };
 
-void add_imus(const OpenedBag& bag, SensorMountings& places, const BagReading& reading, Imported& out) {
+/// Returns the smallest delay from header stamp to record stamp of the primary IMU.
+std::int64_t add_imus(const OpenedBag& bag, SensorMountings& places, const BagReading& reading, Imported& out) {
+  std::int64_t imu_lag_ns = 0;
   const std::vector<std::string> topics = bag.chosen(reading.imu_topics, is_imu_type, kImu);
-  const TopicsOfKind imus(topics, !reading.imu_topics.empty(), reading.leave_out_topics, "--imu-topic");
+  const TopicsOfKind imus(topics, !reading.imu_topics.empty(), reading.for_odometry, "--imu-topic");
   imus.read(out.notes, [&](const std::string& topic) {
     BagReading own = reading;
     if (!out.sensors.imus.empty()) own.imu.T_BI.setIdentity(), own.imu_placed = false;  // of the first IMU only
-    sim::ImuRecord imu = read_imu(bag, places, topic, own, out.notes);
-    if (imu.time_ns.empty())
+    auto [imu, record_lag_ns] = read_imu(bag, places, topic, own, out.notes);
+    if (imu.time_ns.empty()) {
       out.notes.push_back(topic + kNoMessage);
-    else
-      out.sensors.imus.push_back(std::move(imu));
+      return;
+    }
+    if (out.sensors.imus.empty()) imu_lag_ns = record_lag_ns;
+    out.sensors.imus.push_back(std::move(imu));
   });
   if (out.sensors.imus.size() > 1 && reading.imu_topics.empty())
     out.notes.push_back(fmt::format(
         "IMU '{}' is the primary IMU, because its topic comes first (set --imu-topic to choose another topic)",
         out.sensors.imus.front().name));
+  return imu_lag_ns;
 }
 
-void add_lidars(const OpenedBag& bag, SensorMountings& places, const BagReading& reading, Imported& out) {
+/// @param imu_lag_ns  Smallest delay from header stamp to record stamp of the primary IMU.
+void add_lidars(const OpenedBag& bag, SensorMountings& places, const BagReading& reading, std::int64_t imu_lag_ns,
+                Imported& out) {
   const bool chosen = !reading.lidar_topics.empty();
   std::vector<std::pair<std::string, BuiltSweeps>> lidars;
   const auto read = [&](const std::string& topic) {
@@ -236,7 +248,7 @@ void add_lidars(const OpenedBag& bag, SensorMountings& places, const BagReading&
     }
   };
   const std::vector<std::string> topics = bag.chosen(reading.lidar_topics, is_cloud_type, kCloud);
-  TopicsOfKind(topics, chosen, reading.leave_out_topics, "--lidar-topic").read(out.notes, read);
+  TopicsOfKind(topics, chosen, reading.for_odometry, "--lidar-topic").read(out.notes, read);
   // Lidars whose points have times come first, because mapping uses the first lidar and depth cameras have no point
   // times.
   const auto is_timed = [](const auto& each) { return has_timed_points(each.second.lidar); };
@@ -247,6 +259,8 @@ void add_lidars(const OpenedBag& bag, SensorMountings& places, const BagReading&
         lidars.front().first,
         is_timed(lidars.front()) && !is_timed(lidars.back()) ? "its points have times" : "it is listed first"));
   }
+  if (!lidars.empty() && reading.stamps == StampSource::header && !reading.stamps_stated)
+    out.record_shift_s = 1e-9 * static_cast<double>(lidars.front().second.record_lag_ns - imu_lag_ns);
   for (auto& [topic, built] : lidars) add_lidar(out, std::move(built));
 }
 
@@ -257,12 +271,12 @@ Imported import_bag(BagReader& reader, const std::filesystem::path& path, const 
   out.notes = reader.notes;
   for (const std::string& remark : frames.remarks()) out.notes.push_back(std::string(kStaticTopic) + ": " + remark);
   SensorMountings places(frames, bag.place + ": topic " + kStaticTopic);
-  add_imus(bag, places, reading, out);
-  add_lidars(bag, places, reading, out);
+  const std::int64_t imu_lag_ns = add_imus(bag, places, reading, out);
+  add_lidars(bag, places, reading, imu_lag_ns, out);
   note_unread_clouds(bag, out.notes);
   if (out.sensors.imus.empty() && out.sensors.lidars.empty()) {
-    throw BadInput(fmt::format("{}: the bag contains no messages of type {}, {} or CustomMsg (existing topics:{})",
-                               path.string(), kImu, kCloud, bag.topic_list()));
+    throw BadInput(fmt::format("{}: the bag contains no messages of type {}, {} or CustomMsg{}", path.string(), kImu,
+                               kCloud, bag.topic_list()));
   }
   out.info.attribution = "imported from " + path.filename().string();
   require_one_clock(out.sensors, reading.stamps == StampSource::header, path);

@@ -103,6 +103,7 @@ void SweepBuilder::add(std::optional<std::int64_t> stamp_ns, Cloud cloud, std::s
   Waiting sweep{stamp_ns, std::move(cloud), std::move(where)};
   if (rule_) return take(sweep);
   waiting_.push_back(std::move(sweep));
+  if (fields_.empty()) fields_ = waiting_.back().cloud.names;
   const auto holds_points = [](const Waiting& each) { return each.cloud.points > 0; };
   if (std::count_if(waiting_.begin(), waiting_.end(), holds_points) >= kProbe) find_rule();
 }
@@ -387,7 +388,7 @@ BuiltSweeps SweepBuilder::finish(const std::string& where, std::vector<std::stri
   }
   note_dropped_points(notes);
   scale_intensity(notes);
-  return {std::move(record_), std::move(store_), std::move(last_point_ns_)};
+  return {std::move(record_), std::move(store_), std::move(last_point_ns_), std::move(fields_)};
 }
 
 }  // namespace tumble::scenarios

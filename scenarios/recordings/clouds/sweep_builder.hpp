@@ -50,6 +50,8 @@ struct BuiltSweeps {
   /// Time of the last point of each cloud, or start of the sweep if its points have no times. Empty for a skipped
   /// cloud.
   std::vector<std::optional<std::int64_t>> last_point_ns = {};
+  std::vector<std::string> fields = {};  ///< of the first cloud
+  std::int64_t record_lag_ns = 0;        ///< of a bag: smallest delay from the end of a sweep to its record stamp
 };
 
 /// SweepBuilder buffers the first ten clouds to determine the unit of the point times.
@@ -106,7 +108,8 @@ class SweepBuilder {
   float brightest_ = 0.0f;
   std::int64_t longest_ns_ = 0;
   LeftOut left_out_;
-  bool other_clock_ = false;  ///< point times and stamps differ
+  std::vector<std::string> fields_;  ///< of the first cloud
+  bool other_clock_ = false;         ///< point times and stamps differ
   std::vector<std::optional<std::int64_t>> last_point_ns_;
   std::size_t misses_ = 0, dark_ = 0, skipped_ = 0, beyond_ = 0, far_ = 0;  ///< far_: points of far clouds
   std::size_t mistimed_ = 0;                                                ///< outside their sweep

@@ -21,6 +21,9 @@ namespace {
 /// The median specific force of a robot is near g; the limits exclude readings in g, in mg and in raw counts.
 constexpr double kLeastMedian_m_s2 = 3.0, kLargestMedian_m_s2 = 30.0;
 
+constexpr std::ptrdiff_t kStartReadings = 50;
+constexpr double kWithoutGravity = 0.3;
+
 bool near_factor(double ratio, double factor) {
   return ratio > factor / 2.0 && ratio < factor * 2.0;
 }
@@ -36,8 +39,16 @@ const char* likely_force_unit(double median, AccelUnit read_as) {
 void require_plausible_force(const std::string& where, const sim::ImuRecord& imu, AccelUnit unit) {
   std::vector<double> norms;
   for (const Eigen::Vector3d& force : imu.accel_m_s2) norms.push_back(force.norm());
+  const std::vector<double> start(norms.begin(), norms.begin() + std::min(std::ssize(norms), kStartReadings));
   const double middle = upper_median(std::move(norms));
   if (middle >= kLeastMedian_m_s2 && middle <= kLargestMedian_m_s2) return;
+  // A robot that starts at rest measures 1 g at the start, in any unit.
+  if (const double first = upper_median(start); middle < kLeastMedian_m_s2 && first < kWithoutGravity * middle)
+    throw BadInput(fmt::format(
+        "{}: the specific force is {} at the start and {} in the median, so the readings may be linear acceleration, "
+        "without gravity. No option repairs this; record the accelerometer with gravity (often the topic "
+        "'imu/data_raw')",
+        where, rounded(first), rounded(middle)));
   const char* read_as = unit == AccelUnit::g ? "g" : "m/s^2";
   const std::string likely = likely_force_unit(middle, unit);
   const bool known = likely == "g" || likely == "m/s^2";

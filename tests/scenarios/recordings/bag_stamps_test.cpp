@@ -77,6 +77,8 @@ TEST_P(Stamps, AnotherClockIsACaution) {
   EXPECT_THAT(written(since_boot, since_boot).notes,
               Contains(AllOf(HasSubstr("/imu: caution: the record stamps of the messages"),
                              HasSubstr("the clocks of sensor and recorder may differ"))));
+  EXPECT_THAT(written(since_boot, since_boot, StampSource::record).notes, Not(Contains(HasSubstr("caution"))))
+      << "the header stamps are not used";
   const auto ahead = [](std::int64_t record_ns) { return record_ns + 20 * kMs_ns; };
   EXPECT_THAT(
       written(ahead, sweep_before).notes,
@@ -89,6 +91,14 @@ TEST_P(Stamps, AnotherClockIsACaution) {
               Contains(AllOf(HasSubstr("/imu: caution: the record stamps of the messages"),
                              HasSubstr("the clock of the sensor or of the recorder may drift"))));
   EXPECT_THAT(written(same, same).notes, Not(Contains(HasSubstr("caution"))));
+}
+
+TEST_P(Stamps, TheShiftFromHeadersToRecordsIsKnown) {
+  const auto earlier = [](std::int64_t record_ns) { return record_ns - 10'000 * kMs_ns; };
+  EXPECT_NEAR(written(same, sweep_before).record_shift_s.value(), 0.0, 1e-9);
+  EXPECT_NEAR(written(same, same).record_shift_s.value(), -0.1, 1e-9) << "the sweep is recorded at its end";
+  EXPECT_NEAR(written(earlier, earlier).record_shift_s.value(), -0.1, 1e-9);
+  EXPECT_FALSE(written(same, same, StampSource::record).record_shift_s);
 }
 
 // a driver may stamp a sweep at its end, and count the times of its points from its start

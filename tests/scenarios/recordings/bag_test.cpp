@@ -102,10 +102,18 @@ TEST_P(Bag, TopicsAreChosenByName) {
   reading_.imu_topics = {"/imu_reference"};
   ASSERT_EQ(read().sensors.imus.size(), 1u);
   EXPECT_EQ(read().sensors.imus[0].gyro_rad_s, recording_.sensors.imus[1].gyro_rad_s);
+  reading_.imu_topics = {"imu_reference"};
+  EXPECT_EQ(read().sensors.imus.at(0).name, "imu_reference");
+  reading_.for_odometry = true;
+  EXPECT_EQ(read().sensors.imus.at(0).name, "/imu_reference");
+  EXPECT_EQ(read().sensors.lidars.at(0).name, "/lidar/points");
   reading_.imu_topics = {"/imu_referense"};
-  EXPECT_THAT(complaint_of(), HasSubstr("did you mean '/imu_reference'?"));
+  EXPECT_THROW(read(), WrongOption);
+  EXPECT_THAT(complaint_of(),
+              HasSubstr("did you mean '/imu_reference'? (topics of a fitting type: /imu sensor_msgs/Imu"));
   reading_.imu_topics = {"/lidar/points"};
-  EXPECT_THAT(complaint_of(), HasSubstr("of type sensor_msgs/PointCloud2; it must be sensor_msgs/Imu"));
+  EXPECT_THROW(read(), WrongOption);
+  EXPECT_THAT(complaint_of(), HasSubstr("of type sensor_msgs/PointCloud2; it must be sensor_msgs/Imu (topics of"));
 }
 
 TEST_P(Bag, AnotherUnitIsSaid) {

@@ -76,6 +76,11 @@ TEST(Diagnosis, LateSensorsLossAndMotionAreFound) {
   sim::Sensors untimed = at_rest(0.0, 4.0);
   untimed.lidars[0].point_times = sim::PointTimes::unknown;
   EXPECT_THAT(evidence_of(untimed), ElementsAre(testing::HasSubstr("the points have no times")));
+  const std::vector<std::string> fields[] = {{"x", "y", "z", "stamp_us"}};
+  EXPECT_THAT(
+      findings_in_readings(untimed, fields).at(0).repair,
+      testing::HasSubstr("set --time-field NAME to the field that contains the point times (fields of the cloud: "
+                         "x, y, z, stamp_us)"));
 }
 
 TEST(Diagnosis, SaturationIsANoteAndNoFault) {

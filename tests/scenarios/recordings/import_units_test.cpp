@@ -66,6 +66,13 @@ TEST_F(ImportSphere, ForcesWithoutGravityAreMet) {
   std::string text = "sec,nsec,wx,wy,wz,fx,fy,fz\n";
   for (int k = 0; k < 100; ++k) text += "0," + std::to_string(k * 10'000'000) + ",0,0,0,0.1,0,0.02\n";
   EXPECT_THAT(complaint_of(text, 7.854), HasSubstr("the readings may be linear acceleration, without gravity"));
+  text = "sec,nsec,wx,wy,wz,fx,fy,fz\n";
+  for (int k = 0; k < 300; ++k)
+    text += "0," + std::to_string(k * 3'000'000) + ",0,0,0," + (k < 100 ? "0.1" : "1.4") + ",0,0.02\n";
+  EXPECT_THAT(complaint_of(text, 7.854),
+              testing::AllOf(HasSubstr("the specific force is 0.102 at the start and 1.4 in the median"),
+                             testing::Not(HasSubstr("--accel-unit"))))
+      << "a robot at rest would measure 1 in g";
 }
 
 TEST_F(ImportSphere, AGyroThatReadsNothingIsSaid) {

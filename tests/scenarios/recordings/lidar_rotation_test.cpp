@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/recordings/repairable.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble::scenarios {
@@ -136,7 +137,12 @@ TEST(LidarRotation, DegreesAreRefusedWithTheOptionThatTakesThem) {
 
 TEST(LidarRotation, FlippedAndPermutedAxesAreNamed) {
   const Eigen::Matrix3d flipped = Eigen::Vector3d(-1.0, 1.0, 1.0).asDiagonal();
-  EXPECT_THAT(with_gyro(flipped), AllOf(HasSubstr("caution"), HasSubstr("(-x, y, z)")));
+  EXPECT_THAT(with_gyro(flipped),
+              AllOf(HasSubstr("caution: the axes of the IMU are mirrored (left-handed): the sign of "
+                              "the x axis is wrong"),
+                    HasSubstr("No rotation and no option repairs mirrored axes")));
+  const Eigen::Matrix3d turned = Eigen::Vector3d(-1.0, -1.0, 1.0).asDiagonal();
+  EXPECT_THAT(with_gyro(turned), AllOf(HasSubstr("(-x, -y, z)"), testing::Not(HasSubstr("mirrored"))));
   EXPECT_THAT(with_gyro(-Eigen::Matrix3d::Identity()), HasSubstr("(-x, -y, -z)"));
   Eigen::Matrix3d swapped;
   swapped << 0, 1, 0, 1, 0, 0, 0, 0, 1;
@@ -193,9 +199,36 @@ TEST(LidarRotation, SweepsOfARoomCheckTheGyro) {
   EXPECT_THAT(check_lidar_rotation("bag", recording, GyroUnit::rad_s).notes,
               ElementsAre(AllOf(HasSubstr("imu: the rotations of lidar and gyro agree"), HasSubstr("axes agree"))));
   for (Eigen::Vector3d& rate : recording.sensors.imus.front().gyro_rad_s) rate.z() = -rate.z();
-  EXPECT_THAT(check_lidar_rotation("bag", recording, GyroUnit::rad_s).notes, ElementsAre(HasSubstr("(x, y, -z)")));
+  const LidarRotationCheck mirrored = check_lidar_rotation("bag", recording, GyroUnit::rad_s);
+  EXPECT_THAT(mirrored.notes, ElementsAre(HasSubstr("the sign of the z axis is wrong")));
+  EXPECT_FALSE(mirrored.better_BL) << "no mounting repairs mirrored axes";
   recording.sensors.imus.clear();
   EXPECT_THAT(check_lidar_rotation("bag", recording, GyroUnit::rad_s).notes, IsEmpty());
+}
+
+// the record stamps of a bag come from one clock, so they show which header stamps come from another clock
+TEST(LidarRotation, RecordStampsReplaceHeaderStampsOfAnotherClock) {
+  const auto with = [](double imu_late_s, std::optional<double> record_shift_s) {
+    Imported recording;
+    recording.sensors.imus.push_back(gyro(4.0));
+    recording.sensors.lidars.push_back(lidar_in_room(36));
+    recording.record_shift_s = record_shift_s;
+    for (std::int64_t& time : recording.sensors.imus[0].time_ns) time += std::llround(1e9 * imu_late_s);
+    try {
+      check_lidar_rotation("bag", recording, GyroUnit::rad_s);
+    } catch (const RepairableInput& error) {
+      return error.repair().name + " " + error.repair().value + ": " + error.what();
+    }
+    return std::string("no repair");
+  };
+  EXPECT_THAT(with(-0.3, -0.3),
+              AllOf(HasSubstr("--stamps record: bag: the header stamps of 'lidar' and 'imu' do not agree: "
+                              "the lidar's header stamps are 0.3 s too late"),
+                    HasSubstr("The record stamps agree (set '--stamps record')")));
+  EXPECT_THAT(with(2.0, 2.0), HasSubstr("the lidar's header stamps are 2 s too early"));
+  EXPECT_EQ(with(-0.3, std::nullopt), "no repair") << "the user chose the stamps";
+  EXPECT_EQ(with(-0.3, 0.0), "no repair") << "the record stamps are as wrong as the header stamps";
+  EXPECT_EQ(with(0.0, 2.0), "no repair") << "the header stamps agree";
 }
 
 }  // namespace
