@@ -28,6 +28,14 @@ std::string full_name(Kind kind, const std::string& method);
 enum class Frame { imu, lidar, body, centre };
 const char* to_string(Frame frame);
 
+/// Setting of a recording that `tumble odometry` states, measures or assumes.
+struct RecordingSetting {
+  std::string name;
+  std::string value;   ///< with evidence
+  std::string source;  ///< stated, measured, by name or assumed
+  std::string option;  ///< changes the setting
+};
+
 struct Estimate {
   Status status;                         ///< error of the whole run, or `ok`
   Frame frame = Frame::imu;              ///< frame of `attitudes` and `poses`
@@ -52,6 +60,7 @@ struct Estimate {
   std::vector<Eigen::Matrix3d> suspect_rad2_s2;
   std::map<std::string, double> health;      ///< named counters: "rejected_samples", "sweeps_rejected"
   std::map<std::string, double> parameters;  ///< parameters that the user set by name
+  std::vector<RecordingSetting> settings;    ///< of `tumble odometry`
   std::string transcript;                    ///< output of an external program; not scored
 };
 

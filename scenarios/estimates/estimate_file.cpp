@@ -275,9 +275,11 @@ void read_attitudes(const std::filesystem::path& folder, std::vector<AttitudeSta
 
 json header_of(const std::string& method, Kind kind, const Estimate& estimate, const std::string& sensors_digest,
                std::int64_t origin_ns) {
-  json health = json::object(), findings = json::array();
+  json health = json::object(), findings = json::array(), settings = json::array();
   for (const auto& [name, value] : estimate.health) health[name] = value;
   for (const HealthFinding& each : estimate.faults.findings) findings.push_back(json_of(each));
+  for (const auto& [name, value, source, option] : estimate.settings)
+    settings.push_back({{"setting", name}, {"value", value}, {"source", source}, {"option", option}});
   return {{"format", kFormatVersion},
           {"method", method},
           {"kind", to_string(kind)},
@@ -290,6 +292,7 @@ json header_of(const std::string& method, Kind kind, const Estimate& estimate, c
           {"health", health},
           {"findings", findings},
           {"parameters", json(estimate.parameters)},
+          {"settings", settings},
           {"sensors_digest", sensors_digest},
           {"origin_ns", origin_ns}};
 }

@@ -85,6 +85,12 @@ const Fault kFaults[] = {
      [](sim::ImuRecord&, sim::LidarRecord& lidar) {
        lidar.T_BL.rotate(Eigen::AngleAxisd(1.5707963267948966, Eigen::Vector3d::UnitX()));
      }},
+    {"z axis of the IMU mirrored", "the axes of the IMU are mirrored (left-handed): the sign of the z axis is wrong",
+     "",
+     [](sim::ImuRecord& imu, sim::LidarRecord&) {
+       for (Eigen::Vector3d& rate : imu.gyro_rad_s) rate.z() = -rate.z();
+       for (Eigen::Vector3d& force : imu.accel_m_s2) force.z() = -force.z();
+     }},
     {"gyro axes x and y swapped", "the axes", "",
      [](sim::ImuRecord& imu, sim::LidarRecord&) {
        for (Eigen::Vector3d& rate : imu.gyro_rad_s) std::swap(rate.x(), rate.y());
@@ -166,7 +172,7 @@ void expect_found(std::span<const Fault> faults) {
 }
 
 TEST(Doctor, FindsFaultsOfUnitsAndMountings) {
-  expect_found(std::span(kFaults).first(4));
+  expect_found(std::span(kFaults).first(5));
 }
 
 TEST(DoctorSoak, FindsEachFaultAndNamesItsRepair) {
@@ -198,6 +204,25 @@ TEST(Odometry, WritesAllFilesOfABagThatNeedsARepair) {
   EXPECT_THAT(found("data sheet of the lidar"), HasSubstr("rs16"));
   EXPECT_THAT(found("unit of the gyro"), HasSubstr("deg/s"));
   EXPECT_THAT(found("pose of the lidar"), HasSubstr("stated"));
+  EXPECT_THAT(found("IMU"), HasSubstr("'/imu"));
+  EXPECT_THAT(found("robot's own returns"), HasSubstr("only lidar returns nearer than 0.3 m")) << "not our robot";
+  const json estimate = json::parse(read_file(out / "estimate.json"));
+  EXPECT_FALSE(estimate["health"].contains("localised")) << "no prior map";
+  EXPECT_EQ(estimate["settings"].size(), document["found"].size());
+  EXPECT_EQ(estimate["settings"][0]["setting"], "format");
+  for (const char* key : {"value", "source", "option"}) EXPECT_TRUE(estimate["settings"][0].contains(key)) << key;
+
+  // the estimate fits the imported recording, whose sensors have shorter names
+  const std::string imported = (folder / "r.h5").string();
+  ASSERT_EQ(run_program({"import", bag.string(), "-o", imported, "--gyro-unit", "deg/s"}).status, 0);
+  EXPECT_EQ(estimate["sensors_digest"], scenarios::digest(scenarios::read_sensors(imported), nullptr));
+}
+
+TEST(Doctor, AWrongTopicIsAnErrorOfUse) {
+  const fs::path bag = bag_of(test_folder() / "bag", "fast-lio", nullptr);
+  const Ended ended = run_program({"doctor", bag.string(), "--imu-topic", "/foo"});
+  EXPECT_EQ(ended.status, 2) << ended.out;
+  EXPECT_THAT(ended.err, HasSubstr("there is no topic '/foo' (topics of a fitting type: /"));
 }
 
 // `run` calls such an estimate diverged, and so do all other verbs
@@ -253,6 +278,7 @@ TEST(Odometry, AllPosesAreInTheFrameOfThePriorMap) {
   const Ended ended = run_program({"odometry", recording, "-o", second.string(), "--map", map, "--json"});
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_GT(json_of(ended)["health"]["prior_map_sweep"].get<int>(), 0);
+  EXPECT_EQ(json_of(ended)["health"]["localised"], 1.0);
   EXPECT_THAT(ended.err, HasSubstr("all poses are in the frame of the map"));
   const std::vector<Eigen::Vector3d> p_W_m = positions_m(first / "trajectory.tum"),
                                      p_M_m = positions_m(second / "trajectory.tum");
@@ -272,7 +298,9 @@ TEST(Odometry, AWrongPositionOfTheLidarIsFound) {
                                    "-0.0045", "0.497", "0.1", "0.00497", "-0.002", "-0.707", "0.707"});
   ASSERT_EQ(wrong.status, 0) << wrong.err;
   EXPECT_EQ(json_of(wrong)["health"].value("lidar_calibration_replaced", 0.0), 1.0);
-  EXPECT_THAT(wrong.err, HasSubstr("contradicts the recording"));
+  EXPECT_THAT(wrong.err, HasSubstr("contradicts the recording: --T-body-lidar "));
+  EXPECT_THAT(read_file(folder / "wrong" / "estimate.json"),
+              HasSubstr("The pose before the run was (-0.0045 0.497 0.1)"));
   const Eigen::Vector3d expected_m = positions_m(folder / "right" / "trajectory.tum").back();
   EXPECT_LT((positions_m(folder / "wrong" / "trajectory.tum").back() - expected_m).norm(), 0.15);
 

@@ -31,6 +31,12 @@ std::string vector_text(const Eigen::Vector3d& v) {
   return fmt::format("({} {} {})", rounded(v.x()), rounded(v.y()), rounded(v.z()));
 }
 
+std::string pose_text(const Eigen::Isometry3d& T) {
+  const Eigen::Quaterniond q(T.linear());
+  return fmt::format("{} m, quaternion x y z w ({} {} {} {})", vector_text(T.translation()), rounded(q.x()),
+                     rounded(q.y()), rounded(q.z()), rounded(q.w()));
+}
+
 std::string rate_text(std::int64_t period_ns) {
   return period_ns > 0 ? rounded(1e9 / static_cast<double>(period_ns)) + " Hz" : "unknown rate";
 }
@@ -42,7 +48,7 @@ class Found {
       sheets_.push_back(scenarios::load_data_sheet(session.data(), name));
   }
 
-  std::vector<FoundItem> items() && { return std::move(items_); }
+  std::vector<RecordingSetting> items() && { return std::move(items_); }
 
   void add_source() {
     const ImportOptions& options = recording_.options;
@@ -114,8 +120,12 @@ class Found {
 
   void add_own_body(const Eigen::AlignedBox3d& box, bool stated) {
     add("robot's own returns",
-        fmt::format("lidar returns inside a box around the robot are removed: from {} to {} m in lidar axes",
-                    vector_text(box.min()), vector_text(box.max())),
+        box.sizes().isZero(0.0)
+            ? fmt::format(
+                  "only lidar returns nearer than {} m are removed. Set a box if the lidar measures parts of the robot",
+                  rounded(LidarInertialOdometry::Params{}.range_min_m))
+            : fmt::format("lidar returns inside a box around the robot are removed: from {} to {} m in lidar axes",
+                          vector_text(box.min()), vector_text(box.max())),
         stated ? kStated : kAssumed, "--own-body X Y Z X Y Z (two opposite corners)");
   }
 
@@ -168,11 +178,11 @@ class Found {
     const ImportOptions& options = recording_.options;
     const auto& agreement = recording_.rotation.primary;
     const std::string evidence =
-        !agreement               ? "the rotations of gyro and lidar cannot be compared in this recording"
-        : agreement->unit == 1.0 ? fmt::format("the gyro's rotation equals the lidar's rotation within {} %",
-                                               rounded(100.0 * agreement->unit_error))
-                                 : "probably wrong, because the lidar's rotation equals the gyro's rotation times " +
-                                       rounded(agreement->unit);
+        !agreement ? "the rotations of gyro and lidar cannot be compared in this recording"
+        : agreement->unit == 1.0
+            ? fmt::format("the rotations between sweeps that gyro and lidar measure agree within {} %",
+                          rounded(100.0 * agreement->unit_error))
+            : "probably wrong, because the lidar measures the rotation of the gyro times " + rounded(agreement->unit);
     add("unit of the gyro", fmt::format("{}: {}", options.gyro_unit.empty() ? "rad/s" : options.gyro_unit, evidence),
         agreement                                              ? kMeasured
         : options.gyro_unit.empty() || repaired("--gyro-unit") ? kAssumed
@@ -222,13 +232,13 @@ class Found {
 
   OpenRecording& recording_;
   std::vector<scenarios::DataSheet> sheets_;
-  std::vector<FoundItem> items_;
+  std::vector<RecordingSetting> items_;
 };
 
 }  // namespace
 
-std::vector<FoundItem> complete_recording(const Session& session, OpenRecording& recording,
-                                          const Eigen::AlignedBox3d& own_body_L, bool own_body_stated) {
+std::vector<RecordingSetting> complete_recording(const Session& session, OpenRecording& recording,
+                                                 const Eigen::AlignedBox3d& own_body_L, bool own_body_stated) {
   Found found(session, recording);
   found.add_source();
   found.add_imu();
@@ -238,28 +248,30 @@ std::vector<FoundItem> complete_recording(const Session& session, OpenRecording&
   return std::move(found).items();
 }
 
-std::string pose_text(const Eigen::Isometry3d& T) {
-  const Eigen::Quaterniond q(T.linear());
-  return fmt::format("{} m, quaternion x y z w ({} {} {} {})", vector_text(T.translation()), rounded(q.x()),
-                     rounded(q.y()), rounded(q.z()), rounded(q.w()));
+void set_replaced_pose(const Eigen::Isometry3d& T_BL, std::vector<RecordingSetting>& items) {
+  const auto pose = std::ranges::find(items, kLidarPose, &RecordingSetting::name);
+  if (pose == items.end()) return;
+  pose->value =
+      fmt::format("{}: estimated from the recording. The pose before the run was {}", pose_text(T_BL), pose->value);
+  pose->source = kMeasured;
 }
 
-bool states_lidar_pose(const std::vector<FoundItem>& items) {
-  return std::ranges::any_of(items,
-                             [](const FoundItem& each) { return each.item == kLidarPose && each.source == kStated; });
+bool states_lidar_pose(const std::vector<RecordingSetting>& items) {
+  return std::ranges::any_of(
+      items, [](const RecordingSetting& each) { return each.name == kLidarPose && each.source == kStated; });
 }
 
-Table found_table(const std::vector<FoundItem>& items) {
+Table found_table(const std::vector<RecordingSetting>& items) {
   Table table("", {"item", "source", "change with", "found"});
   table.wrap_last();
-  for (const FoundItem& each : items) table.add_row({each.item, each.source, each.option, each.found});
+  for (const RecordingSetting& each : items) table.add_row({each.name, each.source, each.option, each.value});
   return table;
 }
 
-nlohmann::json found_document(const std::vector<FoundItem>& items) {
+nlohmann::json found_document(const std::vector<RecordingSetting>& items) {
   nlohmann::json out = nlohmann::json::array();
-  for (const FoundItem& each : items)
-    out.push_back({{"item", each.item}, {"found", each.found}, {"source", each.source}, {"option", each.option}});
+  for (const RecordingSetting& each : items)
+    out.push_back({{"item", each.name}, {"found", each.value}, {"source", each.source}, {"option", each.option}});
   return out;
 }
 

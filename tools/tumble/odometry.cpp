@@ -145,7 +145,7 @@ void print_notes(const Session& session, const OpenRecording& recording, const E
     session.note(
         fmt::format("the program used an estimated pose of the lidar, because the stated pose or the clock of the "
                     "lidar contradicts the recording: {}",
-                    pose_text(*estimate.replaced_T_BL)));
+                    scenarios::lidar_pose_option(*estimate.replaced_T_BL)));
   for (const Repair& repair : recording.repairs)
     session.note(
         fmt::format("the program set the option {} {}: {}", repair.option.name, repair.option.value, repair.cause));
@@ -161,12 +161,14 @@ int run_odometry(const Session& session, const OdometryCommand& command) {
   OpenRecording recording = open_recording(session, options.input);
   const sim::Sensors& sensors = recording.content.sensors;
   require_both_sensors(options.input.path, sensors);
-  const OdometrySetup setup = set_up_odometry(session, options, recording);
+  OdometrySetup setup = set_up_odometry(session, options, recording);
   if (!session.json) session.print({found_table(setup.found)}, {});
   const scenarios::MethodInfo& info = setup.method.info;
   Estimate estimate;
   const double run_s = run_with_progress(session, setup.method, sensors, estimate);
-  scenarios::write_estimate(command.folder, info.name, info.kind, estimate, scenarios::digest(sensors, nullptr),
+  if (estimate.replaced_T_BL) set_replaced_pose(*estimate.replaced_T_BL, setup.found);
+  estimate.settings = setup.found;
+  scenarios::write_estimate(command.folder, info.name, info.kind, estimate, recording.digest,
                             recording.content.info.origin_ns);
   if (!estimate.map.empty()) {
     scenarios::write_map_pcd(command.folder / "map.pcd", estimate.map);

@@ -19,8 +19,12 @@ using scenarios::BadInput;
 
 namespace {
 
-Eigen::AlignedBox3d own_body(const OdometryOptions& options) {
-  if (options.own_body_m.empty()) return scenarios::presets::rig_body_L();
+/// Without the option, only returns from our own simulated rig are removed, because the shape of other robots is
+/// unknown.
+Eigen::AlignedBox3d own_body(const OdometryOptions& options, const std::string& robot) {
+  if (options.own_body_m.empty())
+    return robot == "rig" ? scenarios::presets::rig_body_L()
+                          : Eigen::AlignedBox3d(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
   const Eigen::Vector3d min = Eigen::Vector3d::Map(options.own_body_m.data()),
                         max = Eigen::Vector3d::Map(options.own_body_m.data() + 3);
   if (!((min.array() <= max.array()).all()))
@@ -41,7 +45,7 @@ bool has_parameter(const scenarios::MethodInfo& info, std::string_view name) {
 }
 
 std::vector<std::string> parameter_texts(const OdometryOptions& options, const scenarios::MethodInfo& info,
-                                         bool states_lidar_pose) {
+                                         bool states_lidar_pose, const Eigen::AlignedBox3d& own_body_L) {
   std::vector<std::string> texts = options.parameters;
   const auto assume = [&](const std::string& name, double value) {
     const std::string parameter = full_name(info) + "." + name + "=";
@@ -52,13 +56,12 @@ std::vector<std::string> parameter_texts(const OdometryOptions& options, const s
     assume("mount_sigma_m", kAssumedLidarSigma_m);
     assume("mount_sigma_rad", kAssumedLidarSigma_rad);
   }
-  if (options.own_body_m.empty()) return texts;
-  const char* const names[] = {"own_body_min_x_m", "own_body_min_y_m", "own_body_min_z_m",
-                               "own_body_max_x_m", "own_body_max_y_m", "own_body_max_z_m"};
-  const bool in_mapper = has_parameter(info, "mapping_own_body_min_x_m");
-  for (std::size_t k = 0; k < std::size(names); ++k)
-    texts.push_back(
-        fmt::format("{}.{}{}={}", full_name(info), in_mapper ? "mapping_" : "", names[k], options.own_body_m[k]));
+  if (own_body_L.isApprox(scenarios::presets::rig_body_L())) return texts;  // default of the methods
+  const std::string prefix = has_parameter(info, "mapping_own_body_min_x_m") ? "mapping_own_body" : "own_body";
+  for (int k = 0; k < 3; ++k) {
+    assume(fmt::format("{}_min_{}_m", prefix, "xyz"[k]), own_body_L.min()[k]);
+    assume(fmt::format("{}_max_{}_m", prefix, "xyz"[k]), own_body_L.max()[k]);
+  }
   return texts;
 }
 
@@ -72,7 +75,7 @@ void declare_odometry_options(VerbOptions& verb, OdometryOptions& options) {
   declare_prior_map(verb, options.prior_map);
   verb.add("--own-body", options.own_body_m,
            "sets a box around the robot by two opposite corners X Y Z X Y Z in lidar axes, m; drops returns inside the "
-           "box [default: -0.5 -0.4 -0.27 0.5 0.4 0.23]")
+           "box [default: no box; for recordings of our simulated rig -0.5 -0.4 -0.27 0.5 0.4 0.23]")
       .words(6);
   verb.add("--set", options.parameters,
            "sets a parameter of the method: METHOD.PARAMETER=NUMBER; repeat the option for more parameters ('tumble "
@@ -82,7 +85,7 @@ void declare_odometry_options(VerbOptions& verb, OdometryOptions& options) {
 }
 
 void check_odometry_options(const OdometryOptions& options) {
-  (void)own_body(options);
+  (void)own_body(options, "");
   (void)method_name(options);
 }
 
@@ -91,10 +94,12 @@ OdometrySetup set_up_odometry(const Session& session, const OdometryOptions& opt
   const scenarios::Method method =
       with_prior_map(*chosen_method(method_name(options), {sensors.robot, true}), options.prior_map);
   OdometrySetup setup;
-  setup.found = complete_recording(session, recording, own_body(options), !options.own_body_m.empty());
+  const Eigen::AlignedBox3d own_body_L = own_body(options, sensors.robot);
+  setup.found = complete_recording(session, recording, own_body_L, !options.own_body_m.empty());
   const scenarios::MethodPointer chosen[] = {scenarios::unowned(method)};
-  setup.method =
-      scenarios::with_parameters(chosen, parameter_texts(options, method.info, states_lidar_pose(setup.found))).front();
+  setup.method = scenarios::with_parameters(
+                     chosen, parameter_texts(options, method.info, states_lidar_pose(setup.found), own_body_L))
+                     .front();
   return setup;
 }
 

@@ -28,8 +28,8 @@ void declare_odometry_options(VerbOptions& verb, OdometryOptions& options);
 void check_odometry_options(const OdometryOptions& options);
 
 struct OdometrySetup {
-  std::vector<FoundItem> found;  ///< settings of the recording
-  scenarios::Method method;      ///< with its parameters
+  std::vector<RecordingSetting> found;  ///< settings of the recording
+  scenarios::Method method;             ///< with its parameters
 };
 
 /// Chooses the method, detects missing settings of the recording, and stores them in the recording.
