@@ -130,6 +130,21 @@ TEST(LateLidar, InFlightTheCovarianceCoversTheTilt) {
   }
 }
 
+TEST(StartInFlight, TheMapStartsOnlyAfterTheLanding) {
+  ThrownBody body = body_that_rests(1.2);
+  body.end_s += 1.0;
+  const double start_s = body.rest_s + body.push_s + 0.1, landed_s = body.rest_s + 2.0 * body.push_s + body.flight_s;
+  TumblingOdometry odometry(test::params_of(body));
+  Lived run = live(body, start_s, start_s, odometry);
+  std::erase_if(run.sweeps, [](const auto& sweep) { return sweep.report.trajectory.empty(); });
+  ASSERT_FALSE(run.sweeps.empty());
+  EXPECT_GT(1e-9 * double(run.sweeps.front().report.pose.time_ns), landed_s);
+  const EndError end = end_error(body, run);
+  EXPECT_LT(end.m, 0.02);
+  EXPECT_LT(end.rad, 0.01);
+  EXPECT_LT(end.nees, 4.0);
+}
+
 TEST(LateLidar, SweepsWithoutPointsDoNotStartTheMap) {
   const ThrownBody body = body_that_rests(3.0);
   TumblingOdometry odometry(test::params_of(body));

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "inertial_prior.hpp"
 #include "tumble/common/types.hpp"
 #include "unknowns.hpp"
 
@@ -17,8 +18,10 @@ using Params = LidarInertialOdometry::Params;
 
 // Before a map exists, the speed is assumed to have this standard deviation and this correlation time.
 constexpr double kSpeed_m_s = 10.0, kSpeedTime_s = 1.0;
-// If a recording starts in motion, the mean specific force over 0.5 s is assumed to differ from gravity by 1 m/s^2.
-constexpr double kMovingTilt_rad = 0.1, kMovingSpeed_m_s = 2.0;
+// If a recording starts in motion, the mean specific force over 0.5 s is assumed to differ from gravity by at least
+// 1 m/s^2. The speed is assumed to result from this acceleration over 2 s.
+constexpr double kMovingForce_m_s2 = 1.0, kMovingTime_s = 2.0;
+constexpr double kMovingTiltMax_rad = 1.0;  // any direction of gravity is possible
 
 StateEstimate state_estimate_of_motion(const MotionState& state, const LidarImuCalibration& calibration,
                                        const Motion& weight, const Motion& error) {
@@ -72,9 +75,32 @@ StateEstimate estimate_before_map(const Params& params, const MotionState& level
   return state_estimate_of_motion(levelled, calibration, levelled.covariance, error);
 }
 
-void add_motion_covariance(MotionState& levelled) {
-  u::variances(levelled.covariance, u::tilt).setConstant(kMovingTilt_rad * kMovingTilt_rad);
-  u::variances(levelled.covariance, u::velocity).setConstant(kMovingSpeed_m_s * kMovingSpeed_m_s);
+MotionState start_in_motion(std::span<const MotionSample> samples, double gravity_m_s2) {
+  Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  // from the IMU's axes to those of the first sample
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  double square = 0.0, time_s = 0.0;
+  for (const MotionSample& sample : samples) {
+    if (seconds(sample.time_ns - samples.front().from_ns) > StationaryBounds::kLevellingMax_s && time_s > 0.0) break;
+    const double step_s = seconds(sample.time_ns - sample.from_ns);
+    const Eigen::Vector3d angle_rad = step_s * sample.w_WI_I_rad_s;
+    force += step_s * (turned * so3::exp(0.5 * angle_rad) * sample.f_I_m_s2);
+    square += step_s * sample.f_I_m_s2.squaredNorm();
+    time_s += step_s;
+    turned = (turned * so3::exp(angle_rad)).normalized();
+  }
+  const double weight = 1.0 / std::max(time_s, 1e-9), gravity = std::max(gravity_m_s2, 1e-3);
+  force *= weight;
+  const double variance = std::max(weight * square - force.squaredNorm(), 0.0);
+  const double excess = force.norm() - gravity;
+  const double sigma_m_s2 = std::sqrt(kMovingForce_m_s2 * kMovingForce_m_s2 + excess * excess + 0.25 * variance);
+  const double tilt_rad = std::min(sigma_m_s2 / gravity, kMovingTiltMax_rad);
+  const double speed_m_s = std::min(kMovingTime_s * sigma_m_s2, kSpeed_m_s);
+  MotionState state;
+  if (!level_at_rest(force, state).ok()) state = MotionState{};  // in flight, any attitude is equally probable
+  state.time_ns = samples.front().from_ns;
+  u::variances(state.covariance, u::tilt).setConstant(tilt_rad * tilt_rad);
+  u::variances(state.covariance, u::velocity).setConstant(speed_m_s * speed_m_s);
+  return state;
 }
 
 MotionState transformed_to_pose(const Eigen::Isometry3d& T_WI, const MotionState& motion) {
@@ -149,6 +175,9 @@ StateEstimate estimate_at_first_sweep(const Params& params, const StateEstimate&
     u::sub_block(sub_block, u::velocity, u::gravity) += P.topRightCorner<3, 3>();
     u::sub_block(sub_block, u::gravity, u::velocity) += P.bottomLeftCorner<3, 3>();
     u::sub_block(sub_block, u::gravity) += P.bottomRightCorner<3, 3>();
+    if (free_gravity)  // error of the second order in the tilt
+      u::variances(sub_block, u::gravity)[2] +=
+          std::pow(params.expert.gravity_m_s2 * u::variances(from, u::tilt).mean(), 2);
   };
   add(reckoned.prior_weight_covariance, out.prior_weight_covariance);
   add(reckoned.state_error_covariance, out.state_error_covariance);

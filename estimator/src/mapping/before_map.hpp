@@ -11,9 +11,10 @@ namespace tumble::mapping {
 /// errors.
 StateEstimate estimate_before_map(const LidarInertialOdometry::Params& params, const MotionState& levelled);
 
-/// Increases the covariance of tilt and velocity for a start in motion, when the mean specific force differs from
-/// gravity.
-void add_motion_covariance(MotionState& levelled);
+/// Computes the initial state of an IMU in motion. The mean specific force of the first 0.5 s determines roll and
+/// pitch, and its deviation from gravity their standard deviation. In flight, all attitudes are possible. `samples`
+/// must not be empty.
+MotionState start_in_motion(std::span<const MotionSample> samples, double gravity_m_s2);
 
 /// Returns `motion` with the position and heading of `T_WI`, and with unchanged tilt.
 MotionState transformed_to_pose(const Eigen::Isometry3d& T_WI, const MotionState& motion);

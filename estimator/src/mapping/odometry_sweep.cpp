@@ -118,10 +118,10 @@ Status LidarInertialOdometry::Impl::initialise_inclination() {
 }
 
 Status LidarInertialOdometry::Impl::level_start(MotionState& levelled) const {
-  const Status status = mapping::start_at_rest(inertial_track.samples(), levelled);
-  if (status.ok() && !inertial_track.starts_at_rest(OdometryStart::kBiasRest_s))
-    mapping::add_motion_covariance(levelled);
-  return status;
+  if (inertial_track.starts_at_rest(OdometryStart::kBiasRest_s))
+    return mapping::start_at_rest(inertial_track.samples(), levelled);
+  levelled = mapping::start_in_motion(inertial_track.samples(), params.expert.gravity_m_s2);
+  return {};
 }
 
 Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns,
@@ -134,23 +134,28 @@ Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, st
   report.isolated_points_dropped = counts.isolated;
   const std::size_t points = selected.ok() ? sweep_scratch.points.all().size() : 0;
   const bool usable = points >= MatchingParams::kMatchesMin;
-  if (usable && !inertial_track.sweep_boundary_ns() &&
+  double tilt_sigma_rad = world_covariance.tilt_sigma_rad();
+  if (usable && tilt_sigma_rad <= OdometryStart::kTiltSigmaMax_rad && !inertial_track.sweep_boundary_ns() &&
       seconds(start_ns - sweep_boundary.time_ns()) <= kFirstSweepDelayMax_s)
     return {};
   if (usable) {
     const std::optional<OdometerReading> sweep_reading = std::exchange(odometer_reading, std::nullopt);
     if (Status status = dead_reckon(start_ns); !status.ok()) return status;
     odometer_reading = sweep_reading;
-    if (start_pose)
-      sweep_boundary.state_estimate = mapping::transformed_to_pose(*start_pose, sweep_boundary.state_estimate);
-    if (start_tilt_correction)
-      sweep_boundary.state_estimate = mapping::with_start_tilt(*start_tilt_correction, sweep_boundary.state_estimate);
-    world_covariance = mapping::world_at_first_sweep(params, sweep_boundary.state_estimate);
-    sweep_boundary.state_estimate = mapping::estimate_at_first_sweep(params, sweep_boundary.state_estimate);
-    return {};
+    StateEstimate reckoned = sweep_boundary.state_estimate;
+    if (start_pose) reckoned = mapping::transformed_to_pose(*start_pose, reckoned);
+    if (start_tilt_correction) reckoned = mapping::with_start_tilt(*start_tilt_correction, reckoned);
+    world_covariance = mapping::world_at_first_sweep(params, reckoned);
+    tilt_sigma_rad = world_covariance.tilt_sigma_rad();
+    if (tilt_sigma_rad <= OdometryStart::kTiltSigmaMax_rad) {
+      sweep_boundary.state_estimate = mapping::estimate_at_first_sweep(params, reckoned);
+      return {};
+    }
   }
   if (Status status = dead_reckon(end_ns); !status.ok()) return status;
   odometer_reading.reset();
+  if (usable)
+    return {ErrorCode::insufficient_data, "start_tilt_sigma_rad", tilt_sigma_rad, OdometryStart::kTiltSigmaMax_rad};
   if (!selected.ok()) return selected;
   return {ErrorCode::insufficient_data, "points", double(points), double(MatchingParams::kMatchesMin)};
 }

@@ -87,8 +87,9 @@ struct LidarScale;
 /// following sweep (`report.final_poses_of_earlier_sweep`). At ten sweeps per second and the default `lag_s`, the final
 /// pose is available at most 0.3 s after the end of its sweep. Time stamps of poses are in the IMU's clock. The
 /// earliest sweep with enough points starts the map, and poses are reported only after the map has started. Start with
-/// at least half a second at rest, which determines the tilt. A gyro with a bias above 0.05 rad/s needs a full second
-/// at rest, because TumblingOdometry then subtracts the bias and restarts.
+/// at least half a second at rest, which determines the tilt. After a start in free flight or between impacts, the map
+/// starts only when the tilt is known, usually at the next rest. A gyro with a bias above 0.05 rad/s needs a full
+/// second at rest, because TumblingOdometry then subtracts the bias and restarts.
 ///
 /// Some seconds after motion starts, SecondMappingPass processes the first seconds of motion again with the calibration
 /// estimated so far. If the second pass succeeds, TumblingOdometry continues with the map and pose of
