@@ -95,40 +95,6 @@ void set_imus(const ImuReadingSets& units, ImuMerge::Setup& setup) {
             setup.accel_sensing_directions.begin());
 }
 
-/// TimeWithoutGaps removes gaps from the time stamps of the IMUs, so that ImuMerge keeps the calibration of the IMUs.
-class TimeWithoutGaps {
- public:
-  std::pair<TimeNs, bool> next(TimeNs time_ns) {
-    const bool after_gap = started_ && seconds(time_ns - last_ns_) > ImuMerge::Setup::kGapMax_s;
-    if (after_gap) {
-      const TimeNs removed_ns = time_ns - last_ns_ - step_ns_;
-      gaps_.push_back({time_ns - removed_ns - removed_duration_ns(), removed_ns + removed_duration_ns()});
-    } else if (started_) {
-      step_ns_ = time_ns - last_ns_;
-    }
-    started_ = true;
-    last_ns_ = time_ns;
-    return {time_ns - removed_duration_ns(), after_gap};
-  }
-  TimeNs in_recording(TimeNs time_ns) const {
-    TimeNs removed_ns = 0;
-    for (const Gap& gap : gaps_) {
-      if (time_ns >= gap.end_ns) removed_ns = gap.removed_duration_ns;
-    }
-    return time_ns + removed_ns;
-  }
-
- private:
-  struct Gap {
-    TimeNs end_ns, removed_duration_ns;  ///< end of a gap, in time without gaps; total duration of all gaps so far
-  };
-  TimeNs removed_duration_ns() const { return gaps_.empty() ? 0 : gaps_.back().removed_duration_ns; }
-
-  std::vector<Gap> gaps_;
-  bool started_ = false;
-  TimeNs last_ns_ = 0, step_ns_ = 1;
-};
-
 /// After a gap between IMU samples, only the motion state is reset, because the calibration of the IMUs remains valid.
 void reset_motion_state(ImuMerge::State& state) {
   for (ImuMerge::Unit& unit : state.imus) unit.window = {};
@@ -141,24 +107,23 @@ Status merge_imu_readings(const ImuMerge& merge, const ImuReadingSets& units, Im
                           std::vector<ImuSample>& out) {
   std::vector<ImuSample> now(units.samples.size());
   std::optional<ImuSample> merged;
-  TimeWithoutGaps time;
+  TimeNs step_ns = 1;  // newest time between two samples without a gap
   out.clear();
   for (std::size_t k = 0; k < units.samples[0].size(); ++k) {
     for (std::size_t unit = 0; unit < now.size(); ++unit) now[unit] = units.samples[unit][k];
     const bool received = std::any_of(now.begin(), now.end(), [](const ImuSample& s) { return is_finite(s); });
-    if (received) {
-      const auto [time_ns, after_gap] = time.next(now[0].time_ns);
-      now[0].time_ns = time_ns;
-      if (after_gap) reset_motion_state(state);
+    if (received && state.sample_count > 0) {
+      const TimeNs since_ns = now[0].time_ns - state.last_time_ns;
+      if (seconds(since_ns) > ImuMerge::Setup::kGapMax_s) {
+        reset_motion_state(state);
+        state.last_time_ns = now[0].time_ns - step_ns;
+      } else {
+        step_ns = since_ns;
+      }
     }
     if (Status status = merge.step(now, state, merged); !status.ok()) return status;
     if (Status status = ImuMerge::verdict(state); !status.ok()) return status;
     if (merged) out.push_back(*merged);
-  }
-  for (ImuSample& sample : out) sample.time_ns = time.in_recording(sample.time_ns);
-  for (ImuMerge::Unit& unit : state.imus) {
-    unit.frozen_since_ns = time.in_recording(unit.frozen_since_ns);
-    unit.disagrees_since_ns = time.in_recording(unit.disagrees_since_ns);
   }
   return {};
 }
