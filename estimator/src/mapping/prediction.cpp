@@ -4,7 +4,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "../common/dense.hpp"
 #include "../common/symmetric.hpp"
@@ -157,28 +156,17 @@ StateEstimate posterior(const Prediction& prediction) {
   return start;
 }
 
-namespace {
-
-/// See mapping.md (R52). A separate function keeps large matrices out of the stack frame of posterior().
-[[gnu::noinline]] void gain_of_prior_error(const Prediction& prediction, const Registration::Result& aligned,
-                                           Registration::Matrix& out) {
-  // Noise of the surface normals carries no information about the motion.
-  Registration::Matrix kept = Registration::Matrix::Identity();
-  dense::solve_semidefinite(make_invertible(prediction.prior.covariance), kept);
-  kept += aligned.surface_normal_noise_information;
-  out.noalias() = aligned.covariance * kept;
-}
-
-}  // namespace
-
 /// See mapping.md (R52).
 StateEstimate posterior(const Prediction& prediction, const Registration::Result& aligned) {
   StateEstimate start{aligned.mean, aligned.covariance, Registration::Matrix::Zero()};
-  const auto from_prior = std::make_unique<Registration::Matrix>();
-  gain_of_prior_error(prediction, aligned, *from_prior);
-  propagate_covariance(*from_prior, prediction.motion_error_covariance, start.state_error_covariance);
-  propagate_covariance(aligned.covariance, aligned.score_covariance, *from_prior);
-  start.state_error_covariance += *from_prior;
+  // Noise of the surface normals carries no information about the motion.
+  Registration::Matrix kept = Registration::Matrix::Identity(), from_prior;
+  dense::solve_semidefinite(make_invertible(prediction.prior.covariance), kept);
+  kept += aligned.surface_normal_noise_information;
+  from_prior.noalias() = aligned.covariance * kept;
+  propagate_covariance(from_prior, prediction.motion_error_covariance, start.state_error_covariance);
+  propagate_covariance(aligned.covariance, aligned.score_covariance, from_prior);
+  start.state_error_covariance += from_prior;
   make_symmetric(start.state_error_covariance);
   return start;
 }

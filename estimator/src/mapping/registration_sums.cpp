@@ -4,10 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
-#include <utility>
 
-#include "outer_products.hpp"
 #include "point_motion.hpp"
 
 namespace tumble {
@@ -167,11 +164,12 @@ double Registration::kernel_width_m() {
 /// See mapping.md (R23).
 void Registration::accumulate_block(std::span<const SweepPoint> points, std::size_t block,
                                     const SweepTrajectory& trajectory, const LidarImuCalibration& calibration,
-                                    const Unknowns& unknowns, double kernel_m, Products& products, Sums& sum) {
+                                    const Unknowns& unknowns, double kernel_m, Sums& sum) {
   // Columns of `rows`: derivatives of a matched point's distance from its plane, times the square root of the match's
   // weight.
-  auto& rows = products.columns;
-  Eigen::Matrix<double, static_cast<int>(kPointsPerPartialSum), 1> weighted;
+  constexpr int kPoints = kPointsPerPartialSum;
+  Eigen::Matrix<double, kUnknowns, kPoints> rows;
+  Eigen::Matrix<double, kPoints, 1> weighted;
   const bool rigid = !unknowns.deficit_free && !unknowns.calibration_free;
   std::size_t hint = 0;
   int count = 0;
@@ -200,7 +198,7 @@ void Registration::accumulate_block(std::span<const SweepPoint> points, std::siz
     if (r * r <= 9.0 * weight.variance_m2) ++sum.inliers;
   }
   const int n = unknowns.count;
-  products.add_products_to(n, count, sum.normal_matrix);
+  sum.normal_matrix.topLeftCorner(n, n).selfadjointView<Eigen::Lower>().rankUpdate(rows.topLeftCorner(n, count));
   sum.gradient.head(n) = rows.topLeftCorner(n, count) * weighted.head(count);
 }
 
@@ -208,11 +206,8 @@ void Registration::accumulate(std::span<const SweepPoint> points, const SweepTra
                               const LidarImuCalibration& calibration, const Unknowns& unknowns, double kernel_m,
                               Sums& sum) {
   partial_sums_.assign(partial_sum_count(points.size(), kPointsPerPartialSum), Sums{});
-  mapping::WorkspacePool<Products> spare;
   run_parallel(params_.parallel_for, partial_sums_.size(), [&](std::size_t block) {
-    std::unique_ptr<Products> products = spare.acquire();
-    accumulate_block(points, block, trajectory, calibration, unknowns, kernel_m, *products, partial_sums_[block]);
-    spare.release(std::move(products));
+    accumulate_block(points, block, trajectory, calibration, unknowns, kernel_m, partial_sums_[block]);
   });
   sum = Sums{};
   for (const Sums& part : partial_sums_) sum.add(part);
@@ -225,8 +220,7 @@ void Registration::accumulate(std::span<const SweepPoint> points, const SweepTra
 /// surfaces do not constrain.
 struct Registration::SurfaceNormalNoise {
   const Unknowns& unknowns;
-  using Products = mapping::OuterProducts<kUnknowns, 2 * static_cast<int>(kPointsPerPartialSum)>;
-  std::unique_ptr<Products> outer_products = Products::make_unique_products();
+  Eigen::Matrix<double, kUnknowns, 2 * static_cast<int>(kPointsPerPartialSum)> columns;
   int count = 0;
   Matrix lower = Matrix::Zero();
 
@@ -237,14 +231,15 @@ struct Registration::SurfaceNormalNoise {
       Vector derivative;
       motion.derivative_along_normal(plane.normal_sigma_W.col(axis).cast<double>(), derivative);
       for (int k = 0; k < unknowns.count; ++k)
-        outer_products->columns(k, count) = root * derivative[unknowns.free_unknowns[static_cast<std::size_t>(k)]];
+        columns(k, count) = root * derivative[unknowns.free_unknowns[static_cast<std::size_t>(k)]];
       ++count;
     }
-    if (count == outer_products->columns.cols()) sum_up();
+    if (count == columns.cols()) sum_up();
   }
 
   void sum_up() {
-    outer_products->add_products_to(unknowns.count, count, lower);
+    const int n = unknowns.count;
+    lower.topLeftCorner(n, n).selfadjointView<Eigen::Lower>().rankUpdate(columns.topLeftCorner(n, count));
     count = 0;
   }
 

@@ -57,7 +57,6 @@ struct RollingOdometry::Impl {
   std::vector<std::byte> save() const;
   Status load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose);
 
-  std::vector<std::byte> save_with_pose(const std::optional<PoseState>& pose) const;
   void restart_at_newest(double gap_s);
   void end_continuous_run();
   void start_continuous_run();

@@ -37,20 +37,16 @@ void visit_saved_state(Visit& visit, Saved& saved) {
 
 std::vector<std::byte> RollingOdometry::Impl::save() const {
   const auto ended = std::make_unique<Impl>(*this);
-  if (state_->live_filter.started)
-    ended->restart_at_newest(0.0);  // needs most of the stack, so this function needs little
-  if (!ended->start_) return save_with_pose(std::nullopt);
-  PoseState pose;
-  pose.time_ns = state_->live_filter.last_time_ns;
-  pose.position_W_m = ended->start_->translation();
-  pose.orientation_W = Eigen::Quaterniond(ended->start_->linear()).normalized();
-  if (ended->restart_) pose.covariance = ended->restart_->covariance;
-  return save_with_pose(pose);
-}
-
-std::vector<std::byte> RollingOdometry::Impl::save_with_pose(const std::optional<PoseState>& pose) const {
+  if (state_->live_filter.started) ended->restart_at_newest(0.0);
   SavedRollingState saved{
-      params_.radius_m, imu_merge_.mean_imu_position_m(), static_cast<std::uint32_t>(params_.imus.size()), {}, pose};
+      params_.radius_m, imu_merge_.mean_imu_position_m(), static_cast<std::uint32_t>(params_.imus.size()), {}, {}};
+  if (ended->start_) {
+    PoseState& pose = saved.pose.emplace();
+    pose.time_ns = state_->live_filter.last_time_ns;
+    pose.position_W_m = ended->start_->translation();
+    pose.orientation_W = Eigen::Quaterniond(ended->start_->linear()).normalized();
+    if (ended->restart_) pose.covariance = ended->restart_->covariance;
+  }
   if (state_->live_filter.started) {
     saved.calibration = RollingFilter::calibration(state_->live_filter);
   } else if (params_.expert->rolling.filter.calibration) {

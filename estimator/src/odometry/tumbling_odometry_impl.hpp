@@ -51,7 +51,6 @@ struct TumblingOdometry::Impl {
   std::vector<std::byte> save() const;
   Status load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose);
 
-  std::vector<std::byte> save_with_pose(const std::optional<PoseState>& pose) const;
   Status process_ordered_sample(const ImuSample& sample);
   void register_sweep(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points);
   bool is_due(TimeNs end_ns) const;

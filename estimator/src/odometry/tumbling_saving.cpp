@@ -126,37 +126,31 @@ std::optional<PoseState> newest_or_start_pose(const TumblingOdometry::Impl& odom
 }  // namespace
 
 std::vector<std::byte> TumblingOdometry::Impl::save() const {
-  return save_with_pose(
-      newest_or_start_pose(*this));  // the pose needs most of the stack, so this function needs little
-}
-
-std::vector<std::byte> TumblingOdometry::Impl::save_with_pose(const std::optional<PoseState>& pose) const {
-  const auto out = std::make_unique<SavedTumblingState>();  // too large for a small stack
-  out->lever_arm_I_m = params_.lever_arm_I_m;
-  out->stated_T_IL = stated_calibration_.calibration.T_IL;
+  SavedTumblingState out;
+  out.lever_arm_I_m = params_.lever_arm_I_m;
+  out.stated_T_IL = stated_calibration_.calibration.T_IL;
   const AngularRateStream& stream = odometry_pass_.rates().rate();
   const AngularRateStream::State& state = odometry_pass_.rate_stream_state().rate;
   const AngularRateStreamParams& used = odometry_pass_.rates().params().rate;
   const bool estimated = whole_recording_result_ ? !whole_recording_result_->report.rate.calibration_at_prior
                                                  : !stream.lever_arm_is_prior(state);
-  if (estimated || used.model.calibration) out->rig = body_imu_calibration();
-  if (out->rig && !check_body_imu_calibration(*out->rig).ok()) out->rig.reset();
-  if (whole_recording_result_ && estimated) out->sensor_errors = whole_recording_result_->report.rate.sensor_errors;
+  if (estimated || used.model.calibration) out.rig = body_imu_calibration();
+  if (out.rig && !check_body_imu_calibration(*out.rig).ok()) out.rig.reset();
+  if (whole_recording_result_ && estimated) out.sensor_errors = whole_recording_result_->report.rate.sensor_errors;
   if (!whole_recording_result_ && (state.sensor_errors.front().accel_delay_state.delay_found || used.calibrated_errors))
-    out->sensor_errors = stream.sensor_errors(state);
-  out->saturation_levels = saturation_levels();
+    out.sensor_errors = stream.sensor_errors(state);
+  out.saturation_levels = saturation_levels();
   const auto sigma = mapper().next_lidar_calibration_prior_covariance().diagonal().cwiseSqrt().eval();
-  out->lidar = {mapper().lidar_calibration(), sigma.head<3>().maxCoeff(), sigma.segment<3>(3).maxCoeff(), sigma[6]};
+  out.lidar = {mapper().lidar_calibration(), sigma.head<3>().maxCoeff(), sigma.segment<3>(3).maxCoeff(), sigma[6]};
 
   const PriorMap* const prior = mapper().prior_map();
-  out->extend = prior == nullptr || prior->extend;
-  out->pose = pose;
-  return write_saved_state(*out, mapper().check_localised().ok() ? mapper().map() : prior->points);
+  out.extend = prior == nullptr || prior->extend;
+  out.pose = newest_or_start_pose(*this);
+  return write_saved_state(out, mapper().check_localised().ok() ? mapper().map() : prior->points);
 }
 
 Status TumblingOdometry::Impl::load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose) {
-  const auto heap = std::make_unique<SavedTumblingState>();  // too large for a small stack
-  SavedTumblingState& saved = *heap;
+  SavedTumblingState saved;
   PriorMap map;
   const Status read_status =
       read(bytes, params_.lever_arm_I_m, stated_calibration_.calibration.T_IL, saved, map.points);

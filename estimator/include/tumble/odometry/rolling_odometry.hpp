@@ -30,7 +30,7 @@ extern template class HeapValue<RollingOdometryExpertParams>;
 /// The state of RollingOdometry takes half a megabyte, plus 0.1 MB per IMU and 11 KiB per 0.02 s of lag. If `lag_s` is
 /// above 0, RollingOdometry computes poses in blocks of RollingSmoother::Params::kBlock_s. After start-up, add_imus()
 /// allocates memory only at the end of a block, and for poses that take() has not yet returned. Each call of a member
-/// function needs at most 64 KiB of stack. RollingOdometry starts no threads, uses no files and prints nothing. A copy
+/// function needs at most 256 KiB of stack. RollingOdometry starts no threads, uses no files and prints nothing. A copy
 /// of a RollingOdometry contains the complete state. The limitations of ImuMerge, RollingFilter and RollingSmoother
 /// apply to RollingOdometry.
 class RollingOdometry {

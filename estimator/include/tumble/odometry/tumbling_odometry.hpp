@@ -109,7 +109,7 @@ struct LidarScale;
 /// four registrations. The sweep that completes SecondMappingPass costs about five additional registrations. The memory
 /// of TumblingOdometry is bounded, depending on lag, map radius, `sweeps_max` and the buffer of SecondMappingPass.
 /// While the robot is localised in a prior map, the memory also grows by 12 bytes per sweep. Without kWholeRecording,
-/// each call of a member function needs at most 64 KiB of stack.
+/// each call of a member function needs at most 256 KiB of stack.
 ///
 /// TumblingOdometry starts no threads, uses no files and prints nothing. A copy of a TumblingOdometry contains the
 /// complete state, so the copy can continue the run. The limitations of MotionRegimeStream and LidarInertialOdometry

@@ -48,11 +48,6 @@ struct RegistrationResult {
   double least_constrained_sigma_m = std::numeric_limits<double>::infinity();
 };
 
-namespace mapping {
-template <int Rows, int Columns>
-class OuterProducts;
-}  // namespace mapping
-
 /// Registers a sweep to a map by point-to-plane distances, and estimates the motion within the sweep:
 /// docs/maths/mapping.md.
 ///
@@ -110,7 +105,6 @@ class Registration {
 
     void add(const Sums& other);
   };
-  using Products = mapping::OuterProducts<kUnknowns, int{kPointsPerPartialSum}>;
   struct Unknowns;
   struct RegistrationProblem;
   struct IterationState;
@@ -126,8 +120,7 @@ class Registration {
   void accumulate(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
                   const LidarImuCalibration& calibration, const Unknowns& unknowns, double kernel_m, Sums& sum);
   void accumulate_block(std::span<const SweepPoint> points, std::size_t block, const SweepTrajectory& trajectory,
-                        const LidarImuCalibration& calibration, const Unknowns& unknowns, double kernel_m,
-                        Products& products, Sums& sum);
+                        const LidarImuCalibration& calibration, const Unknowns& unknowns, double kernel_m, Sums& sum);
 
   struct SurfaceNormalNoise;
   struct ClusterGradients;
