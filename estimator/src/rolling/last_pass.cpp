@@ -48,10 +48,8 @@ void FinalSmoothingPass::filter_forward(std::size_t segment, SmoothingCheckpoint
   RollingReadings readings(params_, samples_, cursor);
   RollingReading reading;
   while (readings.next(reading)) {
-    const ImuAverage& average = reading.average;
-    const Eigen::Vector3d& rate = average.mean.angular_velocity_rad_s;
-    if (reading.is_whole && sums.node_interval_s >= params_.expert.kNode_s - 0.5 * average.length_s &&
-        first + node_records_.size() < end) {
+    const Eigen::Vector3d& rate = reading.sample.angular_velocity_rad_s;
+    if (sums.node_interval_s >= params_.expert.kNode_s - 0.5 * reading.length_s && first + node_records_.size() < end) {
       const ModePathNode& decided = mode_path_[first + node_records_.size()];
       FilterNodeRecord& record = node_records_.emplace_back();
       complete_filter_node(params_, sums, 0.5 * (cursor.last_rate_rad_s + rate), decided, filter, record);
@@ -62,20 +60,11 @@ void FinalSmoothingPass::filter_forward(std::size_t segment, SmoothingCheckpoint
     }
     const std::size_t node = first + node_records_.size();
     if (reading.in_gap) {
-      integrate_gap(params_, average, reading.uncertainty, filter.nominal, sums);
-      if (reading.end > reading.first) store_sample_point(reading.end_ns, filter.nominal, rate, node);
+      integrate_gap(params_, reading.sample, reading.length_s, reading.uncertainty, filter.nominal, sums);
     } else {
-      ImuAverage so_far;
-      TimeNs last_ns = cursor.time_ns;
-      for (std::size_t k = reading.first; k < reading.end; ++k) {
-        const ImuSample& sample = samples_[k];
-        so_far.add(sample, seconds(sample.time_ns - last_ns));
-        last_ns = sample.time_ns;
-        store_sample_point(last_ns, extrapolate_nominal(params_, so_far, filter.nominal),
-                           so_far.mean.angular_velocity_rad_s, node);
-      }
-      if (reading.is_whole) integrate(params_, average, filter.nominal, sums);
+      integrate(params_, reading.sample, reading.length_s, filter.nominal, sums);
     }
+    if (reading.ends_at_sample) store_sample_point(reading.end_ns, filter.nominal, rate, node);
     cursor = readings.cursor();
   }
 }

@@ -39,8 +39,7 @@ Status RollingFilter::step_with_listener(const ImuSample& sample, State& state, 
     if (dt_s > RollingGapParams::kGapMinDuration_s) {
       bridge_gap(sample, dt_s, state, listener);
     } else {
-      state.imu_average.add(sample, dt_s);
-      if (state.imu_average.full(params_.expert.reading_s, dt_s)) process_averaged_reading(state, listener);
+      process_reading(sample, dt_s, state, listener);
     }
   } else {
     Eigen::Quaterniond q_WI = params_.q_WI_start.value_or(Eigen::Quaterniond::Identity());
@@ -64,32 +63,30 @@ void RollingFilter::start(const ImuSample& sample, const Eigen::Quaterniond& q_W
   state.started = true;
 }
 
-void RollingFilter::process_averaged_reading(State& state, Listener listener) const {
-  const ImuAverage reading = state.imu_average;
-  state.imu_average = {};
+void RollingFilter::process_reading(const ImuSample& sample, double dt_s, State& state, Listener listener) const {
   // The rate at a node's end is interpolated between two readings, so the next reading completes the node.
-  if (state.node_integrals.node_interval_s >= params_.expert.kNode_s - 0.5 * reading.length_s) {
-    complete_filter_node(reading.mean.angular_velocity_rad_s, state);
+  if (state.node_integrals.node_interval_s >= params_.expert.kNode_s - 0.5 * dt_s) {
+    complete_filter_node(sample.angular_velocity_rad_s, state);
     listener.function(listener.target, state);
   }
-  rolling::integrate(params_, reading, state.nominal, state.node_integrals);
-  state.last_rate_rad_s = reading.mean.angular_velocity_rad_s;
+  rolling::integrate(params_, sample, dt_s, state.nominal, state.node_integrals);
+  state.last_rate_rad_s = sample.angular_velocity_rad_s;
 }
 
 void RollingFilter::bridge_gap(const ImuSample& sample, double gap_s, State& state, Listener listener) const {
-  if (state.imu_average.readings > 0) process_averaged_reading(state, listener);
   ImuSample before;
   before.angular_velocity_rad_s = state.last_rate_rad_s;
   const int pieces = rolling::gap_step_count(params_, gap_s);
+  const double piece_s = gap_s / pieces;
   for (int k = 0; k < pieces; ++k) {
     rolling::GapUncertainty uncertainty;
-    const ImuAverage piece = rolling::gap_step_average(params_, before, sample, gap_s, k, uncertainty);
-    const Eigen::Vector3d& rate = piece.mean.angular_velocity_rad_s;
-    if (state.node_integrals.node_interval_s >= params_.expert.kNode_s - 0.5 * piece.length_s) {
+    const ImuSample piece = rolling::gap_step_sample(params_, before, sample, gap_s, k, uncertainty);
+    const Eigen::Vector3d& rate = piece.angular_velocity_rad_s;
+    if (state.node_integrals.node_interval_s >= params_.expert.kNode_s - 0.5 * piece_s) {
       complete_filter_node(rate, state);
       listener.function(listener.target, state);
     }
-    rolling::integrate_gap(params_, piece, uncertainty, state.nominal, state.node_integrals);
+    rolling::integrate_gap(params_, piece, piece_s, uncertainty, state.nominal, state.node_integrals);
     state.last_rate_rad_s = rate;
   }
   ++state.gaps;
@@ -220,15 +217,10 @@ void RollingFilter::move_linearisation_point(bool heading_lost, State& state) co
   }
 }
 
-const Eigen::Vector3d& RollingFilter::newest_rate_rad_s(const State& state) {
-  return state.imu_average.readings > 0 ? state.imu_average.mean.angular_velocity_rad_s : state.last_rate_rad_s;
-}
-
 void RollingFilter::update_reported_pose(State& state) const {
-  const RollingNominalState nominal = rolling::extrapolate_nominal(params_, state.imu_average, state.nominal);
-  const Eigen::Vector3d& rate = newest_rate_rad_s(state);
+  const RollingNominalState& nominal = state.nominal;
   const Eigen::Vector3d arm_W = nominal.q_WI * (params_.lever_arm_m + nominal.lever_arm_error_m);
-  const Eigen::Vector3d w_W = nominal.q_WI * (rate - nominal.gyro_bias_rad_s);
+  const Eigen::Vector3d w_W = nominal.q_WI * (state.last_rate_rad_s - nominal.gyro_bias_rad_s);
   state.q_WI = nominal.q_WI;
   if (!state.reported_position_constant) state.sphere_centre_W_m = nominal.p_WI_m - arm_W;
   state.sphere_velocity_W_m_s = nominal.v_WI_m_s - w_W.cross(arm_W);
@@ -262,7 +254,7 @@ RollingEstimate RollingFilter::estimate(const State& state) {
   out.sphere_centre_W_m = state.sphere_centre_W_m;
   out.q_WI = state.q_WI;
   out.sphere_velocity_W_m_s = state.sphere_velocity_W_m_s;
-  out.w_WI_I_rad_s = newest_rate_rad_s(state) - state.nominal.gyro_bias_rad_s;
+  out.w_WI_I_rad_s = state.last_rate_rad_s - state.nominal.gyro_bias_rad_s;
   out.covariance.topLeftCorner<3, 3>() = state.position_covariance_m2;
   if (state.hypothesis_count > 0) {
     const Eigen::Matrix3d R_IW = state.nominal.q_WI.toRotationMatrix().transpose();

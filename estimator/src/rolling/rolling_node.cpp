@@ -142,10 +142,8 @@ SaturatedForce saturated_force(const ImuSample& sample, const Eigen::Vector3d& r
 }  // namespace
 
 /// See rolling.md (R2) to (R9).
-void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominalState& nominal,
+void integrate(const RollingParams& params, const ImuSample& sample, double dt_s, RollingNominalState& nominal,
                RollingNodeIntegrals& sums, Force known) {
-  const ImuSample& sample = reading.mean;
-  const double dt_s = reading.length_s;
   const Eigen::Vector3d& w_raw = sample.angular_velocity_rad_s;
   const Eigen::Vector3d& f_raw = sample.specific_force_m_s2;
   const Eigen::Vector3d w = w_raw - nominal.gyro_bias_rad_s - nominal.gyro_scale * w_raw;
@@ -159,12 +157,12 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   const Eigen::Matrix3d R_T = dt_s * q_mid.toRotationMatrix();
   nominal.q_WI = (q_mid * half).normalized();
   const double gravity = params.gravity_m_s2;
-  const bool beyond = reading.rate_peak_rad_s >= params.gyro_range_rad_s;
+  const bool beyond = w_raw.cwiseAbs().maxCoeff() >= params.gyro_range_rad_s;
   const bool lost =
       (sample.device_clip_flags & kClipGyro) != 0 || (beyond && !params.expert.saturation.recovered_rate_sigma_rad_s);
   const bool has_unknown_rate = lost || beyond || known == Force::force_unknown;
   const bool railed =
-      (sample.device_clip_flags & kClipAccel) != 0 || reading.force_peak_m_s2 >= params.accel_range_m_s2;
+      (sample.device_clip_flags & kClipAccel) != 0 || f_raw.cwiseAbs().maxCoeff() >= params.accel_range_m_s2;
   const Eigen::Vector3d arm = params.lever_arm_m + nominal.lever_arm_error_m;
   const Eigen::Vector3d change_rad_s = w_raw - nominal.last_rate_I_rad_s;  // angular acceleration times dt_s
   nominal.last_rate_I_rad_s = w_raw;
@@ -210,21 +208,12 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   sums.node_interval_s += dt_s;
 }
 
-RollingNominalState extrapolate_nominal(const RollingParams& params, const ImuAverage& reading,
-                                        const RollingNominalState& nominal) {
-  RollingNominalState out = nominal;
-  if (reading.readings == 0) return out;
-  RollingNodeIntegrals unused;
-  integrate(params, reading, out, unused);
-  return out;
-}
-
 int gap_step_count(const RollingParams& params, double gap_s) {
   return std::max(1, static_cast<int>(std::lround(gap_s / params.expert.kNode_s)));
 }
 
-ImuAverage gap_step_average(const RollingParams& params, const ImuSample& before, const ImuSample& after, double gap_s,
-                            int k, GapUncertainty& uncertainty) {
+ImuSample gap_step_sample(const RollingParams& params, const ImuSample& before, const ImuSample& after, double gap_s,
+                          int k, GapUncertainty& uncertainty) {
   const int pieces = gap_step_count(params, gap_s);
   const double share = (k + 0.5) / pieces;
   const Eigen::Vector3d change = after.angular_velocity_rad_s - before.angular_velocity_rad_s;
@@ -241,15 +230,13 @@ ImuAverage gap_step_average(const RollingParams& params, const ImuSample& before
       squared(mean_force_tilt_rad / gap_s) * gap_s;  // rolling.md (R32); same rate error in all pieces of the gap
   uncertainty.speed_variance_m2_s2 =
       squared(kGapVelocityChangeRatio * params.radius_m * change.norm()) / pieces;  // rolling.md (R33)
-  ImuAverage piece;
-  piece.add(sample, gap_s / pieces);
-  return piece;
+  return sample;
 }
 
-void integrate_gap(const RollingParams& params, const ImuAverage& piece, const GapUncertainty& uncertainty,
-                   RollingNominalState& nominal, RollingNodeIntegrals& sums) {
-  integrate(params, piece, nominal, sums, Force::force_unknown);
-  sums.gap_s += piece.length_s;
+void integrate_gap(const RollingParams& params, const ImuSample& piece, double piece_s,
+                   const GapUncertainty& uncertainty, RollingNominalState& nominal, RollingNodeIntegrals& sums) {
+  integrate(params, piece, piece_s, nominal, sums, Force::force_unknown);
+  sums.gap_s += piece_s;
   sums.gap_angle_variance_rad2 += uncertainty.rotation_variance_rad2;
   sums.gap_rate_variance_rad2_s += uncertainty.rate_variance_rad2_s;
   sums.gap_speed_variance_m2_s2 += uncertainty.speed_variance_m2_s2;

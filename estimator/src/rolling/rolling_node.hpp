@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "tumble/common/detail/imu_average.hpp"
 #include "tumble/common/detail/squared.hpp"
+#include "tumble/common/types.hpp"
 #include "tumble/rolling/detail/rolling_model.hpp"
 #include "tumble/rolling/detail/rolling_params.hpp"
 
@@ -56,23 +56,20 @@ void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s,
 
 enum class Force { force_measured, force_unknown };
 
-void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominalState& nominal,
+/// `sample` is the mean reading over the time `dt_s` before its time stamp.
+void integrate(const RollingParams& params, const ImuSample& sample, double dt_s, RollingNominalState& nominal,
                RollingNodeIntegrals& sums, Force known = Force::force_measured);
-
-/// Extrapolates the nominal trajectory by the mean of the IMU readings that no filter step has used yet.
-RollingNominalState extrapolate_nominal(const RollingParams& params, const ImuAverage& reading,
-                                        const RollingNominalState& nominal);
 
 int gap_step_count(const RollingParams& params, double gap_s);
 
 struct GapUncertainty {
   double rotation_variance_rad2 = 0.0, rate_variance_rad2_s = 0.0, speed_variance_m2_s2 = 0.0;
 };
-ImuAverage gap_step_average(const RollingParams& params, const ImuSample& before, const ImuSample& after, double gap_s,
-                            int k, GapUncertainty& uncertainty);
+ImuSample gap_step_sample(const RollingParams& params, const ImuSample& before, const ImuSample& after, double gap_s,
+                          int k, GapUncertainty& uncertainty);
 
-void integrate_gap(const RollingParams& params, const ImuAverage& piece, const GapUncertainty& uncertainty,
-                   RollingNominalState& nominal, RollingNodeIntegrals& sums);
+void integrate_gap(const RollingParams& params, const ImuSample& piece, double piece_s,
+                   const GapUncertainty& uncertainty, RollingNominalState& nominal, RollingNodeIntegrals& sums);
 
 /// Returns the matrix B: during one filter step (node), the errors of attitude, velocity and position change by B times
 /// the error state.

@@ -49,53 +49,43 @@ void transform_adjoint(const Vector& turned, Adjoint& adjoint) {
 
 }  // namespace
 
-bool RollingReadings::next_gap_step(double gap_s, RollingReading& out) {
+void RollingReadings::next_gap_step(double gap_s, RollingReading& out) {
   const ImuSample& after = samples_[cursor_.next];
   ImuSample before;
   before.angular_velocity_rad_s = cursor_.rate_before_gap_rad_s;
   const int pieces = gap_step_count(params_, gap_s);
-  out.average = gap_step_average(params_, before, after, gap_s, cursor_.gap_step_index, out.uncertainty);
+  out.sample = gap_step_sample(params_, before, after, gap_s, cursor_.gap_step_index, out.uncertainty);
+  out.length_s = gap_s / pieces;
   out.in_gap = true;
   ++cursor_.gap_step_index;
-  const bool last = cursor_.gap_step_index == pieces;
+  out.ends_at_sample = cursor_.gap_step_index == pieces;
   const double share = static_cast<double>(cursor_.gap_step_index) / pieces;
-  out.end_ns = last ? after.time_ns : cursor_.gap_start_ns + static_cast<TimeNs>(share * gap_s * 1e9);
-  if (last) {
-    cursor_.gap_step_index = 0;
-    out.end = ++cursor_.next;
-  }
-  cursor_.time_ns = out.end_ns;
-  cursor_.last_rate_rad_s = out.average.mean.angular_velocity_rad_s;
-  return true;
+  out.end_ns = out.ends_at_sample ? after.time_ns : cursor_.gap_start_ns + static_cast<TimeNs>(share * gap_s * 1e9);
 }
 
 bool RollingReadings::next(RollingReading& out) {
   out = {};
-  out.first = out.end = cursor_.next;
   if (cursor_.next >= samples_.size()) return false;
-  if (cursor_.gap_step_index > 0)
-    return next_gap_step(seconds(samples_[cursor_.next].time_ns - cursor_.gap_start_ns), out);
-  TimeNs last_ns = cursor_.time_ns;
-  for (; out.end < samples_.size(); ++out.end) {
-    const ImuSample& sample = samples_[out.end];
-    const double dt_s = seconds(sample.time_ns - last_ns);
-    if (dt_s > RollingGapParams::kGapMinDuration_s) {
-      if (out.average.readings > 0) break;
+  const ImuSample& sample = samples_[cursor_.next];
+  const bool in_gap = cursor_.gap_step_index > 0;
+  const double dt_s = seconds(sample.time_ns - (in_gap ? cursor_.gap_start_ns : cursor_.time_ns));
+  if (in_gap || dt_s > RollingGapParams::kGapMinDuration_s) {
+    if (!in_gap) {
       cursor_.rate_before_gap_rad_s = cursor_.last_rate_rad_s;
-      cursor_.gap_start_ns = last_ns;
-      return next_gap_step(dt_s, out);
+      cursor_.gap_start_ns = cursor_.time_ns;
     }
-    out.average.add(sample, dt_s);
-    last_ns = sample.time_ns;
-    out.is_whole = out.average.full(params_.expert.reading_s, dt_s) || out.end + 1 < samples_.size();
-    if (out.average.full(params_.expert.reading_s, dt_s)) {
-      ++out.end;
-      break;
-    }
+    next_gap_step(dt_s, out);
+  } else {
+    out.sample = sample;
+    out.length_s = dt_s;
+    out.end_ns = sample.time_ns;
   }
-  out.end_ns = cursor_.time_ns = last_ns;
-  cursor_.last_rate_rad_s = out.average.mean.angular_velocity_rad_s;
-  cursor_.next = out.end;
+  if (out.ends_at_sample) {
+    cursor_.gap_step_index = 0;
+    ++cursor_.next;
+  }
+  cursor_.time_ns = out.end_ns;
+  cursor_.last_rate_rad_s = out.sample.angular_velocity_rad_s;
   return true;
 }
 

@@ -45,13 +45,12 @@ struct FilterNodeRecord {
   Eigen::Matrix<double, kReported, kReported> smoothed_covariance;
 };
 
-/// RollingReading is one input of the live filter: an average of IMU readings, or a part of a data gap.
+/// RollingReading is one input of the live filter: an IMU reading, or a part of a data gap.
 struct RollingReading {
-  ImuAverage average;
+  ImuSample sample;
+  double length_s = 0.0;
   GapUncertainty uncertainty;
-  bool in_gap = false;
-  bool is_whole = true;            ///< false: last reading of the run, too short to be processed
-  std::size_t first = 0, end = 0;  ///< index range of the reading's samples; in a gap, only the last piece has a sample
+  bool in_gap = false, ends_at_sample = true;  ///< in a gap, only the last part ends at a sample
   TimeNs end_ns = 0;
 };
 
@@ -66,7 +65,7 @@ class RollingReadings {
   bool next(RollingReading& out);
 
  private:
-  bool next_gap_step(double gap_s, RollingReading& out);
+  void next_gap_step(double gap_s, RollingReading& out);
 
   const RollingParams& params_;
   std::span<const ImuSample> samples_;

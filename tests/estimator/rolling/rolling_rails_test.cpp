@@ -25,9 +25,7 @@ Gained gained(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_
   RollingNominalState nominal;
   nominal.last_rate_I_rad_s = rate_rad_s;
   RollingNodeIntegrals sums;
-  ImuAverage reading;
-  reading.add({0, rate_rad_s, force_m_s2, flags}, kRepeated_s);
-  integrate(params, reading, nominal, sums, known);
+  integrate(params, {0, rate_rad_s, force_m_s2, flags}, kRepeated_s, nominal, sums, known);
   EXPECT_DOUBLE_EQ(sums.force_clipped_s, flags != 0 || known == Force::force_unknown ? kRepeated_s : 0.0);
   return {nominal.v_WI_m_s, sums.partial_saturation_W_m_s};
 }
@@ -68,9 +66,7 @@ TEST(RollingSaturation, AnIgnoredForceHasNoBias) {
   const auto by_bias = [&](std::uint8_t flags) {
     RollingNominalState nominal;
     RollingNodeIntegrals sums;
-    ImuAverage reading;
-    reading.add({0, rate, force, flags}, kRepeated_s);
-    integrate(RollingParams{}, reading, nominal, sums);
+    integrate(RollingParams{}, {0, rate, force, flags}, kRepeated_s, nominal, sums);
     return Eigen::Matrix3d(transition(sums).block<3, 3>(kVelocity, kAccelBias));
   };
   EXPECT_TRUE(by_bias(kClipGyroX).isZero(0.0));

@@ -75,17 +75,6 @@ TEST(RollingRates, TheSameAnswerFrom50HzTo8kHz) {
   }
 }
 
-TEST(RollingRates, ReadingsAsLongAsTheWindowAreTakenAsTheyAre) {
-  const testing::RollingTruth truth = slipping_sampled(4'000'000);
-  RollingSmoother::Params one_by_one = testing::lagged_params(RollingSmoother::kWholeRecordingLag);
-  one_by_one.filter.expert.reading_s = 0.0;
-  const Smoothed averaged =
-                     smoothed_samples(truth.samples, testing::lagged_params(RollingSmoother::kWholeRecordingLag)),
-                 plain = smoothed_samples(truth.samples, one_by_one);
-  EXPECT_TRUE(averaged.out.back().sphere_centre_W_m == plain.out.back().sphere_centre_W_m);
-  EXPECT_TRUE(averaged.out.back().covariance == plain.out.back().covariance);
-}
-
 TEST(RollingRates, JitterOfTheStampsAndReadingsThatRepeatAreBorne) {
   const testing::RollingTruth truth = slipping_sampled(1'000'000);
   const Eigen::Vector3d& end_m = truth.p_WG_m.back();
@@ -106,7 +95,7 @@ TEST(RollingRates, JitterOfTheStampsAndReadingsThatRepeatAreBorne) {
   EXPECT_LT(of_jittered, 0.02);
 }
 
-TEST(RollingRates, SplitRunsEqualWithAveragesAndGaps) {
+TEST(RollingRates, SplitRunsEqualWithGaps) {
   std::vector<ImuSample> samples = slipping_sampled(1'000'000).samples;
   std::erase_if(samples, [](const ImuSample& s) { return s.time_ns > 4'200'000'000 && s.time_ns < 4'700'000'000; });
   for (const double lag_s : {0.5}) {

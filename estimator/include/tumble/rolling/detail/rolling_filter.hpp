@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdint>
 
-#include "tumble/common/detail/imu_average.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/common/types.hpp"
 #include "tumble/rolling/detail/rolling_model.hpp"
@@ -73,7 +72,6 @@ class RollingFilter {
     // The errors of all contact-mode hypotheses are linearised about the nominal trajectory and calibration.
     RollingNominalState nominal;
     RollingNodeIntegrals node_integrals;
-    ImuAverage imu_average;  ///< average of the readings that are not yet processed
     Eigen::Matrix3d pruned_position_covariance_m2 =
         Eigen::Matrix3d::Zero();  ///< contribution of the pruned hypotheses to the position covariance
     RestDetector::State stationary_state;
@@ -122,7 +120,7 @@ class RollingFilter {
 
   void start(const ImuSample& sample, const Eigen::Quaterniond& q_WI, State& state) const;
   void bridge_gap(const ImuSample& sample, double gap_s, State& state, Listener listener) const;
-  void process_averaged_reading(State& state, Listener listener) const;
+  void process_reading(const ImuSample& sample, double dt_s, State& state, Listener listener) const;
   void complete_filter_node(const Eigen::Vector3d& next_rate_rad_s, State& state) const;
   void detect_rest(State& state) const;
   bool spins_in_place(const State& state) const;
@@ -133,7 +131,6 @@ class RollingFilter {
   void flag_uncertain_position(State& state) const;
   void keep_position_at_rest(State& state) const;
   static ContactMode most_probable_mode(const State& state);
-  static const Eigen::Vector3d& newest_rate_rad_s(const State& state);
   static Eigen::Matrix3d hypothesis_position_covariance(const State& state, int first);
   static void weigh_modes(State& state);
   static void keep_most_probable_hypotheses(std::size_t count, State& state);

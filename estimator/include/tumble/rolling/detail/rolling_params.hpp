@@ -15,8 +15,6 @@ namespace tumble {
 
 struct RollingExpertParams {
   static constexpr double kNode_s = 0.02;  ///< time between two measurement updates (nodes)
-  /// averaging time of the readings; 0: no averaging
-  double reading_s = 4e-3;
   /// The rest detector processes the mean reading of each time step `kNode_s`. A larger limit of the rate would
   /// increase the drift of a sphere that comes to rest.
   RestDetector::Params rest_detector = {.rate_max_rad_s = 0.0115,
@@ -31,7 +29,6 @@ struct RollingExpertParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.reading_s, {"reading_s", "s", 0.0, 0.1, "duration over which readings are averaged; 0: no averaging"});
     visit.group("rest_", p.rest_detector);
     visit.group("", p.prior);
     visit.group("", p.noise);
