@@ -220,7 +220,8 @@ void Registration::accumulate(std::span<const SweepPoint> points, const SweepTra
 /// surfaces do not constrain.
 struct Registration::SurfaceNormalNoise {
   const Unknowns& unknowns;
-  Eigen::Matrix<double, kUnknowns, 2 * static_cast<int>(kPointsPerPartialSum)> columns;
+  // on the heap, with the buffers of rankUpdate()
+  Eigen::Matrix<double, kUnknowns, Eigen::Dynamic> columns{kUnknowns, 2 * static_cast<int>(kPointsPerPartialSum)};
   int count = 0;
   Matrix lower = Matrix::Zero();
 
