@@ -37,7 +37,8 @@ inline constexpr const char* kRecordingsSource = "recordings";
 /// Value of the note `build` if results of several builds were merged; only reports accept merged results
 inline constexpr const char* kMixedBuilds = "mixed";
 
-/// Key of the note with the commands that produced the results: one line per sweep, quoted for a shell
+/// Key of the note in the results database that contains the commands which produced the results: one line per call of
+/// `tumble sweep`, quoted for a shell
 inline constexpr const char* kCommandNote = "command";
 
 std::vector<std::string> commands_of(const std::string& note);

@@ -16,8 +16,8 @@ namespace tumble::sim::engine {
 /// invalid numbers would falsify the data.
 class Physics {
  public:
-  /// Each step() may change the floor friction and the bounding-volume tree in the model of `world`. `world` must
-  /// outlive this object. The destructor restores the bounding-volume tree.
+  /// Each step() may change the floor friction and the bounding-volume tree in MuJoCo's model of `world`. The
+  /// destructor resets the bounding-volume tree to its state before the first step(). `world` must outlive this object.
   explicit Physics(World& world);
 
   double step_s() const { return world_.model->opt.timestep; }

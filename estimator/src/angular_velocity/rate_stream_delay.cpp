@@ -114,7 +114,8 @@ void AngularRateStream::Impl::add_impact_to_delay_correlation(State& state) cons
   impacts.add((end - begin).norm() / span_s, mean);
 }
 
-// Repeated readings would falsify the correlation of force and rate change.
+// If the device repeats readings, the delay is not estimated, because repeated readings bias the correlation of force
+// and rate change.
 TriadDelay AngularRateStream::Impl::estimate_delay_from_impacts(const State& state) const {
   const ImpactDelayCorrelation& impacts = state.sensor_errors.front().accel_delay_state.impacts;
   if (repeats_readings(state) || impacts.intervals < kIntervalsMin) return {};

@@ -30,8 +30,8 @@ struct NodeMessage {
   double add(const Node& node, System::StateBlock& block) const;
 };
 
-/// ProblemSegment is the range of nodes [first, last] of a problem. Priors on the first and the last node summarise all
-/// other nodes.
+/// ProblemSegment is the range of nodes [first, last] of a problem. A prior on the first node
+/// replaces the nodes before the range, and a prior on the last node replaces the nodes after the range.
 struct ProblemSegment {
   std::size_t first = 0, last = 0;
   NodeMessage message_from_before = {}, message_from_after = {};

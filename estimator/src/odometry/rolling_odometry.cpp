@@ -125,8 +125,8 @@ Status RollingOdometry::Impl::add_time_aligned_readings(bool ended) {
   return first;
 }
 
-/// An outlier filter delays suspect samples of an IMU until later samples show which samples are outliers. When the
-/// filters of all IMUs have decided, the delayed samples of all IMUs are processed together.
+/// An outlier filter delays suspect samples of an IMU until later samples show which samples are outliers. When no
+/// filter delays a sample any longer, the delayed samples of all IMUs are processed together.
 Status RollingOdometry::Impl::add_delayed_samples(std::span<const ImuSample> next) {
   bool open = false;
   for (std::size_t k = 0; k < next.size(); ++k) open = is_delayed_after(next, k) || open;

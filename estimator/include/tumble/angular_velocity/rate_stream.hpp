@@ -42,7 +42,8 @@ class AngularRateStream {
     return push(sample, {}, state, out);
   }
   /// `auxiliary_imus` is empty, or contains one reading per entry of AngularRateModelParams::auxiliary_imus,
-  /// interpolated at the time of `sample`. If the number of readings is wrong, push() returns `insufficient_data`.
+  /// interpolated at the time of `sample`. For another number of auxiliary readings, push() returns
+  /// `insufficient_data`.
   Status push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
               std::optional<AngularRateState>& out) const;
 

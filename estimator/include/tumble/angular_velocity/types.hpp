@@ -60,7 +60,7 @@ struct BodyImuConstants {
   bool operator==(const BodyImuConstants&) const = default;
 };
 
-/// Rig constants that one run estimated, with their covariance, as prior for a later run.
+/// Constants of body and IMU that one run estimated, with their covariance, as prior for a later run.
 struct BodyImuCalibration {
   BodyImuConstants constants;
   BodyImuConstants::Matrix covariance = BodyImuConstants::Matrix::Identity();

@@ -59,9 +59,10 @@ struct LidarImuCalibrationPrior {
   LidarImuCalibration calibration;
   double mount_sigma_rad = 0.0, mount_sigma_m = 0.0, time_offset_sigma_s = 0.0;
 
-  /// Returns the distance between an estimated calibration and the stated calibration, in stated standard deviations:
-  /// mapping.md (R69). The result is the largest of three distances: rotation, translation and time offset. The result
-  /// is infinite if an estimated value differs from a stated value with standard deviation 0.
+  /// Returns how far an estimated calibration is from the stated calibration: mapping.md (R69). The differences of
+  /// rotation, translation and time offset are each divided by the stated standard deviation, and the largest of the
+  /// three quotients is returned. The result is infinite if an estimated value differs from a stated value with
+  /// standard deviation 0.
   double distance_in_sigmas(const LidarImuCalibration& estimated) const;
 };
 
