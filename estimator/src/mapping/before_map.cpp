@@ -91,8 +91,8 @@ MotionState start_in_motion(std::span<const MotionSample> samples, double gravit
   const double weight = 1.0 / std::max(time_s, 1e-9), gravity = std::max(gravity_m_s2, 1e-3);
   force *= weight;
   const double variance = std::max(weight * square - force.squaredNorm(), 0.0);
-  const double excess = force.norm() - gravity;
-  const double sigma_m_s2 = std::sqrt(kMovingForce_m_s2 * kMovingForce_m_s2 + excess * excess + 0.25 * variance);
+  const double surplus = force.norm() - gravity;
+  const double sigma_m_s2 = std::sqrt(kMovingForce_m_s2 * kMovingForce_m_s2 + surplus * surplus + 0.25 * variance);
   const double tilt_rad = std::min(sigma_m_s2 / gravity, kMovingTiltMax_rad);
   const double speed_m_s = std::min(kMovingTime_s * sigma_m_s2, kSpeed_m_s);
   MotionState state;

@@ -128,15 +128,13 @@ Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, st
                                               SweepReport& report) {
   const LidarImuCalibration calibration = sweep_boundary.state_estimate.mean.calibration;
   mapping::SweepPoints::Counts counts;
-  const Status selected =
-      sweep_scratch.points.select_returns(params, returns, end_ns - start_ns, calibration, 0.0, counts);
+  Status selected = sweep_scratch.points.select_returns(params, returns, end_ns - start_ns, calibration, 0.0, counts);
   report.points_used = counts.usable_points;
   report.isolated_points_dropped = counts.isolated;
   const std::size_t points = selected.ok() ? sweep_scratch.points.all().size() : 0;
   const bool usable = points >= MatchingParams::kMatchesMin;
-  double tilt_sigma_rad = world_covariance.tilt_sigma_rad();
-  if (usable && tilt_sigma_rad <= OdometryStart::kTiltSigmaMax_rad && !inertial_track.sweep_boundary_ns() &&
-      seconds(start_ns - sweep_boundary.time_ns()) <= kFirstSweepDelayMax_s)
+  if (usable && world_covariance.tilt_sigma_rad() <= mapping::kStartTiltSigmaMax_rad &&
+      !inertial_track.sweep_boundary_ns() && seconds(start_ns - sweep_boundary.time_ns()) <= kFirstSweepDelayMax_s)
     return {};
   if (usable) {
     const std::optional<OdometerReading> sweep_reading = std::exchange(odometer_reading, std::nullopt);
@@ -146,16 +144,15 @@ Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, st
     if (start_pose) reckoned = mapping::transformed_to_pose(*start_pose, reckoned);
     if (start_tilt_correction) reckoned = mapping::with_start_tilt(*start_tilt_correction, reckoned);
     world_covariance = mapping::world_at_first_sweep(params, reckoned);
-    tilt_sigma_rad = world_covariance.tilt_sigma_rad();
-    if (tilt_sigma_rad <= OdometryStart::kTiltSigmaMax_rad) {
+    const double tilt_rad = world_covariance.tilt_sigma_rad();
+    if (tilt_rad <= mapping::kStartTiltSigmaMax_rad) {
       sweep_boundary.state_estimate = mapping::estimate_at_first_sweep(params, reckoned);
       return {};
     }
+    selected = {ErrorCode::insufficient_data, "start_tilt_sigma_rad", tilt_rad, mapping::kStartTiltSigmaMax_rad};
   }
   if (Status status = dead_reckon(end_ns); !status.ok()) return status;
   odometer_reading.reset();
-  if (usable)
-    return {ErrorCode::insufficient_data, "start_tilt_sigma_rad", tilt_sigma_rad, OdometryStart::kTiltSigmaMax_rad};
   if (!selected.ok()) return selected;
   return {ErrorCode::insufficient_data, "points", double(points), double(MatchingParams::kMatchesMin)};
 }

@@ -22,8 +22,7 @@ struct OdometryStart {
   /// standard deviation of the initial tilt as prior of the registration; larger than in WorldCovarianceParams, for
   /// starts in motion
   static constexpr double kLevelSigma_rad = 0.01;
-  static constexpr double kTiltSigmaMax_rad = 0.3;  ///< the map starts only if the tilt is known at least this well
-  static constexpr double kBiasRest_s = 0.1;        ///< minimum duration of a rest that determines the gyro bias
+  static constexpr double kBiasRest_s = 0.1;  ///< minimum duration of a rest that determines the gyro bias
 };
 
 struct Standstill {
