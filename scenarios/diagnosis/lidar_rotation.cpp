@@ -342,6 +342,11 @@ Eigen::Isometry3d better_pose(const sim::LidarRecord& lidar, const Eigen::Matrix
 }
 
 std::string better_pose_text(const sim::LidarRecord& lidar, const Eigen::Isometry3d& better_BL) {
+  if (lidar.T_BL.isApprox(Eigen::Isometry3d::Identity(), 1e-12))
+    return fmt::format(
+        "; 'tumble odometry' uses another attitude of the lidar, and estimates the lidar's position "
+        "(set '{}', with the measured position X Y Z, for more accurate poses)",
+        lidar_pose_option(better_BL, "X Y Z"));
   return fmt::format("{} (set '{}')",
                      is_inverse(lidar.T_BL.linear(), better_BL.linear())
                          ? "; the stated pose may be inverted: the pose of the body in the lidar frame instead of the "
@@ -353,12 +358,14 @@ std::string better_pose_text(const sim::LidarRecord& lidar, const Eigen::Isometr
 
 }  // namespace
 
-std::string lidar_pose_option(const Eigen::Isometry3d& T_BL) {
-  Eigen::Matrix<double, 7, 1> numbers;
-  numbers << T_BL.translation(), Eigen::Quaterniond(T_BL.linear()).coeffs();
-  std::string out = "--T-body-lidar";
-  for (const double number : numbers) out += " " + rounded(std::abs(number) < 1e-9 ? 0.0 : number);
-  return out;
+std::string lidar_pose_option(const Eigen::Isometry3d& T_BL, const std::string& position) {
+  const auto text = [](const auto& numbers) {
+    std::string out;
+    for (const double number : numbers) out += " " + rounded(std::abs(number) < 1e-9 ? 0.0 : number);
+    return out;
+  };
+  return "--T-body-lidar" + (position.empty() ? text(T_BL.translation()) : " " + position) +
+         text(Eigen::Quaterniond(T_BL.linear()).coeffs());
 }
 
 LidarRotationCheck check_lidar_rotation(const std::string& where, const Imported& recording, GyroUnit unit) {

@@ -60,8 +60,9 @@ std::optional<RotationAgreement> rotation_agreement(const sim::ImuRecord& imu, c
 /// agree.
 std::string agreement_text(const std::string& where, const RotationAgreement& agreement, GyroUnit unit);
 
-/// Returns the option --T-body-lidar with position [m] and quaternion x y z w.
-std::string lidar_pose_option(const Eigen::Isometry3d& T_BL);
+/// Returns the option --T-body-lidar with position [m] and quaternion x y z w. The text `position`, if any, replaces an
+/// unknown position.
+std::string lidar_pose_option(const Eigen::Isometry3d& T_BL, const std::string& position = "");
 
 struct LidarRotationCheck {
   std::vector<std::string> notes;              ///< at most one for each IMU
