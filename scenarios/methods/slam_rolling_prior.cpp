@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/rate_baselines.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/sample_times.hpp"
 #include "scenarios/methods/slam_chain.hpp"
