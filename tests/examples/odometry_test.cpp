@@ -165,10 +165,10 @@ std::string text_of(const fs::path& file) {
 }
 
 TEST(OdometryExamples, TheRebootExampleStartsAtTheSavedPose) {
-  const Recorded throw_1 = record("throw");
-  const fs::path folder = throw_1.file.parent_path();
-  // the messages in two parts: split between two IMU messages in the middle of the motion
-  std::ifstream all(throw_1.messages);
+  const Recorded stroll_1 = record("stroll");
+  const fs::path folder = stroll_1.file.parent_path();
+  // the messages in two parts: split between two IMU messages while the rig is carried
+  std::ifstream all(stroll_1.messages);
   std::vector<std::string> lines;
   for (std::string line; std::getline(all, line);) lines.push_back(line);
   std::size_t half = lines.size() / 2;

@@ -21,7 +21,7 @@ const Replaced& replaced_in(const std::string& name) {
   static const std::pair<std::string, std::string> rest = {"rest_s: {uniform: [1.5, 2.0]}", "rest_s: 0.8"};
   static const std::map<std::string, Replaced> all = {
       {"hill", {{"duration_s: 10\n", "duration_s: 4\n"}, rest}},
-      {"throw", {{"duration_s: 9\n", "duration_s: 5\n"}, rest}},
+      {"stroll", {{"duration_s: 20\n", "duration_s: 6\n"}, rest}},
       {"roll",
        {{"duration_s: 14.5\n", "duration_s: 5\n"},
         rest,

@@ -12,7 +12,7 @@ namespace tumble::mapping {
 StateEstimate estimate_before_map(const LidarInertialOdometry::Params& params, const MotionState& levelled);
 
 /// The map starts only if the standard deviation of the tilt is at most kStartTiltSigmaMax_rad.
-inline constexpr double kStartTiltSigmaMax_rad = 0.5;
+inline constexpr double kStartTiltSigmaMax_rad = 0.3;
 
 /// Computes the initial state of an IMU in motion. The mean specific force of the first 0.5 s determines roll and
 /// pitch, and its deviation from gravity their standard deviation. In flight, all attitudes are possible. `samples`
