@@ -45,7 +45,7 @@ def test_stubs_have_what_the_module_has():
     known = {node.name: node for node in tree.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
     assert set(compiled()) <= set(known)
     stream = {node.name for node in known["MotionRegimeStream"].body if isinstance(node, ast.FunctionDef)}
-    assert {"add_imu", "flush", "newest", "calibration", "__copy__"} <= stream
+    assert {"add_imu", "flush", "newest", "body_imu_calibration", "__copy__"} <= stream
     assert (TYPES.parent / "py.typed").exists()
     untyped = {argument.arg for node in ast.walk(tree) if isinstance(node, ast.FunctionDef) for argument in node.args.args
                if argument.annotation is not None and ast.unparse(argument.annotation) == "object"}

@@ -151,7 +151,8 @@ void Feed::add_sweep(Sweep sweep) {
 }
 
 void Feed::save_final_poses() {
-  for (const nb::handle sweep : odometry().attr("take_all")()) save_poses(sweep.attr("report").attr("smoothed"));
+  for (const nb::handle sweep : odometry().attr("take_all")())
+    save_poses(sweep.attr("report").attr("final_poses_of_earlier_sweep"));
 }
 
 void Feed::save_poses(nb::handle poses) {
