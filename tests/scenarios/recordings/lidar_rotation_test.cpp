@@ -206,6 +206,19 @@ TEST(LidarRotation, SweepsOfARoomCheckTheGyro) {
   EXPECT_THAT(check_lidar_rotation("bag", recording, GyroUnit::rad_s).notes, IsEmpty());
 }
 
+// zeros would be a stated position, which mapping trusts more than an unknown position
+TEST(LidarRotation, AnUnknownPositionIsNotRecommendedAsZeros) {
+  Imported recording;
+  recording.sensors.imus.push_back(gyro(4.0));
+  recording.sensors.lidars.push_back(lidar_in_room(36));
+  for (Eigen::Vector3d& rate : recording.sensors.imus.front().gyro_rad_s) rate = {rate.x(), -rate.z(), rate.y()};
+  EXPECT_THAT(check_lidar_rotation("bag", recording, GyroUnit::rad_s).notes,
+              ElementsAre(HasSubstr("(set '--T-body-lidar X Y Z 0.707")));
+  recording.sensors.lidars.front().T_BL.translation().x() = 0.1;
+  EXPECT_THAT(check_lidar_rotation("bag", recording, GyroUnit::rad_s).notes,
+              ElementsAre(HasSubstr("(set '--T-body-lidar 0.1 0 0 0.707")));
+}
+
 // the record stamps of a bag come from one clock, so they show which header stamps come from another clock
 TEST(LidarRotation, RecordStampsReplaceHeaderStampsOfAnotherClock) {
   const auto with = [](double imu_late_s, std::optional<double> record_shift_s) {
