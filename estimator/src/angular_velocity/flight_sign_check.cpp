@@ -23,7 +23,7 @@ constexpr double kTolerance = 0.25;
 constexpr double kRun_s = 0.02;
 constexpr double kFlightGapMax_s = 0.1;  // a longer data gap restarts the duration of agreement
 constexpr double kAlternativeRatioMin = 4.0, kThrownRatioMin = 2.0;
-// Motion on the ground in scenario hill, seed 61022, agrees by chance with one inverted axis for 0.17 s.
+// Motion on the ground can agree by chance with one inverted axis for 0.17 s (measured in scenario `hill`).
 constexpr double kAlternativeMin_s = 0.2;
 constexpr double kGroupsPerSide = 0.05;  // minimum squared share of the lever arm perpendicular to a saturated axis
 constexpr double kBelowRail = 0.1;       // tolerated fraction by which a recovered rate is below the saturation level
