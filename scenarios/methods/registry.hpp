@@ -67,8 +67,9 @@ Method slam_tumble_live();
 
 /// Returns a copy of slam/tumble_lag or slam/tumble_live that localises in a prior map
 /// (TumblingOdometry::set_prior_map), or nothing for other methods. The health value `prior_map_sweep` is the number of
-/// the sweep at which the run was localised in the prior map, or 0. Before the localisation, poses of slam/tumble_live
-/// are in a local frame. At the end of the run, slam/tumble_lag transforms earlier poses to the frame of the prior map.
+/// the first sweep in the frame of the prior map, or 0. After a localisation, all poses of an estimate are in the frame
+/// of the prior map: slam/tumble_live leaves out the poses before the localisation, and slam/tumble_lag transforms
+/// them.
 std::optional<Method> localised_in(const Method& method, std::shared_ptr<const PriorMap> map);
 
 /// Settings and parameter values of a method that runs a position method first.

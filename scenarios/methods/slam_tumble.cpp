@@ -78,6 +78,9 @@ class Collector {
     PoseState pose;
     if (output_ != SlamOutput::live || !odometry.newest(pose).ok()) return;
     if (live_.empty() || pose.time_ns > live_.back().time_ns) live_.push_back(pose);
+    const LidarInertialOdometry& mapper = odometry.mapper();
+    if (!live_in_prior_map_ns_ && mapper.prior_map() != nullptr && mapper.check_localised().ok())
+      live_in_prior_map_ns_ = pose.time_ns;
   }
   void take(TumblingOdometry& odometry) {
     while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) {
@@ -87,7 +90,6 @@ class Collector {
       }
       std::vector<PoseState> smoothed = std::move(sweep->report.final_poses_of_earlier_sweep);
       const bool in_prior_map = sweep->report.in_prior_map;
-      if (in_prior_map && !first_in_prior_map_) first_in_prior_map_ = estimate_.sweeps.size();
       const TimeNs end_ns = sweep->report.pose.time_ns;
       found_.merge_current_findings(odometry.health());
       append_sweep(sweep->status, end_ns, std::move(sweep->report), estimate_);
@@ -101,13 +103,13 @@ class Collector {
         apply_next(std::move(open), in_prior_map);
     }
     if (output_ == SlamOutput::live) replace_by_live();
-    if (output_ == SlamOutput::lag && first_in_prior_map_) transform_to_prior_map(odometry.mapper());
-    const bool has_prior_map = odometry.mapper().prior_map() != nullptr;
-    if (has_prior_map) estimate_.health["prior_map_sweep"] = static_cast<double>(first_in_prior_map_.value_or(0));
     found_.merge_current_findings(odometry.health());
     add_findings(found_, names_, estimate_);
-    if (has_prior_map) report_localised(estimate_);
+    if (odometry.mapper().prior_map() != nullptr) report_localised(estimate_);
+    const bool localised = report_prior_map_sweep(odometry.mapper());
+    if (output_ == SlamOutput::lag && localised) transform_to_prior_map(odometry.mapper());
     scenarios::conclude(odometry.mapper(), estimate_);
+    if (localised) leave_out_local_frame();
   }
 
  private:
@@ -115,6 +117,24 @@ class Collector {
     if (smoothed.empty() || smoothed_ == estimate_.sweeps.size()) return;
     if (output_ != SlamOutput::live) estimate_.sweeps[smoothed_].in_prior_map = in_prior_map;  // else: live poses
     apply_smoothed(std::move(smoothed), estimate_.sweeps[smoothed_++]);
+  }
+
+  bool report_prior_map_sweep(const LidarInertialOdometry& mapper) {
+    if (mapper.prior_map() == nullptr) return false;
+    const auto first =
+        std::ranges::find_if(estimate_.sweeps, [](const SweepReport& sweep) { return sweep.in_prior_map; });
+    const bool localised = first != estimate_.sweeps.end();
+    estimate_.health["prior_map_sweep"] = localised ? static_cast<double>(first - estimate_.sweeps.begin() + 1) : 0.0;
+    return localised;
+  }
+
+  /// All poses of a trajectory are in one frame, so live poses before the localisation are left out.
+  void leave_out_local_frame() {
+    if (live_in_prior_map_ns_)
+      std::erase_if(estimate_.poses, [&](const PoseState& pose) { return pose.time_ns < *live_in_prior_map_ns_; });
+    std::erase_if(estimate_.faults.findings, [](const HealthFinding& finding) {
+      return finding.kind == HealthFinding::Kind::not_localised && finding.ended;
+    });
   }
 
   void transform_to_prior_map(const LidarInertialOdometry& mapper) {
@@ -133,6 +153,7 @@ class Collector {
       if (after == next) continue;
       sweep.trajectory.assign(next, after);
       sweep.pose = sweep.trajectory.back();
+      sweep.in_prior_map = live_in_prior_map_ns_ && sweep.trajectory.front().time_ns >= *live_in_prior_map_ns_;
       next = after;
     }
   }
@@ -142,8 +163,8 @@ class Collector {
   std::vector<std::string> names_;
   SensorHealth found_;
   std::size_t smoothed_ = 0;
-  std::optional<std::size_t> first_in_prior_map_;
   std::vector<PoseState> live_;
+  std::optional<TimeNs> live_in_prior_map_ns_;  // time of the first live pose in the frame of the prior map
 };
 
 /// Replays IMU samples at the end of their averaging windows, and sweeps after their last points, as in real time.

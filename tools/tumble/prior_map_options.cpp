@@ -70,8 +70,9 @@ std::string localisation_text(const PriorMapOptions& options, const scenarios::E
   if (first == estimate.sweeps.begin())
     return fmt::format("{}: the recording is localised in this map; all poses are in the frame of the map", file);
   return fmt::format(
-      "{}: the recording is localised in this map. From sweep {} of {}, the poses are in the frame of the map", file,
-      first - estimate.sweeps.begin() + 1, estimate.sweeps.size());
+      "{}: the recording is localised in this map at sweep {} of {}. The trajectory starts there, in the frame of the "
+      "map",
+      file, first - estimate.sweeps.begin() + 1, estimate.sweeps.size());
 }
 
 }  // namespace tumble::tools
