@@ -30,9 +30,11 @@ double deviations_of(const Eigen::VectorXd& error, const Eigen::MatrixXd& covari
   return std::sqrt(error.dot(covariance.ldlt().solve(error)));
 }
 
-bool quantile_exceeds(double limit, std::vector<double> values, double share) {
+/// Returns a quantile divided by `limit`, or 0 without values.
+double relative_quantile(double limit, std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
   for (double& value : values) value = std::isnan(value) ? HUGE_VAL : value;
-  return quantile(values, share) > limit;
+  return quantile(values, share) / limit;
 }
 
 /// A health finding increases the reported covariance of the rates. The normalised errors use the covariance without
@@ -64,38 +66,42 @@ Errors tilt_errors(const ScoredEstimate& scored) {
   return out;
 }
 
-bool are_wrong(const Errors& errors, double gross_limit) {
-  return quantile_exceeds(kWrongDeviations, errors.deviations, 0.9) || quantile_exceeds(gross_limit, errors.gross, 0.5);
+double error_ratio(const Errors& errors, double gross_limit) {
+  return std::max(relative_quantile(kWrongDeviations, errors.deviations, 0.9),
+                  relative_quantile(gross_limit, errors.gross, 0.5));
 }
 
-std::optional<bool> pose_is_wrong(const ScoredEstimate& scored, Kind kind) {
+std::optional<double> pose_error_ratio(const ScoredEstimate& scored, Kind kind) {
   double nees = 0.0;
   for (const Metric& metric : metrics()) {
     if (metric.kind == kind && metric.info.name == "pose_nees" && metric.compute(scored, nees))
-      return !(nees <= kWrongDeviations * kWrongDeviations);
+      return std::sqrt(nees) / kWrongDeviations;
   }
   const std::vector<PairedPose>& poses = paired_track(scored).poses;
   if (poses.empty() || scored.estimate().poses.back().covariance.isZero(0.0)) return std::nullopt;
   const double error_m = (poses.back().estimate.position_W_m - poses.back().truth.position_W_m).norm();
   const double sigma_m = std::sqrt(scored.estimate().poses.back().covariance.topLeftCorner<3, 3>().trace());
-  return !(error_m <= kWrongDeviations * sigma_m);
+  return error_m / (kWrongDeviations * sigma_m);
 }
 
+/// Returns the error divided by the limit beyond which the estimate is wrong.
 template <Kind kind>
-std::optional<bool> is_wrong(const ScoredEstimate& scored) {
-  if constexpr (kind == Kind::rate) return are_wrong(rate_errors(scored), kWrongRateShare);
+std::optional<double> relative_error(const ScoredEstimate& scored) {
+  if constexpr (kind == Kind::rate) return error_ratio(rate_errors(scored), kWrongRateShare);
   if constexpr (kind == Kind::attitude) {
     const bool reported = has_finding(HealthFinding::Kind::attitude_unknown, scored.estimate());
-    return are_wrong(tilt_errors(scored), reported ? HUGE_VAL : kWrongTilt_rad);
+    return error_ratio(tilt_errors(scored), reported ? HUGE_VAL : kWrongTilt_rad);
   }
-  return pose_is_wrong(scored, kind);
+  std::optional<double> out = pose_error_ratio(scored, kind);
+  if (out && std::isnan(*out)) out = HUGE_VAL;
+  return out;
 }
 
 template <Kind kind>
 bool wrong(const ScoredEstimate& scored, double& value) {
-  const std::optional<bool>& found = scored.once(is_wrong<kind>);
-  value = found.value_or(false) ? 1.0 : 0.0;
-  return found.has_value();
+  const std::optional<double>& error = scored.once(relative_error<kind>);
+  value = error.value_or(0.0) > 1.0 ? 1.0 : 0.0;
+  return error.has_value();
 }
 
 bool is_reported(const Estimate& estimate) {
@@ -108,10 +114,10 @@ bool reported(const ScoredEstimate& scored, double& value) {
 }
 
 template <Kind kind>
-bool silently_wrong(const ScoredEstimate& scored, double& value) {
-  if (!wrong<kind>(scored, value)) return false;
-  if (is_reported(scored.estimate())) value = 0.0;
-  return true;
+bool unreported_error(const ScoredEstimate& scored, double& value) {
+  const std::optional<double>& error = scored.once(relative_error<kind>);
+  value = is_reported(scored.estimate()) ? 0.0 : error.value_or(0.0);
+  return error.has_value();
 }
 
 template <Kind kind>
@@ -129,12 +135,13 @@ void add(std::vector<Metric>& out) {
                   Sense::none},
                  kind,
                  reported});
-  out.push_back(
-      {{"health_silently_wrong", Unit::verdict,
-        "1 if the estimate is wrong (health_wrong is 1) and the method reports no fault (health_reported is 0)",
-        Sense::none},
-       kind,
-       silently_wrong<kind>});
+  out.push_back({{"health_unreported_error", Unit::number,
+                  "error divided by the limit of health_wrong, or 0 if the method reports a fault (health_reported is "
+                  "1). Above 1, "
+                  "the estimate is wrong without a report",
+                  Sense::lower, Place::detail, kNoTarget, Compared::by_ratio, true},
+                 kind,
+                 unreported_error<kind>});
 }
 
 }  // namespace

@@ -39,6 +39,8 @@ struct MetricInfo {
   Place place = Place::detail;
   double target = kNoTarget;  ///< target of a two-sided metric
   Compared compared = Compared::by_ratio;
+  /// The status `diverged`, by which a method reports a wrong estimate, is no failure for this metric.
+  bool excuses_reported_runs = false;
 
   /// Returns true if the value 1 of this metric marks a failed run. Verdicts on the health report have the sense
   /// `none`, because a wrong estimate is not a failed run.

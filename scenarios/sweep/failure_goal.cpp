@@ -45,6 +45,10 @@ bool is_failed_verdict(const Score& score) {
 }
 
 bool FailureGoal::holds(const Outcome& outcome) const {
+  if (!metric.empty() && metric_info(metric).excuses_reported_runs) {
+    const Score* score = find_score(outcome.scores, metric);
+    return score == nullptr || this->score(outcome.status, score->value) > bound();
+  }
   if (outcome.status != OutcomeStatus::ok) return true;
   if (std::any_of(outcome.scores.begin(), outcome.scores.end(), is_failed_verdict)) return true;
   if (metric.empty()) return false;
@@ -58,7 +62,8 @@ bool FailureGoal::is_worse(double value) const {
 
 double FailureGoal::score(OutcomeStatus status, double value) const {
   if (status == OutcomeStatus::rejected) return -kWorstScore;
-  if (status != OutcomeStatus::ok) return kWorstScore;
+  const bool reported = status == OutcomeStatus::diverged && metric_info(metric).excuses_reported_runs;
+  if (status != OutcomeStatus::ok && !reported) return kWorstScore;
   if (std::isnan(value)) return -kWorstScore;
   return value_at(value);
 }

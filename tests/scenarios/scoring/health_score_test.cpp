@@ -28,15 +28,17 @@ Estimate fast_rates(double share) {
 
 TEST(HealthScores, AWrongRateIsWrongWhateverItsHealthAddsToTheCovariance) {
   EXPECT_EQ(scores(Kind::rate, fast_rates(0.0), rig()).at("health_wrong"), 0.0);
+  EXPECT_LT(scores(Kind::rate, fast_rates(0.0), rig()).at("health_unreported_error"), 1.0);
   Estimate wrong = fast_rates(0.1);  // the standard deviation is 1 mrad/s
   EXPECT_EQ(scores(Kind::rate, wrong, rig()).at("health_wrong"), 1.0);
-  EXPECT_EQ(scores(Kind::rate, wrong, rig()).at("health_silently_wrong"), 1.0);
+  EXPECT_GT(scores(Kind::rate, wrong, rig()).at("health_unreported_error"), 10.0);
   wrong.suspect_rad2_s2.assign(wrong.rates.size(), 100.0 * Eigen::Matrix3d::Identity());
   for (AngularRateState& rate : wrong.rates) rate.covariance_rad2_s2 += 100.0 * Eigen::Matrix3d::Identity();
   EXPECT_EQ(scores(Kind::rate, wrong, rig()).at("health_wrong"), 1.0);
   Estimate gross = fast_rates(0.3);  // the estimate is wrong for any covariance
   for (AngularRateState& rate : gross.rates) rate.covariance_rad2_s2 = 100.0 * Eigen::Matrix3d::Identity();
   EXPECT_EQ(scores(Kind::rate, gross, rig()).at("health_wrong"), 1.0);
+  EXPECT_NEAR(scores(Kind::rate, gross, rig()).at("health_unreported_error"), 1.5, 1e-9);
 }
 
 TEST(HealthScores, AFindingReportsAWrongEstimateUnlessItConcernsAnUnusedImu) {
@@ -46,7 +48,7 @@ TEST(HealthScores, AFindingReportsAWrongEstimateUnlessItConcernsAnUnusedImu) {
   add_finding(finding(HealthFinding::Kind::inconsistent_rotation), wrong);
   const auto values = scores(Kind::rate, wrong, rig());
   EXPECT_EQ(values.at("health_reported"), 1.0);
-  EXPECT_EQ(values.at("health_silently_wrong"), 0.0);
+  EXPECT_EQ(values.at("health_unreported_error"), 0.0);
 }
 
 TEST(HealthScores, ARunOfOursThatReportsItselfDivergedAndKeepsItsScores) {

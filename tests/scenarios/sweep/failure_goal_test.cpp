@@ -61,6 +61,20 @@ TEST(FailureGoal, ScoresRiseWithBadness) {
   }
 }
 
+TEST(FailureGoal, AReportedRunIsNotSilentlyWrong) {
+  const FailureGoal silent = parse_goal("health_unreported_error > 1", Kind::slam);
+  Outcome outcome;
+  outcome.scores = {{"health_unreported_error", 0.0}};
+  outcome.status = OutcomeStatus::diverged;
+  EXPECT_FALSE(silent.holds(outcome));
+  EXPECT_LT(silent.score(OutcomeStatus::diverged, 0.0), silent.bound());
+  outcome.status = OutcomeStatus::ok;
+  outcome.scores[0].value = 1.1;
+  EXPECT_TRUE(silent.holds(outcome));
+  EXPECT_GT(silent.score(OutcomeStatus::ok, 1.1), silent.bound());
+  EXPECT_GT(silent.score(OutcomeStatus::crashed, std::nan("")), silent.bound());
+}
+
 TEST(FailureGoal, AnInfiniteLimitMeansLostRuns) {
   const FailureGoal lost = parse_goal("translation_error_end_m > inf", Kind::slam);
   EXPECT_TRUE(std::isfinite(lost.bound()));
