@@ -14,16 +14,16 @@ namespace {
 constexpr double kDeterminedSlopeSigma = 2e-3, kNegligibleSlope = 3e-3;
 constexpr double kUnequalLevelsRatio = 1e-4;
 constexpr double kUprightSigma = 1e-5, kSlopeSigmaMin = 3e-4;
-// The distance of a partly saturated reading from the saturation level must be less than kEdgeStepRatio times its
-// distance from the neighbouring unsaturated reading.
+// A reading counts as partly saturated if the reading is much closer to the saturation level than to the adjacent
+// unsaturated reading. The ratio of the two distances must be below kEdgeStepRatio.
 constexpr double kEdgeStepRatio = 0.5;
 
 int half_range_side(const ImuSample& sample, Triad triad, std::size_t j) {
   return triad_reading_of(sample, triad)[static_cast<Eigen::Index>(j)] < 0.0 ? -1 : 1;
 }
 
-// A reading at or beyond one of the two saturation planes (SaturationPlane) of its sensing element is saturated:
-// rails.md (R55).
+// A reading is saturated if the device flags the sample, or if the reading is at or beyond the positive or negative
+// saturation limit of the sensing element: rails.md (R55).
 bool is_at_saturation_limit(const ImuSample& sample, Triad triad, const SaturationPlane& rail, std::size_t j) {
   const Eigen::Vector3d& reading = triad_reading_of(sample, triad);
   return (sample.device_clip_flags >> (first_channel(triad) + j) & 1u) != 0 || rail.is_saturated(reading, -1) ||
@@ -77,8 +77,8 @@ bool are_upright(std::span<const Eigen::Vector3d> readings, const SaturationPlan
     const double plateau = rails.channels[first_channel(triad) + j].plateau_limit;
     if (rail && has_unequal_limits(*rail)) return false;
     if (rail && plateau > 0.0) {
-      // If the device compensates misalignment after clipping, most clipped readings of an axis differ, because clipped
-      // outputs depend on the other rates.
+      // If the device compensates misalignment after clipping, each clipped output also depends on the rates about the
+      // other axes. Most clipped readings of an axis then differ.
       const auto equal = std::count_if(readings.begin(), readings.end(), [&](const Eigen::Vector3d& y) {
         return std::abs(std::abs(y[static_cast<Eigen::Index>(j)]) - plateau) <= kEqualReadingsRatio * plateau;
       });

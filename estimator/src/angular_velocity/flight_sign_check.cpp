@@ -17,13 +17,14 @@ namespace {
 constexpr double kFlightReading_s = 0.01;  // averaging time of IMU readings, independent of the sample rate
 constexpr double kLeverArmMax_m = 1e3;
 constexpr double kForceMin_m_s2 = 2.5;  // a smaller specific force of the rotation is mostly noise and bias
-// tolerated deviation from free flight, as a fraction of the predicted specific force
+// tolerated difference between measured and predicted specific force in free flight, as a fraction of the prediction
 constexpr double kTolerance = 0.25;
-// minimum duration of agreement with free flight, so that motion on the ground rarely agrees by chance
+// minimum time for which the readings must agree with free flight; motion on the ground rarely agrees for this long
 constexpr double kRun_s = 0.02;
 constexpr double kFlightGapMax_s = 0.1;  // a longer data gap restarts the duration of agreement
 constexpr double kAlternativeRatioMin = 4.0, kThrownRatioMin = 2.0;
-// Motion on the ground can agree by chance with one inverted axis for 0.17 s (measured in scenario `hill`).
+// With one inverted accelerometer axis, motion on the ground can look like free flight for 0.17 s by chance (measured
+// in scenario `hill`).
 constexpr double kAlternativeMin_s = 0.2;
 constexpr double kGroupsPerSide = 0.05;  // minimum squared share of the lever arm perpendicular to a saturated axis
 constexpr double kBelowRail = 0.1;       // tolerated fraction by which a recovered rate is below the saturation level

@@ -19,11 +19,12 @@ constexpr std::array<const char*, 6> kQuantities = {
     "time in s for which accel y repeats one reading", "time in s for which accel z repeats one reading"};
 
 constexpr double kAxisFrozen_s = 0.5;  // longest time for which a working axis repeats one reading while the body moves
-// An axis counts as frozen if it repeats one reading at least kMinRepetitionRatio times as long as in its longest
-// earlier repetition.
+// An axis counts as frozen if the axis repeats one reading for at least kMinRepetitionRatio times the duration of its
+// longest earlier repetition.
 constexpr double kMinRepetitionRatio = 10.0;
 constexpr double kPossibleRailRatio = 0.9;  // fraction of the stated range above which a reading may be saturated
-// fraction of the stated range above which an axis' extreme reading may be saturated
+// fraction of the stated range above which a reading may be saturated if the device flags the reading, or if the
+// reading is the smallest or largest of the axis
 constexpr double kExtremeRatio = 0.5;
 constexpr double kMotionQuanta = 50.0;
 constexpr double kRotating_rad_s = 0.3;    // change of another gyro axis that indicates motion

@@ -26,8 +26,8 @@ class GyroOffset {
 
   GyroOffset();
 
-  /// Returns the gyro's zero offset when the initial rest is detected, if the offset is large. For all other samples,
-  /// the result is empty. The sample must be finite. Cost: O(1), no allocation.
+  /// Returns the gyro's zero offset for the sample at which the initial rest is detected, if the offset is large, and
+  /// nothing otherwise. The sample must be finite. Cost: O(1), no allocation.
   std::optional<Eigen::Vector3d> detect_initial_offset(const ImuSample& sample, State& state) const;
   /// Returns the gyro's zero offset in a recording, or zero if the offset is small.
   Eigen::Vector3d find(std::span<const ImuSample> samples) const;

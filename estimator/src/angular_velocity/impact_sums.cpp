@@ -10,7 +10,8 @@ namespace {
 
 constexpr double kMovingRateMin_rad_s = 1.0, kCorrelationMin = 0.6, kDelaySigmaRatio = 0.15;
 constexpr double kCorrelatedImpactsMin = 30.0;
-// A body with impacts counts as hand-held if less than `kFlightFractionMin` of the time is free flight.
+// A body with impacts counts as hand-held if the body is in free flight for less than the fraction `kFlightFractionMin`
+// of the time.
 constexpr double kImpactForceMin_m_s2 = 30.0, kFlightForceMax_m_s2 = 5.0, kFlightFractionMin = 0.1;
 constexpr double kImpactsMin = 10.0;
 

@@ -12,8 +12,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-// In a stream, the time of a reading is uniformly distributed over a sample period (standard deviation 1/sqrt(12)). In
-// a recording, the estimated clock of the sensor determines a reading's time more accurately than in a stream.
+// In a stream, the time of a reading is uniformly distributed over one sample period, so the standard deviation is
+// 1/sqrt(12) periods. In a recording, the estimated clock of the sensor determines the time of a reading more
+// accurately.
 constexpr double kReadingTimeSigma_samples = 0.29, kClockedReadingSigma_samples = 0.1;
 
 struct TimedReading {
@@ -36,7 +37,8 @@ std::optional<InterpolatedRate> between(const TimedReading& z, const TimedReadin
   InterpolatedRate out;
   out.rate_rad_s = v * v * (1.0 + 2.0 * u) * a.rate_rad_s + u * u * (3.0 - 2.0 * u) * b.rate_rad_s +
                    span_s * u * v * (v * slope_a - u * slope_b);
-  // The averaging window of a gyro reading lowers the maxima and raises the minima of a curved rate.
+  // The rate changes nonlinearly within the averaging window of a gyro reading, so readings at maxima are too low and
+  // readings at minima are too high.
   const Vector3d moment = moment_s * chord, bend = span_s / 24.0 * (slope_b - slope_a);
   out.variance_rad2_s2 = moment.cwiseAbs2() + bend.cwiseAbs2();
   return out;

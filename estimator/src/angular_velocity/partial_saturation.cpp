@@ -8,7 +8,7 @@ namespace tumble {
 
 namespace {
 
-// Above this saturated fraction of the averaging window, a reading does not determine the slope of the rate.
+// largest saturated fraction of the averaging window for which a reading still determines the slope of the rate
 constexpr double kSaturatedFractionMax = 0.85;
 constexpr double kDeficitSigmaRatio = 0.5, kDepthSigmaRatio = 0.25, kDepthMax = 1.0;
 
@@ -21,8 +21,8 @@ PartialSaturation partial_saturation(double reading_rad_s, double neighbour_rad_
   // Noise lowers a fully saturated reading by less than a tenth of the noise's standard deviation, because the device
   // clips the sum of rate and noise.
   if (!(depth > 0.1 * noise_rad_s)) return {};
-  // With misalignment compensation after clipping, rotation about other axes slowly changes a fully saturated reading,
-  // so only changes above the noise count.
+  // If the device compensates misalignment after clipping, rotation about other axes slowly changes a fully saturated
+  // reading. Changes below the noise are therefore ignored.
   if (!(slope > noise_rad_s)) return {};
   double share = 0.0;  // rails.md (R71)
   if (slope > 2.0 * depth) {

@@ -10,7 +10,7 @@ namespace tumble {
 
 namespace {
 
-// maximum tilt between the planes of saturated readings of two sensing elements
+// maximum relative tilt of the planes that contain the saturated readings of two sensing elements
 constexpr double kMaxPlaneTilt = 0.06, kDeficitStepRatio = 0.5;
 
 constexpr double kTopRatio = 0.01, kMaxElementSigmas = 3.0;
@@ -23,21 +23,21 @@ double lowest_saturation_limit(const SaturationPlanes& planes) {
   return rail;
 }
 
-// Returns how far the rate may exceed a flat maximum of `count` equal readings: rails.md (R74).
+// Returns how far the rate may exceed `count` equal readings at a maximum: rails.md (R74).
 double rise_above_plateau(double count, double entered, double left) {
   const double both = std::max(0.0, entered) + std::max(0.0, left);
   return both > 0.0 ? count * std::max(0.0, entered) * std::max(0.0, left) / both : 0.0;
 }
 
-// If an axis has a tilted plane of saturated readings, rotation about the other axes changes the saturated readings by
-// the tilt times the rotation rate.
+// If the saturation plane (SaturationPlane) of an axis is tilted, rotation about the other axes changes the saturated
+// readings by the tilt times the rotation rate.
 double rate_of_other_axes(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) {
   return std::hypot(rate_rad_s[(axis + 1) % 3], rate_rad_s[(axis + 2) % 3]);
 }
 
 }  // namespace
 
-// Every reading is a lower bound of its saturation level: rails.md (R75).
+// The saturation level of a sensing element is at least as large as each of its readings: rails.md (R75).
 void MinSaturationLevels::add(const Eigen::Vector3d& rate_rad_s) {
   for (Eigen::Index j = 0; j < 3; ++j) {
     double& least = min_levels_rad_s_[rate_rad_s[j] < 0.0 ? 0 : 1][j];

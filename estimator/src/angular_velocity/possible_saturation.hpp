@@ -15,8 +15,8 @@ void inflate_covariance_near_limits(const SaturationPlanes& planes, const MinSat
                                     double noise_rad_s, const ImuSample* before, AngularRateObservation& now,
                                     const ImuSample* after);
 
-/// Marks flat maxima of the readings that may hide a saturated peak. No reading is marked if the device flags clipping,
-/// or if no saturation level is known.
+/// Marks successive, almost equal maximum readings that may hide a saturated peak. No reading is marked if the device
+/// flags clipping, or if no saturation level is known.
 void inflate_covariance_at_plateaus(const SaturationPlanes& planes, const MinSaturationLevels& least,
                                     double offset_sigma_ratio, double noise_rad_s,
                                     std::span<AngularRateObservation> observations);

@@ -15,8 +15,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// If few clipped samples count as free flight, the optimisation restarts with the flight threshold multiplied by these
-// factors.
+// kRestartThresholds contains factors on the residual threshold between free flight and contact. The optimisation
+// restarts with these factors if few clipped samples are classified as free flight.
 constexpr double kRestartThresholds[] = {16.0, 0.25};
 constexpr double kFlightShareExpected = 0.5;
 
@@ -77,7 +77,8 @@ void compute_flight_weights(const AngularRateModel& model, std::span<const Angul
       const double dt_s = seconds(observations[k + 1].sample.time_ns - observations[k].sample.time_ns);
       after = model.jump(estimates[k].knot, estimates[k + 1].knot, dt_s);
     }
-    // If no gyro axis is clipped, the rate is accurate, so the flight threshold is not raised.
+    // If no gyro axis is clipped, the rate is accurate, so the residual threshold for free flight is not multiplied by
+    // threshold_factor.
     const int clipped = observations[k].unmeasured_axes();
     model.compute_flight_weight(observations[k], rig, rig_covariance, clipped != 0 ? threshold_factor : 1.0,
                                 std::min(before, after), estimates[k]);
@@ -128,8 +129,8 @@ bool run_gauss_newton(const AngularRateSmoother::Params& params, const AngularRa
   return true;
 }
 
-// Returns the sum of the square roots of all flight weights, as a measure of the agreement with free flight:
-// rate_smoother.md (R31).
+// Returns the sum of the square roots of all free-flight weights (1: free flight, 0: contact), which measures the
+// agreement of the motion with free flight: rate_smoother.md (R31).
 double explained_force_fraction(std::span<const AngularRateObservation> observations,
                                 std::span<const AngularRateEstimate> estimates, double& share) {
   double sum = 0.0, unmeasured_axes = 0.0, flight = 0.0;

@@ -69,7 +69,8 @@ AngularRateKnot knot_before(double delay_s, const AngularRateKnot& knot, const J
 
 }  // namespace
 
-// See rate_smoother.md (R6). The caller propagates `knot` to the time of the gyro reading: rate_smoother.md (R7).
+// See rate_smoother.md (R6). The caller propagates `knot`, a pair of rate and angular acceleration, to the time of the
+// gyro reading: rate_smoother.md (R7).
 AngularRateFactor gyro_factor(const AngularRateKnot& knot, const BodyImuConstants& rig, const Vector3d& reading_rad_s) {
   AngularRateFactor f;
   f.residual = knot.rate_rad_s + rig.gyro_bias_rad_s - reading_rad_s;

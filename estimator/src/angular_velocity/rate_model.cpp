@@ -89,7 +89,7 @@ double mahalanobis(const BodyImuConstants::Vector& moved, const BodyImuConstants
   return std::sqrt(part.dot(spread.llt().solve(part)) / kCount);
 }
 
-// Returns A' * information, where A is the derivative of the residual with respect to the sample's unknowns.
+// Returns A^T * information, where A is the derivative of the residual with respect to the sample's unknowns.
 Eigen::Matrix<double, 6, 3> add_to_knot(const AngularRateFactor& f, const Eigen::Matrix3d& information,
                                         double time_scale_s, arrow::Block& block) {
   Eigen::Matrix<double, 3, 6> A = f.jacobian_knot;
@@ -176,7 +176,7 @@ double AngularRateModel::accel_sigma_m_s2(const AngularRateObservation& observat
   return std::hypot(accel_sigma_m_s2_, params_.expert.kAccelScaleError * observation.sample.specific_force_m_s2.norm());
 }
 
-// Model errors that last longer than a sample do not average out.
+// Averaging over samples does not reduce a model error that lasts longer than one sample.
 double AngularRateModel::total_accel_variance(const AngularRateObservation& observation) const {
   const double single = accel_sigma_m_s2(observation), noise2 = accel_noise_m_s2_ * accel_noise_m_s2_;
   return independent_sample_fraction_ < 1.0 ? noise2 + (single * single - noise2) / independent_sample_fraction_
@@ -195,8 +195,8 @@ double AngularRateModel::gyro_information(const AngularRateObservation& observat
                                           const AngularRateEstimate& estimate, int axis) const {
   if (observation.gyro_repeats) return 0.0;
   if (observation.gyro_age_s > 0.0) {
-    // A gyro reading measures the rate `gyro_age_s` before its time stamp, and a contact force may have changed the
-    // rate since: rate_smoother.md (R7).
+    // A gyro reading measures the rate at `gyro_age_s` before its time stamp. A contact force may change the rate
+    // between the measured time and the time stamp: rate_smoother.md (R7).
     const double change =
         params_.expert.contact.kGain_rad_m * estimate.contact_force_m_s2.norm() * observation.gyro_age_s;
     const double lost = (observation.partly_saturated_axes() >> axis & 1u) != 0
@@ -210,9 +210,8 @@ double AngularRateModel::gyro_information(const AngularRateObservation& observat
   return 1.0 / (lost * lost + impact * impact);
 }
 
-// In contact, the contact force is modelled as an additional error of the measured specific force. The error of the
-// specific force due to contact has zero mean, and a standard deviation proportional to the estimated contact force:
-// rate_smoother.md (R20).
+// During contact, the contact force is modelled as an additional error of the specific force. This error has zero mean,
+// and a standard deviation proportional to the estimated contact force: rate_smoother.md (R20).
 AngularRateModel::ForceFactor AngularRateModel::force_factor(const AngularRateObservation& observation,
                                                              const AngularRateEstimate& estimate,
                                                              const BodyImuConstants& rig) const {
@@ -290,7 +289,7 @@ void AngularRateModel::add_sample(const AngularRateObservation& observation, con
   }
 }
 
-// A force through one point of the body exerts no torque about the direction of the force: rate_smoother.md (R21).
+// A force that acts on one point of the body exerts no torque about the direction of the force: rate_smoother.md (R21).
 Eigen::Matrix3d AngularRateModel::euler_equation_information(const AngularRateEstimate& estimate) const {
   const double flight = params_.expert.flight.euler_sigma_rad_s2 * params_.expert.flight.euler_sigma_rad_s2;
   const double force = estimate.contact_force_m_s2.norm(), lever = params_.expert.contact.kLever_rad_m * force;

@@ -9,8 +9,8 @@ namespace tumble {
 namespace {
 
 using Eigen::Vector3d;
-// derivatives of one reading: with respect to the rate (columns 0 to 2), and to time_scale_s_ times the angular
-// acceleration (columns 3 to 5)
+// derivatives of a reading with respect to the rate (columns 0 to 2), and with respect to time_scale_s_ times the
+// angular acceleration (columns 3 to 5)
 using AuxiliaryRow = Eigen::Matrix<double, 1, 6>;
 
 void add_row(const AuxiliaryRow& row, double residual, double sigma, arrow::Block& block) {

@@ -48,8 +48,8 @@ GaussianMoments truncated_gaussian_moments(const GaussianMoments& from, double b
 }
 
 // Returns a new Gaussian factor that approximates the lower bound `bound` by expectation propagation: rate_smoother.md
-// (R22), (R25). `variance_max` limits the variance of the cavity distribution, which is `marginal` divided by the
-// factor `now`.
+// (R22), (R25). The cavity distribution is the distribution `marginal` divided by the previous factor `now`.
+// `variance_max` limits the variance of the cavity distribution.
 GaussianLikelihoodApproximation refined_bound_approximation(const GaussianMoments& marginal,
                                                             const GaussianLikelihoodApproximation& now, double bound,
                                                             double bound_variance, double variance_max, double share) {
@@ -71,8 +71,8 @@ void AngularRateModel::search_flight_solutions(const AngularRateObservation& obs
   const Vector3d reading = corrected_rate(observation, estimate);
   AngularRateEstimate flight_estimate = estimate;
   const Eigen::Matrix3d J = rig.inertia_matrix();
-  // If the device compensates misalignment, the saturation deficit of one sensing element changes all output axes:
-  // rails.md (R51).
+  // If the device compensates misalignment, the saturation deficit of one sensing element (true rate minus clipped
+  // reading) changes all output axes: rails.md (R51).
   Eigen::Matrix3d rows;
   for (int j = 0; j < 3; ++j) rows.row(j) = rig.sensing_direction(j);
   const Eigen::Matrix3d deficit_directions = rows.inverse();

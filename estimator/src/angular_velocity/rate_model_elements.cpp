@@ -10,8 +10,8 @@ namespace {
 constexpr int kGyroBias = 3;
 
 // Adds the residual of one sensing element to the normal equations: rate_smoother.md (R8). `age` is the age of the gyro
-// reading divided by time_scale_s_. The uncertainty of a fixed sensing direction (covariance `rig_spread`) reduces the
-// weight of the residual: rate_stream.md (R92).
+// reading divided by time_scale_s_. If the sensing direction is fixed at an uncertain value (covariance `rig_spread`),
+// the residual has a smaller weight: rate_stream.md (R92).
 void add_row(const AngularRateFactor& gyro, int j, double age, double information, double pull,
              const BodyImuConstants::Matrix* rig_spread, arrow::Block& block, arrow::Corner& corner) {
   const int first = BodyImuConstants::kGyroMisalignmentIndex + 2 * j;
@@ -90,8 +90,8 @@ Eigen::Vector3d AngularRateModel::accel_sensing_axis_readings(const AngularRateO
   double hidden2 = 0.0;
   for (int j = 0; j < 3; ++j) {
     if ((clipped >> j & 1u) == 0) continue;
-    // A saturated reading is a lower bound of the specific force, so a modelled force beyond the reading causes no
-    // residual: rate_smoother.md (R9).
+    // A saturated accelerometer reading is a lower bound of the specific force. If the modelled force exceeds the
+    // reading, the residual is therefore zero: rate_smoother.md (R9).
     if (flight.residual[j] * observation.sample.specific_force_m_s2[j] < 0.0) continue;
     hidden2 += flight.residual[j] * flight.residual[j];
     flight.residual[j] = 0.0;

@@ -7,8 +7,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Below this flight weight, the specific-force residual does not change the calibration, because contact forces would
-// falsify the calibration.
+// minimum free-flight weight (1: free flight, 0: contact) at which a specific-force residual may change the
+// calibration; contact forces would falsify the calibration
 constexpr double kRigWeightMin = 0.05;
 
 }  // namespace
@@ -17,8 +17,8 @@ bool AngularRateModel::has_no_error_information(const AngularRateEstimate& estim
   return estimate.flight_weight < kRigWeightMin;
 }
 
-// Removes the influence of the specific force on the calibration and on the rates of unclipped axes. A contact force
-// would otherwise cause errors in calibration and rates.
+// Sets the derivatives of the specific-force residual with respect to the calibration and the rates of unclipped axes
+// to zero. A contact force therefore cannot change the calibration or the rates of unclipped axes.
 void AngularRateModel::exclude_from_calibration(const AngularRateObservation& o, AngularRateFactor& flight) {
   flight.jacobian_calibration.setZero();
   for (int j = 0; j < 3; ++j) {
@@ -48,8 +48,8 @@ AngularRateFactor AngularRateModel::flight(const AngularRateObservation& observa
   if (uses_raw_readings_ && delay_s == 0.0 && jacobian_delay == nullptr) return flight_force_factor(knot, rig, reading);
   const Vector3d force = reading - params_.errors.accel * reading;
   AngularRateFactor out = delayed_flight_force_factor(knot, rig, force, delay_s, jacobian_delay);
-  // Averaging over the accelerometer's window changes the specific force in proportion to the force's second time
-  // derivative: rate_smoother.md (R13).
+  // Averaging over the accelerometer's window changes the specific force in proportion to its second time derivative:
+  // rate_smoother.md (R13).
   out.residual += 0.5 * params_.errors.accel_filter_time_variance_s2 * flight_angular_jerk(knot, rig);
   return out;
 }

@@ -12,8 +12,8 @@
 
 namespace tumble {
 
-/// `known_params` contains the prior calibration. The priors of the cross-axis sensitivities are from the detected
-/// planes of saturated readings (SaturationPlane).
+/// `known_params` contains the prior calibration. The detected saturation planes (SaturationPlane) determine the priors
+/// of the cross-axis sensitivities.
 struct AngularRateReadings {
   std::vector<AngularRateObservation> observations;
   AngularRateModelParams known_params;

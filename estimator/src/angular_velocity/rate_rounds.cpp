@@ -53,11 +53,11 @@ bool differ_significantly(const SensorErrors& a, const SensorErrors& b) {
          std::abs(a.accel_filter_time_variance_s2 - b.accel_filter_time_variance_s2) > kFilterTimeVariance_s2;
 }
 
-// Limit of the Mahalanobis distance between lever arm and prior, rate_smoother.md (R32). With a correct prior, one
-// device in a thousand exceeds this Mahalanobis distance.
+// limit of the Mahalanobis distance between the estimated lever arm and its prior: rate_smoother.md (R32). With a
+// correct prior, one device in a thousand exceeds the limit.
 constexpr double kDeviceMahalanobisMax = 2.33;
 
-// All calibration constants except the gyro's sensing directions are held at their prior.
+// Returns parameters that fix all calibration constants at their prior, except the gyro's sensing directions.
 AngularRateModelParams fixed_calibration(const AngularRateModelParams& params, const AngularRateModel& model) {
   constexpr int kFirst = BodyImuConstants::kGyroMisalignmentIndex, kCount = BodyImuConstants::kSize - kFirst;
   AngularRateModelParams out = params;
@@ -103,7 +103,8 @@ Status optimise_or_fix_rig_prior(const AngularRateSmoother::Params& params, cons
     return {ErrorCode::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
   }
   health.calibration_mahalanobis = mahalanobis;
-  // A fixed calibration is still uncertain, so the covariance of the rates includes the covariance of the calibration.
+  // The calibration is uncertain even if the optimisation does not change the calibration. The covariance of the rates
+  // therefore includes the covariance of the calibration.
   constexpr int kOpen = BodyImuConstants::kGyroMisalignmentIndex;
   fit.solution.rig_covariance.topLeftCorner<kOpen, kOpen>() =
       health.calibration.covariance.topLeftCorner<kOpen, kOpen>();
@@ -112,8 +113,8 @@ Status optimise_or_fix_rig_prior(const AngularRateSmoother::Params& params, cons
 
 constexpr double kGuessSigmasMax = 2.0;
 
-// See rate_smoother.md (R38). The accelerometer delay estimated from impacts is independent of the free-flight
-// equations, because these equations use no impacts.
+// See rate_smoother.md (R38). The accelerometer delay is estimated from impacts, which the free-flight equations do not
+// use. The delay is therefore independent of the free-flight equations.
 void add_impact_delay(const TriadDelay& guess, SensorErrorInformation& evidence) {
   if (!(guess.sigma_s > 0.0)) return;
   const double information = 1.0 / (guess.sigma_s * guess.sigma_s);
@@ -123,8 +124,8 @@ void add_impact_delay(const TriadDelay& guess, SensorErrorInformation& evidence)
 
 constexpr double kContradictionOdds = 0.05;
 
-// Compares the product of two odds with a limit, because a wrong IMU may have wrong scale factors, a delay between
-// accelerometer and gyro, or both.
+// Multiplies the odds that the scale factors agree with the data sheet by the odds that gyro and accelerometer are
+// synchronous. A wrong data sheet may concern scale factors, delay, or both, so the product is compared with a limit.
 bool contradicts_data_sheet(const SensorErrorFit& device, const SensorErrorPriors& sizes, bool triads_asynchronous) {
   const SensorErrorFit before = fit_sensor_errors({}, sizes);
   const auto odds = [](double p) { return std::max(p, 1e-12) / std::max(1.0 - p, 1e-12); };
@@ -146,8 +147,8 @@ SensorErrorInformation calibration_evidence_at(const SensorErrors& given, KnownS
   return evidence_from_earlier_runs(learnt, sizes);
 }
 
-// `given` contains the sensor errors that the user states. `learnt` is the information of an earlier run about the
-// deviations of the sensor errors from `given`.
+// `given` contains the sensor errors that the user states. `learnt` contains the differences between the true sensor
+// errors and `given`, as estimated in an earlier run, with their information.
 SensorErrorFit fit_errors_at(const SensorErrors& given, SensorErrorInformation evidence, const SensorErrorPriors& sizes,
                              const SensorErrorInformation& learnt) {
   evidence.linearisation_point = SensorErrors::from(evidence.linearisation_point.vector() - given.vector());
@@ -233,7 +234,7 @@ Status collect_error_evidence(const CorrectionIterations& rounds, const SensorEr
   const RateSolution& solution = fit.solution;
   fit.error_derivatives = solution.iteration.error_derivatives(fit.model, solution.estimates, solution.rig);
   if (rounds.estimated) {
-    // The normal equations are computed again at the final estimates, because gradients before convergence are not
+    // The normal equations are computed again at the final estimates, because a gradient before convergence is no
     // evidence of sensor errors.
     GaussNewtonRateStep again = solution.iteration;
     if (!again.factorise(fit.model, solution.estimates, solution.rig)) {

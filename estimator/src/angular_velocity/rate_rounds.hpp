@@ -16,10 +16,10 @@ struct AngularRateFit {
   GaussNewtonRateStep::SensorErrorDerivatives error_derivatives;
 };
 
-/// Optimises repeatedly, each time with readings corrected by the last estimated sensor errors. If the estimated
+/// Optimises repeatedly, and corrects the readings each time by the last estimated sensor errors. If the estimated
 /// calibration is too far from its prior, rate_smoother.md (R32), contact was probably classified as free flight. The
-/// first restart of the optimisation ignores the sensor errors of an earlier run, and the second restart uses another
-/// accelerometer delay. If all restarts fail, the calibration is held at its prior.
+/// optimisation then restarts up to two times. The first restart ignores the sensor errors of an earlier run, and the
+/// second restart uses another accelerometer delay. If all restarts fail, the calibration is held at its prior.
 Status fit_rounds(const AngularRateSmoother::Params& params, const AngularRateModelParams& known,
                   std::span<const ImuSample> samples, std::span<const Clipping> clippings,
                   std::span<AngularRateObservation> observations, AngularRateFit& fit, AngularRateReport& health);

@@ -35,7 +35,8 @@ Eigen::Matrix3d sensor_error_covariance(const arrow::ErrorMatrix& moved, const S
   return std::min(1.0, most / std::max(out.trace(), 1e-300)) * out;
 }
 
-// If a gyro reading may be saturated, the angular acceleration is estimated from the contact force.
+// Returns the magnitude of the angular acceleration between samples `k` and `k + 1`. If a gyro reading may be
+// saturated, the magnitude is estimated from the contact force.
 double rate_change_rad_s2(const AngularRateModelParams& params, std::span<const AngularRateObservation> observations,
                           std::span<const AngularRateEstimate> estimates, std::size_t k) {
   const AngularRateObservation &from = observations[k], &to = observations[k + 1];
@@ -48,8 +49,8 @@ double rate_change_rad_s2(const AngularRateModelParams& params, std::span<const 
 }
 
 // Returns the covariance of a rate due to an unknown delay that gyro and accelerometer have in common. The covariance
-// uses the largest angular acceleration within the possible delay, because an impact may have occurred before or after
-// sample `k`.
+// is computed with the largest angular acceleration within the possible delay, because an impact may have occurred
+// before or after sample `k`.
 Eigen::Matrix3d common_delay_covariance(double variance_s2, const AngularRateModelParams& params,
                                         std::span<const AngularRateObservation> observations,
                                         std::span<const AngularRateEstimate> estimates, std::size_t k) {
@@ -125,7 +126,8 @@ std::vector<AngularRateState> rate_states_of_recording(const AngularRateSmoother
   const SensorErrors& errors = health.sensor_errors.errors;
   const double gyro_late_s = std::max(0.0, -errors.accel_delay_s);
   const std::vector<Eigen::Matrix3d> covariances = rate_covariances(params, readings, fit, health);
-  // If each axis saturates at a constant reading, equal readings alone identify saturation.
+  // If the device clips after misalignment compensation, saturated readings are equal, so saturation planes are not
+  // needed to find partial saturation.
   const std::vector<std::uint8_t> near =
       possible_partial_saturation(samples, health.clips_after_compensation ? SaturationPlanes{} : readings.gyro_planes);
   const std::vector<std::optional<InterpolatedRate>> own = interpolate_gyro(samples, readings);
@@ -136,7 +138,8 @@ std::vector<AngularRateState> rate_states_of_recording(const AngularRateSmoother
     const AngularRateEstimate& estimate = solution.estimates[k];
     AngularRateState& state = states[k];
     state = extrapolated_state(observations, solution.estimates, covariances, k, gyro_late_s);
-    // Outside free flight, interpolated readings are more accurate than the white-jerk model.
+    // Outside free flight, rates interpolated between gyro readings are more accurate than the rates of the white-jerk
+    // model.
     const bool by_readings = estimate.flight_weight < 0.5 && !o.at_rest && gyro_late_s == 0.0;
     if (by_readings && !own.empty() && own[k]) {
       const Vector3d g_sensitivity = errors.g_sensitivity_s_m * samples[k].specific_force_m_s2;

@@ -173,7 +173,7 @@ void AngularRateStream::Impl::marginalise(std::size_t first, State& state) const
   model.compute_flight_weight(oldest.observation, state.rig, BodyImuConstants::Matrix::Zero(), 1.0, jump,
                               oldest.estimate);
   // Free flights of few samples do not update the calibration. A short contact may be mistaken for free flight, because
-  // the 20 calibration constants can fit any few readings.
+  // 20 calibration constants can fit a few arbitrary readings.
   std::size_t run = state.consecutive_flight_samples;
   const auto needed = params.expert.kFlightRunMin;
   const auto flies = [](const Knot& knot) { return knot.estimate.flight_weight >= 0.5; };
@@ -201,7 +201,7 @@ void AngularRateStream::Impl::marginalise(std::size_t first, State& state) const
   state.prior_knot = next.estimate.knot;
   state.prior_rig = state.rig;
   if (model.calibration_mahalanobis(state.rig) > params.calibration_mahalanobis_max) {
-    // An implausible calibration indicates that contact was classified as free flight.
+    // If the estimated calibration is implausible, contact was probably classified as free flight.
     reset_rig(state);
     ++state.calibration_reset_count;
   }
@@ -248,8 +248,8 @@ void AngularRateStream::Impl::append_knot(const ImuSample& sample, std::span<con
   mark_possible_saturation(state);
 }
 
-// The initial rate of a clipped sample is the predicted rate or the rate from the centripetal force, whichever gives
-// the larger flight weight.
+// The initial rate of a clipped sample is the predicted rate or the rate from the centripetal force, whichever agrees
+// better with free flight.
 void AngularRateStream::Impl::predict_new_knot(Knot& knot, const Knot& previous, const State& state) const {
   const double dt_s = seconds_between(previous, knot);
   const AngularRateKnot& before = previous.estimate.knot;
@@ -369,7 +369,7 @@ BodyImuConstants::Matrix AngularRateStream::Impl::inflated_calibration_covarianc
   const double largest = std::sqrt(1.0 + params.expert.inflation.covariance / (1.0 + samples));
   BodyImuConstants::Vector factor;
   for (int i = 0; i < BodyImuConstants::kSize; ++i) {
-    // The variance of the gyro bias is not inflated, because readings at rest determine this bias.
+    // The variance of the gyro bias is not increased, because readings at rest determine the gyro bias.
     const bool of_gyro = i >= 3 && i < 6;
     const double before = std::sqrt(model.prior_covariance()(i, i) / state.rig_covariance(i, i));
     factor[i] = of_gyro ? 1.0 : std::clamp(before, 1.0, largest);

@@ -16,7 +16,8 @@ constexpr double kMemory = 2000.0;
 constexpr TimeNs kUpdatePeriod_ns = 50'000'000;
 constexpr double kDelayChangeMin_s = 3e-4;
 constexpr double kContradictionOdds = 0.05, kGuessSigmasMax = 3.0;
-// The first few impacts may correlate with rate changes by chance.
+// The delay is estimated only after a minimum number of impacts, because a few impacts may correlate with rate changes
+// by chance.
 constexpr double kIntervalsMin = 150.0, kCorrelationGainMin = 0.06;
 // maximum accelerometer delay, in prior standard deviations of the delay
 constexpr double kReach = 3.0;

@@ -11,7 +11,8 @@ namespace {
 
 using Eigen::Matrix3d;
 
-// Each estimate of the sensor errors solves a system of 29 unknowns, which costs more than a step of the stream.
+// The sensor errors are estimated only at intervals, because each estimate solves a system of 29 unknowns, which costs
+// more than a step of the stream.
 constexpr TimeNs kUpdatePeriod_ns = 50'000'000;
 
 // See rate_smoother.md (R44).
@@ -102,7 +103,7 @@ void AngularRateStream::Impl::add_sensor_error_covariance(const arrow::BorderVec
   if (delay.delay_found) {
     if (const TriadDelay& guess = delay.impact_delay; guess.sigma_s > 0.0) {
       // The information is divided by kSensorErrorEvidenceWeight, because SensorErrorUncertainty multiplies all
-      // information by this weight.
+      // information by kSensorErrorEvidenceWeight.
       const double information =
           1.0 / (SensorErrorUncertainty::kSensorErrorEvidenceWeight * guess.sigma_s * guess.sigma_s);
       window_error_evidence.information(SensorErrors::kDelay, SensorErrors::kDelay) += information;

@@ -18,8 +18,8 @@
 
 namespace tumble {
 
-/// Parameters of an AngularRateStream, the objects and numbers that follow from the parameters, and the functions that
-/// update the state.
+/// Impl contains the parameters of an AngularRateStream, objects and numbers derived from the parameters, and the
+/// functions that update the state.
 struct AngularRateStream::Impl {
   explicit Impl(const Params& params);
 

@@ -32,7 +32,8 @@ double AngularRateStream::Impl::saturation_deficit_from_slopes_rad_s(std::size_t
   const bool from_flight = state.consecutive_flight_samples >= params.expert.kFlightRunMin;
   const double before = static_cast<double>(at - first) + 0.5 +
                         (first > 0 || from_flight ? 0.0 : state.samples_since_clipping_start[axis]);
-  // An unfinished run of clipped readings is assumed to continue for at least as long as it has lasted.
+  // If a run of clipped readings has not ended, the run is assumed to continue for at least as long as the run has
+  // lasted.
   const double left = static_cast<double>(last - at) + 0.5,
                after = last + 1 < window.size() ? left : std::max(before, left);
   const double slope = plateau_slope(axis, first, last, state);
@@ -58,7 +59,8 @@ Eigen::Matrix3d AngularRateStream::Impl::inflated_rate_covariance(std::size_t at
   return out;
 }
 
-// If the log repeats readings, the rate of a sample also depends on the next new reading.
+// If the log repeats gyro readings, the rate of a sample also depends on the next reading that differs from the
+// repeated reading.
 bool AngularRateStream::Impl::is_possibly_saturated(std::size_t at, const State& state) const {
   const std::vector<Knot>& window = state.window;
   if (window[at].possibly_clipped_axes != 0) return true;

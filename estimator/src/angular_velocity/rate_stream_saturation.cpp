@@ -16,12 +16,12 @@ namespace {
 using Eigen::Vector3d;
 
 // The slopes before and after a maximum predict how far the rate rises above the readings at the maximum:
-// rate_stream.md (R94). For an unsaturated parabola, the predicted rise above the readings is at most 2.25 times the
-// difference between largest and smallest reading.
+// rate_stream.md (R94). If the rate is an unsaturated parabola, the predicted rise is at most 2.25 times the difference
+// between the largest and the smallest reading.
 constexpr double kSlopeSigmasMax = 3.0, kHeightRatioMin = 4.0, kHeightNoiseSigmas = 5.0;
 constexpr std::ptrdiff_t kPlateauReadingsMin = 3;
 
-// maximum relative difference between two elements' saturation levels; the wand of the data set RepoIMU has 3 %
+// maximum relative difference between the saturation levels of two elements; 3 % for the wand in the data set RepoIMU
 constexpr double kLevelDifferenceMax = 0.05;
 
 bool is_near_limit_of_other_axis(const SaturationPlanes& planes, double peak_rad_s) {
@@ -76,7 +76,7 @@ void AngularRateStream::Impl::reclassify_window_clipping(State& state) const {
     pair_force_with_rate(k, state);
 }
 
-// A new reading may show whether the previous reading is clipped.
+// A new gyro reading may show whether the previous reading is clipped.
 void AngularRateStream::Impl::classify_clipping_from(std::size_t changed, State& state) const {
   const std::size_t first = reading_before(changed, state.window).value_or(0);
   const SaturationLevels& rails = state.clipping_state.known_limits;
@@ -146,7 +146,8 @@ void AngularRateStream::Impl::mark_undetected_clipping(std::size_t k, State& sta
                                  state.min_saturation_levels, model.gyro_sigma_rad_s(), before, now, after);
 }
 
-// A later, larger reading or a newly detected saturation level may show that suspect readings are unsaturated.
+// A later, larger reading or a newly detected saturation level may show that readings marked as possibly saturated are
+// unsaturated.
 void AngularRateStream::Impl::clear_suspected_saturation(State& state) const {
   for (std::size_t k = 0; k < state.window.size(); ++k) {
     if (state.window[k].observation.possibly_saturated_axes() == 0) continue;
@@ -155,7 +156,7 @@ void AngularRateStream::Impl::clear_suspected_saturation(State& state) const {
   }
 }
 
-// Marks runs of three or more unflagged readings that may be saturated.
+// Marks runs of three or more readings that may be saturated, but that the device has not flagged as clipped.
 void AngularRateStream::Impl::mark_possible_saturation(State& state) const {
   const unsigned stood = state.window.front().observation.suspected_saturation;
   clear_suspected_saturation(state);
@@ -194,7 +195,8 @@ double AngularRateStream::Impl::plateau_slope(int axis, std::size_t first, std::
   return std::max({in, out, 0.0});
 }
 
-// Estimates the saturation deficit from the slopes before and after the suspect readings: rate_stream.md (R94).
+// Estimates the saturation deficit from the slopes before and after a run of possibly saturated readings:
+// rate_stream.md (R94).
 void AngularRateStream::Impl::mark_suspected_plateau(int axis, std::size_t first, std::size_t last,
                                                      State& state) const {
   const auto size = [&](std::size_t k) {
@@ -236,7 +238,8 @@ Vector3d AngularRateStream::Impl::min_recent_increase_rad_s(const std::vector<Kn
   return now.cwiseMin(before).cwiseMax(0.0);
 }
 
-// Stores the slope of the gyro readings before a saturation when these readings leave the window of AngularRateStream.
+// Stores the slope of the gyro readings before a saturation when the readings before the saturation leave the window of
+// AngularRateStream.
 void AngularRateStream::Impl::store_slope_before_clipping(const Knot& leaving, const Knot& next, State& state) {
   const auto hidden = [](const Knot& knot, int j) {
     return ((knot.observation.clipping.gyro | knot.observation.partly_saturated_axes()) >> j & 1) != 0;

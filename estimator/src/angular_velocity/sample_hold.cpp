@@ -55,8 +55,8 @@ ClockPhaseSegment best_clock_phases(double period, std::span<const std::size_t> 
     misses[p] = count_missed_repetitions(clock, moving, repeats, std::min(most, out.missed_repetitions));
     out.missed_repetitions = std::min(out.missed_repetitions, misses[p]);
   }
-  // The phase of the sensor's clock is cyclic, so the interval of best phases may extend over the end of the tested
-  // range.
+  // The phase of the sensor's clock is cyclic. The interval of best phases may therefore extend beyond the end of the
+  // tested range and continue at its start.
   int run = 0;
   for (int p = 0; p < 2 * kPhases; ++p) {
     run = misses[static_cast<std::size_t>(p % kPhases)] == out.missed_repetitions ? std::min(run + 1, kPhases) : 0;

@@ -12,11 +12,11 @@
 
 namespace tumble {
 
-/// RepeatedReadings describes a gyro or accelerometer whose sample rate is lower than the rate of the log (sample and
-/// hold).
+/// RepeatedReadings describes a gyro or accelerometer whose readings repeat in the log (sample and hold), because its
+/// sample rate is lower than the rate of the log.
 struct RepeatedReadings {
   double period_s = 0.0;  ///< time between two readings
-  /// fraction of samples whose repetitions a clock with constant period predicts
+  /// fraction of samples for which a clock with constant period predicts correctly whether the reading is repeated
   double regular_clock_fraction = 0.0;
   std::vector<double> age_s;             ///< per sample: age of its reading in addition to window_lag_s
   std::vector<bool> repeats_per_sample;  ///< per sample: whether the reading equals the previous sample's reading
@@ -30,7 +30,7 @@ struct RepeatedReadings {
 
 /// Detects whether the log repeats readings of a sensor, and estimates period and phase of the sensor's clock from the
 /// repetitions. Cost: O(N), plus a test of about 5000 candidate clocks on at most 1000 samples. Returns nothing if
-/// fewer than 30 gyro readings exceed 0.3 rad/s, or if the sensor repeats less than 5 % of its readings meanwhile.
+/// fewer than 30 gyro readings exceed 0.3 rad/s, or if less than 5 % of the readings during this rotation are repeated.
 /// `age_s` is zero if no clock with constant period predicts the repetitions of 90 % of the samples.
 std::optional<RepeatedReadings> find_repeated(std::span<const ImuSample> samples, Triad triad);
 

@@ -11,14 +11,15 @@ namespace tumble {
 namespace {
 
 constexpr int kPlateauSamples = 4;
-// largest spread of the readings of a plateau, relative to the saturation limit
+// largest difference between the readings of a plateau (a run of equal readings), relative to the saturation limit
 constexpr double kPlateauSpreadRatio = 2e-5;
 // A plateau is a run of equal readings. A gyro plateau below kLowGyroPlateau_rad_s must have at least twice
 // kPlateauSamples readings, and a jump of the readings at its start or end.
 constexpr double kLowGyroPlateau_rad_s = 1.0;
 constexpr double kGyroPlateauMin_rad_s = 0.02;
 constexpr double kAccelPlateauMin_m_s2 = 15.0;  // greater than gravity, so that rest is no plateau
-// minimum jump at the start or end of a gyro plateau below kLowGyroPlateau_rad_s, in steps of the sensor's resolution
+// minimum jump of the reading at the start or end of a gyro plateau below kLowGyroPlateau_rad_s, in steps of the
+// sensor's resolution
 constexpr double kJumpMinDigits = 8.0;
 // A reading above (1 - kClipEnterRatio) times the saturation limit is clipped. Next to a clipped reading, a reading
 // above (1 - kClipLeaveRatio) times the saturation limit is also clipped.

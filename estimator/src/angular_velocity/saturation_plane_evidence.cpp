@@ -22,11 +22,12 @@ constexpr double kBendRatioMin = 3.0;
 constexpr double kLevelRangeFraction = 0.2;
 constexpr std::size_t kNoiseWindow = 9;
 constexpr double kNoiseQuantile = 0.2;
-// A kink is a change of slope on the clipped axis alone, at the start or end of a saturation.
+// A kink is a change of the clipped axis' slope, while the slopes of other axes remain constant, at the start or end of
+// a saturation.
 constexpr double kMaxKinkLogLikelihood = 2.5;
 constexpr double kMotionSigmasMin = 10.0;
 constexpr double kThinLogLikelihoodMin = 8.0;
-// The fitted line costs two degrees of freedom, and the partly saturated first and last readings cost two more.
+// The fitted line uses two degrees of freedom, and the partly saturated first and last readings use two more.
 constexpr std::size_t kThinLostFreedom = 4;
 constexpr double kAtRailSigmas = 4.0, kAtRailRatioMax = 0.006;
 constexpr double kBeyondPenalty = 5.0, kOutlierFraction = 0.02;
@@ -54,8 +55,8 @@ Segment next_segment(std::span<const std::size_t> inliers, std::size_t& at) {
   return out;
 }
 
-// Returns the log-likelihood ratio of two hypotheses, saturated and unsaturated readings: rails.md (R65). Saturated
-// readings contain no noise if the device adds the noise before it clips.
+// Returns the log-likelihood ratio of two hypotheses, saturated and unsaturated readings: rails.md (R65). If the device
+// clips the sum of rate and noise, saturated readings contain no noise.
 double plane_thickness_log_likelihood(const DistinctReadings& readings, const SaturationPlaneCandidate& facet,
                                       const Segment& s) {
   if (s.size() <= kThinLostFreedom) return 0.0;
@@ -104,8 +105,8 @@ std::optional<CurvatureAtSegment> curvature_at_segment(const DistinctReadings& r
   return CurvatureAtSegment{depth * inside * inside, std::max(high - low, 2.0 * facet.noise_sigma_rad_s)};
 }
 
-// Returns the log likelihood of saturation from the change of slope where the saturation starts or ends: rails.md
-// (R64).
+// Returns the log likelihood of saturation, computed from the change of slope at the start and end of the saturation:
+// rails.md (R64).
 double end_kink_evidence(const DistinctReadings& readings, const SaturationPlaneCandidate& facet, const Segment& s,
                          bool after) {
   const std::vector<Vector3d>& rates = readings.rates;

@@ -9,7 +9,7 @@ namespace tumble {
 
 struct DistinctReadings {
   std::vector<Eigen::Vector3d>& rates;
-  /// gyro noise: lower quantile over short time windows [rad/s]
+  /// gyro noise: lower quantile of the noise in short time windows [rad/s]
   Eigen::Vector3d noise = Eigen::Vector3d::Zero();
   Eigen::Vector3d min_reading_change = Eigen::Vector3d::Zero();  ///< smallest change between two readings [rad/s]
   Eigen::Vector3d peak = Eigen::Vector3d::Zero();                ///< largest magnitude of each axis [rad/s]
@@ -17,8 +17,8 @@ struct DistinctReadings {
 DistinctReadings distinct_readings(std::span<const Eigen::Vector3d> readings, std::vector<Eigen::Vector3d>& rates,
                                    std::vector<double>& noises);
 
-/// SaturationPlaneCandidate is a possible plane of saturated readings: a reading y is on the plane if sign * row . y =
-/// level.
+/// SaturationPlaneCandidate is a possible saturation plane (SaturationPlane): a reading y is on the plane if sign * row
+/// . y = level.
 struct SaturationPlaneCandidate {
   int axis = 0, side = 1;
   Eigen::Vector3d row = Eigen::Vector3d::Zero();

@@ -27,16 +27,16 @@ using rails::PlaneInlierGate;
 using rails::PlaneSlopePrior;
 using rails::SaturationPlaneSide;
 
-// Each plane of saturated readings is fitted with two different initial standard deviations of the distance between
-// reading and plane. kInitialSigmaRatios contains the two standard deviations as fractions of
-// ExtremeReading::slab_thickness. The fit with the smaller initial standard deviation is better if few readings are
-// partly saturated.
+// Each saturation plane (SaturationPlane) is fitted with two different initial standard deviations of the distance
+// between reading and plane. kInitialSigmaRatios contains the two standard deviations as fractions of
+// ExtremeReading::slab_thickness. If few readings are partly saturated, the fit with the smaller initial standard
+// deviation is better.
 constexpr double kInitialSigmaRatios[] = {0.5, 0.02};
 constexpr double kElementLevelRatio = 0.04;
 constexpr double kNearElementLogOdds = 5.0, kNearStatedLogOdds = 3.0, kOppositeSignLogOdds = 5.0,
                  kImpossibleLogOdds = -100.0;
-// A saturation level far from the level of an earlier run reduces the log odds only by kFarFromKnownLogOdds, since the
-// device may have been replaced.
+// If a saturation level is far from the level of an earlier run, the log odds decrease only by kFarFromKnownLogOdds,
+// because the device may have been replaced.
 constexpr double kNearKnownLogOdds = 6.0, kKnownLevelSigmaRatio = 0.003, kFarFromKnownLogOdds = -3.0;
 // standard deviation of the change of a cross-axis sensitivity between two runs
 constexpr double kKnownSlopeSigma = 2e-3;
@@ -185,13 +185,14 @@ struct PlaneSideSearch {
     }
     const auto& rail = found.sensing_axis[static_cast<std::size_t>(axis)];
     if (rail || !(side.log_odds > -std::numeric_limits<double>::infinity())) return false;
-    // The planes of positive and negative saturation may be accepted together although each plane alone is rejected.
+    // The planes of positive and negative saturation may be accepted together although the evidence for each plane
+    // alone is insufficient.
     Pair alone;
     alone[i] = side;
     SaturationPlanes supposed = found;
     supposed.sensing_axis[static_cast<std::size_t>(axis)] = merged_plane(params, readings, alone);
     const SaturationPlaneSide other = search_plane_on_side(axis, -sign, supposed);
-    // The planes of positive and negative saturation share one prior: rails.md (R68).
+    // The planes of positive and negative saturation have one common prior: rails.md (R68).
     if (side.log_odds + other.log_odds - params.kLogOddsBefore < params.kLogOddsMin) return false;
     pair[i] = side;
     pair[1 - i] = other;
@@ -228,7 +229,7 @@ SaturationPlanes SaturationPlaneFinder::find(std::span<const Vector3d> readings_
     return merge_known_saturation_planes(found, readings.rates);
   const PlaneSideSearch search{params_, readings, workspace};
   std::array<Pair, 3> sides;
-  // Each accepted saturation plane changes the log odds of other saturation planes, so the search is repeated.
+  // Each accepted saturation plane changes the log odds of the other saturation planes, so the search is repeated.
   for (bool added = true; added;) {
     added = false;
     for (int axis = 0; axis < 3; ++axis) {

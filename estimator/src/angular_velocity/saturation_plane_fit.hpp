@@ -50,7 +50,8 @@ std::optional<ExtremeReading> find_extreme_reading(const SaturationPlaneFinder::
                                                    const PlaneSlopePrior& prior, double slope_range,
                                                    SaturationPlaneFinder::Workspace& workspace);
 
-/// Returns the cross-axis sensitivities of the plane that has the most readings just below the plane: rails.md (R57).
+/// Returns the cross-axis sensitivities of the plane with the most readings immediately below the plane: rails.md
+/// (R57).
 Eigen::Vector2d search_cross_axis_slopes(const DistinctReadings& readings, const ExtremeReading& extreme,
                                          double slope_max, const PlaneSlopePrior& prior,
                                          SaturationPlaneFinder::Workspace& workspace);

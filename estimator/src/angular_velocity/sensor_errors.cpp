@@ -56,7 +56,7 @@ Vector prior_deviations(const SensorErrorPriors& s, const ErrorFractions& shares
 
 constexpr double kPlain = 0.05;
 
-// Errors of the free-flight equations last longer than a sample, so the information of the readings is reduced.
+// Errors of the free-flight model are correlated over several samples, so the information of the readings is reduced.
 constexpr double kSensorErrorEvidenceWeight = 0.03;
 
 struct Hypothesis {
@@ -80,8 +80,8 @@ Hypothesis posterior(const Matrix& information, const Matrix& earlier_runs, cons
   Vector sharpened = scaled_h;
   all.solve_vector(sharpened);
   out.log_odds = log_prior + 0.5 * scaled_h.dot(sharpened) - all.half_log_determinant();
-  // Estimated scale and misalignment errors are kept at zero (heuristic), because errors of the free-flight equations
-  // change the residuals similarly.
+  // Errors of the free-flight model change the residuals like scale and misalignment errors do. As a heuristic, the
+  // estimated scale and misalignment errors are therefore zero.
   Vector mean = Vector::Zero();
   mean.tail<kRest>() = scaled_h.tail<kRest>();
   dense::Cholesky(sharp.bottomRightCorner<kRest, kRest>()).solve_vector(mean.tail<kRest>());
@@ -224,8 +224,8 @@ SensorErrorInformation evidence_from_earlier_runs(const KnownSensorErrors& earli
   Vector values;
   Matrix vectors;
   dense::decompose(scaled, values, vectors);
-  // If the loaded variance of a combination of sensor errors equals the prior variance, the loaded calibration contains
-  // no information about this combination.
+  // If a loaded variance equals the prior variance for a linear combination of sensor errors, the loaded calibration
+  // contains no information about this combination.
   const Vector precision_ratio = values.cwiseMax(1e-12).cwiseInverse();
   const Vector of_mean = (precision_ratio.array() > 1.0).select(precision_ratio, Vector::Zero());
   const auto in_units = [&](const Vector& kept_values) -> Matrix {

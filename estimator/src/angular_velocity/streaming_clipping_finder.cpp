@@ -17,14 +17,14 @@ using Eigen::Vector3d;
 
 constexpr double kNearExtremeRatio = 0.9, kStoreRatio = 0.85;
 constexpr std::size_t kBeside = 4;
-// The memory keeps the first and the latest kLatestReadings readings, because the first readings of a run determine the
-// gyro's noise.
+// The buffer keeps the first readings of a run, because the first readings determine the gyro's noise, and the latest
+// kLatestReadings readings.
 constexpr std::size_t kLatestReadings = 48;
 // The search for saturation repeats when the number of large readings has grown by the fraction 1 /
 // kSearchGrowthDivisor.
 constexpr std::size_t kSearchGrowthDivisor = 8;
-// Only readings above these fractions (gyro, accelerometer) of the smallest possible saturation level count as near
-// saturation.
+// A reading counts as near saturation if the reading exceeds a fraction of the smallest possible saturation level. The
+// two fractions are for gyro and accelerometer.
 constexpr double kLowReadingRatios[] = {0.5, 0.9};
 
 std::array<std::optional<double>, 6> saturation_limits_of(const SaturationLimitDetector& axis_aligned_rails,

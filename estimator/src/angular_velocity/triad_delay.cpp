@@ -27,7 +27,7 @@ constexpr int kDelaysPerSample =
 constexpr double kRateMin_rad_s = 2.0;
 constexpr std::size_t kSamplesMin = 20, kSamplesMax = 2000;
 constexpr double kLeverSigma_m = 0.02, kBiasSigma_m_s2 = 0.3;
-// Two readings within kApart_s of each other count as one reading with time jitter.
+// Two successive samples that are at most kApart_s apart count as one sample with time jitter.
 constexpr double kApart_s = 1e-4;
 // widths [m/s^2] of the robust kernel for the free-flight residuals of the specific force, in successive iterations
 constexpr double kKernelWidths_m_s2[] = {3.0, 1.5, 0.8, 0.4, 0.25, 0.2};

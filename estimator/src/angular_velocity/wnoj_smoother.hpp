@@ -13,13 +13,13 @@ namespace tumble {
 
 /// WnojSmoother smooths the rate of each axis with a white-noise-on-jerk prior (Tang, Yoon and Barfoot, RA-L 2019).
 ///
-/// The state does not contain the angle. No sample measures the angle, so the omission causes no error. The motion
-/// prior of (rate, acceleration) has the process noise Q = q [dt^3/3, dt^2/2; dt^2/2, dt]. The square-root information
-/// form stays accurate even if variances differ by many orders of magnitude.
+/// The state does not contain the angle, because no sample measures the angle. The motion prior of (rate, acceleration)
+/// has the process noise Q = q [dt^3/3, dt^2/2; dt^2/2, dt]. The square-root information form stays accurate even if
+/// variances differ by many orders of magnitude.
 ///
-/// Because the axes are smoothed separately, WnojSmoother neglects that rotations about different axes do not commute.
-/// For the rate w, angular acceleration alpha and sample period dt, the rate error is about dt^2 |w x alpha| / 4 per
-/// sample.
+/// WnojSmoother smooths each axis separately, and therefore neglects that rotations about different axes do not
+/// commute. For the rate w, angular acceleration alpha and sample period dt, the rate error is about dt^2 |w x alpha| /
+/// 4 per sample.
 class WnojSmoother {
  public:
   struct Params {

@@ -68,7 +68,7 @@ void ForceErrors::update(State& state) const {
       PHt.head(used).noalias() = P * row.head(used);
       const double s = row.dot(PHt) + variance;
       const double innovation = state.force_difference_m_s2(axis, k) / samples - row.dot(state.x);
-      // A large innovation indicates an impact within the averaged samples.
+      // If the innovation is large, an impact has probably occurred within the averaged samples.
       if (squared(innovation) > squared(kGateSigmas) * s) continue;
       state.x += PHt * (innovation / s);
       P.noalias() -= PHt.head(used) * (PHt.head(used) / s).transpose();

@@ -12,8 +12,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-// If the jerk is white noise of density q, the second difference of readings with period P has the variance
-// `kSecondDifference` q P^3.
+// If the angular jerk is white noise of density q, the second difference of rate readings with period P has the
+// variance `kSecondDifference` q P^3.
 constexpr double kSecondDifference = 11.0 / 20.0, kJerkSpan_periods = 1.5;
 
 bool is_free(const GyroReadings& rates, std::size_t k, Eigen::Index axis) {

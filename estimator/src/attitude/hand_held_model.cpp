@@ -78,8 +78,8 @@ double clipped_axis_deficit(const NodeReadings& readings, const std::array<GyroS
   return sum;
 }
 
-// Unclipped readings form two independent measurements, the rate at the mean time and the slope of the rate: carried.md
-// (C13).
+// Averaged over a time step, unclipped readings form two independent measurements: the rate at the mean time and the
+// slope of the rate: carried.md (C13).
 double add_unclipped_readings(const SensingAxisSums& e, const GyroSensingAxisRow& rows, double information,
                               System::StateBlock& block, System::BorderBlock& corner) {
   const double mean_t = e.time_sum_s / e.count;
@@ -164,8 +164,8 @@ double add_gyro(const NodeReadings& readings, const Matrix3d& rows, const Readin
     const SensingAxisSums& e = readings.gyro[static_cast<std::size_t>(i)];
     const GyroSensingAxisRow& element = elements[static_cast<std::size_t>(i)];
     if (e.count > 0.0) {
-      // While another sensing element clips, sensing direction errors shift all readings of a time step equally, so
-      // averaging does not reduce the shift.
+      // If one sensing element clips, errors of the sensing directions shift all readings of the other elements equally
+      // within a time step. Averaging does not reduce this shift.
       const double tilt = noise.deficit_error_ratio * clipped_axis_deficit(readings, elements, i);
       cost += add_unclipped_readings(
           e, element,
@@ -258,7 +258,7 @@ Motion::Motion(const Params& params) : params_(params) {
   Eigen::Matrix<double, 2, 4> J;
   J << -1.0, -h, 1.0, 0.0, 0.0, -1.0, 0.0, 1.0;
   jerk_ = J.transpose() * (q * Q).inverse() * J;
-  // variance of the rotation between two nodes with known rate and angular acceleration: carried.md (C4)
+  // variance of the rotation between two time steps (nodes) with known rate and angular acceleration: carried.md (C4)
   attitude_error_variance_ = q * std::pow(h, 5) / 720.0 + 1e-12;
 
   // See carried.md (C6), (C7), (C8).

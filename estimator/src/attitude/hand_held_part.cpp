@@ -11,8 +11,8 @@ namespace tumble::hand_held {
 
 namespace {
 
-// The optimisation has converged if the cost changes by less than kCostChange. A change of the cost by kCostChange
-// multiplies the odds between two solutions by 1.1.
+// The optimisation has converged if the cost changes by less than kCostChange. A cost change of kCostChange multiplies
+// the odds between two solutions by 1.1.
 constexpr double kCostChange = 0.2;
 constexpr int kStepsMax = 30;
 

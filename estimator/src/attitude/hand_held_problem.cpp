@@ -15,11 +15,12 @@ constexpr double kRestSigma_rad_s = 0.01;  // standard deviation of the rate at 
 constexpr double kRestSigma_m_s = 0.02;
 constexpr double kRestSigma_m_s2 = 0.1;
 
-// largest change of an attitude for which the linearisation is valid
+// largest change of an attitude in one iteration, for which the linearisation is still valid
 constexpr double kRotationMax_rad = 0.8;
-// largest attitude step at convergence [rad]; ten times larger for rates [rad/s]
+// The optimisation has converged if attitudes change by at most kConvergenceTolerance [rad], and rates by at most ten
+// times this number [rad/s].
 constexpr double kConvergenceTolerance = 1e-3;
-// iterations before the spectral density of the hand's acceleration is estimated
+// number of iterations before the optimisation estimates the spectral density of the hand's acceleration
 constexpr int kFirstAdaptIteration = 3;
 constexpr int kLastAdaptIteration = 8;
 constexpr int kHalvings = 4;          // maximum number of times that a step is halved if the cost increases
@@ -56,8 +57,8 @@ ReadingNoise reading_noise(const HandHeldSmoother::Params& p, double period_s) {
 
 namespace {
 
-// The reported covariance neglects the lower bounds from saturated readings. With averaging windows of length P and the
-// jerk density q, mean rate and rate at the window's centre differ with the variance q P^3/320: carried.md (C26).
+// The reported covariance neglects the lower bounds from saturated readings. For averaging windows of length P and the
+// jerk density q, the mean rate minus the rate at the window's centre has the variance q P^3/320: carried.md (C26).
 ReadingNoise noise_from_data_sheet(const HandHeldSmoother::Params& params, ReadingNoise noise, double period_s) {
   noise.bound = 0.0;
   noise.window_rate_sigma_rad_s = params.jerk_rad_s3_sqrts * std::sqrt(period_s * period_s * period_s / 320.0);

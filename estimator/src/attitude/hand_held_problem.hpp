@@ -10,7 +10,7 @@
 
 namespace tumble::hand_held {
 
-/// `jerk` is a factor on the root spectral density of the angular jerk in `params`.
+/// `jerk` is a factor on the root spectral density of the angular jerk that `params` contains.
 Motion::Params motion_params(const HandHeldSmoother::Params& params, double jerk = 1.0);
 ReadingNoise reading_noise(const HandHeldSmoother::Params& params, double period_s);
 double add_node(const NodeReadings& readings, const Eigen::Matrix3d& rows, const ReadingNoise& noise,
@@ -18,11 +18,11 @@ double add_node(const NodeReadings& readings, const Eigen::Matrix3d& rows, const
                 System::StateBlock& block, System::BorderBlock& corner);
 double add_constants_prior(const HandHeldSmoother::Params& params, const Constants& constants,
                            System::BorderBlock& corner);
-/// Returns the difference between the states of two nodes, as a step for Node::move.
+/// Returns the difference between the states of two time steps (nodes), as an argument of Node::move.
 System::StateVector node_difference(const Node& from, const Node& to);
 
-/// NodeMessage is a prior on the state of one node that summarises all earlier or all later nodes. The prior is
-/// linearised at the state `linearisation_node`.
+/// NodeMessage is a prior on the state of one time step (node) that summarises all earlier or all later time steps. The
+/// prior is linearised at the state `linearisation_node`.
 struct NodeMessage {
   Node linearisation_node;
   System::StateMatrix information = System::StateMatrix::Zero();
@@ -30,8 +30,8 @@ struct NodeMessage {
   double add(const Node& node, System::StateBlock& block) const;
 };
 
-/// ProblemSegment is the range of nodes [first, last] of a problem. A prior on the first node
-/// replaces the nodes before the range, and a prior on the last node replaces the nodes after the range.
+/// ProblemSegment is the range [first, last] of a problem's time steps (nodes). A prior on the first time step replaces
+/// all earlier time steps, and a prior on the last time step replaces all later time steps.
 struct ProblemSegment {
   std::size_t first = 0, last = 0;
   NodeMessage message_from_before = {}, message_from_after = {};
@@ -41,7 +41,7 @@ class HandHeldProblem {
  public:
   HandHeldProblem(const HandHeldSmoother::Params& params, const Eigen::Matrix3d& rows, const NodeData& collected,
                   std::vector<Node> nodes);
-  /// condense_other_nodes() must have set `part.message_from_before` and `part.message_from_after`.
+  /// The caller must set `part.message_from_before` and `part.message_from_after` with condense_other_nodes().
   HandHeldProblem(const HandHeldProblem& whole, const ProblemSegment& part);
 
   /// Returns `diverged` if the normal equations are not positive definite.
@@ -60,7 +60,7 @@ class HandHeldProblem {
   void restore(Solution answer);
   /// Returns false if the normal equations are not positive definite.
   bool condense_other_nodes(std::span<ProblemSegment> parts) const;
-  /// Returns the cost at the solution, or infinity without convergence.
+  /// Returns the cost of the solution, or infinity if the optimisation has not converged.
   double iterate_to_convergence();
 
   const Eigen::Matrix3d& sensing_directions() const { return sensing_directions_; }
@@ -105,7 +105,7 @@ class HandHeldProblem {
   std::vector<double> jerk_;  // factor on the root spectral density of the angular jerk, per node
   std::vector<double>
       hand_acceleration_factors_;  // factor on the spectral density of the hand's acceleration, per step between nodes
-  // cumulative sum of squared hand accelerations, relative to the assumed mean square
+  // cumulative sum of squared hand accelerations, each divided by the assumed mean square
   std::vector<double> hand_power_cumulative_;
   std::vector<System::StateBlock> state_blocks_;
   std::vector<System::StateVector> state_steps_;

@@ -47,8 +47,8 @@ double since_s(std::span<const ImuSample> samples, std::size_t from, std::size_t
 }
 
 constexpr double kMinClockAgreement = 0.9;
-// Readings with averaging windows of 20 ms (pendulums) were saturated for a part of the window, readings with 10 ms
-// (hand-held wands) were not.
+// Partial saturation is assumed only for averaging windows that are longer than kLongWindow time steps. Recorded
+// readings with windows of 20 ms (pendulums) were partly saturated, and readings with 10 ms (hand-held wands) were not.
 constexpr double kLongWindow = 1.5;
 
 TimeNs nanoseconds(double s) {
@@ -113,13 +113,13 @@ ClippedSegment clipped_segment(std::span<const ClipSigns> signs, std::size_t ele
     if (sign == 0 || (sign != ClipSigns::kMissingSign && out.saturated_side != 0 && sign != out.saturated_side)) break;
     if (sign != ClipSigns::kMissingSign) out.saturated_side = sign;
   }
-  // If all readings of a segment are unusable, the rate is assumed to be beyond the saturation level, with the sign of
-  // the previous reading.
+  // If all readings of a segment are unusable, the rate is assumed to exceed the saturation level, with the sign of the
+  // reading before the segment.
   if (out.saturated_side == 0) out.saturated_side = raw[begin == 0 ? begin : begin - 1] < 0.0 ? -1 : 1;
   return out;
 }
 
-// Averaging windows are `period_s` long even after a missing reading.
+// All averaging windows have the length `period_s`, even if the previous reading is missing.
 AveragingWindows averaging_windows_of(std::span<const ImuSample> samples, TimeNs origin_ns, double period_s) {
   AveragingWindows out;
   out.period_s = period_s;
@@ -141,8 +141,8 @@ void assign_windows_to_nodes(double node_s, std::size_t nodes, AveragingWindows&
   }
 }
 
-// Returns the standard deviations of specific forces due to the unknown averaging time of a slow accelerometer:
-// carried.md (C12).
+// Returns the standard deviations of specific forces that result from the unknown averaging time of a slow
+// accelerometer: carried.md (C12).
 std::vector<double> window_force_sigmas(TimedReadings& forces, double log_period_s) {
   const std::vector<ImuSample>& samples = forces.samples;
   std::vector<double> out(samples.size(), 0.0);
@@ -182,8 +182,8 @@ void correct_partial_saturation(double noise_rad_s, const Eigen::Matrix3d& rows,
   for (std::size_t k = 0; k < count; ++k) rates.samples[k].angular_velocity_rad_s += inverse * lost[k];
 }
 
-// Increases the standard deviation of rates recovered from saturation, because their errors are correlated: carried.md
-// (C15).
+// Increases the standard deviation of rates recovered from saturation, because the errors of successive recovered rates
+// are correlated: carried.md (C15).
 void recovered_readings(const HandHeldSmoother::Params& params, const SensingAxisClipSigns& clipped,
                         GyroReadings& rates) {
   const double nodes = std::sqrt(2.0 * HandHeldSensorParams::kRecoveredTau_s / params.expert.node_s);
@@ -210,7 +210,7 @@ TimedReadings timed_readings(std::span<const ImuSample> samples, const SensingAx
     }
     ImuSample own = samples[k];
     if (repeated) own.time_ns -= nanoseconds(repeated->age_s[k]);
-    // If the estimated clock is inaccurate, two readings may have the same time.
+    // If the estimated clock is inaccurate, two successive readings may have equal times.
     if (repeated && !out.samples.empty())
       own.time_ns = std::max(own.time_ns, out.samples.back().time_ns + nanoseconds(0.5 * period_s));
     out.samples.push_back(own);

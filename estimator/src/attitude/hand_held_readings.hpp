@@ -8,12 +8,12 @@
 
 namespace tumble::hand_held {
 
-/// Sensing directions with a determinant below kRowsMin are assumed not to span three dimensions.
+/// If the determinant of the three sensing directions is below kRowsMin, the directions are assumed linearly dependent.
 inline constexpr double kRowsMin = 0.1;
-/// standard deviation of a repeated reading's time, in samples: 1/sqrt(12) for a uniform distribution
+/// standard deviation of a repeated reading's time, in sample periods: 1/sqrt(12) for a uniform distribution
 inline constexpr double kAge_samples = 0.29;
 
-/// Time zero is the centre of the first averaging window.
+/// All times are relative to the centre of the first averaging window.
 struct AveragingWindows {
   double period_s = 0.0;
   std::vector<double> window_centre_s;
@@ -21,7 +21,7 @@ struct AveragingWindows {
   std::vector<std::size_t> node_of;  ///< nearest node to the centre of each window
 };
 
-/// TimedReadings contains each reading of a sensor once, even if the recording repeats readings.
+/// TimedReadings contains each reading of a sensor once, even if the recording repeats the reading.
 struct TimedReadings {
   std::vector<ImuSample> samples;  ///< with time stamps at the end of the averaging windows
   std::vector<ClipSigns> clip_signs;
@@ -30,7 +30,7 @@ struct TimedReadings {
 };
 
 struct GyroReadings : TimedReadings {
-  /// standard deviation of the correction for partial saturation, per sensing element; 0: not corrected
+  /// standard deviation of the correction for partial saturation, per sensing element; 0 without correction
   std::vector<Eigen::Vector3d> partial_saturation_sigma_rad_s;
 };
 
@@ -48,13 +48,13 @@ NodeData collect_node_data(const HandHeldSmoother::Params& params, std::span<con
 inline constexpr double kLongest = 1.5;  ///< longest averaging window of a reading, in sample periods
 
 /// Estimates the root of the spectral density of angular jerk [rad/s^3 sqrt(s)] near each time step (node) of the
-/// smoother: carried.md (C24), (C25). Cost: O(N). If the readings near a time step do not determine the jerk, the
-/// result for this time step is 0.
+/// smoother: carried.md (C24), (C25). Cost: O(N). The result for a time step is 0 if the readings near the time step do
+/// not determine the jerk.
 std::vector<double> estimate_jerk(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s,
                                   double node_s, std::size_t nodes);
 
-/// Returns the gyro's rates, with clipped readings replaced by a cubic polynomial. The cubic polynomial stays between 1
-/// and kFillRatioMax times the saturation level.
+/// Returns the gyro's rates, with clipped readings replaced by a cubic polynomial. The cubic polynomial is limited to
+/// values between 1 and kFillRatioMax times the saturation level.
 std::vector<Eigen::Vector3d> filled_rates(std::span<const ImuSample> samples, const SensingAxisClipSigns& clipped);
 
 /// heuristic upper limit of the initial rates, as a multiple of the saturation level
@@ -74,7 +74,8 @@ void add_rate(const ImuSample& sample, const Eigen::Matrix3d& rows, const ClipSi
               const Eigen::Vector3d& subsample_sigma_rad_s, NodeReadings& node);
 void add_force(const ImuSample& sample, const ClipSigns& signs, double t, NodeReadings& node);
 
-/// A VQF filter with the rates of filled_rates() initialises attitude and rates of the nodes.
+/// The attitude filter VQF uses the rates of filled_rates(), and initialises attitude and rate of each time step
+/// (node).
 Status start_nodes(const HandHeldSmoother::Params& params, const Eigen::Matrix3d& rows, const NodeData& collected,
                    std::vector<Node>& nodes);
 

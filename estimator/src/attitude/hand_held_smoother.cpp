@@ -109,8 +109,8 @@ Status HandHeldSmoother::estimate(std::span<const ImuSample> samples, const Sens
     const double at = static_cast<double>(i) * params_.expert.node_s;
     const double centre = collected.samples.window_centre_s[k] - at, end = collected.samples.end_s[k] - at;
     rates[k].time_ns = attitudes[k].time_ns = samples[k].time_ns;
-    // A reading is the mean rate over its averaging window, and therefore valid at the window's centre. The reported
-    // attitude is the attitude at the time stamp of the reading.
+    // A gyro reading is the mean rate over an averaging window, and therefore valid at the window's centre. The
+    // reported attitude is valid at the time stamp of the reading.
     rates[k].w_WI_I_rad_s = node.w_WI_I_rad_s + centre * node.angular_acceleration_rad_s2;
     rates[k].covariance_rad2_s2 = covariance.block<3, 3>(hand_held::kRate, hand_held::kRate);
     rates[k].clipped_axes = clipped_axes(collected.rates, k);

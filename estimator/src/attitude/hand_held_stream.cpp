@@ -50,7 +50,7 @@ HandHeldRateStream::HandHeldRateStream(const Params& params)
   require_in_interval("window_s", params.window_s, params.lag_s + 4.0 * params.body.expert.node_s, 20.0);
   nodes_max_ = static_cast<std::size_t>(std::lround(params.window_s / params.body.expert.node_s)) + 1;
   delay_ = static_cast<std::size_t>(std::lround(params.lag_s / params.period_s));
-  // At more than twice the nominal sample rate, the stream drops the oldest readings.
+  // If samples arrive at more than twice the nominal sample rate, the stream drops the oldest readings.
   readings_max_ = 2 * static_cast<std::size_t>(std::ceil(params.window_s / params.period_s)) + 4;
 }
 
@@ -100,7 +100,7 @@ Status HandHeldRateStream::push(const ImuSample& sample, const SensingAxisClipSi
   if (begun) extend_nodes(state);
   add(latest, state);
   if (begun) predict_newest(state);
-  // While the gyro is unsaturated, the predicted nodes are accurate, so fewer optimisation steps suffice.
+  // While the gyro is unsaturated, the predicted states are accurate, so fewer optimisation steps suffice.
   const bool due =
       begun && (latest.node % hand_held::kFreeNodes == 0 || latest.node < kFirstNodes || has_clipped_reading(state));
   const bool factorised = due && step(state);
@@ -149,7 +149,8 @@ void HandHeldRateStream::append_reading(const ImuSample& sample, const RepeatDet
   ++state.samples;
 }
 
-// Returns whether the direction of a sensing element, or the clipping of an earlier sample, has changed.
+// Returns whether the sensing directions in `known`, or the clip signs of an earlier sample in `known`, differ from
+// `state`.
 bool HandHeldRateStream::update_clip_signs(const SensingAxisClipSigns& known, State& state) const {
   bool changed = state.sensing_directions != known.sensing_directions;
   state.sensing_directions = known.sensing_directions;
@@ -163,13 +164,13 @@ bool HandHeldRateStream::update_clip_signs(const SensingAxisClipSigns& known, St
   return changed;
 }
 
-// Omits the newest reading, because push() adds the newest reading.
+// Adds all readings to the window except the newest reading, which push() adds.
 void HandHeldRateStream::rebuild_window(State& state) const {
   for (Knot& knot : state.window) knot.readings = {};
   for (const Reading& reading : std::span(state.readings).first(state.readings.size() - 1)) add(reading, state);
 }
 
-// The averaging window of a slow sensor ended at an unknown time since the previous sample: rate_stream.md (R95). A
+// The averaging window of a slow sensor ended at an unknown time after the previous sample: rate_stream.md (R95). A
 // slow accelerometer averages over an unknown part of its period: carried.md (C12).
 void HandHeldRateStream::add(const Reading& reading, State& state) const {
   const double node_s = params_.body.expert.node_s;

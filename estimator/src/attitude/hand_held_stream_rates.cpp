@@ -16,7 +16,7 @@ using hand_held::System;
 namespace {
 
 constexpr double kUnknown_rad2_s2 = 1e6;  // variance of a rate if the equations have no solution
-// Near a clipped reading, the covariance is computed with an increased density of the angular jerk.
+// Near a clipped reading, the covariance is computed with a larger density of the angular jerk.
 constexpr double kNear_s = 0.1;
 
 std::uint8_t clipped_axes(const ClipSigns& signs) {
@@ -45,7 +45,8 @@ std::size_t HandHeldRateStream::first_unreported_reading(const State& state) con
   return state.readings.size() - std::min(state.readings.size(), delay_ + 1);
 }
 
-// If the sample rate is lower than stated, a time step (node) may leave the window before its rate is reported.
+// If the sample rate is lower than the user has stated, a time step (node) may leave the window before its rate is
+// reported.
 void HandHeldRateStream::store_oldest_rates(State& state) const {
   const std::size_t first = first_unreported_reading(state);
   for (std::size_t k = first; k < state.readings.size() && state.readings[k].node <= state.first_node; ++k) {
@@ -73,7 +74,7 @@ AngularRateState HandHeldRateStream::rate_state_of_reading(const Reading& readin
   return out;
 }
 
-// Counts a clipped segment whose number of revolutions is ambiguous: carried.md (C42).
+// Increments the counter of clipped segments whose number of revolutions is ambiguous: carried.md (C42).
 void HandHeldRateStream::count_revolutions(std::size_t at, const AngularRateState& rate, State& state) const {
   const Reading& reading = state.readings[at];
   const double since_s = at > 0 ? reading.end_s - state.readings[at - 1].end_s : params_.period_s;
@@ -96,8 +97,8 @@ void HandHeldRateStream::count_revolutions(std::size_t at, const AngularRateStat
   }
 }
 
-// See carried.md (C23), (C41). `factorised` is true if the equations are already factorised for the assumed jerk
-// density.
+// See carried.md (C23), (C41). `factorised` states whether the normal equations are already factorised for the assumed
+// jerk density.
 void HandHeldRateStream::report_rates(std::size_t first, std::size_t last, bool factorised, State& state,
                                       std::span<AngularRateState> out) const {
   const auto of = [&](std::size_t k) {

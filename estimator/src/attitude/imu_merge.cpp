@@ -15,12 +15,12 @@ namespace tumble {
 
 namespace {
 
-// additional tolerance for rate differences between IMUs, as a fraction of the rate
+// tolerated rate difference between IMUs due to scale errors, as a fraction of the rate
 constexpr double kRateToleranceRatio = 0.03;
 
 constexpr double kBiasSigma_rad_s = 0.01, kScaleSigma = 0.01;
 constexpr double kOffsetSigma_s = 3e-3;  // prior standard deviation of each IMU's time offset
-// maximum differences from the median of all IMUs, beyond which an IMU is excluded
+// An IMU is excluded if its difference from the median of all IMUs exceeds the rate tolerance or the force tolerance.
 constexpr double kRateTolerance_rad_s = 0.15, kForceTolerance_m_s2 = 3.0;
 constexpr double kHiddenForce_m_s2 = 3.0;  // largest force error attributed to saturation during a part of the window
 constexpr double kRotating_rad_s2 = 1.0;   // minimum angular acceleration for estimating a time offset
@@ -30,15 +30,16 @@ constexpr double kUnsaturatedForceRatio = 0.8;  // accelerometer errors are esti
 constexpr int kOffset = ImuMerge::kErrorCount - 1;
 // The lever arm effect is the specific force that rotation causes at the IMU's distance from the mean IMU position.
 // lever_arm_agreement() returns a value only if the time integral of the squared lever arm effects reaches
-// kArmSquareMin_m2_s3. If a lever arm effect of 1 m/s^2 lasts 1 s, an accelerometer bias of 0.05 m/s^2 changes
-// lever_arm_agreement() by at most 0.05.
+// kArmSquareMin_m2_s3. For example, if a lever arm effect of 1 m/s^2 lasts 1 s, an accelerometer bias of 0.05 m/s^2
+// changes lever_arm_agreement() by at most 0.05.
 constexpr double kArmSquareMin_m2_s3 = 1.0;
 constexpr double kRepeated_s = 0.03;
 constexpr double kWindowMax_s = 0.05;  // maximum window for a central difference
 
-// After an impact, a contradicting accelerometer is excluded for kSuspect_s, because impacts come in groups.
+// After an impact, an accelerometer that contradicts the others is excluded for kSuspect_s, because impacts often occur
+// in quick succession.
 constexpr double kSuspect_s = 0.04;
-// standard deviation of the angular acceleration in a time window, as a fraction of the change since the previous
+// standard deviation of the angular acceleration in a time window, as a fraction of its change since the previous time
 // window
 constexpr double kAccelerationSigmaRatio = 0.3;
 
@@ -190,12 +191,12 @@ ImuMerge::ImuMask ImuMerge::select_agreeing_imus(const Readings& readings, const
         (setup_.T_mean_imu[i].translation() - mean_imu_position_m_).norm() * middle_rate.squaredNorm() * 2.0;
     const bool agrees = units < 3 || ((rates[i] - middle_rate).norm() < rate_tolerance &&
                                       (forces[i] - middle_force).norm() < kForceTolerance_m_s2 + turned);
-    // With three or more IMUs, AngularRateRecovery uses a clipped gyro as a lower bound.
+    // With three or more IMUs, AngularRateRecovery uses the reading of a clipped gyro as a lower bound of the rate.
     const int clipping = units < kMinImusForRecovery ? kClipAccel | kClipGyro : kClipAccel;
     used[i] = agrees && (readings[i].device_clip_flags & clipping) == 0;
   }
   const auto kept = std::count(used.begin(), used.end(), true);
-  // If no majority of the IMUs agrees, the correct IMUs cannot be identified, and all available IMUs are used.
+  // If no majority of the IMUs agrees, no faulty IMU can be identified, and all available IMUs are used.
   if (units < kMinImusForRecovery ? kept == 0 : 2 * kept <= units && kept < units) used = present;
   const bool apart = state.window_count > 0 && h > 0.0;  // derivatives from the last averaging window exist
   if (units >= kMinImusForRecovery && apart && middle_rate.cwiseAbs().maxCoeff() < setup_.gyro_range_rad_s) {

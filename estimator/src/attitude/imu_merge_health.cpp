@@ -9,8 +9,8 @@ namespace tumble {
 
 namespace {
 
-// An IMU counts as frozen if it repeats one reading for kUnitFrozen_s, while other IMUs change or gravity rotates. A
-// sensor with a lower sample rate than the log repeats each reading for less than kUnitFrozen_s.
+// An IMU counts as frozen if the IMU repeats one reading for kUnitFrozen_s while other IMUs change or gravity rotates.
+// A sensor with a lower sample rate than the log repeats each reading for less than kUnitFrozen_s.
 constexpr double kUnitFrozen_s = 0.1, kOthersRate_rad_s = 0.03, kOthersForce_m_s2 = 0.3, kGravityRotation_rad = 1.0;
 constexpr double kUnfreeze_s = 0.5;
 // The tolerated difference between a gyro and the median of all gyros grows with the rate, because of scale errors.
@@ -26,15 +26,16 @@ constexpr double kArmShareOff = 0.06;
 
 constexpr double kAxisContributionMin = 0.02;  // smallest contribution of a clipped axis that flags another axis
 
-/// Returns the component of the IMU's rotation perpendicular to the repeated accelerometer reading. A rotation
-/// perpendicular to gravity should change an accelerometer reading, which is mostly gravity.
+/// Returns the component of the IMU's rotation perpendicular to the repeated accelerometer reading. An accelerometer
+/// reading is mostly gravity, so a rotation perpendicular to gravity should change the reading.
 double rotation_across_force_rad(const ImuMerge::Repetition& hold) {
   return hold.turned_rad.cross(hold.repeated_reading.stableNormalized()).norm();
 }
 
 }  // namespace
 
-/// An axis of the common frame C is flagged if a clipped axis of any selected IMU contributes to it.
+/// Returns clip flags in axes of the common frame C. An axis is flagged if a clipped axis of any selected IMU has a
+/// component along this axis.
 std::uint8_t ImuMerge::combined_flags(const Readings& readings, const ImuMask& which) const {
   unsigned out = 0;
   for (std::size_t k = 0; k < which.size(); ++k) {
@@ -68,7 +69,8 @@ Eigen::Vector3d ImuMerge::median(const Vectors& values, const ImuMask& which) {
   return out;
 }
 
-/// An accelerometer that repeats one reading while the body rotates is frozen, even if all accelerometers do so.
+/// An accelerometer that repeats one reading while the body rotates is frozen, even if all accelerometers repeat their
+/// readings.
 void ImuMerge::detect_frozen_units(const ImuMask& present, const Vectors& rates, const Vectors& forces, double dt_s,
                                    TimeNs time_ns, State& state) const {
   ImuMask counted = present;

@@ -11,34 +11,37 @@ namespace tumble {
 
 namespace {
 
-// window over which the rotation of the specific force is compared with the gyro's rotation
+// time window in which the rotation of the specific force is compared with the rotation measured by the gyro
 constexpr double kGravityWindow_s = 0.2;
 constexpr double kForceReading_s = 0.02;  // averaging time of the IMU readings, independent of the sample rate
 constexpr double kWindowGapMax_s = 0.1;   // in a longer data gap, the gyro may miss a rotation
-// largest relative change of the specific force's magnitude in a window with constant force
+// largest relative change of the specific force's magnitude in a time window with constant force
 constexpr double kChangeMax = 0.12;
-// directions are compared if specific force and gravity differ by less than this fraction
+// Directions are compared if the magnitude of the specific force differs from gravity by less than the fraction
+// kGravityNear.
 constexpr double kGravityNear = 0.25;
-// On pendulums and hand-held wands, the rotation of the measured gravity is 0.75 to 1.21 times the gyro's rotation.
+// In recordings of pendulums and hand-held wands, the measured gravity rotates by 0.75 to 1.21 times the gyro's
+// rotation.
 constexpr double kSlopeMin = 0.65, kSlopeMax = 1.5;
-// minimum sum of squared rotations over all windows, and minimum rotation of one window
+// minimum sum of squared rotations over all time windows, and minimum rotation in one time window
 constexpr double kRotationMin_rad2 = 0.5, kRotationMin_rad = 0.15;
 // A push, or the centripetal force in free flight, may rotate the measured specific force for a few windows of 0.2 s.
 constexpr double kRotatedWindowsMin = 5.0;
-// A scale error of the gyro is reported only if a scaled gyro rotation explains the rotation of the specific force much
-// better. Scaling the gyro must reduce the sum of squared unexplained force rotations to less than the fraction
+// A scale error of the gyro is reported only if scaling the gyro rotation reduces the unexplained rotation of the
+// specific force strongly. The sum of squared unexplained rotations must decrease to less than the fraction
 // kScaledResidualMax: imu_merge.md (I21). A regression gives the ratio of specific-force rotation to gyro rotation:
-// imu_merge.md (I20).
-// Pushes of the body often make the specific force rotate less than the gyro measures, so the limit kReducedResidualMax
-// for such ratios is stricter.
+// imu_merge.md (I20). Pushes of the body often make the specific force rotate less than the gyro measures. If the ratio
+// is between 0 and 1, the stricter limit kReducedResidualMax therefore applies.
 constexpr double kScaledResidualMax = 0.75, kReducedResidualMax = 0.33;
-// rate of slow rocking on the ground or of a gyro offset, below which pushes may tilt the specific force
+// At gyro rates below kSlow_rad_s (slow rocking on the ground, or a gyro offset), pushes may tilt the specific force
+// more than the rotation does.
 constexpr double kSlow_rad_s = 0.4;
 constexpr double kFrozen_s = 1.0, kRepetitionRatio = 10.0;
-// minimum fraction of the specific force's rotation that a frozen gyro does not explain
+// A gyro counts as frozen only if the gyro rotation leaves at least the fraction kUnmeasuredMin of the specific force's
+// rotation unexplained.
 constexpr double kUnmeasuredMin = 0.5;
 constexpr double kStandstillRad2 = 1e-6;  // largest squared rotation of a gyro at rest
-// minimum difference of specific force and gravity that excludes rest, as a fraction of gravity
+// minimum difference between specific force and gravity that excludes rest, as a fraction of gravity
 constexpr double kNonRestForceRatio = 0.5;
 constexpr double kPushedMin_s = 0.2;  // minimum duration of a specific force that excludes rest
 // minimum specific force with a usable direction, as a fraction of gravity
@@ -68,7 +71,8 @@ void add_repeated_reading(const Eigen::Vector3d& reading, double dt_s, ImuPlausi
   if (froze) hold.frozen_s = std::max(hold.frozen_s, hold.repeated_s);
 }
 
-/// Returns the fraction of the specific force's rotation that the gyro does not explain, or 0 while unknown.
+/// Returns the fraction of the specific force's rotation that the gyro does not explain, or 0 if the fraction is
+/// unknown.
 double unexplained_force_rotation_ratio(const ImuPlausibility::State& state) {
   return rotated_enough(state) ? state.unexplained_force_rotation_rad2 /
                                      std::max(state.force_rotation_square_sum_rad2, state.gyro_rotation_square_sum_rad2)
@@ -118,8 +122,8 @@ void ImuPlausibility::process_averaged_reading(State& state) const {
   if (std::abs(force.norm() - setup_.gravity_m_s2) > kNonRestForceRatio * setup_.gravity_m_s2)
     state.moving_force_duration_s += length_s;
   if (state.window_started) {
-    // The rotation between two averaged specific forces is the rotation between the middles of the averaging intervals.
-    // The gyro rotation between the ends of the averaging intervals approximates the rotation between the middles.
+    // The rotation between two averaged specific forces refers to the middles of the averaging intervals. As an
+    // approximation, the gyro rotation between the ends of the averaging intervals is used.
     state.gyro_rotation_in_window = (state.gyro_rotation_in_window * so3::exp(turned)).normalized();
     state.length_s += length_s;
     const double start = state.window_start_force_m_s2.norm();
@@ -169,9 +173,9 @@ void ImuPlausibility::limit_memory(State& state) {
     *sum *= share;
 }
 
-/// A sensor whose reading never changed counts as frozen only while the body moves. A rotating specific force, or a
-/// specific force that excludes rest, proves that the body moves. An accelerometer that reads zero for longer than a
-/// free fall is frozen if the gyro measures rotation.
+/// If the reading of a sensor has never changed, the sensor counts as frozen only while the body moves. A rotating
+/// specific force, or a specific force that excludes rest, proves that the body moves. An accelerometer that reads zero
+/// for longer than a free fall is frozen if the gyro measures rotation.
 double ImuPlausibility::frozen_s(const State& state) const {
   const auto never_moved = [&](const RepeatedReadingTime& hold) {
     return hold.changing_readings_duration_s == 0.0 && hold.repeated_s >= kFrozen_s;
@@ -202,7 +206,7 @@ bool ImuPlausibility::fits_better(const State& state) const {
   const double slope = force_to_gyro_rotation_ratio(state), agreement = rotation_agreement(state);
   const double left = state.force_rotation_square_sum_rad2 * (1.0 - agreement * agreement);
   // Pushes of the body often change the ratio of specific-force rotation to gyro rotation, but rarely to values below 0
-  // or above 1.5. During slow rotation, pushes may cause any ratio of specific-force rotation to gyro rotation.
+  // or above 1.5. During slow rotation, pushes may change the ratio to any value.
   const double slow_rad = kSlow_rad_s * kGravityWindow_s;
   const bool pushed = (slope > 0.0 && slope < 1.0) ||
                       state.gyro_rotation_square_sum_rad2 < state.rotated_window_count * slow_rad * slow_rad;

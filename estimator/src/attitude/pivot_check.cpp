@@ -18,9 +18,9 @@ namespace tumble {
 namespace {
 
 /// AxisLabels assigns the axes of an accelerometer to the axes of the gyro in the same IMU. While the body rotates, the
-/// measured gravity rotates as the gyro predicts only if the axis labels are correct. The rotation of gravity cannot
-/// reveal that all three axes of the accelerometer are flipped. AxisLabels describes only rotations by multiples of a
-/// right angle.
+/// gyro predicts the rotation of the measured gravity correctly only with the correct axis labels. The rotation of
+/// gravity cannot reveal that all three axes of the accelerometer are inverted. AxisLabels describes only rotations by
+/// multiples of a right angle.
 struct AxisLabels {
   std::array<int, 3> axis = {0, 1, 2};              ///< index of the accelerometer reading along x, y, z of the gyro
   std::array<double, 3> axis_signs = {1., 1., 1.};  ///< sign of each axis; the first sign is 1
@@ -56,21 +56,21 @@ constexpr double kPivotReading_s =
     0.01;                           // averaging time of readings, so that the cost is independent of the sample rate
 constexpr double kSegment_s = 2.0;  // a hand holds a pivot still for about this time
 constexpr double kSegmentRotationMin_rad = 1.0;  // with less rotation, a segment cannot distinguish the gyro hypotheses
-// largest rms velocity of the pivot with which gyro rates explain a segment
+// largest rms velocity of the fitted pivot for which a time segment is used
 constexpr double kExplained_m_s = 0.3;
-// rms pivot velocity due to noise, below which two gyro hypotheses fit equally well
+// rms pivot velocity due to noise; below this velocity, the check does not prefer one gyro hypothesis to another
 constexpr double kPivotNoise_m_s = 0.03;
 constexpr double kSegmentGapMax_s = 0.1;  // an impact may hide in a longer data gap
-// The segments overlap by half, so six segments contain as much information as three independent segments.
+// Successive time segments overlap by half, so six segments contain as much information as three independent segments.
 constexpr double kEvidenceMin = 5.0, kMeanEvidenceMin = 0.6, kBetterSegmentsMin = 6.0, kBetterWorseRatioMin = 4.0;
-// with a longer lever arm, a lever arm error would appear as a gyro scale error
+// For a longer lever arm between pivot and IMU, an error of the lever arm could be mistaken for a gyro scale error.
 constexpr double kPivotDistanceMax_m = 0.25;
 constexpr double kScaleErrorMin = 0.025, kScaleErrorMinSigmas = 5.0;
 constexpr double kScaleSegmentsMin = 10.0, kScaleSegmentFractionMin = 0.5;
 constexpr double kScaleStep = 0.05;
 constexpr std::size_t kHalf = kAxisLabels, kTwice = kAxisLabels + 1;  // indices of the gyro scales 1/2 and 2
 constexpr std::size_t kLower = kAxisLabels + 2, kUpper = kAxisLabels + 3, kReadings = kAxisLabels + 4;
-// number of compared gyro hypotheses, without the small scale changes kLower and kUpper
+// number of compared gyro hypotheses, excluding the small scale changes kLower and kUpper
 constexpr std::size_t kCompared = kLower;
 // A gyro hypothesis is a possible gyro fault, for example swapped axes or a wrong scale. A time segment favours a gyro
 // hypothesis if correcting the fault reduces the logarithm of the squared velocity residual by more than
@@ -96,8 +96,9 @@ Readings all_readings() {
   return out;
 }
 
-/// `scale_step` is one segment's estimate of the gyro scale minus 1, from one Newton step. `weight` is the second
-/// derivative of the squared velocity residual with respect to the scale, divided by the squared residual.
+/// `scale_step` is the estimate of the gyro scale minus 1 from one time segment, computed with one Newton step.
+/// `weight` is the second derivative of the squared velocity residual with respect to the scale, divided by the squared
+/// residual.
 struct GyroScaleVote {
   double scale_step, weight;
 };
@@ -190,8 +191,8 @@ void conclude_gyro_scale(const std::vector<GyroScaleVote>& votes, PivotMotionChe
 PivotMotionCheck PivotMotionCheck::of(std::span<const ImuSample> samples, double gravity_m_s2, double gyro_range_rad_s,
                                       double accel_range_m_s2) {
   static const Readings readings = all_readings();
-  // The recording is divided into time segments twice, and the second series of segments is shifted by half a segment.
-  // An impact at the end of a segment of one series is inside a segment of the other series.
+  // The recording is divided twice into time segments, the second time shifted by half a segment. An impact at the end
+  // of a segment in one division is inside a segment of the other division.
   std::array<Segments, 2> series = {Segments(gravity_m_s2, readings), Segments(gravity_m_s2, readings)};
   double mean_s = 0.0, since_s = 0.0;
   Eigen::Vector3d turned = Eigen::Vector3d::Zero(), gained = Eigen::Vector3d::Zero();

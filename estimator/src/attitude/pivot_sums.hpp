@@ -57,7 +57,7 @@ class PivotMotionSums {
 
  private:
   Eigen::Quaterniond rotation_ = Eigen::Quaterniond::Identity();
-  /// integral of the specific forces, in sensor axes at the start
+  /// time integral of the specific force, in sensor axes at the start
   Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();
   double sample_count_ = 0.0, time_sum_ = 0.0, squared_time_sum_ = 0.0, squared_velocity_sum_ = 0.0;
   Eigen::Matrix3d arm_jacobian_sum_ = Eigen::Matrix3d::Zero(), time_arm_jacobian_sum_ = Eigen::Matrix3d::Zero(),

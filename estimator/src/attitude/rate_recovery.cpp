@@ -88,16 +88,16 @@ AngularRateRecovery::SaturatedSensors AngularRateRecovery::find_saturated_sensor
     }
     clipped += force;
   }
-  // While all gyros are unsaturated, the mean of the unsaturated accelerometers is more accurate than the force of
-  // AngularRateRecovery.
+  // While all gyros are unsaturated, the mean of the unsaturated accelerometers is more accurate than the specific
+  // force that AngularRateRecovery estimates.
   out.force = clipped > 0 && (out.rate || 2 * clipped > received);
   return out;
 }
 
 void AngularRateRecovery::step(std::span<const ImuSample> units, double dt_s, State& state, ImuSample& merged) const {
   const SaturatedSensors met = find_saturated_sensors(units);
-  // Accelerometers saturate where gravity and centripetal force add up, so the mean of the unsaturated accelerometers
-  // is biased.
+  // At the positions where gravity and centripetal force add up, accelerometers saturate first. The mean of the
+  // unsaturated accelerometers is therefore biased.
   merged.device_clip_flags = met.force ? kClipAccelX | kClipAccelY | kClipAccelZ : 0;
   const bool fast =
       merged.angular_velocity_rad_s.cwiseAbs().maxCoeff() >= kMinSaturatedRangeFraction * setup_.gyro_range_rad_s;
@@ -137,7 +137,7 @@ void AngularRateRecovery::start(const ImuSample& merged, State& state) const {
 /// See imu_merge.md (I14), (I15).
 void AngularRateRecovery::predict(double dt_s, State& state) const {
   const Eigen::Vector3d rate = state.x.segment<3>(kRate), force = state.x.segment<3>(kForce);
-  // A specific force that is constant in the world rotates in the body axes C.
+  // A specific force that is constant in the world frame rotates in the body frame C.
   const Eigen::Matrix3d turn = so3::exp(-dt_s * rate).toRotationMatrix();
   Eigen::Matrix<double, kArms, kArms> F = Eigen::Matrix<double, kArms, kArms>::Identity();
   F.block<3, 3>(kRate, kAcceleration) = dt_s * Eigen::Matrix3d::Identity();

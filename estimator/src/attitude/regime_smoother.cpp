@@ -14,13 +14,13 @@ namespace tumble {
 
 namespace {
 
-/// Readings that are saturated for a part of the averaging window do not count as unusable.
+/// Readings that are saturated for only a part of the averaging window count as usable.
 bool unusable_axis_count(const AngularRateReport& report, const AngularRateState& rate, std::size_t k) {
   return rate.clipped_axes != 0 || report.suspected_saturation_axes[k] != 0;
 }
 
-/// See carried.md (C37). Interpolates the specific forces, because the readings of a slow accelerometer are older than
-/// the gyro's rates.
+/// See carried.md (C37). Interpolates the specific forces to the times of the rates, because the readings of a slow
+/// accelerometer are older than the gyro's rates.
 std::vector<ImuSample> interpolate_forces(std::span<const ImuSample> samples) {
   std::vector<ImuSample> out(samples.begin(), samples.end());
   const std::vector<Eigen::Vector3d> forces = interpolated_forces(samples);
@@ -111,8 +111,8 @@ void MotionRegimeSmoother::join_hand_held_rates(std::span<const ImuSample> sampl
   }
 }
 
-/// Replaces the rates by the rates of HandHeldSmoother. Data gaps divide the recording into parts, and each part is
-/// estimated separately. `report` describes the last part of the recording with a successful estimate.
+/// Replaces the rates by the rates of HandHeldSmoother. Data gaps divide the recording into parts, and HandHeldSmoother
+/// estimates each part separately. `report` describes the last part with a successful estimate.
 bool MotionRegimeSmoother::estimate_hand_held(std::span<const ImuSample> samples, const ClippedReadings& known,
                                               std::vector<AngularRateState>& rates,
                                               HandHeldSmoother::Report& report) const {

@@ -9,7 +9,8 @@ namespace tumble {
 
 namespace {
 
-// half time span of a rate difference; equal to kModelError_s of the rate model
+// half of the time between two rates whose difference gives an angular acceleration; equal to kModelError_s of the rate
+// model
 constexpr double kAccelerationSpan_s = 0.01;
 constexpr double kResetFraction = 0.5;
 
@@ -18,8 +19,8 @@ HandHeldRateStream::Params with_common_params(const MotionRegimeStream::Params& 
   out.period_s = params.rate.period_s;
   out.lag_s = params.rate.lag_s;
   out.window_s = std::max(out.window_s, out.lag_s + 4.0 * out.body.expert.node_s);
-  // The longest accepted data gap is limited, because each sample must be reported while in the window of
-  // HandHeldRateStream.
+  // Each sample must be reported while the sample is in the window of HandHeldRateStream. The longest accepted data gap
+  // is therefore limited.
   out.body.expert.gap_max_s = std::min(out.body.expert.gap_max_s, out.window_s - out.lag_s);
   return out;
 }
@@ -28,7 +29,7 @@ bool clips(const AngularRateStream::Knot& knot) {
   return (knot.observation.unmeasured_axes() | knot.observation.partly_saturated_axes()) != 0;
 }
 
-// Suspect readings count as clipped, because suspect readings are also lower bounds of the rate.
+// Possibly saturated readings count as clipped, because possibly saturated readings are also lower bounds of the rate.
 ClipSigns clip_signs_of(const AngularRateObservation& observation) {
   Clipping clipping = observation.clipping;
   clipping.gyro = static_cast<std::uint8_t>(clipping.gyro | observation.partly_saturated_axes());
@@ -89,8 +90,8 @@ Status MotionRegimeStream::push(const ImuSample& sample, std::span<const Auxilia
     share = hand_held_weight(*out, state);
   }
   std::optional<AngularRateState> hand_held;
-  // AngularRateStream has accepted the sample, so HandHeldRateStream fails only if the gyro's sensing directions are
-  // almost linearly dependent.
+  // AngularRateStream has already accepted the sample, so HandHeldRateStream fails only if the gyro's sensing
+  // directions are almost linearly dependent.
   if (state.probabilities.hand_held >= params_.hand_held_probability_min) {
     if (!state.hand_held_stream_running) {
       hand_held_.restart(state.hand_held);
@@ -144,8 +145,8 @@ RegimeProbabilities MotionRegimeStream::next(const RegimeProbabilities& before, 
                                              std::span<const AngularRateStream::Knot> window, std::size_t k,
                                              const BodyImuCalibration& rig, bool unstable) const {
   const AngularRateStream::Knot& knot = window[k];
-  // An unstable calibration of the lever arm was probably fitted to contact forces. With an unstable calibration, rate
-  // and specific force agree in any motion, so a clipped sample does not change the probabilities.
+  // An unstable estimate of the lever arm was probably fitted to contact forces, and then agrees with the specific
+  // force in any motion. Clipped samples therefore do not change the probabilities while the calibration is unstable.
   if (unstable && knot.observation.unmeasured_axes() != 0) return before;
   AngularRateState rate;
   rate.w_WI_I_rad_s = knot.estimate.knot.rate_rad_s;
@@ -202,7 +203,8 @@ double MotionRegimeStream::hand_held_weight(const AngularRateState& rate, State&
   if (!after && !before) return 0.0;
   double out = state.recent_probabilities.empty() ? 1.0 : state.recent_probabilities.front().hand_held;
   if (out < params_.hand_held_probability_min || !before) return out;
-  // Samples after the reported sample update only a copy of the probabilities, because their rates are not final.
+  // Samples after the reported sample change only a copy of the probabilities, because the rates of these samples are
+  // not final.
   RegimeProbabilities probabilities = state.probabilities;
   const BodyImuCalibration rig = rate_.body_imu_calibration(state.rate);
   const bool unstable = calibration_is_unstable(state);

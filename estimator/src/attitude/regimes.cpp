@@ -17,9 +17,10 @@ using Eigen::Vector3d;
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kContactMin_m_s2 = 1.0, kContactMax_m_s2 = 1000.0;
-// unmodelled specific force in free flight, from drag and the sensor's bandwidth
+// standard deviation of the specific force in free flight due to drag and the sensor's bandwidth
 constexpr double kFlightForceSigma_m_s2 = 0.3;
-// additional standard deviation, relative to the specific force of the rotation
+// additional standard deviation of the specific force in free flight, as a fraction of the specific force due to
+// rotation
 constexpr double kFlightForceShare = 0.05;
 constexpr double kHandSigma_m_s2 = 5.0;
 constexpr double kHandDistance_m = 0.05;  // distance of the IMU from the hand
@@ -39,8 +40,8 @@ double log_density_near_gravity(double n, double g, double variance) {
   return log_gaussian(n * n + g * g, variance) + log_sinh_x;
 }
 
-// For one third of the hand-held samples, the specific force has a five times larger standard deviation than for the
-// other samples: carried.md (C32).
+// For one third of the hand-held samples, the standard deviation of the specific force is assumed five times larger
+// than for the other samples: carried.md (C32).
 constexpr double kRoughly = 3.0, kRougher = 5.0;
 
 double log_density_hand_held(double n, double g, double hand_variance, double grip_variance) {
@@ -50,8 +51,8 @@ double log_density_hand_held(double n, double g, double hand_variance, double gr
   return larger + std::log(((kRoughly - 1.0) * std::exp(gentle - larger) + std::exp(rough - larger)) / kRoughly);
 }
 
-// During contact, the body rolls gently with the prior probability `kRolls`, or has an impact with a specific force of
-// any magnitude: carried.md (C33).
+// During contact, the body rolls gently with the prior probability `kRolls`. With the remaining probability, the body
+// has an impact with a specific force of any magnitude: carried.md (C33).
 constexpr double kRolls = 0.5;
 
 double log_density_in_contact(double left, double n, double g, double variance) {
@@ -153,7 +154,7 @@ Status MotionRegimeEvidence::find(std::span<const ImuSample> samples, std::span<
   return {};
 }
 
-// See carried.md (C38). `share` is the probability of the rate state `second`.
+// See carried.md (C38). `share` is the probability that the rate state `second` is correct.
 AngularRateState mix_rate_states(const AngularRateState& first, const AngularRateState& second, double share) {
   AngularRateState out = share > 0.5 ? second : first;
   const Vector3d apart = second.w_WI_I_rad_s - first.w_WI_I_rad_s;

@@ -13,19 +13,20 @@ namespace tumble {
 
 namespace {
 
-// The limits of the rest detector are wide enough for any unit of the specific force and any plausible gyro bias.
+// The limits of the rest detector are wide, because the unit of the specific force and the gyro bias are unknown.
 constexpr RestDetector::Params kRests{.rate_max_rad_s = 0.15, .caller_settings = {.force_min_m_s2 = 0.3}};
 // relative error of measured gravity; covers 80 mg of accelerometer bias and 3 % of scale error
 constexpr double kMagnitudeErrorMax = 0.15;
-// The tolerance of the angle between measured and expected gravity covers gyro bias and pushes at rest.
+// The tolerance of the angle between measured and expected gravity includes errors from gyro bias, and from pushes at
+// rest.
 constexpr double kAngleMax_sigmas = 5.0, kAngleToleranceMin_rad = 0.3, kAngleToleranceMax_rad = 0.6;
 constexpr double kCorrelation_s = 0.1;  // minimum correlation time of a gyro rate's error
-// with less rotation between two rests, most sensor faults remain undetected
+// If the body rotates less than this angle between two rests, most sensor faults remain undetected.
 constexpr double kSpanRotationMin_rad = 1.0;
 constexpr double kSpanMax_s = 60.0;    // longest time between compared rests, because the gyro bias drifts
 constexpr double kRestGapMax_s = 0.1;  // an impact may hide in a longer data gap
 constexpr double kRested_s = 1.0;      // total duration of rest that the check of gravity's magnitude needs
-// minimum factor between measured and expected gravity that indicates a wrong unit
+// minimum ratio of measured to expected gravity, or of expected to measured gravity, that indicates a wrong unit
 constexpr double kWrongUnitRatio = 3.0;
 
 RestDetector::Params without_force_limits() {
@@ -35,8 +36,8 @@ RestDetector::Params without_force_limits() {
   return rests;
 }
 
-/// The numerical value of a specific force is larger in mg, cm/s^2 or counts than in m/s^2. Readings far above gravity
-/// at rest prove a wrong unit, because no robot stands still at ten times gravity.
+/// A specific force has a larger numerical value in mg, cm/s^2 or counts than in m/s^2. If readings at rest are far
+/// above gravity, the unit is wrong, because no robot is stationary at ten times gravity.
 RestDetector::Params params_for_large_units() {
   constexpr double kLarger = 100.0;
   RestDetector::Params rests = kRests;
@@ -114,8 +115,8 @@ void RestGravity::step(const ImuSample& sample, const AngularRateState& rate, St
       state.unmeasured_rotation_variance = 0.0;
 }
 
-/// See imu_merge.md (I25). An accelerometer reading is the mean over its averaging window, and is valid at the window's
-/// middle.
+/// See imu_merge.md (I25). An accelerometer reading is the mean over the averaging window, and is valid at the middle
+/// of the averaging window.
 void RestGravity::integrate_rotation(const ImuSample& sample, const AngularRateState& rate, double dt_s,
                                      State& state) const {
   const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * rate.w_WI_I_rad_s);
@@ -129,7 +130,7 @@ void RestGravity::integrate_rotation(const ImuSample& sample, const AngularRateS
   if (at_range || (sample.device_clip_flags & kClipAccel) != 0) state.integrated_saturation_deficit_m_s += dt_s * peak;
 }
 
-/// Rate errors within one clipped segment are correlated: imu_merge.md (I23).
+/// The rate errors within one clipped segment are assumed correlated: imu_merge.md (I23).
 void RestGravity::end_segment(State& state) const {
   state.angle_variance_rad2 +=
       std::max(kCorrelation_s, state.unmeasured_duration_s) * state.unmeasured_rotation_variance;

@@ -21,19 +21,20 @@ using Vector9 = Eigen::Matrix<double, 9, 1>;
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
 constexpr double kPi = std::numbers::pi;
-// A clipped segment is tested if its mean rate exceeds the saturation level by less than kBeyondSigmas standard
-// deviations.
+// A clipped segment may have a wrong number of revolutions if its mean rate exceeds the saturation level by less than
+// kBeyondSigmas standard deviations.
 constexpr double kBeyondSigmas = 3.0;
-// largest jerk cost (ten standard deviations) of a plausible additional revolution
+// largest jerk cost (squared standard deviations) of a plausible additional revolution: ten standard deviations
 constexpr double kRevolutionCost = 100.0;
-// duration before and after a clipped segment that is optimised with the segment
+// duration before and after a clipped segment that is optimised together with the segment
 constexpr double kSurroundings_s = 0.3;
-// log odds (20 to 1) for changing the number of revolutions; the cost excludes model errors
+// The number of revolutions changes only at log odds above kAcceptLogOdds (odds of 20 to 1), because the cost neglects
+// model errors.
 constexpr double kAcceptLogOdds = 3.0;
 constexpr int kExtraRevolutionsMax = 2;  // maximum number of revolutions more or less than in the optimised solution
 constexpr int kRounds = 3;
 
-/// range of nodes [first, last] in which all readings of a sensing element are clipped or unusable
+/// range [first, last] of time steps (nodes) in which all readings of a sensing element are clipped or unusable
 struct Segment {
   std::size_t sensing_axis = 0, first = 0, last = 0;
 };
@@ -74,7 +75,8 @@ std::vector<Segment> possibly_wrong_segments(const HandHeldProblem& problem) {
         const Eigen::Matrix3d covariance = problem.covariance(i).block<3, 3>(kRate, kRate);
         angle_rad += problem.node_interval_s() * std::sqrt(std::max(0.0, m.dot(covariance * m.transpose())));
       }
-      // If the recording starts or ends during a saturation, the number of revolutions is undetermined.
+      // If the recording starts or ends during a saturation, the number of revolutions in the saturation is
+      // undetermined.
       if (segment.first == 0 || segment.last + 1 >= count) continue;
       const bool against_rail = beyond_rad_s < kBeyondSigmas * problem.saturation_limit_sigma_rad_s() * clipped &&
                                 revolution_cost(problem, segment.last + 2 - segment.first) < kRevolutionCost;
@@ -144,7 +146,7 @@ std::vector<Hypothesis> hypotheses(const HandHeldProblem& whole, const Segment& 
 }
 
 /// `revolution_hypotheses` contains solutions with different numbers of revolutions, best first. `accepted_alternative`
-/// is the index of the solution with the present number of revolutions.
+/// is the index of the solution with the number of revolutions in the optimised problem.
 struct TestedRevolutionSegment {
   std::size_t from = 0;
   std::vector<Hypothesis> revolution_hypotheses;
@@ -168,7 +170,7 @@ RevolutionAlternatives revolution_probabilities(const TestedRevolutionSegment& t
   return out;
 }
 
-/// `taken` is true if each segment now has its most probable number of revolutions.
+/// If `taken` is true, each segment has its most probable number of revolutions.
 std::vector<RevolutionAlternatives> remaining_revolution_hypotheses(const std::vector<TestedRevolutionSegment>& tested,
                                                                     bool taken) {
   std::vector<RevolutionAlternatives> out;
@@ -248,8 +250,8 @@ void test_revolutions(HandHeldProblem& problem, HandHeldSmoother::Report& report
   std::vector<ProblemSegment> parts = with_neighbouring_nodes(problem, segments);
   std::vector<RevolutionAlternatives> open;
   std::vector<bool> fallen(parts.size(), false);
-  // The test of a clipped segment linearises the motion outside this segment. If the test changes the number of
-  // revolutions, the motion outside the other segments changes too, so all segments are tested again.
+  // The test of a clipped segment linearises the motion outside this segment. A changed number of revolutions changes
+  // the motion outside all other segments, so all segments are tested again.
   for (int round = 0; round < kRounds; ++round) {
     if (!problem.condense_other_nodes(parts)) break;
     const std::vector<TestedRevolutionSegment> tested = test_revolution_segments(problem, segments, parts, fallen);

@@ -5,14 +5,14 @@
 
 namespace tumble::hand_held {
 
-/// A clipped segment may hide a revolution if the standard deviation of its rotation angle exceeds kAngleShare times
-/// pi: carried.md (C28).
+/// A clipped segment may hide a revolution if the standard deviation of the rotation angle in the segment exceeds
+/// kAngleShare times pi: carried.md (C28).
 inline constexpr double kAngleShare = 1.0 / 3.0;
 inline constexpr double kLogOdds = 6.9;  ///< alternatives with odds below 1 to 1000 are ignored
 
 /// Returns the minimum least-squares cost of the angular jerk for one additional revolution within `span_s` seconds:
 /// carried.md (C28). The additional revolution does not change rate and angular acceleration at the start and end of
-/// the duration. The angular jerk is modelled as white noise with the root density `jerk_rad_s3_sqrts` [rad/s^3
+/// the time span. The angular jerk is modelled as white noise with the root density `jerk_rad_s3_sqrts` [rad/s^3
 /// sqrt(s)].
 double revolution_cost(double span_s, double jerk_rad_s3_sqrts);
 
@@ -21,8 +21,8 @@ double revolution_cost(double span_s, double jerk_rad_s3_sqrts);
 ///
 /// Data after a clipped segment determine the rotation during the segment only up to whole revolutions.
 ///
-/// If another number of revolutions has odds above 1 to 1000, the covariances increase in proportion to its
-/// probability: carried.md (C29).
+/// If another number of revolutions has odds above 1 to 1000, the covariances increase in proportion to the probability
+/// of this number: carried.md (C29).
 ///
 /// The caller must have computed the covariances of `problem`. The hypotheses neglect correlations between the
 /// revolutions of two segments, and the effect of revolutions on the calibration constants. Only additional revolutions

@@ -43,7 +43,8 @@ struct RigidBodyImuForces {
            e.norm() <= tolerated_saturation_m_s2 + uncertainty_rad_s2 * d.norm();
   }
 
-  /// If several IMUs agree with the same number of other IMUs, the function returns the IMU whose force changed least.
+  /// Returns the IMU that agrees with the largest number of other IMUs. If several IMUs agree with equally many IMUs,
+  /// returns the IMU whose specific force changed least.
   AgreeingImuForces largest_agreeing_set() const {
     AgreeingImuForces best;
     for (std::size_t k = 0; k < kImuCount; ++k) {
@@ -57,8 +58,8 @@ struct RigidBodyImuForces {
     return best;
   }
 
-  /// Returns the change of the angular acceleration that minimises the force differences between the IMUs: imu_merge.md
-  /// (I7).
+  /// Returns the change of the angular acceleration that minimises the specific-force differences between the IMUs:
+  /// imu_merge.md (I7).
   Eigen::Vector3d mean_imu_acceleration() const {
     Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
     Eigen::Vector3d b = Eigen::Vector3d::Zero();

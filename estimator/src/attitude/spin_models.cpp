@@ -19,11 +19,11 @@ constexpr int kRate = 0, kAcceleration = 1;
 constexpr int kTurning = 2, kFixed = 4;               // state indices of Modulation
 constexpr int kArm = 2, kForce = 4, kWorldForce = 6;  // state indices of Centripetal
 constexpr double kJerk_rad_s3_sqrts = 50.0;           // root density of the angular jerk about the spin axis
-// The rate perpendicular to the spin axis is the sum of a world-fixed and a body-fixed vector. Each component of these
-// vectors is a random walk, with the standard deviation kWalk_rad_s_sqrts after one second. Vibration adds an error
-// with the standard deviation kVibration_rad_s to the gyro readings. Vibration errors are correlated over time, so all
-// readings within kReadingInterval_s together count as one reading. SpinFilter::variance_ratio scales the variances of
-// random walk and vibration: carried.md (C46).
+// The rate perpendicular to the spin axis is the sum of a vector that is constant in the world and a vector that is
+// constant in the body. Each component of these vectors is a random walk, with the standard deviation kWalk_rad_s_sqrts
+// after one second. Vibration adds an error with the standard deviation kVibration_rad_s to the gyro readings.
+// Vibration errors are correlated over time, so all readings within kReadingInterval_s together count as one reading.
+// SpinFilter::variance_ratio scales the variances of random walk and vibration: carried.md (C46).
 constexpr double kWalk_rad_s_sqrts = 1.0, kVibration_rad_s = 0.3;
 // prior standard deviation of the lever arm from the spin axis to the IMU, about the size of the body
 constexpr double kBodySize_m = 0.3;
@@ -34,11 +34,11 @@ constexpr double kReadingSigma_rad_s = 0.02;  // standard deviation of an unsatu
 constexpr double kRailSigma_rad_s = 0.1;      // standard deviation of a saturated gyro reading as a lower bound
 constexpr double kStartSigma_rad_s = 1.0, kStartSigma_rad_s2 = 10.0, kStartSaturatedRatio = 0.5;
 constexpr double kForceSigma_m_s2 = 0.3, kForceWalk_m_s2_sqrts = 0.1, kVibration_m_s2 = 0.5;
-// In the air, external forces change smoothly, so a variance ratio of the residuals above kSmoothVarianceRatioMax
-// indicates contact or vibration.
+// During flight, external forces change smoothly. If the variance ratio of the residuals exceeds
+// kSmoothVarianceRatioMax, the body has contact or vibrates.
 constexpr double kSmoothVarianceRatioMax = 20.0, kContradiction = 1e3;
-// ratio of the root densities of the angular jerk in Centripetal and in Modulation; the rate of a spin in the air
-// changes slowly
+// ratio of the root densities of the angular jerk in Centripetal and Modulation; below 1, because the rate of a spin in
+// flight changes slowly
 constexpr double kForceJerkRatio = 0.3;
 constexpr double kWorldForceSigma_m_s2 = 3.0, kWorldForceWalk_m_s2_sqrts = 1.0;
 
@@ -84,8 +84,8 @@ void predict_spin(const SpinFilter<N>& filter, double jerk_rad_s3_sqrts, double 
   out.covariance(kAcceleration, kAcceleration) += jerk;
 }
 
-// If `related` is 1, rotates the two-dimensional vector at the state index `part` by the negative spin angle. In the
-// axes of the body, a vector that is constant in the world turns by minus the angle of the spin.
+// If `related` is 1, rotates the two-dimensional vector at the state index `part` by the negative spin angle. A vector
+// that is constant in the world turns by the negative spin angle in body axes.
 template <int N>
 void turn_part(const SpinFilter<N>& filter, int part, double related, double dt_s, SpinPrediction<N>& out) {
   const auto& x = filter.x;

@@ -10,8 +10,8 @@ namespace tumble {
 
 // This file contains two measurement models of a steady spin: Modulation and Centripetal. The first two states of each
 // model are the rate and the angular acceleration about the spin axis. The parameter `related` is 1 in the filter for a
-// steady spin, and 0 in the filter for motion without a steady spin. Only the filter for a steady spin rotates the
-// world-fixed vectors in its state by the spin angle.
+// steady spin, and 0 in the filter for other motion. Only the filter for a steady spin rotates world-fixed vectors in
+// the state by the spin angle.
 
 template <int N>
 struct SpinPrediction {

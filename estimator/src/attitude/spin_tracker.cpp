@@ -21,7 +21,8 @@ constexpr double kChanges_hz = 0.02;     // assumed frequency of starts and ends
 constexpr double kGapMax_s = 0.5;        // a new spin starts after a longer data gap
 constexpr double kAxisHysteresis = 1.2;  // the spin axis changes if another axis has a rate larger by this factor
 constexpr double kStartProbability = 0.01;
-// relative standard deviations of the spin rates from gyro and from accelerometer, due to precession of the spin axis
+// relative standard deviations of the spin rate from the gyro and from the accelerometer, due to precession of the spin
+// axis
 constexpr double kRatioSigma = 0.01, kForceRatioSigma = 0.02;
 constexpr double kProbabilityMax = 1.0 - 1e-12;
 constexpr double kLogRatioMax = 50.0;  // avoids overflow of the likelihood ratio of one sample
@@ -40,7 +41,7 @@ struct RecordedSpin {
 };
 
 // Smooths the states of one spin by a backward pass (Rauch, Tung, Striebel, AIAA Journal 3, 1965). A backward recursion
-// smooths the spin's probability: carried.md (C37).
+// smooths the probability of the spin: carried.md (C37).
 template <int N>
 void smooth_spin(std::span<const RecordedSpin<N>> run, std::span<SpinRate> out) {
   if (run.empty()) return;
@@ -109,9 +110,10 @@ SpinRate SpinTracker::advance_spin_filter(const Model& model, const ImuSample& s
     const double c = recorded.spin_change_probability;
     const double spins = hypotheses.probability * (1.0 - c) + (1.0 - hypotheses.probability) * c;
     hypotheses.probability = std::min(kProbabilityMax, spins * ratio / (spins * ratio + 1.0 - spins));
-    // If the spin axis is saturated, the readings do not limit the spin rate from above. Any frequency at which the
-    // rate or force across the spin axis oscillates therefore fits some spin rate beyond the saturation limit. Samples
-    // with a saturated spin axis can lower the probability of a steady spin, but cannot raise this probability.
+    // If the spin axis is saturated, the readings do not limit the spin rate from above. For any frequency at which
+    // rate or force across the spin axis oscillates, some spin rate beyond the saturation limit therefore fits the
+    // readings. Samples with a saturated spin axis can lower the probability of a steady spin, but cannot raise this
+    // probability.
     if (!reading.saturated) {
       hypotheses.measured_probability = hypotheses.probability;
     } else if (hypotheses.probability > hypotheses.measured_probability) {

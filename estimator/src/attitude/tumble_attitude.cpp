@@ -32,8 +32,8 @@ constexpr double kGapMin_s = 0.05;  // minimum time between two samples that cou
 constexpr double kNode_s = 0.04;    // time between two corrections
 constexpr double kReading_s = 4e-3;
 constexpr double kSampleGapMax_s = 1.0;  // a longer time between two samples causes an error
-// Standard deviations of the tilt, per axis. Coarse alignment starts above kLostTilt_rad, where the linearised filter
-// is invalid, and ends below kAlignedTilt_rad.
+// Tilt standard deviations per axis: coarse alignment starts above kLostTilt_rad, where the linearised filter is
+// invalid, and ends below kAlignedTilt_rad.
 constexpr double kLostTilt_rad = 0.3, kAlignedTilt_rad = 0.4;
 constexpr RestDetector::Params kRestDetector = {
     .rate_max_rad_s = 3.4907e-2,
@@ -209,7 +209,7 @@ void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& r
     state.covariance.diagonal().segment<2>(kVelocity).array() += squared(Params::kGapVelocityWalk_m_s_sqrts) * gap_s;
   }
   predict_node(state);
-  // A sphere that gripped before a data gap is assumed to roll without slip after the gap.
+  // If a sphere gripped before a data gap, the sphere is assumed to roll without slip after the gap.
   if (params_.radius_m > 0.0 && !state.slipping) state.v_W_m_s = velocity_from_rotation(state);
   // correct_with_mean_force() changes the tilt variance, so the tilt variance is computed first.
   const double tilt = reported_tilt_variance_rad2(state);
@@ -240,12 +240,12 @@ double TumbleAttitude::body_velocity_variance_m2_s2(double power_m2_s2, const St
 void TumbleAttitude::align(const Eigen::Quaterniond& corrected, State& state) const {
   CoarseAlignment& alignment = state.alignment;
   alignment.integrated_force_W_m_s = corrected * alignment.integrated_force_W_m_s;
-  // The variance of the velocity is not computed from the filtered velocity, because a wrong tilt after a data gap
-  // falsifies the filtered velocity.
+  // After a data gap, a wrong tilt falsifies the filtered velocity. The variance of the velocity is therefore not
+  // computed from the filtered velocity.
   const double velocity = body_velocity_variance_m2_s2(alignment.start_velocity_variance_m2_s2, state);
   const double variance = alignment.variance_rad2(velocity, params_.gravity_m_s2);
   if (variance > squared(kAlignedTilt_rad)) {
-    // When the body comes to rest, the coarse alignment restarts and uses only later data.
+    // When the body comes to rest, the coarse alignment restarts without the earlier data.
     if (state.at_rest && alignment.start_velocity_variance_m2_s2 > velocity)
       alignment.start_alignment(velocity, alignment.tilt_rad2());
     return;
@@ -256,7 +256,7 @@ void TumbleAttitude::align(const Eigen::Quaterniond& corrected, State& state) co
   alignment = {};
 }
 
-/// `levelling` is a rotation of the world frame W.
+/// `levelling` is the rotation that levels the world frame W.
 void TumbleAttitude::restart(const Eigen::Quaterniond& levelling, double tilt_rad2, double velocity_m2_s2,
                              State& state) const {
   state.q_WI = (levelling * state.q_WI).normalized();
@@ -275,7 +275,7 @@ void TumbleAttitude::restart(const Eigen::Quaterniond& levelling, double tilt_ra
   state.displacement_variance_m2 = 0.0;
 }
 
-/// Adds the variance of recovered (formerly clipped) rates to the variance of the attitude: attitude.md (A10).
+/// Adds the variance of the rates recovered from clipped readings to the variance of the attitude: attitude.md (A10).
 void TumbleAttitude::add_recovered_rate_variance(double dt_s, State& state) const {
   if (state.at_rest || state.recovered_covariance_rad2_s2.isZero(0.0)) {
     state.recovered_angle_sigma_sum_rad.setZero();

@@ -14,21 +14,21 @@ namespace tumble {
 namespace {
 
 constexpr double kBiasSigmaStart_rad_s = 8.7266e-3;  // prior standard deviation of the bias: 0.5 deg/s
-// Standard deviation of the bias in motion: 0.1 deg/s.
+// standard deviation of the gyro bias in motion: 0.1 deg/s
 constexpr double kBiasSigmaMotion_rad_s = 1.7453e-3;
-// Standard deviation of the bias at rest: 0.03 deg/s.
+// standard deviation of the gyro bias at rest: 0.03 deg/s
 constexpr double kBiasSigmaRest_rad_s = 5.2360e-4;
 // weight of the assumption that the unobservable vertical gyro bias is zero
 constexpr double kVerticalForgetting = 1e-4;
-// Time constant of the low-pass filter for detecting rest.
+// time constant of the low-pass filter for detecting rest
 constexpr double kRestTau_s = 0.5;
-// Time in which the bias variance grows to (0.1 deg/s)^2.
+// time in which the variance of the gyro bias grows to (0.1 deg/s)^2
 constexpr double kBiasForgetting_s = 100.0;
 constexpr double kBiasClip_rad_s = 3.4907e-2;  // largest accepted bias: 2 deg/s
 constexpr double kRestTime_s = 1.5;
-// Maximum difference between angular rate and low-passed angular rate at rest: 2 deg/s.
+// maximum difference between angular rate and low-passed angular rate at rest: 2 deg/s
 constexpr double kRestRate_rad_s = 3.4907e-2;
-// Maximum difference between specific force and low-passed specific force at rest.
+// maximum difference between specific force and low-passed specific force at rest
 constexpr double kRestForce_m_s2 = 0.5;
 
 constexpr double kNoDirection_m_s2 = 1e-6;
@@ -87,7 +87,7 @@ void Vqf::detect_rest(const ImuSample& sample, double dt_s, State& state) const 
   state.at_rest = state.rest_s >= kRestTime_s && quiet;
 }
 
-/// Levels frame W, and returns the unit vector along the specific force (upwards) in the frame before levelling.
+/// Levels frame W. Returns the upward unit vector along the specific force, in frame W before levelling.
 Eigen::Vector3d Vqf::level_inertial_frame(const Eigen::Vector3d& f_I_m_s2, double dt_s, State& state) const {
   // See attitude.md (A3).
   state.filtered_specific_force_m_s2.advance(state.attitude_without_correction * f_I_m_s2, params_.tau_s, dt_s,

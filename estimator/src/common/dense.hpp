@@ -3,14 +3,14 @@
 
 #include <Eigen/Core>
 
-/// Decompositions of fixed-size Eigen matrices would double the compile time, so the functions accept matrices of all
-/// sizes. The factorisations are bit-identical to Eigen's factorisations. The eigenvalues equal Eigen's eigenvalues up
-/// to rounding. Each decomposition allocates memory.
+/// The functions accept matrices of all sizes, because decompositions of fixed-size Eigen matrices would double the
+/// compile time. The factorisations are bit-identical to Eigen's factorisations, and the eigenvalues are equal up to
+/// rounding. Each decomposition allocates memory.
 namespace tumble::dense {
 
 using Symmetric = Eigen::Ref<const Eigen::MatrixXd>;  ///< only the lower triangle is read
 
-/// If the matrix A is not positive definite, `ok()` returns false and the results are undefined.
+/// If the matrix A is not positive definite, `ok()` returns false and all results are undefined.
 class Cholesky {
  public:
   explicit Cholesky(const Symmetric& A);

@@ -16,11 +16,11 @@ using Eigen::Vector3d;
 // docs/maths/outliers.md explains these thresholds.
 constexpr double kRateMin_rad_s = 1.0;   // smallest jump of a gyro reading that is an outlier
 constexpr double kForceMin_m_s2 = 30.0;  // smallest jump of an accelerometer reading that is an outlier
-// minimum ratio of an outlier's jump to the difference between its neighbours
+// minimum jump of an outlier, as a multiple of the difference between the readings before and after the outlier
 constexpr double kOutlierRatio = 3.0;
-// largest angular acceleration of a robot per unit of specific force
+// largest angular acceleration of a robot, divided by the specific force
 constexpr double kAccelerationPerForce_rad_m = 40.0;
-// largest specific force of a robot per unit of angular acceleration
+// largest specific force of a robot, divided by the angular acceleration
 constexpr double kLever_m = 10.0;
 constexpr double kRateJumpMax_rad_s = 50.0;    // largest plausible jump of the rate in a single sample
 constexpr double kVelocityJumpMax_m_s = 20.0;  // largest plausible jump of the velocity in a single sample
@@ -30,7 +30,8 @@ constexpr double kNear_s = 0.1;                // maximum time between compared 
 // time stamp is not later than the delayed sample's time stamp, the filter rejects the delayed sample.
 constexpr double kStampStepMax_periods = 1.75;
 
-// A reading may be saturated if it exceeds kAtRange times the stated range, or if it is large and repeated.
+// A reading may be saturated if the reading exceeds kAtRange times the stated range, or if the reading is large and
+// repeated.
 constexpr double kAtRange = 0.95;
 constexpr double kRepeats_rad_s = 1.0, kRepeats_m_s2 = 15.0;
 
@@ -66,12 +67,12 @@ Triad accel_of(const OutlierFilter::ImuRanges& device) {
   return {&ImuSample::specific_force_m_s2, kClipAccel, device.accel_range_m_s2, kRepeats_m_s2};
 }
 
-/// The difference of two signed 64-bit time stamps may overflow.
+/// The subtraction uses unsigned numbers, because the difference of two signed 64-bit time stamps may overflow.
 double step_s(const ImuSample& from, const ImuSample& to) {
   return 1e-9 * static_cast<double>(static_cast<std::uint64_t>(to.time_ns) - static_cast<std::uint64_t>(from.time_ns));
 }
 
-/// last accepted samples and samples under test, oldest first
+/// the last accepted samples, followed by the samples under test, oldest first
 struct RecentTriadReadings {
   std::array<const ImuSample*, 3 + OutlierFilter::kDelayedMax> samples{};
   std::size_t count = 0;
@@ -118,8 +119,8 @@ double largest_second_difference(const RecentTriadReadings& sequence, const Tria
   return out;
 }
 
-/// Returns the distance from the closer neighbour if the reading is above or below both neighbours, otherwise 0:
-/// outliers.md (O1).
+/// If the reading is above or below both adjacent readings, returns the distance from the closer adjacent reading, and
+/// otherwise 0: outliers.md (O1).
 double distance_from_neighbours(const Vector3d& before, const Vector3d& now, const Vector3d& after) {
   double out = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -205,7 +206,7 @@ bool OutlierFilter::must_delay_for_check(const ImuSample& sample, State& state) 
   return true;
 }
 
-/// Returns the sample period; infinity if no nominal period is stated.
+/// Returns the sample period, or infinity if no nominal sample period is stated.
 double OutlierFilter::period_s(const State& state) const {
   if (!(imu_ranges_.period_s > 0.0)) return kUnknown;
   if (state.count < 2) return imu_ranges_.period_s;
@@ -219,7 +220,7 @@ bool OutlierFilter::is_outlier_candidate(const ImuSample& sample, const State& s
   return after_s > kStampStepMax_periods * period_s(state) || jumps(sample, state.delayed_samples(), state);
 }
 
-/// Returns whether the gyro or accelerometer reading jumps by more than the other sensor's reading can explain:
+/// Returns whether gyro or accelerometer reading jumps by more than the reading of the other sensor can explain:
 /// outliers.md (O5).
 bool OutlierFilter::jumps(const ImuSample& sample, std::span<const ImuSample> delayed, const State& state) const {
   if (step_s(state.recent_inliers[1], sample) > kNear_s) return false;

@@ -13,7 +13,8 @@
 
 namespace tumble::precompiled {
 
-/// Using `known` instantiates the classes and evaluators of the given Eigen expressions. `known` is always true.
+/// `known` is always true. The compiler instantiates the given Eigen expressions and their evaluators to compute
+/// `known`.
 template <class... Expressions>
 constexpr bool known = (... && (sizeof(std::remove_cvref_t<Expressions>) > 0 &&
                                 sizeof(Eigen::internal::evaluator<std::remove_cvref_t<Expressions>>) > 0));
@@ -26,7 +27,7 @@ constexpr bool known_squares = known_matrices<Matrices...>&& known<decltype(Matr
 template <int rows, int columns = 1>
 using Real = Eigen::Matrix<double, rows, columns>;
 
-// The vectors and matrices in this file are only declared, because the expressions with them are never evaluated.
+// The vectors and matrices below are declared without definition, because expressions with them are never evaluated.
 extern const Eigen::Vector3d a, b;
 extern Eigen::Vector3d c;
 extern const Eigen::Matrix3d R;

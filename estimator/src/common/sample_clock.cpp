@@ -12,16 +12,16 @@ namespace tumble {
 namespace {
 
 constexpr double kOutlier = 4.0;  // largest error of an accepted time stamp, in standard deviations
-// error of a time stamp, in sample periods, above which the sample's number is uncertain
+// If the error of a time stamp exceeds kStray sample periods, the number of the sample is uncertain.
 constexpr double kStray = 0.4;
 constexpr std::size_t kConsecutiveOutliersMax = 8;
-// maximum jitter of time stamps in sample periods; uniformly random stamps have 0.29
+// maximum jitter of time stamps in sample periods; uniformly random time stamps have a jitter of 0.29
 constexpr double kPeriodJitterMax = 0.25;
-// If successive residuals have a larger correlation than kErrorCorrelationMax, the line fitted to the time stamps does
-// not follow the clock.
+// If the correlation of successive residuals exceeds kErrorCorrelationMax, the line fitted to the time stamps does not
+// follow the clock.
 constexpr double kErrorCorrelationMax = 0.5;
 constexpr double kStepMin_periods = 0.25;  // minimum time between two corrected time stamps, in sample periods
-// maximum uncertainty of the sample number after a data gap, in sample periods
+// maximum standard deviation of the sample number after a data gap, in sample periods
 constexpr double kSampleNumberSigmaMax = 0.1;
 
 constexpr double kPeriodMax_ns = 1e11;
@@ -152,8 +152,8 @@ void SampleClock::start_line_fit(State& state) const {
   state.consecutive_outliers = 0;
 }
 
-/// See sample_clock.md (S1), (S2), (S3). The line fit restarts if the number of sample periods between the last two
-/// time stamps is uncertain.
+/// See sample_clock.md (S1), (S2), (S3). If the number of sample periods between the last two time stamps is uncertain,
+/// the line fit restarts.
 void SampleClock::update_line(double step_ns, TimeNs stamp_ns, State& state) const {
   const double passed_ns = step_ns - state.fit_residual_ns;
   const double number = std::max(1.0, std::round(passed_ns / state.period_ns));

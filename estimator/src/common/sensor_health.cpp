@@ -79,10 +79,10 @@ double HealthFinding::confidence() const {
   return larger > 0.0 && std::isfinite(larger) ? 1.0 - std::min(distance, limit) / larger : 1.0;
 }
 
-/// After a failure of attitude, vertical or localisation has ended, later estimates are correct again. A tracking
-/// failure makes all later poses wrong.
+/// Estimates are correct again after a temporary failure of attitude, vertical or localisation. After a tracking
+/// failure, all later poses are wrong.
 bool HealthFinding::invalidates_estimate() const {
-  // The rotation of measured gravity later confirms or corrects a suspect gyro scale.
+  // While gravity rotates in the IMU frame, a suspected gyro scale error is later confirmed or corrected.
   const bool recovers = kind == Kind::attitude_unknown || kind == Kind::vertical_unknown ||
                         kind == Kind::not_localised || kind == Kind::gyro_scale;
   return fault_description(kind).makes_estimate_unusable && !(ended && recovers);

@@ -30,7 +30,7 @@ Status check_stamp_order(TimeNs time_ns, TimeNs previous_ns, double gap_max_s) {
   if (time_ns <= previous_ns) {
     return {ErrorCode::time_order, "time_ns", static_cast<double>(time_ns), static_cast<double>(previous_ns)};
   }
-  // The difference of two signed 64-bit time stamps may overflow.
+  // The subtraction uses unsigned numbers, because the difference of two signed 64-bit time stamps may overflow.
   const std::uint64_t gap_ns = static_cast<std::uint64_t>(time_ns) - static_cast<std::uint64_t>(previous_ns);
   const double gap_s = static_cast<double>(gap_ns) * 1e-9;
   if (gap_s > gap_max_s) return {ErrorCode::gap, "time_s since the last sample", gap_s, gap_max_s};
@@ -58,9 +58,9 @@ namespace tumble::so3 {
 
 namespace {
 
-// For angles below 1e-4, two terms of the power series are exact to rounding.
+// For angles below 1e-4, the first two terms of the power series are exact to rounding.
 constexpr double kSmallAngle = 1e-4;
-// For angles x below 0.5, x - sin(x) loses digits by cancellation, and six terms of the power series are exact to
+// For angles x below 0.5, x - sin(x) loses digits by cancellation. The first six terms of the power series are exact to
 // rounding.
 constexpr double kCancellingAngle = 0.5;
 
