@@ -8,8 +8,8 @@ namespace tumble::mapping {
 
 namespace {
 
-// Maximum iterations of the three registration stages: all points, a subset of the points, and a coarse stage for
-// initial poses far from the prior.
+// maximum iterations of the registration with all points, with a subset of the points, and of the coarse registration
+// for initial poses far from the prior
 constexpr int kFullIterations = 8, kSubsampledIterations = 30, kCoarseIterations = 15;
 constexpr std::size_t kSubsamplePoints = 1000, kCoarsePoints = 300, kCoarseMatchesMin = 50;
 constexpr double kCoarseKernelMin_m = 0.5;  // minimum width of the robust kernel
@@ -25,7 +25,7 @@ Registration::Params full_registration_params(const LidarInertialOdometry::Param
 
 constexpr double kCoarseReach = 2.0;
 
-/// The coarse registration only needs to reach the region in which the next stage converges.
+/// The coarse registration only has to reach the region of convergence of the registration with more points.
 Registration::Params coarse_params(const LidarInertialOdometry::Params& params) {
   Registration::Params out = registration_params(params);
   out.match_distance_m =
@@ -37,7 +37,8 @@ Registration::Params coarse_params(const LidarInertialOdometry::Params& params) 
   out.expert.step_m = kCoarseStep_m;
   out.expert.step_rad = kCoarseStep_rad;
   out.expert.inlier_ratio_min = kCoarseInlierRatioMin;
-  // For a displaced starting pose, agreement with the prior does not permit fewer matches.
+  // The inertial prediction is no evidence for a displaced starting pose, so the required number of matches is not
+  // reduced if the registered pose agrees with the prediction.
   out.expert.agreeing_matches_needed = kCoarseMatchesMin;
   return out;
 }

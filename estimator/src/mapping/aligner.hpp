@@ -17,7 +17,8 @@ struct RegistrationScene {
 };
 
 /// SweepAligner registers a sweep to the map in stages, from few points to all points. `trajectory` receives the
-/// registered motion of the IMU. After a failed registration, the caller must rebuild `trajectory`.
+/// registered motion of the IMU. If the registration fails, `trajectory` is invalid and the caller must rebuild
+/// `trajectory`.
 class SweepAligner {
  public:
   explicit SweepAligner(const LidarInertialOdometry::Params& params);
@@ -25,10 +26,10 @@ class SweepAligner {
   /// Registers a sweep with all points and few iterations.
   void align_with_all_points(const Registration::Prior& prior, const RegistrationScene& scene,
                              SweepTrajectory& trajectory, Registration::Result& found);
-  /// Registers a sweep with a subset of its points until convergence, then with all points.
+  /// Registers a sweep first with a subset of its points until convergence, and then with all points.
   void align_to_convergence(const Registration::Prior& prior, const RegistrationScene& scene,
                             SweepTrajectory& trajectory, Registration::Result& found);
-  /// Registers a sweep with few points first, for an initial pose `start` that may be far from the solution.
+  /// Registers a sweep first with few points, because the initial pose `start` may be far from the solution.
   void align_coarse_to_fine(const Registration::Prior& start, const Registration::Prior& prior,
                             const RegistrationScene& scene, SweepTrajectory& trajectory, Registration::Result& found);
 

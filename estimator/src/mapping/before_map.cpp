@@ -16,10 +16,10 @@ namespace u = unknowns;
 using Motion = Eigen::Matrix<double, 9, 9>;
 using Params = LidarInertialOdometry::Params;
 
-// Before a map exists, the speed is assumed to have this standard deviation and this correlation time.
+// assumed standard deviation and correlation time of the robot's speed before a map exists
 constexpr double kSpeed_m_s = 10.0, kSpeedTime_s = 1.0;
-// If a recording starts in motion, the mean specific force over 0.5 s is assumed to differ from gravity by at least
-// 1 m/s^2. The speed is assumed to result from this acceleration over 2 s.
+// If a recording starts in motion, the mean specific force over 0.5 s is assumed to differ from gravity by at least 1
+// m/s^2. The initial speed is assumed to result from an acceleration of this magnitude during 2 s.
 constexpr double kMovingForce_m_s2 = 1.0, kMovingTime_s = 2.0;
 constexpr double kMovingTiltMax_rad = 1.0;  // any direction of gravity is possible
 
@@ -38,8 +38,8 @@ double yaw_rad(const Eigen::Quaterniond& q) {
   return 2.0 * std::atan2(q.z(), q.w());
 }
 
-/// Returns the Jacobian of position, attitude and velocity errors for a new world frame with its origin at the IMU,
-/// rotated by `turn`.
+/// Returns the Jacobian of position, attitude and velocity errors for a change to a new world frame. The new frame has
+/// its origin at the IMU, and is rotated by `turn`.
 Motion world_frame_jacobian(const Eigen::Matrix3d& turn, const Eigen::Vector3d& v_WI_m_s) {
   Motion T = Motion::Zero();
   T.block<2, 3>(3, 3) = turn.topRows<2>();
@@ -156,14 +156,15 @@ StateEstimate reset_origin_and_yaw(const StateEstimate& reckoned, double step_s)
   return state_estimate_of_motion(state, reckoned.mean.calibration, T * C * T.transpose(), T * E * T.transpose());
 }
 
-/// In a map frame with the tilt error φ, velocity v has an additional error v × φ, and gravity g has an error g × φ.
+/// If the map frame has the tilt error φ, the velocity v has the additional error v × φ, and gravity g has the error g
+/// × φ.
 StateEstimate estimate_at_first_sweep(const Params& params, const StateEstimate& reckoned) {
   MotionState start = reckoned.mean.state;
   start.covariance.setZero();
   u::variances(start.covariance, u::tilt).setConstant(OdometryStart::kLevelSigma_rad * OdometryStart::kLevelSigma_rad);
   StateEstimate out = estimate_at_start(params, start);
-  // rows: errors of velocity and gravity in the map frame; columns: errors of position, attitude and velocity in
-  // `reckoned`
+  // rows: errors of velocity and gravity in the map frame; columns: errors of position, attitude and velocity in the
+  // dead-reckoned state `reckoned`
   Eigen::Matrix<double, 6, 9> T = Eigen::Matrix<double, 6, 9>::Zero();
   T.block<3, 3>(0, 3) = so3::hat(start.v_WI_m_s);
   T.block<3, 3>(0, 6).setIdentity();

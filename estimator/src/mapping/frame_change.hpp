@@ -6,10 +6,11 @@
 
 namespace tumble::mapping {
 
-/// FrameChange converts estimates from the local frame W to the frame M of a prior map.
+/// FrameChange converts estimates from the local map frame W to the frame M of a prior map.
 struct FrameChange {
   Eigen::Isometry3d T_prior_map_world;
-  /// covariance of T_MW in axes of M: displacement and rotation of frame W about the point `sensor_in_prior_map_m`
+  /// covariance of the transform from the local frame W to the prior map frame M, in axes of M: displacement and
+  /// rotation of frame W about the point `sensor_in_prior_map_m`
   Eigen::Matrix<double, 6, 6> covariance;
   Eigen::Vector3d sensor_in_prior_map_m;
 
@@ -22,14 +23,14 @@ struct FrameChange {
   Registration::Matrix rotation() const;
 };
 
-/// PosesBeforeChange transforms poses before the localisation to the frame M of the prior map.
+/// PosesBeforeChange transforms poses from before the localisation to the frame M of the prior map.
 class PosesBeforeChange {
  public:
-  /// `last` is the pose in the local frame W when the robot was localised in the prior map.
+  /// `last` is the pose in the local map frame W at the time of the localisation in the prior map.
   PosesBeforeChange(const FrameChange& change, const PoseState& last);
 
-  /// The covariance of an earlier pose is computed from the covariance of the last pose and the displacement between
-  /// both poses.
+  /// Computes the covariance of an earlier pose from the covariance of the last pose and the displacement between the
+  /// two poses.
   void apply(PoseState& pose) const;
 
  private:

@@ -8,7 +8,8 @@
 
 namespace tumble::mapping {
 
-/// Larger time steps between IMU samples count as gaps, because one reading does not describe the motion over 50 ms.
+/// If two IMU samples are more than kGap_ns apart, the interval is a gap, because one reading does not describe the
+/// motion over 50 ms.
 inline constexpr TimeNs kGap_ns = 50'000'000;
 
 struct WindowRate {
@@ -21,7 +22,8 @@ struct WindowRate {
 
 /// Fills the gap from the end of `before` to the start of `after` with linearly interpolated angular rates: mapping.md
 /// (R44). In a gap, all gyro axes count as clipped, so that the registration also estimates the interpolation error.
-/// Each appended sample covers 10 ms, or about 1/64 of a gap that is longer than 0.64 s.
+/// Each appended sample covers 10 ms. If the gap is longer than 0.64 s, each appended sample covers about 1/64 of the
+/// gap.
 void bridge_gap(const WindowRate& before, const WindowRate& after, std::vector<MotionSample>& samples);
 
 }  // namespace tumble::mapping

@@ -11,11 +11,11 @@ namespace tumble::mapping {
 
 namespace {
 
-// Standard deviation of the specific force along a saturated accelerometer axis.
+// standard deviation of the specific force along a saturated accelerometer axis
 constexpr double kSaturatedForceSigma_m_s2 = 50.0;
-// Ratio of the standard deviations of the inertial prediction's process noise at rest and in motion.
+// ratio of the standard deviations of the process noise at rest and in motion
 constexpr double kRestNoiseRatio = 0.02;
-// Standard deviation of the speed of a robot that seems to be at rest.
+// standard deviation of the initial speed of a robot that seems to be at rest
 constexpr double kStartSpeedSigma_m_s = 0.05;
 
 }  // namespace
@@ -57,7 +57,7 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
       .setConstant(std::pow(params.expert.prior.kSigma_m_s * span, 2) +
                    std::pow(params.expert.prior.kForceShare * velocity_change_m_s, 2) + gap_m2_s2);
   u::variances(noise, u::position).array() += gap_m2;
-  // A robot at rest has zero velocity, so errors of gyro and accelerometer hardly affect its predicted pose.
+  // A robot at rest has zero velocity, so errors of gyro and accelerometer hardly change its predicted pose.
   const auto rests = [&](const MotionSample& sample) {
     return sample.at_rest || seconds(sample.from_ns - start_ns) >= trajectory.duration_s();
   };

@@ -10,15 +10,15 @@
 namespace tumble::mapping {
 
 /// Returns the covariance that inertial integration over one sweep adds to the errors of position, attitude and
-/// velocity. Angular rate errors are assumed constant over the sweep, because most of them are due to saturation.
-/// Clipped gyro axes in the bit mask `deficit_axes` add no noise, because the registration estimates their saturation
-/// deficits.
+/// velocity. Angular rate errors are mostly due to saturation, and therefore assumed constant over the sweep. The
+/// registration estimates the saturation deficits of the clipped gyro axes in the bit mask `deficit_axes`, so these
+/// axes add no noise.
 Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& params,
                                            const SweepTrajectory& trajectory, std::span<const MotionSample> samples,
                                            unsigned deficit_axes);
 
 /// Returns the covariance, in frame W, of the velocity change over a sweep due to accelerometer saturation. The error
-/// of a saturated accelerometer axis is assumed constant while the saturation lasts.
+/// of a saturated accelerometer axis is assumed constant during the saturation.
 Eigen::Matrix3d velocity_variance_from_clipping(const SweepTrajectory& trajectory,
                                                 std::span<const MotionSample> samples);
 
@@ -27,8 +27,8 @@ Eigen::Matrix3d velocity_variance_from_clipping(const SweepTrajectory& trajector
 Status start_at_rest(std::span<const MotionSample> samples, MotionState& state);
 Status level_at_rest(const Eigen::Vector3d& force_I_m_s2, MotionState& state);
 
-/// Returns the standard deviation of the angular rate per axis, which is increased for clipped gyro axes without a
-/// recovered rate.
+/// Returns the standard deviation of the angular rate per axis. For clipped gyro axes without a recovered rate, the
+/// standard deviation is increased.
 Eigen::Vector3d assumed_rate_sigma(const LidarInertialOdometry::Params& params, const AngularRateState& rate);
 
 }  // namespace tumble::mapping

@@ -31,8 +31,8 @@ std::uint8_t accel_saturated_axes(const Params& params, const ImuSample& sample)
 }  // namespace
 
 RestDetector::Params mapping_stationary_params(const LidarInertialOdometry::Params& params) {
-  // RestDetector limits the spread of the rate on each axis, so the factor 1/sqrt(3) limits the norm of the spread to
-  // kRate_rad_s.
+  // RestDetector limits the spread of the rate on each axis. The factor 1/sqrt(3) limits the norm of the three spreads
+  // to kRate_rad_s.
   return {
       .rate_max_rad_s = StationaryBounds::kRate_rad_s,
       .rate_spread_rad_s = StationaryBounds::kRate_rad_s / std::numbers::sqrt3,
@@ -58,8 +58,8 @@ Status InertialTrack::check(const ImuSample& sample) const {
 
 void InertialTrack::store_sample(const Params& params, const ImuSample& sample, const AngularRateState& rate) {
   const TimeNs from_ns = last_ns().value_or(sample.time_ns);
-  // The first IMU sample has no earlier time stamp, so its averaging window is assumed as long as the window of the
-  // second sample.
+  // The first IMU sample has no previous time stamp, so its averaging window is assumed as long as the averaging window
+  // of the second sample.
   if (!sweep_boundary_ns_ && samples_.size() == 1) samples_[0].from_ns = 2 * from_ns - sample.time_ns;
   MotionSample next;
   next.from_ns = from_ns;
@@ -71,7 +71,8 @@ void InertialTrack::store_sample(const Params& params, const ImuSample& sample, 
   next.clipped_axes = static_cast<std::uint8_t>(rate.clipped_axes & kClipGyro);
   next.accel_saturated_axes = accel_saturated_axes(params, sample);
   const bool after_gap = next.time_ns - next.from_ns > kGap_ns;
-  // The averaging window of the first sample after a gap is assumed as long as the last window before the gap.
+  // After a gap, the averaging window of the first sample is assumed as long as the last averaging window before the
+  // gap.
   if (after_gap && newest_rate_ && !next.at_rest)
     next.from_ns = std::max(from_ns, next.time_ns - (newest_rate_->time_ns - newest_rate_->from_ns));
   next.bridges_gap = after_gap && next.from_ns == from_ns;
@@ -101,8 +102,8 @@ void InertialTrack::update_rest(const ImuSample& sample, const AngularRateState&
     next.rest_start_ns = stationary_state_.first_ns;
   if (initial_rest_.still_stationary) {
     if (!initial_rest_.first_ns) initial_rest_.first_ns = initial_rest_.initial_rest_start_ns = sample.time_ns;
-    // Noise may interrupt the detected rest at the start of a recording. A rest that starts within kBiasRest_s of the
-    // first sample therefore also counts as the initial rest.
+    // At the start of a recording, noise may interrupt the detected rest. If a new rest starts within kBiasRest_s of
+    // the first sample, the new rest therefore counts as the initial rest.
     if (next.rest_start_ns && seconds(*next.rest_start_ns - *initial_rest_.first_ns) < OdometryStart::kBiasRest_s)
       initial_rest_.initial_rest_start_ns = next.rest_start_ns;
     initial_rest_.still_stationary = next.rest_start_ns == initial_rest_.initial_rest_start_ns;
@@ -134,8 +135,8 @@ bool InertialTrack::starts_at_rest(double lasted_s) const {
   const auto rests = [&](const MotionSample& sample) {
     return sample.at_rest || seconds(sample.from_ns - samples_.front().from_ns) >= lasted_s;
   };
-  // The gyro bias is nonzero only after a sufficiently long initial rest, whose first samples may already be deleted
-  // from samples_.
+  // The gyro bias is nonzero only after a sufficiently long initial rest. samples_ may not contain the first samples of
+  // the initial rest any more, so the gyro bias is tested first.
   return !initial_rest_.gyro_bias_rad_s.isZero(0.0) || std::all_of(samples_.begin(), samples_.end(), rests);
 }
 

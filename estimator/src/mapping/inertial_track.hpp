@@ -24,14 +24,15 @@ class InertialTrack {
   /// Requires that check() has accepted the sample.
   void store_sample(const Params& params, const ImuSample& sample, const AngularRateState& rate);
 
-  /// Returns the samples since the last sweep, which ended within the averaging window of the first returned sample.
+  /// Returns the samples since the last sweep. The last sweep ended within the averaging window of the first returned
+  /// sample.
   std::span<const MotionSample> samples() const { return samples_; }
   std::span<const MotionSample> motion_samples_from(TimeNs from_ns) const;
   std::optional<TimeNs> sweep_boundary_ns() const { return sweep_boundary_ns_; }
   /// Returns the mean specific force of the current rest, if the rest lasted at least `lasted_s` up to `time_ns`.
   std::optional<Eigen::Vector3d> resting_force(TimeNs time_ns, double lasted_s) const;
-  /// Returns whether the robot was at rest during the first `lasted_s` seconds, or during all samples of a shorter
-  /// recording.
+  /// Returns whether the robot was at rest during the first `lasted_s` seconds of the recording. If the recording is
+  /// shorter, returns whether the robot was at rest during all samples.
   bool starts_at_rest(double lasted_s) const;
   bool has_not_moved() const { return initial_rest_.still_stationary; }
   /// Returns the time of the newest sample, or the end of the last sweep if there are no samples.
@@ -41,7 +42,7 @@ class InertialTrack {
   void prune_until(TimeNs end_ns);
 
  private:
-  /// The initial rest ends with the first motion, but the gyro bias of the initial rest remains in use.
+  /// The initial rest ends when the robot first moves, but the gyro bias of the initial rest remains in use.
   struct InitialRest {
     bool still_stationary = true;
     std::optional<TimeNs> first_ns;               ///< first sample of the recording

@@ -14,7 +14,7 @@ struct EstimatedSweep {
   Registration::Matrix error_covariance = Registration::Matrix::Zero();
 };
 
-/// The unknowns of a WindowSweep refer to the start of the sweep.
+/// The unknowns in `predicted`, `filtered` and `smoothed` refer to the start of the sweep.
 struct WindowSweep {
   EstimatedSweep predicted;
   /// derivative of the unknowns with respect to the unknowns of the previous sweep
@@ -35,14 +35,14 @@ class LagWindow {
 
   /// Appends a sweep, and drops the oldest sweep if the lag window is full.
   WindowSweep& append_sweep();
-  /// If the lag window is full, the estimate of its oldest sweep is final.
+  /// If the lag window is full, the estimate of the oldest sweep is final.
   bool is_full() const { return sweeps_.size() == length_; }
   /// Smooths all sweeps except the newest: mapping.md (R63).
   void smooth();
-  /// Moves the map points of all sweeps except the newest to their smoothed positions.
+  /// Moves the map points of all sweeps except the newest sweep to their smoothed positions.
   void move_inserted_sweeps(LocalMap& map) const;
-  /// Excludes the map points inserted so far from later smoothing. Must be called after the indices of map points have
-  /// changed.
+  /// Excludes all previously inserted map points from later smoothing. The caller must call clear_inserted() after a
+  /// change of the map point indices.
   void clear_inserted();
 
   template <class Change>

@@ -15,8 +15,8 @@ namespace tumble {
 namespace {
 
 constexpr double kLeast = 0.02, kScaleDeviations = 5.0;
-// Registered poses follow the IMU over short time spans, which hides a scale error of the lidar's ranges. If all ranges
-// are 10 % too long, velocity changes over 0.4 s give a range scale of 1.08.
+// Over short time spans, registered poses follow the IMU, which hides a scale error of the lidar's ranges. If all
+// ranges are 10 % too long, velocity changes over 0.4 s give an estimated range scale of 1.08.
 constexpr double kSpan_s = 0.4;
 constexpr double kChange_m_s = 0.2;  // minimum change of velocity; noise dominates smaller changes
 constexpr std::size_t kChangesMin = 5, kChangesMax = 1000;
@@ -25,7 +25,7 @@ constexpr std::size_t kSpanMax = 64;  // maximum number of buffered sweeps
 constexpr int kIterations = 10;
 constexpr double kBias_m_s2 = 0.05;         // constant error of the acceleration, from accelerometer bias and tilt
 constexpr double kForgettingTime_s = 60.0;  // maximum age of a velocity change, so that a finding ends
-// width of the Huber kernel in standard deviations; ratio of standard deviation to median absolute deviation
+// width of the Huber kernel in standard deviations; ratio of the standard deviation to the median absolute deviation
 constexpr double kHuber = 1.5, kPerMedian = 1.4826;
 
 using Change = LidarScaleEstimator::VelocityChange;

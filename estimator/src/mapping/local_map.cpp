@@ -14,7 +14,8 @@ namespace {
 
 constexpr double kPointSigmaMax_m = 0.25;
 
-/// PoseVariance computes the variance of a map point due to the uncertain trajectory of its sweep: mapping.md (R64).
+/// PoseVariance computes the variance of a map point that results from the uncertain trajectory of its sweep:
+/// mapping.md (R64).
 class PoseVariance {
  public:
   PoseVariance(const Registration::Matrix& covariance, const SweepTrajectory& trajectory)

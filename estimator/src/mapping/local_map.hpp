@@ -26,8 +26,8 @@ struct SweepToInsert {
   bool is_pose_certain;  ///< whether free space of this sweep may contradict map points
 };
 
-/// LocalMap contains the points around the sensor, their scan lines, and the sensor positions from which the points
-/// were seen.
+/// LocalMap contains the map points around the sensor. For each map point, LocalMap stores its scan line and the sensor
+/// position at which the lidar measured the point.
 class LocalMap {
  public:
   using Params = LidarInertialOdometry::Params;
@@ -38,28 +38,28 @@ class LocalMap {
   bool empty() const { return map_.size() == 0; }
 
   /// Adds the points of a sweep to the map and to the list `inserted`. Cost: O(points of the map). `noise` computes the
-  /// variance of a lidar return. If the pose is certain, counts for each map point whether beams of the sweep hit its
-  /// position or passed through it.
+  /// variance of a lidar return. If the pose is certain, the function counts for each map point whether beams of the
+  /// sweep hit or passed through the position of the map point.
   std::size_t insert(const Params& params, const SweepToInsert& sweep, const Registration& noise,
                      std::vector<InsertedPoint>& inserted);
-  /// Moves inserted map points to the positions that follow from the refined trajectory: mapping.md (R3). `later_s` is
-  /// the change of the lidar's estimated time offset since the points were inserted.
+  /// Moves inserted map points to their positions on the refined trajectory: mapping.md (R3). `later_s` is the change
+  /// of the lidar's estimated time offset since the points were inserted.
   void move(const SweepTrajectory& trajectory, const Eigen::Isometry3d& T_IL, double later_s,
             std::span<const InsertedPoint> inserted);
 
   /// Replaces the map by a prior map. Each point of the prior map gets a fictitious distant sensor position, on the map
-  /// axis nearest to the point's normal. The fictitious sensor positions preserve the signs of surface normals that are
-  /// later estimated from the map. If `T_MW` is given, the points of the local map are added, transformed to the prior
-  /// map's frame.
+  /// axis nearest to the point's normal. Surface normals that are later estimated from the map keep their signs due to
+  /// the fictitious sensor positions. If `T_MW` is given, the points of the local map are transformed to the prior
+  /// map's frame and added.
   void start_from_map_points(const Params& params, std::span<const MapPoint> points, const Eigen::Isometry3f* T_MW);
 
   std::uint32_t sweeps() const { return static_cast<std::uint32_t>(seen_from_W_m_.size()); }
-  /// Removes the points of `first_sweep` and all later sweeps, which changes the indices of map points. Cost:
-  /// O(points).
+  /// Removes the points of the sweep with the number `first_sweep` and of all later sweeps, and changes the indices of
+  /// map points. Cost: O(points).
   void remove_sweeps_since(std::uint32_t first_sweep);
 
-  /// Removes distant points if the sensor has moved far enough since the last removal. Returns whether the indices of
-  /// map points have changed.
+  /// Removes map points far from the sensor, if the sensor has moved far enough since the last removal. Returns whether
+  /// the indices of map points have changed.
   bool prune(const Params& params, const Eigen::Vector3d& p_WI_m);
 
   std::size_t bytes() const { return map_.bytes() + seen_from_W_m_.capacity() * sizeof(Eigen::Vector3f); }

@@ -11,12 +11,12 @@ namespace tumble {
 
 namespace {
 
-// In a run of 1000 sweeps with correct covariances, two or more chi-square values of the innovation (9 degrees of
-// freedom) exceed 32.9 with a probability of 1 %.
+// If the covariances are correct, the chi-square value of the innovation (9 degrees of freedom) exceeds 32.9 at least
+// twice in 1000 sweeps with a probability of 1 %.
 constexpr double kContradictionChi2Min = 32.9;
 
-// Wrong point times or a wrong lidar mounting distort sweeps, so that few points fit the map and the registered poses
-// are noisy. Without these errors, the mean inlier ratio of the simulated runs is at least 0.37.
+// Wrong point times or a wrong lidar mounting distort sweeps. Few points of a distorted sweep fit the map, and the
+// registered poses are noisy. Without such errors, the mean inlier ratio of the simulated runs is at least 0.37.
 constexpr double kInlierRatioMin = 0.2, kMeanInnovationMax = 0.2;
 constexpr std::size_t kMeanSweepsMin = 20, kMeanSweepsMax = 50;
 

@@ -9,19 +9,19 @@ namespace tumble {
 
 namespace {
 
-// sin 10 deg: minimum angle between a beam and the line to an adjacent return on the same surface (Bogoslavskyi,
-// Stachniss)
+// sine of 10 deg: minimum angle between a lidar beam and the line to an adjacent return on the same surface
+// (Bogoslavskyi and Stachniss)
 constexpr float kMinSurfaceSine = 0.17365f;
-// sin 2 deg: minimum angle between a beam and the line through the two neighbours of its return. At a smaller angle,
-// the two neighbours count as two sides of an edge. A lidar 0.5 m above level ground sees the ground at an angle of 2
-// deg, at a distance of 14 m.
+// sine of 2 deg: minimum angle between a lidar beam and the line through the two adjacent returns. If the angle is
+// smaller, the two adjacent returns count as two sides of an edge. A lidar 0.5 m above level ground sees the ground at
+// an angle of 2 deg, at a distance of 14 m.
 constexpr float kGrazingSine = 0.0349f;
 constexpr float kBend = 0.15f;                     // relative tolerance of ranges on uneven ground
 constexpr int kNeighbours = 2;                     // number of neighbours on each side along the ring
 constexpr float kReachSteps = kNeighbours + 0.5f;  // angular steps; beams further apart are not neighbours
 constexpr float kStepMax = 0.05f;                  // rad; the rings of 16-channel lidars are 0.035 rad apart
 constexpr float kDeviations = 3.0f;
-// In clear air, at most 1.6 % of the returns are unconfirmed, even for a thrown robot.
+// In clear air, adjacent beams confirm at least 98.4 % of the returns, even for a thrown robot.
 constexpr float kClearAirFraction = 0.02f;
 
 float squared(float x) {
@@ -30,7 +30,7 @@ float squared(float x) {
 
 }  // namespace
 
-/// Returns the squared sine of the angle between two beams, or 1 for angles of 90 deg or more.
+/// Returns the squared sine of the angle between two beams, or 1 if the angle is at least 90 deg.
 float LoneReturns::sine2_between(const Beam& a, const Beam& b) {
   if (a.point_L_m.dot(b.point_L_m) <= 0.0f) return 1.0f;
   return a.point_L_m.cross(b.point_L_m).squaredNorm() / (squared(a.range_m) * squared(b.range_m));
@@ -64,7 +64,7 @@ bool LoneReturns::between(const RangeNoise& noise, const Beam& before, const Bea
   return squared(beam.range_m - expected_m) <= std::max(squared(kDeviations) * variance, squared(bend_m));
 }
 
-/// neighbours of a return on one side of its ring, nearest first
+/// adjacent returns of a lidar return on one side of its ring, nearest first
 struct LoneReturns::NeighbouringBeams {
   std::array<const Beam*, kNeighbours> beam;
   int count = 0;

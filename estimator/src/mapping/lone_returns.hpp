@@ -17,16 +17,16 @@ struct RangeNoise {
 /// LoneReturns detects returns that no neighbouring beam confirms, for example from dust, rain, snow, grass or birds.
 ///
 /// A return is confirmed in three cases:
-/// - A neighbour on the same ring has the same range: mapping.md (R13).
-/// - The return and the adjacent beam on the ring are on a common surface: mapping.md (R14).
-/// - The return is on the line between an earlier and a later neighbour on the ring: mapping.md (R15).
+/// - A neighbouring return on the same ring has the same range: mapping.md (R13).
+/// - The return and an adjacent return on the ring are on one surface: mapping.md (R14).
+/// - The return is on the line between an earlier and a later return on the ring: mapping.md (R15).
 ///
 /// If neighbouring beams confirm at least 98 % of the returns of a sweep, LoneReturns keeps all returns of the sweep,
 /// because the air is clear.
 class LoneReturns {
  public:
-  /// Removes the unconfirmed returns from `points`, and returns their number. Cost: O(points). The order of the
-  /// remaining points does not change.
+  /// Removes the unconfirmed returns from `points`, and returns the number of removed returns. Cost: O(points). The
+  /// order of the remaining points does not change.
   std::size_t drop_isolated_returns(const RangeNoise& noise, std::vector<SweepPoint>& points);
 
  private:

@@ -7,11 +7,11 @@ namespace tumble::mapping {
 
 namespace {
 
-// cosine of 0.05 rad: after a smaller rotation of the spin axis, a ring retraces its scan line
+// cosine of 0.05 rad: if the lidar's spin axis has rotated less, a ring of the lidar measures the same scan line again
 constexpr double kSameLineCosine = 0.9988;
 constexpr int kRingBits = 16;
-// The exported map excludes points through which beams of at least kSeenThrough sweeps passed. A single sweep may be
-// wrong near the edge of a surface.
+// The exported map excludes points through which beams of at least kSeenThrough sweeps passed. A single sweep is not
+// sufficient, because the nearest return in a direction may be wrong near the edge of a surface.
 constexpr std::uint8_t kSeenThrough = 2;
 
 }  // namespace

@@ -9,7 +9,8 @@ namespace tumble::mapping {
 namespace {
 
 constexpr double kChanceAgreementMax = 0.8;
-// The second-best pose of a search is wrong, so its fraction of agreeing points estimates the agreement by chance.
+// The second-best pose of a search is probably wrong. The fraction of points that agree at the second-best pose
+// therefore estimates the agreement by chance.
 constexpr double kChanceMargin = 0.3;
 constexpr double kFalseAcceptance = 1e-6;  // maximum probability that a search accepts a wrong pose
 constexpr std::size_t kMinPoints = 100;    // minimum number of surface points for a search
@@ -17,7 +18,7 @@ constexpr double kMinCoveredRatio = 0.4;   // minimum fraction of surface points
 constexpr int kAcceptSweeps = 3;           // number of successive sweeps that accept a pose
 constexpr int kRejectSweeps = 2;           // number of successive sweeps that reject a pose
 constexpr int kSearchSweeps = 5;           // number of sweeps between two searches
-// half size of the search region around an approximate pose, in standard deviations
+// half of the size of the search region around an approximate pose, in standard deviations
 constexpr double kSigmas = 3.0;
 constexpr double kMinReach_m = 1.0, kMinReach_rad = 0.15;
 

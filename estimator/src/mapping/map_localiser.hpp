@@ -8,10 +8,11 @@
 
 namespace tumble::mapping {
 
-/// MapLocaliser finds the pose of the local frame W in the frame M of a prior map: mapping.md, "Localisation in a prior
-/// map".
+/// MapLocaliser estimates the pose of the local map frame W in the frame M of a prior map: mapping.md, "Localisation in
+/// a prior map".
 ///
-/// A pose is accepted after several successive sweeps that pass a statistical test, and rejected after two failures.
+/// A pose is accepted when several successive sweeps have passed a statistical test, and rejected after two failed
+/// tests.
 class MapLocaliser {
  public:
   MapLocaliser() = default;
@@ -20,12 +21,12 @@ class MapLocaliser {
   bool has_map() const { return prior_scene_ != nullptr; }
   bool is_localised() const { return localised_; }
   const PriorMap& map() const { return prior_scene_->map(); }
-  /// Restarts the localisation in the prior map. If the IMU pose `T_MI` is given, the search is limited to its
-  /// neighbourhood.
+  /// Restarts the localisation in the prior map. If the IMU pose `T_MI` in the prior map is given, the search is
+  /// limited to the region around this pose.
   void restart(const std::optional<Eigen::Isometry3d>& T_MI);
 
-  /// Returns the pose of the local frame in the prior map after three successive sweeps have confirmed this pose. Cost:
-  /// a few milliseconds, or about a second for every fifth sweep while no pose is proposed.
+  /// Returns the pose of the local map frame in the prior map when three successive sweeps have confirmed this pose.
+  /// Cost: a few milliseconds. While no pose is proposed, every fifth call takes about a second.
   std::optional<FramePose> match_local_map(const VoxelMap& local, const Eigen::Vector3d& p_WI_m);
   /// Returns `degenerate` if the robot is not localised in the prior map.
   Status status() const;

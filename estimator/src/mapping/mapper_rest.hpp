@@ -6,8 +6,8 @@
 
 namespace tumble::mapping {
 
-/// At rest, the angular rate is within `kRate_rad_s` of the gyro bias, and the specific force is within `kForce_m_s2`
-/// of gravity (StationaryBounds).
+/// Bounds of StationaryBounds: at rest, the angular rate differs from the gyro bias by at most `kRate_rad_s`, and the
+/// specific force differs from gravity by at most `kForce_m_s2`.
 RestDetector::Params mapping_stationary_params(const LidarInertialOdometry::Params& params);
 
 }  // namespace tumble::mapping

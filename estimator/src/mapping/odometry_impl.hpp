@@ -28,7 +28,7 @@ struct UpdatedSweep {
   const SweepTrajectory& trajectory;
 };
 
-/// Reused work buffers avoid memory allocation per sweep.
+/// SweepScratch contains work buffers that are reused, so that a sweep allocates no memory.
 struct SweepScratch {
   explicit SweepScratch(const LidarInertialOdometry::Params& params) : points(params), sweep_aligner(params) {}
 
@@ -49,12 +49,12 @@ struct LidarInertialOdometry::Impl {
   /// Computes the initial state from the IMU samples before the first sweep, at rest or in motion.
   Status initialise_inclination();
   Status level_start(MotionState& levelled) const;
-  /// Starts the map if the sweep has enough usable points; otherwise propagates the state inertially to the end of the
-  /// sweep.
+  /// If the sweep has enough usable points, starts the map. Otherwise, propagates the state inertially to the end of
+  /// the sweep.
   Status start_map(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns, SweepReport& report);
   Status dead_reckon(TimeNs end_ns);
   bool is_stationary(const mapping::InertialTrack& inertial, const SweepTrajectory& motion, TimeNs end_ns) const;
-  /// On entry, `trajectory` is the motion that the IMU predicts. On return, `trajectory` is the registered motion, or
+  /// On entry, `trajectory` is the motion predicted from the IMU. On return, `trajectory` is the registered motion, or
   /// the last motion of a failed registration.
   void register_to_map(const mapping::Prediction& prediction, const mapping::MotionWindow& motion,
                        mapping::SweepPoints& points, SweepTrajectory& trajectory, SweepReport& report,
@@ -76,7 +76,7 @@ struct LidarInertialOdometry::Impl {
   Status continue_by_inertia(const mapping::MotionWindow& motion, bool rests, mapping::SweepBoundary& at,
                              mapping::LagWindow* into) const;
   void revert_to_inertial_pose();
-  /// Returns the state of a relocalisation that later sweeps contradicted, or null.
+  /// Returns the IMU state of a relocalisation that later sweeps have contradicted, or null.
   const MotionState* rejected_relocalisation() const;
   void add_map_drift(const mapping::UpdatedSweep& sweep, const SweepReport& report);
   void prune_until(TimeNs end_ns);

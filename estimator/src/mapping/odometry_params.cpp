@@ -7,7 +7,7 @@ namespace tumble {
 
 namespace {
 
-/// An empty box means that no own-body box is set.
+/// If the box is empty, no points on the robot itself are removed.
 template <class Visitor>
 void visit_corners_in_order(const Eigen::AlignedBox3d& box, Visitor& visit) {
   const Eigen::AlignedBox3d none;

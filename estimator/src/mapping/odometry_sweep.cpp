@@ -19,7 +19,7 @@ using mapping::UpdatedSweep, mapping::WindowSweep;
 namespace {
 
 constexpr double kFirstSweepDelayMax_s = 0.5;  // maximum delay between first IMU sample and first sweep
-// time step of dead reckoning, and interval for which the process noise is specified
+// time step of dead reckoning, and time interval for which the process noise is specified
 constexpr TimeNs kStep_ns = 100'000'000;
 
 }  // namespace
@@ -90,8 +90,8 @@ Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
   if (samples.back().time_ns < end_ns) {
     return {ErrorCode::insufficient_data, "imu time_ns", double(samples.back().time_ns), double(end_ns)};
   }
-  // A time offset between lidar and IMU may move the start of the first sweep before the first IMU sample.
-  // SweepTrajectory extrapolates the motion before the first IMU sample.
+  // A time offset between lidar and IMU may shift the start of the first sweep to a time before the first IMU sample.
+  // SweepTrajectory extrapolates the motion to times before the first IMU sample.
   const double early_s = seconds(samples.front().from_ns - start_ns);
   if (!started && early_s > (params.time_offset_s != 0.0 ? SweepTrajectory::kExtrapolation_s : 0.0)) {
     return {ErrorCode::insufficient_data, "start_ns", double(start_ns), double(samples.front().from_ns)};
@@ -188,8 +188,8 @@ Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
   return {};
 }
 
-/// The inertially predicted velocity must stay nearly constant at rest. With a wrong estimated attitude, the predicted
-/// velocity changes, because gravity is subtracted in a wrong direction.
+/// At rest, the inertially predicted velocity must stay nearly constant. If the estimated attitude is wrong, the
+/// predicted velocity changes, because gravity is subtracted in a wrong direction.
 bool LidarInertialOdometry::Impl::is_stationary(const mapping::InertialTrack& inertial, const SweepTrajectory& motion,
                                                 TimeNs end_ns) const {
   if (!inertial.is_stationary_until(end_ns)) return false;

@@ -34,8 +34,8 @@ PlaneFit fit_plane(const VoxelMap& map, const NearestNeighbours& neighbours, con
     return fit;
   }
 
-  // Positions relative to the nearest neighbour are small, so rounding errors of floats are small even far from the
-  // origin.
+  // The plane fit uses positions relative to the nearest map point. Relative positions are small, so rounding errors of
+  // single-precision numbers are small even far from the origin.
   const Eigen::Vector3f origin = map.position_W_m(neighbours.index[0]);
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   Eigen::Matrix3f square = Eigen::Matrix3f::Zero();
@@ -63,7 +63,7 @@ PlaneFit fit_plane(const VoxelMap& map, const NearestNeighbours& neighbours, con
     fit.verdict = PlaneVerdict::collinear;
     return fit;
   }
-  // The plane fit uses three of the n degrees of freedom: mapping.md (R27).
+  // The plane fit estimates three parameters from n points, which leaves n - 3 degrees of freedom: mapping.md (R27).
   const double noise2 = l[0] / std::max(n - 3, 1);
   for (int axis = 0; axis < 2; ++axis) {
     fit.normal_sigma_W.col(axis) =

@@ -15,21 +15,22 @@ namespace tumble::mapping {
 
 namespace {
 
-// A sweep with too few matches extends the map only if the standard deviation of its predicted attitude is below this
-// limit.
+// If a sweep has too few matches, its points are inserted into the map only if the standard deviation of the predicted
+// attitude is below kExtendSigmaMax_rad.
 constexpr double kExtendSigmaMax_rad = 0.1;
-// Minimum prior standard deviation of the gyro's saturation deficit on a clipped axis.
+// minimum prior standard deviation of the gyro's saturation deficit on a clipped axis
 constexpr double kDeficitSigmaMin_rad_s = 1.0;
-// Correlation time of the gyro's saturation deficit.
+// correlation time of the gyro's saturation deficit
 constexpr double kDeficitTime_s = 0.3;
-// Maximum growth factor of the gyro's saturation deficit from one sweep to the next.
+// maximum growth factor of the gyro's saturation deficit from one sweep to the next
 constexpr double kDeficitCarryMax = 3.0;
-// The gyro's saturation deficit is estimated at start, middle and end of each sweep. Each of these three deficits has
-// an additional independent error, with this fraction of the deficit's standard deviation.
+// The registration estimates the gyro's saturation deficit at the start, middle and end of each sweep. Each of the
+// three deficits has an additional independent error. kKnotSigmaRatio is the ratio of the error's standard deviation to
+// the deficit's standard deviation.
 constexpr double kKnotSigmaRatio = 0.05;
-// Standard deviation of the velocity during the initial rest.
+// standard deviation of the velocity during the initial rest
 constexpr double kStartSigma_m_s = 0.01;
-// Minimum number of consecutive sweeps at rest before the predicted velocity is set to zero.
+// minimum number of consecutive sweeps at rest before the predicted velocity is set to zero
 constexpr int kRestingSweepsMin = 3;
 
 namespace u = unknowns;
@@ -66,8 +67,8 @@ double saturation_deficit_sigma(const MotionWindow& window, const SweepTrajector
   return sigma;
 }
 
-/// The gyro's saturation deficit is modelled as a first-order Gauss-Markov process: mapping.md (R46), (R47). If the
-/// gyro's saturation continues from the last sweep, the process noise of the deficit is smaller: mapping.md (R49).
+/// The gyro's saturation deficit is modelled as a first-order Gauss-Markov process: mapping.md (R46), (R47). If a
+/// saturation continues from the last sweep, the process noise of the deficit is smaller: mapping.md (R49).
 void add_saturation_deficit_noise(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory,
                                   Prediction& next) {
   if (!params.expert.saturated_imu.estimate_deficit) return;
@@ -117,7 +118,8 @@ Prediction predict(const Params& params, const SweepBoundary& boundary, const Mo
   next.prior.mean.calibration = boundary.state_estimate.mean.calibration;
   propagate_saturation_deficit(params, boundary, trajectory, next);
   if (window.samples.front().at_rest) next.zero_velocity_update(kStartSigma_m_s);
-  // The speed limit kCreepMax_m_s excludes constant motion, which the IMU cannot distinguish from rest.
+  // The IMU cannot distinguish constant velocity from rest. At speeds above kCreepMax_m_s, the robot is therefore
+  // assumed to move.
   const bool creeps = boundary.state_estimate.mean.state.v_WI_m_s.norm() < Standstill::kCreepMax_m_s;
   if (window.resting_sweeps >= kRestingSweepsMin && !boundary.all_directions_constrained && creeps)
     next.zero_velocity_update(Standstill::kSigma_m_s);
@@ -125,8 +127,8 @@ Prediction predict(const Params& params, const SweepBoundary& boundary, const Mo
   MotionNoise within = inertial_noise(params, trajectory, window.samples, axes);
   const Eigen::Matrix3d clipped_force_m2_s2 = velocity_variance_from_clipping(trajectory, window.samples);
   u::sub_block(next.noise, u::motion) += within;
-  // Accelerometer saturation late in a sweep hardly affects the registration of this sweep, but changes the velocity in
-  // the next sweep.
+  // If the accelerometer saturates near the end of a sweep, the error hardly affects the registration of the sweep, but
+  // changes the velocity in the next sweep.
   u::sub_block(next.noise, u::velocity) += boundary.clipped_velocity_variance_m2_s2 + clipped_force_m2_s2;
   u::sub_block(within, u::velocity) += clipped_force_m2_s2;
   add_saturation_deficit_noise(params, window, trajectory, next);
@@ -159,7 +161,7 @@ StateEstimate posterior(const Prediction& prediction) {
 /// See mapping.md (R52).
 StateEstimate posterior(const Prediction& prediction, const Registration::Result& aligned) {
   StateEstimate start{aligned.mean, aligned.covariance, Registration::Matrix::Zero()};
-  // Noise of the surface normals carries no information about the motion.
+  // Errors of the surface normals add false information to the registration, so this information is not used.
   Registration::Matrix kept = Registration::Matrix::Identity(), from_prior;
   dense::solve_semidefinite(make_invertible(prediction.prior.covariance), kept);
   kept += aligned.surface_normal_noise_information;

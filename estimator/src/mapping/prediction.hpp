@@ -11,10 +11,11 @@ namespace tumble::mapping {
 
 struct SweepBoundary {
   StateEstimate state_estimate;
-  /// derivative of the unknowns at the end of the last sweep with respect to the unknowns at its start
+  /// derivative of the unknowns at the end of the last sweep with respect to the unknowns at the start of the last
+  /// sweep
   Registration::Matrix end_by_start_jacobian = Registration::Matrix::Identity();
-  /// Absolute value of the saturation factor s_j of each gyro axis at the end of the last sweep: mapping.md (R8). The
-  /// saturation factor of an unclipped gyro axis is 0.
+  /// absolute value of the saturation factor of each gyro axis at the end of the last sweep: s_j of mapping.md (R8); 0
+  /// for an unclipped gyro axis
   Eigen::Vector3d clipped_axis_sign = Eigen::Vector3d::Zero();
   Eigen::Matrix3d clipped_velocity_variance_m2_s2 =
       Eigen::Matrix3d::Zero();              ///< velocity covariance due to accelerometer saturation, in frame W
@@ -37,20 +38,21 @@ struct Prediction {
   Registration::Matrix motion_error_covariance =
       Registration::Matrix::Zero();  ///< covariance of the actual errors of the mean
 
-  /// compose_with_boundary() requires that all other members are set.
+  /// Before a call of compose_with_boundary(), the caller must set all other members.
   void compose_with_boundary(const StateEstimate& at_boundary);
-  /// Sets the velocity to zero and removes its correlations: mapping.md (R33). Call zero_velocity_update() before
+  /// Sets the velocity to zero and removes the correlations of the velocity: mapping.md (R33). Must be called before
   /// compose_with_boundary().
   void zero_velocity_update(double sigma_m_s);
 };
 
-/// `trajectory` is the inertial motion since the end of the last sweep. `reading` is the odometer reading of the sweep,
-/// if any.
+/// `trajectory` is the inertially predicted motion since the end of the last sweep. `reading` is the odometer reading
+/// of the sweep, or empty.
 Prediction predict(const LidarInertialOdometry::Params& params, const SweepBoundary& boundary,
                    const MotionWindow& window, const SweepTrajectory& trajectory,
                    const std::optional<OdometerReading>& reading);
 
-/// Predicts zero velocity for a sweep at rest after a tracking failure, which stops the drift of the velocity.
+/// Predicts zero velocity for a sweep at rest after a tracking failure. Without this prediction, the velocity would
+/// drift.
 void predict_stationary_sweep(const SweepBoundary& boundary, Prediction& prediction);
 
 bool prior_is_certain(const LidarInertialOdometry::Params& params, const SweepBoundary& boundary,
@@ -64,17 +66,18 @@ StateEstimate posterior(const Prediction& prediction, const Registration::Result
 double innovation(const Prediction& prediction, const Registration::Estimate& aligned);
 
 /// Returns whether the difference between registered and predicted pose passes a chi-square test, and is at most the
-/// matching distance: mapping.md (R67). Beyond the matching distance, lidar returns may match wrong surfaces by chance.
+/// matching distance: mapping.md (R67). If the difference exceeds the matching distance, lidar returns may match wrong
+/// surfaces by chance.
 bool agrees_with_prediction(const LidarInertialOdometry::Params& params, const Prediction& prediction,
                             const Registration::Estimate& aligned, double innovation);
 
-/// `alignment` is null for a sweep without registration.
+/// `alignment` is null if the sweep was not registered.
 void sweep_boundary_after(const LidarInertialOdometry::Params& params, const StateEstimate& start,
                           const MotionWindow& window, const SweepTrajectory& trajectory,
                           const Registration::Result* alignment, SweepBoundary& boundary);
 
-/// Returns the correlation between the saturation deficits at adjacent knots (start, middle and end of a sweep):
-/// mapping.md (R46).
+/// Returns the correlation between the saturation deficits at two successive instants (start, middle or end of a
+/// sweep): mapping.md (R46).
 double deficit_knot_correlation(const SweepTrajectory& trajectory);
 
 }  // namespace tumble::mapping

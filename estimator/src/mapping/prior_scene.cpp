@@ -34,8 +34,9 @@ constexpr float kNearSurface_m = 0.5f, kAgreeDistance_m = 0.12f, kAgreeNormal = 
 constexpr std::size_t kRefinePoints = 400;
 constexpr float kLastKernel_m = 0.15f;
 
-/// Each slope class contributes equally many points (normal-space sampling), because trunks and rocks determine the
-/// pose better than the ground.
+/// The surface points are sorted into classes by slope, and each class contributes equally many points (normal-space
+/// sampling). Without the classes, most points would be on the ground, although trunks and rocks determine the pose
+/// better.
 int surface_slope_class(const Eigen::Vector3f& normal) {
   const float z = std::abs(normal.z());
   return z < 0.3f ? 0 : z < 0.6f ? 1 : z < 0.85f ? 2 : 3;
@@ -109,7 +110,7 @@ PriorMapScene::PriorMapScene(PriorMap map) : map_(std::move(map)), voxels_(kVoxe
   build_grid();
 }
 
-/// The grid of prior map points has a margin, so best_candidates() needs no range checks.
+/// The grid of prior map points is larger than the map, so best_candidates() does not check grid indices.
 void PriorMapScene::build_grid() {
   Eigen::AlignedBox3f box;
   for (std::uint32_t index = 0; index < voxels_.index_end(); ++index)
@@ -174,7 +175,8 @@ Eigen::Isometry3d PriorMapScene::pose_of(const PoseCandidate& candidate, const S
   return T_MW;
 }
 
-/// Scores every pose that moves one surface point (the anchor) to a surface cell of the prior map, with every heading.
+/// Computes a score for all poses that move the surface point `anchor` to a surface cell of the prior map, for a series
+/// of headings.
 std::vector<PriorMapScene::PoseCandidate> PriorMapScene::best_candidates(const std::vector<SurfacePoint>& points,
                                                                          const SurfacePoint& anchor,
                                                                          const SearchRegion* region,

@@ -11,7 +11,8 @@
 /// See mapping.md, "Localisation in a prior map".
 namespace tumble::mapping {
 
-/// A list of surface points has at most one point per cube of 1 m, so that point errors are nearly independent.
+/// A list of surface points contains at most one point per cube of 1 m, so that the errors of the points are nearly
+/// independent.
 struct SurfacePoint {
   Eigen::Vector3f position_W_m;
   Eigen::Vector3f normal_W;
@@ -32,7 +33,8 @@ struct FramePose {
   }
 };
 
-/// SearchRegion limits the position of the sensor in frame M and the heading of frame W in frame M.
+/// SearchRegion limits the position of the sensor and the heading of the local map frame W, each in the prior map frame
+/// M.
 struct SearchRegion {
   Eigen::Vector3d p_WI_m = Eigen::Vector3d::Zero();                 ///< sensor position to which the limits refer, in W
   Eigen::Vector3d centre_in_prior_map_m = Eigen::Vector3d::Zero();  ///< centre of the region
@@ -44,8 +46,8 @@ class PriorMapScene {
   explicit PriorMapScene(PriorMap map);
 
   const PriorMap& map() const { return map_; }
-  /// Returns at most two distinct poses of the local frame in the prior map, best first. Cost of a search in the whole
-  /// map: O(surface area of the map), about a second for a map of 100 m.
+  /// Returns at most two distinct poses of the local map frame in the prior map, best first. Cost of a search in the
+  /// whole map: O(surface area of the map), about a second for a map of 100 m.
   ///
   /// @param sensor_W_m  sensor position in the local frame
   /// @param attempt     number of the search; selects the point of `points` that is placed on surfaces of the prior map
@@ -54,7 +56,7 @@ class PriorMapScene {
   std::vector<FramePose> find_candidate_poses(const std::vector<SurfacePoint>& points,
                                               const Eigen::Vector3d& sensor_W_m, std::size_t attempt,
                                               const SearchRegion* region, std::size_t& tried) const;
-  /// Refines a pose by point-to-plane registration, and counts the points that agree with the prior map.
+  /// Refines a pose by point-to-plane registration, and counts the surface points that agree with the prior map.
   FramePose refined_pose(const FramePose& start, const std::vector<SurfacePoint>& points,
                          const Eigen::Vector3d& sensor_W_m, float first_kernel_m) const;
 
@@ -86,7 +88,7 @@ class PriorMapScene {
   std::vector<SurfaceCell> cells_;
 };
 
-/// radius around the sensor within which surface points are compared with the prior map
+/// maximum distance from the sensor of surface points that are compared with the prior map
 inline constexpr float kQueryRadius_m = 20.0f;
 
 }  // namespace tumble::mapping

@@ -59,8 +59,8 @@ class SweepMotion {
     return time_ns >= predicted_estimate_.state.time_ns - beyond_ns && time_ns <= window_.end_ns + beyond_ns;
   }
 
-  /// The effect of the process noise is assumed to grow linearly with the time since the start of the sweep: mapping.md
-  /// (R34).
+  /// The effect of the process noise on the state is assumed to grow linearly with the time since the start of the
+  /// sweep: mapping.md (R34).
   MotionInstant at(TimeNs time_ns, const StateOffsets& offsets) const {
     MotionInstant out;
     const double t_s = seconds(time_ns - predicted_estimate_.state.time_ns);
@@ -155,7 +155,7 @@ bool holds(const SweepMotion& sweep, const OdometerReading& reading) {
 template <int Size>
 using Gain = Eigen::Matrix<double, Size, Eigen::Dynamic, 0, Size, kMost>;
 
-/// The matrices of UpdateWorkspace are on the heap, because propagate_covariance() needs 32 KiB of stack.
+/// UpdateWorkspace keeps large matrices on the heap, because propagate_covariance() needs 32 KiB of stack.
 struct UpdateWorkspace {
   Matrix start_covariance, noise_covariance,
       remaining_error_factor;  ///< covariance at the start; its part due to noise; factor of the remaining errors

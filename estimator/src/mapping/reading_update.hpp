@@ -14,8 +14,8 @@ struct Prediction;
 /// process noise covariance of position, attitude and velocity within a sweep
 using MotionNoise = Eigen::Matrix<double, 9, 9>;
 
-/// Updates the prediction of a sweep with an odometer reading from within the sweep: mapping.md (R34) to (R37).
-/// Odometer readings outside of the sweep have no effect.
+/// Updates the prediction of a sweep with an odometer reading that was measured during the sweep: mapping.md (R34) to
+/// (R37). An odometer reading from a time outside of the sweep has no effect.
 void fuse_reading(const OdometerReading& reading, const SweepBoundary& boundary, const MotionWindow& window,
                   const MotionNoise& within, Prediction& prediction);
 

@@ -185,7 +185,7 @@ Status Registration::iterate(const RegistrationProblem& problem, IterationState&
 
 RegistrationVerdict Registration::registration_verdict(const RegistrationProblem& problem,
                                                        const IterationState& at) const {
-  // At a wrong local minimum of the cost, most matched points are far from their planes.
+  // At a wrong local minimum of the cost, most matched points are far from their matched planes.
   const bool fits = static_cast<double>(at.normal_equations.inliers) >=
                     params_.expert.inlier_ratio_min * static_cast<double>(at.normal_equations.matches);
   if (!at.converged || !fits) return RegistrationVerdict::diverged;

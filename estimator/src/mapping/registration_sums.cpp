@@ -11,7 +11,7 @@ namespace tumble {
 
 namespace {
 
-// Edge of a cube whose lidar returns are assumed to have correlated residuals.
+// edge length of a cube in which the residuals of lidar returns are assumed correlated
 constexpr double kCluster_m = 1.0;
 
 constexpr int kRigid = Registration::kMotionSize;
@@ -97,8 +97,8 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, NearestNei
   if (match.plane_searched) {
     const float moved2 = (positions_[point] - match.search_position_W_m).squaredNorm();
     if (moved2 <= rematch2) return;
-    // The sphere around the moved point that contains all neighbours of the previous search is large enough for the new
-    // search.
+    // The new search uses a sphere around the moved point. The sphere is large enough if the sphere contains all
+    // neighbours that the previous search found.
     radius_m = std::min(radius_m, kRounding * (match.farthest_neighbour_m + std::sqrt(moved2)));
   }
   match.plane_searched = true;
@@ -157,7 +157,8 @@ double Registration::kernel_width_m() {
   if (sorted_distances_.empty()) return params_.expert.kernel_min_m;
   const auto middle = sorted_distances_.begin() + static_cast<std::ptrdiff_t>(sorted_distances_.size() / 2);
   std::nth_element(sorted_distances_.begin(), middle, sorted_distances_.end());
-  // For a normal distribution, three standard deviations are 3 * 1.4826 times the median absolute value.
+  // For a normal distribution, the median absolute value times 1.4826 is the standard deviation, so the kernel width is
+  // three standard deviations.
   return std::max(params_.expert.kernel_min_m, 3.0 * 1.4826 * static_cast<double>(*middle));
 }
 
@@ -165,8 +166,8 @@ double Registration::kernel_width_m() {
 void Registration::accumulate_block(std::span<const SweepPoint> points, std::size_t block,
                                     const SweepTrajectory& trajectory, const LidarImuCalibration& calibration,
                                     const Unknowns& unknowns, double kernel_m, Sums& sum) {
-  // Columns of `rows`: derivatives of a matched point's distance from its plane, times the square root of the match's
-  // weight.
+  // Each column of `rows` belongs to a matched point. The column contains the derivatives of the point's distance from
+  // its plane, times the square root of the weight.
   constexpr int kPoints = kPointsPerPartialSum;
   Eigen::Matrix<double, kUnknowns, kPoints> rows;
   Eigen::Matrix<double, kPoints, 1> weighted;
@@ -215,9 +216,9 @@ void Registration::accumulate(std::span<const SweepPoint> points, const SweepTra
   sum.normal_matrix = lower.selfadjointView<Eigen::Lower>();
 }
 
-/// SurfaceNormalNoise is the part of the registration's normal matrix H that errors of the surface normals cause:
-/// mapping.md (R28), (R29). Errors of the surface normals add false information, also in directions of motion that the
-/// surfaces do not constrain.
+/// SurfaceNormalNoise is the part of the registration's normal matrix H that results from errors of the surface
+/// normals: mapping.md (R28), (R29). Errors of the surface normals add false information, even in directions of motion
+/// that the surfaces do not constrain.
 struct Registration::SurfaceNormalNoise {
   const Unknowns& unknowns;
   // on the heap, with the buffers of rankUpdate()
@@ -256,8 +257,8 @@ struct Registration::SurfaceNormalNoise {
   }
 };
 
-/// ClusterGradients sums the cost gradients of the lidar returns in each cube of the map, because nearby residuals are
-/// correlated. The covariance of the whole gradient follows from the sums of all cubes: mapping.md (R26).
+/// ClusterGradients sums the cost gradients of the lidar returns in each cube of the map, because residuals of nearby
+/// returns are correlated. The sums of all cubes give the covariance of the whole gradient: mapping.md (R26).
 struct Registration::ClusterGradients {
   SpatialHash& cluster_index;
   std::vector<Vector>& gradients;

@@ -13,13 +13,13 @@ struct Registration::Unknowns {
   int count = 0;
   bool deficit_free = false, calibration_free = false;
 
-  /// The unknowns of the motion are always free. A saturation deficit or a calibration unknown is free if its prior
-  /// variance is above 0.
+  /// The unknowns of the motion (position, attitude, velocity) are always free. A saturation deficit or calibration
+  /// constant is free if its prior variance is above 0.
   explicit Unknowns(const Matrix& covariance);
 
-  /// Expands the sums over the free unknowns to all unknowns, with zeros for fixed unknowns.
+  /// Expands vectors and matrices over the free unknowns to all unknowns, with zeros for fixed unknowns.
   void expand_to_all_unknowns(const Sums& sum, Matrix& H, Vector& g) const;
-  /// Changes the normal equations such that the solution is 0 for the fixed unknowns.
+  /// Changes the normal equations such that the solution for each fixed unknown is 0.
   void fix_constrained_unknowns(Matrix& H, Vector& g) const;
   void clear_fixed_blocks(Matrix& M) const;
   void clear_fixed(Matrix& covariance) const;

@@ -12,20 +12,20 @@ namespace tumble::mapping {
 
 namespace {
 
-// A sweep confirms a relocalisation if at least this fraction of its point-to-plane residuals is within three standard
-// deviations. Normally distributed residuals give 0.997.
+// A sweep confirms a relocalisation if at least the fraction kConfirmInlierRatio of the point-to-plane residuals is
+// within three standard deviations. Normally distributed residuals give a fraction of 0.997.
 constexpr double kConfirmInlierRatio = 0.9;
-// Maximum number of repetitions of a failed registration, per sweep. Each repetition starts with a larger saturation
-// deficit of the gyro.
+// maximum number of repetitions of a failed registration per sweep; each repetition starts with a larger saturation
+// deficit of the gyro
 constexpr int kDeficitTriesMax = 5;
-// Smallest increase of the gyro's initial saturation deficit when a failed registration is repeated.
+// smallest increase of the gyro's initial saturation deficit in a repeated registration
 constexpr double kDeficitTry_rad_s = 3.0;
-// Number of starting poses per sweep after a tracking failure, including the predicted pose.
+// number of starting poses per sweep after a tracking failure, including the predicted pose
 constexpr int kStartsPerSweep = 3;
 
 using Params = LidarInertialOdometry::Params;
 
-// Repeated registrations increase the gyro's initial saturation deficit by kDeficitTry_rad_s times an element of
+// A repeated registration increases the gyro's initial saturation deficit by kDeficitTry_rad_s times an element of
 // kDeficitTries.
 constexpr double kDeficitTries[] = {1.0, 2.0, 3.0, 5.0};
 constexpr double kDeficitSigmas = 5.0;  // largest tried increase of the saturation deficit, in standard deviations
@@ -33,8 +33,8 @@ constexpr double kDeficitSigmas = 5.0;  // largest tried increase of the saturat
 constexpr int kStartsPerRound = 12;  // number of initial poses per round: six axes, two directions
 constexpr double kStartSigmas = 1.5;
 constexpr double kShiftMin_m = 0.3, kRotationMin_rad = 0.1;  // closer starting poses converge to one pose
-// In round n of the search, starting poses differ from the predicted pose by at most n times these values: mapping.md
-// (R66).
+// In round n of the search, a starting pose differs from the predicted pose by at most n times kShift_m or n times
+// kRotation_rad: mapping.md (R66).
 constexpr double kShift_m = 1.0, kRotation_rad = 0.3;
 constexpr int kRounds = 3;
 
@@ -47,13 +47,13 @@ bool is_sufficient_fit(const Registration::Result& found) {
   return double(found.inliers) >= kConfirmInlierRatio * double(found.matches);
 }
 
-/// Gyro saturation within one sweep may rotate the predicted pose by a radian. A failed registration is therefore
-/// repeated with larger saturation deficits of the clipped gyro axes.
+/// Gyro saturation during a sweep may cause an error of a radian in the predicted attitude. A failed registration is
+/// therefore repeated with larger saturation deficits of the clipped gyro axes.
 void track_sweep(const Params& params, const Registration::Prior& prior, const RegistrationScene& scene,
                  SweepAligner& aligner, SweepTrajectory& trajectory, Registration::Result& found) {
   aligner.align_with_all_points(prior, scene, trajectory, found);
   int iterations = found.iterations, tries = 0;
-  // If the first registration exceeds the limits of the pose correction, further iterations would also exceed these
+  // If the first registration exceeds the limits of the pose correction, further registrations would also exceed the
   // limits.
   const bool out_of_bounds = found.correction_m > params.expert.matching.correction_max_m ||
                              found.correction_rad > params.expert.matching.correction_max_rad;
@@ -77,7 +77,8 @@ void track_sweep(const Params& params, const Registration::Prior& prior, const R
   found.iterations = iterations;
 }
 
-/// The number of initial poses per sweep is limited, so an unsuccessful search continues with the next sweep.
+/// The number of starting poses per sweep is limited. If the search fails, the search continues with other starting
+/// poses in the next sweep.
 void search_displaced_poses(const RelocalisationContext& from, const RegistrationScene& scene, SweepAligner& aligner,
                             SweepTrajectory& trajectory, Registration::Result& found) {
   const Registration::Prior& prior = from.prior;

@@ -14,17 +14,18 @@ struct RegistrationAttempt {
   double inlier_ratio = 0.0;  ///< inlier fraction of the last registration
 };
 
-/// RelocalisationContext contains the possible states at the start of a sweep, from which the search chooses initial
-/// poses.
+/// RelocalisationContext contains the possible IMU states at the start of a sweep. The search chooses its starting
+/// poses from these states.
 struct RelocalisationContext {
   const TrackingState& tracking;
   const Registration::Prior& prior;
-  /// state of a relocalisation that later sweeps contradicted, as an additional starting pose; or null
+  /// IMU state of a relocalisation that later sweeps have contradicted, used as an additional starting pose; null if
+  /// there was no such relocalisation
   const MotionState* contradicted_motion = nullptr;
 };
 
-/// `trajectory` receives the registered motion, or the last motion of a failed registration. `alignment` is empty if no
-/// registration succeeded.
+/// `trajectory` receives the registered motion, or the last motion of a failed registration. If no registration
+/// succeeds, `alignment` is empty.
 RegistrationAttempt attempt_registration(const LidarInertialOdometry::Params& params, const RelocalisationContext& from,
                                          const RegistrationScene& scene, SweepAligner& aligner,
                                          SweepTrajectory& trajectory, std::optional<Registration::Result>& alignment);
@@ -37,13 +38,13 @@ struct SweepRegistration {
   std::optional<Registration::Result> alignment;  ///< alignment at the start of the sweep
 };
 
-/// Without alignment, the verdict is `degenerate` if the map has too few points and the prediction is certain, or after
-/// enough failed searches.
+/// If no registration succeeded, the verdict is `degenerate` in two cases: the map has too few points and the
+/// prediction is certain, or enough searches have failed.
 void judge_registration(const TrackingState& before, std::size_t points, bool prior_certain,
                         const RegistrationAttempt& attempt, SweepRegistration& placed);
 
-/// Initial pose number 0 is the predicted pose. All other initial poses are shifted or rotated along one axis, closest
-/// first: mapping.md (R66).
+/// The starting pose with index 0 is the predicted pose. Each other starting pose is shifted or rotated along one axis.
+/// Starting poses close to the predicted pose have lower indices: mapping.md (R66).
 void displace_starting_pose(int index, Registration::Prior& prior);
 
 }  // namespace tumble::mapping

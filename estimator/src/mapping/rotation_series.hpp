@@ -3,10 +3,11 @@
 
 #include <utility>
 
-/// Horner's method evaluates the power series of cos(x) and sin(x) / x, where x is half of a small rotation angle.
+/// This file contains coefficients for evaluating the power series of cos(x) and sin(x) / x with Horner's method, where
+/// x is half of a rotation angle.
 namespace tumble::rotation_series {
 
-/// square of the largest full angle for which the series is accurate
+/// square of the largest rotation angle for which the power series is accurate
 inline constexpr double kAngle2_rad2 = 1.0;
 /// ratios of successive terms in the series of cos(x) and of sin(x) / x, last term first
 inline constexpr std::pair<double, double> kRatios[] = {

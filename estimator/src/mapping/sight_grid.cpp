@@ -9,13 +9,13 @@ namespace tumble::mapping {
 
 namespace {
 
-// FreeSpaceGrid computes the direction of each lidar return from one position, although the sensor moves during the
-// sweep. At ranges above ten times the sensor's motion, the error of the computed direction is below 0.1 rad, about
-// three bins.
+// FreeSpaceGrid computes the direction of each lidar return from one sensor position, although the sensor moves during
+// the sweep. If the range exceeds ten times the distance that the sensor moves, the direction error is below 0.1 rad,
+// about three bins.
 constexpr float kMinRangePerMotion = 10.0f;
 constexpr int kEmptyBinsMax = 4;  // maximum number of empty bins out of nine; rings may be further apart than bins
-// kBeyond_m and kBeyondRatio define a tolerance of the range for the relative pose error of two sweeps, range noise,
-// and sloped ground within a bin.
+// kBeyond_m and kBeyondRatio define a tolerance of the range. The tolerance covers the relative pose error of two
+// sweeps, range noise, and sloped ground within a bin.
 constexpr float kBeyond_m = 0.3f, kBeyondRatio = 0.03f;
 constexpr float kDeviations = 3.0f;
 
@@ -46,7 +46,7 @@ void FreeSpaceGrid::add(const Eigen::Vector3f& return_W_m) {
   nearest_m = std::min(nearest_m, lever_m.norm());
 }
 
-/// Returns 0 if the range of the returns around a direction is unknown.
+/// Returns the smallest range of the returns in and around a direction, or 0 if the range is unknown.
 float FreeSpaceGrid::free_space_range_m(const Direction& towards) const {
   float nearest_m = std::numeric_limits<float>::infinity();
   int empty = 0;

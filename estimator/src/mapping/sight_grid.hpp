@@ -7,9 +7,9 @@
 
 namespace tumble::mapping {
 
-/// FreeSpaceGrid stores the nearest return of a sweep in each direction, in bins on the faces of a cube around the
-/// sensor. A sweep saw through a map point if all returns around the direction of the map point are farther away:
-/// mapping.md (R65).
+/// FreeSpaceGrid stores the range of the nearest return of a sweep in each direction. The directions are divided into
+/// bins on the faces of a cube around the sensor. The beams of a sweep passed through a map point if all returns in
+/// nearly the same direction are farther away: mapping.md (R65).
 class FreeSpaceGrid {
  public:
   /// `from_W_m` is the assumed origin of all beams of a sweep. `moved_m` is the largest distance of the sensor from
@@ -18,7 +18,7 @@ class FreeSpaceGrid {
   void add(const Eigen::Vector3f& return_W_m);
 
   enum class Verdict { unknown_space, occupied, free_space };
-  /// Checks whether the sweep saw a map point, or saw through its position. Cost: O(1).
+  /// Checks whether beams of the sweep hit a map point, or passed through its position. Cost: O(1).
   Verdict verdict(const Eigen::Vector3f& point_W_m, float sigma_m) const;
 
  private:

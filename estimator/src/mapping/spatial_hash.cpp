@@ -16,7 +16,7 @@ SpatialHash::SpatialHash(std::size_t expected) {
 }
 
 std::uint32_t SpatialHash::insert(std::uint64_t key, std::uint32_t value) {
-  // A hash table that is at most half full has short chains of collisions.
+  // The hash table is at most half full, because a fuller table would have longer chains of collisions.
   if (2 * (size_ + 1) > keys_.size()) grow_table();
   std::size_t slot = table_slot_of(key);
   for (; keys_[slot] != kFree; slot = (slot + 1) & mask_) {

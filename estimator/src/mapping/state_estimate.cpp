@@ -9,8 +9,8 @@ namespace tumble::mapping {
 
 using Matrix = Registration::Matrix;
 
-/// See mapping.md (R54), (R55). The first lidar pose defines the map frame. An error of the lidar's mounting therefore
-/// causes errors of the initial IMU pose and of gravity's direction in the map frame.
+/// See mapping.md (R54), (R55). The lidar pose of the first sweep defines the map frame. An error of the lidar's
+/// mounting therefore causes an error of the initial IMU pose, and of gravity's direction in the map frame.
 StateEstimate estimate_at_start(const LidarInertialOdometry::Params& params, const MotionState& levelled) {
   namespace u = unknowns;
   StateEstimate state_estimate;
@@ -63,7 +63,8 @@ MotionErrors marginal_motion_errors(const Matrix& F, const Matrix& errors) {
   return moved * rows.transpose();
 }
 
-/// R_IW (δv + v × φ), for errors δv of velocity v and φ of attitude
+/// The velocity error in IMU axes is R_IW (δv + v × φ), for the error δv of the velocity v and the error φ of the
+/// attitude.
 Eigen::Matrix3d velocity_covariance_I(const MotionState& state, const MotionErrors& errors) {
   namespace u = unknowns;
   const Eigen::Matrix3d R_IW = state.q_WI.toRotationMatrix().transpose();
@@ -73,9 +74,9 @@ Eigen::Matrix3d velocity_covariance_I(const MotionState& state, const MotionErro
   return J * errors * J.transpose();
 }
 
-/// Each matrix block has a multiple of the SIMD packet size as its number of rows. The products of the matrix blocks
-/// therefore add their terms in the same order as propagate_covariance(). In the transition matrix F, the rows of
-/// mounting and other constants are rows of the identity: mapping.md (R11).
+/// The number of rows of each matrix block is a multiple of the SIMD packet size. The block products therefore add
+/// their terms in the same order as propagate_covariance(). The rows of mounting and other constants in the transition
+/// matrix F are rows of the identity matrix: mapping.md (R11).
 Matrix propagate_pose_and_mounting(const Matrix& F, const Matrix& errors) {
   constexpr int kSize = 8, kMounting = 16;
   static_assert(kMounting >= Registration::kMotionSize && kMounting <= Registration::kFirstCalibrationUnknown &&

@@ -7,12 +7,12 @@
 
 namespace tumble::mapping {
 
-/// In mapping.md, "Two covariances", the matrix C is `prior_weight_covariance` and the matrix E is
-/// `state_error_covariance`.
+/// `prior_weight_covariance` is the matrix C and `state_error_covariance` is the matrix E of mapping.md, section "Two
+/// covariances".
 struct StateEstimate {
   Registration::Estimate mean;  ///< mean; the covariance of its state is the motion block of `prior_weight_covariance`
-  /// Covariance with which the registration weights its prior. A heuristic factor for correlated lidar residuals makes
-  /// this covariance larger than for independent residuals.
+  /// Covariance with which the registration weights its prior. Lidar residuals are correlated, and a heuristic factor
+  /// makes the covariance larger than for independent residuals.
   Registration::Matrix prior_weight_covariance = Registration::Matrix::Zero();
   /// covariance of the actual errors of the state `mean`
   Registration::Matrix state_error_covariance = Registration::Matrix::Zero();
@@ -30,8 +30,7 @@ Registration::Matrix unknowns_at(const SweepTrajectory& trajectory, double t_s);
 void propagate_covariance(const Registration::Matrix& F, const Registration::Matrix& P, Registration::Matrix& out);
 
 /// Propagates the covariance `errors` by the transition matrix F, but returns only the blocks of pose and mounting. The
-/// blocks of pose and mounting are bit-identical to the result of propagate_covariance(), at a third of the computing
-/// time.
+/// returned blocks are bit-identical to the result of propagate_covariance(), and need a third of the computing time.
 Registration::Matrix propagate_pose_and_mounting(const Registration::Matrix& F, const Registration::Matrix& errors);
 
 /// covariance of the errors of position, attitude and velocity in frame W
@@ -46,11 +45,11 @@ Eigen::Matrix3d velocity_covariance_I(const MotionState& state, const MotionErro
 void at_end(const StateEstimate& at_start, const SweepTrajectory& trajectory,
             const Registration::Matrix& end_start_jacobian, TimeNs end_ns, StateEstimate& end);
 
-/// Returns the derivative of the IMU's pose error with respect to mounting errors for an exact lidar pose: K of
+/// Returns the derivative of the IMU's pose error with respect to the mounting errors, if the lidar pose is exact: K of
 /// mapping.md (R54).
 Eigen::Matrix<double, 6, 6> pose_mounting_jacobian(const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& p_IL_m);
 
-/// Adds a small variance to each unknown, because fixed unknowns have variance 0.
+/// Adds a small variance to each unknown, because a covariance with variance 0 for fixed unknowns is not invertible.
 Registration::Matrix make_invertible(const Registration::Matrix& covariance);
 
 }  // namespace tumble::mapping

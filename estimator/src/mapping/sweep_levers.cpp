@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The results are bit-identical to SweepTrajectory::at, because sweep_levers.cpp performs the operations of Eigen's
-// quaternions in the same order.
+// The functions in this file perform the same operations as Eigen's quaternions, in the same order. The results are
+// therefore bit-identical to the results of SweepTrajectory::at.
 #include <algorithm>
 #include <limits>
 

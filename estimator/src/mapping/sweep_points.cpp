@@ -18,7 +18,8 @@ Status SweepPoints::select_returns(const Params& params, std::span<const LidarPo
   sampled_points_.clear();
   counts = {found.usable_points, 0, found.has_ring_numbers};
   if (Status status = check_point_selection(span_ns, returns, found); !status.ok()) return status;
-  // Isolated returns are detected only with ring numbers, because a return is compared with returns of the same ring.
+  // Isolated returns are detected only if the sweep has ring numbers, because a return is compared with other returns
+  // of its ring.
   if (found.has_ring_numbers) counts.isolated = lone_returns_.drop_isolated_returns(noise_, all_);
   if (all_.empty()) return {ErrorCode::insufficient_data, "points", 0.0, 1.0};
   return {};

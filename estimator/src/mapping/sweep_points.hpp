@@ -22,11 +22,12 @@ class SweepPoints {
     std::size_t isolated = 0;       ///< number of dropped lone returns
     bool has_ring_numbers = false;
   };
-  /// The sweep starts `start_s` seconds after the start of its trajectory. Returns the errors of
+  /// The sweep starts `start_s` seconds after the start of its trajectory. On error, returns an error of
   /// check_point_selection().
   Status select_returns(const Params& params, std::span<const LidarPoint> returns, TimeNs span_ns,
                         const LidarImuCalibration& calibration, double start_s, Counts& counts);
-  /// Selects one point per voxel of the world frame for the registration, based on the predicted point positions.
+  /// Selects one lidar point per voxel of the world frame for the registration. The predicted point positions determine
+  /// the voxels.
   void choose_points_per_voxel(const Params& params, const SweepTrajectory& predicted);
   void apply_calibration_shift(const LidarImuCalibration& calibration, double later_s) {
     apply_calibration(calibration, later_s, all_);

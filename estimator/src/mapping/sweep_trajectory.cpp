@@ -30,8 +30,8 @@ Eigen::Vector3d clipped_axis_signs(const MotionSample& sample, const Eigen::Vect
   for (int axis = 0; axis < 3; ++axis) {
     if (!(sample.clipped_axes >> axis & 1)) continue;
     share[axis] = least_known_rad_s[axis] > 0.0 ? sample.rate_sigma_rad_s[axis] / least_known_rad_s[axis] : 1.0;
-    // The true rate has a larger magnitude than a saturated reading. In a gap between IMU samples, the sign of the
-    // interpolated rate's error is unknown.
+    // A saturated reading has a smaller magnitude than the true rate, and the same sign. In a gap between IMU samples,
+    // the sign of the interpolation error is unknown.
     if (sample.w_WI_I_rad_s[axis] < 0.0 && !sample.bridges_gap) share[axis] = -share[axis];
   }
   return share;
@@ -45,8 +45,8 @@ Eigen::Matrix<double, SweepTrajectory::kKnots, 1> knot_weights(double share) {
   return weights;
 }
 
-/// For small angles, rotated_by() sums the power series of cosine and sine, which is faster than so3::exp and exact
-/// except for rounding.
+/// If the angle is small, rotated_by() sums the power series of cosine and sine. The power series is faster to compute
+/// than so3::exp, and exact except for rounding.
 Eigen::Quaterniond rotated_by(const Eigen::Vector3d& rate_rad_s, double s) {
   const double angle2 = s * s * rate_rad_s.squaredNorm();
   if (!(angle2 <= rotation_series::kAngle2_rad2)) return so3::exp(rate_rad_s * s);
@@ -99,7 +99,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
   for (const MotionSample& sample : samples) {
     const TimeNs from = std::max(sample.from_ns, start.time_ns);
     const TimeNs to = std::min(sample.time_ns, end_ns);
-    // A trajectory of zero length gets one interval, so that it can be evaluated.
+    // A trajectory with zero duration gets one interval, so that its state can be computed.
     if (to < from || (to == from && !(end_ns == start.time_ns && intervals_.empty()))) continue;
     const double dt = seconds(to - from);
     const Eigen::Vector3d share = clipped_axis_signs(sample, sigma);
@@ -123,7 +123,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     if (clipped_axes_ == 0) continue;
     now.acceleration_jacobian = -so3::hat(now.specific_force_W_m_s2) * now.attitude_jacobian;
     next.attitude_jacobian = now.attitude_jacobian + saturation_deficit_jacobian_within(now, dt);
-    // The mean attitude error during an IMU sample rotates the specific force: mapping.md (R10).
+    // The mean attitude error during an IMU sample rotates the specific force of the sample: mapping.md (R10).
     const DeficitJacobian turn =
         -so3::hat(now.specific_force_W_m_s2) * (0.5 * (now.attitude_jacobian + next.attitude_jacobian));
     next.velocity_jacobian = now.velocity_jacobian + turn * dt;

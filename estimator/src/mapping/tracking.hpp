@@ -9,10 +9,10 @@ namespace tumble::mapping {
 
 struct WaitingForStart {};
 
-/// Tracking is the state after a sweep that was not rejected. A sweep with enough points but without registration is
-/// still accepted in two cases:
+/// Tracking is the state after a sweep that was not rejected. A sweep with enough points, but without a successful
+/// registration, is also accepted in two cases:
 /// - The sweep has too few matches with the map, and the standard deviation of the predicted pose is small.
-/// - The maximum number of successive failed searches is reached.
+/// - The maximum number of consecutive failed searches is reached.
 struct Tracking {
   int failed_searches = 0;  ///< consecutive sweeps with points but without registration
 };
@@ -22,8 +22,9 @@ struct TrackingLost {
   int failed_searches = 0;
 };
 
-/// Relocalised is the state after an unconfirmed relocalisation: mapping.md (R67), (R68). Inertial prediction continues
-/// in parallel. If a later sweep contradicts the relocalisation, the predicted pose replaces the relocalised pose.
+/// Relocalised is the state while a relocalisation is unconfirmed: mapping.md (R67), (R68). The inertial prediction
+/// without relocalisation continues in parallel. If a later sweep contradicts the relocalisation, the predicted pose
+/// replaces the relocalised pose.
 struct Relocalised {
   int rejected_sweeps_before = 0;  ///< number of rejected sweeps before the relocalisation
   int failed_searches = 0;

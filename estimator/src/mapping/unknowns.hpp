@@ -3,8 +3,8 @@
 
 #include "tumble/mapping/detail/registration.hpp"
 
-/// Names the registration's unknowns (docs/maths/mapping.md), as in `row_range(F, velocity)` and `segment(step,
-/// velocity)`.
+/// Defines names for ranges of the registration's unknowns (docs/maths/mapping.md), for example `row_range(F,
+/// velocity)` and `segment(step, velocity)`.
 namespace tumble::mapping::unknowns {
 
 template <int First, int Size>
@@ -26,14 +26,14 @@ inline constexpr UnknownRange<Registration::kFirstCalibrationUnknown + 3, 3> mou
 inline constexpr UnknownRange<Registration::kFirstCalibrationUnknown + 6, 1> clock;
 inline constexpr UnknownRange<Registration::kFirstCalibrationUnknown + 7, 3> gravity;
 
-/// This variance is added to the variance of each unknown, so that the prior covariance is invertible.
+/// kMinVariance is added to the variance of each unknown, so that the prior covariance is invertible.
 inline constexpr double kMinVariance = 1e-12;
 /// 95 % quantile of the chi-square distribution with nine degrees of freedom, used in mapping.md (R25), (R67)
 inline constexpr double kAgreementChi2Max = 16.9;
 static_assert(RegistrationUnknowns::kMotionSize == 9);
 
-/// Returns the index of a gyro axis' saturation deficit in the vector of all unknowns. The knots 0, 1 and 2 are start,
-/// middle and end of the sweep.
+/// Returns the index of a gyro axis' saturation deficit in the vector of all unknowns. The instants (knots) 0, 1 and 2
+/// are start, middle and end of the sweep.
 constexpr int saturation_deficit_index(int axis, int knot) {
   return Registration::kFirstDeficitUnknown + 3 * knot + axis;
 }

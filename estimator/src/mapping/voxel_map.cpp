@@ -16,7 +16,7 @@ using mapping::voxel_cube_of;
 
 namespace {
 
-// Unused slots of a chunk (a block of map points) have coordinates beyond any search radius.
+// Map points are stored in blocks (chunks). Unused elements of a chunk have coordinates beyond any search radius.
 constexpr float kFar = 1e18f;
 constexpr int kReachMax = 8;  // maximum number of cells that a search covers to each side
 
@@ -43,7 +43,7 @@ void squared_axis_distances(float fraction, float voxel_m, int reach, float* dis
 using Floats [[gnu::vector_size(16)]] = float;
 using Ints [[gnu::vector_size(16)]] = std::int32_t;
 
-/// Returns a bit mask of the elements of `values` that are at most `limit`, without branches.
+/// Returns a bit mask of the elements of `values` that are at most `limit`. The function contains no branches.
 inline std::uint32_t values_within_limit(float limit, const Floats (&values)[4]) {
   constexpr Ints kFirst = {1, 2, 4, 8};
   const Floats limits = {limit, limit, limit, limit};
@@ -52,7 +52,7 @@ inline std::uint32_t values_within_limit(float limit, const Floats (&values)[4])
   return static_cast<std::uint32_t>(bits[0] | bits[1] | bits[2] | bits[3]);
 }
 
-/// The sequence 0, 1, -1, 2, -2 lets the neighbour search visit near cells first, so that the search radius shrinks
+/// The sequence 0, 1, -1, 2, -2 lets the neighbour search visit near cells first, so that the search radius decreases
 /// early.
 inline int alternating_offset(int i) {
   return (i & 1) ? (i + 1) / 2 : -i / 2;
@@ -89,7 +89,8 @@ class VoxelMap::NeighbourVoxelRows {
     neighbour_groups_.fill(kGroupNotSearched);
   }
 
-  /// Returns the occupied cells of a row as bits; the lowest bit has the smallest x.
+  /// Returns one bit per cell of a row, which is set if the cell contains points. The lowest bit belongs to the cell
+  /// with the smallest x.
   std::uint32_t occupied(int y, int z) {
     const Eigen::Vector3i away = VoxelGroup::of({first_voxel_x_, y, z}) - low_;
     std::uint32_t bits = 0;
@@ -148,7 +149,8 @@ std::uint32_t VoxelMap::new_chunk(std::uint32_t& first) {
   return first;
 }
 
-/// Positions must be within the range of the map's integer coordinates, with a margin for the cells of a search.
+/// A position must be within the range of the map's integer coordinates, with a margin for the cells around the
+/// position that a search visits.
 bool VoxelMap::has_room_for(const Eigen::Vector3f& position) const {
   return (position * cubes_per_m_).cwiseAbs().maxCoeff() < static_cast<float>(SpatialHash::kCoordinateLimit - 2);
 }
@@ -168,7 +170,8 @@ std::uint32_t VoxelMap::add(const Eigen::Vector3f& position, float sigma_m, std:
 
 std::uint32_t VoxelMap::store_point(const Eigen::Vector3f& position, float sigma_m, std::uint32_t sweep,
                                     std::uint32_t line) {
-  // The newest chunk (block of points) of a cell comes first, and is the only chunk with unused slots.
+  // The list of chunks (blocks of points) of a cell starts with the newest chunk, and only the newest chunk has unused
+  // elements.
   std::uint32_t& first = first_chunk_of(voxel_cube_of(position, cells_per_m_));
   if (first == kNone || point_chunks_[first].count == kPointsPerChunk) new_chunk(first);
   PointChunk& chunk = point_chunks_[first];
@@ -235,7 +238,8 @@ void VoxelMap::remove_sweeps_from(std::uint32_t first_sweep) {
   for (std::uint32_t index = 0; index < index_end(); ++index) {
     if (!exists(index) || sweep_[index] >= first_sweep) continue;
     const Eigen::Vector3f position = position_W_m(index);
-    // Smoothing may have moved two points into one cube with the edge length `spacing_m`. The map keeps both points.
+    // Smoothing may have moved two points into one cube with the edge length `spacing_m`. The map then keeps both
+    // points.
     if (params_.spacing_m > 0.0) kept.occupied_cubes_.add(SpatialHash::key(voxel_cube_of(position, cubes_per_m_)));
     const std::uint32_t now = kept.store_point(position, sigma_m_[index], sweep_[index], line_[index]);
     kept.seen_through_counts_[now] = seen_through_counts_[index];

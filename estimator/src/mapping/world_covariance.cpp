@@ -13,11 +13,11 @@ namespace {
 
 using Pose = WorldCovariance::Pose;
 
-// Successive sweeps share errors, so the position error grows in proportion to the distance from the start (0.24 % in a
-// hall with pillars).
+// The errors of successive sweeps are correlated, so the position error grows in proportion to the distance from the
+// start (0.24 % in a hall with pillars).
 constexpr double kScale = 0.003;
-// The standard deviation of the drift per sweep is kDriftRatio times the pose's standard deviation along its least
-// constrained direction.
+// The map drifts in the direction that surfaces constrain least. The standard deviation of the drift per sweep is
+// kDriftRatio times the standard deviation of the pose in this direction.
 constexpr double kDriftRatio = 0.1, kDriftSigmaMax_m = 3.0;
 
 /// See mapping.md (R57).
@@ -76,8 +76,8 @@ void WorldCovariance::add_drift(double least_constrained_sigma_m,
 void WorldCovariance::add_inserted_sweep(double inserted_fraction, const SweepTrajectory& trajectory,
                                          const Registration::Matrix& errors, const Eigen::Vector3d& p_IL_m) {
   const double middle_s = 0.5 * trajectory.duration_s();
-  // A rotation error of the map causes a position error in proportion to the distance from the last sweep that extended
-  // the map.
+  // A rotation error of the map causes a position error in proportion to the distance from the last sweep with points
+  // inserted into the map.
   const Eigen::Vector3d p_WI_m = trajectory.state(middle_s).p_WI_m;
   Pose moved = Pose::Identity();
   moved.topRightCorner<3, 3>() = -so3::hat(p_WI_m - last_map_extension_W_m_);

@@ -5,8 +5,8 @@
 
 namespace tumble::mapping {
 
-/// WorldCovariance is the covariance of the map relative to the world, whose frame is defined by the first pose of the
-/// IMU. The covariance of the map includes errors of mounting, initial tilt, scale and inserted sweeps, and drift in
+/// WorldCovariance is the covariance of the map relative to the world frame, which the first pose of the IMU defines.
+/// The covariance of the map includes errors of mounting, initial tilt, scale and inserted sweeps, and drift in
 /// unconstrained directions.
 class WorldCovariance {
  public:
@@ -20,7 +20,7 @@ class WorldCovariance {
         last_map_extension_W_m_(p_WI_m),
         mounting_jacobian_at_start_(pose_mounting_jacobian(q_WI, p_IL_m)) {}
 
-  /// Returns the covariance after localisation in a prior map, which is assumed exact.
+  /// Returns the covariance after localisation in a prior map. The prior map is assumed exact.
   static WorldCovariance covariance_in_prior_map(const WorldCovarianceParams& params, const Eigen::Vector3d& p_WI_m);
 
   /// Returns the covariance of the IMU pose in the world frame, at the IMU position `p_WI_m`. `joint` is the covariance
@@ -30,8 +30,8 @@ class WorldCovariance {
   /// Returns the standard deviation of the IMU's position relative to the nearby part of the map.
   double sigma_in_map_m(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const;
 
-  /// `least_constrained_direction` is the direction of motion (position, scaled attitude) that surfaces constrain
-  /// least.
+  /// `least_constrained_direction` is the direction of motion (position, scaled attitude) that the surfaces around the
+  /// sensor constrain least.
   void add_drift(double least_constrained_sigma_m, const Eigen::Matrix<double, 6, 1>& least_constrained_direction);
   /// `inserted_fraction` is the fraction of the sweep's points that were inserted into the map. `errors` is the
   /// covariance of the registration's unknowns at the start of the sweep.
