@@ -60,7 +60,7 @@ namespace {
 
 // For angles below 1e-4, the first two terms of the power series are exact to rounding.
 constexpr double kSmallAngle = 1e-4;
-// For angles x below 0.5, x - sin(x) loses digits by cancellation. The first six terms of the power series are exact to
+// For angles x below 0.5, x - sin(x) loses digits by cancellation. The first seven terms of the power series are exact to
 // rounding.
 constexpr double kCancellingAngle = 0.5;
 

@@ -135,8 +135,8 @@ bool InertialTrack::starts_at_rest(double lasted_s) const {
   const auto rests = [&](const MotionSample& sample) {
     return sample.at_rest || seconds(sample.from_ns - samples_.front().from_ns) >= lasted_s;
   };
-  // The gyro bias is nonzero only after a sufficiently long initial rest. samples_ may not contain the first samples of
-  // the initial rest any more, so the gyro bias is tested first.
+  // The gyro bias is nonzero only after a sufficiently long initial rest. The first samples of the initial rest may
+  // already be deleted from samples_, so the gyro bias is tested first.
   return !initial_rest_.gyro_bias_rad_s.isZero(0.0) || std::all_of(samples_.begin(), samples_.end(), rests);
 }
 

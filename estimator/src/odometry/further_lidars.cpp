@@ -16,7 +16,8 @@ namespace tumble {
 
 namespace {
 
-// Offset between the ring numbers of two lidars, because LoneReturns compares returns within one ring.
+// offset between the ring numbers of two lidars; LoneReturns compares returns within one ring, so rings of two lidars
+// must have different numbers
 constexpr std::uint16_t kRingsPerLidar = 4096;
 constexpr double kOffsetMax_s = 1.0;
 

@@ -14,7 +14,7 @@
 namespace tumble {
 
 /// Adds the points of further lidars to the sweeps of the first lidar. FurtherLidars transforms each point to axes of
-/// the first lidar, and adds the point to the sweep that contains the point's time.
+/// the first lidar, and adds the point to the sweep during which the point was measured.
 class FurtherLidars {
  public:
   FurtherLidars() = default;
@@ -22,11 +22,11 @@ class FurtherLidars {
   /// time offset above 1 s. `T_IL_first` is the pose of the first lidar in the IMU frame.
   FurtherLidars(std::span<const FurtherLidar> lidars, const Eigen::Isometry3d& T_IL_first);
 
-  /// `lidar` is the number of the further lidar, counted from 1. See TumblingOdometry::add_sweep(). If more than `most`
-  /// sweeps are stored, the oldest sweep is dropped.
+  /// `lidar` is the number of the further lidar, starting at 1. See TumblingOdometry::add_sweep(). If more than `most`
+  /// sweeps are stored, FurtherLidars drops the oldest sweep.
   Status add(std::size_t lidar, TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, TimeNs latest_ns,
              std::size_t most);
-  /// Adds the stored points whose times are within a sweep to the sweep, and drops earlier points. Cost: O(stored
+  /// Adds the stored points that were measured during a sweep to the sweep, and drops earlier points. Cost: O(stored
   /// points).
   void merge_into(WaitingSweep& sweep);
 

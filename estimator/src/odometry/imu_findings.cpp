@@ -19,8 +19,9 @@ using Kind = HealthFinding::Kind;
 
 constexpr const char* kImu = "imu";
 constexpr double kSlopeTolerance = 0.02, kSlopeAgreementMin = 0.99;
-// The body counts as hand-held if at least this fraction of the samples is classified as hand-held. The fraction is at
-// least 91 % for recorded hand-held motion, and mostly below 60 % for throws, even with wrongly labelled sensor axes.
+// The body counts as hand-held if at least the fraction kRepeatedFraction of the samples is classified as hand-held. In
+// recordings of hand-held motion, at least 91 % of the samples are classified as hand-held. In recordings of throws,
+// mostly less than 60 % of the samples are classified as hand-held, even with wrongly labelled sensor axes.
 constexpr double kRepeatedFraction = 0.8;
 
 double rate_max_so_far_rad_s(std::span<const ImuSample> samples) {
@@ -40,7 +41,7 @@ Status check_force_at_rest(const ImuDescription& imu, std::span<const ImuSample>
   return gravity.gravity_magnitude_verdict(state);
 }
 
-/// Returns whether the gyro agrees with the rotation of the specific-force vector.
+/// Returns whether the rotation measured by the gyro agrees with the rotation of the specific-force vector.
 bool check_readings(const ImuDescription& imu, std::span<const ImuSample> samples, SensorHealth& health) {
   const ImuPlausibility plausibility(plausibility_setup(imu.gravity_m_s2, imu.is_merged ? 0.0 : imu.gyro_range_rad_s));
   ImuPlausibility::State state;
@@ -67,7 +68,8 @@ void check_flight_forces(const ImuDescription& imu, std::span<const ImuSample> s
   health.add(Kind::inverted_accel_in_flight, sense.verdict(state), kImu);
 }
 
-/// The estimated angular rates must rotate the gravity vector of each rest to the gravity vector of the next rest.
+/// Checks whether the estimated angular rates rotate the gravity vector of each rest to the gravity vector of the next
+/// rest.
 void check_stationary_gravity(const ImuDescription& imu, std::span<const ImuSample> samples,
                               std::span<const AngularRateState> rates, SensorHealth& health) {
   const RestGravity gravity = rest_gravity(imu);

@@ -15,11 +15,11 @@ namespace tumble {
 /// Resamples the readings of several IMUs, each with its own time stamps, to common times.
 ///
 /// The common times are the time stamps of the reference IMU, which is initially the first IMU. If the reference IMU
-/// has no reading for kSilentMax_s while another IMU has, the next IMU with readings becomes the reference. The
-/// readings of all IMUs except the reference IMU are interpolated linearly (ImuInterpolation). An IMU is absent at a
-/// common time if its previous or next reading is more than kSilentMax_s away. The alignment is causal, and its output
-/// is at most kSilentMax_s late. The resampled readings are returned when each IMU has a reading at or after the common
-/// time, or no reading for kSilentMax_s.
+/// has no reading for kSilentMax_s while another IMU has readings, the next IMU with readings becomes the reference.
+/// The readings of all other IMUs are interpolated linearly (ImuInterpolation). An IMU is absent at a common time if
+/// the previous or next reading of this IMU is more than kSilentMax_s away. The alignment is causal, and its output is
+/// at most kSilentMax_s late. Readings for a common time are returned when each IMU has a reading at or after the
+/// common time, or has no reading for kSilentMax_s.
 ///
 /// Cost: O(1) per reading. The stored readings cover kSilentMax_s.
 class ImuTimeAlignment {
@@ -38,11 +38,11 @@ class ImuTimeAlignment {
   /// `units` is the number of IMUs, at most ImuMerge::kImus.
   explicit ImuTimeAlignment(std::size_t units) : imu_count_(units) {}
 
-  /// Readings that are not finite are ignored. If the time stamp is not later than the IMU's last time stamp, push()
-  /// returns `time_order` and the state is unchanged.
+  /// Ignores non-finite readings. If the time stamp is not later than the last time stamp of the IMU, push() returns
+  /// `time_order` and does not change the state.
   Status push(std::size_t unit, const ImuSample& sample, State& state) const;
 
-  /// `out` receives the readings of all IMUs at the next common time; the rates of an absent IMU are NaN. Returns false
+  /// `out` receives the readings of all IMUs at the next common time. The rates of an absent IMU are NaN. Returns false
   /// while an IMU may still send a reading before the next common time. If `ended` is true, next() does not wait for
   /// further readings.
   bool next(State& state, Readings& out, bool ended = false) const;

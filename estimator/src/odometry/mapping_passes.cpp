@@ -13,17 +13,18 @@ namespace {
 
 constexpr int kExtraPassesMax = 3;
 constexpr std::size_t kSweepsPerRejection = 5;
-// If a mapping pass contradicts the given lidar mounting, the next pass assumes at least these standard deviations of
-// the mounting.
+// minimum standard deviations of the lidar mounting in a mapping pass, if the previous pass has contradicted the stated
+// mounting
 constexpr double kUncertainMountSigma_rad = 0.1, kUncertainMountSigma_m = 0.5;
 
-/// Cuts the last sweep at the end of the IMU data, if at least half of the sweep remains. Without cutting, a small
-/// clock offset between lidar and IMU would make the last sweep unusable.
+/// Cuts the last sweep at the end of the IMU data, if at least half of the sweep remains. Otherwise, a small clock
+/// offset between lidar and IMU would make the last sweep unusable.
 bool shorten_sweep(TimeNs end_ns, WaitingSweep& sweep) {
   if (end_ns >= sweep.end_ns) return true;
   const TimeNs last_marginalised_ns = end_ns - sweep.start_ns, length_ns = sweep.end_ns - sweep.start_ns;
   if (2 * last_marginalised_ns < length_ns) return false;
-  // Points beyond the sweep's end remain, because the mapper reports them as a fault of the recording.
+  // Points beyond the sweep's end remain in the sweep, because the mapper reports such points as a fault of the
+  // recording.
   std::erase_if(sweep.points,
                 [&](const LidarPoint& p) { return p.offset_ns > last_marginalised_ns && p.offset_ns <= length_ns; });
   sweep.end_ns = end_ns;
@@ -62,7 +63,7 @@ class MappingPass {
     if (out_.status.ok()) add_points(sweep);
   }
 
-  /// While the lidar provides no sweeps, empty sweeps are added, as TumblingOdometry does in live operation.
+  /// While the lidar provides no sweeps, adds empty sweeps, as TumblingOdometry does in live operation.
   void add_time_without_sweeps(TimeNs to_ns) {
     while (out_.status.ok() && last_end_ns_) {
       const TimeNs silent_ns = *last_end_ns_ + offset_ns_ + static_cast<TimeNs>(1e9 * kLidarSilent_s);

@@ -17,8 +17,9 @@ namespace {
 using Kind = HealthFinding::Kind;
 
 constexpr double kSilentReported_s = 0.5;  // minimum duration without readings that is reported
-// Sensing elements without an observed saturation plane are assumed aligned with their axis. If their cross-axis
-// sensitivity had a standard deviation of 0.03, the angular rate would be undetermined while three IMUs clip.
+// If the saturation plane (SaturationPlane) of a sensing element has not been observed, the sensing element is assumed
+// aligned with its axis. If the cross-axis sensitivity were assumed uncertain (standard deviation 0.03), the angular
+// rate would be undetermined while three IMUs clip.
 constexpr double kUnknownSlope = 0.0;
 
 struct ImuReadingSets {

@@ -16,8 +16,8 @@ std::size_t sample_count_in_duration(double time_s, const MotionRegimeStream::Pa
   return static_cast<std::size_t>(std::ceil(time_s / rate.rate.period_s)) + 16;
 }
 
-/// If the recovered rate of a clipped gyro axis is too uncertain, the mapper receives the gyro's reading, which is a
-/// lower bound. With an uncertain calibration, a rate recovered at an impact may be wrong by tens of rad/s.
+/// If the recovered rate of a clipped gyro axis is too uncertain, the mapper receives the gyro's reading as a lower
+/// bound instead. If the calibration is uncertain, a recovered rate may have an error of tens of rad/s at an impact.
 AngularRateState limit_rate_covariance(const AngularRateState& rate, const ImuSample& sample) {
   constexpr double kSigmaMax_rad_s = InertialNoiseParams::kRateSigmaMax_rad_s;
   AngularRateState out = rate;
@@ -32,7 +32,8 @@ AngularRateState limit_rate_covariance(const AngularRateState& rate, const ImuSa
   return out;
 }
 
-/// Adds the detected accelerometer clipping to the flags of samples. Successive calls of at() need increasing times.
+/// Adds the detected accelerometer clipping to the flags of samples. Successive calls of at() must have increasing
+/// times.
 class ClippingClassifiedSamples {
  public:
   ClippingClassifiedSamples(std::span<const ImuSample> samples, const AngularRateStream::State& state)

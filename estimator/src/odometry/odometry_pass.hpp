@@ -15,8 +15,8 @@
 
 namespace tumble {
 
-/// Processes IMU samples and lidar sweeps once, in time order. MotionRegimeStream estimates the angular rates.
-/// LidarInertialOdometry then processes the samples and sweeps for which rates are available. TumblingOdometry runs one
+/// Processes IMU samples and lidar sweeps once, in time order. MotionRegimeStream estimates the angular rates, and
+/// LidarInertialOdometry processes samples and sweeps for which rates are available. TumblingOdometry runs one
 /// OdometryPass live, and SecondMappingPass runs a second OdometryPass with the estimated calibration.
 class OdometryPass {
  public:
@@ -32,21 +32,22 @@ class OdometryPass {
   /// Throws InvalidParams if a parameter is out of bounds.
   OdometryPass(const MotionRegimeStream::Params& rate, const LidarInertialOdometry::Params& mapping);
 
-  /// Adds an IMU sample, and passes the smoothed angular rate that is lag_s older to the mapper.
+  /// Adds an IMU sample. Passes the sample that is lag_s older, with its smoothed angular rate, to the mapper.
   Status add_imu(const ImuSample& sample);
   /// See LidarInertialOdometry::set_start_pose().
   void set_start_pose(const Eigen::Isometry3d& T_WI) { mapper_.set_start_pose(T_WI); }
   /// See LidarInertialOdometry::set_prior_map().
   Status set_prior_map(PriorMap map) { return mapper_.set_prior_map(std::move(map)); }
   void copy_prior_map(const OdometryPass& other) { mapper_.copy_prior_map(other.mapper_); }
-  /// Returns true if angular rates are available up to the time `end_ns` of the lidar's clock.
+  /// Returns whether angular rates are available up to the time `end_ns` of the lidar's clock.
   bool has_rates_until(TimeNs end_ns) const;
-  /// Returns the time, in the lidar's clock, up to which angular rates are available; empty before the first rate.
+  /// Returns the time, in the lidar's clock, up to which angular rates are available. The result is empty if no rates
+  /// are available.
   std::optional<TimeNs> covered_ns() const;
-  /// Returns the time stamp of the first IMU sample at or after the lidar time `end_ns` whose rate is not yet
-  /// available.
+  /// Returns the time stamp of the first IMU sample at or after the lidar time `end_ns`, if the rate of this sample is
+  /// not yet available.
   std::optional<TimeNs> covering_ns(TimeNs end_ns) const;
-  /// `reading` is the odometer reading within the sweep, if any.
+  /// `reading` is the odometer reading during the sweep, or empty.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
                    const std::optional<OdometerReading>& reading, LidarInertialOdometry::SweepReport& report);
   /// See TumblingOdometry::newest().
@@ -57,16 +58,16 @@ class OdometryPass {
   /// Passes all angular rates up to the first sample at or after `time_ns` to the mapper, without waiting for later
   /// samples.
   void flush_until(TimeNs time_ns);
-  /// Restarts the estimation of angular rates with other parameters; the mapper continues.
+  /// Restarts the estimation of angular rates with other parameters. The mapper continues without a restart.
   void start_rate_estimation(const MotionRegimeStream::Params& rate);
-  /// Replaces the mapper by the mapper of `other`. The rate estimation of this OdometryPass continues unchanged. Do not
-  /// use `other` afterwards.
+  /// Replaces the mapper by the mapper of `other`. The rate estimation of this OdometryPass continues unchanged. The
+  /// caller must not use `other` afterwards.
   void adopt_map(OdometryPass&& other);
 
   const MotionRegimeStream& rates() const { return rates_; }
   const MotionRegimeStream::State& rate_stream_state() const { return rate_stream_state_; }
   const LidarInertialOdometry& mapper() const { return mapper_; }
-  /// Returns `out_of_range` if the magnitude of the specific force at rest contradicts gravity.
+  /// Returns `out_of_range` if the magnitude of the specific force at rest contradicts the magnitude of gravity.
   Status check_force_at_rest() const { return rest_gravity_.gravity_magnitude_verdict(rest_gravity_state_); }
   const LidarScale& lidar_scale() const { return scale_.scale(); }
   const Localisation& localisation() const { return localisation_; }

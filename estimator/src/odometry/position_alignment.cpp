@@ -101,7 +101,7 @@ void PositionAlignment::restart_fit() {
   position_frame_.reset();
 }
 
-/// If the robot has hardly moved since the last position reading, the last reading and the new reading are averaged.
+/// If the robot has hardly moved since the last position reading, the last and the new position reading are averaged.
 void PositionAlignment::add_position_pair(const PositionReading& reading, const PoseState& pose) {
   const double variance_m2 = reading.covariance_m2.trace() / 3.0;
   const PositionPair pair{pose.position_W_m + pose.orientation_W * reading.antenna_lever_arm_I_m,

@@ -12,10 +12,10 @@
 
 namespace tumble {
 
-/// Estimates heading and translation of the frame of position readings relative to W, causally. The method is a
-/// weighted least-squares fit to the last 64 distinct antenna positions. Readings whose positions are within half a
-/// standard deviation of each other are averaged. The weight of earlier positions decreases with the drift of the
-/// poses. A chi-square test (99.9 %) rejects up to a fifth of the positions as outliers.
+/// Estimates heading and translation of the frame of position readings relative to the world frame W, causally. The
+/// method is a weighted least-squares fit to the last 64 distinct antenna positions. Position readings within half a
+/// standard deviation of each other are averaged. The poses drift, so earlier positions have smaller weights. A
+/// chi-square test (99.9 %) rejects up to a fifth of the positions as outliers.
 class PositionAlignment {
  public:
   static constexpr std::size_t kReadingsMax = 1024, kMaxPositionPairs = 64;
@@ -24,15 +24,16 @@ class PositionAlignment {
     double variance_m2 = 0.0, path_m = 0.0, pose_variance_m2 = 0.0;
   };
 
-  /// Stores a position reading until the sweep at its time is registered. Readings may arrive in any order. See
-  /// TumblingOdometry::add_position().
+  /// Stores a position reading until the sweep during which the position was measured is registered. Readings may
+  /// arrive in any order. See TumblingOdometry::add_position().
   Status add(const PositionReading& reading, TimeNs done_ns, TimeNs latest_ns, std::size_t most);
-  /// Processes a registered sweep and the position readings up to its end. Cost: O(n^2) for n stored positions.
+  /// Processes a registered sweep and all position readings up to the end of the sweep. Cost: O(n^2) for n stored
+  /// positions.
   void add_sweep(const SweepReport& report);
-  /// Discards the processed position readings after a change of the world frame W.
+  /// Discards the processed position readings, because the world frame W has changed.
   void restart_fit();
-  /// Returns the frame of the position readings relative to W, at the end of the last sweep. The result is empty until
-  /// the position readings determine the heading within 0.1 rad, and while the readings contradict each other.
+  /// Returns the frame of the position readings relative to W, at the end of the last sweep. The result is empty if the
+  /// heading is uncertain by more than 0.1 rad, or if the position readings contradict each other.
   const std::optional<PositionFrame>& position_frame() const { return position_frame_; }
 
  private:

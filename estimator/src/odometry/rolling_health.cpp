@@ -52,7 +52,7 @@ SensorHealth RollingOdometry::Impl::health() const {
   return out;
 }
 
-/// If other IMUs replace an IMU with a frozen axis, the finding is `imu_frozen` instead of `frozen_axis`.
+/// If an IMU has a frozen axis and other IMUs replace this IMU, the finding is `imu_frozen` instead of `frozen_axis`.
 void RollingOdometry::Impl::add_frozen_findings(const Frozen& frozen, SensorHealth& health) const {
   const std::size_t count = params_.imus.size();
   const auto end = frozen.begin() + static_cast<std::ptrdiff_t>(count);

@@ -114,7 +114,7 @@ Status RollingOdometry::Impl::add_imu(std::size_t unit, const ImuSample& sample)
   return add_time_aligned_readings(false);
 }
 
-/// `ended` is true if no further IMU readings follow. Returns the first error.
+/// `ended` is true if no further IMU readings will follow. Returns the first error.
 Status RollingOdometry::Impl::add_time_aligned_readings(bool ended) {
   Status first;
   ImuTimeAlignment::Readings readings;
@@ -125,8 +125,8 @@ Status RollingOdometry::Impl::add_time_aligned_readings(bool ended) {
   return first;
 }
 
-/// An outlier filter delays suspect samples of an IMU until later samples show which samples are outliers. When no
-/// filter delays a sample any longer, the delayed samples of all IMUs are processed together.
+/// The outlier filter of an IMU delays suspect samples until later samples show which samples are outliers. When no
+/// outlier filter delays samples, the delayed samples of all IMUs are processed together.
 Status RollingOdometry::Impl::add_delayed_samples(std::span<const ImuSample> next) {
   bool open = false;
   for (std::size_t k = 0; k < next.size(); ++k) open = is_delayed_after(next, k) || open;
@@ -140,8 +140,8 @@ Status RollingOdometry::Impl::add_delayed_samples(std::span<const ImuSample> nex
   return {};
 }
 
-/// Returns whether the outlier filter still delays readings of the IMU `unit`, and marks rejected readings of this IMU
-/// as absent.
+/// Returns whether the outlier filter still delays readings of the IMU with the index `unit`. Marks rejected readings
+/// of this IMU as absent.
 bool RollingOdometry::Impl::is_delayed_after(std::span<const ImuSample> next, std::size_t unit) {
   OutlierFilter::State& state = outlier_filter_state_[unit];
   if (state.delayed_count == 0) return false;
@@ -192,8 +192,8 @@ Status RollingOdometry::Impl::add_inliers(std::span<const ImuSample> samples) {
   return {};
 }
 
-/// Only confirmed saturation limits lead to clip flags (ConfirmedSaturation). Detecting a new saturation limit takes
-/// two to ten saturated samples, and these samples are not flagged.
+/// Sets clip flags only for confirmed saturation limits (ConfirmedSaturation). A new saturation limit is detected after
+/// two to ten saturated samples, which remain without flags.
 RollingOdometry::Impl::Samples RollingOdometry::Impl::flag_clipped(std::span<const ImuSample> samples) const {
   Samples out;
   std::copy(samples.begin(), samples.end(), out.begin());
@@ -228,7 +228,7 @@ std::size_t RollingOdometry::Impl::rejected_readings() const {
   return out;
 }
 
-/// Returns an error if all IMUs have frozen axes.
+/// Returns an error if every IMU has a frozen axis.
 Status RollingOdometry::Impl::exclude_frozen(const Frozen& states, std::span<ImuSample> samples) const {
   bool any = false, received = false;
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -292,7 +292,7 @@ void RollingOdometry::Impl::reset() {
   recorded_samples_ = {};
 }
 
-/// Resets all states of a run, except the IMU readings that wait for resampling.
+/// Resets all states of a run, except the IMU readings that wait for resampling to common times.
 void RollingOdometry::Impl::start_continuous_run() {
   sample_clock_state_ = {};
   imu_merge_state_ = {};

@@ -24,13 +24,13 @@
 
 namespace tumble {
 
-/// start of a run of RollingOdometry after a gap or a step of the clock
+/// start of a new run of RollingOdometry after a gap or a step of the clock
 struct RollingRestart {
   Eigen::Vector3d sphere_centre_W_m = Eigen::Vector3d::Zero();
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
-/// Functions of Impl with the name of a public function are documented in the public header.
+/// Functions of Impl that have the name of a public function are documented in the public header.
 struct RollingOdometry::Impl {
   using Frozen = std::array<FrozenAxes::State, ImuMerge::kImus>;
   using Samples = std::array<ImuSample, ImuMerge::kImus>;

@@ -15,7 +15,7 @@ constexpr double kRecoveredSigma_rad_s = 1.0;
 // prior standard deviations for an IMU without a data sheet, at an unknown position in the sphere
 constexpr double kUnknownGyroBias_rad_s = 5e-3, kUnknownAccelBias_m_s2 = 0.4, kUnknownScale = 0.01,
                  kUnknownDelay_s = 5e-3, kUnknownLeverArm_m = 0.05;
-// maximum number of stored readings per sensor; sufficient for some seconds of motion near the largest rate or force
+// maximum number of stored readings per sensor, sufficient for some seconds of motion near the largest rate or force
 constexpr std::size_t kClippingReadings = 512;
 constexpr double kLevelInclinePerS = 1e-9;  // rate of transitions to a slope, for a floor that is known to be level
 

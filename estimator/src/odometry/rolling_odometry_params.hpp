@@ -16,11 +16,11 @@ namespace tumble::odometry {
 /// Throws InvalidParams if a parameter of RollingOdometry is out of bounds.
 ImuMerge::Setup merge_setup(const RollingOdometry::Params& params);
 
-/// `lever_arm_m` is the position of the virtual IMU that combines all `units` IMUs.
+/// `lever_arm_m` is the position of the virtual IMU that merges the readings of all `units` IMUs.
 RollingSmoother::Params rolling_params(const RollingOdometry::Params& params, const ImuMerge::Setup& merged,
                                        std::size_t units, const Eigen::Vector3d& lever_arm_m);
 
-/// Returns one StreamingClippingFinder per IMU. `known` contains the saturation levels of an earlier run for each IMU,
+/// Returns one StreamingClippingFinder per IMU. `known` contains the saturation levels of each IMU from an earlier run,
 /// or is empty.
 std::vector<StreamingClippingFinder> clipping_finders_of(const RollingOdometry::Params& params,
                                                          std::span<const SaturationLevels> known = {});

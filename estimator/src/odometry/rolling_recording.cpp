@@ -14,7 +14,7 @@ RollingSmoother::Params rolling_smoother_params(const RollingOdometry::Params& p
   return odometry::rolling_params(params, odometry::merge_setup(params), merged.imus.size(), merged.lever_arm_m);
 }
 
-/// Stores a reading until finish(). Non-finite readings are ignored.
+/// Stores a reading until the call of finish(). Ignores non-finite readings.
 Status RollingOdometry::Impl::record_sample(std::size_t unit, ImuSample sample) {
   if (!check_sample(sample).ok()) return {};
   std::vector<ImuSample>& samples = recorded_samples_[unit];

@@ -11,10 +11,10 @@ namespace tumble {
 
 namespace {
 
-// standard deviations of the motion in a gap of the IMU data: speed, rate about the vertical, heading after a long gap
+// standard deviations for a gap of the IMU data: speed, rate about the vertical, and heading after a long gap
 constexpr double kGapSpeed_m_s = 0.5, kGapTurn_rad_s = 1.0, kUnknownHeading_rad = 1.8;
 
-/// A restart levels the attitude, so the covariance of the last tilt does not apply.
+/// Removes the tilt from the covariance of the last pose, because a restart levels the attitude.
 Eigen::Matrix<double, 6, 6> position_and_heading(Eigen::Matrix<double, 6, 6> covariance) {
   covariance.middleRows<2>(3).setZero();
   covariance.middleCols<2>(3).setZero();

@@ -10,7 +10,8 @@ namespace tumble {
 
 namespace {
 
-/// In a saved RollingOdometry, the saturation limits of each IMU follow after the members of SavedRollingState.
+/// The bytes of a saved RollingOdometry contain the members of SavedRollingState, followed by the saturation limits of
+/// each IMU.
 struct SavedRollingState {
   double radius_m = 0.0;                                  ///< stated radius
   Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< stated position of the merged IMU

@@ -30,14 +30,14 @@
 /// | 32 | checksum of all other bytes |
 /// | 40 | contents |
 ///
-/// If the contents of a kind change, its layout in saved_bytes.cpp must change.
+/// If the contents of a SavedStateKind change, the layout number of this kind in saved_bytes.cpp must change.
 namespace tumble::odometry {
 
 enum class SavedStateKind : std::uint32_t { tumbling = 1, rolling = 2, map = 9 };
 inline constexpr std::size_t kSavedHeader = 40;
 inline constexpr double kPositionMax_m = 1e6, kVarianceMax = 1e12;
 
-/// SavedStateReader reads the numbers in the order in which SavedStateWriter appended them.
+/// SavedStateReader reads the numbers in the order in which SavedStateWriter has appended the numbers.
 class SavedStateWriter {
  public:
   template <class T>
@@ -66,13 +66,13 @@ class SavedStateWriter {
 };
 
 /// SavedStateReader reads numbers from untrusted bytes, without allocating memory. After the first error,
-/// SavedStateReader stops reading, and the values read so far are invalid. The errors are `insufficient_data` (the
-/// bytes end within `field`), `non_finite` and `out_of_range`.
+/// SavedStateReader stops reading, and all values are invalid. The errors are `insufficient_data` (the bytes end within
+/// `field`), `non_finite` and `out_of_range`.
 class SavedStateReader {
  public:
   SavedStateReader(SavedStateKind kind, std::span<const std::byte> bytes);
 
-  /// All numbers of a matrix must be between `low` and `high`.
+  /// Reports an error unless all numbers of the matrix are between `low` and `high`.
   template <class T>
   void operator()(const char* name, T& value, double low = -kUnbounded, double high = kUnbounded) {
     if constexpr (std::is_arithmetic_v<T>) {
@@ -97,7 +97,7 @@ class SavedStateReader {
   }
   /// Reports an error unless `P` is symmetric and positive semidefinite.
   void require_covariance(const char* name, const Eigen::Ref<const Eigen::MatrixXd>& P);
-  /// A parameter of the saved run must equal the parameter of the object that loads the run.
+  /// Reports an error if a parameter of the saved run differs from the parameter of the object that loads the run.
   template <class Matrix>
   void require_equal(const char* name, const Matrix& saved, const Matrix& given) {
     for (Eigen::Index k = 0; k < saved.size(); ++k) require_condition(name, saved(k) == given(k), saved(k), given(k));

@@ -31,7 +31,7 @@ void visit_saturation_levels(Visit& visit, Rails& rails) {
 }  // namespace
 
 /// If a sensor clips after misalignment compensation, each output has a fixed saturation limit, and saturation planes
-/// are not needed.
+/// (SaturationPlane) are not needed.
 void write_saturation_levels(const SaturationLevels& rails, SavedStateWriter& out) {
   SaturationLevels kept = rails;
   if (rails.gyro_clips_after_compensation) kept.gyro_planes = {};

@@ -12,16 +12,17 @@ namespace tumble {
 
 namespace {
 
-// Duration of motion after which the second pass is abandoned.
+// duration of motion after which the second pass is abandoned
 constexpr double kAbandonAfter_s = 10.0;
 
 constexpr double kRest_s = 1.0;             // duration of the initial rest that is buffered
 constexpr std::size_t kSweepsPerSweep = 3;  // buffered sweeps that the second pass processes per new sweep
-// Factor on the variances of the estimated calibration, because the second pass uses the same readings again.
+// factor on the variances of the estimated calibration, because the second pass uses the readings a second time
 constexpr double kInflation = 4.0;
 constexpr double kBufferLead_s = 0.1;  // buffered time before the first sweep, because the clocks may differ
 constexpr std::size_t kSweepsPerExtraRejection = 20;  // sweeps per additional rejection that the second pass may have
-// The estimated lidar calibration is not used if more than one in kSweepsPerRejection sweeps was rejected.
+// The second pass does not use the estimated lidar calibration if more than one in kSweepsPerRejection sweeps was
+// rejected.
 constexpr std::size_t kSweepsPerRejection = 5;
 
 void start_from_saturation_levels(const SaturationLevels& known, AngularRateStream::Params& params) {
@@ -155,7 +156,7 @@ void SecondMappingPass::complete_second_pass(OdometryPass& first) {
 }
 
 void SecondMappingPass::run_second_pass(OdometryPass& first, std::size_t sweeps) {
-  // At the end of the buffered samples, the second pass reports the last rates without waiting for later samples.
+  // At the end of the buffered samples, the second pass reports the last rates immediately, without later samples.
   bool tail = false;
   for (std::size_t taken = 0; tail || taken < sweeps; ++taken) {
     if (next_sweep_ == sweeps_.size()) {
@@ -193,7 +194,7 @@ void SecondMappingPass::replace_first_pass_results(OdometryPass& first) {
       (!last_sweep_rejected_ || first_lost)) {
     first.adopt_map(std::move(*replayed_pass_));
     is_applied_ = true;
-    // A later second pass has to compare its number of rejected sweeps with the number of this second pass.
+    // A later second pass must compare its number of rejected sweeps with the number of this second pass.
     rejected_in_first_pass_ = rejected_in_second_pass_;
     if (!last_sweep_rejected_) newest = SweepVerdict::registered;
   }

@@ -14,21 +14,23 @@
 
 namespace tumble {
 
-/// Processes the first seconds of motion again with the calibration estimated so far, while the first pass continues.
+/// Processes the first seconds of motion again with the estimated calibration, while the first pass continues.
 ///
-/// The first pass maps the start of a tumble while lever arm, lidar mounting and time offset are still uncertain.
-/// SecondMappingPass buffers IMU samples and sweeps from the end of the initial rest. After `after_s` of motion, the
-/// buffer is processed with the current calibration, and with angular rates smoothed with a lag of `lag_s`. The second
-/// pass processes three buffered sweeps per new sweep. When the second pass ends, its map and pose replace the map and
-/// pose of the first pass. The results of the second pass are discarded if the second pass rejected clearly more sweeps
-/// than the first pass. The results of the second pass are also discarded if only the second pass rejected the last
-/// sweep.
+/// During the first pass, lever arm, lidar mounting and time offset are still uncertain at the start of a tumble, which
+/// falsifies the map. SecondMappingPass therefore buffers IMU samples and sweeps, starting about 1 s before the end of
+/// the initial rest. After `after_s` of motion, the second pass processes the buffer with the estimated calibration,
+/// and with angular rates smoothed with a lag of `lag_s`. The second pass processes three buffered sweeps per new
+/// sweep. When the second pass ends, its map and pose replace the map and pose of the first pass. The results of the
+/// second pass are discarded if the second pass rejected clearly more sweeps than the first pass. The results of the
+/// second pass are also discarded if only the second pass rejected the last sweep.
 ///
 /// If tracking of the first pass has failed for `lost_s`, an additional early second pass starts immediately, at most
-/// once. SecondMappingPass does not change earlier poses: the reported pose jumps by the error of the first pass.
+/// once. SecondMappingPass does not change previously reported poses, so the reported pose jumps by the error of the
+/// first pass.
 ///
-/// SecondMappingPass stores samples and sweeps of 1 s at rest and of at most 10 s of motion. The second pass also needs
-/// memory for a second map. If a jolt ends the rest long before the tumble, the second pass starts too early.
+/// SecondMappingPass stores samples and sweeps of about 1 s at rest and of at most 10 s of motion. The second pass also
+/// needs memory for a second map. If a jolt ends the initial rest long before the tumble, the second pass starts too
+/// early.
 class SecondMappingPass {
  public:
   using Params = SecondMappingPassParams;
@@ -46,7 +48,7 @@ class SecondMappingPass {
                    const std::optional<OdometerReading>& reading, SweepVerdict verdict);
 
   /// Continues the second pass after each sweep of the first pass. When the second pass has processed all buffered
-  /// sweeps, its map replaces the map of `first`.
+  /// sweeps, the map of the second pass replaces the map of `first`.
   void replay_next_input(OdometryPass& first);
   /// Runs a started second pass to its end.
   void complete_second_pass(OdometryPass& first);
@@ -62,8 +64,8 @@ class SecondMappingPass {
     SweepVerdict verdict = SweepVerdict::first;
   };
 
-  /// Returns the time from which `after_s` counts: the start of the motion, or the start of the sweeps if later. The
-  /// motion must have started.
+  /// Returns the start of the motion or the start of the sweeps, whichever is later. Parameter `after_s` counts from
+  /// this time. The motion must have started.
   TimeNs buffer_start_ns() const;
   bool is_due() const;
   bool tracking_failed_in_first_pass() const;

@@ -8,18 +8,17 @@
 
 namespace tumble {
 
-/// first and last of consecutive rejected time stamps
+/// first and last time stamp of a series of consecutive rejected time stamps
 struct RejectedStamps {
   TimeNs first_ns = 0, last_ns = 0;
 };
 
 /// Decides which IMU time stamps continue a run, and when the run restarts because the clock changed. A time stamp that
 /// is not later than the last accepted time stamp is rejected with `time_order`. A time stamp more than `gap_max_s`
-/// after the last accepted time stamp is rejected with `gap`. The run restarts after a gap when the next time stamp
+/// after the last accepted time stamp is rejected with `gap`. After a gap, the run restarts when the next time stamp
 /// confirms the rejected time stamp. After a backward step of the clock, the run restarts when rejected time stamps
-/// have increased for kStepBack_s. After only one accepted sample, one further time stamp is enough for a restart,
-/// because the accepted time stamp may be wrong. OutlierFilter detects time stamps that are too late by less than
-/// `gap_max_s`.
+/// have increased for kStepBack_s. If only one sample was accepted, its time stamp may be wrong, so one further time
+/// stamp is enough for a restart. OutlierFilter detects time stamps that are too late by less than `gap_max_s`.
 class StampOrder {
  public:
   static constexpr double kStepBack_s = 0.2;
@@ -34,7 +33,7 @@ class StampOrder {
   explicit StampOrder(double gap_max_s) : gap_max_s_(gap_max_s) {}
 
   /// Returns `out_of_range` (beyond kStampMax_ns), `time_order` or `gap` if the sample must not be used. If the status
-  /// is `ok`, `verdict` states whether the run must restart with this sample.
+  /// is `ok`, `verdict` states whether the run must restart with the sample.
   Status order_of_stamp(TimeNs stamp_ns, State& state, Verdict& verdict) const;
 
   static void accept(TimeNs stamp_ns, State& state);

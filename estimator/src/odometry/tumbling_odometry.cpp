@@ -203,16 +203,18 @@ void TumblingOdometry::Impl::register_sweep(TimeNs start_ns, TimeNs end_ns, std:
   positions_.add_sweep(out.report);
   out.position_frame = positions_.position_frame();
   second_mapping_pass_.store_input(start_ns, end_ns, std::move(points), reading, out.report.verdict);
-  // The second pass has no prior map, so its frame differs from the localised first pass.
+  // The second pass has no prior map. If the first pass is localised in a prior map, the second pass would have a
+  // different map frame.
   if (mapper().prior_map() != nullptr && mapper().check_localised().ok()) second_mapping_pass_.abandon_second_pass();
   const bool applied_before = second_mapping_pass_.is_applied();
   second_mapping_pass_.replay_next_input(odometry_pass_);
   if (second_mapping_pass_.is_applied() != applied_before) positions_.restart_fit();
 }
 
-/// Returns whether a sweep must be registered now, because its latency would exceed lag_s when the next IMU sample
-/// arrives. If the sweep ends in a gap of the IMU data, the first IMU sample after the sweep may be much later. A sweep
-/// is therefore due only if the first IMU sample after the sweep is also older than lag_s - 1.5 sample periods.
+/// Returns whether a sweep must be registered immediately, because its latency would exceed lag_s when the next IMU
+/// sample arrives. If the sweep ends in a gap of the IMU data, the first IMU sample after the sweep may be much later
+/// than the sweep. A sweep is therefore due only if the first IMU sample after the sweep is also older than lag_s - 1.5
+/// sample periods.
 bool TumblingOdometry::Impl::is_due(TimeNs end_ns) const {
   const std::optional<TimeNs> covering_ns = odometry_pass_.covering_ns(end_ns);
   if (!covering_ns) return false;
@@ -225,7 +227,7 @@ void TumblingOdometry::Impl::register_sweeps_with_rates() {
   while (!waiting_sweeps_.empty()) {
     const TimeNs end_ns = waiting_sweeps_.front().end_ns;
     // The first IMU sample after a sweep may be up to one sample period later than the sweep. flush_until() therefore
-    // reports the last rates of a due sweep before lag_s has passed.
+    // reports the rates for a due sweep before lag_s has passed.
     if (!odometry_pass_.has_rates_until(end_ns) && is_due(end_ns))
       odometry_pass_.flush_until(odometry_pass_.oldest_needed_ns(end_ns));
     if (!odometry_pass_.has_rates_until(end_ns)) break;

@@ -25,7 +25,7 @@
 
 namespace tumble {
 
-/// Functions of Impl with the name of a public function are documented in the public header.
+/// Functions of Impl that have the name of a public function are documented in the public header.
 struct TumblingOdometry::Impl {
   explicit Impl(const Params& params);
 

@@ -12,8 +12,8 @@ namespace tumble::odometry {
 /// Throws InvalidParams if a parameter of TumblingOdometry is out of bounds.
 MotionRegimeStream::Params rate_stream_params(const TumblingOdometry::Params& params);
 
-/// For a whole recording, the prior standard deviations of accelerometer bias and inertia are larger than online (see
-/// AngularRateStreamParams::model).
+/// When estimating a whole recording, the prior standard deviations of accelerometer bias and inertia are larger than
+/// in live operation (see AngularRateStreamParams::model).
 MotionRegimeSmoother::Params recording_rate_params(const TumblingOdometry::Params& params);
 
 OutlierFilter::ImuRanges outlier_params(const TumblingOdometry::Params& params);

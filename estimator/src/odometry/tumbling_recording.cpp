@@ -17,7 +17,7 @@ ImuDescription imu_check_params(const TumblingOdometry::Params& params) {
           .lever_arm_I_m = params.lever_arm_I_m};
 }
 
-/// `stamps_ns` receives the uncorrected time stamps of the samples that OutlierFilter accepts.
+/// `stamps_ns` receives the uncorrected time stamps of all samples that OutlierFilter accepts.
 Status select_samples(const OutlierFilter& filter, const SampleClock& clock, std::vector<ImuSample>& samples,
                       OutlierFilter::State& outliers, WholeRecordingEstimate& out) {
   const std::vector<bool> inlier = find_inliers(filter, samples);

@@ -68,7 +68,7 @@ std::vector<std::byte> write_saved_state(const SavedTumblingState& saved, std::s
   return std::move(out).finish(odometry::SavedStateKind::tumbling);
 }
 
-/// The lever arm and lidar mounting that the user stated for the saved run must equal `lever_arm_I_m` and `T_IL`.
+/// Returns an error if the lever arm or the lidar mounting of the saved run differs from `lever_arm_I_m` or `T_IL`.
 Status read(std::span<const std::byte> bytes, const Eigen::Vector3d& lever_arm_I_m, const Eigen::Isometry3d& T_IL,
             SavedTumblingState& saved, std::vector<MapPoint>& map) {
   odometry::SavedStateReader in(odometry::SavedStateKind::tumbling, bytes);
@@ -93,7 +93,7 @@ Status read(std::span<const std::byte> bytes, const Eigen::Vector3d& lever_arm_I
   return load_map(in.remaining_bytes(), map);
 }
 
-/// The standard deviations of the start pose limit the search in the prior map.
+/// The standard deviations of the start pose determine the size of the search region in the prior map.
 void set_prior_pose(const PoseState& pose, PriorMap& map) {
   Eigen::Isometry3d T_MI = Eigen::Isometry3d::Identity();
   T_MI.linear() = pose.orientation_W.toRotationMatrix();
@@ -103,7 +103,8 @@ void set_prior_pose(const PoseState& pose, PriorMap& map) {
   map.start_heading_sigma_rad = std::sqrt(pose.covariance(5, 5));
 }
 
-/// Without localisation in the prior map, the saved covariance includes the uncertainty of the start pose.
+/// If the saved run was not localised in the prior map, the saved covariance includes the uncertainty of the start
+/// pose.
 std::optional<PoseState> newest_or_start_pose(const TumblingOdometry::Impl& odometry) {
   const LidarInertialOdometry& mapper = odometry.mapper();
   const std::optional<Eigen::Isometry3d>& start = mapper.start_pose();
@@ -160,7 +161,7 @@ Status TumblingOdometry::Impl::load(std::span<const std::byte> bytes, std::optio
   AngularRateStreamParams& rate = params.expert->rate.rate;
   if (saved.rig) {
     rate.model.nominal.gyro_bias_rad_s = saved.rig->constants.gyro_bias_rad_s;
-    // Biases change at every switch-on.
+    // Sensor biases change each time the sensor is switched on, so their variances are increased.
     auto variance = saved.rig->covariance.diagonal();
     variance.segment<3>(3).array() += rate.model.gyro_bias_sigma_rad_s * rate.model.gyro_bias_sigma_rad_s;
     variance.segment<3>(6).array() += rate.model.accel_bias_sigma_m_s2 * rate.model.accel_bias_sigma_m_s2;

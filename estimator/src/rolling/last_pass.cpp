@@ -36,7 +36,8 @@ void FinalSmoothingPass::run_to_cut(const SmoothingCheckpoint& start, std::size_
   }
 }
 
-/// On entry, `at` is the filter state at the start of the segment; on return, at the start of the next segment.
+/// On entry, `at` is the filter state at the start of the segment. On return, `at` is the filter state at the start of
+/// the next segment.
 void FinalSmoothingPass::filter_forward(std::size_t segment, SmoothingCheckpoint& at) {
   const std::size_t first = first_node_of(segment), end = std::min(first + length_, mode_path_.size());
   loaded_ = segment;

@@ -13,9 +13,9 @@ namespace tumble::rolling {
 /// FinalSmoothingPass runs a Kalman filter with known contact modes forward, and a smoother backward.
 ///
 /// The backward smoother needs more than 10 KiB per filter step (node), so FinalSmoothingPass processes the nodes in
-/// segments. For each segment, FinalSmoothingPass stores only the filter state at the start and the smoother's adjoint
-/// variables at the end. The backward pass recomputes all other data of a segment, with bit-identical results. If the
-/// window has several segments, the filter runs three times: forward, for the backward pass, and for the reported
+/// segments. For each segment, FinalSmoothingPass stores only the filter state at the start, and the adjoint variables
+/// of the smoother at the end. The backward pass recomputes all other data of a segment, with bit-identical results. If
+/// the window has several segments, the filter runs three times: forward, for the backward pass, and for the reported
 /// estimates. A FinalSmoothingPass is too large for the stack (four filters of 13 KiB).
 class FinalSmoothingPass {
  public:
@@ -26,25 +26,27 @@ class FinalSmoothingPass {
     const SampleMotion& point;
     const RollingNominalState& nominal;
     Reported smoothed_error;
-    /// filter step whose covariance applies to the sample; null if the window has no complete filter step
+    /// record of the filter step whose covariance applies to the sample; null if the window contains no complete filter
+    /// step
     const FilterNodeRecord* node;
     std::size_t index;
   };
 
-  /// All arguments must outlive the pass. `segment` is the number of nodes per segment.
+  /// All arguments must outlive the FinalSmoothingPass. `segment` is the number of filter steps (nodes) per segment.
   FinalSmoothingPass(const RollingParams& params, std::span<const ImuSample> samples,
                      std::span<const ModePathNode> path, std::size_t segment = kNodesPerSegment);
 
-  /// Filters and smooths all nodes. Afterwards, cut_checkpoint() returns the filter state after the first `cut` nodes.
+  /// Filters and smooths all filter steps (nodes). After the call, cut_checkpoint() returns the filter state after the
+  /// first `cut` nodes.
   void run_to_cut(const SmoothingCheckpoint& start, std::size_t cut);
 
   std::size_t nodes() const { return horizontal_variance_m2_.size(); }
-  /// smoothed variance of the IMU's horizontal position, per node
+  /// smoothed variance of the IMU's horizontal position, per filter step (node)
   std::span<const double> horizontal_variance_m2() const { return horizontal_variance_m2_; }
   const SmoothingCheckpoint& cut_checkpoint() const { return cut_checkpoint_; }
   const ModePathFilter& end_filter() const { return end_checkpoint_.filter; }
 
-  /// Calls `take` with the smoothed estimate of each sample before the node `until`, in time order.
+  /// Calls `take` in time order with the smoothed estimate of each sample before the filter step (node) `until`.
   void report_smoothed(std::size_t until, const std::function<void(const Smoothed&)>& take);
 
  private:
@@ -72,7 +74,8 @@ class FinalSmoothingPass {
   SmoothingCheckpoint cut_checkpoint_, end_checkpoint_;
   SmoothingCheckpoint recomputation_checkpoint_;
   Adjoint adjoint_;
-  // index of the segment whose filter records are in `node_records_`; a segment has `length_` successive nodes
+  // index of the segment whose filter records are in `node_records_`; each segment consists of `length_` successive
+  // filter steps (nodes)
   std::size_t loaded_ = 0;
   std::vector<FilterNodeRecord> node_records_;
   std::vector<SampleMotion> points_;

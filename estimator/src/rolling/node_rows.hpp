@@ -5,16 +5,17 @@
 
 #include "rolling_node.hpp"
 
-/// `take(row, measured, variance)` processes one scalar measurement of the error state x: measured = row * x + noise.
-/// `row` is a Row, or the index of a single state. Each call of `take` may change the state `x` and its covariance `P`.
+/// The functions in this file call `take(row, measured, variance)` for each scalar measurement of the error state x:
+/// measured = row * x + noise. `row` is a Row, or the index of a single state. Each call of `take` may change the state
+/// `x` and its covariance `P`.
 namespace tumble::rolling {
 
-/// During grip, the contact point is at rest; during slip, the contact point moves along the floor: rolling.md (R17),
+/// During grip, the contact point is at rest. During slip, the contact point moves along the floor: rolling.md (R17),
 /// (R20). If the velocity of the sphere is very uncertain, a weak pseudo-measurement of zero velocity is added.
 template <class EstimateCallback>
 void contact_measurement_rows(const Contact& c, ContactMode mode, double node_s, const Eigen::Vector3d& v_WI_m_s,
                               const Vector& x, const Covariance& P, EstimateCallback&& take) {
-  // The part of the contact velocity that is not linear in the error state is subtracted from the measurement.
+  // The contact velocity is not linear in the error state. The nonlinear part is subtracted from the measurement.
   const Eigen::Vector3d u = c.velocity(x) - c.measurement_jacobian * x, variance = contact_variance(c, mode);
   if (!may_slip(mode)) {
     for (int axis = 0; axis < 2; ++axis) take(Row(c.measurement_jacobian.row(axis)), -u[axis], variance[axis]);

@@ -17,7 +17,8 @@ namespace {
 
 constexpr double kSlowRateTau_s = 0.3;
 constexpr double kEventProbability = 0.5;  // minimum probability of a reported slip or bump
-// at rest, a gyro rate beyond this many standard deviations of the gyro bias is a rotation in place
+// A sphere at rest rotates in place if the gyro rate differs from the gyro bias by more than kSpinSigmas standard
+// deviations.
 constexpr double kSpinSigmas = 4.0;
 
 static_assert(RollingFilter::kStates == rolling::kStates);
@@ -64,7 +65,8 @@ void RollingFilter::start(const ImuSample& sample, const Eigen::Quaterniond& q_W
 }
 
 void RollingFilter::process_reading(const ImuSample& sample, double dt_s, State& state, Listener listener) const {
-  // The rate at a node's end is interpolated between two readings, so the next reading completes the node.
+  // The rate at the end of a filter step (node) is interpolated between two readings, so the filter step is completed
+  // when the next reading arrives.
   if (state.node_integrals.node_interval_s >= params_.expert.kNode_s - 0.5 * dt_s) {
     complete_filter_node(sample.angular_velocity_rad_s, state);
     listener.function(listener.target, state);
@@ -113,7 +115,8 @@ void RollingFilter::complete_filter_node(const Eigen::Vector3d& next_rate_rad_s,
   }
   state.position_covariance_m2 = state.hypotheses[0].covariance.block<3, 3>(rolling::kPosition, rolling::kPosition) +
                                  hypothesis_position_covariance(state, rolling::kPosition);
-  // Position differences to discarded hypotheses increase the position covariance of the remaining hypothesis.
+  // If the filter has discarded hypotheses at rest, their position differences to the remaining hypothesis increase its
+  // position covariance.
   if (state.at_rest && state.hypothesis_count == 1) {
     state.hypotheses[0].covariance.block<3, 3>(rolling::kPosition, rolling::kPosition) +=
         state.pruned_position_covariance_m2;
@@ -143,7 +146,7 @@ void RollingFilter::detect_rest(State& state) const {
   state.spins_in_place = state.at_rest && spins_in_place(state);
 }
 
-/// A sphere at rest may rotate slowly about its contact point: rolling.md (R29).
+/// Returns whether the sphere rotates slowly about its contact point without moving: rolling.md (R29).
 bool RollingFilter::spins_in_place(const State& state) const {
   const double averaged = params_.expert.kNode_s / (2.0 * kSlowRateTau_s);
   const Hypothesis& best = state.hypotheses[0];
@@ -190,7 +193,7 @@ void RollingFilter::weigh_modes(State& state) {
   state.bump_probability = hopping / total;
 }
 
-/// While the sphere is at rest, the reported position remains constant.
+/// While the sphere is at rest, the filter keeps the reported position constant.
 void RollingFilter::keep_position_at_rest(State& state) const {
   const bool quiet = seconds(state.stationary_state.small_rate_since_ns) >=
                          std::min(rolling::kConstrainAfter_s, params_.expert.rest_detector.rest_s) &&
@@ -204,7 +207,8 @@ void RollingFilter::keep_position_at_rest(State& state) const {
   state.reported_position_constant = stands;
 }
 
-/// After the correction, the error states of all hypotheses are relative to the best hypothesis.
+/// Adds the error state of the best hypothesis to the nominal state, and subtracts this error state from the error
+/// states of all hypotheses.
 void RollingFilter::move_linearisation_point(bool heading_lost, State& state) const {
   const Vector x = state.hypotheses[0].x, turned = rolling::heading_component(x);
   rolling::move_linearisation_point(x, state.nominal);

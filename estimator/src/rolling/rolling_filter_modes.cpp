@@ -19,9 +19,9 @@ namespace tumble {
 namespace {
 
 constexpr double kSpeedMax_m_s = 2.5;  // maximum speed of the sphere; grip at a higher speed is rejected
-// mean velocity change by unexplained impacts per filter step, while the sphere stays on the floor
+// mean velocity change by unexplained impacts per filter step, while the sphere remains on the floor
 constexpr double kUnexplainedImpact_m_s = 0.03;
-// rate of mode changes from slip to bump, and from bump to slip
+// rate of transitions from slip to bump, and from bump to slip
 constexpr double kSlipBumpPerS = 0.2;
 constexpr double kInclineEndsPerS = 0.1;                         // rate of changes from a slope to the level floor
 constexpr double kRoughBeginsPerS = 0.02, kRoughEndsPerS = 0.1;  // rates of changes to and from a rough floor
@@ -29,19 +29,20 @@ constexpr double kRoughBeginsPerS = 0.02, kRoughEndsPerS = 0.1;  // rates of cha
 constexpr double kPruneLogWeight = -120.0;       // minimum log weight of a hypothesis, relative to the best hypothesis
 constexpr double kRestLogLikelihoodMin = -60.0;  // limits the effect of a single outlier at rest (log likelihood)
 constexpr double kModeAgeMax_s = 1.0;            // contact modes that started longer ago count as equally old
-// During slip, the change of the contact velocity per filter step has a density with three Gaussian components. The
-// standard deviations of the three Gaussians are kPlateau_m_s, kSteady_m_s and kJump_m_s. Because kPlateau_m_s is less
-// than the contact velocity's noise during grip, a slip at constant velocity is more probable as slip than as grip.
+// During slip, the change of the contact velocity per filter step is modelled by a mixture of three Gaussians. The
+// standard deviations of the Gaussians are kPlateau_m_s, kSteady_m_s and kJump_m_s. Because kPlateau_m_s is less than
+// the noise of the contact velocity during grip, slip is a more probable explanation of a constant contact velocity
+// than grip.
 constexpr double kPlateau_m_s = 0.004, kSteady_m_s = 0.01, kJump_m_s = 0.08, kPlateauFraction = 0.4,
                  kSteadyFraction = 0.35;
 constexpr double kRollOverSigma_m_s = 0.03, kHitSigma_m_s = 0.3, kRollOverFraction = 0.7;
 constexpr std::int64_t kAgesApart = 4;
-// A slip with constant spin looks like grip until the slip ends. At the end of a slip with constant spin, about a
-// hundred wrong hypotheses have higher weights than the correct hypothesis. The filter therefore reserves memory for
+// A slip at constant angular rate is indistinguishable from grip until the slip ends. At the end of such a slip, about
+// a hundred wrong hypotheses have higher weights than the correct hypothesis. The filter therefore reserves memory for
 // kMinDissentingHypotheses hypotheses whose current mode started before the current mode of the best hypothesis.
 constexpr std::size_t kMinDissentingHypotheses = 6;
 constexpr double kRoughCost = 0.2;
-// The start of a ramp is detected as a bump, so a slope is more probable after a bump.
+// The start of a ramp is detected as a bump, so a transition to a slope is more probable after a bump.
 constexpr double kInclineAfterBump = 4.0;
 constexpr ContactMode kModes[] = {ContactMode::grip, ContactMode::slip, ContactMode::bump, ContactMode::incline,
                                   ContactMode::rough};
@@ -91,9 +92,9 @@ double log_likelihood_stationary(const rolling::Contact& c, const RollingFilter:
   Eigen::LLT<Eigen::Matrix3d> factor;
   double log_det = 0.0, cost = 0.0;
   if (mode == ContactMode::rough) {
-    // On a rough floor, the larger contact velocity variance of the mode uneven would reduce the likelihood of every
-    // filter step. For the mode uneven, the likelihood is therefore normalised with the variance of the mode grip, and
-    // its logarithm is reduced by kRoughCost.
+    // In the mode rough, the contact velocity has a larger variance, which would reduce the likelihood of every filter
+    // step on a rough floor. The likelihood of the mode rough is therefore normalised with the variance of the mode
+    // grip. The logarithm of the likelihood is reduced by kRoughCost.
     log_det = log_det_with(rolling::contact_variance(c, ContactMode::grip), factor);
     cost = kRoughCost;
   }
@@ -143,7 +144,7 @@ struct ModeCandidate {
 };
 using Candidates = std::array<ModeCandidate, kContactModes * RollingFilter::kHypotheses>;
 
-/// Returns all pairs of a hypothesis and a next contact mode, most probable first.
+/// Returns all pairs of a hypothesis and a possible next contact mode, most probable pair first.
 std::span<const ModeCandidate> propose_mode_changes(const RollingParams& params, const rolling::Contact& c,
                                                     const RollingFilter::State& state, Candidates& out) {
   const double node_s = state.node_integrals.node_interval_s;
@@ -167,7 +168,8 @@ std::span<const ModeCandidate> propose_mode_changes(const RollingParams& params,
                       mode == h.mode ? h.first_step_of_mode : state.step_count};
     }
   }
-  // std::stable_sort would allocate memory, so candidates of equal weight are sorted by hypothesis and mode.
+  // std::stable_sort would allocate memory. For a unique order, candidates of equal weight are sorted by hypothesis and
+  // mode.
   std::sort(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(total),
             [](const ModeCandidate& a, const ModeCandidate& b) {
               return std::tuple(-a.log_weight, a.parent, a.mode) < std::tuple(-b.log_weight, b.parent, b.mode);
@@ -175,8 +177,8 @@ std::span<const ModeCandidate> propose_mode_changes(const RollingParams& params,
   return {out.data(), total};
 }
 
-/// Rounds the index of the filter step at which a contact mode started, more coarsely for older modes. After the
-/// rounding, hypotheses whose contact modes started at similar times count as equal.
+/// Rounds the index of the filter step at which a contact mode started. The rounding is coarser for older modes. After
+/// rounding, hypotheses count as equal if their contact modes started at similar times.
 std::int64_t mode_beginning_node(std::int64_t mode_start_node, std::int64_t node, double node_s) {
   const auto mode_age_max_nodes = static_cast<std::int64_t>(kModeAgeMax_s / node_s);
   const std::int64_t age = std::min(node - mode_start_node, mode_age_max_nodes);
@@ -210,7 +212,8 @@ KeptHypotheses keep_probable_candidates(std::span<const ModeCandidate> candidate
 
 using Origins = std::array<std::size_t, RollingFilter::kHypotheses>;
 
-/// Replaces hypothesis k by a copy of hypothesis from[k] in place, because a second array would need 420 KiB of stack.
+/// Replaces each hypothesis k by a copy of hypothesis from[k] in place, because a second array would need 420 KiB of
+/// stack.
 void rearrange_hypotheses(const Origins& from, std::size_t count, std::span<RollingFilter::Hypothesis> all) {
   std::array<int, RollingFilter::kHypotheses> readers{};  // number of pending copies that read from each slot
   std::array<bool, RollingFilter::kHypotheses> waits{};
@@ -225,7 +228,7 @@ void rearrange_hypotheses(const Origins& from, std::size_t count, std::span<Roll
       --readers[from[k]];
     }
   }
-  // The remaining copies form cycles, so each cycle needs one temporary copy.
+  // The remaining copies form cycles, and each cycle needs one temporary copy of a hypothesis.
   for (std::size_t first = 0; first < count; ++first) {
     if (!waits[first]) continue;
     const RollingFilter::Hypothesis kept = all[first];
@@ -269,7 +272,7 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, bool headi
   keep_most_probable_hypotheses(kept.count, state);
 }
 
-/// Unused hypotheses are cleared, so that equal estimates have equal states.
+/// Clears the unused hypotheses, so that equal estimates have bit-identical states.
 void RollingFilter::keep_most_probable_hypotheses(std::size_t count, State& state) {
   const auto begin = state.hypotheses.begin();
   const auto first = begin + static_cast<std::ptrdiff_t>(count);
@@ -284,7 +287,7 @@ void RollingFilter::correct_at_rest(State& state) const {
     double likelihood = 0.0;
     rolling::stationary_measurement_rows(
         state.node_integrals, state.nominal, state.spins_in_place, [&](int index, double measured, double variance) {
-          // only the velocity gives evidence for a contact mode, the gyro bias does not
+          // only the velocity contributes to the likelihood of a contact mode, and the gyro bias does not
           if (index < rolling::kPosition)
             likelihood += gaussian_log_density(measured - h.x[index], h.covariance(index, index) + variance);
           rolling::update(index, measured, variance, h.x, h.covariance);
@@ -304,7 +307,7 @@ void RollingFilter::correct_at_rest(State& state) const {
     return std::tuple(-state.hypotheses[a].log_weight, a) < std::tuple(-state.hypotheses[b].log_weight, b);
   });
   rearrange_hypotheses(order, count, state.hypotheses);
-  // After kModeAgeMax_s at rest, all hypotheses have the same current motion, so only the best hypothesis is kept.
+  // After kModeAgeMax_s at rest, the motion of all hypotheses is equal, so only the best hypothesis is kept.
   const bool rested = seconds(state.stationary_state.small_rate_since_ns) > kModeAgeMax_s;
   if (rested && state.hypothesis_count > 1)
     state.pruned_position_covariance_m2 = hypothesis_position_covariance(state, rolling::kPosition);

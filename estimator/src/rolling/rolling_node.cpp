@@ -12,7 +12,7 @@ namespace tumble::rolling {
 
 namespace {
 
-// Root densities of random walks: radius on a rough floor, slope, accelerometer bias, and velocity per squared rate.
+// root densities of random walks: radius on a rough floor, slope, accelerometer bias, and velocity per squared rate
 constexpr double kRoughRadiusWalk_m_sqrts = 1e-4, kSlopeWalk_sqrts = 0.02, kAccelBiasWalk_m_s2_sqrts = 2e-3,
                  kVelocityWalkPerRate2_sqrts = 4e-5;
 constexpr double kImpactSigmaRatio = 0.06;  // velocity error by an impact, as a fraction of its velocity change
@@ -40,8 +40,8 @@ constexpr double kRecoveredTau_s = 0.1;   // correlation time of the error of a 
 constexpr double kFastRate_rad_s = 6.0;   // above this rate, the specific force rotates too fast for levelling
 constexpr double kUnsureSpeed_m_s = 0.1, kSpeedWindow_s = 1.0, kSpeedSigma_m_s = 1.0;
 constexpr double kStartTilt_rad = 0.15;  // tilt error of a start in motion, caused by a push of 1.5 m/s^2
-// Constants of rolling.md (R31). If the rates around a data gap are below kGapRate_rad_s, the sphere was hardly pushed
-// in the gap, so the rate in the gap is less uncertain.
+// See rolling.md (R31). If the rates before and after a data gap are below kGapRate_rad_s, the sphere was hardly pushed
+// during the gap, so the rate in the gap is less uncertain.
 constexpr double kGapRate_rad_s = 1.0, kGapStill_rad_s2 = 0.5, kGapAcceleration_rad_s2 = 15.0;
 constexpr double kGapVelocityChangeRatio =
     0.5;  // unknown velocity change in a data gap, as a fraction of the rolling velocity's change
@@ -90,11 +90,11 @@ RollingNominalState start_nominal(const RollingParams& params, const Eigen::Quat
 void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s, Covariance& P) {
   P.setZero();
   auto prior = P.diagonal();
-  // While a sphere is pushed, the specific force differs from gravity. A rotating sphere may slip, so its initial
-  // velocity is uncertain by its full rolling speed.
+  // While the sphere is pushed, the specific force differs from gravity. A rotating sphere may slip at the start, so
+  // the standard deviation of the initial velocity is the full rolling speed.
   const bool moves = starts_in_motion(rate_I_rad_s);
   const double tilt = moves ? kStartTilt_rad : 0.0, velocity = moves ? params.radius_m * rate_I_rad_s.norm() : 0.0;
-  // The initial heading defines the world's x axis, so its prior variance is 0.
+  // The initial heading defines the x axis of the world frame, so the prior variance of the heading is 0.
   prior.segment<2>(kAttitude).setConstant(squared(params.expert.prior.tilt_sigma_rad) + squared(tilt));
   prior.segment<3>(kVelocity).setConstant(squared(params.expert.prior.kVelocitySigma_m_s) + squared(velocity));
   prior.segment<3>(kGyroBias).setConstant(squared(params.expert.prior.gyro_bias_sigma_rad_s));
@@ -119,8 +119,8 @@ struct SaturatedForce {
   Eigen::Vector3d lower_bound_m_s2 = Eigen::Vector3d::Zero();
 };
 
-/// A saturated accelerometer reading is a lower bound of the specific force. The assumed specific force is the larger
-/// of two values: the reading, and the value at constant velocity of the sphere's centre (rolling.md, R8).
+/// A saturated accelerometer reading is a lower bound of the specific force. The function assumes the larger of two
+/// values: the reading, and the specific force at constant velocity of the sphere's centre (rolling.md, R8).
 SaturatedForce saturated_force(const ImuSample& sample, const Eigen::Vector3d& read_m_s2,
                                const Eigen::Vector3d& kept_m_s2) {
   int largest = 0;
@@ -149,8 +149,8 @@ void integrate(const RollingParams& params, const ImuSample& sample, double dt_s
   const Eigen::Vector3d w = w_raw - nominal.gyro_bias_rad_s - nominal.gyro_scale * w_raw;
   Eigen::Vector3d f =
       f_raw - nominal.accel_bias_m_s2 - nominal.accel_scale * f_raw - nominal.accel_delay_s * w.cross(f_raw);
-  // Averaging over the time dt at the rate w reduces the specific force perpendicular to the rotation axis by the
-  // fraction (|w| dt)^2 / 24: rolling.md (R4).
+  // Averaging over the time dt at the rate w reduces the component of the specific force perpendicular to the rotation
+  // axis. The relative reduction is (|w| dt)^2 / 24: rolling.md (R4).
   f -= dt_s * dt_s / 24.0 * w.cross(w.cross(f));
   const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * w);
   const Eigen::Quaterniond q_mid = nominal.q_WI * half;
@@ -166,8 +166,8 @@ void integrate(const RollingParams& params, const ImuSample& sample, double dt_s
   const Eigen::Vector3d arm = params.lever_arm_m + nominal.lever_arm_error_m;
   const Eigen::Vector3d change_rad_s = w_raw - nominal.last_rate_I_rad_s;  // angular acceleration times dt_s
   nominal.last_rate_I_rad_s = w_raw;
-  // If the rate is unknown, the direction of the specific force is unknown, so the velocity of the centre is assumed
-  // constant: rolling.md (R7).
+  // If the rate is unknown, the direction of the specific force in the world is unknown. The velocity of the sphere's
+  // centre is then assumed constant: rolling.md (R7).
   const Eigen::Vector3d centre_velocity_change_m_s = R_T * w.cross(w.cross(arm)) + q_mid * change_rad_s.cross(arm);
   const Eigen::Vector3d fallen = dt_s * gravity * Eigen::Vector3d::UnitZ();
   Eigen::Vector3d least = Eigen::Vector3d::Zero();
@@ -222,7 +222,7 @@ ImuSample gap_step_sample(const RollingParams& params, const ImuSample& before, 
   sample.device_clip_flags = 0;  // flags of the reading after the gap do not apply within the gap
   const double turning = std::max(before.angular_velocity_rad_s.norm(), after.angular_velocity_rad_s.norm());
   const double acceleration = kGapStill_rad_s2 + kGapAcceleration_rad_s2 * std::min(1.0, turning / kGapRate_rad_s);
-  // A parabolic rate error with second derivative a in a gap of T seconds causes an angle error of a T^3 / 12 (R31).
+  // If the rate error in a gap of T seconds is parabolic with second derivative a, the angle error is a T^3 / 12 (R31).
   const double mean_force_tilt_rad =
       acceleration * gap_s * gap_s * gap_s / 12.0 + kGapTimeSigmaRatio * change.norm() * gap_s;
   uncertainty.rotation_variance_rad2 = mean_force_tilt_rad * mean_force_tilt_rad / pieces;

@@ -14,7 +14,7 @@ namespace tumble {
 
 namespace {
 
-// maximum number of preallocated samples; with a longer lag of the smoother, the memory grows during the run
+// maximum number of preallocated samples; if the lag of the smoother is longer, the memory grows during the run
 constexpr std::size_t kPreallocatedMax = 1'000'000;
 
 bool equal(const ImuSample& a, const ImuSample& b) {
@@ -22,8 +22,8 @@ bool equal(const ImuSample& a, const ImuSample& b) {
          a.specific_force_m_s2 == b.specific_force_m_s2;
 }
 
-/// Returns the factor that converts a variance of the final pass, which assumes reduced noise, to the reported
-/// variance.
+/// Returns a factor for the variances of the final smoothing pass. The final smoothing pass assumes reduced noise, and
+/// the factor converts its variances to the reported variances.
 double stated_distance_sigma(const RollingSmoother::Params& params) {
   return 1.0 / (params.kFinalPassNoiseRatio * params.kFinalPassNoiseRatio);
 }
@@ -46,7 +46,7 @@ Eigen::Matrix<double, 6, 6> pose_covariance(const rolling::FilterNodeRecord& nod
   return J * node.smoothed_covariance * J.transpose();
 }
 
-/// While the sphere is at rest, the reported position remains constant.
+/// While the sphere is at rest, the smoother keeps the reported position constant.
 void keep_position_at_rest(const rolling::ModePathNode& node, RollingSmoother::FinalSmoothingState& committed,
                            RollingEstimate& estimate) {
   const bool stands = node.holds_constant_position && !may_slip(node.mode) &&
@@ -61,14 +61,14 @@ RollingSmoother::EstimateCallback append_estimates_to(std::vector<RollingEstimat
   return [&out](const RollingEstimate& estimate) { out.push_back(estimate); };
 }
 
-/// The final smoothing pass starts at the last filter step whose estimates were reported, or at the first sample.
+/// The final smoothing pass starts at the last filter step with reported estimates, or at the first sample.
 void start_window(const RollingParams& filter, const RollingSmoother::State& state,
                   rolling::SmoothingCheckpoint& start) {
   start = state.committed_state.checkpoint;
   if (state.committed_state.started) return;
   const ImuSample& sample = state.samples[0];
   Eigen::Quaterniond q_WI = filter.q_WI_start.value_or(Eigen::Quaterniond::Identity());
-  // inclination_from_force() has already succeeded for this sample when the live filter started, so its status is
+  // When the live filter started, inclination_from_force() succeeded for this sample, so the returned status is
   // ignored.
   if (!filter.q_WI_start) (void)inclination_from_force(sample.specific_force_m_s2, q_WI);
   start.filter.nominal = rolling::start_nominal(filter, q_WI, sample.angular_velocity_rad_s);
@@ -188,7 +188,8 @@ void RollingSmoother::finish(State& state, std::vector<RollingEstimate>& out) co
   finish(state, append_estimates_to(out));
 }
 
-/// Returns the contact modes of the most probable hypothesis, back to the last node whose estimates were reported.
+/// Returns the contact modes of the most probable hypothesis, back to the last filter step (node) with reported
+/// estimates.
 RollingSmoother::ModePath RollingSmoother::most_probable_path(const State& state) const {
   ModePath path(state.node_modes.size());
   const double constrain_after_s = std::min(rolling::kConstrainAfter_s, params_.filter.expert.rest_detector.rest_s);

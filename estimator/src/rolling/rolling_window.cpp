@@ -15,7 +15,7 @@ namespace {
 constexpr double kMaxSigmas = 5.0;
 
 /// A residual beyond kMaxSigmas standard deviations has less weight, because a large linear correction would distort
-/// the whole run: rolling.md (R37).
+/// the estimates of the whole run: rolling.md (R37).
 void update_with_measurement(const Row& H, double measured, double variance, FilterNodeRecord& record, Vector& x,
                              Covariance& P) {
   const auto k = static_cast<std::size_t>(record.measurement_count++);

@@ -19,12 +19,12 @@ struct ModePathNode {
   Eigen::Matrix3d position_spread_m2 = Eigen::Matrix3d::Zero();
 };
 
-/// number of states that determine a pose: attitude, velocity, position, lever arm
+/// number of error states that determine a pose: attitude, velocity, position, lever arm
 inline constexpr int kReported = 12;
 using Reported = Eigen::Matrix<double, kReported, 1>;
 
 struct FilterNodeRecord {
-  /// a node at rest has measurements of three velocities and three gyro biases
+  /// maximum number of scalar measurements per filter step: at rest, three velocities and three gyro biases
   static constexpr int kMaxMeasurements = 6;
   Moving moving_jacobian;
   std::array<Row, kMaxMeasurements> measurement_rows;
@@ -34,7 +34,7 @@ struct FilterNodeRecord {
   bool resets_floor_slope = false;
   bool tilt_reset = false;
   bool heading_lost = false;
-  /// rows of the error covariance after the update, for the reported states
+  /// rows of the error covariance that belong to the reported states, after the update
   Eigen::Matrix<double, kReported, kStates> covariance_rows;
   Reported correction;
   Vector heading_correction;  ///< heading_component() of the correction, if the heading is lost
@@ -54,8 +54,8 @@ struct RollingReading {
   TimeNs end_ns = 0;
 };
 
-/// RollingReadings iterates over stored samples, and returns the inputs that the live filter received. next() costs
-/// O(1) without allocation.
+/// RollingReadings iterates over stored samples, and returns the same inputs that the live filter received. next()
+/// costs O(1) and allocates no memory.
 class RollingReadings {
  public:
   RollingReadings(const RollingParams& params, std::span<const ImuSample> samples, const ReadingCursor& from)
@@ -82,8 +82,8 @@ struct SampleMotion {
 
 Eigen::Matrix<double, kReported, kStates> output_covariance_rows(const Covariance& P);
 Eigen::Matrix<double, kReported, kReported> reported_covariance(const Eigen::Matrix<double, kReported, kStates>& rows);
-/// Returns the covariance of the centre's velocity in IMU axes. The product of angular velocity error and lever arm is
-/// neglected.
+/// Returns the covariance of the velocity of the sphere's centre in IMU axes. The product of angular velocity error and
+/// lever arm is neglected.
 Eigen::Matrix3d velocity_covariance_I(const RollingNominalState& nominal, const Eigen::Vector3d& w_WI_I_rad_s,
                                       const Eigen::Matrix<double, kReported, kReported>& reported);
 
@@ -91,18 +91,19 @@ void complete_filter_node(const RollingParams& params, const RollingNodeIntegral
                           const Eigen::Vector3d& rate_I_rad_s, const ModePathNode& path, ModePathFilter& filter,
                           FilterNodeRecord& record);
 
-/// Returns the smoothed error at a node, relative to the nominal trajectory before the node's update.
+/// Returns the smoothed error at a filter step (node), relative to the nominal trajectory before the update of the
+/// filter step.
 Reported error_before_update(const FilterNodeRecord& node);
 
-/// Adjoint contains the information that later measurements provide about the error at a node.
+/// Adjoint contains the information that later measurements provide about the error state at a filter step (node).
 struct Adjoint {
   Vector adjoint_vector = Vector::Zero();
   Covariance adjoint_matrix = Covariance::Zero();
 };
 
-/// Smooths the states of consecutive nodes by the modified Bryson-Frazier smoother. On entry, `adjoint` contains the
-/// information from all measurements after the last node. On return, `adjoint` also contains the information from the
-/// measurements at `nodes`.
+/// Smooths the states of consecutive filter steps (nodes) by the modified Bryson-Frazier smoother. On entry, `adjoint`
+/// contains the information from all measurements after the last node. On return, `adjoint` also contains the
+/// information from the measurements at `nodes`.
 void backward_pass(Adjoint& adjoint, std::span<FilterNodeRecord> nodes);
 
 }  // namespace tumble::rolling
