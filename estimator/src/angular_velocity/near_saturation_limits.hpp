@@ -14,7 +14,8 @@ namespace tumble {
 std::vector<std::uint8_t> possible_partial_saturation(std::span<const ImuSample> samples,
                                                       const SaturationPlanes& planes);
 
-/// `before` and `after` are the readings immediately before and after `now`, or null if there is no such reading.
+/// `before` and `after` are the readings immediately before and after `now`. At the start or end of a recording, the
+/// missing reading is null.
 std::uint8_t possible_partial_saturation(const ImuSample* before, const ImuSample& now, const ImuSample* after,
                                          const SaturationPlanes& planes);
 

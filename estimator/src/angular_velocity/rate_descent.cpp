@@ -15,8 +15,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// kRestartThresholds contains factors on the residual threshold between free flight and contact. The optimisation
-// restarts with these factors if few clipped samples are classified as free flight.
+// kRestartThresholds contains factors on the residual threshold between free flight and contact. If few clipped samples
+// are classified as free flight, the optimisation restarts with each factor of kRestartThresholds.
 constexpr double kRestartThresholds[] = {16.0, 0.25};
 constexpr double kFlightShareExpected = 0.5;
 

@@ -125,7 +125,8 @@ void add_impact_delay(const TriadDelay& guess, SensorErrorInformation& evidence)
 constexpr double kContradictionOdds = 0.05;
 
 // Multiplies the odds that the scale factors agree with the data sheet by the odds that gyro and accelerometer are
-// synchronous. A wrong data sheet may concern scale factors, delay, or both, so the product is compared with a limit.
+// synchronous. Scale factors or delay, or both, may contradict the data sheet, so the product of the odds is compared
+// with a limit.
 bool contradicts_data_sheet(const SensorErrorFit& device, const SensorErrorPriors& sizes, bool triads_asynchronous) {
   const SensorErrorFit before = fit_sensor_errors({}, sizes);
   const auto odds = [](double p) { return std::max(p, 1e-12) / std::max(1.0 - p, 1e-12); };

@@ -30,7 +30,7 @@ struct RepeatedReadings {
 
 /// Detects whether the log repeats readings of a sensor, and estimates period and phase of the sensor's clock from the
 /// repetitions. Cost: O(N), plus a test of about 5000 candidate clocks on at most 1000 samples. Returns nothing if
-/// fewer than 30 gyro readings exceed 0.3 rad/s, or if less than 5 % of the readings during this rotation are repeated.
+/// fewer than 30 gyro readings exceed 0.3 rad/s, or if less than 5 % of the readings above 0.3 rad/s are repeated.
 /// `age_s` is zero if no clock with constant period predicts the repetitions of 90 % of the samples.
 std::optional<RepeatedReadings> find_repeated(std::span<const ImuSample> samples, Triad triad);
 

@@ -225,7 +225,7 @@ SensorErrorInformation evidence_from_earlier_runs(const KnownSensorErrors& earli
   Matrix vectors;
   dense::decompose(scaled, values, vectors);
   // If a loaded variance equals the prior variance for a linear combination of sensor errors, the loaded calibration
-  // contains no information about this combination.
+  // contains no information about this linear combination.
   const Vector precision_ratio = values.cwiseMax(1e-12).cwiseInverse();
   const Vector of_mean = (precision_ratio.array() > 1.0).select(precision_ratio, Vector::Zero());
   const auto in_units = [&](const Vector& kept_values) -> Matrix {

@@ -165,7 +165,7 @@ double add_gyro(const NodeReadings& readings, const Matrix3d& rows, const Readin
     const GyroSensingAxisRow& element = elements[static_cast<std::size_t>(i)];
     if (e.count > 0.0) {
       // If one sensing element clips, errors of the sensing directions shift all readings of the other elements equally
-      // within a time step. Averaging does not reduce this shift.
+      // within a time step. Averaging does not reduce a shift that is equal for all readings.
       const double tilt = noise.deficit_error_ratio * clipped_axis_deficit(readings, elements, i);
       cost += add_unclipped_readings(
           e, element,

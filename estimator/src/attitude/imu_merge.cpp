@@ -36,11 +36,11 @@ constexpr double kArmSquareMin_m2_s3 = 1.0;
 constexpr double kRepeated_s = 0.03;
 constexpr double kWindowMax_s = 0.05;  // maximum window for a central difference
 
-// After an impact, an accelerometer that contradicts the others is excluded for kSuspect_s, because impacts often occur
-// in quick succession.
+// After an impact, an accelerometer that contradicts the other accelerometers is excluded for kSuspect_s, because
+// impacts often occur in quick succession.
 constexpr double kSuspect_s = 0.04;
-// standard deviation of the angular acceleration in a time window, as a fraction of its change since the previous time
-// window
+// standard deviation of the angular acceleration in a time window, as a fraction of the change of angular acceleration
+// since the previous time window
 constexpr double kAccelerationSigmaRatio = 0.3;
 
 const ImuMergeSetup& checked(const ImuMergeSetup& setup) {

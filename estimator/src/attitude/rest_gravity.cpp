@@ -21,7 +21,7 @@ constexpr double kMagnitudeErrorMax = 0.15;
 // rest.
 constexpr double kAngleMax_sigmas = 5.0, kAngleToleranceMin_rad = 0.3, kAngleToleranceMax_rad = 0.6;
 constexpr double kCorrelation_s = 0.1;  // minimum correlation time of a gyro rate's error
-// If the body rotates less than this angle between two rests, most sensor faults remain undetected.
+// minimum rotation between two compared rests; with less rotation, most sensor faults remain undetected
 constexpr double kSpanRotationMin_rad = 1.0;
 constexpr double kSpanMax_s = 60.0;    // longest time between compared rests, because the gyro bias drifts
 constexpr double kRestGapMax_s = 0.1;  // an impact may hide in a longer data gap

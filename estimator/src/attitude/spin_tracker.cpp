@@ -79,7 +79,7 @@ SpinTracker::SpinTracker(const Params& params) : params_(params) {
   require_valid_fields(params);
 }
 
-// Returns whether a spin starts at this sample.
+// Returns whether a spin starts at the current sample.
 bool SpinTracker::select_spin_axis(const ImuSample& sample, State& state) const {
   const Eigen::Vector3d size = sample.angular_velocity_rad_s.cwiseAbs();
   Eigen::Index largest = 0;

@@ -58,10 +58,10 @@ namespace tumble::so3 {
 
 namespace {
 
-// For angles below 1e-4, the first two terms of the power series are exact to rounding.
+// For angles below 1e-4, the first two terms of the power series are exact except for rounding.
 constexpr double kSmallAngle = 1e-4;
-// For angles x below 0.5, x - sin(x) loses digits by cancellation. The first seven terms of the power series are exact to
-// rounding.
+// For angles x below 0.5, x - sin(x) loses digits by cancellation. The first seven terms of the power series are exact
+// except for rounding.
 constexpr double kCancellingAngle = 0.5;
 
 // Returns (1 - cos x) / x^2 by the half-angle formula, which avoids cancellation of digits.

@@ -19,7 +19,7 @@ using Params = LidarInertialOdometry::Params;
 // assumed standard deviation and correlation time of the robot's speed before a map exists
 constexpr double kSpeed_m_s = 10.0, kSpeedTime_s = 1.0;
 // If a recording starts in motion, the mean specific force over 0.5 s is assumed to differ from gravity by at least 1
-// m/s^2. The initial speed is assumed to result from an acceleration of this magnitude during 2 s.
+// m/s^2. The initial speed is assumed to result from an acceleration of at least 1 m/s^2 during 2 s.
 constexpr double kMovingForce_m_s2 = 1.0, kMovingTime_s = 2.0;
 constexpr double kMovingTiltMax_rad = 1.0;  // any direction of gravity is possible
 

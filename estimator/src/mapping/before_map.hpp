@@ -7,8 +7,8 @@
 /// See mapping.md, heading "Inertial noise".
 namespace tumble::mapping {
 
-/// Returns the state before a map exists. In this state, gravity is exactly vertical in the world frame, and a tilt
-/// error is an attitude error.
+/// Returns the state before a map exists. Before a map exists, gravity is exactly vertical in the world frame, and a
+/// tilt error is an attitude error.
 StateEstimate estimate_before_map(const LidarInertialOdometry::Params& params, const MotionState& levelled);
 
 /// The map starts only if the standard deviation of the tilt is at most kStartTiltSigmaMax_rad.

@@ -16,7 +16,8 @@ namespace {
 constexpr double kContradictionChi2Min = 32.9;
 
 // Wrong point times or a wrong lidar mounting distort sweeps. Few points of a distorted sweep fit the map, and the
-// registered poses are noisy. Without such errors, the mean inlier ratio of the simulated runs is at least 0.37.
+// registered poses are noisy. If point times and mounting are correct, the mean inlier ratio of the simulated runs is
+// at least 0.37.
 constexpr double kInlierRatioMin = 0.2, kMeanInnovationMax = 0.2;
 constexpr std::size_t kMeanSweepsMin = 20, kMeanSweepsMax = 50;
 

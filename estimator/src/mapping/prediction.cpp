@@ -161,7 +161,7 @@ StateEstimate posterior(const Prediction& prediction) {
 /// See mapping.md (R52).
 StateEstimate posterior(const Prediction& prediction, const Registration::Result& aligned) {
   StateEstimate start{aligned.mean, aligned.covariance, Registration::Matrix::Zero()};
-  // Errors of the surface normals add false information to the registration, so this information is not used.
+  // The information due to errors of the surface normals is false, and therefore not used.
   Registration::Matrix kept = Registration::Matrix::Identity(), from_prior;
   dense::solve_semidefinite(make_invertible(prediction.prior.covariance), kept);
   kept += aligned.surface_normal_noise_information;

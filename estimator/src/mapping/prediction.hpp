@@ -51,8 +51,7 @@ Prediction predict(const LidarInertialOdometry::Params& params, const SweepBound
                    const MotionWindow& window, const SweepTrajectory& trajectory,
                    const std::optional<OdometerReading>& reading);
 
-/// Predicts zero velocity for a sweep at rest after a tracking failure. Without this prediction, the velocity would
-/// drift.
+/// Predicts zero velocity for a sweep at rest after a tracking failure, because an integrated velocity would drift.
 void predict_stationary_sweep(const SweepBoundary& boundary, Prediction& prediction);
 
 bool prior_is_certain(const LidarInertialOdometry::Params& params, const SweepBoundary& boundary,

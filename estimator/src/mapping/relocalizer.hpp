@@ -14,13 +14,13 @@ struct RegistrationAttempt {
   double inlier_ratio = 0.0;  ///< inlier fraction of the last registration
 };
 
-/// RelocalisationContext contains the possible IMU states at the start of a sweep. The search chooses its starting
-/// poses from these states.
+/// RelocalisationContext contains the possible IMU states at the start of a sweep. RelocalisationContext provides the
+/// starting poses of the search.
 struct RelocalisationContext {
   const TrackingState& tracking;
   const Registration::Prior& prior;
-  /// IMU state of a relocalisation that later sweeps have contradicted, used as an additional starting pose; null if
-  /// there was no such relocalisation
+  /// IMU state of a relocalisation that later sweeps have contradicted, used as an additional starting pose; null
+  /// without contradicted relocalisation
   const MotionState* contradicted_motion = nullptr;
 };
 

@@ -238,8 +238,8 @@ void VoxelMap::remove_sweeps_from(std::uint32_t first_sweep) {
   for (std::uint32_t index = 0; index < index_end(); ++index) {
     if (!exists(index) || sweep_[index] >= first_sweep) continue;
     const Eigen::Vector3f position = position_W_m(index);
-    // Smoothing may have moved two points into one cube with the edge length `spacing_m`. The map then keeps both
-    // points.
+    // Smoothing may have moved two points into one cube with the edge length `spacing_m`. If a cube contains two
+    // points, the map keeps both points.
     if (params_.spacing_m > 0.0) kept.occupied_cubes_.add(SpatialHash::key(voxel_cube_of(position, cubes_per_m_)));
     const std::uint32_t now = kept.store_point(position, sigma_m_[index], sweep_[index], line_[index]);
     kept.seen_through_counts_[now] = seen_through_counts_[index];

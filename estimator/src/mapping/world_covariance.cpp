@@ -17,7 +17,7 @@ using Pose = WorldCovariance::Pose;
 // start (0.24 % in a hall with pillars).
 constexpr double kScale = 0.003;
 // The map drifts in the direction that surfaces constrain least. The standard deviation of the drift per sweep is
-// kDriftRatio times the standard deviation of the pose in this direction.
+// kDriftRatio times the standard deviation of the pose in the least constrained direction.
 constexpr double kDriftRatio = 0.1, kDriftSigmaMax_m = 3.0;
 
 /// See mapping.md (R57).

@@ -65,7 +65,7 @@ class SecondMappingPass {
   };
 
   /// Returns the start of the motion or the start of the sweeps, whichever is later. Parameter `after_s` counts from
-  /// this time. The motion must have started.
+  /// the returned time. The motion must have started.
   TimeNs buffer_start_ns() const;
   bool is_due() const;
   bool tracking_failed_in_first_pass() const;

@@ -115,8 +115,8 @@ void RollingFilter::complete_filter_node(const Eigen::Vector3d& next_rate_rad_s,
   }
   state.position_covariance_m2 = state.hypotheses[0].covariance.block<3, 3>(rolling::kPosition, rolling::kPosition) +
                                  hypothesis_position_covariance(state, rolling::kPosition);
-  // If the filter has discarded hypotheses at rest, their position differences to the remaining hypothesis increase its
-  // position covariance.
+  // When the filter discards hypotheses at rest, the position differences between discarded and remaining hypothesis
+  // increase the position covariance.
   if (state.at_rest && state.hypothesis_count == 1) {
     state.hypotheses[0].covariance.block<3, 3>(rolling::kPosition, rolling::kPosition) +=
         state.pruned_position_covariance_m2;

@@ -37,9 +37,10 @@ constexpr double kPlateau_m_s = 0.004, kSteady_m_s = 0.01, kJump_m_s = 0.08, kPl
                  kSteadyFraction = 0.35;
 constexpr double kRollOverSigma_m_s = 0.03, kHitSigma_m_s = 0.3, kRollOverFraction = 0.7;
 constexpr std::int64_t kAgesApart = 4;
-// A slip at constant angular rate is indistinguishable from grip until the slip ends. At the end of such a slip, about
-// a hundred wrong hypotheses have higher weights than the correct hypothesis. The filter therefore reserves memory for
-// kMinDissentingHypotheses hypotheses whose current mode started before the current mode of the best hypothesis.
+// A slip at constant angular rate is indistinguishable from grip until the slip ends. At the end of a slip at constant
+// angular rate, about a hundred wrong hypotheses have higher weights than the correct hypothesis. The filter therefore
+// reserves memory for kMinDissentingHypotheses hypotheses whose current mode started before the current mode of the
+// best hypothesis.
 constexpr std::size_t kMinDissentingHypotheses = 6;
 constexpr double kRoughCost = 0.2;
 // The start of a ramp is detected as a bump, so a transition to a slope is more probable after a bump.

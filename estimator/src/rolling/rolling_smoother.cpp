@@ -22,8 +22,8 @@ bool equal(const ImuSample& a, const ImuSample& b) {
          a.specific_force_m_s2 == b.specific_force_m_s2;
 }
 
-/// Returns a factor for the variances of the final smoothing pass. The final smoothing pass assumes reduced noise, and
-/// the factor converts its variances to the reported variances.
+/// Returns a factor for the variances of the final smoothing pass. The final smoothing pass assumes reduced noise, so
+/// the factor increases the variances to the reported variances.
 double stated_distance_sigma(const RollingSmoother::Params& params) {
   return 1.0 / (params.kFinalPassNoiseRatio * params.kFinalPassNoiseRatio);
 }
