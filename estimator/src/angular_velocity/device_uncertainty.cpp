@@ -40,8 +40,8 @@ bool corrected_covariance(const SensorErrorInformation& evidence, const Vector& 
   constexpr int kRest = SensorErrors::kSize - SensorErrors::kGSensitivity;
   constexpr double kSensorErrorEvidenceWeight = SensorErrorUncertainty::kSensorErrorEvidenceWeight;
   set_normal_equations(evidence, deviation, kSensorErrorEvidenceWeight, work.normal_matrix);
-  // Errors of the free-flight model change the residuals like scale and misalignment errors do. As a heuristic, the
-  // mean of scale and misalignment errors is therefore zero.
+  // In the residuals, errors of the free-flight model look like scale and misalignment errors. As a heuristic, the
+  // function assumes zero mean for scale and misalignment errors.
   Vector mean = Vector::Zero();
   const Eigen::Matrix<double, kRest, kRest> rest = work.normal_matrix.bottomRightCorner<kRest, kRest>();
   mean.tail<kRest>() =

@@ -14,8 +14,8 @@ namespace {
 constexpr double kDeterminedSlopeSigma = 2e-3, kNegligibleSlope = 3e-3;
 constexpr double kUnequalLevelsRatio = 1e-4;
 constexpr double kUprightSigma = 1e-5, kSlopeSigmaMin = 3e-4;
-// A reading counts as partly saturated if the reading is much closer to the saturation level than to the adjacent
-// unsaturated reading. The ratio of the two distances must be below kEdgeStepRatio.
+// A reading counts as partly saturated if its distance from the saturation level is less than kEdgeStepRatio times its
+// distance from the adjacent unsaturated reading.
 constexpr double kEdgeStepRatio = 0.5;
 
 int half_range_side(const ImuSample& sample, Triad triad, std::size_t j) {
@@ -78,7 +78,7 @@ bool are_upright(std::span<const Eigen::Vector3d> readings, const SaturationPlan
     if (rail && has_unequal_limits(*rail)) return false;
     if (rail && plateau > 0.0) {
       // If the device compensates misalignment after clipping, each clipped output also depends on the rates about the
-      // other axes. Most clipped readings of an axis then differ.
+      // other axes, so most clipped readings of an axis differ.
       const auto equal = std::count_if(readings.begin(), readings.end(), [&](const Eigen::Vector3d& y) {
         return std::abs(std::abs(y[static_cast<Eigen::Index>(j)]) - plateau) <= kEqualReadingsRatio * plateau;
       });

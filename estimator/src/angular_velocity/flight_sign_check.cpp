@@ -19,7 +19,8 @@ constexpr double kLeverArmMax_m = 1e3;
 constexpr double kForceMin_m_s2 = 2.5;  // a smaller specific force of the rotation is mostly noise and bias
 // tolerated difference between measured and predicted specific force in free flight, as a fraction of the prediction
 constexpr double kTolerance = 0.25;
-// minimum time for which the readings must agree with free flight; motion on the ground rarely agrees for this long
+// minimum time for which the readings must agree with free flight; motion on the ground rarely agrees with free flight
+// for longer
 constexpr double kRun_s = 0.02;
 constexpr double kFlightGapMax_s = 0.1;  // a longer data gap restarts the duration of agreement
 constexpr double kAlternativeRatioMin = 4.0, kThrownRatioMin = 2.0;

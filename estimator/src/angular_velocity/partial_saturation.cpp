@@ -22,7 +22,7 @@ PartialSaturation partial_saturation(double reading_rad_s, double neighbour_rad_
   // clips the sum of rate and noise.
   if (!(depth > 0.1 * noise_rad_s)) return {};
   // If the device compensates misalignment after clipping, rotation about other axes slowly changes a fully saturated
-  // reading. Changes below the noise are therefore ignored.
+  // reading. Only a change above the noise indicates partial saturation.
   if (!(slope > noise_rad_s)) return {};
   double share = 0.0;  // rails.md (R71)
   if (slope > 2.0 * depth) {

@@ -18,7 +18,7 @@ class GaussNewtonRateStep {
   bool factorise(const AngularRateModel& model, std::span<const AngularRateEstimate> estimates,
                  const BodyImuConstants& rig);
   /// Adds the last Gauss-Newton step, scaled so that no angular rate changes by more than step_max. Returns the largest
-  /// change of an angular rate before scaling.
+  /// change of an angular rate in the step before scaling.
   double apply(const AngularRateModel& model, double step_max, std::span<AngularRateEstimate> estimates,
                BodyImuConstants& rig) const;
 
@@ -65,8 +65,8 @@ struct RateSolution {
 };
 
 /// Returns false if the normal equations are not positive definite. If most clipped samples are classified as contact,
-/// solve() repeats the optimisation with other residual thresholds for free flight. Other thresholds help if a wrong
-/// initial lever arm has led to a local minimum.
+/// solve() repeats the optimisation with other residual thresholds for free flight. Other residual thresholds help if a
+/// wrong initial lever arm has led to a local minimum.
 bool solve(const AngularRateSmoother::Params& params, const AngularRateModel& model,
            std::span<const AngularRateObservation> observations, RateSolution& solution, AngularRateReport& health);
 

@@ -210,8 +210,8 @@ double AngularRateModel::gyro_information(const AngularRateObservation& observat
   return 1.0 / (lost * lost + impact * impact);
 }
 
-// During contact, the contact force is modelled as an additional error of the specific force. This error has zero mean,
-// and a standard deviation proportional to the estimated contact force: rate_smoother.md (R20).
+// During contact, the contact force is modelled as an additional error of the specific force. The modelled error has
+// zero mean, and a standard deviation proportional to the estimated contact force: rate_smoother.md (R20).
 AngularRateModel::ForceFactor AngularRateModel::force_factor(const AngularRateObservation& observation,
                                                              const AngularRateEstimate& estimate,
                                                              const BodyImuConstants& rig) const {

@@ -90,8 +90,8 @@ Eigen::Vector3d AngularRateModel::accel_sensing_axis_readings(const AngularRateO
   double hidden2 = 0.0;
   for (int j = 0; j < 3; ++j) {
     if ((clipped >> j & 1u) == 0) continue;
-    // A saturated accelerometer reading is a lower bound of the specific force. If the modelled force exceeds the
-    // reading, the residual is therefore zero: rate_smoother.md (R9).
+    // A saturated accelerometer reading is a lower bound of the specific force. If the modelled specific force exceeds
+    // a saturated reading, the residual is zero: rate_smoother.md (R9).
     if (flight.residual[j] * observation.sample.specific_force_m_s2[j] < 0.0) continue;
     hidden2 += flight.residual[j] * flight.residual[j];
     flight.residual[j] = 0.0;

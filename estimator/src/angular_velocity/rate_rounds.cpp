@@ -104,7 +104,7 @@ Status optimise_or_fix_rig_prior(const AngularRateSmoother::Params& params, cons
   }
   health.calibration_mahalanobis = mahalanobis;
   // The calibration is uncertain even if the optimisation does not change the calibration. The covariance of the rates
-  // therefore includes the covariance of the calibration.
+  // therefore always includes the covariance of the calibration.
   constexpr int kOpen = BodyImuConstants::kGyroMisalignmentIndex;
   fit.solution.rig_covariance.topLeftCorner<kOpen, kOpen>() =
       health.calibration.covariance.topLeftCorner<kOpen, kOpen>();
@@ -114,7 +114,7 @@ Status optimise_or_fix_rig_prior(const AngularRateSmoother::Params& params, cons
 constexpr double kGuessSigmasMax = 2.0;
 
 // See rate_smoother.md (R38). The accelerometer delay is estimated from impacts, which the free-flight equations do not
-// use. The delay is therefore independent of the free-flight equations.
+// use. The accelerometer delay from impacts is therefore independent of the free-flight equations.
 void add_impact_delay(const TriadDelay& guess, SensorErrorInformation& evidence) {
   if (!(guess.sigma_s > 0.0)) return;
   const double information = 1.0 / (guess.sigma_s * guess.sigma_s);
@@ -176,7 +176,7 @@ struct CorrectionIterations {
   bool is_delay_unknown() const {
     return estimated && stated_error_priors().delay_uncalibrated_s > stated_error_priors().delay_s;
   }
-  /// Returns whether the body has impacts and free flight, and is therefore not hand-held.
+  /// Returns whether the delay was estimated from impacts. A body with impacts and free flight is not hand-held.
   bool has_impact_delay() const { return impact_delay.sigma_s > 0.0; }
 };
 

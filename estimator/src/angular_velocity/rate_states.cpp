@@ -36,7 +36,7 @@ Eigen::Matrix3d sensor_error_covariance(const arrow::ErrorMatrix& moved, const S
 }
 
 // Returns the magnitude of the angular acceleration between samples `k` and `k + 1`. If a gyro reading may be
-// saturated, the magnitude is estimated from the contact force.
+// saturated, the angular acceleration is estimated from the contact force.
 double rate_change_rad_s2(const AngularRateModelParams& params, std::span<const AngularRateObservation> observations,
                           std::span<const AngularRateEstimate> estimates, std::size_t k) {
   const AngularRateObservation &from = observations[k], &to = observations[k + 1];

@@ -46,8 +46,8 @@ Status SaturationAwareRateEstimator::step(const ImuSample& sample, State& state,
   out.clipped_axes = axes_above_bound(reading, params_.saturation_point_rad_s);
   out.accepted = true;
   if (out.clipped_axes != 0) {
-    // As in the publication, SaturationAwareRateEstimator recovers only the first clipped axis in the order x, y, z:
-    // saave.md (S3).
+    // As in the publication of the method Saave, SaturationAwareRateEstimator recovers only the first clipped axis in
+    // the order x, y, z: saave.md (S3).
     int j = 0;
     while ((out.clipped_axes >> j & 1u) == 0) ++j;
     Eigen::Vector3d unclipped = reading;

@@ -20,7 +20,8 @@ struct RepeatedReadings {
   double regular_clock_fraction = 0.0;
   std::vector<double> age_s;             ///< per sample: age of its reading in addition to window_lag_s
   std::vector<bool> repeats_per_sample;  ///< per sample: whether the reading equals the previous sample's reading
-  /// A gyro averages over its period, an accelerometer over an unknown part of its period: carried.md (C11), (C12).
+  /// A gyro averages over its sample period. An accelerometer averages over an unknown part of its sample period:
+  /// carried.md (C11), (C12).
   double window_lag_s = 0.0;
 
   bool has_regular_clock() const { return regular_clock_fraction >= sample_hold::kAgreementMin; }

@@ -95,7 +95,8 @@ SaturationPlane merged_plane(const SaturationPlaneFinder::Params& params, const 
     for (const Vector3d& y : readings.rates) {
       if (!(side->side * gate.row.dot(y) >= gate.from)) continue;
       if (!(rails::highest_value(y, axis, side->side, gate.max_cross_axis_slope) >= gate.near_readings_min)) continue;
-      // The reading is linear in saturation level, offset and cross-axis sensitivities: rails.md (R59).
+      // A saturated reading is a linear function of saturation level, offset and cross-axis sensitivities: rails.md
+      // (R59).
       Eigen::Vector4d A;
       A << -other_axes_readings(y, axis), side->side, 1.0;
       H += weight * A * A.transpose();

@@ -80,8 +80,8 @@ Hypothesis posterior(const Matrix& information, const Matrix& earlier_runs, cons
   Vector sharpened = scaled_h;
   all.solve_vector(sharpened);
   out.log_odds = log_prior + 0.5 * scaled_h.dot(sharpened) - all.half_log_determinant();
-  // Errors of the free-flight model change the residuals like scale and misalignment errors do. As a heuristic, the
-  // estimated scale and misalignment errors are therefore zero.
+  // In the residuals, errors of the free-flight model look like scale and misalignment errors. As a heuristic, the
+  // function assumes zero mean for scale and misalignment errors.
   Vector mean = Vector::Zero();
   mean.tail<kRest>() = scaled_h.tail<kRest>();
   dense::Cholesky(sharp.bottomRightCorner<kRest, kRest>()).solve_vector(mean.tail<kRest>());

@@ -23,8 +23,8 @@ constexpr std::size_t kLatestReadings = 48;
 // The search for saturation repeats when the number of large readings has grown by the fraction 1 /
 // kSearchGrowthDivisor.
 constexpr std::size_t kSearchGrowthDivisor = 8;
-// A reading counts as near saturation if the reading exceeds a fraction of the smallest possible saturation level. The
-// two fractions are for gyro and accelerometer.
+// A reading counts as near saturation if the reading exceeds a fraction of the smallest possible saturation level.
+// kLowReadingRatios contains one fraction for the gyro and one for the accelerometer.
 constexpr double kLowReadingRatios[] = {0.5, 0.9};
 
 std::array<std::optional<double>, 6> saturation_limits_of(const SaturationLimitDetector& axis_aligned_rails,

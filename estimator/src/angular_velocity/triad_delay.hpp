@@ -11,7 +11,7 @@
 namespace tumble {
 
 /// Estimates the delay between gyro and accelerometer, up to four samples, from impacts or from free flight. Cost: O(N)
-/// for each of about 100 delays.
+/// for each of about 100 tested delays.
 ///
 /// The delay from impacts maximises the correlation between two signals: the square root of the angular acceleration's
 /// magnitude, and the square root of the specific force's magnitude. A delay from impacts requires a correlation of at

@@ -78,7 +78,7 @@ double clipped_axis_deficit(const NodeReadings& readings, const std::array<GyroS
   return sum;
 }
 
-// Averaged over a time step, unclipped readings form two independent measurements: the rate at the mean time and the
+// Averaged over a time step, unclipped readings form two independent measurements, the rate at the mean time and the
 // slope of the rate: carried.md (C13).
 double add_unclipped_readings(const SensingAxisSums& e, const GyroSensingAxisRow& rows, double information,
                               System::StateBlock& block, System::BorderBlock& corner) {

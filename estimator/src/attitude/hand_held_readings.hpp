@@ -38,7 +38,7 @@ struct NodeData {
   AveragingWindows samples;
   GyroReadings rates;
   std::vector<NodeReadings> nodes;  ///< time steps of equal length from the first sample's centre
-  /// root of the spectral density of angular jerk, per element of `nodes` [rad/s^3 sqrt(s)]; 0: no estimate
+  /// root of the spectral density of angular jerk, per element of `nodes` [rad/s^3 sqrt(s)]; 0 without an estimate
   std::vector<double> jerk;
 };
 

@@ -274,7 +274,8 @@ void ImuMerge::close_comparison_windows(const ImuMask& present, const Vectors& r
 }
 
 /// Excludes accelerometers that an impact may have saturated for a part of the averaging window: imu_merge.md (I6). If
-/// no two IMUs agree, a common angular acceleration within the averaging window is estimated first: imu_merge.md (I7).
+/// no two IMUs agree, the function first estimates a common angular acceleration within the averaging window:
+/// imu_merge.md (I7).
 void ImuMerge::exclude_partly_saturated(const Readings& samples, const ImuMask& present, const Vectors& forces,
                                         const Eigen::Vector3d& rate, double h, State& state, ImuMask& used) const {
   const double since_s = 0.5 * (h + state.length_s);

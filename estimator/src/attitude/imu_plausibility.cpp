@@ -17,8 +17,8 @@ constexpr double kForceReading_s = 0.02;  // averaging time of the IMU readings,
 constexpr double kWindowGapMax_s = 0.1;   // in a longer data gap, the gyro may miss a rotation
 // largest relative change of the specific force's magnitude in a time window with constant force
 constexpr double kChangeMax = 0.12;
-// Directions are compared if the magnitude of the specific force differs from gravity by less than the fraction
-// kGravityNear.
+// The directions of two specific forces are compared only if each magnitude differs from gravity by less than the
+// fraction kGravityNear.
 constexpr double kGravityNear = 0.25;
 // In recordings of pendulums and hand-held wands, the measured gravity rotates by 0.75 to 1.21 times the gyro's
 // rotation.
@@ -31,7 +31,7 @@ constexpr double kRotatedWindowsMin = 5.0;
 // specific force strongly. The sum of squared unexplained rotations must decrease to less than the fraction
 // kScaledResidualMax: imu_merge.md (I21). A regression gives the ratio of specific-force rotation to gyro rotation:
 // imu_merge.md (I20). Pushes of the body often make the specific force rotate less than the gyro measures. If the ratio
-// is between 0 and 1, the stricter limit kReducedResidualMax therefore applies.
+// of specific-force rotation to gyro rotation is between 0 and 1, the stricter limit kReducedResidualMax applies.
 constexpr double kScaledResidualMax = 0.75, kReducedResidualMax = 0.33;
 // At gyro rates below kSlow_rad_s (slow rocking on the ground, or a gyro offset), pushes may tilt the specific force
 // more than the rotation does.
@@ -206,7 +206,8 @@ bool ImuPlausibility::fits_better(const State& state) const {
   const double slope = force_to_gyro_rotation_ratio(state), agreement = rotation_agreement(state);
   const double left = state.force_rotation_square_sum_rad2 * (1.0 - agreement * agreement);
   // Pushes of the body often change the ratio of specific-force rotation to gyro rotation, but rarely to values below 0
-  // or above 1.5. During slow rotation, pushes may change the ratio to any value.
+  // or above 1.5. During slow rotation, pushes may change the ratio of specific-force rotation to gyro rotation to any
+  // value.
   const double slow_rad = kSlow_rad_s * kGravityWindow_s;
   const bool pushed = (slope > 0.0 && slope < 1.0) ||
                       state.gyro_rotation_square_sum_rad2 < state.rotated_window_count * slow_rad * slow_rad;

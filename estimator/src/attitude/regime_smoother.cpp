@@ -112,7 +112,7 @@ void MotionRegimeSmoother::join_hand_held_rates(std::span<const ImuSample> sampl
 }
 
 /// Replaces the rates by the rates of HandHeldSmoother. Data gaps divide the recording into parts, and HandHeldSmoother
-/// estimates each part separately. `report` describes the last part with a successful estimate.
+/// estimates each part separately. `report` describes the last part of the recording with a successful estimate.
 bool MotionRegimeSmoother::estimate_hand_held(std::span<const ImuSample> samples, const ClippedReadings& known,
                                               std::vector<AngularRateState>& rates,
                                               HandHeldSmoother::Report& report) const {
@@ -135,7 +135,8 @@ bool MotionRegimeSmoother::estimate_hand_held(std::span<const ImuSample> samples
   return any;
 }
 
-/// Returns the probability of hand-held motion near clipped or suspect readings, and 0 elsewhere: carried.md (C39).
+/// Returns the probability of hand-held motion near clipped or possibly saturated readings, and 0 for all other
+/// readings: carried.md (C39).
 std::vector<double> MotionRegimeSmoother::segment_hand_held_probability(
     std::span<const RegimeProbabilities> probabilities, const AngularRateReport& report,
     std::span<const AngularRateState> rates) const {

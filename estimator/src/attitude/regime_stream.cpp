@@ -19,8 +19,8 @@ HandHeldRateStream::Params with_common_params(const MotionRegimeStream::Params& 
   out.period_s = params.rate.period_s;
   out.lag_s = params.rate.lag_s;
   out.window_s = std::max(out.window_s, out.lag_s + 4.0 * out.body.expert.node_s);
-  // Each sample must be reported while the sample is in the window of HandHeldRateStream. The longest accepted data gap
-  // is therefore limited.
+  // The longest accepted data gap is limited, so that each sample is reported while the sample is in the window of
+  // HandHeldRateStream.
   out.body.expert.gap_max_s = std::min(out.body.expert.gap_max_s, out.window_s - out.lag_s);
   return out;
 }
@@ -36,7 +36,7 @@ ClipSigns clip_signs_of(const AngularRateObservation& observation) {
   return clip_signs(observation.sample, clipping);
 }
 
-// `share` is the weight of HandHeldRateStream's rate.
+// `share` is the weight of HandHeldRateStream's rate in the mixed rate.
 AngularRateState mixed_rate(const AngularRateState& rate, const AngularRateState& hand_held, double share) {
   AngularRateState out = mix_rate_states(rate, hand_held, share);
   out.clipped_axes = rate.clipped_axes;
@@ -46,8 +46,8 @@ AngularRateState mixed_rate(const AngularRateState& rate, const AngularRateState
 }
 
 // Computes the angular acceleration from rate differences: carried.md (C43). The regime test compares rates with the
-// specific force. The angular acceleration from AngularRateStream is unsuitable for this comparison, because
-// AngularRateStream also uses the specific force.
+// specific force. The angular acceleration from AngularRateStream is unsuitable for a comparison with the specific
+// force, because AngularRateStream also uses the specific force.
 Eigen::Vector3d angular_acceleration(std::span<const AngularRateStream::Knot> window, std::size_t k) {
   const auto between_s = [&](std::size_t from, std::size_t to) {
     return seconds(window[to].observation.sample.time_ns - window[from].observation.sample.time_ns);

@@ -51,8 +51,8 @@ double log_density_hand_held(double n, double g, double hand_variance, double gr
   return larger + std::log(((kRoughly - 1.0) * std::exp(gentle - larger) + std::exp(rough - larger)) / kRoughly);
 }
 
-// During contact, the body rolls gently with the prior probability `kRolls`. With the remaining probability, the body
-// has an impact with a specific force of any magnitude: carried.md (C33).
+// During contact, the body rolls gently with the prior probability `kRolls`, and has an impact with the prior
+// probability 1 - `kRolls`. The specific force of an impact may have any magnitude: carried.md (C33).
 constexpr double kRolls = 0.5;
 
 double log_density_in_contact(double left, double n, double g, double variance) {

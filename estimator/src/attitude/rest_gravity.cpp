@@ -15,7 +15,7 @@ namespace {
 
 // The limits of the rest detector are wide, because the unit of the specific force and the gyro bias are unknown.
 constexpr RestDetector::Params kRests{.rate_max_rad_s = 0.15, .caller_settings = {.force_min_m_s2 = 0.3}};
-// relative error of measured gravity; covers 80 mg of accelerometer bias and 3 % of scale error
+// tolerated relative error of measured gravity, for up to 80 mg of accelerometer bias and 3 % of scale error
 constexpr double kMagnitudeErrorMax = 0.15;
 // The tolerance of the angle between measured and expected gravity includes errors from gyro bias, and from pushes at
 // rest.

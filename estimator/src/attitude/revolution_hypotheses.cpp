@@ -24,7 +24,7 @@ constexpr double kPi = std::numbers::pi;
 // A clipped segment may have a wrong number of revolutions if its mean rate exceeds the saturation level by less than
 // kBeyondSigmas standard deviations.
 constexpr double kBeyondSigmas = 3.0;
-// largest jerk cost (squared standard deviations) of a plausible additional revolution: ten standard deviations
+// largest jerk cost of a plausible additional revolution: the square of ten standard deviations
 constexpr double kRevolutionCost = 100.0;
 // duration before and after a clipped segment that is optimised together with the segment
 constexpr double kSurroundings_s = 0.3;

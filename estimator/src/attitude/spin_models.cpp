@@ -20,10 +20,10 @@ constexpr int kTurning = 2, kFixed = 4;               // state indices of Modula
 constexpr int kArm = 2, kForce = 4, kWorldForce = 6;  // state indices of Centripetal
 constexpr double kJerk_rad_s3_sqrts = 50.0;           // root density of the angular jerk about the spin axis
 // The rate perpendicular to the spin axis is the sum of a vector that is constant in the world and a vector that is
-// constant in the body. Each component of these vectors is a random walk, with the standard deviation kWalk_rad_s_sqrts
-// after one second. Vibration adds an error with the standard deviation kVibration_rad_s to the gyro readings.
-// Vibration errors are correlated over time, so all readings within kReadingInterval_s together count as one reading.
-// SpinFilter::variance_ratio scales the variances of random walk and vibration: carried.md (C46).
+// constant in the body. Each component of the world-fixed and the body-fixed vector is a random walk, with the standard
+// deviation kWalk_rad_s_sqrts after one second. Vibration adds an error with the standard deviation kVibration_rad_s to
+// the gyro readings. Vibration errors are correlated over time, so all readings within kReadingInterval_s together
+// count as one reading. SpinFilter::variance_ratio scales the variances of random walk and vibration: carried.md (C46).
 constexpr double kWalk_rad_s_sqrts = 1.0, kVibration_rad_s = 0.3;
 // prior standard deviation of the lever arm from the spin axis to the IMU, about the size of the body
 constexpr double kBodySize_m = 0.3;

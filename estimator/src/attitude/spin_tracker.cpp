@@ -110,10 +110,9 @@ SpinRate SpinTracker::advance_spin_filter(const Model& model, const ImuSample& s
     const double c = recorded.spin_change_probability;
     const double spins = hypotheses.probability * (1.0 - c) + (1.0 - hypotheses.probability) * c;
     hypotheses.probability = std::min(kProbabilityMax, spins * ratio / (spins * ratio + 1.0 - spins));
-    // If the spin axis is saturated, the readings do not limit the spin rate from above. For any frequency at which
-    // rate or force across the spin axis oscillates, some spin rate beyond the saturation limit therefore fits the
-    // readings. Samples with a saturated spin axis can lower the probability of a steady spin, but cannot raise this
-    // probability.
+    // If the spin axis is saturated, the readings do not limit the spin rate from above. If rate or force across the
+    // spin axis oscillates, some spin rate beyond the saturation limit therefore fits the frequency of the oscillation.
+    // Samples with a saturated spin axis can lower the probability of a steady spin, but cannot raise this probability.
     if (!reading.saturated) {
       hypotheses.measured_probability = hypotheses.probability;
     } else if (hypotheses.probability > hypotheses.measured_probability) {

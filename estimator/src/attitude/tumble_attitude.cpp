@@ -212,7 +212,7 @@ void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& r
   predict_node(state);
   // If a sphere gripped before a data gap, the sphere is assumed to roll without slip after the gap.
   if (params_.radius_m > 0.0 && !state.slipping) state.v_W_m_s = velocity_from_rotation(state);
-  // correct_with_mean_force() changes the tilt variance, so the tilt variance is computed first.
+  // correct_with_mean_force() changes the tilt variance, so reported_tilt_variance_rad2() is called first.
   const double tilt = reported_tilt_variance_rad2(state);
   state.alignment = {};
   correct_with_mean_force(state);
@@ -246,7 +246,7 @@ void TumbleAttitude::align(const Eigen::Quaterniond& corrected, State& state) co
   const double velocity = body_velocity_variance_m2_s2(alignment.start_velocity_variance_m2_s2, state);
   const double variance = alignment.variance_rad2(velocity, params_.gravity_m_s2);
   if (variance > squared(kAlignedTilt_rad)) {
-    // When the body comes to rest, the coarse alignment restarts without the earlier data.
+    // When the body comes to rest, the coarse alignment restarts and ignores all earlier data.
     if (state.at_rest && alignment.start_velocity_variance_m2_s2 > velocity)
       alignment.start_alignment(velocity, alignment.tilt_rad2());
     return;

@@ -32,7 +32,7 @@ constexpr double kRestRate_rad_s = 3.4907e-2;
 constexpr double kRestForce_m_s2 = 0.5;
 
 constexpr double kNoDirection_m_s2 = 1e-6;
-/// growth of the bias' standard deviation within the forgetting time (0.1 deg/s in the VQF publication)
+/// standard deviation of the gyro bias' change within kBiasForgetting_s (0.1 deg/s in the VQF publication)
 constexpr double kForgottenSigma_rad_s = 1.7453292519943295e-3;
 
 /// Returns the measurement variance with which a scalar Kalman filter of the gyro bias converges to the standard

@@ -3,9 +3,9 @@
 
 #include <Eigen/Core>
 
-/// The functions accept matrices of all sizes, because decompositions of fixed-size Eigen matrices would double the
-/// compile time. The factorisations are bit-identical to Eigen's factorisations, and the eigenvalues are equal up to
-/// rounding. Each decomposition allocates memory.
+/// The functions in this file accept matrices of all sizes, because decompositions of fixed-size Eigen matrices would
+/// double the compile time. The factorisations are bit-identical to Eigen's factorisations, and the eigenvalues are
+/// equal up to rounding. Each decomposition allocates memory.
 namespace tumble::dense {
 
 using Symmetric = Eigen::Ref<const Eigen::MatrixXd>;  ///< only the lower triangle is read

@@ -121,7 +121,8 @@ Status SampleClock::push(TimeNs stamp_ns, State& state, TimeNs& time_ns) const {
     const double bound_ns = 0.5 * state.period_ns;
     time_ns += std::llround(std::clamp(state.fit_residual_ns, -bound_ns, bound_ns));
   }
-  // Corrected stamps must increase, even after an uncorrected stamp or a burst of stamps.
+  // Corrected time stamps must increase, even after an uncorrected time stamp, or if several samples have nearly equal
+  // time stamps.
   if (state.stamp_ns && time_ns <= state.time_ns)
     time_ns =
         state.time_ns + std::max<TimeNs>(1, std::llround(std::min(kStepMin_periods * state.period_ns, 0.5 * step_ns)));

@@ -32,7 +32,7 @@ StateEstimate with_start_tilt(const LidarInertialOdometry::StartTiltCorrection& 
 StateEstimate reset_origin_and_yaw(const StateEstimate& reckoned, double step_s);
 
 /// Returns the state at the first sweep. The lidar pose of the first sweep defines the map frame, and is therefore
-/// exact. In the map frame, the tilt error of dead reckoning is an error of gravity's direction.
+/// exact. In the map frame, the tilt error of dead reckoning becomes an error of gravity's direction.
 StateEstimate estimate_at_first_sweep(const LidarInertialOdometry::Params& params, const StateEstimate& reckoned);
 
 /// Returns the covariance of the new map frame relative to the world. The covariance contains the tilt variance of the

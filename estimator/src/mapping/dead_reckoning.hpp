@@ -11,8 +11,8 @@ namespace tumble::mapping {
 
 /// DeadReckoning is a second pose hypothesis while a relocalisation is unconfirmed. The second hypothesis ignores the
 /// relocalisation and uses only IMU and odometer. If a later sweep contradicts the relocalisation, the odometry
-/// continues from the second hypothesis. The contradicted pose is then an additional starting pose of the search in the
-/// map.
+/// continues from the second hypothesis. The pose of the contradicted relocalisation is an additional starting pose of
+/// the search in the map.
 struct DeadReckoning {
   SweepBoundary sweep_boundary;
   LagWindow window;

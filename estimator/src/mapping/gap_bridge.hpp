@@ -21,9 +21,9 @@ struct WindowRate {
 };
 
 /// Fills the gap from the end of `before` to the start of `after` with linearly interpolated angular rates: mapping.md
-/// (R44). In a gap, all gyro axes count as clipped, so that the registration also estimates the interpolation error.
-/// Each appended sample covers 10 ms. If the gap is longer than 0.64 s, each appended sample covers about 1/64 of the
-/// gap.
+/// (R44). In a gap, all gyro axes count as clipped, so that the registration also estimates the interpolation error. In
+/// a gap of up to 0.64 s, each appended sample covers 10 ms. In a longer gap, each appended sample covers about 1/64 of
+/// the gap.
 void bridge_gap(const WindowRate& before, const WindowRate& after, std::vector<MotionSample>& samples);
 
 }  // namespace tumble::mapping

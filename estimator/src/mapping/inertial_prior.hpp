@@ -17,13 +17,13 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
                                            const SweepTrajectory& trajectory, std::span<const MotionSample> samples,
                                            unsigned deficit_axes);
 
-/// Returns the covariance, in frame W, of the velocity change over a sweep due to accelerometer saturation. The error
-/// of a saturated accelerometer axis is assumed constant during the saturation.
+/// Returns the covariance, in world axes, of the velocity change over a sweep due to accelerometer saturation. The
+/// error of a saturated accelerometer axis is assumed constant during the saturation.
 Eigen::Matrix3d velocity_variance_from_clipping(const SweepTrajectory& trajectory,
                                                 std::span<const MotionSample> samples);
 
-/// Computes the initial state of an IMU at rest, at the origin of frame W with yaw 0. The mean specific force of the
-/// first 0.5 s determines roll and pitch. Returns `degenerate` if the mean specific force is below 1 m/s^2.
+/// Computes the initial state of an IMU at rest, at the origin of the world frame with yaw 0. The mean specific force
+/// of the first 0.5 s determines roll and pitch. Returns `degenerate` if the mean specific force is below 1 m/s^2.
 Status start_at_rest(std::span<const MotionSample> samples, MotionState& state);
 Status level_at_rest(const Eigen::Vector3d& force_I_m_s2, MotionState& state);
 

@@ -103,7 +103,7 @@ void InertialTrack::update_rest(const ImuSample& sample, const AngularRateState&
   if (initial_rest_.still_stationary) {
     if (!initial_rest_.first_ns) initial_rest_.first_ns = initial_rest_.initial_rest_start_ns = sample.time_ns;
     // At the start of a recording, noise may interrupt the detected rest. If a new rest starts within kBiasRest_s of
-    // the first sample, the new rest therefore counts as the initial rest.
+    // the first sample, the new rest counts as the initial rest.
     if (next.rest_start_ns && seconds(*next.rest_start_ns - *initial_rest_.first_ns) < OdometryStart::kBiasRest_s)
       initial_rest_.initial_rest_start_ns = next.rest_start_ns;
     initial_rest_.still_stationary = next.rest_start_ns == initial_rest_.initial_rest_start_ns;

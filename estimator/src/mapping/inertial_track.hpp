@@ -32,7 +32,7 @@ class InertialTrack {
   /// Returns the mean specific force of the current rest, if the rest lasted at least `lasted_s` up to `time_ns`.
   std::optional<Eigen::Vector3d> resting_force(TimeNs time_ns, double lasted_s) const;
   /// Returns whether the robot was at rest during the first `lasted_s` seconds of the recording. If the recording is
-  /// shorter, returns whether the robot was at rest during all samples.
+  /// shorter than `lasted_s`, returns whether the robot was at rest during all samples.
   bool starts_at_rest(double lasted_s) const;
   bool has_not_moved() const { return initial_rest_.still_stationary; }
   /// Returns the time of the newest sample, or the end of the last sweep if there are no samples.

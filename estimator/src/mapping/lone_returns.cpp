@@ -12,9 +12,9 @@ namespace {
 // sine of 10 deg: minimum angle between a lidar beam and the line to an adjacent return on the same surface
 // (Bogoslavskyi and Stachniss)
 constexpr float kMinSurfaceSine = 0.17365f;
-// sine of 2 deg: minimum angle between a lidar beam and the line through the two adjacent returns. If the angle is
-// smaller, the two adjacent returns count as two sides of an edge. A lidar 0.5 m above level ground sees the ground at
-// an angle of 2 deg, at a distance of 14 m.
+// sine of 2 deg: minimum angle between a lidar beam and the line through the two adjacent returns. If the angle between
+// beam and line is smaller, the two adjacent returns count as two sides of an edge. A lidar 0.5 m above level ground
+// sees the ground at an angle of 2 deg, at a distance of 14 m.
 constexpr float kGrazingSine = 0.0349f;
 constexpr float kBend = 0.15f;                     // relative tolerance of ranges on uneven ground
 constexpr int kNeighbours = 2;                     // number of neighbours on each side along the ring

@@ -11,7 +11,7 @@ namespace {
 constexpr double kSameLineCosine = 0.9988;
 constexpr int kRingBits = 16;
 // The exported map excludes points through which beams of at least kSeenThrough sweeps passed. A single sweep is not
-// sufficient, because the nearest return in a direction may be wrong near the edge of a surface.
+// sufficient to exclude a map point, because the nearest return in a direction may be wrong near the edge of a surface.
 constexpr std::uint8_t kSeenThrough = 2;
 
 }  // namespace

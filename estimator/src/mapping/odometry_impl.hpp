@@ -49,8 +49,8 @@ struct LidarInertialOdometry::Impl {
   /// Computes the initial state from the IMU samples before the first sweep, at rest or in motion.
   Status initialise_inclination();
   Status level_start(MotionState& levelled) const;
-  /// If the sweep has enough usable points, starts the map. Otherwise, propagates the state inertially to the end of
-  /// the sweep.
+  /// Starts the map if the sweep has enough usable points. If the sweep has too few usable points, propagates the state
+  /// inertially to the end of the sweep.
   Status start_map(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns, SweepReport& report);
   Status dead_reckon(TimeNs end_ns);
   bool is_stationary(const mapping::InertialTrack& inertial, const SweepTrajectory& motion, TimeNs end_ns) const;

@@ -25,8 +25,8 @@ constexpr double kDeficitTime_s = 0.3;
 // maximum growth factor of the gyro's saturation deficit from one sweep to the next
 constexpr double kDeficitCarryMax = 3.0;
 // The registration estimates the gyro's saturation deficit at the start, middle and end of each sweep. Each of the
-// three deficits has an additional independent error. kKnotSigmaRatio is the ratio of the error's standard deviation to
-// the deficit's standard deviation.
+// three saturation deficits has an additional independent error. kKnotSigmaRatio is the ratio of the error's standard
+// deviation to the deficit's standard deviation.
 constexpr double kKnotSigmaRatio = 0.05;
 // standard deviation of the velocity during the initial rest
 constexpr double kStartSigma_m_s = 0.01;

@@ -38,8 +38,8 @@ const PriorMap* LidarInertialOdometry::prior_map() const {
   return impl_->localiser.has_map() ? &impl_->localiser.map() : nullptr;
 }
 
-/// After a tracking failure, or while a relocalisation is unconfirmed, the local map may be wrong. The local map is
-/// then not compared with the prior map.
+/// After a tracking failure, or while a relocalisation is unconfirmed, the local map may be wrong and is not compared
+/// with the prior map.
 void LidarInertialOdometry::Impl::localise(const SweepReport& report) {
   if (!localiser.has_map() || localiser.is_localised()) return;
   if (report.verdict != SweepVerdict::registered || !std::holds_alternative<mapping::Tracking>(tracking)) return;

@@ -97,8 +97,8 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, NearestNei
   if (match.plane_searched) {
     const float moved2 = (positions_[point] - match.search_position_W_m).squaredNorm();
     if (moved2 <= rematch2) return;
-    // The new search uses a sphere around the moved point. The sphere is large enough if the sphere contains all
-    // neighbours that the previous search found.
+    // The search for neighbours of a moved point uses a sphere around the point. The sphere is large enough if the
+    // sphere contains all neighbours that the previous search found.
     radius_m = std::min(radius_m, kRounding * (match.farthest_neighbour_m + std::sqrt(moved2)));
   }
   match.plane_searched = true;
@@ -166,8 +166,8 @@ double Registration::kernel_width_m() {
 void Registration::accumulate_block(std::span<const SweepPoint> points, std::size_t block,
                                     const SweepTrajectory& trajectory, const LidarImuCalibration& calibration,
                                     const Unknowns& unknowns, double kernel_m, Sums& sum) {
-  // Each column of `rows` belongs to a matched point. The column contains the derivatives of the point's distance from
-  // its plane, times the square root of the weight.
+  // Each column of `rows` contains the derivatives of a matched point's distance from its plane, times the square root
+  // of the match's weight.
   constexpr int kPoints = kPointsPerPartialSum;
   Eigen::Matrix<double, kUnknowns, kPoints> rows;
   Eigen::Matrix<double, kPoints, 1> weighted;
@@ -221,7 +221,7 @@ void Registration::accumulate(std::span<const SweepPoint> points, const SweepTra
 /// that the surfaces do not constrain.
 struct Registration::SurfaceNormalNoise {
   const Unknowns& unknowns;
-  // on the heap, with the buffers of rankUpdate()
+  // The matrix `columns` and the buffers of rankUpdate() are on the heap.
   Eigen::Matrix<double, kUnknowns, Eigen::Dynamic> columns{kUnknowns, 2 * static_cast<int>(kPointsPerPartialSum)};
   int count = 0;
   Matrix lower = Matrix::Zero();

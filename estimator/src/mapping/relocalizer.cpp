@@ -13,7 +13,8 @@ namespace tumble::mapping {
 namespace {
 
 // A sweep confirms a relocalisation if at least the fraction kConfirmInlierRatio of the point-to-plane residuals is
-// within three standard deviations. Normally distributed residuals give a fraction of 0.997.
+// within three standard deviations. If the residuals are normally distributed, 99.7 % of the residuals are within three
+// standard deviations.
 constexpr double kConfirmInlierRatio = 0.9;
 // maximum number of repetitions of a failed registration per sweep; each repetition starts with a larger saturation
 // deficit of the gyro

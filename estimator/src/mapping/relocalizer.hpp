@@ -43,8 +43,8 @@ struct SweepRegistration {
 void judge_registration(const TrackingState& before, std::size_t points, bool prior_certain,
                         const RegistrationAttempt& attempt, SweepRegistration& placed);
 
-/// The starting pose with index 0 is the predicted pose. Each other starting pose is shifted or rotated along one axis.
-/// Starting poses close to the predicted pose have lower indices: mapping.md (R66).
+/// The starting pose with index 0 is the predicted pose. Each starting pose with a higher index is shifted along one
+/// axis or rotated about one axis. Starting poses close to the predicted pose have lower indices: mapping.md (R66).
 void displace_starting_pose(int index, Registration::Prior& prior);
 
 }  // namespace tumble::mapping

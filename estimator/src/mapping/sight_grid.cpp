@@ -14,8 +14,8 @@ namespace {
 // about three bins.
 constexpr float kMinRangePerMotion = 10.0f;
 constexpr int kEmptyBinsMax = 4;  // maximum number of empty bins out of nine; rings may be further apart than bins
-// kBeyond_m and kBeyondRatio define a tolerance of the range. The tolerance covers the relative pose error of two
-// sweeps, range noise, and sloped ground within a bin.
+// kBeyond_m and kBeyondRatio define a tolerance of the range. The tolerance of the range covers the relative pose error
+// of two sweeps, range noise, and sloped ground within a bin.
 constexpr float kBeyond_m = 0.3f, kBeyondRatio = 0.03f;
 constexpr float kDeviations = 3.0f;
 

@@ -11,8 +11,8 @@ namespace tumble::mapping {
 /// covariances".
 struct StateEstimate {
   Registration::Estimate mean;  ///< mean; the covariance of its state is the motion block of `prior_weight_covariance`
-  /// Covariance with which the registration weights its prior. Lidar residuals are correlated, and a heuristic factor
-  /// makes the covariance larger than for independent residuals.
+  /// The registration weights its prior with `prior_weight_covariance`. Lidar residuals are correlated, and a heuristic
+  /// factor makes `prior_weight_covariance` larger than for independent residuals.
   Registration::Matrix prior_weight_covariance = Registration::Matrix::Zero();
   /// covariance of the actual errors of the state `mean`
   Registration::Matrix state_error_covariance = Registration::Matrix::Zero();
@@ -33,7 +33,7 @@ void propagate_covariance(const Registration::Matrix& F, const Registration::Mat
 /// returned blocks are bit-identical to the result of propagate_covariance(), and need a third of the computing time.
 Registration::Matrix propagate_pose_and_mounting(const Registration::Matrix& F, const Registration::Matrix& errors);
 
-/// covariance of the errors of position, attitude and velocity in frame W
+/// covariance of the errors of position, attitude and velocity in world axes
 using MotionErrors = Eigen::Matrix<double, Registration::kMotionSize, Registration::kMotionSize>;
 
 /// Returns only the block of position, attitude and velocity of the covariance propagated by the transition matrix F.

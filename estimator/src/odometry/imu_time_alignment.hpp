@@ -28,7 +28,7 @@ class ImuTimeAlignment {
   using Readings = std::array<ImuSample, ImuMerge::kImus>;
 
   struct State {
-    /// readings of each IMU, starting with the last reading before the newest common time
+    /// stored readings of each IMU, starting with the last reading before the newest common time
     std::array<std::vector<ImuSample>, ImuMerge::kImus> readings;
     std::size_t reference_imu = 0;
     std::optional<TimeNs> first_ns;               ///< first reading of any IMU

@@ -17,8 +17,8 @@ constexpr std::size_t kSweepsPerRejection = 5;
 // mounting
 constexpr double kUncertainMountSigma_rad = 0.1, kUncertainMountSigma_m = 0.5;
 
-/// Cuts the last sweep at the end of the IMU data, if at least half of the sweep remains. Otherwise, a small clock
-/// offset between lidar and IMU would make the last sweep unusable.
+/// Cuts the last sweep at the end of the IMU data, if at least half of the sweep remains. Without the cut, a small
+/// clock offset between lidar and IMU would make the last sweep unusable.
 bool shorten_sweep(TimeNs end_ns, WaitingSweep& sweep) {
   if (end_ns >= sweep.end_ns) return true;
   const TimeNs last_marginalised_ns = end_ns - sweep.start_ns, length_ns = sweep.end_ns - sweep.start_ns;

@@ -24,8 +24,8 @@ class PositionAlignment {
     double variance_m2 = 0.0, path_m = 0.0, pose_variance_m2 = 0.0;
   };
 
-  /// Stores a position reading until the sweep during which the position was measured is registered. Readings may
-  /// arrive in any order. See TumblingOdometry::add_position().
+  /// Stores a position reading. The reading is processed when the sweep that covers its time has been registered.
+  /// Readings may arrive in any order. See TumblingOdometry::add_position().
   Status add(const PositionReading& reading, TimeNs done_ns, TimeNs latest_ns, std::size_t most);
   /// Processes a registered sweep and all position readings up to the end of the sweep. Cost: O(n^2) for n stored
   /// positions.

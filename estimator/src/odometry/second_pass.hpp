@@ -50,7 +50,7 @@ class SecondMappingPass {
   /// Continues the second pass after each sweep of the first pass. When the second pass has processed all buffered
   /// sweeps, the map of the second pass replaces the map of `first`.
   void replay_next_input(OdometryPass& first);
-  /// Runs a started second pass to its end.
+  /// Runs the second pass to its end. If motion has started but the second pass has not, starts the second pass first.
   void complete_second_pass(OdometryPass& first);
   void abandon_second_pass();
 

@@ -15,7 +15,8 @@ namespace tumble::rolling {
 template <class EstimateCallback>
 void contact_measurement_rows(const Contact& c, ContactMode mode, double node_s, const Eigen::Vector3d& v_WI_m_s,
                               const Vector& x, const Covariance& P, EstimateCallback&& take) {
-  // The contact velocity is not linear in the error state. The nonlinear part is subtracted from the measurement.
+  // The contact velocity is not linear in the error state. The nonlinear part of the contact velocity is subtracted
+  // from the measurement.
   const Eigen::Vector3d u = c.velocity(x) - c.measurement_jacobian * x, variance = contact_variance(c, mode);
   if (!may_slip(mode)) {
     for (int axis = 0; axis < 2; ++axis) take(Row(c.measurement_jacobian.row(axis)), -u[axis], variance[axis]);

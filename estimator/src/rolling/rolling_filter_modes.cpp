@@ -95,7 +95,7 @@ double log_likelihood_stationary(const rolling::Contact& c, const RollingFilter:
   if (mode == ContactMode::rough) {
     // In the mode rough, the contact velocity has a larger variance, which would reduce the likelihood of every filter
     // step on a rough floor. The likelihood of the mode rough is therefore normalised with the variance of the mode
-    // grip. The logarithm of the likelihood is reduced by kRoughCost.
+    // grip. The logarithm of the likelihood of the mode rough is reduced by kRoughCost.
     log_det = log_det_with(rolling::contact_variance(c, ContactMode::grip), factor);
     cost = kRoughCost;
   }
@@ -178,8 +178,8 @@ std::span<const ModeCandidate> propose_mode_changes(const RollingParams& params,
   return {out.data(), total};
 }
 
-/// Rounds the index of the filter step at which a contact mode started. The rounding is coarser for older modes. After
-/// rounding, hypotheses count as equal if their contact modes started at similar times.
+/// Rounds the index of the filter step at which a contact mode started, more coarsely for older modes. After rounding,
+/// hypotheses count as equal if their contact modes started at similar times.
 std::int64_t mode_beginning_node(std::int64_t mode_start_node, std::int64_t node, double node_s) {
   const auto mode_age_max_nodes = static_cast<std::int64_t>(kModeAgeMax_s / node_s);
   const std::int64_t age = std::min(node - mode_start_node, mode_age_max_nodes);

@@ -149,8 +149,8 @@ void integrate(const RollingParams& params, const ImuSample& sample, double dt_s
   const Eigen::Vector3d w = w_raw - nominal.gyro_bias_rad_s - nominal.gyro_scale * w_raw;
   Eigen::Vector3d f =
       f_raw - nominal.accel_bias_m_s2 - nominal.accel_scale * f_raw - nominal.accel_delay_s * w.cross(f_raw);
-  // Averaging over the time dt at the rate w reduces the component of the specific force perpendicular to the rotation
-  // axis. The relative reduction is (|w| dt)^2 / 24: rolling.md (R4).
+  // Averaging over the time dt at the rate w reduces the specific force perpendicular to the rotation axis by the
+  // fraction (|w| dt)^2 / 24: rolling.md (R4).
   f -= dt_s * dt_s / 24.0 * w.cross(w.cross(f));
   const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * w);
   const Eigen::Quaterniond q_mid = nominal.q_WI * half;
@@ -166,8 +166,8 @@ void integrate(const RollingParams& params, const ImuSample& sample, double dt_s
   const Eigen::Vector3d arm = params.lever_arm_m + nominal.lever_arm_error_m;
   const Eigen::Vector3d change_rad_s = w_raw - nominal.last_rate_I_rad_s;  // angular acceleration times dt_s
   nominal.last_rate_I_rad_s = w_raw;
-  // If the rate is unknown, the direction of the specific force in the world is unknown. The velocity of the sphere's
-  // centre is then assumed constant: rolling.md (R7).
+  // If the rate is unknown, the direction of the specific force in the world is unknown, and the velocity of the
+  // sphere's centre is assumed constant: rolling.md (R7).
   const Eigen::Vector3d centre_velocity_change_m_s = R_T * w.cross(w.cross(arm)) + q_mid * change_rad_s.cross(arm);
   const Eigen::Vector3d fallen = dt_s * gravity * Eigen::Vector3d::UnitZ();
   Eigen::Vector3d least = Eigen::Vector3d::Zero();
