@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 // In a stream, the time of a reading is uniformly distributed over one sample period, so the standard deviation is
 // 1/sqrt(12) periods. In a recording, the estimated clock of the sensor determines the time of a reading more
-// accurately.
+// accurately than in a stream.
 constexpr double kReadingTimeSigma_samples = 0.29, kClockedReadingSigma_samples = 0.1;
 
 struct TimedReading {

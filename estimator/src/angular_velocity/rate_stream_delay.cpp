@@ -69,7 +69,8 @@ void AngularRateStream::Impl::pair_force_with_rate(std::size_t k, State& state) 
   Knot& knot = state.window[k];
   const auto last = static_cast<std::ptrdiff_t>(state.window.size()) - 1;
   const std::ptrdiff_t own = static_cast<std::ptrdiff_t>(k), wanted = own + force_delay_samples(state);
-  // only specific forces in the window are available
+  // If the window does not contain the delayed specific force, the function uses the specific force of the same sample
+  // or of the newest sample.
   const std::ptrdiff_t at = wanted < 0 ? own : std::min(wanted, last);
   const Knot& source = state.window[static_cast<std::size_t>(at)];
   AngularRateObservation& o = knot.observation;

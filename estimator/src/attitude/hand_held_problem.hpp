@@ -99,7 +99,7 @@ class HandHeldProblem {
   ReadingNoise noise_;
   Eigen::Vector3d g_W_m_s2_;
   std::optional<ProblemSegment>
-      problem_segment_;  // if set, this problem is a part of another problem, with fixed constants
+      problem_segment_;  // range of nodes if the problem is a part of another problem with fixed constants
   std::vector<Node> nodes_;
   Constants constants_;
   std::vector<double> jerk_;  // factor on the root spectral density of the angular jerk, per node

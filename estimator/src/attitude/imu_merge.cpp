@@ -26,7 +26,7 @@ constexpr double kHiddenForce_m_s2 = 3.0;  // largest force error attributed to 
 constexpr double kRotating_rad_s2 = 1.0;   // minimum angular acceleration for estimating a time offset
 constexpr double kCertainDeviations = 4.0;
 constexpr int kMinImusForRecovery = 3;
-constexpr double kUnsaturatedForceRatio = 0.8;  // accelerometer errors are estimated up to this fraction of the range
+constexpr double kUnsaturatedForceRatio = 0.8;  // fraction of the range up to which accelerometer errors are estimated
 constexpr int kOffset = ImuMerge::kErrorCount - 1;
 // The lever arm effect is the specific force that rotation causes at the IMU's distance from the mean IMU position.
 // lever_arm_agreement() returns a value only if the time integral of the squared lever arm effects reaches

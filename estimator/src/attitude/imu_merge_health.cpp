@@ -34,8 +34,8 @@ double rotation_across_force_rad(const ImuMerge::Repetition& hold) {
 
 }  // namespace
 
-/// Returns clip flags in axes of the common frame C. An axis is flagged if a clipped axis of any selected IMU has a
-/// component along this axis.
+/// Returns clip flags for the axes of the common frame C of all IMUs. An axis is flagged if a clipped axis of any
+/// selected IMU has a component along this axis.
 std::uint8_t ImuMerge::combined_flags(const Readings& readings, const ImuMask& which) const {
   unsigned out = 0;
   for (std::size_t k = 0; k < which.size(); ++k) {

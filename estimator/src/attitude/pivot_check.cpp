@@ -54,7 +54,7 @@ constexpr std::array<AxisLabels, kAxisLabels> kAllAxisLabels = all_axis_labels()
 
 constexpr double kPivotReading_s =
     0.01;                           // averaging time of readings, so that the cost is independent of the sample rate
-constexpr double kSegment_s = 2.0;  // a hand holds a pivot still for about this time
+constexpr double kSegment_s = 2.0;  // a person holds a pivot still for about 2 s
 constexpr double kSegmentRotationMin_rad = 1.0;  // with less rotation, a segment cannot distinguish the gyro hypotheses
 // largest rms velocity of the fitted pivot for which a time segment is used
 constexpr double kExplained_m_s = 0.3;

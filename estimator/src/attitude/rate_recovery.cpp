@@ -96,8 +96,8 @@ AngularRateRecovery::SaturatedSensors AngularRateRecovery::find_saturated_sensor
 
 void AngularRateRecovery::step(std::span<const ImuSample> units, double dt_s, State& state, ImuSample& merged) const {
   const SaturatedSensors met = find_saturated_sensors(units);
-  // At the positions where gravity and centripetal force add up, accelerometers saturate first. The mean of the
-  // unsaturated accelerometers is therefore biased.
+  // Accelerometers saturate first at positions where gravity and centripetal force add up. The mean of the unsaturated
+  // accelerometers is therefore biased.
   merged.device_clip_flags = met.force ? kClipAccelX | kClipAccelY | kClipAccelZ : 0;
   const bool fast =
       merged.angular_velocity_rad_s.cwiseAbs().maxCoeff() >= kMinSaturatedRangeFraction * setup_.gyro_range_rad_s;

@@ -16,10 +16,10 @@ namespace {
 
 constexpr int kRate = 0;
 constexpr double kRateMin_rad_s = 6.0;   // minimum rate of a steady spin
-constexpr double kMemory_s = 0.2;        // readings within this time count as one independent observation
+constexpr double kMemory_s = 0.2;        // readings within kMemory_s together count as one independent observation
 constexpr double kChanges_hz = 0.02;     // assumed frequency of starts and ends of a steady spin
 constexpr double kGapMax_s = 0.5;        // a new spin starts after a longer data gap
-constexpr double kAxisHysteresis = 1.2;  // the spin axis changes if another axis has a rate larger by this factor
+constexpr double kAxisHysteresis = 1.2;  // rate of another axis, relative to the spin axis, that changes the spin axis
 constexpr double kStartProbability = 0.01;
 // relative standard deviations of the spin rate from the gyro and from the accelerometer, due to precession of the spin
 // axis
@@ -36,7 +36,7 @@ template <int N>
 struct RecordedSpin {
   SpinPrediction<N> predicted;
   SpinFilter<N> filter;
-  double probability = 0.0;  // probability of a spin, given this and all earlier samples
+  double probability = 0.0;  // probability of a spin, estimated from the current and all earlier samples
   double likelihood_ratio = 1.0, spin_change_probability = 0.0;
 };
 
@@ -111,8 +111,8 @@ SpinRate SpinTracker::advance_spin_filter(const Model& model, const ImuSample& s
     const double spins = hypotheses.probability * (1.0 - c) + (1.0 - hypotheses.probability) * c;
     hypotheses.probability = std::min(kProbabilityMax, spins * ratio / (spins * ratio + 1.0 - spins));
     // If the spin axis is saturated, the readings do not limit the spin rate from above. If rate or force across the
-    // spin axis oscillates, some spin rate beyond the saturation limit therefore fits the frequency of the oscillation.
-    // Samples with a saturated spin axis can lower the probability of a steady spin, but cannot raise this probability.
+    // spin axis oscillates, some spin rate beyond the saturation limit fits the frequency of the oscillation. Samples
+    // with a saturated spin axis can lower the probability of a steady spin, but cannot raise this probability.
     if (!reading.saturated) {
       hypotheses.measured_probability = hypotheses.probability;
     } else if (hypotheses.probability > hypotheses.measured_probability) {

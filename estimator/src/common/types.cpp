@@ -58,7 +58,7 @@ namespace tumble::so3 {
 
 namespace {
 
-// For angles below 1e-4, the first two terms of the power series are exact except for rounding.
+// For angles below 1e-4, the first two terms of the power series of sine and cosine are exact except for rounding.
 constexpr double kSmallAngle = 1e-4;
 // For angles x below 0.5, x - sin(x) loses digits by cancellation. The first seven terms of the power series are exact
 // except for rounding.

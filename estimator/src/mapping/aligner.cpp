@@ -14,7 +14,7 @@ constexpr int kFullIterations = 8, kSubsampledIterations = 30, kCoarseIterations
 constexpr std::size_t kSubsamplePoints = 1000, kCoarsePoints = 300, kCoarseMatchesMin = 50;
 constexpr double kCoarseKernelMin_m = 0.5;  // minimum width of the robust kernel
 constexpr double kCoarseRematch_m = 0.2;    // distance by which a point moves before its plane is searched again
-constexpr double kCoarseStep_m = 5e-3, kCoarseStep_rad = 2e-3;  // converged if the step is below both limits
+constexpr double kCoarseStep_m = 5e-3, kCoarseStep_rad = 2e-3;  // largest position and rotation step at convergence
 constexpr double kCoarseInlierRatioMin = 0.2;  // minimum fraction of matches within three standard deviations
 
 Registration::Params full_registration_params(const LidarInertialOdometry::Params& params) {

@@ -16,7 +16,8 @@ inline constexpr double kStartTiltSigmaMax_rad = 0.3;
 
 /// Computes the initial state of an IMU in motion. The direction of the mean specific force of the first 0.5 s
 /// determines roll and pitch. The difference between mean specific force and gravity determines the standard deviation
-/// of roll and pitch. In flight, all attitudes are possible. `samples` must not be empty.
+/// of roll and pitch. In flight, the standard deviation of roll and pitch is large enough for all attitudes. `samples`
+/// must not be empty.
 MotionState start_in_motion(std::span<const MotionSample> samples, double gravity_m_s2);
 
 /// Returns `motion` with the position and heading of `T_WI`, and with unchanged tilt.

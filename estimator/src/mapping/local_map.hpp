@@ -23,7 +23,7 @@ struct SweepToInsert {
   const Registration::Matrix& covariance;
   std::span<const SweepPoint> points;
   bool has_ring_numbers;
-  bool is_pose_certain;  ///< whether free space of this sweep may contradict map points
+  bool is_pose_certain;  ///< whether the free space of the sweep may contradict map points
 };
 
 /// LocalMap contains the map points around the sensor. For each map point, LocalMap stores its scan line and the sensor

@@ -20,7 +20,8 @@ class PointMotion {
   /// registration: mapping.md (R17).
   void derivative_along_normal(const Eigen::Vector3d& direction_W, RegistrationUnknowns::Vector& derivative) const;
 
-  /// Returns the lever vector u of the lidar return in world axes: mapping.md (R3).
+  /// Returns the lever vector u of the lidar return in world axes, which is the sum of the displacement S and the
+  /// vector from the IMU to the lidar return: mapping.md (R3).
   const Eigen::Vector3d& lever_m() const { return lever_arm_; }
 
  private:

@@ -68,7 +68,8 @@ double saturation_deficit_sigma(const MotionWindow& window, const SweepTrajector
 }
 
 /// The gyro's saturation deficit is modelled as a first-order Gauss-Markov process: mapping.md (R46), (R47). If a
-/// saturation continues from the last sweep, the process noise of the deficit is smaller: mapping.md (R49).
+/// saturation continues from the last sweep, the process noise of the deficit is smaller than for a new saturation:
+/// mapping.md (R49).
 void add_saturation_deficit_noise(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory,
                                   Prediction& next) {
   if (!params.expert.saturated_imu.estimate_deficit) return;

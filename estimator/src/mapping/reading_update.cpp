@@ -43,7 +43,7 @@ struct PredictedReading {
 };
 
 struct MotionInstant {
-  double sweep_noise_fraction = 0.0;  ///< fraction of the sweep's noise up to this time
+  double sweep_noise_fraction = 0.0;  ///< fraction of the sweep's process noise up to this instant
   Eigen::Quaterniond q_WI;
   Eigen::Vector3d p_WI_m, v_WI_m_s;
   Eigen::Matrix<double, kMotionSize, kUnknowns> jacobian_start;
@@ -158,7 +158,7 @@ using Gain = Eigen::Matrix<double, Size, Eigen::Dynamic, 0, Size, kMost>;
 /// UpdateWorkspace keeps large matrices on the heap, because propagate_covariance() needs 32 KiB of stack.
 struct UpdateWorkspace {
   Matrix start_covariance, noise_covariance,
-      remaining_error_factor;  ///< covariance at the start; its part due to noise; factor of the remaining errors
+      remaining_error_factor;  ///< covariance at the start, its process noise part, and factor of the remaining errors
   StateOffsets state_offsets;
   PredictedReading predicted_reading;
   Gain<kUnknowns> jacobian_start;  ///< Kalman gain of the unknowns at the boundary
@@ -204,7 +204,7 @@ bool compute_gains(const MotionNoise& within, UpdateWorkspace& work) {
   Registration::Vector moved = work.state_offsets.start;
   u::segment(moved, u::motion) += work.state_offsets.noise;
   prediction.prior.mean.add(moved);
-  work.jacobian_start.topRows<kMotionSize>() += work.noise_gain;  // from here on, the gain of the sum of both
+  work.jacobian_start.topRows<kMotionSize>() += work.noise_gain;  // sum of the two Kalman gains
   const Rows<kUnknowns> jacobian_boundary = work.predicted_reading.jacobian_start * prediction.boundary_jacobian;
   prediction.boundary_jacobian.noalias() -= work.jacobian_start * jacobian_boundary;
   work.remaining_error_factor.setIdentity();

@@ -113,7 +113,7 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, NearestNei
     const float sigma = map.sigma_m(found.index[k]);
     variance += sigma * sigma;
   }
-  // variance of the map: last terms of mapping.md (R18)
+  // variance of the matched map points: last terms of mapping.md (R18)
   match.map_variance_m2 = variance / static_cast<float>(found.count) + match.plane.thickness_variance_m2;
 }
 

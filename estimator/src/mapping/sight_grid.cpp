@@ -73,7 +73,7 @@ FreeSpaceGrid::Verdict FreeSpaceGrid::verdict(const Eigen::Vector3f& point_W_m, 
   if (!towards) return Verdict::unknown_space;
   const float beyond_m = kBeyond_m + kBeyondRatio * range_m + kDeviations * sigma_m;
   const float there_m = nearest_return_m_[towards->direction_bin_index()];
-  if (there_m > range_m + beyond_m)  // this test suffices for most points
+  if (there_m > range_m + beyond_m)  // for most points, no further test is necessary
     return free_space_range_m(*towards) > range_m + beyond_m ? Verdict::free_space : Verdict::unknown_space;
   return there_m > range_m - beyond_m ? Verdict::occupied : Verdict::unknown_space;
 }

@@ -16,10 +16,10 @@ namespace tumble {
 ///
 /// The common times are the time stamps of the reference IMU, which is initially the first IMU. If the reference IMU
 /// has no reading for kSilentMax_s while another IMU has readings, the next IMU with readings becomes the reference.
-/// The readings of all other IMUs are interpolated linearly (ImuInterpolation). An IMU is absent at a common time if
-/// the previous or next reading of this IMU is more than kSilentMax_s away. The alignment is causal, and its output is
-/// at most kSilentMax_s late. Readings for a common time are returned when each IMU has a reading at or after the
-/// common time, or has no reading for kSilentMax_s.
+/// The readings of all IMUs except the reference IMU are interpolated linearly (ImuInterpolation). An IMU is absent at
+/// a common time if the previous or next reading of this IMU is more than kSilentMax_s away. The alignment is causal,
+/// and its output is at most kSilentMax_s late. Readings for a common time are returned when each IMU has a reading at
+/// or after the common time, or has no reading for kSilentMax_s.
 ///
 /// Cost: O(1) per reading. The stored readings cover kSilentMax_s.
 class ImuTimeAlignment {

@@ -288,7 +288,7 @@ void RollingFilter::correct_at_rest(State& state) const {
     double likelihood = 0.0;
     rolling::stationary_measurement_rows(
         state.node_integrals, state.nominal, state.spins_in_place, [&](int index, double measured, double variance) {
-          // only the velocity contributes to the likelihood of a contact mode, and the gyro bias does not
+          // only the velocity, and not the gyro bias, contributes to the likelihood of a contact mode
           if (index < rolling::kPosition)
             likelihood += gaussian_log_density(measured - h.x[index], h.covariance(index, index) + variance);
           rolling::update(index, measured, variance, h.x, h.covariance);

@@ -37,7 +37,7 @@ constexpr double kUncertainTilt_rad = 0.1;        // tilt limit at rest, where t
 constexpr double kRestTilt_rad = 5e-3, kLostSpeed_m_s = 1.0;
 constexpr double kPushForceRatio = 0.15;  // minimum |specific force - gravity| of a push or fast rotation, in g
 constexpr double kRecoveredTau_s = 0.1;   // correlation time of the error of a rate recovered from saturation
-constexpr double kFastRate_rad_s = 6.0;   // above this rate, the specific force rotates too fast for levelling
+constexpr double kFastRate_rad_s = 6.0;   // at higher rates, the specific force rotates too fast for levelling
 constexpr double kUnsureSpeed_m_s = 0.1, kSpeedWindow_s = 1.0, kSpeedSigma_m_s = 1.0;
 constexpr double kStartTilt_rad = 0.15;  // tilt error of a start in motion, caused by a push of 1.5 m/s^2
 // See rolling.md (R31). If the rates before and after a data gap are below kGapRate_rad_s, the sphere was hardly pushed
@@ -119,8 +119,8 @@ struct SaturatedForce {
   Eigen::Vector3d lower_bound_m_s2 = Eigen::Vector3d::Zero();
 };
 
-/// A saturated accelerometer reading is a lower bound of the specific force. The function assumes the larger of two
-/// values: the reading, and the specific force at constant velocity of the sphere's centre (rolling.md, R8).
+/// A saturated accelerometer reading is a lower bound of the specific force. The assumed specific force is the larger
+/// of two values: the reading, and the specific force at constant velocity of the sphere's centre (rolling.md, R8).
 SaturatedForce saturated_force(const ImuSample& sample, const Eigen::Vector3d& read_m_s2,
                                const Eigen::Vector3d& kept_m_s2) {
   int largest = 0;
