@@ -53,8 +53,8 @@ bool differ_significantly(const SensorErrors& a, const SensorErrors& b) {
          std::abs(a.accel_filter_time_variance_s2 - b.accel_filter_time_variance_s2) > kFilterTimeVariance_s2;
 }
 
-// limit of the Mahalanobis distance between the estimated lever arm and its prior: rate_smoother.md (R32). With a correct
-// prior, the Mahalanobis distance of one device in a thousand exceeds the limit.
+// limit of the Mahalanobis distance between the estimated lever arm and its prior: rate_smoother.md (R32). With a
+// correct prior, the Mahalanobis distance of one device in a thousand exceeds the limit.
 constexpr double kDeviceMahalanobisMax = 2.33;
 
 // Returns parameters that fix all calibration constants at their prior, except the gyro's sensing directions.
