@@ -166,7 +166,8 @@ struct CorrectionIterations {
   double period_s = 0.0;
   bool estimated = false;
   bool triads_asynchronous = false;  ///< gyro or accelerometer repeats readings
-  /// delay between gyro and accelerometer, estimated from impacts; empty if the data sheet states the delay
+  /// delay between gyro and accelerometer, estimated from impacts or free flight; empty if the data sheet states the
+  /// delay
   TriadDelay impact_delay = {};
   std::vector<double> age_s = {};  ///< age of the accelerometer readings in the log
   SensorErrorPriors error_prior_sigmas =

@@ -24,8 +24,7 @@ constexpr double kVelocity_m_sqrts = 1.0;              // standard deviation of 
 constexpr double kDisplacement_m_sqrts = 0.3;          // standard deviation of the mean displacement over 1 s
 constexpr double kDisplacementTau_s = 10.0;            // time constant with which the displacement decays to zero
 constexpr double kMotionTau_s = 3.0;  // correlation time of velocity and displacement, averaging time of variances
-// A slip starts when the velocity residual exceeds kSlipVelocity_m_s. The slip can end only when the velocity residual
-// is below kSlipVelocity_m_s / 2.
+// A slip starts at a velocity residual above kSlipVelocity_m_s, and can end at a residual below kSlipVelocity_m_s / 2.
 constexpr double kSlipVelocity_m_s = 0.12;
 constexpr double kSlipQuiet_s = 0.2;  // duration of small velocity residuals after which slip ends
 constexpr double kSlipTimeout_s = 3.0;

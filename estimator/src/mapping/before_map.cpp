@@ -156,8 +156,7 @@ StateEstimate reset_origin_and_yaw(const StateEstimate& reckoned, double step_s)
   return state_estimate_of_motion(state, reckoned.mean.calibration, T * C * T.transpose(), T * E * T.transpose());
 }
 
-/// If the map frame has the tilt error φ, the velocity v has the additional error v × φ, and gravity g has the error g
-/// × φ.
+/// A tilt error φ of the map frame adds the error v × φ to the velocity v, and the error g × φ to gravity g.
 StateEstimate estimate_at_first_sweep(const Params& params, const StateEstimate& reckoned) {
   MotionState start = reckoned.mean.state;
   start.covariance.setZero();
