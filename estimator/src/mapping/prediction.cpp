@@ -15,8 +15,8 @@ namespace tumble::mapping {
 
 namespace {
 
-// If a sweep has too few matches, its points are inserted into the map only if the standard deviation of the predicted
-// attitude is below kExtendSigmaMax_rad.
+// If a sweep has too few matches, its points are inserted into the map only if the predicted position and attitude are
+// accurate. The standard deviation of the attitude must be at most kExtendSigmaMax_rad.
 constexpr double kExtendSigmaMax_rad = 0.1;
 // minimum prior standard deviation of the gyro's saturation deficit on a clipped axis
 constexpr double kDeficitSigmaMin_rad_s = 1.0;

@@ -39,7 +39,7 @@ class SecondMappingPass {
   SecondMappingPass(const Params& params, const MotionRegimeStream::Params& rate,
                     const LidarInertialOdometry::Params& mapping);
 
-  /// Sets the gyro's zero offset, before the first sample.
+  /// Sets the gyro's zero offset. Must be called before the first sample.
   void set_gyro_offset(const Eigen::Vector3d& offset_rad_s) { rate_.rate.model.nominal.gyro_bias_rad_s = offset_rad_s; }
 
   /// Buffers a sample that the first pass has processed. No memory is allocated.
