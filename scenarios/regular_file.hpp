@@ -12,7 +12,8 @@
 
 namespace tumble::scenarios {
 
-/// Pipes are accepted, because the caller reads the input once, from beginning to end.
+/// Throws BadInput if the input is not readable as a file. Pipes are accepted, because the caller reads the input once,
+/// from beginning to end.
 inline std::filesystem::file_status require_file(const std::filesystem::path& path) {
   std::error_code error;
   const std::filesystem::file_status found = std::filesystem::status(path, error);
@@ -22,8 +23,8 @@ inline std::filesystem::file_status require_file(const std::filesystem::path& pa
   return found;
 }
 
-/// The file type must be checked before opening: opening a pipe without a writer blocks for ever, and devices have no
-/// end.
+/// Checks that the input is a regular file before the input is opened, because opening a pipe without a writer blocks
+/// for ever, and devices have no end.
 inline void require_regular_file(const std::filesystem::path& path) {
   switch (require_file(path).type()) {
     case std::filesystem::file_type::regular:

@@ -17,7 +17,7 @@ bool read_number(std::string_view text, Number& value) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
-/// Appends the shortest text that gives the same number when read.
+/// Appends a number as the shortest text that gives exactly this number when the text is parsed.
 template <typename Number>
 void append_number(std::string& text, Number value) {
   std::array<char, 32> digits;

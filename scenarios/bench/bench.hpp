@@ -13,21 +13,23 @@ namespace tumble::scenarios {
 
 std::string bench_suite_name(Kind kind);
 
-/// Bench results are comparable only if their suite digests are equal.
+/// Returns a hash of the name, time limit and runs of a suite. Two bench results are comparable only if their hashes
+/// are equal.
 std::string bench_suite_digest(const Suite& suite);
 
 BenchResult collect_bench_result(const Results& results, const Suite& suite, const MethodInfo& method);
 
 /// Adds published results of a bench suite to a results database. Computing times are omitted, because computing times
-/// of different machines are not comparable.
+/// from different machines are not comparable.
 void add_published(std::span<const BenchResult> published, Results& results);
 
 void require_of_suite(const BenchResult& result, const Suite& suite);
 
 std::string other_recording(const BenchResult& a, const BenchResult& b);
 
-/// In the median over the runs, a failed run counts as the worst value of the metric. A simulated run is skipped if
-/// `result` or a method in `beside` completed the run without a value of the metric.
+/// bench_cell() computes the median of a metric over the runs, in which a failed run counts as the worst value of the
+/// metric. bench_cell() skips a simulated run if `result` or a method in `beside` completed this run without a value of
+/// the metric.
 struct BenchCell {
   std::size_t draws = 0, lost = 0;
   double median = 0.0;  ///< infinite if half failed; NaN if no runs
@@ -36,7 +38,8 @@ struct BenchCell {
 BenchCell bench_cell(const BenchResult& result, const std::string& metric, const std::string& group,
                      std::span<const BenchResult> beside);
 
-/// bench_wins() compares the simulated runs that `baseline` contains and bench_cell() does not skip.
+/// bench_wins() compares two methods on the simulated runs that `baseline` contains and that bench_cell() does not
+/// skip.
 struct BenchWins {
   std::size_t better = 0, draws = 0;
 };

@@ -10,7 +10,8 @@
 
 namespace tumble::scenarios {
 
-/// Complication is a removable detail of a simulated run, for example a sensor error, stones on the floor or a spin.
+/// Complication is one detail of a simulated run that can be removed, for example a sensor error, stones on the floor
+/// or a spin.
 struct Complication {
   std::string name;                                     ///< "sensors.imu: white noise", "world: rocks"
   std::vector<std::pair<std::string, double>> without;  ///< parameter and its ideal value
@@ -18,7 +19,7 @@ struct Complication {
   bool whole = false;                                   ///< `amount` is an integer count
 };
 
-/// Returns all details of a scenario that can be removed.
+/// Returns all details of a scenario that can be removed to simplify the scenario.
 std::vector<Complication> complications(const Scenario& scenario);
 
 void take_away(const Complication& complication, Scenario& scenario);

@@ -8,8 +8,9 @@
 
 namespace tumble::scenarios {
 
-/// A FailsWith function simulates a run with only the removable details (items) whose indices are in `kept`, in
-/// ascending order. The function returns whether the method fails, or nothing if no more runs are allowed.
+/// A FailsWith function simulates a run with only some of its removable details; the indices of these details are in
+/// `kept`, in ascending order. A FailsWith function returns whether the estimator fails on the run, or nothing if the
+/// limit on the number of runs is reached.
 using FailsWith = std::function<std::optional<bool>(const std::vector<std::size_t>& kept)>;
 
 struct LeastSet {
@@ -18,10 +19,10 @@ struct LeastSet {
   bool complete = false;            ///< no single item is removable
 };
 
-/// Returns a subset of the items 0 to `count` - 1 with which the simulated run still fails. If `complete` is true, each
-/// item in `kept` is necessary: the run succeeds if any single item is removed. The method is delta debugging (Zeller
-/// and Hildebrandt, IEEE TSE 28:183, 2002, algorithm ddmin). The number of trial runs is about 2 log2(count) if the
-/// failure needs one item, and at most O(count^2).
+/// least_failing_set() finds a small set of details of a simulated run with which the estimator still fails. The
+/// details have the numbers 0 to `count` - 1. If `complete` is true, the estimator succeeds if any single detail in
+/// `kept` is removed. The method is delta debugging (Zeller and Hildebrandt, IEEE TSE 28:183, 2002, algorithm ddmin).
+/// The number of trial runs is about 2 log2(count) if the failure needs only one detail, and at most O(count^2).
 LeastSet least_failing_set(std::size_t count, const FailsWith& fails);
 
 using FailsAt = std::function<std::optional<bool>(double value)>;

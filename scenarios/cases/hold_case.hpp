@@ -25,8 +25,9 @@ struct CaseResult {
   std::string fault;    ///< reason if the check fails
 };
 
-/// A recorded failure must recur with the accepted status and with a metric within the factor `kCaseFactor` of the
-/// accepted value. An improvement also fails this check, so that the developer updates the accepted value.
+/// Repeats a simulated run on which an estimator is known to fail. The check passes if the run fails again with the
+/// accepted status, and if the ratio of the metric to its accepted value is at most `kCaseFactor`. An improvement also
+/// fails this check, so that a developer updates the accepted value.
 CaseResult hold_case(const std::string& name, const Expectation& expected, const Outcome& outcome);
 
 Expectation accepted(const Expectation& expected, const Outcome& outcome);

@@ -7,7 +7,8 @@
 
 namespace tumble::scenarios {
 
-/// A run without a value of the failure's metric counts as a success.
+/// SameFailure decides whether a run fails in the same way as an earlier run. A run without a value of the metric that
+/// defines the failure counts as a success.
 class SameFailure {
  public:
   SameFailure(const FailureGoal& failure, const Outcome& outcome);

@@ -19,8 +19,8 @@ struct ShrinkTrial {
 
 struct ShrinkOptions {
   FailureGoal failure;
-  /// Reference method of the same kind, which must succeed on each simplified run. The reference method excludes
-  /// scenarios that no method can solve.
+  /// `control` is a reference method of the same kind as the tested method. The reference method must succeed on each
+  /// simplified run, which excludes scenarios that no method can solve.
   MethodPointer control;
   int budget = 60;           ///< number of simulated runs, at least 1
   double timeout_s = 300.0;  ///< time limit of one method run
@@ -45,14 +45,14 @@ struct Shrunk {
   int runs = 0;
   bool complete = false;    ///< no single complication can be removed
   bool controlled = false;  ///< the control succeeded on all accepted runs
-  /// Name of a wrong input that causes the failure, or empty. The method succeeds if the true value replaces this
+  /// Name of a wrong input that causes the failure, or empty. The method succeeds if the true value replaces the wrong
   /// input.
   std::string cure;
 };
 
-/// Simplifies a simulated run by delta debugging and bisection, as long as `method` fails in the same way as in the
-/// original run (same_failure.hpp). If a wrong input causes the original failure (Shrunk::cure), the same input must
-/// cause the failure of each simplified run.
+/// Simplifies a simulated run by delta debugging and bisection, as long as `method` still fails in the same way as in
+/// the original run (same_failure.hpp). If a wrong input (Shrunk::cure) causes the failure of the original run, the
+/// same input must cause the failure of each simplified run.
 Shrunk shrink(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
               const ShrinkOptions& options);
 

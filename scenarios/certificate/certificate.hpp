@@ -51,7 +51,8 @@ struct CertifyOptions {
   std::function<void(const CertificateRow&, double elapsed_s)> on_row;  ///< called before each measurement
 };
 
-/// If a simulation check cannot be measured, its entry contains the reason and the value NaN, and does not pass.
+/// Measures how well the simulation agrees with physical laws and data sheets. If a check cannot be measured, its entry
+/// contains the reason and the value NaN, and does not pass.
 Certificate measure_certificate(const CertificateInput& input, const CertifyOptions& options);
 
 }  // namespace tumble::scenarios

@@ -9,8 +9,8 @@
 
 namespace tumble::scenarios {
 
-/// CertificateStore caches simulation checks in a folder, with one file per combination of build, data and processor
-/// model.
+/// CertificateStore caches certificates (results of simulation checks) in a folder, with one file per combination of
+/// build, data and processor model.
 class CertificateStore {
  public:
   CertificateStore(std::filesystem::path folder, const DataRoot& data);
@@ -22,8 +22,8 @@ class CertificateStore {
   std::filesystem::path file_;
 };
 
-/// The JSON format is {"build", "verdict": "pass" | "fail", "entries": [{row, subject, law, unit, value, low, high,
-/// verdict, note}]}; non-finite numbers become null.
+/// Converts a certificate to JSON: {"build", "verdict": "pass" | "fail", "entries": [{row, subject, law, unit, value,
+/// low, high, verdict, note}]}. Non-finite numbers become null.
 std::string to_json(const Certificate& certificate);
 
 Certificate certificate_from_json(const std::string& text, const std::string& place);

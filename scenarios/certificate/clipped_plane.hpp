@@ -6,8 +6,8 @@
 
 #include "sim/recording.hpp"
 
-/// While the sensing element j of an IMU is saturated, the readings y are on the plane y_j = +-rho + b + sum over k !=
-/// j of c_k y_k. The plane has the limit rho, the offset b and the slopes c.
+/// While sensing element j of an IMU is saturated, the readings y satisfy y_j = +-rho + b + sum over k != j of c_k y_k.
+/// This equation is a plane with the limit rho, the offset b and the slopes c.
 namespace tumble::scenarios {
 
 sim::Truth beyond_every_rail(double gyro_rail_rad_s, double accel_rail_m_s2);
@@ -21,8 +21,9 @@ struct SensedTriad {
 SensedTriad sensed_rates(const sim::ImuRecord& record, const sim::ImuTruth& truth, double rail_rad_s);
 SensedTriad sensed_forces(const sim::ImuRecord& record, const sim::ImuTruth& truth, double rail_m_s2);
 
-/// ClippedPlane is the plane of the readings of a gyro or accelerometer while one sensing element is saturated. The
-/// slopes are the element's sensitivities to the two other axes, in cyclic order.
+/// ClippedPlane is the plane that contains the readings of a gyro or accelerometer while one sensing element is
+/// saturated. The slopes of the plane are the sensitivities of the sensing element to the two other axes, in cyclic
+/// order.
 struct ClippedPlane {
   double first_slope, second_slope;  // [1]
   double distance, offset;           // rho and b [unit of the readings]

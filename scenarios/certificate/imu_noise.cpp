@@ -20,8 +20,8 @@ struct RestReadings {
   std::vector<Eigen::Vector3d> gyro, accel;
 };
 
-/// At rest, sensor errors other than noise and bias are constant, so the noise check switches off these errors and the
-/// filters.
+/// Returns a sensor specification with noise and bias only. At rest, all other sensor errors are constant, so the noise
+/// check switches off these errors and the filters.
 sim::SensorSpec resting(const DataSheet& sheet) {
   sim::SensorSpec sensor = imu_of_sheet(sheet);
   for (const char* off :

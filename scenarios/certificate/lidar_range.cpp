@@ -114,8 +114,8 @@ std::map<std::string, std::string> scenario_of_each_world(const DataRoot& data) 
 }  // namespace
 
 std::vector<CertificateEntry> certify_lidar_rays(const CertificateInput& input, const LidarRaysSetup& setup) {
-  // Accepted fraction of rays whose simulated range differs from the closed-form range. A ray at an edge may hit either
-  // adjacent surface.
+  // Accepted fraction of rays whose simulated range differs from the closed-form range, because a ray at an edge may
+  // hit either adjacent surface.
   constexpr double kOtherSurface = 1e-3;
   std::vector<CertificateEntry> entries;
   for (const auto& [world, name] : scenario_of_each_world(input.data)) {

@@ -17,8 +17,8 @@ struct Lengths {
   double path_length_m = 0.0, missed_m = 0.0;
 };
 
-/// If a sphere has several contacts, the normal n in the rolling law v = r w x n is the contact normal with the largest
-/// load.
+/// Compares the velocity of a sphere's centre with the rolling law v = r w x n (radius r, angular velocity w, contact
+/// normal n). If the sphere has several contacts, n is the normal of the contact with the largest load.
 Lengths compare(const sim::Truth& truth, double radius_m) {
   Lengths lengths;
   const double dt_s = static_cast<double>(truth.period_ns) * 1e-9;

@@ -8,11 +8,12 @@
 #include "scenarios/certificate/certificate.hpp"
 #include "sim/trial/trial.hpp"
 
-/// A member named `stated_*` changes the expected result of a check, so that a test can make the check fail.
+/// Each struct in rows.hpp contains the settings of one simulation check. A member named `stated_*` falsifies the
+/// expected result of a check, so that a test can make the check fail.
 namespace tumble::scenarios {
 
-/// The free-flight check throws the rig with a rotation near its unstable axis. Kinetic energy and angular momentum of
-/// the rig must be constant during the flight.
+/// The free-flight check throws the rig with a rotation near its unstable axis. During the flight, the kinetic energy
+/// and the angular momentum of the rig must be constant.
 struct FreeFlightSetup {
   double duration_s = 5.0;
   double rate_rad_s = 18.0;
@@ -35,15 +36,16 @@ struct FreeFallSetup {
 };
 std::vector<CertificateEntry> certify_free_fall(const CertificateInput& input, const FreeFallSetup& setup = {});
 
-/// The velocity of a rolling sphere's centre must equal r w x n (radius, angular velocity, contact normal).
+/// In the rolling check, the velocity of a rolling sphere's centre must equal r w x n (radius r, angular velocity w,
+/// contact normal n).
 struct RollingSetup {
   double stated_radius_m = 0.0;  ///< 0: the sphere's true radius
   bool terrains = true;          ///< also tests the ground of the sphere scenarios
 };
 std::vector<CertificateEntry> certify_rolling(const CertificateInput& input, const RollingSetup& setup = {});
 
-/// A sphere that starts to slide at speed v0 must stop slipping after the time v0 / (mu g (1 + m r^2 / I)). The symbols
-/// are friction coefficient mu, gravity g, mass m, radius r and moment of inertia I.
+/// In the slip check, a sphere starts to slide at speed v0. The sphere must stop slipping after the time v0 / (mu g (1
+/// + m r^2 / I)), for friction coefficient mu, gravity g, mass m, radius r and moment of inertia I.
 struct SlipToGripSetup {
   double speed_m_s = 1.0;
   double friction = 0.1;
@@ -53,7 +55,7 @@ std::vector<CertificateEntry> certify_slip_to_grip(const CertificateInput& input
 
 /// The impact check drops the rig on its corners and computes the first peak of the specific force, averaged over 2 ms.
 /// The impact check also reports the exponent of the power law between the peak and the contact time constant. For an
-/// ideal spring, the peak of the specific force is inversely proportional to the contact time constant (exponent -1).
+/// ideal spring, the exponent is -1: the peak is inversely proportional to the contact time constant.
 struct ImpactSetup {
   double height_m = 1.0;
   double step_s = 0.0;                  ///< 0: the simulation's step
@@ -74,7 +76,7 @@ struct LidarRaysSetup {
 };
 std::vector<CertificateEntry> certify_lidar_rays(const CertificateInput& input, const LidarRaysSetup& setup = {});
 
-/// The noise check compares one hour of each IMU at rest with the noise and bias of its data sheet.
+/// The noise check simulates one hour of each IMU at rest, and compares noise and bias with the data sheet.
 struct ImuNoiseSetup {
   double duration_s = 3600.0;
   std::uint64_t seed = 1;
@@ -83,8 +85,8 @@ struct ImuNoiseSetup {
 };
 std::vector<CertificateEntry> certify_imu_noise(const CertificateInput& input, const ImuNoiseSetup& setup = {});
 
-/// The saturation check fits planes to the clipped readings of IMUs with tilted sensing elements, and compares these
-/// planes with the simulated saturation planes.
+/// The saturation check fits planes to the clipped readings of simulated IMUs with tilted sensing elements, and
+/// compares the fitted planes with the saturation planes of the sensor model.
 struct TiltedRailSetup {
   double misalignment = 0.02;  ///< standard deviation
   double assumed_tilt = 0.0;
@@ -103,7 +105,8 @@ struct RealRailsSetup {
 };
 std::vector<CertificateEntry> certify_real_rails(const CertificateInput& input, const RealRailsSetup& setup = {});
 
-/// The pendulum check compares a simulated frictionless pendulum with Lagrange's equations of three bars.
+/// The pendulum check compares a simulated frictionless pendulum with the solution of Lagrange's equations for three
+/// bars.
 struct PendulumSetup {
   double duration_s = 5.0;
   sim::Integrator integrator = sim::Integrator::runge_kutta_4;
@@ -112,7 +115,8 @@ struct PendulumSetup {
 };
 std::vector<CertificateEntry> certify_pendulum(const CertificateInput& input, const PendulumSetup& setup = {});
 
-/// The digest of a simulated run must be independent of the number of threads, the order of runs, and the process.
+/// The digest check computes the digest (hash) of a simulated run several times. The digest must not depend on the
+/// number of threads, the order of runs, or the process.
 struct DigestSetup {
   std::string scenario = "hill";
   std::string other_scenario = "slip";

@@ -19,7 +19,7 @@ sim::Truth fly(sim::Trial& trial, double duration_s);
 
 sim::SensorSpec imu_of_sheet(const DataSheet& sheet);
 
-/// Returns NaN if an argument is NaN, so a failed measurement remains visible.
+/// Returns the larger argument, or NaN if an argument is NaN, so that a failed measurement remains visible.
 double larger(double a, double b);
 
 }  // namespace tumble::scenarios

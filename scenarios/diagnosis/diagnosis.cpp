@@ -21,8 +21,8 @@ namespace {
 
 /// Largest accepted time between the first IMU sample and the first lidar sweep [s].
 constexpr double kApart_s = 0.5;
-/// A single lost sensor reading costs no accuracy. Many lost readings indicate a fault of the bus, the driver or the
-/// recorder.
+/// Largest accepted fraction of lost sensor readings. A single lost reading costs no accuracy, but many lost readings
+/// indicate a fault of the bus, the driver or the recorder.
 constexpr double kLostShareMax = 0.005;
 constexpr std::int64_t kLeastLost = 2;
 /// A sensor reading counts as lost if the time step between two readings exceeds 1.5 sample periods.

@@ -25,16 +25,15 @@ constexpr std::size_t kLeastPairs = 12;
 /// Largest accepted difference between the rotations that lidar and gyro measure, relative to the median rotation. In
 /// correct recordings, both rotations differ by about 0.1 of the median rotation.
 constexpr double kAgrees = 0.3;
-/// If gyro and lidar agree with the stated IMU axes, other axes need an error below kConclusive times the error of the
-/// stated axes. A delay between lidar and gyro is reported only if it reduces the rotation error to less than
-/// kDelayConclusive times the error without delay.
+/// Other IMU axes than the stated axes must reduce the rotation error by the factor kConclusive. A delay between lidar
+/// and gyro must reduce the rotation error by the factor kDelayConclusive.
 constexpr double kConclusive = 0.5, kDelayConclusive = 0.6;
 constexpr double kDegreesOfRadian = 57.29577951308232;
 constexpr double kDelayMost_s = 0.5, kDelayStep_s = 0.01, kDelaySaid_s = 0.03;
 constexpr std::int64_t kGap_ns = 100'000'000;
 constexpr double kInverted = 0.2;
-/// Record stamps vary by some 10 ms, so they replace header stamps only if the header stamps are wrong by at least 0.1
-/// s.
+/// Record stamps of a bag (times of recording) vary by some 10 ms, so they replace only header stamps with errors above
+/// 0.1 s.
 constexpr double kRecordsBetter_s = 0.1;
 
 sim::LidarRecord span_alone(const sim::LidarRecord& lidar, const PointStore* aside, std::size_t first,
@@ -206,7 +205,8 @@ std::string delay_text(const RotationAgreement& found) {
       rounded(std::abs(found.delay_s)), found.delay_s > 0.0 ? " s later" : " s earlier");
 }
 
-/// Throws RepairableInput if only the record stamps of a bag make the clocks of lidar and gyro agree.
+/// Throws RepairableInput if lidar and gyro disagree with the header stamps of the messages, but agree with the record
+/// stamps of the bag.
 void require_common_clock(const std::string& where, const sim::Sensors& sensors,
                           const std::optional<RotationAgreement>& agreement, std::optional<double> record_shift_s) {
   if (!record_shift_s) return;
@@ -303,7 +303,7 @@ std::optional<RotationAgreement> rotation_agreement(const sim::ImuRecord& imu, c
     fit_unit(pairs, delay_s, delayed, delayed_error);
     if (step == 0) fit_unit(pairs, delay_s, at_once, at_once_error);
   }
-  // Among a hundred candidate delays between lidar and gyro, one delay may fit slightly better by chance.
+  // Among a hundred delays, the best delay may reduce the rotation error slightly by chance.
   RotationAgreement out = delayed_error < kDelayConclusive * at_once_error ? delayed : at_once;
   if (out.unit_error > kAgrees) return std::nullopt;
   fit_axes(pairs_at(integral, R_IL, seen, std::llround(1e9 * out.delay_s)), out);
@@ -377,7 +377,7 @@ LidarRotationCheck check_lidar_rotation(const std::string& where, const Imported
       seen_rotations(lidar, recording.points.empty() ? nullptr : &recording.points.front());
   for (const sim::ImuRecord& imu : sensors.imus) {
     auto agreement = rotation_agreement(imu, lidar, seen);
-    // Without point times, the points of a sweep were measured half a period after the stamp on average.
+    // Points without times were measured on average half a sweep period after the stamp of their sweep.
     if (agreement && agreement->delay_s != 0.0 && lidar.point_times == sim::PointTimes::unknown)
       agreement->delay_s += 0.5 * seconds(lidar.sweep_period_ns);
     if (&imu == &sensors.imus.front()) require_common_clock(where, sensors, agreement, recording.record_shift_s);

@@ -20,13 +20,14 @@ struct SeenRotation {
   Eigen::Vector3d rotation_L_rad = Eigen::Vector3d::Zero();  ///< rotation vector, lidar axes
 };
 
-/// The rotations between consecutive sweeps come from the lidar alone, by `register_sweeps`. At most ten segments of a
-/// dozen sweeps, spread over the recording, are processed, each with a separate map. Only pairs of registered sweeps
-/// with rates of 0.1 to 2 rad/s are kept. Slower rotations are mostly noise, and faster rotations distort the sweeps.
-/// seen_rotations() takes about 10 ms per sweep.
+/// Computes the rotations between consecutive sweeps from the lidar alone, by `register_sweeps`. The function processes
+/// at most ten segments of a dozen sweeps, spread over the recording, each with a separate map. Only pairs of
+/// registered sweeps with rates of 0.1 to 2 rad/s are kept, because slower rotations are mostly noise, and faster
+/// rotations distort the sweeps. seen_rotations() takes about 10 ms per sweep.
 std::vector<SeenRotation> seen_rotations(const sim::LidarRecord& lidar, const PointStore* aside);
 
-/// True IMU axis i is `sign[i]` times axis `axis[i]` of the IMU readings.
+/// SignedAxes maps the axes of the IMU readings to the true IMU axes: true axis i is `sign[i]` times axis `axis[i]` of
+/// the readings.
 struct SignedAxes {
   std::array<int, 3> axis{0, 1, 2};
   std::array<int, 3> sign{1, 1, 1};
@@ -35,8 +36,8 @@ struct SignedAxes {
   std::string text() const;
 };
 
-/// Each error is the median difference between lidar rotation and gyro rotation over the pairs of sweeps, relative to
-/// the median rotation.
+/// RotationAgreement describes how well lidar and gyro rotations agree. Each error is the median difference between
+/// lidar rotation and gyro rotation over the pairs of sweeps, as a fraction of the median rotation.
 struct RotationAgreement {
   std::size_t pairs = 0;
   double unit = 1.0;        ///< 1, 57.3 or 1/57.3
@@ -50,18 +51,18 @@ struct RotationAgreement {
   double turned_error = 1.0;
 };
 
-/// Returns nothing for fewer than a dozen pairs of sweeps. Also returns nothing if no combination of unit, axes and
+/// Returns nothing for fewer than a dozen pairs of sweeps. The result is also empty if no combination of unit, axes and
 /// mounting makes gyro and lidar agree within 30 %.
 std::optional<RotationAgreement> rotation_agreement(const sim::ImuRecord& imu, const sim::LidarRecord& lidar,
                                                     std::span<const SeenRotation> seen);
 
 /// Returns a note if the rotations of lidar and gyro agree. Otherwise, returns a warning with a unit, delay, axes or
-/// mounting that makes the rotations agree. Throws RepairableInput if another option --gyro-unit makes the rotations
-/// agree.
+/// mounting that makes the rotations agree. Throws RepairableInput if another value of the option --gyro-unit makes the
+/// rotations agree.
 std::string agreement_text(const std::string& where, const RotationAgreement& agreement, GyroUnit unit);
 
-/// Returns the option --T-body-lidar with position [m] and quaternion x y z w. The text `position`, if any, replaces an
-/// unknown position.
+/// Returns the command-line option --T-body-lidar with position [m] and quaternion x y z w. A non-empty text `position`
+/// replaces the position of `T_BL`, for example "X Y Z" if the position is unknown.
 std::string lidar_pose_option(const Eigen::Isometry3d& T_BL, const std::string& position = "");
 
 struct LidarRotationCheck {
@@ -70,7 +71,8 @@ struct LidarRotationCheck {
   std::optional<Eigen::Isometry3d> better_BL;  ///< makes lidar and primary IMU agree
 };
 
-/// Throws RepairableInput if record stamps of a bag must replace the header stamps.
+/// Throws RepairableInput if the header stamps of a bag are wrong, and the record stamps must replace the header
+/// stamps.
 LidarRotationCheck check_lidar_rotation(const std::string& where, const Imported& recording, GyroUnit unit);
 
 }  // namespace tumble::scenarios

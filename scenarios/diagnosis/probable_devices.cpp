@@ -20,8 +20,8 @@ namespace {
 
 constexpr double kDegree_rad = 0.017453292519943295;
 constexpr double kRingOff_rad = 0.5 * kDegree_rad;
-/// Points closer than 0.5 m may belong to the robot. The beams of such points may also start at the mirror instead of
-/// the origin.
+/// Points closer than 0.5 m are ignored, because they may belong to the robot, and because their beams may start at the
+/// mirror instead of the origin.
 constexpr float kNear_m = 0.5f;
 constexpr std::size_t kSweepsUsed = 10, kLeastPointsOfRing = 20;
 

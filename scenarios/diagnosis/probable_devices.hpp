@@ -14,14 +14,14 @@ struct ProbableDevice {
   std::string device, evidence;
 };
 
-/// A spinning lidar matches a data sheet if each ring is within half a degree of a beam of the data sheet. If no data
-/// sheet matches the rings, the name of the lidar must contain the name of the device ("livox_mid360").
+/// Finds the data sheet of a lidar. A spinning lidar matches a data sheet if each ring is within half a degree of a
+/// beam of the data sheet. If no data sheet matches the rings, the name of the lidar must contain the name of a device
+/// ("livox_mid360").
 std::optional<ProbableDevice> probable_lidar(const sim::LidarRecord& lidar, std::span<const DataSheet> sheets);
 
-/// An IMU matches a data sheet if the IMU's name contains the name of the device. The name may also contain the maker
-/// of a lidar with a built-in IMU (`ouster`, `livox`). A data sheet is rejected if the readings exceed its range by
-/// more than the factor bridge::kStatedRangesMax. Real devices saturate below kStatedRangesMax times the range in their
-/// data sheet.
+/// Finds the data sheet of an IMU. An IMU matches a data sheet if the IMU's name contains the name of the device, or
+/// the maker of a lidar with a built-in IMU (`ouster`, `livox`). A data sheet is rejected if a reading exceeds
+/// bridge::kStatedRangesMax times the range in the data sheet, because real devices saturate below this limit.
 std::optional<ProbableDevice> probable_imu(const sim::ImuRecord& imu, std::span<const DataSheet> sheets);
 
 void apply_sheet(const DataSheet& sheet, sim::ImuRecord& imu);

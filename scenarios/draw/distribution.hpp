@@ -8,8 +8,8 @@
 
 namespace tumble::scenarios {
 
-/// Each random parameter has a separate random stream, so a new parameter does not change the values of the other
-/// parameters.
+/// Distribution describes a random parameter of a scenario. Each random parameter has a separate random stream, so an
+/// additional parameter does not change the random values of the other parameters.
 struct Distribution {
   enum class Shape { constant, uniform, normal, log_uniform, choice };
   Shape shape = Shape::constant;
@@ -20,16 +20,16 @@ struct Distribution {
 
 const char* to_string(Distribution::Shape shape);
 
-/// A truncated normal distribution is invalid if its limits contain less than 1 % of the probability.
+/// Returns why a distribution is invalid, or an empty text. A truncated normal distribution is invalid if its limits
+/// contain less than 1 % of the probability.
 std::string find_problem(const Distribution& distribution);
 
 std::vector<double> support_points(const Distribution& distribution);
 
 double draw_number(const Distribution& distribution, std::uint64_t seed, std::string_view place);
 
-/// Converts the standard normal number `score` to a value of `distribution`. A larger standard normal number gives a
-/// larger value of the distribution, or a later number in a list of choices. Throws BadInput if find_problem returns a
-/// problem.
+/// Converts the standard normal number `score` to a value of `distribution`. The result increases with `score`; for a
+/// list of choices, the position in the list increases with `score`. Throws BadInput if find_problem returns a problem.
 double number_at(const Distribution& distribution, double score);
 
 }  // namespace tumble::scenarios

@@ -7,8 +7,8 @@
 
 namespace tumble::scenarios {
 
-/// Returns a copy of `scenario` with the parameter values of `situation`. Later changes of data sheets and default
-/// values do not affect runs of the returned scenario.
+/// Returns a copy of `scenario` in which every random parameter has the constant value from the simulated run
+/// `situation`. Later changes of data sheets and default values do not affect runs of the returned scenario.
 Scenario fixed_as(Scenario scenario, const sim::Situation& situation);
 
 std::string to_yaml(const Scenario& scenario);

@@ -30,13 +30,14 @@ std::filesystem::path find_scenario(const DataRoot& data, std::span<const std::s
   throw BadInput("unknown scenario '" + name + "'" + suggestion(name, known));
 }
 
-/// `derived` contains the scenario files that extend the loaded file.
+/// `derived` contains the scenario files that extend the loaded file (YAML key `extends`).
 Scenario load_file(const DataRoot& data, const std::filesystem::path& path, const Registry& registry,
                    std::vector<std::filesystem::path> derived = {}) {
   derived.push_back(std::filesystem::weakly_canonical(path));
   return parse_scenario(read_text_file(path), path.string(), registry, [&](const YamlNode& extends) {
     const std::string name = extends.identifier(), file = name + ".yaml";
-    // If a scenario file extends a scenario of the same name, the extended scenario is the file in the catalogue.
+    // If a scenario file extends a scenario that has the file's own name, the base scenario is the file of this name in
+    // scenarios/catalogue.
     std::filesystem::path base = std::filesystem::weakly_canonical(path.parent_path() / file);
     if (base == derived.back() || !std::filesystem::exists(base))
       base = std::filesystem::weakly_canonical(data.catalogue() / file);

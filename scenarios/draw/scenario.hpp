@@ -24,7 +24,7 @@ struct Expectation {
   bool operator==(const Expectation&) const = default;
 };
 
-/// NamedCase describes a simulated run on which a method failed, and the expected results. A file of
+/// NamedCase describes a simulated run on which a method failed, and the expected result of this run. A file of
 /// scenarios/regressions contains a NamedCase under the key `case`.
 struct NamedCase {
   std::string scenario;    ///< scenario of the original run
@@ -64,11 +64,11 @@ std::vector<std::string> case_names(const DataRoot& data);
 /// Loads scenarios/catalogue/NAME.yaml or scenarios/regressions/NAME.yaml, or the file `name` if it ends in ".yaml".
 Scenario load_scenario(const DataRoot& data, const std::string& name);
 
-/// Draws all random parameters of the scenario with the random seed `seed`. Parameters of sensors come from their data
-/// sheets.
+/// Draws values for all random parameters of the scenario, with the random seed `seed`. The other parameters of sensors
+/// come from their data sheets.
 sim::ResolvedSituation draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed);
 
-/// The conversion of a simulated run's parameters to YAML and back preserves all bits.
+/// Converts the parameters of a simulated run to YAML. Parsing the YAML restores all parameters bit-exactly.
 std::string to_yaml(const sim::Situation& situation);
 sim::Situation situation_from_yaml(const std::string& text, const std::string& place);
 

@@ -97,7 +97,7 @@ const sim::ComponentType& parse_type(const YamlNode& node, const Entries& entrie
   return *find_type(types, base);
 }
 
-/// If the YAML node has no key `type`, numbers that the node omits keep their values.
+/// If a YAML node has no key `type`, numbers that the YAML node omits keep the values of the base scenario.
 void parse_part(const YamlNode& node, std::span<const sim::ComponentType> types, Scenario::Part& part) {
   static const std::array<std::string, 1> kOther = {"type"};
   const Entries entries = node.entries();
@@ -107,7 +107,7 @@ void parse_part(const YamlNode& node, std::span<const sim::ComponentType> types,
   part = {type.name, std::move(numbers), node.line()};
 }
 
-/// If the YAML node of a sensor has no key `kind`, the sensor `base` supplies all omitted values.
+/// If the YAML node of a sensor has no key `kind`, omitted values come from the sensor `base` of the base scenario.
 Scenario::Sensor parse_sensor(const YamlNode& node, const Registry& registry, Scenario::Sensor base) {
   static const std::array<std::string, 5> kOther = {"name", "kind", "device", "site", "mount_error"};
   const Entries entries = node.entries();

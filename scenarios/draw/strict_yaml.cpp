@@ -27,8 +27,8 @@ namespace {
 constexpr std::uintmax_t kLargestFile = 4u << 20;
 constexpr std::size_t kIdentifierMax = 100;
 
-/// Some invalid texts cause an endless loop of events in the YAML parser. Counter detects an endless loop of the YAML
-/// parser if the number of events exceeds four per byte of text, plus 64.
+/// For some invalid texts, the YAML parser produces events without end. Counter reports an endless loop if the number
+/// of events exceeds four per byte of text, plus 64.
 class Counter : public YAML::EventHandler {
  public:
   Counter(const std::string& text, const std::string& file) : most_(4 * text.size() + 64), file_(file) {}

@@ -28,8 +28,8 @@ class YamlNode {
 
   std::string text() const;
   std::string any_text() const;
-  /// An identifier is a lower-case letter followed by lower-case letters, digits and underscores; at most 100
-  /// characters.
+  /// Returns the text as an identifier: a lower-case letter, followed by lower-case letters, digits and underscores,
+  /// with at most 100 characters in total.
   std::string identifier() const;
   double number() const;
   double number_or_infinity() const;

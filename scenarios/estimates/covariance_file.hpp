@@ -8,7 +8,7 @@
 
 #include "scenarios/recordings/table_file.hpp"
 
-/// TUM files have no columns for covariances, so the covariances are in a separate file (see ESTIMATE.md).
+/// TUM trajectory files have no columns for covariances, so a separate file contains the covariances (see ESTIMATE.md).
 namespace tumble::scenarios {
 
 /// Writes the upper triangle of each covariance, row by row.

@@ -28,7 +28,7 @@ std::string full_name(Kind kind, const std::string& method);
 enum class Frame { imu, lidar, body, centre };
 const char* to_string(Frame frame);
 
-/// Setting of a recording that `tumble odometry` states, measures or assumes.
+/// RecordingSetting is a property of a recording, for example a range, that `tumble odometry` reports with its source.
 struct RecordingSetting {
   std::string name;
   std::string value;   ///< with evidence
@@ -42,21 +42,22 @@ struct Estimate {
   std::vector<AngularRateState> rates;   ///< kind slam: rates used for deskewing
   std::vector<AttitudeState> attitudes;  ///< for kind attitude
   std::vector<PoseState> poses;          ///< kinds position and slam, IMU times
-  /// Contact mode at each pose, or an empty vector if the method does not estimate contact modes. The contact mode
-  /// `air` means no contact, or a bump (the contact point rises or falls) without slip.
+  /// Contact mode of the sphere at each pose, or an empty vector if the method does not estimate contact modes. The
+  /// contact mode `air` means no contact, or a bump (the contact point rises or falls) without slip.
   std::vector<sim::ContactLabel> contacts;
-  /// True for poses in a slip event with uncertain displacement, or an empty vector if the method does not estimate
-  /// slip.
+  /// For each pose, true if the pose is in a slip event whose displacement is uncertain. The vector is empty if the
+  /// method does not estimate slip.
   std::vector<bool> uncertain;
   /// Position of the sphere's centre relative to the centre of mass, in body axes [m].
   Eigen::Vector3d centre_B_m = Eigen::Vector3d::Zero();
   std::vector<LidarInertialOdometry::SweepReport> sweeps;  ///< for kind slam, one per sweep
   std::vector<std::int64_t> sweep_end_ns;                  ///< parallel to `sweeps`
   std::vector<MapPoint> map;                               ///< for kind slam
-  /// Estimated pose of the lidar in body axes, if the stated pose contradicts the recording; for kind slam.
+  /// Pose of the lidar in body axes that the slam method estimated, if the stated pose contradicts the recording.
   std::optional<Eigen::Isometry3d> replaced_T_BL;
   SensorHealth faults;  ///< suspected faults of sensors and estimate
-  /// Covariance that health findings add to the covariance of each angular rate; empty without health findings.
+  /// Covariance that is added to the covariance of each angular rate because of health findings (suspected faults);
+  /// empty without health findings.
   std::vector<Eigen::Matrix3d> suspect_rad2_s2;
   std::map<std::string, double> health;      ///< named counters: "rejected_samples", "sweeps_rejected"
   std::map<std::string, double> parameters;  ///< parameters that the user set by name

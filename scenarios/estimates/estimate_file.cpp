@@ -358,7 +358,7 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
   if (!estimate.map.empty()) write_map(folder / "map.ply", estimate.map);
   if (!estimate.transcript.empty()) replace_file(folder / "transcript.txt", estimate.transcript);
 
-  // The file estimate.json is written last, because its presence marks a complete folder.
+  // The file estimate.json is written last, because its presence marks a completely written folder.
   replace_file(folder / "estimate.json", header_of(method, kind, estimate, sensors_digest, origin_ns).dump(2) + '\n');
 }
 

@@ -20,7 +20,8 @@ using About = HealthFinding::Kind;
 
 bool is_about_readings(const HealthFinding& finding) {
   const About kind = finding.kind;
-  // A health finding about the scale factor of the gyro ends if the rotation of gravity later confirms this factor.
+  // A health finding about the scale factor of the gyro ends if the measured rotation of gravity later confirms the
+  // scale factor.
   if (kind == About::gyro_scale) return !finding.ended;
   return kind == About::frozen_axis || kind == About::frozen_sensor || kind == About::force_at_rest ||
          kind == About::wrong_axes_or_signs || kind == About::inverted_accel_in_flight ||
@@ -37,7 +38,7 @@ bool any_of(const Estimate& estimate, bool (*about)(const HealthFinding&)) {
   return std::any_of(all.begin(), all.end(), about);
 }
 
-/// A health finding contains only a pointer to its text, so the text needs static lifetime.
+/// A HealthFinding contains only a pointer to its text, so the text must exist until the program ends.
 const char* kept(const std::string& text) {
   static std::mutex lock;
   static std::set<std::string> all;

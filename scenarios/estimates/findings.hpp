@@ -12,15 +12,16 @@ namespace tumble::scenarios {
 
 struct Estimate;
 
-/// A second health finding with the same kind, sensor and axis is dropped. A health finding about IMU readings also
-/// sets the health entry `imu_implausible`.
+/// Adds a health finding (suspected fault) to an estimate. A second health finding with the same kind, sensor and axis
+/// is ignored. A health finding about IMU readings also sets the health entry `imu_implausible`.
 void add_finding(const HealthFinding& finding, Estimate& estimate);
 
 void add_findings(const SensorHealth& health, std::span<const std::string> names, Estimate& estimate);
 
 bool has_finding(HealthFinding::Kind kind, const Estimate& estimate, const std::string& sensor = "");
 bool has_implausible_readings(const Estimate& estimate);
-/// Sets the health entry `localised` of a run with a prior map: 1 if no health finding reports a missing localisation.
+/// Sets the health entry `localised` of a run with a prior map. The value is 1, or 0 if a health finding reports that
+/// the localisation in the prior map failed.
 void report_localised(Estimate& estimate);
 
 /// Returns false if a health finding contradicts the poses in the map.

@@ -21,8 +21,8 @@ inline constexpr const char* kPriorMapName = "map.tumblemap";
 
 void write_prior_map(const std::filesystem::path& path, std::span<const MapPoint> points);
 
-/// If the file has no columns for normals (nx ny nz or normal_x normal_y normal_z), the normals are fitted to the
-/// points. The column `sigma` contains the standard deviation of each point [m].
+/// Reads a map for localisation. If the file has no columns for normals (nx ny nz or normal_x normal_y normal_z), the
+/// normals are fitted to the points. The column `sigma` contains the standard deviation of each point [m].
 std::vector<MapPoint> read_prior_map(const std::filesystem::path& path);
 
 }  // namespace tumble::scenarios

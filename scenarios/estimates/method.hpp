@@ -13,10 +13,11 @@
 
 namespace tumble::scenarios {
 
-/// Only methods with `needs_truth` receive the true state and the readings before clipping.
+/// OracleInput contains the true state and the readings before clipping. Only methods with `needs_truth` receive an
+/// OracleInput.
 struct OracleInput {
   const sim::Truth* truth = nullptr;
-  /// A slam method calls on_sweep() after each lidar sweep, with the number of processed sweeps and the number of all
+  /// A slam method calls on_sweep() after each lidar sweep, with the number of processed sweeps and the total number of
   /// sweeps.
   std::function<void(std::size_t done, std::size_t all)> on_sweep = {};
 };
@@ -41,7 +42,8 @@ struct MethodInfo {
   std::vector<std::string> robots = {};  ///< "rig", "sphere"; empty: all
   std::string why_not(const Subject& subject) const;
   bool applies_to(const Subject& subject) const { return why_not(subject).empty(); }
-  /// true: the method is the baseline for methods of its kind, and does not handle saturation or slip.
+  /// If true, the method is the baseline to which other methods of its kind are compared. A baseline does not handle
+  /// saturation or slip.
   bool baseline = false;
   std::string version = {};  ///< for external methods
 };

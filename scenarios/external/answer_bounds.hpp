@@ -34,9 +34,9 @@ class AnswerBounds {
   void require_poses(const std::vector<PoseState>& poses, const Place& place) const;
   void require_attitudes(const std::vector<AttitudeState>& attitudes, const Place& place) const;
   /// Throws BadInput if the time stamps seem to have a wrong unit. The function compares the time span of at least ten
-  /// stamps with the duration of the recording. If time span and duration differ by a factor above 100, the unit is
-  /// probably wrong. A time span that is too long but fits no other unit is accepted, because probably only a few
-  /// stamps are wrong.
+  /// time stamps with the duration of the recording. If time span and duration differ by a factor above 100, the unit
+  /// of the time stamps is probably wrong. A time span that is too long but fits no other unit is accepted, because
+  /// probably only a few time stamps are wrong.
   void require_unit(std::span<const double> stamps_s, const char* unit, const Place& place) const;
   void require_unit(const Estimate& estimate, const char* unit, const Place& place) const;
   void require_slam(const Estimate& estimate) const;

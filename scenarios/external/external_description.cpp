@@ -109,8 +109,8 @@ std::uint64_t digest_of_file(const std::filesystem::path& file) {
   return XXH3_64bits_digest(state.get());
 }
 
-/// The digest of an external method covers its description and the files that its command names. A recompiled program
-/// has another digest, and counts as another version of the method.
+/// The digest (hash) of an external method covers its description and the files that its command names. A recompiled
+/// program has another digest, and counts as another version of the method.
 std::string digest_of_command(const std::string& text, const ExternalDescription& description) {
   std::string all = text;
   for (const std::filesystem::path& file : own_files(description.command, description.file.parent_path()))

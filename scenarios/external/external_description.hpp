@@ -10,7 +10,8 @@
 
 namespace tumble::scenarios {
 
-/// Wall-time limit of an external method whose description states no limit; a Python file cannot state a limit.
+/// Limit of the wall time of an external method whose description states no limit. A description in Python cannot state
+/// a limit.
 inline constexpr double kExternalTimeLimit_s = 600.0;
 
 /// An external method is a command (NAME.yaml) or a Python function (NAME.py).

@@ -86,7 +86,7 @@ std::vector<double> stamps_of(const std::filesystem::path& file) {
     stamps_s.push_back(stamp_s);
   }
   constexpr double kOrigin_s = 1e-9 * static_cast<double>(kExportOrigin_ns);
-  // Time stamps near kOrigin_s are in the clock of exported bags.
+  // Exported bags start at the time kOrigin_s, so time stamps near kOrigin_s are in the clock of exported bags.
   if (!stamps_s.empty() && stamps_s.front() > kOrigin_s / 2 && stamps_s.back() < kOrigin_s * 2)
     for (double& stamp_s : stamps_s) stamp_s -= kOrigin_s;
   return stamps_s;
@@ -185,7 +185,8 @@ Estimate read_external_result(const ExternalDescription& description, const std:
       estimate.rates = read_rates(output, sensors);
       break;
     case ExternalDescription::Output::tum:
-      // The unit of time stamps is checked before parsing, because stamps in a wrong unit can overflow the time type.
+      // The unit of the time stamps is checked before parsing, because time stamps in a wrong unit can overflow the
+      // integer type of times.
       bounds.require_unit(stamps_of(output), "seconds", rows_of(output, false));
       estimate = read_poses(description, output);
       break;

@@ -9,8 +9,8 @@
 
 namespace tumble::scenarios {
 
-/// The time stamps of poses may count from kExportOrigin_ns (clock of exported bags) or from zero (clock of the
-/// recording).
+/// The time stamps of the poses of an external program may start at kExportOrigin_ns (clock of exported bags) or at
+/// zero (clock of the recording).
 Estimate read_external_result(const ExternalDescription& description, const std::filesystem::path& output,
                               const std::filesystem::path& map, const sim::Sensors& sensors);
 

@@ -203,7 +203,7 @@ json of_series(const sim::SeriesRecord& series, Arrays& arrays) {
 class Answer {
  public:
   Answer(const SharedMemory& memory, const AnswerBounds& bounds) {
-    // A faulty Python function can enlarge the shared memory.
+    // The size of the shared memory is limited, because a faulty Python function can enlarge the shared memory.
     const std::uintmax_t most = bounds.table_bytes() + bounds.map_memory_bytes();
     if (memory.size() > most)
       throw BadInput(

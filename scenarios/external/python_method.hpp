@@ -10,7 +10,8 @@
 /// The Python function runs in a separate interpreter that only needs numpy (EXTERNAL.md).
 namespace tumble::scenarios {
 
-/// `transcript` receives the printed output of the Python function, even if the function raises an exception.
+/// Calls the Python function of an external method. `transcript` receives the printed output of the Python function,
+/// even if the function raises an exception.
 Estimate call_python(const ExternalDescription& description, const sim::Sensors& sensors, std::string& transcript);
 
 std::string python_version(const ExternalDescription& description);

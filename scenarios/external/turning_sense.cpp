@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kTurnsOtherwise = 0.5, kTurnsAsSaid = 0.15;
 /// Largest accepted difference between the rotations of estimate and gyro after the correction of a delay, as a
-/// fraction of the rotation.
+/// fraction of the gyro rotation.
 constexpr double kTurnsOnceCorrected = 0.3;
 
 std::vector<TimedAttitude> attitudes_of(const Estimate& estimate) {
@@ -48,8 +48,9 @@ std::string text_of(const TurningFit& fit, const std::string& frame) {
   return out + (out.empty() ? "the poses" : " and the poses") + " belonged to the frame " + frame;
 }
 
-/// Returns the frame of the estimate first, then the frames of IMU, lidar and body, each with its mounting. The result
-/// is empty if the mounting of the estimate's frame is unknown.
+/// Returns the frames to which the poses may belong, each with its mounting on the body. The first frame is the stated
+/// frame of the estimate, followed by the frames of IMU, lidar and body. The result is empty if the mounting of the
+/// stated frame is unknown.
 std::vector<CandidateFrame> candidates(const Estimate& estimate, const sim::Sensors& sensors) {
   std::vector<CandidateFrame> frames;
   if (sensors.imus.empty()) return frames;

@@ -31,8 +31,8 @@ const Settings<TumbleAttitude::Params>& attitude_tumble_settings() {
   return all;
 }
 
-/// The inclination counts as unknown while twice its standard deviation exceeds 1 rad, for example after an IMU gap
-/// during a tumble.
+/// The inclination counts as unknown while its standard deviation exceeds 0.5 rad, for example after an IMU gap during
+/// a tumble.
 void report_unknown_attitude(Estimate& estimate) {
   constexpr double kUnknown_rad = 0.5;
   double unknown_s = 0.0;
@@ -60,8 +60,8 @@ TumbleAttitude::Params stated(const sim::Sensors& sensors) {
   return params;
 }
 
-/// For a sphere, the filter estimates the attitude from the merged readings of all IMUs in body axes. The filter uses
-/// the rolling velocity, computed from angular velocity and radius, as velocity measurement.
+/// For a sphere, the filter estimates the attitude from the merged readings of all IMUs in body axes. The rolling
+/// velocity, computed from angular velocity and radius, is a velocity measurement of the filter.
 Estimate run_sphere(const sim::Sensors& sensors, const sim::Values& parameters) {
   Estimate estimate;
   estimate.frame = Frame::body;
@@ -273,8 +273,8 @@ Estimate run_attitude_tumble_batch(const sim::Sensors& sensors, const sim::Value
   }
   if (!estimate.status.ok()) return estimate;
   report_unknown_attitude(estimate);
-  // The health checks use the input of the attitude smoother. The output of the smoother agrees with gravity at rest
-  // even if the readings are wrong.
+  // The health checks use the input of the attitude smoother, because the output of the smoother agrees with gravity at
+  // rest even if the readings are wrong.
   (void)check_imu(sensors, samples, rates_of(recovered), carried_share(recovered.report), estimate);
   return estimate;
 }

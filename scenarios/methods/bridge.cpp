@@ -79,7 +79,7 @@ std::vector<bool> find_usable(std::span<const ImuSample> samples) {
   return usable;
 }
 
-// Only isolated IMU readings beyond the range are removed. Frequent readings beyond the range stay, so that a later
+// Only isolated IMU readings beyond the range are removed. Frequent readings beyond the range are kept, so that a later
 // check rejects the recording.
 void leave_out_faulty(const sim::ImuRecord& record, std::vector<ImuSample>& samples) {
   std::vector<bool> kept = find_usable(samples);

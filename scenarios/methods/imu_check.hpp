@@ -24,8 +24,8 @@ ImuHealthReport check_imu(const sim::Sensors& sensors, std::span<const ImuSample
                           std::span<const AngularRateState> rates, std::optional<double> carried_share,
                           Estimate& estimate);
 
-/// Only methods that process the whole recording may call inflate_rates, because live results must not depend on later
-/// readings.
+/// Increases the rate covariances according to the health findings. Only methods that process the whole recording may
+/// call inflate_rates(), because live results must not depend on later readings.
 void inflate_rates(const ImuHealthReport& findings, std::span<const ImuSample> samples, Estimate& estimate);
 
 /// Returns a warning if units, signs or axes of the readings seem wrong, otherwise an empty text.

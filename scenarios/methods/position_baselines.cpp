@@ -53,7 +53,7 @@ const Settings<baselines::RollingOdometry::Params>& position_rolling_settings() 
   return all;
 }
 
-/// Gyro bias and tilt come from the first `rest_s` seconds at rest; later attitudes come from integrating the gyro.
+/// The first `rest_s` seconds at rest determine gyro bias and tilt; later attitudes come from integrating the gyro.
 Estimate run_position_rolling(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   estimate.frame = Frame::centre;

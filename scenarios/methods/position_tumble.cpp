@@ -56,7 +56,7 @@ const Settings<RollingOdometry::Params>& rolling_live_settings() {
   return all;
 }
 
-/// During a short flight, a sphere whose rolling speed differs from its travel speed counts as slipping.
+/// During a short flight, a sphere counts as slipping if the rolling speed and the speed of the centre differ.
 bool spins(double radius_m, const RollingOdometry::Pose& pose) {
   const double rolling_m_s = radius_m * (pose.pose.orientation_W * pose.angular_velocity_rad_s).head<2>().norm();
   const double speed_m_s = pose.pose.velocity_W_m_s.norm();
@@ -126,7 +126,8 @@ Status replay_imus(const std::vector<ImuRecording>& recordings, RollingOdometry&
     }
     if (!first) break;
     const Status status = odometry.add_imu(*first, recordings[*first].samples[next[*first]++]);
-    // The estimator rejects the first sample after a gap, until a second sample confirms the time stamp of the first.
+    // The estimator rejects the first sample after a gap until a second sample confirms the time stamp, so the error
+    // `gap` is ignored here.
     if (!status.ok() && status.error_code != ErrorCode::gap) return status;
     collect();
   }

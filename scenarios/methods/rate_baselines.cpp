@@ -100,8 +100,8 @@ Status raw_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples
 
 Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std::vector<AngularRateState>& out) {
   out.clear();
-  // The oracle `rate/oracle` uses the unclipped readings, but must reject invalid clipped readings like all other
-  // methods.
+  // Like all other methods, the oracle `rate/oracle` must reject a recording with invalid clipped readings, although
+  // the oracle only uses the unclipped readings.
   std::vector<ImuSample> samples;
   Status status = bridge::primary_imu_samples(sensors, samples);
   if (!status.ok()) return status;

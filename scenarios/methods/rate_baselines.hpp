@@ -14,7 +14,7 @@
 
 namespace tumble::scenarios {
 
-/// The initial saturation limits are the measurement ranges of the IMU's data sheet, where 0 means unknown.
+/// Returns the measurement ranges in the IMU's data sheet as initial saturation limits; 0 means an unknown range.
 SaturationLimitDetector::Params stated_rails(const sim::ImuRecord& record);
 
 Status raw_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::vector<AngularRateState>& out);

@@ -24,7 +24,7 @@ const std::vector<std::string>& stated_densities();
 
 AngularRateSmoother::Params stated_params(const sim::ImuRecord& record, AngularRateSmoother::Params params);
 
-/// A parameter in `parameters` has priority over the IMU record, which has priority over the defaults of `settings`.
+/// Values in `parameters` override values from the IMU record, which override the default values of `settings`.
 AngularRateSmoother::Params smoother_params(const sim::ImuRecord& record,
                                             const Settings<AngularRateSmoother::Params>& settings,
                                             const sim::Values& parameters);
@@ -33,7 +33,8 @@ MotionRegimeSmoother::Params regime_params(const sim::Sensors& sensors, const An
 
 Status auxiliary_recordings(const sim::Sensors& sensors, std::vector<AuxiliaryRecording>& out);
 
-/// If the data of one auxiliary IMU are invalid, no auxiliary IMU is used.
+/// Estimates the rates from the primary IMU and all auxiliary IMUs. If the data of one auxiliary IMU are invalid, only
+/// the primary IMU is used.
 RecoveredRates recovered_readings(const sim::Sensors& sensors, std::span<const ImuSample> samples,
                                   ReadingsToReplace replaced, Estimate& estimate);
 

@@ -12,22 +12,22 @@
 #include "tumble/common/types.hpp"
 #include "tumble/mapping/types.hpp"
 
-/// A new method needs a source that defines `Method KIND_NAME()`, a declaration in this header, a line in registry.cpp,
-/// and a line in CMakeLists.txt.
+/// A new method needs a source file that defines `Method KIND_NAME()`, a declaration in registry.hpp, a line in
+/// registry.cpp, and a line in CMakeLists.txt.
 namespace tumble::scenarios {
 
 using RunCore = Estimate (*)(const sim::Sensors&, const sim::Values& parameters, const OracleInput& oracle);
 
 Method make_method(MethodInfo info, RunCore run);
 
-/// Returns a function that checks the parameter values, adds the default values of `info.settings`, and calls `run`.
-/// The returned function throws BadInput if a parameter is invalid.
+/// Returns a RunMethod function that checks the parameter values, adds the default values of `info.settings`, and calls
+/// `run`. The RunMethod function throws BadInput if a parameter is invalid.
 RunMethod with_settings(const MethodInfo& info, RunMethod run);
 
 std::span<const Method> methods();
 
-/// `name` selects all methods of a name ("saave"), one method ("rate/oracle"), or an external method (NAME.yaml or
-/// NAME.py).
+/// `name` is the name of methods of all kinds ("saave"), of one method ("rate/oracle"), or of an external method
+/// (NAME.yaml or NAME.py).
 std::vector<MethodPointer> find_methods(const std::string& name);
 std::vector<MethodPointer> find_methods(std::span<const std::string> names);
 bool is_method_file(const std::string& name);
@@ -65,20 +65,20 @@ Method slam_published();
 Method slam_tumble_lag();
 Method slam_tumble_live();
 
-/// Returns a copy of slam/tumble_lag or slam/tumble_live that localises in a prior map
-/// (TumblingOdometry::set_prior_map), or nothing for other methods. The health value `prior_map_sweep` is the number of
-/// the first sweep in the frame of the prior map, or 0. After a localisation, all poses of an estimate are in the frame
-/// of the prior map: slam/tumble_live leaves out the poses before the localisation, and slam/tumble_lag transforms
-/// them.
+/// Returns a copy of the method slam/tumble_lag or slam/tumble_live that localises in a prior map
+/// (TumblingOdometry::set_prior_map). The result is empty for other methods. The health value `prior_map_sweep` is the
+/// number of the first sweep in the frame of the prior map, or 0. After a localisation, all poses of an estimate are in
+/// the frame of the prior map: slam/tumble_live leaves out the poses before the localisation, and slam/tumble_lag
+/// transforms these poses.
 std::optional<Method> localised_in(const Method& method, std::shared_ptr<const PriorMap> map);
 
-/// Settings and parameter values of a method that runs a position method first.
+/// Returns the settings and parameter values of a method that first runs a position method.
 std::vector<const SettingsTable*> stages_after(std::vector<const SettingsTable*> own, const Method& position);
 sim::Values values_of(const Method& position, const sim::Values& parameters);
 
 void count_sources(std::span<const AngularRateState> rates, std::map<std::string, double>& health);
 
-/// Parses parameters of methods such as "rate/tumble_lag.lag_s=0.5"; the kind "rate/" is optional.
+/// Parses parameter values of methods such as "rate/tumble_lag.lag_s=0.5"; the prefix "rate/" is optional.
 std::vector<Method> with_parameters(std::span<const MethodPointer> methods, std::span<const std::string> texts);
 
 }  // namespace tumble::scenarios

@@ -40,11 +40,11 @@ void visit_numbers(Params& params, Each each) {
 }  // namespace detail
 
 struct SettingsOptions {
-  /// Names of fields whose values come from the recording unless the user sets them; a name may end in the wildcard
-  /// `*`.
+  /// `stated` contains the names of fields whose values come from the recording unless the user sets them; a name may
+  /// end in the wildcard `*`.
   std::vector<std::string> stated = {};
-  /// Names of fields that users cannot set, because the fields follow from other parameters; a name may end in the
-  /// wildcard `*`.
+  /// `fixed` contains the names of fields that users cannot set, because the fields follow from other parameters; a
+  /// name may end in the wildcard `*`.
   std::vector<std::string> fixed = {};
   std::vector<std::string> first = {};
   /// `beside` contains the parameters of another stage of the same method. A field whose name also occurs in `beside`
@@ -59,7 +59,7 @@ class SettingsTable {
   SettingsTable(const SettingsTable&) = delete;
   SettingsTable& operator=(const SettingsTable&) = delete;
 
-  /// Frequently used parameters come first.
+  /// Returns the parameters of a method; frequently used parameters come first.
   std::span<const sim::Parameter> rows() const { return rows_; }
   std::size_t first_rows() const { return first_rows_; }
   bool is_whole(std::string_view name) const { return whole_.contains(name); }

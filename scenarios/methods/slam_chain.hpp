@@ -26,10 +26,10 @@ struct SlamParams {
   }
 };
 
-/// Sets the prior uncertainties of lidar mounting and clock offset to typical values of a hand-assembled rig.
+/// Sets the prior uncertainties of lidar mounting and clock offset to typical values of a hand-assembled sensor rig.
 SlamParams with_calibration(SlamParams params);
-/// The odometry accepts a registration with few matches if its pose agrees with the prediction. Baseline methods reject
-/// registrations with few matches, because a clipped gyro makes their prediction wrong.
+/// Configures the odometry to accept a registration with few matches if the registered pose agrees with the prediction.
+/// Baseline methods reject a registration with few matches, because a clipped gyro makes their prediction wrong.
 SlamParams with_few_matches(SlamParams params);
 Settings<SlamParams> slam_settings(const SlamParams& defaults, std::vector<std::string> fixed = {});
 
@@ -42,21 +42,21 @@ Estimate begin_with_rates(const sim::Sensors& sensors, std::vector<ImuSample>& s
                           const std::function<Status(Estimate&)>& rates);
 
 struct KnownMotion {
-  /// Motion of the IMU between two times, or nothing if the odometer does not cover both times.
+  /// Returns the motion of the IMU between two times, or nothing if the odometer does not cover both times.
   std::function<std::optional<OdometerReading>(TimeNs from_ns, TimeNs to_ns)> between;
   double correction_max_m = 1.0;  ///< larger corrections are rejected
   double correction_max_rad = 1.0;
 };
 
 struct SlamChain {
-  /// true: a first pass over the recording estimates lidar mounting, clock offset and gravity. A second pass starts
-  /// with these estimates.
+  /// If true, the recording is processed twice. The first pass estimates lidar mounting, clock offset and gravity, and
+  /// the second pass starts with the estimates of the first pass.
   bool calibration = false;
   const KnownMotion* along = nullptr;  ///< odometer
   std::function<void(std::size_t done, std::size_t all)> on_sweep = {};
 };
 
-/// Returns true if the run ends with a known pose in its map.
+/// Estimates poses and map from sweeps and angular rates. Returns true if the final pose in the map is known.
 bool run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples, const SlamStage& stage,
                     const SlamChain& chain, Estimate& estimate);
 

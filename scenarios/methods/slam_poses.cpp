@@ -57,7 +57,8 @@ class Track {
   std::size_t next_ = 1;
 };
 
-// The lidar mounting refers to the centre of mass, which is a few millimetres from the centre of the sphere.
+// The lidar mounting refers to the centre of mass, whereas the estimated poses refer to the centre of the sphere, a few
+// millimetres away.
 Estimate map_from_poses(const Method& position, const sim::Sensors& sensors, const sim::Values& parameters) {
   Estimate estimate = position.run(sensors, values_of(position, parameters), {});
   estimate.contacts.clear();

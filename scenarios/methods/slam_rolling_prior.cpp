@@ -80,8 +80,8 @@ struct Radius {
   double m = 0.0, sigma_m = 0.0;
 };
 
-/// The estimated radius of the sphere makes the rolled distance equal to the distance between registered sweeps. Only
-/// segments with continuous floor contact are used.
+/// Estimates the radius of the sphere, such that the rolled distance equals the distance between registered sweeps.
+/// Only segments with continuous floor contact are used.
 std::optional<Radius> radius_by_lidar(const Estimate& rolled, const Estimate& registered, const sim::Sensors& sensors,
                                       double radius_m, const AlongParams& params) {
   const Eigen::Isometry3d T_IG =

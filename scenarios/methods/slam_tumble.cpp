@@ -167,8 +167,8 @@ class Collector {
   std::optional<TimeNs> live_in_prior_map_ns_;  // time of the first live pose in the frame of the prior map
 };
 
-/// Replays IMU samples at the end of their averaging windows, and sweeps after their last points, as in real time.
-/// Sweeps that end after the last IMU sample are used only for an estimate from the whole recording (`whole`).
+/// Replays IMU samples at the end of their averaging windows, and sweeps after their last points, as in real time. A
+/// sweep that ends after the last IMU sample is used only if the estimate may use the whole recording (`whole`).
 Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, bool whole, TumblingOdometry& odometry,
               Collector& collector, const SweepProgress& on_sweep, Estimate& estimate) {
   const sim::LidarRecord& lidar = sensors.lidars.front();

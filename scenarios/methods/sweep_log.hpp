@@ -13,10 +13,11 @@ using SweepReport = LidarInertialOdometry::SweepReport;
 
 void count_trouble(const Status& status, Estimate& estimate);
 
-/// Returns false if the sweep has no pose, and copies the error `status` of the sweep to `estimate.status`.
+/// Appends the report of a sweep to an estimate. Returns false if the sweep has no pose, and copies the error `status`
+/// of the sweep to `estimate.status`.
 bool append_sweep(const Status& status, TimeNs end_ns, SweepReport report, Estimate& estimate);
 
-/// Consecutive sweeps share the IMU sample at their boundary; the pose of this sample comes from the earlier sweep.
+/// Consecutive sweeps share the IMU sample at their boundary, so the pose at this sample comes from the earlier sweep.
 void append_poses(std::span<const PoseState> trajectory, Estimate& estimate);
 
 void leave_out_unfinished(Estimate& estimate);
@@ -33,7 +34,7 @@ bool run_over_sweeps(const sim::LidarRecord& lidar, const SweepMapper& mapper, E
 
 void apply_smoothed(std::vector<PoseState> smoothed, SweepReport& sweep);
 
-/// Returns true if the run is complete and its final pose in the map is plausible.
+/// Returns true if the run is complete and the final pose in the map is plausible.
 bool conclude(const LidarInertialOdometry& odometry, Estimate& estimate);
 
 }  // namespace tumble::scenarios

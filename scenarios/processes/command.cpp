@@ -46,8 +46,8 @@ void become(const Command& command, std::string& problem) {
   std::vector<char*> words;
   for (const std::string& word : command.words) words.push_back(const_cast<char*>(word.c_str()));
   words.push_back(nullptr);
-  // The memory limit of a command is set last, because the child process is a copy of this program and may exceed the
-  // limit already.
+  // The memory limit of a command is set last. The forked child process is a copy of this program, whose memory may
+  // already exceed the limit.
   limit(RLIMIT_DATA, command.memory_limit_mib * kMib);
   execvp(words.front(), words.data());
   problem = command.words.front() + ": " + strerror(errno);

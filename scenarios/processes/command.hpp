@@ -27,8 +27,8 @@ struct CommandEnd {
   double cpu_s = 0.0;       ///< without child processes
 };
 
-/// The command runs in a separate process group. This group is killed at the time limit, or when the calling process
-/// ends.
+/// Runs a command in a separate process group. The whole process group is killed at the time limit, or when the calling
+/// process ends.
 CommandEnd run_command(const Command& command);
 
 }  // namespace tumble::scenarios

@@ -25,7 +25,7 @@ namespace {
   if (getppid() != parent) _exit(1);
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
-  // If the reader has closed the pipe, write() must return an error and not raise a signal.
+  // SIGPIPE is ignored, so that write() returns an error if the reader has closed the pipe.
   signal(SIGINT, SIG_IGN);
   signal(SIGHUP, SIG_IGN);
   signal(SIGTERM, SIG_DFL);

@@ -8,7 +8,8 @@
 
 namespace tumble::scenarios {
 
-/// The child process ends when its parent ends, leaves no core file, and never returns to the caller's code.
+/// Process is a child process. The child process ends when its parent ends, leaves no core file, and never returns to
+/// the caller's code.
 class Process {
  public:
   struct End {
@@ -18,8 +19,8 @@ class Process {
     double cpu_s = 0;              ///< without child processes
     double peak_mib = 0;           ///< largest resident memory
     std::string describe() const;  ///< "ended by signal 11 (Segmentation fault)"
-    /// True if the child process was ended from outside: by SIGKILL (out of memory, an operator), SIGTERM, or a time
-    /// quota.
+    /// Returns true if a cause outside the child process ended the child process: SIGKILL (out of memory, an operator),
+    /// SIGTERM, or a time quota.
     bool killed() const;
   };
 
@@ -30,8 +31,8 @@ class Process {
 
   int read_end() const { return fd_; }
   bool read_available(std::string& buffer);
-  /// Waits for the end of the child process. Returns false if the child process is still running at `deadline_s`, a
-  /// time on the clock of now_s().
+  /// Waits for the end of the child process until the time `deadline_s` of the clock now_s(). Returns false if the
+  /// child process is still running at `deadline_s`.
   bool ends_before(double deadline_s);
   void kill();
   End wait();

@@ -15,7 +15,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Longest wait for messages of the child processes before their time limits are checked [ms].
+/// Longest wait for messages of the child processes [ms]. After each wait, the time limits of the child processes are
+/// checked.
 constexpr int kWaitMs = 200;
 
 struct Running {

@@ -14,7 +14,8 @@ namespace tumble::scenarios {
 struct PoolOptions {
   int jobs = 1;  ///< number of processes at a time
   const std::atomic<bool>* stop = nullptr;
-  /// Called when a process may have written text, with all of the text; may remove what it has used.
+  /// The pool calls on_output() when a process may have written text. `output` contains all text of the process;
+  /// on_output() may remove text that needs no further processing.
   std::function<void(std::size_t index, std::string& output)> on_output = {};
   std::function<void()> on_round = {};  ///< called several times per second
 };
@@ -31,13 +32,14 @@ struct PooledEnd {
   Process::End end;
 };
 
-/// Runs everything that `next` returns, each in a separate process; `index` is 0 for the first. Calls `on_end` in the
-/// calling process whenever a process ends. When `stop` becomes true, the running processes are killed, and `on_end` is
-/// not called for them. Throws BadInput if no process can be started.
+/// Calls `next` until the result is empty, and runs each returned task in a separate process. The tasks have the
+/// indices 0, 1, 2 and so on. Calls `on_end` in the calling process whenever a process ends. When `stop` becomes true,
+/// the running processes are killed, and `on_end` is not called for the killed processes. Throws BadInput if no process
+/// can be started.
 void run_in_processes(const std::function<std::optional<PooledWork>()>& next, const PoolOptions& options,
                       const std::function<void(const PooledEnd&)>& on_end);
 
-/// Runs `work(index, write_end)` for each index below `count`.
+/// Runs `work(index, write_end)` in a separate process for each index below `count`.
 void run_in_processes(std::size_t count, double limit_s, const PoolOptions& options,
                       const std::function<void(std::size_t, int)>& work,
                       const std::function<void(const PooledEnd&)>& on_end);

@@ -5,8 +5,8 @@
 
 namespace tumble::scenarios {
 
-/// The build identity contains version, compiler, build type, and a digest of the sources at build time, and is equal
-/// on any machine.
+/// Returns the identity of this build: version, compiler, build type, and a digest of the sources at build time. The
+/// build identity does not depend on the machine.
 const std::string& build_id();
 
 }  // namespace tumble::scenarios

@@ -19,8 +19,9 @@ struct ExportNames {
   std::set<std::string> taken;  ///< names of sensors, topics and frames
 };
 
-/// export_names() appends a number to a sensor name that another sensor already has. The names of topics and frames of
-/// a bag also get a number: body, clock, tf, tf_static, truth, world, base_link, map, odom.
+/// Returns names of sensors for exported files and bags. A sensor name gets a number if another sensor has the same
+/// name. A sensor name also gets a number if a bag needs the name for a topic or frame: body, clock, tf, tf_static,
+/// truth, world, base_link, map or odom.
 ExportNames export_names(const sim::Sensors& sensors);
 ExportNames export_names(const sim::Truth& truth);
 

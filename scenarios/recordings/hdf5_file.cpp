@@ -32,8 +32,8 @@ Handle open_file(const std::filesystem::path& path) {
   throw BadInput(fmt::format("{}: the file is truncated, damaged or not an HDF5 file{}", path.string(), reason));
 }
 
-/// Returns the length of the HDF5 data, which superblock version 3 stores at byte 28. The file on disk is longer than
-/// the HDF5 data, because create_file() reserves disk space in advance.
+/// Returns the length of the HDF5 data, which the superblock (version 3) stores at byte 28. The file on disk is longer
+/// than the HDF5 data, because create_file() reserves disk space in advance.
 std::uint64_t stated_length(const void* image) {
   std::uint64_t length = 0;
   std::memcpy(&length, static_cast<const char*>(image) + 28, sizeof(length));
@@ -90,7 +90,8 @@ Handle::~Handle() {
 }
 
 Silence::Silence() {
-  // After reading some damaged files, the cleanup of the HDF5 library at exit fails and prints messages.
+  // The cleanup of the HDF5 library at exit is disabled, because it fails and prints messages after reading some
+  // damaged files.
   static const herr_t once = H5dont_atexit();
   (void)once;
   H5Eget_auto2(H5E_DEFAULT, &function_, &data_);

@@ -39,8 +39,8 @@ class DiskFile {
   Group root_;
 };
 
-/// Opens every object and attribute of an HDF5 file in a child process, because HDF5 1.10 may crash on damaged files.
-/// The cost of opening all objects is O(number of objects); dataset contents are not read.
+/// Checks in a child process that the HDF5 library can open every object and attribute of a file, because HDF5 1.10 may
+/// crash on damaged files. The cost is O(number of objects); dataset contents are not read.
 void require_survivable(const std::filesystem::path& path);
 
 }  // namespace tumble::scenarios::hdf5

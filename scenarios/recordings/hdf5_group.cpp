@@ -13,8 +13,8 @@ namespace tumble::scenarios::hdf5 {
 
 namespace {
 
-/// Deflate compresses by at most a factor of 1032. A dataset with a higher ratio is incomplete, and HDF5 would return
-/// zeros for the missing part.
+/// The compression method deflate reduces data by at most a factor of 1032. A dataset with a higher ratio is
+/// incomplete, and HDF5 would return zeros for the missing part.
 constexpr std::uint64_t kBestDeflation = 1100;
 
 const char* name_of(Scalar scalar) {
@@ -164,7 +164,7 @@ void Group::read_rows(const Handle& dataset, const std::string& name, void* data
 
 namespace {
 
-/// Maximum length of a text [bytes]. In a damaged file, the stored text length may be so large that reading the text
+/// Maximum length of a text [bytes]. A damaged file may contain a text length that is so large that reading the text
 /// would exhaust the memory.
 constexpr std::size_t kLongestText = std::size_t{16} << 20;
 

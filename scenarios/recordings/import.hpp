@@ -21,7 +21,7 @@ struct Imported {
   std::vector<std::string> notes;
   std::vector<std::vector<std::string>> cloud_fields;  ///< of each lidar in files or bags
   /// Shift of the lidar's clock relative to the clock of the primary IMU [s], if record stamps of a bag replaced the
-  /// header stamps. Empty if the user chose the stamps.
+  /// header stamps. The shift is empty if the user chose the kind of stamps.
   std::optional<double> record_shift_s;
 };
 
@@ -66,8 +66,8 @@ Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord&
                         AccelUnit unit = AccelUnit::m_s2, GyroUnit gyro_unit = GyroUnit::rad_s,
                         const std::string& columns = "");
 
-/// Each IMU has the name of its file; the first IMU by name is the primary IMU. Tables without IMU readings are
-/// skipped.
+/// Reads a folder of CSV tables, one per IMU. Each IMU has the name of its file, and the first IMU in alphabetical
+/// order is the primary IMU. Tables without IMU readings are skipped.
 Imported import_csv_folder(const std::filesystem::path& folder, const sim::ImuRecord& device, AccelUnit unit,
                            GyroUnit gyro_unit);
 
@@ -102,11 +102,11 @@ Imported import_trajectory(const ReferenceSource& source);
 
 /// Uses the poses of a file as the truth of `recording`, up to the end of the sensor data. The time stamps of the poses
 /// must come from the same clock as the time stamps of the imported sensor data. `RecordingInfo::origin_ns` is the time
-/// stamp of time 0 of `recording` in the source clock. A KITTI file must have one pose per sweep.
+/// stamp of time 0 of `recording` in the source clock. A KITTI pose file must have one pose per sweep.
 void attach_reference(Imported& recording, const ReferenceSource& source);
 
-/// Adds IMUs that use the same clock as `recording`. If the IMU recording starts earlier, its time 0 becomes time 0 of
-/// the result.
+/// Adds IMUs that use the same clock as `recording`. Time 0 of the result is time 0 of the recording or of the IMUs,
+/// whichever is earlier.
 void attach_imus(Imported& recording, Imported imu);
 
 }  // namespace tumble::scenarios

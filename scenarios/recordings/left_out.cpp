@@ -11,10 +11,10 @@ namespace {
 
 constexpr std::size_t kNoIndex = ~std::size_t{0};
 constexpr std::size_t kLeastForEnds = 10;
-/// A gap of more than a day between a few stamps and the others indicates that the clock was set.
+/// A gap of more than a day between a few time stamps and all other time stamps indicates that the clock was set.
 constexpr std::uint64_t kClockSet_ns = 86'400'000'000'000;
 
-/// Algorithm: Fredman, Discrete Mathematics 11:29, 1975.
+/// Returns the indices of a longest increasing subsequence of the stamps (Fredman, Discrete Mathematics 11:29, 1975).
 std::vector<std::size_t> longest_increasing(std::span<const std::int64_t> stamps_ns) {
   std::vector<std::size_t> first_of_length, after(stamps_ns.size(), kNoIndex);
   for (std::size_t k = stamps_ns.size(); k-- > 0;) {
@@ -36,7 +36,7 @@ std::vector<std::size_t> longest_increasing(std::span<const std::int64_t> stamps
 void drop_far_ends(std::span<const std::int64_t> stamps_ns, std::vector<std::size_t>& indices) {
   const std::size_t all = indices.size();
   if (all < kLeastForEnds) return;
-  // The difference of two int64 may exceed int64.
+  // The difference of two int64 may exceed int64, so the subtraction uses unsigned numbers.
   const auto duration = [&](std::size_t from, std::size_t to) {
     return static_cast<std::uint64_t>(stamps_ns[indices[to]]) - static_cast<std::uint64_t>(stamps_ns[indices[from]]);
   };

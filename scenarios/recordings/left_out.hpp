@@ -15,7 +15,7 @@ namespace tumble::scenarios {
 /// Occasional faults of drivers, buses and files affect less than 5 % of a sensor's readings. A wrong clock, unit or
 /// layout affects more than 5 % of the readings, so the recording is rejected.
 inline constexpr double kLeftOutShareMax = 0.05;
-/// A sensor with at least five readings may always have one faulty reading.
+/// A sensor with at least five readings may have one faulty reading, even if one reading is more than 5 %.
 inline constexpr std::size_t kLeftOutOneOf = 5;
 
 bool may_leave_out(std::size_t count, std::size_t all);
@@ -24,10 +24,10 @@ class LeftOut {
  public:
   explicit LeftOut(std::string items) : items_(std::move(items)) {}
 
-  /// `cause` completes the note "the import leaves out 1 of 150 readings: 1 because of ..."; `error` contains the
+  /// `cause` completes the note "the import leaves out 1 of 150 readings: 1 because of ...". `error` contains the
   /// location of the faulty reading.
   void add(const std::string& cause, const std::string& error);
-  /// Counts a skipped reading for which the limit kLeftOutShareMax does not apply, for example a reading whose values
+  /// Counts a skipped reading to which the limit kLeftOutShareMax does not apply, for example a reading whose values
   /// are all 0.
   void add_unlimited(const std::string& cause, const std::string& error);
   template <class Read>
@@ -56,12 +56,14 @@ class LeftOut {
 };
 
 /// Selects time stamps such that the kept stamps increase and the fewest possible stamps are dropped (longest
-/// increasing subsequence). With at least ten stamps, a single stamp at either end is also dropped if its gap to the
-/// other stamps exceeds their time span. Several stamps at one end are dropped only if their gap to the other stamps
-/// also exceeds a day (the clock was set). The cost for N stamps is O(N log N), or O(N) if all increase.
+/// increasing subsequence). With at least ten stamps, a single stamp at either end is also dropped if the gap to the
+/// next stamp exceeds the time span of all remaining stamps. Several stamps at one end are dropped only if the gap also
+/// exceeds a day, which indicates that the clock was set. The cost for N stamps is O(N log N), or O(N) if all stamps
+/// increase.
 std::vector<bool> stamps_in_order(std::span<const std::int64_t> stamps_ns);
 
-/// If `rows` and `kept` differ in size, the sensor does not measure the quantity in `rows`, and `rows` stays unchanged.
+/// Removes the rows of dropped readings. If `rows` and `kept` differ in size, the sensor does not measure the quantity
+/// in `rows`, and `rows` stays unchanged.
 template <class Row>
 void keep_rows(const std::vector<bool>& kept, std::vector<Row>& rows) {
   if (rows.size() != kept.size()) return;

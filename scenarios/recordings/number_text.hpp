@@ -10,14 +10,15 @@
 
 namespace tumble::scenarios {
 
-/// Accepts decimal or scientific notation, an optional sign, surrounding blanks, nan and inf.
+/// Parses a number in decimal or scientific notation, with an optional sign and surrounding blanks; also accepts nan
+/// and inf.
 bool parse_number(std::string_view text, double& value);
 
-/// Converts a decimal time to nanoseconds exactly, by moving the decimal point by `decimals`: 9 for s, 6 for ms, 3 for
-/// us, 0 for ns.
+/// Converts a decimal time to integer nanoseconds without rounding errors. The decimal point is moved by `decimals`
+/// places: 9 for s, 6 for ms, 3 for us, 0 for ns.
 std::optional<std::int64_t> parse_time_ns(std::string_view text, int decimals);
 
-/// Parses a stamp since 1970: decimal seconds, an integer of 13, 16 or 19 digits (ms, us, ns), or a date in UTC
+/// Parses a time stamp since 1970: decimal seconds, an integer of 13, 16 or 19 digits (ms, us, ns), or a date in UTC
 /// ("2011-09-26 13:02:25.964389445").
 std::optional<std::int64_t> parse_stamp_ns(std::string_view text);
 
@@ -36,7 +37,7 @@ inline void append_seconds(std::string& text, std::int64_t time_ns) {
 }
 
 inline constexpr std::int64_t kSecond_ns = 1'000'000'000;
-/// The largest time stamp, 9 000 000 000 s (year 2255), fits in 64 bits of nanoseconds.
+/// The largest accepted time stamp, 9 000 000 000 s (year 2255), fits in a 64-bit number of nanoseconds.
 inline constexpr std::int64_t kSecondsMax = 9'000'000'000;
 
 }  // namespace tumble::scenarios

@@ -62,7 +62,7 @@ std::string optional_length_problem(const char* name, std::size_t length, std::s
   return fmt::format("{} has {} rows; it must have {} or none", name, length, needed);
 }
 
-/// Names appear in tables, so names must be UTF-8 text without control characters.
+/// Names of sensors and surfaces appear in tables, so each name must be UTF-8 text without control characters.
 std::string text_problem(const char* name, const std::string& text) {
   std::size_t following = 0;
   for (const unsigned char c : text) {
@@ -75,8 +75,8 @@ std::string text_problem(const char* name, const std::string& text) {
   return following == 0 ? "" : fmt::format("{} must be UTF-8 text without control characters", name);
 }
 
-/// Times beyond three years from the start of the recording belong to another clock, and their differences can
-/// overflow.
+/// Times more than three years from the start of the recording come from a wrong clock, and differences of such times
+/// can overflow.
 std::string times_problem(const char* name, const std::vector<std::int64_t>& times_ns) {
   const auto far = [](std::int64_t t) { return t > kTimeMax_ns || t < -kTimeMax_ns; };
   const auto found = std::find_if(times_ns.begin(), times_ns.end(), far);
@@ -246,7 +246,7 @@ std::string imu_truth_problem(const Imu& imu) {
 }
 
 std::string surface_problem(std::int32_t id, std::size_t surfaces) {
-  // The surface id -1 means an unknown surface; the id -2 means the robot's cage.
+  // The surface id -1 means an unknown surface, and the surface id -2 means the robot's cage.
   if (id >= -2 && id < static_cast<std::int64_t>(surfaces)) return "";
   return fmt::format("surface_id {} has no name, because 'surfaces' has only {} names", id, surfaces);
 }

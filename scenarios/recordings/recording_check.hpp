@@ -10,9 +10,9 @@
 
 namespace tumble::scenarios {
 
-/// Describes the first inconsistency in lengths, periods, calibrations (rotations), sweep order, labels or surface ids;
-/// empty for a consistent recording. The check accepts any readings, because the estimator reports NaN, gaps and wrong
-/// time order.
+/// Describes the first inconsistency of a recording in lengths, periods, calibrations (rotations), sweep order, labels
+/// or surface ids. The text is empty for a consistent recording. The check accepts any readings, because the estimator
+/// reports NaN, gaps and wrong time order.
 std::string find_problem(const sim::Sensors& sensors, const std::vector<PointStore>& points = {});
 std::string find_problem(const sim::Truth& truth);
 std::string find_problem(const StoredTruth& truth);

@@ -9,11 +9,12 @@
 #include "scenarios/recordings/stored_truth.hpp"
 #include "sim/recording.hpp"
 
-/// Writer, reader and digest visit the same list of fields, so none of them can omit a field.
+/// File writer, file reader and digest all visit one list of the fields of a recording, so that no function can omit a
+/// field.
 ///
-/// A later version of the file format may add a field. Added fields are neither stored nor hashed while they have their
-/// default values, so older files keep their digests. The default value of an added field is empty, zero, or "measured"
-/// for the point times.
+/// A later version of the file format may add a field. An added field with its default value is neither stored nor
+/// hashed, so older files keep their digests. The default value of an added field is empty or zero; the default value
+/// of the point times is "measured".
 namespace tumble::scenarios {
 
 /// Data are stored as `plain` (without compression) if deflate would save little space (FORMAT.md).
@@ -115,7 +116,8 @@ void sensors_fields(Archive& archive, Sensors& sensors) {
   sensors_fields(archive, sensors, sensors.lidars);
 }
 
-/// The points of the lidars are in `points` (temporary files) or, if `points` is empty, in `sensors` (memory).
+/// Visits the points of the lidars, which are in `points` (temporary files) or, if `points` is empty, in `sensors`
+/// (memory).
 template <class Archive>
 void stored_fields(Archive& archive, const sim::Sensors& sensors, const std::vector<PointStore>& points) {
   if (points.empty()) return sensors_fields(archive, sensors);

@@ -27,11 +27,11 @@ struct RecordingInfo {
   bool has_truth = false;
 };
 
-/// Exported files of a recording without `origin_ns` start 1 000 000 000 s after 1970, because ROS treats a stamp of 0
-/// as missing.
+/// The time stamps in exported files start 1 000 000 000 s after 1970 if the recording has no `origin_ns`, because ROS
+/// treats a stamp of 0 as missing.
 inline constexpr std::int64_t kExportOrigin_ns = 1'000'000'000'000'000'000;
 
-/// Origins before 1970 are replaced by kExportOrigin_ns, because bags cannot store earlier stamps.
+/// Replaces an origin before 1970 by kExportOrigin_ns, because bags cannot store time stamps before 1970.
 inline std::int64_t export_origin_ns(std::int64_t origin_ns) {
   return origin_ns > 0 ? origin_ns : kExportOrigin_ns;
 }
@@ -43,7 +43,7 @@ std::string digest(const sim::Truth& truth);
 std::string digest(const StoredTruth& truth);
 
 /// Writes a recording as HDF5 (scenarios/recordings/FORMAT.md) to a temporary file, and renames the complete file.
-/// Throws BadInput if the folder is not writable or the disk is full; no partial file remains.
+/// Throws BadInput if the folder is not writable or the disk is full. After an error, no partial file remains.
 void write_recording(const std::filesystem::path& path, const RecordingInfo& info, const sim::Sensors& sensors,
                      const sim::Truth* truth);
 
@@ -51,14 +51,15 @@ void write_recording(const std::filesystem::path& path, const RecordingInfo& inf
 void write_recording(const std::filesystem::path& path, const RecordingInfo& info, const sim::Sensors& sensors,
                      const std::vector<PointStore>& points, const sim::Truth* truth);
 
-/// The readers throw BadInput, with path and reason, if the file is damaged or not HDF5, or if a dataset has a wrong
-/// shape. The readers also throw BadInput if the format version or the digest does not match.
+/// read_info() and the other readers throw BadInput, with path and reason, if the file is damaged or not HDF5, or if a
+/// dataset has a wrong shape. Also throws BadInput if the format version or the digest does not match.
 RecordingInfo read_info(const std::filesystem::path& path);
 sim::Sensors read_sensors(const std::filesystem::path& path);
 sim::Sensors read_sensors(const std::filesystem::path& path, const std::filesystem::path& scratch,
                           std::vector<PointStore>& points);
 sim::Truth read_truth(const std::filesystem::path& path);
-/// Stores the rows of the truth on disk in the folder `scratch`, so memory contains one MiB of the truth.
+/// Reads the truth of a recording. The rows of the truth are stored on disk in the folder `scratch`, so that only one
+/// MiB of the truth is in memory.
 StoredTruth read_truth(const std::filesystem::path& path, const std::filesystem::path& scratch);
 
 /// Throws BadInput if `path` is not a regular file, or if its first 16 bytes or its extension indicate another format

@@ -12,7 +12,7 @@ struct ImportOption {
   std::string name, value;
 };
 
-/// RepairableInput reports a recording that can be read with another value of one import option.
+/// RepairableInput is the exception for a recording that can be imported with another value of one import option.
 class RepairableInput : public BadInput {
  public:
   RepairableInput(const std::string& message, ImportOption repair) : BadInput(message), repair_(std::move(repair)) {}

@@ -11,8 +11,9 @@
 
 namespace tumble::scenarios {
 
-/// A temporary file that is not moved to its final path is removed, even if a signal ends the program. OutputFile
-/// follows symbolic links and keeps mode and owner of an existing target.
+/// OutputFile writes a temporary file, and moves the complete temporary file to the final path. A temporary file that
+/// is not moved to the final path is removed, even if a signal ends the program. OutputFile follows symbolic links, and
+/// keeps mode and owner of an existing file.
 class OutputFile {
  public:
   explicit OutputFile(const std::filesystem::path& path);
@@ -22,8 +23,8 @@ class OutputFile {
 
   const std::filesystem::path& unfinished() const { return unfinished_; }
   void write(std::span<const std::byte> bytes);
-  /// Flushes the temporary file to disk and renames the file, so the final path always has the complete old or new
-  /// file.
+  /// Flushes the temporary file to disk and renames the temporary file, so that the final path always contains the
+  /// complete old or new file.
   void move_into_place();
 
  private:
@@ -32,8 +33,8 @@ class OutputFile {
   bool moved_ = false;
 };
 
-/// A non-empty output folder throws BadInput, because users could mistake old files for new ones. The content of an
-/// incomplete output folder is removed, even if a signal ends the program.
+/// OutputFolder creates an output folder. A non-empty existing folder throws BadInput, because users could mistake old
+/// files for new ones. The content of an incomplete output folder is removed, even if a signal ends the program.
 class OutputFolder {
  public:
   explicit OutputFolder(const std::filesystem::path& folder);

@@ -78,8 +78,8 @@ bool are_rounded(std::span<const std::int64_t> stamps_ns) {
   const auto least = static_cast<std::size_t>(kLeastShare * static_cast<double>(all)) + 1;
   for (std::size_t n = 1; n + 1 < counts.size(); ++n) {
     if (counts[n] < least || counts[n + 1] < least) continue;
-    // Steps between stamps that were rounded to milliseconds are n or n + 1 ms. A clock with jitter has more than two
-    // different step lengths.
+    // If the time stamps were rounded to milliseconds, all steps are n or n + 1 ms. A clock with jitter has more than
+    // two different step lengths.
     return static_cast<double>(counts[n] + counts[n + 1]) >= (1.0 - kLeastShare) * static_cast<double>(all);
   }
   return false;

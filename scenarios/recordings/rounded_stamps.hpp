@@ -7,13 +7,14 @@
 
 namespace tumble::scenarios {
 
-/// Returns true if all stamps are whole milliseconds after the first stamp, with steps of n or n + 1 ms, n up to 4.
-/// Steps of n ms and steps of n + 1 ms must each be at least 2 % of the steps; longer steps are gaps. If the true
-/// sample period is within 0.02 ms of a whole millisecond, the function returns false.
+/// Returns true if the time stamps seem to be rounded to milliseconds: all time stamps are whole milliseconds after the
+/// first time stamp, with steps of n or n + 1 ms, for an n of at most 4. At least 2 % of the steps must be n ms, and at
+/// least 2 % must be n + 1 ms; longer steps are gaps. If the true sample period is within 0.02 ms of a whole
+/// millisecond, the function returns false.
 bool are_rounded(std::span<const std::int64_t> stamps_ns);
 
-/// Removes the rounding of time stamps. Each stamp moves, by at most a millisecond, to a line that is fitted to the
-/// stamps at most half a second away. Stamps beyond a gap are not used for the fit.
+/// Removes the rounding of time stamps. For each stamp, a line is fitted to the stamps within half a second, without
+/// stamps beyond a gap. The stamp is replaced by the value of the line, but moves by at most a millisecond.
 std::vector<std::int64_t> evened(std::span<const std::int64_t> stamps_ns);
 
 std::int64_t mean_step_ns(std::span<const std::int64_t> stamps_ns);

@@ -72,8 +72,8 @@ struct PointStore {
   ColumnFile<std::uint16_t> ring;
 };
 
-/// Returns a lidar record with only the sweep `sweep`, whose points come from disk (`aside`), or from `lidar` if
-/// `aside` is null.
+/// Returns a lidar record that contains only the sweep number `sweep`. The points come from disk (`aside`), or from
+/// `lidar` if `aside` is null.
 sim::LidarRecord sweep_alone(const sim::LidarRecord& lidar, const PointStore* aside, std::size_t sweep);
 
 }  // namespace tumble::scenarios

@@ -37,8 +37,8 @@ std::vector<std::string> split(const std::string& line, char separator) {
   return cells;
 }
 
-/// The limit of the line length protects the memory from files without line ends; a pose with covariance has less than
-/// 1000 bytes.
+/// Largest length of a line [bytes], so that a file without line ends cannot exhaust the memory. A pose with covariance
+/// has less than 1000 bytes.
 constexpr std::size_t kLineMax = 1 << 20;
 
 bool read_line(std::istream& file, const std::filesystem::path& path, int number, std::string& line) {
@@ -149,7 +149,8 @@ std::int64_t Table::integer(const Row& row, std::size_t column) const {
 }
 
 std::int64_t Table::time_ns(const Row& row, std::size_t column) const {
-  // A double cannot represent seconds since 1970 with nine decimals.
+  // The time is parsed without conversion to double, because a double cannot represent seconds since 1970 with nine
+  // decimals.
   const std::optional<std::int64_t> time_ns = parse_time_ns(row.cells[column], 9);
   if (!time_ns) fail(row, column, "a time in seconds");
   return *time_ns;

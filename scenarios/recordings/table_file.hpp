@@ -11,11 +11,11 @@
 
 namespace tumble::scenarios {
 
-/// TableWriter writes numbers as TUM (blanks, no header) or CSV (commas, one header line) such that reading restores
-/// doubles exactly.
+/// TableWriter writes numbers to a TUM file (blanks, no header) or a CSV file (commas, one header line). The text of a
+/// double contains enough digits to restore the double exactly.
 class TableWriter {
  public:
-  /// Only `close` replaces an existing file; without `close`, the table is discarded.
+  /// Only close() replaces an existing file; without a call of close(), the table is discarded.
   TableWriter(const std::filesystem::path& path, char separator, const std::string& header);
   void integer(std::int64_t value);
   void number(double value);
@@ -32,8 +32,8 @@ class TableWriter {
   bool row_empty_ = true;
 };
 
-/// Empty lines and lines that start with '#' are skipped. If `separator` is a blank, cells may also be separated by
-/// tabs, commas and semicolons.
+/// Table contains the cells of a text file. Empty lines and lines that start with '#' are skipped. If `separator` is a
+/// blank, tabs, commas and semicolons also separate cells.
 struct Table {
   struct Row {
     int line;

@@ -21,7 +21,8 @@ namespace {
 constexpr std::size_t kPathBytes = 4096;
 constexpr int kPlaces = 64, kDepthMax = 16;
 
-/// A signal handler ignores an Entry whose `owner` (process id) is 0, so `owner` is set last and cleared first.
+/// Entry is the path of an incomplete file or folder. A signal handler ignores an Entry whose `owner` (process id) is
+/// 0, so `owner` is set last and cleared first.
 struct Entry {
   std::atomic<bool> taken{false};
   std::atomic<pid_t> owner{0};
@@ -29,7 +30,7 @@ struct Entry {
   std::array<char, kPathBytes> path{};
 };
 
-// A signal handler may use only static storage.
+// The entries are in static storage, because a signal handler must not allocate memory.
 std::array<Entry, kPlaces> entries;
 static_assert(std::atomic<pid_t>::is_always_lock_free && std::atomic<bool>::is_always_lock_free,
               "a signal handler must not wait for a lock");
@@ -85,7 +86,8 @@ extern "C" void remove_and_end(int number) {
     if (entry.owner.load() == getpid()) remove_entry(entry);
   }
   errno = error;
-  // The signal has its default effect when the signal handler returns and the signal is unblocked.
+  // The signal ends the program when the signal handler returns, because the default action is restored before the
+  // signal is raised again.
   struct sigaction usual = {};
   usual.sa_handler = SIG_DFL;
   sigaction(number, &usual, nullptr);

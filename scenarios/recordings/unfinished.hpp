@@ -10,7 +10,7 @@ class Unfinished {
  public:
   enum class Kind { file, folder, contents };  ///< contents: keeps the folder itself
   Unfinished() = default;
-  /// Signal handlers remove at most 64 paths, with at most 4095 bytes each.
+  /// At most 64 paths are removed after a signal, and each path must have at most 4095 bytes.
   Unfinished(const std::filesystem::path& path, Kind kind);
   ~Unfinished();
   Unfinished(const Unfinished&) = delete;
@@ -31,9 +31,9 @@ class SignalsWait {
   SignalsWait& operator=(const SignalsWait&) = delete;
 };
 
-/// The handlers for SIGINT, SIGTERM and SIGHUP remove incomplete outputs. After the removal, the signals have their
-/// usual effect. Ignored signals stay ignored. The handlers are async-signal-safe: they only make system calls on
-/// static storage.
+/// Installs signal handlers for SIGINT, SIGTERM and SIGHUP, which remove incomplete outputs. After the removal, a
+/// signal has its usual effect. Ignored signals stay ignored. The signal handlers are async-signal-safe, because they
+/// only make system calls on static storage.
 void remove_unfinished_on_signals();
 
 }  // namespace tumble::scenarios

@@ -113,7 +113,8 @@ class SizeBound {
   void point(const char*, const Eigen::Vector3d&, const char*) { bytes += kHead_bytes; }
   template <template <class...> class Rows, class Row, class... More>
   void rows(const char*, const Rows<Row, More...>& rows, const char*, const char*, Storage) {
-    // HDF5 stores a chunk without compression if deflate does not shrink the chunk, and pads the last chunk.
+    // If deflate does not shrink a chunk, HDF5 stores the chunk without compression. HDF5 pads the last chunk to the
+    // full chunk size.
     const std::uint64_t plain = std::uint64_t{rows.size()} * sizeof(Row);
     const std::uint64_t padding = plain > hdf5::kChunkBytes ? hdf5::kChunkBytes : 0;
     bytes += plain + plain / 1000 + padding + kHead_bytes;

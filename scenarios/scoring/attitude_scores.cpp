@@ -10,8 +10,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-// AttitudeError contains the parts of the attitude error e = q_est (x) q_true*, in world axes, as in BROAD (Laidig et
-// al., Data 2021). The heading of the estimate is aligned with the truth at the first sample.
+// AttitudeError contains the parts of the attitude error q_est (x) q_true*, in world axes, as in BROAD (Laidig et al.,
+// Data 2021). The heading of the estimate is aligned with the true heading at the first sample.
 struct AttitudeError {
   double inclination_rad;
   double heading_rad;

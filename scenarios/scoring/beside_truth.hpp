@@ -25,11 +25,11 @@ struct PairedRate {
   std::size_t sample = 0;                      ///< sample of the primary IMU
 
   std::uint8_t clipped_axes() const { return truth ? truth->clipped_axes : std::uint8_t{0}; }
-  /// Returns the unclipped axes whose reading a clipped sensing element disturbs (bit j: axis j), or 0 if the truth is
-  /// unknown.
+  /// Returns the unclipped axes whose readings are wrong because another sensing element is clipped (bit j: axis j).
+  /// The result is 0 if the truth is unknown.
   std::uint8_t cross_axes() const { return truth ? truth->cross_axes : std::uint8_t{0}; }
   bool has_covariance() const { return estimate->covariance_rad2_s2.diagonal().maxCoeff() > 0.0; }
-  /// Estimated minus true rate, in true IMU axes; the true rate must be known.
+  /// Returns the estimated minus the true rate, in true IMU axes. The true rate must be known.
   Eigen::Vector3d error_rad_s() const { return estimate->w_WI_I_rad_s - truth->rate_rad_s; }
 };
 

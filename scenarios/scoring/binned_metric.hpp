@@ -6,8 +6,8 @@
 
 namespace tumble::scenarios {
 
-/// BinnedMetric is a metric over the samples whose quantity `axis` is in [low, high), for example
-/// "rate_error_median_rad_s@clip_depth_rad_s:1:2".
+/// BinnedMetric is a metric that is computed only from samples in one bin: the quantity `axis` must be in [low, high).
+/// Example: "rate_error_median_rad_s@clip_depth_rad_s:1:2".
 struct BinnedMetric {
   std::string base;  ///< "rate_error_median_rad_s"
   std::string axis;  ///< ends in the unit: "clip_depth_rad_s"

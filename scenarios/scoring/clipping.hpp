@@ -19,13 +19,12 @@ inline constexpr std::uint8_t kGyroClipFlags = 0b000111;
 /// saturated if clipping changes its reading by more than the standard deviation of the gyro noise (at least 1e-6
 /// rad/s).
 ///
-/// A saturated sensing element with a tilted axis also changes the readings of the other output axes
-/// (sim/imu/elements.hpp). An unclipped axis has a cross-axis error if the saturation of another sensing element
-/// changes the reading of this axis by more than the gyro noise.
+/// A saturated sensing element whose axis is not parallel to an output axis also changes the readings of the other
+/// output axes (sim/imu/elements.hpp). An unclipped axis has a cross-axis error if the saturation of another sensing
+/// element changes the reading of this axis by more than the gyro noise.
 ///
 /// If the truth comes from a reference instrument, an axis counts as clipped if the reference confirms the saturation
-/// (reference_clipping.hpp). With a reference instrument, cross-axis errors are unknown, and no axis is marked in
-/// Sample::cross_axes.
+/// (reference_clipping.hpp). For a reference instrument, cross-axis errors are unknown, and Sample::cross_axes is 0.
 class ClippingTruth {
  public:
   struct Sample {
@@ -36,8 +35,8 @@ class ClippingTruth {
 
   ClippingTruth(const sim::Sensors& sensors, const sim::Truth& truth);
 
-  /// Interpolated true rate, and clipped axes of the sample whose averaging window contains `time_ns`; nothing where
-  /// the rate is unknown.
+  /// Returns the interpolated true rate, and the clipped axes of the sample whose averaging window contains `time_ns`.
+  /// The result is empty if the rate is unknown at this time.
   std::optional<Sample> at(std::int64_t time_ns) const;
 
   std::optional<std::size_t> index_at(std::int64_t time_ns) const;
@@ -48,7 +47,8 @@ class ClippingTruth {
   std::size_t known_samples() const;
   std::uint8_t clipped_axes(std::size_t index) const;
   std::uint8_t cross_axes(std::size_t index) const;
-  /// Largest difference, over the axes, between the gyro reading and the unclipped reading (or the reference rate).
+  /// Returns the largest difference, over the axes, between the gyro reading and the unclipped reading or, without an
+  /// unclipped reading, the reference rate.
   double depth_rad_s(std::size_t index) const;
 
  private:

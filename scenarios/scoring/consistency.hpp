@@ -5,14 +5,15 @@
 
 namespace tumble::scenarios {
 
-/// Returns error^2 / variance; if the variance is 0, returns 0 for the error 0 and infinity for other errors.
+/// Returns error^2 / variance. If the variance is 0, returns 0 for an error of 0 and infinity for any other error.
 double squared_over(double error, double variance);
 
-/// NaN counts as an error outside three standard deviations.
+/// Computes the fraction of the errors within three standard deviations. NaN counts as an error outside three standard
+/// deviations.
 bool share_within_3sigma(const std::vector<double>& squares, double& value);
 
-/// Divides the median of the normalised squared errors `squares` by the median for normally distributed errors. A mean
-/// would be dominated by the axis with the smallest variance, so the function uses the median.
+/// Divides the median of the normalised squared errors `squares` by the median for normally distributed errors. The
+/// median is used because the axis with the smallest variance would dominate a mean.
 bool normalised_median(const std::vector<double>& squares, double& value);
 
 }  // namespace tumble::scenarios

@@ -14,8 +14,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-// The scores exclude a last sweep that the primary IMU covers only partly, because some methods drop the sweep and
-// others shorten the sweep.
+// The scores exclude a last sweep that the primary IMU covers only partly, because some methods drop this sweep and
+// other methods shorten this sweep.
 std::int64_t last_sweep_before_ns(const sim::Sensors& sensors) {
   constexpr std::int64_t kAll = std::numeric_limits<std::int64_t>::max();
   if (sensors.lidars.empty() || sensors.imus.empty() || sensors.imus.front().time_ns.empty()) return kAll;
@@ -93,8 +93,8 @@ bool rotation_error_end(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-// Squared error of the last pose over its covariance (NEES), divided by the six degrees of freedom, after alignment at
-// the first pose. The mean is 1 if the covariance is consistent.
+// Computes the NEES of the last pose, after alignment at the first pose: the squared error normalised by the
+// covariance, divided by six degrees of freedom. The mean NEES is 1 if the covariance is consistent.
 bool pose_nees(const ScoredEstimate& scored, double& value) {
   if (scored.estimate().sweeps.empty() || scored.estimate().poses.empty()) return false;
   const auto* last_sweep = last_covered(scored);

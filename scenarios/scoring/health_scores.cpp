@@ -16,12 +16,13 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kWrongDeviations = 5.0;
-// If the median relative rate error or the median tilt error exceeds its limit, the estimate is wrong, independent of
-// its covariance.
+// If the median relative rate error or the median tilt error exceeds its limit, the estimate counts as wrong, even if
+// the error agrees with the covariance.
 constexpr double kWrongRateShare = 0.2, kWrongTilt_rad = 0.5;
 constexpr double kMoves_rad_s = 1.0;  // smaller rates do not count
 
-/// `deviations` are errors divided by their standard deviations; `gross` are relative rate errors or tilt errors [rad].
+/// `deviations` contains errors divided by their standard deviations. `gross` contains relative rate errors or tilt
+/// errors [rad].
 struct Errors {
   std::vector<double> deviations, gross;
 };
@@ -37,8 +38,8 @@ double relative_quantile(double limit, std::vector<double> values, double share)
   return quantile(values, share) / limit;
 }
 
-/// A health finding increases the reported covariance of the rates. The normalised errors use the covariance without
-/// the increase. A health finding therefore cannot make a wrong estimate consistent with its covariance.
+/// Computes rate errors, normalised by the covariance without the increase that health findings cause. With the
+/// increase, a health finding could make a wrong estimate consistent with its covariance.
 Errors rate_errors(const ScoredEstimate& scored) {
   const std::vector<Eigen::Matrix3d>& suspect = scored.estimate().suspect_rad2_s2;
   const std::vector<PairedRate>& pairs = paired_rates(scored);

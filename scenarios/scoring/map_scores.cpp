@@ -86,7 +86,8 @@ bool unique_share(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-// Returns the fraction of the surface hit by the lidar that the map covers; nothing without a map or without true hits.
+// Returns the fraction of the surface with lidar hits that the estimated map covers; returns nothing without a map or
+// without true hits.
 std::optional<double> covered_share(const ScoredEstimate& scored) {
   if (scored.estimate().map.empty() || scored.truth().lidars.empty()) return std::nullopt;
   const std::vector<Eigen::Vector3f> surface = seen_surface(scored.truth());
@@ -103,7 +104,7 @@ bool map_coverage(const ScoredEstimate& scored, double& value) {
   return share.has_value();
 }
 
-// A method without a map gets the value 1; an external program that returns only a trajectory gets no value.
+// The value is 1 for a method that returned no map. An external program that returns only a trajectory gets no value.
 bool failed(const ScoredEstimate& scored, double& value) {
   const Estimate& estimate = scored.estimate();
   if (scored.surface() == nullptr || (estimate.sweeps.empty() && estimate.map.empty())) return false;

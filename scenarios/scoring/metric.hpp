@@ -15,18 +15,19 @@ namespace tumble::scenarios {
 /// of the reference).
 enum class Sense { lower, higher, two_sided, none };
 
-/// The unit `verdict` means 1 for a failure, otherwise 0. The unit `time_offset` means a signed time, stored in seconds
-/// and displayed in milliseconds.
+/// The unit `verdict` means 1 for a failure, otherwise 0. The unit `time_offset` means a signed time that is stored in
+/// seconds and displayed in milliseconds.
 enum class Unit { number, share, verdict, rad, rad_s, m, m_s, m_s2, s, time_offset, mib };
 const char* symbol(Unit unit);
 
-/// Two values on one simulated run are compared by ratio (errors, normalised errors) or by difference (fractions,
-/// signed values).
+/// Compared states how the metric values of two methods on one simulated run are compared: by ratio (errors, normalised
+/// errors) or by difference (fractions, signed values).
 enum class Compared { by_ratio, by_difference };
 
-/// Place states whether gates compare a metric, and whether the report page shows the metric at its start. A gate
-/// (sweep/gate.hpp) compares new results with accepted results, for metrics with the place `held` or `headline`. The
-/// report page starts with the metrics that have the place `headline`. `tumble report --all` prints all metrics.
+/// Place states where a metric is used:
+/// - `detail`: `tumble report --all` prints the metric.
+/// - `held`: a regression gate (sweep/gate.hpp) also compares new values of the metric with accepted values.
+/// - `headline`: the report page also shows the metric at its start.
 enum class Place { detail, held, headline };
 
 inline constexpr double kNoTarget = std::numeric_limits<double>::quiet_NaN();
@@ -59,12 +60,14 @@ std::string sense_text(const MetricInfo& metric);
 
 bool is_better(const MetricInfo& metric, double a, double b);
 
-/// Returns the badness of a value: the value if lower is better, the negative value if higher is better, or the
-/// distance from the target. If value and target of a metric are positive, the distance from the target is a difference
-/// of logarithms. For an unranked metric, the badness is NaN.
+/// Returns a number that is larger for a worse value of a metric. If lower values are better, the result is the value.
+/// If higher values are better, the result is the negative value. For a metric with a target, the result is the
+/// distance from the target; if value and target are positive, the distance is a difference of logarithms. For an
+/// unranked metric, the result is NaN.
 double how_bad(const MetricInfo& metric, double value);
 
-/// Value of a failed run: infinity, or minus infinity if higher is better; NaN for two-sided and unranked metrics.
+/// Returns the value that a failed run gets: infinity if lower values are better, minus infinity if higher values are
+/// better, and NaN for two-sided and unranked metrics.
 double worst_value(const MetricInfo& metric);
 
 std::vector<std::string> headline_metrics(Kind kind);

@@ -9,8 +9,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-// The key of a cell has 21 bits per axis, so cells about two million cells apart have equal keys. Points in cells with
-// equal keys may be far apart, so Nearness also tests the distance between the points.
+// The key of a grid cell has 21 bits per axis, so cells at a distance of about two million cells have equal keys.
+// Points in cells with equal keys may be far apart, so Nearness also tests the distance between the points.
 std::uint64_t key(std::int64_t x, std::int64_t y, std::int64_t z) {
   constexpr std::uint64_t kMask = (1u << 21) - 1;
   return ((static_cast<std::uint64_t>(x) & kMask) << 42) | ((static_cast<std::uint64_t>(y) & kMask) << 21) |

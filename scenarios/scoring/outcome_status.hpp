@@ -7,10 +7,10 @@
 
 namespace tumble::scenarios {
 
-/// The method determines the statuses `ok`, `diverged` (score.hpp, `verdict`), `failed` (the method returned an error),
-/// `crashed` and `timeout`. The status `killed` has a cause outside the method: a signal from another process, a lack
-/// of memory, or a failed process start. The status `rejected` means that the scenario cannot be simulated with the
-/// seed of the run.
+/// The statuses `ok`, `diverged` (score.hpp, `verdict`), `failed` (the method returned an error), `crashed` and
+/// `timeout` result from the method itself. The status `killed` has a cause outside the method: a signal from another
+/// process, a lack of memory, or a failed process start. The status `rejected` means that the scenario cannot be
+/// simulated with the seed of the run.
 enum class OutcomeStatus { ok, diverged, failed, crashed, timeout, killed, rejected };
 
 std::span<const OutcomeStatus> outcome_statuses();

@@ -21,9 +21,9 @@ bool end_error(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-/// Divides the end error by the path length of the body's centre: the centre of a sphere, or else the centre of mass. A
-/// sensor that turns around the body's centre has a longer path, so the path of the sensor would give a smaller
-/// relative error.
+/// Divides the end error by the path length of the body's centre, which is the centre of a sphere, or the centre of
+/// mass of any other body. A sensor that turns around the body's centre has a longer path, so the path of the sensor
+/// would give a smaller relative error.
 bool end_error_share(const ScoredEstimate& scored, double& value) {
   const std::vector<PairedPose>& poses = paired_track(scored).poses;
   if (poses.empty()) return false;
@@ -40,7 +40,8 @@ bool height_error_max(const ScoredEstimate& scored, double& value) {
   value = 0.0;
   for (const PairedPose& pose : poses) {
     const double error = std::abs(pose.estimate.position_W_m.z() - pose.truth.position_W_m.z());
-    // The condition !(error <= value) is also true for a NaN error, whereas std::max would ignore NaN.
+    // The condition !(error <= value) is true for a NaN error, so that a NaN error becomes the maximum; std::max would
+    // ignore NaN.
     if (!(error <= value)) value = error;
     if (std::isnan(value)) break;
   }

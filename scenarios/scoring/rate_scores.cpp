@@ -42,8 +42,8 @@ bool clipped_max(const ScoredEstimate& scored, double& value) {
   return quantile_of(scored.once(error_norms).clipped_rad_s, 1.0, value);
 }
 
-// An interval is a sequence of samples with at least one clipped axis. The error of an interval is the norm of the mean
-// error vector, because random errors cancel in the mean.
+// A clipping interval is a sequence of samples with at least one clipped axis. The error of a clipping interval is the
+// norm of the mean error vector, because random errors cancel in the mean.
 bool segment_max(const ScoredEstimate& scored, double& value) {
   std::vector<double> offsets;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();

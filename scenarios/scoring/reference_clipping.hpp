@@ -20,11 +20,11 @@ struct ReferenceRail {
 /// Estimates the saturation plane of each gyro axis and sign from a reference rate. The estimator under test does not
 /// influence the saturation planes.
 ///
-/// Gyro readings within 5 % of the largest reading of their axis and sign may be saturated. The reference confirms the
-/// saturation of a reading if the reference rate clearly exceeds the reading. The excess must be above 2 % of the
-/// largest reading, and above four times the median difference between gyro and reference. A saturation limit exists if
-/// the reference confirms the saturation of at least five readings and of at least half of the possibly saturated
-/// readings.
+/// A gyro reading may be saturated if it is within 5 % of the largest reading of the same axis and sign. The reference
+/// confirms the saturation of a reading if the reference rate clearly exceeds the reading. The reference rate must
+/// exceed the reading by more than 2 % of the largest reading, and by more than four times the median difference
+/// between gyro and reference. A saturation limit exists if the reference confirms the saturation of at least five
+/// readings and of at least half of the possibly saturated readings.
 ///
 /// The saturation plane is fitted by least squares to the readings whose saturation the reference confirms. The slopes
 /// of the plane have the prior 0 +- 0.03, and the readings are assumed to scatter by 0.02 rad/s about the plane. A

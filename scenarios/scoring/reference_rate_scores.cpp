@@ -12,8 +12,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// A sample is certainly unclipped if the reading of every axis is below kFarShare times the extreme reading of this
-/// axis.
+/// A sample is unclipped with certainty if the reading of every axis is below kFarShare times the largest reading of
+/// this axis.
 constexpr double kFarShare = 0.9, kRotating_rad_s = 0.5;
 
 double error_norm(const Eigen::Vector3d& estimate, const Eigen::Vector3d& reference) {

@@ -18,8 +18,9 @@
 /// An estimated slip event is correct if true events, widened by kMargin_ns, cover at least half of the estimated
 /// event. A true slip event is detected if correct estimated events cover at least half of the true event.
 ///
-/// The position is lost in a true slip event if the horizontal error grows by more than kLost_m during the event. An
-/// estimate reports a lost position if its horizontal variance grows by more than kFlagged_m^2 in a slip event.
+/// A method loses the position in a true slip event if the horizontal error grows by more than kLost_m during the
+/// event. An estimate reports a lost position if its horizontal variance grows by more than kFlagged_m^2 in a slip
+/// event.
 namespace tumble::scenarios {
 
 namespace {

@@ -9,7 +9,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// OffsetFit fits a time offset by least squares: error of the estimate = offset * rate of change of the truth.
+/// OffsetFit fits a time offset by least squares. The fitted model is: error of the estimate = offset * rate of change
+/// of the truth.
 class OffsetFit {
  public:
   void add(const Eigen::Vector3d& behind, const Eigen::Vector3d& change_per_s) {
@@ -28,7 +29,7 @@ class OffsetFit {
   double product_ = 0.0, square_ = 0.0;
 };
 
-// Clipped samples are omitted, because their rate errors have other causes than a time offset.
+// Clipped samples are omitted, because a time offset is not the main cause of their rate errors.
 bool rate_offset(const ScoredEstimate& scored, double& value) {
   const ClippingTruth& truth = clipping_truth(scored);
   const std::int64_t period_ns = scored.sensors().imus.front().period_ns;

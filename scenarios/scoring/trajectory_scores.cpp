@@ -9,7 +9,8 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kSegmentM = 1.0;
-// Distance [m] between the starts of successive path segments; at most one segment starts while the robot stands still.
+// Distance [m] between the starts of successive path segments. While the robot stands still, at most one path segment
+// starts.
 constexpr double kSegmentStepM = 0.05;
 
 bool ate(const ScoredEstimate& scored, double& value) {

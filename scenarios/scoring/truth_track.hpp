@@ -15,8 +15,8 @@ namespace tumble::scenarios {
 /// error is below 13 um and 1 urad.
 class TruthTrack {
  public:
-  /// The body counts as at rest if speed and rate are below kRestSpeedMS and kRestRateRadS from kRestWindowS before
-  /// until kRestWindowS after the time.
+  /// The body counts as at rest at a time t if speed and rate are below kRestSpeedMS and kRestRateRadS from t -
+  /// kRestWindowS to t + kRestWindowS.
   static constexpr double kRestWindowS = 0.1;
   static constexpr double kRestSpeedMS = 0.03;
   static constexpr double kRestRateRadS = 0.05;
@@ -27,11 +27,14 @@ class TruthTrack {
   bool covers(std::int64_t time_ns) const;
   bool covers_attitude(std::int64_t time_ns) const;
 
-  /// Returns pose and velocity of the constructor's `frame` in the world; NaN where the position is unknown.
+  /// Returns pose and velocity of the frame `frame` (constructor argument) in the world; NaN at times with unknown
+  /// position.
   PoseState pose(std::int64_t time_ns) const;
-  /// Returns the rate of the constructor's `frame` in its own axes [rad/s]; NaN where the rate is unknown.
+  /// Returns the rate of the frame `frame` (constructor argument) in the axes of this frame [rad/s]; NaN at times with
+  /// unknown rate.
   Eigen::Vector3d rate_rad_s(std::int64_t time_ns) const;
-  /// Returns the path length of the constructor's `frame` since time 0 [m]; the pose must be known at `time_ns`.
+  /// Returns the path length of the frame `frame` (constructor argument) since time 0 [m]. The pose at `time_ns` must
+  /// be known.
   double path_m(std::int64_t time_ns) const;
   bool at_rest(std::int64_t time_ns) const;
 
@@ -60,8 +63,8 @@ struct PairedPose {
   double path_m = 0;  ///< true path length since time 0
 };
 
-/// Alignment moves the world frame of an estimate to the true world frame by position and heading only. Gravity fixes
-/// roll and pitch, so an initial tilt error counts as an error.
+/// Alignment transforms an estimate from its own world frame to the true world frame, by position and heading only.
+/// Gravity determines roll and pitch, so an initial tilt error counts as an error.
 struct Alignment {
   double yaw_rad = 0;
   Eigen::Vector3d translation_m = Eigen::Vector3d::Zero();
@@ -73,12 +76,11 @@ struct Alignment {
 
 double twist_about_z_rad(const Eigen::Quaterniond& q);
 
-/// Returns the angle of a rotation, in [0, pi], accurately for small angles and near pi.
+/// Returns the angle of a rotation in [0, pi], with high accuracy for angles near 0 and near pi.
 double rotation_angle_rad(const Eigen::Quaterniond& q);
 
-/// Returns the horizontal part of the attitude error phi, in the world frame of the estimate. The heading of `q_true`
-/// is first aligned with the heading of `q_estimate`. The attitude error phi then satisfies q_true = Exp(phi)
-/// q_estimate.
+/// Returns the horizontal part of the attitude error phi, in the world frame of the estimate. The attitude error
+/// satisfies q_true = Exp(phi) q_estimate, after the heading of `q_true` is aligned with the heading of `q_estimate`.
 Eigen::Vector2d tilt_error_rad(const Eigen::Quaterniond& q_estimate, const Eigen::Quaterniond& q_true);
 
 struct PairedTrack {

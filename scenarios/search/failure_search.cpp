@@ -82,7 +82,8 @@ class Evaluator {
   }
 
  private:
-  /// Runs that the operating system killed are repeated.
+  /// Reads the completed runs of an interrupted search from the results database. Runs that the operating system killed
+  /// are repeated.
   void read_stored() {
     for (const ScoreRow& row : results_.scores(Rows::curves)) {
       const bool own = row.kind == to_string(method_.info.kind) && row.method == method_.info.name;
@@ -149,7 +150,7 @@ class Evaluator {
                       index, outcome.message));
   }
 
-  /// A process that wrote no result crashed, was killed, or exceeded its time limit.
+  /// Returns the result of a process. A process that wrote no result crashed, was killed, or exceeded its time limit.
   static Message last_message(const DrawTask& task, const PooledEnd& ended) {
     std::size_t begin = 0;
     for (std::size_t end; (end = ended.output.find('\n', begin)) != std::string::npos; begin = end + 1) {

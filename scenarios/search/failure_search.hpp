@@ -21,7 +21,7 @@
 
 namespace tumble::scenarios {
 
-/// Key under which the results database stores the runs of a search, with the index of the run as value.
+/// Key for the runs of a failure search in the results database; the corresponding value is the index of the run.
 inline constexpr const char* kSearchRun = "search.run";
 
 struct SearchOptions {
@@ -34,8 +34,9 @@ struct SearchOptions {
   std::function<void(std::size_t runs, std::size_t failures)> on_runs;
 };
 
-/// FoundFailure is a simulated run (draw) on which the method fails. `distance` is the norm of the draw's standard
-/// normal numbers: the draw with the smallest distance has the largest probability density.
+/// FoundFailure is a simulated run on which the method fails. `distance` is the norm of the standard normal numbers
+/// from which the run's parameters were computed. The run with the smallest distance has the largest probability
+/// density.
 struct FoundFailure {
   std::size_t run = 0;  ///< index of the run
   double distance = 0.0;
@@ -56,14 +57,15 @@ struct SearchResult {
 /// Returns the names of the random streams of a scenario, as in sim::Situation: the world and each sensor.
 std::vector<std::string> stream_names(const Scenario& scenario);
 
-/// Converts the standard normal numbers of `point` to values of the scenario's random parameters, by the quantiles of
-/// their distributions (number_at). Sets the seeds of the random streams to the seeds of `point`.
+/// Returns a scenario with constant parameters. The standard normal numbers of `point` are converted to parameter
+/// values by the quantiles of the scenario's distributions (number_at). The seeds of `point` become the seeds of the
+/// random streams.
 Scenario scenario_at(const Scenario& scenario, std::span<const DrawnNumber> numbers, const SplittingPoint& point);
 
 /// Estimates the probability of a failure by adaptive multilevel splitting over all random parameters of the scenario
 /// and the seed of each random stream (splitting.hpp). Each run is simulated and estimated in a separate process, and
-/// stored in `results`. If `results` contains runs of the same search, the search continues after these runs. The
-/// result does not depend on the number of jobs.
+/// its result is stored in the database `results`. If the database contains runs of an interrupted search with equal
+/// options, the search continues after these runs. The result does not depend on the number of processes.
 ///
 /// Throws BadInput in each of these cases:
 /// - The options are invalid.

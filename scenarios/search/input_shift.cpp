@@ -14,8 +14,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Averages the standard normal numbers of a parameter over the copies of each initial draw, and then over the initial
-/// draws.
+/// Averages the standard normal numbers of a parameter over all copies of one initial draw (random run), and then over
+/// the initial draws.
 std::pair<double, std::size_t> family_mean(std::span<const ScoredPoint> draws, std::size_t number) {
   std::map<std::size_t, std::vector<double>> families;
   for (const ScoredPoint& draw : draws) families[draw.family].push_back(draw.point.normals[number]);

@@ -11,8 +11,8 @@
 
 namespace tumble::scenarios {
 
-/// InputShift compares the values of one random parameter in a set of draws, for example all failing draws, with
-/// the distribution of the parameter in the scenario.
+/// InputShift describes how the values of one random parameter in a set of runs, for example all failing runs, differ
+/// from the distribution of the parameter in the scenario.
 struct InputShift {
   std::string number;
   double shift = 0.0;      ///< mean normal score of the draws [standard deviations of the scenario's distribution]
@@ -21,10 +21,10 @@ struct InputShift {
   double scenario_low = 0.0, scenario_median = 0.0, scenario_high = 0.0;  ///< those of the scenario's distribution
 };
 
-/// Compares the values of each random parameter in the draws with the scenario's distribution. The parameter with the
-/// largest shift comes first. Because copies of one initial draw depend on each other, `shift` is averaged over the
-/// copies of each initial draw, and then over the initial draws. `corrected` is equation (S31) of statistics.md, after
-/// Holm's correction. `draws` must not be empty.
+/// Compares the values of each random parameter in a set of draws (random runs) with the scenario's distribution. The
+/// parameter with the largest shift comes first. Copies of one initial draw depend on each other. Therefore, `shift` is
+/// averaged over the copies of each initial draw, and then over the initial draws. `corrected` is the p-value by
+/// equation (S31) of docs/maths/statistics.md, after Holm's correction. The list `draws` must not be empty.
 std::vector<InputShift> input_shifts(std::span<const DrawnNumber> numbers, std::span<const ScoredPoint> draws);
 
 }  // namespace tumble::scenarios

@@ -99,7 +99,7 @@ class Splitting {
     return true;
   }
 
-  /// Returns true if the scores of at least three quarters of the current draws exceed the bound.
+  /// Returns true if at least three quarters of the current draws (random runs) have scores above the failure bound.
   bool is_at_bound() const { return failing().size() + removed_at_once() >= options_.population; }
   std::size_t removed_at_once() const { return std::max<std::size_t>(1, options_.population / kRemovedPart); }
 
@@ -131,8 +131,8 @@ class Splitting {
     return true;
   }
 
-  /// Replaces the draws with the lowest scores by copies of the remaining draws. Each remaining draw is copied once
-  /// before any draw is copied twice.
+  /// Replaces the draws (random runs) with the lowest scores by copies of the remaining draws. Each remaining draw is
+  /// copied once before any remaining draw is copied twice.
   void copy(const std::vector<std::size_t>& lowest, std::vector<std::size_t> remaining) {
     std::vector<std::size_t> copies(remaining.size(), 1);
     for (std::size_t i = 0; i < lowest.size(); ++i) {
@@ -237,7 +237,7 @@ std::map<std::size_t, double> sizes_of(std::span<const std::size_t> families) {
   return sizes;
 }
 
-/// Returns the number of ordered pairs of draws that are copies of different initial draws.
+/// Returns the number of ordered pairs of draws (random runs) that are copies of different initial draws.
 double unrelated_pairs(std::span<const std::size_t> families) {
   const auto n = static_cast<double>(families.size());
   double related = 0.0;
@@ -256,13 +256,13 @@ void SplittingEstimate::advance(std::size_t removed, std::span<const std::size_t
   log_probability_ += std::log(left / n);
   double siblings = 0.0;
   for (const std::size_t count : copies) siblings += static_cast<double>(count * count);
-  // If only one draw remains, all later draws descend from this draw, and interval() returns the limits 0 and 1.
+  // If only one draw remains, all later draws are copies of this draw, and interval() returns the limits 0 and 1.
   if (left > 1.0) log_correction_ += std::log((left - 1.0) * n * n / (left * (n * n - siblings)));
 }
 
-/// Computes the confidence interval by equation (S30) of statistics.md. The estimated probability has a log-normal
-/// distribution, whose median is below its mean. The factor exp(variance / 2) therefore corrects the upper limit of the
-/// confidence interval.
+/// Computes the confidence interval of a small probability by equation (S30) of docs/maths/statistics.md. The estimated
+/// probability has a log-normal distribution, whose median is below its mean. The factor exp(variance / 2) therefore
+/// corrects the upper limit of the confidence interval.
 Interval SplittingEstimate::interval(std::span<const std::size_t> members, double risk) const {
   const auto n = static_cast<double>(population_), own = static_cast<double>(members.size());
   const double share = own / n, log_value = log_probability_ + std::log(share);
@@ -284,10 +284,10 @@ Interval SplittingEstimate::of_failure(std::span<const std::size_t> families,
   if (log_probability_ == 0.0)
     return share_interval(static_cast<std::int64_t>(failing.size()), static_cast<std::int64_t>(population_));
   if (2 * failing.size() >= population_) return interval(failing, kRisk);
-  // If fewer than half of the population fails, the estimated probability is not log-normal. Two confidence intervals
-  // are then multiplied: of the probability that a random draw exceeds the last level, and of the failing fraction of
-  // the population. Each of the two intervals has half of the error risk. In the interval of the failing fraction, all
-  // copies of one initial draw count as one draw.
+  // If fewer than half of the current draws (random runs) fail, the estimated probability is not log-normal. The result
+  // is then the product of two confidence intervals. The first interval is for the probability that a random draw
+  // exceeds the last level. The second interval is for the fraction of the current draws that fail. Each of the two
+  // intervals has half of the error risk. For the second interval, all copies of one initial draw count as one draw.
   const Interval level = interval(families, 0.5 * kRisk);
   const auto n = static_cast<double>(sizes_of(families).size());
   const double share = static_cast<double>(failing.size()) / static_cast<double>(population_), count = share * n;

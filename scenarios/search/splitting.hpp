@@ -13,27 +13,27 @@
 /// Analysis and Applications 25:417, 2007; docs/maths/statistics.md, "Probability of a rare failure").
 namespace tumble::scenarios {
 
-/// SplittingPoint is one random draw: a standard normal number for each random parameter, and a seed for each random
+/// SplittingPoint is one random run: a standard normal number for each random parameter, and a seed for each random
 /// stream (noise of a sensor, terrain).
 struct SplittingPoint {
   std::vector<double> normals;
   std::vector<std::uint64_t> seeds;
 
-  /// Returns a single number for all seeds: if one seed changes, the number changes.
+  /// Returns a single number that is computed from all seeds, and that changes if any seed changes.
   std::uint64_t seed() const;
 };
 
-/// A ScorePoints function returns one score per draw. If the function returns fewer scores than draws, the search stops
-/// and ignores these scores.
+/// A ScorePoints function simulates draws (random runs) and returns one score per draw. If a ScorePoints function
+/// returns fewer scores than draws, the search stops and ignores these scores.
 using ScorePoints = std::function<std::vector<double>(std::span<const SplittingPoint>)>;
 
-/// Move changes the standard normal numbers of a draw at random, by a step size in (0, 1]. A Move function must
-/// preserve the standard normal distribution of the numbers.
+/// A Move function changes the standard normal numbers of a random run at random, by a step size in (0, 1]. The changed
+/// numbers must again have a standard normal distribution.
 using Move = std::function<std::vector<double>(std::span<const double> normals, double step,
                                                const std::function<double()>& normal)>;
 
-/// Returns x √(1 − step²) + step ξ, with standard normal ξ (preconditioned Crank-Nicolson), equation (S27) of
-/// statistics.md.
+/// Returns x √(1 − step²) + step ξ, for the normal numbers x and new standard normal numbers ξ. This change is a
+/// preconditioned Crank-Nicolson step, equation (S27) of docs/maths/statistics.md.
 std::vector<double> crank_nicolson(std::span<const double> normals, double step, const std::function<double()>& normal);
 
 struct SplittingOptions {
@@ -52,8 +52,8 @@ struct ScoredPoint {
   std::size_t family = 0;  ///< index of the initial draw that was copied and changed to this draw
 };
 
-/// SplittingLevel describes the population (the draws that advance together) after one step of the search. A step of
-/// the search replaces all draws with a score of at most `score` by copies of other draws.
+/// SplittingLevel describes the population (the current draws) after one step of the search. A step replaces each draw
+/// whose score is at most `score` by a copy of another draw.
 struct SplittingLevel {
   double score = 0.0;        ///< all draws after the step exceed this score
   Interval probability{};    ///< probability that a random draw exceeds the score
@@ -74,34 +74,37 @@ struct SplittingResult {
 
 /// Estimates the probability that the score of a random draw exceeds the bound.
 ///
-/// In each step, the search removes the quarter of the draws with the lowest scores. A copy of another draw replaces
-/// each removed draw. Each copy makes several Metropolis moves, and accepts a move if its score exceeds all removed
-/// scores. Half of the Metropolis moves also draw a new seed of one random stream. The probability is the product of
-/// the fractions that remain in each step and the final fraction above the bound. The search ends when at least three
-/// quarters of the draws that advance together have scores above the bound.
+/// A draw is a random run. In each step, the search removes the quarter of the draws with the lowest scores. A copy of
+/// another draw replaces each removed draw. Each copy is changed by several Metropolis moves. A move is accepted if the
+/// changed draw has a higher score than all removed draws. Half of the Metropolis moves also replace the seed of one
+/// random stream. The estimated probability is the product of the fractions of draws that remain in each step, and of
+/// the final fraction above the bound. The search ends when at least three quarters of the current draws have scores
+/// above the bound.
 ///
 /// The step size of the Metropolis moves increases if more than 40 % of the moves are accepted. The number of moves per
-/// copy follows from the acceptance rate of moves with a new seed. At least 90 % of the copies should accept a new seed
-/// if every move drew one. The 95 % interval takes into account that copies of one initial draw depend on each other.
-/// Equal options give equal results for deterministic scores. Scores may be infinite, but not NaN. Throws BadInput for
-/// invalid options or NaN scores.
+/// copy depends on the acceptance rate of moves with a new seed: if every move used a new seed, at least 90 % of the
+/// copies should accept a new seed. The 95 % interval takes into account that copies of one initial draw depend on each
+/// other. Equal options give equal results for deterministic scores. Scores may be infinite, but not NaN. Throws
+/// BadInput for invalid options or NaN scores.
 SplittingResult split(const SplittingOptions& options, const ScorePoints& score);
 
-/// SplittingEstimate accumulates the probability of a level in adaptive multilevel splitting, and the variance of its
-/// logarithm, equations (S25) to (S30) of statistics.md.
+/// SplittingEstimate accumulates an estimate of a small probability over the steps of adaptive multilevel splitting,
+/// and the variance of the logarithm of this estimate: equations (S25) to (S30) of docs/maths/statistics.md.
 class SplittingEstimate {
  public:
   explicit SplittingEstimate(std::size_t population) : population_(population) {}
 
-  /// Adds a step of the search that removed `removed` draws. For each remaining draw, `copies` contains the number of
-  /// its copies plus 1.
+  /// Adds a step of the search that removed `removed` draws (random runs). For each remaining draw, `copies` contains
+  /// the number of its copies plus 1.
   void advance(std::size_t removed, std::span<const std::size_t> copies);
 
-  /// Returns the probability that a random draw exceeds the level, with its 95 % interval.
+  /// Returns the probability that the score of a random run exceeds the current level, with the 95 % confidence
+  /// interval.
   Interval of_level(std::span<const std::size_t> families) const;
 
-  /// Returns the probability of a failure with its 95 % interval. `families` contains ScoredPoint::family (the initial
-  /// draw) of all draws after the last step, and `failing` contains ScoredPoint::family of the failing draws.
+  /// Returns the probability of a failure with the 95 % confidence interval. `families` contains ScoredPoint::family
+  /// (the index of the initial draw) of all draws after the last step. `failing` contains ScoredPoint::family of the
+  /// failing draws.
   Interval of_failure(std::span<const std::size_t> families, std::span<const std::size_t> failing) const;
 
  private:

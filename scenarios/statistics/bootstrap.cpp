@@ -33,8 +33,8 @@ double sorted_median(std::span<const double> sorted) {
   return middle_of(sorted[(n - 1) / 2], sorted[n / 2]);
 }
 
-/// Returns the acceleration of the BCa interval of the median, equation (S3) of statistics.md. For an even number of
-/// values, the acceleration of the BCa interval is zero by symmetry.
+/// Returns the acceleration of the BCa bootstrap interval of the median, equation (S3) of docs/maths/statistics.md. For
+/// an even number of values, the acceleration is zero by symmetry.
 double acceleration(std::span<const double> sorted) {
   const std::size_t n = sorted.size(), m = n / 2;
   if (n % 2 == 0) return 0.0;

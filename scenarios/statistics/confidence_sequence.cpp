@@ -20,7 +20,8 @@ Interval probability_at_any_time(std::int64_t successes, std::int64_t failures, 
   const auto trials = static_cast<double>(successes + failures), count = static_cast<double>(successes);
   const double share = count / trials;
   const auto contains = [&](double p) { return (trials + 1.0) * pdf(boost::math::binomial(trials, p), count) > risk; };
-  // The likelihood of the observed count is largest at the observed share of successes, and decreases on both sides.
+  // As a function of the probability, the likelihood of the observed count is largest at the observed fraction of
+  // successes, and decreases on both sides.
   const auto limit = [&](double outside) {
     if (contains(outside)) return outside;
     double inside = share;

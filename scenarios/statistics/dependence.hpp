@@ -20,8 +20,8 @@ struct Correlation {
 };
 
 /// Computes Spearman's rank correlation with its confidence interval (Bonett and Wright, Psychometrika 65:23, 2000;
-/// equation (S16) of statistics.md). For fewer than four pairs or a constant variable, the confidence interval of the
-/// correlation is [-1, 1].
+/// equation (S16) of docs/maths/statistics.md). For fewer than four pairs, or for a constant variable, the confidence
+/// interval of the correlation is [-1, 1].
 Correlation rank_correlation(std::span<const double> x, std::span<const double> y);
 
 struct FirstOrder {
@@ -30,14 +30,14 @@ struct FirstOrder {
   std::size_t classes = 0;  ///< 0: too few pairs
 };
 
-/// Estimates the first-order (Sobol') index of y with respect to x from existing data (Plischke, Borgonovo, Smith, EJOR
-/// 226:536, 2013). The runs are sorted by x and divided into equally large classes. The estimator computes the variance
-/// of the class means of y, equation (S18) of statistics.md. Equation (S19) corrects the first-order index for chance,
-/// because class means of y also vary if y is independent of x.
+/// Estimates the first-order (Sobol') sensitivity index of y with respect to x from existing data (Plischke, Borgonovo,
+/// Smith, EJOR 226:536, 2013). The data are sorted by x and divided into equally large classes. The estimate is based
+/// on the variance of the class means of y, equation (S18) of docs/maths/statistics.md. Equation (S19) corrects the
+/// first-order index for chance, because class means of y also vary if y is independent of x.
 FirstOrder first_order_index(std::span<const double> x, std::span<const double> y);
 
-/// The 95 % interval of a class is Student's (mean), from order statistics (median), or Clopper and Pearson's (fraction
-/// of ones).
+/// The statistic of a class has a 95 % confidence interval: Student's interval for the mean, order statistics for the
+/// median, and the interval of Clopper and Pearson for a fraction of ones (`share`).
 enum class Centre { mean, median, share };
 
 struct DependenceClass {
@@ -48,10 +48,10 @@ struct DependenceClass {
 
 inline constexpr std::size_t kDependenceClassesMax = 8, kDependenceDrawsMin = 12;
 
-/// Computes the partial dependence of y on x, equations (S22) and (S23) of statistics.md. The runs are sorted by x and
-/// divided into at most `kDependenceClassesMax` equally large classes, with at least `kDependenceDrawsMin` runs each.
-/// For each class, the function computes a statistic of y. The data must come from simulated runs with independent
-/// random numbers.
+/// Computes the partial dependence of y on x, equations (S22) and (S23) of docs/maths/statistics.md. The data are
+/// sorted by x and divided into at most `kDependenceClassesMax` equally large classes, with at least
+/// `kDependenceDrawsMin` values each. For each class, the function computes a statistic of y. The data must come from
+/// simulated runs with independent random numbers.
 std::vector<DependenceClass> partial_dependence(std::span<const double> x, std::span<const double> y, Centre centre);
 
 }  // namespace tumble::scenarios

@@ -12,8 +12,8 @@ struct Interval {
   double value, low, high;
 };
 
-/// Returns the sample quantile (Hyndman and Fan type 7) of the values other than NaN, or NaN if all values are NaN.
-/// Infinite values rank like finite values, so that failures are worst.
+/// Returns the sample quantile (Hyndman and Fan, type 7) of the values without NaN, or NaN if all values are NaN.
+/// Infinite values count as the largest values, so that failures are worst.
 double quantile(std::span<const double> values, double share);
 std::optional<double> quantile_of_all(std::span<const double> values, double share);
 bool quantile_of(std::span<const double> values, double share, double& value);
@@ -28,14 +28,14 @@ double median_of(const std::vector<Row>& rows, double Row::*member) {
   return quantile(values, 0.5);
 }
 
-/// Returns the median with its distribution-free confidence interval from order statistics (binomial). With too few
-/// values, the ends of the confidence interval of the median are infinite.
+/// Returns the median with its distribution-free confidence interval from order statistics (binomial). If there are too
+/// few values, the ends of the confidence interval are infinite.
 Interval median_interval(std::span<const double> values);
 
-/// Returns the fraction of successes with its exact confidence interval (Clopper and Pearson).
+/// Returns the fraction of successes with the exact confidence interval of Clopper and Pearson.
 Interval share_interval(std::int64_t count, std::int64_t total);
 
-/// Appends `worst` once for each failed run; if `worst` is NaN, appends nothing.
+/// Appends the value `worst` once for each failed run. If `worst` is NaN, nothing is appended.
 std::vector<double> with_failures(std::vector<double> values, std::size_t failed, double worst);
 
 }  // namespace tumble::scenarios

@@ -11,14 +11,14 @@
 
 namespace tumble::scenarios {
 
-/// Margin is the largest accepted deficit of a method (non-inferiority margin), in the metric's unit or as a fraction
-/// of the reference method's value.
+/// Margin is the non-inferiority margin: the largest accepted amount by which a method may be worse than the reference
+/// method. The amount is in the metric's unit, or a fraction of the reference method's value.
 struct Margin {
   double value = 0.0;
   bool relative = false;
 };
 
-/// Returns how much worse the metric value `own` is than the value `other` on a simulated run, minus the accepted
+/// Returns by how much the metric value `own` is worse than the value `other` on a simulated run, minus the accepted
 /// margin. The result is infinite if only the method with the value `own` failed, and 0 if both methods failed.
 double worse_by(const MetricInfo& info, double own, double other, const Margin& allowed);
 
@@ -44,16 +44,16 @@ inline bool one_section(const Contest& a, const Contest& b) {
   return a.scenario == b.scenario && a.kind == b.kind && a.against == b.against;
 }
 
-/// A failed run counts as the worst value of a metric. If both methods failed or have equal values, neither method is
-/// better.
+/// MetricComparison compares the values of one metric of two methods. A failed run counts as the worst value of the
+/// metric. If both methods failed or have equal values on a run, neither method is better.
 struct MetricComparison {
   Contest contest;
   std::string metric;
   std::int64_t pairs = 0, better = 0, worse = 0;
   double median = 0.0, against_median = 0.0;
-  /// Median of the paired differences, method minus reference, with its BCa interval (bias-corrected bootstrap). For a
-  /// metric with a target, distances from the target are subtracted: distance of the method minus distance of the
-  /// reference.
+  /// Median of the paired differences (value of the method minus value of the reference), with a bias-corrected
+  /// bootstrap interval (BCa). For a metric with a target, the differences are differences of the distances from the
+  /// target.
   Interval difference{};
   double sign_chance = 1.0, rank_chance = 1.0;  ///< two-sided p-values
   double corrected = 1.0;                       ///< `rank_chance` after Holm's correction
@@ -64,8 +64,8 @@ struct MetricComparison {
   double pairs_needed = 0.0;                    ///< may be infinite
 };
 
-/// FailureComparison compares the failures of two methods: runs whose status is not ok, or runs with 1 in a pass-fail
-/// metric. A run that is not ok also fails each pass-fail metric.
+/// FailureComparison compares the failures of two methods. A failure is a run whose status is not ok, or a run with the
+/// value 1 of a pass-fail metric. A run whose status is not ok also fails each pass-fail metric.
 struct FailureComparison {
   Contest contest;
   std::string what;  ///< "not ok", "map_failed"
@@ -81,8 +81,9 @@ struct Comparison {
   std::vector<FailureComparison> failures;
 };
 
-/// Compares each method with the reference method. A metric without a sense, for example a cost, is compared only if
-/// the caller names the metric. For a metric without a sense, the finding is always Finding::undecided.
+/// Compares each method with the reference method. A metric without a better direction, for example a cost, is compared
+/// only if the caller names the metric. For a metric without a better direction, the finding is always
+/// Finding::undecided.
 Comparison compare(const Summary& summary, const ComparisonOptions& options);
 
 }  // namespace tumble::scenarios

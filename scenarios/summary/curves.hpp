@@ -12,7 +12,8 @@
 
 namespace tumble::scenarios {
 
-/// Failed runs count as the worst values of a metric, so a quantile of the metric can be infinite.
+/// CurvePoint is one point of a curve. Failed runs count as the worst values of a metric, so a quantile of the metric
+/// can be infinite.
 struct CurvePoint {
   double x = 0.0;
   std::string label;  ///< label of a bin: "0.5 – 1"
@@ -44,7 +45,7 @@ struct Curve {
 /// - the bins of a binned metric
 /// - a measure of the gyro clipping of a run, if the runs fill at least three bins of this measure
 ///
-/// A run counts as failed if its status is not `ok` or its map failed.
+/// A run counts as failed if its status is not `ok`, or if the metric `map_failed` is 1.
 std::vector<Curve> find_curves(const Results& results);
 std::vector<Curve> find_curves(const Results& results, std::span<const DrawValues> draws, Summary& summary);
 

@@ -34,7 +34,8 @@ struct FailedOn {
 
 std::vector<FailedOn> rank_failures(const Summary& summary);
 
-/// Runs on which only methods with access to the truth failed are omitted.
+/// Chooses runs on which methods failed. A run is omitted if the only failed methods are methods that receive the
+/// truth.
 std::vector<ExampleDraw> choose_failures(const Summary& summary, std::span<const ExampleCandidate> candidates,
                                          std::size_t count);
 

@@ -9,7 +9,7 @@
 #include "scenarios/statistics/statistics.hpp"
 #include "scenarios/sweep/suite_triage.hpp"
 
-/// The functions compute how much a method improves if one of its inputs is replaced by the true value
+/// The functions in input_worth.hpp compute how much a method improves if the true value replaces one of its inputs
 /// (docs/maths/statistics.md).
 namespace tumble::scenarios {
 
@@ -22,8 +22,8 @@ struct InputWorth {
   std::int64_t broken = 0;             ///< failures only with the true input
   Interval cured_share{};              ///< `cured` / `failed`, 95 % interval
   std::int64_t better = 0, worse = 0;  ///< runs with a better or worse metric
-  /// Median decrease of how_bad() if the method gets the true input, with its bias-corrected bootstrap interval (BCa).
-  /// A run whose status is not ok counts as the worst value of the metric.
+  /// Median decrease of how_bad() (larger for worse metric values) if the method gets the true input, with a
+  /// bias-corrected bootstrap interval (BCa). A run whose status is not ok counts as the worst value of the metric.
   Interval improvement{};
   double chance = 1.0;     ///< two-sided signed-rank test
   double corrected = 1.0;  ///< `chance` after Holm's correction

@@ -25,8 +25,8 @@ struct PublishedExtreme {
   double rate_rad_s, force_m_s2;
 };
 
-/// MotionMap is the density of all simulated runs over their maximum rate and maximum specific force, on a grid with
-/// logarithmic axes.
+/// MotionMap contains the density of all simulated runs on a grid, whose logarithmic axes are the maximum rate and the
+/// maximum specific force of a run.
 struct MotionMap {
   static constexpr std::size_t kCells = 48;  ///< number of cells per axis
   static constexpr std::size_t kPointsMax = 500;
@@ -37,9 +37,10 @@ struct MotionMap {
   std::vector<PublishedExtreme> extremes;  ///< published values for the plot
 };
 
-/// The density of the runs is a histogram, smoothed along both logarithmic axes by a Gaussian. The width of the
-/// Gaussian is Scott's sigma n^(-1/6) (Multivariate Density Estimation, 1992, section 6.3), but at least half a cell.
-/// The maximum rate and the maximum force of a run may occur at different times.
+/// Computes the density of the runs as a histogram, smoothed along both logarithmic axes by a Gaussian. The standard
+/// deviation of the Gaussian is Scott's sigma n^(-1/6) (Multivariate Density Estimation, 1992, section 6.3) for n runs
+/// with the standard deviation sigma, but at least half a cell. The maximum rate and the maximum force of a run may
+/// occur at different times.
 MotionMap motion_map(std::span<const DrawValues> draws);
 
 }  // namespace tumble::scenarios

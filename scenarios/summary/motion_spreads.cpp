@@ -52,8 +52,9 @@ constexpr std::array kQuantities = {
              kNone, Over::share_of_draws},
 };
 
-/// Samples within a run are correlated, so each run counts as one cluster. The confidence interval of the weighted mean
-/// comes from the ratio estimator for cluster samples (Cochran, Sampling Techniques, 1977, section 9A.2).
+/// Computes a mean over the samples of all runs with its confidence interval. Samples within a run are correlated, so
+/// each run counts as one cluster. The interval comes from the ratio estimator for cluster samples (Cochran, Sampling
+/// Techniques, 1977, section 9A.2).
 Interval pooled(std::span<const DrawValues* const> draws, const std::string& metric) {
   std::vector<std::pair<double, double>> weighted;  // clipped samples, fraction
   double samples = 0.0, hits = 0.0, square = 0.0;

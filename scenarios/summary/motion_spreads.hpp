@@ -16,7 +16,8 @@ struct Spread {
   std::string quantity;  ///< "largest rate"
   std::string unit;
   std::string published;  ///< empty if none
-  /// Limits of the published values of the quantity, in `unit`; equal limits: one value; NaN: no published value
+  /// Limits of the published values of the quantity, in `unit`. A single published value gives equal limits; without a
+  /// published value, the limits are NaN.
   double published_low = std::numeric_limits<double>::quiet_NaN();
   double published_high = std::numeric_limits<double>::quiet_NaN();
   double factor = 1.0;         ///< conversion from SI to `unit`

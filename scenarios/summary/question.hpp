@@ -10,8 +10,8 @@
 #include "scenarios/summary/comparison.hpp"
 #include "scenarios/sweep/results.hpp"
 
-/// A sweep over many simulated runs can stop early if a confidence sequence shows whether one method is better than
-/// another (docs/maths/statistics.md, "Confidence sequence").
+/// A sweep over many simulated runs can stop early if a confidence sequence already shows whether one method is better
+/// than another method (docs/maths/statistics.md, "Confidence sequence").
 namespace tumble::scenarios {
 
 inline constexpr const char* kQuestionNote = "until";
@@ -37,11 +37,12 @@ struct Answer {
 
 void require_sound(const Question& question);
 
-/// Stores the question (is one method better than another?) in the results database before the first run. Throws
-/// BadInput if the database contains a different question, or contains runs but no question.
+/// Stores the question of a sweep (is one method better than another method?) in the results database before the first
+/// run. Throws BadInput if the database contains a different question, or contains runs but no question.
 void claim(Results& results, const Question& question, const std::filesystem::path& database);
 
-/// All simulated runs up to the seed `last_seed` must be complete; later runs have no effect.
+/// Answers the question separately for each scenario. All simulated runs up to the seed `last_seed` must be complete,
+/// and later runs have no effect.
 std::vector<Answer> answers(const Results& results, const Question& question, std::uint64_t last_seed);
 
 const char* finding_text(const Answer& answer, const Question& question);

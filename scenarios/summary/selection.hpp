@@ -15,7 +15,7 @@ bool is_selected(std::span<const std::string> names, Kind kind, const MethodSumm
 
 void require_held(const Summary& summary, std::span<const std::string> methods, std::span<const std::string> metrics);
 
-/// Medians, intervals and counts still refer to all simulated runs, not only to the listed ones.
+/// Limits the number of listed runs to `most`. Medians, intervals and counts still refer to all simulated runs.
 Summary at_most_draws(const Summary& summary, std::size_t most);
 
 }  // namespace tumble::scenarios

@@ -17,12 +17,13 @@ namespace tumble::scenarios {
 
 inline constexpr double kInfluenceRisk = 0.05;
 
-/// Values of the random parameters of a scenario's simulated runs, by parameter name; each list is sorted by seed
+/// Values of each random parameter in the simulated runs of a scenario, by parameter name. The values of a parameter
+/// are sorted by seed.
 using NumbersOfDraws = std::map<std::string, std::vector<RankedValue>>;
 
 NumbersOfDraws numbers_of_draws(const Summary& summary, const Scenario& scenario);
-/// Motion values, for example the peak rate, are effects of the random parameters, so their correlation with a score
-/// may have a common cause.
+/// Returns motion values of the runs, for example the peak rate. Motion values are effects of the random parameters, so
+/// a correlation between a motion value and a score may have a common cause.
 NumbersOfDraws numbers_of_motion(std::span<const DrawValues> draws, const std::string& scenario);
 
 struct Influence {
@@ -30,7 +31,8 @@ struct Influence {
   Correlation correlation;  ///< positive: larger is worse
   FirstOrder first_order;   ///< of the score's ranks
   double corrected = 1.0;   ///< p-value after Holm's correction
-  /// Median scores over the quarters of the runs with the lowest and with the highest parameter values
+  /// Median score over the quarter of the runs with the lowest parameter values, and over the quarter with the highest
+  /// parameter values.
   double median_low = 0.0, median_high = 0.0;
   std::vector<DependenceClass> dependence = {};
   double strength() const;
@@ -51,8 +53,8 @@ struct SensitivityOptions {
 
 inline constexpr std::size_t kSensitivityDrawsMin = 12, kSensitivityFailuresMin = 5;
 
-/// Combinations of scenario, method and metric with too few simulated runs are omitted. Failed runs count as the worst
-/// values of the metric.
+/// Computes the influence of each random parameter on each metric. Combinations of scenario, method and metric with too
+/// few simulated runs are omitted. Failed runs count as the worst values of the metric.
 std::vector<Sensitivity> sensitivities(const Summary& summary, const std::map<std::string, NumbersOfDraws>& numbers,
                                        const SensitivityOptions& options);
 

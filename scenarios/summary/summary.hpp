@@ -24,7 +24,8 @@ struct Wins {
   std::int64_t count = 0, pairs = 0;
 };
 
-/// Failed runs count as the worst values in all statistics, so the median is infinite if half of the runs fail.
+/// MetricSummary contains statistics of one metric. Failed runs count as the worst values, so the median is infinite if
+/// half of the runs fail.
 struct MetricSummary {
   Interval centre{};  ///< median or fraction, 95 % interval
   double quantile_95 = 0.0;

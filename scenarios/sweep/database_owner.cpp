@@ -52,7 +52,8 @@ std::string who_holds(int fd) {
   return line.empty() ? "another process" : line;
 }
 
-/// The previous owner may have removed the lock file after this process opened it.
+/// Returns true if `path` is still the lock file that this process opened. Another process may have removed the lock
+/// file in the meantime.
 bool is_at(const fs::path& path, int fd) {
   struct stat open {
   }, named{};

@@ -9,7 +9,7 @@
 namespace tumble::scenarios {
 
 /// DatabaseOwner has exclusive write access to a results database by a lock (flock) on the file FILE.lock; readers need
-/// no lock. The operating system releases this file lock when the process ends.
+/// no lock. The operating system releases the file lock when the process ends.
 class DatabaseOwner {
  public:
   explicit DatabaseOwner(const std::filesystem::path& database);

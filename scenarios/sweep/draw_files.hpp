@@ -14,8 +14,8 @@ namespace tumble::scenarios {
 
 inline constexpr const char* kUnfinished = ".unfinished";
 
-/// UnfinishedFolder is an incomplete folder, WITHIN/.unfinished/NAME. The destructor removes the incomplete folder
-/// unless move_into_place() has moved the folder to its final path.
+/// UnfinishedFolder is an incomplete folder, WITHIN/.unfinished/NAME. The destructor removes the incomplete folder,
+/// unless move_into_place() has moved the folder to the final path.
 class UnfinishedFolder {
  public:
   UnfinishedFolder(const std::filesystem::path& place, const std::filesystem::path& within);

@@ -63,8 +63,8 @@ void run_method_child(const Method& method, const SimulatedDraw& draw, const Sim
   const double before_mib = resident_mib();
   Outcome outcome;
   const Estimate estimate = run_method(method, draw, outcome);
-  // For an external command, the operating system also counts the memory of the forked process, so peak memory is
-  // recorded only for built-in methods.
+  // Peak memory is recorded only for built-in methods. For an external command, the operating system also counts the
+  // memory of the forked process.
   const bool own = method.info.version.empty();
   if (own) outcome.scores.push_back({"estimate_peak_mib", std::max(0.0, peak_mib() - before_mib)});
   assess(method, scored, surface, estimate, outcome);
@@ -83,7 +83,8 @@ bool read_until(Process& process, double deadline_s, std::string& buffer) {
   }
 }
 
-/// External methods of other kinds than `rate` receive all sensor data, so they count as methods that need lidar data.
+/// Returns true if a method needs lidar data. External methods receive all sensor data, so an external method needs
+/// lidar data unless its kind is `rate`.
 bool reads_lidars(const MethodInfo& info) {
   return info.kind == Kind::slam || (info.kind != Kind::rate && !info.version.empty());
 }
@@ -249,8 +250,8 @@ std::vector<Outcome> without_answer(const DrawTask& task, OutcomeStatus status, 
 void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int fd, bool recordings_unseen) {
   const std::unique_ptr<const MadeDraw> made = made_draw(data, task, fd, recordings_unseen);
   if (!made) return;
-  // malloc_trim() returns the freed memory of the simulation to the operating system, because freed memory would hide
-  // the memory use of the method.
+  // malloc_trim() returns the freed memory of the simulation to the operating system. Otherwise, the method could reuse
+  // this memory, and the measured memory of the method would be too small.
   malloc_trim(0);
   DrawFiles files(task.keeping);
   bool failed = false;

@@ -26,19 +26,20 @@ struct DrawTask {
   Keeping keeping;  ///< only for unmodified scenarios
 };
 
-/// Time limit of a simulation, in multiples of the time limit of one method
+/// Time limit of a simulation, as a multiple of the time limit of one method.
 inline constexpr double kSimulateTimeouts = 2.0;
 
 OutcomeStatus ended_as(const Process::End& end);
 
 std::vector<Outcome> without_answer(const DrawTask& task, OutcomeStatus status, const std::string& message);
 
-/// Writes one message per line to `fd`: the outcome of a method, or an error if the draw cannot be simulated or read.
+/// Simulates or reads a run and runs its methods. Writes one message per line to `fd`: the outcome of a method, or an
+/// error if the run cannot be simulated or read.
 void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int fd, bool recordings_unseen = false);
 
-/// Runs one method in a separate process for at most `timeout_s` of wall time; a crash, a time-out or an exception
-/// becomes an outcome. `scored` contains the truth for the scores, and equals `draw` unless the sensor data were
-/// changed.
+/// Runs one method in a separate process for at most `timeout_s` of wall time. A crash, a time-out or an exception of
+/// the method becomes an outcome with a corresponding status. `scored` contains the truth for the scores, and equals
+/// `draw` unless the sensor data were changed.
 Outcome run_isolated(const Method& method, const SimulatedDraw& draw, const SimulatedDraw& scored,
                      const sim::Surface* surface, double timeout_s, const std::filesystem::path& folder = {},
                      std::string* not_kept = nullptr);

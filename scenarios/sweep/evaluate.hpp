@@ -27,10 +27,12 @@ struct SimulatedDraw {
   bool has_truth = true;  ///< false: estimated, not scored
 };
 
-/// The simulation of lidars is slow, and methods of kind `rate` do not read lidars.
+/// Lidars can be left out of a simulation, because their simulation is slow, and methods of kind `rate` do not use
+/// lidar data.
 enum class Lidars { simulated, left_out };
 
-/// Without lidars, motion and IMU readings are bit-identical, but the digest of the recording differs.
+/// Simulates a run. With or without lidars, motion and IMU readings are bit-identical, but the digest (hash) of the
+/// recording differs.
 SimulatedDraw simulate_draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, int threads,
                             Lidars lidars = Lidars::simulated);
 
@@ -44,15 +46,16 @@ void require_applies(const Method& method, const Scenario& scenario);
 
 Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& outcome);
 
-/// Without the truth, the estimate of a built-in method counts as diverged if its health reports a fault that
-/// invalidates the estimate.
+/// Sets the status of an outcome for a recording without truth. The estimate of a built-in method counts as diverged if
+/// its health findings contain a fault that invalidates the estimate.
 void judge_without_truth(const MethodInfo& info, const Estimate& estimate, Outcome& outcome);
 
 void assess(const Method& method, const SimulatedDraw& draw, const sim::Surface* surface, const Estimate& estimate,
             Outcome& outcome);
 
-/// Returns a copy of the simulated run `draw` with the IMU time stamps of `given`, the run with added errors. The
-/// scores then compare each estimate with the truth of its IMU sample.
+/// Returns a copy of the simulated run `draw` with the IMU time stamps of `given`, which is the same run with added
+/// sensor errors. With these time stamps, the scores compare each estimate with the truth of the corresponding IMU
+/// sample.
 SimulatedDraw scored_by(const SimulatedDraw& draw, const SimulatedDraw& given);
 
 double process_cpu_s();
@@ -70,7 +73,8 @@ struct RunResult {
   std::vector<Outcome> outcomes;    ///< parallel to methods
 };
 
-/// A `setting` changes one parameter of the run. The returned recording contains the sensor data that methods receive.
+/// Simulates a scenario and runs the methods. `setting` changes one parameter of the scenario or of the sensor data.
+/// The returned recording contains the sensor data that the methods receive.
 RunResult run_situation(const DataRoot& data, const Scenario& scenario, std::uint64_t seed,
                         std::span<const MethodPointer> methods, int threads, Lidars lidars = Lidars::simulated,
                         const Setting& setting = {});
@@ -87,8 +91,8 @@ std::string run_digest(const RunResult& result);
 /// - `motion_cross_axis_share`: fraction of the clipped samples in which clipping also disturbs an unclipped axis
 DrawValues motion_values(const std::string& scenario, std::uint64_t seed, const sim::Recording& recording);
 
-/// The clipping values `motion_clips`, `motion_clipped_share`, `motion_clipped_samples` and
-/// `motion_clip_depth_max_rad_s` need reference rates.
+/// Computes statistics of a recorded motion. The clipping values `motion_clips`, `motion_clipped_share`,
+/// `motion_clipped_samples` and `motion_clip_depth_max_rad_s` need reference rates.
 DrawValues recorded_motion_values(const std::string& scenario, std::uint64_t seed, const sim::Recording& recording);
 
 }  // namespace tumble::scenarios

@@ -13,16 +13,17 @@
 #include "scenarios/sweep/results.hpp"
 
 /// A gate compares new results of a suite with accepted results. New and accepted results contain the same scenarios
-/// and seeds with equal sensor data, so each test compares pairs of values. The gate tests:
+/// and seeds with equal sensor data, so each test compares pairs of values. The gate performs these tests:
 ///
-/// - Outcomes: a run that was ok must be ok again, and a pass-fail metric (`map_failed`) must not change to 1.
-/// - Presence: if the accepted outcome of a run has a metric and the new outcome is ok, the new outcome must have the
-///   metric too.
+/// - Outcomes: a run whose accepted status is ok must have the status ok again, and a pass-fail metric (`map_failed`)
+///   must not change to 1.
+/// - Presence: if the accepted outcome of a run contains a metric and the new status is ok, the new outcome must also
+///   contain the metric.
 /// - Median: no metric may become worse by more than the margin, by the exact signed-rank test of the paired
 ///   differences. For a metric with a target, the test has two sides, because a covariance can also become too small.
 /// - Median over all scenarios of a method: this test detects shifts that are too small to detect in one scenario.
-/// - Worst run: no value may be worse than `worst` times the worst accepted value. Tests of the median cannot detect a
-///   single bad run.
+/// - Worst run: no value may be worse than `worst` times the worst accepted value, because tests of the median cannot
+///   detect a single bad run.
 ///
 /// If the new results are not worse, the probability that any test of a median fails is at most `risk` (Bonferroni).
 namespace tumble::scenarios {
@@ -52,8 +53,8 @@ struct GatePolicy {
   double worst = 2.0;           ///< worst new over worst accepted value
 };
 
-/// A gate has two files in git: the accepted results of a suite (scenarios/gates/SUITE.csv) and the limits for new
-/// results (SUITE.yaml).
+/// Gate contains the accepted results of a suite and the limits for new results. The two parts are stored in two files
+/// in git, scenarios/gates/SUITE.csv and SUITE.yaml.
 struct Gate {
   std::string suite;
   GatePolicy policy;
@@ -61,8 +62,8 @@ struct Gate {
 };
 
 std::vector<std::string> gate_names(const DataRoot& data);
-/// Reads the accepted results and the limits of a regression gate from its two files. A gate may contain the results of
-/// an external method only if the method is in `described`.
+/// Reads the accepted results and the limits of a regression gate from two files. A gate may contain results of an
+/// external method only if `described` contains this method.
 Gate load_gate(const DataRoot& data, const std::string& name, std::span<const MethodPointer> described = {});
 std::string to_yaml(const Gate& gate);
 std::string to_csv(const GateRun& run);

@@ -175,7 +175,7 @@ fs::path KeptDraws::folder_of(const DrawName& draw) const {
 
 bool KeptDraws::holds(const DrawName& draw, std::span<const Outcome> estimated) const {
   const fs::path folder = folder_of(draw);
-  // The file `command` is written last, so the file marks a complete folder of a kept run.
+  // The file `command` is written last, so its presence marks a complete folder of a kept run.
   return guarded([&] {
     return fs::exists(folder / kDrawCommand) &&
            std::all_of(estimated.begin(), estimated.end(), [&](const Outcome& row) {

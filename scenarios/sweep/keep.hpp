@@ -16,8 +16,8 @@
 
 namespace tumble::scenarios {
 
-/// The selection of kept simulated runs depends only on the results, and not on interruptions or parallel parts of the
-/// sweep.
+/// Keep selects the simulated runs whose files are kept. The selection depends only on the results, and not on
+/// interruptions or parallel parts of the sweep.
 struct Keep {
   enum class Which { none, failed, worst, all };
   Which which = Which::none;
@@ -37,11 +37,12 @@ struct DrawName {
   auto operator<=>(const DrawName&) const = default;
 };
 
-/// `worst` selects the worst runs per scenario and method (without methods that use the truth), ranked by the first
-/// headline metric of the method's kind.
+/// Selects the runs whose files are kept. The setting `worst` selects the worst runs of each scenario and method,
+/// ranked by the first headline metric of the method's kind. Methods that use the truth are ignored.
 std::set<DrawName> draws_to_keep(const Results& results, const Keep& keep);
 
-/// KeptDraws is the folder of kept runs next to a database, FILE.db.files/kept; each run has a folder SCENARIO/SEED/.
+/// KeptDraws is the folder of kept runs next to a results database, FILE.db.files/kept. Each kept run has a folder
+/// SCENARIO/SEED/.
 class KeptDraws {
  public:
   explicit KeptDraws(const std::filesystem::path& database);
@@ -51,8 +52,8 @@ class KeptDraws {
   std::vector<DrawName> found() const;
   void remove(const DrawName& draw) const;
   void discard_unfinished() const;
-  /// Copies a run from the folder `from`, or only the estimates that the destination lacks. Returns false if `from`
-  /// does not contain the run.
+  /// Copies a kept run from the folder `from`. If the run exists in the destination, only the missing estimates are
+  /// copied. Returns false if `from` does not contain the run.
   bool take(const DrawName& draw, const KeptDraws& from) const;
 
  private:

@@ -9,10 +9,10 @@
 
 namespace tumble::scenarios {
 
-/// Joins results databases into `out`; a failed merge leaves `out` unchanged. Of two rows with the same scenario, seed
-/// and method, the row with the higher-ranked status is kept. Throws BadInput if two scored rows differ in status,
-/// digest or a score other than cost, because one build must give one result. If `mixed` is true, rows of different
-/// builds are joined; of two differing rows for the same run, the first is kept.
+/// Joins several results databases into the database `out`. If the merge fails, `out` stays unchanged. If two rows have
+/// the same scenario, seed and method, the row with the higher-ranked status is kept. Throws BadInput if two scored
+/// rows differ in status, digest or a score other than cost, because one build must give one result. If `mixed` is
+/// true, rows of different builds are joined, and if two rows of one run differ, the first row is kept.
 MergeCounts merge_results(const DatabaseOwner& out, std::span<const std::filesystem::path> in, bool mixed);
 
 }  // namespace tumble::scenarios

@@ -8,7 +8,7 @@
 
 namespace tumble::scenarios {
 
-/// One member of a message is set.
+/// Message is what a worker process reports to the main process. Exactly one member of a Message is set.
 struct Message {
   std::optional<Outcome> outcome;
   std::optional<RejectedDraw> rejected;
@@ -16,7 +16,8 @@ struct Message {
   std::optional<std::string> not_kept = std::nullopt;  ///< why files were not kept
 };
 
-/// The function from_line() restores finite numbers bit-exactly; other numbers become NaN.
+/// Converts a message to one line of text. from_line() restores finite numbers bit-exactly, and converts all other
+/// numbers to NaN.
 std::string to_line(const Message& message);
 
 std::optional<Message> from_line(const std::string& line);

@@ -11,8 +11,8 @@
 
 namespace tumble::scenarios {
 
-/// Setting is one value of a scenario or method parameter that a suite varies; with an empty key, scenario and methods
-/// are unmodified.
+/// Setting is one value of a parameter that a suite varies, either of a scenario or of a method. With an empty key,
+/// scenario and methods are unmodified.
 struct Setting {
   std::string key;
   double value = 0.0;
@@ -34,7 +34,8 @@ struct Outcome {
   Setting setting = {};
 };
 
-/// Motion values of one simulated run, such as the peak rate, are independent of the methods.
+/// DrawValues contains motion values of one simulated run, for example the peak rate, which do not depend on the
+/// methods.
 struct DrawValues {
   std::string scenario;
   std::uint64_t seed = 0;

@@ -8,7 +8,8 @@
 
 #include "scenarios/sweep/evaluate.hpp"
 
-/// Each recording in a suite counts as one simulated run, with the file's name as scenario and with seed 1.
+/// In a suite, each recording counts as one simulated run, with the file's name as name of the scenario, and with seed
+/// 1.
 namespace tumble::scenarios {
 
 inline constexpr std::uint64_t kRecordingSeed = 1;
@@ -22,7 +23,8 @@ struct RecordedDraw {
   bool has_truth = false;
 };
 
-/// A pattern has the syntax of glob(7); a relative pattern starts in `folder`.
+/// Finds the recordings whose paths match the patterns. A pattern has the syntax of glob(7), and a relative pattern
+/// starts in `folder`.
 std::vector<RecordedDraw> find_recordings(std::span<const std::string> patterns, const std::filesystem::path& folder);
 
 std::vector<MethodPointer> applicable(std::span<const MethodPointer> methods, const RecordedDraw& recording);

@@ -13,7 +13,7 @@
 
 namespace tumble::scenarios {
 
-// SQLite stores NaN as null.
+// Stores an outcome. SQLite stores the number NaN as null.
 void Results::Impl::store(const std::string& kind, const Outcome& outcome) {
   Transaction transaction(*this);
   if (!kind.empty()) {

@@ -18,8 +18,8 @@
 
 namespace tumble::scenarios {
 
-/// An outcome without scores has one row with an empty metric and the value NaN. A run that could not be simulated has
-/// one row with empty kind and method and the status `rejected`.
+/// ScoreRow is one metric value of one outcome. An outcome without scores has one row with an empty metric and the
+/// value NaN. A run that could not be simulated has one row with empty kind and method and the status `rejected`.
 struct ScoreRow {
   std::string scenario;
   std::uint64_t seed;
@@ -39,7 +39,7 @@ struct MergeCounts {
 
 using Names = std::set<std::string, std::less<>>;
 
-/// The pointers in an OutcomeView are valid until the next outcome; pointers to names stay valid.
+/// The pointers in an OutcomeView are valid until the reader returns the next outcome. Pointers to names stay valid.
 struct OutcomeView {
   struct Value {
     const std::string* metric;  ///< points into the reader's `Names`
@@ -59,12 +59,13 @@ std::string method_note(Kind kind, const std::string& name);
 bool is_method_note(const std::string& key);
 
 /// Results is a results database (SQLite) with at most one row per scenario, seed, kind, method and setting. Each call
-/// of store is one transaction, so completed results survive the end of the process.
+/// of store() is one transaction, so stored results are not lost if the process is killed.
 class Results {
  public:
   enum class Mode { create_or_append, join, read_only };
-  /// Throws BadInput if the file is no results database, has an incomplete schema, or was written by another build. The
-  /// mode `read_only` accepts databases of other builds. An error damages a database with the mode `join`.
+  /// Throws BadInput if the file is not a results database, has an incomplete schema, or was written by another build.
+  /// The mode `read_only` accepts databases of other builds. In the mode `join`, an error during writing can damage the
+  /// database.
   Results(const std::filesystem::path& path, Mode mode);
   ~Results();
   Results(Results&&) noexcept;
@@ -76,8 +77,8 @@ class Results {
   void set_note(const std::string& key, const std::string& text);
   std::string note(const std::string& key) const;
   std::map<std::string, std::string> notes() const;
-  /// Copies all rows of another results database `shard`, with constant memory. A caller must not have an open
-  /// transaction.
+  /// Copies all rows of another results database `shard`; memory use does not depend on the number of rows. The caller
+  /// must not have an open transaction.
   void absorb(const Results& shard, bool mixed, MergeCounts& counts);
   void in_one_transaction(const std::function<void()>& work);
 

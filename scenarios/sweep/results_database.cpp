@@ -8,7 +8,8 @@
 namespace tumble::scenarios {
 
 // The database stores an unsigned 64-bit seed as a signed number with the same bits. The columns `varied` and `setting`
-// contain the keys and the value of a varied parameter; for unmodified scenarios and methods, `varied` is empty.
+// contain the keys and the value of a varied parameter. For unmodified scenarios and methods, the column `varied` is
+// empty.
 const char* const kSchema = R"sql(
 CREATE TABLE notes (
   key TEXT PRIMARY KEY NOT NULL,

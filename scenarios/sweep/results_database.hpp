@@ -23,10 +23,10 @@ class Database;
 
 namespace tumble::scenarios {
 
-/// Application id in the SQLite header ("TMBL"), by which the program recognises its databases
+/// Application id in the SQLite file header ("TMBL"), by which this program recognises results databases.
 inline constexpr int kApplicationId = 0x544d424c;
 inline constexpr int kSchemaVersion = 4;
-/// Older schema version that differs from the current version only in the allowed statuses
+/// Older schema version that differs from the current version only in the set of allowed statuses.
 inline constexpr int kReadableVersion = 3;
 
 extern const char* const kSchema;
@@ -63,8 +63,9 @@ struct Results::Impl {
     std::optional<SQLite::Transaction> own_;
   };
 
-  /// A process that is killed during a transaction leaves a journal. Only a connection that may write can roll back the
-  /// transaction. rolled_back() ignores a failed rollback, because the read-only connection then reports the error.
+  /// A process that is killed during a transaction leaves a journal file. Only a connection with write access can roll
+  /// back the transaction. rolled_back() ignores a failed rollback, because the read-only connection then reports the
+  /// error.
   static const std::filesystem::path& rolled_back(const std::filesystem::path& file, Mode mode) {
     std::error_code ignored;
     if (mode != Mode::read_only || !std::filesystem::exists(file.string() + "-journal", ignored)) return file;
@@ -82,7 +83,8 @@ struct Results::Impl {
                  SQLite::OPEN_NOMUTEX |
                      (mode == Mode::read_only ? SQLite::OPEN_READONLY : SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE),
                  kBusyTimeoutMs) {
-    // With a rollback journal, the results database is one file and can be read in a read-only folder.
+    // The results database uses a rollback journal, so the database is a single file that is readable in a read-only
+    // folder.
     if (mode == Mode::read_only) return;
     database.exec(mode == Mode::join ? "PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF; PRAGMA foreign_keys = OFF"
                                      : "PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON");
@@ -145,7 +147,8 @@ struct Results::Impl {
   void store(const std::string& kind, const Outcome& outcome);
 };
 
-/// A null in the results database becomes NaN; text or a blob, which SQLite would convert to 0, throws BadInput.
+/// Reads a number from the results database. A null becomes NaN; text or a blob, which SQLite would convert to 0,
+/// throws BadInput.
 template <typename Row>
 double stored_value(const SQLite::Column& column, const std::filesystem::path& path, const Row& row) {
   const int type = column.getType();

@@ -142,8 +142,8 @@ class Joining {
       ++counts_.held;
       if (outranks(known, status) || mixed_ || !was_scored(known)) continue;
       const std::string words = draw_of(pair, 0) + ", " + text(2) + "/" + text(3);
-      // For methods of the kind rate, digests of recordings are not compared, because a sweep of rate methods alone
-      // does not simulate lidars.
+      // Digests of recordings are not compared for methods of the kind rate. If all methods of a sweep are of the kind
+      // rate, the lidars are not simulated, and the digests differ.
       if (status != known || text(6) != text(7) || (text(2) != to_string(Kind::rate) && text(8) != text(9)))
         throw BadInput(fmt::format(
             "{}: {}: the result has status {} and digest '{}', but another database has status {} and digest '{}'. "
@@ -151,7 +151,7 @@ class Joining {
             path_.string(), words, text(4), text(6), text(5), text(7)));
       require_same_scores(words, scores_of("shard", theirs), scores_of("main", own));
     }
-    // In Mode::join, the database does not delete the scores of a deleted outcome automatically.
+    // In Mode::join, SQLite does not automatically delete the scores of a deleted outcome.
     for (const std::int64_t id : outranked) {
       run("DELETE FROM main.score_values WHERE outcome = ?", id);
       run("DELETE FROM main.outcomes WHERE id = ?", id);

@@ -23,7 +23,7 @@ std::string recording_note(const std::string& name);
 bool is_place_note(const std::string& key);
 
 /// Returns the command that repeats a run: `tumble run SCENARIO --seed N --method KIND/NAME`. If the run has a varied
-/// parameter, the command contains `--vary KEY=VALUE`. The returned command can be pasted into a POSIX shell. If the
+/// parameter, the command also contains `--vary KEY=VALUE`. The returned command is quoted for a POSIX shell. If the
 /// recording's path is unknown, the command contains the placeholder FOLDER.
 std::string command_again(const RunKey& run, const std::map<std::string, std::string>& notes);
 
@@ -31,14 +31,16 @@ Setting setting_from(const std::string& text);
 
 std::string to_text(const Setting& setting);
 
-/// Value of the note `source` if the results come from recordings, which cannot be simulated again
+/// Value of the note `source` in a results database whose results come from recordings, which cannot be simulated
+/// again.
 inline constexpr const char* kRecordingsSource = "recordings";
 
-/// Value of the note `build` if results of several builds were merged; only reports accept merged results
+/// Value of the note `build` in a results database that merges results of several builds. Only reports accept merged
+/// results.
 inline constexpr const char* kMixedBuilds = "mixed";
 
-/// Key of the note in the results database that contains the commands which produced the results: one line per call of
-/// `tumble sweep`, quoted for a shell
+/// Key of the note in the results database that contains the commands which produced the results. The note has one line
+/// per call of `tumble sweep`, quoted for a shell.
 inline constexpr const char* kCommandNote = "command";
 
 std::vector<std::string> commands_of(const std::string& note);

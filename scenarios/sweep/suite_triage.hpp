@@ -33,8 +33,9 @@ struct SuiteTriageOptions {
   std::function<void(const DrawTriage&)> on_draw;  ///< called after each simulated run
 };
 
-/// Runs the triage (replacement of inputs by true values) of each simulated run in a separate process with a time
-/// limit. If the process dies or times out, DrawTriage contains the results so far and an error message.
+/// Performs the triage of each simulated run in a separate process with a time limit. The triage replaces one input of
+/// a method at a time by the true value. If the process dies or times out, DrawTriage contains the completed results
+/// and an error message.
 std::vector<DrawTriage> triage_draws(const DataRoot& data, std::span<const DrawName> draws, const Method& method,
                                      const SuiteTriageOptions& options);
 

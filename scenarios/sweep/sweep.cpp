@@ -148,14 +148,14 @@ class Sweep {
     return std::nullopt;
   }
 
-  /// Stores the results in the complete lines of `output`, and removes these lines.
+  /// Stores the results in the complete lines of `output`, and removes these lines from `output`.
   void store_results(std::string& output, DrawTask& draw) {
     for (std::size_t newline; (newline = output.find('\n')) != std::string::npos; output.erase(0, newline + 1)) {
       if (const std::optional<Message> message = from_line(output.substr(0, newline))) take(*message, draw);
     }
   }
 
-  /// Removes the methods that have a result from `draw`.
+  /// Removes the method that has reported a result from the remaining methods of `draw`.
   void take(const Message& message, DrawTask& draw) {
     if (message.outcome) {
       std::erase_if(draw.runs, [&](const DrawTask::Run& run) {
@@ -172,7 +172,7 @@ class Sweep {
     if (message.rejected && results_.store(*message.rejected)) ++progress_.rejected;
   }
 
-  // If the worker process of a task dies, each of its remaining methods gets an outcome without scores.
+  // If the worker process of a task dies, each remaining method of the task gets an outcome without scores.
   void account_for_death(const DrawTask& draw, const PooledEnd& ended) {
     const std::string what =
         ended.late ? "the simulated run did not end within its time limit"

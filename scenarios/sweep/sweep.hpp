@@ -26,7 +26,8 @@ struct DrawClass {
   std::vector<std::pair<std::string, std::uint64_t>> draws;
 };
 
-/// A suite file, scenarios/suites/NAME.yaml, selects methods and either scenarios with several seeds or recordings.
+/// Suite is the content of a suite file, scenarios/suites/NAME.yaml. A suite selects methods, and either recordings or
+/// scenarios with several seeds.
 struct Suite {
   std::string name;
   std::string doc;
@@ -47,8 +48,8 @@ struct Suite {
 void require_seeds(const Suite& suite);
 
 std::vector<std::string> suite_names(const DataRoot& data);
-/// Loads a suite by its name or from a suite file. The name of a scenario gives a suite that runs all methods on the
-/// scenario.
+/// Loads a suite by its name or from a suite file. If the name is the name of a scenario, the suite runs all methods on
+/// this scenario.
 Suite load_suite(const DataRoot& data, const std::string& name);
 
 struct SweepProgress {
@@ -73,21 +74,22 @@ struct SweepOptions {
   std::vector<OutcomeStatus> again;  ///< to repeat: crashed, timeout, killed
   Keep keep;                         ///< `none` keeps existing files
   RecordingInfo versions;            ///< for kept recordings
-  /// If true, lidars that no method of a task reads are not simulated; estimates and scores are unchanged, but the
-  /// digest of the recording differs.
+  /// If true, lidars that no method of a task reads are not simulated. Estimates and scores are unchanged, but the
+  /// digest (hash) of the recording differs.
   bool recordings_unseen = false;
-  /// Selects the methods of each scenario; empty: all methods of the suite that apply.
+  /// Selects the methods that run on each scenario; if empty, all methods of the suite that apply to the scenario.
   std::function<bool(const std::string& scenario, const MethodInfo& method)> selects;
 };
 
 void require_sound(const Suite& suite, const SweepOptions& options);
 
-/// Throws BadInput if the results database belongs to another suite, build, models or scenarios.
+/// Opens a results database. Throws BadInput if the results come from another suite, another build, or other models or
+/// scenarios.
 Results open_results(const DataRoot& data, const Suite& suite, const std::filesystem::path& database);
 
-/// Executes the runs of the suite that the database lacks; worker processes run each method in a separate process. If a
-/// method crashes, times out or exceeds its memory, its outcome is crashed, timeout or killed, and the sweep continues.
-/// Memory use does not depend on the number of simulated runs.
+/// Executes the runs of the suite that are missing in the database. Worker processes run each method in a separate
+/// process. If a method crashes, times out or exceeds its memory limit, the outcome is crashed, timeout or killed, and
+/// the sweep continues. Memory use does not depend on the number of simulated runs.
 SweepProgress sweep(const DataRoot& data, const Suite& suite, const DatabaseOwner& database,
                     const SweepOptions& options);
 

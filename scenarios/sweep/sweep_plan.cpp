@@ -13,8 +13,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-// The time limit of an external command is this fraction of the method's time limit. The process that starts an
-// external command must end the command before this process reaches the method's time limit.
+// Time limit of an external command, as a fraction of the method's time limit. With the smaller limit, the process that
+// starts the external command can end the command before the process itself reaches the time limit.
 constexpr double kOwnShare = 0.9;
 
 }  // namespace

@@ -27,8 +27,8 @@ class SweepPlan {
   void require_same_recordings(const Results& results) const;
   void note_recordings(Results& results) const;
 
-  /// Recordings come first. For scenarios, the outer loop is over seeds, so a stopped sweep covers all scenarios and
-  /// all values of varied parameters.
+  /// Returns true if all tasks of the plan are complete. The plan contains recordings first, and then the scenarios,
+  /// with the seed as outer loop. Therefore, a stopped sweep covers all scenarios and all values of varied parameters.
   bool at_end() const { return next_.recording == recordings_.size() && next_.past_seeds; }
   void advance();
   DrawTask next(const Results& results) const;

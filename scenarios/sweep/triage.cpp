@@ -64,7 +64,7 @@ double largest(const Readings& readings) {
   return largest;
 }
 
-/// The stated range must exceed every reading, so that no reading counts as clipped.
+/// Returns a stated range that exceeds every reading, so that no reading counts as clipped.
 double beyond(double stated, const Readings& readings) {
   return stated > 0.0 ? std::max(stated, 1.1 * largest(readings)) : stated;
 }
@@ -171,7 +171,8 @@ bool exact_ranges(sim::Sensors& sensors, const sim::Truth& truth) {
   return !lidar.range_m.empty();
 }
 
-/// The true poses move all points of a sweep to the sensor pose at the last point, which removes the motion distortion.
+/// Removes the motion distortion of each sweep. The true poses transform all points of a sweep to the sensor pose at
+/// the last point.
 bool unbent_sweeps(sim::Sensors& sensors, const sim::Truth& truth) {
   if (sensors.lidars.empty() || truth.lidars.empty()) return false;
   sim::LidarRecord& lidar = sensors.lidars.front();
@@ -207,8 +208,8 @@ bool exact_series(sim::Sensors& sensors, const sim::Truth& truth) {
   return changed;
 }
 
-/// Range errors are corrected before the motion distortion, because the correction of ranges needs the original time of
-/// each point.
+/// Replaces all inputs by true values. Range errors are corrected before the motion distortion, because the correction
+/// of ranges needs the original time of each point.
 bool everything(sim::Sensors& sensors, const sim::Truth& truth) {
   bool changed = false;
   for (const auto& replace :

@@ -33,7 +33,7 @@ struct TriageOptions {
   std::function<void(const TriageRow&)> on_row;  ///< called after each row
 };
 
-/// Runs a method on the original sensor data, and then once per input, with only this input replaced by its true value.
+/// Runs a method on the original sensor data, and then once per input, with only one input replaced by its true value.
 /// Each run has a separate process. If the method fails in every run, the cause is the method or the scenario.
 std::vector<TriageRow> triage(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
                               const TriageOptions& options);

@@ -216,7 +216,7 @@ sim::ImuRecord& primary(sim::Sensors& sensors, const sim::Truth& truth) {
   return sensors.imus.front();
 }
 
-/// An error of the calibrated centre of mass changes the lever arm of every sensor.
+/// Adds an error to the calibrated centre of mass, which changes the lever arm of every sensor.
 void lever_arm(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const Eigen::Vector3d given_m = primary(sensors, truth).T_BI.translation();
   const Eigen::Vector3d shift_m =
@@ -256,8 +256,8 @@ void state_no_rail(sim::ImuRecord& imu) {
   for (std::uint8_t& flags : imu.clip_flags) flags = static_cast<std::uint8_t>(flags & ~kGyroClipFlags);
 }
 
-/// Simulates a rate method with a constant error: each clipped reading becomes the unclipped reading plus an error,
-/// which is constant within a clipping interval.
+/// Simulates the output of a rate estimator with a given error. Each clipped reading becomes the unclipped reading plus
+/// an error, which is constant within a clipping interval.
 void rate_error(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const ClippingTruth clipping(sensors, truth);
   sim::ImuRecord& imu = primary(sensors, truth);

@@ -30,7 +30,8 @@ Reach reach(const Setting& setting);
 
 bool needs_lidar(const Setting& setting);
 
-/// Throws BadInput if a key is unknown or does not apply to a scenario, or if a variation has keys of several kinds.
+/// Throws BadInput if a key is unknown or does not apply to a scenario, or if the keys of one variation belong to
+/// different kinds.
 void check(const Variation& variation, const DataRoot& data, std::span<const std::string> scenarios,
            std::uint64_t seed);
 
@@ -46,7 +47,8 @@ bool concerns(const Setting& setting, const MethodInfo& method);
 struct GivenError {
   sim::Parameter parameter;  ///< size; the default means no error
   bool needs_lidar = false;
-  /// A random direction of the error depends on the seed of the simulated run and not on the size of the error.
+  /// Adds the error to the sensor data or calibration. If the error has a random direction, the direction depends on
+  /// the seed of the simulated run, but not on the size of the error.
   void (*put_in)(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation,
                  double size) = nullptr;
   void (*tune)(std::span<const sim::Parameter> known, double size, sim::Values& given) = nullptr;

@@ -14,7 +14,7 @@ namespace {
 struct Axis {
   std::span<const ImuSample> samples;
   std::vector<bool> clipped;
-  std::vector<bool> overflown;  ///< the reading exceeded the representable range and has no information
+  std::vector<bool> overflown;  ///< the reading exceeded the representable range and is unusable
   int index = 0;
   double variance = 0.0;
 
@@ -55,8 +55,8 @@ std::vector<Value> interpolate(const Axis& axis) {
       const double span_s = axis.time_s(b) - axis.time_s(a), share = (axis.time_s(k) - axis.time_s(a)) / span_s;
       out[k].rate =
           cubic(share, span_s, axis.reading(a), slope_at(axis, a, -1), axis.reading(b), slope_at(axis, b, +1));
-      // The variance of an interpolated rate is the noise variance plus the squared difference between interpolated
-      // rate and clipped reading.
+      // The variance of an interpolated rate is the gyro noise variance plus the squared difference between the
+      // interpolated rate and the clipped reading.
       const double departure = out[k].rate - axis.reading(k);
       out[k].variance = axis.variance + departure * departure;
     }

@@ -12,8 +12,8 @@
 
 namespace tumble::baselines {
 
-/// ClippedBaseline estimates clipped angular rates from the gyro alone, each axis independently. A cubic bridges each
-/// gap of clipped samples and matches the rate and its derivative at both ends of the gap.
+/// ClippedBaseline estimates clipped angular rates from the gyro alone, independently for each axis. A cubic polynomial
+/// bridges each gap of clipped samples and matches the rate and its derivative at both ends of the gap.
 class ClippedBaseline {
  public:
   struct Params {
@@ -40,7 +40,8 @@ class ClippedBaseline {
 
   explicit ClippedBaseline(const Params& params);
 
-  /// Possible errors are `empty`, `insufficient_data` (fewer than two samples), `non_finite`, `time_order` and `gap`.
+  /// Returns the error `empty`, `insufficient_data` (fewer than two samples), `non_finite`, `time_order` or `gap` for
+  /// unusable samples.
   Status estimate(std::span<const ImuSample> samples, std::vector<AngularRateState>& out) const;
 
  private:

@@ -29,8 +29,8 @@ double current_yaw(const Eigen::Quaterniond& q) {
   return std::atan2(2.0 * (q.w() * q.z() + q.x() * q.y()), 1.0 - 2.0 * (q.y() * q.y() + q.z() * q.z()));
 }
 
-/// Rotates the attitude towards the roll and pitch that the accelerometer measures, at the current yaw: equation (A25)
-/// of attitude.md.
+/// Rotates the attitude towards the roll and pitch that the accelerometer measures, without changing the yaw: equation
+/// (A25) of docs/maths/attitude.md.
 Eigen::Quaterniond towards_roll_and_pitch(const Eigen::Quaterniond& q, const Eigen::Vector3d& f, double share,
                                           bool keep_roll) {
   const double sin_pitch = 2.0 * (q.w() * q.y() - q.x() * q.z());

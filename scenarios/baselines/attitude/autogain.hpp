@@ -12,7 +12,7 @@ namespace tumble::baselines {
 
 enum class AutogainProfile : std::uint8_t {
   paper,     ///< eq 2 of the MFI 2021 paper
-  code2021,  ///< code of the paper's authors from 2021, unlike eq 2
+  code2021,  ///< code that the paper's authors published in 2021; differs from eq 2
   smooth,    ///< continuous, independent of the mounting
 };
 
@@ -24,8 +24,9 @@ struct AutogainGains {
 };
 
 /// Autogain estimates attitude with the filter for a rolling sphere (Zevering et al., IEEE MFI 2021, eqs 2-5). Autogain
-/// combines Madgwick's correction, whose gain grows with the angular rate, with a complementary correction, whose
-/// weight falls with the angular rate. Autogain estimates neither gyro bias nor heading.
+/// combines Madgwick's correction with a complementary correction. As the angular rate increases, the gain of
+/// Madgwick's correction increases, and the weight of the complementary correction decreases. Autogain estimates
+/// neither gyro bias nor heading.
 class Autogain {
  public:
   struct Params {
@@ -34,7 +35,7 @@ class Autogain {
     double tau_s = 0.396;
     double lower_rad_s = 0.1;  ///< unused by code2021
     double upper_rad_s = 2.1;  ///< above lower_rad_s; unused by code2021
-    /// If true, the filter repeats an error in the code of the MFI 2021 paper: roll is never corrected.
+    /// If true, Autogain repeats an error in the code of the MFI 2021 paper, which never corrects the roll angle.
     bool roll_error_2021 = false;
     bool tilt_form = false;
     double gap_max_s = 1.0;

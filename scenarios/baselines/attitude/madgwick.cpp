@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kGradientMin = 1e-12;
 
-/// Returns the gradient of half the squared distance between predicted and measured vertical (equation (A24) of
-/// attitude.md), as a quaternion (x, y, z, w).
+/// Returns the gradient of the tilt error as a quaternion (x, y, z, w). The tilt error is half the squared distance
+/// between predicted and measured vertical (docs/maths/attitude.md, equation (A24)).
 Eigen::Vector4d tilt_gradient(const Eigen::Quaterniond& q, const Eigen::Vector3d& up_I) {
   const double w = q.w(), x = q.x(), y = q.y(), z = q.z();
   const double f1 = 2.0 * (x * z - w * y) - up_I.x();

@@ -9,9 +9,9 @@
 
 namespace tumble::baselines {
 
-/// Madgwick estimates attitude by Madgwick's gradient filter from gyro and accelerometer (Madgwick, internal report,
-/// 2010, eqs 25-33). Madgwick's correction has a constant angular speed, so the estimated attitude oscillates at rest
-/// and follows accelerations. Madgwick's filter estimates neither gyro bias nor heading.
+/// Madgwick estimates attitude from gyro and accelerometer by Madgwick's gradient filter (Madgwick, internal report,
+/// 2010, eqs 25-33). The correction has a constant angular speed, so the estimated attitude oscillates at rest and
+/// follows accelerations. Madgwick's filter estimates neither gyro bias nor heading.
 class Madgwick {
  public:
   struct Params {

@@ -8,8 +8,8 @@
 
 namespace tumble::baselines {
 
-/// Returns a part of the smallest rotation that turns the unit vector `up_W` to the z axis. The angle is `share` times
-/// the angle of the smallest rotation, with `share` in [0, 1]. See attitude.md (A2).
+/// Returns the fraction `share`, in [0, 1], of the smallest rotation that turns the unit vector `up_W` to the z axis
+/// (docs/maths/attitude.md, equation (A2)).
 inline Eigen::Quaterniond tilt_correction(const Eigen::Vector3d& up_W, double share) {
   const double across = std::hypot(up_W.x(), up_W.y());
   const double angle = share * std::atan2(across, up_W.z());

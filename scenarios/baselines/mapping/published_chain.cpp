@@ -26,9 +26,9 @@ TimeNs rounded_offset(const LidarPoint& point, TimeNs step_ns) {
   return static_cast<TimeNs>(point.offset_ns) / step_ns * step_ns;
 }
 
-/// Returns the time of the pose that the registration of a sweep estimates, usually the start of the sweep. For a sweep
-/// whose points have equal times, the function returns this time. A pose at the start of such a sweep would make the
-/// velocity feedback of PublishedChain unstable.
+/// Returns the time for which the registration of a sweep estimates the pose. For a normal sweep, this time is the
+/// start of the sweep. If all points of a sweep have one time stamp, this time is the time stamp of the points, because
+/// otherwise the velocity feedback of PublishedChain would be unstable.
 TimeNs registered_at(const Sweep& sweep, TimeNs step_ns) {
   if (sweep.points.empty()) return sweep.start_ns;
   const auto [first, last] = std::minmax_element(

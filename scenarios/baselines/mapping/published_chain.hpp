@@ -16,8 +16,8 @@
 
 namespace tumble::baselines {
 
-/// PublishedChain estimates trajectory and map from lidar sweeps, specific forces and given angular rates. The method
-/// is the mapping chain of Deschenes et al. (ICRA 2024), with the constants of its launch files.
+/// PublishedChain estimates trajectory and map from lidar sweeps, specific forces, and angular rates of another
+/// estimator. The method is the mapping chain of Deschenes et al. (ICRA 2024), with the constants of its launch files.
 class PublishedChain {
  public:
   struct Params {
@@ -83,13 +83,13 @@ class PublishedChain {
     std::span<const LidarPoint> points;
   };
 
-  /// `rates` contains one angular rate per IMU sample, which replaces the gyro reading of the sample. The data of
+  /// `rates` contains one angular rate per IMU sample, which replaces the gyro reading of this IMU sample. The data of
   /// `samples` must outlive the PublishedChain.
   PublishedChain(const Params& params, std::span<const ImuSample> samples, std::span<const AngularRateState> rates);
 
   bool covers(const Sweep& sweep) const;
-  /// `covers(sweep)` must be true, and each sweep must be later than all earlier sweeps. Returns `empty`, `degenerate`
-  /// (all points have one time) or `insufficient_data` (too few points in range) if the sweep cannot be registered.
+  /// Sweeps must be added in order of time, and `covers(sweep)` must be true. Returns `empty`, `degenerate` (all points
+  /// have one time stamp) or `insufficient_data` (too few points in range) if the sweep cannot be registered.
   Status add(const Sweep& sweep, SweepReport& report);
   std::vector<MapPoint> map() const;
 

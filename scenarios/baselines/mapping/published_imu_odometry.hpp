@@ -18,7 +18,7 @@ class PublishedImuOdometry {
                        std::span<const AngularRateState> rates);
 
   void advance(TimeNs to_ns);
-  /// Sets the velocity at `time_ns` to the velocity from lidar registration, and integrates the later accelerometer
+  /// Replaces the velocity at `time_ns` by the velocity from lidar registration, and integrates the later accelerometer
   /// samples again.
   void feed_back(const Eigen::Vector3d& velocity_m_s, TimeNs time_ns);
 

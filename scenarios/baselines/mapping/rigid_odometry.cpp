@@ -74,7 +74,7 @@ void RigidOdometry::register_points(SweepReport& report) {
   for (const std::uint32_t index : chosen_index_) chosen_.push_back(points_[index]);
   report.points_registered = chosen_.size();
 
-  // The points are already deskewed to the end of the sweep, so the registration gets a trajectory without motion.
+  // The points are already deskewed to the end of the sweep, so the registration gets one constant pose as trajectory.
   MotionSample instant;
   instant.from_ns = predicted_.time_ns - 1;
   instant.time_ns = predicted_.time_ns;

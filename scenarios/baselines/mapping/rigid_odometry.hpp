@@ -16,8 +16,9 @@
 namespace tumble::baselines {
 
 /// RigidOdometry deskews each sweep once with the predicted motion and corrects only the pose at the end of the sweep.
-/// RigidOdometry neglects errors of the lidar's mounting and clock, and does not recover after a tracking failure.
-/// Sweeps whose registration failed are inserted into the map at their predicted pose, as in most published methods.
+/// RigidOdometry neglects errors of the lidar's mounting and clock, and does not recover after a tracking failure. If
+/// the registration of a sweep fails, RigidOdometry inserts the sweep into the map at the predicted pose, as in most
+/// published methods.
 class RigidOdometry {
  public:
   struct Params {
@@ -28,7 +29,7 @@ class RigidOdometry {
     double sweep_voxel_m = 0.25;     ///< one point per voxel is registered
     double map_voxel_m = 0.5;
     double map_spacing_m = 0.1;
-    double degenerate_sigma_m = 0.15;  ///< as in LidarInertialOdometry
+    double degenerate_sigma_m = 0.15;  ///< same value as in LidarInertialOdometry
     Registration::Params registration;
   };
 

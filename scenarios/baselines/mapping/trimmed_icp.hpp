@@ -15,8 +15,8 @@
 namespace tumble::baselines {
 
 /// TrimmedIcp aligns a sweep to a map by point-to-plane registration with k matches per point and inverse-variance
-/// weights. TrimmedIcp does not measure observability: in a featureless corridor, the registration still reports
-/// success.
+/// weights. TrimmedIcp does not measure observability, so the registration reports success even in a featureless
+/// corridor.
 class TrimmedIcp {
  public:
   struct Params {
@@ -26,8 +26,8 @@ class TrimmedIcp {
     double trim_min = 0.5;       ///< smallest fraction of the matches to keep
     double trim_max = 0.7;
     double trim_lambda = 2.35;
-    /// If true, trimming keeps a fraction of all possible matches (points times `neighbours`) instead of the found
-    /// matches.
+    /// If true, trimming keeps a fraction of all possible matches (number of points times `neighbours`). If false,
+    /// trimming keeps a fraction of the matches that were found.
     bool count_unmatched_slots = false;
     int iterations_max = 40;
     double step_m = 0.01;  ///< converged below both bounds
@@ -76,14 +76,14 @@ class TrimmedIcp {
 
   explicit TrimmedIcp(const Params& params);
 
-  /// A registration that reaches `iterations_max` iterations counts as success.
+  /// A registration that stops at the limit of `iterations_max` iterations counts as success.
   Result align(std::span<const Point> points, const Eigen::Isometry3d& prior, const VoxelMap& map);
 
-  /// Returns how many matches the registration keeps (parameter `trim_lambda`). `sorted_d2` contains the squared
-  /// distances of the matches in ascending order.
+  /// Returns the number of matches that trimming keeps, for the parameter `trim_lambda`. `sorted_d2` contains the
+  /// squared distances of the matches in ascending order.
   static std::size_t trim(std::span<const float> sorted_d2, std::size_t slots, const Params& params);
 
-  /// Clears the cached normals of the map points; required after each change of the map.
+  /// Clears the cached normals of the map points. The caller must call forget_normals() after each change of the map.
   void forget_normals() { normals_.clear(); }
 
  private:

@@ -13,8 +13,8 @@ namespace tumble::baselines {
 
 namespace {
 
-/// A rolling sphere moves along an axis only if the sphere rotates about another axis. The velocity along each axis is
-/// therefore multiplied by the larger rotation factor of the two other axes (Zevering et al. 2021, eq 8).
+/// A rolling sphere moves along an axis only if the sphere rotates about another axis. Therefore, coupling() returns
+/// for each axis the larger rotation factor of the two other axes (Zevering et al. 2021, eq 8).
 Eigen::Vector3d coupling(const Eigen::Vector3d& factor) {
   return {std::max(factor.y(), factor.z()), std::max(factor.x(), factor.z()), std::max(factor.x(), factor.y())};
 }

@@ -12,7 +12,7 @@ namespace tumble::baselines {
 
 /// AutogainFusion estimates the position of a rolling sphere on a flat floor (Zevering et al., IEEE MFI 2021, eqs
 /// 6-13). AutogainFusion combines the rolling velocity with the integrated acceleration. The limit on the integrated
-/// acceleration shortens the estimated path of a sphere without slip by up to one half.
+/// acceleration can make the estimated path of a sphere without slip too short, by up to one half.
 class AutogainFusion {
  public:
   struct Params {
@@ -23,14 +23,14 @@ class AutogainFusion {
     double acceleration_weight = 0.5;  ///< eq 13
     Autogain::Params autogain = {};
 
-    // Each option switches one difference between the MFI 2021 paper and the code of its authors. The defaults follow
-    // the paper.
+    // The MFI 2021 paper differs from the code of its authors in several details, and each following option selects one
+    // detail. The defaults follow the paper.
     bool integrate_in_body = true;    ///< eq 7 in the rotating frame
-    bool direction_only = false;      ///< as in the code: ignores |f|
-    bool recursive_coupling = false;  ///< as in the code
+    bool direction_only = false;      ///< as in the authors' code: ignores |f|
+    bool recursive_coupling = false;  ///< as in the authors' code
     bool limit_per_axis = true;       ///< false: limits the horizontal vector
     bool shrink_per_axis = true;      ///< false: eq 12 shortens the horizontal vector
-    bool vertical_by_norm = false;    ///< as in the code: |v_z| <= |v_rot|
+    bool vertical_by_norm = false;    ///< as in the authors' code: |v_z| <= |v_rot|
 
     double gap_max_s = 1.0;
 

@@ -10,8 +10,9 @@
 namespace tumble::baselines {
 
 /// RollingOdometry computes the position of a rolling sphere's centre from the angular velocity, by the trapezoid rule.
-/// The centre of a sphere with radius r and angular velocity w has the velocity r w x n on a plane with unit normal n:
-/// rolling.md (R15). The computed position is wrong during slip, sliding and changes of the floor height.
+/// On a plane with unit normal n, the centre of a sphere with radius r and angular velocity w has the velocity r w x n
+/// (docs/maths/rolling.md, equation (R15)). The computed position is wrong during slip, sliding and changes of the
+/// floor height.
 class RollingOdometry {
  public:
   struct Params {

@@ -42,8 +42,8 @@ struct BagTrack {
   std::string name;  ///< letters, digits and _
   std::vector<Pose> poses;
   std::vector<std::int64_t> cloud_time_ns = {};  ///< times of point clouds along the track
-  /// The exporter calls cloud() when it writes the point cloud with the given index. Point clouds without points are
-  /// omitted.
+  /// The exporter calls cloud() with the index of a point cloud when the exporter writes this point cloud. Point clouds
+  /// without points are omitted.
   std::function<BagCloud(const BagTrack&, std::size_t)> cloud = {};
 };
 
@@ -82,8 +82,9 @@ void export_ros2_bag(const sim::Sensors& sensors, const BagWriting& writing, con
 void export_mcap(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& file);
 void export_ros2_mcap(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& folder);
 
-/// A header stamp is the time of measurement; a record stamp is the time at which the bag recorded the message. With
-/// record stamps, a sweep starts one period before its stamp, because a sweep is recorded at its end.
+/// A header stamp is the time of measurement. A record stamp is the time at which the bag recorded the message. With
+/// record stamps, a sweep starts one sweep period before its stamp, because a bag records a sweep at the end of the
+/// sweep.
 enum class StampSource { header, record };
 
 /// ReferenceOf selects the moving frame whose poses the reference topic contains: the body, the lidar, or the frame
@@ -103,8 +104,8 @@ struct BagReading {
   StampSource stamps = StampSource::header;
   bool stamps_stated = false;  ///< the user chooses `stamps`
   SweepReading sweeps;
-  /// true: sensors have the names of their topics, and an unreadable topic is skipped with a note, if another topic of
-  /// the same kind is readable.
+  /// If true, sensors have the names of their topics. An unreadable topic is then skipped with a note, if another topic
+  /// of the same kind is readable.
   bool for_odometry = false;
 };
 

@@ -74,7 +74,8 @@ ImuTopic read_imu(const OpenedBag& bag, SensorMountings& places, const std::stri
        {lost, bursts, evened, gaps_text(imu), units, stamps.remark(), repeats_text(repeated)}) {
     if (!remark.empty()) notes.push_back(topic + ": " + remark);
   }
-  // The option --lever-arm states only the position of the IMU, so the orientation comes from /tf_static.
+  // The command-line option --lever-arm states only the position of the IMU, so the orientation of the IMU comes from
+  // /tf_static.
   if (const auto stated = places.of(frame); stated && reading.imu_placed && imu.T_BI.linear().isIdentity())
     imu.T_BI.linear() = stated->linear();
   places.place(topic, frame, "--lever-arm", reading.imu_placed, imu.T_BI, notes);

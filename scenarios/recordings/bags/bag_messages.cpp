@@ -128,8 +128,8 @@ constexpr std::int64_t kSaid_ns = 1'000'000;
 /// If a header stamp is more than 10 ms later than the record stamp of its message, both stamps come from different
 /// clocks.
 constexpr std::int64_t kAhead_ns = 10'000'000;
-/// If the delay from header to record stamps varies by more than 0.5 s, the clocks drift or the header stamps are not
-/// measurement times.
+/// If the delay from header stamps to record stamps varies by more than 0.5 s, the two clocks drift apart, or the
+/// header stamps are not measurement times.
 constexpr std::int64_t kSteady_ns = 500'000'000;
 
 std::string seconds_text(std::int64_t time_ns) {

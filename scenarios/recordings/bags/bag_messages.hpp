@@ -37,10 +37,10 @@ class BagStamps {
     return source_ == StampSource::header && !header_ns_.empty() && header_ns_.back() == header_ns;
   }
 
-  /// Describes the delay from header stamps to record stamps of the messages; empty if the delay stays below one
-  /// millisecond.
+  /// Describes the delay from header stamps to record stamps of the messages. The text is empty if the delay stays
+  /// below one millisecond.
   std::string remark() const;
-  /// Returns true if header stamps of messages are later than their record stamps, or at least a second earlier.
+  /// Returns true if the header stamps of messages are later than the record stamps, or at least one second earlier.
   bool other_clock() const;
   /// Returns the smallest and the largest delay from header stamp to record stamp.
   std::pair<std::int64_t, std::int64_t> lag_ns() const;

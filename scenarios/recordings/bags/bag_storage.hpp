@@ -12,7 +12,7 @@
 
 namespace tumble::scenarios {
 
-/// `type` has the form of ROS 1, "sensor_msgs/Imu", also for bags of ROS 2.
+/// The member `type` has the form of ROS 1, for example "sensor_msgs/Imu", also for bags of ROS 2.
 struct BagTopic {
   std::string name, type;
 };
@@ -20,9 +20,10 @@ struct BagTopic {
 class BagWriter {
  public:
   virtual ~BagWriter() = default;
-  /// Declares `topics` in their order; returns false if the bag format declares a topic only with its first message.
+  /// Declares `topics` in the given order. Returns false if the bag format can declare a topic only with its first
+  /// message.
   virtual bool begin_with(const std::vector<BagTopic>& topics) = 0;
-  /// Messages must be in order of time, and each topic has one message type.
+  /// The caller must write messages in order of time, and each topic must have only one message type.
   virtual void write(const std::string& topic, std::int64_t stamp_ns, const ros::Message& message) = 0;
   /// The destructor removes an incomplete bag.
   virtual void finish() = 0;
@@ -35,7 +36,7 @@ class BagReader {
   /// `record_ns` is the record stamp of the message [ns since 1970].
   using Take = std::function<void(ros::Bytes&, std::int64_t record_ns)>;
   virtual void read(const std::string& topic, const Take& take) = 0;
-  /// Returns true for messages in CDR encoding, and false for the encoding of ROS 1.
+  /// Returns true if the messages of a topic are encoded in CDR (ROS 2), and false for the encoding of ROS 1.
   virtual bool cdr(const std::string& topic) const = 0;
 
   std::vector<std::string> notes;  ///< remarks for the user
@@ -52,7 +53,8 @@ std::unique_ptr<BagReader> open_ros1_bag(const std::filesystem::path& path);
 std::unique_ptr<BagReader> open_ros2_bag(const std::filesystem::path& path);
 std::unique_ptr<BagReader> open_mcap(const std::vector<std::filesystem::path>& files);
 
-/// Checks every length, position and offset in the ROS 1 bag against the file size, because librosbag does not.
+/// Checks every length, position and offset in the ROS 1 bag against the file size, because librosbag does not check
+/// these numbers.
 void check_ros1_bag(const std::filesystem::path& file);
 
 enum class PointQuantity { x_m, y_m, z_m, intensity, ring, time };

@@ -31,7 +31,7 @@ void read_clouds(const OpenedBag& bag, const std::string& topic, LeftOut& left_o
   bag.read<ros::PointCloud2>(topic, take, &left_out);
 }
 
-/// Point times that are later than the record stamps of their messages are physically impossible.
+/// Adds a note if a point time is later than the record stamp of its message, which is physically impossible.
 void note_points_to_come(const std::string& topic, const BuiltSweeps& built, const std::vector<std::int64_t>& records,
                          std::vector<std::string>& notes) {
   std::vector<double> ahead_s;

@@ -35,14 +35,15 @@ CloudHeaders read_headers(const OpenedBag& bag, const std::string& topic, const 
 BuiltSweeps read_lidar(const OpenedBag& bag, SensorMountings& places, const std::string& topic,
                        const CloudHeaders& headers, const BagReading& reading, std::vector<std::string>& notes);
 
-/// The messages of livox_ros_driver, livox_ros_driver2 and livox_interfaces have the same fields.
+/// Returns true for the message types of livox_ros_driver, livox_ros_driver2 and livox_interfaces, which have the same
+/// fields.
 bool is_livox_type(const std::string& type);
 
 Cloud cloud_of(const ros::PointCloud2& message, const std::string& where);
 
 Cloud cloud_of(const ros::LivoxCustomMsg& message, const std::string& where);
 
-/// Point clouds with equal digests are duplicate messages.
+/// Returns a digest (hash) of a point cloud. Two messages whose point clouds have equal digests are duplicates.
 std::uint64_t content_of(const ros::PointCloud2& message);
 std::uint64_t content_of(const ros::LivoxCustomMsg& message);
 

@@ -99,8 +99,8 @@ Eigen::Isometry3d pose_of_reference(const std::string& topic, const std::string&
   return T_BA.value_or(body);
 }
 
-/// By default, the frame of the reference poses is the child_frame_id of the messages, if the bag contains the
-/// transform of this frame.
+/// If the user does not choose the frame of the reference poses, the frame is the child_frame_id of the messages, if
+/// the bag contains the transform of this frame.
 void attach_reference(const OpenedBag& bag, const SensorMountings& places, const BagReading& reading, Imported& out) {
   const std::string& topic = bag.topic(reading.reference_topic, is_reference_type).name;
   NamedPoses found = reference_poses(bag, topic, reading.stamps);
@@ -249,8 +249,8 @@ void add_lidars(const OpenedBag& bag, SensorMountings& places, const BagReading&
   };
   const std::vector<std::string> topics = bag.chosen(reading.lidar_topics, is_cloud_type, kCloud);
   TopicsOfKind(topics, chosen, reading.for_odometry, "--lidar-topic").read(out.notes, read);
-  // Lidars whose points have times come first, because mapping uses the first lidar and depth cameras have no point
-  // times.
+  // Lidars whose points have times come first, because mapping uses the first lidar. The clouds of depth cameras have
+  // no point times.
   const auto is_timed = [](const auto& each) { return has_timed_points(each.second.lidar); };
   if (!chosen) std::stable_partition(lidars.begin(), lidars.end(), is_timed);
   if (lidars.size() > 1 && !chosen) {

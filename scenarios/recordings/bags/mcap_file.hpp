@@ -31,8 +31,8 @@ struct Record {
 
 class File {
  public:
-  /// Reads the summary of the MCAP file. A file without a summary is scanned, which costs O(file size). Every length,
-  /// position, time and checksum is checked. Throws BadInput with the offset if the file is damaged, or has a
+  /// Reads the summary of the MCAP file. A file without a summary is scanned completely, in O(file size) time. Every
+  /// length, position, time and checksum is checked. Throws BadInput with the offset if the file is damaged, or has a
   /// compression other than none, lz4 or zstd. Also throws BadInput if a chunk or record is larger than 256 MiB.
   explicit File(const std::filesystem::path& path);
 

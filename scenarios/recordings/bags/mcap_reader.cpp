@@ -16,7 +16,7 @@ namespace mcap {
 
 namespace {
 
-/// Largest memory [bytes] for messages that wait until no later chunk can contain an earlier message.
+/// Largest memory [bytes] for waiting messages. A message waits until no later chunk can contain an earlier message.
 constexpr std::uint64_t kWaitingMax = 1u << 30;
 
 bool is_cdr(const Channel& channel, const Schema& schema) {

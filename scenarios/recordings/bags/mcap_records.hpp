@@ -11,7 +11,8 @@
 #include <utility>
 #include <vector>
 
-/// MCAP records have the field order of the specification (mcap.dev/spec, version 0), with little-endian numbers.
+/// The fields of MCAP records have the order of the specification (mcap.dev/spec, version 0), and numbers are
+/// little-endian.
 namespace tumble::scenarios::mcap {
 
 enum Op : std::uint8_t {

@@ -27,7 +27,8 @@ struct OpenedBag {
 
   using FitsType = bool (*)(const std::string& type);
 
-  /// Finds a topic by its name, with or without the first slash, or by the name of its sensor in a recording.
+  /// Finds a topic by its name, with or without the leading slash, or by the name that the topic's sensor has in a
+  /// recording.
   const BagTopic& topic(const std::string& name, FitsType fits = nullptr) const {
     std::vector<std::string> names;
     for (const BagTopic& each : topics) {
@@ -43,7 +44,7 @@ struct OpenedBag {
                       topic_list(fits));
   }
 
-  /// Lists the topics of fitting types; without such topics, all topics.
+  /// Lists the topics whose message type fits; if no type fits, lists all topics.
   std::string topic_list(FitsType fits = nullptr) const {
     std::string out;
     for (const BagTopic& each : topics) {

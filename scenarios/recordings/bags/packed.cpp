@@ -114,7 +114,7 @@ namespace {
 
 using std::filesystem::path;
 
-/// Messages of sensors compress by a factor of a few dozen at most.
+/// Returns the largest accepted size of decompressed data. Sensor messages compress by a factor of a few dozen at most.
 constexpr std::uint64_t most_of(std::uint64_t packed_bytes) {
   constexpr std::uint64_t kAlways = 64u << 20, kBagRatioMax = 200;
   return kAlways + kBagRatioMax * packed_bytes;

@@ -178,8 +178,8 @@ class Ros1BagWriter : public BagWriter {
     }
   }
 
-  /// On a full disk, an exception in the destructor of librosbag's bag would end the program, so the bag object stays
-  /// in memory.
+  /// If closing the bag fails (full disk), the destructor of librosbag's bag object would end the program, so give_up()
+  /// does not destroy the bag object.
   void give_up() {
     if (!bag_) return;
     const QuietBag quiet;
@@ -285,8 +285,8 @@ class Ros1BagReader : public BagReader {
   void open_unpacked(const std::filesystem::path& file) {
     const std::filesystem::path folder = std::filesystem::temp_directory_path();
     require_room(file, folder);
-    // The decompressed file is unlinked directly after opening, so the file vanishes when the reader closes the file or
-    // the process ends.
+    // The decompressed file is unlinked directly after opening, so the operating system frees the disk space when the
+    // reader closes the file or the process ends.
     const OutputFile unpacked(folder / "tumble_unpacked.bag");
     copy_ros1_bag(file, unpacked.unfinished(), [](Ros1Chunk& chunk) {
       if (chunk.compression == "lz4") unpack_lz4(chunk);

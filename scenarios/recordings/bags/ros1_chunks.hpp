@@ -18,12 +18,12 @@ bool has_lz4_chunks(const std::filesystem::path& file);
 
 std::uint64_t bytes_unpacked(const std::filesystem::path& file);
 
-/// Copies a bag that passed `check_ros1_bag`; `change` may modify each chunk, and chunk positions and index are
-/// updated.
+/// Copies a bag that passed `check_ros1_bag`. The function `change` may modify each chunk; chunk positions and index of
+/// the copy are updated.
 void copy_ros1_bag(const std::filesystem::path& from, const std::filesystem::path& to,
                    const std::function<void(Ros1Chunk&)>& change);
 
-/// Decompresses any LZ4 frame, because the ROS 1 library only supports independent blocks.
+/// Decompresses an LZ4 frame of any kind, because the ROS 1 library only supports LZ4 frames with independent blocks.
 void unpack_lz4(Ros1Chunk& chunk);
 
 }  // namespace tumble::scenarios

@@ -139,8 +139,8 @@ class Ros2BagWriter : public BagWriter {
   std::set<std::string> defined_;
 };
 
-/// `kind` is the storage format, "sqlite3" or "mcap". `packed` is the unit of compression, "file" or "message", or ""
-/// without compression.
+/// `kind` is the storage format, "sqlite3" or "mcap". `packed` is "file" or "message" for a bag that is compressed per
+/// file or per message, and "" without compression.
 struct StoredBag {
   std::string kind = "sqlite3";
   std::vector<path> files;

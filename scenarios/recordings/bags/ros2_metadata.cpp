@@ -135,7 +135,7 @@ const std::map<std::string, std::string>& definitions() {
        "geometry_msgs/TwistWithCovariance twist\n"},
       {"tf2_msgs/TFMessage", "geometry_msgs/TransformStamped[] transforms\n"},
       {"rosgraph_msgs/Clock", "builtin_interfaces/Time clock\n"},
-      // github.com/Livox-SDK/livox_ros_driver2
+      // The message definition is from github.com/Livox-SDK/livox_ros_driver2.
       {"livox_ros_driver2/CustomPoint",
        "uint32 offset_time\nfloat32 x\nfloat32 y\nfloat32 z\nuint8 reflectivity\nuint8 tag\nuint8 line\n"},
       {"livox_ros_driver2/CustomMsg",
@@ -181,8 +181,8 @@ std::string ros2_definition(const std::string& type) {
 std::string ros2_qos(const std::string& topic) {
   if (topic != "/tf_static") return "";
   const std::string forever = "\n    sec: 9223372036\n    nsec: 854775807\n";
-  // In the enumerations of rmw, the value 1 means keep last (history), reliable, transient local (durability), or
-  // automatic (liveliness).
+  // The value 1 in the enumerations of the ROS middleware means history "keep last", reliability "reliable", durability
+  // "transient local", and liveliness "automatic".
   return "- history: 1\n  depth: 1\n  reliability: 1\n  durability: 1\n  deadline:" + forever +
          "  lifespan:" + forever + "  liveliness: 1\n  liveliness_lease_duration:" + forever +
          "  avoid_ros_namespace_conventions: false";

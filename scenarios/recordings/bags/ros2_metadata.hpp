@@ -30,8 +30,8 @@ std::string ros1_type(std::string type);
 
 std::string ros2_definition(const std::string& type);
 
-/// Quality of service of a topic as YAML for rosbag2; /tf_static is transient local, so that new subscribers receive
-/// the transforms.
+/// Returns the quality of service of a topic as YAML for rosbag2. The topic /tf_static is transient local, so that new
+/// subscribers receive the transforms.
 std::string ros2_qos(const std::string& topic);
 
 }  // namespace tumble::scenarios

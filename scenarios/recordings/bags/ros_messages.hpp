@@ -74,7 +74,7 @@ struct Clock {
   std::uint32_t sec = 0, nanosec = 0;
 };
 
-/// The fields follow Livox-SDK/livox_ros_driver, README: "Livox pointcloud custom message".
+/// The fields follow the section "Livox pointcloud custom message" in the README of Livox-SDK/livox_ros_driver.
 struct LivoxPoint {
   std::uint32_t offset_time = 0;  ///< ns after `timebase` of the message
   float x = 0, y = 0, z = 0;      ///< m

@@ -16,10 +16,11 @@ std::string without_slash(const std::string& frame);
 /// The tree of sensor frames comes from /tf_static; each frame has at most one parent.
 class StaticFrames {
  public:
-  /// Of several transforms of a frame, the last transform is used. If the parent of a frame changes, remarks() contains
-  /// a note. A transform is invalid if a value is not finite, the translation is above 1 km, or the norm of the
-  /// quaternion differs from 1 by more than 1 %. A transform whose parent is its own frame is also invalid. Only the
-  /// use of an invalid transform throws an exception, because bags contain frames unrelated to the sensors.
+  /// If a frame has several transforms, the last transform is used. If the parent of a frame changes, remarks()
+  /// contains a note. A transform is invalid if a value is not finite, the translation is above 1 km, or the norm of
+  /// the quaternion differs from 1 by more than 1 %. A transform whose parent is its own frame is also invalid. An
+  /// invalid transform throws an exception only when it is used, because bags also contain frames without relation to
+  /// the sensors.
   void add(const ros::TransformStamped& transform, const std::string& where);
 
   void require_no_cycle(const std::string& where) const;
@@ -50,7 +51,7 @@ class SensorMountings {
 
   /// Sets the mounting T_BA of a sensor A from /tf_static, unless the user has set T_BA. If the user's value differs
   /// from /tf_static, the function adds a caution to `notes`. If /tf_static contains only the pose of A relative to
-  /// another sensor, T_BA follows from the mounting of this sensor, which an earlier call must have set.
+  /// another sensor S, T_BA follows from the mounting of S, which an earlier call must have set.
   void place(const std::string& topic, const std::string& frame, const char* option, bool given,
              Eigen::Isometry3d& T_BA, std::vector<std::string>& notes);
 

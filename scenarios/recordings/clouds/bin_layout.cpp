@@ -20,11 +20,12 @@ constexpr std::array<std::size_t, 6> kDoubles = {3, 4, 5, 6, 7, 8};
 constexpr std::size_t kSections = 4, kInRow = 6000;
 constexpr std::size_t kPerColumnMin = 25;
 constexpr std::size_t kNumberBins = 16;
-/// Valid coordinates [m] and intensities are 0 or have magnitudes from 1e-20 to 1e7. Values near 1e-16 are valid: the
-/// computed sine of 180 degrees is about 1e-16, and coordinates contain such sines times a range.
+/// Valid coordinates [m] and intensities are 0 or have magnitudes from 1e-20 to 1e7. Values near 1e-16 are valid,
+/// because a coordinate may be a range times the computed sine of 180 degrees, which is about 1e-16.
 constexpr double kLargest = 1e7, kSmallest = 1e-20, kOddShareMax = 0.01;
-/// Another number of columns than 4 is reported only if columns_differ() is clearly larger with this number. In valid
-/// KITTI sweeps, columns_differ() with 3 to 12 columns exceeds the value with 4 columns by at most 0.08.
+/// A number of columns other than 4 is reported only if columns_differ() is clearly larger for this number than for 4
+/// columns. In valid KITTI sweeps, columns_differ() for 3 to 12 columns exceeds the value for 4 columns by at most
+/// 0.08.
 constexpr double kMultipleDiffers = 1.5;
 constexpr double kClearlyMore = 1.25, kClearlyMoreBy = 0.05;
 
@@ -75,8 +76,9 @@ std::vector<std::size_t> bins_of(const NumberSample& sample) {
 
 using NumberHistogram = std::array<double, kNumberBins + 1>;
 
-/// Returns the mean total variation distance between the histogram of a column and the histogram of all numbers. The
-/// mean distance between random samples of one distribution is subtracted.
+/// Divides the numbers of a file into columns, and compares the histogram of each column with the histogram of all
+/// numbers. Returns the mean total variation distance of the histograms, minus the mean distance that random samples of
+/// one distribution would have.
 double columns_differ(const NumberSample& sample, const std::vector<std::size_t>& bins, std::size_t columns) {
   std::vector<NumberHistogram> counts(columns, NumberHistogram{});
   NumberHistogram all{};

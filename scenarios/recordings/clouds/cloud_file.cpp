@@ -88,7 +88,7 @@ bool is_number_of_pcl(std::string_view word) {
   return error != std::errc::invalid_argument && end == word.data() + word.size();
 }
 
-/// PCL would read a malformed word as its leading number, 0 or NaN without an error, so the words of text files are
+/// PCL reads a malformed word such as "1.2x" without an error, as 1.2, 0 or NaN. Therefore, the words of text files are
 /// checked first.
 void require_numbers(const std::filesystem::path& path, const CloudHeader& header) {
   std::ifstream stream(path, std::ios::binary);

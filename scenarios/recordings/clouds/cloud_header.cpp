@@ -18,7 +18,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// LZF expands 3 bytes to at most 264 bytes.
+/// The LZF compression stores at most 264 bytes of data in 3 bytes.
 constexpr std::uint64_t kLzfMost = 88;
 constexpr std::size_t kCloudHeaderMax = 65536;
 
@@ -73,8 +73,8 @@ class HeaderLines {
     }
   }
 
-  /// PCL does not check the two sizes in front of compressed points: the number of compressed bytes and the number of
-  /// uncompressed bytes.
+  /// Compressed points start with two sizes, the number of compressed bytes and the number of uncompressed bytes, which
+  /// PCL does not check.
   void require_sizes(const CloudHeader& header) {
     std::array<std::uint32_t, 2> sizes{};
     if (!stream_.read(reinterpret_cast<char*>(sizes.data()), sizeof(sizes)))
@@ -137,7 +137,8 @@ using Words = std::vector<std::string>;
 constexpr std::array<const char*, 11> kPcdWords = {"VERSION", "FIELDS",    "SIZE",   "TYPE", "COUNT",  "WIDTH",
                                                    "HEIGHT",  "VIEWPOINT", "POINTS", "DATA", "COLUMNS"};
 
-/// Each header word must occur once and in order, because PCL misreads other headers without an error.
+/// Each keyword of a PCD header must occur once and in the standard order, because PCL misreads other headers without
+/// an error.
 std::map<std::string, Words> pcd_lines(HeaderLines& lines) {
   const std::span order = std::span(kPcdWords).first<10>();
   std::map<std::string, Words> found;

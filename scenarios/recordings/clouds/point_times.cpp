@@ -23,12 +23,12 @@ namespace {
 constexpr double kSpanMin = 0.02, kSpanMax = 1.5, kShortSpanMin = kSpanMax / 1000.0;
 /// Times after 1973, in seconds since 1970, exceed 1e8.
 constexpr double kEpochMin_s = 1e8;
-/// A sweep with fewer than 100 points may cover only a short part of the sweep period. The short time span of such a
-/// sweep does not contradict the stated time unit.
+/// A sweep with fewer than 100 points may cover only a short part of the sweep period. Therefore, a short time span of
+/// a sweep with fewer than 100 points does not contradict the stated time unit.
 constexpr double kPointsThatSpan = 100.0;
 
-/// With at least five clouds, point times count as absolute if two clouds start more than two sweep periods from time
-/// zero.
+/// If two of at least five clouds have point times more than two sweep periods from zero, the point times count as
+/// absolute.
 constexpr std::size_t kCloudsToCompare = 5;
 
 using tumble::ros::kTimeUnits, tumble::ros::TimeUnit, tumble::ros::stated_unit;
@@ -55,7 +55,7 @@ std::string choose_field(const Cloud& cloud, const SweepReading& reading, const 
   return choice.field;
 }
 
-/// A point time that is farther from the median by more than 20 interquartile ranges is damaged.
+/// A point time counts as damaged if its distance from the median exceeds 20 interquartile ranges.
 constexpr double kDamaged = 20.0;
 
 std::pair<double, double> reach(const Cloud& cloud, const std::string& field) {

@@ -38,17 +38,18 @@ struct PointTimeRule {
 /// time_offset offset_ns. The suffix _s, _ms, _us or _ns of a field name determines the unit of the point times.
 /// Without a suffix, the unit follows from the time span of a sweep, which must be 0.15 to 150 % of `period_ns`. If the
 /// sweep period is unknown (0), the size of times since 1970 determines the unit. If all points of each sweep have
-/// equal times, the points count as points without times.
+/// equal times, the sweeps count as sweeps without point times.
 ///
-/// A stated unit is rejected if only another unit fits the sweep period and the sweeps have at least 100 points.
+/// A stated unit of the point times is rejected if the sweeps have at least 100 points and only another unit fits the
+/// sweep period.
 PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t period_ns, const SweepReading& reading,
                                const std::string& where);
 
 struct BuiltSweeps {
   sim::LidarRecord lidar;
   std::optional<PointStore> points;
-  /// Time of the last point of each cloud, or start of the sweep if its points have no times. Empty for a skipped
-  /// cloud.
+  /// Time of the last point of each cloud. If the points have no times, the start of the sweep is stored instead. The
+  /// entry of a skipped cloud is empty.
   std::vector<std::optional<std::int64_t>> last_point_ns = {};
   std::vector<std::string> fields = {};  ///< of the first cloud
   std::int64_t record_lag_ns = 0;        ///< of a bag: smallest delay from the end of a sweep to its record stamp
@@ -74,8 +75,8 @@ class SweepBuilder {
 
   LeftOut& left_out() { return left_out_; }
 
-  /// If the device description has no sweep period, the period becomes the median step of the stamps or the largest
-  /// point offset, whichever is larger.
+  /// Returns the sweeps. If the device description has no sweep period, the period is the median step of the stamps or
+  /// the largest point offset, whichever is larger.
   BuiltSweeps finish(const std::string& where, std::vector<std::string>& notes);
 
  private:

@@ -67,7 +67,7 @@ class VtkWords {
     return value;
   }
 
-  /// Each number needs at least two bytes: a digit and a separator.
+  /// Returns an upper bound of the remaining numbers: each number needs at least two bytes, a digit and a separator.
   std::uint64_t left() const { return text_.size() - at_; }
 
  private:

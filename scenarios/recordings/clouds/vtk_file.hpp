@@ -7,10 +7,10 @@
 
 namespace tumble::scenarios {
 
-/// The section POINTS, and each section SCALARS with one number per point, become named columns; other sections are
-/// skipped.
+/// Reads a legacy VTK text file. The section POINTS, and each section SCALARS with one number per point, become named
+/// columns; other sections are skipped.
 ///
-/// The number of points must be at most 2^26 and fit the file size.
+/// The number of points must be at most 2^26, and must agree with the file size.
 Cloud read_vtk(const std::filesystem::path& path);
 
 }  // namespace tumble::scenarios

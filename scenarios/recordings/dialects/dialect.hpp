@@ -50,8 +50,8 @@ struct Dialect {
 
 std::span<const Dialect> all_dialects();
 
-/// Fills the templates of a configuration: "@quantity@" becomes a value of the recording's sensors, and
-/// "@quantity|text@" becomes `text` if the value is unknown.
+/// Fills the templates of configuration files. A placeholder "@quantity@" becomes a value of the recording's sensors. A
+/// placeholder "@quantity|text@" becomes `text` if the value is unknown.
 std::vector<ConfigurationFile> configuration_of(const Dialect& dialect, const SensorFacts& facts);
 
 }  // namespace tumble::scenarios

@@ -12,8 +12,8 @@ namespace tumble::scenarios {
 
 std::vector<std::string> peer_dialects();
 
-/// Writes a recording in the format of one published estimator to an empty or new folder. If `with_truth` is true, the
-/// folder contains truth.tum for the program evo: body poses in the bag's clock.
+/// Exports a recording in the format that one published estimator expects, to an empty or new folder. If `with_truth`
+/// is true, the folder contains truth.tum for the program evo: body poses in the bag's clock.
 std::vector<std::string> export_for(const std::filesystem::path& recording, const std::string& peer,
                                     const std::filesystem::path& folder, bool with_truth);
 

@@ -30,8 +30,8 @@ struct LidarFacts {
   int rings = 1;                             ///< highest ring plus one
   int columns = 1;                           ///< firings of a ring in a sweep
   double nearest_m = 0.0, farthest_m = 0.0;  ///< range of the returns
-  /// Points closer to the lidar than own_body_m belong to the robot. For an unknown robot, own_body_m is the range of
-  /// the nearest point, rounded down to 0.1 m.
+  /// Radius around the lidar in which points belong to the robot. For an unknown robot, the radius is the range of the
+  /// nearest point, rounded down to 0.1 m.
   double own_body_m = 0.0;
 };
 

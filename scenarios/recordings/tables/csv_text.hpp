@@ -15,14 +15,15 @@ struct CsvLine {
   std::vector<std::string_view> fields;
 };
 
-/// Windows line ends are accepted; empty lines at the end are ignored.
+/// CsvText reads the lines of a text table. Windows line ends are accepted, and empty lines at the end are ignored.
 class CsvText {
  public:
-  /// The separator is the comma, semicolon or tab that is most frequent in the first line that is no comment;
-  /// otherwise, blanks are the separator.
+  /// Opens a table and determines its separator: the comma, semicolon or tab that is most frequent in the first line
+  /// that is not a comment. If this line contains no comma, semicolon or tab, blanks are the separator.
   explicit CsvText(const std::filesystem::path& path);
   CsvText(const std::filesystem::path& path, char separator);
-  /// Throws BadInput if the last line has no line end, because the line may be truncated; the next call returns false.
+  /// Reads the next line. Throws BadInput if the last line has no line end, because the line may be truncated; the next
+  /// call then returns false.
   bool next(CsvLine& line);
   struct Place {
     std::size_t at = 0;
@@ -47,9 +48,10 @@ double csv_number(const CsvLine& line, std::size_t index, const std::string& col
 
 bool is_number(std::string_view field);
 
-/// Empty lines, comments and an empty field after the last separator of a line are skipped. The first line that is not
-/// a comment is the header if fewer than half of its fields are numbers. A comment directly before the samples is the
-/// header if the comment has as many fields as a sample ("#timestamp [ns],w_RS_S_x [rad s^-1],...").
+/// LoggedTable reads a table of sensor readings. Empty lines, comments and an empty field after the last separator of a
+/// line are skipped. The first line that is not a comment is the header if fewer than half of its fields are numbers. A
+/// comment directly before the samples is the header if the comment has as many fields as a sample ("#timestamp
+/// [ns],w_RS_S_x [rad s^-1],...").
 class LoggedTable {
  public:
   explicit LoggedTable(const std::filesystem::path& path);
@@ -59,8 +61,8 @@ class LoggedTable {
   const CsvLine& header() const { return header_; }
   bool has_header() const { return has_header_; }
 
-  /// Throws BadInput with file and line for a wrong number of fields, or for a last line without newline. After
-  /// BadInput, the caller can continue to read.
+  /// Throws BadInput with file and line for a wrong number of fields, or for a last line without newline. The caller
+  /// may read further lines after a BadInput exception.
   bool next(CsvLine& line);
   bool next_sound(CsvLine& line);
   void restart() { text_.back_to(samples_); }

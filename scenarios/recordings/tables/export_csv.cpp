@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// In sensor_msgs/Imu, -1 as the first element of the covariance means an unknown attitude.
+/// In sensor_msgs/Imu, the value -1 as first element of the orientation covariance means that the attitude is unknown.
 constexpr const char* kNoAttitude = "0,0,0,1,[-1 0 0 0 0 0 0 0 0]";
 
 template <class Vector>

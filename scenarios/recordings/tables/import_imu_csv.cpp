@@ -65,7 +65,8 @@ Vector3d largest_readings(const sim::ImuRecord& imu) {
   return out;
 }
 
-/// `rate_difference` becomes the median difference between the rates of both gyros, as a fraction of the rate.
+/// Returns the samples with fast rotation. `rate_difference` is an output: the median difference between the rates of
+/// both gyros, as a fraction of the rate.
 std::vector<Pair> fast_pairs(const sim::ImuRecord& first, const sim::ImuRecord& second, double& rate_difference) {
   const Vector3d largest = kUnsaturatedRatio * largest_readings(first);
   std::vector<Pair> pairs;
@@ -101,9 +102,10 @@ std::vector<Pair> fast_pairs(const sim::ImuRecord& first, const sim::ImuRecord& 
   return pairs;
 }
 
-/// Estimates the position p of a second IMU with the same axes, by least squares. At angular rate w and angular
-/// acceleration a, the specific forces of both IMUs differ by a x p + w x (w x p) plus a bias. The least-squares fit
-/// omits samples near the largest gyro reading, because the gyro may be saturated. Cost: O(N) for N samples.
+/// Estimates the position p of a second IMU relative to the first IMU by least squares. The axes of both IMUs must be
+/// equal. At angular rate w and angular acceleration a, the specific forces of both IMUs differ by a x p + w x (w x p)
+/// plus a bias. Samples near the largest gyro reading are omitted, because the gyro may be saturated. Cost: O(N) for N
+/// samples.
 ImuPosition estimate_imu_position(const sim::ImuRecord& first, const sim::ImuRecord& second) {
   ImuPosition out;
   double rate_difference = 0.0;
@@ -184,7 +186,7 @@ void say_columns(const ImuColumns& columns, bool stated, std::vector<std::string
   if (!others.empty()) notes.push_back("ignored columns: " + others);
 }
 
-/// A column with more than eight different numbers contains row numbers and not IMU numbers.
+/// A column with more than eight different numbers is assumed to contain row numbers instead of IMU numbers.
 std::vector<std::string> imus_in(LoggedTable& table, std::size_t id) {
   constexpr std::size_t kImusMax = 8;
   std::vector<std::string> found;

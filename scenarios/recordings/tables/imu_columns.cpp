@@ -96,7 +96,8 @@ bool find_header_stamp(const CsvLine& header, ImuColumns& layout) {
   return true;
 }
 
-/// In a table of ROS messages, the stamp of the message header has priority over the time of recording.
+/// Finds the columns of a table of ROS messages. The stamp in the message header has priority over the time at which
+/// the message was recorded.
 std::optional<ImuColumns> flattened(const CsvLine& header) {
   ImuColumns layout;
   if (!find_header_stamp(header, layout)) return std::nullopt;

@@ -29,15 +29,16 @@ struct ImuColumns {
   std::vector<std::string> left_out;  ///< names of ignored columns
 };
 
-/// Known column names are the names of ROS messages (".../angular_velocity/x"), of the command `export` and of loggers
-/// (logger_columns.hpp). The short forms sec, nsec, wx.. and fx.. are also known.
+/// Finds the columns of a table by their names. The known names are those of ROS messages (".../angular_velocity/x"),
+/// of the command `export` and of loggers (logger_columns.hpp). The short forms sec, nsec, wx.. and fx.. are also
+/// known.
 ImuColumns imu_columns(const LoggedTable& table);
 
 std::int64_t stamp_ns(const CsvLine& line, const ImuColumns& columns);
 
-/// Infers the unit of the time stamps from up to a thousand steps at the start of the table. In the inferred unit (s,
-/// ms, us or ns), the sample rate is 10 to 1000 Hz. Returns the power of ten that converts the unit to nanoseconds: 9
-/// for s, 6 for ms, 3 for us and 0 for ns.
+/// Infers the unit of the time stamps from up to a thousand steps at the start of the table. The unit (s, ms, us or ns)
+/// is chosen such that the sample rate is 10 to 1000 Hz. Returns the power of ten that converts the unit to
+/// nanoseconds: 9 for s, 6 for ms, 3 for us and 0 for ns.
 int decimals_by_step(LoggedTable& table, std::size_t stamp, const std::string& file);
 
 }  // namespace tumble::scenarios

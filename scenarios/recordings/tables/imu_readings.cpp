@@ -18,7 +18,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// The median specific force of a robot is near g; the limits exclude readings in g, in mg and in raw counts.
+/// The median specific force of a robot is near gravity (9.8 m/s^2). The limits exclude readings in g, in mg and in raw
+/// counts.
 constexpr double kLeastMedian_m_s2 = 3.0, kLargestMedian_m_s2 = 30.0;
 
 constexpr std::ptrdiff_t kStartReadings = 50;
@@ -42,7 +43,8 @@ void require_plausible_force(const std::string& where, const sim::ImuRecord& imu
   const std::vector<double> start(norms.begin(), norms.begin() + std::min(std::ssize(norms), kStartReadings));
   const double middle = upper_median(std::move(norms));
   if (middle >= kLeastMedian_m_s2 && middle <= kLargestMedian_m_s2) return;
-  // A robot that starts at rest measures 1 g at the start, in any unit.
+  // The accelerometer of a robot that starts at rest measures 1 g at the start. The reading at the start therefore
+  // indicates the unit.
   if (const double first = upper_median(start); middle < kLeastMedian_m_s2 && first < kWithoutGravity * middle)
     throw BadInput(fmt::format(
         "{}: the specific force is {} at the start and {} in the median, so the readings may be linear acceleration, "
@@ -117,8 +119,8 @@ constexpr int kLeastWindows = 10;
 constexpr double kLeastCorrelation = 0.8;
 constexpr double kBriskRotation = 0.25;
 
-/// Within a burst of IMU readings, a time step is at most 0.2 times the mean step. In a recording with bursts, at least
-/// half of the time steps are within a burst.
+/// Some drivers deliver IMU readings in bursts. Within a burst, a time step is at most 0.2 times the mean step, and at
+/// least half of all time steps are within a burst.
 constexpr double kBurstStep = 0.2, kBurstShare = 0.5;
 constexpr std::size_t kLeastBursts = 10;
 constexpr std::int64_t kBurstsApart_ns = 1'000'000'000;
@@ -206,8 +208,8 @@ GravityRotation gravity_rotation(const sim::ImuRecord& imu, RotationWindows wind
     const bool whole = near(end) && end >= begin + 4 && (length_s >= kRotationWindow_s || turned()) &&
                        length_s < 1.5 * kRotationWindow_s;
     if (whole) {
-      // To reduce noise, the change of the specific force is computed between the means of the first and the last
-      // quarter of the readings.
+      // To reduce noise, the specific force is averaged over the first and over the last quarter of the readings, and
+      // the change is the difference of these means.
       const std::size_t quarter = std::max<std::size_t>(1, (end - begin) / 4);
       Eigen::Vector3d first = Eigen::Vector3d::Zero(), last = Eigen::Vector3d::Zero(), middle = Eigen::Vector3d::Zero();
       for (std::size_t k = 0; k < quarter; ++k) first += imu.accel_m_s2[begin + k], last += imu.accel_m_s2[end - k];
@@ -237,7 +239,8 @@ bool has_sufficient_rotation(const GravityRotation& turn) {
 
 GravityRotation sufficient_rotation(const sim::ImuRecord& imu) {
   const GravityRotation turn = gravity_rotation(imu, RotationWindows::even);
-  // A fast rolling sphere turns too far within 0.2 s for the comparison with the gyro, so shorter intervals are tried.
+  // During 0.2 s, a fast rolling sphere rotates too far for the comparison with the gyro, so shorter intervals are also
+  // tried.
   return has_sufficient_rotation(turn) ? turn : gravity_rotation(imu, RotationWindows::brisk);
 }
 

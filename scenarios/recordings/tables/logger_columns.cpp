@@ -36,7 +36,7 @@ const std::vector<std::string_view> kForces = {
     "f", "specificforce", "arss",  "linacc",        "accelerometerms2"};
 const std::vector<std::string_view> kIds = {"i", "id", "instance", "imuid", "sensorid"};
 
-/// Xsens' SampleTimeFine counts units of 0.1 ms.
+/// The time column SampleTimeFine of Xsens devices counts units of 0.1 ms.
 const UnitNames<int> kTimeUnits = {{"s", 9},    {"sec", 9},  {"secs", 9}, {"seconds", 9},
                                    {"ms", 6},   {"msec", 6}, {"fine", 5}, {"us", 3},
                                    {"usec", 3}, {"ns", 0},   {"nsec", 0}, {"nanoseconds", 0}};

@@ -121,7 +121,7 @@ void attach_reference(Imported& recording, const ReferenceSource& source) {
 
 namespace {
 
-/// Matrices in KITTI files have seven digits.
+/// Rotation matrices in KITTI files have only seven digits, so the tolerance for orthogonality is 1e-3.
 constexpr double kRotationTolerance = 1e-3;
 
 [[noreturn]] void fail(const Table& table, const Table::Row& row, const std::string& what) {
@@ -252,8 +252,8 @@ namespace {
 constexpr std::int64_t kStepMin_ns = 100000, kStepUsual_ns = 1000000;
 constexpr std::int64_t kSamplesMax = 2000000;
 constexpr std::int64_t kLongestReference_ns = 86400ll * 1000000000;
-/// Reference poses are differentiated over 2 * kReach_ns, so that the noise of an optical reference at rest is below
-/// the thresholds for rest.
+/// Reference poses are differentiated over 2 * kReach_ns. With this interval, the noise of an optical reference at rest
+/// stays below the speed limits for rest.
 constexpr std::int64_t kReach_ns = 70000000;
 
 std::vector<std::int64_t> times_of(const std::vector<ReferencePose>& poses) {

@@ -11,7 +11,8 @@
 
 namespace tumble::scenarios {
 
-/// The z axis of the reference instrument's world points up. NaN marks an unknown position.
+/// ReferencePose is a pose from a reference instrument, in a world frame whose z axis points up. NaN marks an unknown
+/// position.
 struct ReferencePose {
   std::int64_t time_ns = 0;
   Eigen::Vector3d p_WA_m = Eigen::Vector3d::Zero();
@@ -20,11 +21,13 @@ struct ReferencePose {
 
 inline constexpr double kReferenceNormTolerance = 1e-2;
 
-/// Optical systems and the command `export` write unknown poses with NaN in all numbers; readers skip these poses.
+/// Returns true for an unknown pose, in which all numbers are NaN. Optical systems and the command `export` write such
+/// poses, and readers skip them.
 bool is_unknown(const ReferencePose& pose);
 
-/// Returns why a pose is invalid; empty for a valid pose. A valid pose is finite, within 1e9 m of the origin, and later
-/// than the pose `before`. The quaternion norm of a valid pose is 1 within 1 %; the function normalises the quaternion.
+/// Returns why a pose is invalid, or an empty text for a valid pose. A valid pose is finite, within 1e9 m of the
+/// origin, and later than the pose `before`. The quaternion norm of a valid pose is 1 within 1 %; the function
+/// normalises the quaternion.
 std::string problem_of(ReferencePose& pose, const ReferencePose* before);
 
 /// If `sorted` is true, sorts the poses by time and keeps the first of several poses with equal stamps.
@@ -38,31 +41,32 @@ std::string pose_format(const std::filesystem::path& file);
 /// a stamp that does not increase throws BadInput.
 std::vector<ReferencePose> read_tum_poses(const std::filesystem::path& file, bool sorted);
 
-/// The lines of a KITTI file contain the upper three rows of pose matrices. Throws BadInput with file and line for a
-/// line without twelve finite numbers, or a matrix that is not a rotation (within 1e-3).
+/// Reads poses from a KITTI file, whose lines contain the upper three rows of pose matrices. Throws BadInput with file
+/// and line for a line without twelve finite numbers, or a matrix that is not a rotation (within 1e-3).
 std::vector<ReferencePose> read_kitti_poses(const std::filesystem::path& file,
                                             const std::vector<std::int64_t>& times_ns);
 
 bool is_pose_table(const std::filesystem::path& file);
 
-/// Reads a table of poses with the separators of IMU tables (tables/csv_text.hpp), one pose per line. The names in
-/// the header identify the columns, in any order:
+/// Reads a table with one pose per line, with the separators of IMU tables (tables/csv_text.hpp). The names in the
+/// header identify the columns, in any order:
 /// - ground truth of EuRoC and TUM VI ("#timestamp [ns],p_RS_R_x [m],...,q_RS_w [],..."),
 /// - messages nav_msgs/Odometry, PoseStamped, TransformStamped ("header.stamp.sec", "pose.pose.position.x",
 ///   "field.transform.translation.x"),
 /// - truth.csv of the command `export`, and short names ("timestamp tx ty tz qx qy qz qw").
 ///
-/// A time without a unit is in decimal seconds, or in ms, us or ns since 1970 according to its number of digits.
+/// If the column name states no unit, a time is in decimal seconds, or, depending on the number of digits, in ms, us or
+/// ns since 1970.
 std::vector<ReferencePose> read_pose_table(const std::filesystem::path& file, bool sorted);
 
 std::size_t count_kitti_poses(const std::filesystem::path& file);
 
-/// The stamps of `poses` must increase in the recording's clock; they may start before time 0. If the times of all
-/// poses are multiples of one time step of at least 0.1 ms, the truth uses this time step with unchanged poses. Without
-/// a common time step, the truth has steps of 1 ms, or longer steps to limit the truth to two million samples. Between
-/// poses at most 2.5 median steps apart, position is interpolated linearly and attitude by slerp; in larger gaps,
-/// position and attitude are unknown. The truth from reference poses ends with the last pose or at `end_ns`, whichever
-/// is earlier.
+/// Computes the truth of a recording from reference poses. The time stamps of `poses` must increase and use the
+/// recording's clock; the first time stamps may be negative. If the times of all poses are multiples of one time step
+/// of at least 0.1 ms, the truth uses this time step with unchanged poses. Otherwise, the truth has time steps of 1 ms,
+/// or longer time steps that limit the truth to two million samples. Position is interpolated linearly, and attitude by
+/// slerp. Position and attitude are unknown in gaps longer than 2.5 median steps of the poses. The truth from reference
+/// poses ends with the last pose or at `end_ns`, whichever is earlier.
 sim::Truth reference_truth(const std::vector<ReferencePose>& poses, std::int64_t end_ns);
 
 }  // namespace tumble::scenarios

@@ -12,13 +12,14 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// The rotations of reference and gyro contradict each other above a difference of 50 %, and agree below 30 %.
+/// The rotations of reference and gyro contradict each other if their relative difference exceeds 50 %, and agree if
+/// the relative difference is below 30 %.
 constexpr double kContradicts = 0.5, kReferenceAgrees = 0.3;
 /// A wrong quaternion convention is reported only if reference and gyro differ by more than 15 % of the rotation. With
 /// the correct quaternion convention, the rotation difference must be less than 40 % of the difference with the stated
 /// convention.
 constexpr double kExplained = 0.15, kExplanationLeaves = 0.4;
-/// The filters of an IMU cause a delay of about 0.02 s.
+/// A delay below kDelayNoted_s causes no note, because the filters of an IMU cause a delay of about 0.02 s.
 constexpr double kDelayNoted_s = 0.03;
 
 std::vector<CandidateFrame> candidate_frames(const Eigen::Isometry3d& T_BA, const sim::Sensors& sensors) {

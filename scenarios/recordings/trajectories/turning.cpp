@@ -23,10 +23,11 @@ constexpr double kEnough_rad = 0.2;
 constexpr std::size_t kTurnPairsMin = 6, kTurnPairsMax = 400, kDelayPairsMin = 20;
 constexpr std::uint8_t kGyroClipped = 0b111;
 constexpr double kCoarse_s = 0.02, kFine_s = 0.002;
-/// A delay of 0.3 s is detectable if it at least doubles the rotation difference between gyro and attitudes.
+/// A clock error of 0.3 s is detectable if shifting the time stamps by 0.3 s at least doubles the rotation difference
+/// between gyro and attitudes.
 constexpr double kShown_s = 0.3, kShows = 2.0, kShowsBy = 0.02;
-/// The direction of gravity is tested only if the stated quaternion convention agrees with the gyro: the rotations
-/// differ by at most 30 %.
+/// The direction of gravity is tested only if the gyro agrees with the stated quaternion convention, with a rotation
+/// difference of at most 30 %.
 constexpr double kAgreesAsStated = 0.3;
 constexpr double kNoFit = std::numeric_limits<double>::infinity();
 
@@ -87,7 +88,8 @@ std::optional<AttitudePair> pair_from(std::span<const TimedAttitude> attitudes, 
   return out;
 }
 
-/// Pairs of attitudes with little rotation contain mainly noise, so they are used only if other pairs are few.
+/// Returns pairs of attitudes with a rotation between them. Pairs with little rotation contain mainly noise, so they
+/// are used only if there are few other pairs.
 std::vector<AttitudePair> pairs_of(std::span<const TimedAttitude> attitudes) {
   std::vector<AttitudePair> out;
   for (std::size_t first = 0; first < attitudes.size();) {
@@ -155,8 +157,8 @@ class TurningComparison {
     return out;
   }
 
-  /// For a correct quaternion convention, the mean specific force in world axes points up and has about the size of
-  /// gravity.
+  /// Returns the mean specific force in world axes. If the quaternion convention is correct, this force points up and
+  /// has about the size of gravity.
   Eigen::Vector3d force(const TurningFit& fit, const sim::ImuRecord& imu) const {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (const Measured& measured : measured_) {
@@ -169,7 +171,8 @@ class TurningComparison {
     return sum / std::max(static_cast<double>(measured_.size()), 1.0);
   }
 
-  /// In a motion about a single axis, several quaternion conventions fit the gyro about equally well.
+  /// Returns the quaternion conventions that fit the gyro about as well as `fitted`. If the sensor rotates about a
+  /// single axis, several conventions can fit.
   std::vector<TurningFit> alike(const TurningFit& fitted) const {
     std::vector<TurningFit> out;
     for (std::size_t k = 0; k < readings_.size(); ++k) {
@@ -179,7 +182,7 @@ class TurningComparison {
     return out;
   }
 
-  /// The best mounting of the IMU solves Wahba's problem (1965), by singular values.
+  /// Computes the best mounting of the IMU by a singular value decomposition, which solves Wahba's problem (1965).
   MountingFit mounting() const {
     Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
     for (const Measured& measured : measured_) sum += seen_A(measured.pair) * so3::logarithm(measured.turn).transpose();

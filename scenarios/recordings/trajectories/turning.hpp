@@ -28,8 +28,8 @@ struct CandidateFrame {
 
 enum class QuaternionConvention { as_stated, w_first, inverse, w_first_inverse };
 
-/// `difference` is the median rotation difference between gyro and attitudes over pairs of attitudes, as a fraction of
-/// the median rotation.
+/// TurningFit describes how well attitudes agree with a gyro. `difference` is the median rotation difference between
+/// gyro and attitudes over pairs of attitudes, as a fraction of the median rotation.
 struct TurningFit {
   QuaternionConvention written = QuaternionConvention::as_stated;
   std::size_t frame = 0;  ///< index of the candidate
@@ -46,8 +46,8 @@ template <class Fit>
 struct DelayedFit {
   Fit undelayed, delayed;
 
-  /// Of several hundred candidate delays, one delay may fit better by chance. A delay therefore counts only if it
-  /// reduces the rotation difference to less than half.
+  /// Among several hundred candidate delays, one delay may fit better by chance. A delay is therefore accepted only if
+  /// the delay reduces the rotation difference to less than half.
   const Fit& likely() const { return delayed.difference < 0.5 * undelayed.difference - 0.02 ? delayed : undelayed; }
 };
 
@@ -58,12 +58,13 @@ struct TurningCheck {
   DelayedFit<MountingFit> mounting;
   bool clock_known = false;  ///< a delay of 0.3 s is detectable
   bool order_known = false;  ///< wrong quaternion conventions are detectable
-  /// `upright` is another quaternion convention that agrees with the gyro about equally well. Gravity is vertical with
-  /// the convention `upright`, but not with the stated convention.
+  /// `upright` is a quaternion convention that agrees with the gyro about as well as the stated convention. With the
+  /// convention `upright`, the measured gravity is vertical in world axes; with the stated convention, it is not.
   std::optional<TurningFit> upright;
 };
 
-/// Stamps of valid poses may be late by a sweep period (0.1 s), because some programs stamp the end of a sweep.
+/// The time stamps of valid poses may be late by one sweep period (0.1 s), because some programs stamp a pose with the
+/// end of the sweep.
 inline constexpr double kDelaySearched_s = 5.0, kDelayMax_s = 0.15;
 inline bool is_delayed(double delay_s) {
   return std::abs(delay_s) >= kDelayMax_s;
@@ -72,11 +73,11 @@ std::string delay_text(double delay_s);
 std::string delay_remedy(double delay_s);
 
 /// Compares the rotations between pairs of attitudes with the rotations that the gyro measures. The attitudes of a pair
-/// are 0.05 to 1 s and 0.02 to 2.5 rad apart. Pairs with a saturated gyro sample or a gap above 0.1 s between the two
-/// attitudes are omitted. At most 400 pairs of attitudes are used, spread evenly over the recording. Fewer than 6 pairs
-/// of attitudes give no result.
+/// are 0.05 to 1 s and 0.02 to 2.5 rad apart. A pair is omitted if the gyro has a saturated sample or a gap above 0.1 s
+/// between the two attitudes. At most 400 pairs of attitudes are used, spread evenly over the recording. Fewer than 6
+/// pairs of attitudes give no result.
 ///
-/// @param frames       Frames to which the attitudes may belong; the first is the user's choice.
+/// @param frames Frames to which the attitudes may belong; the first frame is the user's choice.
 /// @param delay_max_s  Largest delay in either direction, searched in steps of 20 ms, then of 2 ms. With fewer than 20
 /// pairs of attitudes, or for `delay_max_s` = 0, no delay is searched. The search for a delay of up to 5 s takes half a
 /// second.
