@@ -12,10 +12,11 @@ namespace engine {
 struct World;
 }
 
-/// World and robot as a MuJoCo model. Copies of a BuiltSituation share the constant model, also between threads.
+/// BuiltSituation contains world and robot as a MuJoCo model. Copies of a BuiltSituation share the constant model, also
+/// between threads.
 class BuiltSituation {
  public:
-  /// Takes milliseconds for a floor, and tenths of a second for a hill.
+  /// Builds the MuJoCo model, which takes milliseconds for a flat floor, and tenths of a second for a hill.
   BuiltSituation(ResolvedSituation situation, const std::filesystem::path& models);
 
   const ResolvedSituation& situation() const;

@@ -23,7 +23,8 @@ using SpecPtr = std::unique_ptr<mjSpec, SpecDeleter>;
 constexpr double kStep_s = 0.0005;
 constexpr int kFewPairs = 100;
 
-/// A lack of memory is not an InvalidSituation, because a larger machine may be able to simulate the situation.
+/// Throws std::bad_alloc for a lack of memory. InvalidSituation would be wrong, because a computer with more memory may
+/// be able to simulate the situation.
 void refuse_for_memory(std::string_view message) {
   if (message.find("ould not allocate") != std::string_view::npos) throw std::bad_alloc();
 }
@@ -55,8 +56,8 @@ int count_pairs(const mjModel& model) {
 }
 
 /// Returns true if MuJoCo finds the contacts in the same order with and without its bounding-volume tree. With the
-/// tree, MuJoCo sorts the two geoms of a contact by type number. For a robot with several geoms, the result is false
-/// without a comparison.
+/// tree, MuJoCo sorts the two geoms of a contact by type number. If the robot has several geoms, the function returns
+/// false without a comparison.
 bool sorts_as_asked(const mjModel& model) {
   int robot = -1;
   for (int i = 0; i < model.ngeom; ++i) {
@@ -85,18 +86,18 @@ bool moves_freely(const mjModel& model) {
          none(model.dof_frictionloss, model.nv);
 }
 
-/// Disables computations of MuJoCo that are not needed. The motion stays bit-identical.
+/// Disables computations of MuJoCo that do not affect the motion, which stays bit-identical.
 void spare_work(mjModel& model) {
   model.opt.enableflags |= mjENBL_SLEEP;
   std::fill(model.tree_sleep_policy, model.tree_sleep_policy + model.ntree, static_cast<int>(mjSLEEP_NEVER));
   model.opt.disableflags |= mjDSBL_ISLAND;
-  // A height field is below the whole robot, so a test of the field's bounding box would exclude no contact.
+  // Part of a height field is always below the robot, so a test of the field's bounding box would exclude no contact.
   for (int i = 0; i < model.ngeom; ++i) {
     if (model.geom_type[i] == mjGEOM_HFIELD)
       std::fill(model.geom_aabb + 6 * i + 3, model.geom_aabb + 6 * i + 6, mjMAXVAL);
   }
-  // With few pairs of geoms, MuJoCo's bounding-volume tree saves time only if the tree contains just the geoms near the
-  // robot.
+  // If there are few pairs of geoms, MuJoCo's bounding-volume tree saves time only if the tree contains only the geoms
+  // near the robot.
   if (count_pairs(model) <= kFewPairs && !(NearGeoms::serves(model) && sorts_as_asked(model))) {
     model.opt.disableflags |= mjDSBL_MIDPHASE;
   }

@@ -11,7 +11,7 @@
 
 namespace tumble::sim {
 
-/// Number that the user can set; a switch is 0 (off) or 1 (on).
+/// Parameter is a number that the user can set. A switch is a parameter with the values 0 (off) and 1 (on).
 struct Parameter {
   std::string_view name;  ///< name with the unit as suffix, for example "slope_rad"
   double default_value;
@@ -49,9 +49,9 @@ class Values {
 
 Values resolve(const std::string& place, const Values& given, std::span<const Parameter> known);
 
-/// Returns "did you mean 'a' or 'b'?", or an empty text if no known name is similar. The candidates are up to three
-/// known names that start with `name`; without such names, the known name with the smallest edit distance. Letter case
-/// is ignored.
+/// Returns a hint such as "did you mean 'a' or 'b'?", or an empty text if no known name is similar. The candidates are
+/// up to three known names that start with `name`. If no known name starts with `name`, the candidate is the known name
+/// with the smallest edit distance. Letter case is ignored.
 std::string did_you_mean(std::string_view name, std::span<const std::string> known);
 
 struct ComponentType {

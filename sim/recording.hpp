@@ -17,13 +17,13 @@ struct ContactTruth {
   std::int64_t time_ns = 0;
   Eigen::Vector3d point_W_m;
   Eigen::Vector3d normal_W;  ///< unit vector, into the robot
-  /// tangential velocity of the robot's surface at the contact, relative to the world
+  /// tangential velocity of the robot's surface at the contact point, relative to the world
   Eigen::Vector3d slip_velocity_W_m_s;
   double normal_force_n = 0;
   std::int32_t surface_id = -1;
 };
 
-/// True motion and sensor errors for each IMU reading.
+/// ImuTruth contains the true motion and the sensor errors of each IMU reading.
 struct ImuTruth {
   std::string name;
   Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();  ///< true mounting
@@ -33,8 +33,8 @@ struct ImuTruth {
   std::vector<Eigen::Vector3d> accel_unclipped_m_s2;
   std::vector<Eigen::Vector3d> gyro_bias_rad_s;
   std::vector<Eigen::Vector3d> accel_bias_m_s2;
-  /// Directions of the three sensing elements, along which saturation acts: rows of the misalignment matrix M
-  /// (sim/imu/elements.hpp). Empty if the sensing elements are aligned with the output axes.
+  /// Directions of the three sensing elements, which are the rows of the misalignment matrix M (sim/imu/elements.hpp).
+  /// The list is empty if the sensing elements are aligned with the output axes.
   std::vector<Eigen::Vector3d> gyro_elements, accel_elements;
   Eigen::Vector3d gyro_element_offset_rad_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d accel_element_offset_m_s2 = Eigen::Vector3d::Zero();

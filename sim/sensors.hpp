@@ -7,8 +7,9 @@
 #include <string>
 #include <vector>
 
-/// The sensor data are the complete input of an estimator, with frames and units as in docs/design.md. Frames: B body
-/// at the centre of mass, I an IMU, L the lidar, X any other sensor; SI units; int64 nanoseconds from the start.
+/// The sensor data are the complete input of an estimator, with frames and units as in docs/design.md. Frame B is the
+/// body at the centre of mass, I an IMU, L the lidar, and X any other sensor. Units are SI units, and times are int64
+/// nanoseconds from the start.
 namespace tumble::sim {
 
 struct ImuRecord {
@@ -25,7 +26,7 @@ struct ImuRecord {
   std::vector<Eigen::Vector3d> accel_m_s2;        ///< specific force
   std::vector<std::uint8_t> clip_flags;           ///< bits: gyro x, y, z, accelerometer x, y, z
   std::vector<Eigen::Vector3d> magnetic_field_t;  ///< in IMU axes, one per sample
-  /// undisturbed magnetic field of the Earth at the place of the recording; 0: unknown
+  /// magnetic field of the Earth at the location of the recording, without disturbances; 0: unknown
   Eigen::Vector3d earth_field_W_t = Eigen::Vector3d::Zero();
 };
 
@@ -36,7 +37,7 @@ enum class PointTimes : std::uint8_t {
   unknown  ///< unknown motion distortion; offset_ns is 0
 };
 
-/// Sweeps of a lidar. A laser pulse without a return gives no point.
+/// LidarRecord contains the sweeps of a lidar. A laser pulse without a return gives no point.
 struct LidarRecord {
   std::string name;
   std::string device;

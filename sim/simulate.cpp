@@ -36,7 +36,7 @@ Eigen::Isometry3d site_pose(const engine::World& world, const SensorSpec& sensor
 }
 
 /// Returns the sensor pose that an estimator receives: the pose in the design frame plus the calibration error. The
-/// origin of the design frame is the nominal centre of mass, or the geometric centre of a sphere.
+/// origin of the design frame is the nominal centre of mass or, for a sphere, the geometric centre.
 Eigen::Isometry3d given_pose(const engine::World& world, const SensorSpec& sensor, const Eigen::Isometry3d& T_BX) {
   const Values& error = sensor.mount_error;
   Eigen::Isometry3d given = T_BX;
@@ -51,7 +51,8 @@ Eigen::Isometry3d given_pose(const engine::World& world, const SensorSpec& senso
 
 Recording simulate(const BuiltSituation& built, int threads) {
   const Situation& situation = built.situation();
-  // This simulation needs a copy of the world, because the floor's friction changes with the robot's position.
+  // The simulation changes the floor's friction in the world model when the robot moves, so it needs a copy of the
+  // world.
   engine::World world = engine::copy_of(built.world());
   const auto motion = find_motion_type(situation.motion.type).make(situation.motion.values, world);
   std::vector<Eigen::Isometry3d> mountings;

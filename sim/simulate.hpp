@@ -14,10 +14,11 @@ class SimulationFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Simulates one recording. The result does not depend on `threads`, the number of threads for the lidar.
+/// Simulates one recording. `threads` is the number of threads of the lidar simulation; the result does not depend on
+/// `threads`.
 Recording simulate(const BuiltSituation& built, int threads = 1);
 
-/// Returns the initial pose of the robot's body frame, before the robot settles into its contacts.
+/// Returns the initial pose of the robot's body frame, before the robot comes to rest on its contacts.
 Eigen::Isometry3d start_pose(const BuiltSituation& built);
 
 }  // namespace tumble::sim

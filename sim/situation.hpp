@@ -19,13 +19,14 @@ struct SensorSpec {
   std::string device;  ///< source of the values ("mti30")
   std::string site;    ///< site of the robot's MJCF file that carries the sensor
   Values values;       ///< data sheet with the changes of the scenario
-  /// error of the sensor pose that an estimator receives: x_m y_m z_m (B axes), roll_rad pitch_rad yaw_rad (small
-  /// angles, I axes)
+  /// error of the sensor pose that an estimator receives: x_m, y_m and z_m in B axes, and the small angles roll_rad,
+  /// pitch_rad and yaw_rad in I axes
   Values mount_error;
   bool operator==(const SensorSpec&) const = default;
 };
 
-/// One simulated case with all numbers fixed; equal situations give bit-identical recordings.
+/// Situation describes one simulated run: world, robot, sensors and motion, with a value for each parameter. Equal
+/// situations give bit-identical recordings.
 struct Situation {
   std::string scenario;
   std::uint64_t seed = 0;
@@ -34,8 +35,8 @@ struct Situation {
   Component robot;
   Component motion;
   std::vector<SensorSpec> sensors;
-  /// Seeds of single random streams: "world" for the shape of the world, and a sensor's name for the errors of the
-  /// sensor. All other streams use `seed`.
+  /// Seeds of single random streams. The stream "world" determines the shape of the world, and a stream with a sensor's
+  /// name determines the errors of this sensor. All streams that are not listed use `seed`.
   std::map<std::string, std::uint64_t> streams;
   bool operator==(const Situation&) const = default;
 
@@ -54,7 +55,7 @@ std::span<const ComponentType> motion_types();
 std::span<const ComponentType> sensor_types();
 std::span<const Parameter> mount_error_parameters();
 
-/// Complete and checked situation; only resolve() creates it.
+/// ResolvedSituation is a complete situation that resolve() has checked; no other function creates a ResolvedSituation.
 class ResolvedSituation {
  public:
   const Situation* operator->() const { return &situation_; }

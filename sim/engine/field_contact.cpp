@@ -15,8 +15,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Cell of a height field, which MuJoCo divides into two triangles along the diagonal from the first to the last
-/// corner.
+/// Cell is a grid cell of a height field, which MuJoCo divides into two triangles along the diagonal from the first to
+/// the last corner.
 class Cell {
  public:
   Cell(const Field& field, int row, int column, const Strut& strut, const Part& over)

@@ -34,8 +34,8 @@ struct Field {
     return scale_m * std::max(heights[row * columns + column], heights[(row + 1) * columns + column]);
   }
 
-  /// Returns the depth of a point below the ground triangle at its position; negative above the ground, and 0 outside
-  /// the field.
+  /// Returns the depth of a point below the ground triangle at the horizontal position of the point. The depth is
+  /// negative above the ground, and 0 outside the height field.
   double depth_m(const Eigen::Vector3d& p_m) const {
     const double across = (p_m.x() + half_x_m) / cell_x_m, along = (p_m.y() + half_y_m) / cell_y_m;
     if (!(across >= 0.0 && across <= columns - 1 && along >= 0.0 && along <= rows - 1)) return 0.0;
@@ -51,7 +51,8 @@ struct Field {
   }
 };
 
-/// Capsule of the robot's cage. Contacts are searched within the distance `reach_m` from the capsule's axis.
+/// Strut is a capsule of the robot's cage. Contacts are searched within the distance `reach_m` from the axis of the
+/// capsule.
 struct Strut {
   Eigen::Vector3d from_m, along_m;
   double radius_m, reach_m;
@@ -73,8 +74,8 @@ struct Strut {
   double highest_m(int axis) const { return from_m[axis] + std::max(0.0, along_m[axis]) + reach_m; }
 };
 
-/// Section of a strut's axis, from the fraction `first` to the fraction `last` of its length; empty if `first` exceeds
-/// `last`.
+/// Part is a section of a strut's axis, from the fraction `first` to the fraction `last` of the axis length. The
+/// section is empty if `first` exceeds `last`.
 struct Part {
   double first = 0.0, last = 1.0;
   bool none() const { return first > last; }

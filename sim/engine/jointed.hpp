@@ -6,17 +6,17 @@
 
 namespace tumble::sim::engine {
 
-/// Computes the poses of MuJoCo's bodies from the joint angles. After a step, the bodies still have the poses of the
-/// last integration stage.
+/// Computes the poses of MuJoCo's bodies from the joint angles. Before this call, after a simulation step, the bodies
+/// have the poses of the last integration stage.
 void update_bodies(const mjModel& model, mjData& data);
 
-/// Returns the motion of a body that is attached by joints. Call update_bodies() first.
+/// Returns the motion of a body that is attached by joints. The caller must call update_bodies() first.
 BodyState state_on_joints(const mjModel& model, const mjData& data, int body);
 
 BodyState state_at_rest(const World& world);
 
-/// Moves the joints from their current angles so that the sensor body is as close as possible to `T_WB` (least squares
-/// of metres and radians).
+/// Moves the joints such that the pose of the sensor body is as close as possible to `T_WB` (least squares of metres
+/// and radians). The search starts at the current joint angles.
 void reach(const World& world, const Eigen::Isometry3d& T_WB, mjData& data);
 
 }  // namespace tumble::sim::engine

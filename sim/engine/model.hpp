@@ -28,7 +28,7 @@ struct FrictionPatch {
 
 struct World {
   ModelPtr model;
-  /// id of MuJoCo's body that carries the sensors; its inertial frame is the body frame B
+  /// id of MuJoCo's body that carries the sensors; the inertial frame of this body is the body frame B
   int robot_body = -1;
   bool free = true;                   ///< false: joints attach the robot to the world
   std::vector<std::string> surfaces;  ///< surface id -> name
@@ -36,8 +36,8 @@ struct World {
   std::vector<FrictionPatch> patches;
   double half_extent_m = 0;  ///< limit of |x| and |y|
   Eigen::Vector3d start_W_m = Eigen::Vector3d::Zero();
-  /// position of the true centre of mass relative to the nominal one (sphere: relative to the geometric centre), in
-  /// body axes
+  /// position of the true centre of mass relative to the nominal centre of mass, in body axes; for a sphere, relative
+  /// to the geometric centre
   Eigen::Vector3d com_offset_m = Eigen::Vector3d::Zero();
   double sphere_radius_m = 0;  ///< 0 if the robot is not a sphere
 };

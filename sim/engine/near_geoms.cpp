@@ -11,9 +11,9 @@ namespace {
 using Eigen::Vector3d;
 using Box = Eigen::Matrix<double, 6, 1>;
 
-/// margin around the robot; 0.5 m make one bounding-volume tree valid for hundreds of simulation steps
+/// margin around the robot; with 0.5 m, one bounding-volume tree is valid for hundreds of simulation steps
 constexpr double kMargin_m = 0.5;
-/// largest motion of a robot in one simulation step: 0.5 ms at 400 m/s
+/// upper bound of a robot's motion in one simulation step: 0.5 ms at 400 m/s
 constexpr double kStep_m = 0.2;
 
 Box everything() {

@@ -8,12 +8,13 @@
 
 namespace tumble::sim::engine {
 
-/// Restricts MuJoCo's bounding-volume tree of the world to geoms that a free robot may touch soon, which saves
-/// computing time. Contacts and their order do not change, so the motion stays bit-identical. The destructor restores
-/// the original tree.
+/// NearGeoms restricts MuJoCo's bounding-volume tree of the world to the geoms that a free robot may touch in the next
+/// steps, which saves computing time. Contacts and their order do not change, so the motion stays bit-identical. The
+/// destructor restores the original bounding-volume tree.
 class NearGeoms {
  public:
-  /// `model` must outlive this object, and must not be copied while this object exists.
+  /// The NearGeoms object refers to `model`. `model` must outlive the object, and must not be copied while the object
+  /// exists.
   explicit NearGeoms(mjModel& model);
   ~NearGeoms();
   NearGeoms(const NearGeoms&) = delete;

@@ -12,29 +12,31 @@
 
 namespace tumble::sim::engine {
 
-/// Simulates the robot's motion in steps with MuJoCo. A warning of MuJoCo ends the run, because lost contacts or
-/// invalid numbers would falsify the data.
+/// Physics simulates the robot's motion in steps with MuJoCo. A warning of MuJoCo ends the simulated run, because lost
+/// contacts or invalid numbers would falsify the data.
 class Physics {
  public:
   /// Each step() may change the floor friction and the bounding-volume tree in MuJoCo's model of `world`. The
-  /// destructor resets the bounding-volume tree to its state before the first step(). `world` must outlive this object.
+  /// destructor resets the bounding-volume tree to its state before the first step(). `world` must outlive the Physics
+  /// object.
   explicit Physics(World& world);
 
   double step_s() const { return world_.model->opt.timestep; }
   BodyState state() const;
-  /// If joints attach the robot to the world, set_state() sets only the time, and throws InvalidSituation if the pose
-  /// differs from the current pose.
+  /// Sets the state of the robot. If joints attach the robot to the world, set_state() sets only the time, and throws
+  /// InvalidSituation if the pose differs from the current pose.
   void set_state(const BodyState& state);
 
   double joint_rad(const std::string& name) const;
   double joint_rate_rad_s(const std::string& name) const;
   void set_joint(const std::string& name, double angle_rad, double rate_rad_s);
 
-  /// Throws SimulationFailure for a warning of MuJoCo, a non-finite state, or a robot that left its world.
+  /// Simulates one step. Throws SimulationFailure for a warning of MuJoCo, a non-finite state, or a robot outside the
+  /// limits of the world.
   void step(const Wrench& wrench);
 
-  /// Appends the current contacts. MuJoCo computes contacts at the last stage of RK4, where the position differs from
-  /// the position after the step by an error of second order.
+  /// Appends the current contacts. MuJoCo computes contacts at the last stage of the RK4 integrator. The position at
+  /// this stage differs from the position after the step by an error of second order.
   void append_contacts(std::int64_t time_ns, std::vector<ContactTruth>& contacts) const;
 
  private:

@@ -24,8 +24,8 @@ struct Pair {
 };
 
 /// Returns the signed horizontal distance of a point from the line of an edge, multiplied by the horizontal length of
-/// the edge. The distance is positive if the point is to the left of the edge, seen from above. `beside_m` is the
-/// vector from the start of the edge to the point.
+/// the edge. The distance is positive if the point is to the left of the edge, seen from above. The argument `beside_m`
+/// is the vector from the start of the edge to the point.
 double left_of(const Vector3d& edge_m, const Vector3d& beside_m) {
   return edge_m.x() * beside_m.y() - edge_m.y() * beside_m.x();
 }

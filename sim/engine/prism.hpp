@@ -18,8 +18,8 @@ struct Closest {
 
 enum class Meeting { apart, near, pierced };
 
-/// Finds the closest points of a prism and the axis from `a_m` to `b_m`. The result is empty if the axis pierces the
-/// prism or is closer than 10 um.
+/// Finds the closest points of a prism and of the axis from `a_m` to `b_m`. The result is empty if the axis intersects
+/// the prism, or if the distance is below 10 um.
 Meeting meet(const Eigen::Vector3d& a_m, const Eigen::Vector3d& b_m, const Prism& prism, double reach_m,
              Closest& closest);
 

@@ -118,8 +118,8 @@ double walk_deviation(double walk_sqrt_s, double tau_s) {
 
 double gauss_markov_deviation(double sigma, double time_s, double tau_s) {
   const double x = tau_s / time_s;
-  // For a small ratio x of averaging time to correlation time, large terms cancel, so `bracket` is the series x^2 / 3 -
-  // x^3 / 4.
+  // x is the ratio of averaging time to correlation time. For small x, large terms of the exact formula cancel, so
+  // `bracket` is the series x^2 / 3 - x^3 / 4.
   const double bracket =
       x < 1e-3 ? x * x / 3.0 - x * x * x / 4.0 : 1.0 - (3.0 - 4.0 * std::exp(-x) + std::exp(-2.0 * x)) / (2.0 * x);
   return sigma * std::sqrt(2.0 / x * bracket);

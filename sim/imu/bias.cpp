@@ -11,12 +11,13 @@ namespace tumble::sim {
 
 namespace {
 
-// ratio of successive correlation times of the Gauss-Markov processes; with 10, the Allan deviation is flat within 2 %
+// Ratio of successive correlation times of the Gauss-Markov processes. With the ratio 10, the Allan deviation of the
+// sum is flat within 2 %.
 constexpr double kRatio = 10.0;
 
-/// Returns the standard deviation sigma of each Gauss-Markov process. At frequency f, the sum of the processes has the
-/// spectrum sigma^2 / (f ln kRatio). Flicker noise with the Allan deviation `floor` has the spectrum floor^2 / (2 f ln
-/// 2).
+/// Returns the standard deviation sigma of each Gauss-Markov process, such that the sum of the processes approximates
+/// flicker noise with the Allan deviation `floor`. At frequency f, the sum of the processes has the spectrum sigma^2 /
+/// (f ln kRatio). Flicker noise has the spectrum floor^2 / (2 f ln 2).
 double sigma_of_one(double floor) {
   return floor * std::sqrt(std::log(kRatio) / (2.0 * std::numbers::ln2));
 }

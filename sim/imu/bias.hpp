@@ -8,7 +8,7 @@
 
 namespace tumble::sim {
 
-/// Simulates the bias of a gyro or accelerometer, independently for each axis, as the sum of three parts:
+/// Bias simulates the bias of a gyro or accelerometer, independently for each axis, as the sum of three parts:
 /// - a turn-on value (normal, drawn once),
 /// - in-run instability: flicker noise over three decades, from four first-order Gauss-Markov processes of equal size,
 ///   with correlation times a factor of ten apart (Keshner, "1/f noise", Proceedings of the IEEE 70, 1982),

@@ -9,11 +9,11 @@
 
 namespace tumble::sim {
 
-/// Simulates the three sensing elements of a gyro or accelerometer, each with its own axis, scale, zero offset and
-/// saturation level. The sensing elements measure s = M u + o, with the true signal u in device axes, misalignment
-/// matrix M and zero offset o. The saturation function c limits the signal of each sensing element to its saturation
-/// level. From the limited signals c(s), the device computes the reading M^-1 (c(s) - o), which corrects misalignment
-/// and offset.
+/// Elements simulates the three sensing elements of a gyro or accelerometer. Each sensing element has its own axis,
+/// scale, zero offset and saturation level. The sensing elements measure s = M u + o, with the true signal u in device
+/// axes, misalignment matrix M and zero offset o. A saturation function c limits each component of s to the saturation
+/// level of the sensing element. From the limited signals c(s), the device computes the reading M^-1 (c(s) - o), which
+/// corrects misalignment and offset.
 ///
 /// - While only one sensing element is saturated, the readings (x, y, z) are on a plane, perpendicular to the axis of
 ///   the sensing element.
@@ -25,8 +25,8 @@ namespace tumble::sim {
 class Elements {
  public:
   struct Params {
-    /// standard deviation of the off-diagonal entries of the misalignment matrix M; the distribution is truncated at
-    /// three standard deviations
+    /// Standard deviation of the off-diagonal entries of the misalignment matrix M. The values are clamped to three
+    /// standard deviations.
     double misalignment = 0.0;
     double scale = 0.0;   ///< standard deviation of the diagonal of M, around 1
     double offset = 0.0;  ///< standard deviation of o [signal unit]
@@ -42,7 +42,7 @@ class Elements {
   bool axis_aligned() const { return axis_aligned_; }
 
   /// Limits a signal in device axes to the saturation levels, and sets bit `first_bit + i` of `flags` if sensing
-  /// element i saturated.
+  /// element i is saturated.
   Eigen::Vector3d clip(const Eigen::Vector3d& signal, Rail& rail, int first_bit, std::uint8_t& flags) const;
 
   Eigen::Vector3d with_elements_of(const Eigen::Vector3d& other, std::uint8_t mask,

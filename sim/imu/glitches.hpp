@@ -11,13 +11,13 @@
 
 namespace tumble::sim {
 
-/// Replaces one axis of single samples by a wrong reading, as an error on the IMU's data bus does. The wrong reading is
-/// independent of the signal, and uniform within 1.5 times the stated range. Runs of several wrong samples and wrong
-/// time stamps are not simulated.
+/// Glitches simulates errors on the IMU's data bus, which replace one axis of a single sample by a wrong reading. The
+/// wrong reading is independent of the signal, and uniform within 1.5 times the stated range. The simulation does not
+/// include sequences of several wrong samples, and wrong time stamps.
 class Glitches {
  public:
   Glitches(const Values& values, const Stream& stream);
-  /// Call once for each IMU sample, delivered or lost.
+  /// The caller must call spoil() once for each IMU sample, even if the sample is lost.
   void spoil(TriadReading& gyro, TriadReading& accel);
 
  private:

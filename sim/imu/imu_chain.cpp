@@ -8,7 +8,8 @@ namespace tumble::sim {
 
 namespace {
 
-/// update period of the slowly changing bias; saves four fifths of the random numbers
+/// Update period of the slowly changing bias. Updating the bias less often than the signal saves four fifths of the
+/// random numbers.
 constexpr double kBiasPeriod_s = 0.01;
 
 int steps_of_bias(double rate_hz) {

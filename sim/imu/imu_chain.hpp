@@ -20,28 +20,29 @@ struct TriadReading {
   Eigen::Vector3d bias;       ///< at the end of the averaging window
 };
 
-/// Simulates the errors of a gyro or accelerometer in this order: analogue low-pass, scale and misalignment, bias,
-/// external additions (g-sensitivity), white noise of the active range, sensing elements with saturation, compensation
-/// of the elements, quantum, digital low-pass, mean over the window.
+/// TriadChain simulates the errors of a gyro or accelerometer in this order: analogue low-pass filter, scale and
+/// misalignment, bias, external additions (g-sensitivity), white noise of the active range, saturation of the sensing
+/// elements, compensation of misalignment and offset, quantisation, digital low-pass filter, and mean over the
+/// averaging window.
 ///
 /// The ideal reading is the rotation or velocity increment over the averaging window, divided by the window length. For
-/// a rotating IMU, this value differs from the mean of the signal (coning, sculling). TriadChain therefore adds only
-/// the mean sensor error to the ideal reading. If a sensing element saturated in the window, the reading is the mean of
-/// the signal after all stages. A second chain with equal stages and noise, but without saturation, computes the
-/// unclipped reading.
+/// a rotating IMU, the ideal reading differs from the mean of the signal (coning, sculling). TriadChain therefore adds
+/// only the mean sensor error to the ideal reading. If a sensing element was saturated in the window, the reading is
+/// instead the mean of the signal after all stages. A second chain with equal stages and noise, but without saturation,
+/// computes the unclipped reading.
 class TriadChain {
  public:
-  /// `prefix` and `unit` select the parameters: "gyro" and "rad_s", or "accel" and "m_s2".
+  /// `prefix` and `unit` select the parameters of the sensor: "gyro" and "rad_s", or "accel" and "m_s2".
   TriadChain(const Values& values, const std::string& prefix, const std::string& unit, double rate_hz, int steps,
              std::uint64_t seed, const std::string& stream_name);
 
-  /// `ideal` is the true mean of the signal over the physics step; `added` (g-sensitivity) is added to the signal
+  /// `ideal` is the true mean of the signal over one physics step. `added` (g-sensitivity) is added to the signal
   /// before the noise.
   void step(const Eigen::Vector3d& ideal, const Eigen::Vector3d& added);
   TriadReading take(const Eigen::Vector3d& exact, int first_bit, std::uint8_t& flags);
 
   const Elements& elements() const { return elements_; }
-  /// Call set_elements() before the first step.
+  /// The caller must call set_elements() before the first step().
   void set_elements(const Elements& elements) { elements_ = elements; }
 
  private:

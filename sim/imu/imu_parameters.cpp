@@ -184,8 +184,8 @@ void check_rail(const Values& values, const std::string& place, const std::strin
   }
 }
 
-/// The simulation stores all steps between two updates of a sensor, so a very low update rate would need too much
-/// memory.
+/// Limits the update rate of a sensor from below, because the simulation stores all physics steps between two updates
+/// in memory.
 void check_update(const Values& values, const std::string& place, const std::string& prefix) {
   const std::string name = prefix + "_update_hz";
   const double update_hz = values.at(name);

@@ -159,7 +159,8 @@ Ideal ideal_between(const BodyState& before, const BodyState& after, const Eigen
 }
 
 /// Adds full turns to a mean rate over an averaging window. The attitudes at start and end of the window determine the
-/// rotation only up to full turns. Their number follows from the rates of the physics steps.
+/// rotation only up to full turns. The number of full turns follows from `mean_of_steps_rad_s`, the mean of the rates
+/// in the physics steps.
 Eigen::Vector3d unwound(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& mean_of_steps_rad_s, double time_s) {
   constexpr double kRevolution_rad = 6.283185307179586;
   const double norm = rate_rad_s.norm();

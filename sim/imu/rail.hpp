@@ -9,14 +9,14 @@
 
 namespace tumble::sim {
 
-/// Simulates the saturation of the output axes of a gyro or accelerometer in these forms:
+/// Rail simulates the saturation of a gyro or accelerometer in one of these forms:
 /// - `clamp`: the output stops at `level`, which may exceed the stated range.
 /// - `plateau`: the level differs between axes and signs, and between clipping events.
-/// - `wrap`: a reading beyond the level appears with the opposite sign, as when a 16-bit word overflows.
+/// - `wrap`: a reading beyond the level gets the opposite sign, like the overflow of a 16-bit integer.
 /// - `slow_recovery`: a clipped axis accumulates an offset with the sign of the signal, up to `recovery_share` of the
 ///   level, with time constant `recovery_s`.
 ///
-/// Saturation levels that depend on temperature, and sensors that stop after saturation, are not simulated.
+/// The simulation does not include saturation levels that depend on temperature, or sensors that stop after saturation.
 class Rail {
  public:
   struct Params {

@@ -12,8 +12,8 @@ namespace tumble::sim {
 /// Sampling models a device that outputs mean values. If Sampling is off, each reading contains the exact increment of
 /// the motion between two outputs. If Sampling is on, each reading is the unweighted mean of the signal over the
 /// device's averaging window. The device's update rate may be lower or higher than the output rate. The output repeats
-/// the last reading until a new reading is available (sample and hold). The sampling model omits weighted averaging
-/// windows, and drift and jitter of the device's clock.
+/// the last reading until a new reading is available (sample and hold). Sampling does not simulate weighted averaging
+/// windows, or drift and jitter of the device's clock.
 class Sampling {
  public:
   struct Params {

@@ -10,14 +10,14 @@
 
 namespace tumble::sim {
 
-/// Converts the true end of each averaging window to the host's time stamp, or to no time stamp if the sample is lost.
-/// The time stamps have a constant offset and white jitter, truncated at three standard deviations. Lost samples form
-/// runs of geometric length (Gilbert's model), independent of the signal. A rate error of the clock, and samples in the
-/// wrong order, are not simulated.
+/// TimeStamps converts the true end of each averaging window to the time stamp that the host computer assigns, or to no
+/// time stamp if the sample is lost. The time stamps have a constant offset and white jitter, clamped to three standard
+/// deviations. Lost samples occur in sequences with geometrically distributed lengths (Gilbert's model), independent of
+/// the signal. The simulation does not include rate errors of the clock, or samples in the wrong order.
 class TimeStamps {
  public:
   TimeStamps(const Values& values, const std::string& place, std::int64_t period_ns, const Stream& stream);
-  /// Call once for each averaging window.
+  /// The caller must call stamp() once for each averaging window.
   std::optional<std::int64_t> stamp(std::int64_t window_end_ns);
 
  private:

@@ -9,7 +9,7 @@
 
 namespace tumble::sim {
 
-/// maximum number of lasers (channels) that fire in one sequence
+/// largest number of lasers (channels) that fire in one sequence
 inline constexpr int kMaxChannels = 16;
 
 struct ChannelFirings {
@@ -26,9 +26,9 @@ struct FiringBlock {
   std::array<ChannelFirings, kMaxChannels> channel;
 };
 
-/// Times and directions of the laser pulses of a lidar. A slot is one firing sequence of all lasers (spinning lidar),
-/// or one instant at which all units fire (rosette). The slot with the number k starts at k times the slot period. Slot
-/// numbers continue from sweep to sweep.
+/// BeamPattern contains the times and directions of the laser pulses of a lidar. A slot is one firing sequence of all
+/// lasers (spinning lidar), or one instant at which all lidar units fire (rosette lidar). The slot with the number k
+/// starts at k times the slot period. Slot numbers continue from sweep to sweep.
 class BeamPattern {
  public:
   virtual ~BeamPattern() = default;
@@ -46,7 +46,8 @@ class BeamPattern {
 
   virtual void fire(std::int64_t sweep, std::int64_t slot, int slots, FiringBlock& block) const = 0;
 
-  /// Returns the number of azimuth cells, or 0 if the firing pattern does not repeat in each sweep.
+  /// Returns the number of azimuth cells (intervals of azimuth) in a sweep, or 0 if the firing pattern changes from
+  /// sweep to sweep.
   virtual int cells() const { return 0; }
   virtual double cell_half_angle_rad() const { return 0.0; }
   virtual void fire_cells(int /*first*/, FiringBlock& /*block*/) const {}
@@ -59,8 +60,8 @@ class BeamPattern {
 };
 
 /// Firing pattern of a spinning lidar, in which a column of lasers rotates about the z axis. The azimuth is zero (along
-/// the lidar's x axis) at the start of each sweep, and increases clockwise seen from above. Laser c of sequence k fires
-/// at the time k P + c p, with the sequence period P and the firing period p. Timing and geometry are from the
+/// the lidar's x axis) at the start of each sweep, and increases clockwise seen from above. In firing sequence k, laser
+/// c fires at the time k P + c p, with the sequence period P and the firing period p. Timing and geometry are from the
 /// RoboSense RS-16 User's Guide v4.0 and the published driver.
 class SpinningPattern final : public BeamPattern {
  public:
@@ -81,8 +82,9 @@ class SpinningPattern final : public BeamPattern {
 };
 
 /// Firing pattern of a lidar with up to 128 evenly spaced rings, in which a column of lasers rotates about the z axis.
-/// A column fires in banks of 16 rings from bottom to top, evenly distributed over the column's period. Elevations may
-/// increase by a fraction of the ring spacing from sweep to sweep, which approximates patterns that do not repeat.
+/// The lasers of the column fire in groups of 16 rings from bottom to top, and the groups are evenly distributed over
+/// the firing period of the column. From sweep to sweep, the elevations may increase by a fraction of the ring spacing,
+/// which approximates scan patterns that do not repeat.
 class ColumnPattern final : public BeamPattern {
  public:
   explicit ColumnPattern(const Values& values);

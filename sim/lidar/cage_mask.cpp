@@ -66,7 +66,8 @@ CageMask::CageMask(const SceneGeometry& cage, const BeamPattern& pattern)
     std::fill(meets_.begin(), meets_.end(), std::uint8_t{1});
     return;
   }
-  // The beams of an azimuth cell differ from the middle beam of the cell by a rotation about z of at most half a cell.
+  // The margin allows for the width of an azimuth cell: a beam of the cell differs from the middle beam by a rotation
+  // about z of at most half a cell.
   const double margin_m = reach_m * pattern.cell_half_angle_rad() + 1e-4 * (1.0 + reach_m);
   for (SceneShape& part : wide.shapes) part.shape = widened(part.shape, margin_m);
 

@@ -9,7 +9,8 @@
 
 namespace tumble::sim {
 
-/// Marks every laser pulse that may hit the robot's own cage. All other pulses need no test against the cage.
+/// CageMask marks every laser pulse that may hit the robot's own cage. For all other pulses, the ray caster does not
+/// test the cage.
 class CageMask {
  public:
   CageMask(const SceneGeometry& cage, const BeamPattern& pattern);

@@ -35,14 +35,14 @@ struct Words {
   }
 }
 
-/// Converts a random word to a number in (0, 1]. The logarithm of a number near 0 is accurate, because the number has
-/// the full relative precision of float.
+/// Converts a random word to a number in (0, 1]. The number has the full relative precision of float, so the logarithm
+/// of a number near 0 is accurate.
 float unit_of(std::uint32_t word) {
   return (static_cast<float>(static_cast<std::int32_t>(word >> 1)) + 0.5f) * 0x1p-31f;
 }
 
-/// With x = 2^e m and m in [0.71, 1.41], log(m) is the series of 2 atanh((m - 1) / (m + 1)), with a relative error of
-/// 2e-7.
+/// Computes log(x) for x = 2^e m with m in [0.71, 1.41]. The logarithm of m is the series of 2 atanh((m - 1) / (m +
+/// 1)), with a relative error of 2e-7.
 float log_of(float x) {
   const std::int32_t bits = std::bit_cast<std::int32_t>(x) - 0x3f3504f3;
   const std::int32_t exponent = bits >> 23;

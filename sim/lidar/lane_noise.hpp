@@ -14,13 +14,13 @@ struct LaneNoise {
   alignas(64) float uniform[kLanes];  ///< in (0, 1)
 };
 
-/// Draws random numbers for sixteen rays (lanes) at a time by Philox 4x32-10 and Box-Muller (1958), in single
-/// precision. The numbers depend only on stream, index and lane.
+/// LaneNoiseSource draws random numbers for sixteen rays (lanes) at a time by Philox 4x32-10 and Box-Muller (1958), in
+/// single precision. Each number depends only on the random stream, the packet number and the lane.
 class LaneNoiseSource {
  public:
   explicit LaneNoiseSource(const Stream& stream);
 
-  /// The packet number `index` must be below 2^61.
+  /// The number `index` of the ray packet must be below 2^61.
   void draw(std::uint64_t index, LaneNoise& noise) const;
 
  private:

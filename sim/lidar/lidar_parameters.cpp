@@ -138,7 +138,7 @@ constexpr std::array kSpinning = {
               "passes at half the true rate; 0: correct time stamps"},
 };
 
-// The default values are those of the Ouster OS1 with 64 rings.
+// The default values describe the Ouster OS1 lidar with 64 rings.
 constexpr std::array kColumn = {
     kSpinRate,
     kClockwise,

@@ -7,7 +7,7 @@
 
 namespace tumble::sim {
 
-/// Number of lasers of a spinning lidar; the parameter elevation_01_rad belongs to the laser that fires first.
+/// Number of lasers of a spinning lidar. The parameter elevation_01_rad is the elevation of the laser that fires first.
 inline constexpr int kSpinningChannels = 16;
 
 std::span<const Parameter> spinning_lidar_parameters();

@@ -18,8 +18,8 @@ struct MotionTrack {
   std::span<const Eigen::Quaterniond> q_WB;
 };
 
-/// Simulates the sweeps of a lidar. Each ray starts at the true lidar pose at its firing time; a ray without a hit
-/// gives no point. The points do not depend on the number of threads.
+/// Simulates the sweeps of a lidar. Each ray starts at the true lidar pose at the firing time of the ray. A ray without
+/// a hit gives no point. The points do not depend on the number of threads.
 void simulate_lidar(const engine::World& world, const SensorSpec& sensor, const Eigen::Isometry3d& T_BL,
                     const MotionTrack& motion, std::uint64_t seed, int threads, LidarRecord& record, LidarTruth& truth);
 

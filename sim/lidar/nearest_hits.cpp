@@ -17,7 +17,7 @@ namespace tumble::sim {
 [[gnu::target("avx2")]] void NearestHits::write(RayPacket& packet) const {
   for (int i = 0; i < kLanes; ++i) {
     const double x = normal_x_[i], y = normal_y_[i], z = normal_z_[i];
-    // The dot product adds its terms in the order of Eigen, so the results are bit-identical.
+    // The terms of the dot product are added in the same order as in Eigen, so that both results are bit-identical.
     const double along = x * packet.direction_x[i] + y * packet.direction_y[i] + z * packet.direction_z[i];
     const double cosine = std::abs(along) / std::sqrt(x * x + y * y + z * z);
     const bool hit = geometry_[static_cast<std::size_t>(i)] != kNone;

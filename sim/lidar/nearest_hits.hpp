@@ -7,8 +7,8 @@
 
 namespace tumble::sim {
 
-/// Nearest hit of each ray. Among hits at equal ranges, the hit with the lowest geometry number counts, so that the
-/// order of calls is irrelevant.
+/// NearestHits contains the nearest hit of each ray. Among hits at equal ranges, the hit with the lowest geometry
+/// number is used, so that the order of calls is irrelevant.
 class NearestHits {
  public:
   static constexpr unsigned int kNone = ~0u;

@@ -8,12 +8,13 @@ namespace tumble::sim {
 
 namespace {
 
-// Returns with a signal above certain_signal_ are never lost, because their loss probability is below the resolution of
-// the random numbers.
+// A lidar return whose signal is above certain_signal_ is never lost, because the loss probability is below the
+// resolution of the random numbers.
 constexpr double kSure = 0.99;
 constexpr double kCertainOdds = 0x1p25;
 
-/// Adding 1.5 * 2^52 removes the fraction without a function call; ties round to even.
+/// Rounds a value to a multiple of `quantum`. Adding and subtracting 1.5 * 2^52 rounds a double to an integer without a
+/// function call; ties round to even.
 double rounded(double value, double quantum) {
   constexpr double kShift = 0x1.8p52;
   return quantum * ((value / quantum + kShift) - kShift);
@@ -38,7 +39,7 @@ RangeErrors::RangeErrors(const Values& values, std::uint64_t seed, std::string_v
 bool RangeErrors::is_detected(float signal, double uniform) const {
   if (uniform >= kept_share_) return false;
   if (detection2_m2_ == 0.0 || signal >= certain_signal_) return true;
-  // For a return that is not lost, `uniform` is uniformly distributed in [0, kept_share_), so u is uniformly
+  // If the return is not lost at random, `uniform` is uniformly distributed in [0, kept_share_), so u is uniformly
   // distributed in [0, 1).
   const double u = uniform / kept_share_;
   if (u < kSure && signal >= sure_signal_) return true;

@@ -15,10 +15,10 @@ struct Returns {
   alignas(64) float intensity[kLanes];  ///< 0 to 1
 };
 
-/// Simulates the range errors of a lidar in this order: loss of weak returns (by range, incidence, reflectivity),
-/// random loss, white noise, range limits, quantum. The simulated intensity is reflectivity times the cosine of
-/// incidence, as in devices that compensate for range. Range bias by incidence or intensity, cross-talk, and several
-/// returns per laser pulse are not simulated.
+/// RangeErrors simulates the range errors of a lidar in this order: loss of weak returns (by range, angle of incidence
+/// and reflectivity), random loss, white noise, range limits, quantisation. The simulated intensity is the reflectivity
+/// times the cosine of the angle of incidence, as in devices that compensate for range. The simulation does not include
+/// range bias by angle of incidence or intensity, cross-talk, or several returns per laser pulse.
 class RangeErrors {
  public:
   RangeErrors(const Values& values, std::uint64_t seed, std::string_view stream_name);

@@ -9,14 +9,14 @@
 
 namespace tumble::sim {
 
-/// number of rays that are cast together: successive rays of one laser, with similar directions
+/// Number of rays that are cast together. These rays are successive rays of one laser, with similar directions.
 inline constexpr int kLanes = 16;
 
 struct RayPacket {
   int count = kLanes;
   alignas(64) float origin_x[kLanes], origin_y[kLanes], origin_z[kLanes];
   alignas(64) float direction_x[kLanes], direction_y[kLanes], direction_z[kLanes];  ///< unit vectors
-  /// input: maximum range of the ray; output: range of the hit, or unchanged without a hit
+  /// As input, the maximum range of the ray. As output, the range of the hit; unchanged if the ray has no hit.
   alignas(64) float range[kLanes];
   alignas(64) float cosine[kLanes];  ///< of the angle of incidence
   alignas(64) float reflectivity[kLanes];
@@ -25,8 +25,9 @@ struct RayPacket {
 
 inline constexpr std::int32_t kNothing = -1;
 
-/// Casts rays against the world with Embree. Several threads may call const members. Coordinates are floats: at 50 m
-/// from the origin, a hit is accurate to about 1e-5 m. Hits are bit-identical on every x86-64 CPU with AVX2 and FMA.
+/// RayScene casts rays against the world with Embree. Several threads may call const members at the same time.
+/// Coordinates are floats, so a hit 50 m from the origin is accurate to about 1e-5 m. Hits are bit-identical on every
+/// x86-64 CPU with AVX2 and FMA.
 class RayScene {
  public:
   explicit RayScene(const SceneGeometry& geometry);

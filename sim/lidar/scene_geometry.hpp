@@ -12,7 +12,7 @@
 
 namespace tumble::sim {
 
-/// surface id of a return from the robot's own cage; ids of 0 or more are indices of engine::World::surfaces
+/// surface id of a lidar return from the robot's own cage; all ids from 0 are indices of engine::World::surfaces
 inline constexpr std::int32_t kOwnCage = -2;
 
 struct TriangleMesh {
@@ -36,15 +36,17 @@ struct SceneGeometry {
   std::vector<SceneMesh> meshes;
 };
 
-/// `open` selects only the top of a height field; `closed` adds the side walls and the base, which mj_ray also hits.
+/// `open` selects only the top of a height field. `closed` also selects the side walls and the base, which the ray
+/// caster of MuJoCo (mj_ray) also hits.
 enum class HeightFieldSides { open, closed };
 
-/// Returns the shapes and meshes of engine::World::surface_geom in world axes; the index in surface_geom is the surface
-/// id. Visual geoms (contype and conaffinity zero) and invisible geoms (alpha zero, as in mj_ray) are omitted.
+/// Returns the shapes and meshes of the geoms engine::World::surface_geom in world axes. The index of a geom in
+/// surface_geom is the surface id. Geoms without contacts (contype and conaffinity zero) and invisible geoms (alpha
+/// zero, as in mj_ray) are omitted.
 SceneGeometry static_geometry(const engine::World& world, HeightFieldSides sides);
 
-/// Returns the shapes of the robot's own cage in lidar axes. Shapes that contain the origin of the lidar frame (housing
-/// of the lidar, or a shell around it) are omitted, because they are transparent.
+/// Returns the shapes of the robot's own cage in lidar axes. A shape that contains the origin of the lidar frame, for
+/// example the housing of the lidar, is omitted, because lidar rays pass through it.
 SceneGeometry cage_geometry(const engine::World& world, const Eigen::Isometry3d& T_BL);
 
 Eigen::Isometry3d geom_pose(const mjData& data, int geom);
@@ -52,8 +54,8 @@ Eigen::Isometry3d geom_pose(const mjData& data, int geom);
 void append_geom(const mjModel& model, int geom, const Eigen::Isometry3d& T_FS, std::int32_t surface_id,
                  HeightFieldSides sides, SceneGeometry& scene);
 
-/// Returns the luminance (ITU-R BT.709) of the geom's colour times the mean colour of its texture, limited to
-/// 0.05..0.95.
+/// Returns the reflectivity of a geom: the luminance (ITU-R BT.709) of its colour times the mean colour of its texture,
+/// limited to 0.05 to 0.95.
 float geom_reflectivity(const mjModel& model, int geom);
 
 }  // namespace tumble::sim

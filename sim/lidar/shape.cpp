@@ -135,8 +135,8 @@ double signed_box_distance(const Vector& point, const Vector& half) {
   return outside > 0.0 ? outside : beyond.maxCoeff();
 }
 
-/// For a point y and an ellipsoid with half axes a_i, the nearest point of the ellipsoid follows from the root t > -min
-/// a_i^2 of sum (a_i y_i / (t + a_i^2))^2 = 1.
+/// Returns the distance of a point y from an ellipsoid with half axes a_i. The nearest point of the ellipsoid follows
+/// from the root t > -min a_i^2 of the equation sum (a_i y_i / (t + a_i^2))^2 = 1.
 double ellipsoid_distance(const Vector3d& size, const Vector3d& point) {
   const double scale = size.maxCoeff();
   const Vector3d a = size / scale, y = point.cwiseAbs() / scale;
@@ -150,8 +150,8 @@ double ellipsoid_distance(const Vector3d& size, const Vector3d& point) {
     (outside(middle) > 0.0 ? low : high) = middle;
   }
   Vector3d nearest = a2.cwiseProduct(y).cwiseQuotient(a2 + Vector3d::Constant(high));
-  // For a point on the symmetry plane perpendicular to the shortest axis, the coordinate of the nearest point along
-  // this axis follows from the ellipsoid's equation.
+  // If the point is on the symmetry plane perpendicular to the shortest axis, the root does not determine the
+  // coordinate along the shortest axis. This coordinate follows from the equation of the ellipsoid.
   int shortest = 0;
   a.minCoeff(&shortest);
   if (y[shortest] < 1e-12) {

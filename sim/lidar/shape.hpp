@@ -8,8 +8,8 @@ namespace tumble::sim {
 
 enum class ShapeKind : std::uint8_t { plane, sphere, capsule, ellipsoid, cylinder, box };
 
-/// Geometric primitive in its own frame. The size of a plane (normal z) is its half sizes x, y (0: infinite). The size
-/// of a capsule or cylinder is radius and half length along z.
+/// Shape is a geometric primitive in its own frame. The size of a plane (normal z) contains the half sizes in x and y;
+/// 0 means infinite. The size of a capsule or cylinder contains the radius and the half length along z.
 struct Shape {
   ShapeKind kind = ShapeKind::sphere;
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
@@ -21,7 +21,8 @@ struct Shape {
 double cast_ray(const Shape& shape, const Eigen::Vector3d& origin_F_m, const Eigen::Vector3d& direction_F,
                 Eigen::Vector3d& normal_F);
 
-/// Returns the distance of a point, inside or outside, from the surface [m], with a relative error of at most 1e-9.
+/// Returns the distance of a point from the surface of a shape [m], with a relative error of at most 1e-9. The point
+/// may be inside or outside.
 double surface_distance(const Shape& shape, const Eigen::Vector3d& point_F_m);
 
 bool contains(const Shape& shape, const Eigen::Vector3d& point_F_m);

@@ -18,7 +18,7 @@ struct LocalRays {
 [[gnu::target("avx2")]] void to_shape_axes(const Shape& shape, const ShapeRays& rays, LocalRays& local) {
   const double px = shape.p_FS_m.x(), py = shape.p_FS_m.y(), pz = shape.p_FS_m.z();
   for (int axis = 0; axis < 3; ++axis) {
-    // The operations have the order of Eigen's operations, for bit-identical results.
+    // The operations have the same order as Eigen's operations, so that the results are bit-identical.
     const double x = shape.R_FS(0, axis), y = shape.R_FS(1, axis), z = shape.R_FS(2, axis);
     for (int i = 0; i < kShapeLanes; ++i) {
       local.origin[axis][i] =
@@ -44,8 +44,8 @@ struct LocalRays {
   }
 }
 
-/// Slab method (Kay and Kajiya, SIGGRAPH 1986): a ray from outside hits the box where it enters the last slab, a ray
-/// from inside where it leaves the first slab.
+/// Computes hits on a box by the slab method (Kay and Kajiya, SIGGRAPH 1986). A ray from outside hits the box where the
+/// ray enters the last slab. A ray from inside hits the box where the ray leaves the first slab.
 [[gnu::target("avx2")]] void cast_on_box(const Shape& shape, const LocalRays& rays, ShapeHits& hits) {
   alignas(64) double enter[kShapeLanes], enter_axis[kShapeLanes], enter_sign[kShapeLanes];
   alignas(64) double leave[kShapeLanes], leave_axis[kShapeLanes], leave_sign[kShapeLanes], misses[kShapeLanes];

@@ -69,8 +69,8 @@ SweepCaster::SweepCaster(const engine::World& world, const SensorSpec& sensor, c
       cage_(cage_geometry_),
       cage_mask_(cage_geometry_, *pattern_),
       T_BL_(T_BL),
-      // Rays are longer than the range limit, because range noise can move a hit from beyond the limit into the lidar's
-      // range.
+      // Rays are longer than the range limit of the lidar, because range noise can move a hit from beyond the range
+      // limit into the lidar's range.
       reach_m_(static_cast<float>(sensor.values.at("range_max_m") + 10.0 * sensor.values.at("range_noise_m"))),
       motion_(motion) {}
 

@@ -29,7 +29,7 @@ struct SweepPoints {
 
 class SweepCaster {
  public:
-  /// Takes about 0.07 s for a height field of 400 x 400 cells.
+  /// Builds the ray scene, which takes about 0.07 s for a height field of 400 x 400 cells.
   SweepCaster(const engine::World& world, const SensorSpec& sensor, const Eigen::Isometry3d& T_BL,
               const MotionTrack& motion, std::uint64_t seed);
 

@@ -13,13 +13,14 @@ namespace tumble::sim {
 
 using Pose34 = Eigen::Matrix<double, 3, 4>;
 
-/// Interpolates the true pose of a lidar between the samples of the body's motion: position linearly, attitude at a
-/// constant rate about a fixed axis. With a sample interval of 0.5 ms and an acceleration of 400 m/s^2, the position
-/// error is 13 um (acceleration times dt^2 / 8).
+/// TrackCursor interpolates the true pose of a lidar between the samples of the body's motion. The position is
+/// interpolated linearly, and the attitude turns at a constant rate about a fixed axis. With a sample interval of 0.5
+/// ms and an acceleration of 400 m/s^2, the position error is 13 um (acceleration times squared sample interval / 8).
 class TrackCursor {
  public:
-  /// Terms of Rodrigues' formula for one interval. `turned` is R_WB K T_BL, and `rotated_twice` is R_WB K K T_BL, with
-  /// the cross-product matrix K of the body's rotation over the interval.
+  /// Interval contains the terms of Rodrigues' formula for the motion between two samples. K is the cross-product
+  /// matrix of the body's rotation vector over the interval. `turned` is R_WB K T_BL, and `rotated_twice` is R_WB K K
+  /// T_BL.
   struct Interval {
     std::int64_t start_ns = 0, end_ns = 0;
     double per_ns = 0.0, per_s = 0.0;
@@ -31,8 +32,8 @@ class TrackCursor {
     double share(std::int64_t time_ns) const { return static_cast<double>(time_ns - start_ns) * per_ns; }
   };
 
-  /// For squared angles below kSmall2 (40 rad/s over 0.5 ms), the series of sin(a)/a and (1 - cos(a))/a^2 are accurate
-  /// to 1e-16.
+  /// For squared rotation angles below kSmall2 (40 rad/s over 0.5 ms), the series of sin(a)/a and (1 - cos(a))/a^2 are
+  /// accurate to 1e-16.
   static constexpr double kSmall2 = 4e-4;
   static double sinc_of_small(double angle2) {
     return 1.0 - angle2 / 6.0 * (1.0 - angle2 / 20.0 * (1.0 - angle2 / 42.0));
@@ -43,12 +44,12 @@ class TrackCursor {
   static double sinc_of(double angle2) { return std::sin(std::sqrt(angle2)) / std::sqrt(angle2); }
   static double cosc_of(double angle2) { return (1.0 - std::cos(std::sqrt(angle2))) / angle2; }
 
-  /// `motion` must have at least two samples, and outlive the cursor.
+  /// `motion` must have at least two samples, and must outlive the TrackCursor.
   TrackCursor(const MotionTrack& motion, const Eigen::Isometry3d& T_BL) : motion_(motion) {
     T_BL_ << T_BL.linear(), T_BL.translation();
   }
 
-  /// Returns the interval that contains a time. The reference is valid until the next call.
+  /// Returns the interval that contains the given time. The returned reference is valid until the next call.
   const Interval& interval(std::int64_t time_ns) {
     if (!now_.holds(time_ns)) enter_interval(time_ns);
     return now_;

@@ -6,7 +6,8 @@
 
 namespace tumble::sim {
 
-/// Returns the distance from a point to a triangle with its interior [m]; for a degenerate triangle, to its edges.
+/// Returns the distance from a point to a triangle, including its interior [m]. If the triangle is degenerate, the
+/// result is the distance to the edges.
 float triangle_distance(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c,
                         const Eigen::Vector3f& point);
 

@@ -17,7 +17,8 @@ Eigen::Vector3d turn(const Eigen::Quaterniond& from, const Eigen::Quaterniond& t
 Wrench carry_along(const HoldingHand& hand, const Eigen::Matrix3d& inertia_B_kg_m2, const BodyState& state,
                    const HandHeldPath& path) {
   constexpr double kDifference_s = 1e-3;  // for derivatives of the path
-  // High natural frequency of the spring and damper between hand and body, so that they transmit the hand's tremor.
+  // Natural frequency of the spring and damper between hand and body. The frequency is high, so that spring and damper
+  // transmit the tremor of the hand.
   constexpr double kFrequency_rad_s = 60.0;
   constexpr double kStiffness_1_s2 = kFrequency_rad_s * kFrequency_rad_s, kDamping_1_s = 2.0 * kFrequency_rad_s;
   const HandHeldPose before = path(state.time_s - kDifference_s), now = path(state.time_s),

@@ -14,17 +14,18 @@ struct HandHeldPose {
   Eigen::Quaterniond q;
 };
 
-/// Path of the hand; its velocity must be continuous, because the path is differentiated twice numerically.
+/// Function that returns the pose of the hand at a time. The velocity must be continuous, because the path is
+/// differentiated twice numerically.
 using HandHeldPath = std::function<HandHeldPose(double time_s)>;
 
-/// Returns the force and torque of a hand that carries a robot along a path: feed-forward of the path's acceleration,
-/// plus a spring and a damper.
+/// Returns the force and torque of a hand that carries a robot along a path: the sum of a feed-forward term for the
+/// acceleration of the path, a spring and a damper.
 Wrench carry_along(const HoldingHand& hand, const Eigen::Matrix3d& inertia_B_kg_m2, const BodyState& state,
                    const HandHeldPath& path);
 
 Eigen::Matrix3d carried_inertia_B_kg_m2(const HoldingHand& hand);
 
-/// Smooth step from 0 at u = 0 to 1 at u = 1, with continuous acceleration: 10 u^3 - 15 u^4 + 6 u^5.
+/// Returns a smooth step from 0 at u = 0 to 1 at u = 1, with continuous acceleration: 10 u^3 - 15 u^4 + 6 u^5.
 double eased(double u);
 
 }  // namespace tumble::sim

@@ -10,10 +10,11 @@ namespace tumble::sim {
 namespace {
 
 constexpr double kTremorLow_hz = 0.7, kTremorHigh_hz = 9.0;
-// speed of the sphere from which the hand's tremor has its full amplitude
+// speed of the sphere above which the tremor of the hand has its full amplitude
 constexpr double kFullTremor_m_s = 0.1;
 
-/// Rotates a vector upwards. Eigen's setFromTwoVectors would take 6 s to compile.
+/// Returns the rotation that turns the unit vector `from` to the z axis. Eigen's setFromTwoVectors would take 6 s to
+/// compile.
 Eigen::Quaterniond turn_up(const Eigen::Vector3d& from) {
   const double cosine = from.z();
   if (cosine < -1.0 + 1e-12) return {0.0, 1.0, 0.0, 0.0};

@@ -51,18 +51,18 @@ constexpr std::array<Parameter, kHandParameters.size() + N> with_hand(const std:
   return all;
 }
 
-/// Hand that moves a sphere with a horizontal force at the sphere's centre. The force is the sum of spring and damper
-/// to a moving reference position, feed-forward of the rolling motion, and tremor. On floor patches with different
+/// Hand moves a sphere by a horizontal force at the sphere's centre. The force is the sum of a spring and a damper to a
+/// moving reference position, a feed-forward term for the rolling motion, and tremor. On floor patches with different
 /// friction, the hand adds bursts of torque.
 class Hand {
  public:
-  /// `world` must outlive the hand.
+  /// `world` must outlive the Hand object.
   Hand(const std::string& motion, const Values& values, const engine::World& world);
 
   double radius_m() const { return radius_m_; }
   BodyState at_rest(const Eigen::Vector3d& p_G_m) const;
-  /// Returns the force and torque of the hand. Times must increase from call to call, because the start of a burst of
-  /// torque is stored.
+  /// Returns the force and torque of the hand. Times must increase from call to call, because the hand stores the start
+  /// time of a burst of torque.
   Wrench wrench(const BodyState& state, const Reference& reference);
 
  private:

@@ -36,7 +36,8 @@ constexpr std::array kHandPathParameters = with_hand(std::array{
 constexpr double kTick_s = 0.001;
 constexpr double kPathLongest_s = 600.0;
 
-/// Horizontal target position of the sphere's centre at each time step (tick) after `start_s`, from rest to rest.
+/// Schedule contains the horizontal target position of the sphere's centre at each time step after `start_s`. The
+/// sphere is at rest at the start and at the end.
 class Schedule {
  public:
   Schedule(const Values& values, const engine::World& world, Stream& stream) {

@@ -20,8 +20,8 @@ constexpr std::array kHandRollParameters = with_hand(std::array{
     Parameter{"pause_s", 0.3, 0.0, 30.0, "s", "duration of the stop between the legs"},
 });
 
-/// Straight path of length L with minimum jerk, from rest to rest. At the fraction u of the duration, the covered
-/// distance is L (10 u^3 - 15 u^4 + 6 u^5).
+/// Leg is a straight path of length L with minimum jerk. The sphere is at rest at the start and at the end. At the
+/// fraction u of the duration, the covered distance is L (10 u^3 - 15 u^4 + 6 u^5).
 class Leg {
  public:
   Leg(const Eigen::Vector3d& along_m, double speed_m_s, double start_s)

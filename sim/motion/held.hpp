@@ -9,8 +9,8 @@
 
 namespace tumble::sim {
 
-/// Hand that holds a robot still in the air, with critically damped springs for position and attitude, and a force that
-/// carries the weight.
+/// HoldingHand is a hand that holds a robot still in the air, with critically damped springs for position and attitude,
+/// and a force that compensates the weight.
 class HoldingHand {
  public:
   /// `height_m` is the height of the robot's lowest point above the ground at the start.

@@ -34,8 +34,8 @@ constexpr std::array kLaunchParameters = {
               "position of the parachute's attachment on the long axis, relative to the centre of mass"},
 };
 
-/// The robot is held above the ground and released; then thrust, air drag, canted fins and a parachute act on the
-/// robot. The long axis of the robot is its first principal axis of inertia.
+/// Launch holds the robot above the ground and releases the robot. Then thrust, air drag, canted fins and a parachute
+/// act on the robot. The long axis of the robot is its first principal axis of inertia.
 class Launch : public Motion {
  public:
   Launch(const Values& values, const engine::World& world)

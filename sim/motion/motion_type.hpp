@@ -10,18 +10,18 @@
 
 namespace tumble::sim {
 
-/// Motion of the robot, caused by a wrench (force and torque). A Motion never sets a velocity, because the simulated
-/// accelerometers would not measure the jump.
+/// Motion moves the robot by a wrench (force and torque). A Motion never sets a velocity, because the simulated
+/// accelerometers would not measure the jump of the velocity.
 class Motion {
  public:
   virtual ~Motion() = default;
   virtual BodyState start() const = 0;
-  /// Returns the force and torque from `state.time_s` to the next step. Before time 0, the robot settles into its
-  /// contacts.
+  /// Returns the force and torque from `state.time_s` to the next simulation step. Before time 0, the robot comes to
+  /// rest on its contacts.
   virtual Wrench wrench(const BodyState& state) = 0;
 };
 
-/// `world` must outlive the motion.
+/// MotionType describes a kind of motion. `world` must outlive the Motion that make() returns.
 struct MotionType {
   ComponentType component;
   std::unique_ptr<Motion> (*make)(const Values& values, const engine::World& world);

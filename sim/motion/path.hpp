@@ -20,7 +20,7 @@ struct PathPlan {
   PathShape shape = PathShape::line;
   double length_m = 1.0;  ///< without the sway of a line
   double heading_rad = 0.0;
-  /// Line only: amplitude of the lateral sway, which fades over the first and last half metre
+  /// only for the path `line`: amplitude of the lateral sway, which fades over the first and last half metre
   double sway_m = 0.0;
   double sway_length_m = 4.0;
 };

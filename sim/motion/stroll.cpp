@@ -35,7 +35,7 @@ constexpr std::array kStrollParameters = {
 
 constexpr double kSwayLow_hz = 0.2, kSwayHigh_hz = 1.2;
 
-/// A walker carries the robot along a horizontal figure of eight, from rest to rest.
+/// Stroll moves the robot like a walker who carries the robot along a horizontal figure of eight, from rest to rest.
 class Stroll : public Motion {
  public:
   Stroll(const Values& values, const engine::World& world)

@@ -60,8 +60,8 @@ double smooth(double share) {
   return u * u * u * (10.0 + u * (-15.0 + 6.0 * u));
 }
 
-/// A hand grips the lowest segment of the pendulum at the segment's centre of mass, and pulls the segment to a moving
-/// target by a spring and a damper.
+/// In the motion Swing, a hand grips the lowest segment of the pendulum at the segment's centre of mass. A spring and a
+/// damper pull the segment to a moving target.
 class Swing : public Motion {
  public:
   Swing(const Values& values, const engine::World& world)
@@ -85,7 +85,7 @@ class Swing : public Motion {
     const Lift& lift = *std::prev(after);
     const double since_s = state.time_s - lift.start_s;
     constexpr double kGrip_s = 0.3;  // time in which the fingers close
-    // natural frequency of this spring with the hanging mass, typical of an arm
+    // natural frequency of the hand's spring with the mass of the pendulum, typical of an arm
     constexpr double kFrequency_rad_s = 15.0;
     const double grip = smooth(since_s / kGrip_s) * (1.0 - smooth((since_s - lift_s_ - hold_s_) / release_s_));
     if (grip <= 0.0) return {};

@@ -7,8 +7,9 @@
 
 namespace tumble::sim {
 
-/// Random tremor of a hand as a smooth function of time: a sum of sinusoids with random phases. Their frequencies are
-/// log-uniform between two limits, and their amplitudes are inversely proportional to the frequency.
+/// Tremor is the random tremor of a hand as a smooth function of time: a sum of sinusoids with random phases. The
+/// frequencies of the sinusoids are log-uniform between two limits, and the amplitudes are inversely proportional to
+/// the frequencies.
 class Tremor {
  public:
   Tremor(Stream& stream, double rms, double lowest_hz, double highest_hz);

@@ -70,7 +70,7 @@ std::vector<Stroke> plan_strokes(const Values& values, Stream& stream) {
   return strokes;
 }
 
-/// A hand holds the robot at one point and twirls the robot about x, stroke by stroke.
+/// In the motion Twirl, a hand holds the robot at one point and rotates the robot about the x axis, stroke by stroke.
 class Twirl : public Motion {
  public:
   Twirl(const Values& values, const engine::World& world)

@@ -30,8 +30,8 @@ std::uint64_t join(std::uint32_t low, std::uint32_t high) {
 }  // namespace
 
 Stream::Stream(std::uint64_t seed, std::string_view name) {
-  // A Philox block combines the seed with a hash of the stream's name, so that similar seeds and names give unrelated
-  // keys.
+  // A Philox block combines the seed with a hash of the stream's name, so that similar seeds and similar names give
+  // independent random numbers.
   const std::uint64_t hash = fnv1a(name);
   const auto folded = philox4x32_10({static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32), 0, 0},
                                     {static_cast<std::uint32_t>(hash), static_cast<std::uint32_t>(hash >> 32)});
@@ -46,7 +46,8 @@ std::array<std::uint32_t, 4> Stream::block(std::uint64_t index) const {
 
 std::array<double, 2> Stream::normal_pair(std::uint64_t index) const {
   const auto b = block(index);
-  // The normal numbers follow Box and Muller (1958); 1 - u is in (0, 1], so the logarithm is finite.
+  // Normally distributed numbers are computed by the method of Box and Muller (1958). The number 1 - u is in (0, 1], so
+  // the logarithm is finite.
   const double radius = std::sqrt(-2.0 * std::log(1.0 - unit(join(b[0], b[1]))));
   const double angle = 2.0 * std::numbers::pi * unit(join(b[2], b[3]));
   return {radius * std::cos(angle), radius * std::sin(angle)};

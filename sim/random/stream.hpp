@@ -7,8 +7,9 @@
 
 namespace tumble::sim {
 
-/// Counter-based stream of random numbers (Philox 4x32-10, Salmon et al., SC 2011): each number depends only on its
-/// index, not on threads or order. Distributions are implemented here, because they differ between standard libraries.
+/// Stream is a counter-based stream of random numbers (Philox 4x32-10, Salmon et al., SC 2011). Each number depends
+/// only on its index in the stream, and not on threads or order. Distributions are implemented here, because the
+/// distributions of different standard libraries give different numbers.
 class Stream {
  public:
   Stream(std::uint64_t seed, std::string_view name);

@@ -25,7 +25,8 @@ std::vector<Ball> content(const View& view, double robot_radius_m) {
     balls.push_back({T_WB.translation(), robot_radius_m});
     near.extend(T_WB.translation());
   }
-  // If robots are in the view, distant paths are ignored, because a diverged estimate would make the robots tiny.
+  // If the view contains robots, distant paths are ignored, because the path of a diverged estimate would make the
+  // robots tiny.
   if (!near.isEmpty()) {
     const Vector3d margin = Vector3d::Constant(kNear_m + 0.25 * near.diagonal().norm());
     near = Eigen::AlignedBox3d(near.min() - margin, near.max() + margin);

@@ -34,8 +34,8 @@ struct DrawnPoints {
   double radius_m = 0.02;
 };
 
-/// Camera and content of a picture. The camera looks at the point `look_at_W_m`; if this point is NaN, the camera
-/// frames the robots and nearby paths.
+/// View is the camera and the content of a picture. The camera looks at the point `look_at_W_m`. If `look_at_W_m` is
+/// NaN, the camera frames the robots and nearby paths.
 struct View {
   std::vector<Eigen::Isometry3d> robots_T_WB;
   std::vector<DrawnPath> paths;
@@ -50,7 +50,8 @@ struct View {
 
 class Renderer {
  public:
-  /// The shadow map has `shadow_pixels` per side; the rendering cost grows with the square of `shadow_pixels`.
+  /// The shadow map has `shadow_pixels` x `shadow_pixels` pixels, so the rendering cost grows with the square of
+  /// `shadow_pixels`.
   explicit Renderer(const BuiltSituation& built, int shadow_pixels = 4096);
   ~Renderer();
   Renderer(Renderer&&) noexcept;

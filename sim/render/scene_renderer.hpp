@@ -8,8 +8,8 @@
 
 namespace tumble::sim {
 
-/// Renders pictures of a world. Only one thread at a time may use a SceneRenderer, because an OSMesa context is current
-/// in one thread.
+/// SceneRenderer renders pictures of a world. Only one thread at a time may use a SceneRenderer, because an OSMesa
+/// context belongs to one thread.
 class SceneRenderer {
  public:
   SceneRenderer(engine::World world, int shadow_pixels);

@@ -13,7 +13,7 @@ struct RobotType {
   ComponentType component;
   std::string_view file;
   void (*shape)(mjSpec* spec, const Values& values, engine::World& world);
-  /// body of the MJCF file that carries all sensor sites, with its origin at its centre of mass
+  /// name of the body in the MJCF file that carries all sensor sites; the origin of this body is its centre of mass
   std::string_view sensor_body = "robot";
   std::string_view anchor = "";  ///< static body; empty: free robot
 };

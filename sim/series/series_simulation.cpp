@@ -39,7 +39,7 @@ class Reader {
     const ReadingErrors& errors = measured_->errors;
     const double noise = errors.noise > 0.0 ? errors.noise * noise_.normal() : 0.0;
     const double read = exact + bias_ + noise;
-    // Quantisation comes before the range limit, so that no reading is out of range.
+    // The reading is quantised before the range limit is applied, so that no quantised reading is out of range.
     const double step = errors.quantum > 0.0 ? errors.quantum * std::round(read / errors.quantum) : read;
     return std::clamp(step, errors.low, errors.high);
   }

@@ -29,7 +29,8 @@ inline constexpr std::array kSeriesParameters = {
               "recording"},
 };
 
-/// Sizes of the errors of a reading, relative to the true mean over the averaging window; 0 switches an error off.
+/// ReadingErrors contains the sizes of the errors of a reading. The errors are relative to the true mean over the
+/// averaging window. A size of 0 switches an error off.
 struct ReadingErrors {
   double noise = 0.0;
   /// standard deviation of an error that is constant over a recording
@@ -46,10 +47,10 @@ struct Measured {
   std::function<double(std::size_t k)> exact;  ///< true value at physics sample k
 };
 
-/// Simulates a sensor with scalar readings: mean over an averaging window, bias, white noise, range limits,
-/// quantisation, time stamps and lost samples. A lost sample is also missing in the truth. Throws InvalidSituation if
-/// the output period is not a whole number of physics steps. Temperature errors, drift, and other low-pass filters are
-/// not simulated.
+/// Simulates a sensor with scalar readings. The simulation includes the mean over an averaging window, bias, white
+/// noise, range limits, quantisation, time stamps and lost samples. A lost sample is also missing in the truth. Throws
+/// InvalidSituation if the output period is not a whole number of physics steps. The simulation does not include
+/// temperature errors, drift, or other low-pass filters.
 void simulate_series(const SensorContext& context, const std::vector<Measured>& quantities,
                      const std::vector<std::string>& constants, Recording& recording);
 

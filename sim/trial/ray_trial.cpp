@@ -16,8 +16,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kRayReach_m = 1e4;
-/// If two surfaces have faces within this distance (for example, the end of a wall at a door frame), a ray may hit
-/// either.
+/// If the faces of two surfaces are closer than this distance (for example, the end of a wall at a door frame), a ray
+/// may hit either surface.
 constexpr double kCoincident_m = 1e-4;
 
 class EngineRays {

@@ -12,8 +12,8 @@
 
 namespace tumble::sim {
 
-/// Numerical integrator. simulate() uses `runge_kutta_4`; `euler` and `implicit` demonstrate the errors of other
-/// integrators.
+/// Integrator is the numerical integrator of MuJoCo. simulate() uses `runge_kutta_4`; tests use `euler` and `implicit`
+/// to show the errors of other integrators.
 enum class Integrator { runge_kutta_4, euler, implicit };
 
 struct TrialOptions {
@@ -21,8 +21,8 @@ struct TrialOptions {
   Integrator integrator = Integrator::runge_kutta_4;
 };
 
-/// Simulates a robot in its world step by step, with the same model and physics engine as simulate(). The robot starts
-/// at its initial pose, without first coming to rest. Motion and sensors of `built` are ignored.
+/// Trial simulates a robot in its world step by step, with the same model and physics engine as simulate(). The robot
+/// starts at its initial pose, without coming to rest on its contacts first. Motion and sensors of `built` are ignored.
 class Trial {
  public:
   explicit Trial(const BuiltSituation& built, const TrialOptions& options = {});

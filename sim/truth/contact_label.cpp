@@ -16,7 +16,7 @@ struct Sums {
 
 /// Returns two speeds at a contact, weighted by the normal force:
 ///
-/// - `slip`: the speed at which the contact point slides
+/// - `slip`: the speed of the sliding contact point relative to the ground
 /// - `overspin`: the speed of the contact point relative to the geometric centre, minus the tangential speed of the
 ///   geometric centre
 Sums weigh(const Truth& truth, const ContactTruth& contact) {

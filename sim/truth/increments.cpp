@@ -10,7 +10,7 @@ namespace {
 Eigen::Vector3d log_rotation(Eigen::Quaterniond q) {
   if (q.w() < 0.0) q.coeffs() = -q.coeffs();
   const double sine = q.vec().norm();
-  // For a sine s below 1e-4, the series asin(s) / s = 1 + s^2 / 6 is accurate to 1e-17.
+  // If the sine s is below 1e-4, the factor is a series: asin(s) / s = 1 + s^2 / 6, which is accurate to 1e-17.
   const double factor = sine < 1e-4 ? 2.0 * (1.0 + sine * sine / 6.0) : 2.0 * std::atan2(sine, q.w()) / sine;
   return factor * q.vec();
 }

@@ -15,7 +15,7 @@ constexpr double kSettle_s = 1.0;
 constexpr double kRestSpeed_m_s = 0.005;
 constexpr double kLeastDistance_m = 0.05;
 
-/// Lets the robot come to rest before the recording starts, damped by an artificial drag.
+/// Lets the robot come to rest before the recording starts; an artificial drag damps the motion.
 void settle(engine::Physics& physics, const mjModel& model, int body, Motion& motion) {
   BodyState start = motion.start();
   start.time_s = -kSettle_s;
@@ -74,8 +74,8 @@ Truth record_truth(engine::World& world, Motion& motion, double duration_s) {
   if (distance_m < kLeastDistance_m)
     throw SimulationFailure("the robot did not move until the end of the simulation at " + std::to_string(duration_s) +
                             " s");
-  // Each specific force belongs to the end of a simulation step. No step ends at time 0, so the specific force of the
-  // first step is also used at time 0.
+  // Each specific force is the mean over the step that ends at its time. No step ends at time 0, so the specific force
+  // of the first step is also used at time 0.
   truth.f_B_m_s2.insert(truth.f_B_m_s2.begin(), truth.f_B_m_s2.front());
   truth.label = label_contacts(truth);
   return truth;

@@ -23,8 +23,8 @@ constexpr std::array kCliffParameters = joined(kOwnCliffParameters, hillside::kC
 
 void build_cliff(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World& world) {
   Ground ground(hillside::kSide, hillside::kHalfExtent_m);
-  // Each drop of the cliff starts and ends at grid nodes, so the horizontal length of a drop is one grid cell. Between
-  // two grid nodes, a drop would extend over two cells and have half the slope.
+  // Each drop of the cliff starts and ends at nodes of the ground grid, so the horizontal length of a drop is one grid
+  // cell. If a drop started between two grid nodes, the drop would extend over two cells and have half the slope.
   const double cell_m = ground.cell_m();
   const double ledge_m = cell_m * std::max(1.0, std::round(values.at("ledge_length_m") / cell_m));
   const LedgeProfile profile{hillside::kEdge_m,

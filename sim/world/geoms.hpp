@@ -13,8 +13,8 @@ namespace tumble::sim {
 
 using Colour = std::array<float, 4>;
 
-/// Adds a geom that lidars see. `size_m` is MuJoCo's size for the geom type (half widths, radius and half height);
-/// `yaw_rad` is about z.
+/// Adds a geom that is visible to lidars. `size_m` is MuJoCo's size for the geom type (half widths, radius and half
+/// height). `yaw_rad` is the rotation about z.
 mjsGeom* add_surface(mjSpec* spec, engine::World& world, const std::string& name, mjtGeom type,
                      const Eigen::Vector3d& position_W_m, const Eigen::Vector3d& size_m, double yaw_rad,
                      const Colour& colour);
@@ -25,7 +25,8 @@ struct HeightGrid {
   std::span<const double> heights_m;  ///< rows * columns values
 };
 
-/// Adds a height field. Its height range is at least `least_span_m`, because MuJoCo requires some relief.
+/// Adds a height field. The difference between the largest and the smallest height is at least `least_span_m`, because
+/// MuJoCo requires a height difference.
 mjsGeom* add_height_field(mjSpec* spec, engine::World& world, const std::string& name, const HeightGrid& grid,
                           double common_position_m, double least_span_m, const Colour& colour);
 

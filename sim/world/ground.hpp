@@ -24,8 +24,8 @@ inline constexpr std::array kGroundParameters = {
               "longest wavelength of the unevenness; the height of a wave is proportional to its wavelength"},
 };
 
-/// Sets the friction of the ground. MuJoCo uses the larger friction of two touching geoms, and the simulated sphere has
-/// no friction.
+/// Sets the friction of the ground. MuJoCo uses the larger friction coefficient of two touching geoms, and the
+/// simulated sphere has the friction coefficient 0.
 void set_ground_contact(mjsGeom* geom, const Values& values);
 
 /// Adds an uneven floor. The unevenness only lowers the floor, so that no object starts inside the ground. Returns

@@ -31,8 +31,8 @@ void roughen(Ground& ground, const Values& values, std::uint64_t seed, const Sha
   if (values.at("relief_m") > 0.0) rough.transform([&](double x, double y, double) { return relief.height_m(x, y); });
   if (values.at("bump_height_m") > 0.0)
     add_bumps(rough, bump_stream, static_cast<int>(values.at("bump_count")), values.at("bump_height_m"));
-  // The relief fades to zero in a disc around the start. If the relief is constant along y, it fades in a strip along y
-  // instead, because the lidar would see a disc as a feature.
+  // The relief fades to zero in a disc around the start. If the relief is constant along y, the relief fades in a strip
+  // along y instead of a disc, because a disc would be a feature for the lidar.
   const bool ruled = values.at("relief_ruled") > 0.5;
   int node = 0;
   ground.transform([&](double x, double y, double height_m) {

@@ -11,8 +11,8 @@
 namespace tumble::sim::hillside {
 
 inline constexpr double kHalfExtent_m = 20.0;
-/// Number of grid nodes per side of the ground, with cells of 20 cm. With cells of 10 cm, a strut that an impact pushes
-/// some centimetres into the ground would stay wedged for seconds.
+/// Number of grid nodes per side of the ground, with grid cells of 20 cm. With smaller cells of 10 cm, a strut that an
+/// impact pushes some centimetres into the ground would stay wedged for seconds.
 inline constexpr int kSide = 201;
 inline constexpr double kEdge_m = -8.0;
 inline constexpr double kSetBack_m = 0.8;  ///< robot's start behind the edge
@@ -40,7 +40,7 @@ inline constexpr std::array kCoverParameters = {
               "1: a building below the slope and a wall next to the slope, which the robot cannot reach; 0: none"},
 };
 
-/// Function that returns a factor in [0, 1] for the height of the relief at a position.
+/// Function of a position that returns a factor in [0, 1], by which the height of the relief is multiplied.
 using Share = std::function<double(double x_m, double y_m)>;
 
 void roughen(Ground& ground, const Values& values, std::uint64_t seed, const Share& share);

@@ -23,7 +23,7 @@ void add_room(mjSpec* spec, engine::World& world, const Values& values, Stream& 
 
 void add_ceiling(mjSpec* spec, engine::World& world, double half_x_m, double half_y_m, double height_m);
 
-/// group of geoms that a lidar sees and pictures omit
+/// group of geoms that are visible to lidars, but not in pictures
 inline constexpr int kUnseenInPictures = 3;
 
 }  // namespace tumble::sim

@@ -40,8 +40,8 @@ double ground_m(const Values& values, double x_m, double y_m) {
   return values.at("gutter_m") * u * u;
 }
 
-/// Adds the shell of the tube without contacts, because MuJoCo would use the convex hull of the mesh. The ground and
-/// the ends keep the robot inside the tube.
+/// Adds the shell of the tube without contacts, because MuJoCo would use the convex hull of the shell for contacts. The
+/// ground and the ends keep the robot inside the tube.
 void add_shell(mjSpec* spec, engine::World& world, const Values& values, int side, const Relief& rough) {
   constexpr double kRing_m = 0.1;
   constexpr int kSteps = 28;
@@ -52,7 +52,8 @@ void add_shell(mjSpec* spec, engine::World& world, const Values& values, int sid
     const double x_m = values.at("length_m") * (static_cast<double>(ring) / rings - 0.5);
     for (int step = 0; step <= kSteps; ++step) {
       const double angle = -kBelow_rad + (std::numbers::pi / 2 + kBelow_rad) * step / kSteps;
-      // The coordinate across the tube is the arc length from the top, where both halves meet.
+      // The roughness of the shell is a function of x and of the arc length from the top of the tube, where both halves
+      // of the shell meet.
       const double arc_m = side * (std::numbers::pi / 2 - angle) * values.at("half_width_m");
       const double scale = 1.0 + rough.height_m(x_m, arc_m) / values.at("half_width_m");
       vertices.push_back(static_cast<float>(x_m));
@@ -66,7 +67,8 @@ void add_shell(mjSpec* spec, engine::World& world, const Values& values, int sid
   for (int ring = 0; ring < rings; ++ring) {
     for (int step = 0; step < kSteps; ++step) {
       const int here = ring * (kSteps + 1) + step, next = here + kSteps + 1;
-      // The corners are anticlockwise seen from inside, because pictures show only this side of a face.
+      // The corners of each face are anticlockwise, seen from inside the tube, because pictures show only this side of
+      // a face.
       const int first = side > 0 ? next : here + 1, second = side > 0 ? here + 1 : next;
       for (const int corner : {here, first, next + 1, here, next + 1, second}) faces.push_back(corner);
     }

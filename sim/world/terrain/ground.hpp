@@ -21,7 +21,8 @@ class Ground {
   double coordinate_m(int index) const { return index * cell_m() - half_extent_m_; }
   double node_m(int row, int column) const { return heights_m_[static_cast<std::size_t>(row) * side_ + column]; }
 
-  /// Returns the bilinearly interpolated height; the triangles of MuJoCo's ground differ by a few millimetres.
+  /// Returns the bilinearly interpolated height. The surface of MuJoCo's height field consists of triangles, whose
+  /// heights differ by a few millimetres.
   double height_m(double x_m, double y_m) const;
 
   template <typename Function>

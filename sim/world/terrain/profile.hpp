@@ -3,7 +3,8 @@
 
 namespace tumble::sim {
 
-/// Slope that falls along +x from a level top at height 0 to a level run-out, with two rounded corners (softplus).
+/// SlopeProfile falls along +x from a level top at height 0 to a level area at the bottom, with two rounded corners
+/// (softplus function).
 struct SlopeProfile {
   double edge_x_m = 0.0;
   double slope_rad = 0.6;    ///< steepness, below a right angle
@@ -14,8 +15,8 @@ struct SlopeProfile {
   double height_m(double x_m) const;
 };
 
-/// Terraces below a level top at height 0. Each drop has the horizontal length `face_m` and is followed by a sloping
-/// ledge.
+/// LedgeProfile is a sequence of terraces below a level top at height 0. Each drop has the horizontal length `face_m`,
+/// and a sloping ledge follows each drop.
 struct LedgeProfile {
   double edge_x_m = 0.0;
   int drops = 2;  ///< at least 1

@@ -14,8 +14,8 @@ Relief::Relief(Stream& stream, const ReliefSpectrum& spectrum) {
     const double turn = stream.uniform(0.0, 2.0 * std::numbers::pi);
     const double direction = spectrum.ruled ? 0.0 : turn;
     const double k = 2.0 * std::numbers::pi / length_m;
-    // Log-uniform wavelengths have the density 1/k in the wave number k, so the squared amplitude must be proportional
-    // to k^(1 - exponent).
+    // Log-uniform wavelengths have the density 1/k in the wave number k. For a power proportional to k^-exponent, the
+    // squared amplitude must therefore be proportional to k^(1 - exponent).
     const double amplitude_m = std::pow(length_m, 0.5 * (spectrum.exponent - 1.0));
     waves_.push_back(
         {k * std::cos(direction), k * std::sin(direction), stream.uniform(0.0, 2.0 * std::numbers::pi), amplitude_m});

@@ -8,8 +8,8 @@
 
 namespace tumble::sim {
 
-/// Spectrum of a rough surface. The power per wave number k (all directions) is proportional to k^-exponent for
-/// wavelengths within [shortest_m, longest_m], and zero otherwise.
+/// ReliefSpectrum is the spectrum of a rough surface. The power per wave number k, summed over all directions, is
+/// proportional to k^-exponent for wavelengths from shortest_m to longest_m, and zero otherwise.
 struct ReliefSpectrum {
   double rms_m = 0.1;
   double shortest_m = 1.0;  ///< above 0
@@ -18,7 +18,7 @@ struct ReliefSpectrum {
   bool ruled = false;       ///< the height depends only on x
 };
 
-/// Random surface: a sum of plane waves with random phases and directions, and log-uniform wavelengths.
+/// Relief is a random surface: a sum of plane waves with random phases and directions, and log-uniform wavelengths.
 class Relief {
  public:
   Relief(Stream& stream, const ReliefSpectrum& spectrum);
@@ -31,8 +31,8 @@ class Relief {
   std::vector<Wave> waves_;
 };
 
-/// Adds Gaussian bumps. Their heights are uniform in +-height_m, and their widths (standard deviations) are uniform in
-/// [0.2, 0.7] m.
+/// Adds Gaussian bumps with random sizes. The heights of the bumps are uniform in +-height_m, and the widths (standard
+/// deviations) are uniform in [0.2, 0.7] m.
 void add_bumps(Ground& ground, Stream& stream, int count, double height_m);
 
 }  // namespace tumble::sim

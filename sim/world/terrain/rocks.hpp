@@ -13,8 +13,8 @@ namespace tumble::sim {
 struct RockField {
   int count = 0;
   double largest_m = 0.3;
-  /// Horizontal half axes are uniform in [smallest_share, 1] * largest_m, heights in [0.75 smallest_share, 0.7] *
-  /// largest_m.
+  /// The horizontal half axes of the rocks are uniform in [smallest_share, 1] * largest_m, and the vertical half axes
+  /// are uniform in [0.75 smallest_share, 0.7] * largest_m.
   double smallest_share = 0.4;
   Rectangle area;
   Disc clear;
