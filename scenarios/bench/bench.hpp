@@ -28,8 +28,8 @@ void require_of_suite(const BenchResult& result, const Suite& suite);
 std::string other_recording(const BenchResult& a, const BenchResult& b);
 
 /// bench_cell() computes the median of a metric over the runs, in which a failed run counts as the worst value of the
-/// metric. bench_cell() skips a simulated run if `result` or a method in `beside` completed this run without a value of
-/// the metric.
+/// metric. A simulated run is skipped if `result` or a method in `beside` completed this run without a value of the
+/// metric.
 struct BenchCell {
   std::size_t draws = 0, lost = 0;
   double median = 0.0;  ///< infinite if half failed; NaN if no runs

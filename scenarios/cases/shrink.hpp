@@ -45,8 +45,8 @@ struct Shrunk {
   int runs = 0;
   bool complete = false;    ///< no single complication can be removed
   bool controlled = false;  ///< the control succeeded on all accepted runs
-  /// Name of a wrong input that causes the failure, or empty. The method succeeds if the true value replaces the wrong
-  /// input.
+  /// Name of a wrong input that causes the failure, or empty. If the true value replaces the wrong input, the method
+  /// succeeds.
   std::string cure;
 };
 

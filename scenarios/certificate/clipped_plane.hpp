@@ -7,7 +7,7 @@
 #include "sim/recording.hpp"
 
 /// While sensing element j of an IMU is saturated, the readings y satisfy y_j = +-rho + b + sum over k != j of c_k y_k.
-/// This equation is a plane with the limit rho, the offset b and the slopes c.
+/// The equation describes a plane in the space of readings, with the limit rho, the offset b and the slopes c.
 namespace tumble::scenarios {
 
 sim::Truth beyond_every_rail(double gyro_rail_rad_s, double accel_rail_m_s2);

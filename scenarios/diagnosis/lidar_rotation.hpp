@@ -56,9 +56,9 @@ struct RotationAgreement {
 std::optional<RotationAgreement> rotation_agreement(const sim::ImuRecord& imu, const sim::LidarRecord& lidar,
                                                     std::span<const SeenRotation> seen);
 
-/// Returns a note if the rotations of lidar and gyro agree. Otherwise, returns a warning with a unit, delay, axes or
-/// mounting that makes the rotations agree. Throws RepairableInput if another value of the option --gyro-unit makes the
-/// rotations agree.
+/// Returns a note if the rotations of lidar and gyro agree. If the rotations do not agree, returns a warning with a
+/// unit, delay, axes or mounting that makes the rotations agree. Throws RepairableInput if another value of the option
+/// --gyro-unit makes the rotations agree.
 std::string agreement_text(const std::string& where, const RotationAgreement& agreement, GyroUnit unit);
 
 /// Returns the command-line option --T-body-lidar with position [m] and quaternion x y z w. A non-empty text `position`

@@ -73,8 +73,8 @@ std::string normal_problem(const std::vector<double>& numbers) {
 
 double draw_normal(const std::vector<double>& numbers, sim::Stream& stream) {
   if (numbers.size() == 2) return numbers[0] + numbers[1] * stream.normal();
-  // The truncation limits contain at least 1 % of the distribution. The probability that 10000 random numbers in a row
-  // are outside the limits is therefore below 1e-43.
+  // The probability that 10000 random numbers in a row are outside the truncation limits is below 1e-43, because the
+  // limits contain at least 1 % of the distribution.
   for (int attempt = 0; attempt < 10000; ++attempt) {
     const double value = numbers[0] + numbers[1] * stream.normal();
     if (value >= numbers[2] && value <= numbers[3]) return value;

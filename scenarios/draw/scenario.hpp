@@ -64,8 +64,8 @@ std::vector<std::string> case_names(const DataRoot& data);
 /// Loads scenarios/catalogue/NAME.yaml or scenarios/regressions/NAME.yaml, or the file `name` if it ends in ".yaml".
 Scenario load_scenario(const DataRoot& data, const std::string& name);
 
-/// Draws values for all random parameters of the scenario, with the random seed `seed`. The other parameters of sensors
-/// come from their data sheets.
+/// Draws values for all random parameters of the scenario, with the random seed `seed`. Sensor parameters that the
+/// scenario does not set come from the data sheets of the sensors.
 sim::ResolvedSituation draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed);
 
 /// Converts the parameters of a simulated run to YAML. Parsing the YAML restores all parameters bit-exactly.

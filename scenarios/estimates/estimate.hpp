@@ -45,8 +45,8 @@ struct Estimate {
   /// Contact mode of the sphere at each pose, or an empty vector if the method does not estimate contact modes. The
   /// contact mode `air` means no contact, or a bump (the contact point rises or falls) without slip.
   std::vector<sim::ContactLabel> contacts;
-  /// For each pose, true if the pose is in a slip event whose displacement is uncertain. The vector is empty if the
-  /// method does not estimate slip.
+  /// For each pose, true if the pose is in a slip event whose displacement is uncertain; empty if the method does not
+  /// estimate slip.
   std::vector<bool> uncertain;
   /// Position of the sphere's centre relative to the centre of mass, in body axes [m].
   Eigen::Vector3d centre_B_m = Eigen::Vector3d::Zero();

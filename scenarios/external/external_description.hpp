@@ -10,8 +10,8 @@
 
 namespace tumble::scenarios {
 
-/// Limit of the wall time of an external method whose description states no limit. A description in Python cannot state
-/// a limit.
+/// Limit of the wall time of an external method whose description states no limit; a description in Python cannot state
+/// a time limit.
 inline constexpr double kExternalTimeLimit_s = 600.0;
 
 /// An external method is a command (NAME.yaml) or a Python function (NAME.py).

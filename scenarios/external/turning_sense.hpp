@@ -5,8 +5,8 @@
 
 #include "scenarios/estimates/estimate.hpp"
 
-/// A pose file does not specify its frame, quaternion convention or clock. Wrong assumptions about these properties are
-/// detected by a comparison of the poses with the gyro.
+/// A pose file does not specify its frame, quaternion convention or clock. A comparison of the poses with the gyro
+/// detects wrong assumptions about frame, quaternion convention or clock.
 namespace tumble::scenarios {
 
 /// Returns a message if the rotations of the poses contradict the gyro for one of the following reasons, otherwise an

@@ -32,10 +32,10 @@ struct PooledEnd {
   Process::End end;
 };
 
-/// Calls `next` until the result is empty, and runs each returned task in a separate process. The tasks have the
-/// indices 0, 1, 2 and so on. Calls `on_end` in the calling process whenever a process ends. When `stop` becomes true,
-/// the running processes are killed, and `on_end` is not called for the killed processes. Throws BadInput if no process
-/// can be started.
+/// Calls `next` until the result is empty, and runs each returned task in a separate process. The tasks of the pool are
+/// numbered from 0. Calls `on_end` in the calling process whenever a process ends. When `stop` becomes true, the
+/// running processes are killed, and `on_end` is not called for the killed processes. Throws BadInput if no process can
+/// be started.
 void run_in_processes(const std::function<std::optional<PooledWork>()>& next, const PoolOptions& options,
                       const std::function<void(const PooledEnd&)>& on_end);
 

@@ -21,7 +21,7 @@ struct Imported {
   std::vector<std::string> notes;
   std::vector<std::vector<std::string>> cloud_fields;  ///< of each lidar in files or bags
   /// Shift of the lidar's clock relative to the clock of the primary IMU [s], if record stamps of a bag replaced the
-  /// header stamps. The shift is empty if the user chose the kind of stamps.
+  /// header stamps; empty if the user chose header or record stamps.
   std::optional<double> record_shift_s;
 };
 

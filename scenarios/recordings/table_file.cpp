@@ -37,8 +37,8 @@ std::vector<std::string> split(const std::string& line, char separator) {
   return cells;
 }
 
-/// Largest length of a line [bytes], so that a file without line ends cannot exhaust the memory. A pose with covariance
-/// has less than 1000 bytes.
+/// Largest length of a line [bytes], so that a file without line ends cannot exhaust the memory. A line with a pose and
+/// its covariance has less than 1000 bytes.
 constexpr std::size_t kLineMax = 1 << 20;
 
 bool read_line(std::istream& file, const std::filesystem::path& path, int number, std::string& line) {

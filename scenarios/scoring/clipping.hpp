@@ -35,8 +35,8 @@ class ClippingTruth {
 
   ClippingTruth(const sim::Sensors& sensors, const sim::Truth& truth);
 
-  /// Returns the interpolated true rate, and the clipped axes of the sample whose averaging window contains `time_ns`.
-  /// The result is empty if the rate is unknown at this time.
+  /// Returns the interpolated true rate, and the clipped axes of the sample whose averaging window contains `time_ns`;
+  /// empty if the true rate is unknown at `time_ns`.
   std::optional<Sample> at(std::int64_t time_ns) const;
 
   std::optional<std::size_t> index_at(std::int64_t time_ns) const;

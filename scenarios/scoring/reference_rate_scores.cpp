@@ -59,7 +59,8 @@ bool reference_error(const ScoredEstimate& scored, double& value) {
 }
 
 /// The standard deviation of the reference rate is 1.4826 times the median absolute difference between the reference
-/// rate and the unclipped gyro readings. The factor 1.4826 assumes normally distributed differences.
+/// rate and the unclipped gyro readings. The factor 1.4826 converts a median absolute difference to a standard
+/// deviation for normally distributed differences.
 Eigen::Vector3d reference_variance(const ScoredEstimate& scored, const ClippingTruth& truth) {
   const auto& reading = scored.sensors().imus.front().gyro_rad_s;
   Eigen::Vector3d variance = Eigen::Vector3d::Zero();

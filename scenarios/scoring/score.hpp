@@ -69,8 +69,8 @@ std::vector<Score> score(Kind kind, const ScoredEstimate& scored);
 /// - The estimate reports sweeps, but fewer than six sweeps are registered.
 OutcomeStatus verdict(Kind kind, const ScoredEstimate& scored);
 
-/// Returns true if a trajectory is finite and its end error is below its path length. Unlike `verdict`, this function
-/// does not test for gaps.
+/// Returns true if a trajectory is finite and its end error is below its path length. The function trajectory_holds()
+/// does not test for gaps, unlike `verdict`.
 bool trajectory_holds(const ScoredEstimate& scored);
 
 }  // namespace tumble::scenarios

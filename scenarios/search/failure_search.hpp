@@ -65,7 +65,8 @@ Scenario scenario_at(const Scenario& scenario, std::span<const DrawnNumber> numb
 /// Estimates the probability of a failure by adaptive multilevel splitting over all random parameters of the scenario
 /// and the seed of each random stream (splitting.hpp). Each run is simulated and estimated in a separate process, and
 /// its result is stored in the database `results`. If the database contains runs of an interrupted search with equal
-/// options, the search continues after these runs. The result does not depend on the number of processes.
+/// options, the search continues after these runs. The estimated probability does not depend on the number of
+/// processes.
 ///
 /// Throws BadInput in each of these cases:
 /// - The options are invalid.

@@ -256,13 +256,14 @@ void SplittingEstimate::advance(std::size_t removed, std::span<const std::size_t
   log_probability_ += std::log(left / n);
   double siblings = 0.0;
   for (const std::size_t count : copies) siblings += static_cast<double>(count * count);
-  // If only one draw remains, all later draws are copies of this draw, and interval() returns the limits 0 and 1.
+  // If only one draw (random run) remains, all later draws are copies of this draw, and interval() returns the limits 0
+  // and 1.
   if (left > 1.0) log_correction_ += std::log((left - 1.0) * n * n / (left * (n * n - siblings)));
 }
 
 /// Computes the confidence interval of a small probability by equation (S30) of docs/maths/statistics.md. The estimated
-/// probability has a log-normal distribution, whose median is below its mean. The factor exp(variance / 2) therefore
-/// corrects the upper limit of the confidence interval.
+/// probability has a log-normal distribution, whose median is below its mean. The factor exp(variance / 2) corrects the
+/// upper limit of the confidence interval for the difference between median and mean.
 Interval SplittingEstimate::interval(std::span<const std::size_t> members, double risk) const {
   const auto n = static_cast<double>(population_), own = static_cast<double>(members.size());
   const double share = own / n, log_value = log_probability_ + std::log(share);
@@ -284,10 +285,11 @@ Interval SplittingEstimate::of_failure(std::span<const std::size_t> families,
   if (log_probability_ == 0.0)
     return share_interval(static_cast<std::int64_t>(failing.size()), static_cast<std::int64_t>(population_));
   if (2 * failing.size() >= population_) return interval(failing, kRisk);
-  // If fewer than half of the current draws (random runs) fail, the estimated probability is not log-normal. The result
-  // is then the product of two confidence intervals. The first interval is for the probability that a random draw
-  // exceeds the last level. The second interval is for the fraction of the current draws that fail. Each of the two
-  // intervals has half of the error risk. For the second interval, all copies of one initial draw count as one draw.
+  // If fewer than half of the current draws (random runs) fail, the estimated probability is not log-normal. The
+  // confidence interval of the probability is then the product of two confidence intervals with half of the error risk
+  // each:
+  // - the probability that a random run exceeds the last level
+  // - the fraction of the current draws that fail, where all copies of one initial draw count as one draw
   const Interval level = interval(families, 0.5 * kRisk);
   const auto n = static_cast<double>(sizes_of(families).size());
   const double share = static_cast<double>(failing.size()) / static_cast<double>(population_), count = share * n;

@@ -32,7 +32,7 @@ using ScorePoints = std::function<std::vector<double>(std::span<const SplittingP
 using Move = std::function<std::vector<double>(std::span<const double> normals, double step,
                                                const std::function<double()>& normal)>;
 
-/// Returns x √(1 − step²) + step ξ, for the normal numbers x and new standard normal numbers ξ. This change is a
+/// Returns x √(1 − step²) + step ξ, for the normal numbers x and new standard normal numbers ξ. The formula is a
 /// preconditioned Crank-Nicolson step, equation (S27) of docs/maths/statistics.md.
 std::vector<double> crank_nicolson(std::span<const double> normals, double step, const std::function<double()>& normal);
 
@@ -74,12 +74,11 @@ struct SplittingResult {
 
 /// Estimates the probability that the score of a random draw exceeds the bound.
 ///
-/// A draw is a random run. In each step, the search removes the quarter of the draws with the lowest scores. A copy of
-/// another draw replaces each removed draw. Each copy is changed by several Metropolis moves. A move is accepted if the
-/// changed draw has a higher score than all removed draws. Half of the Metropolis moves also replace the seed of one
-/// random stream. The estimated probability is the product of the fractions of draws that remain in each step, and of
-/// the final fraction above the bound. The search ends when at least three quarters of the current draws have scores
-/// above the bound.
+/// A draw is a random run. In each step, the search replaces the quarter of the draws with the lowest scores by copies
+/// of other draws. Several Metropolis moves change each copy. A Metropolis move is accepted if the changed draw has a
+/// higher score than all removed draws. Half of the Metropolis moves also replace the seed of one random stream. The
+/// estimated probability is the product of the fractions of draws that remain in each step, and of the final fraction
+/// above the bound. The search ends when at least three quarters of the current draws have scores above the bound.
 ///
 /// The step size of the Metropolis moves increases if more than 40 % of the moves are accepted. The number of moves per
 /// copy depends on the acceptance rate of moves with a new seed: if every move used a new seed, at least 90 % of the

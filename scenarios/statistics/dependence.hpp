@@ -50,8 +50,8 @@ inline constexpr std::size_t kDependenceClassesMax = 8, kDependenceDrawsMin = 12
 
 /// Computes the partial dependence of y on x, equations (S22) and (S23) of docs/maths/statistics.md. The data are
 /// sorted by x and divided into at most `kDependenceClassesMax` equally large classes, with at least
-/// `kDependenceDrawsMin` values each. For each class, the function computes a statistic of y. The data must come from
-/// simulated runs with independent random numbers.
+/// `kDependenceDrawsMin` values each. partial_dependence() computes a statistic of y for each class. The data must come
+/// from simulated runs with independent random numbers.
 std::vector<DependenceClass> partial_dependence(std::span<const double> x, std::span<const double> y, Centre centre);
 
 }  // namespace tumble::scenarios

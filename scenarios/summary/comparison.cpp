@@ -176,8 +176,8 @@ class Comparing {
     return found->second;
   }
 
-  /// Holm's correction compares the smallest p-value with the total risk divided by the number of tests. Therefore, the
-  /// number of needed runs is computed for this smaller risk.
+  /// The number of needed runs is computed for the total risk divided by the number of tests, because Holm's correction
+  /// compares the smallest p-value with this risk.
   Plan plan(std::size_t tests) const {
     return {options_.risk / static_cast<double>(std::max<std::size_t>(tests, 1)), options_.power};
   }

@@ -12,7 +12,7 @@
 namespace tumble::scenarios {
 
 /// Margin is the non-inferiority margin: the largest accepted amount by which a method may be worse than the reference
-/// method. The amount is in the metric's unit, or a fraction of the reference method's value.
+/// method. The margin is in the metric's unit, or a fraction of the reference method's value.
 struct Margin {
   double value = 0.0;
   bool relative = false;

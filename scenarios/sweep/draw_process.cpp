@@ -250,8 +250,8 @@ std::vector<Outcome> without_answer(const DrawTask& task, OutcomeStatus status, 
 void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int fd, bool recordings_unseen) {
   const std::unique_ptr<const MadeDraw> made = made_draw(data, task, fd, recordings_unseen);
   if (!made) return;
-  // malloc_trim() returns the freed memory of the simulation to the operating system. Otherwise, the method could reuse
-  // this memory, and the measured memory of the method would be too small.
+  // malloc_trim() returns the freed memory of the simulation to the operating system, because the measured memory of a
+  // method would be too small if the method could reuse the freed memory.
   malloc_trim(0);
   DrawFiles files(task.keeping);
   bool failed = false;

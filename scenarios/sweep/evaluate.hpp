@@ -54,8 +54,8 @@ void assess(const Method& method, const SimulatedDraw& draw, const sim::Surface*
             Outcome& outcome);
 
 /// Returns a copy of the simulated run `draw` with the IMU time stamps of `given`, which is the same run with added
-/// sensor errors. With these time stamps, the scores compare each estimate with the truth of the corresponding IMU
-/// sample.
+/// sensor errors. With the time stamps of `given`, the scores compare each estimate with the truth of the corresponding
+/// IMU sample.
 SimulatedDraw scored_by(const SimulatedDraw& draw, const SimulatedDraw& given);
 
 double process_cpu_s();

@@ -28,7 +28,8 @@ class SweepPlan {
   void note_recordings(Results& results) const;
 
   /// Returns true if all tasks of the plan are complete. The plan contains recordings first, and then the scenarios,
-  /// with the seed as outer loop. Therefore, a stopped sweep covers all scenarios and all values of varied parameters.
+  /// with the seed as outer loop. Because of this order, a sweep that is stopped early still covers all scenarios and
+  /// all values of varied parameters.
   bool at_end() const { return next_.recording == recordings_.size() && next_.past_seeds; }
   void advance();
   DrawTask next(const Results& results) const;

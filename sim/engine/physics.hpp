@@ -35,8 +35,8 @@ class Physics {
   /// limits of the world.
   void step(const Wrench& wrench);
 
-  /// Appends the current contacts. MuJoCo computes contacts at the last stage of the RK4 integrator. The position at
-  /// this stage differs from the position after the step by an error of second order.
+  /// Appends the current contacts. MuJoCo computes contacts at the last stage of the RK4 integrator, whose position
+  /// differs from the position after the step by an error of second order.
   void append_contacts(std::int64_t time_ns, std::vector<ContactTruth>& contacts) const;
 
  private:

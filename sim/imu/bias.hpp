@@ -15,8 +15,8 @@ namespace tumble::sim {
 /// - a random walk.
 ///
 /// The Allan deviation of the in-run instability is flat within 5 % for averaging times from 1/200 to 1/2 of
-/// `in_run_s`. Data sheets state this Allan deviation as "in-run bias stability" (IEEE Std 952-1997, annex C). The bias
-/// does not depend on temperature or earlier motion.
+/// `in_run_s`. In data sheets, "in-run bias stability" is the flat part of the Allan deviation (IEEE Std 952-1997,
+/// annex C). The bias does not depend on temperature or earlier motion.
 class Bias {
  public:
   struct Params {

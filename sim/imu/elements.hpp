@@ -25,8 +25,8 @@ namespace tumble::sim {
 class Elements {
  public:
   struct Params {
-    /// Standard deviation of the off-diagonal entries of the misalignment matrix M. The values are clamped to three
-    /// standard deviations.
+    /// Standard deviation of the off-diagonal entries of the misalignment matrix M, which are clamped to three standard
+    /// deviations.
     double misalignment = 0.0;
     double scale = 0.0;   ///< standard deviation of the diagonal of M, around 1
     double offset = 0.0;  ///< standard deviation of o [signal unit]

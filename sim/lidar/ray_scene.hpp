@@ -9,7 +9,7 @@
 
 namespace tumble::sim {
 
-/// Number of rays that are cast together. These rays are successive rays of one laser, with similar directions.
+/// Number of rays that are cast together: successive rays of one laser, with similar directions.
 inline constexpr int kLanes = 16;
 
 struct RayPacket {

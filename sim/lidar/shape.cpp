@@ -150,8 +150,8 @@ double ellipsoid_distance(const Vector3d& size, const Vector3d& point) {
     (outside(middle) > 0.0 ? low : high) = middle;
   }
   Vector3d nearest = a2.cwiseProduct(y).cwiseQuotient(a2 + Vector3d::Constant(high));
-  // If the point is on the symmetry plane perpendicular to the shortest axis, the root does not determine the
-  // coordinate along the shortest axis. This coordinate follows from the equation of the ellipsoid.
+  // If the point is on the symmetry plane perpendicular to the shortest axis, the coordinate of the nearest point along
+  // the shortest axis follows from the equation of the ellipsoid instead of the root.
   int shortest = 0;
   a.minCoeff(&shortest);
   if (y[shortest] < 1e-12) {

@@ -21,8 +21,8 @@ struct Shape {
 double cast_ray(const Shape& shape, const Eigen::Vector3d& origin_F_m, const Eigen::Vector3d& direction_F,
                 Eigen::Vector3d& normal_F);
 
-/// Returns the distance of a point from the surface of a shape [m], with a relative error of at most 1e-9. The point
-/// may be inside or outside.
+/// Returns the distance of a point, inside or outside a shape, from the surface of the shape [m], with a relative error
+/// of at most 1e-9.
 double surface_distance(const Shape& shape, const Eigen::Vector3d& point_F_m);
 
 bool contains(const Shape& shape, const Eigen::Vector3d& point_F_m);

@@ -41,7 +41,7 @@ double ground_m(const Values& values, double x_m, double y_m) {
 }
 
 /// Adds the shell of the tube without contacts, because MuJoCo would use the convex hull of the shell for contacts. The
-/// ground and the ends keep the robot inside the tube.
+/// contacts with the ground and with the ends of the tube keep the robot inside the tube.
 void add_shell(mjSpec* spec, engine::World& world, const Values& values, int side, const Relief& rough) {
   constexpr double kRing_m = 0.1;
   constexpr int kSteps = 28;

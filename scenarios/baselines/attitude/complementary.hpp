@@ -10,10 +10,10 @@
 namespace tumble::baselines {
 
 /// Complementary estimates attitude: the filter integrates the gyro, then rotates the attitude towards the measured
-/// vertical (docs/maths/attitude.md, equation (A2)).
-/// The correction is a fraction of the smallest rotation that aligns the specific force with the vertical. This
-/// fraction is 1 - exp(-dt / tau), for the sample period dt and the time constant tau. An acceleration that lasts
-/// longer than tau causes an attitude error. Complementary does not estimate the gyro bias.
+/// vertical (docs/maths/attitude.md, equation (A2)). The correction is the fraction 1 - exp(-dt / tau) of the smallest
+/// rotation that aligns the specific force with the vertical, for the sample period dt and the time constant tau. An
+/// acceleration that lasts longer than the time constant causes an attitude error. Complementary does not estimate the
+/// gyro bias.
 class Complementary {
  public:
   struct Params {

@@ -26,9 +26,9 @@ TimeNs rounded_offset(const LidarPoint& point, TimeNs step_ns) {
   return static_cast<TimeNs>(point.offset_ns) / step_ns * step_ns;
 }
 
-/// Returns the time for which the registration of a sweep estimates the pose. For a normal sweep, this time is the
-/// start of the sweep. If all points of a sweep have one time stamp, this time is the time stamp of the points, because
-/// otherwise the velocity feedback of PublishedChain would be unstable.
+/// Returns the time at which the registration of a sweep estimates the pose, usually the start of the sweep. If all
+/// points of a sweep have one time stamp, the result is this time stamp, because otherwise the velocity feedback of
+/// PublishedChain would be unstable.
 TimeNs registered_at(const Sweep& sweep, TimeNs step_ns) {
   if (sweep.points.empty()) return sweep.start_ns;
   const auto [first, last] = std::minmax_element(

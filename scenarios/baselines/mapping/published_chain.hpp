@@ -17,7 +17,8 @@
 namespace tumble::baselines {
 
 /// PublishedChain estimates trajectory and map from lidar sweeps, specific forces, and angular rates of another
-/// estimator. The method is the mapping chain of Deschenes et al. (ICRA 2024), with the constants of its launch files.
+/// estimator. PublishedChain repeats the mapping chain of Deschenes et al. (ICRA 2024), with the constants of its
+/// launch files.
 class PublishedChain {
  public:
   struct Params {

@@ -82,9 +82,9 @@ void export_ros2_bag(const sim::Sensors& sensors, const BagWriting& writing, con
 void export_mcap(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& file);
 void export_ros2_mcap(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& folder);
 
-/// A header stamp is the time of measurement. A record stamp is the time at which the bag recorded the message. With
-/// record stamps, a sweep starts one sweep period before its stamp, because a bag records a sweep at the end of the
-/// sweep.
+/// A header stamp in a bag is the time of measurement. A record stamp is the time at which the bag recorded the
+/// message. With record stamps, a sweep starts one sweep period before its stamp, because a bag records a sweep at the
+/// end of the sweep.
 enum class StampSource { header, record };
 
 /// ReferenceOf selects the moving frame whose poses the reference topic contains: the body, the lidar, or the frame

@@ -16,8 +16,8 @@ struct ImuTopic {
   std::int64_t record_lag_ns = 0;  ///< smallest delay from header stamp to record stamp
 };
 
-/// If the topic has no messages, the result depends on the caller: if the caller chose the topics, read_imu() throws
-/// BadInput; otherwise, read_imu() returns a record without readings.
+/// Reads the messages of an IMU topic. If the topic has no messages, read_imu() throws BadInput if the caller chose the
+/// topics, and otherwise returns a record without readings.
 ImuTopic read_imu(const OpenedBag& bag, SensorMountings& places, const std::string& topic, const BagReading& reading,
                   std::vector<std::string>& notes);
 

@@ -99,8 +99,8 @@ Eigen::Isometry3d pose_of_reference(const std::string& topic, const std::string&
   return T_BA.value_or(body);
 }
 
-/// If the user does not choose the frame of the reference poses, the frame is the child_frame_id of the messages, if
-/// the bag contains the transform of this frame.
+/// If the user does not choose the frame of the reference poses, the child_frame_id of the messages is used, provided
+/// that the bag contains the transform of this frame.
 void attach_reference(const OpenedBag& bag, const SensorMountings& places, const BagReading& reading, Imported& out) {
   const std::string& topic = bag.topic(reading.reference_topic, is_reference_type).name;
   NamedPoses found = reference_poses(bag, topic, reading.stamps);

@@ -204,7 +204,8 @@ void File::take_indexed(std::vector<ChunkIndex> chunks) {
     }
     segments_.push_back({at, each.chunk_length, each.message_start_time, each.message_end_time, each});
   }
-  // The chunk index lacks messages outside chunks. Therefore, an MCAP file without statistics is scanned completely.
+  // An MCAP file without statistics is scanned completely, because the chunk index does not contain messages outside
+  // chunks.
   if (!statistics_ || channels_.empty()) segments_.clear();
 }
 

@@ -20,7 +20,8 @@ std::string packed_lz4(std::string_view plain);
 std::string unpacked_lz4(std::string_view packed, std::uint64_t bytes);
 std::string unpacked_zstd(std::string_view packed, std::uint64_t bytes);
 
-/// Returns the CRC-32 of zlib (IEEE 802.3, reflected). The checksum `before` of earlier bytes is continued.
+/// Returns the CRC-32 of zlib (IEEE 802.3, reflected) of `bytes`, as a continuation of the checksum `before` of earlier
+/// bytes.
 std::uint32_t crc32_of(std::string_view bytes, std::uint32_t before = 0);
 
 /// Decompresses files such as "bag_0.db3.zstd" to a temporary folder. The temporary folder is removed when the reader

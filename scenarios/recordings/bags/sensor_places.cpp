@@ -73,8 +73,8 @@ void SensorMountings::mounting_in_body(const std::string& topic, const Eigen::Is
 
 const SensorMountings::Placed* SensorMountings::neighbour(const std::string& frame) const {
   for (const Placed& each : placed_) {
-    // Drivers often give all sensors of a device the same frame name. Two sensors with equal frame names may therefore
-    // have different poses.
+    // Two sensors with equal frame names may have different poses, because drivers often give all sensors of a device
+    // one frame name.
     if (each.frame != frame && frames_.pose(each.frame, frame, where_)) return &each;
   }
   return nullptr;

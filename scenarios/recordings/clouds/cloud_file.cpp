@@ -88,8 +88,8 @@ bool is_number_of_pcl(std::string_view word) {
   return error != std::errc::invalid_argument && end == word.data() + word.size();
 }
 
-/// PCL reads a malformed word such as "1.2x" without an error, as 1.2, 0 or NaN. Therefore, the words of text files are
-/// checked first.
+/// The words of text files are checked first, because PCL reads a malformed word such as "1.2x" as 1.2, 0 or NaN,
+/// without an error.
 void require_numbers(const std::filesystem::path& path, const CloudHeader& header) {
   std::ifstream stream(path, std::ios::binary);
   std::string text(static_cast<std::size_t>(header.header_bytes), '\0');

@@ -102,10 +102,10 @@ std::vector<Pair> fast_pairs(const sim::ImuRecord& first, const sim::ImuRecord& 
   return pairs;
 }
 
-/// Estimates the position p of a second IMU relative to the first IMU by least squares. The axes of both IMUs must be
-/// equal. At angular rate w and angular acceleration a, the specific forces of both IMUs differ by a x p + w x (w x p)
-/// plus a bias. Samples near the largest gyro reading are omitted, because the gyro may be saturated. Cost: O(N) for N
-/// samples.
+/// Estimates the position p of a second IMU relative to the first IMU by least squares. The axes of the two IMUs must
+/// have the same directions. At angular rate w and angular acceleration a, the specific forces of both IMUs differ by a
+/// x p + w x (w x p) plus a bias. Samples near the largest gyro reading are omitted, because the gyro may be saturated.
+/// Cost: O(N) for N samples.
 ImuPosition estimate_imu_position(const sim::ImuRecord& first, const sim::ImuRecord& second) {
   ImuPosition out;
   double rate_difference = 0.0;

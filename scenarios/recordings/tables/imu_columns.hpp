@@ -30,8 +30,8 @@ struct ImuColumns {
 };
 
 /// Finds the columns of a table by their names. The known names are those of ROS messages (".../angular_velocity/x"),
-/// of the command `export` and of loggers (logger_columns.hpp). The short forms sec, nsec, wx.. and fx.. are also
-/// known.
+/// of the command `export` and of loggers (logger_columns.hpp). Short column names such as sec, nsec, wx and fx are
+/// also accepted.
 ImuColumns imu_columns(const LoggedTable& table);
 
 std::int64_t stamp_ns(const CsvLine& line, const ImuColumns& columns);

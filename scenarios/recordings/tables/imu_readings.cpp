@@ -43,8 +43,7 @@ void require_plausible_force(const std::string& where, const sim::ImuRecord& imu
   const std::vector<double> start(norms.begin(), norms.begin() + std::min(std::ssize(norms), kStartReadings));
   const double middle = upper_median(std::move(norms));
   if (middle >= kLeastMedian_m_s2 && middle <= kLargestMedian_m_s2) return;
-  // The accelerometer of a robot that starts at rest measures 1 g at the start. The reading at the start therefore
-  // indicates the unit.
+  // The reading of the accelerometer at the start indicates the unit, because a robot that starts at rest measures 1 g.
   if (const double first = upper_median(start); middle < kLeastMedian_m_s2 && first < kWithoutGravity * middle)
     throw BadInput(fmt::format(
         "{}: the specific force is {} at the start and {} in the median, so the readings may be linear acceleration, "
