@@ -19,7 +19,7 @@ struct BenchDraw {
   std::string group;      ///< class of runs in the suite: "mild"
   std::string recording;  ///< digest of the recording
   OutcomeStatus status = OutcomeStatus::failed;
-  std::map<std::string, double> values;  ///< all finite
+  std::map<std::string, double> values;  ///< metric values, all finite
   bool is(const BenchDraw& other) const { return scenario == other.scenario && seed == other.seed; }
 };
 

@@ -96,9 +96,9 @@ std::vector<CertificateEntry> certify_tilted_rail(const CertificateInput& input,
 
 /// The real-gyro check compares the saturation limits of two real gyros with the saturation limits of simulated gyros.
 struct RealRailsSetup {
-  double tilt_factor = 1.0;         ///< on the slopes; 0: aligned elements
+  double tilt_factor = 1.0;         ///< factor on the slopes; 0: aligned elements
   double added_tilt = 0.0;          ///< added to each slope
-  double rail_factor = 1.0;         ///< on the saturation limit
+  double rail_factor = 1.0;         ///< factor on the saturation limit
   double added_offset_rad_s = 0.0;  ///< added to the midpoint of the two limits
   double spread_factor = 1.0;       ///< factor on the tolerances in the data sheets
   int devices = 500;                ///< number of random devices per data sheet

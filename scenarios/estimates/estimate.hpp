@@ -31,7 +31,7 @@ const char* to_string(Frame frame);
 /// RecordingSetting is a property of a recording, for example a range, that `tumble odometry` reports with its source.
 struct RecordingSetting {
   std::string name;
-  std::string value;   ///< with evidence
+  std::string value;   ///< value with the evidence for it
   std::string source;  ///< stated, measured, by name or assumed
   std::string option;  ///< changes the setting
 };
@@ -61,7 +61,7 @@ struct Estimate {
   std::vector<Eigen::Matrix3d> suspect_rad2_s2;
   std::map<std::string, double> health;      ///< named counters: "rejected_samples", "sweeps_rejected"
   std::map<std::string, double> parameters;  ///< parameters that the user set by name
-  std::vector<RecordingSetting> settings;    ///< of `tumble odometry`
+  std::vector<RecordingSetting> settings;    ///< settings that `tumble odometry` reports
   std::string transcript;                    ///< output of an external program; not scored
 };
 

@@ -52,7 +52,7 @@ struct SlamChain {
   /// If true, the recording is processed twice. The first pass estimates lidar mounting, clock offset and gravity, and
   /// the second pass starts with the estimates of the first pass.
   bool calibration = false;
-  const KnownMotion* along = nullptr;  ///< odometer
+  const KnownMotion* along = nullptr;  ///< odometer that measures the motion of the IMU
   std::function<void(std::size_t done, std::size_t all)> on_sweep = {};
 };
 

@@ -31,7 +31,7 @@ class PublishedImuOdometry {
 
   std::span<const ImuSample> samples_;
   std::vector<Eigen::Quaterniond> attitude_;
-  std::vector<Eigen::Vector3d> p_m_, v_m_s_;  // of the integrated samples
+  std::vector<Eigen::Vector3d> p_m_, v_m_s_;  // positions and velocities at the integrated samples
   std::vector<std::pair<TimeNs, Eigen::Vector3d>> changes_;
   Eigen::Vector3d velocity_m_s_ = Eigen::Vector3d::Zero();
   double gravity_m_s2_ = 0.0;

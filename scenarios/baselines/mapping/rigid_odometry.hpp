@@ -56,7 +56,7 @@ class RigidOdometry {
   Params params_;
   MotionState predicted_, state_;
   VoxelMap map_;
-  std::uint32_t sweeps_ = 0;  ///< in the map
+  std::uint32_t sweeps_ = 0;  ///< number of sweeps in the map
   mapping::ScanLines scan_lines_;
   Registration registration_;
   SweepSampler sampler_;

@@ -30,7 +30,7 @@ class TrimmedIcp {
     /// trimming keeps a fraction of the matches that were found.
     bool count_unmatched_slots = false;
     int iterations_max = 40;
-    double step_m = 0.01;  ///< converged below both bounds
+    double step_m = 0.01;  ///< the registration has converged below both step sizes
     double step_rad = 0.001;
     double correction_max_m = 15.0;
     double correction_max_rad = 1.1;
@@ -68,7 +68,7 @@ class TrimmedIcp {
   };
   struct Result {
     RegistrationVerdict verdict = RegistrationVerdict::too_few_matches;
-    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();  ///< the prior if not converged
+    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();  ///< the prior pose if the registration did not converge
     int iterations = 0;
     std::size_t matched_slots = 0;
     double kept_share = 0.0;  ///< kept fraction of the matched slots
