@@ -23,7 +23,7 @@ struct SeenRotation {
 /// Computes the rotations between consecutive sweeps from the lidar alone, by `register_sweeps`. The function processes
 /// at most ten segments of a dozen sweeps, spread over the recording, each with a separate map. Only pairs of
 /// registered sweeps with rates of 0.1 to 2 rad/s are kept, because slower rotations are mostly noise, and faster
-/// rotations distort the sweeps. seen_rotations() takes about 10 ms per sweep.
+/// rotations distort the sweeps. The computation takes about 10 ms per sweep.
 std::vector<SeenRotation> seen_rotations(const sim::LidarRecord& lidar, const PointStore* aside);
 
 /// SignedAxes maps the axes of the IMU readings to the true IMU axes: true axis i is `sign[i]` times axis `axis[i]` of

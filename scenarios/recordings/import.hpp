@@ -20,8 +20,8 @@ struct Imported {
   std::optional<sim::Truth> reference;  ///< see FORMAT.md, "References"
   std::vector<std::string> notes;
   std::vector<std::vector<std::string>> cloud_fields;  ///< of each lidar in files or bags
-  /// Shift of the lidar's clock relative to the clock of the primary IMU [s], if record stamps of a bag replaced the
-  /// header stamps; empty if the user chose header or record stamps.
+  /// If record stamps of a bag replaced the header stamps, shift of the lidar's clock relative to the clock of the
+  /// primary IMU [s]. The shift is empty if the user chose header or record stamps.
   std::optional<double> record_shift_s;
 };
 

@@ -7,10 +7,10 @@
 
 namespace tumble::scenarios {
 
-/// Returns true if the time stamps seem to be rounded to milliseconds: all time stamps are whole milliseconds after the
-/// first time stamp, with steps of n or n + 1 ms, for an n of at most 4. At least 2 % of the steps must be n ms, and at
-/// least 2 % must be n + 1 ms; longer steps are gaps. If the true sample period is within 0.02 ms of a whole
-/// millisecond, the function returns false.
+/// Returns true if the time stamps seem to be rounded to milliseconds. In this case, all steps between time stamps are
+/// n or n + 1 ms, for an n of at most 4. At least 2 % of the steps must be n ms, and at least 2 % must be n + 1 ms;
+/// longer steps are gaps. If the true sample period is within 0.02 ms of a whole millisecond, the function returns
+/// false.
 bool are_rounded(std::span<const std::int64_t> stamps_ns);
 
 /// Removes the rounding of time stamps. For each stamp, a line is fitted to the stamps within half a second, without

@@ -36,8 +36,10 @@ struct FirstOrder {
 /// first-order index for chance, because class means of y also vary if y is independent of x.
 FirstOrder first_order_index(std::span<const double> x, std::span<const double> y);
 
-/// The statistic of a class has a 95 % confidence interval: Student's interval for the mean, order statistics for the
-/// median, and the interval of Clopper and Pearson for a fraction of ones (`share`).
+/// The statistic of a class has a 95 % confidence interval:
+/// - `mean`: Student's interval
+/// - `median`: interval from order statistics
+/// - `share` (fraction of ones): interval of Clopper and Pearson
 enum class Centre { mean, median, share };
 
 struct DependenceClass {
@@ -50,8 +52,8 @@ inline constexpr std::size_t kDependenceClassesMax = 8, kDependenceDrawsMin = 12
 
 /// Computes the partial dependence of y on x, equations (S22) and (S23) of docs/maths/statistics.md. The data are
 /// sorted by x and divided into at most `kDependenceClassesMax` equally large classes, with at least
-/// `kDependenceDrawsMin` values each. partial_dependence() computes a statistic of y for each class. The data must come
-/// from simulated runs with independent random numbers.
+/// `kDependenceDrawsMin` values each. The result contains a statistic of y for each class. The data must come from
+/// simulated runs with independent random numbers.
 std::vector<DependenceClass> partial_dependence(std::span<const double> x, std::span<const double> y, Centre centre);
 
 }  // namespace tumble::scenarios

@@ -37,10 +37,10 @@ struct MotionMap {
   std::vector<PublishedExtreme> extremes;  ///< published values for the plot
 };
 
-/// Computes the density of the runs as a histogram, smoothed along both logarithmic axes by a Gaussian. The standard
-/// deviation of the Gaussian is Scott's sigma n^(-1/6) (Multivariate Density Estimation, 1992, section 6.3) for n runs
-/// with the standard deviation sigma, but at least half a cell. The maximum rate and the maximum force of a run may
-/// occur at different times.
+/// Computes the density of the runs as a histogram, smoothed along both logarithmic axes by a Gaussian. For n runs with
+/// the standard deviation sigma, the Gaussian has the standard deviation sigma n^(-1/6) (Scott, Multivariate Density
+/// Estimation, 1992, section 6.3), but at least half a cell. The maximum rate and the maximum force of a run may occur
+/// at different times.
 MotionMap motion_map(std::span<const DrawValues> draws);
 
 }  // namespace tumble::scenarios

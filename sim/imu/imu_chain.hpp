@@ -20,10 +20,11 @@ struct TriadReading {
   Eigen::Vector3d bias;       ///< at the end of the averaging window
 };
 
-/// TriadChain simulates the errors of a gyro or accelerometer in this order: analogue low-pass filter, scale and
-/// misalignment, bias, external additions (g-sensitivity), white noise of the active range, saturation of the sensing
-/// elements, compensation of misalignment and offset, quantisation, digital low-pass filter, and mean over the
-/// averaging window.
+/// TriadChain simulates the errors of a gyro or accelerometer in this order:
+/// - analogue low-pass filter, scale and misalignment, bias
+/// - external additions (g-sensitivity), white noise of the active range
+/// - saturation of the sensing elements, compensation of misalignment and offset
+/// - quantisation, digital low-pass filter, mean over the averaging window
 ///
 /// The ideal reading is the rotation or velocity increment over the averaging window, divided by the window length. For
 /// a rotating IMU, the ideal reading differs from the mean of the signal (coning, sculling). TriadChain therefore adds

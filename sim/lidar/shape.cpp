@@ -150,8 +150,9 @@ double ellipsoid_distance(const Vector3d& size, const Vector3d& point) {
     (outside(middle) > 0.0 ? low : high) = middle;
   }
   Vector3d nearest = a2.cwiseProduct(y).cwiseQuotient(a2 + Vector3d::Constant(high));
-  // If the point is on the symmetry plane perpendicular to the shortest axis, the coordinate of the nearest point along
-  // the shortest axis follows from the equation of the ellipsoid instead of the root.
+  // If the point is on the symmetry plane perpendicular to the shortest axis, the root does not determine the
+  // coordinate along the shortest axis. The coordinate along the shortest axis then follows from the equation of the
+  // ellipsoid.
   int shortest = 0;
   a.minCoeff(&shortest);
   if (y[shortest] < 1e-12) {

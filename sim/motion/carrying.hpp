@@ -18,8 +18,8 @@ struct HandHeldPose {
 /// differentiated twice numerically.
 using HandHeldPath = std::function<HandHeldPose(double time_s)>;
 
-/// Returns the force and torque of a hand that carries a robot along a path: the sum of a feed-forward term for the
-/// acceleration of the path, a spring and a damper.
+/// Returns the force and torque of a hand that carries a robot along a path. The force is the sum of a feed-forward
+/// term for the acceleration of the path, a spring and a damper.
 Wrench carry_along(const HoldingHand& hand, const Eigen::Matrix3d& inertia_B_kg_m2, const BodyState& state,
                    const HandHeldPath& path);
 

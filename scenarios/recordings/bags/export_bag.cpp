@@ -138,8 +138,8 @@ class Export {
     return origin_ns_ + time_ns;
   }
 
-  /// If the first messages of the IMUs are not in the order of the IMUs, writes these messages at the start of the bag,
-  /// because readers use the first IMU in a bag as primary IMU.
+  /// Readers use the first IMU in a bag as primary IMU. If necessary, the first messages of all IMUs are therefore
+  /// written at the start of the bag, in the order of the IMUs.
   void begin_with_imus(std::vector<Event>& events) {
     const std::vector<Event> first = first_readings(imus_.size(), events);
     const auto earlier = [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; };

@@ -18,8 +18,8 @@ struct CsvLine {
 /// CsvText reads the lines of a text table. Windows line ends are accepted, and empty lines at the end are ignored.
 class CsvText {
  public:
-  /// Opens a table and determines its separator. The separator is the comma, semicolon or tab that is most frequent in
-  /// the first line that is not a comment, or a blank if that line contains none of these characters.
+  /// Opens a table and determines its separator from the first line that is not a comment. The separator is the most
+  /// frequent one of comma, semicolon and tab, or a blank if the line contains none of these characters.
   explicit CsvText(const std::filesystem::path& path);
   CsvText(const std::filesystem::path& path, char separator);
   /// Reads the next line. Throws BadInput if the last line has no line end, because the line may be truncated; the next
