@@ -13,8 +13,8 @@ namespace tumble::scenarios {
 
 std::string bench_suite_name(Kind kind);
 
-/// Returns a hash of the name, time limit and runs of a suite. Two bench results are comparable only if their hashes
-/// are equal.
+/// Returns a hash of the name, time limit and runs of a suite. The bench results of two methods are comparable only if
+/// the hashes of their suites are equal.
 std::string bench_suite_digest(const Suite& suite);
 
 BenchResult collect_bench_result(const Results& results, const Suite& suite, const MethodInfo& method);

@@ -25,9 +25,9 @@ struct CaseResult {
   std::string fault;    ///< reason if the check fails
 };
 
-/// Repeats a simulated run on which an estimator is known to fail. The check passes if the run fails again with the
-/// accepted status, and if the ratio of the metric to its accepted value is at most `kCaseFactor`. The check also fails
-/// if the method improves, so that a developer updates the accepted value.
+/// Checks the outcome of a repeated run on which an estimator is known to fail. The check passes if the run fails again
+/// with the accepted status, and if the ratio of the metric to its accepted value is at most `kCaseFactor`. The check
+/// also fails if the method improves, so that a developer updates the accepted value.
 CaseResult hold_case(const std::string& name, const Expectation& expected, const Outcome& outcome);
 
 Expectation accepted(const Expectation& expected, const Outcome& outcome);

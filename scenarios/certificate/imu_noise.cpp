@@ -20,8 +20,8 @@ struct RestReadings {
   std::vector<Eigen::Vector3d> gyro, accel;
 };
 
-/// Returns a sensor specification with noise and bias only. At rest, all other sensor errors are constant, so the noise
-/// check switches off these errors and the filters.
+/// Returns the IMU of a data sheet without filters, quantisation, averaging windows, time jitter and lost samples. Of
+/// the remaining sensor errors, only noise and bias vary at rest.
 sim::SensorSpec resting(const DataSheet& sheet) {
   sim::SensorSpec sensor = imu_of_sheet(sheet);
   for (const char* off :

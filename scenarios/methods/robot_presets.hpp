@@ -17,8 +17,8 @@ inline Eigen::AlignedBox3d rig_body_L() {
   return {Eigen::Vector3d(-0.5, -0.4, -0.27), Eigen::Vector3d(0.5, 0.4, 0.23)};
 }
 
-/// SaturationAwareRateEstimator treats gyro readings above kRigSaturationPoint_rad_s as saturated. The constant is
-/// slightly below the gyro's saturation limit of the rig's IMU (MTi-30).
+/// SaturationAwareRateEstimator treats gyro readings above kRigSaturationPoint_rad_s as saturated.
+/// kRigSaturationPoint_rad_s is slightly below the saturation limit of the gyro in the rig's IMU (MTi-30).
 inline constexpr double kRigSaturationPoint_rad_s = 10.45;
 
 inline constexpr double kSphereRadius_m = 0.145;

@@ -84,7 +84,8 @@ struct SweepSource {
 /// Reads the sweeps of a lidar from one file per sweep, in natural order of the file names (clouds/import_sweeps.hpp).
 /// The stamp of a sweep comes from the first available source: the file `times`, the file name, absolute point times,
 /// or the constant sweep period `steady_ns`. Time 0 of the recording is the start of the first sweep. If the first
-/// sweep starts less than a second after the zero of the clock, time 0 is the zero of the clock.
+/// sweep starts less than a second after the zero of the source clock, time 0 of the recording is the zero of the
+/// source clock.
 ///
 /// Throws BadInput if more than 5 % of the files are faulty; fewer faulty files are skipped with a note.
 Imported import_sweeps(const SweepSource& source);

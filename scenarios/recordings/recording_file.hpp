@@ -47,7 +47,8 @@ std::string digest(const StoredTruth& truth);
 void write_recording(const std::filesystem::path& path, const RecordingInfo& info, const sim::Sensors& sensors,
                      const sim::Truth* truth);
 
-/// Writes a recording whose points are on disk. A recording with the same points in memory gives a bit-identical file.
+/// Writes a recording whose points are on disk. The file is bit-identical to the file of a recording with equal points
+/// in memory.
 void write_recording(const std::filesystem::path& path, const RecordingInfo& info, const sim::Sensors& sensors,
                      const std::vector<PointStore>& points, const sim::Truth* truth);
 

@@ -56,8 +56,8 @@ struct StoredTruth {
   std::vector<sim::SeriesTruth> series;  ///< few numbers per second
 };
 
-/// PointStore contains the points of one lidar on disk, one file per column. The corresponding sim::LidarRecord in
-/// memory has no points.
+/// PointStore contains the points of one lidar on disk, one file per column. The sim::LidarRecord of a lidar with a
+/// PointStore contains no points.
 struct PointStore {
   PointStore() = default;
   explicit PointStore(const std::filesystem::path& folder)

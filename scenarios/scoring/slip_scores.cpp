@@ -10,8 +10,8 @@
 #include "scenarios/scoring/families.hpp"
 
 /// A slip event is a time interval in which every sample has the contact label slip or the contact label slide, except
-/// for short interruptions. Interruptions of a slip event are allowed because an unbalanced spinning sphere hops. An
-/// interruption contains at most kBridge_ns of the label grip, and lasts at most kHop_ns in total (grip and air). A
+/// for short interruptions. Interruptions of a slip event are allowed because an unbalanced spinning sphere hops. In an
+/// interruption, the label grip lasts at most kBridge_ns, and the labels grip and air together last at most kHop_ns. A
 /// true slip event is scored if the event lasts at least kShortest_ns, and the contact speed reaches kLeastSpeed_m_s.
 /// Weaker slip events cause no position error.
 ///

@@ -83,8 +83,8 @@ struct SplittingResult {
 /// The step size of the Metropolis moves increases if more than 40 % of the moves are accepted. The number of moves per
 /// copy depends on the acceptance rate of moves with a new seed. The number is chosen such that at least 90 % of the
 /// copies would get a new seed if every move used a new seed. The 95 % interval takes into account that copies of one
-/// initial draw depend on each other. Equal options give equal results for deterministic scores. Scores may be
-/// infinite, but not NaN. Throws BadInput for invalid options or NaN scores.
+/// initial draw depend on each other. Equal options give equal results for deterministic scores. The scores of draws
+/// may be infinite, but not NaN. Throws BadInput for invalid options or NaN scores.
 SplittingResult split(const SplittingOptions& options, const ScorePoints& score);
 
 /// SplittingEstimate accumulates an estimate of a small probability over the steps of adaptive multilevel splitting.

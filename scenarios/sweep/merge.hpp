@@ -11,8 +11,9 @@ namespace tumble::scenarios {
 
 /// Joins several results databases into the database `out`. If the merge fails, `out` stays unchanged. If two rows have
 /// the same scenario, seed and method, the row with the higher-ranked status is kept. Throws BadInput if two scored
-/// rows differ in status, digest or a score other than cost, because one build must give one result. If `mixed` is
-/// true, rows of different builds are joined, and if two rows of one run differ, the first row is kept.
+/// rows differ in status, digest or a score other than the computing cost, because all results of one build must be
+/// equal. If `mixed` is true, rows of different builds are joined, and if two rows of one run differ, the first row is
+/// kept.
 MergeCounts merge_results(const DatabaseOwner& out, std::span<const std::filesystem::path> in, bool mixed);
 
 }  // namespace tumble::scenarios

@@ -34,7 +34,8 @@ struct TriageOptions {
 };
 
 /// Runs a method on the original sensor data, and then once per input, with only one input replaced by its true value.
-/// Each run has a separate process. If the method fails in every run, the cause is the method or the scenario.
+/// Each run of the method has a separate process. If the method fails in every run, the cause is the method or the
+/// scenario.
 std::vector<TriageRow> triage(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
                               const TriageOptions& options);
 

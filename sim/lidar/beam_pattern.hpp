@@ -27,8 +27,8 @@ struct FiringBlock {
 };
 
 /// BeamPattern contains the times and directions of the laser pulses of a lidar. A slot is one firing sequence of all
-/// lasers (spinning lidar), or one instant at which all lidar units fire (rosette lidar). The slot with the number k
-/// starts at k times the slot period. Slot numbers continue from sweep to sweep.
+/// lasers (spinning lidar), or one instant at which all lidar units fire (rosette lidar). Slot number k starts at the
+/// time k times the slot period, and the slot numbers continue from sweep to sweep.
 class BeamPattern {
  public:
   virtual ~BeamPattern() = default;

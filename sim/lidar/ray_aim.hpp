@@ -6,9 +6,9 @@
 
 namespace tumble::sim {
 
-/// BlockPoses contains the lidar poses at the firing times of a block of slots (firing sequences). Within a slot (50
-/// us), the pose is extrapolated with the angular velocity at the middle of the slot. At 20 rad/s, the extrapolation
-/// error is (rate dt)^2 / 2 = 1e-7 rad, for a time difference dt of half a slot.
+/// BlockPoses contains the lidar poses at the firing times of a block of slots (firing sequences). Within a slot (one
+/// firing sequence, 50 us), the pose is extrapolated with the angular velocity at the middle of the slot. At 20 rad/s,
+/// the extrapolation error is (rate dt)^2 / 2 = 1e-7 rad, for a time difference dt of half a slot.
 class BlockPoses {
  public:
   void follow(const BeamPattern& pattern, const FiringBlock& block, TrackCursor& track);

@@ -13,8 +13,8 @@ constexpr double kTremorLow_hz = 0.7, kTremorHigh_hz = 9.0;
 // speed of the sphere above which the tremor of the hand has its full amplitude
 constexpr double kFullTremor_m_s = 0.1;
 
-/// Returns the rotation that turns the unit vector `from` to the z axis. Eigen's setFromTwoVectors would take 6 s to
-/// compile.
+/// Returns the rotation that turns the unit vector `from` to the z axis. The function replaces Eigen's
+/// setFromTwoVectors, whose compilation would take 6 s.
 Eigen::Quaterniond turn_up(const Eigen::Vector3d& from) {
   const double cosine = from.z();
   if (cosine < -1.0 + 1e-12) return {0.0, 1.0, 0.0, 0.0};

@@ -12,8 +12,8 @@
 
 namespace tumble::sim {
 
-/// Integrator is the numerical integrator of MuJoCo. simulate() uses `runge_kutta_4`; tests use `euler` and `implicit`
-/// to show the errors of other integrators.
+/// Integrator is the numerical integrator of MuJoCo. The function simulate() uses `runge_kutta_4`; the integrators
+/// `euler` and `implicit` exist to show their errors in tests.
 enum class Integrator { runge_kutta_4, euler, implicit };
 
 struct TrialOptions {

@@ -24,7 +24,7 @@ Eigen::Vector3d mean_rate_B(const BodyState& before, const BodyState& after);
 
 /// Labels every physics sample by the contacts within 10 ms before and after the sample. The time window is necessary
 /// because simulated contacts are interrupted: at low friction, a third of the simulation steps have no contact.
-/// - `air`: no contact.
+/// - `air`: there is no contact.
 /// - `grip`: mean slip speed, weighted by normal force, below 0.02 m/s.
 /// - `slip`: the rotation is too fast for the motion of the geometric centre.
 /// - `slide`: the rotation is too slow for the motion of the geometric centre.

@@ -11,7 +11,7 @@ namespace tumble::sim {
 
 struct WorldType {
   ComponentType component;
-  /// Builds the world. Random numbers come from streams of `seed` named "terrain" or "terrain.*".
+  /// Builds the world. The random numbers come from the random streams "terrain" and "terrain.*" with the seed `seed`.
   void (*build)(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World& world);
 };
 

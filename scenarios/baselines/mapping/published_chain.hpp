@@ -17,8 +17,8 @@
 namespace tumble::baselines {
 
 /// PublishedChain estimates trajectory and map from lidar sweeps, specific forces, and angular rates of another
-/// estimator. PublishedChain repeats the mapping chain of Deschenes et al. (ICRA 2024), with the constants of its
-/// launch files.
+/// estimator. PublishedChain repeats the mapping chain of the ICRA 2024 paper by Deschenes et al., with the constants
+/// of the published launch files.
 class PublishedChain {
  public:
   struct Params {

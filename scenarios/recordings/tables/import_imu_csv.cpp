@@ -65,8 +65,8 @@ Vector3d largest_readings(const sim::ImuRecord& imu) {
   return out;
 }
 
-/// Returns the samples with fast rotation. `rate_difference` is an output: the median difference between the rates of
-/// both gyros, as a fraction of the rate.
+/// Returns the equations of the position estimate for all samples with fast rotation and an unsaturated gyro.
+/// `rate_difference` is an output: the median difference between the rates of both gyros, as a fraction of the rate.
 std::vector<Pair> fast_pairs(const sim::ImuRecord& first, const sim::ImuRecord& second, double& rate_difference) {
   const Vector3d largest = kUnsaturatedRatio * largest_readings(first);
   std::vector<Pair> pairs;

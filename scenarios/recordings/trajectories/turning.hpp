@@ -72,10 +72,10 @@ inline bool is_delayed(double delay_s) {
 std::string delay_text(double delay_s);
 std::string delay_remedy(double delay_s);
 
-/// Compares the rotations between pairs of attitudes with the rotations that the gyro measures. The attitudes of a pair
-/// are 0.05 to 1 s and 0.02 to 2.5 rad apart. A pair is omitted if the gyro has a saturated sample or a gap above 0.1 s
-/// between the two attitudes. At most 400 pairs of attitudes are used, spread evenly over the recording. Fewer than 6
-/// pairs of attitudes give no result.
+/// Compares the rotations between pairs of attitudes with the rotations that the gyro measures. The two attitudes of a
+/// pair are separated by a time of 0.05 to 1 s and by a rotation of 0.02 to 2.5 rad. A pair is omitted if the gyro has
+/// a saturated sample or a gap above 0.1 s between the two attitudes. At most 400 pairs of attitudes are used, spread
+/// evenly over the recording. Fewer than 6 pairs of attitudes give no result.
 ///
 /// @param frames Frames to which the attitudes may belong; the first frame is the user's choice.
 /// @param delay_max_s  Largest delay in either direction, searched in steps of 20 ms, then of 2 ms. With fewer than 20
