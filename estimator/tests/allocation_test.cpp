@@ -70,12 +70,12 @@ TEST(Allocation, NoneForASampleAfterTheSecondPassTookOver) {
   params.lever_arm_I_m = body.lever_arm_I_m + Eigen::Vector3d(-0.006, 0.006, -0.006);  // it has something to put right
   params.T_IL.linear() = Eigen::AngleAxisd(0.015, Eigen::Vector3d(-1.0, 2.0, -2.0).normalized()).toRotationMatrix();
   params.imu.rate_hz = body.imu_hz;
-  params.expert->second_mapping_pass.after_s = 0.9;
+  params.expert->first_seconds_reprocessing.after_motion_s = 0.9;
   TumblingOdometry odometry(params);
   const std::vector<test::ThrownBody::Sweep> sweeps = body.sweeps();
   std::size_t next = 0, samples = 0, made = 0;
   for (const ImuSample& sample : body.imu()) {
-    const bool taken_over = odometry.second_mapping_pass_applied();
+    const bool taken_over = odometry.first_seconds_reprocessing_applied();
     const std::size_t before = g_allocations;
     ASSERT_TRUE(odometry.add_imu(sample).ok());
     const std::size_t by_it = g_allocations - before;
@@ -88,7 +88,7 @@ TEST(Allocation, NoneForASampleAfterTheSecondPassTookOver) {
       ++next;
     }
   }
-  ASSERT_TRUE(odometry.second_mapping_pass_applied());
+  ASSERT_TRUE(odometry.first_seconds_reprocessing_applied());
   EXPECT_GT(samples, 10u) << "it took over while samples came";
   EXPECT_EQ(made, 0u);
 }

@@ -61,9 +61,9 @@ inline std::vector<double> answers(TumblingOdometry odometry) {
   out.add(odometry.estimated_jitter_s().value_or(0.0));
   odometry.finish();
   while (const std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) {
-    out.add(sweep->report.pose);
-    out.add(static_cast<double>(sweep->report.verdict));
-    for (const PoseState& each : sweep->report.trajectory) out.add(each);
+    out.add(sweep->result.pose);
+    out.add(static_cast<double>(sweep->result.verdict));
+    for (const PoseState& each : sweep->result.trajectory) out.add(each);
   }
   for (const MapPoint& point : odometry.mapper().map()) out.add(point.position_W_m);
   out.add(odometry.mapper().lidar_calibration().T_IL.matrix());
@@ -71,7 +71,7 @@ inline std::vector<double> answers(TumblingOdometry odometry) {
   out.add(odometry.mapper().lidar_calibration_covariance());
   for (const std::size_t count :
        {odometry.restart_count(), odometry.rejected_readings(), odometry.samples_rejected_by_mapper(),
-        odometry.dropped_sweeps(), odometry.sweeps_before_first_imu()})
+        odometry.dropped_untaken_sweeps(), odometry.sweeps_before_first_imu()})
     out.add(static_cast<double>(count));
   return out.numbers;
 }
@@ -80,9 +80,9 @@ inline std::vector<double> answers(RollingOdometry odometry) {
   Answers out;
   const auto add = [&](const RollingOdometry::Pose& pose) {
     out.add(pose.pose);
-    out.add(pose.angular_velocity_rad_s);
+    out.add(pose.angular_velocity_B_rad_s);
     out.add(pose.velocity_covariance_B_m2_s2);
-    out.add(static_cast<double>(pose.mode));
+    out.add(static_cast<double>(pose.contact_mode));
   };
   if (const std::optional<RollingOdometry::Pose> pose = odometry.newest()) add(*pose);
   out.add(odometry.sphere_calibration().sphere_centre_B_m);

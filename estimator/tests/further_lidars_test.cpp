@@ -32,12 +32,12 @@ TumblingOdometry::Params two_lidars(const ThrownBody& body, const Eigen::Isometr
   TumblingOdometry::Params params = test::params_of(body);
   FurtherLidar& second = params.further_lidars.emplace_back();
   second.T_IL = T_I2;
-  second.time_offset_s = seconds(kClock_ns);
+  second.first_minus_this_clock_s = seconds(kClock_ns);
   return params;
 }
 
 struct Outcome {
-  std::vector<SweepReport> sweeps;
+  std::vector<SweepResult> sweeps;
   double worst_m = 0.0;
 };
 
@@ -64,9 +64,9 @@ Outcome run(const ThrownBody& body, TumblingOdometry& odometry, Points use) {
   }
   const auto take = [&] {
     while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) {
-      const PoseState& pose = sweep->report.pose;
+      const PoseState& pose = sweep->result.pose;
       out.worst_m = std::max(out.worst_m, (pose.position_W_m - body.T_WI(seconds(pose.time_ns)).translation()).norm());
-      out.sweeps.push_back(sweep->report);
+      out.sweeps.push_back(sweep->result);
     }
   };
   auto first = sweeps.begin();
@@ -99,8 +99,8 @@ TEST(FurtherLidars, PointsJoinTheSweepAtTheirTime) {
     for (std::size_t k = 1; k + 2 < of_both.sweeps.size(); ++k) {  // the second lidar starts later and ends earlier
       // the point counts may differ, because points at the border of two sweeps may join either sweep, and because of
       // points near the range limits
-      EXPECT_NEAR(double(of_both.sweeps[k].points_used), double(of_whole.sweeps[k].points_used), 20.0) << k;
-      EXPECT_LT(of_lower.sweeps[k].points_used, 0.6 * double(of_whole.sweeps[k].points_used)) << "negative control";
+      EXPECT_NEAR(double(of_both.sweeps[k].usable_points), double(of_whole.sweeps[k].usable_points), 20.0) << k;
+      EXPECT_LT(of_lower.sweeps[k].usable_points, 0.6 * double(of_whole.sweeps[k].usable_points)) << "negative control";
     }
     EXPECT_LT(of_both.worst_m, of_whole.worst_m + 0.01);
   }
@@ -133,7 +133,7 @@ TEST(FurtherLidars, WrongInputIsRejected) {
   EXPECT_EQ(odometry.add_sweep(1, sweep.end_ns, sweep.start_ns, sweep.points).error_code, ErrorCode::time_order);
   EXPECT_EQ(odometry.add_sweep(1, sweep.start_ns, sweep.start_ns + 1, sweep.points).error_code,
             ErrorCode::out_of_range);
-  params.further_lidars[0].time_offset_s = 2.0;
+  params.further_lidars[0].first_minus_this_clock_s = 2.0;
   EXPECT_THROW(TumblingOdometry{params}, InvalidParams);
   params = two_lidars(body, kT_I2);
   params.further_lidars[0].T_IL.linear() *= 2.0;

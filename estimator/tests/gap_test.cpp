@@ -53,8 +53,8 @@ ThrownWithGap throw_body(const ThrownBody& body, const DataGap& gap, double lag_
   ThrownWithGap out;
   const auto take = [&] {
     while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) {
-      if (sweep->report.trajectory.empty()) continue;
-      out.last = sweep->report.pose;
+      if (sweep->result.trajectory.empty()) continue;
+      out.last = sweep->result.pose;
       ++out.poses;
     }
   };

@@ -39,7 +39,7 @@ TEST(GyroOffset, ALargeOffsetDoesNotMoveTheThrow) {
   std::optional<TumblingOdometry::Sweep> last;
   while (std::optional<TumblingOdometry::Sweep> next = odometry.take()) last = std::move(next);
   ASSERT_TRUE(last);
-  const PoseState& pose = last->report.pose;
+  const PoseState& pose = last->result.pose;
   const Eigen::Isometry3d T_WI = body.T_WI(seconds(pose.time_ns));
   EXPECT_LT((pose.position_W_m - T_WI.translation()).norm(), 0.05);
   EXPECT_LT(pose.orientation_W.angularDistance(Eigen::Quaterniond(T_WI.linear())), 0.02);

@@ -29,9 +29,9 @@ TEST(Health, FindsAnInvertedAccelerometer) {
     sample.specific_force_m_s2 *= -1.0;
     ASSERT_TRUE(mirrored.add_imu(sample).ok());
   }
-  EXPECT_TRUE(sound.health().ok()) << sound.health().message();
-  EXPECT_NE(mirrored.health().message().find("agrees with an inverted accelerometer"), std::string::npos)
-      << mirrored.health().message();
+  EXPECT_TRUE(sound.health().ok()) << sound.health().worst_message();
+  EXPECT_NE(mirrored.health().worst_message().find("agrees with an inverted accelerometer"), std::string::npos)
+      << mirrored.health().worst_message();
 }
 
 // From a time within the flight on, gyro axis x repeats its reading, like a sensor that failed.
@@ -47,7 +47,7 @@ TEST(Health, NamesAFrozenAxis) {
     if (k > from) imu[k].angular_velocity_rad_s.x() = imu[from].angular_velocity_rad_s.x();
     ASSERT_TRUE(odometry.add_imu(imu[k]).ok());
     if (k < from) {
-      EXPECT_TRUE(odometry.health().ok()) << odometry.health().message();
+      EXPECT_TRUE(odometry.health().ok()) << odometry.health().worst_message();
     }
     if (const auto& rate = odometry.newest_smoothed_rate())
       widest_rad_s = std::max(widest_rad_s, std::sqrt(rate->covariance_rad2_s2(0, 0)));

@@ -57,8 +57,8 @@ struct EndError {
 };
 
 EndError end_error(const ThrownBody& body, const Lived& run) {
-  const PoseState& first = run.sweeps.front().report.trajectory.front();
-  const PoseState& last = run.sweeps.back().report.pose;
+  const PoseState& first = run.sweeps.front().result.trajectory.front();
+  const PoseState& last = run.sweeps.back().result.pose;
   const auto truth = [&](const PoseState& pose) { return body.T_WI(1e-9 * double(pose.time_ns)); };
   const Eigen::Isometry3d T = Eigen::Translation3d(first.position_W_m) * first.orientation_W * truth(first).inverse();
   const double yaw_rad = std::atan2(T.linear()(1, 0) - T.linear()(0, 1), T.linear()(0, 0) + T.linear()(1, 1));
@@ -72,7 +72,7 @@ EndError end_error(const ThrownBody& body, const Lived& run) {
 
 std::ptrdiff_t rejected(const Lived& run) {
   return std::count_if(run.sweeps.begin(), run.sweeps.end(),
-                       [](const auto& sweep) { return sweep.report.verdict == SweepVerdict::rejected; });
+                       [](const auto& sweep) { return sweep.result.verdict == SweepVerdict::rejected; });
 }
 
 /// Runs the body with a late lidar and checks the map. Returns the error at the end of this run and of the run in which
@@ -85,7 +85,7 @@ std::array<EndError, 2> late_and_together(const ThrownBody& body, double lidar_f
     return {};
   }
   EXPECT_FALSE(run.lived_before);
-  const SweepReport& first = run.sweeps.front().report;
+  const SweepResult& first = run.sweeps.front().result;
   EXPECT_EQ(first.verdict, SweepVerdict::first);
   EXPECT_GT(first.map_points_added, 500u);
   EXPECT_LT(first.trajectory.front().position_W_m.norm(), 0.1);
@@ -94,9 +94,9 @@ std::array<EndError, 2> late_and_together(const ThrownBody& body, double lidar_f
   EXPECT_LE(rejected(run), rejected(together));
   const SensorHealth health = odometry.health();
   if (vertical_known) {
-    EXPECT_TRUE(health.ok()) << health.message();
+    EXPECT_TRUE(health.ok()) << health.worst_message();
   } else {
-    EXPECT_NE(health.message().find("the map's vertical"), std::string::npos) << health.message();
+    EXPECT_NE(health.worst_message().find("the map's vertical"), std::string::npos) << health.worst_message();
   }
   return {end_error(body, run), end_error(body, together)};
 }
@@ -136,9 +136,9 @@ TEST(StartInFlight, TheMapStartsOnlyAfterTheLanding) {
   const double start_s = body.rest_s + body.push_s + 0.1, landed_s = body.rest_s + 2.0 * body.push_s + body.flight_s;
   TumblingOdometry odometry(test::params_of(body));
   Lived run = live(body, start_s, start_s, odometry);
-  std::erase_if(run.sweeps, [](const auto& sweep) { return sweep.report.trajectory.empty(); });
+  std::erase_if(run.sweeps, [](const auto& sweep) { return sweep.result.trajectory.empty(); });
   ASSERT_FALSE(run.sweeps.empty());
-  EXPECT_GT(1e-9 * double(run.sweeps.front().report.pose.time_ns), landed_s);
+  EXPECT_GT(1e-9 * double(run.sweeps.front().result.pose.time_ns), landed_s);
   const EndError end = end_error(body, run);
   EXPECT_LT(end.m, 0.02);
   EXPECT_LT(end.rad, 0.01);
@@ -153,17 +153,17 @@ TEST(LateLidar, SweepsWithoutPointsDoNotStartTheMap) {
     if (sweep.start_ns < 2 * kSecond_ns) sweep.points.resize(50);
   }
   std::size_t next = 0, without_pose = 0;
-  SweepReport first, last;
+  SweepResult first, last;
   for (const ImuSample& sample : body.imu()) {
     ASSERT_TRUE(odometry.add_imu(sample).ok());
     for (; next < sweeps.size() && sweeps[next].end_ns <= sample.time_ns; ++next)
       ASSERT_TRUE(odometry.add_sweep(sweeps[next].start_ns, sweeps[next].end_ns, sweeps[next].points).ok());
     while (auto sweep = odometry.take()) {
-      without_pose += sweep->report.trajectory.empty();
+      without_pose += sweep->result.trajectory.empty();
       EXPECT_EQ(sweep->status.error_code,
-                sweep->report.trajectory.empty() ? ErrorCode::insufficient_data : ErrorCode::none);
-      if (sweep->report.verdict == SweepVerdict::first) first = sweep->report;
-      last = sweep->report;
+                sweep->result.trajectory.empty() ? ErrorCode::insufficient_data : ErrorCode::none);
+      if (sweep->result.verdict == SweepVerdict::first) first = sweep->result;
+      last = sweep->result;
     }
   }
   EXPECT_EQ(without_pose, 19u);
@@ -179,9 +179,9 @@ TEST(LateImu, LeavesOutTheSweepsBeforeIt) {
   EXPECT_GE(odometry.sweeps_before_first_imu(), 28u);
   EXPECT_LE(odometry.sweeps_before_first_imu(), 30u);
   std::size_t placed = 0;
-  for (const auto& sweep : run.sweeps) placed += !sweep.report.trajectory.empty();
+  for (const auto& sweep : run.sweeps) placed += !sweep.result.trajectory.empty();
   EXPECT_GE(placed, 38u);
-  EXPECT_NE(run.sweeps.back().report.verdict, SweepVerdict::rejected);
+  EXPECT_NE(run.sweeps.back().result.verdict, SweepVerdict::rejected);
 }
 
 /// Returns samples of a body at rest whose accelerometer reads in units of `unit_m_s2`.
@@ -236,7 +236,7 @@ TEST(AccelerometerUnit, IsNotReportedIfRightOrInMotion) {
   }
   for (const ImuSample& sample : ThrownBody().imu()) {
     ASSERT_TRUE(thrown.add_imu(sample).ok());
-    EXPECT_TRUE(thrown.health().ok()) << thrown.health().message();
+    EXPECT_TRUE(thrown.health().ok()) << thrown.health().worst_message();
   }
 }
 

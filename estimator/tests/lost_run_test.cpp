@@ -37,7 +37,7 @@ TEST(TumblingOdometry, DoubtsAPlaceThatInertiaAloneHasFound) {
   ThrownBody body;
   TumblingOdometry seeing(params_of(body)), lost(params_of(body));
   run(body, 0.0, 0.0, seeing);
-  EXPECT_TRUE(seeing.health().ok()) << seeing.health().message();
+  EXPECT_TRUE(seeing.health().ok()) << seeing.health().worst_message();
   body.end_s = 9.0;
   run(body, 1.0, body.end_s, lost);
   ASSERT_EQ(lost.health().findings.size(), 1u);
@@ -58,13 +58,14 @@ TEST(TumblingOdometry, DoubtsACalibrationThatMovedFurtherThanWasGiven) {
   params.T_IL.linear() = Eigen::AngleAxisd(0.5 * params.mount_sigma_rad, Eigen::Vector3d::UnitX()).toRotationMatrix();
   TumblingOdometry near(params);
   run(body, 0.0, 0.0, near);
-  EXPECT_TRUE(near.health().ok()) << near.health().message();
+  EXPECT_TRUE(near.health().ok()) << near.health().worst_message();
   params.T_IL.linear() = Eigen::AngleAxisd(0.17, Eigen::Vector3d::UnitX()).toRotationMatrix();
   TumblingOdometry far(params);
   run(body, 0.0, 0.0, far);
   const Status health = far.health();
   EXPECT_EQ(health.error_code, ErrorCode::out_of_range);
-  EXPECT_NE(health.message().find("change of the lidar-IMU calibration"), std::string::npos) << health.message();
+  EXPECT_NE(health.worst_message().find("change of the lidar-IMU calibration"), std::string::npos)
+      << health.worst_message();
   EXPECT_GT(health.value, LidarImuCalibrationPrior::kDistanceMax_sigmas);
 }
 

@@ -64,7 +64,7 @@ struct Course {
 
 void take_course(const ThrownBody& body, TumblingOdometry& odometry, Course& run) {
   while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) {
-    const PoseState& pose = sweep->report.pose;
+    const PoseState& pose = sweep->result.pose;
     const Eigen::Isometry3d T_WI = body.T_WI(seconds(pose.time_ns));
     run.end_m = (pose.position_W_m - T_WI.translation()).norm();
     run.worst_m = std::max(run.worst_m, run.end_m);
@@ -103,16 +103,16 @@ Course course_of(const ThrownBody& body, const std::vector<ThrownBody::Sweep>& s
 
 TumblingOdometry::Params single_pass(const ThrownBody& body) {
   TumblingOdometry::Params params = params_of(body);
-  params.expert->second_mapping_pass.after_s = 0.0;
+  params.expert->first_seconds_reprocessing.after_motion_s = 0.0;
   return params;
 }
 
 void expect_same(const Course& a, const Course& b) {
   ASSERT_EQ(a.sweeps.size(), b.sweeps.size());
   for (std::size_t k = 0; k < a.sweeps.size(); ++k) {
-    EXPECT_EQ(a.sweeps[k].report.pose.position_W_m, b.sweeps[k].report.pose.position_W_m) << k;
-    EXPECT_EQ(a.sweeps[k].report.pose.orientation_W.coeffs(), b.sweeps[k].report.pose.orientation_W.coeffs()) << k;
-    EXPECT_EQ(a.sweeps[k].report.pose.covariance, b.sweeps[k].report.pose.covariance) << k;
+    EXPECT_EQ(a.sweeps[k].result.pose.position_W_m, b.sweeps[k].result.pose.position_W_m) << k;
+    EXPECT_EQ(a.sweeps[k].result.pose.orientation_W.coeffs(), b.sweeps[k].result.pose.orientation_W.coeffs()) << k;
+    EXPECT_EQ(a.sweeps[k].result.pose.covariance, b.sweeps[k].result.pose.covariance) << k;
   }
 }
 
@@ -129,7 +129,7 @@ TEST(OdometerReadings, TrueReadingsDoNoHarm) {
     EXPECT_LE(with.end_m, without.end_m);
     // a velocity contains little information about attitude, whose error at the catch is three degrees
     EXPECT_LE(with.worst_rad, (odometry == &with_motion ? 0.5 : 1.25) * without.worst_rad);
-    EXPECT_TRUE(odometry->health().ok()) << odometry->health().message();
+    EXPECT_TRUE(odometry->health().ok()) << odometry->health().worst_message();
   }
 }
 
@@ -166,7 +166,7 @@ TEST(OdometerReadings, AReadingBelongsToItsSweepWhileItWaits) {
   ThrownBody body;
   body.end_s = 4.2;
   TumblingOdometry::Params params = params_of(body);
-  params.expert->second_mapping_pass.after_s = 0.9;
+  params.expert->first_seconds_reprocessing.after_motion_s = 0.9;
   const std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
   TumblingOdometry before(params), after(params), without(params);
   const Course first = course_of(body, sweeps, true_motion, before);
@@ -177,9 +177,9 @@ TEST(OdometerReadings, AReadingBelongsToItsSweepWhileItWaits) {
     if (sweep.end_ns == sweeps.back().end_ns) true_motion(of, sweep, odometry);
   };
   expect_same(first, course_of(body, sweeps, late, after));
-  EXPECT_TRUE(before.second_mapping_pass_applied());
+  EXPECT_TRUE(before.first_seconds_reprocessing_applied());
   const Course none = course_of(body, sweeps, nothing, without);
-  EXPECT_NE(first.sweeps.back().report.pose.position_W_m, none.sweeps.back().report.pose.position_W_m);
+  EXPECT_NE(first.sweeps.back().result.pose.position_W_m, none.sweeps.back().result.pose.position_W_m);
   EXPECT_EQ(test::answers(before), test::answers(after));
 }
 
@@ -190,7 +190,7 @@ Eigen::Vector3d after_second_pass(bool with_readings) {
   rate.rate.model.nominal.lever_arm_m = body.lever_arm_I_m;
   const LidarInertialOdometry::Params mapping = TumblingOdometry::Params::Expert::default_mapping_params();
   OdometryPass first(rate, mapping);
-  SecondMappingPass again(SecondMappingPass::Params{}, rate, mapping);
+  FirstSecondsReprocessing again(FirstSecondsReprocessing::Params{}, rate, mapping);
   const std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
   std::size_t next = 0;
   for (const ImuSample& sample : body.imu()) {
@@ -198,7 +198,7 @@ Eigen::Vector3d after_second_pass(bool with_readings) {
     again.store_input(sample);
     for (; next < sweeps.size() && first.has_rates_until(sweeps[next].end_ns); ++next) {
       const ThrownBody::Sweep& sweep = sweeps[next];
-      LidarInertialOdometry::SweepReport report;
+      LidarInertialOdometry::SweepResult report;
       (void)first.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, {}, report);
       std::optional<OdometerReading> reading;
       if (with_readings) reading = motion_of(body, sweep.start_ns, sweep.end_ns, 0.002, 0.002);
@@ -221,7 +221,7 @@ TEST(OdometerReadings, TheSecondPassUsesReadingsAgain) {
 TEST(OdometerReadings, ACopyContinuesWhileAReadingWaits) {
   const ThrownBody body;
   TumblingOdometry::Params params = params_of(body);
-  params.expert->second_mapping_pass.after_s = 0.9;
+  params.expert->first_seconds_reprocessing.after_motion_s = 0.9;
   const std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
   TumblingOdometry whole(params);
   const Course run = course_of(body, sweeps, true_motion, whole);
@@ -248,7 +248,7 @@ TEST(OdometerReadings, ErrorsAreValuesAndChangeNothing) {
   Course run;
   hand_over(body, body.sweeps(), 0, 80, nothing, odometry, run);
   ASSERT_GT(run.sweeps.size(), 3u);
-  const TimeNs done_ns = run.sweeps.back().report.pose.time_ns;
+  const TimeNs done_ns = run.sweeps.back().result.pose.time_ns;
   const std::vector<double> before = test::answers(odometry);
   EXPECT_EQ(odometry.add_velocity({now_ns, {0.0, nan, 0.0}, 0.1}).error_code, ErrorCode::non_finite);
   EXPECT_EQ(odometry.add_velocity({now_ns, Eigen::Vector3d::Zero(), 0.0}).error_code, ErrorCode::out_of_range);

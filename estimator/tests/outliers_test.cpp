@@ -59,7 +59,7 @@ Flight run_tumbling(const ThrownBody& body, const std::vector<ImuSample>& imu) {
   Flight run;
   const auto take = [&] {
     while (const std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) {
-      const PoseState& pose = sweep->report.pose;
+      const PoseState& pose = sweep->result.pose;
       run.end_error_m = (pose.position_W_m - body.T_WI(seconds(pose.time_ns)).translation()).norm();
     }
   };

@@ -39,8 +39,8 @@ PoseState no_drift(const PoseState& pose) {
   return pose;
 }
 
-SweepReport report_of(int sweep, const Drift& drift) {
-  SweepReport out;
+SweepResult report_of(int sweep, const Drift& drift) {
+  SweepResult out;
   for (int k = 0; k <= 10; ++k)
     out.trajectory.push_back(drift(truth(1e-9 * double(sweep * kSweep_ns) + 0.01 * double(k))));
   out.pose = out.trajectory.back();
@@ -139,7 +139,7 @@ TEST(Positions, BoundTheDrift) {
     if (sweep % 10 == 0) {
       ASSERT_TRUE(add(alignment, reading_of(sweep, 0.5, random)).ok());
     }
-    const SweepReport report = report_of(sweep, drift);
+    const SweepResult report = report_of(sweep, drift);
     alignment.add_sweep(report);
     if (sweep == 300) first = alignment.position_frame().value().T_PW;
     if (sweep < 300) continue;
@@ -173,7 +173,7 @@ TEST(Positions, DoNotChangeThePosesOfAnOdometry) {
         for (; sweep != sweeps.end() && sweep->end_ns <= sample.time_ns; ++sweep) {
           const Eigen::Isometry3d T_WI = body.T_WI(seconds(sweep->end_ns));
           PositionReading reading{sweep->end_ns, kT_PW * T_WI * kArm_I_m, 1e-4 * Eigen::Matrix3d::Identity(), kArm_I_m};
-          ASSERT_TRUE(!positions || odometry.add_position(reading).ok());
+          ASSERT_TRUE(!positions || odometry.add_frame_alignment_position(reading).ok());
           ASSERT_TRUE(odometry.add_sweep(sweep->start_ns, sweep->end_ns, sweep->points).ok());
         }
         while (auto done = odometry.take()) out.push_back(std::move(*done));
@@ -185,12 +185,12 @@ TEST(Positions, DoNotChangeThePosesOfAnOdometry) {
     run(with, true, of_with);
     ASSERT_EQ(of_plain.size(), of_with.size());
     for (std::size_t k = 0; k < of_plain.size(); ++k) {
-      EXPECT_EQ(of_plain[k].report.pose.position_W_m, of_with[k].report.pose.position_W_m);
-      EXPECT_EQ(of_plain[k].report.pose.covariance, of_with[k].report.pose.covariance);
+      EXPECT_EQ(of_plain[k].result.pose.position_W_m, of_with[k].result.pose.position_W_m);
+      EXPECT_EQ(of_plain[k].result.pose.covariance, of_with[k].result.pose.covariance);
       EXPECT_FALSE(of_plain[k].position_frame);
     }
     ASSERT_TRUE(of_with.back().position_frame) << lag_s;
-    const PoseState end = of_with.back().position_frame->transform(of_with.back().report.pose);
+    const PoseState end = of_with.back().position_frame->transform(of_with.back().result.pose);
     EXPECT_LT((end.position_W_m - kT_PW * body.T_WI(seconds(end.time_ns)).translation()).norm(), 0.05) << lag_s;
     EXPECT_EQ(with.position_frame().has_value(), lag_s < TumblingOdometry::kWholeRecording);
   }
@@ -200,26 +200,27 @@ TEST(Positions, WrongReadingsAreRejected) {
   const ThrownBody body;
   TumblingOdometry odometry(test::params_of(body));
   PositionReading fine{0, Eigen::Vector3d::Zero(), Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero()};
-  EXPECT_EQ(odometry.add_position(fine).error_code, ErrorCode::empty) << "no sample yet";
+  EXPECT_EQ(odometry.add_frame_alignment_position(fine).error_code, ErrorCode::empty) << "no sample yet";
   const std::vector<ImuSample> imu = body.imu();
   for (std::size_t k = 0; k < 20; ++k) ASSERT_TRUE(odometry.add_imu(imu[k]).ok());
-  EXPECT_EQ(odometry.add_position(fine).error_code, ErrorCode::time_order) << "before the first sample";
+  EXPECT_EQ(odometry.add_frame_alignment_position(fine).error_code, ErrorCode::time_order) << "before the first sample";
   fine.time_ns = imu[19].time_ns;
-  EXPECT_TRUE(odometry.add_position(fine).ok());
+  EXPECT_TRUE(odometry.add_frame_alignment_position(fine).ok());
   PositionReading bad = fine;
   bad.time_ns += 1'100'000'000;
-  EXPECT_EQ(odometry.add_position(bad).error_code, ErrorCode::out_of_range);
+  EXPECT_EQ(odometry.add_frame_alignment_position(bad).error_code, ErrorCode::out_of_range);
   bad = fine;
   bad.antenna_position_P_m.x() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(odometry.add_position(bad).error_code, ErrorCode::non_finite);
+  EXPECT_EQ(odometry.add_frame_alignment_position(bad).error_code, ErrorCode::non_finite);
   bad = fine;
   bad.covariance_m2(2, 2) = 0.0;
-  EXPECT_EQ(odometry.add_position(bad).error_code, ErrorCode::out_of_range);
+  EXPECT_EQ(odometry.add_frame_alignment_position(bad).error_code, ErrorCode::out_of_range);
   bad = fine;
   bad.covariance_m2(0, 1) = 0.5;
-  EXPECT_EQ(odometry.add_position(bad).error_code, ErrorCode::out_of_range) << "not symmetric";
-  for (std::size_t k = 1; k < PositionAlignment::kReadingsMax; ++k) ASSERT_TRUE(odometry.add_position(fine).ok());
-  EXPECT_EQ(odometry.add_position(fine).error_code, ErrorCode::out_of_range) << "too many";
+  EXPECT_EQ(odometry.add_frame_alignment_position(bad).error_code, ErrorCode::out_of_range) << "not symmetric";
+  for (std::size_t k = 1; k < PositionAlignment::kReadingsMax; ++k)
+    ASSERT_TRUE(odometry.add_frame_alignment_position(fine).ok());
+  EXPECT_EQ(odometry.add_frame_alignment_position(fine).error_code, ErrorCode::out_of_range) << "too many";
 }
 
 }  // namespace position_readings

@@ -139,7 +139,7 @@ TEST(RollingOdometry, AUnitOfWhichAnAxisFreezesIsLeftOutAndNamed) {
   RollingOdometry sound(params_of(positions_m)), harmed(params_of(positions_m));
   for (std::size_t k = 0; k < units[0].size(); ++k) {
     ASSERT_TRUE(sound.add_imus(std::vector<ImuSample>{units[0][k], units[1][k], units[2][k]}).ok());
-    EXPECT_TRUE(sound.health().ok()) << sound.health().message();
+    EXPECT_TRUE(sound.health().ok()) << sound.health().worst_message();
   }
   units[1] = frozen_y(units[1]);
   for (std::size_t k = 0; k < units[0].size(); ++k)

@@ -79,10 +79,10 @@ TEST(SavedTumblingOdometry, ContinuesAtTheSavedPoseWithTheSavedMap) {
 
   const auto sweep = feed_until(body, kReboot_ns, 5'000'000'000, rebooted);
   ASSERT_TRUE(sweep);
-  EXPECT_LT(truth_distance_m(body, sweep->report.pose), 0.05);
+  EXPECT_LT(truth_distance_m(body, sweep->result.pose), 0.05);
   EXPECT_EQ(rebooted.mapper().prior_map()->points.size(), saved_run().mapper().map().size());
   const auto lost = feed_until(body, kReboot_ns, 5'000'000'000, fresh);
-  EXPECT_GT(truth_distance_m(body, lost->report.pose), 1.0) << "negative control: without load()";
+  EXPECT_GT(truth_distance_m(body, lost->result.pose), 1.0) << "negative control: without load()";
 }
 
 TEST(SavedTumblingOdometry, KeepsCalibrationAndSaturationLimits) {

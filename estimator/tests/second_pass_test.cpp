@@ -24,7 +24,7 @@ TumblingOdometry::Params measured_badly(const ThrownBody& body, double after_s,
   const Eigen::Vector3d axis = side.cwiseProduct(Eigen::Vector3d(1.0, -2.0, 2.0)).normalized();
   params.T_IL.linear() = Eigen::AngleAxisd(0.015, axis).toRotationMatrix();
   params.T_IL.translation() = Eigen::Vector3d(0.005, -0.005, 0.005);
-  params.expert->second_mapping_pass.after_s = after_s;
+  params.expert->first_seconds_reprocessing.after_motion_s = after_s;
   return params;
 }
 
@@ -42,7 +42,7 @@ double error_m(const ThrownBody& body, const PoseState& pose) {
 void take_all(const ThrownBody& body, TumblingOdometry& odometry, Outcome& run) {
   while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) {
     ++run.sweeps;
-    run.last = sweep->report.pose;
+    run.last = sweep->result.pose;
     run.end_m = error_m(body, run.last);
   }
 }
@@ -70,7 +70,7 @@ void live(const ThrownBody& body, std::size_t from, std::size_t to, TumblingOdom
     }
     take_all(body, odometry, run);
   }
-  run.taken_live = odometry.second_mapping_pass_applied();
+  run.taken_live = odometry.first_seconds_reprocessing_applied();
 }
 
 Outcome outcome_of(const ThrownBody& body, double after_s, const Eigen::Vector3d& side) {
@@ -85,7 +85,7 @@ Outcome outcome_of(const ThrownBody& body, double after_s, const Eigen::Vector3d
 // This body rotates for little more than a second, so the second pass gains little. Measured over all eight
 // combinations of signs: 2 to 4 cm without it; 3 to 5 cm with it in seven combinations, and 16 cm in the combination
 // (1, -1, -1). The gate (slam/tumble_lag) tests the gain on tumbles.
-TEST(SecondMappingPass, IsTakenOverAndEndsNoWorse) {
+TEST(FirstSecondsReprocessing, IsTakenOverAndEndsNoWorse) {
   ThrownBody body;
   body.end_s = 4.2;  // it lies long enough for the second pass to catch up
   std::vector<double> twice_m, once_m;
@@ -106,7 +106,7 @@ TEST(SecondMappingPass, IsTakenOverAndEndsNoWorse) {
   EXPECT_LT(twice_m[4], 1.3 * once_m[4]);  // medians
 }
 
-TEST(SecondMappingPass, CatchesUpWhereTheClocksDifferByMoreThanWasKnown) {
+TEST(FirstSecondsReprocessing, CatchesUpWhereTheClocksDifferByMoreThanWasKnown) {
   // the newest sweep that the first pass has registered may need a sample more by the estimated clock offset
   for (const TimeNs off_ns : {TimeNs{-4'000'000}, TimeNs{4'000'000}}) {
     ThrownBody body;
@@ -132,14 +132,14 @@ TEST(SecondMappingPass, CatchesUpWhereTheClocksDifferByMoreThanWasKnown) {
       }
       while (odometry.take()) continue;
     }
-    EXPECT_TRUE(odometry.second_mapping_pass_applied()) << off_ns;
+    EXPECT_TRUE(odometry.first_seconds_reprocessing_applied()) << off_ns;
     EXPECT_EQ(odometry.samples_rejected_by_mapper(), 0u) << off_ns;
-    const double learnt_s = odometry.mapper().lidar_calibration().time_offset_s;
+    const double learnt_s = odometry.mapper().lidar_calibration().imu_minus_lidar_clock_s;
     EXPECT_NEAR(learnt_s, 1e-9 * double(off_ns), 0.002) << "else this test asks nothing";
   }
 }
 
-TEST(SecondMappingPass, ACopyMadeWhileItIsUnderWayGoesOnWithTheSameBits) {
+TEST(FirstSecondsReprocessing, ACopyMadeWhileItIsUnderWayGoesOnWithTheSameBits) {
   const ThrownBody body;
   const std::size_t count = body.imu().size();
   const Outcome run = outcome_of(body, 0.9, Eigen::Vector3d::Ones());
@@ -147,7 +147,7 @@ TEST(SecondMappingPass, ACopyMadeWhileItIsUnderWayGoesOnWithTheSameBits) {
     Outcome parts;
     TumblingOdometry first(measured_badly(body, 0.9));
     live(body, 0, split, first, parts);
-    EXPECT_FALSE(first.second_mapping_pass_applied());
+    EXPECT_FALSE(first.first_seconds_reprocessing_applied());
     TumblingOdometry second(first);
     live(body, split, count, second, parts);
     second.finish();
@@ -159,7 +159,7 @@ TEST(SecondMappingPass, ACopyMadeWhileItIsUnderWayGoesOnWithTheSameBits) {
 }
 
 // A lidar that is blind for half a second of the flight: the first pass is lost, and is not waited for.
-TEST(SecondMappingPass, BeginsAtOnceWhereTheFirstIsLost) {
+TEST(FirstSecondsReprocessing, BeginsAtOnceWhereTheFirstIsLost) {
   ThrownBody body;
   body.end_s = 4.2;
   const std::size_t count = body.imu().size();
@@ -171,7 +171,7 @@ TEST(SecondMappingPass, BeginsAtOnceWhereTheFirstIsLost) {
   EXPECT_TRUE(found.taken_live);
   EXPECT_LT(found.end_m, 0.2);  // measured 0.11
 
-  params.expert->second_mapping_pass.lost_s = 0.0;
+  params.expert->first_seconds_reprocessing.tracking_failure_s = 0.0;
   Outcome without;
   TumblingOdometry waits(params);
   live(body, 0, count, waits, without, blind);
@@ -192,7 +192,7 @@ TEST(SecondMappingPass, BeginsAtOnceWhereTheFirstIsLost) {
   }
 }
 
-TEST(SecondMappingPass, AGapOfTheImuEndsIt) {
+TEST(FirstSecondsReprocessing, AGapOfTheImuEndsIt) {
   ThrownBody body;
   body.end_s = 5.5;
   std::vector<ImuSample> imu = body.imu();
@@ -201,20 +201,20 @@ TEST(SecondMappingPass, AGapOfTheImuEndsIt) {
   for (const ImuSample& sample : imu) (void)odometry.add_imu(sample);
   odometry.finish();
   EXPECT_EQ(odometry.restart_count(), 1u);
-  EXPECT_FALSE(odometry.second_mapping_pass_applied());
+  EXPECT_FALSE(odometry.first_seconds_reprocessing_applied());
 }
 
-TEST(SecondMappingPass, ALagBeyondTheRatesWindowIsThatWindow) {
+TEST(FirstSecondsReprocessing, ALagBeyondTheRatesWindowIsThatWindow) {
   ThrownBody body;
   body.imu_hz = 2000.0;
   TumblingOdometry::Params params = measured_badly(body, 0.9);
   params.expert->rate.rate.step_s = 0.05;
-  params.expert->second_mapping_pass.lag_s = 3.0;  // 6000 samples
+  params.expert->first_seconds_reprocessing.rate_lag_s = 3.0;  // 6000 samples
   TumblingOdometry odometry(params);
   Outcome run;
   live(body, 0, body.imu().size(), odometry, run);
   odometry.finish();
-  EXPECT_TRUE(odometry.second_mapping_pass_applied());
+  EXPECT_TRUE(odometry.first_seconds_reprocessing_applied());
 }
 
 }  // namespace

@@ -131,7 +131,7 @@ std::size_t tumble_over(const test::ThrownBody& body, bool error_code, TumblingO
       (void)odometry.add_sweep(sweeps[next].start_ns, sweeps[next].end_ns, sweeps[next].points);
       PoseState pose;
       (void)odometry.newest(pose);
-      while (const auto done = odometry.take()) rejected += done->report.verdict == SweepVerdict::rejected;
+      while (const auto done = odometry.take()) rejected += done->result.verdict == SweepVerdict::rejected;
     }
   }
   return rejected;
@@ -147,14 +147,14 @@ TEST_F(Stack, OfATumblingBodyInTroubleAndWithASecondPass) {
     if (!error_code) {  // it has something to put right
       params.lever_arm_I_m += Eigen::Vector3d(-0.006, -0.006, 0.006);
       params.T_IL.linear() = Eigen::AngleAxisd(0.015, Eigen::Vector3d(-1.0, -2.0, 2.0).normalized()).toRotationMatrix();
-      params.expert->second_mapping_pass.after_s = 0.9;
+      params.expert->first_seconds_reprocessing.after_motion_s = 0.9;
     }
     std::unique_ptr<TumblingOdometry> odometry;
     std::vector<std::byte> bytes;
     within("made", [&] { odometry = std::make_unique<TumblingOdometry>(params); });
     std::size_t rejected = 0;
     within("samples and sweeps", [&] { rejected = tumble_over(body, error_code, *odometry); });
-    EXPECT_TRUE(error_code || odometry->second_mapping_pass_applied());
+    EXPECT_TRUE(error_code || odometry->first_seconds_reprocessing_applied());
     within("saved", [&] { bytes = odometry->save(); });
     within("loaded", [&] { ASSERT_TRUE(odometry->load(bytes).ok()); });
     within("finished", [&] { odometry->finish(); });

@@ -116,7 +116,7 @@ TEST(StampOrder, ExtremeStampsOfTheMapperAreRefused) {
   ImuSample sample;
   sample.specific_force_m_s2 = {0.0, 0.0, 9.8};
   AngularRateState rate;
-  LidarInertialOdometry::SweepReport report;
+  LidarInertialOdometry::SweepResult report;
   for (const TimeNs time_ns : {std::numeric_limits<TimeNs>::min(), std::numeric_limits<TimeNs>::max()}) {
     sample.time_ns = rate.time_ns = time_ns;
     EXPECT_EQ(mapper.add_imu(sample, rate).error_code, ErrorCode::out_of_range);
@@ -151,7 +151,7 @@ TEST(StampOrder, TheMapContinuesAtTheNewestPoseAfterAStepBack) {
   while (std::optional<TumblingOdometry::Sweep> done = odometry.take()) out.push_back(std::move(*done));
   EXPECT_EQ(odometry.restart_count(), 1u);
   ASSERT_GT(out.size(), before + 30);
-  const PoseState& last = out.back().report.pose;
+  const PoseState& last = out.back().result.pose;
   const Eigen::Isometry3d T_WI = body.T_WI(seconds(last.time_ns - kBack_ns));
   EXPECT_LT((last.position_W_m - T_WI.translation()).norm(), 0.05);
   EXPECT_LT(last.orientation_W.angularDistance(Eigen::Quaterniond(T_WI.linear())), 0.03);
@@ -177,7 +177,7 @@ TEST(StampOrder, AResetMapStartsAtTheGivenPose) {
   feed(body, 0, 10'000'000'000, 0, odometry, third);
   ASSERT_EQ(second.size(), first.size());
   ASSERT_EQ(third.size(), first.size());
-  const PoseState &a = first.back().report.pose, &b = second.back().report.pose, &c = third.back().report.pose;
+  const PoseState &a = first.back().result.pose, &b = second.back().result.pose, &c = third.back().result.pose;
   EXPECT_EQ(a.position_W_m, b.position_W_m);
   EXPECT_LT((elsewhere() * a.position_W_m - c.position_W_m).norm(), 0.01);
   EXPECT_LT(c.orientation_W.angularDistance(Eigen::Quaterniond(elsewhere().linear()) * a.orientation_W), 0.01);
@@ -186,7 +186,7 @@ TEST(StampOrder, AResetMapStartsAtTheGivenPose) {
 
   std::vector<TumblingOdometry::Sweep> fourth;
   feed(body, 0, 10'000'000'000, 0, copy, fourth);
-  EXPECT_EQ(fourth.back().report.pose.position_W_m, c.position_W_m);
+  EXPECT_EQ(fourth.back().result.pose.position_W_m, c.position_W_m);
 }
 
 std::vector<RollingOdometry::Pose> roll(RollingOdometry& odometry, const std::vector<ImuSample>& imu) {

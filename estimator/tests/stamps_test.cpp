@@ -45,7 +45,7 @@ TEST(Stamps, ThatJitterMoveNoRate) {
   const std::vector<ImuSample> exact = body.imu(), stamped = stamped_by_a_host(exact);
   TumblingOdometry own_clock(params_of(body)), host_clock(params_of(body));
   TumblingParams uncorrected = params_of(body);
-  uncorrected.expert->stamps.jitter_max = 0.0;
+  uncorrected.expert->stamps.correctable_jitter_max_periods = 0.0;
   TumblingOdometry without(uncorrected);
   const std::vector<AngularRateState> expected = rates_of(own_clock, exact), found = rates_of(host_clock, stamped),
                                       control = rates_of(without, stamped);
@@ -90,7 +90,7 @@ struct Rolled {
 Rolled rolled(const std::vector<ImuSample>& samples, double jitter_max) {
   RollingOdometry::Params params = test::params_of({test::kPositions[0]});
   params.lag_s = 0.0;
-  params.expert->stamps.jitter_max = jitter_max;
+  params.expert->stamps.correctable_jitter_max_periods = jitter_max;
   RollingOdometry odometry(params);
   Rolled out;
   for (const ImuSample& sample : samples) {

@@ -91,11 +91,11 @@ TEST(TumblingOdometry, FollowsAThrowBeyondTheRail) {
   ASSERT_EQ(run.sweeps.size(), body.sweeps().size());
   for (const TumblingOdometry::Sweep& sweep : run.sweeps) EXPECT_TRUE(sweep.status.ok()) << sweep.status.message();
   // the returns have no noise, so the errors come from the map's planes and from the deskewing
-  EXPECT_LT(position_error_m(body, run.sweeps.back().report.pose), 0.02);
-  EXPECT_LT(attitude_error_rad(body, run.sweeps.back().report.pose), 0.01);
+  EXPECT_LT(position_error_m(body, run.sweeps.back().result.pose), 0.02);
+  EXPECT_LT(attitude_error_rad(body, run.sweeps.back().result.pose), 0.01);
   double worst_m = 0.0;
   for (const TumblingOdometry::Sweep& sweep : run.sweeps)
-    worst_m = std::max(worst_m, position_error_m(body, sweep.report.pose));
+    worst_m = std::max(worst_m, position_error_m(body, sweep.result.pose));
   EXPECT_LT(worst_m, 0.1);
   EXPECT_GT(odometry.mapper().map().size(), 1000u);
 }
@@ -107,7 +107,7 @@ TEST(TumblingOdometry, AClippedGyroAloneLosesTheSame) {  // negative control: wi
   LidarInertialOdometry mapper(params);
   const std::vector<ImuSample> imu = body.imu();
   std::size_t next = 0;
-  LidarInertialOdometry::SweepReport report;
+  LidarInertialOdometry::SweepResult report;
   for (const ThrownBody::Sweep& sweep : body.sweeps()) {
     for (; next < imu.size() && imu[next].time_ns <= sweep.end_ns; ++next) {
       AngularRateState rate;
@@ -155,11 +155,11 @@ TEST(TumblingOdometry, TheWordsComeInTime) {
     ASSERT_GT(run.sweeps.size(), 20u);
     for (std::size_t k = 0; k < run.sweeps.size(); ++k) {
       if (!run.sweeps[k].status.ok()) continue;  // the sweep began before the first IMU sample
-      const TimeNs end_ns = run.sweeps[k].report.pose.time_ns, late_ns = run.came_ns[k] - end_ns;
+      const TimeNs end_ns = run.sweeps[k].result.pose.time_ns, late_ns = run.came_ns[k] - end_ns;
       EXPECT_TRUE(late_ns >= lag_ns - sample_ns && late_ns <= lag_ns) << later_ns << ' ' << late_ns;
       if (k < 1 || !run.sweeps[k - 1].status.ok()) continue;  // each sweep reports the final poses of the previous one
-      ASSERT_FALSE(run.sweeps[k].report.final_poses_of_earlier_sweep.empty());
-      EXPECT_EQ(run.sweeps[k].report.final_poses_of_earlier_sweep.back().time_ns, end_ns - kSweep_ns);
+      ASSERT_FALSE(run.sweeps[k].result.final_poses_of_earlier_sweep.empty());
+      EXPECT_EQ(run.sweeps[k].result.final_poses_of_earlier_sweep.back().time_ns, end_ns - kSweep_ns);
     }
   }
 }
@@ -199,9 +199,9 @@ TEST(TumblingOdometry, ACopyGoesOnWithTheSameBits) {
     while (std::optional<TumblingOdometry::Sweep> sweep = second.take()) parts.sweeps.push_back(std::move(*sweep));
     ASSERT_EQ(parts.sweeps.size(), run.sweeps.size());
     for (std::size_t k = 0; k < run.sweeps.size(); ++k) {
-      EXPECT_EQ(parts.sweeps[k].report.pose.position_W_m, run.sweeps[k].report.pose.position_W_m);
-      EXPECT_EQ(parts.sweeps[k].report.pose.orientation_W.coeffs(), run.sweeps[k].report.pose.orientation_W.coeffs());
-      EXPECT_EQ(parts.sweeps[k].report.pose.covariance, run.sweeps[k].report.pose.covariance);
+      EXPECT_EQ(parts.sweeps[k].result.pose.position_W_m, run.sweeps[k].result.pose.position_W_m);
+      EXPECT_EQ(parts.sweeps[k].result.pose.orientation_W.coeffs(), run.sweeps[k].result.pose.orientation_W.coeffs());
+      EXPECT_EQ(parts.sweeps[k].result.pose.covariance, run.sweeps[k].result.pose.covariance);
     }
   }
 }
@@ -230,8 +230,8 @@ TEST(TumblingOdometry, GoesOnAfterAGapBeyondTheStreamsBound) {
   odometry.finish();
   while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) results.sweeps.push_back(std::move(*sweep));
   EXPECT_EQ(results.sweeps.size(), sweeps.size());
-  EXPECT_LT(position_error_m(body, results.sweeps.back().report.pose), 0.1);
-  EXPECT_LT(attitude_error_rad(body, results.sweeps.back().report.pose), 0.05);
+  EXPECT_LT(position_error_m(body, results.sweeps.back().result.pose), 0.1);
+  EXPECT_LT(attitude_error_rad(body, results.sweeps.back().result.pose), 0.05);
 }
 
 TEST(TumblingOdometry, GoesOnAfterItWasFinished) {
@@ -255,7 +255,7 @@ TEST(TumblingOdometry, GoesOnAfterItWasFinished) {
   while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) results.sweeps.push_back(std::move(*sweep));
   EXPECT_EQ(results.sweeps.size(), sweeps.size());
   EXPECT_EQ(odometry.samples_rejected_by_mapper(), 0u);
-  EXPECT_LT(position_error_m(body, results.sweeps.back().report.pose), 0.1);
+  EXPECT_LT(position_error_m(body, results.sweeps.back().result.pose), 0.1);
 }
 
 TEST(TumblingOdometry, ALidarThatFallsSilentIsMadeUpForByInertia) {
@@ -272,13 +272,13 @@ TEST(TumblingOdometry, ALidarThatFallsSilentIsMadeUpForByInertia) {
                                      [](const auto& sweep) { return sweep.status.error_code == ErrorCode::empty; });
   EXPECT_GE(made_up, 3);
   EXPECT_LE(made_up, 5);
-  EXPECT_LT(position_error_m(body, results.sweeps.back().report.pose), 0.1);
+  EXPECT_LT(position_error_m(body, results.sweeps.back().result.pose), 0.1);
 }
 
 TEST(TumblingOdometry, SweepsThatNobodyTakesAreDropped) {
   const ThrownBody body;
   TumblingOdometry::Params params = params_of(body);
-  params.expert->sweeps_max = 4;
+  params.expert->waiting_sweeps_max = 4;
   TumblingOdometry odometry(params);
   const std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
   std::size_t next = 0;
@@ -290,7 +290,7 @@ TEST(TumblingOdometry, SweepsThatNobodyTakesAreDropped) {
   std::size_t left = 0;
   while (odometry.take()) ++left;
   EXPECT_EQ(left, 4u);
-  EXPECT_GT(odometry.dropped_sweeps(), 20u);
+  EXPECT_GT(odometry.dropped_untaken_sweeps(), 20u);
 }
 
 TEST(TumblingOdometry, TroubleIsAValueAndChangesNothing) {
@@ -311,14 +311,14 @@ TEST(TumblingOdometry, TroubleIsAValueAndChangesNothing) {
   feed_as_they_end(imu, body.sweeps(), 1, imu.size(), odometry, a);
   feed_as_they_end(imu, body.sweeps(), 1, imu.size(), untouched, b);
   ASSERT_FALSE(a.sweeps.empty());
-  EXPECT_EQ(a.sweeps.back().report.pose.position_W_m, b.sweeps.back().report.pose.position_W_m);
+  EXPECT_EQ(a.sweeps.back().result.pose.position_W_m, b.sweeps.back().result.pose.position_W_m);
   EXPECT_EQ(odometry.add_sweep(0, kSweep_ns, {}).error_code, ErrorCode::time_order);
 }
 
 TEST(TumblingOdometry, SweepsThatWaitAreBounded) {
   const ThrownBody body;
   TumblingOdometry::Params params = params_of(body);
-  params.expert->sweeps_max = 3;
+  params.expert->waiting_sweeps_max = 3;
   TumblingOdometry odometry(params);
   const int most = 3 + 4;  // sweeps_max, and the sweeps within a lag of 0.2 s
   // before the first sample, a new sweep replaces the oldest sweep
@@ -349,7 +349,8 @@ TEST(TumblingOdometry, RefusesParametersOutOfTheirBounds) {
   EXPECT_TRUE(names(refuses([](Params& p) { p.lever_arm_sigma_m = -1.0; }), "lever_arm_sigma_m"));
   EXPECT_TRUE(names(refuses([](Params& p) { p.imu.rate_hz = 0.0; }), "rate_hz"));
   EXPECT_TRUE(names(refuses([](Params& p) { p.lag_s = 100.0; }), "lag_s"));  // longer than the window of the rates
-  EXPECT_TRUE(names(refuses([](Params& p) { p.expert->second_mapping_pass.lost_s = -0.1; }), "lost_s"));
+  EXPECT_TRUE(
+      names(refuses([](Params& p) { p.expert->first_seconds_reprocessing.tracking_failure_s = -0.1; }), "lost_s"));
   EXPECT_TRUE(
       names(refuses([](Params& p) { p.expert->mapping.expert.matching.distance_m = 0.0; }), "match_distance_m"));
   // a missing lever arm is an error, but a lever arm of zero is accepted

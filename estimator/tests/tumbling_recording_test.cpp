@@ -58,12 +58,12 @@ TEST(TumblingRecording, EstimatesAThrowBeyondTheRail) {
   ASSERT_EQ(sweeps.size(), body.sweeps().size());
   for (const TumblingOdometry::Sweep& sweep : sweeps) {
     EXPECT_TRUE(sweep.status.ok()) << sweep.status.message();
-    EXPECT_EQ(sweep.report.pose.time_ns, sweep.report.trajectory.back().time_ns);
+    EXPECT_EQ(sweep.result.pose.time_ns, sweep.result.trajectory.back().time_ns);
   }
   // same bound as in the test with a lag, because the returns have no noise
-  EXPECT_LT(recorded_error_m(body, sweeps.back().report.pose), 0.02);
+  EXPECT_LT(recorded_error_m(body, sweeps.back().result.pose), 0.02);
   EXPECT_GT(odometry.mapper().map().size(), 1000u);
-  EXPECT_TRUE(odometry.health().ok()) << odometry.health().message();
+  EXPECT_TRUE(odometry.health().ok()) << odometry.health().worst_message();
   const WholeRecordingEstimate* const whole = odometry.whole_recording_result();
   ASSERT_NE(whole, nullptr);
   ASSERT_EQ(whole->rates.size(), imu.size());
@@ -130,7 +130,7 @@ TEST(TumblingRecording, OneWrongItemCostsOneItem) {
   const ThrownBody body;
   const std::vector<ImuSample> clean = body.imu();
   TumblingOdometry reference(whole_params(body)), odometry(whole_params(body));
-  const PoseState expected = estimate_recording(body, clean, reference).back().report.pose;
+  const PoseState expected = estimate_recording(body, clean, reference).back().result.pose;
   std::size_t refused = 0;
   for (std::size_t k = 0; k < clean.size(); ++k) {
     ImuSample sample = clean[k];
@@ -146,7 +146,7 @@ TEST(TumblingRecording, OneWrongItemCostsOneItem) {
   EXPECT_EQ(refused, 3u);
   EXPECT_EQ(odometry.rejected_readings(), 1u);
   EXPECT_EQ(odometry.whole_recording_result()->rates.size(), clean.size() - 4);
-  const PoseState pose = take_recorded(odometry).back().report.pose;
+  const PoseState pose = take_recorded(odometry).back().result.pose;
   EXPECT_LT((pose.position_W_m - expected.position_W_m).norm(), 0.005);
 }
 
@@ -184,11 +184,11 @@ TEST(TumblingRecording, SavesItsResults) {
   EXPECT_EQ(loaded.mapper().lidar_calibration().T_IL.matrix(), odometry.mapper().lidar_calibration().T_IL.matrix());
   const auto sweeps = take_recorded(odometry);
   ASSERT_TRUE(last);
-  EXPECT_LT((last->position_W_m - sweeps.back().report.pose.position_W_m).norm(), 0.05);
+  EXPECT_LT((last->position_W_m - sweeps.back().result.pose.position_W_m).norm(), 0.05);
   // a later recording starts at the saved pose
   record_all(body.imu(), body.sweeps(), loaded);
   ASSERT_TRUE(loaded.finish().ok());
-  EXPECT_LT((take_recorded(loaded).front().report.pose.position_W_m - last->position_W_m).norm(), 0.05);
+  EXPECT_LT((take_recorded(loaded).front().result.pose.position_W_m - last->position_W_m).norm(), 0.05);
 }
 
 TEST(TumblingRecording, ReportsAFrozenAxis) {

@@ -170,7 +170,7 @@ TEST(RollingOdometryUnits, WithTheWholeRecordingAllPosesComeAtTheEnd) {
   ASSERT_EQ(poses.size(), units[0].size());
   EXPECT_NEAR(poses.back().pose.position_W_m.x(), kPathLength_m, 0.005 * kPathLength_m);
   const auto middle = poses[poses.size() / 2];
-  EXPECT_GT(middle.angular_velocity_rad_s.y(), 1.0) << "the sphere turns about +y";
+  EXPECT_GT(middle.angular_velocity_B_rad_s.y(), 1.0) << "the sphere turns about +y";
 }
 
 TEST(RollingOdometryUnits, LiveAndLaggedPosesDoNotDependOnLaterReadings) {

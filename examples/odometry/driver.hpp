@@ -93,8 +93,8 @@ inline void print(const tumble::PoseState& pose) {
 /// Prints the pose at the end of a sweep, or why the sweep has no pose (for example because it starts before the IMU
 /// data).
 inline void print(const tumble::TumblingOdometry::Sweep& sweep) {
-  if (!sweep.report.trajectory.empty()) {
-    print(sweep.report.pose);
+  if (!sweep.result.trajectory.empty()) {
+    print(sweep.result.pose);
   } else {
     std::fprintf(stderr, "a sweep has no pose: %s\n", sweep.status.message().c_str());
   }

@@ -18,7 +18,7 @@ namespace tumble::python {
 
 namespace {
 
-using Report = LidarInertialOdometry::SweepReport;
+using Report = LidarInertialOdometry::SweepResult;
 
 void bind_report(nb::module_& m) {
   nb::enum_<SweepVerdict>(
@@ -30,7 +30,7 @@ void bind_report(nb::module_& m) {
       .value("degenerate", SweepVerdict::degenerate,
              "aligned in the directions that the surfaces constrain; the prior determines the other directions")
       .value("rejected", SweepVerdict::rejected, "rejected: too few matches, or a correction beyond the bound");
-  nb::class_<Report>(m, "SweepReport", "Result of a sweep. Poses are of the IMU, in W.")
+  nb::class_<Report>(m, "SweepResult", "Result of a sweep. Poses are of the IMU, in W.")
       .def_ro("verdict", &Report::verdict)
       .def_ro("pose", &Report::pose, "pose and velocity at the end of the sweep, with covariance")
       .def_prop_ro(
@@ -52,16 +52,16 @@ void bind_report(nb::module_& m) {
               "number of consecutive rejected sweeps, including this one")
       .def_prop_ro("mean_clipping_correction_rad_s",
                    [](const Report& r) { return whole<3>(r.mean_clipping_correction_rad_s.data()); })
-      .def_ro("points_used", &Report::points_used)
+      .def_ro("usable_points", &Report::usable_points)
       .def_ro("isolated_points_dropped", &Report::isolated_points_dropped)
-      .def_ro("points_registered", &Report::points_registered)
+      .def_ro("points_after_downsampling", &Report::points_after_downsampling)
       .def_ro("map_points_added", &Report::map_points_added)
       .def_ro("in_prior_map", &Report::in_prior_map, "True if the poses are in the frame of the prior map");
   using C = LidarImuCalibration;
   nb::class_<C>(m, "LidarImuCalibration", "Estimated calibration of lidar, IMU and gravity.")
       .def_prop_ro(
           "T_IL", [](const C& c) { return matrix(c.T_IL); }, "(4, 4), lidar in IMU axes")
-      .def_ro("time_offset_s", &C::time_offset_s, "the IMU's clock minus the lidar's")
+      .def_ro("imu_minus_lidar_clock_s", &C::imu_minus_lidar_clock_s)
       .def_prop_ro(
           "gravity_m_s2", [](const C& c) { return whole<3>(c.gravity_W_m_s2.data()); }, "(3,), in W");
 }

@@ -169,11 +169,11 @@ void bind_rolling_of_results(nb::module_& m) {
           },
           "(N, 3, 3), m^2/s^2: of the error of the velocity, in sphere axes")
       .def_prop_ro(
-          "mode",
+          "contact_mode",
           [](const R& s) {
             return column<std::uint8_t>(s.rows, [](auto& r) { return reinterpret_cast<const std::uint8_t*>(&r.mode); });
           },
-          "(N,) uint8: 0 grip, 1 slip, 2 bump, 3 incline, 4 rough (`ContactMode`)")
+          "(N,) uint8: 0 grip, 1 slip, 2 bump_or_flight, 3 incline, 4 rough (`ContactMode`)")
       .def_prop_ro(
           "at_rest", [](const R& s) { return column<bool>(s.rows, [](auto& r) { return &r.at_rest; }); }, "(N,) bool")
       .def_prop_ro(
@@ -237,7 +237,7 @@ void bind_findings(nb::module_& m) {
       .def_ro("quantity", &HealthFinding::quantity, "the tested quantity, with its unit")
       .def_ro("value", &HealthFinding::value, "value of the quantity")
       .def_ro("bound", &HealthFinding::bound, "violated limit")
-      .def_prop_ro("confidence", &HealthFinding::confidence,
+      .def_prop_ro("severity", &HealthFinding::severity,
                    "from 0 (value at the bound) to 1 (value far beyond); a margin, not a probability")
       .def_ro("since_ns", &HealthFinding::since_ns, "start of the fault, or None if unknown")
       .def_prop_ro("invalidates_estimate", &HealthFinding::invalidates_estimate,

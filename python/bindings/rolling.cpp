@@ -99,10 +99,10 @@ RollingEstimate as_estimate(const RollingOdometry::Pose& p) {
           p.pose.position_W_m,
           p.pose.orientation_W,
           p.pose.velocity_W_m_s,
-          p.angular_velocity_rad_s,
+          p.angular_velocity_B_rad_s,
           p.pose.covariance,
           p.velocity_covariance_B_m2_s2,
-          p.mode,
+          p.contact_mode,
           p.at_rest,
           p.position_uncertain};
 }
@@ -270,7 +270,7 @@ void bind_rolling(nb::module_& m) {
   nb::enum_<ContactMode>(m, "ContactMode", nb::is_arithmetic(), "Type of contact between sphere and floor.")
       .value("grip", ContactMode::grip, "the contact point does not slide, and the floor is level")
       .value("slip", ContactMode::slip, "the contact point slides along the floor")
-      .value("bump", ContactMode::bump, "the contact point also moves up or down")
+      .value("bump_or_flight", ContactMode::bump_or_flight, "the contact point also moves up or down")
       .value("incline", ContactMode::incline, "the contact point does not slide, and the floor is a slope")
       .value("rough", ContactMode::rough, "the contact point does not slide, and the floor is uneven");
   bind_rolling_smoother(m);

@@ -120,7 +120,7 @@ void add_tumbling_position(BoundTumblingOdometry& self, const WholeNumber& time_
   const std::vector<double> numbers = numbers_of(as_array(covariance, "covariance").attr("ravel")(), "covariance", 9);
   reading.covariance_m2 = Eigen::Map<const Eigen::Matrix3d>(numbers.data());
   if (!lever_arm.is_none()) reading.antenna_lever_arm_I_m = vector_of(lever_arm, "lever_arm");
-  require(self.run([&](TumblingOdometry& odometry) { return odometry.add_position(reading); }));
+  require(self.run([&](TumblingOdometry& odometry) { return odometry.add_frame_alignment_position(reading); }));
 }
 
 Rates rates_of(const std::optional<AngularRateState>& rate) {
@@ -234,13 +234,13 @@ void bind_accessors(Class& bound) {
       .def_prop_ro(
           "second_pass_applied",
           [](BoundTumblingOdometry& self) {
-            return self.run([](TumblingOdometry& odometry) { return odometry.second_mapping_pass_applied(); });
+            return self.run([](TumblingOdometry& odometry) { return odometry.first_seconds_reprocessing_applied(); });
           },
           "True if the map and the pose come from the second pass")
       .def_prop_ro(
-          "dropped_sweeps",
+          "dropped_untaken_sweeps",
           [](BoundTumblingOdometry& self) {
-            return self.run([](TumblingOdometry& odometry) { return odometry.dropped_sweeps(); });
+            return self.run([](TumblingOdometry& odometry) { return odometry.dropped_untaken_sweeps(); });
           },
           "number of sweeps that were dropped because take() was not called in time");
 }
@@ -253,13 +253,13 @@ void bind_tumbling(nb::module_& m) {
       .def_prop_ro(
           "message", [](const Sweep& s) { return s.status.message(); }, "\"ok\", or the error")
       .def_prop_ro(
-          "placed", [](const Sweep& s) { return !s.report.trajectory.empty(); },
+          "placed", [](const Sweep& s) { return !s.result.trajectory.empty(); },
           "True if the sweep has poses; a sweep that starts before the first IMU sample has no poses")
-      .def_ro("report", &Sweep::report)
+      .def_ro("result", &Sweep::result)
       .def_prop_ro(
           "pose_in_position_frame",
           [](const Sweep& s) {
-            return s.position_frame ? std::optional(s.position_frame->transform(s.report.pose)) : std::nullopt;
+            return s.position_frame ? std::optional(s.position_frame->transform(s.result.pose)) : std::nullopt;
           },
           "pose at the end of the sweep in the frame of the position readings; None until they determine the frame");
   nb::class_<LidarScale>(m, "SweepScale",
@@ -306,31 +306,32 @@ void bind_tumbling(nb::module_& m) {
           "is\n"
           "further_lidars[k - 1]; its points join the sweep of lidar 0 at their time, if they arrive within lag_s.")
       .def(
-          "add_position", &add_tumbling_position, nb::arg("time_ns"), nb::arg("position"), nb::arg("covariance"),
-          nb::arg("lever_arm") = nb::none(),
+          "add_frame_alignment_position", &add_tumbling_position, nb::arg("time_ns"), nb::arg("position"),
+          nb::arg("covariance"), nb::arg("lever_arm") = nb::none(),
           "Adds a position reading, for example of GPS or a beacon, before its sweep is registered. position (3,), m: "
           "of\n"
           "the antenna, in a frame P with z up. covariance (3, 3), m^2. lever_arm (3,), m: antenna in IMU axes. Poses\n"
           "and map do not change; Sweep.pose_in_position_frame is the pose in P, which does not drift.")
       .def(
           "set_prior_map",
-          [](BoundTumblingOdometry& self, const MapPoints& map, nb::handle T_MI, double start_position_sigma_m,
+          [](BoundTumblingOdometry& self, const MapPoints& map, nb::handle start_T_MI, double start_position_sigma_m,
              double start_heading_sigma_rad, bool extend) {
             PriorMap prior{.points = map.rows,
                            .start_position_sigma_m = start_position_sigma_m,
                            .start_heading_sigma_rad = start_heading_sigma_rad,
                            .extend = extend};
-            if (!T_MI.is_none()) prior.T_MI = pose_of(T_MI, "T_MI");
+            if (!start_T_MI.is_none()) prior.start_T_MI = pose_of(start_T_MI, "start_T_MI");
             require(self.run([&](TumblingOdometry& odometry) { return odometry.set_prior_map(std::move(prior)); }));
           },
-          nb::arg("map"), nb::arg("T_MI") = nb::none(), nb::arg("start_position_sigma_m") = 0.0,
+          nb::arg("map"), nb::arg("start_T_MI") = nb::none(), nb::arg("start_position_sigma_m") = 0.0,
           nb::arg("start_heading_sigma_rad") = 0.0, nb::arg("extend") = true,
-          "Localises the run in the map of an earlier run; call it before the first sweep. T_MI (4, 4): pose of the "
+          "Localises the run in the map of an earlier run; call it before the first sweep. start_T_MI (4, 4): pose of "
+          "the "
           "IMU "
           "in\n"
           "the map at the start, with its standard deviations per axis and of the heading; None: the whole map is "
           "searched.\n"
-          "extend=False keeps the map unchanged. Until report.in_prior_map is true, poses are in a local frame, and\n"
+          "extend=False keeps the map unchanged. Until result.in_prior_map is true, poses are in a local frame, and\n"
           "health() reports that the robot is not localised.")
       .def(
           "take",

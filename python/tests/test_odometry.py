@@ -76,12 +76,12 @@ def test_positions_and_a_second_lidar(hill):
             for lidar, rows in parts:
                 odometry.add_sweep(sweep.start_ns, sweep.end_ns, sweep.position[rows], sweep.offset_ns[rows], sweep.ring[rows], lidar=lidar)
             if odometry is plain:
-                odometry.add_position(sweep.end_ns, true_position(sweep.end_ns) + shift, 0.01 * np.eye(3), lever_arm=arm)
+                odometry.add_frame_alignment_position(sweep.end_ns, true_position(sweep.end_ns) + shift, 0.01 * np.eye(3), lever_arm=arm)
         odometry.finish()
     done = {id(odometry): odometry.take_all() for odometry in (first, second, plain)}
     end = [done[id(odometry)][-1] for odometry in (first, second, plain)]
-    assert end[0].report.points_used > 1.3 * end[1].report.points_used, "the box drops all returns of the second lidar"
-    assert np.linalg.norm(end[0].report.pose.position - end[2].report.pose.position) < 0.3
+    assert end[0].result.usable_points > 1.3 * end[1].result.usable_points, "the box drops all returns of the second lidar"
+    assert np.linalg.norm(end[0].result.pose.position - end[2].result.pose.position) < 0.3
     assert end[0].pose_in_position_frame is None
     located = [sweep.pose_in_position_frame for sweep in done[id(plain)] if sweep.pose_in_position_frame is not None]
     antenna = located[-1].matrix[:3, :3] @ arm + located[-1].position
@@ -90,7 +90,7 @@ def test_positions_and_a_second_lidar(hill):
         first.add_sweep(0, 1, np.zeros((1, 3)), [0], lidar=2)
     assert caught.value.field == "lidar"
     with pytest.raises(tumble.TumbleError) as caught:
-        first.add_position(imu.time_ns[-1], np.zeros(3), np.zeros((3, 3)))
+        first.add_frame_alignment_position(imu.time_ns[-1], np.zeros(3), np.zeros((3, 3)))
     assert caught.value.trouble == "out_of_range"
 
 

@@ -141,7 +141,7 @@ def test_rolling_smoother_over_the_run(slip):
     assert len(smoother.add_imu(*imu.samples)) == 0
     whole = smoother.finish()
     assert len(whole) == len(imu) and np.isfinite(whole.position).all()
-    assert set(np.unique(whole.mode)) <= {int(mode) for mode in tumble.ContactMode}
+    assert set(np.unique(whole.contact_mode)) <= {int(mode) for mode in tumble.ContactMode}
 
 
 def test_program_reads_what_we_write(hill, recordings, estimates, tmp_path):

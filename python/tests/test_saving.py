@@ -106,4 +106,4 @@ def test_a_map_is_kept(samples):
     pose = second.load(first.save())
     assert np.linalg.norm(pose.position) < 0.05
     with_map = feed(second, 8)
-    assert not feed(tumbling(), 8)[-1].report.in_prior_map and with_map[-1].report.in_prior_map
+    assert not feed(tumbling(), 8)[-1].result.in_prior_map and with_map[-1].result.in_prior_map

@@ -18,7 +18,7 @@ double rate_variance(const ImuDataSheet& sheet) {
 /// Converts a pose of the sphere. The base frame is the sphere.
 Odometry RollingAdapter::odometry_of(const RollingOdometry::Pose& sphere) const {
   AngularRateState rate;
-  rate.w_WI_I_rad_s = sphere.angular_velocity_rad_s;
+  rate.w_WI_I_rad_s = sphere.angular_velocity_B_rad_s;
   rate.covariance_rad2_s2 = rate_variance_rad2_s2_ * Eigen::Matrix3d::Identity();
   return base_odometry(sphere.pose, sphere.velocity_covariance_B_m2_s2, rate, Eigen::Isometry3d::Identity());
 }
@@ -54,7 +54,9 @@ void RollingAdapter::publish_diagnostics(TimeNs time_ns) {
   const std::optional<RollingOdometry::Pose> newest = odometry_.newest();
   Diagnostics out;
   out.ok = health.ok() && newest && !newest->position_uncertain;
-  out.message = !health.ok() ? health.message() : newest && newest->position_uncertain ? "position is uncertain" : "ok";
+  out.message = !health.ok()                           ? health.worst_message()
+                : newest && newest->position_uncertain ? "position is uncertain"
+                                                       : "ok";
   if (!newest) out.message = "no pose yet";
   add_findings(out, health);
   add_input(out, "imu", imu_);

@@ -92,7 +92,7 @@ Status TumblingAdapter::add_sweep(TimedSweep sweep) {
   const Status status = clouds_.count(odometry_.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points));
   if (!status.ok()) return status;
   if (publisher_.wants(Output::points)) sweeps_.push_back(std::move(sweep));
-  if (sweeps_.size() > params_.odometry.expert->sweeps_max) sweeps_.pop_front();
+  if (sweeps_.size() > params_.odometry.expert->waiting_sweeps_max) sweeps_.pop_front();
   return status;
 }
 
@@ -110,7 +110,7 @@ Status TumblingAdapter::on_livox(std::span<const std::uint8_t> cdr) {
 Status TumblingAdapter::on_position(TimeNs stamp_ns, const Eigen::Vector3d& position_m,
                                     const Eigen::Matrix3d& covariance_m2) {
   const Eigen::Vector3d arm_I_m = params_.T_BI.inverse() * params_.position_arm_B_m;
-  return positions_.count(odometry_.add_position({stamp_ns, position_m, covariance_m2, arm_I_m}));
+  return positions_.count(odometry_.add_frame_alignment_position({stamp_ns, position_m, covariance_m2, arm_I_m}));
 }
 
 Status TumblingAdapter::reset(const std::optional<StartPose>& start) {
@@ -125,7 +125,7 @@ Status TumblingAdapter::reset(const std::optional<StartPose>& start) {
   }
   PriorMap map{.points = prior_map_, .extend = params_.prior_map_extend};
   if (start) {
-    map.T_MI = start->T_OB * params_.T_BI;
+    map.start_T_MI = start->T_OB * params_.T_BI;
     map.start_position_sigma_m = start->sigma_m;
     map.start_heading_sigma_rad = start->sigma_rad;
   }
@@ -159,7 +159,7 @@ void TumblingAdapter::publish_rate() {
 
 void TumblingAdapter::publish_sweeps() {
   while (const std::optional<TumblingOdometry::Sweep> sweep = odometry_.take()) {
-    const SweepReport& report = sweep->report;
+    const SweepResult& report = sweep->result;
     if (report.trajectory.empty() || rates_.empty()) continue;  // no pose before the map starts
     publisher_.odometry(base_odometry(report.pose, report.velocity_covariance_I_m2_s2, rate_at(report.pose.time_ns),
                                       params_.T_BI.inverse()));
@@ -175,9 +175,9 @@ void TumblingAdapter::publish_sweeps() {
   }
 }
 
-void TumblingAdapter::publish_points(const SweepReport& report) {
+void TumblingAdapter::publish_points(const SweepResult& report) {
   const LidarImuCalibration calibration = odometry_.mapper().lidar_calibration();
-  const TimeNs offset_ns = std::llround(1e9 * calibration.time_offset_s);
+  const TimeNs offset_ns = std::llround(1e9 * calibration.imu_minus_lidar_clock_s);
   const TimeNs end_ns = report.pose.time_ns - offset_ns;
   const auto raw = nearest(sweeps_, end_ns, [](const TimedSweep& each) { return each.end_ns; });
   if (raw == sweeps_.end() || std::abs(raw->end_ns - end_ns) > (raw->end_ns - raw->start_ns) / 2) return;
@@ -204,14 +204,14 @@ void TumblingAdapter::publish_diagnostics() {
   const SensorHealth health = odometry_.health();
   Diagnostics out;
   out.ok = health.ok() && last_.has_value();
-  out.message = !health.ok() ? health.message() : last_ ? "ok" : "no registered sweep yet";
+  out.message = !health.ok() ? health.worst_message() : last_ ? "ok" : "no registered sweep yet";
   add_findings(out, health);
   add_input(out, "imu", imu_);
   add_input(out, "clouds", clouds_);
   if (positions_.received > 0) add_input(out, "positions", positions_);
   add(out, "restarts after a gap or a step of the clock", odometry_.restart_count());
   add(out, "outliers among the IMU samples", odometry_.rejected_readings());
-  add(out, "dropped sweeps", odometry_.dropped_sweeps());
+  add(out, "dropped sweeps", odometry_.dropped_untaken_sweeps());
   add(out, "sweeps before the first IMU sample", odometry_.sweeps_before_first_imu());
   if (last_) {
     add(out, "verdict of the last sweep", to_string(last_->verdict));

@@ -96,7 +96,7 @@ class ConstantVelocity {
 
 }  // namespace
 
-std::vector<SweepReport> register_sweeps(const sim::LidarRecord& lidar) {
+std::vector<SweepResult> register_sweeps(const sim::LidarRecord& lidar) {
   if (bridge::sweep_count(lidar) == 0) return {};
   ConstantVelocity model(pose_times(lidar), Eigen::Quaterniond(lidar.T_BL.linear()));
   RigidOdometry odometry(rigid_params());
@@ -104,7 +104,7 @@ std::vector<SweepReport> register_sweeps(const sim::LidarRecord& lidar) {
   const auto covers = [&](const bridge::Sweep& sweep) {
     return model.covers(sweep.start_ns, sweep.end_ns) && sweep.start_ns >= last_end_ns.value_or(sweep.start_ns);
   };
-  const auto add = [&](const bridge::Sweep& sweep, SweepReport& report) {
+  const auto add = [&](const bridge::Sweep& sweep, SweepResult& report) {
     const auto motion = model.expect(last_end_ns.value_or(sweep.start_ns), sweep.end_ns);
     const Status status = odometry.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, motion, report);
     if (!status.ok() && report.trajectory.empty()) return status;

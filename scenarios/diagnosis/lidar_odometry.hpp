@@ -11,6 +11,6 @@ namespace tumble::scenarios {
 /// Registers the sweeps of a lidar without an IMU. `RigidOdometry` deskews each sweep with the velocity of the last
 /// sweep, and aligns the rigid sweep with the map by point-to-plane ICP. Sweeps before the start of the map get no
 /// report. The lidar odometry is similar to KISS-ICP (Vizzo et al., RA-L 2023).
-std::vector<SweepReport> register_sweeps(const sim::LidarRecord& lidar);
+std::vector<SweepResult> register_sweeps(const sim::LidarRecord& lidar);
 
 }  // namespace tumble::scenarios

@@ -53,12 +53,12 @@ sim::LidarRecord span_alone(const sim::LidarRecord& lidar, const PointStore* asi
   return out;
 }
 
-void add_rotations(std::span<const SweepReport> sweeps, std::vector<SeenRotation>& out) {
-  const auto registered = [](const SweepReport& sweep) {
+void add_rotations(std::span<const SweepResult> sweeps, std::vector<SeenRotation>& out) {
+  const auto registered = [](const SweepResult& sweep) {
     return sweep.verdict == SweepVerdict::first || sweep.verdict == SweepVerdict::registered;
   };
   for (std::size_t k = 1; k < sweeps.size(); ++k) {
-    const SweepReport &before = sweeps[k - 1], &after = sweeps[k];
+    const SweepResult &before = sweeps[k - 1], &after = sweeps[k];
     if (!registered(before) || !registered(after)) continue;
     SeenRotation seen{before.pose.time_ns, after.pose.time_ns,
                       so3::logarithm(before.pose.orientation_W.conjugate() * after.pose.orientation_W)};

@@ -50,7 +50,7 @@ struct Estimate {
   std::vector<bool> uncertain;
   /// Position of the sphere's centre relative to the centre of mass, in body axes [m].
   Eigen::Vector3d centre_B_m = Eigen::Vector3d::Zero();
-  std::vector<LidarInertialOdometry::SweepReport> sweeps;  ///< for kind slam, one per sweep
+  std::vector<LidarInertialOdometry::SweepResult> sweeps;  ///< for kind slam, one per sweep
   std::vector<std::int64_t> sweep_end_ns;                  ///< parallel to `sweeps`
   std::vector<MapPoint> map;                               ///< for kind slam
   /// Pose of the lidar in body axes that the slam method estimated, if the stated pose contradicts the recording.

@@ -202,7 +202,7 @@ void write_sweeps(const std::filesystem::path& folder, const Estimate& estimate)
 void read_sweeps(const std::filesystem::path& folder, Estimate& estimate) {
   const Table sweeps = Table::read(folder / "sweeps.csv", ',', kSweepsHeader, kCovarianceColumn + 21);
   for (const Table::Row& row : sweeps.rows) {
-    LidarInertialOdometry::SweepReport sweep;
+    LidarInertialOdometry::SweepResult sweep;
     const std::int64_t verdict = sweeps.integer(row, 1);
     if (verdict < 0 || verdict > static_cast<int>(SweepVerdict::rejected)) {
       throw BadInput(sweeps.path.string() + ":" + std::to_string(row.line) + ": unknown verdict " +

@@ -23,7 +23,7 @@ bool is_about_readings(const HealthFinding& finding) {
   // A health finding about the scale factor of the gyro ends if the measured rotation of gravity later confirms the
   // scale factor.
   if (kind == About::gyro_scale) return !finding.ended;
-  return kind == About::frozen_axis || kind == About::frozen_sensor || kind == About::force_at_rest ||
+  return kind == About::frozen_axis || kind == About::frozen_sensor || kind == About::wrong_force_magnitude_at_rest ||
          kind == About::wrong_axes_or_signs || kind == About::inverted_accel_in_flight ||
          kind == About::inconsistent_rotation;
 }
@@ -100,7 +100,7 @@ nlohmann::json json_of(const HealthFinding& finding) {
           {"quantity", finding.quantity},
           {"value", finding.value},
           {"bound", finding.bound},
-          {"confidence", finding.confidence()},
+          {"confidence", finding.severity()},
           {"since_ns", finding.since_ns ? nlohmann::json(*finding.since_ns) : nlohmann::json()},
           {"ended", finding.ended},
           {"invalidates_estimate", finding.invalidates_estimate()},

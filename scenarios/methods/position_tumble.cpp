@@ -58,21 +58,21 @@ const Settings<RollingOdometry::Params>& rolling_live_settings() {
 
 /// During a short flight, a sphere counts as slipping if the rolling speed and the speed of the centre differ.
 bool spins(double radius_m, const RollingOdometry::Pose& pose) {
-  const double rolling_m_s = radius_m * (pose.pose.orientation_W * pose.angular_velocity_rad_s).head<2>().norm();
+  const double rolling_m_s = radius_m * (pose.pose.orientation_W * pose.angular_velocity_B_rad_s).head<2>().norm();
   const double speed_m_s = pose.pose.velocity_W_m_s.norm();
   return std::abs(rolling_m_s - speed_m_s) > std::max(kSpinsM_s, kSpinsShare * std::max(rolling_m_s, speed_m_s));
 }
 
 sim::ContactLabel slip_or_slide(double radius_m, const RollingOdometry::Pose& pose) {
   const Eigen::Vector3d rolling_m_s =
-      radius_m * (pose.pose.orientation_W * pose.angular_velocity_rad_s).cross(Eigen::Vector3d::UnitZ());
+      radius_m * (pose.pose.orientation_W * pose.angular_velocity_B_rad_s).cross(Eigen::Vector3d::UnitZ());
   return rolling_m_s.norm() > pose.pose.velocity_W_m_s.head<2>().norm() ? sim::ContactLabel::slip
                                                                         : sim::ContactLabel::slide;
 }
 
 sim::ContactLabel contact_label(double radius_m, const RollingOdometry::Pose& pose) {
-  if (!may_slip(pose.mode)) return sim::ContactLabel::grip;
-  if (pose.mode == ContactMode::bump && !spins(radius_m, pose)) return sim::ContactLabel::air;
+  if (!may_slip(pose.contact_mode)) return sim::ContactLabel::grip;
+  if (pose.contact_mode == ContactMode::bump_or_flight && !spins(radius_m, pose)) return sim::ContactLabel::air;
   return slip_or_slide(radius_m, pose);
 }
 
@@ -93,10 +93,10 @@ void append_pose(const RollingOdometry::Pose& pose, double radius_m, Estimate& e
     if (counts) estimate.health[key] += 1.0;
   };
   count("samples_uncertain", pose.position_uncertain);
-  count("samples_slip", pose.mode == ContactMode::slip);
-  count("samples_bump", pose.mode == ContactMode::bump);
-  count("samples_incline", pose.mode == ContactMode::incline);
-  count("samples_rough", pose.mode == ContactMode::rough);
+  count("samples_slip", pose.contact_mode == ContactMode::slip);
+  count("samples_bump", pose.contact_mode == ContactMode::bump_or_flight);
+  count("samples_incline", pose.contact_mode == ContactMode::incline);
+  count("samples_rough", pose.contact_mode == ContactMode::rough);
   count("samples_rest", pose.at_rest);
 }
 
@@ -113,7 +113,7 @@ Status replay_imus(const std::vector<ImuRecording>& recordings, RollingOdometry&
     while (const std::optional<RollingOdometry::Pose> pose = odometry.take()) append_pose(*pose, radius_m, estimate);
     if (estimate.poses.empty() || estimate.poses.back().time_ns < checked_ns + kHealthPeriodNs) return;
     checked_ns = estimate.poses.back().time_ns;
-    found.merge_current_findings(odometry.health());
+    found.add_current_and_end_others(odometry.health());
   };
   std::vector<std::size_t> next(recordings.size(), 0);
   while (true) {
@@ -133,7 +133,7 @@ Status replay_imus(const std::vector<ImuRecording>& recordings, RollingOdometry&
   }
   const Status status = odometry.finish();
   collect();
-  found.merge_current_findings(odometry.health());
+  found.add_current_and_end_others(odometry.health());
   add_findings(found, names, estimate);
   return status;
 }
@@ -252,8 +252,8 @@ void smooth(const Prepared& prepared, Estimate& estimate) {
   }
   const auto take = [&](const RollingEstimate& e) {
     append_pose({.pose = {e.time_ns, e.sphere_centre_W_m, e.q_WI, e.sphere_velocity_W_m_s, e.covariance},
-                 .angular_velocity_rad_s = e.w_WI_I_rad_s,
-                 .mode = e.mode,
+                 .angular_velocity_B_rad_s = e.w_WI_I_rad_s,
+                 .contact_mode = e.mode,
                  .at_rest = e.at_rest,
                  .position_uncertain = e.position_uncertain},
                 prepared.params.filter.radius_m, estimate);

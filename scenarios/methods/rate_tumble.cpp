@@ -201,7 +201,7 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   report_gaps(samples, estimate);
   const AngularRateStream::State& state = all.rate;
   estimate.health["calibration_at_prior"] = stream.lever_arm_is_prior(state) ? 1.0 : 0.0;
-  estimate.health["accel_delay_s"] = stream.sensor_errors(state).errors.accel_delay_s;
+  estimate.health["accel_delay_s"] = stream.sensor_errors_except_biases(state).errors.accel_delay_s;
   report_rails(state.clipping_state.known_limits, estimate.health);
   const std::optional<double> carried_share =
       all.reported_sample_count > 0

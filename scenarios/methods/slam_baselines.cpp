@@ -40,7 +40,7 @@ void run_published_chain(const sim::Sensors& sensors, std::span<const ImuSample>
   params.T_IL = bridge::T_IL(sensors.imus.front(), lidar);
   baselines::PublishedChain chain(params, samples, estimate.rates);
   const auto covers = [&](const bridge::Sweep& sweep) { return chain.covers(published_sweep(sweep)); };
-  const auto add = [&](const bridge::Sweep& sweep, SweepReport& report) {
+  const auto add = [&](const bridge::Sweep& sweep, SweepResult& report) {
     return chain.add(published_sweep(sweep), report);
   };
   if (run_over_sweeps(lidar, {covers, add}, estimate)) estimate.map = chain.map();

@@ -39,7 +39,7 @@ LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const
 
 bool append_sweeps(std::vector<MappedSweep>& sweeps, Estimate& estimate) {
   for (MappedSweep& sweep : sweeps) {
-    SweepReport& report = sweep.report;
+    SweepResult& report = sweep.result;
     if (sweep.status.error_code == ErrorCode::insufficient_data && report.trajectory.empty()) {
       leave_out_unfinished(estimate);
       continue;

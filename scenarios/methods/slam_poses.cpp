@@ -79,14 +79,14 @@ Estimate map_from_poses(const Method& position, const sim::Sensors& sensors, con
       leave_out_unfinished(estimate);
       continue;
     }
-    LidarInertialOdometry::SweepReport report;
+    LidarInertialOdometry::SweepResult report;
     report.verdict = estimate.sweeps.empty() ? SweepVerdict::first : SweepVerdict::registered;
     for (const LidarPoint& point : sweep.points) {
       if (!point.position_L_m.allFinite() || point.position_L_m.norm() < params.nearest_m) continue;
       const Eigen::Isometry3d T_WL = track.at(sweep.start_ns + point.offset_ns) * lidar.T_BL;
       report.map_points_added +=
           map.insert((T_WL * point.position_L_m.cast<double>()).cast<float>(), 0.0f, static_cast<std::uint32_t>(k));
-      ++report.points_used;
+      ++report.usable_points;
     }
     while (first_pose < estimate.poses.size() && estimate.poses[first_pose].time_ns < sweep.start_ns) ++first_pose;
     for (std::size_t j = first_pose; j < estimate.poses.size() && estimate.poses[j].time_ns <= sweep.end_ns; ++j) {

@@ -91,7 +91,7 @@ std::optional<Radius> radius_by_lidar(const Estimate& rolled, const Estimate& re
   bool open = false;                      // a segment has started
   Eigen::Vector3d from_rolled = Eigen::Vector3d::Zero(), from_registered = Eigen::Vector3d::Zero();
   std::size_t k = 0;
-  for (const LidarInertialOdometry::SweepReport& sweep : registered.sweeps) {
+  for (const LidarInertialOdometry::SweepResult& sweep : registered.sweeps) {
     for (; k + 1 < rolled.poses.size() && rolled.poses[k].time_ns < sweep.pose.time_ns; ++k) {
       if (rolled.contacts[k] != sim::ContactLabel::grip) open = false;
     }
@@ -147,7 +147,7 @@ class RolledMotion {
     RelativePoseReading motion;
     motion.from_ns = from_ns;
     motion.to_ns = to_ns;
-    motion.relative_pose = pose_of_imu(from_ns).inverse(Eigen::Isometry) * pose_of_imu(to_ns);
+    motion.T_from_to = pose_of_imu(from_ns).inverse(Eigen::Isometry) * pose_of_imu(to_ns);
     const double sigma_m = velocity_sigma_m_s(from_ns, to_ns) * seconds(to_ns - from_ns);
     motion.covariance.diagonal().head<3>().setConstant(sigma_m * sigma_m);
     motion.covariance.diagonal().tail<3>().setConstant(params_.rotation_sigma_rad * params_.rotation_sigma_rad);

@@ -84,15 +84,15 @@ class Collector {
   }
   void take(TumblingOdometry& odometry) {
     while (std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) {
-      if (sweep->report.trajectory.empty()) {  // the IMU starts after the sweep
+      if (sweep->result.trajectory.empty()) {  // the IMU starts after the sweep
         count_trouble(sweep->status, estimate_);
         continue;
       }
-      std::vector<PoseState> smoothed = std::move(sweep->report.final_poses_of_earlier_sweep);
-      const bool in_prior_map = sweep->report.in_prior_map;
-      const TimeNs end_ns = sweep->report.pose.time_ns;
-      found_.merge_current_findings(odometry.health());
-      append_sweep(sweep->status, end_ns, std::move(sweep->report), estimate_);
+      std::vector<PoseState> smoothed = std::move(sweep->result.final_poses_of_earlier_sweep);
+      const bool in_prior_map = sweep->result.in_prior_map;
+      const TimeNs end_ns = sweep->result.pose.time_ns;
+      found_.add_current_and_end_others(odometry.health());
+      append_sweep(sweep->status, end_ns, std::move(sweep->result), estimate_);
       apply_next(std::move(smoothed), in_prior_map);
     }
   }
@@ -103,7 +103,7 @@ class Collector {
         apply_next(std::move(open), in_prior_map);
     }
     if (output_ == SlamOutput::live) replace_by_live();
-    found_.merge_current_findings(odometry.health());
+    found_.add_current_and_end_others(odometry.health());
     add_findings(found_, names_, estimate_);
     if (odometry.mapper().prior_map() != nullptr) report_localised(estimate_);
     const bool localised = report_prior_map_sweep(odometry.mapper());
@@ -122,7 +122,7 @@ class Collector {
   bool report_prior_map_sweep(const LidarInertialOdometry& mapper) {
     if (mapper.prior_map() == nullptr) return false;
     const auto first =
-        std::ranges::find_if(estimate_.sweeps, [](const SweepReport& sweep) { return sweep.in_prior_map; });
+        std::ranges::find_if(estimate_.sweeps, [](const SweepResult& sweep) { return sweep.in_prior_map; });
     const bool localised = first != estimate_.sweeps.end();
     estimate_.health["prior_map_sweep"] = localised ? static_cast<double>(first - estimate_.sweeps.begin() + 1) : 0.0;
     return localised;
@@ -138,7 +138,7 @@ class Collector {
   }
 
   void transform_to_prior_map(const LidarInertialOdometry& mapper) {
-    for (SweepReport& sweep : estimate_.sweeps) {
+    for (SweepResult& sweep : estimate_.sweeps) {
       if (sweep.in_prior_map || !mapper.transform_to_prior_map(sweep.trajectory).ok()) continue;
       sweep.pose = sweep.trajectory.back();
       sweep.in_prior_map = true;
@@ -147,7 +147,7 @@ class Collector {
 
   void replace_by_live() {
     auto next = live_.begin();
-    for (SweepReport& sweep : estimate_.sweeps) {
+    for (SweepResult& sweep : estimate_.sweeps) {
       const TimeNs end_ns = sweep.pose.time_ns;
       const auto after = std::find_if(next, live_.end(), [&](const PoseState& pose) { return pose.time_ns > end_ns; });
       if (after == next) continue;
@@ -226,7 +226,7 @@ void report_whole(const WholeRecordingEstimate& whole, const sim::Sensors& senso
 
 void report_stream(const TumblingOdometry& odometry, Estimate& estimate) {
   report_rails(odometry.saturation_levels(), estimate.health);
-  estimate.health["second_pass_applied"] = odometry.second_mapping_pass_applied() ? 1.0 : 0.0;
+  estimate.health["second_pass_applied"] = odometry.first_seconds_reprocessing_applied() ? 1.0 : 0.0;
 }
 
 Estimate run(SlamOutput output, const Settings<TumblingOdometry::Params>& settings, const sim::Sensors& sensors,
@@ -292,7 +292,7 @@ Method slam_tumble() {
 Method slam_tumble_lag() {
   return make_method({.name = "tumble_lag",
                       .kind = Kind::slam,
-                      .doc = "Runs TumblingOdometry (public API) in one causal pass. The report of the next sweep "
+                      .doc = "Runs TumblingOdometry (public API) in one causal pass. The result of the next sweep "
                              "contains the final pose of a sweep.",
                       .ours = true,
                       .settings = {&lag_settings()},

@@ -10,9 +10,9 @@ namespace tumble::scenarios {
 
 namespace {
 
-Status any_registered(std::span<const SweepReport> sweeps) {
+Status any_registered(std::span<const SweepResult> sweeps) {
   const bool any = std::any_of(sweeps.begin(), sweeps.end(),
-                               [](const SweepReport& sweep) { return sweep.verdict != SweepVerdict::rejected; });
+                               [](const SweepResult& sweep) { return sweep.verdict != SweepVerdict::rejected; });
   return any ? Status{} : Status{ErrorCode::insufficient_data, "lidar.sweeps_registered", 0.0, 1.0};
 }
 
@@ -22,7 +22,7 @@ void count_trouble(const Status& status, Estimate& estimate) {
   if (!status.ok()) estimate.health[std::string("sweeps_") + to_string(status.error_code)] += 1.0;
 }
 
-bool append_sweep(const Status& status, TimeNs end_ns, SweepReport report, Estimate& estimate) {
+bool append_sweep(const Status& status, TimeNs end_ns, SweepResult report, Estimate& estimate) {
   if (!status.ok() && report.trajectory.empty()) {
     estimate.status = status;
     return false;
@@ -44,7 +44,7 @@ void leave_out_unfinished(Estimate& estimate) {
   estimate.health["sweeps_unfinished"] += 1.0;
 }
 
-bool leave_out_before_map(const Status& status, const SweepReport& report, Estimate& estimate) {
+bool leave_out_before_map(const Status& status, const SweepResult& report, Estimate& estimate) {
   const bool of_the_sweep = status.error_code == ErrorCode::insufficient_data ||
                             status.error_code == ErrorCode::empty || status.error_code == ErrorCode::non_finite ||
                             status.error_code == ErrorCode::degenerate;
@@ -63,7 +63,7 @@ bool run_over_sweeps(const sim::LidarRecord& lidar, const SweepMapper& mapper, E
       leave_out_unfinished(estimate);
       continue;
     }
-    SweepReport report;
+    SweepResult report;
     const Status status = mapper.add(sweep, report);
     if (leave_out_before_map(status, report, estimate)) continue;
     if (!append_sweep(status, sweep.end_ns, std::move(report), estimate)) return false;
@@ -83,14 +83,14 @@ void report_end(Estimate& estimate) {
 
 }  // namespace
 
-void apply_smoothed(std::vector<PoseState> smoothed, SweepReport& sweep) {
+void apply_smoothed(std::vector<PoseState> smoothed, SweepResult& sweep) {
   if (smoothed.empty()) return;
   sweep.trajectory = std::move(smoothed);
   sweep.pose = sweep.trajectory.back();
 }
 
 bool conclude(const LidarInertialOdometry& odometry, Estimate& estimate) {
-  for (const SweepReport& sweep : estimate.sweeps) append_poses(sweep.trajectory, estimate);
+  for (const SweepResult& sweep : estimate.sweeps) append_poses(sweep.trajectory, estimate);
   if (!estimate.sweeps.empty()) report_end(estimate);
   const bool consistent = !estimate.sweeps.empty() && has_consistent_poses(estimate);
   estimate.map = odometry.map();

@@ -27,7 +27,7 @@ std::int64_t last_sweep_before_ns(const sim::Sensors& sensors) {
   return *(after - 1) + length_ns + lidar.sweep_period_ns / 4;
 }
 
-const LidarInertialOdometry::SweepReport* last_covered(const ScoredEstimate& scored) {
+const LidarInertialOdometry::SweepResult* last_covered(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   const TruthTrack& truth = truth_track(scored);
   const std::int64_t before_ns = last_sweep_before_ns(scored.sensors());

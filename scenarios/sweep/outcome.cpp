@@ -39,7 +39,7 @@ void add_poses(NumberHasher& hasher, const std::vector<PoseState>& poses) {
   for (const PoseState& pose : poses) add_pose(hasher, pose);
 }
 
-void add_sweep(NumberHasher& hasher, const LidarInertialOdometry::SweepReport& sweep) {
+void add_sweep(NumberHasher& hasher, const LidarInertialOdometry::SweepResult& sweep) {
   hasher.add(static_cast<std::int32_t>(sweep.verdict));
   add_pose(hasher, sweep.pose);
   add_poses(hasher, sweep.trajectory);
@@ -48,7 +48,7 @@ void add_sweep(NumberHasher& hasher, const LidarInertialOdometry::SweepReport& s
   hasher.add(static_cast<std::int32_t>(sweep.iterations));
   hasher.add_matrix(sweep.least_constrained_direction);
   hasher.add_matrix(sweep.mean_clipping_correction_rad_s);
-  for (const std::size_t count : {sweep.points_used, sweep.points_registered, sweep.map_points_added}) {
+  for (const std::size_t count : {sweep.usable_points, sweep.points_after_downsampling, sweep.map_points_added}) {
     hasher.add(static_cast<std::uint64_t>(count));
   }
 }

@@ -72,12 +72,12 @@ TEST(TumblingAdapter, PublishesTheLibrarysResultsBitForBit) {
 
   TumblingOdometry odometry(test::params_of(body));
   odometry.reset(Eigen::Isometry3d::Identity());
-  std::vector<SweepReport> sweeps;
+  std::vector<SweepResult> sweeps;
   std::vector<PoseState> newest;
   std::vector<AngularRateState> rates;
   const auto take = [&] {
     while (const auto sweep = odometry.take())
-      if (!sweep->report.trajectory.empty()) sweeps.push_back(sweep->report);
+      if (!sweep->result.trajectory.empty()) sweeps.push_back(sweep->result);
   };
   play(
       body, kEpoch_ns,

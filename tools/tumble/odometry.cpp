@@ -74,8 +74,8 @@ double run_with_progress(const Session& session, const scenarios::Method& method
 double path_length_m(const Estimate& estimate) {
   double sum_m = 0.0;
   for (std::size_t k = 1; k < estimate.sweeps.size(); ++k) {
-    const SweepReport& last = estimate.sweeps[k - 1];
-    const SweepReport& sweep = estimate.sweeps[k];
+    const SweepResult& last = estimate.sweeps[k - 1];
+    const SweepResult& sweep = estimate.sweeps[k];
     if (sweep.in_prior_map == last.in_prior_map) sum_m += (sweep.pose.position_W_m - last.pose.position_W_m).norm();
   }
   return sum_m;

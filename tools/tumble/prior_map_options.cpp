@@ -28,7 +28,8 @@ std::shared_ptr<const PriorMap> read_map_of(const PriorMapOptions& options) {
     throw BadInput(fmt::format("--map-pose has {} numbers; it needs X Y Z HEADING or X Y Z HEADING SIGMA_M SIGMA_RAD",
                                pose.size()));
   if (!pose.empty()) {
-    map->T_MI = Eigen::Translation3d(pose[0], pose[1], pose[2]) * Eigen::AngleAxisd(pose[3], Eigen::Vector3d::UnitZ());
+    map->start_T_MI =
+        Eigen::Translation3d(pose[0], pose[1], pose[2]) * Eigen::AngleAxisd(pose[3], Eigen::Vector3d::UnitZ());
     if (pose.size() == kWithSigmas) map->start_position_sigma_m = pose[4], map->start_heading_sigma_rad = pose[5];
   }
   if (const Status status = check_prior_map(*map); !status.ok())
@@ -64,7 +65,7 @@ scenarios::Method with_prior_map(const scenarios::Method& method, const PriorMap
 std::string localisation_text(const PriorMapOptions& options, const scenarios::Estimate& estimate) {
   const std::string file = options.map.string();
   const auto first = std::find_if(estimate.sweeps.begin(), estimate.sweeps.end(),
-                                  [](const SweepReport& sweep) { return sweep.in_prior_map; });
+                                  [](const SweepResult& sweep) { return sweep.in_prior_map; });
   if (first == estimate.sweeps.end())
     return fmt::format("{}: the recording is not localised in this map; poses are in a local frame", file);
   if (first == estimate.sweeps.begin())

@@ -34,7 +34,7 @@ struct Jerk {
 Jerk jerk_of(const AngularRateKnot& knot, const BodyImuConstants& rig) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2;
   Jerk out;
-  out.J = rig.inertia_matrix();
+  out.J = rig.inertia_matrix_with_trace_3();
   out.J_inv = out.J.inverse();
   out.rate_jerk = out.J * w;
   out.acceleration_jerk = out.J * alpha;
@@ -88,7 +88,7 @@ AngularRateFactor sensing_axis_factor(const AngularRateKnot& knot, const BodyImu
   f.jacobian_knot.setZero();
   f.jacobian_calibration.setZero();
   for (int j = 0; j < 3; ++j) {
-    const Vector3d row = rig.sensing_direction(j);
+    const Vector3d row = rig.gyro_sensing_direction(j);
     f.residual[j] = row.dot(off);
     f.jacobian_knot.row(j).head<3>() = row;
     f.jacobian_calibration.row(j).segment<3>(3) = row;
@@ -153,7 +153,7 @@ Vector3d flight_angular_jerk(const AngularRateKnot& knot, const BodyImuConstants
 // See rate_smoother.md (R14).
 AngularRateFactor euler_equation_factor(const AngularRateKnot& knot, const BodyImuConstants& rig) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2;
-  const Matrix3d J = rig.inertia_matrix();
+  const Matrix3d J = rig.inertia_matrix_with_trace_3();
   const Vector3d momentum = J * w;
   AngularRateFactor f;
   f.residual = J * alpha + w.cross(momentum);

@@ -70,11 +70,11 @@ void AngularRateModel::search_flight_solutions(const AngularRateObservation& obs
   if (unmeasured_axes == 0 || observation.clipping.accel != 0) return;
   const Vector3d reading = corrected_rate(observation, estimate);
   AngularRateEstimate flight_estimate = estimate;
-  const Eigen::Matrix3d J = rig.inertia_matrix();
+  const Eigen::Matrix3d J = rig.inertia_matrix_with_trace_3();
   // If the device compensates misalignment, the saturation deficit of one sensing element (true rate minus clipped
   // reading) changes all output axes: rails.md (R51).
   Eigen::Matrix3d rows;
-  for (int j = 0; j < 3; ++j) rows.row(j) = rig.sensing_direction(j);
+  for (int j = 0; j < 3; ++j) rows.row(j) = rig.gyro_sensing_direction(j);
   const Eigen::Matrix3d deficit_directions = rows.inverse();
   AngularRateFactor flight;
   for (int iteration = 0; iteration <= kFlightSearchSteps; ++iteration) {

@@ -58,7 +58,7 @@ void AngularRateStream::Impl::reset_rig(State& state) const {
   state.calibration_samples = 0;
 }
 
-KnownSensorErrors AngularRateStream::sensor_errors(const State& state) const {
+KnownSensorErrors AngularRateStream::sensor_errors_except_biases(const State& state) const {
   const AngularRateStreamSensorErrors& device = state.sensor_errors.front();
   KnownSensorErrors out{
       impl_->params.calibrated_errors ? impl_->params.calibrated_errors->errors : impl_->params.model.errors,

@@ -32,7 +32,7 @@ const Eigen::Matrix3d& BodyImuConstants::inertia_basis_matrix(int i) {
 }
 
 // See rate_smoother.md (R3).
-Eigen::Matrix3d BodyImuConstants::inertia_matrix() const {
+Eigen::Matrix3d BodyImuConstants::inertia_matrix_with_trace_3() const {
   const double half = 0.5 * std::numbers::sqrt2, sixth = std::numbers::inv_sqrt3 * half;
   const double a = half * inertia_coordinates[0], b = sixth * inertia_coordinates[1];
   const double xy = half * inertia_coordinates[2], xz = half * inertia_coordinates[3],
@@ -49,11 +49,11 @@ Eigen::Matrix<double, 5, 1> BodyImuConstants::inertia_basis_coordinates(const Ei
   return coordinates;
 }
 
-Eigen::Vector3d BodyImuConstants::sensing_direction(int j) const {
+Eigen::Vector3d BodyImuConstants::gyro_sensing_direction(int element) const {
   Eigen::Vector3d row;
-  row[j] = 1.0;
-  row[(j + 1) % 3] = gyro_misalignment[2 * j];
-  row[(j + 2) % 3] = gyro_misalignment[2 * j + 1];
+  row[element] = 1.0;
+  row[(element + 1) % 3] = gyro_misalignment[2 * element];
+  row[(element + 2) % 3] = gyro_misalignment[2 * element + 1];
   return row;
 }
 
@@ -72,13 +72,13 @@ void BodyImuConstants::add(const Vector& increment) {
   gyro_misalignment += increment.segment<6>(kGyroMisalignmentIndex);
 }
 
-Status check_body_imu_constants(const BodyImuConstants& rig) {
+Status check_body_imu_constants(const BodyImuConstants& constants) {
   constexpr double kMaxConstantMagnitude = BodyImuConstants::kMaxConstantMagnitude;
   const auto beyond = [](double value) { return !(std::abs(value) <= kMaxConstantMagnitude); };
-  const BodyImuConstants::Vector all = rig.vector();
+  const BodyImuConstants::Vector all = constants.vector();
   const auto first = std::find_if(all.begin(), all.end(), beyond);
   if (first == all.end()) return {};
-  const char* const name = first - all.begin() < rig.lever_arm_m.size() ? "lever_arm_m" : "rig constants";
+  const char* const name = first - all.begin() < constants.lever_arm_m.size() ? "lever_arm_m" : "rig constants";
   return {ErrorCode::out_of_range, name, *first, std::copysign(kMaxConstantMagnitude, *first)};
 }
 

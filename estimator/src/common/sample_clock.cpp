@@ -97,7 +97,7 @@ SampleClock::SampleClock(const Params& params) : params_(params) {
 bool SampleClock::corrects_stamps(const State& state) const {
   if (!state.line_fit_valid) return false;
   const double jitter = std::sqrt(state.mean_square_error_ns2) / state.period_ns;
-  return jitter >= params_.kJitterMin_periods && jitter <= params_.jitter_max &&
+  return jitter >= params_.kCorrectableJitterMin_periods && jitter <= params_.correctable_jitter_max_periods &&
          state.successive_error_product_ns2 <= kErrorCorrelationMax * state.mean_square_error_ns2;
 }
 
@@ -107,9 +107,9 @@ std::optional<double> SampleClock::jitter_s(const State& state) {
 }
 
 Status SampleClock::push(TimeNs stamp_ns, State& state, TimeNs& time_ns) const {
-  if (state.stamp_ns && stamp_ns <= *state.stamp_ns)
-    return {ErrorCode::time_order, "time_ns", double(stamp_ns), double(*state.stamp_ns)};
-  const double step_ns = state.stamp_ns ? difference_ns(stamp_ns, *state.stamp_ns) : 0.0;
+  if (state.last_stamp_ns && stamp_ns <= *state.last_stamp_ns)
+    return {ErrorCode::time_order, "time_ns", double(stamp_ns), double(*state.last_stamp_ns)};
+  const double step_ns = state.last_stamp_ns ? difference_ns(stamp_ns, *state.last_stamp_ns) : 0.0;
   if (state.line_fit_valid) {
     update_line(step_ns, stamp_ns, state);
   } else {
@@ -119,15 +119,15 @@ Status SampleClock::push(TimeNs stamp_ns, State& state, TimeNs& time_ns) const {
   time_ns = stamp_ns;
   if (corrects_stamps(state) && std::abs(stamp_ns) < kLast_ns) {
     const double bound_ns = 0.5 * state.period_ns;
-    time_ns += std::llround(std::clamp(state.fit_residual_ns, -bound_ns, bound_ns));
+    time_ns += std::llround(std::clamp(state.line_minus_stamp_ns, -bound_ns, bound_ns));
   }
   // Corrected time stamps must increase, even after an uncorrected time stamp, or if several samples have nearly equal
   // time stamps.
-  if (state.stamp_ns && time_ns <= state.time_ns)
-    time_ns =
-        state.time_ns + std::max<TimeNs>(1, std::llround(std::min(kStepMin_periods * state.period_ns, 0.5 * step_ns)));
-  state.stamp_ns = stamp_ns;
-  state.time_ns = time_ns;
+  if (state.last_stamp_ns && time_ns <= state.last_sample_time_ns)
+    time_ns = state.last_sample_time_ns +
+              std::max<TimeNs>(1, std::llround(std::min(kStepMin_periods * state.period_ns, 0.5 * step_ns)));
+  state.last_stamp_ns = stamp_ns;
+  state.last_sample_time_ns = time_ns;
   return {};
 }
 
@@ -144,7 +144,7 @@ void SampleClock::start_line_fit(State& state) const {
   if (!(std::sqrt(line.mean_square_error_ns2) < kPeriodJitterMax * line.period_ns)) return;
   state.line_fit_valid = true;
   state.period_ns = line.period_ns;
-  state.fit_residual_ns = line.last_ns - x_ns.back();
+  state.line_minus_stamp_ns = line.last_ns - x_ns.back();
   state.sum_of_weights = kFirstLineFitStampCount;
   state.weighted_sample_index_sum = line.weighted_sample_index_sum;
   state.weighted_squared_sample_index_sum = line.weighted_squared_sample_index_sum;
@@ -156,11 +156,11 @@ void SampleClock::start_line_fit(State& state) const {
 /// See sample_clock.md (S1), (S2), (S3). If the number of sample periods between the last two time stamps is uncertain,
 /// the line fit restarts.
 void SampleClock::update_line(double step_ns, TimeNs stamp_ns, State& state) const {
-  const double passed_ns = step_ns - state.fit_residual_ns;
+  const double passed_ns = step_ns - state.line_minus_stamp_ns;
   const double number = std::max(1.0, std::round(passed_ns / state.period_ns));
   const double prediction_error_ns = passed_ns - number * state.period_ns;
   const double jitter_ns =
-      std::max(std::sqrt(state.mean_square_error_ns2), params_.kJitterMin_periods * state.period_ns);
+      std::max(std::sqrt(state.mean_square_error_ns2), params_.kCorrectableJitterMin_periods * state.period_ns);
   const double before = state.sum_of_weights * state.weighted_squared_sample_index_sum -
                         state.weighted_sample_index_sum * state.weighted_sample_index_sum;
   const double extrapolation_sigma_ns = number * jitter_ns * std::sqrt(state.sum_of_weights / before);
@@ -190,7 +190,7 @@ void SampleClock::update_line(double step_ns, TimeNs stamp_ns, State& state) con
   state.sum_of_weights = keep * state.sum_of_weights + 1.0;
   const double determinant = state.sum_of_weights * state.weighted_squared_sample_index_sum -
                              state.weighted_sample_index_sum * state.weighted_sample_index_sum;
-  state.fit_residual_ns = state.weighted_squared_sample_index_sum / determinant * limited_ns - prediction_error_ns;
+  state.line_minus_stamp_ns = state.weighted_squared_sample_index_sum / determinant * limited_ns - prediction_error_ns;
   state.period_ns -= state.weighted_sample_index_sum / determinant * limited_ns;
 }
 

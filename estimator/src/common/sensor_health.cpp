@@ -72,7 +72,7 @@ const char* to_string(Kind kind) {
   return fault_description(kind).name;
 }
 
-double HealthFinding::confidence() const {
+double HealthFinding::severity() const {
   const double normal = kind == Kind::lidar_scale ? 1.0 : 0.0;  // value without a fault
   const double distance = std::abs(value - normal), limit = std::abs(bound - normal);
   const double larger = std::max(distance, limit);
@@ -119,9 +119,9 @@ void SensorHealth::add(HealthFinding finding) {
     known->ended = known->ended && finding.ended;
 }
 
-void SensorHealth::merge_current_findings(const SensorHealth& now) {
+void SensorHealth::add_current_and_end_others(const SensorHealth& current) {
   for (HealthFinding& known : findings) known.ended = true;
-  add(now);
+  add(current);
 }
 
 void SensorHealth::add(const SensorHealth& other) {

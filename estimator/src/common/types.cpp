@@ -146,6 +146,6 @@ Eigen::Quaterniond shortest_arc(const Eigen::Vector3d& from, const Eigen::Vector
 namespace tumble::detail {
 
 template <>
-const char CompiledHere::link_time_check = 0;
+const char CurrentCompilerSettings::link_time_check = 0;
 
 }  // namespace tumble::detail

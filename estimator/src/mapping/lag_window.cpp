@@ -50,7 +50,8 @@ void LagWindow::move_inserted_sweeps(LocalMap& map) const {
     if (sweep.inserted.empty() || !sweep.motion(trajectory).ok()) continue;
     const LidarImuCalibration &now = sweep.smoothed.mean.calibration,
                               &inserted_calibration = sweep.filtered.mean.calibration;
-    map.move(trajectory, now.T_IL, now.time_offset_s - inserted_calibration.time_offset_s, sweep.inserted);
+    map.move(trajectory, now.T_IL, now.imu_minus_lidar_clock_s - inserted_calibration.imu_minus_lidar_clock_s,
+             sweep.inserted);
   }
 }
 

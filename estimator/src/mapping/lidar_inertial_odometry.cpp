@@ -90,12 +90,12 @@ Status LidarInertialOdometry::set_odometer_reading(const OdometerReading& readin
 }
 
 Status LidarInertialOdometry::add_sweep(TimeNs lidar_start_ns, TimeNs lidar_end_ns, std::span<const LidarPoint> points,
-                                        SweepReport& report) {
-  report = SweepReport{};
+                                        SweepResult& result) {
+  result = SweepResult{};
   if (const Status status = check_stamp(lidar_start_ns, "start_ns"); !status.ok()) return status;
   if (const Status status = check_stamp(lidar_end_ns, "end_ns"); !status.ok()) return status;
-  const TimeNs offset_ns = static_cast<TimeNs>(std::llround(impl_->params.time_offset_s * 1e9));
-  return impl_->add_sweep(lidar_start_ns + offset_ns, lidar_end_ns + offset_ns, points, report);
+  const TimeNs offset_ns = static_cast<TimeNs>(std::llround(impl_->params.imu_minus_lidar_clock_s * 1e9));
+  return impl_->add_sweep(lidar_start_ns + offset_ns, lidar_end_ns + offset_ns, points, result);
 }
 
 Status LidarInertialOdometry::predict(std::span<const ImuSample> samples, std::span<const AngularRateState> rates,
@@ -144,7 +144,7 @@ Status LidarInertialOdometry::predict(std::span<const ImuSample> samples, std::s
 
 LidarImuCalibration LidarInertialOdometry::lidar_calibration() const {
   LidarImuCalibration out = impl_->sweep_boundary.state_estimate.mean.calibration;
-  out.time_offset_s += impl_->params.time_offset_s;
+  out.imu_minus_lidar_clock_s += impl_->params.imu_minus_lidar_clock_s;
   return out;
 }
 

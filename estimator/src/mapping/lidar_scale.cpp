@@ -35,7 +35,7 @@ class ImuMotion {
   template <class Sweeps>
   ImuMotion(std::span<const ImuSample> samples, const Sweeps& sweeps, double gravity_m_s2)
       : samples_(samples), gravity_W_m_s2_(0.0, 0.0, -gravity_m_s2) {
-    for (const SweepReport& sweep : sweeps)
+    for (const SweepResult& sweep : sweeps)
       attitudes_.insert(attitudes_.end(), sweep.trajectory.begin(), sweep.trajectory.end());
   }
 
@@ -77,7 +77,7 @@ class ImuMotion {
   std::vector<PoseState> attitudes_;
 };
 
-bool is_registered_in_map(const SweepReport& sweep) {
+bool is_registered_in_map(const SweepResult& sweep) {
   return sweep.verdict == SweepVerdict::registered || sweep.verdict == SweepVerdict::degenerate;
 }
 
@@ -181,7 +181,7 @@ Status LidarScale::verdict() const {
           scale > 1.0 ? 1.0 + bound : 1.0 - bound};
 }
 
-LidarScale find_sweep_scale(std::span<const ImuSample> samples, std::span<const SweepReport> sweeps,
+LidarScale find_sweep_scale(std::span<const ImuSample> samples, std::span<const SweepResult> sweeps,
                             double gravity_m_s2) {
   std::vector<Change> changes;
   const ImuMotion imu_motion(samples, sweeps, gravity_m_s2);
@@ -205,8 +205,8 @@ void LidarScaleEstimator::add(const ImuSample& sample) {
   samples_.push_back(sample);
 }
 
-void LidarScaleEstimator::add(const SweepReport& sweep) {
-  SweepReport& kept = sweeps_.emplace_back();
+void LidarScaleEstimator::add(const SweepResult& sweep) {
+  SweepResult& kept = sweeps_.emplace_back();
   kept.pose = sweep.pose;
   kept.verdict = sweep.verdict;
   kept.trajectory = sweep.trajectory;

@@ -32,7 +32,7 @@ Status misfit(double inlier_ratio) {
 
 }  // namespace
 
-void Localisation::add(const SweepReport& sweep) {
+void Localisation::add(const SweepResult& sweep) {
   map_started_ = map_started_ || sweep.verdict != SweepVerdict::rejected;
   if (!map_started_) return;
   const double variance_m2 = sweep.pose.covariance.topLeftCorner<3, 3>().trace();
@@ -52,7 +52,7 @@ void Localisation::add(const SweepReport& sweep) {
   last_contradicted_sweep_ns_ = newest_ns_;
 }
 
-void Localisation::observe_fit(const SweepReport& sweep) {
+void Localisation::observe_fit(const SweepResult& sweep) {
   if (!(sweep.normalised_innovation > 0.0)) return;
   aligned_sweeps_ = std::min(aligned_sweeps_ + 1, kMeanSweepsMax);
   const double share = 1.0 / static_cast<double>(aligned_sweeps_);

@@ -33,11 +33,11 @@ double relative_entropy(double share, double chance) {
 
 void MapLocaliser::restart(const std::optional<Eigen::Isometry3d>& T_MI) {
   if (!has_map()) return;
-  const bool moved = T_MI && (!map().T_MI || !T_MI->isApprox(*map().T_MI, 0.0));
+  const bool moved = T_MI && (!map().start_T_MI || !T_MI->isApprox(*map().start_T_MI, 0.0));
   std::shared_ptr<const PriorMapScene> scene = prior_scene_;
   if (moved) {
     PriorMap map = prior_scene_->map();
-    map.T_MI = T_MI;
+    map.start_T_MI = T_MI;
     scene = std::make_shared<const PriorMapScene>(std::move(map));
   }
   *this = MapLocaliser();
@@ -70,14 +70,14 @@ std::optional<FramePose> MapLocaliser::match_local_map(const VoxelMap& local, co
 
 void MapLocaliser::propose_map_pose(const std::vector<SurfacePoint>& points, const Eigen::Vector3d& p_WI_m) {
   SearchRegion region;
-  if (map().T_MI) {  // the given start pose also defines frame W, so W and M have nearly equal headings
-    region.p_WI_m = region.centre_in_prior_map_m = map().T_MI->translation();
+  if (map().start_T_MI) {  // the given start pose also defines frame W, so W and M have nearly equal headings
+    region.p_WI_m = region.centre_in_prior_map_m = map().start_T_MI->translation();
     region.search_radius_m = std::max(kSigmas * map().start_position_sigma_m, kMinReach_m);
     region.search_angle_rad = std::max(kSigmas * map().start_heading_sigma_rad, kMinReach_rad);
   }
   std::size_t tried = 0;
   const std::vector<FramePose> found = prior_scene_->find_candidate_poses(
-      points, p_WI_m, static_cast<std::size_t>(attempts_), map().T_MI ? &region : nullptr, tried);
+      points, p_WI_m, static_cast<std::size_t>(attempts_), map().start_T_MI ? &region : nullptr, tried);
   ++attempts_;
   sweeps_since_search_ = successive_passed_tests_ = successive_failed_tests_ = 0;
   if (found.empty()) return;

@@ -43,7 +43,7 @@ struct LidarInertialOdometry::Impl {
   explicit Impl(const Params& given);
 
   /// Registers a sweep like LidarInertialOdometry::add_sweep, with time stamps in the clock of the IMU.
-  Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns, SweepReport& report);
+  Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns, SweepResult& report);
 
   Status check_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns) const;
   /// Computes the initial state from the IMU samples before the first sweep, at rest or in motion.
@@ -51,22 +51,22 @@ struct LidarInertialOdometry::Impl {
   Status level_start(MotionState& levelled) const;
   /// Starts the map if the sweep has enough usable points. If the sweep has too few usable points, propagates the state
   /// inertially to the end of the sweep.
-  Status start_map(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns, SweepReport& report);
+  Status start_map(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns, SweepResult& report);
   Status dead_reckon(TimeNs end_ns);
   bool is_stationary(const mapping::InertialTrack& inertial, const SweepTrajectory& motion, TimeNs end_ns) const;
   /// On entry, `trajectory` is the motion predicted from the IMU. On return, `trajectory` is the registered motion, or
   /// the last motion of a failed registration.
   void register_to_map(const mapping::Prediction& prediction, const mapping::MotionWindow& motion,
-                       mapping::SweepPoints& points, SweepTrajectory& trajectory, SweepReport& report,
+                       mapping::SweepPoints& points, SweepTrajectory& trajectory, SweepResult& report,
                        mapping::SweepRegistration& placed);
   mapping::StateEstimate update(const mapping::MotionWindow& motion, const mapping::SweepRegistration& placed,
                                 mapping::Prediction& prediction) const;
   std::vector<mapping::InsertedPoint> insert(const mapping::UpdatedSweep& sweep, mapping::SweepPoints& points,
                                              bool has_ring_numbers, const mapping::SweepRegistration& placed,
-                                             SweepReport& report);
+                                             SweepResult& report);
   void propagate(const mapping::UpdatedSweep& sweep, const mapping::SweepRegistration& placed,
                  const mapping::MotionWindow& motion, std::vector<mapping::InsertedPoint> inserted,
-                 SweepReport& report);
+                 SweepResult& report);
   static mapping::WindowSweep& append_to_lag_window(const mapping::UpdatedSweep& sweep,
                                                     const mapping::MotionWindow& motion,
                                                     const mapping::SweepBoundary& from, mapping::LagWindow& into);
@@ -78,10 +78,10 @@ struct LidarInertialOdometry::Impl {
   void revert_to_inertial_pose();
   /// Returns the IMU state of a relocalisation that later sweeps have contradicted, or null.
   const MotionState* rejected_relocalisation() const;
-  void add_map_drift(const mapping::UpdatedSweep& sweep, const SweepReport& report);
+  void add_map_drift(const mapping::UpdatedSweep& sweep, const SweepResult& report);
   void prune_until(TimeNs end_ns);
   /// If the local map matches the prior map, the odometry continues in the prior map's frame.
-  void localise(const SweepReport& report);
+  void localise(const SweepResult& report);
   void enter_prior_map(const mapping::FramePose& pose, const PoseState& last);
   bool extends_map() const { return !localiser.is_localised() || localiser.map().extend; }
 

@@ -25,7 +25,7 @@ constexpr TimeNs kStep_ns = 100'000'000;
 }  // namespace
 
 Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns,
-                                              SweepReport& report) {
+                                              SweepResult& report) {
   if (Status status = check_sweep(start_ns, end_ns, returns); !status.ok()) return status;
   if (Status status = initialise_inclination(); !status.ok()) return status;
 
@@ -49,14 +49,14 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   mapping::SweepPoints::Counts counts;
   const Status points_status = points.select_returns(params, returns, end_ns - start_ns, before.calibration,
                                                      seconds(start_ns - sweep_boundary.time_ns()), counts);
-  report.points_used = counts.usable_points;
+  report.usable_points = counts.usable_points;
   report.isolated_points_dropped = counts.isolated;
   const auto placed = std::make_unique<SweepRegistration>();
   if (points_status.ok()) register_to_map(*prediction, motion, points, trajectory, report, *placed);
   if (alternative && mapping::contradicts_tracking(tracking, placed->outcome)) {  // repeat without the relocalisation
     revert_to_inertial_pose();
     resting_sweeps = previous_resting_sweeps;
-    report = SweepReport{};
+    report = SweepResult{};
     return add_sweep(start_ns, end_ns, returns, report);
   }
   report.verdict = placed->verdict;
@@ -93,7 +93,7 @@ Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
   // A time offset between lidar and IMU may shift the start of the first sweep to a time before the first IMU sample.
   // SweepTrajectory extrapolates the motion to times before the first IMU sample.
   const double early_s = seconds(samples.front().from_ns - start_ns);
-  if (!started && early_s > (params.time_offset_s != 0.0 ? SweepTrajectory::kExtrapolation_s : 0.0)) {
+  if (!started && early_s > (params.imu_minus_lidar_clock_s != 0.0 ? SweepTrajectory::kExtrapolation_s : 0.0)) {
     return {ErrorCode::insufficient_data, "start_ns", double(start_ns), double(samples.front().from_ns)};
   }
   return mapping::check_time_offsets(end_ns - start_ns, returns);
@@ -125,11 +125,11 @@ Status LidarInertialOdometry::Impl::level_start(MotionState& levelled) const {
 }
 
 Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns,
-                                              SweepReport& report) {
+                                              SweepResult& report) {
   const LidarImuCalibration calibration = sweep_boundary.state_estimate.mean.calibration;
   mapping::SweepPoints::Counts counts;
   Status selected = sweep_scratch.points.select_returns(params, returns, end_ns - start_ns, calibration, 0.0, counts);
-  report.points_used = counts.usable_points;
+  report.usable_points = counts.usable_points;
   report.isolated_points_dropped = counts.isolated;
   const std::size_t points = selected.ok() ? sweep_scratch.points.all().size() : 0;
   const bool usable = points >= MatchingParams::kMatchesMin;
@@ -200,7 +200,7 @@ bool LidarInertialOdometry::Impl::is_stationary(const mapping::InertialTrack& in
 
 void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, const MotionWindow& motion,
                                                   mapping::SweepPoints& points, SweepTrajectory& trajectory,
-                                                  SweepReport& report, SweepRegistration& placed) {
+                                                  SweepResult& report, SweepRegistration& placed) {
   if (map.empty()) {
     if (points.all().size() >= MatchingParams::kMatchesMin) placed.verdict = SweepVerdict::first;
     return;
@@ -211,7 +211,7 @@ void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, 
   const mapping::RegistrationAttempt attempt =
       mapping::attempt_registration(params, {tracking, prediction.prior, rejected_relocalisation()}, scene,
                                     sweep_scratch.sweep_aligner, trajectory, placed.alignment);
-  report.points_registered = scene.points.size();
+  report.points_after_downsampling = scene.points.size();
   report.iterations = attempt.iterations;
   report.inlier_ratio = attempt.inlier_ratio;
   if (placed.alignment) {
@@ -242,11 +242,11 @@ void LidarInertialOdometry::Impl::predict_stationary(const MotionWindow& motion,
 
 std::vector<InsertedPoint> LidarInertialOdometry::Impl::insert(const UpdatedSweep& sweep, mapping::SweepPoints& points,
                                                                bool has_ring_numbers, const SweepRegistration& placed,
-                                                               SweepReport& report) {
+                                                               SweepResult& report) {
   const StateEstimate& before = sweep_boundary.state_estimate;
   if (mapping::unknowns::variances(before.prior_weight_covariance, mapping::unknowns::calibration).maxCoeff() > 0.0) {
     const LidarImuCalibration& now = sweep.start.mean.calibration;
-    points.apply_calibration_shift(now, now.time_offset_s - before.mean.calibration.time_offset_s);
+    points.apply_calibration_shift(now, now.imu_minus_lidar_clock_s - before.mean.calibration.imu_minus_lidar_clock_s);
   }
   std::vector<InsertedPoint> inserted;
   const bool sure = placed.verdict == SweepVerdict::registered && !mapping::is_lost(tracking) &&
@@ -259,7 +259,7 @@ std::vector<InsertedPoint> LidarInertialOdometry::Impl::insert(const UpdatedSwee
 
 void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const SweepRegistration& placed,
                                             const MotionWindow& motion, std::vector<InsertedPoint> inserted,
-                                            SweepReport& report) {
+                                            SweepResult& report) {
   const Registration::Result* aligned = placed.alignment ? &*placed.alignment : nullptr;
   const bool unconfirmed_before = mapping::is_unconfirmed_relocalisation(tracking);
   tracking = mapping::tracking_state_after_sweep(tracking, placed.outcome, placed.verdict);
@@ -289,9 +289,9 @@ void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Swe
   prune_until(motion.end_ns);
 }
 
-void LidarInertialOdometry::Impl::add_map_drift(const UpdatedSweep& sweep, const SweepReport& report) {
+void LidarInertialOdometry::Impl::add_map_drift(const UpdatedSweep& sweep, const SweepResult& report) {
   const double inserted_fraction =
-      report.points_used == 0 ? 0.0 : double(report.map_points_added) / double(report.points_used);
+      report.usable_points == 0 ? 0.0 : double(report.map_points_added) / double(report.usable_points);
   world_covariance.add_inserted_sweep(inserted_fraction, sweep.trajectory, sweep.start.state_error_covariance,
                                       sweep_boundary.state_estimate.mean.calibration.T_IL.translation());
 }

@@ -11,7 +11,7 @@ Status LidarInertialOdometry::set_prior_map(PriorMap map) {
   if (const Status status = check_prior_map(map); !status.ok()) return status;
   if (mapping::has_started(impl_->tracking))
     return {ErrorCode::time_order, "number of sweeps before the prior map", 1.0, 0.0};
-  if (map.T_MI) set_start_pose(*map.T_MI);
+  if (map.start_T_MI) set_start_pose(*map.start_T_MI);
   impl_->localiser = mapping::MapLocaliser(std::move(map));
   return {};
 }
@@ -20,7 +20,7 @@ void LidarInertialOdometry::copy_prior_map(const LidarInertialOdometry& other) {
   impl_->localiser = other.impl_->localiser;
   impl_->localiser.restart(impl_->start_pose);
   const PriorMap* const map = prior_map();
-  if (!impl_->start_pose && map != nullptr && map->T_MI) set_start_pose(*map->T_MI);
+  if (!impl_->start_pose && map != nullptr && map->start_T_MI) set_start_pose(*map->start_T_MI);
 }
 
 Status LidarInertialOdometry::check_localised() const {
@@ -40,7 +40,7 @@ const PriorMap* LidarInertialOdometry::prior_map() const {
 
 /// After a tracking failure, or while a relocalisation is unconfirmed, the local map may be wrong and is not compared
 /// with the prior map.
-void LidarInertialOdometry::Impl::localise(const SweepReport& report) {
+void LidarInertialOdometry::Impl::localise(const SweepResult& report) {
   if (!localiser.has_map() || localiser.is_localised()) return;
   if (report.verdict != SweepVerdict::registered || !std::holds_alternative<mapping::Tracking>(tracking)) return;
   const std::optional<mapping::FramePose> pose =

@@ -354,7 +354,7 @@ Status check_prior_map(const PriorMap& map) {
   if (with_normal < kLeast)
     return {ErrorCode::insufficient_data, "prior map's points with normals", double(with_normal), double(kLeast)};
   if (!std::isfinite(map.start_position_sigma_m) || !std::isfinite(map.start_heading_sigma_rad) ||
-      (map.T_MI && !map.T_MI->matrix().allFinite()))
+      (map.start_T_MI && !map.start_T_MI->matrix().allFinite()))
     return {ErrorCode::non_finite, "pose in the prior map", std::nan(""), 0.0};
   if (map.start_position_sigma_m < 0.0)
     return {ErrorCode::out_of_range, "start_position_sigma_m", map.start_position_sigma_m, 0.0};

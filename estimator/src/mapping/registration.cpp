@@ -148,7 +148,8 @@ Status Registration::iterate(const RegistrationProblem& problem, IterationState&
                              Result& result) {
   const Estimate& mean = problem.prior.mean;
   if (problem.unknowns.calibration_free && result.iterations > 1) {
-    apply_calibration(at.now.calibration, at.now.calibration.time_offset_s - mean.calibration.time_offset_s,
+    apply_calibration(at.now.calibration,
+                      at.now.calibration.imu_minus_lidar_clock_s - mean.calibration.imu_minus_lidar_clock_s,
                       problem.points, transformed_points_);
     at.points = transformed_points_;
   }

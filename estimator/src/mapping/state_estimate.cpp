@@ -16,7 +16,7 @@ StateEstimate estimate_at_start(const LidarInertialOdometry::Params& params, con
   StateEstimate state_estimate;
   LidarImuCalibration& calibration = state_estimate.mean.calibration;
   calibration.T_IL = params.T_IL;
-  calibration.time_offset_s = 0.0;  // the time stamps already include the stated offset
+  calibration.imu_minus_lidar_clock_s = 0.0;  // the time stamps already include the stated offset
   calibration.gravity_W_m_s2 = Eigen::Vector3d(0.0, 0.0, -params.expert.gravity_m_s2);
   Matrix& P = state_estimate.prior_weight_covariance;
   u::variances(P, u::mounting_rotation).setConstant(params.mount_sigma_rad * params.mount_sigma_rad);

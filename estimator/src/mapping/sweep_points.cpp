@@ -14,7 +14,8 @@ SweepPoints::SweepPoints(const Params& params) {
 Status SweepPoints::select_returns(const Params& params, std::span<const LidarPoint> returns, TimeNs span_ns,
                                    const LidarImuCalibration& calibration, double start_s, Counts& counts) {
   const PointSelectionBounds bounds{params.range_min_m, params.range_max_m, params.own_body_L};
-  const PointCounts found = select_points(returns, bounds, calibration.T_IL, start_s + calibration.time_offset_s, all_);
+  const PointCounts found =
+      select_points(returns, bounds, calibration.T_IL, start_s + calibration.imu_minus_lidar_clock_s, all_);
   sampled_points_.clear();
   counts = {found.usable_points, 0, found.has_ring_numbers};
   if (Status status = check_point_selection(span_ns, returns, found); !status.ok()) return status;

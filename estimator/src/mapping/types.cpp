@@ -15,7 +15,7 @@ void LidarImuCalibration::add(const Eigen::Matrix<double, kErrorCount, 1>& error
   const Eigen::Quaterniond turned = (so3::exp(error.segment<3>(0)) * Eigen::Quaterniond(T_IL.linear())).normalized();
   T_IL.linear() = turned.toRotationMatrix();
   T_IL.translation() += error.segment<3>(3);
-  time_offset_s += error[6];
+  imu_minus_lidar_clock_s += error[6];
   gravity_W_m_s2 += error.segment<3>(7);
 }
 
@@ -23,7 +23,7 @@ Eigen::Matrix<double, LidarImuCalibration::kErrorCount, 1> LidarImuCalibration::
     const LidarImuCalibration& other) const {
   Eigen::Matrix<double, kErrorCount, 1> error;
   error << so3::logarithm(Eigen::Quaterniond(T_IL.linear() * other.T_IL.linear().transpose()).normalized()),
-      T_IL.translation() - other.T_IL.translation(), time_offset_s - other.time_offset_s,
+      T_IL.translation() - other.T_IL.translation(), imu_minus_lidar_clock_s - other.imu_minus_lidar_clock_s,
       gravity_W_m_s2 - other.gravity_W_m_s2;
   return error;
 }
@@ -58,11 +58,11 @@ Status check(const VelocityReading& reading) {
 }
 
 Status check(const RelativePoseReading& reading) {
-  if (!reading.relative_pose.matrix().allFinite()) return not_finite("T_from_to");
+  if (!reading.T_from_to.matrix().allFinite()) return not_finite("T_from_to");
   if (!reading.covariance.allFinite()) return not_finite("covariance");
   if (reading.to_ns <= reading.from_ns)
     return {ErrorCode::time_order, "to_ns", double(reading.to_ns), double(reading.from_ns)};
-  const Eigen::Matrix3d R = reading.relative_pose.linear();
+  const Eigen::Matrix3d R = reading.T_from_to.linear();
   const double off = (R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (!(off <= kRotation) || !(R.determinant() > 0.0)) return {ErrorCode::out_of_range, "T_from_to", off, kRotation};
   const double least = reading.covariance.diagonal().minCoeff();
@@ -96,8 +96,8 @@ PoseState PositionFrame::transform(const PoseState& in_W) const {
   out.velocity_W_m_s = R * in_W.velocity_W_m_s;
   Eigen::Matrix<double, 6, 4> J = Eigen::Matrix<double, 6, 4>::Zero();
   J.topLeftCorner<3, 3>().setIdentity();
-  J.col(3) << up.cross(R * (in_W.position_W_m - reference_point_W_m)), up;
-  out.covariance = J * covariance * J.transpose();
+  J.col(3) << up.cross(R * (in_W.position_W_m - covariance_reference_point_W_m)), up;
+  out.covariance = J * xyz_yaw_covariance_P * J.transpose();
   const Eigen::Matrix3d attitude = R * in_W.covariance.bottomRightCorner<3, 3>() * R.transpose();
   out.covariance.block<2, 2>(3, 3) += attitude.topLeftCorner<2, 2>();
   return out;

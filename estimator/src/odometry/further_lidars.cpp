@@ -39,8 +39,8 @@ FurtherLidars::FurtherLidars(std::span<const FurtherLidar> lidars, const Eigen::
     checked.own_body_L = lidar.own_body_L;
     if (const Status status = check_odometry_params(checked); !status.ok())
       throw InvalidParams("further_lidars: " + status.message(), status.value, "valid as for the first lidar");
-    if (!(std::abs(lidar.time_offset_s) <= kOffsetMax_s))
-      throw InvalidParams("further_lidars.time_offset_s", lidar.time_offset_s, "-1 to 1");
+    if (!(std::abs(lidar.first_minus_this_clock_s) <= kOffsetMax_s))
+      throw InvalidParams("further_lidars.first_minus_this_clock_s", lidar.first_minus_this_clock_s, "-1 to 1");
   }
 }
 
@@ -52,7 +52,7 @@ Status FurtherLidars::add(std::size_t lidar, TimeNs start_ns, TimeNs end_ns, std
   if (const Status status = check_stamp(start_ns, "start_ns"); !status.ok()) return status;
   if (const Status status = check_stamp(end_ns, "end_ns"); !status.ok()) return status;
   if (const Status status = mapping::check_time_offsets(end_ns - start_ns, points); !status.ok()) return status;
-  const TimeNs offset_ns = std::llround(1e9 * from.time_offset_s);
+  const TimeNs offset_ns = std::llround(1e9 * from.first_minus_this_clock_s);
   if (end_ns + offset_ns > latest_ns)
     return {ErrorCode::out_of_range, "end_ns", double(end_ns + offset_ns), double(latest_ns)};
   const Eigen::Isometry3f T_first = (T_first_lidar_imu_ * from.T_IL).cast<float>();

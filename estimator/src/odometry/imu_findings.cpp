@@ -47,7 +47,7 @@ bool check_readings(const ImuDescription& imu, std::span<const ImuSample> sample
   ImuPlausibility::State state;
   for (const ImuSample& sample : samples) plausibility.step(sample, state);
   add_findings(plausibility, state, kImu, health);
-  health.add(Kind::force_at_rest, check_force_at_rest(imu, samples), kImu);
+  health.add(Kind::wrong_force_magnitude_at_rest, check_force_at_rest(imu, samples), kImu);
   if (!imu.is_merged) {  // several IMUs are assumed to be on a sphere, which does not rotate about a pivot
     const PivotMotionCheck pivots =
         PivotMotionCheck::of(samples, imu.gravity_m_s2, imu.gyro_range_rad_s, imu.accel_range_m_s2);
@@ -75,8 +75,9 @@ void check_stationary_gravity(const ImuDescription& imu, std::span<const ImuSamp
   const RestGravity gravity = rest_gravity(imu);
   RestGravity::State state;
   for (std::size_t k = 0; k < std::min(samples.size(), rates.size()); ++k) gravity.step(samples[k], rates[k], state);
-  health.add(gravity.gravity_magnitude_verdict(state).ok() ? Kind::inconsistent_rotation : Kind::force_at_rest,
-             gravity.verdict(state), kImu);
+  health.add(
+      gravity.gravity_magnitude_verdict(state).ok() ? Kind::inconsistent_rotation : Kind::wrong_force_magnitude_at_rest,
+      gravity.verdict(state), kImu);
 }
 
 }  // namespace

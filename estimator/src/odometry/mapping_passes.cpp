@@ -34,7 +34,9 @@ bool shorten_sweep(TimeNs end_ns, WaitingSweep& sweep) {
 class MappingPass {
  public:
   MappingPass(const MappingInput& input, const LidarInertialOdometry::Params& params)
-      : input_(input), offset_ns_(static_cast<TimeNs>(std::llround(params.time_offset_s * 1e9))), out_(params) {
+      : input_(input),
+        offset_ns_(static_cast<TimeNs>(std::llround(params.imu_minus_lidar_clock_s * 1e9))),
+        out_(params) {
     if (input.start) out_.mapper.set_start_pose(*input.start);
     if (input.start_tilt_correction) out_.mapper.set_start_tilt_correction(*input.start_tilt_correction);
   }
@@ -44,7 +46,7 @@ class MappingPass {
     add_time_without_sweeps(input_.samples.back().time_ns - offset_ns_);
     for (std::vector<PoseState>& open : out_.mapper.window_trajectories()) apply_smoothed_poses(std::move(open));
     for (const MappedSweep& sweep : out_.sweeps) {
-      if (!sweep.report.trajectory.empty()) out_.localisation.add(sweep.report);
+      if (!sweep.result.trajectory.empty()) out_.localisation.add(sweep.result);
     }
     return std::move(out_);
   }
@@ -91,18 +93,18 @@ class MappingPass {
 
   void add_points(const WaitingSweep& sweep) {
     MappedSweep& added = out_.sweeps.emplace_back();
-    added.status = out_.mapper.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, added.report);
-    if (added.report.trajectory.empty()) return;
-    last_pose_time_ns_ = added.report.pose.time_ns;
+    added.status = out_.mapper.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, added.result);
+    if (added.result.trajectory.empty()) return;
+    last_pose_time_ns_ = added.result.pose.time_ns;
     last_end_ns_ = sweep.end_ns;
-    apply_smoothed_poses(std::exchange(added.report.final_poses_of_earlier_sweep, {}));
+    apply_smoothed_poses(std::exchange(added.result.final_poses_of_earlier_sweep, {}));
   }
 
   void apply_smoothed_poses(std::vector<PoseState> smoothed) {
     if (smoothed.empty()) return;
-    while (smoothed_ < out_.sweeps.size() && out_.sweeps[smoothed_].report.trajectory.empty()) ++smoothed_;
+    while (smoothed_ < out_.sweeps.size() && out_.sweeps[smoothed_].result.trajectory.empty()) ++smoothed_;
     if (smoothed_ == out_.sweeps.size()) return;
-    SweepReport& report = out_.sweeps[smoothed_++].report;
+    SweepResult& report = out_.sweeps[smoothed_++].result;
     report.trajectory = std::move(smoothed);
     report.pose = report.trajectory.back();
   }
@@ -121,7 +123,7 @@ using Params = LidarInertialOdometry::Params;
 LidarImuCalibrationPrior lidar_calibration_prior(const Params& started, const Params& given) {
   LidarImuCalibrationPrior out;
   out.calibration.T_IL = started.T_IL;
-  out.calibration.time_offset_s = started.time_offset_s;
+  out.calibration.imu_minus_lidar_clock_s = started.imu_minus_lidar_clock_s;
   out.mount_sigma_rad = given.mount_sigma_rad;
   out.mount_sigma_m = given.mount_sigma_m;
   out.time_offset_sigma_s = given.time_offset_sigma_s;
@@ -144,16 +146,16 @@ bool determines_lidar_calibration(const MappedRecording& pass) {
   if (!pass.status.ok()) return false;
   std::size_t rejected = 0, located = 0;
   for (const MappedSweep& sweep : pass.sweeps) {
-    if (sweep.report.trajectory.empty()) continue;
+    if (sweep.result.trajectory.empty()) continue;
     ++located;
-    rejected += sweep.report.verdict == SweepVerdict::rejected && sweep.report.points_used > 0;
+    rejected += sweep.result.verdict == SweepVerdict::rejected && sweep.result.usable_points > 0;
   }
   return kSweepsPerRejection * rejected <= located;
 }
 
 void start_from_calibration(const LidarImuCalibration& learnt, Params& params) {
   params.T_IL = learnt.T_IL;
-  params.time_offset_s = learnt.time_offset_s;
+  params.imu_minus_lidar_clock_s = learnt.imu_minus_lidar_clock_s;
 }
 
 }  // namespace
@@ -248,9 +250,9 @@ MappedRecording map_with_calibration(const MappingInput& input, const LidarInert
 }
 
 LidarScale find_sweep_scale(std::span<const ImuSample> samples, const MappedRecording& mapped, double gravity_m_s2) {
-  std::vector<SweepReport> located;
+  std::vector<SweepResult> located;
   for (const MappedSweep& sweep : mapped.sweeps) {
-    if (!sweep.report.trajectory.empty()) located.push_back(sweep.report);
+    if (!sweep.result.trajectory.empty()) located.push_back(sweep.result);
   }
   return find_sweep_scale(samples, located, gravity_m_s2);
 }

@@ -76,7 +76,7 @@ OdometryPass::OdometryPass(const MotionRegimeStream::Params& rate, const LidarIn
       mapper_(mapping),
       scale_(mapping.expert.gravity_m_s2, sample_count_in_duration(kPreallocated_s, rate)),
       localisation_(mapping.expert.matching.distance_m),
-      time_offset_s_(mapping.time_offset_s),
+      time_offset_s_(mapping.imu_minus_lidar_clock_s),
       rest_gravity_({.gravity_m_s2 = std::max(mapping.expert.gravity_m_s2, kMinGravity_m_s2)}) {
   pending_.samples.reserve(sample_count_in_duration(std::max(rate.rate.lag_s, kPreallocated_s), rate));
 }
@@ -115,7 +115,7 @@ std::optional<TimeNs> OdometryPass::covering_ns(TimeNs end_ns) const {
 
 Status OdometryPass::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
                                const std::optional<OdometerReading>& reading,
-                               LidarInertialOdometry::SweepReport& report) {
+                               LidarInertialOdometry::SweepResult& report) {
   // set_odometer_reading() cannot fail, because add() checked the reading
   if (reading) (void)mapper_.set_odometer_reading(*reading);
   const Status status = mapper_.add_sweep(start_ns, end_ns, points, report);

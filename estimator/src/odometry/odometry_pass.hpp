@@ -17,7 +17,7 @@ namespace tumble {
 
 /// Processes IMU samples and lidar sweeps once, in time order. MotionRegimeStream estimates the angular rates, and
 /// LidarInertialOdometry processes samples and sweeps for which rates are available. TumblingOdometry runs one
-/// OdometryPass live, and SecondMappingPass runs a second OdometryPass with the estimated calibration.
+/// OdometryPass live, and FirstSecondsReprocessing runs a second OdometryPass with the estimated calibration.
 class OdometryPass {
  public:
   /// first-in, first-out queue of samples that reuses its memory
@@ -49,7 +49,7 @@ class OdometryPass {
   std::optional<TimeNs> covering_ns(TimeNs end_ns) const;
   /// `reading` is the odometer reading during the sweep, or empty.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
-                   const std::optional<OdometerReading>& reading, LidarInertialOdometry::SweepReport& report);
+                   const std::optional<OdometerReading>& reading, LidarInertialOdometry::SweepResult& report);
   /// See TumblingOdometry::newest().
   Status newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2) const;
 

@@ -50,8 +50,8 @@ PositionFrame fit_position_frame(const std::deque<PositionAlignment::PositionPai
     spread += a.squaredNorm() / pair.variance_m2;
   }
   PositionFrame out;
-  out.reference_point_W_m = mean_W_m;
-  out.covariance.diagonal() << Eigen::Vector3d::Constant(1.0 / weight),
+  out.covariance_reference_point_W_m = mean_W_m;
+  out.xyz_yaw_covariance_P.diagonal() << Eigen::Vector3d::Constant(1.0 / weight),
       spread > 0.0 ? 1.0 / spread : std::numeric_limits<double>::max();
   out.T_PW.linear() = so3::exp(std::atan2(sine, cosine) * kUp).toRotationMatrix();
   out.T_PW.translation() = mean_P_m - out.T_PW.linear() * mean_W_m;
@@ -79,7 +79,7 @@ Status PositionAlignment::add(const PositionReading& reading, TimeNs done_ns, Ti
   return {};
 }
 
-void PositionAlignment::add_sweep(const SweepReport& report) {
+void PositionAlignment::add_sweep(const SweepResult& report) {
   if (report.trajectory.empty()) return;
   if (report.in_prior_map != in_prior_map_) restart_fit();
   in_prior_map_ = report.in_prior_map;
@@ -136,7 +136,7 @@ void PositionAlignment::fit() {
         std::max_element(inliers.begin(), inliers.end(),
                          [&](const PositionPair& a, const PositionPair& b) { return misfit(a) < misfit(b); });
     if (misfit(*worst) <= kGate) {
-      if (found.covariance(3, 3) < kHeadingSigma_rad * kHeadingSigma_rad) position_frame_ = found;
+      if (found.xyz_yaw_covariance_P(3, 3) < kHeadingSigma_rad * kHeadingSigma_rad) position_frame_ = found;
       return;
     }
     inliers.erase(worst);

@@ -25,11 +25,11 @@ class PositionAlignment {
   };
 
   /// Stores a position reading. The reading is processed when the sweep that covers its time has been registered.
-  /// Readings may arrive in any order. See TumblingOdometry::add_position().
+  /// Readings may arrive in any order. See TumblingOdometry::add_frame_alignment_position().
   Status add(const PositionReading& reading, TimeNs done_ns, TimeNs latest_ns, std::size_t most);
   /// Processes a registered sweep and all position readings up to the end of the sweep. Cost: O(n^2) for n stored
   /// positions.
-  void add_sweep(const SweepReport& report);
+  void add_sweep(const SweepResult& report);
   /// Discards the processed position readings, because the world frame W has changed.
   void restart_fit();
   /// Returns the frame of the position readings relative to W, at the end of the last sweep. The result is empty if the

@@ -36,8 +36,8 @@ Status TumblingOdometry::add_velocity(const VelocityReading& velocity) {
 Status TumblingOdometry::add_relative_pose(const RelativePoseReading& motion) {
   return impl_->add_reading(motion);
 }
-Status TumblingOdometry::add_position(const PositionReading& position) {
-  return impl_->add_position(position);
+Status TumblingOdometry::add_frame_alignment_position(const PositionReading& position) {
+  return impl_->add_frame_alignment_position(position);
 }
 std::optional<TumblingOdometry::Sweep> TumblingOdometry::take() {
   return impl_->take();
@@ -84,13 +84,13 @@ std::size_t TumblingOdometry::restart_count() const {
 std::size_t TumblingOdometry::rejected_readings() const {
   return impl_->outlier_filter_state_.rejected;
 }
-bool TumblingOdometry::second_mapping_pass_applied() const {
-  return impl_->second_mapping_pass_.is_applied();
+bool TumblingOdometry::first_seconds_reprocessing_applied() const {
+  return impl_->first_seconds_reprocessing_.is_applied();
 }
 std::size_t TumblingOdometry::samples_rejected_by_mapper() const {
   return impl_->odometry_pass_.samples_rejected_by_mapper();
 }
-std::size_t TumblingOdometry::dropped_sweeps() const {
+std::size_t TumblingOdometry::dropped_untaken_sweeps() const {
   return impl_->dropped_sweeps_;
 }
 std::size_t TumblingOdometry::sweeps_before_first_imu() const {

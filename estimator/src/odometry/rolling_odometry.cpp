@@ -32,9 +32,9 @@ RollingOdometry::Pose as_pose(const RollingEstimate& estimate) {
   RollingOdometry::Pose out;
   out.pose = {estimate.time_ns, estimate.sphere_centre_W_m, estimate.q_WI, estimate.sphere_velocity_W_m_s,
               estimate.covariance};
-  out.angular_velocity_rad_s = estimate.w_WI_I_rad_s;
+  out.angular_velocity_B_rad_s = estimate.w_WI_I_rad_s;
   out.velocity_covariance_B_m2_s2 = estimate.velocity_covariance_I_m2_s2;
-  out.mode = estimate.mode;
+  out.contact_mode = estimate.mode;
   out.at_rest = estimate.at_rest;
   out.position_uncertain = estimate.position_uncertain;
   return out;

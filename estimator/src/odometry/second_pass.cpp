@@ -38,12 +38,12 @@ void start_from_saturation_levels(const SaturationLevels& known, AngularRateStre
 
 }  // namespace
 
-SecondMappingPass::SecondMappingPass(const Params& params, const MotionRegimeStream::Params& rate,
-                                     const LidarInertialOdometry::Params& mapping)
+FirstSecondsReprocessing::FirstSecondsReprocessing(const Params& params, const MotionRegimeStream::Params& rate,
+                                                   const LidarInertialOdometry::Params& mapping)
     : params_(params),
       rate_(rate),
       mapping_(mapping),
-      enabled_(params.after_s > 0.0),
+      enabled_(params.after_motion_s > 0.0),
       rest_detector_(mapping::mapping_stationary_params(mapping)) {
   require_valid_fields(params);
   if (!enabled_) return;
@@ -51,7 +51,7 @@ SecondMappingPass::SecondMappingPass(const Params& params, const MotionRegimeStr
   samples_.samples.reserve(static_cast<std::size_t>(std::ceil(most_s / rate.rate.period_s)) + 16);
 }
 
-void SecondMappingPass::abandon_second_pass() {
+void FirstSecondsReprocessing::abandon_second_pass() {
   enabled_ = false;
   replayed_pass_.reset();
   sweeps_.clear();
@@ -59,7 +59,7 @@ void SecondMappingPass::abandon_second_pass() {
   next_sample_ = next_sweep_ = 0;
 }
 
-void SecondMappingPass::store_input(const ImuSample& sample) {
+void FirstSecondsReprocessing::store_input(const ImuSample& sample) {
   if (!enabled_) return;
   if (!motion_start_ns_ &&
       !rest_detector_.detect_stationary(sample, stationary_state_, rate_.rate.model.nominal.gyro_bias_rad_s))
@@ -75,37 +75,38 @@ void SecondMappingPass::store_input(const ImuSample& sample) {
   samples_.push(sample);
 }
 
-void SecondMappingPass::store_input(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points,
-                                    const std::optional<OdometerReading>& reading, SweepVerdict verdict) {
+void FirstSecondsReprocessing::store_input(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points,
+                                           const std::optional<OdometerReading>& reading, SweepVerdict verdict) {
   if (!enabled_) return;
   sweeps_.push_back({start_ns, end_ns, std::move(points), reading, verdict});
   rejected_in_first_pass_ += verdict == SweepVerdict::rejected;
 }
 
-bool SecondMappingPass::tracking_failed_in_first_pass() const {
-  if (early_second_pass_tried_ || !(params_.lost_s > 0.0)) return false;
+bool FirstSecondsReprocessing::tracking_failed_in_first_pass() const {
+  if (early_second_pass_tried_ || !(params_.tracking_failure_s > 0.0)) return false;
   const auto rejected = [](const Sweep& sweep) { return sweep.verdict == SweepVerdict::rejected; };
   const auto last = std::find_if_not(sweeps_.rbegin(), sweeps_.rend(), rejected);
   return last != sweeps_.rbegin() && last != sweeps_.rend() &&
-         seconds(sweeps_.back().end_ns - last->end_ns) >= params_.lost_s;
+         seconds(sweeps_.back().end_ns - last->end_ns) >= params_.tracking_failure_s;
 }
 
-TimeNs SecondMappingPass::buffer_start_ns() const {
+TimeNs FirstSecondsReprocessing::buffer_start_ns() const {
   return sweeps_.empty() ? *motion_start_ns_ : std::max(*motion_start_ns_, sweeps_.front().start_ns);
 }
 
-bool SecondMappingPass::is_due() const {
+bool FirstSecondsReprocessing::is_due() const {
   if (!enabled_ || !motion_start_ns_ || sweeps_.empty()) return false;
-  return seconds(sweeps_.back().end_ns - buffer_start_ns()) >= params_.after_s || tracking_failed_in_first_pass();
+  return seconds(sweeps_.back().end_ns - buffer_start_ns()) >= params_.after_motion_s ||
+         tracking_failed_in_first_pass();
 }
 
-MotionRegimeStream::Params SecondMappingPass::rate_params_with_delay() const {
+MotionRegimeStream::Params FirstSecondsReprocessing::rate_params_with_delay() const {
   MotionRegimeStream::Params out = rate_;
-  out.rate.lag_s = std::min(std::max(params_.lag_s, rate_.rate.lag_s), rate_.rate.lag_max_s());
+  out.rate.lag_s = std::min(std::max(params_.rate_lag_s, rate_.rate.lag_s), rate_.rate.lag_max_s());
   return out;
 }
 
-MotionRegimeStream::Params SecondMappingPass::calibrated_rate(const OdometryPass& first) const {
+MotionRegimeStream::Params FirstSecondsReprocessing::calibrated_rate(const OdometryPass& first) const {
   MotionRegimeStream::Params out = rate_params_with_delay();
   const AngularRateStream::State& state = first.rate_stream_state().rate;
   out.rate.model.calibration = first.rates().rate().body_imu_calibration(state);
@@ -114,20 +115,20 @@ MotionRegimeStream::Params SecondMappingPass::calibrated_rate(const OdometryPass
   return out;
 }
 
-LidarInertialOdometry::Params SecondMappingPass::calibrated_mapping_params(const OdometryPass& first) const {
+LidarInertialOdometry::Params FirstSecondsReprocessing::calibrated_mapping_params(const OdometryPass& first) const {
   LidarInertialOdometry::Params out = mapping_;
   if (kSweepsPerRejection * rejected_in_first_pass_ > sweeps_.size()) return out;
   const LidarImuCalibration learnt = first.mapper().lidar_calibration();
   const auto sigma = first.mapper().next_lidar_calibration_prior_covariance().diagonal().cwiseSqrt().eval();
   out.T_IL = learnt.T_IL;
-  out.time_offset_s = learnt.time_offset_s;
+  out.imu_minus_lidar_clock_s = learnt.imu_minus_lidar_clock_s;
   out.mount_sigma_rad = sigma.head<3>().maxCoeff();
   out.mount_sigma_m = sigma.segment<3>(3).maxCoeff();
   out.time_offset_sigma_s = sigma[6];
   return out;
 }
 
-bool SecondMappingPass::start_second_pass(const OdometryPass& first) {
+bool FirstSecondsReprocessing::start_second_pass(const OdometryPass& first) {
   const MotionRegimeStream::Params rate = calibrated_rate(first);
   const LidarInertialOdometry::Params mapping = calibrated_mapping_params(first);
   if (!check_body_imu_calibration(*rate.rate.model.calibration).ok() || !check_odometry_params(mapping).ok()) {
@@ -137,16 +138,16 @@ bool SecondMappingPass::start_second_pass(const OdometryPass& first) {
   replayed_pass_.emplace(rate, mapping);
   if (first.mapper().start_pose()) replayed_pass_->set_start_pose(*first.mapper().start_pose());
   next_sample_ = next_sweep_ = rejected_in_second_pass_ = 0;
-  started_by_tracking_failure_ = seconds(sweeps_.back().end_ns - buffer_start_ns()) < params_.after_s;
+  started_by_tracking_failure_ = seconds(sweeps_.back().end_ns - buffer_start_ns()) < params_.after_motion_s;
   return true;
 }
 
-void SecondMappingPass::replay_next_input(OdometryPass& first) {
+void FirstSecondsReprocessing::replay_next_input(OdometryPass& first) {
   if (!replayed_pass_ && (!is_due() || !start_second_pass(first))) return;
   run_second_pass(first, kSweepsPerSweep);
 }
 
-void SecondMappingPass::complete_second_pass(OdometryPass& first) {
+void FirstSecondsReprocessing::complete_second_pass(OdometryPass& first) {
   constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
   if (replayed_pass_ && started_by_tracking_failure_) run_second_pass(first, kAll);
   if (!replayed_pass_ && (!enabled_ || !motion_start_ns_ || sweeps_.empty() || !start_second_pass(first))) return;
@@ -155,7 +156,7 @@ void SecondMappingPass::complete_second_pass(OdometryPass& first) {
   abandon_second_pass();
 }
 
-void SecondMappingPass::run_second_pass(OdometryPass& first, std::size_t sweeps) {
+void FirstSecondsReprocessing::run_second_pass(OdometryPass& first, std::size_t sweeps) {
   // At the end of the buffered samples, the second pass reports the last rates immediately, without later samples.
   bool tail = false;
   for (std::size_t taken = 0; tail || taken < sweeps; ++taken) {
@@ -178,7 +179,7 @@ void SecondMappingPass::run_second_pass(OdometryPass& first, std::size_t sweeps)
       --next_sweep_;
       return;
     }
-    LidarInertialOdometry::SweepReport report;
+    LidarInertialOdometry::SweepResult report;
     (void)replayed_pass_->add_sweep(sweep.start_ns, sweep.end_ns, sweep.points, sweep.reading, report);
     last_sweep_rejected_ = report.verdict == SweepVerdict::rejected;
     rejected_in_second_pass_ += last_sweep_rejected_;
@@ -186,7 +187,7 @@ void SecondMappingPass::run_second_pass(OdometryPass& first, std::size_t sweeps)
   }
 }
 
-void SecondMappingPass::replace_first_pass_results(OdometryPass& first) {
+void FirstSecondsReprocessing::replace_first_pass_results(OdometryPass& first) {
   replayed_pass_->flush_until(first.newest_smoothed_rate()->time_ns);
   SweepVerdict& newest = sweeps_.back().verdict;
   const bool first_lost = newest == SweepVerdict::rejected;

@@ -17,27 +17,27 @@ namespace tumble {
 /// Processes the first seconds of motion again with the estimated calibration, while the first pass continues.
 ///
 /// During the first pass, lever arm, lidar mounting and time offset are still uncertain at the start of a tumble, which
-/// falsifies the map. SecondMappingPass therefore buffers IMU samples and sweeps, starting about 1 s before the end of
-/// the initial rest. After `after_s` of motion, the second pass processes the buffer with the estimated calibration,
-/// and with angular rates smoothed with a lag of `lag_s`. The second pass processes three buffered sweeps per new
-/// sweep. When the second pass ends, its map and pose replace the map and pose of the first pass. The results of the
-/// second pass are discarded if the second pass rejected clearly more sweeps than the first pass. The results of the
-/// second pass are also discarded if only the second pass rejected the last sweep.
+/// falsifies the map. FirstSecondsReprocessing therefore buffers IMU samples and sweeps, starting about 1 s before the
+/// end of the initial rest. After `after_motion_s` of motion, the second pass processes the buffer with the estimated
+/// calibration, and with angular rates smoothed with a lag of `rate_lag_s`. The second pass processes three buffered
+/// sweeps per new sweep. When the second pass ends, its map and pose replace the map and pose of the first pass. The
+/// results of the second pass are discarded if the second pass rejected clearly more sweeps than the first pass. The
+/// results of the second pass are also discarded if only the second pass rejected the last sweep.
 ///
-/// If tracking of the first pass has failed for `lost_s`, an additional early second pass starts immediately, at most
-/// once. SecondMappingPass does not change previously reported poses, so the reported pose jumps by the error of the
-/// first pass.
+/// If tracking of the first pass has failed for `tracking_failure_s`, an additional early second pass starts
+/// immediately, at most once. FirstSecondsReprocessing does not change previously reported poses, so the reported pose
+/// jumps by the error of the first pass.
 ///
-/// SecondMappingPass stores samples and sweeps of about 1 s at rest and of at most 10 s of motion. The second pass also
-/// needs memory for a second map. If a jolt ends the initial rest long before the tumble, the second pass starts too
-/// early.
-class SecondMappingPass {
+/// FirstSecondsReprocessing stores samples and sweeps of about 1 s at rest and of at most 10 s of motion. The second
+/// pass also needs memory for a second map. If a jolt ends the initial rest long before the tumble, the second pass
+/// starts too early.
+class FirstSecondsReprocessing {
  public:
-  using Params = SecondMappingPassParams;
+  using Params = FirstSecondsReprocessingParams;
 
   /// `rate` and `mapping` are the parameters of the first pass. Throws InvalidParams if a parameter is out of bounds.
-  SecondMappingPass(const Params& params, const MotionRegimeStream::Params& rate,
-                    const LidarInertialOdometry::Params& mapping);
+  FirstSecondsReprocessing(const Params& params, const MotionRegimeStream::Params& rate,
+                           const LidarInertialOdometry::Params& mapping);
 
   /// Sets the gyro's zero offset. Must be called before the first sample.
   void set_gyro_offset(const Eigen::Vector3d& offset_rad_s) { rate_.rate.model.nominal.gyro_bias_rad_s = offset_rad_s; }
@@ -64,8 +64,8 @@ class SecondMappingPass {
     SweepVerdict verdict = SweepVerdict::first;
   };
 
-  /// Returns the start of the motion or the start of the sweeps, whichever is later. Parameter `after_s` counts from
-  /// the returned time. The motion must have started.
+  /// Returns the start of the motion or the start of the sweeps, whichever is later. Parameter `after_motion_s` counts
+  /// from the returned time. The motion must have started.
   TimeNs buffer_start_ns() const;
   bool is_due() const;
   bool tracking_failed_in_first_pass() const;

@@ -49,7 +49,8 @@ TumblingOdometry::Impl::Impl(const Params& params)
       sample_clock_(params.expert->stamps),
       plausibility_(plausibility_setup(params.expert->gravity_m_s2, params.imu.gyro_range_rad_s)),
       odometry_pass_(rate_stream_params(params), mapper_params(params)),
-      second_mapping_pass_(params.expert->second_mapping_pass, rate_stream_params(params), mapper_params(params)),
+      first_seconds_reprocessing_(params.expert->first_seconds_reprocessing, rate_stream_params(params),
+                                  mapper_params(params)),
       further_lidars_(params.further_lidars, params.T_IL) {}
 
 Status TumblingOdometry::Impl::add_imu(const ImuSample& sample) {
@@ -80,7 +81,7 @@ Status TumblingOdometry::Impl::process_ordered_sample(const ImuSample& sample) {
   sample_clock_state_ = stamps;
   OutlierFilter::mark_accepted(sample, outlier_filter_state_);
   StampOrder::accept(sample.time_ns, stamp_order_state_);
-  second_mapping_pass_.store_input(timed);
+  first_seconds_reprocessing_.store_input(timed);
   plausibility_.step(timed, plausibility_state_);
   ImuPlausibility::limit_memory(plausibility_state_);
   newest_ns_ = timed.time_ns;
@@ -119,7 +120,7 @@ Status TumblingOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, std::sp
 }
 
 std::size_t TumblingOdometry::Impl::max_waiting_sweeps() const {
-  return params_.expert->sweeps_max + static_cast<std::size_t>(kSweepsMax_hz * params_.lag_s);
+  return params_.expert->waiting_sweeps_max + static_cast<std::size_t>(kSweepsMax_hz * params_.lag_s);
 }
 
 Status TumblingOdometry::Impl::add_sweep(std::size_t lidar, TimeNs start_ns, TimeNs end_ns,
@@ -139,7 +140,7 @@ Status TumblingOdometry::Impl::add_reading(const OdometerReading& reading) {
   return readings_.add(reading, odometry_pass_.oldest_needed_ns(*last_registered_ns_), latest_ns, most);
 }
 
-Status TumblingOdometry::Impl::add_position(const PositionReading& position) {
+Status TumblingOdometry::Impl::add_frame_alignment_position(const PositionReading& position) {
   if (!newest_ns_) return {ErrorCode::empty, "imu samples", 0.0, 1.0};
   const std::size_t most =
       uses_whole_recording() ? std::numeric_limits<std::size_t>::max() : PositionAlignment::kReadingsMax;
@@ -166,7 +167,7 @@ SensorHealth TumblingOdometry::Impl::health() const {
   if (uses_whole_recording()) return whole_recording_result_ ? whole_recording_result_->health : SensorHealth{};
   using Kind = HealthFinding::Kind;
   SensorHealth out = odometry_pass_.rates().rate().health(odometry_pass_.rate_stream_state().rate);
-  out.add(Kind::force_at_rest, odometry_pass_.check_force_at_rest(), "imu");
+  out.add(Kind::wrong_force_magnitude_at_rest, odometry_pass_.check_force_at_rest(), "imu");
   add_findings(plausibility_, plausibility_state_, "imu", out);
   out.add(Kind::lidar_scale, odometry_pass_.lidar_scale().verdict(), "lidar");
   out.add(Kind::vertical_unknown, mapper().check_gravity_direction(), "");
@@ -184,31 +185,32 @@ Status TumblingOdometry::Impl::finish(const SweepProgress& on_sweep) {
   OutlierFilter::finish(outlier_filter_state_);
   if (!newest_rate()) return {};  // no rate since the last call
   flush_all();
-  second_mapping_pass_.complete_second_pass(odometry_pass_);
+  first_seconds_reprocessing_.complete_second_pass(odometry_pass_);
   start_rate_estimation();
   return {};
 }
 
 void TumblingOdometry::Impl::register_sweep(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points) {
-  if (finished_results_.size() >= params_.expert->sweeps_max) {
+  if (finished_results_.size() >= params_.expert->waiting_sweeps_max) {
     finished_results_.pop_front();
     ++dropped_sweeps_;
   }
   Sweep& out = finished_results_.emplace_back();
   const std::optional<OdometerReading> reading = readings_.take_readings_in(
       odometry_pass_.oldest_needed_ns(*last_registered_ns_), odometry_pass_.oldest_needed_ns(end_ns));
-  out.status = odometry_pass_.add_sweep(start_ns, end_ns, points, reading, out.report);
+  out.status = odometry_pass_.add_sweep(start_ns, end_ns, points, reading, out.result);
   last_registered_ns_ = end_ns;
-  if (out.report.trajectory.empty()) return;
-  positions_.add_sweep(out.report);
+  if (out.result.trajectory.empty()) return;
+  positions_.add_sweep(out.result);
   out.position_frame = positions_.position_frame();
-  second_mapping_pass_.store_input(start_ns, end_ns, std::move(points), reading, out.report.verdict);
+  first_seconds_reprocessing_.store_input(start_ns, end_ns, std::move(points), reading, out.result.verdict);
   // The second pass has no prior map. If the first pass is localised in a prior map, the second pass would have a
   // different map frame.
-  if (mapper().prior_map() != nullptr && mapper().check_localised().ok()) second_mapping_pass_.abandon_second_pass();
-  const bool applied_before = second_mapping_pass_.is_applied();
-  second_mapping_pass_.replay_next_input(odometry_pass_);
-  if (second_mapping_pass_.is_applied() != applied_before) positions_.restart_fit();
+  if (mapper().prior_map() != nullptr && mapper().check_localised().ok())
+    first_seconds_reprocessing_.abandon_second_pass();
+  const bool applied_before = first_seconds_reprocessing_.is_applied();
+  first_seconds_reprocessing_.replay_next_input(odometry_pass_);
+  if (first_seconds_reprocessing_.is_applied() != applied_before) positions_.restart_fit();
 }
 
 /// Returns whether a sweep must be registered immediately, because its latency would exceed lag_s when the next IMU
@@ -240,7 +242,7 @@ void TumblingOdometry::Impl::register_sweeps_with_rates() {
   if (!waiting_sweeps_.empty() || !covered_ns) return;
   if (seconds(*covered_ns - *last_registered_ns_) > kLidarSilent_s) {
     register_sweep(*covered_ns, *covered_ns, {});
-    if (finished_results_.back().report.trajectory.empty())
+    if (finished_results_.back().result.trajectory.empty())
       finished_results_.pop_back();  // no sweep has started the map yet
     sweep_end_ns_ = *covered_ns;
   }
@@ -255,7 +257,7 @@ void TumblingOdometry::Impl::restart_rate_estimation() {
   ++restart_count_;
   OutlierFilter::finish(outlier_filter_state_);
   flush_all();
-  second_mapping_pass_.abandon_second_pass();
+  first_seconds_reprocessing_.abandon_second_pass();
   start_rate_estimation();
 }
 
@@ -308,7 +310,7 @@ void TumblingOdometry::Impl::set_gyro_offset(const Eigen::Vector3d& offset_rad_s
   rate.rate.model.nominal.gyro_bias_rad_s = offset_rad_s;
   if (rate.rate.model.calibration) rate.rate.model.calibration->constants.gyro_bias_rad_s = offset_rad_s;
   odometry_pass_.start_rate_estimation(rate);
-  second_mapping_pass_.set_gyro_offset(offset_rad_s);
+  first_seconds_reprocessing_.set_gyro_offset(offset_rad_s);
 }
 
 void TumblingOdometry::Impl::reset() {

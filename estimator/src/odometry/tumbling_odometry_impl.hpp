@@ -33,7 +33,7 @@ struct TumblingOdometry::Impl {
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
   Status add_sweep(std::size_t lidar, TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
   Status add_reading(const OdometerReading& reading);
-  Status add_position(const PositionReading& position);
+  Status add_frame_alignment_position(const PositionReading& position);
   std::optional<Sweep> take();
   Status finish(const SweepProgress& on_sweep);
   void reset();
@@ -83,7 +83,7 @@ struct TumblingOdometry::Impl {
   ImuPlausibility plausibility_;
   ImuPlausibility::State plausibility_state_;
   OdometryPass odometry_pass_;
-  SecondMappingPass second_mapping_pass_;
+  FirstSecondsReprocessing first_seconds_reprocessing_;
   std::optional<TimeNs> newest_ns_;  ///< time of the newest accepted sample
   std::optional<TimeNs>
       last_registered_ns_;  ///< end of the last registered sweep; before the first, time of the first sample

@@ -95,8 +95,8 @@ Status TumblingOdometry::Impl::finish_whole_recording(const SweepProgress& on_sw
   }
   PositionAlignment positions = positions_;
   for (MappedSweep& sweep : whole->mapped_recording.sweeps) {
-    positions.add_sweep(sweep.report);
-    finished_results_.push_back({sweep.status, std::move(sweep.report), positions.position_frame()});
+    positions.add_sweep(sweep.result);
+    finished_results_.push_back({sweep.status, std::move(sweep.result), positions.position_frame()});
   }
   whole->mapped_recording.sweeps.clear();
   whole->health = whole->findings.health;

@@ -48,7 +48,7 @@ void visit_sensor_errors(Visit& visit, Errors& known) {
 template <class Visit, class Lidar>
 void visit_lidar(Visit& visit, Lidar& lidar) {
   visit("T_IL", lidar.calibration.T_IL);
-  visit("time_offset_s", lidar.calibration.time_offset_s);
+  visit("time_offset_s", lidar.calibration.imu_minus_lidar_clock_s);
   visit("mount_sigma_rad", lidar.mount_sigma_rad);
   visit("mount_sigma_m", lidar.mount_sigma_m);
   visit("time_offset_sigma_s", lidar.time_offset_sigma_s);
@@ -98,7 +98,7 @@ void set_prior_pose(const PoseState& pose, PriorMap& map) {
   Eigen::Isometry3d T_MI = Eigen::Isometry3d::Identity();
   T_MI.linear() = pose.orientation_W.toRotationMatrix();
   T_MI.translation() = pose.position_W_m;
-  map.T_MI = T_MI;
+  map.start_T_MI = T_MI;
   map.start_position_sigma_m = std::sqrt(pose.covariance.diagonal().head<3>().maxCoeff());
   map.start_heading_sigma_rad = std::sqrt(pose.covariance(5, 5));
 }
@@ -139,7 +139,7 @@ std::vector<std::byte> TumblingOdometry::Impl::save() const {
   if (out.rig && !check_body_imu_calibration(*out.rig).ok()) out.rig.reset();
   if (whole_recording_result_ && estimated) out.sensor_errors = whole_recording_result_->report.rate.sensor_errors;
   if (!whole_recording_result_ && (state.sensor_errors.front().accel_delay_state.delay_found || used.calibrated_errors))
-    out.sensor_errors = stream.sensor_errors(state);
+    out.sensor_errors = stream.sensor_errors_except_biases(state);
   out.saturation_levels = saturation_levels();
   const auto sigma = mapper().next_lidar_calibration_prior_covariance().diagonal().cwiseSqrt().eval();
   out.lidar = {mapper().lidar_calibration(), sigma.head<3>().maxCoeff(), sigma.segment<3>(3).maxCoeff(), sigma[6]};
@@ -174,7 +174,7 @@ Status TumblingOdometry::Impl::load(std::span<const std::byte> bytes, std::optio
   for (FurtherLidar& further : params.further_lidars)
     further.T_IL = saved.lidar.calibration.T_IL * params.T_IL.inverse() * further.T_IL;
   params.T_IL = saved.lidar.calibration.T_IL;
-  params.expert->mapping.time_offset_s = saved.lidar.calibration.time_offset_s;
+  params.expert->mapping.imu_minus_lidar_clock_s = saved.lidar.calibration.imu_minus_lidar_clock_s;
   params.mount_sigma_rad = saved.lidar.mount_sigma_rad;
   params.mount_sigma_m = saved.lidar.mount_sigma_m;
   params.time_offset_sigma_s = saved.lidar.time_offset_sigma_s;
@@ -185,7 +185,7 @@ Status TumblingOdometry::Impl::load(std::span<const std::byte> bytes, std::optio
   map.extend = saved.extend;
   if (saved.pose) {
     set_prior_pose(*saved.pose, map);
-    fresh->odometry_pass_.set_start_pose(*map.T_MI);
+    fresh->odometry_pass_.set_start_pose(*map.start_T_MI);
   }
   if (check_prior_map(map).ok()) (void)fresh->odometry_pass_.set_prior_map(std::move(map));
   *this = std::move(*fresh);

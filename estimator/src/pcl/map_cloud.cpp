@@ -3,7 +3,7 @@
 
 namespace tumble {
 
-pcl::PointCloud<pcl::PointXYZINormal> to_pcl(std::span<const MapPoint> points) {
+pcl::PointCloud<pcl::PointXYZINormal> to_map_cloud(std::span<const MapPoint> points) {
   pcl::PointCloud<pcl::PointXYZINormal> cloud;
   cloud.reserve(points.size());
   for (const MapPoint& point : points) {
@@ -16,7 +16,7 @@ pcl::PointCloud<pcl::PointXYZINormal> to_pcl(std::span<const MapPoint> points) {
   return cloud;
 }
 
-std::vector<MapPoint> from_pcl(const pcl::PointCloud<pcl::PointXYZINormal>& cloud) {
+std::vector<MapPoint> from_map_cloud(const pcl::PointCloud<pcl::PointXYZINormal>& cloud) {
   std::vector<MapPoint> points;
   points.reserve(cloud.size());
   for (const pcl::PointXYZINormal& in : cloud) {

@@ -21,7 +21,7 @@ void contact_measurement_rows(const Contact& c, ContactMode mode, double node_s,
   if (!may_slip(mode)) {
     for (int axis = 0; axis < 2; ++axis) take(Row(c.measurement_jacobian.row(axis)), -u[axis], variance[axis]);
   }
-  if (mode != ContactMode::bump) take(Row(c.measurement_jacobian.row(2)), -u.z(), variance.z());
+  if (mode != ContactMode::bump_or_flight) take(Row(c.measurement_jacobian.row(2)), -u.z(), variance.z());
   if (const auto lost = velocity_variance_if_lost(node_s, P)) {
     for (int axis = 0; axis < 2; ++axis) take(kVelocity + axis, -v_WI_m_s[axis], *lost);
   }

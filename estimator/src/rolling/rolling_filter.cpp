@@ -187,7 +187,7 @@ void RollingFilter::weigh_modes(State& state) {
     const double weight = std::exp(h.log_weight - state.hypotheses[0].log_weight);
     total += weight;
     if (may_slip(h.mode)) slipping += weight;
-    if (h.mode == ContactMode::bump) hopping += weight;
+    if (h.mode == ContactMode::bump_or_flight) hopping += weight;
   }
   state.slip_probability = slipping / total;
   state.bump_probability = hopping / total;
@@ -238,7 +238,7 @@ ContactMode RollingFilter::most_probable_mode(const State& state) {
   const bool event = state.slip_probability >= kEventProbability;
   if (event == may_slip(state.mode)) return state.mode;
   if (!event) return ContactMode::grip;
-  return 2.0 * state.bump_probability > state.slip_probability ? ContactMode::bump : ContactMode::slip;
+  return 2.0 * state.bump_probability > state.slip_probability ? ContactMode::bump_or_flight : ContactMode::slip;
 }
 
 RollingCalibration RollingFilter::calibration(const State& state) {

@@ -45,8 +45,8 @@ constexpr std::size_t kMinDissentingHypotheses = 6;
 constexpr double kRoughCost = 0.2;
 // The start of a ramp is detected as a bump, so a transition to a slope is more probable after a bump.
 constexpr double kInclineAfterBump = 4.0;
-constexpr ContactMode kModes[] = {ContactMode::grip, ContactMode::slip, ContactMode::bump, ContactMode::incline,
-                                  ContactMode::rough};
+constexpr ContactMode kModes[] = {ContactMode::grip, ContactMode::slip, ContactMode::bump_or_flight,
+                                  ContactMode::incline, ContactMode::rough};
 static_assert(std::size(kModes) == kContactModes);
 
 double gaussian_log_density(double value, double variance) {
@@ -110,7 +110,7 @@ double log_likelihood_moving(const rolling::Contact& c, const RollingFilter::Hyp
                              const Eigen::Vector3d& u) {
   const Eigen::Vector3d change = u - h.contact_velocity_W_m_s;
   const double horizontal = log_normalised_square(change.head<2>().squaredNorm());
-  if (mode == ContactMode::bump) return horizontal + log_floor_rise(change.z());
+  if (mode == ContactMode::bump_or_flight) return horizontal + log_floor_rise(change.z());
   const double check_gravity_direction =
       c.measurement_jacobian.row(2) * h.covariance * c.measurement_jacobian.row(2).transpose() +
       squared(RollingContactParams::kVerticalSigma_m_s);
@@ -122,11 +122,11 @@ double log_transition(const RollingParams& params, ContactMode from, ContactMode
   const auto& modes = params.expert.modes;
   const auto rate = [&](ContactMode a, ContactMode b) {
     if (b == ContactMode::incline) {
-      return modes.incline_begins_per_s * (a == ContactMode::bump ? kInclineAfterBump : 1.0);
+      return modes.incline_begins_per_s * (a == ContactMode::bump_or_flight ? kInclineAfterBump : 1.0);
     }
     if (b == ContactMode::rough) return kRoughBeginsPerS;
-    if (b == ContactMode::slip) return a == ContactMode::bump ? kSlipBumpPerS : modes.slip_begins_per_s;
-    if (b == ContactMode::bump) return a == ContactMode::slip ? kSlipBumpPerS : modes.bump_begins_per_s;
+    if (b == ContactMode::slip) return a == ContactMode::bump_or_flight ? kSlipBumpPerS : modes.slip_begins_per_s;
+    if (b == ContactMode::bump_or_flight) return a == ContactMode::slip ? kSlipBumpPerS : modes.bump_begins_per_s;
     if (a == ContactMode::incline) return kInclineEndsPerS;
     if (a == ContactMode::rough) return kRoughEndsPerS;
     return a == ContactMode::slip ? modes.kSlipEndsPerS : modes.kBumpEndsPerS;
@@ -163,8 +163,9 @@ std::span<const ModeCandidate> propose_mode_changes(const RollingParams& params,
       double likelihood = 0.0;  // a data gap gives no evidence for a contact mode
       if (!in_gap)
         likelihood = may_slip(mode) ? log_likelihood_moving(c, h, mode, u) : log_likelihood_stationary(c, h, mode);
-      const double impact =
-          mode == ContactMode::bump ? 0.0 : state.node_integrals.unexplained_impact_m_s / kUnexplainedImpact_m_s;
+      const double impact = mode == ContactMode::bump_or_flight
+                                ? 0.0
+                                : state.node_integrals.unexplained_impact_m_s / kUnexplainedImpact_m_s;
       out[total++] = {h.log_weight + log_transition(params, h.mode, mode, node_s) + likelihood - impact, parent, mode,
                       mode == h.mode ? h.first_step_of_mode : state.step_count};
     }

@@ -71,7 +71,7 @@ class Tumble(Shown):
     """Results of TumblingOdometry for one recording."""
 
     poses: _tumble.Poses  #: final (smoothed) poses of the IMU, at its samples within sweeps
-    sweeps: list[_tumble.SweepReport]  #: reports of the sweeps that have poses, in order of registration
+    sweeps: list[_tumble.SweepResult]  #: results of the sweeps that have poses, in order of registration
     refused: list[str]  #: error messages of the sweeps without poses
     map: _tumble.MapPoints  #: map within mapping_map_radius_m of the sensor
     odometry: _tumble.TumblingOdometry  #: the estimator, with its calibration: body_imu_calibration(), lidar_calibration()
@@ -137,11 +137,11 @@ def tumbling(recording: Recording, on_sample: Callable[[_tumble.TumblingOdometry
         add_until(len(imu))
     odometry.finish()
     done += odometry.take_all()
-    placed = [sweep.report for sweep in done if sweep.placed]
+    placed = [sweep.result for sweep in done if sweep.placed]
     if whole:
-        final = [report.trajectory for report in placed]
+        final = [result.trajectory for result in placed]
     else:
-        final = [*(report.final_poses_of_earlier_sweep for report in placed if len(report.final_poses_of_earlier_sweep) > 0), odometry.window_trajectory()]
+        final = [*(result.final_poses_of_earlier_sweep for result in placed if len(result.final_poses_of_earlier_sweep) > 0), odometry.window_trajectory()]
     return Tumble(poses=_tumble.Poses.joined(final), sweeps=placed,
                   refused=[sweep.message for sweep in done if not sweep.placed], map=odometry.map(), odometry=odometry)
 

@@ -71,13 +71,13 @@ class Publisher {
 
 /// Converts a pose of the IMU to the odometry of the base frame. `rate` contains the angular velocity and its
 /// covariance. The velocity includes the rotation of the lever arm from the IMU to the base.
-/// @param velocity_covariance_I_m2_s2  covariance of the velocity in IMU axes (SweepReport)
+/// @param velocity_covariance_I_m2_s2  covariance of the velocity in IMU axes (SweepResult)
 /// @param T_IB                         pose of the base in IMU axes
 Odometry base_odometry(const PoseState& imu, const Eigen::Matrix3d& velocity_covariance_I_m2_s2,
                        const AngularRateState& rate, const Eigen::Isometry3d& T_IB);
 
 /// Transforms the points of a sweep to lidar axes at the end of the sweep.
-/// @param trajectory    poses of the IMU within the sweep, in order of time (SweepReport::trajectory)
+/// @param trajectory    poses of the IMU within the sweep, in order of time (SweepResult::trajectory)
 /// @param T_IL          pose of the lidar in IMU axes
 /// @param start_ns      start of the sweep, in the clock of the trajectory
 /// Cost: O(points). Between poses, the rotation rate and the velocity are constant.

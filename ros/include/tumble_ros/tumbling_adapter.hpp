@@ -56,7 +56,7 @@ class TumblingAdapter {
   /// Processes a CustomMsg of a Livox driver, in CDR. Returns the status of LivoxCloud::parse() or of on_cloud().
   Status on_livox(std::span<const std::uint8_t> cdr);
   /// Processes the position of the antenna, with its covariance, in a frame with z up. Returns the status of
-  /// TumblingOdometry::add_position().
+  /// TumblingOdometry::add_frame_alignment_position().
   Status on_position(TimeNs stamp_ns, const Eigen::Vector3d& position_m, const Eigen::Matrix3d& covariance_m2);
   /// Registers and publishes the sweeps that wait for later samples, at the end of a recording.
   void finish();
@@ -80,7 +80,7 @@ class TumblingAdapter {
   Status add_sweep(TimedSweep sweep);
   void publish_rate();
   void publish_sweeps();
-  void publish_points(const SweepReport& report);
+  void publish_points(const SweepResult& report);
   void publish_newest();
   void publish_diagnostics();
   const AngularRateState& rate_at(TimeNs time_ns) const;
@@ -94,7 +94,7 @@ class TumblingAdapter {
   std::deque<AngularRateState> rates_;  ///< smoothed rates of the last seconds
   std::deque<TimedSweep> early_;        ///< sweeps that wait for IMU samples
   std::deque<TimedSweep> sweeps_;       ///< sweeps that wait for their poses
-  std::optional<SweepReport> last_;     ///< newest registered sweep, without its trajectory
+  std::optional<SweepResult> last_;     ///< newest registered sweep, without its trajectory
   Rejections imu_, clouds_, positions_;
   Schedule map_, diagnostics_;
 };

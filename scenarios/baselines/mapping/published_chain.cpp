@@ -137,7 +137,7 @@ bool PublishedChain::covers(const Sweep& sweep) const {
   return samples_.back().time_ns >= sweep.end_ns && samples_.front().time_ns <= sweep.end_ns;
 }
 
-Status PublishedChain::add(const Sweep& sweep, SweepReport& report) {
+Status PublishedChain::add(const Sweep& sweep, SweepResult& report) {
   for (const LidarPoint& point : sweep.points) {
     if (point.offset_ns <= sweep.end_ns - sweep.start_ns) continue;
     return {ErrorCode::out_of_range, "offset_ns", double(point.offset_ns), double(sweep.end_ns - sweep.start_ns)};
@@ -158,9 +158,9 @@ std::vector<MapPoint> PublishedChain::map() const {
 }
 
 bool PublishedChain::registers(const Sweep& sweep, TimeNs at_ns, std::span<const TrimmedIcp::Point> points,
-                               SweepReport& report) {
-  report.points_used = sweep.points.size();
-  report.points_registered = points.size();
+                               SweepResult& report) {
+  report.usable_points = sweep.points.size();
+  report.points_after_downsampling = points.size();
   if (dead_ || points.empty()) return false;
   const Eigen::Isometry3d in_odom = odometry_.pose(at_ns) * params_.T_IL;
   Eigen::Isometry3d T = T_map_odom_ * in_odom;
@@ -181,7 +181,7 @@ bool PublishedChain::registers(const Sweep& sweep, TimeNs at_ns, std::span<const
 }
 
 void PublishedChain::extend(std::span<const TrimmedIcp::Point> points, const Eigen::Isometry3d& T_WL,
-                            SweepReport& report) {
+                            SweepResult& report) {
   const Eigen::Isometry3f move = T_WL.cast<float>();
   const auto spacing_m = static_cast<float>(params_.map_spacing_m);
   std::vector<std::uint32_t> fresh;
@@ -198,7 +198,7 @@ void PublishedChain::extend(std::span<const TrimmedIcp::Point> points, const Eig
   icp_.forget_normals();
 }
 
-void PublishedChain::report_poses(const Sweep& sweep, SweepReport& report) {
+void PublishedChain::report_poses(const Sweep& sweep, SweepResult& report) {
   const auto at = [&](TimeNs time_ns) {
     return pose_state(T_map_odom_ * odometry_.pose(time_ns), T_map_odom_.linear() * odometry_.velocity_m_s(time_ns),
                       time_ns);

@@ -77,7 +77,7 @@ class PublishedChain {
             {"range_sigma_ratio", "1", 0.0, 1.0, "standard deviation of a range, as a share of the range"});
     }
   };
-  using SweepReport = LidarInertialOdometry::SweepReport;
+  using SweepResult = LidarInertialOdometry::SweepResult;
 
   struct Sweep {
     TimeNs start_ns = 0, end_ns = 0;
@@ -91,13 +91,13 @@ class PublishedChain {
   bool covers(const Sweep& sweep) const;
   /// Sweeps must be added in order of time, and `covers(sweep)` must be true. Returns `empty`, `degenerate` (all points
   /// have one time stamp) or `insufficient_data` (too few points in range) if the sweep cannot be registered.
-  Status add(const Sweep& sweep, SweepReport& report);
+  Status add(const Sweep& sweep, SweepResult& report);
   std::vector<MapPoint> map() const;
 
  private:
-  bool registers(const Sweep& sweep, TimeNs at_ns, std::span<const TrimmedIcp::Point> points, SweepReport& report);
-  void extend(std::span<const TrimmedIcp::Point> points, const Eigen::Isometry3d& T_WL, SweepReport& report);
-  void report_poses(const Sweep& sweep, SweepReport& report);
+  bool registers(const Sweep& sweep, TimeNs at_ns, std::span<const TrimmedIcp::Point> points, SweepResult& report);
+  void extend(std::span<const TrimmedIcp::Point> points, const Eigen::Isometry3d& T_WL, SweepResult& report);
+  void report_poses(const Sweep& sweep, SweepResult& report);
   void feed_back(TimeNs at_ns);
 
   Params params_;

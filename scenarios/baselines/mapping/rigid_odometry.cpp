@@ -10,7 +10,7 @@ namespace tumble::baselines {
 
 namespace {
 
-using SweepReport = LidarInertialOdometry::SweepReport;
+using SweepResult = LidarInertialOdometry::SweepResult;
 
 Eigen::Isometry3d pose_of(const MotionState& state) {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
@@ -25,8 +25,8 @@ RigidOdometry::RigidOdometry(const Params& params)
     : params_(params), map_({params.map_voxel_m, params.map_spacing_m}), registration_(params.registration) {}
 
 Status RigidOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
-                                const Motion& motion, SweepReport& report) {
-  report = SweepReport{};
+                                const Motion& motion, SweepResult& report) {
+  report = SweepResult{};
   if (end_ns < start_ns) return {ErrorCode::time_order, "end_ns", double(end_ns), double(start_ns)};
   if (motion.start.time_ns > start_ns) {
     return {ErrorCode::time_order, "motion.start", double(motion.start.time_ns), double(start_ns)};
@@ -44,7 +44,7 @@ Status RigidOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const 
   const PointSelectionBounds bounds{params_.range_min_m, params_.range_max_m, params_.own_body_L};
   const PointCounts counts =
       select_points(points, bounds, params_.T_IL, seconds(start_ns - motion.start.time_ns), points_);
-  report.points_used = counts.usable_points;
+  report.usable_points = counts.usable_points;
   const Status status = mapping::check_point_selection(end_ns - start_ns, points, counts);
   if (status.ok()) {
     deskew(trajectory, points_, trajectory.duration_s(), positions_m_);
@@ -67,12 +67,12 @@ void RigidOdometry::place(const Eigen::Isometry3d& T_WI) {
   for (std::size_t i = 0; i < points_.size(); ++i) positions_m_[i] = T * points_[i].x_I_m;
 }
 
-void RigidOdometry::register_points(SweepReport& report) {
+void RigidOdometry::register_points(SweepResult& report) {
   place(pose_of(predicted_));
   sampler_.choose_points_per_voxel(positions_m_, params_.sweep_voxel_m, chosen_index_);
   chosen_.clear();
   for (const std::uint32_t index : chosen_index_) chosen_.push_back(points_[index]);
-  report.points_registered = chosen_.size();
+  report.points_after_downsampling = chosen_.size();
 
   // The points are already deskewed to the end of the sweep, so the registration gets one constant pose as trajectory.
   MotionSample instant;
@@ -98,7 +98,7 @@ void RigidOdometry::register_points(SweepReport& report) {
                                                                                  : SweepVerdict::registered;
 }
 
-void RigidOdometry::extend_map(bool has_ring_numbers, SweepReport& report) {
+void RigidOdometry::extend_map(bool has_ring_numbers, SweepResult& report) {
   const Eigen::Isometry3d T_WI = pose_of(state_);
   place(T_WI);
   const std::uint32_t base =
@@ -111,7 +111,7 @@ void RigidOdometry::extend_map(bool has_ring_numbers, SweepReport& report) {
   ++sweeps_;
 }
 
-void RigidOdometry::describe(const SweepTrajectory& trajectory, SweepReport& report) const {
+void RigidOdometry::describe(const SweepTrajectory& trajectory, SweepResult& report) const {
   const Eigen::Isometry3d correction = pose_of(state_) * pose_of(predicted_).inverse(Eigen::Isometry);
   const Eigen::Quaterniond turned(correction.linear());
   const Eigen::Vector3d faster = state_.v_WI_m_s - turned * predicted_.v_WI_m_s;

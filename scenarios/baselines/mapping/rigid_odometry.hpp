@@ -43,15 +43,15 @@ class RigidOdometry {
   explicit RigidOdometry(const Params& params);
 
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, const Motion& motion,
-                   LidarInertialOdometry::SweepReport& report);
+                   LidarInertialOdometry::SweepResult& report);
 
   const MotionState& state() const { return state_; }
 
  private:
   void place(const Eigen::Isometry3d& T_WI);
-  void register_points(LidarInertialOdometry::SweepReport& report);
-  void extend_map(bool has_ring_numbers, LidarInertialOdometry::SweepReport& report);
-  void describe(const SweepTrajectory& trajectory, LidarInertialOdometry::SweepReport& report) const;
+  void register_points(LidarInertialOdometry::SweepResult& report);
+  void extend_map(bool has_ring_numbers, LidarInertialOdometry::SweepResult& report);
+  void describe(const SweepTrajectory& trajectory, LidarInertialOdometry::SweepResult& report) const;
 
   Params params_;
   MotionState predicted_, state_;

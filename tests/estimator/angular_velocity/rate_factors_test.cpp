@@ -138,7 +138,7 @@ TEST(RateFactors, AScaleOfTheGyroShowsByTheAccelerationAlone) {
           flight_force_factor(scaled, other, body.specific_force(t, rig.lever_arm_m)).residual;
       EXPECT_LT((force_status + k * a.cross(rig.lever_arm_m)).norm(), 1e-9 + 1.1 * k * k * a.norm() * 0.11);
       const Vector3d of_torque = euler_equation_factor(scaled, other).residual;
-      EXPECT_LT((of_torque + k * (rig.inertia_matrix() - Eigen::Matrix3d::Identity()) * a).norm(), 1e-9);
+      EXPECT_LT((of_torque + k * (rig.inertia_matrix_with_trace_3() - Eigen::Matrix3d::Identity()) * a).norm(), 1e-9);
       if (start.x() == 0.0) {
         EXPECT_LT(force_status.norm() + of_torque.norm(), 1e-9);
       } else {
@@ -155,14 +155,14 @@ TEST(BodyImuConstants, InertiaIsFreeOfScaleAndItsCoordinatesComeBack) {
   J << 3.0, 0.1, -0.2, 0.1, 2.5, 0.3, -0.2, 0.3, 2.0;
   BodyImuConstants rig;
   rig.inertia_coordinates = BodyImuConstants::inertia_basis_coordinates(J);
-  EXPECT_LT((rig.inertia_matrix() - 3.0 / J.trace() * J).norm(), 1e-14);
+  EXPECT_LT((rig.inertia_matrix_with_trace_3() - 3.0 / J.trace() * J).norm(), 1e-14);
   EXPECT_LT((BodyImuConstants::inertia_basis_coordinates(7.0 * J) - rig.inertia_coordinates).norm(), 1e-14);
-  EXPECT_EQ(BodyImuConstants{}.inertia_matrix(), Eigen::Matrix3d::Identity());
+  EXPECT_EQ(BodyImuConstants{}.inertia_matrix_with_trace_3(), Eigen::Matrix3d::Identity());
 }
 
 // Returns the rotation without torque after some time, at fourth order in small steps.
 AngularRateKnot turned(AngularRateKnot knot, const BodyImuConstants& rig, double time_s) {
-  const Eigen::Matrix3d J = rig.inertia_matrix();
+  const Eigen::Matrix3d J = rig.inertia_matrix_with_trace_3();
   const auto slope = [&](const Vector3d& w) -> Vector3d { return -J.inverse() * w.cross(Vector3d(J * w)); };
   constexpr int kSteps = 20;
   const double h = time_s / kSteps;

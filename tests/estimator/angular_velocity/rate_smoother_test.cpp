@@ -52,7 +52,7 @@ TEST(AngularRateSmoother, RecoversTumblesWithTheLeverArmOffByTwentyMillimetres) 
     EXPECT_LT(ours.maximum, 6.0) << seed;
     const Vector3d lever_error = run.report.calibration.constants.lever_arm_m - options.lever_arm_m;
     EXPECT_LT(lever_error.norm(), 0.5e-3) << seed;  // measured below 0.1 mm
-    const Eigen::Matrix3d inertia = run.report.calibration.constants.inertia_matrix();
+    const Eigen::Matrix3d inertia = run.report.calibration.constants.inertia_matrix_with_trace_3();
     const Vector3d moments = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia).eigenvalues();
     EXPECT_LT((moments - 3.0 / options.moments.sum() * options.moments).norm(), 0.02) << seed;
     EXPECT_EQ(run.report.saturation_limits[0].value_or(0.0), 10.5);

@@ -130,7 +130,7 @@ TEST(AngularRateStreamDelay, IsThatOfTheBatch) {
     (void)streamed_rates(method, late.samples, state);
     if (!state.sensor_errors.front().accel_delay_state.delay_found) continue;
     ++found;
-    const KnownSensorErrors errors = method.sensor_errors(state);
+    const KnownSensorErrors errors = method.sensor_errors_except_biases(state);
     const double sigma_s = std::sqrt(errors.covariance(SensorErrors::kDelay, SensorErrors::kDelay));
     std::vector<AngularRateState> states;
     AngularRateReport report;
@@ -154,7 +154,7 @@ TEST(AngularRateStreamDelay, IsNotFoundWhereThereIsNone) {
       ASSERT_TRUE(method.push(sample, state, one).ok());
       ASSERT_FALSE(state.sensor_errors.front().accel_delay_state.delay_found) << seed;
     }
-    EXPECT_EQ(method.sensor_errors(state).errors.accel_delay_s, 0.0);
+    EXPECT_EQ(method.sensor_errors_except_biases(state).errors.accel_delay_s, 0.0);
     AngularRateStream::State other = believes.start();
     (void)streamed_rates(believes, long_late_tumble(seed, 1).samples, other);
     EXPECT_FALSE(other.sensor_errors.front().accel_delay_state.delay_found) << seed;
@@ -195,7 +195,7 @@ TEST(AngularRateStreamDelay, OnceFoundTheNextRunIsAsGoodAsInTime) {
     if (!state.sensor_errors.front().accel_delay_state.delay_found) continue;
     ++found;
     auto next = looking();
-    next.calibrated_errors = std::make_shared<KnownSensorErrors>(method.sensor_errors(state));
+    next.calibrated_errors = std::make_shared<KnownSensorErrors>(method.sensor_errors_except_biases(state));
     const auto run = [](const AngularRateStream::Params& params, const TumbleRecording& recording) {
       const AngularRateStream stream(params);
       AngularRateStream::State fresh = stream.start();

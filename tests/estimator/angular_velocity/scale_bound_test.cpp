@@ -43,7 +43,7 @@ ScaleInformation scale_information(std::uint64_t seed, const Vector3d& moments) 
   SensorErrors scale;
   scale.gyro.setIdentity();
   ScaleInformation out{scale.vector().dot(moved.sensor_error_evidence.information * scale.vector()), 0.0};
-  const Matrix3d J = solution.rig.inertia_matrix();
+  const Matrix3d J = solution.rig.inertia_matrix_with_trace_3();
   const AngularRateModelParams& p = params.model;
   const std::vector<AngularRateEstimate>& estimates = solution.estimates;
   for (std::size_t k = 0; k < estimates.size(); ++k) {

@@ -110,7 +110,7 @@ TEST(SampleClock, ReportsTheJitterAndRepairsNoneThatItMustKeep) {
   ASSERT_TRUE(correct_stamps(SampleClock({}), mended_ns, corrected_jitter_s).ok());
   EXPECT_NEAR(corrected_jitter_s, 5e-4, 1e-4);
   EXPECT_NE(mended_ns, stamps_ns);
-  EXPECT_EQ(times_of(stamps_ns, {.jitter_max = 0.0}), stamps_ns);
+  EXPECT_EQ(times_of(stamps_ns, {.correctable_jitter_max_periods = 0.0}), stamps_ns);
 }
 
 TEST(SampleClock, LeavesASensorWithoutAPeriod) {
@@ -202,7 +202,7 @@ TEST(SampleClock, RefusesAStampThatIsNotLater) {
   SampleClock::State state;
   TimeNs time_ns = 0;
   for (const TimeNs stamp_ns : jittered(regular(100, 1e7), 1e6)) ASSERT_TRUE(clock.push(stamp_ns, state, time_ns).ok());
-  const TimeNs last_ns = *state.stamp_ns, given_ns = time_ns;
+  const TimeNs last_ns = *state.last_stamp_ns, given_ns = time_ns;
   for (const TimeNs stamp_ns : {last_ns, last_ns - 1, TimeNs{0}}) {
     const Status status = clock.push(stamp_ns, state, time_ns);
     EXPECT_EQ(status.error_code, ErrorCode::time_order);
@@ -214,8 +214,8 @@ TEST(SampleClock, RefusesAStampThatIsNotLater) {
 }
 
 TEST(SampleClock, RefusesParametersBeyondTheirBounds) {
-  EXPECT_THROW(SampleClock({.jitter_max = -0.1}), InvalidParams);
-  EXPECT_THROW(SampleClock({.jitter_max = 0.5}), InvalidParams);
+  EXPECT_THROW(SampleClock({.correctable_jitter_max_periods = -0.1}), InvalidParams);
+  EXPECT_THROW(SampleClock({.correctable_jitter_max_periods = 0.5}), InvalidParams);
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ TEST(LidarImuCalibrationPrior, CountsTheLargestOfTurnShiftAndDelayInItsDeviation
   EXPECT_NEAR(kGiven.distance_in_sigmas(learnt), 3.0, 1e-9);
   learnt.T_IL.translation() = Eigen::Vector3d(0.0, -0.006, 0.008);
   EXPECT_NEAR(kGiven.distance_in_sigmas(learnt), 5.0, 1e-9);
-  learnt.time_offset_s = -0.018;
+  learnt.imu_minus_lidar_clock_s = -0.018;
   EXPECT_NEAR(kGiven.distance_in_sigmas(learnt), 6.0, 1e-9);
   learnt = {};
   learnt.gravity_W_m_s2 = Eigen::Vector3d(1.0, 0.0, -9.7);  // differs in each run

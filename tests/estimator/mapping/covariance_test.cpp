@@ -71,7 +71,7 @@ double nees_of_run(int run) {
   std::vector<ImuSample> imu = test::make_imu(motion, 0.1 * kSweepsOfRun);
   BelievedImu believed(params, static_cast<std::uint64_t>(run));
   const Eigen::Vector3d bias = believed.accel_bias_m_s2();
-  Odometry::SweepReport report;
+  Odometry::SweepResult report;
   for (int k = 0; k < kSweepsOfRun; ++k) {
     const std::span<ImuSample> sweep =
         std::span(imu).subspan(static_cast<std::size_t>(k * kSamplesPerSweep), kSamplesPerSweep);
@@ -120,7 +120,7 @@ double deviations_after_a_knock(std::uint8_t flags, double noise_m) {
   std::vector<ImuSample> imu = test::make_imu(still, 0.1 * kEnd);
   imu[kKnocked].specific_force_m_s2.x() -= 100.0;
   imu[kKnocked].device_clip_flags = flags;
-  Odometry::SweepReport report;
+  Odometry::SweepResult report;
   for (int k = 0; k < kEnd; ++k) {
     for (int j = k * kSamplesPerSweep; j < (k + 1) * kSamplesPerSweep; ++j) {
       const ImuSample& sample = imu[static_cast<std::size_t>(j)];

@@ -99,7 +99,7 @@ Followed over_a_gap(LidarInertialOdometry::Params params, int first, int missing
     const ImuSample& sample = room.imu[static_cast<std::size_t>(k)];
     EXPECT_TRUE(odometry.add_imu(sample, test::believe(sample)).ok());
     for (; (next + 1) * test::kSweep_ns <= sample.time_ns; ++next) {
-      LidarInertialOdometry::SweepReport report;
+      LidarInertialOdometry::SweepResult report;
       EXPECT_TRUE(test::add_sweep(odometry, next, room.sweeps[static_cast<std::size_t>(next)], report).ok());
       if ((next + 1) * test::kSamplesPerSweep <= first) continue;
       const double t_s = 1e-9 * static_cast<double>(report.pose.time_ns);

@@ -98,7 +98,7 @@ TEST(LidarInertialOdometry, RestartsBitByBitFromACopy) {
     }
   }
   for (int i = 9; i < 13; ++i) {
-    Odometry::SweepReport a, b, c;
+    Odometry::SweepResult a, b, c;
     ASSERT_TRUE(add_sweep(whole, i, test::room_tumble().sweeps[static_cast<std::size_t>(i)], a).ok());
     ASSERT_TRUE(add_sweep(copy, i, test::room_tumble().sweeps[static_cast<std::size_t>(i)], b).ok());
     ASSERT_TRUE(add_sweep(assigned, i, test::room_tumble().sweeps[static_cast<std::size_t>(i)], c).ok());
@@ -119,7 +119,7 @@ TEST(LidarInertialOdometry, SaysThatAFloorAloneDoesNotHoldIt) {
     feed_imu(odometry, i);
     const auto points = test::make_sweep(test::Room::floor_only(), test::room_tumble().motion, rig_params().T_IL, i,
                                          test::kRoomNoise_m);
-    Odometry::SweepReport report;
+    Odometry::SweepResult report;
     ASSERT_TRUE(add_sweep(odometry, i, points, report).ok());
     EXPECT_NE(report.verdict, SweepVerdict::registered) << "sweep " << i << " conditioning " << report.eigenvalue_ratio;
     if (report.verdict != SweepVerdict::degenerate || report.eigenvalue_ratio == 0.0) continue;
@@ -148,7 +148,7 @@ TEST(LidarInertialOdometry, AnExactlyDegenerateAlignmentCounts) {
   Odometry::Params params;
   params.T_IL.setIdentity();
   Odometry odometry(params);
-  Odometry::SweepReport report;
+  Odometry::SweepResult report;
   for (int sweep = 0; sweep < 2; ++sweep) {
     for (int k = sweep * kSamplesPerSweep; k < (sweep + 1) * kSamplesPerSweep; ++k) {
       ImuSample sample;
@@ -178,7 +178,7 @@ TEST(LidarInertialOdometry, LevelsAtRest) {
     sample.specific_force_m_s2 = q_true.conjugate() * Eigen::Vector3d(0, 0, 9.80665);
     ASSERT_TRUE(odometry.add_imu(sample, test::believe(sample)).ok());
   }
-  Odometry::SweepReport report;
+  Odometry::SweepResult report;
   ASSERT_TRUE(add_sweep(odometry, 0, test::room_tumble().sweeps[0], report).ok());
   EXPECT_LT(so3::logarithm(report.pose.orientation_W * q_true.conjugate()).norm(), 1e-12);
   EXPECT_LT(report.pose.position_W_m.norm(), 1e-12);

@@ -10,8 +10,8 @@
 namespace tumble {
 namespace {
 
-SweepReport sweep(double sigma_m, double innovation, double inlier_ratio = 0.6) {
-  SweepReport report;
+SweepResult sweep(double sigma_m, double innovation, double inlier_ratio = 0.6) {
+  SweepResult report;
   report.verdict = SweepVerdict::registered;
   report.pose.covariance.setZero();
   report.pose.covariance.diagonal().head<3>().setConstant(sigma_m * sigma_m / 3.0);
@@ -20,7 +20,7 @@ SweepReport sweep(double sigma_m, double innovation, double inlier_ratio = 0.6) 
   return report;
 }
 
-Status after(const SweepReport& one) {
+Status after(const SweepResult& one) {
   Localisation localisation(1.0);
   for (int k = 0; k < 100; ++k) localisation.add(sweep(0.1, 0.3));
   localisation.add(one);
@@ -30,7 +30,7 @@ Status after(const SweepReport& one) {
 
 TEST(Localisation, AgreesWithItsDeviationForAnyNumberOfConstrainedSweeps) {
   EXPECT_TRUE(Localisation(1.0).verdict().ok());
-  SweepReport rejected = sweep(0.9, 0.0);
+  SweepResult rejected = sweep(0.9, 0.0);
   rejected.verdict = SweepVerdict::rejected;
   EXPECT_TRUE(after(rejected).ok());
   const Status lost = after(sweep(1.1, 0.0));
@@ -40,11 +40,11 @@ TEST(Localisation, AgreesWithItsDeviationForAnyNumberOfConstrainedSweeps) {
 
 TEST(Localisation, WithoutAMapNothingIsLost) {
   Localisation localisation(1.0);
-  SweepReport empty = sweep(5.0, 0.0);
+  SweepResult empty = sweep(5.0, 0.0);
   empty.verdict = SweepVerdict::rejected;
   for (int k = 0; k < 10; ++k) localisation.add(empty);
   EXPECT_TRUE(localisation.verdict().ok()) << "a lidar that says nothing";
-  SweepReport first = sweep(0.01, 0.0);
+  SweepResult first = sweep(0.01, 0.0);
   first.verdict = SweepVerdict::first;
   localisation.add(first);
   EXPECT_TRUE(localisation.verdict().ok());
@@ -101,7 +101,7 @@ TEST(Localisation, APresentFindingEnds) {
   Localisation localisation(1.0);
   TimeNs time_ns = 0;
   const auto add = [&](double map_sigma_m, double innovation, double world_sigma_m = 0.1) {
-    SweepReport report = sweep(world_sigma_m, innovation);
+    SweepResult report = sweep(world_sigma_m, innovation);
     report.position_in_map_sigma_m = map_sigma_m;
     report.pose.time_ns = time_ns += 100'000'000;
     localisation.add(report);

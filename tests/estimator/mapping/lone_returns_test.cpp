@@ -137,7 +137,7 @@ TEST(LoneReturns, OfATumbleInDustFewStayAndFewGoTooMany) {
 /// The map of a tumble in dust is on the surfaces.
 TEST(LoneReturns, KeepDustOutOfTheMap) {
   LidarInertialOdometry odometry(test::rig_params());
-  LidarInertialOdometry::SweepReport report;
+  LidarInertialOdometry::SweepResult report;
   std::size_t alone = 0;
   for (int sweep = 0; sweep < 26; ++sweep) {
     test::feed_imu(odometry, sweep);

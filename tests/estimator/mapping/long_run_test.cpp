@@ -16,7 +16,7 @@ TEST(LocalMapSoak, StaysFlatOverTenMinutes) {
   const LidarInertialOdometry::Params params = test::corridor_params();
   LidarInertialOdometry odometry(params);
   test::EndlessCorridor corridor(400, kSlowSweep_ns);
-  LidarInertialOdometry::SweepReport report;
+  LidarInertialOdometry::SweepResult report;
   std::size_t bytes_early = 0, bytes_late = 0, points_early = 0, lost = 0;
   for (int k = 0; k < kSweeps; ++k) {
     for (const ImuSample& sample : corridor.advance()) {
@@ -49,7 +49,7 @@ TEST(LocalMapSoak, GrowsWhereItForgetsNothing) {
   params.expert.map.radius_m = 1e4;
   LidarInertialOdometry odometry(params);
   test::EndlessCorridor corridor(400);
-  LidarInertialOdometry::SweepReport report;
+  LidarInertialOdometry::SweepResult report;
   std::size_t bytes_early = 0;
   for (int k = 0; k < 1500; ++k) {
     for (const ImuSample& sample : corridor.advance()) {

@@ -23,7 +23,7 @@ using test::same;
 
 TEST(LidarInertialOdometry, ReportsItsTroublesAndGoesOn) {
   Odometry odometry(rig_params());
-  Odometry::SweepReport report;
+  Odometry::SweepResult report;
   run(odometry, 0, 3);
   const std::vector<LidarPoint>& points = test::room_tumble().sweeps[3];
 
@@ -73,7 +73,7 @@ TEST_P(UselessSweep, KeepsTheInertialPriorAndSaysSo) {
   const std::size_t before = odometry.map().size();
   for (int i = 8; i < 11; ++i) {
     feed_imu(odometry, i);
-    Odometry::SweepReport report;
+    Odometry::SweepResult report;
     const Status status =
         add_sweep(odometry, i, GetParam().make(test::room_tumble().sweeps[static_cast<std::size_t>(i)]), report);
     EXPECT_EQ(status.error_code, GetParam().error_code) << status.message();
@@ -124,19 +124,19 @@ TEST(LidarInertialOdometry, TreatsNanReturnsAsMisses) {
   feed_imu(clean, 0);
   feed_imu(with_nan, 0);
   std::vector<LidarPoint> points = test::room_tumble().sweeps[0];
-  Odometry::SweepReport a, b;
+  Odometry::SweepResult a, b;
   ASSERT_TRUE(add_sweep(clean, 0, points, a).ok());
   LidarPoint miss;
   miss.position_L_m.setConstant(std::numeric_limits<float>::quiet_NaN());
   for (int i = 0; i < 100; ++i) points.insert(points.begin() + 37 * i, miss);
   ASSERT_TRUE(add_sweep(with_nan, 0, points, b).ok());
-  EXPECT_EQ(a.points_used, b.points_used);
+  EXPECT_EQ(a.usable_points, b.usable_points);
   EXPECT_EQ(a.map_points_added, b.map_points_added);
 }
 
 TEST(LidarInertialOdometry, MissingImuIsATroubleNotAGuess) {
   Odometry odometry(rig_params());
-  Odometry::SweepReport report;
+  Odometry::SweepResult report;
   EXPECT_EQ(add_sweep(odometry, 0, test::room_tumble().sweeps[0], report).error_code, ErrorCode::insufficient_data);
   EXPECT_EQ(report.verdict, SweepVerdict::rejected);
   EXPECT_TRUE(odometry.map().empty());

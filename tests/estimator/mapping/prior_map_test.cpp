@@ -116,8 +116,8 @@ TEST(PriorMap, EarlierPosesAreTransformedToTheFrameOfTheMap) {
 TEST(PriorMap, AnApproximateOrAGivenPoseLimitsTheSearch) {
   for (const double error_m : {0.0, 1.5}) {
     RoomRig rig(true_params(), second_motion());
-    PriorMap map{.points = map_of_pillars(), .T_MI = T_MW() * rig.motion.pose(0.0)};
-    map.T_MI->translation() += error_m * Eigen::Vector3d(0.6, -0.8, 0.0);
+    PriorMap map{.points = map_of_pillars(), .start_T_MI = T_MW() * rig.motion.pose(0.0)};
+    map.start_T_MI->translation() += error_m * Eigen::Vector3d(0.6, -0.8, 0.0);
     map.start_position_sigma_m = error_m;
     map.start_heading_sigma_rad = 0.1 * error_m;
     ASSERT_TRUE(rig.odometry.set_prior_map(map).ok());
@@ -131,8 +131,8 @@ TEST(PriorMap, AnApproximateOrAGivenPoseLimitsTheSearch) {
 
 TEST(PriorMap, AWrongGivenPoseIsNotAccepted) {
   RoomRig rig(true_params(), second_motion());
-  PriorMap map{.points = map_of_pillars(), .T_MI = T_MW() * rig.motion.pose(0.0)};
-  map.T_MI->translation() += Eigen::Vector3d(6.0, 0.0, 0.0);
+  PriorMap map{.points = map_of_pillars(), .start_T_MI = T_MW() * rig.motion.pose(0.0)};
+  map.start_T_MI->translation() += Eigen::Vector3d(6.0, 0.0, 0.0);
   ASSERT_TRUE(rig.odometry.set_prior_map(map).ok());
   run_until_localised(rig);
   EXPECT_EQ(rig.odometry.check_localised().error_code, ErrorCode::degenerate);

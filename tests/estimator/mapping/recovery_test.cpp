@@ -40,7 +40,7 @@ void run_miscalibrated(Odometry& odometry, const test::Motion& motion, int sweep
       ASSERT_TRUE(odometry.add_imu(imu[next], test::believe(imu[next])).ok());
       ++next;
     }
-    Odometry::SweepReport report;
+    Odometry::SweepResult report;
     const auto points =
         test::make_sweep(test::Room::box_with_pillars(), motion, true_params().T_IL, k, kRoomNoise_m, kHalfColumns);
     ASSERT_TRUE(odometry.add_sweep(start_ns, start_ns + test::kSweep_ns, points, report).ok());
@@ -70,7 +70,7 @@ TEST(Calibration, FindsMountingAndClock) {
   // the first map was built with the wrong calibration; its calibration result starts a second map
   const auto learnt_sigma = odometry.next_lidar_calibration_prior_covariance().diagonal().cwiseSqrt().eval();
   params.T_IL = odometry.lidar_calibration().T_IL;
-  params.time_offset_s = odometry.lidar_calibration().time_offset_s;
+  params.imu_minus_lidar_clock_s = odometry.lidar_calibration().imu_minus_lidar_clock_s;
   params.mount_sigma_rad = learnt_sigma.head<3>().maxCoeff();
   params.mount_sigma_m = learnt_sigma.segment<3>(3).maxCoeff();
   params.time_offset_sigma_s = learnt_sigma[6];
@@ -78,7 +78,7 @@ TEST(Calibration, FindsMountingAndClock) {
   run_miscalibrated(odometry, turning(), 40);
   LidarImuCalibration truth;
   truth.T_IL = true_params().T_IL;
-  truth.time_offset_s = 0.004;
+  truth.imu_minus_lidar_clock_s = 0.004;
   const auto error = odometry.lidar_calibration().minus(truth);
   const auto sigma = odometry.lidar_calibration_covariance().diagonal().cwiseSqrt().eval();
   // stated: errors of 0.018 rad, 10 mm, 4 ms; measured: 0.0022 rad, 0.4 mm, 0.44 ms
@@ -151,7 +151,7 @@ TEST(Equivariance, ToARotatedMounting) {
   Odometry a(true_params()), b(turned);
   const test::Motion motion = slower();
   const std::vector<ImuSample> imu = test::make_imu(motion, 1.5);
-  Odometry::SweepReport ra, rb;
+  Odometry::SweepResult ra, rb;
   for (int k = 0; k < 12; ++k) {
     for (int j = k * kSamplesPerSweep; j < (k + 1) * kSamplesPerSweep; ++j) {
       ImuSample sample = imu[static_cast<std::size_t>(j)];

@@ -82,7 +82,7 @@ TEST(Registration, DerivativesMatchDifferences) {
         deficit + d.segment<9>(Registration::kFirstDeficitUnknown).reshaped(3, SweepTrajectory::kKnots);
     EXPECT_TRUE(trajectory.build(moved, samples, 1'100'000'000, calibration.gravity_W_m_s2, moved_deficit).ok());
     std::size_t hint = 0;
-    const double t = static_cast<double>(measured.t_s) + calibration.time_offset_s;
+    const double t = static_cast<double>(measured.t_s) + calibration.imu_minus_lidar_clock_s;
     const SweepTrajectory::PreintegratedMotion now = trajectory.at(t, hint);
     SweepPoint point = measured;
     point.x_I_m = x_I.cast<float>();

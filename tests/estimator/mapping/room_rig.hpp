@@ -56,7 +56,7 @@ struct RoomRig {
   }
 
   LidarInertialOdometry odometry;
-  SweepReport report;
+  SweepResult report;
   Motion motion;
   Room room;
   std::vector<ImuSample> imu;

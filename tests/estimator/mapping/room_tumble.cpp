@@ -49,7 +49,7 @@ void feed_imu(Odometry& odometry, int sweep, double rail_rad_s) {
   }
 }
 
-Status add_sweep(Odometry& odometry, int sweep, std::span<const LidarPoint> points, Odometry::SweepReport& report) {
+Status add_sweep(Odometry& odometry, int sweep, std::span<const LidarPoint> points, Odometry::SweepResult& report) {
   return odometry.add_sweep(sweep * kSweep_ns, (sweep + 1) * kSweep_ns, points, report);
 }
 
@@ -61,8 +61,8 @@ PoseError error_of(const PoseState& pose) {
           (pose.velocity_W_m_s - motion.v_m_s(t)).norm()};
 }
 
-std::vector<Odometry::SweepReport> run(Odometry& odometry, int from, int to, double rail_rad_s) {
-  std::vector<Odometry::SweepReport> reports;
+std::vector<Odometry::SweepResult> run(Odometry& odometry, int from, int to, double rail_rad_s) {
+  std::vector<Odometry::SweepResult> reports;
   for (int i = from; i < to; ++i) {
     feed_imu(odometry, i, rail_rad_s);
     const Status status =
@@ -72,7 +72,7 @@ std::vector<Odometry::SweepReport> run(Odometry& odometry, int from, int to, dou
   return reports;
 }
 
-bool same(const Odometry::SweepReport& a, const Odometry::SweepReport& b) {
+bool same(const Odometry::SweepResult& a, const Odometry::SweepResult& b) {
   if (a.verdict != b.verdict || a.trajectory.size() != b.trajectory.size() || a.iterations != b.iterations)
     return false;
   for (std::size_t i = 0; i < a.trajectory.size(); ++i) {

@@ -26,9 +26,9 @@ AngularRateState clipped_rate(const ImuSample& sample, double rail_rad_s);
 /// Adds the IMU samples of one sweep.
 void feed_imu(LidarInertialOdometry& odometry, int sweep, double rail_rad_s = 1e9);
 Status add_sweep(LidarInertialOdometry& odometry, int sweep, std::span<const LidarPoint> points,
-                 LidarInertialOdometry::SweepReport& report);
+                 LidarInertialOdometry::SweepResult& report);
 /// Adds sweeps `from` to `to` - 1 with their samples.
-std::vector<LidarInertialOdometry::SweepReport> run(LidarInertialOdometry& odometry, int from, int to,
+std::vector<LidarInertialOdometry::SweepResult> run(LidarInertialOdometry& odometry, int from, int to,
                                                     double rail_rad_s = 1e9);
 
 struct PoseError {
@@ -37,6 +37,6 @@ struct PoseError {
 PoseError error_of(const PoseState& pose);
 
 /// Compares poses and verdict of the sweep bit for bit.
-bool same(const LidarInertialOdometry::SweepReport& a, const LidarInertialOdometry::SweepReport& b);
+bool same(const LidarInertialOdometry::SweepResult& a, const LidarInertialOdometry::SweepResult& b);
 
 }  // namespace tumble::test

@@ -15,7 +15,7 @@ constexpr double kGravity = 9.80665;
 
 struct Flight {
   std::vector<ImuSample> samples;
-  std::vector<SweepReport> sweeps;
+  std::vector<SweepResult> sweeps;
 };
 
 // Returns hops of 0.8 s, spinning about the vertical: a parabola each, with p in closed form; sweeps of 0.1 s.
@@ -24,7 +24,7 @@ Flight hops(double scale, double noise_m) {
   constexpr int kHop = 80;
   oracles::Gaussian noise(11);
   Flight out;
-  SweepReport sweep;
+  SweepResult sweep;
   for (int k = 0; k <= 400; ++k) {
     const double t_s = kDt_s * k, in_hop_s = kDt_s * (k % kHop);
     ImuSample sample;
@@ -64,7 +64,7 @@ TEST(LidarScale, IsReportedWhileSweepsCome) {
     const Flight flight = hops(scale, 0.005);
     LidarScaleEstimator watch(kGravity, 200);
     std::size_t next = 0;
-    for (const SweepReport& sweep : flight.sweeps) {
+    for (const SweepResult& sweep : flight.sweeps) {
       for (; next < flight.samples.size() && flight.samples[next].time_ns <= sweep.pose.time_ns; ++next)
         watch.add(flight.samples[next]);
       watch.add(sweep);
@@ -81,7 +81,7 @@ TEST(LidarScale, ALidarThatIsSilentForTooLongIsNotCompared) {
   const Flight flight = hops(1.1, 0.005);
   LidarScaleEstimator watch(kGravity, 50);
   std::size_t next = 0;
-  for (const SweepReport& sweep : flight.sweeps) {
+  for (const SweepResult& sweep : flight.sweeps) {
     for (; next < flight.samples.size() && flight.samples[next].time_ns <= sweep.pose.time_ns; ++next)
       watch.add(flight.samples[next]);
     watch.add(sweep);
@@ -132,13 +132,13 @@ TEST(LidarScale, AFindingEndsAMinuteAfterItsCause) {
   const Flight flight = hops(1.1, 0.005);
   LidarScaleEstimator watch(kGravity, 200);
   std::size_t next = 0;
-  for (const SweepReport& sweep : flight.sweeps) {
+  for (const SweepResult& sweep : flight.sweeps) {
     for (; next < flight.samples.size() && flight.samples[next].time_ns <= sweep.pose.time_ns; ++next)
       watch.add(flight.samples[next]);
     watch.add(sweep);
   }
   ASSERT_FALSE(watch.scale().verdict().ok());
-  SweepReport later = flight.sweeps.back();
+  SweepResult later = flight.sweeps.back();
   for (int k = 0; k < 56; ++k) {  // afterwards, fewer than four separate changes are left
     later.pose.time_ns += 1'000'000'000;
     watch.add(later);

@@ -69,8 +69,8 @@ struct Drive {
   }
 
   Odometry odometry;
-  Odometry::SweepReport report;
-  std::vector<Odometry::SweepReport> reports;
+  Odometry::SweepResult report;
+  std::vector<Odometry::SweepResult> reports;
   test::Motion motion;
   std::vector<ImuSample> imu = test::make_imu(motion, 3.0);
 };
@@ -112,7 +112,7 @@ TEST(Window, SettledAndOpenSweepsAreTheWholeTrajectory) {
   Drive run(params);
   run.sweeps(0, 12);
   std::vector<PoseState> all;
-  for (const Odometry::SweepReport& report : run.reports) {
+  for (const Odometry::SweepResult& report : run.reports) {
     all.insert(all.end(), report.final_poses_of_earlier_sweep.begin(), report.final_poses_of_earlier_sweep.end());
   }
   EXPECT_EQ(all.back().time_ns, 9 * test::kSweep_ns);

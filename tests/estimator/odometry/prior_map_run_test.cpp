@@ -49,7 +49,7 @@ struct RoomRun {
                                                               sweep, test::kRoomNoise_m, test::kHalfColumns);
       const TimeNs start_ns = sweep * test::kSweep_ns + ahead_ns;
       ASSERT_TRUE(added(odometry.add_sweep(start_ns, start_ns + test::kSweep_ns, points)));
-      while (std::optional<TumblingOdometry::Sweep> done = odometry.take()) newest = std::move(done->report);
+      while (std::optional<TumblingOdometry::Sweep> done = odometry.take()) newest = std::move(done->result);
     }
   }
   double error_in_room_m(const Eigen::Isometry3d& T_MR = Eigen::Isometry3d::Identity()) const {
@@ -59,7 +59,7 @@ struct RoomRun {
   test::Motion moves;
   std::vector<ImuSample> imu;
   TumblingOdometry odometry;
-  SweepReport newest;
+  SweepResult newest;
 };
 
 /// Returns the map of a run, in the frame of the room.
@@ -79,10 +79,10 @@ TEST(PriorMapRun, HealthReportsThatARunIsNotLocalisedUntilItIs) {
   EXPECT_NE(std::string(run.odometry.health().worst().field).find("too few to localise the run"), std::string::npos);
   EXPECT_FALSE(run.newest.in_prior_map);
   run.feed(5, 30);
-  EXPECT_TRUE(run.odometry.health().ok()) << run.odometry.health().message();
+  EXPECT_TRUE(run.odometry.health().ok()) << run.odometry.health().worst_message();
   EXPECT_TRUE(run.newest.in_prior_map);
   EXPECT_LT(run.error_in_room_m(), 0.1);
-  EXPECT_FALSE(run.odometry.second_mapping_pass_applied());
+  EXPECT_FALSE(run.odometry.first_seconds_reprocessing_applied());
 }
 
 TEST(PriorMapRun, ResetKeepsTheMapAndLocalisesAgain) {

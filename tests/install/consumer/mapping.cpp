@@ -4,7 +4,7 @@
 
 int main() {
   tumble::LidarInertialOdometry odometry{tumble::LidarInertialOdometry::Params{}};
-  tumble::LidarInertialOdometry::SweepReport report;
+  tumble::LidarInertialOdometry::SweepResult report;
   const tumble::Status status = odometry.add_sweep(0, 100'000'000, {}, report);
   std::printf("%s\n", tumble::to_string(status.error_code));
 }

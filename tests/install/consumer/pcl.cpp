@@ -15,12 +15,12 @@ int main() {
     map[k].normal_W = Eigen::Vector3f::UnitZ();
     map[k].sigma_m = 0.25F;
   }
-  const Cloud cloud = tumble::to_pcl(map);
+  const Cloud cloud = tumble::to_map_cloud(map);
   if (pcl::io::savePCDFileBinary("map.pcd", cloud) != 0 || pcl::io::savePLYFileBinary("map.ply", cloud) != 0) return 1;
   Cloud pcd, ply;
   if (pcl::io::loadPCDFile("map.pcd", pcd) != 0 || pcl::io::loadPLYFile("map.ply", ply) != 0) return 2;
   for (const Cloud* read : {&pcd, &ply}) {
-    const std::vector<tumble::MapPoint> back = tumble::from_pcl(*read);
+    const std::vector<tumble::MapPoint> back = tumble::from_map_cloud(*read);
     if (back.size() != map.size() || back[2].position_W_m != map[2].position_W_m ||
         back[2].normal_W != map[2].normal_W || back[2].sigma_m != map[2].sigma_m)
       return 3;

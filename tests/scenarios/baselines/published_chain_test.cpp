@@ -72,7 +72,7 @@ InARoom gentle(int sweeps) {
 TEST(PublishedChain, FollowsAGentleMotionAndDrawsItsMap) {
   const InARoom room = gentle(15);
   PublishedChain chain({}, room.samples, room.rates);
-  std::vector<PublishedChain::SweepReport> reports;
+  std::vector<PublishedChain::SweepResult> reports;
   for (std::size_t k = 0; k < room.sweeps.size(); ++k) {
     const TimeNs start_ns = static_cast<TimeNs>(k) * test::kSweep_ns;
     const PublishedChain::Sweep sweep{start_ns, start_ns + test::kSweep_ns, room.sweeps[k]};
@@ -93,7 +93,7 @@ TEST(PublishedChain, FollowsAGentleMotionAndDrawsItsMap) {
 TEST(PublishedChain, ReportsASweepWithoutPointsToRegister) {
   const InARoom room = gentle(3);
   PublishedChain chain({}, room.samples, room.rates);
-  PublishedChain::SweepReport report;
+  PublishedChain::SweepResult report;
   EXPECT_EQ(chain.add({0, test::kSweep_ns, {}}, report).error_code, ErrorCode::empty);
   EXPECT_FALSE(report.trajectory.empty()) << "the odometry goes on alone";
   std::vector<LidarPoint> points = room.sweeps[1];
@@ -113,7 +113,7 @@ TEST(PublishedChain, LeavesOutTheRobotItself) {
   PublishedChain::Params params;
   params.own_body_L = {Eigen::Vector3d::Constant(-100.0), Eigen::Vector3d::Constant(100.0)};
   PublishedChain chain(params, room.samples, room.rates);
-  PublishedChain::SweepReport report;
+  PublishedChain::SweepResult report;
   EXPECT_EQ(chain.add({0, test::kSweep_ns, room.sweeps[0]}, report).error_code, ErrorCode::insufficient_data);
   params.sweep_voxel_m = 0.0;
   EXPECT_THROW(PublishedChain(params, room.samples, room.rates), InvalidParams);

@@ -95,9 +95,9 @@ TEST(SensorHealthOfALiveRun, AGyroScaleThatGravityConfirmsLaterIsNoFault) {
   SensorHealth run, now;
   now.add(finding(About::gyro_scale));
   now.add(finding(About::inconsistent_rotation));
-  run.merge_current_findings(now);
+  run.add_current_and_end_others(now);
   EXPECT_TRUE(run.findings[0].invalidates_estimate());
-  run.merge_current_findings({});
+  run.add_current_and_end_others({});
   EXPECT_FALSE(run.findings[0].invalidates_estimate());
   EXPECT_TRUE(run.findings[1].invalidates_estimate()) << "control: a contradiction that ended still counts";
   Estimate estimate;

@@ -126,7 +126,7 @@ TEST(RateRecording, UnitsThatLookWrongAreReported) {
   for (Eigen::Vector3d& force : in_g.sensors.imus.front().accel_m_s2) force /= 9.80665;
   const Status refused = find_methods("rate/tumble").front()->run(degrees.sensors, {}, {&degrees.truth}).status;
   EXPECT_FALSE(refused.ok()) << "beyond twice the range that is stated";
-  EXPECT_TRUE(has_finding(HealthFinding::Kind::force_at_rest, estimated_rates("tumble", in_g)));
+  EXPECT_TRUE(has_finding(HealthFinding::Kind::wrong_force_magnitude_at_rest, estimated_rates("tumble", in_g)));
 }
 
 // an accelerometer axis is saturated during a rotation in free fall; with a stated range, the method uses the reading

@@ -176,7 +176,7 @@ TEST(Verdicts, PositionDivergesWithForcesOfHalfTheSize) {
   const Estimate estimate = run_method(method, draw, outcome);
   assess(method, draw, nullptr, estimate, outcome);
   EXPECT_EQ(outcome.status, OutcomeStatus::diverged);
-  EXPECT_TRUE(has_finding(HealthFinding::Kind::force_at_rest, estimate));
+  EXPECT_TRUE(has_finding(HealthFinding::Kind::wrong_force_magnitude_at_rest, estimate));
   EXPECT_EQ(estimate.health.at("imu_implausible"), 1.0);
   EXPECT_NEAR(estimate.faults.worst().value, 0.5, 0.02);
 }

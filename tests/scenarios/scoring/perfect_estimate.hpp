@@ -31,7 +31,7 @@ inline Estimate perfect_estimate(const sim::Recording& recording, Frame frame = 
   if (recording.sensors.lidars.empty()) return estimate;
   const sim::LidarRecord& lidar = recording.sensors.lidars.front();
   for (std::size_t k = 0; k < lidar.sweep_start_ns.size(); ++k) {
-    LidarInertialOdometry::SweepReport sweep;
+    LidarInertialOdometry::SweepResult sweep;
     sweep.verdict = k == 0 ? SweepVerdict::first : SweepVerdict::registered;
     const std::int64_t end_ns = lidar.sweep_start_ns[k] + lidar.sweep_period_ns;
     for (const PoseState& pose : estimate.poses) {

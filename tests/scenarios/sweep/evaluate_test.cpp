@@ -73,7 +73,7 @@ TEST(JudgeWithoutTruth, AFaultThatInvalidatesOurEstimateIsADivergence) {
   EXPECT_EQ(status_of(ours, estimate), "ok");
   add_finding(finding(HealthFinding::Kind::frozen_axis), estimate);
   EXPECT_EQ(status_of(ours, estimate), "ok") << "one axis does not invalidate the estimate";
-  add_finding(finding(HealthFinding::Kind::force_at_rest), estimate);
+  add_finding(finding(HealthFinding::Kind::wrong_force_magnitude_at_rest), estimate);
   EXPECT_THAT(status_of(ours, estimate),
               ::testing::AllOf(HasSubstr("diverged: health: imu: "), HasSubstr("wrong unit or scale")));
   EXPECT_EQ(status_of(baseline, estimate), "ok") << "baselines do not report their health";

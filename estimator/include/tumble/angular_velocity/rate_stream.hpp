@@ -15,8 +15,8 @@
 namespace tumble {
 
 /// Estimates angular velocity sample by sample with a fixed lag, also while the gyro is saturated. AngularRateStream
-/// uses the measurement models of AngularRateSmoother over a sliding window of fixed length. By default,
-/// AngularRateStream makes one Gauss-Newton step per sample. At sample rates of 400 Hz and above, AngularRateStream
+/// uses the measurement models of AngularRateSmoother over a sliding window of fixed length. At sample rates below 400
+/// Hz, AngularRateStream makes one Gauss-Newton step per sample. At sample rates of 400 Hz and above, AngularRateStream
 /// makes one Gauss-Newton step for all samples within 5 ms. The equations are in docs/maths/rate_stream.md.
 ///
 /// AngularRateStream detects the saturation limits of gyro and accelerometer from the readings. If AngularRateStream
@@ -36,13 +36,14 @@ class AngularRateStream {
 
   State start() const;
 
-  /// `out` receives the angular velocity at the sample that is `lag_s` older than `sample`. While the window fills,
-  /// `out` is empty. On error (`non_finite`, `time_order`, `gap`), the state is unchanged and `out` is empty.
+  /// `out` receives the angular velocity at the sample that is `lag_s` older than `sample`. While the sliding window
+  /// fills at the start of a run, `out` is empty. If push() returns an error (`non_finite`, `time_order`, `gap`), the
+  /// state is unchanged and `out` is empty.
   Status push(const ImuSample& sample, State& state, std::optional<AngularRateState>& out) const {
     return push(sample, {}, state, out);
   }
   /// `auxiliary_imus` is empty, or contains one reading per entry of AngularRateModelParams::auxiliary_imus,
-  /// interpolated at the time of `sample`. For another number of auxiliary readings, push() returns
+  /// interpolated at the time of `sample`. If the number of auxiliary readings is different, push() returns
   /// `insufficient_data`.
   Status push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
               std::optional<AngularRateState>& out) const;
@@ -50,8 +51,8 @@ class AngularRateStream {
   /// Returns the provisional angular velocity at the newest sample, or an empty result before the first sample.
   std::optional<AngularRateState> newest(const State& state) const;
 
-  /// Appends the angular velocities at the samples in the window to `out`, oldest first. Call flush() at the end of a
-  /// run.
+  /// Appends the angular velocities at the samples in the sliding window to `out`, oldest first. Call flush() at the
+  /// end of a run.
   void flush(const State& state, std::vector<AngularRateState>& out) const;
 
   /// Reports current faults of the IMU: axes that stopped updating (FrozenAxes), and wrong signs of the accelerometer
@@ -65,12 +66,12 @@ class AngularRateStream {
 
   /// Returns the scale, misalignment, g-sensitivity and delay errors that are currently subtracted from the readings,
   /// with their covariance.
-  KnownSensorErrors sensor_errors(const State& state) const;
+  KnownSensorErrors sensor_errors_except_biases(const State& state) const;
 
  private:
   struct Impl;
 
-  std::shared_ptr<const Impl> impl_;  // never changes after construction, so copies share it
+  std::shared_ptr<const Impl> impl_;  // constant after construction, so copies of AngularRateStream share one Impl
 };
 
 }  // namespace tumble

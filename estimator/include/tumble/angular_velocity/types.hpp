@@ -27,8 +27,8 @@ struct AngularRateState {
   AngularRateSource source = AngularRateSource::measured;
 };
 
-/// The 20 constants of body and IMU that AngularRateSmoother and AngularRateStream estimate together with the angular
-/// velocity.
+/// Contains the 20 constants of body and IMU that AngularRateSmoother and AngularRateStream estimate together with the
+/// angular velocity.
 struct BodyImuConstants {
   static constexpr int kSize = 20, kGyroMisalignmentIndex = 14;
   static constexpr double kMaxConstantMagnitude = 10.0;  ///< maximum magnitude of each constant, in its unit
@@ -47,11 +47,12 @@ struct BodyImuConstants {
   /// on axis (j+2) % 3. The cross-axis sensitivities are observable only while a sensing element clips.
   Eigen::Matrix<double, 6, 1> gyro_misalignment = Eigen::Matrix<double, 6, 1>::Zero();
 
-  Eigen::Vector3d sensing_direction(int j) const;
+  /// Returns the direction in IMU axes along which the gyro's sensing element 0, 1 or 2 measures.
+  Eigen::Vector3d gyro_sensing_direction(int element) const;
   /// Returns the inertia matrix about the centre of mass in IMU axes, scaled to trace 3.
-  Eigen::Matrix3d inertia_matrix() const;
-  /// Returns the five coordinates `inertia` of a symmetric inertia matrix. A positive scale factor of the matrix has no
-  /// effect.
+  Eigen::Matrix3d inertia_matrix_with_trace_3() const;
+  /// Returns the five `inertia_coordinates` of the symmetric matrix `inertia`. Scaling `inertia` by a positive factor
+  /// does not change the result.
   static Eigen::Matrix<double, 5, 1> inertia_basis_coordinates(const Eigen::Matrix3d& inertia);
   static const Eigen::Matrix3d& inertia_basis_matrix(int i);
 
@@ -66,8 +67,9 @@ struct BodyImuCalibration {
   BodyImuConstants::Matrix covariance = BodyImuConstants::Matrix::Identity();
 };
 
-/// Returns `out_of_range` if the magnitude of a rig constant exceeds BodyImuConstants::kMaxConstantMagnitude.
-Status check_body_imu_constants(const BodyImuConstants& rig);
+/// Returns `out_of_range` if the magnitude of a constant of body or IMU exceeds
+/// BodyImuConstants::kMaxConstantMagnitude.
+Status check_body_imu_constants(const BodyImuConstants& constants);
 /// Returns `ok`, an error of check_body_imu_constants(), or `degenerate` if the covariance is not positive definite.
 Status check_body_imu_calibration(const BodyImuCalibration& calibration);
 

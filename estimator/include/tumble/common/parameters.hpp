@@ -19,10 +19,10 @@
 /// Each `Params` struct describes its parameters once, in a static member function template `fields`. Range checks,
 /// tables and file readers call `fields` with a visitor.
 ///
-/// The declaration is `template <class Self, class Visitor> static void fields(Self& p, Visitor& visit)`. `Self` may be
-/// a const type. `fields` calls `visit(p.member, ParameterInfo)` for each number, boolean, enumeration and Vector3d of
-/// the struct. `fields` calls `visit.group("prefix_", p.member)` for each nested `Params` struct. `fields` skips
-/// members that users do not enter as plain numbers, for example poses and calibrations.
+/// The declaration is `template <class Self, class Visitor> static void fields(Self& p, Visitor& visit)`. The template
+/// argument `Self` may be a const type. `fields` calls `visit(p.member, ParameterInfo)` for each number, boolean,
+/// enumeration and Vector3d of the struct. `fields` calls `visit.group("prefix_", p.member)` for each nested `Params`
+/// struct. `fields` skips members that users do not enter as plain numbers, for example poses and calibrations.
 namespace tumble {
 
 /// Most users adapt only the parameters with the audience `common_use`.
@@ -42,17 +42,17 @@ inline ParameterInfo boolean_parameter(const char* name, const char* meaning,
   return {name, "1", 0.0, 1.0, meaning, audience};
 }
 
-/// bound for parameters without a limit: the largest finite number
+/// Bound of a parameter without a limit: the largest finite number.
 inline constexpr double kUnbounded = std::numeric_limits<double>::max();
 
-/// Types of parameters that a visitor handles as numbers: arithmetic types and enumerations.
+/// The types of parameters that a visitor handles as numbers: arithmetic types and enumerations.
 template <class T>
 concept Number = std::is_arithmetic_v<std::remove_cvref_t<T>> || std::is_enum_v<std::remove_cvref_t<T>>;
 
 namespace detail {
 
-/// First invalid parameter of a struct. `names` contains the prefixes of the parameter's groups, and then the name of
-/// the parameter.
+/// Describes the first invalid parameter of a struct. `names` contains the prefixes of the parameter's groups, and then
+/// the name of the parameter.
 struct OutOfBoundsParameter {
   std::array<const char*, 8> names{};
   std::size_t prefix_count = 0;
@@ -125,8 +125,8 @@ class PrefixedNameVisitor {
 
 }  // namespace detail
 
-/// Calls `each(name, value, field)` for each parameter in the struct `params`, in order of declaration. `name` is a
-/// std::string: the prefixes of the parameter's groups, followed by the parameter's name.
+/// Calls `each(name, value, field)` for each parameter in the struct `params`, in order of declaration. The argument
+/// `name` of `each` is a std::string with the prefixes of the parameter's groups, followed by the parameter's name.
 template <class Params, class Each>
 void for_each_parameter(Params& params, Each each) {
   detail::PrefixedNameVisitor<Each> visitor(each);
@@ -143,10 +143,11 @@ bool matches_any_pattern(std::string_view name, std::span<const Text> patterns) 
   });
 }
 
-/// HeapValue stores a value on the heap. Copying a HeapValue copies the stored value, as for std::indirect of C++26.
-/// The value of a constant HeapValue is constant. A class can have a member HeapValue<T> for an incomplete type T, if
-/// the header declares `extern template class HeapValue<T>`. Only the source file that instantiates HeapValue<T>
-/// explicitly needs the complete type T. A moved-from HeapValue has no value until a new value is assigned.
+/// HeapValue stores a value on the heap. Copying a HeapValue copies the stored value, as for std::indirect of C++26. A
+/// constant HeapValue gives only constant access to the stored value. A class can have a member HeapValue<T> for an
+/// incomplete type T, if the header declares `extern template class HeapValue<T>`. Only the source file that
+/// instantiates HeapValue<T> explicitly needs the complete type T. A moved-from HeapValue has no value until a new
+/// value is assigned.
 template <class T>
 class HeapValue {
  public:
@@ -167,8 +168,8 @@ class HeapValue {
   std::unique_ptr<T> value_;
 };
 
-// The following functions are not inline, because an `extern template` declaration does not prevent the instantiation
-// of inline functions. Instantiating the functions of HeapValue<T> would require the complete type T.
+// The member functions of HeapValue are not inline, because an `extern template` declaration does not prevent the
+// instantiation of inline functions. Instantiating the member functions of HeapValue<T> requires the complete type T.
 template <class T>
 HeapValue<T>::HeapValue() : value_(std::make_unique<T>()) {}
 template <class T>

@@ -9,7 +9,7 @@
 
 namespace tumble {
 
-/// integer nanoseconds since the start of the recording
+/// Integer nanoseconds in the clock of the time stamps, with an arbitrary zero.
 using TimeNs = std::int64_t;
 
 enum class ErrorCode : std::uint8_t {
@@ -26,7 +26,7 @@ enum class ErrorCode : std::uint8_t {
 
 const char* to_string(ErrorCode error_code);
 
-/// Functions of the library return input errors as Status and print nothing; only constructors throw exceptions.
+/// Estimators report input errors as a Status and print nothing. Only constructors of estimators throw exceptions.
 struct Status {
   ErrorCode error_code = ErrorCode::none;
   const char* field = "";  ///< name of the input field (static string)
@@ -34,7 +34,7 @@ struct Status {
   double bound = 0.0;      ///< violated limit, in the field's unit
 
   bool ok() const { return error_code == ErrorCode::none; }
-  /// Returns for example "time_order: time_ns is 5; the bound is 7", or "ok".
+  /// message() returns for example "time_order: time_ns is 5; the bound is 7", or "ok".
   std::string message() const;
 };
 
@@ -50,21 +50,21 @@ void require_in_interval(const char* field, double value, double low, double hig
 /// One suspected fault of a sensor or of the estimate, as reported by health() of the odometry classes.
 struct HealthFinding {
   enum class Kind : std::uint8_t {
-    frozen_axis,               ///< one axis of a gyro or an accelerometer repeats one reading
-    frozen_sensor,             ///< all axes of a gyro or an accelerometer, or all IMUs, repeat one reading
-    imu_frozen,                ///< one of several IMUs repeats one reading, on `axis` or on all axes
-    imu_silent,                ///< one of several IMUs delivers no readings
-    imu_disagrees,             ///< rate or specific force of one of several IMUs contradicts the other IMUs
-    force_at_rest,             ///< the specific force at rest has another magnitude than gravity, or another unit
-    wrong_axes_or_signs,       ///< axes are exchanged or inverted
-    inverted_accel_in_flight,  ///< the specific force in free flight fits an accelerometer with inverted axes
-    inconsistent_rotation,     ///< measured gravity, or motion about a pivot, contradicts the rotation that the gyro
-                               ///< measures
-    gyro_scale,                ///< accelerometer differences between several IMUs contradict the scale of the gyros
-    lidar_scale,               ///< motion measured by the lidar has another scale than motion measured by the IMU
-    lidar_calibration,         ///< pose or time offset of the lidar relative to the IMU differ from the stated values
-    attitude_unknown,          ///< the direction of gravity is unknown; value: duration [s]
-    vertical_unknown,          ///< the direction of gravity in the map is uncertain after a start in motion
+    frozen_axis,                    ///< one axis of a gyro or an accelerometer repeats one reading
+    frozen_sensor,                  ///< all axes of a gyro or an accelerometer, or all IMUs, repeat one reading
+    imu_frozen,                     ///< one of several IMUs repeats one reading, on `axis` or on all axes
+    imu_silent,                     ///< one of several IMUs delivers no readings
+    imu_disagrees,                  ///< rate or specific force of one of several IMUs contradicts the other IMUs
+    wrong_force_magnitude_at_rest,  ///< the specific force at rest has another magnitude than gravity, or another unit
+    wrong_axes_or_signs,            ///< axes are exchanged or inverted
+    inverted_accel_in_flight,       ///< the specific force in free flight fits an accelerometer with inverted axes
+    inconsistent_rotation,  ///< measured gravity, or motion about a pivot, contradicts the rotation that the gyro
+                            ///< measures
+    gyro_scale,             ///< accelerometer differences between several IMUs contradict the scale of the gyros
+    lidar_scale,            ///< motion measured by the lidar has another scale than motion measured by the IMU
+    lidar_calibration,      ///< pose or time offset of the lidar relative to the IMU differ from the stated values
+    attitude_unknown,       ///< the direction of gravity is unknown; value: duration [s]
+    vertical_unknown,       ///< the direction of gravity in the map is uncertain after a start in motion
     tracking_lost,  ///< the pose in the map is uncertain, or registered poses contradict the inertial prediction
     not_localised,  ///< the robot is not localised in the prior map
   };
@@ -77,11 +77,13 @@ struct HealthFinding {
   double value = 0.0;                   ///< measured value of the tested quantity
   double bound = 0.0;                   ///< violated limit of the tested quantity
   std::optional<TimeNs> since_ns = {};  ///< start of the fault; empty if unknown
-  /// true if the fault has ended; always false in the result of TumblingOdometry::health() during a run
+  /// `ended` is true if the fault has ended. During a run, `ended` is false in every finding of
+  /// TumblingOdometry::health().
   bool ended = false;
 
-  /// Returns how far `value` is beyond `bound`, from 0 (at the bound) to 1 (far beyond the bound); not a probability.
-  double confidence() const;
+  /// Returns how far `value` is beyond `bound`, from 0 (at the bound) to 1 (far beyond the bound). The severity is not
+  /// a probability.
+  double severity() const;
   Status status() const { return {ErrorCode::out_of_range, quantity, value, bound}; }
   /// Returns true if the fault makes the estimate unusable.
   bool invalidates_estimate() const;
@@ -96,9 +98,11 @@ struct SensorHealth {
   std::vector<HealthFinding> findings;
 
   bool ok() const { return findings.empty(); }
+  /// Returns the status of the most important finding, or `ok` without a finding.
   Status worst() const { return ok() ? Status{} : findings.front().status(); }
   operator Status() const { return worst(); }
-  std::string message() const { return ok() ? "ok" : to_text(findings.front()); }
+  /// Returns the text of the most important finding, or "ok" without a finding.
+  std::string worst_message() const { return ok() ? "ok" : to_text(findings.front()); }
   bool invalidates_estimate() const;
 
   /// Adds a finding unless `status` is ok. If a finding of the same kind, sensor and axis exists, add() only marks the
@@ -107,8 +111,8 @@ struct SensorHealth {
            std::optional<TimeNs> since_ns = {});
   void add(HealthFinding finding);
   void add(const SensorHealth& other);
-  /// Adds the findings of `now`, the newest result of health(), and marks all other findings as ended.
-  void merge_current_findings(const SensorHealth& now);
+  /// Adds the findings of `current`, the newest result of health(), and marks all other findings as ended.
+  void add_current_and_end_others(const SensorHealth& current);
 };
 
 }  // namespace tumble

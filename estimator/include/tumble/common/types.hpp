@@ -52,32 +52,35 @@ Status check_sample(const ImuSample& sample);
 /// `gap_max_s` after `previous_ns`; Status::value is the time difference in seconds.
 Status check_stamp_order(TimeNs time_ns, TimeNs previous_ns, double gap_max_s);
 
-/// attitude of a sensor or body A in the world frame W at one time
+/// Attitude of a sensor or body A in the world frame W at one time. The quaternion `orientation_W` is q_WA, which
+/// rotates vectors from the axes of A to the axes of W.
 struct AttitudeState {
   TimeNs time_ns = 0;
   Eigen::Quaterniond orientation_W = Eigen::Quaterniond::Identity();
-  /// covariance of the attitude error phi in world axes, with q_true = Exp(phi) * q_WA; zero if not estimated
+  /// Covariance of the attitude error phi in world axes, with q_true = Exp(phi) * q_WA. A zero matrix means that the
+  /// covariance is not estimated.
   Eigen::Matrix3d covariance_rad2 = Eigen::Matrix3d::Zero();
 };
 
-/// pose and velocity of a frame A in the world frame W at one time
+/// Pose and velocity of a frame A in the world frame W at one time. The quaternion `orientation_W` is q_WA, which
+/// rotates vectors from the axes of A to the axes of W.
 struct PoseState {
   TimeNs time_ns = 0;
   Eigen::Vector3d position_W_m = Eigen::Vector3d::Zero();
   Eigen::Quaterniond orientation_W = Eigen::Quaterniond::Identity();
   Eigen::Vector3d velocity_W_m_s = Eigen::Vector3d::Zero();
-  /// Covariance of the position error [m] and the attitude error phi [rad], both in world axes; zero if not estimated.
-  /// The attitude error is defined by q_true = Exp(phi) * q_WA.
+  /// Covariance of the position error [m], then the attitude error phi [rad], both in world axes. The attitude error is
+  /// defined by q_true = Exp(phi) * q_WA. A zero matrix means that the covariance is not estimated.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
 /// Mode of contact between the rolling sphere and the floor.
 enum class ContactMode : std::uint8_t {
-  grip,     ///< the contact point is at rest; the floor is level
-  slip,     ///< the contact point moves along the floor: the sphere spins too fast or slides
-  bump,     ///< the contact point also rises or falls: an obstacle, or flight
-  incline,  ///< the contact point is at rest; the floor has an estimated slope
-  rough,    ///< the contact point is at rest; the floor rises and falls about the level
+  grip,            ///< the contact point is at rest; the floor is level
+  slip,            ///< the contact point moves along the floor: the sphere spins too fast or slides
+  bump_or_flight,  ///< the contact point also rises or falls over an obstacle, or the sphere flies
+  incline,         ///< the contact point is at rest; the floor has an estimated slope
+  rough,           ///< the contact point is at rest; the floor rises and falls about the level
 };
 
 }  // namespace tumble
@@ -128,13 +131,13 @@ struct CompilerSettingsCheck {
   static const char link_time_check;
 };
 
-using CompiledHere = CompilerSettingsCheck<EIGEN_MAX_STATIC_ALIGN_BYTES, EIGEN_MALLOC_ALREADY_ALIGNED != 0, kRowMajor,
-                                           sizeof(Eigen::Index), kCheckedContainers>;
+using CurrentCompilerSettings = CompilerSettingsCheck<EIGEN_MAX_STATIC_ALIGN_BYTES, EIGEN_MALLOC_ALREADY_ALIGNED != 0,
+                                                      kRowMajor, sizeof(Eigen::Index), kCheckedContainers>;
 
 template <>
-const char CompiledHere::link_time_check;  // a declaration; src/common/types.cpp has the definition
+const char CurrentCompilerSettings::link_time_check;  // a declaration; src/common/types.cpp has the definition
 
 /// Each source file references `link_time_check`, so the linker compares the memory layouts of program and library.
-[[gnu::used]] static const char* const kSameCompilerSettings = &CompiledHere::link_time_check;
+[[gnu::used]] static const char* const kLinkTimeCheckReference = &CurrentCompilerSettings::link_time_check;
 
 }  // namespace tumble::detail

@@ -39,7 +39,7 @@ namespace tumble {
 class LidarInertialOdometry {
  public:
   using Params = OdometryParams;
-  using SweepReport = tumble::SweepReport;
+  using SweepResult = tumble::SweepResult;
 
   explicit LidarInertialOdometry(const Params& params);
   ~LidarInertialOdometry();
@@ -49,22 +49,23 @@ class LidarInertialOdometry {
   LidarInertialOdometry(const LidarInertialOdometry&);
   LidarInertialOdometry& operator=(const LidarInertialOdometry&);
 
-  /// Sets position and heading of the IMU at the start; the tilt follows from the accelerometer. The default is the
-  /// origin. Reported covariances describe errors relative to the start pose. Call set_start_pose() before the first
-  /// sweep.
+  /// Sets position and heading of the IMU at the start; the tilt follows from the accelerometer. Without
+  /// set_start_pose(), the IMU starts at the origin. Reported covariances describe errors relative to the start pose.
+  /// Call set_start_pose() before the first sweep.
   void set_start_pose(const Eigen::Isometry3d& T_WI);
   const std::optional<Eigen::Isometry3d>& start_pose() const;
 
   /// Correction of the initial tilt. After a start in motion, the initial tilt is wrong, because the mean specific
   /// force does not have the direction of gravity.
   struct StartTiltCorrection {
-    Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< correction of the initial attitude
+    Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< corrected attitude = rotation * initial attitude
     double sigma_rad = 0.0;                                        ///< standard deviation of the corrected tilt
   };
   /// Returns a correction of the initial tilt for a second run over the same data, computed from the estimated
   /// direction of gravity in the map. The result is empty after a start at rest, before the map starts, and after
-  /// localisation in a prior map. If the standard deviation of the computed tilt exceeds half the initial one, the
-  /// result is the argument of set_start_tilt_correction(), if any.
+  /// localisation in a prior map. If the computed tilt has more than half of the initial tilt's standard deviation,
+  /// start_tilt_correction() returns the argument of set_start_tilt_correction(), or an empty value if
+  /// set_start_tilt_correction() was not called.
   std::optional<StartTiltCorrection> start_tilt_correction() const;
   /// Call set_start_tilt_correction() before the first sweep.
   void set_start_tilt_correction(const StartTiltCorrection& tilt);
@@ -73,13 +74,13 @@ class LidarInertialOdometry {
   /// set_prior_map() before the first sweep.
   ///
   /// Before localisation, poses are not in the frame of the prior map, and check_localised() returns `degenerate`.
-  /// After localisation, poses and covariances are in the frame of the prior map, and SweepReport::in_prior_map is
-  /// true. If `map.T_MI` is set, set_prior_map() passes this pose to set_start_pose(). All points of the
-  /// prior map are kept, also beyond `map_radius_m` from the robot. Returns `ok`, an error of check_prior_map(), or
-  /// `time_order` if the mapping has already started. On error, the state is unchanged.
+  /// After localisation, poses and covariances are in the frame of the prior map, and SweepResult::in_prior_map is
+  /// true. If `map.start_T_MI` is set, set_prior_map() passes this pose to set_start_pose(). All points of the prior
+  /// map are kept, also beyond `map_radius_m` from the robot. Returns `ok`, an error of check_prior_map(), or
+  /// `time_order` if the mapping has already started. If set_prior_map() returns an error, the state is unchanged.
   Status set_prior_map(PriorMap map);
   /// Copies the prior map, if any, from `other`, and restarts the localisation. The localisation searches near the pose
-  /// of set_start_pose(), or without a start pose near PriorMap::T_MI.
+  /// of set_start_pose(), or without a start pose near PriorMap::start_T_MI.
   void copy_prior_map(const LidarInertialOdometry& other);
   /// Returns `degenerate` if a prior map is set but the robot is not yet localised.
   Status check_localised() const;
@@ -91,7 +92,8 @@ class LidarInertialOdometry {
 
   /// Adds an IMU sample. `rate` is the estimated angular velocity at the time of the sample. Returns `non_finite` if a
   /// number is not finite, or `time_order` if the sample is not later than the last sample. Returns `out_of_range` if
-  /// the time stamps of `sample` and `rate` differ, or exceed kStampMax_ns. On error, the state is unchanged.
+  /// the time stamps of `sample` and `rate` differ, or exceed kStampMax_ns. If add_imu() returns an error, the state is
+  /// unchanged.
   Status add_imu(const ImuSample& sample, const AngularRateState& rate);
 
   /// Sets an odometer reading for the prediction of the next sweep's pose. An odometer reading that extends beyond the
@@ -107,18 +109,18 @@ class LidarInertialOdometry {
   /// points are unusable, the pose is the inertial prediction and the verdict is `rejected`. For unusable points,
   /// add_sweep() returns `empty` (no points), `non_finite` (no finite point), `insufficient_data` (no point in range)
   /// or `degenerate` (all points have one time stamp). Before the map starts, a sweep with too few usable points has no
-  /// pose, and `report.trajectory` is empty.
-  Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, SweepReport& report);
+  /// pose, and `result.trajectory` is empty.
+  Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, SweepResult& result);
 
   /// Predicts pose, velocity and covariance of the IMU at the time of the last sample in `samples`, by inertial
   /// integration from the end of the last sweep. If no sample is later than the last sweep, the result is the pose at
   /// the end of the last sweep. Returns `ok`, an error of add_imu(), or `empty` before the map has started.
-  /// `velocity_covariance_I_m2_s2` (optional) is defined as in SweepReport. Cost: O(samples since the last sweep).
+  /// `velocity_covariance_I_m2_s2` (optional) is defined as in SweepResult. Cost: O(samples since the last sweep).
   Status predict(std::span<const ImuSample> samples, std::span<const AngularRateState> rates, PoseState& pose,
                  Eigen::Matrix3d* velocity_covariance_I_m2_s2 = nullptr) const;
 
-  /// Returns the estimated pose of the lidar in IMU axes, time offset and gravity. Values that are not estimated have
-  /// covariance 0.
+  /// Returns the estimated pose of the lidar in IMU axes, time offset and gravity. A value that is not estimated has
+  /// covariance 0 in lidar_calibration_covariance().
   LidarImuCalibration lidar_calibration() const;
   LidarImuCalibration::Covariance lidar_calibration_covariance() const;
   /// Returns the covariance that the next registration uses as prior of the calibration. A second run over the same
@@ -129,20 +131,21 @@ class LidarInertialOdometry {
   /// start in motion.
   Status check_gravity_direction() const;
 
-  /// Estimates the pose of the IMU at a time within the last `window_sweeps` sweeps; other times give `out_of_range`.
+  /// Estimates the pose of the IMU at a time within the last `window_sweeps` sweeps; for other times, pose_at() returns
+  /// `out_of_range`.
   Status pose_at(TimeNs time_ns, PoseState& pose) const;
 
   /// Returns the current IMU poses of the sweeps that later sweeps still refine (at most `window_sweeps` - 1 sweeps),
-  /// oldest first. At the end of a run, the poses of all SweepReport::final_poses_of_earlier_sweep and then of
+  /// oldest first. At the end of a run, the poses of all SweepResult::final_poses_of_earlier_sweep and then of
   /// window_trajectories() are the whole trajectory.
   std::vector<std::vector<PoseState>> window_trajectories() const;
 
   std::size_t map_memory_bytes() const;
 
   /// Returns the map points within about `map_radius_m` of the robot, and the points of a prior map. Each normal is
-  /// fitted to the nearest neighbours of its point, and points towards the sensor that observed the point. The result
-  /// omits points through which beams of two sweeps passed, for example points on people who have walked away. Cost:
-  /// O(number of points).
+  /// fitted to the nearest neighbours of its point, and points towards the sensor that observed the point. The returned
+  /// map omits points through which beams of two sweeps passed, for example points on people who have walked away.
+  /// Cost: O(number of points).
   std::vector<MapPoint> map() const;
 
   struct Impl;  ///< private implementation

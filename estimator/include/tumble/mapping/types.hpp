@@ -16,7 +16,7 @@
 
 namespace tumble {
 
-/// Lidar return in the axes that the lidar had when the laser fired (not deskewed).
+/// Lidar return before deskewing: the position is in the axes that the lidar had when the laser fired.
 struct LidarPoint {
   Eigen::Vector3f position_L_m = Eigen::Vector3f::Zero();
   float intensity = 0.0f;       ///< 0 to 1
@@ -32,14 +32,15 @@ struct MapPoint {
 };
 
 /// Pose of the lidar in IMU axes, time offset between IMU and lidar, and gravity. The registration of the sweeps
-/// refines these values. The error vector contains rotation of T_IL, translation of T_IL, time offset and gravity, in
-/// this order. The rotation error phi is a left perturbation in IMU axes: R_true = Exp(phi) R.
+/// refines the calibration. The error vector of a calibration contains rotation of T_IL, translation of T_IL, time
+/// offset and gravity, in this order. The rotation error phi is a left perturbation in IMU axes: R_true = Exp(phi) R.
 struct LidarImuCalibration {
   static constexpr int kErrorCount = 10;
   using Covariance = Eigen::Matrix<double, kErrorCount, kErrorCount>;
 
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
-  double time_offset_s = 0.0;                              ///< IMU clock minus lidar clock
+  /// time of an event in the IMU's clock minus time of the same event in the lidar's clock
+  double imu_minus_lidar_clock_s = 0.0;
   Eigen::Vector3d gravity_W_m_s2 = Eigen::Vector3d(0.0, 0.0, -9.80665);
 
   void add(const Eigen::Matrix<double, kErrorCount, 1>& error);
@@ -48,7 +49,7 @@ struct LidarImuCalibration {
 };
 
 /// Returns `out_of_range` if `distance_in_sigmas` (of LidarImuCalibrationPrior::distance_in_sigmas()) exceeds
-/// kDistanceMax_sigmas. The stated calibration is then probably wrong.
+/// kDistanceMax_sigmas. `out_of_range` means that the stated calibration is probably wrong.
 Status check_lidar_calibration_distance(double distance_in_sigmas);
 
 /// Calibration that the caller states, with standard deviations of the lidar's orientation (per axis), position (per
@@ -108,9 +109,10 @@ struct VelocityReading {
 struct RelativePoseReading {
   TimeNs from_ns = 0;
   TimeNs to_ns = 0;
-  Eigen::Isometry3d relative_pose = Eigen::Isometry3d::Identity();
-  /// Covariance of the position error [m] and the attitude error phi [rad], both in IMU axes at `from_ns`, with R_true
-  /// = Exp(phi) R. Set a large variance for components that the odometer does not measure.
+  Eigen::Isometry3d T_from_to = Eigen::Isometry3d::Identity();
+  /// Covariance of the position error [m], then the attitude error phi [rad], both in IMU axes at `from_ns`. The
+  /// attitude error is defined by R_true = Exp(phi) R. Set a large variance for components that the odometer does not
+  /// measure.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
@@ -118,11 +120,12 @@ using OdometerReading = std::variant<VelocityReading, RelativePoseReading>;
 
 /// Measured position of an antenna or tag A on the robot, for example from GPS or beacons. The position is given in a
 /// position frame P with an upward z axis, for example east, north, up. The errors of successive readings are assumed
-/// independent; state a larger covariance if they are correlated.
+/// independent; state a larger covariance if the errors are correlated.
 struct PositionReading {
   TimeNs time_ns = 0;  ///< in the IMU's clock
   Eigen::Vector3d antenna_position_P_m = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();          ///< in axes of P; only the mean variance is used
+  /// Covariance of the position error in axes of P. The estimator uses only the mean of the three variances.
+  Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();
   Eigen::Vector3d antenna_lever_arm_I_m = Eigen::Vector3d::Zero();  ///< position of the antenna or tag A in IMU axes
 };
 
@@ -130,13 +133,13 @@ struct PositionReading {
 /// compensates the drift of the odometry, so poses in the frame P do not drift.
 struct PositionFrame {
   Eigen::Isometry3d T_PW = Eigen::Isometry3d::Identity();  ///< the rotation is about the vertical
-  Eigen::Vector3d reference_point_W_m = Eigen::Vector3d::Zero();
-  /// Covariance of the transform's error in axes of the frame P: translation of `reference_point_W_m` [m], then
-  /// rotation about the vertical through this point [rad].
-  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
+  Eigen::Vector3d covariance_reference_point_W_m = Eigen::Vector3d::Zero();
+  /// Covariance of the transform's error in axes of the frame P: translation of `covariance_reference_point_W_m` [m],
+  /// then rotation about the vertical through this point [rad].
+  Eigen::Matrix4d xyz_yaw_covariance_P = Eigen::Matrix4d::Zero();
 
-  /// Converts a pose from the odometry frame W to the frame P. In the result, the covariance of position and heading
-  /// comes from PositionFrame::covariance, and the covariance of the tilt from `in_W`.
+  /// Converts a pose from the odometry frame W to the frame P. In the converted pose, the covariance of position and
+  /// heading comes from PositionFrame::xyz_yaw_covariance_P, and the covariance of the tilt comes from `in_W`.
   PoseState transform(const PoseState& in_W) const;
 };
 
@@ -145,11 +148,12 @@ struct PriorMap {
   std::vector<MapPoint> points = {};  ///< points with normals, in the map frame M; to_map_points() computes normals
   /// Start pose of the IMU in the map frame M, if known; only position and heading are used. If the start pose is
   /// unknown, the run may start anywhere in the map.
-  std::optional<Eigen::Isometry3d> T_MI = std::nullopt;
-  double start_position_sigma_m = 0.0;   ///< standard deviation of the position of T_MI per axis; 0: exact
-  double start_heading_sigma_rad = 0.0;  ///< standard deviation of the heading of T_MI; 0: exact
-  bool extend =
-      true;  ///< true: sweeps add points, and remove points through which their beams pass; false: the map is constant
+  std::optional<Eigen::Isometry3d> start_T_MI = std::nullopt;
+  double start_position_sigma_m = 0.0;   ///< standard deviation of the position of start_T_MI per axis; 0: exact
+  double start_heading_sigma_rad = 0.0;  ///< standard deviation of the heading of start_T_MI; 0: exact
+  /// If `extend` is true, sweeps add points to the map, and remove points through which beams pass. If `extend` is
+  /// false, the map is constant.
+  bool extend = true;
 };
 
 /// Returns `non_finite` if a number is NaN or infinite. Returns `out_of_range` for a negative standard deviation, a
@@ -160,12 +164,12 @@ Status check_map_points(std::span<const MapPoint> points);
 Status check_prior_map(const PriorMap& map);
 
 /// Converts positions, for example of a PCD or PLY file, to map points with normals. The result contains at most one
-/// point per cube of 0.1 m, and no positions that are NaN or infinite. The sign of a normal is arbitrary. `sigma_m` is
-/// the standard deviation of each position. Cost: O(points).
+/// point per cube of 0.1 m, and no positions that are NaN or infinite. The sign of a computed normal is arbitrary.
+/// `sigma_m` is the standard deviation of each position. Cost: O(points).
 std::vector<MapPoint> to_map_points(std::span<const Eigen::Vector3f> positions_M_m, float sigma_m = 0.02f);
 
-/// States whether the pose of a sweep comes from the registration or from the inertial prediction. If a `degenerate`
-/// sweep has an eigenvalue_ratio of 0, the whole pose comes from the inertial prediction.
+/// SweepVerdict states whether the pose of a sweep comes from the registration or from the inertial prediction. If a
+/// `degenerate` sweep has an eigenvalue_ratio of 0, the whole pose comes from the inertial prediction.
 enum class SweepVerdict : std::uint8_t {
   first,       ///< the sweep started the map
   registered,  ///< all six degrees of freedom were aligned with the map
@@ -174,24 +178,26 @@ enum class SweepVerdict : std::uint8_t {
 };
 const char* to_string(SweepVerdict verdict);
 
-struct SweepReport {
+/// Result of one sweep: poses of the IMU with covariance, and the quality of the registration.
+struct SweepResult {
   SweepVerdict verdict = SweepVerdict::rejected;
   PoseState pose;  ///< pose and velocity of the IMU at the end of the sweep, with covariance
   /// covariance of the velocity in IMU axes at the end of the sweep [m^2/s^2]
   Eigen::Matrix3d velocity_covariance_I_m2_s2 = Eigen::Matrix3d::Zero();
   std::vector<PoseState> trajectory;  ///< IMU poses within the sweep, corrected by the registration
-  /// Final poses of the oldest sweep in the window of the fixed-lag smoother. Later sweeps no longer change these
-  /// poses. The vector is empty until `window_sweeps` sweeps have arrived. If `window_sweeps` is 2 (the default),
-  /// `final_poses_of_earlier_sweep` contains the final poses of the sweep before this sweep.
+  /// Final poses of the oldest sweep in the window of the fixed-lag smoother. Later sweeps do not change the final
+  /// poses. `final_poses_of_earlier_sweep` is empty until `window_sweeps` sweeps have arrived. If `window_sweeps` is 2
+  /// (the default), `final_poses_of_earlier_sweep` contains the final poses of the sweep before this sweep.
   std::vector<PoseState> final_poses_of_earlier_sweep;
-  double inlier_ratio = 0.0;      ///< fraction of the registered points that are inliers
-  double eigenvalue_ratio = 0.0;  ///< smallest / largest eigenvalue of the scaled information matrix of the pose
-  /// standard deviation of the pose in the least constrained direction, from the lidar points alone; 0: the sweep was
-  /// not aligned
+  double inlier_ratio = 0.0;  ///< fraction of the registered points that are inliers
+  /// ratio of the smallest to the largest eigenvalue of the pose's scaled information matrix
+  double eigenvalue_ratio = 0.0;
+  /// Standard deviation of the pose in the least constrained direction, from the lidar points alone. A value of 0 means
+  /// that the sweep was not aligned.
   double least_constrained_sigma_m = 0.0;
   /// Normalised innovation sqrt(d' P^-1 d / 9). The vector d contains the registration's nine corrections of predicted
-  /// position, attitude and velocity, and P is their predicted covariance. With correct covariances, the mean is at
-  /// most 1; 0: the sweep was not aligned.
+  /// position, attitude and velocity, and P is their predicted covariance. With correct covariances, the mean of
+  /// `normalised_innovation` is at most 1. A value of 0 means that the sweep was not aligned.
   double normalised_innovation = 0.0;
   /// Standard deviation of the position relative to the nearby map points. The covariance of `pose` also includes the
   /// map's drift and tilt, which grow with the travelled distance.
@@ -206,13 +212,13 @@ struct SweepReport {
   /// components, in world axes. The attitude components are angles, multiplied by the root-mean-square distance of the
   /// points from the IMU, so all six components are lengths.
   Eigen::Matrix<double, 6, 1> least_constrained_direction = Eigen::Matrix<double, 6, 1>::Zero();
-  Eigen::Vector3d mean_clipping_correction_rad_s =
-      Eigen::Vector3d::Zero();              ///< mean correction of the rate on clipped gyro axes
-  std::size_t points_used = 0;              ///< finite returns within the range limits that do not hit the robot
-  std::size_t isolated_points_dropped = 0;  ///< unused returns that no neighbouring beam confirms
-  std::size_t points_registered = 0;        ///< usable points after downsampling to one point per voxel
+  /// mean correction of the angular velocity on clipped gyro axes during the sweep, in IMU axes
+  Eigen::Vector3d mean_clipping_correction_rad_s = Eigen::Vector3d::Zero();
+  std::size_t usable_points = 0;              ///< finite returns within the range limits that do not hit the robot
+  std::size_t isolated_points_dropped = 0;    ///< unused returns that no neighbouring beam confirms
+  std::size_t points_after_downsampling = 0;  ///< usable points after downsampling to one point per voxel
   std::size_t map_points_added = 0;
-  /// true if the poses are in the frame of the prior map
+  /// `in_prior_map` is true if the poses are in the frame of the prior map.
   bool in_prior_map = false;
 };
 

@@ -14,21 +14,22 @@
 
 namespace tumble {
 
-/// Parameters of the second mapping pass, which processes the first seconds of motion again; see TumblingOdometry.
-struct SecondMappingPassParams {
-  double after_s = 3.0;  ///< duration of motion before the second mapping pass starts; 0: no second pass
-  double lost_s = 0.4;   ///< duration of a tracking failure that starts a second mapping pass; 0: never
-  double lag_s = 0.5;    ///< lag with which the second mapping pass smooths the angular velocity
+/// Parameters for processing the first seconds of motion a second time, with the calibration estimated so far; see
+/// TumblingOdometry.
+struct FirstSecondsReprocessingParams {
+  double after_motion_s = 3.0;      ///< duration of motion after which the reprocessing starts; 0: never
+  double tracking_failure_s = 0.4;  ///< duration of a tracking failure that starts the reprocessing early; 0: never
+  double rate_lag_s = 0.5;          ///< lag with which the reprocessing smooths the angular velocity
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.after_s, {"after_s", "s", 0.0, 100.0,
-                      "after this time in motion, a second pass processes all data again with the estimated "
-                      "calibration; 0: no second pass"});
-    visit(p.lost_s,
+    visit(p.after_motion_s, {"after_s", "s", 0.0, 100.0,
+                             "after this time in motion, a second pass processes all data again with the estimated "
+                             "calibration; 0: no second pass"});
+    visit(p.tracking_failure_s,
           {"lost_s", "s", 0.0, 100.0,
            "time without a registered sweep after which the second pass starts early, once; 0: no early start"});
-    visit(p.lag_s, {"lag_s", "s", 0.0, 10.0, "second pass: age of a sample when its rate is reported"});
+    visit(p.rate_lag_s, {"lag_s", "s", 0.0, 10.0, "second pass: age of a sample when its rate is reported"});
   }
 };
 
@@ -37,8 +38,8 @@ struct SecondMappingPassParams {
 struct TumblingExpertParams {
   double gravity_m_s2 = 9.80665;
   /// Maximum number of sweeps that wait for IMU samples, in addition to the sweeps of the last `lag_s`. If more than
-  /// sweeps_max registered sweeps wait for take(), TumblingOdometry drops the oldest sweep.
-  std::size_t sweeps_max = 16;
+  /// `waiting_sweeps_max` registered sweeps wait for take(), TumblingOdometry drops the oldest sweep.
+  std::size_t waiting_sweeps_max = 16;
   /// Parameters of the estimation of angular velocity. By default, the prior probability that the IMU does not match
   /// its data sheet is 0.003. The covariance of each estimated rate includes the uncertainty of the IMU's calibration.
   MotionRegimeStream::Params rate = default_rate_params();
@@ -47,7 +48,7 @@ struct TumblingExpertParams {
   OdometryParams mapping = default_mapping_params();
   /// Parameters of the correction of IMU time stamps that a host computer assigned.
   SampleClock::Params stamps;
-  SecondMappingPassParams second_mapping_pass;
+  FirstSecondsReprocessingParams first_seconds_reprocessing;
   static OdometryParams default_mapping_params();
   static MotionRegimeStream::Params default_rate_params();
   /// Returns the names of parameters that TumblingOdometry computes from other parameters. A name that ends in '*'
@@ -58,11 +59,11 @@ struct TumblingExpertParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.0, 100.0, "strength of gravity", ParameterAudience::common_use});
-    visit(p.sweeps_max, {"sweeps_max", "1", 1, 1e6, "maximum number of sweeps that wait for IMU data"});
+    visit(p.waiting_sweeps_max, {"sweeps_max", "1", 1, 1e6, "maximum number of sweeps that wait for IMU data"});
     visit.group("rate_", p.rate);
     visit.group("mapping_", p.mapping);
     visit.group("stamps_", p.stamps);
-    visit.group("second_pass_", p.second_mapping_pass);
+    visit.group("second_pass_", p.first_seconds_reprocessing);
   }
 };
 

@@ -61,11 +61,11 @@ class RollingOdometry {
     static std::span<const char* const> computed_parameter_names();
 
     /// Increases the prior standard deviations for uncalibrated IMUs without data sheet, at unknown positions in the
-    /// sphere. A sloped floor becomes very improbable, because the accelerometer bias of an uncalibrated IMU resembles
-    /// a slope.
+    /// sphere. With the increased standard deviations, a sloped floor is very improbable a priori, because the
+    /// accelerometer bias of an uncalibrated IMU resembles a slope.
     void widen_priors_for_unknown_imus();
 
-    /// Callers must include odometry/expert_params.hpp.
+    /// Callers of fields() must include odometry/expert_params.hpp.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.radius_m, {"radius_m", "m", 1e-3, 100.0, "radius of the sphere", ParameterAudience::common_use});
@@ -93,14 +93,14 @@ class RollingOdometry {
   struct Pose {
     PoseState pose;  ///< pose of the sphere's centre; live poses have no attitude covariance
     /// angular velocity of the sphere, in sphere axes
-    Eigen::Vector3d angular_velocity_rad_s = Eigen::Vector3d::Zero();
-    /// Covariance of the velocity of the sphere's centre, in sphere axes. If `lag_s` is above 0, the covariance
-    /// neglects that the contact mode (grip, slip or bump) is uncertain.
+    Eigen::Vector3d angular_velocity_B_rad_s = Eigen::Vector3d::Zero();
+    /// Covariance of the velocity of the sphere's centre, in sphere axes. If `lag_s` is above 0, the covariance of the
+    /// velocity neglects that the contact mode is uncertain.
     Eigen::Matrix3d velocity_covariance_B_m2_s2 = Eigen::Matrix3d::Zero();
-    ContactMode mode = ContactMode::grip;
+    ContactMode contact_mode = ContactMode::grip;
     bool at_rest = false;
-    /// True after a restart, and during a slip or bump that increases the standard deviation of the position by more
-    /// than ContactModeParams::kEventSigmaGrowth_m.
+    /// True after a restart, and during a slip, bump or flight that increases the standard deviation of the position by
+    /// more than ContactModeParams::kEventSigmaGrowth_m.
     bool position_uncertain = false;
   };
 
@@ -115,15 +115,15 @@ class RollingOdometry {
   /// Processes simultaneous readings of all IMUs. All readings get the time stamp of the first IMU's reading.
   /// SampleClock corrects time stamps with jitter. Pass NaN for an IMU without a reading. OutlierFilter rejects
   /// outliers among the readings of each IMU. While OutlierFilter checks a sudden change of a reading, up to five
-  /// samples of all IMUs wait, and newest() returns the pose before these samples. On error, the state is unchanged.
-  /// The errors are `insufficient_data` (wrong number of IMUs, or no reading), `time_order`, `degenerate` (the first
-  /// specific force is almost zero), `gap` and `out_of_range`. `out_of_range` means that the run has finished, the time
-  /// stamp exceeds kStampMax_ns, or the only IMU with readings has a frozen axis.
+  /// samples of all IMUs wait, and newest() returns the pose before these samples. If add_imus() returns an error, the
+  /// state is unchanged. The errors are `insufficient_data` (wrong number of IMUs, or no reading), `time_order`,
+  /// `degenerate` (the first specific force is almost zero), `gap` and `out_of_range`. `out_of_range` means that the
+  /// run has finished, the time stamp exceeds kStampMax_ns, or the only IMU with readings has a frozen axis.
   ///
   /// A single wrong time stamp causes the loss of only one sample. After a gap of more than a second, add_imus()
   /// rejects the first sample, returns `gap`, and restarts with the next sample. If the clock steps back, add_imus()
-  /// rejects samples for 0.2 s, returns `time_order`, and then restarts. A restart completes the poses of the old run,
-  /// and starts a new run at the newest pose, like reset(pose). Poses after a restart have the flag
+  /// rejects samples for 0.2 s, returns `time_order`, and then restarts. A restart completes the poses of the run
+  /// before the restart, and starts a new run at the newest pose, like reset(pose). Poses after a restart have the flag
   /// `position_uncertain`, and their covariance includes the unknown motion during the gap.
   Status add_imus(std::span<const ImuSample> samples);
   /// Processes a sample of a sphere with one IMU. Returns `ok` or an error of add_imus().
@@ -139,8 +139,8 @@ class RollingOdometry {
   /// Returns the pose at the newest sample, estimated from all data so far, or an empty value before the first sample.
   std::optional<Pose> newest() const;
 
-  /// Returns the oldest pose that take() has not yet returned; empty if there is no such pose. If `lag_s` is 0, the
-  /// poses are live; otherwise the poses are smoothed and `lag_s` old.
+  /// Returns the oldest pose that take() has not yet returned, or an empty value if there is no such pose. If `lag_s`
+  /// is 0, the poses are live; otherwise the poses are smoothed and `lag_s` old.
   std::optional<Pose> take();
 
   /// Ends the run and smooths the remaining poses. After finish(), add_imus() rejects samples until reset(). Returns
@@ -151,8 +151,9 @@ class RollingOdometry {
   /// Starts a new run at the origin and at rest. After reset(), take() still returns the remaining poses of the old
   /// run, and counters keep their values.
   void reset();
-  /// Starts a new run at a known pose of the sphere, like reset(). `T_WG` sets position and heading, and gravity at
-  /// rest determines the tilt. Covariances are relative to `T_WG`.
+  /// Starts a new run at a known pose of the sphere, like reset(). Frame G has its origin at the sphere's centre.
+  /// `T_WG` sets position and heading, and gravity at rest determines the tilt. Reported covariances describe errors
+  /// relative to `T_WG`.
   void reset(const Eigen::Isometry3d& T_WG);
 
   /// Reports the current suspected faults of the IMUs. RollingOdometry ignores the readings of an IMU with a frozen
@@ -196,10 +197,10 @@ class RollingOdometry {
   /// If the sphere may have moved since save(), call reset(pose) after load().
   ///
   /// `last_pose` receives the saved pose with its time in the clock of the saved run. If no pose was saved, `last_pose`
-  /// is empty. On error, the object is unchanged, and the returned status names the field, the saved value and the
-  /// bound. The error is `insufficient_data` (truncated bytes), `non_finite` or `out_of_range`. The function load()
-  /// rejects damaged bytes, and bytes that another version or a TumblingOdometry saved. A saved run with another radius
-  /// or other IMUs is also rejected.
+  /// is empty. If load() returns an error, the object is unchanged, and the returned status names the field, the saved
+  /// value and the bound. The error is `insufficient_data` (truncated bytes), `non_finite` or `out_of_range`. The
+  /// function load() rejects damaged bytes, and bytes that another version or a TumblingOdometry saved. A saved run
+  /// with another radius or other IMUs is also rejected.
   Status load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose = nullptr);
 
   struct Impl;  ///< private implementation

@@ -52,13 +52,15 @@ struct LidarDataSheet {
   }
 };
 
-/// Lidar in addition to the first lidar (TumblingParams). Pose and clock offset relative to the first lidar must be
-/// exact, because TumblingOdometry estimates both only for the first lidar.
+/// Describes a lidar in addition to the first lidar of TumblingParams. Pose and clock offset relative to the first
+/// lidar must be exact, because TumblingOdometry estimates both only for the first lidar.
 struct FurtherLidar {
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
   LidarDataSheet data_sheet;
-  Eigen::AlignedBox3d own_body_L;  ///< see TumblingParams::own_body_L, in axes of this lidar
-  double time_offset_s = 0.0;      ///< clock of the first lidar minus clock of this lidar
+  /// Box in axes of this lidar that contains the robot; see TumblingParams::own_body_L.
+  Eigen::AlignedBox3d own_body_L;
+  /// time of an event in the first lidar's clock minus time of the same event in this lidar's clock
+  double first_minus_this_clock_s = 0.0;
 };
 
 /// Data sheets of common sensors: for example, `sheets::mti30()` returns the data sheet of the Xsens MTi-30. The file

@@ -30,7 +30,7 @@ struct LidarScale {
 /// (Huber, 1964). Intervals with a saturated accelerometer or with unconstrained sweeps are skipped. Without
 /// acceleration, the scale is not observable. The standard deviation includes the correlation of overlapping intervals
 /// (Newey and West, 1987), and an acceleration error of 0.05 m/s^2 from bias and tilt. Cost: O(N).
-LidarScale find_sweep_scale(std::span<const ImuSample> samples, std::span<const SweepReport> sweeps,
+LidarScale find_sweep_scale(std::span<const ImuSample> samples, std::span<const SweepResult> sweeps,
                             double gravity_m_s2);
 
 /// Estimates the scale of the lidar's ranges live, from at most 1000 velocity changes of the last minute.
@@ -51,7 +51,7 @@ class LidarScaleEstimator {
   void add(const ImuSample& sample);
   /// Adds the report of a sweep, after all IMU samples up to the end of the sweep. Cost: O(number of stored velocity
   /// changes).
-  void add(const SweepReport& sweep);
+  void add(const SweepResult& sweep);
 
   const LidarScale& scale() const { return scale_; }
 
@@ -59,7 +59,7 @@ class LidarScaleEstimator {
   double gravity_m_s2_;
   std::size_t samples_max_;
   std::vector<ImuSample> samples_;
-  std::deque<SweepReport> sweeps_;  ///< sweeps of the last two intervals; contains only pose, attitudes and verdict
+  std::deque<SweepResult> sweeps_;  ///< sweeps of the last two intervals; contains only pose, attitudes and verdict
   std::deque<VelocityChange> velocity_changes_;
   LidarScale scale_;
 };

@@ -23,7 +23,7 @@ class Localisation {
   explicit Localisation(double matched_m) : distance_when_localised_m_(matched_m) {}
 
   /// Adds the report of a sweep with a pose. Sweeps must be in time order. Cost: O(1).
-  void add(const SweepReport& sweep);
+  void add(const SweepResult& sweep);
 
   /// Returns `out_of_range` with the violated limit if tracking has ever failed.
   Status verdict() const;
@@ -36,7 +36,7 @@ class Localisation {
   }
 
  private:
-  void observe_fit(const SweepReport& sweep);
+  void observe_fit(const SweepResult& sweep);
   Status fit_verdict() const;
 
   double distance_when_localised_m_;

@@ -193,7 +193,7 @@ struct OdometryExpertParams {
 
 struct OdometryParams {
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
-  double time_offset_s = 0.0;                              ///< IMU clock minus lidar clock
+  double imu_minus_lidar_clock_s = 0.0;
   /// prior standard deviations of T_IL and of the time offset; 0: exact, not estimated
   double mount_sigma_rad = 0.0;
   double mount_sigma_m = 0.0;
@@ -211,7 +211,7 @@ struct OdometryParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.time_offset_s,
+    visit(p.imu_minus_lidar_clock_s,
           {"time_offset_s", "s", -1.0, 1.0, "time of the IMU's clock minus time of the lidar's clock"});
     visit(p.mount_sigma_rad, lidar_calibration_fields::kMountSigma_rad);
     visit(p.mount_sigma_m, lidar_calibration_fields::kMountSigma_m);

@@ -35,7 +35,7 @@ struct MappingInput {
 
 struct MappedSweep {
   Status status;       ///< status of LidarInertialOdometry::add_sweep()
-  SweepReport report;  ///< final poses; without a pose, `report.trajectory` is empty
+  SweepResult result;  ///< final poses; without a pose, `result.trajectory` is empty
 };
 
 /// Result of the last pass over a recording.

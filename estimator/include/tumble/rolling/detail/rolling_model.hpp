@@ -11,7 +11,7 @@ inline constexpr int kContactModes = 5;
 
 /// Returns true if the contact point may move along the floor in the contact mode `mode`.
 inline bool may_slip(ContactMode mode) {
-  return mode == ContactMode::slip || mode == ContactMode::bump;
+  return mode == ContactMode::slip || mode == ContactMode::bump_or_flight;
 }
 
 /// Pose of a rolling sphere's centre G at one sample, with the contact mode.
