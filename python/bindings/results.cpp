@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "arrays.hpp"
@@ -100,6 +101,20 @@ void bind_attitudes_of_results(nb::module_& m) {
           "(N, 3, 3), rad^2, of phi with q_true = Exp(phi) q, world axes; zero if the method reports no covariance");
 }
 
+constexpr const char* kTransformedTo =
+    "Returns the same for a frame B that is rigidly attached to the frame A, for example base_link, with covariance.\n"
+    "T_AB (4, 4) is the pose of B in axes of A. rate is the angular velocity of A in axes of A [rad/s], one per pose;\n"
+    "without rate, the velocity is NaN.";
+
+/// Returns angular velocities, which are NaN if the user states none.
+std::vector<Eigen::Vector3d> angular_velocities_of(const ArrayLike& rate, std::size_t poses) {
+  std::vector<Eigen::Vector3d> out(poses, Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
+  if (rate.is_none()) return out;
+  const std::vector<double> numbers = numbers_of(as_array(rate, "rate").attr("reshape")(-1), "rate", 3 * poses);
+  for (std::size_t k = 0; k < poses; ++k) out[k] = Eigen::Vector3d::Map(&numbers[3 * k]);
+  return out;
+}
+
 void bind_poses(nb::module_& m) {
   nb::class_<PoseState>(m, "Pose", "Pose and velocity of a frame in the world at one instant.")
       .def_ro("time_ns", &PoseState::time_ns)
@@ -119,7 +134,13 @@ void bind_poses(nb::module_& m) {
             pose.translation() = s.position_W_m;
             return matrix(pose);
           },
-          "(4, 4), transforms coordinates of the frame to W");
+          "(4, 4), transforms coordinates of the frame to W")
+      .def(
+          "transformed_to",
+          [](const PoseState& s, const ArrayLike& T_AB, const ArrayLike& rate) {
+            return s.transformed_to(pose_of(T_AB, "T_AB"), angular_velocities_of(rate, 1).front());
+          },
+          nb::arg("T_AB"), nb::arg("rate") = nb::none(), kTransformedTo);
   bind_rows<Poses>(m, "Poses", "Poses and velocities of a frame in the world, in order of time.")
       .def_prop_ro("time_ns", &times<Poses>, kTimes)
       .def_prop_ro(
@@ -139,7 +160,17 @@ void bind_poses(nb::module_& m) {
       .def_prop_ro(
           "covariance",
           [](const Poses& s) { return column<double, 6, 6>(s.rows, [](auto& r) { return r.covariance.data(); }); },
-          kPoseCovariances);
+          kPoseCovariances)
+      .def(
+          "transformed_to",
+          [](const Poses& s, const ArrayLike& T_AB, const ArrayLike& rate) {
+            const Eigen::Isometry3d T = pose_of(T_AB, "T_AB");
+            const std::vector<Eigen::Vector3d> rates = angular_velocities_of(rate, s.rows.size());
+            Poses out = s;
+            for (std::size_t k = 0; k < rates.size(); ++k) out.rows[k] = s.rows[k].transformed_to(T, rates[k]);
+            return out;
+          },
+          nb::arg("T_AB"), nb::arg("rate") = nb::none(), kTransformedTo);
 }
 
 void bind_rolling_of_results(nb::module_& m) {

@@ -27,12 +27,32 @@ def test_jitter_of_host_stamps_is_estimated(hill, slip):
         assert host_clock.estimated_jitter_s == pytest.approx(1e-9 * most_ns / np.sqrt(3.0), rel=0.3)
 
 
+def check_base_poses(poses):
+    """Compares the poses of a base with a lever arm of 0.3 m with the closed form."""
+    T_IB = np.eye(4)
+    T_IB[:3, 3] = [0.3, 0.0, 0.0]
+    base, rate = poses.transformed_to(T_IB), np.tile([0.0, 0.0, 2.0], (len(poses), 1))
+    x, y, z, w = poses.quaternion.T
+    ahead = np.stack([1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)], axis=-1)  # x axis of the IMU in W
+    left = np.stack([2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)], axis=-1)
+    assert np.allclose(base.position, poses.position + 0.3 * ahead, atol=1e-12) and np.array_equal(base.time_ns, poses.time_ns)
+    assert np.isnan(base.velocity).all()
+    assert np.allclose(poses.transformed_to(T_IB, rate).velocity, poses.velocity + 0.6 * left, atol=1e-12)
+    J = np.eye(6)
+    J[:3, 3:] = np.cross(np.eye(3), 0.3 * ahead[-1]).T  # the column k is e_k x arm
+    assert np.allclose(base.covariance[-1], J @ poses.covariance[-1] @ J.T, atol=1e-15) and poses.covariance[-1].any()
+    with pytest.raises(tumble.TumbleError, match="rate"):
+        poses.transformed_to(T_IB, [1.0, 2.0, 3.0])
+
+
 def test_diagnostics_of_tumbling_odometry(hill):
     odometry = tumble.TumblingOdometry(**tumble.tumbling_options(hill))
     assert odometry.newest_imu_time_ns is None and odometry.samples_rejected_by_mapper == 0
     assert np.isinf(odometry.lidar_scale.sigma) and odometry.lidar_scale.changes == 0 and not odometry.lidar_scale.is_inconsistent
     assert odometry.lidar_calibration_covariance().shape == (10, 10) and not odometry.lidar_calibration_covariance().any(), "nothing is estimated yet"
-    odometry = tumble.tumbling(hill).odometry
+    run = tumble.tumbling(hill)
+    check_base_poses(run.poses)
+    odometry = run.odometry
     assert odometry.newest_imu_time_ns == hill.imus[0].time_ns[-1] and odometry.samples_rejected_by_mapper == 0
     after = odometry.lidar_calibration_covariance()
     assert np.allclose(after, after.T) and np.all(np.linalg.eigvalsh(after) > 0.0)

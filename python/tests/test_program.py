@@ -331,6 +331,9 @@ def test_odometry_of_a_bag_equals_the_command(recordings, tmp_path):
     live = tumble.odometry(bag, tmp_path / "live", live=True)
     assert live.method == "tumble_live" and (tmp_path / "live" / "map.pcd").exists()
     assert not np.array_equal(live.poses.position, own.poses.position), "the negative control"
+    base = tumble.odometry(bag, live=True, base_frame="body")
+    arm = np.linalg.norm(tumble.read(recordings["hill"]).imus[0].T_BI[:3, 3])
+    assert base.frame == "base" and np.allclose(np.linalg.norm(base.poses.position - live.poses.position, axis=1), arm, atol=1e-9)
     with pytest.raises(tumble.TumbleError, match="options"):
         tumble.odometry(bag, options="--live")
 

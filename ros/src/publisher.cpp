@@ -13,21 +13,15 @@ namespace tumble::ros {
 
 Odometry base_odometry(const PoseState& imu, const Eigen::Matrix3d& velocity_covariance_I_m2_s2,
                        const AngularRateState& rate, const Eigen::Isometry3d& T_IB) {
+  const PoseState base = imu.transformed_to(T_IB, rate.w_WI_I_rad_s);
   Odometry out;
-  out.stamp_ns = imu.time_ns;
-  const Eigen::Matrix3d R_OI = imu.orientation_W.toRotationMatrix(), R_BI = T_IB.linear().transpose();
-  const Eigen::Vector3d arm_I = T_IB.translation(), arm_O = R_OI * arm_I;
-  out.T_OB.linear() = R_OI * T_IB.linear();
-  out.T_OB.translation() = imu.position_W_m + arm_O;
-  // an attitude error phi in O displaces the base by phi x arm
-  Matrix6 J = Matrix6::Identity();
-  J.topRightCorner<3, 3>() = -so3::hat(arm_O);
-  out.pose_covariance = J * imu.covariance * J.transpose();
-
-  const Eigen::Vector3d w_I = rate.w_WI_I_rad_s;
-  out.twist_B.head<3>() = R_BI * (R_OI.transpose() * imu.velocity_W_m_s + w_I.cross(arm_I));
-  out.twist_B.tail<3>() = R_BI * w_I;
-  const Eigen::Matrix3d by_rate = R_BI * -so3::hat(arm_I), rate_covariance = rate.covariance_rad2_s2;
+  out.stamp_ns = base.time_ns;
+  out.T_OB = Eigen::Translation3d(base.position_W_m) * base.orientation_W;
+  out.pose_covariance = base.covariance;
+  const Eigen::Matrix3d R_BI = T_IB.linear().transpose();
+  out.twist_B.head<3>() = base.orientation_W.conjugate() * base.velocity_W_m_s;
+  out.twist_B.tail<3>() = R_BI * rate.w_WI_I_rad_s;
+  const Eigen::Matrix3d by_rate = R_BI * -so3::hat(T_IB.translation()), rate_covariance = rate.covariance_rad2_s2;
   out.twist_covariance.topLeftCorner<3, 3>() =
       R_BI * velocity_covariance_I_m2_s2 * R_BI.transpose() + by_rate * rate_covariance * by_rate.transpose();
   out.twist_covariance.topRightCorner<3, 3>() = by_rate * rate_covariance * R_BI.transpose();

@@ -66,4 +66,16 @@ std::vector<Eigen::Matrix3d> read_covariances(const std::filesystem::path& path,
   return covariances;
 }
 
+void write_position_covariances(const std::filesystem::path& path, const std::vector<PoseState>& poses) {
+  std::vector<Eigen::Matrix3d> covariances_m2;
+  covariances_m2.reserve(poses.size());
+  for (const PoseState& pose : poses) covariances_m2.push_back(pose.covariance.topLeftCorner<3, 3>());
+  write_covariances(path, stamps_ns(poses), covariances_m2);
+}
+
+void read_position_covariances(const std::filesystem::path& path, std::vector<PoseState>& poses) {
+  const std::vector<Eigen::Matrix3d> covariances_m2 = read_covariances(path, stamps_ns(poses));
+  for (std::size_t k = 0; k < poses.size(); ++k) poses[k].covariance.topLeftCorner<3, 3>() = covariances_m2[k];
+}
+
 }  // namespace tumble::scenarios

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <map>
@@ -62,7 +63,10 @@ struct Estimate {
   std::map<std::string, double> health;      ///< named counters: "rejected_samples", "sweeps_rejected"
   std::map<std::string, double> parameters;  ///< parameters that the user set by name
   std::vector<RecordingSetting> settings;    ///< settings that `tumble odometry` reports
-  std::string transcript;                    ///< output of an external program; not scored
+  /// Pose of the IMU in the base frame. If set, the file trajectory.tum contains poses of the base frame; `frame` must
+  /// be `imu`, and `poses` are poses of the IMU.
+  std::optional<Eigen::Isometry3d> T_base_imu;
+  std::string transcript;  ///< output of an external program; not scored
 };
 
 }  // namespace tumble::scenarios

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/estimates/base_frame.hpp"
 #include "scenarios/estimates/covariance_file.hpp"
 #include "scenarios/estimates/findings.hpp"
 #include "scenarios/estimates/json_members.hpp"
@@ -121,26 +122,6 @@ void write_contacts(const std::filesystem::path& path, const Estimate& estimate)
     table.end_row();
   }
   table.close();
-}
-
-template <typename State>
-std::vector<std::int64_t> stamps_ns(const std::vector<State>& states) {
-  std::vector<std::int64_t> stamps;
-  stamps.reserve(states.size());
-  for (const State& state : states) stamps.push_back(state.time_ns);
-  return stamps;
-}
-
-void write_position_covariances(const std::filesystem::path& path, const std::vector<PoseState>& poses) {
-  std::vector<Eigen::Matrix3d> covariances_m2;
-  covariances_m2.reserve(poses.size());
-  for (const PoseState& pose : poses) covariances_m2.push_back(pose.covariance.topLeftCorner<3, 3>());
-  write_covariances(path, stamps_ns(poses), covariances_m2);
-}
-
-void read_position_covariances(const std::filesystem::path& path, std::vector<PoseState>& poses) {
-  const std::vector<Eigen::Matrix3d> covariances_m2 = read_covariances(path, stamps_ns(poses));
-  for (std::size_t k = 0; k < poses.size(); ++k) poses[k].covariance.topLeftCorner<3, 3>() = covariances_m2[k];
 }
 
 bool begins_with(const std::filesystem::path& path, const std::string& header) {
@@ -280,21 +261,23 @@ json header_of(const std::string& method, Kind kind, const Estimate& estimate, c
   for (const HealthFinding& each : estimate.faults.findings) findings.push_back(json_of(each));
   for (const auto& [name, value, source, option] : estimate.settings)
     settings.push_back({{"setting", name}, {"value", value}, {"source", source}, {"option", option}});
-  return {{"format", kFormatVersion},
-          {"method", method},
-          {"kind", to_string(kind)},
-          {"frame", to_string(estimate.frame)},
-          {"status",
-           {{"trouble", to_string(estimate.status.error_code)},
-            {"field", estimate.status.field},
-            {"message", estimate.status.message()}}},
-          {"usable", estimate.status.ok() && !estimate.faults.invalidates_estimate()},
-          {"health", health},
-          {"findings", findings},
-          {"parameters", json(estimate.parameters)},
-          {"settings", settings},
-          {"sensors_digest", sensors_digest},
-          {"origin_ns", origin_ns}};
+  json header = {{"format", kFormatVersion},
+                 {"method", method},
+                 {"kind", to_string(kind)},
+                 {"frame", estimate.T_base_imu ? kBase : to_string(estimate.frame)},
+                 {"status",
+                  {{"trouble", to_string(estimate.status.error_code)},
+                   {"field", estimate.status.field},
+                   {"message", estimate.status.message()}}},
+                 {"usable", estimate.status.ok() && !estimate.faults.invalidates_estimate()},
+                 {"health", health},
+                 {"findings", findings},
+                 {"parameters", json(estimate.parameters)},
+                 {"settings", settings},
+                 {"sensors_digest", sensors_digest},
+                 {"origin_ns", origin_ns}};
+  if (estimate.T_base_imu) header[kBasePose] = numbers_of(*estimate.T_base_imu);
+  return header;
 }
 
 void read_header(const std::filesystem::path& path, Kind& kind, std::string& method, Estimate& estimate) {
@@ -308,7 +291,11 @@ void read_header(const std::filesystem::path& path, Kind& kind, std::string& met
   if (reader.member("format") != kFormatVersion) reader.complain("format", std::to_string(kFormatVersion));
   method = reader.text("method");
   kind = reader.named("kind", Kind::slam);
-  estimate.frame = reader.named("frame", Frame::centre);
+  if (reader.text("frame") == kBase) {
+    estimate.T_base_imu = pose_of(reader, kBasePose);
+  } else {
+    estimate.frame = reader.named("frame", Frame::centre);
+  }
   const json& status = reader.object("status");
   estimate.status.error_code = JsonMembers(path, status).named("trouble", ErrorCode::diverged);
   if (!estimate.status.ok()) estimate.status.field = "estimate.json";
@@ -333,9 +320,10 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
   for (const char* name : kEstimateFiles) std::filesystem::remove(folder / name, error);
   if (!estimate.rates.empty()) write_rates(folder / "rates.csv", estimate.rates);
   if (!estimate.attitudes.empty()) write_attitudes(folder, estimate.attitudes);
-  if (!estimate.poses.empty()) {
+  const std::vector<PoseState> poses = written_poses(estimate);
+  if (!poses.empty()) {
     TableWriter table(folder / "trajectory.tum", ' ', "");
-    for (const PoseState& pose : estimate.poses) {
+    for (const PoseState& pose : poses) {
       table.time_s(pose.time_ns);
       write_vector(table, pose.position_W_m);
       write_quaternion(table, pose.orientation_W);
@@ -343,7 +331,7 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
     }
     table.close();
   }
-  write_position_covariances(folder / "position_covariance.csv", estimate.poses);
+  write_position_covariances(folder / "position_covariance.csv", poses);
   if (!estimate.uncertain.empty() && estimate.uncertain.size() != estimate.contacts.size()) {
     throw std::invalid_argument(
         fmt::format("the estimate has {} 'uncertain' flags for {} contacts; their numbers must be equal",
@@ -389,7 +377,11 @@ Estimate read_estimate(const std::filesystem::path& path, Kind& kind, std::strin
   const auto there = [&](const char* name) { return std::filesystem::exists(path / name); };
   if (there("rates.csv")) read_rates(path / "rates.csv", estimate.rates);
   if (there("trajectory.tum")) read_tum(path / "trajectory.tum", estimate.poses);
-  if (there("position_covariance.csv")) read_position_covariances(path / "position_covariance.csv", estimate.poses);
+  if (estimate.T_base_imu) {
+    for (PoseState& pose : estimate.poses) pose = pose.transformed_to(*estimate.T_base_imu, Eigen::Vector3d::Zero());
+  } else if (there("position_covariance.csv")) {
+    read_position_covariances(path / "position_covariance.csv", estimate.poses);
+  }
   if (there("contacts.csv")) read_contacts(path / "contacts.csv", estimate);
   if (there("attitude.tum")) read_attitudes(path, estimate.attitudes);
   if (there("sweeps.csv")) read_sweeps(path, estimate);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Geometry>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -23,6 +24,7 @@ struct Imported {
   /// If record stamps of a bag replaced the header stamps, shift of the lidar's clock relative to the clock of the
   /// primary IMU [s]. The shift is empty if the user chose header or record stamps.
   std::optional<double> record_shift_s;
+  std::optional<Eigen::Isometry3d> T_base_imu;  ///< pose of the primary IMU in the base frame that the user names
 };
 
 enum class AccelUnit { m_s2, g };

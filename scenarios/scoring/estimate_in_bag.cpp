@@ -55,12 +55,6 @@ Alignment alignment_of(const Estimate& estimate, const StoredTruth* truth) {
       "no pose of the estimate is within the duration of the truth; check that truth and estimate use the same clock");
 }
 
-Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d out;
-  out << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return out;
-}
-
 PoseState moved_by(const Alignment& alignment, const PoseState& pose) {
   PoseState out = alignment.apply(pose);
   Eigen::Matrix<double, 6, 6> turn = Eigen::Matrix<double, 6, 6>::Zero();
@@ -69,16 +63,14 @@ PoseState moved_by(const Alignment& alignment, const PoseState& pose) {
   return out;
 }
 
-/// An attitude error phi displaces the body's position by phi x (lever arm in world axes).
-BagTrack::Pose body_pose(const PoseState& moved, const Eigen::Isometry3d& T_AB) {
-  const Eigen::Quaterniond q_WA = moved.orientation_W.normalized();
+BagTrack::Pose body_pose(PoseState moved, const Eigen::Isometry3d& T_AB) {
+  moved.orientation_W.normalize();
+  const PoseState body = moved.transformed_to(T_AB, Eigen::Vector3d::Zero());  // the velocity is not used
   BagTrack::Pose out;
-  out.time_ns = moved.time_ns;
-  out.p_WB_m = moved.position_W_m + q_WA * T_AB.translation();
-  out.q_WB = (q_WA * Eigen::Quaterniond(T_AB.linear())).normalized();
-  Eigen::Matrix<double, 6, 6> J = Eigen::Matrix<double, 6, 6>::Identity();
-  J.topRightCorner<3, 3>() = -cross_matrix(q_WA * T_AB.translation());
-  out.covariance = J * moved.covariance * J.transpose();
+  out.time_ns = body.time_ns;
+  out.p_WB_m = body.position_W_m;
+  out.q_WB = body.orientation_W.normalized();
+  out.covariance = body.covariance;
   return out;
 }
 

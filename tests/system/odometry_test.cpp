@@ -24,24 +24,6 @@ using nlohmann::json;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// Returns a recording of `stroll`, seven seconds of 20, made once per process.
-fs::path short_stroll() {
-  static const fs::path recording = [] {
-    std::string text = read_file(test::source_dir() / "scenarios/catalogue/stroll.yaml");
-    const std::string whole = "duration_s: 20\n";
-    if (text.find(whole) == std::string::npos) throw std::runtime_error("stroll.yaml has no '" + whole + "'");
-    text.replace(text.find(whole), whole.size(), "duration_s: 7\n");
-    const fs::path folder = fs::path(testing::TempDir()) / ("tumble_stroll_" + std::to_string(getpid()));
-    fs::create_directories(folder);
-    std::ofstream(folder / "stroll.yaml") << text;
-    const Ended ended = run_program(
-        {"record", (folder / "stroll.yaml").string(), "--seed", "1001", "-o", (folder / "stroll.h5").string()});
-    if (ended.status != 0) throw std::runtime_error(ended.err);
-    return folder / "stroll.h5";
-  }();
-  return recording;
-}
-
 void scale(std::vector<Eigen::Vector3d>& rows, double factor) {
   for (Eigen::Vector3d& row : rows) row *= factor;
 }

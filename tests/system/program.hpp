@@ -52,6 +52,9 @@ std::function<void()> in_short_catalogue();
 /// process. Tests must not change the folder.
 std::filesystem::path shared_run(const std::string& scenario);
 
+/// Returns a recording of `stroll`, seven seconds of 20, made once per process.
+std::filesystem::path short_stroll();
+
 std::string read_file(const std::filesystem::path& path);
 /// Returns standard output as JSON; output that is no JSON fails the test.
 nlohmann::json json_of(const Ended& ended);

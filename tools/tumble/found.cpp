@@ -118,6 +118,13 @@ class Found {
     add(kLidarPose, "the lidar frame is assumed equal to the body frame; " + calibrated, kAssumed, kPoseOption);
   }
 
+  void add_base() {
+    const auto& T_base_imu = recording_.content.T_base_imu;
+    add("frame of the written poses",
+        T_base_imu ? "base frame, in which the pose of the IMU is " + pose_text(*T_base_imu) : "IMU",
+        T_base_imu ? kStated : kAssumed, "--T-base-imu X Y Z QX QY QZ QW, or --base-frame NAME");
+  }
+
   void add_own_body(const Eigen::AlignedBox3d& box, bool stated) {
     add("robot's own returns",
         box.sizes().isZero(0.0)
@@ -245,6 +252,7 @@ std::vector<RecordingSetting> complete_recording(const Session& session, OpenRec
   found.add_lidar();
   found.add_mounting();
   found.add_own_body(own_body_L, own_body_stated);
+  found.add_base();
   return std::move(found).items();
 }
 

@@ -36,6 +36,8 @@ void require_numbers(const std::string& option, const std::vector<double>& numbe
   }
 }
 
+}  // namespace
+
 Eigen::Isometry3d pose_of(const std::string& option, const std::vector<double>& numbers) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   if (numbers.empty()) return pose;
@@ -48,6 +50,8 @@ Eigen::Isometry3d pose_of(const std::string& option, const std::vector<double>& 
   pose.translation() = Eigen::Vector3d(numbers[0], numbers[1], numbers[2]);
   return pose;
 }
+
+namespace {
 
 std::int64_t period_ns(double period_s) {
   return std::llround(period_s * 1e9);
@@ -206,6 +210,8 @@ void require_fitting(const ImportOptions& options, const std::string& format) {
          "this option applies only to IMU readings in a CSV file or bag");
   refuse(!options.columns.empty() && (!csv || (format == "csv" && std::filesystem::is_directory(options.path))),
          "--columns", "this option applies only to a CSV file with IMU readings");
+  refuse(!options.base_frame.empty() && !bag, "--base-frame",
+         "this option applies only to a bag with /tf_static; use --T-base-imu");
   refuse(!options.stamps.empty() && !bag, "--stamps", "this option applies only to a bag");
   refuse(!options.lever_arm_m.empty() && !csv && !bag, "--lever-arm",
          "this option applies only to an IMU in a CSV file or bag");
@@ -334,6 +340,7 @@ scenarios::BagReading bag_reading(const Session& session, const ImportOptions& o
   }
   reading.sweeps = sweep_reading(session, options);
   reading.for_odometry = options.for_odometry;
+  reading.base_frame = options.base_frame;
   return reading;
 }
 

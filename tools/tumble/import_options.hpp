@@ -30,7 +30,11 @@ struct ImportOptions {
   std::vector<std::string> imu_topics, lidar_topics;
   std::string reference_topic, stamps;
   bool for_odometry = false;  ///< see BagReading
+  std::string base_frame;     ///< see BagReading
 };
+
+/// Converts X Y Z QX QY QZ QW; no numbers give the identity. Throws BadInput with the name of the option.
+Eigen::Isometry3d pose_of(const std::string& option, const std::vector<double>& numbers);
 
 void declare_sensors(VerbOptions& verb, ImportOptions& options);
 void declare(VerbOptions& verb, ImportOptions& options);

@@ -168,6 +168,7 @@ int run_odometry(const Session& session, const OdometryCommand& command) {
   const double run_s = run_with_progress(session, setup.method, sensors, estimate);
   if (estimate.replaced_T_BL) set_replaced_pose(*estimate.replaced_T_BL, setup.found);
   estimate.settings = setup.found;
+  estimate.T_base_imu = recording.content.T_base_imu;
   scenarios::write_estimate(command.folder, info.name, info.kind, estimate, recording.digest,
                             recording.content.info.origin_ns);
   if (!estimate.map.empty()) {

@@ -77,6 +77,13 @@ void declare_odometry_options(VerbOptions& verb, OdometryOptions& options) {
            "sets a box around the robot by two opposite corners X Y Z X Y Z in lidar axes, m; drops returns inside the "
            "box [default: no box; for recordings of our simulated rig -0.5 -0.4 -0.27 0.5 0.4 0.23]")
       .words(6);
+  verb.add(
+          "--T-base-imu", options.T_base_imu,
+          "writes poses of the base frame instead of the IMU to trajectory.tum. The numbers are the pose of the IMU in "
+          "the base frame: X Y Z in m, then the quaternion QX QY QZ QW. The frame of the map is unchanged")
+      .words(7);
+  verb.add("--base-frame", options.input.base_frame,
+           "as --T-base-imu, with the pose of the IMU in this frame of a bag's /tf_static, for example base_link");
   verb.add("--set", options.parameters,
            "sets a parameter of the method: METHOD.PARAMETER=NUMBER; repeat the option for more parameters ('tumble "
            "list "
@@ -87,12 +94,16 @@ void declare_odometry_options(VerbOptions& verb, OdometryOptions& options) {
 void check_odometry_options(const OdometryOptions& options) {
   (void)own_body(options, "");
   (void)method_name(options);
+  (void)pose_of("--T-base-imu", options.T_base_imu);
+  if (!options.T_base_imu.empty() && !options.input.base_frame.empty())
+    throw BadInput("--T-base-imu and --base-frame exclude each other; give only one");
 }
 
 OdometrySetup set_up_odometry(const Session& session, const OdometryOptions& options, OpenRecording& recording) {
   const sim::Sensors& sensors = recording.content.sensors;
   const scenarios::Method method =
       with_prior_map(*chosen_method(method_name(options), {sensors.robot, true}), options.prior_map);
+  if (!options.T_base_imu.empty()) recording.content.T_base_imu = pose_of("--T-base-imu", options.T_base_imu);
   OdometrySetup setup;
   const Eigen::AlignedBox3d own_body_L = own_body(options, sensors.robot);
   setup.found = complete_recording(session, recording, own_body_L, !options.own_body_m.empty());

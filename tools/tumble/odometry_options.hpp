@@ -19,6 +19,7 @@ struct OdometryOptions {
   bool live = false;
   PriorMapOptions prior_map;
   std::vector<double> own_body_m;
+  std::vector<double> T_base_imu;
   std::vector<std::string> parameters;
 };
 

@@ -52,6 +52,19 @@ Status check_samples(std::span<const ImuSample> samples, double gap_max_s) {
   return {};
 }
 
+PoseState PoseState::transformed_to(const Eigen::Isometry3d& T_AB, const Eigen::Vector3d& w_WA_A_rad_s) const {
+  const Eigen::Vector3d arm_A = T_AB.translation(), arm_W = orientation_W * arm_A;
+  PoseState out = *this;
+  out.position_W_m += arm_W;
+  out.orientation_W = orientation_W * Eigen::Quaterniond(T_AB.linear());
+  out.velocity_W_m_s += orientation_W * w_WA_A_rad_s.cross(arm_A);
+  // An attitude error phi of A displaces the origin of B by phi x arm.
+  Eigen::Matrix<double, 6, 6> J = Eigen::Matrix<double, 6, 6>::Identity();
+  J.topRightCorner<3, 3>() = -so3::hat(arm_W);
+  out.covariance = J * covariance * J.transpose();
+  return out;
+}
+
 }  // namespace tumble
 
 namespace tumble::so3 {

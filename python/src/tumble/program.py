@@ -112,20 +112,23 @@ def estimate(recording: Path, method: Path, folder: Path, settings: Mapping[str,
 
 
 def odometry(recording: Path, folder: Path | None = None, live: bool = False, options: Sequence[Path | Number] = (),
-             timeout_s: float | None = None) -> Estimate:
+             timeout_s: float | None = None, base_frame: str | None = None) -> Estimate:
     """Estimates trajectory and map of an IMU and a lidar from a bag, with `tumble odometry`. Returns the estimate.
 
     recording: a ROS 1 bag, ROS 2 bag, MCAP file, recording (HDF5) or another file that `tumble import` reads.
     folder:    receives trajectory, map and replay page; must be new or empty. Default: the files are not kept.
     live:      uses past data only (`slam/tumble_live`).
     options:   further words of the command, for example ["--lever-arm", 0.1, 0, 0.02, "--imu-topic", "/imu"].
+    base_frame frame of the bag's /tf_static, for example "base_link", whose poses are returned; None: the IMU. The option
+               --T-base-imu states the pose of the IMU in a frame that /tf_static lacks.
 
-    `poses` of the result are poses of the IMU in a world with z up, at the times of the IMU. Warns if the method's own health rejects
+    `poses` of the result are in a world with z up, at the times of the IMU. Warns if the method's own health rejects
     the estimate. Raises TumbleError for a recording that cannot be used; the message names the option that helps.
     """
     if isinstance(options, (str, os.PathLike)) or not isinstance(options, Sequence):
         raise wrong_type("options", options, "a list of words")
-    words: list[Path | Number] = [_named("recording", recording), *options, *(["--live"] if live else [])]
+    words: list[Path | Number] = [_named("recording", recording), *options, *(["--live"] if live else []),
+                                  *([] if base_frame is None else ["--base-frame", path_of("base_frame", base_frame)])]
     with tempfile.TemporaryDirectory() as scratch:
         out = pathlib.Path(scratch) / "odometry" if folder is None else pathlib.Path(path_of("folder", folder))
         report = json.loads(call("odometry", *words, "-o", out, "--json", timeout_s=timeout_s, accepted=(0, 1)))

@@ -104,6 +104,7 @@ struct BagReading {
   StampSource stamps = StampSource::header;
   bool stamps_stated = false;  ///< the user chooses `stamps`
   SweepReading sweeps;
+  std::string base_frame;  ///< frame of /tf_static for Imported::T_base_imu; empty: none
   /// If true, sensors have the names of their topics. An unreadable topic is then skipped with a note, if another topic
   /// of the same kind is readable.
   bool for_odometry = false;

@@ -272,6 +272,7 @@ Imported import_bag(BagReader& reader, const std::filesystem::path& path, const 
   for (const std::string& remark : frames.remarks()) out.notes.push_back(std::string(kStaticTopic) + ": " + remark);
   SensorMountings places(frames, bag.place + ": topic " + kStaticTopic);
   const std::int64_t imu_lag_ns = add_imus(bag, places, reading, out);
+  if (!reading.base_frame.empty()) out.T_base_imu = places.primary_imu_in(reading.base_frame);
   add_lidars(bag, places, reading, imu_lag_ns, out);
   note_unread_clouds(bag, out.notes);
   if (out.sensors.imus.empty() && out.sensors.lidars.empty()) {

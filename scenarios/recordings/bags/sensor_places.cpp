@@ -90,6 +90,15 @@ std::optional<Eigen::Isometry3d> SensorMountings::of(const std::string& frame) c
   return beside->T_BA * *frames_.pose(beside->frame, frame, where_);
 }
 
+Eigen::Isometry3d SensorMountings::primary_imu_in(const std::string& frame) const {
+  const std::string imu = placed_.empty() ? "" : placed_.front().frame;
+  if (const auto T = frames_.pose(frame, imu, where_)) return *T;
+  throw WrongOption(
+      fmt::format("--base-frame {}: {} does not contain the pose of the IMU's frame '{}' in this frame (frames with a "
+                  "pose: {}); name another frame, or state the pose with --T-base-imu",
+                  frame, where_, imu, frames_.names()));
+}
+
 namespace {
 
 constexpr double kFrameFar_m = 1000.0, kFrameNormTolerance = 0.01;
@@ -138,6 +147,12 @@ std::string StaticFrames::body() const {
     if (frames_.contains(name) || std::any_of(frames_.begin(), frames_.end(), on_it)) return name;
   }
   return "";
+}
+
+std::string StaticFrames::names() const {
+  std::string out;
+  for (const auto& [frame, on] : frames_) out += fmt::format("{}{} in {}", out.empty() ? "" : ", ", frame, on.parent);
+  return out.empty() ? "none" : out;
 }
 
 std::vector<StaticFrames::FrameLink> StaticFrames::path_to_root(const std::string& frame,

@@ -28,6 +28,7 @@ class StaticFrames {
   const std::vector<std::string>& remarks() const { return remarks_; }
 
   std::string body() const;
+  std::string names() const;
 
   std::optional<Eigen::Isometry3d> pose(const std::string& frame_A, const std::string& frame_B,
                                         const std::string& where) const;
@@ -57,6 +58,8 @@ class SensorMountings {
 
   std::optional<Eigen::Isometry3d> of(const std::string& frame) const;
   std::string body() const { return frames_.body(); }
+  /// Returns the pose of the first placed sensor, the primary IMU, in a frame. Throws WrongOption without this pose.
+  Eigen::Isometry3d primary_imu_in(const std::string& frame) const;
 
  private:
   struct Placed {

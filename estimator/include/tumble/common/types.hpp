@@ -72,6 +72,11 @@ struct PoseState {
   /// Covariance of the position error [m], then the attitude error phi [rad], both in world axes. The attitude error is
   /// defined by q_true = Exp(phi) * q_WA. A zero matrix means that the covariance is not estimated.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+
+  /// Returns pose, velocity and covariance of a frame B that is rigidly attached to A, for example `base_link`.
+  /// @param T_AB           pose of B in axes of A
+  /// @param w_WA_A_rad_s   angular velocity of A in axes of A, which determines the velocity of B's origin
+  PoseState transformed_to(const Eigen::Isometry3d& T_AB, const Eigen::Vector3d& w_WA_A_rad_s) const;
 };
 
 /// Mode of contact between the rolling sphere and the floor.

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The test runs `tumble odometry` with poses of the base frame, on a bag with /tf_static.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <fstream>
+#include <sstream>
+
+#include "scenarios/recordings/recording_file.hpp"
+#include "system/program.hpp"
+
+namespace tumble::system_test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+std::vector<Eigen::Isometry3d> poses(const fs::path& trajectory) {
+  std::ifstream file(trajectory);
+  std::vector<Eigen::Isometry3d> out;
+  for (std::string line; std::getline(file, line);) {
+    std::istringstream row(line);
+    double time_s = 0.0;
+    Eigen::Vector3d p_m;
+    Eigen::Quaterniond q;
+    if (line.front() != '#' && row >> time_s >> p_m.x() >> p_m.y() >> p_m.z() >> q.x() >> q.y() >> q.z() >> q.w())
+      out.push_back(Eigen::Translation3d(p_m) * q);
+  }
+  return out;
+}
+
+TEST(Odometry, WritesPosesOfTheBaseFrame) {
+  const fs::path folder = test_folder();
+  const std::string recording = short_stroll().string(), bag = (folder / "stroll.mcap").string();
+  ASSERT_EQ(run_program({"export", recording, "-o", bag}).status, 0);
+  const auto run = [&](const std::string& name, std::vector<std::string> options) {
+    options.insert(options.begin(), {"odometry", bag, "--live", "--json", "-o", (folder / name).string()});
+    const Ended ended = run_program(options);
+    EXPECT_EQ(ended.status, 0) << name << ended.err;
+    return poses(folder / name / "trajectory.tum");
+  };
+  const auto of_imu = run("imu", {}), shifted = run("shifted", {"--T-base-imu", "0.3", "0", "0", "0", "0", "0", "1"}),
+             of_body = run("body", {"--base-frame", "body"});
+  const Eigen::Isometry3d T_imu_body = scenarios::read_sensors(short_stroll()).imus.front().T_BI.inverse();
+  ASSERT_GT(T_imu_body.translation().norm(), 0.05);
+  ASSERT_GT(of_imu.size(), 600u);
+  ASSERT_EQ(shifted.size(), of_imu.size());
+  ASSERT_EQ(of_body.size(), of_imu.size());
+  for (std::size_t k = 0; k < of_imu.size(); ++k) {
+    ASSERT_TRUE(shifted[k].isApprox(of_imu[k] * Eigen::Translation3d(-0.3, 0.0, 0.0), 1e-9)) << k;
+    ASSERT_TRUE(of_body[k].isApprox(of_imu[k] * T_imu_body, 1e-9)) << k;
+  }
+  for (const char* file : {"map.ply", "sweeps.csv"})
+    EXPECT_EQ(read_file(folder / "shifted" / file), read_file(folder / "imu" / file)) << file;
+  EXPECT_NE(read_file(folder / "shifted" / "position_covariance.csv"),
+            read_file(folder / "imu" / "position_covariance.csv"));
+  const json estimate = json::parse(read_file(folder / "shifted" / "estimate.json"));
+  EXPECT_EQ(estimate["frame"], "base");
+  EXPECT_EQ(estimate["T_base_imu"], json({0.3, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0}));
+
+  // the score needs poses of the IMU
+  const auto error_m = [&](const char* name) {
+    return metric(json_of(run_program({"score", (folder / name).string(), recording, "--json"})), "ate_m");
+  };
+  EXPECT_NEAR(error_m("shifted"), error_m("imu"), 1e-6);
+
+  const Ended unknown = run_program({"odometry", bag, "--base-frame", "mast", "-o", (folder / "none").string()});
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("--base-frame mast: "));
+  const Ended both = run_program({"odometry", bag, "--base-frame", "body", "--T-base-imu", "0", "0", "0", "0", "0", "0",
+                                  "1", "-o", (folder / "none").string()});
+  EXPECT_THAT(both.err, HasSubstr("--T-base-imu and --base-frame exclude each other"));
+}
+
+}  // namespace
+}  // namespace tumble::system_test
