@@ -152,7 +152,7 @@ void Feed::add_sweep(Sweep sweep) {
 
 void Feed::save_final_poses() {
   for (const nb::handle sweep : odometry().attr("take_all")())
-    save_poses(sweep.attr("report").attr("final_poses_of_earlier_sweep"));
+    save_poses(sweep.attr("result").attr("final_poses_of_earlier_sweep"));
 }
 
 void Feed::save_poses(nb::handle poses) {
