@@ -2,6 +2,7 @@
 #include "scenarios/diagnosis/lidar_odometry.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <optional>
 
 #include "scenarios/baselines/mapping/rigid_odometry.hpp"
@@ -16,6 +17,8 @@ namespace {
 using baselines::RigidOdometry;
 
 constexpr int kPosesPerSweep = 10;
+constexpr std::size_t kSpans = 10, kSweepsOfSpan = 12;
+constexpr double kSlowest_rad_s = 0.1, kFastest_rad_s = 2.0;
 
 // The prior of the sweep's pose is very weak, so registration alone determines the pose.
 constexpr double kPriorM = 1.0, kPriorRad = 0.5;
@@ -94,6 +97,45 @@ class ConstantVelocity {
   TimeNs from_ns_ = 0;
 };
 
+sim::LidarRecord span_alone(const sim::LidarRecord& lidar, const PointStore* aside, std::size_t first,
+                            std::size_t last) {
+  sim::LidarRecord out = sweep_alone(lidar, aside, first);
+  const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+  for (std::size_t k = first + 1; k < last; ++k) {
+    const sim::LidarRecord sweep = sweep_alone(lidar, aside, k);
+    append(out.sweep_start_ns, sweep.sweep_start_ns);
+    append(out.position_L_m, sweep.position_L_m);
+    append(out.range_m, sweep.range_m);
+    append(out.intensity, sweep.intensity);
+    append(out.offset_ns, sweep.offset_ns);
+    append(out.ring, sweep.ring);
+    out.sweep_first.push_back(out.position_L_m.size());
+  }
+  return out;
+}
+
+/// Registration determines the pose at the mean time of the points of a sweep. The pose at the end of the sweep also
+/// depends on the rate that deskews the sweep, which is the rate of the previous sweep.
+const PoseState& middle_pose(const SweepResult& sweep, std::int64_t half_ns) {
+  return *std::ranges::min_element(sweep.trajectory, {}, [&](const PoseState& pose) {
+    return std::abs(pose.time_ns + half_ns - sweep.pose.time_ns);
+  });
+}
+
+void add_rotations(std::span<const SweepResult> sweeps, std::int64_t half_ns, std::vector<SeenRotation>& out) {
+  const auto registered = [](const SweepResult& sweep) {
+    return sweep.verdict == SweepVerdict::first || sweep.verdict == SweepVerdict::registered;
+  };
+  for (std::size_t k = 1; k < sweeps.size(); ++k) {
+    if (!registered(sweeps[k - 1]) || !registered(sweeps[k])) continue;
+    const PoseState &before = middle_pose(sweeps[k - 1], half_ns), &after = middle_pose(sweeps[k], half_ns);
+    SeenRotation seen{before.time_ns, after.time_ns,
+                      so3::logarithm(before.orientation_W.conjugate() * after.orientation_W)};
+    const double length_s = seconds(seen.to_ns - seen.from_ns), angle_rad = seen.rotation_L_rad.norm();
+    if (angle_rad > kSlowest_rad_s * length_s && angle_rad < kFastest_rad_s * length_s) out.push_back(seen);
+  }
+}
+
 }  // namespace
 
 std::vector<SweepResult> register_sweeps(const sim::LidarRecord& lidar) {
@@ -115,6 +157,18 @@ std::vector<SweepResult> register_sweeps(const sim::LidarRecord& lidar) {
   Estimate estimate;
   run_over_sweeps(lidar, {covers, add}, estimate);
   return std::move(estimate.sweeps);
+}
+
+std::vector<SeenRotation> seen_rotations(const sim::LidarRecord& lidar, const PointStore* aside) {
+  std::vector<SeenRotation> out;
+  const std::size_t sweeps = lidar.sweep_start_ns.size();
+  const std::size_t spans = std::min(kSpans, (sweeps + kSweepsOfSpan - 1) / kSweepsOfSpan);
+  const std::int64_t half_ns = lidar.point_times == sim::PointTimes::measured ? lidar.sweep_period_ns / 2 : 0;
+  for (std::size_t k = 0; k < spans; ++k) {
+    const std::size_t first = k * sweeps / spans, last = std::min(first + kSweepsOfSpan, sweeps);
+    add_rotations(register_sweeps(span_alone(lidar, aside, first, last)), half_ns, out);
+  }
+  return out;
 }
 
 }  // namespace tumble::scenarios

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scenarios/diagnosis/lidar_odometry.hpp"
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/recordings/number_text.hpp"
@@ -19,8 +18,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::size_t kSpans = 10, kSweepsOfSpan = 12;
-constexpr double kSlowest_rad_s = 0.1, kFastest_rad_s = 2.0;
 constexpr std::size_t kLeastPairs = 12;
 /// Largest accepted difference between the rotations that lidar and gyro measure, relative to the median rotation. In
 /// correct recordings, both rotations differ by about 0.1 of the median rotation.
@@ -35,37 +32,6 @@ constexpr double kInverted = 0.2;
 /// Record stamps of a bag (times of recording) vary by some 10 ms, so they replace only header stamps with errors above
 /// 0.1 s.
 constexpr double kRecordsBetter_s = 0.1;
-
-sim::LidarRecord span_alone(const sim::LidarRecord& lidar, const PointStore* aside, std::size_t first,
-                            std::size_t last) {
-  sim::LidarRecord out = sweep_alone(lidar, aside, first);
-  const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
-  for (std::size_t k = first + 1; k < last; ++k) {
-    const sim::LidarRecord sweep = sweep_alone(lidar, aside, k);
-    append(out.sweep_start_ns, sweep.sweep_start_ns);
-    append(out.position_L_m, sweep.position_L_m);
-    append(out.range_m, sweep.range_m);
-    append(out.intensity, sweep.intensity);
-    append(out.offset_ns, sweep.offset_ns);
-    append(out.ring, sweep.ring);
-    out.sweep_first.push_back(out.position_L_m.size());
-  }
-  return out;
-}
-
-void add_rotations(std::span<const SweepResult> sweeps, std::vector<SeenRotation>& out) {
-  const auto registered = [](const SweepResult& sweep) {
-    return sweep.verdict == SweepVerdict::first || sweep.verdict == SweepVerdict::registered;
-  };
-  for (std::size_t k = 1; k < sweeps.size(); ++k) {
-    const SweepResult &before = sweeps[k - 1], &after = sweeps[k];
-    if (!registered(before) || !registered(after)) continue;
-    SeenRotation seen{before.pose.time_ns, after.pose.time_ns,
-                      so3::logarithm(before.pose.orientation_W.conjugate() * after.pose.orientation_W)};
-    const double length_s = seconds(seen.to_ns - seen.from_ns), angle_rad = seen.rotation_L_rad.norm();
-    if (angle_rad > kSlowest_rad_s * length_s && angle_rad < kFastest_rad_s * length_s) out.push_back(seen);
-  }
-}
 
 class Integral {
  public:
@@ -276,17 +242,6 @@ std::string SignedAxes::text() const {
     out += (i == 0 ? "(" : ", ") + std::string(sign[i] < 0 ? "-" : "") + "xyz"[axis[i]];
   }
   return out + ")";
-}
-
-std::vector<SeenRotation> seen_rotations(const sim::LidarRecord& lidar, const PointStore* aside) {
-  std::vector<SeenRotation> out;
-  const std::size_t sweeps = lidar.sweep_start_ns.size();
-  const std::size_t spans = std::min(kSpans, (sweeps + kSweepsOfSpan - 1) / kSweepsOfSpan);
-  for (std::size_t k = 0; k < spans; ++k) {
-    const std::size_t first = k * sweeps / spans, last = std::min(first + kSweepsOfSpan, sweeps);
-    add_rotations(register_sweeps(span_alone(lidar, aside, first, last)), out);
-  }
-  return out;
 }
 
 std::optional<RotationAgreement> rotation_agreement(const sim::ImuRecord& imu, const sim::LidarRecord& lidar,

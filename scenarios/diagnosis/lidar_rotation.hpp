@@ -10,21 +10,11 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/diagnosis/lidar_odometry.hpp"
 #include "scenarios/recordings/import.hpp"
 #include "sim/recording.hpp"
 
 namespace tumble::scenarios {
-
-struct SeenRotation {
-  std::int64_t from_ns = 0, to_ns = 0;
-  Eigen::Vector3d rotation_L_rad = Eigen::Vector3d::Zero();  ///< rotation vector, lidar axes
-};
-
-/// Computes the rotations between consecutive sweeps from the lidar alone, by `register_sweeps`. The function processes
-/// at most ten segments of a dozen sweeps, spread over the recording, each with a separate map. Only pairs of
-/// registered sweeps with rates of 0.1 to 2 rad/s are kept, because slower rotations are mostly noise, and faster
-/// rotations distort the sweeps. The computation takes about 10 ms per sweep.
-std::vector<SeenRotation> seen_rotations(const sim::LidarRecord& lidar, const PointStore* aside);
 
 /// SignedAxes maps the axes of the IMU readings to the true IMU axes: true axis i is `sign[i]` times axis `axis[i]` of
 /// the readings.

@@ -24,28 +24,29 @@ constexpr std::int64_t kSweep_ns = 100'000'000, kSample_ns = 2'500'000;
 constexpr double kDegrees = 57.29577951308232;
 
 /// Returns the rate of the body, whose axes are those of IMU and lidar: it turns about all three, with sizes that rise
-/// and fall.
-Eigen::Vector3d rate_at(double time_s) {
-  return {0.5 * std::sin(1.3 * time_s), 0.4 * std::sin(1.9 * time_s + 1.0), 0.6 * std::cos(0.8 * time_s)};
+/// and fall. `haste` multiplies the frequency of the rate.
+Eigen::Vector3d rate_at(double time_s, double haste = 1.0) {
+  const double t = haste * time_s;
+  return {0.5 * std::sin(1.3 * t), 0.4 * std::sin(1.9 * t + 1.0), 0.6 * std::cos(0.8 * t)};
 }
 
-sim::ImuRecord gyro(double length_s) {
+sim::ImuRecord gyro(double length_s, double haste = 1.0) {
   sim::ImuRecord imu;
   imu.name = "imu";
   imu.period_ns = kSample_ns;
   for (std::int64_t t = kSample_ns; t < static_cast<std::int64_t>(1e9 * length_s); t += kSample_ns) {
     imu.time_ns.push_back(t);
     const std::int64_t middle_ns = t - kSample_ns / 2;
-    imu.gyro_rad_s.push_back(rate_at(1e-9 * static_cast<double>(middle_ns)));
+    imu.gyro_rad_s.push_back(rate_at(1e-9 * static_cast<double>(middle_ns), haste));
   }
   return imu;
 }
 
 /// Returns attitudes of the body in the world every millisecond.
-std::vector<Eigen::Quaterniond> attitudes(double length_s) {
+std::vector<Eigen::Quaterniond> attitudes(double length_s, double haste = 1.0) {
   std::vector<Eigen::Quaterniond> out{Eigen::Quaterniond::Identity()};
   for (int k = 0; k < static_cast<int>(1000.0 * length_s); ++k)
-    out.push_back((out.back() * so3::exp(Eigen::Vector3d(1e-3 * rate_at(1e-3 * k + 5e-4)))).normalized());
+    out.push_back((out.back() * so3::exp(Eigen::Vector3d(1e-3 * rate_at(1e-3 * k + 5e-4, haste)))).normalized());
   return out;
 }
 
@@ -60,12 +61,12 @@ double range_in_room(const Eigen::Vector3d& ray) {
   return ray.x() > 0.0 && y > 0.5 && y < 1.3 ? std::min(range, to_beam) : range;
 }
 
-sim::LidarRecord lidar_in_room(std::size_t sweeps) {
+sim::LidarRecord lidar_in_room(std::size_t sweeps, double haste = 1.0) {
   sim::LidarRecord lidar;
   lidar.name = "lidar";
   lidar.sweep_period_ns = kSweep_ns;
   lidar.sweep_first = {0};
-  const auto q_WL = attitudes(0.1 * static_cast<double>(sweeps + 1));
+  const auto q_WL = attitudes(0.1 * static_cast<double>(sweeps + 1), haste);
   for (std::size_t k = 0; k < sweeps; ++k) {
     lidar.sweep_start_ns.push_back(static_cast<std::int64_t>(k) * kSweep_ns);
     for (int column = 0; column < 180; ++column) {
@@ -204,6 +205,15 @@ TEST(LidarRotation, SweepsOfARoomCheckTheGyro) {
   EXPECT_FALSE(mirrored.better_BL) << "no mounting repairs mirrored axes";
   recording.sensors.imus.clear();
   EXPECT_THAT(check_lidar_rotation("bag", recording, GyroUnit::rad_s).notes, IsEmpty());
+}
+
+// the rate of the previous sweep does not predict the rate of a hand-held lidar
+TEST(LidarRotation, AChangingRateIsMeasured) {
+  const sim::LidarRecord lidar = lidar_in_room(36, 5.0);
+  const auto found = rotation_agreement(gyro(4.0, 5.0), lidar, seen_rotations(lidar, nullptr));
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->delay_s, 0.0);
+  EXPECT_LT(found->error_as_read, 0.1);
 }
 
 // zeros would be a stated position, which mapping trusts more than an unknown position
