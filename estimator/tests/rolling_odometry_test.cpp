@@ -162,7 +162,7 @@ TEST(RollingOdometry, TheOnlyUnitIsRefusedWithTheNameOfItsFrozenAxis) {
   }
   EXPECT_EQ(status.error_code, ErrorCode::out_of_range);
   EXPECT_NE(status.message().find("gyro y"), std::string::npos) << status.message();
-  EXPECT_EQ(odometry.health().worst().message(), status.message());
+  EXPECT_EQ(odometry.health().worst_status().message(), status.message());
   EXPECT_EQ(odometry.health().findings.front().kind, HealthFinding::Kind::frozen_axis);
 }
 

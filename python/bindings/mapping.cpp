@@ -43,15 +43,15 @@ void bind_report(nb::module_& m) {
       .def_ro("eigenvalue_ratio", &Report::eigenvalue_ratio)
       .def_ro("least_constrained_sigma_m", &Report::least_constrained_sigma_m,
               "standard deviation in the direction that the surfaces constrain least")
-      .def_prop_ro("least_constrained_direction",
-                   [](const Report& r) { return whole<6>(r.least_constrained_direction.data()); })
+      .def_prop_ro("least_constrained_pose_direction_W",
+                   [](const Report& r) { return whole<6>(r.least_constrained_pose_direction_W.data()); })
       .def_ro("normalised_innovation", &Report::normalised_innovation,
               "correction divided by the standard deviation of the prior, per square root of the number of unknowns")
       .def_ro("iterations", &Report::iterations)
       .def_ro("consecutive_rejected_sweeps", &Report::consecutive_rejected_sweeps,
               "number of consecutive rejected sweeps, including this one")
-      .def_prop_ro("mean_clipping_correction_rad_s",
-                   [](const Report& r) { return whole<3>(r.mean_clipping_correction_rad_s.data()); })
+      .def_prop_ro("mean_saturation_deficit_I_rad_s",
+                   [](const Report& r) { return whole<3>(r.mean_saturation_deficit_I_rad_s.data()); })
       .def_ro("usable_points", &Report::usable_points)
       .def_ro("isolated_points_dropped", &Report::isolated_points_dropped)
       .def_ro("points_after_downsampling", &Report::points_after_downsampling)

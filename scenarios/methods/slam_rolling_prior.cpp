@@ -147,7 +147,7 @@ class RolledMotion {
     RelativePoseReading motion;
     motion.from_ns = from_ns;
     motion.to_ns = to_ns;
-    motion.T_from_to = pose_of_imu(from_ns).inverse(Eigen::Isometry) * pose_of_imu(to_ns);
+    motion.imu_T_from_to = pose_of_imu(from_ns).inverse(Eigen::Isometry) * pose_of_imu(to_ns);
     const double sigma_m = velocity_sigma_m_s(from_ns, to_ns) * seconds(to_ns - from_ns);
     motion.covariance.diagonal().head<3>().setConstant(sigma_m * sigma_m);
     motion.covariance.diagonal().tail<3>().setConstant(params_.rotation_sigma_rad * params_.rotation_sigma_rad);

@@ -107,7 +107,7 @@ class Collector {
     add_findings(found_, names_, estimate_);
     if (odometry.mapper().prior_map() != nullptr) report_localised(estimate_);
     const bool localised = report_prior_map_sweep(odometry.mapper());
-    if (output_ == SlamOutput::lag && localised) transform_to_prior_map(odometry.mapper());
+    if (output_ == SlamOutput::lag && localised) convert_to_prior_map_frame(odometry.mapper());
     scenarios::conclude(odometry.mapper(), estimate_);
     if (localised) leave_out_local_frame();
   }
@@ -137,9 +137,9 @@ class Collector {
     });
   }
 
-  void transform_to_prior_map(const LidarInertialOdometry& mapper) {
+  void convert_to_prior_map_frame(const LidarInertialOdometry& mapper) {
     for (SweepResult& sweep : estimate_.sweeps) {
-      if (sweep.in_prior_map || !mapper.transform_to_prior_map(sweep.trajectory).ok()) continue;
+      if (sweep.in_prior_map || !mapper.convert_to_prior_map_frame(sweep.trajectory).ok()) continue;
       sweep.pose = sweep.trajectory.back();
       sweep.in_prior_map = true;
     }

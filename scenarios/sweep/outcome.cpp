@@ -46,8 +46,8 @@ void add_sweep(NumberHasher& hasher, const LidarInertialOdometry::SweepResult& s
   hasher.add(sweep.inlier_ratio);
   hasher.add(sweep.eigenvalue_ratio);
   hasher.add(static_cast<std::int32_t>(sweep.iterations));
-  hasher.add_matrix(sweep.least_constrained_direction);
-  hasher.add_matrix(sweep.mean_clipping_correction_rad_s);
+  hasher.add_matrix(sweep.least_constrained_pose_direction_W);
+  hasher.add_matrix(sweep.mean_saturation_deficit_I_rad_s);
   for (const std::size_t count : {sweep.usable_points, sweep.points_after_downsampling, sweep.map_points_added}) {
     hasher.add(static_cast<std::uint64_t>(count));
   }

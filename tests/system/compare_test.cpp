@@ -122,7 +122,7 @@ TEST(Sensitivity, NamesTheNumberThatWasDrawn) {
   }
   EXPECT_TRUE(seen);
   EXPECT_THAT(run_program({"sensitivity", database.string()}).out,
-              HasSubstr("hill: influence of the random parameters on rate methods"));
+              HasSubstr("hill: influence of the random parameters on scores of rate methods"));
   // with other models and scenarios, the draws cannot be computed
   scenarios::Results(database, scenarios::Results::Mode::create_or_append).set_note("data", "another");
   const Ended other = run_program({"sensitivity", database.string()});

@@ -227,10 +227,10 @@ int report(const Session& session, const ReportVerbOptions& options) {
 
 Action declare_report(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<ReportVerbOptions>();
-  verb.add("DATABASE", options->database, "reads this results database, FILE.db").required();
-  verb.add("-o,--output", options->page, "writes this page, FILE.html [default: prints only tables]");
+  verb.add("DATABASE", options->database, "results database, FILE.db").required();
+  verb.add("-o,--output", options->page, "writes the report as a web page to FILE.html [default: only prints tables]");
   verb.add("--badge", options->badge,
-           "writes this badge, FILE.svg. The badge shows the suite, and the number of scenarios in which a method is "
+           "writes a badge to FILE.svg. The badge shows the suite, and the number of scenarios in which a method is "
            "better than the baseline method");
   verb.add_flag("--all", options->all,
                 "prints all metrics, including metrics per range of clipping depth and clipping duration [default: "

@@ -65,7 +65,8 @@ std::vector<Table> tables_of(const std::vector<Sensitivity>& rows, bool all) {
   for (const Sensitivity& row : rows) {
     if (open == nullptr || open->scenario != row.scenario || open->kind != row.kind) {
       tables.emplace_back(
-          fmt::format("{}: influence of the random parameters on {} methods", row.scenario, to_string(row.kind)),
+          fmt::format("{}: influence of the random parameters on scores of {} methods", row.scenario,
+                      to_string(row.kind)),
           std::vector<std::string>{"method", "metric", "draws", "number", "first order", "rank correlation", "95 %",
                                    "Holm p", "median, lowest quarter", "highest"});
       tables.back().align_right_from(4);

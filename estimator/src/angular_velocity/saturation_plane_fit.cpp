@@ -18,7 +18,7 @@ constexpr double kGridStep = 0.01;  // step of the search grid over cross-axis s
 constexpr int kRefinements = 10;
 constexpr double kSlabDeviations = 4.0, kSlabRatioMin = 2e-4, kSlabRatioMax = 0.006;
 
-// Collects readings that may be saturated if the cross-axis sensitivities are at most `steepest`.
+// Stores in `out` the readings that can be on a saturation plane whose cross-axis sensitivities are at most `steepest`.
 double candidates(const DistinctReadings& readings, int axis, int sign, double steepest, double slab,
                   std::vector<std::size_t>& out) {
   double sure = -std::numeric_limits<double>::max();

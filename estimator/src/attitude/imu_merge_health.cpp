@@ -130,7 +130,7 @@ void ImuMerge::add_finding(const Unit& unit, const std::string& name, SensorHeal
                 repeated_s, kUnitFrozen_s},
                name, "", unit.frozen_since_ns);
   if (unit.disagrees)
-    health.add(Kind::imu_disagrees,
+    health.add(Kind::imu_contradicts_other_imus,
                {ErrorCode::out_of_range, "time in s for which the IMU disagrees with the others", unit.disagreement_s,
                 kDisagrees_s},
                name, "", unit.disagrees_since_ns);

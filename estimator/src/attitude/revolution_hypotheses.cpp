@@ -170,7 +170,8 @@ RevolutionAlternatives revolution_probabilities(const TestedRevolutionSegment& t
   return out;
 }
 
-/// If `taken` is true, each segment has its most probable number of revolutions.
+/// Returns, for each segment, the numbers of revolutions that were not accepted. If `taken` is true, segments that need
+/// another solution have accepted their most probable number of revolutions.
 std::vector<RevolutionAlternatives> remaining_revolution_hypotheses(const std::vector<TestedRevolutionSegment>& tested,
                                                                     bool taken) {
   std::vector<RevolutionAlternatives> out;

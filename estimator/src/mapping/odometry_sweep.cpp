@@ -220,9 +220,9 @@ void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, 
     placed.agrees_with_prediction =
         mapping::agrees_with_prediction(params, prediction, aligned.mean, report.normalised_innovation);
     report.eigenvalue_ratio = aligned.eigenvalues[5] > 0.0 ? aligned.eigenvalues[0] / aligned.eigenvalues[5] : 0.0;
-    report.least_constrained_direction = aligned.directions.col(0);
+    report.least_constrained_pose_direction_W = aligned.directions.col(0);
     report.least_constrained_sigma_m = aligned.least_constrained_sigma_m;
-    report.mean_clipping_correction_rad_s = aligned.mean.saturation_deficit_rad_s.rowwise().mean();
+    report.mean_saturation_deficit_I_rad_s = aligned.mean.saturation_deficit_rad_s.rowwise().mean();
   }
   mapping::judge_registration(tracking, scene.points.size(), prior_certain, attempt, placed);
 }
@@ -267,7 +267,7 @@ void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Swe
   propagate_alternative_pose(motion, unconfirmed_before);
   report.consecutive_rejected_sweeps = mapping::consecutive_rejected_sweeps(tracking);
   if (aligned && placed.verdict == SweepVerdict::degenerate && motion.resting_sweeps == 0)
-    world_covariance.add_drift(report.least_constrained_sigma_m, report.least_constrained_direction);
+    world_covariance.add_drift(report.least_constrained_sigma_m, report.least_constrained_pose_direction_W);
   report.trajectory = poses_along(sweep.trajectory, motion.end_ns, sweep.start.state_error_covariance);
   const Registration::Matrix to_end = mapping::unknowns_at(sweep.trajectory, sweep.trajectory.duration_s());
   report.position_in_map_sigma_m =

@@ -27,7 +27,7 @@ Status LidarInertialOdometry::check_localised() const {
   return impl_->localiser.status();
 }
 
-Status LidarInertialOdometry::transform_to_prior_map(std::span<PoseState> poses) const {
+Status LidarInertialOdometry::convert_to_prior_map_frame(std::span<PoseState> poses) const {
   if (!impl_->poses_before_localisation)
     return {ErrorCode::degenerate, "number of localisations in a prior map", 0.0, 1.0};
   for (PoseState& pose : poses) impl_->poses_before_localisation->apply(pose);

@@ -131,10 +131,10 @@ PredictedReading predict_reading(const RelativePoseReading& reading, const Sweep
   const Eigen::Matrix3d to_I = from.q_WI.toRotationMatrix().transpose();
   const Eigen::Vector3d moved_W_m = to.p_WI_m - from.p_WI_m;
   const Eigen::Quaterniond turned = from.q_WI.conjugate() * to.q_WI;
-  const Eigen::Quaterniond read(Eigen::Matrix3d(reading.T_from_to.linear()));
+  const Eigen::Quaterniond read(Eigen::Matrix3d(reading.imu_T_from_to.linear()));
   const Eigen::Vector3d mean_force_tilt_rad = so3::logarithm((read * turned.conjugate()).normalized());
   const Eigen::Matrix3d by_turn = so3::left_jacobian_inverse(mean_force_tilt_rad).transpose() * to_I;
-  out.residual.head<3>() = reading.T_from_to.translation() - to_I * moved_W_m;
+  out.residual.head<3>() = reading.imu_T_from_to.translation() - to_I * moved_W_m;
   out.residual.tail<3>() = mean_force_tilt_rad;
   MotionJacobian<kMost> by_from = MotionJacobian<kMost>::Zero(), by_to = by_from;
   by_to.topLeftCorner<3, 3>() = to_I;

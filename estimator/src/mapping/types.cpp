@@ -58,13 +58,14 @@ Status check(const VelocityReading& reading) {
 }
 
 Status check(const RelativePoseReading& reading) {
-  if (!reading.T_from_to.matrix().allFinite()) return not_finite("T_from_to");
+  if (!reading.imu_T_from_to.matrix().allFinite()) return not_finite("imu_T_from_to");
   if (!reading.covariance.allFinite()) return not_finite("covariance");
   if (reading.to_ns <= reading.from_ns)
     return {ErrorCode::time_order, "to_ns", double(reading.to_ns), double(reading.from_ns)};
-  const Eigen::Matrix3d R = reading.T_from_to.linear();
+  const Eigen::Matrix3d R = reading.imu_T_from_to.linear();
   const double off = (R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (!(off <= kRotation) || !(R.determinant() > 0.0)) return {ErrorCode::out_of_range, "T_from_to", off, kRotation};
+  if (!(off <= kRotation) || !(R.determinant() > 0.0))
+    return {ErrorCode::out_of_range, "imu_T_from_to", off, kRotation};
   const double least = reading.covariance.diagonal().minCoeff();
   if (!(least > 0.0) || !dense::Cholesky(reading.covariance).ok())
     return {ErrorCode::out_of_range, "covariance", least, 0.0};

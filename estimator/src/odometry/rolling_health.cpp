@@ -23,7 +23,7 @@ void add_forces_at_rest(const MergedImuChecks& checks, std::size_t count, Sensor
   for (std::size_t unit = 0; unit < count; ++unit) all = all && !verdict(unit).ok();
   if (all) health.add(Kind::wrong_force_magnitude_at_rest, verdict(0), "imu");
   for (std::size_t unit = 0; unit < count && !all; ++unit)
-    health.add(Kind::imu_disagrees, verdict(unit), imu_name(unit, count));
+    health.add(Kind::imu_contradicts_other_imus, verdict(unit), imu_name(unit, count));
 }
 
 }  // namespace

@@ -193,7 +193,7 @@ Status RollingOdometry::Impl::add_inliers(std::span<const ImuSample> samples) {
 }
 
 /// Sets clip flags only for confirmed saturation limits (ConfirmedSaturation). A new saturation limit is detected after
-/// two to ten saturated samples, which remain without flags.
+/// two to ten saturated samples, which remain without clip flags.
 RollingOdometry::Impl::Samples RollingOdometry::Impl::flag_clipped(std::span<const ImuSample> samples) const {
   Samples out;
   std::copy(samples.begin(), samples.end(), out.begin());
@@ -241,7 +241,7 @@ Status RollingOdometry::Impl::exclude_frozen(const Frozen& states, std::span<Imu
   if (!any || received) return {};
   SensorHealth health;
   add_frozen_findings(states, health);
-  return health.worst();
+  return health.worst_status();
 }
 
 std::optional<double> RollingOdometry::Impl::estimated_jitter_s() const {

@@ -29,7 +29,7 @@ std::array<std::byte, kChecksumAt> header(SavedStateKind kind, std::uint64_t siz
 }
 
 /// Returns the 64-bit checksum FNV-1a (RFC 9923) of all bytes except the checksum itself. The checksum detects
-/// accidental damage, but no manipulation.
+/// accidental damage, but not deliberate changes.
 std::uint64_t checksum_of(std::span<const std::byte> bytes) {
   std::uint64_t out = 0xcbf29ce484222325u;
   const auto add = [&](std::span<const std::byte> part) {

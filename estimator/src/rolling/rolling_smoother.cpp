@@ -61,7 +61,8 @@ RollingSmoother::EstimateCallback append_estimates_to(std::vector<RollingEstimat
   return [&out](const RollingEstimate& estimate) { out.push_back(estimate); };
 }
 
-/// The final smoothing pass starts at the last filter step with reported estimates, or at the first sample.
+/// The final smoothing pass starts at the last filter step with reported estimates, or at the first sample if no
+/// estimate has been reported.
 void start_window(const RollingParams& filter, const RollingSmoother::State& state,
                   rolling::SmoothingCheckpoint& start) {
   start = state.committed_state.checkpoint;

@@ -92,7 +92,7 @@ void RigidOdometry::register_points(SweepResult& report) {
   if (result.verdict != RegistrationVerdict::converged) return;
   state_ = result.mean.state;
   report.eigenvalue_ratio = result.eigenvalues[5] > 0.0 ? result.eigenvalues[0] / result.eigenvalues[5] : 0.0;
-  report.least_constrained_direction = result.directions.col(0);
+  report.least_constrained_pose_direction_W = result.directions.col(0);
   report.least_constrained_sigma_m = result.least_constrained_sigma_m;
   report.verdict = report.least_constrained_sigma_m > params_.degenerate_sigma_m ? SweepVerdict::degenerate
                                                                                  : SweepVerdict::registered;

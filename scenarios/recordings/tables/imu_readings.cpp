@@ -282,8 +282,8 @@ std::string require_plausible_rates(const std::string& where, const sim::ImuReco
                           {"--gyro-unit", "rad/s"});
   if (near_factor(turn.ratio, 1.0)) return fmt::format("{}, so gyro and accelerometer agree in units and axes", seen);
   return fmt::format(
-      "caution: {}. The ratio of accelerometer rotation to gyro rotation should be 1. Check the unit, the signs and "
-      "the order of the axes",
+      "caution: {}. The rotation of measured gravity should equal the rotation measured by the gyro (ratio 1). Check "
+      "units, signs and order of the axes of both sensors",
       seen);
 }
 

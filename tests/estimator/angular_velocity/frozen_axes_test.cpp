@@ -60,7 +60,7 @@ Found watch_axes(const std::vector<ImuSample>& samples, const FrozenAxes::ImuRan
     detector.add_findings(HealthFinding::Kind::frozen_axis, "imu", out.state, health);
     EXPECT_EQ(health.ok(), !FrozenAxes::any_frozen(out.state));
     if (health.ok() || !out.first.empty()) continue;
-    out.first = health.worst().message();
+    out.first = health.worst_status().message();
     out.told_ns = sample.time_ns;
   }
   return out;

@@ -75,7 +75,7 @@ TEST(LidarInertialOdometry, FindsTheDeficitOfClippedAxesByItself) {
   const test::PoseError end = error_of(reports.back().pose);
   EXPECT_LT(end.m, 0.15);
   EXPECT_LT(end.rad, 0.02);
-  EXPECT_GT(reports.back().mean_clipping_correction_rad_s.maxCoeff(), 1.0);
+  EXPECT_GT(reports.back().mean_saturation_deficit_I_rad_s.maxCoeff(), 1.0);
 }
 
 TEST(LidarInertialOdometry, RestartsBitByBitFromACopy) {
@@ -124,7 +124,7 @@ TEST(LidarInertialOdometry, SaysThatAFloorAloneDoesNotHoldIt) {
     EXPECT_NE(report.verdict, SweepVerdict::registered) << "sweep " << i << " conditioning " << report.eigenvalue_ratio;
     if (report.verdict != SweepVerdict::degenerate || report.eigenvalue_ratio == 0.0) continue;
     ++degenerate;
-    const auto& d = report.least_constrained_direction;
+    const auto& d = report.least_constrained_pose_direction_W;
     EXPECT_GT(std::hypot(d[0], d[1], d[5]), 0.95) << d.transpose();
   }
   EXPECT_GT(degenerate, 3);  // at rest, its rings determine no plane

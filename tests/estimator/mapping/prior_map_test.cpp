@@ -96,11 +96,11 @@ TEST(PriorMap, EarlierPosesAreTransformedToTheFrameOfTheMap) {
   ASSERT_TRUE(rig.odometry.set_prior_map({.points = map_of_pillars()}).ok());
   std::vector<PoseState> poses;
   for (int k = 0; k < kLocalised && !rig.odometry.check_localised().ok(); ++k) {
-    EXPECT_EQ(rig.odometry.transform_to_prior_map(poses).error_code, ErrorCode::degenerate);
+    EXPECT_EQ(rig.odometry.convert_to_prior_map_frame(poses).error_code, ErrorCode::degenerate);
     rig.run(k, k + 1);
     poses.push_back(rig.report.pose);
   }
-  ASSERT_TRUE(rig.odometry.transform_to_prior_map(poses).ok());
+  ASSERT_TRUE(rig.odometry.convert_to_prior_map_frame(poses).ok());
   ASSERT_GT(poses.size(), 3u);
   for (const PoseState& pose : poses) {
     const double t = 1e-9 * static_cast<double>(pose.time_ns);

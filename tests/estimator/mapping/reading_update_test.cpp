@@ -193,17 +193,17 @@ TEST(OdometerReading, OfAMotionIsTheJointUpdateByDifferences) {
     RelativePoseReading reading;
     reading.from_ns = from_ns;
     reading.to_ns = to_ns;
-    reading.T_from_to = read_motion(c, from_ns, to_ns, Registration::Vector::Zero(), Eigen::VectorXd::Zero(9));
-    reading.T_from_to.linear() =
-        so3::exp(kScale * Eigen::Vector3d(1.0, 0.5, -1.5)).toRotationMatrix() * reading.T_from_to.linear();
-    reading.T_from_to.translation() += kScale * Eigen::Vector3d(-1.0, 0.3, 0.8);
+    reading.imu_T_from_to = read_motion(c, from_ns, to_ns, Registration::Vector::Zero(), Eigen::VectorXd::Zero(9));
+    reading.imu_T_from_to.linear() =
+        so3::exp(kScale * Eigen::Vector3d(1.0, 0.5, -1.5)).toRotationMatrix() * reading.imu_T_from_to.linear();
+    reading.imu_T_from_to.translation() += kScale * Eigen::Vector3d(-1.0, 0.3, 0.8);
     reading.covariance = spread(0.6 * kScale, 0.9).topLeftCorner<6, 6>();
     const Read off = [&](const Registration::Vector& start, const Eigen::VectorXd& noise) {
       const Eigen::Isometry3d expected = read_motion(c, from_ns, to_ns, start, noise);
       Eigen::VectorXd out(6);
-      out.head<3>() = expected.translation() - reading.T_from_to.translation();
+      out.head<3>() = expected.translation() - reading.imu_T_from_to.translation();
       out.tail<3>() = so3::logarithm(
-          Eigen::Quaterniond(Eigen::Matrix3d(expected.linear() * reading.T_from_to.linear().transpose())));
+          Eigen::Quaterniond(Eigen::Matrix3d(expected.linear() * reading.imu_T_from_to.linear().transpose())));
       return out;
     };
     expect_joint(c, reading, off, reading.covariance, kScale);
@@ -262,12 +262,12 @@ TEST(OdometerReading, OfAMotionFindsWhatASaturationLimitHid) {
   reading.to_ns = kEnd_ns;
   Registration::Vector hidden = Registration::Vector::Zero();
   for (int knot = 0; knot < SweepTrajectory::kKnots; ++knot) hidden[u::saturation_deficit_index(0, knot)] = 5.0;
-  reading.T_from_to = read_motion(c, kStart_ns, kEnd_ns, hidden, Eigen::VectorXd::Zero(9));
+  reading.imu_T_from_to = read_motion(c, kStart_ns, kEnd_ns, hidden, Eigen::VectorXd::Zero(9));
   reading.covariance.diagonal().setConstant(1e-6);
   fuse_reading(reading, c.boundary, c.window, c.within, c.prediction);
   const Registration::Vector none = Registration::Vector::Zero();
   const Eigen::Isometry3d found = read_motion(c, kStart_ns, kEnd_ns, none, Eigen::VectorXd::Zero(9));
-  const Eigen::Isometry3d off = found.inverse() * reading.T_from_to;
+  const Eigen::Isometry3d off = found.inverse() * reading.imu_T_from_to;
   EXPECT_LT(Eigen::AngleAxisd(off.linear()).angle(), 0.01);
   EXPECT_GT(c.prediction.prior.mean.saturation_deficit_rad_s.row(0).mean(), 4.0);
 }
@@ -286,11 +286,11 @@ TEST(OdometerReading, IsCheckedByItself) {
     return check_odometer_reading(reading);
   };
   EXPECT_EQ(refusal([](RelativePoseReading& r) { r.to_ns = 0; }).error_code, ErrorCode::time_order);
-  EXPECT_EQ(refusal([&](RelativePoseReading& r) { r.T_from_to.translation().y() = nan; }).error_code,
+  EXPECT_EQ(refusal([&](RelativePoseReading& r) { r.imu_T_from_to.translation().y() = nan; }).error_code,
             ErrorCode::non_finite);
   EXPECT_EQ(refusal([&](RelativePoseReading& r) { r.covariance(0, 4) = nan; }).error_code, ErrorCode::non_finite);
-  EXPECT_STREQ(refusal([](RelativePoseReading& r) { r.T_from_to.linear() *= 1.001; }).field, "T_from_to");
-  EXPECT_STREQ(refusal([](RelativePoseReading& r) { r.T_from_to.linear() *= -1.0; }).field, "T_from_to");
+  EXPECT_STREQ(refusal([](RelativePoseReading& r) { r.imu_T_from_to.linear() *= 1.001; }).field, "imu_T_from_to");
+  EXPECT_STREQ(refusal([](RelativePoseReading& r) { r.imu_T_from_to.linear() *= -1.0; }).field, "imu_T_from_to");
   EXPECT_STREQ(refusal([](RelativePoseReading& r) { r.covariance(2, 2) = 0.0; }).field, "covariance");
   EXPECT_STREQ(refusal([](RelativePoseReading& r) { r.covariance(1, 0) = r.covariance(0, 1) = 1.5; }).field,
                "covariance");

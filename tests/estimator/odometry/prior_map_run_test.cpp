@@ -76,7 +76,8 @@ TEST(PriorMapRun, HealthReportsThatARunIsNotLocalisedUntilItIs) {
   RoomRun run(-0.7);
   ASSERT_TRUE(run.odometry.set_prior_map({.points = map_of_first_run()}).ok());
   run.feed(0, 5);
-  EXPECT_NE(std::string(run.odometry.health().worst().field).find("too few to localise the run"), std::string::npos);
+  EXPECT_NE(std::string(run.odometry.health().worst_status().field).find("too few to localise the run"),
+            std::string::npos);
   EXPECT_FALSE(run.newest.in_prior_map);
   run.feed(5, 30);
   EXPECT_TRUE(run.odometry.health().ok()) << run.odometry.health().worst_message();

@@ -178,7 +178,7 @@ TEST(Verdicts, PositionDivergesWithForcesOfHalfTheSize) {
   EXPECT_EQ(outcome.status, OutcomeStatus::diverged);
   EXPECT_TRUE(has_finding(HealthFinding::Kind::wrong_force_magnitude_at_rest, estimate));
   EXPECT_EQ(estimate.health.at("imu_implausible"), 1.0);
-  EXPECT_NEAR(estimate.faults.worst().value, 0.5, 0.02);
+  EXPECT_NEAR(estimate.faults.worst_status().value, 0.5, 0.02);
 }
 
 // The time stamps are in microseconds instead of nanoseconds, so the whole run lasts only some milliseconds.

@@ -54,7 +54,7 @@ struct HealthFinding {
     frozen_sensor,                  ///< all axes of a gyro or an accelerometer, or all IMUs, repeat one reading
     imu_frozen,                     ///< one of several IMUs repeats one reading, on `axis` or on all axes
     imu_silent,                     ///< one of several IMUs delivers no readings
-    imu_disagrees,                  ///< rate or specific force of one of several IMUs contradicts the other IMUs
+    imu_contradicts_other_imus,     ///< rate or specific force of one of several IMUs contradicts the other IMUs
     wrong_force_magnitude_at_rest,  ///< the specific force at rest has another magnitude than gravity, or another unit
     wrong_axes_or_signs,            ///< axes are exchanged or inverted
     inverted_accel_in_flight,       ///< the specific force in free flight fits an accelerometer with inverted axes
@@ -99,8 +99,8 @@ struct SensorHealth {
 
   bool ok() const { return findings.empty(); }
   /// Returns the status of the most important finding, or `ok` without a finding.
-  Status worst() const { return ok() ? Status{} : findings.front().status(); }
-  operator Status() const { return worst(); }
+  Status worst_status() const { return ok() ? Status{} : findings.front().status(); }
+  operator Status() const { return worst_status(); }
   /// Returns the text of the most important finding, or "ok" without a finding.
   std::string worst_message() const { return ok() ? "ok" : to_text(findings.front()); }
   bool invalidates_estimate() const;

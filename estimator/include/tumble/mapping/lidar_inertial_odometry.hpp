@@ -86,7 +86,7 @@ class LidarInertialOdometry {
   Status check_localised() const;
   /// Transforms poses that were reported before the localisation to the frame of the prior map. The covariances then
   /// include the uncertainty of the localisation. Returns `degenerate` before the localisation.
-  Status transform_to_prior_map(std::span<PoseState> poses) const;
+  Status convert_to_prior_map_frame(std::span<PoseState> poses) const;
   /// Returns the prior map, or null without a prior map.
   const PriorMap* prior_map() const;
 

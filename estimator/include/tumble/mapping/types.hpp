@@ -70,14 +70,14 @@ struct LidarImuCalibrationPrior {
 /// Describes the parameters for the standard deviations of the lidar's pose in IMU axes and time offset.
 namespace lidar_calibration_fields {
 
-inline constexpr ParameterInfo kMountSigma_rad{
+inline constexpr ParameterInfo kMountSigmaInfo_rad{
     "mount_sigma_rad",
     "rad",
     0.0,
     1.0,
     "prior standard deviation of the lidar's orientation relative to the IMU; 0: exact, no estimate",
     ParameterAudience::common_use};
-inline constexpr ParameterInfo kMountSigma_m{
+inline constexpr ParameterInfo kMountSigmaInfo_m{
     "mount_sigma_m",
     "m",
     0.0,
@@ -109,7 +109,7 @@ struct VelocityReading {
 struct RelativePoseReading {
   TimeNs from_ns = 0;
   TimeNs to_ns = 0;
-  Eigen::Isometry3d T_from_to = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d imu_T_from_to = Eigen::Isometry3d::Identity();
   /// Covariance of the position error [m], then the attitude error phi [rad], both in IMU axes at `from_ns`. The
   /// attitude error is defined by R_true = Exp(phi) R. Set a large variance for components that the odometer does not
   /// measure.
@@ -211,9 +211,10 @@ struct SweepResult {
   /// Direction in which the lidar constrains the pose least: unit vector of three position and three attitude
   /// components, in world axes. The attitude components are angles, multiplied by the root-mean-square distance of the
   /// points from the IMU, so all six components are lengths.
-  Eigen::Matrix<double, 6, 1> least_constrained_direction = Eigen::Matrix<double, 6, 1>::Zero();
-  /// mean correction of the angular velocity on clipped gyro axes during the sweep, in IMU axes
-  Eigen::Vector3d mean_clipping_correction_rad_s = Eigen::Vector3d::Zero();
+  Eigen::Matrix<double, 6, 1> least_constrained_pose_direction_W = Eigen::Matrix<double, 6, 1>::Zero();
+  /// Mean saturation deficit during the sweep, in IMU axes: angular velocity that the registration estimates on clipped
+  /// gyro axes, minus the angular velocity passed to add_imu().
+  Eigen::Vector3d mean_saturation_deficit_I_rad_s = Eigen::Vector3d::Zero();
   std::size_t usable_points = 0;              ///< finite returns within the range limits that do not hit the robot
   std::size_t isolated_points_dropped = 0;    ///< unused returns that no neighbouring beam confirms
   std::size_t points_after_downsampling = 0;  ///< usable points after downsampling to one point per voxel

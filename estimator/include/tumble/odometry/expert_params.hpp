@@ -33,8 +33,8 @@ struct FirstSecondsReprocessingParams {
   }
 };
 
-/// Rarely changed parameters of TumblingOdometry. If TumblingParams contains the same parameter, TumblingOdometry uses
-/// the value in TumblingParams.
+/// Rarely changed parameters of TumblingOdometry. If a parameter is in both this struct and TumblingParams,
+/// TumblingOdometry uses the value in TumblingParams.
 struct TumblingExpertParams {
   double gravity_m_s2 = 9.80665;
   /// Maximum number of sweeps that wait for IMU samples, in addition to the sweeps of the last `lag_s`. If more than
@@ -69,8 +69,8 @@ struct TumblingExpertParams {
 
 struct MergedRecordings;
 
-/// Rarely changed parameters of RollingOdometry. If RollingOdometry::Params contains the same parameter,
-/// RollingOdometry uses the value in RollingOdometry::Params.
+/// Rarely changed parameters of RollingOdometry. If a parameter is in both this struct and
+/// RollingOdometry::Params, RollingOdometry uses the value in RollingOdometry::Params.
 struct RollingOdometryExpertParams {
   RollingSmoother::Params rolling;
   SampleClock::Params stamps;  ///< correction of time stamps that a host computer assigned

@@ -60,8 +60,8 @@ struct TumblingParams {
                             ParameterAudience::common_use});
     visit(p.lever_arm_sigma_m,
           {"lever_arm_sigma_m", "m", 1e-9, 10.0, "standard deviation of the lever arm", ParameterAudience::common_use});
-    visit(p.mount_sigma_rad, lidar_calibration_fields::kMountSigma_rad);
-    visit(p.mount_sigma_m, lidar_calibration_fields::kMountSigma_m);
+    visit(p.mount_sigma_rad, lidar_calibration_fields::kMountSigmaInfo_rad);
+    visit(p.mount_sigma_m, lidar_calibration_fields::kMountSigmaInfo_m);
     visit(p.time_offset_sigma_s, lidar_calibration_fields::kTimeOffsetSigma_s);
     visit.group("", p.lidar);
     visit(p.lag_s, {"lag_s", "s", 0.0, kWholeRecording,
@@ -150,8 +150,8 @@ class TumblingOdometry {
   /// sample and returns `gap`. The second sample after a gap restarts the rate estimation with the current calibration.
   /// Inertial integration bridges gaps. If the clock steps back, add_imu() rejects samples for 0.2 s, returns
   /// `time_order`, and then restarts the run at the newest pose, like reset(pose). OutlierFilter rejects outliers among
-  /// the readings. While OutlierFilter checks a sudden change of the readings, one to five samples wait, and newest()
-  /// returns the pose before these samples.
+  /// the IMU readings. While OutlierFilter checks a sudden change of the readings, one to five samples wait, and
+  /// newest() returns the pose before these samples.
   Status add_imu(const ImuSample& sample);
   /// Processes a sweep of points fired in [start_ns, end_ns]. Call add_sweep() after the last point of the sweep; later
   /// IMU samples may be added first. The points are copied. Points that were fired before the end of the last sweep are

@@ -213,8 +213,8 @@ struct OdometryParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.imu_minus_lidar_clock_s,
           {"time_offset_s", "s", -1.0, 1.0, "time of the IMU's clock minus time of the lidar's clock"});
-    visit(p.mount_sigma_rad, lidar_calibration_fields::kMountSigma_rad);
-    visit(p.mount_sigma_m, lidar_calibration_fields::kMountSigma_m);
+    visit(p.mount_sigma_rad, lidar_calibration_fields::kMountSigmaInfo_rad);
+    visit(p.mount_sigma_m, lidar_calibration_fields::kMountSigmaInfo_m);
     visit(p.time_offset_sigma_s, lidar_calibration_fields::kTimeOffsetSigma_s);
     visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "minimum range; nearer returns are dropped"});
     visit(p.range_max_m, {"range_max_m", "m", 0.0, 1e4, "maximum range; farther returns are dropped"});
