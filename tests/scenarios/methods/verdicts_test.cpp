@@ -116,7 +116,7 @@ TEST(Verdicts, AZeroOffsetOfAGyroThatStartsLateIsNoFault) {
   const SimulatedDraw& draw = imu_draw("hill", 1001);
   for (const char* wrong : {"gyros_late_offset_5_deg_s", "gyros_late_offset_8_deg_s"}) {
     const Estimate estimate = run_wrong(draw, "rate/tumble", wrong);
-    EXPECT_TRUE(estimate.faults.ok()) << estimate.faults.message();
+    EXPECT_TRUE(estimate.faults.ok()) << estimate.faults.worst_message();
   }
   EXPECT_TRUE(has_implausible_readings(run_wrong(draw, "rate/tumble", "gyro_halved")));
 }
@@ -151,7 +151,7 @@ TEST(Verdicts, PositionReportsGyrosOfAnotherScale) {
 TEST(Verdicts, PositionReportsAFlippedAxisAndRefusesForcesThatAllFroze) {
   const SimulatedDraw& draw = imu_draw("slide", 99453);
   const Estimate good = run_wrong(draw, "position/tumble", "none");
-  EXPECT_TRUE(good.faults.ok()) << good.faults.message();
+  EXPECT_TRUE(good.faults.ok()) << good.faults.worst_message();
   const Estimate flipped = run_wrong(draw, "position/tumble", "gyro_x_flipped");
   EXPECT_TRUE(has_implausible_readings(flipped));
   ASSERT_TRUE(has_finding(HealthFinding::Kind::wrong_axes_or_signs, flipped));
@@ -164,7 +164,7 @@ TEST(Verdicts, PositionDoesNotBlameGyrosForPlaces) {
   const SimulatedDraw& draw = imu_draw("bump", 99470);
   const Estimate good = run_wrong(draw, "position/tumble", "none");
   EXPECT_GT(std::abs(good.health.at("lever_arm_agreement") - 1.0), 0.06);
-  EXPECT_TRUE(good.faults.ok()) << good.faults.message();
+  EXPECT_TRUE(good.faults.ok()) << good.faults.worst_message();
   EXPECT_TRUE(has_finding(HealthFinding::Kind::gyro_scale, run_wrong(draw, "position/tumble", "gyro_scale_5_percent")));
 }
 
