@@ -64,8 +64,7 @@ TEST(TumblingOdometry, DoubtsACalibrationThatMovedFurtherThanWasGiven) {
   run(body, 0.0, 0.0, far);
   const Status health = far.health();
   EXPECT_EQ(health.error_code, ErrorCode::out_of_range);
-  EXPECT_NE(health.worst_message().find("change of the lidar-IMU calibration"), std::string::npos)
-      << health.worst_message();
+  EXPECT_NE(health.message().find("change of the lidar-IMU calibration"), std::string::npos) << health.message();
   EXPECT_GT(health.value, LidarImuCalibrationPrior::kDistanceMax_sigmas);
 }
 
