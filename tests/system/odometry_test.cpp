@@ -103,6 +103,8 @@ const Fault kFaults[] = {
      }},
     {"one of seven sweeps lost", "sweeps are lost", "",
      [](sim::ImuRecord&, sim::LidarRecord& lidar) { drop_sweeps(lidar, [](std::size_t k) { return k % 7 == 3; }); }},
+    {"accelerometer inverted", "the accelerometer seems to be inverted", "invert the accelerometer in the IMU's driver",
+     [](sim::ImuRecord& imu, sim::LidarRecord&) { scale(imu.accel_m_s2, -1.0); }},
     {"gyro saturated at half of its largest rate", "the gyro is saturated", "",
      [](sim::ImuRecord& imu, sim::LidarRecord&) {
        double most = 0.0;

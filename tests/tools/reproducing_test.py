@@ -16,7 +16,7 @@ import numpy as np
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, sys.argv.pop(1))
-from reproducing import ablation, figures, page, rig, runs, saturation, sphere  # noqa: E402
+from reproducing import ablation, doctor, figures, page, rig, runs, saturation, sphere  # noqa: E402
 
 SCHEMA = """
 CREATE TABLE scores (scenario TEXT, seed INTEGER, kind TEXT, method TEXT, status TEXT, metric TEXT, value REAL);
@@ -131,6 +131,35 @@ class SaturatedSpin(unittest.TestCase):
         self.assertGreater(np.mean(np.abs(error) < 3.0 * truth.sigma), 0.97)
         # a body that bends gives two different rates
         self.assertGreater(saturation.reference(self.imus(bend=0.0005)[0]).sigma, 3.0 * truth.sigma)
+
+
+class DoctorCounts(unittest.TestCase):
+    def test_each_fault_is_in_each_format(self):
+        cases = [doctor.Case(name, number) for name in doctor.FORMATS for number in range(doctor.CARRIED + doctor.TUMBLING)]
+        self.assertEqual(len({case.seed for case in cases}), len(cases))
+        for name, fault in doctor.FAULTS.items():
+            formats = [case.format for case in cases if name in case.faults() and case.kind == "carried"]
+            used = [key for key, each in doctor.FORMATS.items() if not (fault.without_times and each.needs_times)]
+            self.assertEqual(formats, used if "carried" in fault.kinds else [], name)
+
+    def test_a_repair_must_name_the_correct_pose(self):
+        T_BL = np.eye(4)
+        T_BL[:3, :3] = [[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]
+        row = {"fault": True, "evidence": "turned (set '--T-body-lidar 0 0 0.1 0.003 0 -0.709 0.705')", "repair": ""}
+        expected = doctor.Expected("turned", "--T-body-lidar", T_BL)
+        self.assertEqual(doctor.judged([row], expected), (True, True))
+        row["evidence"] = row["evidence"].replace("-0.709", "0.709")
+        self.assertEqual(doctor.judged([row], expected), (True, False))
+        self.assertEqual(doctor.judged([row | {"fault": False}], expected), (False, False))
+
+    def test_a_quarter_turn_is_a_rotation_by_90_degrees(self):
+        R = doctor.quarter_turn(np.random.default_rng(1))
+        np.testing.assert_allclose(R @ R.T, np.eye(3))
+        self.assertAlmostEqual(doctor.angle_deg(R), 90.0)
+
+    def test_the_interval_of_a_share(self):
+        np.testing.assert_allclose(doctor.wilson(0, 108), (0.0, 0.0343), atol=1e-4)
+        np.testing.assert_allclose(doctor.wilson(95, 100), (0.8882, 0.9785), atol=1e-4)
 
 
 class Numbers(unittest.TestCase):

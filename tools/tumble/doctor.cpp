@@ -24,18 +24,47 @@ void append_findings(std::vector<RecordingFinding> more, std::vector<RecordingFi
   std::move(more.begin(), more.end(), std::back_inserter(out));
 }
 
-std::vector<RecordingFinding> findings_of_odometry(const Session& session, const OdometryOptions& options,
-                                                   OpenRecording& recording) {
-  const sim::Sensors& sensors = recording.content.sensors;
-  const OdometrySetup setup = set_up_odometry(session, options, recording);
-  const scenarios::Estimate estimate = run_method(setup.method, sensors);
-  const std::string method = full_name(setup.method.info);
+std::vector<RecordingFinding> findings_of_method(const scenarios::Method& method, const sim::Sensors& sensors) {
+  const scenarios::Estimate estimate = run_method(method, sensors);
+  const std::string name = full_name(method.info);
   std::vector<RecordingFinding> out =
-      scenarios::findings_in_estimate(estimate, method, sensors.lidars.front().sweep_start_ns.size());
+      scenarios::findings_in_estimate(estimate, name, sensors.lidars.front().sweep_start_ns.size());
   if (estimate.replaced_T_BL)
-    out.push_back({method, "the stated pose or clock of the lidar contradicts the recording",
+    out.push_back({name, "the stated pose or clock of the lidar contradicts the recording",
                    scenarios::lidar_pose_option(*estimate.replaced_T_BL) + " (estimated from the recording)"});
   return out;
+}
+
+bool any_fault(const std::vector<RecordingFinding>& findings) {
+  return std::ranges::any_of(findings, &RecordingFinding::fault);
+}
+
+/// Rotations do not reveal that all axes of the accelerometer are inverted, so the method tests this hypothesis.
+bool is_accel_inverted(const scenarios::Method& method, sim::Sensors sensors) {
+  for (sim::ImuRecord& imu : sensors.imus) {
+    for (Eigen::Vector3d& force_m_s2 : imu.accel_m_s2) force_m_s2 = -force_m_s2;
+  }
+  return !any_fault(findings_of_method(method, sensors));
+}
+
+/// @param out  Findings in the readings. The findings of the odometry are appended.
+void append_findings_of_odometry(const Session& session, const OdometryOptions& options, OpenRecording& recording,
+                                 std::vector<RecordingFinding>& out) {
+  const sim::Sensors& sensors = recording.content.sensors;
+  const OdometrySetup setup = set_up_odometry(session, options, recording);
+  std::vector<RecordingFinding> consequences = findings_of_method(setup.method, sensors);
+  if (!any_fault(out) && any_fault(consequences) && is_accel_inverted(setup.method, sensors))
+    out.push_back({sensors.imus.front().name,
+                   fmt::format("the accelerometer seems to be inverted: with the opposite sign of all its axes, the "
+                               "faults that '{}' finds disappear",
+                               full_name(setup.method.info)),
+                   "invert the accelerometer in the IMU's driver; at rest, the axis that points up must read +9.8 "
+                   "m/s^2"});
+  if (any_fault(out)) {
+    for (RecordingFinding& each : consequences)
+      each.repair = "first repair the faults above, because they may cause this finding";
+  }
+  append_findings(std::move(consequences), out);
 }
 
 std::vector<RecordingFinding> findings_of(const Session& session, const OdometryOptions& options,
@@ -57,12 +86,7 @@ std::vector<RecordingFinding> findings_of(const Session& session, const Odometry
   }
   const bool rolls = sensors.robot == "sphere" || sensors.robot == "pendulum";
   if (sensors.imus.empty() || sensors.lidars.empty() || rolls) return out;
-  std::vector<RecordingFinding> consequences = findings_of_odometry(session, options, recording);
-  if (std::ranges::any_of(out, &RecordingFinding::fault)) {
-    for (RecordingFinding& each : consequences)
-      each.repair = "first repair the faults above, because they may cause this finding";
-  }
-  append_findings(std::move(consequences), out);
+  append_findings_of_odometry(session, options, recording, out);
   return out;
 }
 
@@ -91,10 +115,9 @@ int run_doctor(const Session& session, const OdometryOptions& options) {
     document.push_back(
         {{"where", each.where}, {"evidence", each.evidence}, {"repair", each.repair}, {"fault", each.fault}});
   }
-  const bool any_fault = std::ranges::any_of(findings, &RecordingFinding::fault);
-  if (!any_fault) table.add_row({input.path.filename().string(), "no fault found"});
+  if (!any_fault(findings)) table.add_row({input.path.filename().string(), "no fault found"});
   session.print({table}, {{"findings", document}});
-  return any_fault ? kCheckFailed : kDone;
+  return any_fault(findings) ? kCheckFailed : kDone;
 }
 
 }  // namespace
