@@ -118,7 +118,12 @@ bool FrozenAxes::is_at_saturation_limit(std::size_t channel, const Axis& axis) c
   const double size = std::abs(axis.reading);
   if (stated > 0.0 && size >= kPossibleRailRatio * stated) return true;
   if (axis.flagged_by_device && size >= kExtremeRatio * stated) return true;
-  return size >= kExtremeRatio * stated && (axis.reading == axis.min_reading || axis.reading == axis.max_reading);
+  double range = stated;
+  if (stated == 0.0) {  // the axes of a sensor have nearly equal ranges, so no axis saturates far below another reading
+    for (std::size_t k = 0; k < 2; ++k)
+      range = std::max({range, std::abs(axis.other_axes_min[k]), std::abs(axis.other_axes_max[k])});
+  }
+  return size >= kExtremeRatio * range && (axis.reading == axis.min_reading || axis.reading == axis.max_reading);
 }
 
 bool FrozenAxes::other_axes_change(std::size_t channel, const Axis& axis) {

@@ -93,6 +93,15 @@ TEST(FrozenAxes, NamesAnAxisOfTheAccelerometer) {
   EXPECT_NE(watch_axes(samples, stated_ranges()).first.find("accel y"), std::string::npos);
 }
 
+TEST(FrozenAxes, AnAxisFarBelowAnotherReadingIsFrozenAndNotSaturated) {
+  std::vector<ImuSample> samples = moving_body();
+  for (std::size_t k = 200; k < samples.size(); ++k)
+    samples[k].specific_force_m_s2.y() = samples[200].specific_force_m_s2.y();
+  ASSERT_LT(samples[200].specific_force_m_s2.y(), -1.0) << "smallest reading so far";
+  for (const FrozenAxes::ImuRanges& imu_ranges : {FrozenAxes::ImuRanges{}, stated_ranges()})
+    EXPECT_NE(watch_axes(samples, imu_ranges).first.find("accel y"), std::string::npos);
+}
+
 // The element is flagged at its saturation level, while the output stays at another value.
 TEST(FrozenAxes, AFlagMakesNoRailOfAReadingThatIsFarFromIt) {
   std::vector<ImuSample> samples = clipped_samples(moving_body());
