@@ -47,12 +47,13 @@ class ClippingTruth {
   std::size_t known_samples() const;
   std::uint8_t clipped_axes(std::size_t index) const;
   std::uint8_t cross_axes(std::size_t index) const;
+  /// Returns the unclipped reading (or, without an unclipped reading, the reference rate) minus the gyro reading.
+  Eigen::Vector3d lost_rad_s(std::size_t index) const;
   /// Returns the largest difference, over the axes, between the gyro reading and the unclipped reading or, without an
   /// unclipped reading, the reference rate.
   double depth_rad_s(std::size_t index) const;
 
  private:
-  Eigen::Vector3d lost_rad_s(std::size_t index) const;
   std::uint8_t beyond_tolerance(const Eigen::Vector3d& lost_rad_s) const;
 
   const sim::ImuRecord* record_;

@@ -42,6 +42,16 @@ bool clipped_max(const ScoredEstimate& scored, double& value) {
   return quantile_of(scored.once(error_norms).clipped_rad_s, 1.0, value);
 }
 
+// The rate exceeds the gyro's range by the difference between unclipped and delivered reading.
+bool beyond_range_share(const ScoredEstimate& scored, double& value) {
+  const ClippingTruth& truth = clipping_truth(scored);
+  std::vector<double> shares;
+  for (const PairedRate& pair : paired_rates(scored)) {
+    if (pair.clipped_axes() != 0) shares.push_back(pair.error_rad_s().norm() / truth.lost_rad_s(pair.sample).norm());
+  }
+  return quantile_of(shares, 0.5, value);
+}
+
 // A clipping interval is a sequence of samples with at least one clipped axis. The error of a clipping interval is the
 // norm of the mean error vector, because random errors cancel in the mean.
 bool segment_max(const ScoredEstimate& scored, double& value) {
@@ -157,6 +167,12 @@ std::vector<Metric> rate_metrics() {
       {{"rate_error_clipped_max_rad_s", Unit::rad_s, "largest rate error (norm) over clipped samples", Sense::lower},
        Kind::rate,
        clipped_max},
+      {{"rate_error_beyond_range_share", Unit::share,
+        "median, over samples with at least one clipped gyro axis, of the rate error (norm) divided by the amount by "
+        "which the rate exceeds the gyro's range (norm of unclipped minus delivered reading); the clipped gyro has 1",
+        Sense::lower},
+       Kind::rate,
+       beyond_range_share},
       {{"rate_error_segment_max_rad_s", Unit::rad_s,
         "largest mean rate error (norm) of a segment of consecutive clipped samples", Sense::lower},
        Kind::rate,

@@ -74,6 +74,22 @@ TEST(RateScores, AnOffsetIsItsOwnError) {
   EXPECT_NEAR(values.at("rate_error_free_median_rad_s"), 0.5, 1e-12);
 }
 
+// The error of the clipped gyro is the amount by which the rate exceeds the range.
+TEST(RateScores, AnErrorIsDividedByTheRateBeyondTheRange) {
+  const sim::ImuRecord& imu = rig().sensors.imus.front();
+  const sim::ImuTruth& known = rig().truth.imus.front();
+  const ClippingTruth truth(rig().sensors, rig().truth);
+  Estimate gyro = perfect_estimate(rig()), partly = gyro;
+  for (std::size_t k = 0; k < gyro.rates.size(); ++k) {
+    gyro.rates[k].w_WI_I_rad_s = imu.gyro_rad_s[k];
+    const double beyond_rad_s = (known.gyro_unclipped_rad_s[k] - imu.gyro_rad_s[k]).norm();
+    const bool clipped = truth.clipped_axes(k) != 0;  // the error of an unclipped sample must not count
+    partly.rates[k].w_WI_I_rad_s.y() += clipped ? (k % 3 == 0 ? 5.0 : 0.02) * beyond_rad_s : 100.0;
+  }
+  EXPECT_NEAR(scores(Kind::rate, gyro, rig()).at("rate_error_beyond_range_share"), 1.0, 1e-9);
+  EXPECT_NEAR(scores(Kind::rate, partly, rig()).at("rate_error_beyond_range_share"), 0.02, 1e-9);
+}
+
 TEST(RateScores, ASegmentIsJudgedByItsMeanAndTheWorstSampleByItself) {
   Estimate alternating = perfect_estimate(rig()), offset = alternating;
   const ClippingTruth truth(rig().sensors, rig().truth);
@@ -148,6 +164,7 @@ TEST(RateScores, WithoutClippingThereIsNothingToScoreClipped) {
   const sim::Recording recording = testing::synthetic_rig(motion);
   const auto values = scores(Kind::rate, perfect_estimate(recording), recording);
   EXPECT_FALSE(values.contains("rate_error_clipped_median_rad_s"));
+  EXPECT_FALSE(values.contains("rate_error_beyond_range_share"));
   EXPECT_FALSE(values.contains("rate_coverage_3sigma"));
   EXPECT_TRUE(values.contains("rate_error_free_median_rad_s"));
 }
