@@ -270,6 +270,28 @@ class Figures(unittest.TestCase):
     def test_a_failed_draw_counts_as_infinite(self):
         self.assertEqual(figures.computed(self.GROUP, self.SCORES), {"hill": [[3.0, 3], [1, 3]]})
 
+    def test_a_mean_omits_a_failed_draw(self):
+        column = {"method": "slam/a", "metric": "end_m", "statistic": "mean", "scale": 100}
+        self.assertEqual(figures.cell(self.SCORES, "hill", column, "slam/a"), (2.0, 3))
+
+    def test_a_verdict_is_counted(self):
+        column = {"method": "slam/a", "metric": "wrong", "statistic": "count"}
+        scores = {("hill", seed, "slam/a"): ("ok", {"wrong": wrong}) for seed, wrong in enumerate((0.0, 1.0, 1.0))} | {("hill", 3, "slam/a"): ("failed", {})}
+        self.assertEqual(figures.cell(scores, "hill", column, "slam/a"), (2, 4))
+        self.assertEqual(figures.shown(2.0, 4, column), "2 of 4")
+        self.assertEqual(figures.cell(scores, "hill", column | {"metric": "renamed"}, "slam/a"), (None, 4))
+
+    def test_a_row_can_show_the_runs_with_a_varied_parameter(self):
+        with tempfile.TemporaryDirectory() as folder:
+            with sqlite3.connect(pathlib.Path(folder) / "s.db") as database:
+                database.executescript(SCHEMA)
+                database.execute("INSERT INTO scores VALUES ('hill', 1, 'slam', 'a', 'ok', 'end_m', 0.01)")
+                for keys, setting, value in (("a.delay_s+b.delay_s", 2.5, 0.02), ("a.delay_s+b.delay_s", 4.0, 0.04), ("c", 2.5, 0.9)):
+                    database.execute("INSERT INTO curves VALUES (?, ?, 'hill', 1, 'slam', 'a', 'ok', 'end_m', ?)", (keys, setting, value))
+            scores = figures.read_sweep(pathlib.Path(folder), {"vary": {"a.delay_s+b.delay_s": [2.5, 4]}})
+        rows = {"hill": "", "hill@2.5": "", "hill@4": ""}
+        self.assertEqual([cells[0][0] for cells in figures.computed(self.GROUP | {"rows": rows}, scores).values()], [1.0, 2.0, 4.0])
+
     def test_a_cell_beyond_the_tolerance_is_stale(self):
         found = figures.computed(self.GROUP, self.SCORES)
         self.assertEqual(figures.stale("t", 0.02, {"hill": [[3.05, 3], [1, 3]]}, found), [])

@@ -2,7 +2,8 @@
 """Checks and writes the tables of README.md and docs/figures.md: runs sweeps and compares each cell with docs/figures.yaml.
 
 docs/figures.yaml names the sweeps (scenarios, seeds, methods, or a command), the tables (page, titles, groups of rows with their columns, tolerance) and, below
-the line `values:`, the value of each cell. A cell is stale if a new run differs from its value by more than the table's tolerance.
+the line `values:`, the value of each cell. A row SCENARIO@VALUE shows the runs of a scenario with this value of the sweep's varied parameter. A cell
+is stale if a new run differs from its value by more than the table's tolerance.
 """
 import math
 import pathlib
@@ -38,27 +39,42 @@ def sweep_command(name, sweep, program, folder, jobs):
     return [str(program), "sweep", str(suite), "--jobs", str(jobs), "--examples", "0", "--failures", "0", "--db", str(database)], folder / name
 
 
-def read_scores(folder, varied=""):
-    """Returns (status, {metric: value}) for each (scenario, seed, kind/method), from all databases of a folder; with the keys `varied` set to other values."""
+def read_scores(folder, varied="", scenario="scenario"):
+    """Returns (status, {metric: value}) for each (scenario, seed, kind/method), from all databases of a folder; with the keys `varied` set to other values.
+    The SQL expression `scenario` names the scenario."""
     scores = {}
     for file in sorted(folder.glob("*.db")):
         with sqlite3.connect(f"file:{file}?mode=ro", uri=True) as database:
-            columns = "SELECT scenario, seed, kind, method, status, metric, value FROM "
-            for scenario, seed, kind, method, status, metric, value in database.execute(
+            columns = f"SELECT {scenario}, seed, kind, method, status, metric, value FROM "
+            for name, seed, kind, method, status, metric, value in database.execute(
                     columns + ("curves WHERE method <> '' AND varied = ?" if varied else "scores WHERE method <> '' AND '' = ?"), (varied,)):
-                values = scores.setdefault((scenario, seed, f"{kind}/{method}"), (status, {}))[1]
+                values = scores.setdefault((name, seed, f"{kind}/{method}"), (status, {}))[1]
                 if metric:
                     values[metric] = value
     return scores
 
 
+def read_sweep(folder, sweep):
+    """Returns the scores of a sweep. The runs with a VALUE of a varied parameter belong to the scenario SCENARIO@VALUE."""
+    scores = read_scores(folder)
+    for keys in sweep.get("vary", {}):
+        scores |= read_scores(folder, keys, "scenario || '@' || printf('%g', setting)")
+    return scores
+
+
 def cell(scores, scenario, column, method):
-    """Returns the value of a cell and its number of simulated runs. A failed run counts as infinite in a median, and as one failure."""
+    """Returns the value of a cell and its number of simulated runs. A failed run counts as infinite in a median, and as one failure. A mean omits
+    failed runs. The statistic `count` is the number of runs whose metric is 1."""
     draws = [entry for (of, _, by), entry in scores.items() if of == scenario and by == method]
     if column["statistic"] == "failures":
         return sum(status != "ok" for status, _ in draws), len(draws)
+    if column["statistic"] == "count":
+        verdicts = [values[column["metric"]] for _, values in draws if column["metric"] in values]
+        return verdicts.count(1) if verdicts else None, len(draws)
     used = [values.get(column["metric"]) if status == "ok" else math.inf for status, values in draws]
     used = [value for value in used if value is not None and not math.isnan(value)]  # a run without clipped samples has no such score
+    if column["statistic"] == "mean":
+        used = [value for value in used if math.isfinite(value)]
     if not used:
         return None, len(draws)
     value = {"median": statistics.median, "mean": statistics.fmean, "max": max}[column["statistic"]](used)
@@ -97,7 +113,7 @@ def stale(name, tolerance, expected, found):
 def shown(value, draws, column):
     if value is None:
         return "–"
-    if column["statistic"] == "failures":
+    if column["statistic"] in ("failures", "count"):
         return f"{int(value)} of {draws}"
     return value if isinstance(value, str) else f"{value:.3g}" if value < 1000 else f"{value:.0f}"
 
@@ -105,7 +121,7 @@ def shown(value, draws, column):
 def rendered(name, described):
     """Returns the Markdown of a table from the values of docs/figures.yaml."""
     table, values = described["tables"][name], described["values"].get(name, {})
-    lines = [table["text"].strip(), "", "| " + " | ".join(table["titles"]) + " |", "| --- |" + " ---: |" * (len(table["titles"]) - 1)]
+    lines = [table["text"].strip(), "", "| " + " | ".join(table["titles"]) + " |", "|---|" + "---:|" * (len(table["titles"]) - 1)]
     for group in table["groups"]:
         for row, label in group["rows"].items():
             known = iter(values[row])
@@ -163,7 +179,7 @@ def run(names, program, folder, jobs, write, pages):
                 command, databases = sweep_command(sweep, described["sweeps"][sweep], program, folder, jobs)
                 if subprocess.run(command, cwd=ROOT).returncode not in (0, 1):
                     raise SystemExit(f"reproduce: {' '.join(command)} failed")
-                scores[sweep] = read_scores(databases)
+                scores[sweep] = read_sweep(databases, described["sweeps"][sweep])
             found |= computed(group, scores[sweep])
         complaints += stale(name, table["tolerance"], described["values"].get(name, {}), found)
         described["values"][name] = found

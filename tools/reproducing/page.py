@@ -20,8 +20,9 @@ class Table:
         self.rows.append(list(cells))
 
     def text(self) -> str:
-        lines = [self.columns, ["---"] * len(self.columns), *self.rows]
-        return "\n".join("| " + " | ".join(line) + " |" for line in lines) + "\n"
+        lines = ["| " + " | ".join(line) + " |" for line in (self.columns, *self.rows)]
+        lines.insert(1, "|---" * len(self.columns) + "|")
+        return "\n".join(lines) + "\n"
 
 
 def number(value: float, digits: int = 3) -> str:

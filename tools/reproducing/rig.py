@@ -324,7 +324,7 @@ accelerometer. `tools/reproduce papers --only rig` writes this page from {draws}
 ## What differs from the ICRA paper
 
 | condition | ICRA paper | our simulation |
-| --- | --- | --- |
+|---|---|---|
 | motion | one hill | slopes of 20 to 45° |
 | gyro | one device, 10.5 rad/s | one device per run |
 | accelerometer range | 156.9 m/s² | 196.1 m/s² |

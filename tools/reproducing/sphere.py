@@ -327,7 +327,7 @@ acceleration.
 ## What differs from the MFI paper
 
 | condition | MFI paper | our simulation |
-| --- | --- | --- |
+|---|---|---|
 | published methods | three averaged gyros, 125 Hz | first IMU, 250 Hz |
 | our methods | - | all three IMUs, 250 Hz |
 | weights of the fusion | varying, limiter 1.1 | equal, limiter 1.2 |
