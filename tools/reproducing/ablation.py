@@ -19,6 +19,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 FILE, PAGE = ROOT / "docs/ablation.yaml", ROOT / "docs/ablation.md"
 RESAMPLES = 4000
 SMALL = 1.0  #: percent; a change whose interval is within this bound is small
+VARIANTS = {"tumble": "whole", "tumble_lag": "lag", "tumble_live": "live"}
 QUANTILES = {"median": 0.5, "tail": 0.9}
 
 
@@ -96,7 +97,7 @@ def is_small(row):
 
 def percent(value):
     """Returns a change in percent; `∞` if runs fail without the mechanism."""
-    return "∞" if value > 1e4 else f"{value + 0.0:.0f}".replace("-0", "0").replace("-", "\u2212")
+    return "∞" if value > 1e4 else f"{value + 0.0:.0f}".replace("-0", "0")
 
 
 def interval(row, statistic):
@@ -117,12 +118,12 @@ def before_and_after(row, name, last=""):
 
 
 def cells(row):
-    return [row["scenario"], row["method"].split("/")[1], interval(row, "median"), interval(row, "tail"), before_and_after(row, "failed"),
+    return [row["scenario"], VARIANTS[row["method"].split("/")[1]], interval(row, "median"), interval(row, "tail"), before_and_after(row, "failed"),
             before_and_after(row, "coverage", " %")]
 
 
 def page(described, rows):
-    table = Table(["mechanism", "source lines", "scenario", "method", "median", "tail", "failed runs", "within 3σ", "changed"])
+    table = Table(["mechanism", "source lines", "scenario", "variant", "median", "tail", "failed", "within 3σ", "changed"])
     without_effect = []
     for name, mechanism in described["mechanisms"].items():
         own = [row for row in rows if row["mechanism"] == name]
@@ -132,7 +133,7 @@ def page(described, rows):
         elif own:
             size = lambda row: (abs(row["failed_off"] - row["failed_on"]), max(abs(row[s]) for s in QUANTILES), coverage_change(row))
             table.add(mechanism["does"], str(lines_of(mechanism) or "–"), *cells(max(changed or own, key=size)), f"{len(changed)}/{len(own)}")
-    equal = "\nSwitching off one of the following mechanisms changes no error:\n\n" + "\n".join(without_effect) + "\n" if without_effect else ""
+    equal = "\nSwitching off one of these mechanisms changes no error:\n\n" + "\n".join(without_effect) + "\n" if without_effect else ""
     return described["text"].strip() + "\n\n" + table.text() + equal + "\nCommand: `tools/reproduce ablation`.\n"
 
 
