@@ -8,7 +8,7 @@ namespace tumble::mapping {
 
 namespace {
 
-constexpr double kChanceAgreementMax = 0.8;
+constexpr double kChanceAgreementMin = 0.7;
 // The second-best pose of a search is probably wrong. The fraction of points that agree at the second-best pose
 // therefore estimates the agreement by chance.
 constexpr double kChanceMargin = 0.3;
@@ -84,7 +84,7 @@ void MapLocaliser::propose_map_pose(const std::vector<SurfacePoint>& points, con
   T_prior_map_world_ = found.front().T_prior_map_world;
   compared_pose_count_ = std::max(double(tried), 1.0);
   const double second = found.size() > 1 ? found[1].agreement_ratio() : 0.0;
-  random_agreement_fraction_ = std::max(kChanceAgreementMax, second + kChanceMargin * (1.0 - second));
+  random_agreement_fraction_ = std::max(kChanceAgreementMin, second + kChanceMargin * (1.0 - second));
 }
 
 /// See mapping.md (R74).
