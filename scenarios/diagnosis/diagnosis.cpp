@@ -58,7 +58,8 @@ std::optional<RecordingFinding> lost_items(const std::string& name, const char* 
       fmt::format("in the recording, {} of {} {} are lost (share {}, limit {}); the longest gap lasts {} s", missing,
                   missing + std::ssize(times_ns), items, percent_text(share), percent_text(kLostShareMax),
                   rounded(1e-9 * static_cast<double>(longest_ns))),
-      "record without loss, for example with larger queues or a faster disk, and check that the sensor's clock does not "
+      "record without loss, for example with larger queues or a faster disk, and check that the sensor's clock does "
+      "not "
       "jump; the estimators bridge gaps up to 1 s"};
 }
 
