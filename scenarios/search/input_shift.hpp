@@ -24,7 +24,7 @@ struct InputShift {
 /// Compares the values of each random parameter in a set of draws (random runs) with the scenario's distribution. The
 /// parameter with the largest shift comes first. `shift` is averaged over the copies of each initial draw, and then
 /// over the initial draws, because copies of one initial draw depend on each other. `corrected` is the p-value by
-/// equation (S31) of docs/maths/statistics.md, after Holm's correction. The list `draws` must not be empty.
+/// equation (S31) of statistics.md, after Holm's correction. The list `draws` must not be empty.
 std::vector<InputShift> input_shifts(std::span<const DrawnNumber> numbers, std::span<const ScoredPoint> draws);
 
 }  // namespace tumble::scenarios

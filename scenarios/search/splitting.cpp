@@ -261,7 +261,7 @@ void SplittingEstimate::advance(std::size_t removed, std::span<const std::size_t
   if (left > 1.0) log_correction_ += std::log((left - 1.0) * n * n / (left * (n * n - siblings)));
 }
 
-/// Computes the confidence interval of a small probability by equation (S30) of docs/maths/statistics.md. The estimated
+/// Computes the confidence interval of a small probability by equation (S30) of statistics.md. The estimated
 /// probability has a log-normal distribution, whose median is below its mean. The factor exp(variance / 2) corrects the
 /// upper limit of the confidence interval for the difference between median and mean.
 Interval SplittingEstimate::interval(std::span<const std::size_t> members, double risk) const {

@@ -33,7 +33,7 @@ using Move = std::function<std::vector<double>(std::span<const double> normals, 
                                                const std::function<double()>& normal)>;
 
 /// Returns x √(1 − step²) + step ξ, for the normal numbers x and new standard normal numbers ξ. The formula is a
-/// preconditioned Crank-Nicolson step, equation (S27) of docs/maths/statistics.md.
+/// preconditioned Crank-Nicolson step, equation (S27) of statistics.md.
 std::vector<double> crank_nicolson(std::span<const double> normals, double step, const std::function<double()>& normal);
 
 struct SplittingOptions {
@@ -89,7 +89,7 @@ SplittingResult split(const SplittingOptions& options, const ScorePoints& score)
 
 /// SplittingEstimate accumulates an estimate of a small probability over the steps of adaptive multilevel splitting.
 /// SplittingEstimate also accumulates the variance of the logarithm of the estimate, equations (S25) to (S30) of
-/// docs/maths/statistics.md.
+/// statistics.md.
 class SplittingEstimate {
  public:
   explicit SplittingEstimate(std::size_t population) : population_(population) {}

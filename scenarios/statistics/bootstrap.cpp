@@ -33,7 +33,7 @@ double sorted_median(std::span<const double> sorted) {
   return middle_of(sorted[(n - 1) / 2], sorted[n / 2]);
 }
 
-/// Returns the acceleration of the BCa bootstrap interval of the median, equation (S3) of docs/maths/statistics.md. For
+/// Returns the acceleration of the BCa bootstrap interval of the median, equation (S3) of statistics.md. For
 /// an even number of values, the acceleration is zero by symmetry.
 double acceleration(std::span<const double> sorted) {
   const std::size_t n = sorted.size(), m = n / 2;

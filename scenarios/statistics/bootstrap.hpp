@@ -10,7 +10,7 @@
 namespace tumble::scenarios {
 
 /// MedianBootstrap computes bias-corrected and accelerated (BCa; Efron, JASA 82:171, 1987) bootstrap confidence
-/// intervals of the median, by equations (S1) to (S4) of docs/maths/statistics.md. The constructor draws all resamples
+/// intervals of the median, by equations (S1) to (S4) of statistics.md. The constructor draws all resamples
 /// once as ranks, because the ranks of the middle values of a resample do not depend on the values.
 class MedianBootstrap {
  public:

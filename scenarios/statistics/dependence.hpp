@@ -20,7 +20,7 @@ struct Correlation {
 };
 
 /// Computes Spearman's rank correlation with its confidence interval (Bonett and Wright, Psychometrika 65:23, 2000;
-/// equation (S16) of docs/maths/statistics.md). For fewer than four pairs, or for a constant variable, the confidence
+/// equation (S16) of statistics.md). For fewer than four pairs, or for a constant variable, the confidence
 /// interval of the correlation is [-1, 1].
 Correlation rank_correlation(std::span<const double> x, std::span<const double> y);
 
@@ -32,7 +32,7 @@ struct FirstOrder {
 
 /// Estimates the first-order (Sobol') sensitivity index of y with respect to x from existing data (Plischke, Borgonovo,
 /// Smith, EJOR 226:536, 2013). The data are sorted by x and divided into equally large classes. The estimate is based
-/// on the variance of the class means of y, equation (S18) of docs/maths/statistics.md. Equation (S19) corrects the
+/// on the variance of the class means of y, equation (S18) of statistics.md. Equation (S19) corrects the
 /// first-order index for chance, because class means of y also vary if y is independent of x.
 FirstOrder first_order_index(std::span<const double> x, std::span<const double> y);
 
@@ -50,7 +50,7 @@ struct DependenceClass {
 
 inline constexpr std::size_t kDependenceClassesMax = 8, kDependenceDrawsMin = 12;
 
-/// Computes the partial dependence of y on x, equations (S22) and (S23) of docs/maths/statistics.md. The data are
+/// Computes the partial dependence of y on x, equations (S22) and (S23) of statistics.md. The data are
 /// sorted by x and divided into at most `kDependenceClassesMax` equally large classes, with at least
 /// `kDependenceDrawsMin` values each. The result contains a statistic of y for each class. The data must come from
 /// simulated runs with independent random numbers.

@@ -14,11 +14,11 @@ struct Plan {
 };
 
 /// Returns the number of pairs that the two-sided signed-rank test needs (Noether, JASA 82:645, 1987), equations (S10)
-/// and (S11) of docs/maths/statistics.md.
+/// and (S11) of statistics.md.
 double pairs_for_signed_rank(std::span<const double> differences, const Plan& plan);
 
 /// Returns the number of pairs that the paired test of failures needs (Connor, Biometrics 43:207, 1987), equation (S12)
-/// of docs/maths/statistics.md. In `pairs` observed runs, only the first method failed `only_first` times, and only the
+/// of statistics.md. In `pairs` observed runs, only the first method failed `only_first` times, and only the
 /// second method failed `only_second` times.
 double pairs_for_failures(std::int64_t only_first, std::int64_t only_second, std::int64_t pairs, const Plan& plan);
 

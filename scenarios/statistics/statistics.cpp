@@ -132,7 +132,7 @@ Interval share_interval(std::int64_t count, std::int64_t total) {
   }
   const auto k = static_cast<double>(count);
   const auto n = static_cast<double>(total);
-  // The Clopper-Pearson interval is equation (S24) of docs/maths/statistics.md.
+  // The Clopper-Pearson interval is equation (S24) of statistics.md.
   return {k / n, count == 0 ? 0.0 : boost::math::ibeta_inv(k, n - k + 1.0, kTail),
           count == total ? 1.0 : boost::math::ibetac_inv(k + 1.0, n - k, kTail)};
 }

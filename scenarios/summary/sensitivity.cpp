@@ -72,7 +72,7 @@ std::vector<Influence> influences(const Scored& scored, const NumbersOfDraws& nu
     add_quarters(column, scored.values, each);
     each.dependence = partial_dependence(column, scored.values, scored.centre);
     // The p-value combines the test of the rank correlation and the test of the first-order index, equation (S21) of
-    // docs/maths/statistics.md.
+    // statistics.md.
     chances.push_back(std::min(1.0, 2.0 * std::min(each.correlation.chance, each.first_order.chance)));
     out.push_back(std::move(each));
   }

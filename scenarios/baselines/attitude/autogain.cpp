@@ -30,7 +30,7 @@ double current_yaw(const Eigen::Quaterniond& q) {
 }
 
 /// Rotates the attitude towards the roll and pitch that the accelerometer measures, without changing the yaw: equation
-/// (A25) of docs/maths/attitude.md.
+/// (A25) of attitude.md.
 Eigen::Quaterniond towards_roll_and_pitch(const Eigen::Quaterniond& q, const Eigen::Vector3d& f, double share,
                                           bool keep_roll) {
   const double sin_pitch = 2.0 * (q.w() * q.y() - q.x() * q.z());
