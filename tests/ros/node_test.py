@@ -305,11 +305,12 @@ def position_problems(node, path: pathlib.Path, folder: pathlib.Path) -> list[st
 
 
 def send_start(node) -> None:
-    """Publishes START before the play, several times, because discovery may still list the subscription of the killed node."""
+    """Publishes START before the play. After SIGKILL, the subscription of the killed node remains for about 20 s, so the function first waits for
+    the end of this subscription."""
     publisher = node.create_publisher(PoseWithCovarianceStamped, "initialpose", 1)
-    deadline = time.monotonic() + 20.0
-    while publisher.get_subscription_count() == 0:
-        assert time.monotonic() < deadline, "the node does not subscribe to initialpose"
+    deadline = time.monotonic() + 60.0
+    while publisher.get_subscription_count() != 1:
+        assert time.monotonic() < deadline, f"initialpose has {publisher.get_subscription_count()} subscriptions, must be 1"
         time.sleep(0.1)
     message = PoseWithCovarianceStamped()
     p, q = message.pose.pose.position, message.pose.pose.orientation
