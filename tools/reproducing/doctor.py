@@ -20,7 +20,7 @@ import h5py
 import numpy as np
 
 from .page import Table
-from .runs import ROOT, Runs
+from .runs import ROOT, RunRejected, Runs
 
 FIRST_SEED = 41001
 CARRIED, TUMBLING = 8, 4  # recordings of a bag format
@@ -399,7 +399,10 @@ class Doctor:
             return
         folder = self.runs.folder / f"{case.format}_{case.seed}"
         shutil.rmtree(folder, ignore_errors=True)
-        clean = self.runs.record(ROOT / case.scenario if "/" in case.scenario else case.scenario, case.seed, folder / "clean.h5")
+        try:
+            clean = self.runs.record(ROOT / case.scenario if "/" in case.scenario else case.scenario, case.seed, folder / "clean.h5")
+        except RunRejected:
+            return
         prepare(clean)
         for name in missing:
             used = folder / f"{name or 'used'}.h5"

@@ -25,7 +25,7 @@ import numpy as np
 import yaml
 
 from .page import Table, number
-from .runs import ROOT, ProgramFailed, Runs
+from .runs import ROOT, RunRejected, Runs
 
 SCENARIOS = ("hill", "scree", "stairs", "cliff", "throw", "forest")
 CATALOGUE = ROOT / "scenarios" / "catalogue"
@@ -200,10 +200,8 @@ def run_2(runs: Runs, scenario: str, seed: int, run: int, prior: Prior, case: st
     file.write_text(second_scenario(scenario, name, late_s))
     try:
         runs.record(file.name, seed, recording)
-    except ProgramFailed as error:
-        if "the simulation rejected the run" in str(error):
-            return None
-        raise
+    except RunRejected:
+        return None
     return localise(runs, recording, prior, case)
 
 

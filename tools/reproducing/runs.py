@@ -22,6 +22,10 @@ class ProgramFailed(RuntimeError):
     """The program ended with an exit status other than 0. The message contains the command and its errors."""
 
 
+class RunRejected(ProgramFailed):
+    """The simulation rejected a run, for example because the robot was wedged in the ground."""
+
+
 @dataclass
 class Runs:
     """One build of the program with one work folder.
@@ -52,7 +56,8 @@ class Runs:
         self.folder.mkdir(parents=True, exist_ok=True)
         ended = subprocess.run([str(self.program), *texts, *map(str, unseen), "--quiet"], cwd=self.folder, capture_output=True, text=True)
         if ended.returncode != 0:
-            raise ProgramFailed(f"{command}: exit status {ended.returncode}: {ended.stderr.strip()}")
+            failure = RunRejected if "the simulation rejected the run" in ended.stderr else ProgramFailed
+            raise failure(f"{command}: exit status {ended.returncode}: {ended.stderr.strip()}")
         return ended.stdout
 
     def sweep(self, name: str, suite: object, methods: Iterable[str] = (), scenario: str = "", keep: bool = False,
