@@ -1,27 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Checks which folder may use which: compares every #include and every link of the tree with the table of the design.
 // The checker is a function of (folder, include), so that negative controls can use it next to the real scan.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <map>
-#include <memory>
-#include <regex>
-#include <set>
-#include <sstream>
-#include <string>
-#include <utility>
-#include <vector>
-
+#include "tests/testing.hpp"
 #include "tests/tree.hpp"
 
 namespace {
-
-namespace fs = std::filesystem;
 
 struct Rule {
   std::string folder;                  // applies to sources in this folder of the tree

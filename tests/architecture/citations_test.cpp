@@ -2,23 +2,12 @@
 // Sources cite the equations of docs/maths as "mapping.md (R5)" or "mapping.md (R5), (R7)". The test checks that each
 // cited equation exists once, at the end of an indented line, and that the code cites every note. The test also checks
 // that the files named in CONTRIBUTING exist.
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <map>
-#include <regex>
-#include <set>
-#include <sstream>
-#include <string>
-#include <vector>
-
-#include "tests/architecture/text_of.hpp"
+#include "tests/testing.hpp"
 #include "tests/tree.hpp"
 
 namespace {
 
-namespace fs = std::filesystem;
-using tumble::test::text_of;
+using tumble::test::read_file;
 
 /// Notes maps the name of a note to the numbers of the equations that it defines.
 using Notes = std::map<std::string, std::set<std::string>>;
@@ -83,7 +72,7 @@ Notes notes_of_the_tree() {
   Notes out;
   for (const auto& entry : fs::directory_iterator(tumble::test::source_dir() / "docs" / "maths")) {
     if (entry.path().extension() != ".md") continue;
-    const std::string text = text_of(entry.path());
+    const std::string text = read_file(entry.path());
     EXPECT_EQ(defined_twice(text), std::set<std::string>()) << entry.path();
     out[entry.path().filename()] = defined_in(text);
   }
@@ -103,7 +92,7 @@ TEST(Citations, EveryCitedEquationIsThereAndEveryNoteIsCited) {
   ASSERT_GE(notes.size(), 9u);
   std::set<std::string> cited;
   for (const fs::path& file : sources_with_equations()) {
-    for (const Citation& citation : cited_in(text_of(file))) {
+    for (const Citation& citation : cited_in(read_file(file))) {
       EXPECT_EQ(complaint(citation, notes), "") << file;
       cited.insert(citation.note);
     }
@@ -131,9 +120,9 @@ std::vector<std::string> absent_files(const std::string& text) {
 }
 
 TEST(Citations, FilesThatContributingNamesAreThere) {
-  std::string text = text_of(tumble::test::source_dir() / "CONTRIBUTING.md");
+  std::string text = read_file(tumble::test::source_dir() / "CONTRIBUTING.md");
   ASSERT_FALSE(text.empty());
-  for (const auto& page : fs::directory_iterator(tumble::test::source_dir() / "docs/how_to")) text += text_of(page);
+  for (const auto& page : fs::directory_iterator(tumble::test::source_dir() / "docs/how_to")) text += read_file(page);
   EXPECT_EQ(absent_files(text), std::vector<std::string>());
   EXPECT_EQ(absent_files("in `docs/design.md`, `scenarios/absent.cpp` and `tests/tree.hpp:12`"),
             (std::vector<std::string>{"scenarios/absent.cpp", "tests/tree.hpp:12"}))

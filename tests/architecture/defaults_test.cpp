@@ -2,24 +2,12 @@
 // The library must know no robot and no simulated run of the harness: its defaults, code and comments contain no number
 // of models/*.xml or of a data sheet, no device of these robots and no seed. The data sheets of devices
 // (odometry/sensor_sheets) are excepted, because users select these presets by name.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <regex>
-#include <set>
-#include <sstream>
-#include <string>
-#include <vector>
-
-#include "tests/architecture/text_of.hpp"
+#include "tests/testing.hpp"
 #include "tests/tree.hpp"
 
 namespace {
 
-namespace fs = std::filesystem;
-using tumble::test::text_of;
+using tumble::test::read_file;
 
 std::vector<std::string> all_of(const std::string& text, const char* pattern) {
   const std::regex wanted(pattern, std::regex::icase);
@@ -64,7 +52,7 @@ Known known() {
   std::vector<std::string> numbers;
   std::string names;
   for (const char* robot : {"rig", "sphere"}) {
-    const std::string model = text_of(root / "models" / (std::string(robot) + ".xml"));
+    const std::string model = read_file(root / "models" / (std::string(robot) + ".xml"));
     for (const std::string& place : all_of(model, R"re(pos="([^"]*)")re")) {
       std::istringstream coordinates(place);
       std::vector<double> at(3);
@@ -79,7 +67,7 @@ Known known() {
     }
   }
   for (const auto& sheet : fs::directory_iterator(root / "models" / "sensors")) {
-    for (const std::string& value : all_of(text_of(sheet.path()), R"(value: *([-0-9.e]+))")) numbers.push_back(value);
+    for (const std::string& value : all_of(read_file(sheet.path()), R"(value: *([-0-9.e]+))")) numbers.push_back(value);
   }
   out.numbers = distinctive(numbers);
   out.names = std::regex("\\b(" + names + ")(?![0-9])", std::regex::icase);
@@ -123,7 +111,7 @@ TEST(Defaults, OfTheLibraryKnowNoRobotAndNoDraw) {
       const std::string extension = entry.path().extension().string();
       if ((extension != ".hpp" && extension != ".cpp") || entry.path().stem() == sheets) continue;
       ++sources;
-      for (const std::string& told : told_by(text_of(entry.path()), harness))
+      for (const std::string& told : told_by(read_file(entry.path()), harness))
         ADD_FAILURE() << entry.path().string() << ": " << told;
     }
   }

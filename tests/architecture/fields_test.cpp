@@ -1,27 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Each number of a `Params` struct of the estimator must be a field (tumble/common/parameters.hpp), because other
 // numbers have no bounds and cannot be set.
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <regex>
-#include <set>
-#include <sstream>
-#include <string>
-#include <vector>
-
+#include "tests/testing.hpp"
 #include "tests/tree.hpp"
 
 namespace {
 
-namespace fs = std::filesystem;
-
 std::string code_of(const fs::path& file) {
-  std::ostringstream out;
-  out << std::ifstream(file).rdbuf();
-  return std::regex_replace(out.str(), std::regex("//[^\n]*"), "");
+  return std::regex_replace(tumble::test::read_file(file), std::regex("//[^\n]*"), "");
 }
 
 /// Returns the text between the brace at or after `from` and its closing brace.

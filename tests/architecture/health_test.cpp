@@ -1,19 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The health of an estimate is output for users. The test checks that no method reads entries of the health.
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
-#include <regex>
-#include <sstream>
-#include <string>
-#include <vector>
-
+#include "tests/testing.hpp"
 #include "tests/tree.hpp"
 
 namespace {
-
-namespace fs = std::filesystem;
 
 /// Returns the lines of a source that read an entry of an estimate's health.
 std::vector<std::string> reads_of_health(const std::string& source) {
@@ -40,9 +30,7 @@ std::vector<std::string> harness_sources() {
 }
 
 std::string text_of_source(const std::string& file) {
-  std::ostringstream text;
-  text << std::ifstream(tumble::test::source_dir() / file).rdbuf();
-  return text.str();
+  return tumble::test::read_file(tumble::test::source_dir() / file);
 }
 
 // An entry that is written without a failed check would not be reported.

@@ -1,24 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test compares the list of public headers in estimator/README.md with the folders. Other installed headers are in
 // folders called detail; programs for users do not include them.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstddef>
-#include <filesystem>
-#include <regex>
-#include <set>
-#include <sstream>
-#include <string>
-#include <vector>
-
-#include "tests/architecture/text_of.hpp"
+#include "tests/testing.hpp"
 #include "tests/tree.hpp"
 
 namespace {
 
-namespace fs = std::filesystem;
-using tumble::test::text_of;
+using tumble::test::read_file;
 using Names = std::set<std::string>;
 
 /// Returns all matches of the first group of a pattern.
@@ -60,7 +48,7 @@ Names unlisted_includes(const std::string& source, const Names& list) {
 }
 
 TEST(PublicHeaders, AreThoseThatTheReadmeLists) {
-  const Names list = listed(text_of(tumble::test::source_dir() / "estimator/README.md"));
+  const Names list = listed(read_file(tumble::test::source_dir() / "estimator/README.md"));
   EXPECT_EQ(open_headers(), list);
   EXPECT_LE(list.size(), 14u);
   // negative controls
@@ -85,14 +73,14 @@ std::ptrdiff_t code_lines(const std::string& text) {
 TEST(PublicHeaders, AreReadInOneGo) {
   const fs::path folder = tumble::test::source_dir() / "estimator/include/tumble";
   for (const std::string& header : open_headers())
-    EXPECT_LE(code_lines(text_of(folder / header)), kCodeLinesMax) << header;
+    EXPECT_LE(code_lines(read_file(folder / header)), kCodeLinesMax) << header;
   EXPECT_EQ(code_lines("int a;\n\n  // text\n  int b;  // text\n"), 2) << "negative control";
 }
 
 TEST(PublicHeaders, IncludeNothingThatIsNotInstalled) {
   std::size_t includes = 0;
   for (const fs::path& header : public_headers()) {
-    for (const std::string& own : found_in(text_of(header), R"re(#\s*include\s*"([^"]+)")re")) {
+    for (const std::string& own : found_in(read_file(header), R"re(#\s*include\s*"([^"]+)")re")) {
       ++includes;
       EXPECT_TRUE(fs::exists(tumble::test::source_dir() / "estimator/include" / own)) << header << " includes " << own;
     }
@@ -103,7 +91,7 @@ TEST(PublicHeaders, IncludeNothingThatIsNotInstalled) {
 /// Adds a header and all headers of the library that it includes to `reached`.
 void collect(const std::string& header, Names& reached) {
   if (!reached.insert(header).second) return;
-  const std::string text = text_of(tumble::test::source_dir() / "estimator/include/tumble" / header);
+  const std::string text = read_file(tumble::test::source_dir() / "estimator/include/tumble" / header);
   for (const std::string& included : found_in(text, R"re(#\s*include\s*"tumble/([^"]+)")re"))
     collect(included, reached);
 }
@@ -122,13 +110,13 @@ TEST(PublicHeaders, OfMostRobotsAreFewAndReachNoDetail) {
 }
 
 TEST(PublicHeaders, AreAllThatProgramsForAUserInclude) {
-  const Names list = listed(text_of(tumble::test::source_dir() / "estimator/README.md"));
+  const Names list = listed(read_file(tumble::test::source_dir() / "estimator/README.md"));
   std::size_t programs = 0;
   for (const char* folder : {"examples", "tests/install/consumer"}) {
     for (const auto& entry : fs::recursive_directory_iterator(tumble::test::source_dir() / folder)) {
       if (entry.path().extension() != ".cpp" && entry.path().extension() != ".hpp") continue;
       ++programs;
-      EXPECT_EQ(unlisted_includes(text_of(entry.path()), list), Names{}) << entry.path();
+      EXPECT_EQ(unlisted_includes(read_file(entry.path()), list), Names{}) << entry.path();
     }
   }
   EXPECT_GT(programs, 6u);

@@ -1,14 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test finds forgotten registrations of components that consist of a file and a line of registration. Each function
 // or constant that a header of such a list declares must be named where the list is created.
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <regex>
-#include <string>
-#include <vector>
-
-#include "tests/architecture/text_of.hpp"
+#include "tests/testing.hpp"
 #include "tests/tree.hpp"
 
 namespace {
@@ -54,10 +47,10 @@ TEST(Registration, NothingThatIsDeclaredIsLeftOut) {
       {"tools/tumble/verbs.hpp", "Action", "[^;{]*", "tools/tumble/verbs.cpp", 15},
   };
   for (const Registry& registry : registries) {
-    const std::vector<std::string> names = declared(tumble::test::text_of(tumble::test::source_dir() / registry.header),
-                                                    registry.returns, registry.arguments);
+    const std::vector<std::string> names = declared(
+        tumble::test::read_file(tumble::test::source_dir() / registry.header), registry.returns, registry.arguments);
     EXPECT_GE(names.size(), registry.least) << registry.header;
-    EXPECT_EQ(left_out(names, tumble::test::text_of(tumble::test::source_dir() / registry.list)),
+    EXPECT_EQ(left_out(names, tumble::test::read_file(tumble::test::source_dir() / registry.list)),
               std::vector<std::string>())
         << registry.header << " declares what " << registry.list << " does not name";
   }
@@ -72,7 +65,7 @@ std::vector<std::string> stems_in(const std::string& folder) {
 }
 
 TEST(Registration, TheDesignNamesEveryScenarioAndDevice) {
-  const std::string design = tumble::test::text_of(tumble::test::source_dir() / "docs/design.md");
+  const std::string design = tumble::test::read_file(tumble::test::source_dir() / "docs/design.md");
   const std::vector<std::string> scenarios = stems_in("scenarios/catalogue"), devices = stems_in("models/sensors");
   EXPECT_GE(scenarios.size(), 23u);
   EXPECT_GE(devices.size(), 8u);
@@ -83,7 +76,7 @@ TEST(Registration, TheDesignNamesEveryScenarioAndDevice) {
 /// Returns the text of a scenario of the catalogue, and the texts of the scenarios that the scenario extends.
 std::string with_base(const std::string& scenario) {
   const std::string text =
-      tumble::test::text_of(tumble::test::source_dir() / ("scenarios/catalogue/" + scenario + ".yaml"));
+      tumble::test::read_file(tumble::test::source_dir() / ("scenarios/catalogue/" + scenario + ".yaml"));
   std::smatch base;
   return std::regex_search(text, base, std::regex("\nextends: ([a-z_]+)\n")) ? text + with_base(base[1]) : text;
 }
@@ -92,7 +85,7 @@ std::string with_base(const std::string& scenario) {
 /// with a lidar.
 TEST(Registration, EvalioHasEveryScenarioOfTheRig) {
   const std::string adapter =
-      tumble::test::text_of(tumble::test::source_dir() / "python/src/tumble/evalio/recordings.py");
+      tumble::test::read_file(tumble::test::source_dir() / "python/src/tumble/evalio/recordings.py");
   const std::size_t from = adapter.find("\nSCENARIOS = (");
   ASSERT_NE(from, std::string::npos);
   const std::string listed = adapter.substr(from, adapter.find(')', from) - from);

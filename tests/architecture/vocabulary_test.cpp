@@ -1,26 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test rejects names and words that terms of the field have replaced: names anywhere in the tree, and words in the
 // documents that users read first.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
 #include <cctype>
-#include <filesystem>
-#include <regex>
-#include <set>
-#include <sstream>
-#include <string>
-#include <string_view>
-#include <vector>
 
-#include "tests/architecture/text_of.hpp"
+#include "tests/testing.hpp"
 #include "tests/tree.hpp"
 
 namespace {
 
-namespace fs = std::filesystem;
-using tumble::test::text_of;
+using tumble::test::read_file;
 
 /// No name may contain these words; docs/glossary.md lists the terms of the field.
 constexpr std::array kReplaced = {"companion", "excess", "stretch", "stretches", "surprise"};
@@ -107,7 +95,7 @@ TEST(Vocabulary, ReplacedNamesDoNotReturn) {
       const Text kind = kind_of(extension);
       if (kind == Text::prose && extension != ".md" && extension != ".yaml" && extension != ".ipynb") continue;
       if (entry.path().filename() == "vocabulary_test.cpp") continue;
-      EXPECT_EQ(replaced_names(text_of(entry.path()), kind), std::vector<std::string>{}) << entry.path();
+      EXPECT_EQ(replaced_names(read_file(entry.path()), kind), std::vector<std::string>{}) << entry.path();
       ++read;
     }
   }
@@ -147,7 +135,7 @@ TEST(Vocabulary, WhatUsersReadFirstHasNoPrivateWords) {
     }
   }
   EXPECT_GT(read.size(), 100u) << "the scan found too little to mean anything";
-  for (const fs::path& file : read) EXPECT_EQ(private_words(text_of(file)), std::vector<std::string>{}) << file;
+  for (const fs::path& file : read) EXPECT_EQ(private_words(read_file(file)), std::vector<std::string>{}) << file;
   EXPECT_EQ(private_words("a stamp\n```\nit tells\n```\nit Tells\n").size(), 1u) << "negative control";
 }
 

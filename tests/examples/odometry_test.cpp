@@ -1,28 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Runs the programs of README and tutorial on recordings and compares their poses with the truth.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cstdio>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <memory>
-#include <sstream>
-#include <string>
-#include <vector>
-
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "sim/recording.hpp"
 #include "stand_ins/short_scenario.hpp"
+#include "tests/testing.hpp"
 #include "tests/tree.hpp"
 
 namespace tumble::scenarios {
 namespace {
-
-namespace fs = std::filesystem;
 
 std::string output_of(const std::string& command) {
   const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);
@@ -64,7 +50,7 @@ void write_messages(const sim::Sensors& sensors, const fs::path& file, std::int6
 
 struct Line {
   std::int64_t time_ns;
-  Eigen::Vector3d p_m;
+  Vector3d p_m;
   double sigma_m;
 };
 std::vector<Line> lines_of(const std::string& text) {
@@ -81,9 +67,9 @@ std::vector<Line> lines_of(const std::string& text) {
 }
 
 /// Returns how far a body-fixed point has moved from the start to `time_ns` [m].
-double distance_m(const sim::Truth& truth, const Eigen::Vector3d& p_B_m, std::int64_t time_ns) {
+double distance_m(const sim::Truth& truth, const Vector3d& p_B_m, std::int64_t time_ns) {
   const auto k = std::min(static_cast<std::size_t>(time_ns / truth.period_ns), truth.p_WB_m.size() - 1);
-  const auto at = [&](std::size_t i) { return Eigen::Vector3d(truth.p_WB_m[i] + truth.q_WB[i] * p_B_m); };
+  const auto at = [&](std::size_t i) { return Vector3d(truth.p_WB_m[i] + truth.q_WB[i] * p_B_m); };
   return (at(k) - at(0)).norm();
 }
 
@@ -158,12 +144,6 @@ TEST(OdometryExamples, TheRollingExampleFollowsARoll) {
   EXPECT_NEAR(lines.back().p_m.norm(), distance, 0.02 * std::max(1.0, distance));
 }
 
-std::string text_of(const fs::path& file) {
-  std::ostringstream out;
-  out << std::ifstream(file).rdbuf();
-  return out.str();
-}
-
 TEST(OdometryExamples, TheRebootExampleStartsAtTheSavedPose) {
   const Recorded stroll_1 = record("stroll");
   const fs::path folder = stroll_1.file.parent_path();
@@ -183,7 +163,7 @@ TEST(OdometryExamples, TheRebootExampleStartsAtTheSavedPose) {
   };
   const std::vector<Line> before = lines_of(poses("first.txt", "parts")),
                           after = lines_of(poses("second.txt", "parts"));
-  EXPECT_EQ(text_of(folder / "errors.txt"), "");
+  EXPECT_EQ(test::read_file(folder / "errors.txt"), "");
   ASSERT_GT(before.size(), 3u);
   ASSERT_GT(after.size(), 3u);
   // negative controls: without the state the run starts at the origin, and an invalid state is reported
@@ -192,7 +172,7 @@ TEST(OdometryExamples, TheRebootExampleStartsAtTheSavedPose) {
   beginning.close();
   const std::vector<Line> anew = lines_of(poses("beginning.txt", "none"));
   ASSERT_GT(anew.size(), 1u);
-  const Eigen::Vector3d saved_m = before.back().p_m;
+  const Vector3d saved_m = before.back().p_m;
   EXPECT_LT((after.front().p_m - saved_m).norm(), 0.5 * (anew.front().p_m - saved_m).norm());
   std::ofstream(folder / "damaged") << "no state";
   poses("beginning.txt", "damaged");
@@ -200,7 +180,7 @@ TEST(OdometryExamples, TheRebootExampleStartsAtTheSavedPose) {
   errors << std::ifstream(folder / "errors.txt").rdbuf();
   EXPECT_NE(errors.str().find("starts without the saved state: insufficient_data"), std::string::npos);
   EXPECT_NE(errors.str().find("damaged was not changed"), std::string::npos);
-  EXPECT_EQ(text_of(folder / "damaged"), "no state");
+  EXPECT_EQ(test::read_file(folder / "damaged"), "no state");
   EXPECT_FALSE(fs::exists(folder / "parts.new"));
 }
 
@@ -212,10 +192,10 @@ std::string code_of(const std::string& text) {
 
 TEST(OdometryExamples, ReadmeShowsTheProgramThatIsTested) {
   const fs::path root = test::source_dir();
-  const std::string code = code_of(text_of(root / "examples/odometry/tumbling.cpp"));
+  const std::string code = code_of(test::read_file(root / "examples/odometry/tumbling.cpp"));
   ASSERT_GT(code.size(), 500u);
   EXPECT_LT(std::count(code.begin(), code.end(), '\n'), 36);
-  EXPECT_NE(text_of(root / "README.md").find("```cpp\n" + code + "```"), std::string::npos)
+  EXPECT_NE(test::read_file(root / "README.md").find("```cpp\n" + code + "```"), std::string::npos)
       << "README shows another tumbling.cpp";
 }
 

@@ -1,21 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "oracles/torque_free_rotation.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <stdexcept>
-#include <vector>
-
 #include "oracles/gaussian.hpp"
 #include "oracles/jacobi_elliptic.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::oracles {
 namespace {
-
-using Eigen::Quaterniond;
-using Eigen::Vector3d;
 
 TEST(JacobiElliptic, DegeneratesToTheCircularFunctions) {
   for (double u : {-7.0, -0.3, 0.0, 1e-9, 1.0, 25.0}) {

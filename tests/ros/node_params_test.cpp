@@ -3,12 +3,7 @@
 // are read or rejected by name.
 #include "tumble_ros/node_params.hpp"
 
-#include <gtest/gtest.h>
-#include <Eigen/Geometry>
-#include <string>
-#include <vector>
-
-#include <set>
+#include "tests/testing.hpp"
 
 namespace tumble {
 
@@ -40,13 +35,13 @@ TEST(NodeParams, AreThoseThatHaveAnEffect) {
 
 TEST(NodeParams, ReadsPosesBoxesAndSheets) {
   const std::vector<double> numbers = {1.0, 2.0, 3.0, 0.0, 0.0, 0.7071, 0.7071};
-  const Eigen::Isometry3d pose = ros::pose_of("T_base_imu", numbers);
-  EXPECT_EQ(pose.translation(), Eigen::Vector3d(1.0, 2.0, 3.0));
+  const Isometry3d pose = ros::pose_of("T_base_imu", numbers);
+  EXPECT_EQ(pose.translation(), Vector3d(1.0, 2.0, 3.0));
   EXPECT_TRUE((pose.linear() * Eigen::Vector3d::UnitX()).isApprox(Eigen::Vector3d::UnitY(), 1e-4));
   EXPECT_THROW(ros::pose_of("T_base_imu", std::vector<double>(6, 0.0)), InvalidParams);
   EXPECT_THROW(ros::pose_of("T_base_imu", std::vector<double>(7, 0.0)), InvalidParams) << "no rotation";
   EXPECT_TRUE(ros::box_of("own_body", {}).isEmpty());
-  EXPECT_EQ(ros::box_of("own_body", std::vector<double>{-1, -2, -3, 1, 2, 3}).max(), Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(ros::box_of("own_body", std::vector<double>{-1, -2, -3, 1, 2, 3}).max(), Vector3d(1, 2, 3));
   EXPECT_THROW(ros::box_of("own_body", std::vector<double>(5, 0.0)), InvalidParams);
   EXPECT_EQ(ros::imu_sheet("mti30").gyro_range_rad_s, sheets::mti30().gyro_range_rad_s);
   EXPECT_EQ(ros::imu_sheet("").rate_hz, ImuDataSheet{}.rate_hz);

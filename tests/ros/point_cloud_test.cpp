@@ -3,13 +3,8 @@
 // clouds are rejected.
 #include "tumble_ros/point_cloud.hpp"
 
-#include <gtest/gtest.h>
-#include <cstdint>
-
-#include <limits>
-#include <span>
-
 #include "cloud_message.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble {
 

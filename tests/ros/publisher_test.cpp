@@ -3,15 +3,8 @@
 // points with the room.
 #include "tumble_ros/publisher.hpp"
 
-#include <gtest/gtest.h>
-#include <Eigen/Cholesky>
-#include <algorithm>
-#include <cstring>
-
-#include <cmath>
-#include <random>
-
 #include "estimator/tests/thrown_body.hpp"
+#include "tests/testing.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble {
@@ -30,7 +23,7 @@ PoseState some_pose() {
   return out;
 }
 
-Eigen::Isometry3d some_base() {  // in IMU axes
+Isometry3d some_base() {  // in IMU axes
   return Eigen::Translation3d(0.3, -0.2, 0.6) * so3::exp({1.0, 0.3, -0.8});
 }
 
@@ -43,23 +36,23 @@ Eigen::Matrix<double, N, N> some_covariance(std::mt19937& random) {
 
 TEST(BaseOdometry, IsThePoseAndTwistOfTheBase) {
   const PoseState imu = some_pose();
-  const Eigen::Isometry3d T_IB = some_base();
+  const Isometry3d T_IB = some_base();
   AngularRateState rate;
   rate.w_WI_I_rad_s = {2.0, -1.0, 0.5};
   const ros::Odometry odometry = ros::base_odometry(imu, Eigen::Matrix3d::Zero(), rate, T_IB);
-  const Eigen::Isometry3d T_OI = Eigen::Translation3d(imu.position_W_m) * imu.orientation_W;
+  const Isometry3d T_OI = Eigen::Translation3d(imu.position_W_m) * imu.orientation_W;
   EXPECT_TRUE(odometry.T_OB.isApprox(T_OI * T_IB, 1e-12));
   EXPECT_EQ(odometry.stamp_ns, 7);
   // the velocity of the base comes from a difference over 20 us, which is exact to 1e-9; it is then turned into axes of
   // the base
   constexpr double kStep_s = 1e-5;
   const auto moved = [&](double t_s) {
-    return Eigen::Isometry3d(Eigen::Translation3d(imu.position_W_m + t_s * imu.velocity_W_m_s) *
-                             (imu.orientation_W * so3::exp(t_s * rate.w_WI_I_rad_s)) * T_IB);
+    return Isometry3d(Eigen::Translation3d(imu.position_W_m + t_s * imu.velocity_W_m_s) *
+                      (imu.orientation_W * so3::exp(t_s * rate.w_WI_I_rad_s)) * T_IB);
   };
-  const Eigen::Vector3d v_O = (moved(kStep_s).translation() - moved(-kStep_s).translation()) / (2.0 * kStep_s);
-  const Eigen::Matrix3d R_BO = odometry.T_OB.linear().transpose();
-  const Eigen::Vector3d w_B = so3::logarithm(Eigen::Quaterniond(R_BO * moved(kStep_s).linear())) / kStep_s;
+  const Vector3d v_O = (moved(kStep_s).translation() - moved(-kStep_s).translation()) / (2.0 * kStep_s);
+  const Matrix3d R_BO = odometry.T_OB.linear().transpose();
+  const Vector3d w_B = so3::logarithm(Quaterniond(R_BO * moved(kStep_s).linear())) / kStep_s;
   EXPECT_TRUE(odometry.twist_B.head<3>().isApprox(R_BO * v_O, 1e-8));
   EXPECT_TRUE(odometry.twist_B.tail<3>().isApprox(w_B, 1e-8));
   EXPECT_FALSE(odometry.twist_B.head<3>().isApprox(v_O, 0.1)) << "negative control: axes of the odometry frame";
@@ -70,12 +63,12 @@ TEST(BaseOdometry, IsThePoseAndTwistOfTheBase) {
 TEST(BaseOdometry, CovariancesAreThoseOfSampledErrors) {
   std::mt19937 random(1);
   PoseState imu = some_pose();
-  const Eigen::Isometry3d T_IB = some_base();
+  const Isometry3d T_IB = some_base();
   AngularRateState rate;
   rate.w_WI_I_rad_s = {2.0, -1.0, 0.5};
   imu.covariance = some_covariance<6>(random);
   rate.covariance_rad2_s2 = some_covariance<3>(random);
-  const Eigen::Matrix3d velocity_I = some_covariance<3>(random);
+  const Matrix3d velocity_I = some_covariance<3>(random);
   const ros::Odometry stated = ros::base_odometry(imu, velocity_I, rate, T_IB);
 
   std::normal_distribution<double> normal;
@@ -91,14 +84,14 @@ TEST(BaseOdometry, CovariancesAreThoseOfSampledErrors) {
     wrong.position_W_m += error.head<3>();
     wrong.orientation_W = so3::exp(error.tail<3>()) * imu.orientation_W;
     // the velocity's covariance is stated in IMU axes, so the sampled velocity turns with the attitude
-    const Eigen::Vector3d v_I = imu.orientation_W.conjugate() * imu.velocity_W_m_s + Eigen::Vector3d(draw(velocity_I));
+    const Vector3d v_I = imu.orientation_W.conjugate() * imu.velocity_W_m_s + Vector3d(draw(velocity_I));
     wrong.velocity_W_m_s = wrong.orientation_W * v_I;
     AngularRateState wrong_rate = rate;
     wrong_rate.w_WI_I_rad_s += draw(rate.covariance_rad2_s2);
     const ros::Odometry drawn = ros::base_odometry(wrong, velocity_I, wrong_rate, T_IB);
     Vector6 off;
     off << drawn.T_OB.translation() - stated.T_OB.translation(),
-        so3::logarithm(Eigen::Quaterniond(drawn.T_OB.linear() * stated.T_OB.linear().transpose()));
+        so3::logarithm(Quaterniond(drawn.T_OB.linear() * stated.T_OB.linear().transpose()));
     pose += off * off.transpose() / kDraws;
     const Vector6 twist_off = drawn.twist_B - stated.twist_B;
     twist += twist_off * twist_off.transpose() / kDraws;
@@ -117,20 +110,20 @@ TEST(Deskew, PointsOfASpinningBodyAreThoseOfAStandingOne) {
   ASSERT_NE(sweep, sweeps.end());
   std::vector<PoseState> trajectory;
   for (TimeNs time_ns = sweep->start_ns + 10'000'000; time_ns <= sweep->end_ns; time_ns += 10'000'000) {
-    const Eigen::Isometry3d T = body.T_WI(1e-9 * double(time_ns));
+    const Isometry3d T = body.T_WI(1e-9 * double(time_ns));
     PoseState& pose = trajectory.emplace_back();
     pose.time_ns = time_ns;
     pose.position_W_m = T.translation();
-    pose.orientation_W = Eigen::Quaterniond(T.linear());
+    pose.orientation_W = Quaterniond(T.linear());
   }
   std::vector<ros::DeskewedPoint> deskewed;
   ros::deskew(trajectory, Eigen::Isometry3d::Identity(), sweep->start_ns, sweep->points, deskewed);
   ASSERT_EQ(deskewed.size(), sweep->points.size());
-  const Eigen::Isometry3d T_end = body.T_WI(1e-9 * double(sweep->end_ns));
+  const Isometry3d T_end = body.T_WI(1e-9 * double(sweep->end_ns));
   double worst_m = 0.0, worst_raw_m = 0.0;
   for (std::size_t i = 0; i < deskewed.size(); ++i) {
-    const Eigen::Vector3d raw = sweep->points[i].position_L_m.cast<double>();
-    const Eigen::Vector3d truth =
+    const Vector3d raw = sweep->points[i].position_L_m.cast<double>();
+    const Vector3d truth =
         T_end.inverse() * (body.T_WI(1e-9 * double(sweep->start_ns + sweep->points[i].offset_ns)) * raw);
     worst_m = std::max(worst_m, (deskewed[i].position_L_m.cast<double>() - truth).norm());
     worst_raw_m = std::max(worst_raw_m, (raw - truth).norm());

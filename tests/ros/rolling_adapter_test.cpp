@@ -2,12 +2,10 @@
 // The test checks that RollingAdapter publishes the library's poses bit for bit.
 #include "tumble_ros/rolling_adapter.hpp"
 
-#include <gtest/gtest.h>
-#include <Eigen/Cholesky>
-
 #include "estimator/tests/live_readings.hpp"
 #include "estimator/tests/rolled_sphere.hpp"
 #include "recorded_outputs.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble {
 
@@ -15,14 +13,14 @@ namespace {
 
 TEST(RollingAdapter, PublishesTheLibrarysResultsBitForBit) {
   for (const std::size_t units : {std::size_t{1}, std::size_t{2}}) {
-    const std::vector<Eigen::Vector3d> positions(test::kPositions.begin(), test::kPositions.begin() + long(units));
+    const std::vector<Vector3d> positions(test::kPositions.begin(), test::kPositions.begin() + long(units));
     ros::RollingAdapter::Params params;
     params.odometry = test::params_of(positions);
     test::RecordedOutputs got;
     ros::RollingAdapter adapter(params, got);
     RollingOdometry odometry(params.odometry);
     std::vector<std::vector<ImuSample>> readings;
-    for (const Eigen::Vector3d& position : positions) readings.push_back(test::noisy(test::unit_at(position)));
+    for (const Vector3d& position : positions) readings.push_back(test::noisy(test::unit_at(position)));
     std::vector<RollingOdometry::Pose> poses, newest;
     for (std::size_t k = 0; k < readings[0].size(); ++k) {
       for (std::size_t unit = 0; unit < units; ++unit) {
@@ -64,10 +62,10 @@ TEST(RollingAdapter, TheTwistHasItsStatedAccuracy) {
       if (t_s < test::kRest_s + 0.3 || t_s > test::kRest_s + test::kRoll_s - 0.3) continue;
       const double speed_m_s =
           test::kRadius_m * (test::angle_rad(t_s + h_s) - test::angle_rad(t_s - h_s)) / (2.0 * h_s);
-      const Eigen::Vector3d v_B = Eigen::AngleAxisd(test::angle_rad(t_s), Eigen::Vector3d::UnitY()).inverse() *
-                                  Eigen::Vector3d(speed_m_s, 0.0, 0.0);
-      const Eigen::Vector3d error = odometry.twist_B.head<3>() - v_B;
-      const Eigen::Matrix3d covariance = odometry.twist_covariance.topLeftCorner<3, 3>();
+      const Vector3d v_B =
+          Eigen::AngleAxisd(test::angle_rad(t_s), Eigen::Vector3d::UnitY()).inverse() * Vector3d(speed_m_s, 0.0, 0.0);
+      const Vector3d error = odometry.twist_B.head<3>() - v_B;
+      const Matrix3d covariance = odometry.twist_covariance.topLeftCorner<3, 3>();
       EXPECT_GT(covariance.diagonal().minCoeff(), 0.0);
       EXPECT_GT(odometry.twist_covariance(5, 5), 0.0);
       nees += error.dot(covariance.ldlt().solve(error)) / 3.0;
@@ -84,7 +82,7 @@ TEST(RollingAdapter, ResetStartsAtTheGivenPose) {
   params.odometry = test::params_of({test::kPositions[0]});
   test::RecordedOutputs got;
   ros::RollingAdapter adapter(params, got);
-  adapter.reset(Eigen::Isometry3d(Eigen::Translation3d(5.0, 6.0, 0.1)));
+  adapter.reset(Isometry3d(Eigen::Translation3d(5.0, 6.0, 0.1)));
   for (const ImuSample& sample : test::noisy(test::unit_at(test::kPositions[0]))) adapter.on_imu(0, sample);
   ASSERT_FALSE(got.newest.empty());
   EXPECT_NEAR(got.newest.front().T_OB.translation().y(), 6.0, 1e-3);

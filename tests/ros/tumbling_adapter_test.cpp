@@ -4,19 +4,11 @@
 #include "tumble_ros/tumbling_adapter.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
-#include <gtest/gtest.h>
-#include <Eigen/Cholesky>
-
-#include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <span>
-#include <string>
-
 #include "cloud_message.hpp"
 #include "estimator/tests/live_readings.hpp"
 #include "estimator/tests/thrown_params.hpp"
 #include "recorded_outputs.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble {
 
@@ -103,12 +95,12 @@ TEST(TumblingAdapter, PublishesTheLibrarysResultsBitForBit) {
   ASSERT_EQ(got.sweeps.size(), sweeps.size());
   for (std::size_t k = 0; k < sweeps.size(); ++k) {
     EXPECT_EQ(got.sweeps[k].stamp_ns, sweeps[k].pose.time_ns);
-    EXPECT_TRUE(same_bits(Eigen::Vector3d(got.sweeps[k].T_OB.translation()), sweeps[k].pose.position_W_m));
+    EXPECT_TRUE(same_bits(Vector3d(got.sweeps[k].T_OB.translation()), sweeps[k].pose.position_W_m));
     EXPECT_TRUE(same_bits(got.sweeps[k].pose_covariance, sweeps[k].pose.covariance));
   }
   ASSERT_EQ(got.newest.size(), newest.size());
   for (std::size_t k = 0; k < newest.size(); ++k)
-    EXPECT_TRUE(same_bits(Eigen::Vector3d(got.newest[k].T_OB.translation()), newest[k].position_W_m));
+    EXPECT_TRUE(same_bits(Vector3d(got.newest[k].T_OB.translation()), newest[k].position_W_m));
   ASSERT_EQ(got.rates.size(), rates.size());
   for (std::size_t k = 0; k < rates.size(); ++k) {
     EXPECT_EQ(got.rates[k].rate.time_ns, rates[k].time_ns);
@@ -156,9 +148,9 @@ TEST(TumblingAdapter, TheTwistHasItsStatedAccuracy) {
   double nees = 0.0;
   for (const ros::Odometry& odometry : got.sweeps) {
     const double t_s = 1e-9 * double(odometry.stamp_ns), h_s = 1e-4;
-    const Eigen::Vector3d v_W = (body.T_WI(t_s + h_s).translation() - body.T_WI(t_s - h_s).translation()) / (2.0 * h_s);
-    const Eigen::Vector3d error = odometry.twist_B.head<3>() - body.T_WI(t_s).linear().transpose() * v_W;
-    const Eigen::Matrix3d covariance = odometry.twist_covariance.topLeftCorner<3, 3>();
+    const Vector3d v_W = (body.T_WI(t_s + h_s).translation() - body.T_WI(t_s - h_s).translation()) / (2.0 * h_s);
+    const Vector3d error = odometry.twist_B.head<3>() - body.T_WI(t_s).linear().transpose() * v_W;
+    const Matrix3d covariance = odometry.twist_covariance.topLeftCorner<3, 3>();
     EXPECT_GT(covariance.diagonal().minCoeff(), 0.0);
     nees += error.dot(covariance.ldlt().solve(error)) / 3.0 / double(got.sweeps.size());
   }
@@ -180,7 +172,7 @@ TEST(TumblingAdapter, ALevelBaseStartsAtTheOrigin) {
   EXPECT_TRUE(got.sweeps.front().T_OB.linear().isIdentity(5e-3));
   // later poses of the base follow from the IMU's known motion, turned by the mounting
   const ros::Odometry& last = got.sweeps.back();
-  const Eigen::Isometry3d truth = params.T_BI * body.T_WI(1e-9 * double(last.stamp_ns)) * params.T_BI.inverse();
+  const Isometry3d truth = params.T_BI * body.T_WI(1e-9 * double(last.stamp_ns)) * params.T_BI.inverse();
   EXPECT_LT((last.T_OB.translation() - truth.translation()).norm(), 0.1);
   EXPECT_LT((last.T_OB.linear() - truth.linear()).norm(), 0.05);
 }
@@ -190,7 +182,7 @@ TEST(TumblingAdapter, ContinuesAfterTheClockStepsBack) {
   RecordedOutputs got;
   TumblingAdapter adapter(adapter_params(body), got);
   play_to(adapter, body, kEpoch_ns);
-  const Eigen::Vector3d last = got.sweeps.back().T_OB.translation();
+  const Vector3d last = got.sweeps.back().T_OB.translation();
   play_to(adapter, body, 0, 300'000'000);  // the bag is played again, with another clock; the run restarts after 0.2 s
   EXPECT_EQ(adapter.odometry().restart_count(), 1u);
   const auto again = std::find_if(got.sweeps.begin(), got.sweeps.end(),
@@ -206,10 +198,9 @@ TEST(TumblingAdapter, ResetStartsAtTheGivenPose) {
   const ThrownBody body;
   RecordedOutputs got;
   TumblingAdapter::Params params = adapter_params(body);
-  params.T_BI = params.T_BL = Eigen::Isometry3d(Eigen::Translation3d(0.0, 0.0, 0.3));
+  params.T_BI = params.T_BL = Isometry3d(Eigen::Translation3d(0.0, 0.0, 0.3));
   TumblingAdapter adapter(params, got);
-  const Eigen::Isometry3d T_OB =
-      Eigen::Translation3d(10.0, 20.0, 1.0) * Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitZ());
+  const Isometry3d T_OB = Eigen::Translation3d(10.0, 20.0, 1.0) * Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitZ());
   EXPECT_TRUE(adapter.reset(ros::StartPose{T_OB}).ok());
   play_to(adapter, body, 0);
   ASSERT_FALSE(got.sweeps.empty());
@@ -221,8 +212,7 @@ TEST(TumblingAdapter, LocalisesInASavedMap) {
   const ThrownBody body;
   RecordedOutputs first, second;
   TumblingAdapter mapped(adapter_params(body), first);
-  const Eigen::Isometry3d T_OB =
-      Eigen::Translation3d(3.0, -2.0, 0.0) * Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitZ());
+  const Isometry3d T_OB = Eigen::Translation3d(3.0, -2.0, 0.0) * Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitZ());
   EXPECT_TRUE(mapped.reset(ros::StartPose{T_OB}).ok());
   play_to(mapped, body, 0);
   const std::string bytes = mapped.map_file("room.tumblemap");
@@ -232,7 +222,7 @@ TEST(TumblingAdapter, LocalisesInASavedMap) {
   EXPECT_FALSE(adapter.load_map(std::as_bytes(std::span("ply"))).ok());
   ASSERT_TRUE(adapter.load_map(std::as_bytes(std::span(bytes))).ok());
   EXPECT_FALSE(adapter.odometry().mapper().check_localised().ok());
-  const Eigen::Isometry3d near = Eigen::Translation3d(0.3, 0.2, 0.0) * T_OB;
+  const Isometry3d near = Eigen::Translation3d(0.3, 0.2, 0.0) * T_OB;
   EXPECT_TRUE(adapter.reset(ros::StartPose{near, 0.3, 0.1}).ok());
   play_to(adapter, body, 0);
   EXPECT_TRUE(adapter.odometry().mapper().check_localised().ok());
@@ -243,19 +233,18 @@ TEST(TumblingAdapter, LocalisesInASavedMap) {
 TEST(TumblingAdapter, PublishesThePoseInTheFrameOfPositions) {
   const ThrownBody body;
   TumblingAdapter::Params params = adapter_params(body);
-  params.T_BI = params.T_BL = Eigen::Isometry3d(Eigen::Translation3d(0.1, 0.0, 0.3));
+  params.T_BI = params.T_BL = Isometry3d(Eigen::Translation3d(0.1, 0.0, 0.3));
   params.position_arm_B_m = {0.0, 0.2, 0.5};
   RecordedOutputs got;
   TumblingAdapter adapter(params, got);
-  const Eigen::Isometry3d T_PW =
-      Eigen::Translation3d(10.0, 20.0, 1.0) * Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitZ());
+  const Isometry3d T_PW = Eigen::Translation3d(10.0, 20.0, 1.0) * Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitZ());
   play(
       body, 0,
       [&](const ImuSample& sample) {
         adapter.on_imu(sample);
         if (sample.time_ns < 100'000'000) return;
-        const Eigen::Isometry3d T_WB = body.T_WI(1e-9 * double(sample.time_ns)) * params.T_BI.inverse();
-        const Eigen::Vector3d antenna_m = T_PW * T_WB * params.position_arm_B_m;
+        const Isometry3d T_WB = body.T_WI(1e-9 * double(sample.time_ns)) * params.T_BI.inverse();
+        const Vector3d antenna_m = T_PW * T_WB * params.position_arm_B_m;
         EXPECT_TRUE(adapter.on_position(sample.time_ns, antenna_m, 1e-4 * Eigen::Matrix3d::Identity()).ok());
       },
       [&](TimeNs start_ns, const std::vector<LidarPoint>& points) {
@@ -263,7 +252,7 @@ TEST(TumblingAdapter, PublishesThePoseInTheFrameOfPositions) {
       });
   ASSERT_FALSE(got.in_position_frame.empty());
   const ros::Odometry& last = got.in_position_frame.back();
-  const Eigen::Isometry3d T_PB = T_PW * body.T_WI(1e-9 * double(last.stamp_ns)) * params.T_BI.inverse();
+  const Isometry3d T_PB = T_PW * body.T_WI(1e-9 * double(last.stamp_ns)) * params.T_BI.inverse();
   EXPECT_LT((last.T_OB.translation() - T_PB.translation()).norm(), 0.1);
   EXPECT_LT((last.T_OB.linear() - T_PB.linear()).norm(), 0.1);
 }

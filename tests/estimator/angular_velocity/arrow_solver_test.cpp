@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/angular_velocity/detail/arrow_solver.hpp"
 
-#include <gtest/gtest.h>
-
-#include <Eigen/Dense>
-#include <limits>
-#include <vector>
-
 #include "oracles/gaussian.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::arrow {
 namespace {

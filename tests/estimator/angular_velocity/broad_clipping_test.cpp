@@ -2,16 +2,8 @@
 // A real recording without tumbles must not become worse: BROAD trials (a hand-moved sensor) if available, and a
 // synthetic replacement, with the gyro clipped at a third of its peak. For a hand-held sensor, only the bounds and the
 // smoothness of the motion recover clipped rates.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <string>
-#include <tuple>
-#include <vector>
-
 #include "stand_ins/broad_trial.hpp"
+#include "tests/testing.hpp"
 #include "tumble/angular_velocity/detail/rate_smoother.hpp"
 #include "tumble/angular_velocity/detail/saave.hpp"
 

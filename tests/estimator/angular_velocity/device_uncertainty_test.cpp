@@ -3,15 +3,8 @@
 // device whose errors are not corrected.
 #include "tumble/angular_velocity/detail/device_uncertainty.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <memory>
-#include <optional>
-#include <vector>
-
 #include "estimator/angular_velocity/tumble_recording.hpp"
+#include "tests/testing.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
 
 namespace tumble {

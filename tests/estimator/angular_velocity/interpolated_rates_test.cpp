@@ -2,20 +2,13 @@
 // The gyro is slower than its log, so its readings are means over its own period and are old when they are logged.
 #include "tumble/angular_velocity/detail/interpolated_rates.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstddef>
-#include <vector>
-
+#include "tests/testing.hpp"
 #include "tumble/angular_velocity/detail/rate_smoother.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
 #include "tumble_recording.hpp"
 
 namespace tumble {
 namespace {
-
-using Eigen::Vector3d;
 
 constexpr double kPeriod_s = 0.01;
 

@@ -2,16 +2,10 @@
 // Tests readings that are unsaturated, but whose windows may have been partly saturated.
 #include "estimator/src/angular_velocity/near_saturation_limits.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
+#include "tests/testing.hpp"
 
 namespace tumble {
 namespace {
-
-using Eigen::Vector3d;
 
 constexpr double kRail_rad_s = 7.3, kWindow_s = 0.01, kTolerance_rad_s = 0.01;
 

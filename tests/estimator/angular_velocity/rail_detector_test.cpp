@@ -1,20 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/angular_velocity/detail/saturation_limit_detector.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <optional>
-#include <vector>
-
 #include "oracles/gaussian.hpp"
+#include "tests/testing.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble {
 namespace {
-
-using Eigen::Vector3d;
 
 // x swings slowly beyond the saturation level, y stays below it, z is stationary; noise of an MTi-30
 std::vector<ImuSample> swinging_run(double amplitude, double rail) {

@@ -1,21 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests the shared judgement of saturation levels: accelerometers with tilted elements, other IMUs on the body, and
 // published methods with axis-aligned levels.
-#include <gtest/gtest.h>
-
-#include <Eigen/LU>
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <numeric>
-#include <type_traits>
-#include <vector>
-
 #include "estimator/angular_velocity/drawn_elements.hpp"
 #include "estimator/angular_velocity/streamed_rates.hpp"
 #include "estimator/angular_velocity/tumble_recording.hpp"
 #include "oracles/gaussian.hpp"
 #include "scenarios/baselines/angular_velocity/clipped_baseline.hpp"
+#include "tests/testing.hpp"
 #include "tumble/angular_velocity/detail/auxiliary_imu.hpp"
 #include "tumble/angular_velocity/detail/clipping_finder.hpp"
 #include "tumble/angular_velocity/detail/rate_smoother.hpp"
@@ -24,9 +15,6 @@
 
 namespace tumble {
 namespace {
-
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
 
 constexpr double kRail_m_s2 = 19.6;  // 2 g, as on RepoIMU's pendulum: the centripetal force alone exceeds it
 

@@ -1,17 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests saturation levels of real gyros (RepoIMU), and no levels where a real gyro does not clip (BROAD): published
 // files if available, synthetic replacements otherwise.
-#include <gtest/gtest.h>
-
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <string>
-#include <vector>
-
 #include "stand_ins/broad_trial.hpp"
 #include "stand_ins/stand_ins.hpp"
+#include "tests/testing.hpp"
 #include "tumble/angular_velocity/detail/saturation_plane_finder.hpp"
 
 namespace tumble {

@@ -1,21 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/angular_velocity/detail/saturation_plane_finder.hpp"
 
-#include <gtest/gtest.h>
-
-#include <Eigen/LU>
-#include <cmath>
-#include <numbers>
-
 #include "estimator/angular_velocity/drawn_elements.hpp"
 #include "estimator/angular_velocity/tumble_recording.hpp"
 #include "oracles/gaussian.hpp"
+#include "tests/testing.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble {
 namespace {
-
-using Eigen::Vector3d;
 
 std::vector<ImuSample> samples_of(const std::vector<Vector3d>& rates) {
   std::vector<ImuSample> out(rates.size());

@@ -1,23 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests the smoother on gyros whose elements clip along their own axes, without flags and without a stated range.
-#include <gtest/gtest.h>
-
-#include <Eigen/LU>
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "estimator/angular_velocity/drawn_elements.hpp"
 #include "estimator/angular_velocity/quantile.hpp"
 #include "estimator/angular_velocity/tumble_recording.hpp"
 #include "estimator/src/angular_velocity/possible_saturation.hpp"
+#include "tests/testing.hpp"
 #include "tumble/angular_velocity/detail/rate_model.hpp"
 #include "tumble/angular_velocity/detail/rate_smoother.hpp"
 
 namespace tumble {
 namespace {
 
-using Eigen::Vector3d;
 using testing::quantile;
 
 Pool smoothed(double tilt, const AngularRateSmoother::Params& params = with_lever_arm<AngularRateSmoother::Params>(),

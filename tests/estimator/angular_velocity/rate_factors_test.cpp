@@ -1,19 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/angular_velocity/detail/rate_factors.hpp"
 
-#include <gtest/gtest.h>
-
-#include <Eigen/Geometry>
-#include <functional>
-#include <vector>
-
 #include "oracles/gaussian.hpp"
 #include "oracles/torque_free_rotation.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble {
 namespace {
 
-using Eigen::Vector3d;
 using Derivative = Eigen::Matrix<double, 3, 6 + BodyImuConstants::kSize>;
 using Factor = std::function<AngularRateFactor(const AngularRateKnot&, const BodyImuConstants&)>;
 

@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests bad and unusual input of the batch smoother, which returns a status or a finite and bounded answer.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "estimator/angular_velocity/tumble_recording.hpp"
+#include "tests/testing.hpp"
 #include "tumble/angular_velocity/detail/rate_smoother.hpp"
 
 namespace tumble {
 namespace {
-
-using Eigen::Vector3d;
 
 TumbleRecording short_tumble() {
   TumbleOptions options;

@@ -2,22 +2,13 @@
 // Tests accuracy, covariance and symmetry of the batch smoother on synthetic tumbles.
 #include "tumble/angular_velocity/detail/rate_smoother.hpp"
 
-#include <gtest/gtest.h>
-
-#include <Eigen/Eigenvalues>
-#include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "estimator/angular_velocity/tumble_recording.hpp"
 #include "oracles/gaussian.hpp"
+#include "tests/testing.hpp"
 #include "tumble/angular_velocity/detail/saave.hpp"
 
 namespace tumble {
 namespace {
-
-using Eigen::Vector3d;
 
 constexpr double kAtRail = 10.49;
 

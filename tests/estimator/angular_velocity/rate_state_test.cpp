@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/angular_velocity/types.hpp"
 
-#include <gtest/gtest.h>
+#include "tests/testing.hpp"
 
 namespace tumble {
 namespace {

@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests a stream whose accelerometer is later than its gyro: the delay is estimated from impacts against closed forms
 // and the batch, applied, saved, and not found where there is none.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <memory>
-#include <vector>
-
 #include "estimator/angular_velocity/streamed_rates.hpp"
 #include "estimator/angular_velocity/tumble_recording.hpp"
+#include "tests/testing.hpp"
 #include "tumble/angular_velocity/detail/device_uncertainty.hpp"
 #include "tumble/angular_velocity/detail/impact_sums.hpp"
 #include "tumble/angular_velocity/detail/rate_smoother.hpp"
@@ -17,8 +11,6 @@
 
 namespace tumble {
 namespace {
-
-using Eigen::Vector3d;
 
 constexpr double kStrokePeriod_s = 0.01;
 

@@ -1,27 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests the stream on gyros whose elements clip along their own axes, without flags and without a stated range.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <memory>
-#include <optional>
-#include <utility>
-#include <vector>
-
 #include "estimator/angular_velocity/drawn_elements.hpp"
 #include "estimator/angular_velocity/quantile.hpp"
 #include "estimator/angular_velocity/streamed_rates.hpp"
 #include "estimator/angular_velocity/tumble_recording.hpp"
 #include "oracles/gaussian.hpp"
+#include "tests/testing.hpp"
 #include "tumble/angular_velocity/detail/rate_smoother.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
 
 namespace tumble {
 namespace {
 
-using Eigen::Vector3d;
 using testing::quantile;
 
 Pool streamed(double tilt, const AngularRateStream::Params& params = with_lever_arm<AngularRateStream::Params>()) {

@@ -1,23 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/angular_velocity/rate_stream.hpp"
 
-#include <gtest/gtest.h>
-#include <algorithm>
-
-#include <cmath>
 #include <new>
-#include <vector>
 
 #include "estimator/angular_velocity/streamed_rates.hpp"
 #include "estimator/angular_velocity/tumble_recording.hpp"
 #include "tests/allocation_counter.hpp"
+#include "tests/testing.hpp"
 #include "tumble/angular_velocity/detail/rate_model.hpp"
 #include "tumble/angular_velocity/detail/rate_smoother.hpp"
 
 namespace tumble {
 namespace {
-
-using Eigen::Vector3d;
 
 TumbleOptions options_of(std::uint64_t seed) {
   TumbleOptions options;

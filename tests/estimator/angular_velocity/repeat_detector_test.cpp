@@ -2,10 +2,7 @@
 // Tests the detection, sample by sample, of a log that is faster than its sensor.
 #include "tumble/angular_velocity/detail/repeat_detector.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
+#include "tests/testing.hpp"
 
 namespace tumble {
 namespace {

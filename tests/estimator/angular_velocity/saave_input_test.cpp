@@ -1,19 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests bad input and splitting of the recursion.
-#include <gtest/gtest.h>
-
-#include <Eigen/Geometry>
-
-#include <cmath>
-#include <string>
-#include <vector>
-
+#include "tests/testing.hpp"
 #include "tumble/angular_velocity/detail/saave.hpp"
 
 namespace tumble {
 namespace {
-
-using Eigen::Vector3d;
 
 SaturationAwareRateEstimator::Params stated_device() {
   SaturationAwareRateEstimator::Params params;

@@ -2,19 +2,12 @@
 // Tests the published results and the published edge cases.
 #include "tumble/angular_velocity/detail/saave.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "oracles/gaussian.hpp"
 #include "oracles/torque_free_rotation.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble {
 namespace {
-
-using Eigen::Vector3d;
 
 constexpr TimeNs kPeriod = 10'000'000;
 constexpr double kRail = 10.5;

@@ -1,21 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests what a run can determine about a gyro's scale, and that the smoother claims and reaches no more and no less.
-#include <gtest/gtest.h>
-
-#include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "estimator/angular_velocity/tumble_recording.hpp"
 #include "estimator/src/angular_velocity/rate_descent.hpp"
+#include "tests/testing.hpp"
 #include "tumble/angular_velocity/detail/rate_model.hpp"
 
 namespace tumble {
 namespace {
-
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
 
 struct ScaleInformation {
   double of_model = 0.0;  ///< with all other unknowns at their optimum

@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/angular_velocity/detail/sensor_errors.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <utility>
-#include <vector>
-
 #include "estimator/src/angular_velocity/sample_hold.hpp"
 #include "estimator/src/angular_velocity/triad_delay.hpp"
 #include "oracles/gaussian.hpp"
+#include "tests/testing.hpp"
 #include "tumble/angular_velocity/detail/rate_model.hpp"
 #include "tumble/angular_velocity/detail/rate_smoother.hpp"
 #include "tumble/common/types.hpp"
@@ -18,8 +12,6 @@
 
 namespace tumble {
 namespace {
-
-using Eigen::Vector3d;
 
 // Returns a tumble whose accelerometer is `samples` late.
 TumbleRecording late_tumble(std::uint64_t seed, std::size_t samples) {

@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <cstddef>
-#include <optional>
-#include <vector>
-
+#include "tests/testing.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
 
 namespace tumble {

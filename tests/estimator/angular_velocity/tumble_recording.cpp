@@ -1,21 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "estimator/angular_velocity/tumble_recording.hpp"
 
-#include <Eigen/Geometry>
-#include <Eigen/LU>
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-
 #include "oracles/gaussian.hpp"
 #include "oracles/torque_free_rotation.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble {
 
 namespace {
-
-using Eigen::Quaterniond;
-using Eigen::Vector3d;
 
 constexpr double kStep_s = 5e-4;
 constexpr double kImpactTime = 0.02;

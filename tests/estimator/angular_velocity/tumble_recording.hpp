@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <vector>
-
+#include "tests/testing.hpp"
 #include "tumble/angular_velocity/types.hpp"
 #include "tumble/common/types.hpp"
 

@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "estimator/src/angular_velocity/wnoj_smoother.hpp"
 
-#include <gtest/gtest.h>
-
-#include <Eigen/Dense>
-#include <cmath>
-#include <limits>
-#include <vector>
-
 #include "oracles/gaussian.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble {
 namespace {
 
-using Eigen::Vector3d;
 using Measurement = WnojSmoother::Measurement;
 using Smoothed = WnojSmoother::Smoothed;
 

@@ -1,18 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <cstdio>
-#include <numbers>
-#include <string>
-#include <vector>
-
 #include "scenarios/baselines/attitude/autogain.hpp"
 #include "scenarios/baselines/attitude/complementary.hpp"
 #include "scenarios/baselines/attitude/madgwick.hpp"
 #include "stand_ins/broad_trial.hpp"
 #include "stand_ins/stand_ins.hpp"
+#include "tests/testing.hpp"
 #include "tumble/attitude/detail/imu_plausibility.hpp"
 #include "tumble/attitude/detail/tumble_attitude.hpp"
 #include "tumble/attitude/detail/vqf.hpp"

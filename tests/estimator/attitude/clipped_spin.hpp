@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <vector>
-
 #include "estimator/attitude/filter_contract.hpp"
+#include "tests/testing.hpp"
 #include "tumble/attitude/detail/hand_held_smoother.hpp"
 
 namespace tumble::testing {

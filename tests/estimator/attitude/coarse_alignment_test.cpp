@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/attitude/detail/coarse_alignment.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-
+#include "tests/testing.hpp"
 #include "tumble/attitude/detail/tumble_attitude.hpp"
 #include "tumble/common/types.hpp"
 

@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <Eigen/Geometry>
-#include <cmath>
-#include <limits>
-#include <vector>
-
+#include "tests/testing.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/common/types.hpp"
 

@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstddef>
-#include <limits>
-#include <vector>
-
 #include "estimator/angular_velocity/quantile.hpp"
 #include "estimator/attitude/hand_held_motion.hpp"
+#include "tests/testing.hpp"
 
 /// hand_held_errors.hpp computes errors of the rates of a hand-held body against its motion in closed form.
 namespace tumble::testing {

@@ -3,17 +3,12 @@
 // curvature is that of the squared residuals.
 #include "tumble/attitude/detail/hand_held_model.hpp"
 
-#include <gtest/gtest.h>
-
-#include <functional>
-
 #include "oracles/gaussian.hpp"
+#include "tests/testing.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble::hand_held {
 namespace {
-
-using Eigen::Vector3d;
 
 constexpr double kStep = 1e-5;
 

@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Geometry>
-#include <cmath>
-#include <cstdint>
-#include <numbers>
-#include <vector>
-
+#include "tests/testing.hpp"
 #include "tumble/attitude/detail/hand_held_smoother.hpp"
 #include "tumble/common/types.hpp"
 

@@ -1,21 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests the preparation of readings for the hand-held smoother: triads slower than the log, partly saturated windows,
 // and the jerk in the readings.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <vector>
-
 #include "estimator/attitude/hand_held_motion.hpp"
 #include "estimator/src/attitude/hand_held_problem.hpp"
 #include "oracles/gaussian.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble {
 namespace {
 
-using Eigen::Vector3d;
 using testing::HandHeldMotion;
 
 constexpr double kLog_s = 0.008, kGyro_s = 0.0201, kAccel_s = 0.0395, kRail_rad_s = 7.3;

@@ -2,21 +2,10 @@
 // Tests the hand-held smoother on real recordings if available, and on synthetic replacements: BROAD with its gyro
 // clipped at a third of its peak, and the twirled wand of RepoIMU, whose gyro clips at a tilted level with optical
 // truth.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <limits>
-#include <map>
-#include <sstream>
-
 #include "estimator/attitude/hand_held_errors.hpp"
 #include "stand_ins/broad_trial.hpp"
 #include "stand_ins/stand_ins.hpp"
+#include "tests/testing.hpp"
 #include "tumble/attitude/detail/hand_held_smoother.hpp"
 #include "tumble/common/types.hpp"
 

@@ -1,17 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests what the hand-held stream states if no data determine the rate: an accelerometer without information while the
 // gyro clips, in closed form.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <numbers>
-#include <optional>
-#include <span>
-#include <vector>
-
 #include "estimator/attitude/clipped_spin.hpp"
+#include "tests/testing.hpp"
 #include "tumble/attitude/detail/hand_held_stream.hpp"
 
 namespace tumble {

@@ -2,17 +2,10 @@
 // Tests the hand-held smoother against motions in closed form.
 #include "tumble/attitude/detail/hand_held_smoother.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <limits>
-#include <numeric>
-
 #include "estimator/attitude/hand_held_errors.hpp"
 #include "estimator/attitude/hand_held_motion.hpp"
 #include "oracles/gaussian.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble {
 namespace {

@@ -2,16 +2,9 @@
 // Tests the hand-held streams against motions in closed form and against the batch.
 #include "tumble/attitude/detail/hand_held_stream.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <limits>
-#include <optional>
-
 #include "estimator/attitude/hand_held_errors.hpp"
 #include "estimator/attitude/hand_held_motion.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble {
 namespace {

@@ -1,14 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <optional>
-#include <random>
-
 #include "estimator/attitude/filter_contract.hpp"
+#include "tests/testing.hpp"
 #include "tumble/attitude/detail/imu_merge.hpp"
 #include "tumble/common/types.hpp"
 

@@ -1,22 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests several merged IMUs whose gyros clip below the stated range, along tilted elements, and with device flags.
-#include <gtest/gtest.h>
-
-#include <Eigen/LU>
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <optional>
-
 #include "estimator/attitude/filter_contract.hpp"
+#include "tests/testing.hpp"
 #include "tumble/attitude/detail/imu_merge.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble {
 namespace {
-
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
 
 using testing::kGravity_m_s2;
 

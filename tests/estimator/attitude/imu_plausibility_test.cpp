@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/attitude/detail/imu_plausibility.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <numbers>
-
 #include "estimator/attitude/filter_contract.hpp"
 #include "estimator/rolling/rolling_truth.hpp"
 #include "oracles/gaussian.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble {
 namespace {

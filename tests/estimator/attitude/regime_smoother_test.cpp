@@ -3,12 +3,8 @@
 // in free flight does not.
 #include "tumble/attitude/detail/regime_smoother.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <vector>
-
 #include "estimator/attitude/hand_held_motion.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble {
 namespace {

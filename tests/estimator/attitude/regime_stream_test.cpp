@@ -2,16 +2,10 @@
 // Tests the stream that distinguishes flight, contact and hand-held motion.
 #include "tumble/attitude/detail/regime_stream.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <optional>
-
 #include "estimator/angular_velocity/tumble_recording.hpp"
 #include "estimator/attitude/hand_held_errors.hpp"
 #include "estimator/attitude/hand_held_motion.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble {
 namespace {

@@ -1,21 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests the motion type on motion in closed form: the body spins about its own axis; the force is that of a hand, of
 // flight or of the ground, in the order that the test names.
-#include <gtest/gtest.h>
-#include <Eigen/Geometry>
-
-#include <algorithm>
-#include <cmath>
-#include <random>
-#include <vector>
-
 #include "tumble/attitude/detail/regimes.hpp"
+
+#include "tests/testing.hpp"
 
 namespace tumble {
 namespace {
-
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
 
 const Vector3d kLever_m(-0.02, -0.085, 0.055);
 const Matrix3d kLeverCovariance_m2 = 1e-6 * Matrix3d::Identity();

@@ -1,16 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/attitude/detail/rest_gravity.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <string>
-#include <utility>
-
 #include "oracles/gaussian.hpp"
+#include "tests/testing.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble {

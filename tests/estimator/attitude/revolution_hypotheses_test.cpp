@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests whole turns that a clipped segment may hide: an accelerometer without information while the gyro clips, in
 // closed form.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <numbers>
-#include <vector>
-
+#include "estimator/src/attitude/revolution_hypotheses.hpp"
 #include "estimator/attitude/clipped_spin.hpp"
 #include "estimator/src/attitude/hand_held_problem.hpp"
-#include "estimator/src/attitude/revolution_hypotheses.hpp"
+#include "tests/testing.hpp"
 #include "tumble/attitude/detail/hand_held_smoother.hpp"
 
 namespace tumble {

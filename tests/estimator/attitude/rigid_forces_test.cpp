@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "estimator/src/attitude/rigid_forces.hpp"
 
-#include <gtest/gtest.h>
-
-#include <array>
+#include "tests/testing.hpp"
 
 namespace tumble {
 namespace {

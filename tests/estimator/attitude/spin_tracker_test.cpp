@@ -2,13 +2,7 @@
 // Tests the rate of a steady spin beyond the saturation limit.
 #include "tumble/attitude/detail/spin_tracker.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <random>
-#include <vector>
+#include "tests/testing.hpp"
 
 namespace tumble {
 namespace {

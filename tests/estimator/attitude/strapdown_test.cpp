@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/attitude/detail/strapdown.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <numbers>
-
 #include "estimator/attitude/filter_contract.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble {
 namespace {

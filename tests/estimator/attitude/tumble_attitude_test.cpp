@@ -1,18 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/attitude/detail/tumble_attitude.hpp"
 
-#include <gtest/gtest.h>
-
-#include <Eigen/Eigenvalues>
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
-#include <random>
-#include <type_traits>
-#include <vector>
-
 #include "estimator/attitude/filter_contract.hpp"
+#include "tests/testing.hpp"
 #include "tumble/attitude/detail/vqf.hpp"
 
 namespace tumble {

@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/attitude/detail/multi_imu_sign_check.hpp"
 
-#include <gtest/gtest.h>
-
-#include <Eigen/Geometry>
-#include <cmath>
-#include <functional>
-#include <random>
+#include "tests/testing.hpp"
 
 // tests which axis labels the force differences of a rigid body support
 namespace tumble {

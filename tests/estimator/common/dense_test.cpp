@@ -2,11 +2,7 @@
 // Compares with Eigen's decompositions of fixed size: factorisations bit for bit, eigenvalues up to rounding.
 #include "estimator/src/common/dense.hpp"
 
-#include <gtest/gtest.h>
-
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <cmath>
+#include "tests/testing.hpp"
 
 namespace tumble::dense {
 

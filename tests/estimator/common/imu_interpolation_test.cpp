@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/common/detail/imu_interpolation.hpp"
 
-#include <gtest/gtest.h>
-
-#include <vector>
+#include "tests/testing.hpp"
 
 namespace tumble {
 namespace {
-
-using Eigen::Vector3d;
 
 /// Returns rates and forces that grow linearly with time, by whole numbers per millisecond, so that sums of few are
 /// exact.

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/common/parameters.hpp"
 
-#include <gtest/gtest.h>
-
-#include <memory>
-#include <type_traits>
-#include <utility>
+#include "tests/testing.hpp"
 
 namespace tumble {
 namespace {

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test compares the pose of an attached frame with a closed form.
-#include <gtest/gtest.h>
-
-#include <numbers>
-
+#include "tests/testing.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble {
 namespace {
 
-using Eigen::Vector3d;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 TEST(PoseState, OfAFrameWithALeverArmIsTheClosedForm) {

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/common/detail/scalar_update.hpp"
 
-#include <gtest/gtest.h>
-
-#include <Eigen/LU>
+#include "tests/testing.hpp"
 
 namespace tumble {
 namespace {

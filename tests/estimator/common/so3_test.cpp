@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/common/types.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
-#include <vector>
+#include "tests/testing.hpp"
 
 namespace tumble::so3 {
 namespace {
 
-using Eigen::Matrix3d;
-using Eigen::Quaterniond;
-using Eigen::Vector3d;
 using Wide = Eigen::Matrix<long double, 3, 3>;
 
 constexpr double kPi = std::numbers::pi;

@@ -1,14 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/common/status.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <set>
-#include <string>
-#include <vector>
-
+#include "tests/testing.hpp"
 #include "tumble/common/detail/sample_check.hpp"
 #include "tumble/common/types.hpp"
 

@@ -2,9 +2,7 @@
 // Compares the distance of a calibration from the stated one with a closed form.
 #include "tumble/mapping/types.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
+#include "tests/testing.hpp"
 
 namespace tumble {
 namespace {

@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <Eigen/Cholesky>
-#include <cmath>
-#include <span>
-
 #include "oracles/gaussian.hpp"
 #include "tests/estimator/mapping/synthetic_room.hpp"
+#include "tests/testing.hpp"
 #include "tumble/common/types.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 

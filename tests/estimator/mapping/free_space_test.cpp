@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests the free space that a sweep observed, and the map without the removed points.
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "estimator/src/mapping/sight_grid.hpp"
 #include "tests/estimator/mapping/room_rig.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble {
 namespace {

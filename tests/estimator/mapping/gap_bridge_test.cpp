@@ -2,15 +2,9 @@
 // Tests a gap of the IMU data: the interpolated rate and its uncertainty; docs/maths/mapping.md (R44), (R43).
 #include "estimator/src/mapping/gap_bridge.hpp"
 
-#include <gtest/gtest.h>
-
-#include <Eigen/Cholesky>
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "oracles/gaussian.hpp"
 #include "tests/estimator/mapping/room_tumble.hpp"
+#include "tests/testing.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble::mapping {

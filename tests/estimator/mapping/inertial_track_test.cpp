@@ -2,10 +2,7 @@
 // Tests what the mapper derives from an IMU: the end of the initial rest, the bias, and the sweeps at rest.
 #include "estimator/src/mapping/inertial_track.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <vector>
+#include "tests/testing.hpp"
 
 namespace tumble::mapping {
 namespace {

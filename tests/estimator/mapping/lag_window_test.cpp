@@ -2,13 +2,7 @@
 // Compares the window's backward pass with the dense least squares of all its sweeps.
 #include "estimator/src/mapping/lag_window.hpp"
 
-#include <gtest/gtest.h>
-
-#include <Eigen/Cholesky>
-#include <algorithm>
-#include <array>
-#include <random>
-#include <vector>
+#include "tests/testing.hpp"
 
 namespace tumble::mapping {
 namespace {

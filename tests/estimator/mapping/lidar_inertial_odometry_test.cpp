@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "tests/estimator/mapping/room_tumble.hpp"
+#include "tests/testing.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble {

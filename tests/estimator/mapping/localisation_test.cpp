@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/mapping/detail/localisation.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <random>
-#include <string>
+#include "tests/testing.hpp"
 
 namespace tumble {
 namespace {

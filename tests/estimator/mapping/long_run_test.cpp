@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
 #include "tests/estimator/mapping/endless_corridor.hpp"
+#include "tests/testing.hpp"
 
 // memory over a long path: distant map points are removed
 namespace tumble {

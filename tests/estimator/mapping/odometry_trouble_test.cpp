@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <ostream>
-#include <string>
-
 #include "tests/estimator/mapping/room_tumble.hpp"
+#include "tests/testing.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
 namespace tumble {

@@ -2,12 +2,8 @@
 // Tests localisation in the map of an earlier run.
 #include "tumble/mapping/types.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
-
 #include "tests/estimator/mapping/room_rig.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble {
 namespace {

@@ -1,18 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Compares odometer readings with Kalman's closed form, and with an update of everything at once with numerical
 // derivatives.
-#include <gtest/gtest.h>
-
-#include <Eigen/Cholesky>
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <memory>
-#include <utility>
-#include <vector>
-
 #include "estimator/src/mapping/prediction.hpp"
 #include "estimator/src/mapping/unknowns.hpp"
+#include "tests/testing.hpp"
 #include "tumble/common/types.hpp"
 #include "tumble/mapping/detail/odometer_reading.hpp"
 

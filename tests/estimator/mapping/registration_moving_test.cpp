@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests sweeps with motion distortion.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdint>
-
 #include "tests/estimator/mapping/room_map.hpp"
 #include "tests/estimator/mapping/synthetic_room.hpp"
+#include "tests/testing.hpp"
 #include "tumble/common/types.hpp"
 #include "tumble/mapping/detail/registration.hpp"
 

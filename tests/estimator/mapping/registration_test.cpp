@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/mapping/detail/registration.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "tests/estimator/mapping/room_map.hpp"
 #include "tests/estimator/mapping/synthetic_room.hpp"
+#include "tests/testing.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble {

@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests a relocalisation that later sweeps confirm, or that is reverted with all inserted points.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <memory>
-#include <span>
-#include <utility>
-
 #include "estimator/src/mapping/odometry_impl.hpp"
 #include "tests/estimator/mapping/room_rig.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble {
 namespace {

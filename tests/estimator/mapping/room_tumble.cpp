@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/estimator/mapping/room_tumble.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
+#include "tests/testing.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble::test {

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <span>
-#include <vector>
-
 #include "tests/estimator/mapping/synthetic_room.hpp"
+#include "tests/testing.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
 /// room_tumble.hpp provides the sensor data of one tumble through a box room with pillars, and runs the odometry on it.

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/mapping/detail/lidar_scale.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
-
 #include "oracles/gaussian.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble {
 namespace {

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
-#include <cstdint>
-#include <vector>
-
+#include "tests/testing.hpp"
 #include "tumble/angular_velocity/types.hpp"
 #include "tumble/common/types.hpp"
 #include "tumble/mapping/detail/sweep_trajectory.hpp"

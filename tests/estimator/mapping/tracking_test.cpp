@@ -2,11 +2,8 @@
 // Tests the tracking states: all transitions as a table, and what determines the verdict.
 #include "estimator/src/mapping/tracking.hpp"
 
-#include <gtest/gtest.h>
-
-#include <string>
-
 #include "estimator/src/mapping/relocalizer.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::mapping {
 namespace {

@@ -2,12 +2,8 @@
 // Compares the difference between map and world with closed forms: docs/maths/mapping.md, "Reported covariance".
 #include "estimator/src/mapping/world_covariance.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
-
 #include "estimator/src/mapping/unknowns.hpp"
+#include "tests/testing.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble::mapping {

@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests TumblingOdometry in the map of an earlier run.
-#include <gtest/gtest.h>
-
-#include <cstring>
-#include <numbers>
-#include <string>
-
 #include "tests/estimator/mapping/synthetic_room.hpp"
+#include "tests/testing.hpp"
 #include "tumble/common/types.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"

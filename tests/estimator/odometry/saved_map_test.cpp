@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/odometry/tumbling_odometry.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-
 #include "tests/estimator/mapping/synthetic_room.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble {
 namespace {

@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <Eigen/Cholesky>
-#include <cmath>
-#include <memory>
-#include <vector>
-
+#include "estimator/src/rolling/lost_heading.hpp"
 #include "estimator/rolling/lagged_params.hpp"
 #include "estimator/rolling/rolling_truth.hpp"
-#include "estimator/src/rolling/lost_heading.hpp"
+#include "tests/testing.hpp"
 #include "tumble/rolling/detail/rolling_smoother.hpp"
 
 // a bounce without readings: the heading after it is unknown, and contact does not determine it

@@ -1,19 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/rolling/detail/rolling_filter.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdint>
-#include <cstdio>
-#include <functional>
-#include <limits>
-#include <memory>
-#include <utility>
-#include <vector>
-
 #include "estimator/rolling/rolling_truth.hpp"
 #include "scenarios/baselines/rolling/rolling_odometry.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble {
 namespace {

@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <memory>
-#include <span>
-#include <vector>
-
 #include "estimator/rolling/rolling_truth.hpp"
 #include "estimator/src/rolling/last_pass.hpp"
 #include "tests/allocation_counter.hpp"
+#include "tests/testing.hpp"
 #include "tumble/rolling/detail/rolling_smoother.hpp"
 
 namespace tumble {

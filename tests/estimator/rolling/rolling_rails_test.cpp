@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "estimator/src/rolling/rolling_node.hpp"
+#include "tests/testing.hpp"
 
 // rolling.md (R7), (R8): forces with some saturated accelerometer axes.
 namespace tumble::rolling {

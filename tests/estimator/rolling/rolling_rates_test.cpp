@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <memory>
-#include <random>
-#include <vector>
-
 #include "estimator/rolling/lagged_params.hpp"
 #include "estimator/rolling/rolling_truth.hpp"
+#include "tests/testing.hpp"
 #include "tumble/rolling/detail/rolling_smoother.hpp"
 
 // the IMU's rate, jitter and gaps: the same motion must give the same result

@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/rolling/detail/rolling_smoother.hpp"
 
-#include <gtest/gtest.h>
-#include <Eigen/Cholesky>
-
-#include <cmath>
-#include <memory>
-#include <utility>
-#include <vector>
-
 #include "estimator/rolling/lagged_params.hpp"
 #include "estimator/rolling/rolling_truth.hpp"
 #include "oracles/gaussian.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble {
 namespace {

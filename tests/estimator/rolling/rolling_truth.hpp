@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Geometry>
-#include <algorithm>
-#include <functional>
-#include <vector>
-
+#include "tests/testing.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble::testing {
