@@ -1,28 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/replay/page.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "tests/testing.hpp"
 #include "tests/tools/replays.hpp"
-#include "tools/replay/packed.hpp"
 
 namespace tumble::tools {
 namespace {
 
-using Eigen::Isometry3d;
 using nlohmann::json;
 using scenarios::Estimate;
 using scenarios::Frame;
-using ::testing::HasSubstr;
 using testing::known_estimate;
 using testing::known_pose;
 using testing::known_recording;
-using ::testing::Not;
 
 /// Returns an array of the packed bytes as numbers.
 template <typename Number>
@@ -64,10 +56,10 @@ TEST(PackedReplay, AKnownPoseAtAKnownTimeComesBackWithinItsQuantum) {
         const double origin = head.at("origin_W_m").at(static_cast<std::size_t>(axis));
         EXPECT_NEAR(positions[3 * k + static_cast<std::size_t>(axis)] + origin, truth.translation()[axis], 1e-6);
       }
-      Eigen::Quaterniond q;
+      Quaterniond q;
       for (int i = 0; i < 4; ++i) q.coeffs()[i] = attitudes[4 * k + static_cast<std::size_t>(i)] / 32767.0;
       // an error of half a step in each of four numbers rotates by at most two steps
-      EXPECT_LT(q.normalized().angularDistance(Eigen::Quaterniond(truth.linear())), 2.0 / 32767.0);
+      EXPECT_LT(q.normalized().angularDistance(Quaterniond(truth.linear())), 2.0 / 32767.0);
     }
   }
 }

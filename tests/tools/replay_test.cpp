@@ -1,28 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/replay/replay.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "tests/testing.hpp"
 #include "tests/tools/replays.hpp"
-#include "tools/replay/motion.hpp"
-#include "tools/replay/points.hpp"
+#include "tools/replay/parts.hpp"
 #include "tools/replay/run_replay.hpp"
-#include "tools/replay/strip.hpp"
-#include "tools/replay/world.hpp"
 
 namespace tumble::tools {
 namespace {
 
-using Eigen::Isometry3d;
-using Eigen::Vector3d;
-using Eigen::Vector3f;
 using scenarios::Estimate;
 using scenarios::Frame;
 using testing::known_estimate;

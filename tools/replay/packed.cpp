@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/replay/packed.hpp"
+#include "tools/replay/page.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,6 @@
 
 #include "replay/embedded.hpp"
 #include "tools/html/html.hpp"
-#include "tools/replay/packed.hpp"
 
 namespace tumble::tools {
 

@@ -10,10 +10,7 @@
 #include "scenarios/errors.hpp"
 #include "tools/pictures/colours.hpp"
 #include "tools/pictures/paths.hpp"
-#include "tools/replay/motion.hpp"
-#include "tools/replay/points.hpp"
-#include "tools/replay/strip.hpp"
-#include "tools/replay/world.hpp"
+#include "tools/replay/parts.hpp"
 
 namespace tumble::tools {
 

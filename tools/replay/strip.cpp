@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/replay/strip.hpp"
+#include "tools/replay/parts.hpp"
 
 #include <algorithm>
 #include <cmath>

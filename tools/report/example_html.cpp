@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/report/example_html.hpp"
+#include "tools/report/sections.hpp"
 
 #include <fmt/format.h>
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/report/failures_html.hpp"
+#include "tools/report/sections.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "tools/html/html.hpp"
-#include "tools/report/example_html.hpp"
 #include "tools/report/score_html.hpp"
 
 namespace tumble::tools {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/report/front.hpp"
+#include "tools/report/sections.hpp"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,6 @@
 
 #include "tools/html/html.hpp"
 #include "tools/report/contests.hpp"
-#include "tools/report/example_html.hpp"
 #include "tools/report/score_html.hpp"
 
 namespace tumble::tools {

@@ -9,10 +9,8 @@
 #include "report/embedded.hpp"
 #include "tools/html/html.hpp"
 #include "tools/report/cost_html.hpp"
-#include "tools/report/example_html.hpp"
-#include "tools/report/failures_html.hpp"
-#include "tools/report/front.hpp"
 #include "tools/report/score_html.hpp"
+#include "tools/report/sections.hpp"
 #include "tools/report/sensitivity_html.hpp"
 
 namespace tumble::tools {

@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// This header declares the functions that write the sections of a report page.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "scenarios/summary/motion_map.hpp"
 #include "tools/report/page.hpp"
+#include "tools/report/plots.hpp"
 
 namespace tumble::tools {
+
+std::string front_html(const PageContent& content);
+
+Figure motion_figure(const scenarios::MotionMap& map);
+
+std::string failures_html(const PageContent& content);
 
 /// The still picture replaces the animation on paper, for readers who prefer reduced motion, and if there is no
 /// animation.
