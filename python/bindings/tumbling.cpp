@@ -129,6 +129,12 @@ Rates rates_of(const std::optional<AngularRateState>& rate) {
   return out;
 }
 
+/// Calls a member function without arguments while no other thread uses the estimator.
+template <auto kMember>
+auto locked(BoundTumblingOdometry& self) {
+  return self.run([](TumblingOdometry& odometry) { return (odometry.*kMember)(); });
+}
+
 template <class Class>
 void bind_accessors(Class& bound) {
   bound
@@ -154,13 +160,9 @@ void bind_accessors(Class& bound) {
             return rates_of(self.run([](TumblingOdometry& odometry) { return odometry.newest_smoothed_rate(); }));
           },
           "Returns the latest rate of the fixed-lag smoother, lag_s old; no row during the first lag_s.")
-      .def(
-          "body_imu_calibration",
-          [](BoundTumblingOdometry& self) {
-            return self.run([](TumblingOdometry& odometry) { return odometry.body_imu_calibration(); });
-          },
-          "Returns the estimated calibration of the IMU: lever arm, biases, elements. Pass it to the next run as "
-          "`calibration`.")
+      .def("body_imu_calibration", &locked<&TumblingOdometry::body_imu_calibration>,
+           "Returns the estimated calibration of the IMU: lever arm, biases, elements. Pass it to the next run as "
+           "`calibration`.")
       .def(
           "lidar_calibration",
           [](BoundTumblingOdometry& self) {
@@ -195,54 +197,23 @@ void bind_accessors(Class& bound) {
             return self.run([](TumblingOdometry& odometry) { return odometry.health().findings; });
           },
           nb::sig("def health(self) -> list[HealthFinding]"), kHealth)
+      .def_prop_ro("gaps", &locked<&TumblingOdometry::restart_count>,
+                   "number of gaps in the IMU samples after which rate estimation restarted")
+      .def_prop_ro("samples_rejected_by_mapper", &locked<&TumblingOdometry::samples_rejected_by_mapper>,
+                   "number of samples that the mapper rejected with their rates: 0 in normal operation")
+      .def_prop_ro("rejected_readings", &locked<&TumblingOdometry::rejected_readings>,
+                   "number of samples that were rejected because their readings or stamps are outliers")
+      .def_prop_ro("newest_imu_time_ns", &locked<&TumblingOdometry::newest_imu_time_ns>,
+                   "time of the newest accepted sample; None before the first")
       .def_prop_ro(
-          "gaps",
-          [](BoundTumblingOdometry& self) {
-            return self.run([](TumblingOdometry& odometry) { return odometry.restart_count(); });
-          },
-          "number of gaps in the IMU samples after which rate estimation restarted")
-      .def_prop_ro(
-          "samples_rejected_by_mapper",
-          [](BoundTumblingOdometry& self) {
-            return self.run([](TumblingOdometry& odometry) { return odometry.samples_rejected_by_mapper(); });
-          },
-          "number of samples that the mapper rejected with their rates: 0 in normal operation")
-      .def_prop_ro(
-          "rejected_readings",
-          [](BoundTumblingOdometry& self) {
-            return self.run([](TumblingOdometry& odometry) { return odometry.rejected_readings(); });
-          },
-          "number of samples that were rejected because their readings or stamps are outliers")
-      .def_prop_ro(
-          "newest_imu_time_ns",
-          [](BoundTumblingOdometry& self) {
-            return self.run([](TumblingOdometry& odometry) { return odometry.newest_imu_time_ns(); });
-          },
-          "time of the newest accepted sample; None before the first")
-      .def_prop_ro(
-          "estimated_jitter_s",
-          [](BoundTumblingOdometry& self) {
-            return self.run([](TumblingOdometry& odometry) { return odometry.estimated_jitter_s(); });
-          },
+          "estimated_jitter_s", &locked<&TumblingOdometry::estimated_jitter_s>,
           "standard deviation of the IMU's stamps about a regular clock, while that clock replaces them; else None")
-      .def_prop_ro(
-          "lidar_scale",
-          [](BoundTumblingOdometry& self) {
-            return self.run([](TumblingOdometry& odometry) { return odometry.lidar_scale(); });
-          },
-          "ratio of the lidar's scale to the IMU's scale, estimated from the motion so far")
-      .def_prop_ro(
-          "second_pass_applied",
-          [](BoundTumblingOdometry& self) {
-            return self.run([](TumblingOdometry& odometry) { return odometry.first_seconds_reprocessing_applied(); });
-          },
-          "True if the map and the pose come from the second pass")
-      .def_prop_ro(
-          "dropped_untaken_sweeps",
-          [](BoundTumblingOdometry& self) {
-            return self.run([](TumblingOdometry& odometry) { return odometry.dropped_untaken_sweeps(); });
-          },
-          "number of sweeps that were dropped because take() was not called in time");
+      .def_prop_ro("lidar_scale", &locked<&TumblingOdometry::lidar_scale>,
+                   "ratio of the lidar's scale to the IMU's scale, estimated from the motion so far")
+      .def_prop_ro("second_pass_applied", &locked<&TumblingOdometry::first_seconds_reprocessing_applied>,
+                   "True if the map and the pose come from the second pass")
+      .def_prop_ro("dropped_untaken_sweeps", &locked<&TumblingOdometry::dropped_untaken_sweeps>,
+                   "number of sweeps that were dropped because take() was not called in time");
 }
 
 }  // namespace
@@ -333,12 +304,8 @@ void bind_tumbling(nb::module_& m) {
           "searched.\n"
           "extend=False keeps the map unchanged. Until result.in_prior_map is true, poses are in a local frame, and\n"
           "health() reports that the robot is not localised.")
-      .def(
-          "take",
-          [](BoundTumblingOdometry& self) {
-            return self.run([](TumblingOdometry& odometry) { return odometry.take(); });
-          },
-          "Returns the next processed sweep, in order, or None if no sweep is ready.")
+      .def("take", &locked<&TumblingOdometry::take>,
+           "Returns the next processed sweep, in order, or None if no sweep is ready.")
       .def(
           "take_all",
           [](BoundTumblingOdometry& self) {
