@@ -96,7 +96,7 @@ void write_recordings(const path& folder, const path& scratch) {
   for (const auto& entry : std::filesystem::directory_iterator(scratch / "bag")) {
     if (entry.path().extension() == ".db3") {
       std::filesystem::copy_file(entry.path(), in(folder, "ros2_bag") / "small");
-      put_text(in(folder, "ros2_bag_packed") / "small", packed_by_zstd(fixture::bytes_of(entry.path())));
+      put_text(in(folder, "ros2_bag_packed") / "small", packed_by_zstd(test::read_file(entry.path())));
     }
   }
   write_mcaps(in(folder, "mcap"), longer);

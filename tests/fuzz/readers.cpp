@@ -54,19 +54,6 @@ BagReading some_bag() {
   return reading;
 }
 
-void imu_csv(const path& file) {
-  import_imu_csv(file, some_imu());
-}
-void ros1_bag(const path& file) {
-  import_ros1_bag(file, some_bag());
-}
-void ros2_bag(const path& file) {
-  import_ros2_bag(file, some_bag());
-}
-void mcap(const path& file) {
-  import_mcap(file, some_bag());
-}
-
 /// Reads a file of points, then converts it to a sweep.
 void cloud(const path& file, const std::string& format) {
   read_cloud(file);
@@ -77,21 +64,6 @@ void cloud(const path& file, const std::string& format) {
   source.reading.device.name = "lidar";
   source.reading.device.sweep_period_ns = 100'000'000;
   import_sweeps(source);
-}
-void ply_cloud(const path& file) {
-  cloud(file, "ply");
-}
-void pcd_cloud(const path& file) {
-  cloud(file, "pcd");
-}
-void vtk_cloud(const path& file) {
-  cloud(file, "vtk");
-}
-void kitti_cloud(const path& file) {
-  cloud(file, "kitti");
-}
-void stamps(const path& file) {
-  read_stamps(file);
 }
 
 void tum(const path& file) {
@@ -122,37 +94,16 @@ const DataRoot& data() {
   static const DataRoot kData{test::source_dir()};
   return kData;
 }
-void scenario(const path& file) {
-  draw(data(), load_scenario(data(), file.string()), 1);
-}
-void situation(const path& file) {
-  situation_from_yaml(read_text_file(file), "situation");
-}
-void suite(const path& file) {
-  load_suite(data(), file.string());
-}
 void gate(const path& file) {
   std::ofstream(path(file).replace_extension(".csv")) << "scenario,kind,method,metric,1\nroll,rate,raw,status,ok\n";
   load_gate(data(), file.string());
 }
-void gate_accepted(const path& file) {
-  parse_gate_run(read_text_file(file), file.string());
-}
-void data_sheet(const path& file) {
-  parse_data_sheet(read_text_file(file), file.string(), Registry::of_simulation());
-}
 
-void map_ply(const path& file) {
-  read_map(file);
-}
 void estimate(const path& place) {
   Kind kind{};
   std::string method;
   estimated_sensors(place);
   read_estimate(place, kind, method, Frame::imu);
-}
-void estimate_tum(const path& file) {
-  estimate(file);
 }
 /// Reads the table next to a valid estimate.json.
 void estimate_rates(const path& file) {
@@ -171,41 +122,35 @@ void estimate_json(const path& file) {
   estimate(file.parent_path());
 }
 
-void description(const path& file) {
-  read_external(file);
-}
-void bench_results(const path& file) {
-  read_bench_results(file);
-}
-
 constexpr std::array kReaders = {
     Reader{"recording", "a.h5", recording},
-    Reader{"imu_csv", "a.csv", imu_csv},
-    Reader{"ros1_bag", "a.bag", ros1_bag},
-    Reader{"ros2_bag", "a.db3", ros2_bag},
-    Reader{"ros2_bag_packed", "a.db3.zstd", ros2_bag},
-    Reader{"mcap", "a.mcap", mcap},
-    Reader{"ply_cloud", "lidar_000000.ply", ply_cloud},
-    Reader{"pcd_cloud", "lidar_000000.pcd", pcd_cloud},
-    Reader{"vtk_cloud", "cloud_000000.vtk", vtk_cloud},
-    Reader{"kitti_cloud", "lidar_000000.bin", kitti_cloud},
-    Reader{"stamps", "times.txt", stamps},
+    Reader{"imu_csv", "a.csv", [](const path& file) { import_imu_csv(file, some_imu()); }},
+    Reader{"ros1_bag", "a.bag", [](const path& file) { import_ros1_bag(file, some_bag()); }},
+    Reader{"ros2_bag", "a.db3", [](const path& file) { import_ros2_bag(file, some_bag()); }},
+    Reader{"ros2_bag_packed", "a.db3.zstd", [](const path& file) { import_ros2_bag(file, some_bag()); }},
+    Reader{"mcap", "a.mcap", [](const path& file) { import_mcap(file, some_bag()); }},
+    Reader{"ply_cloud", "lidar_000000.ply", [](const path& file) { cloud(file, "ply"); }},
+    Reader{"pcd_cloud", "lidar_000000.pcd", [](const path& file) { cloud(file, "pcd"); }},
+    Reader{"vtk_cloud", "cloud_000000.vtk", [](const path& file) { cloud(file, "vtk"); }},
+    Reader{"kitti_cloud", "lidar_000000.bin", [](const path& file) { cloud(file, "kitti"); }},
+    Reader{"stamps", "times.txt", [](const path& file) { read_stamps(file); }},
     Reader{"tum", "a.tum", tum},
     Reader{"kitti", "a.txt", kitti},
     Reader{"odometry", "a.csv", odometry},
-    Reader{"scenario", "a.yaml", scenario},
-    Reader{"situation", "a.yaml", situation},
-    Reader{"suite", "a.yaml", suite},
+    Reader{"scenario", "a.yaml", [](const path& file) { draw(data(), load_scenario(data(), file.string()), 1); }},
+    Reader{"situation", "a.yaml", [](const path& file) { situation_from_yaml(read_text_file(file), "situation"); }},
+    Reader{"suite", "a.yaml", [](const path& file) { load_suite(data(), file.string()); }},
     Reader{"gate", "a.yaml", gate},
-    Reader{"gate_run", "a.csv", gate_accepted},
-    Reader{"data_sheet", "a.yaml", data_sheet},
-    Reader{"map_ply", "map.ply", map_ply},
-    Reader{"estimate_tum", "a.tum", estimate_tum},
+    Reader{"gate_run", "a.csv", [](const path& file) { parse_gate_run(read_text_file(file), file.string()); }},
+    Reader{"data_sheet", "a.yaml",
+           [](const path& file) { parse_data_sheet(read_text_file(file), file.string(), Registry::of_simulation()); }},
+    Reader{"map_ply", "map.ply", [](const path& file) { read_map(file); }},
+    Reader{"estimate_tum", "a.tum", [](const path& file) { estimate(file); }},
     Reader{"estimate_rates", "rates.csv", estimate_rates},
     Reader{"estimate_json", "estimate.json", estimate_json},
     Reader{"saved_run", "run", saved_run},
-    Reader{"description", "a.yaml", description},
-    Reader{"bench_results", "a.jsonl", bench_results},
+    Reader{"description", "a.yaml", [](const path& file) { read_external(file); }},
+    Reader{"bench_results", "a.jsonl", [](const path& file) { read_bench_results(file); }},
 };
 
 }  // namespace

@@ -1,38 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test runs `tumble odometry` with poses of the base frame, on a bag with /tf_static.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <Eigen/Geometry>
-#include <fstream>
-#include <sstream>
-
 #include "scenarios/recordings/recording_file.hpp"
 #include "system/program.hpp"
 
 namespace tumble::system_test {
 namespace {
 
-namespace fs = std::filesystem;
-using nlohmann::json;
-using ::testing::HasSubstr;
-
-std::vector<Eigen::Isometry3d> poses(const fs::path& trajectory) {
+std::vector<Isometry3d> poses(const fs::path& trajectory) {
   std::ifstream file(trajectory);
-  std::vector<Eigen::Isometry3d> out;
+  std::vector<Isometry3d> out;
   for (std::string line; std::getline(file, line);) {
     std::istringstream row(line);
     double time_s = 0.0;
-    Eigen::Vector3d p_m;
-    Eigen::Quaterniond q;
+    Vector3d p_m;
+    Quaterniond q;
     if (line.front() != '#' && row >> time_s >> p_m.x() >> p_m.y() >> p_m.z() >> q.x() >> q.y() >> q.z() >> q.w())
       out.push_back(Eigen::Translation3d(p_m) * q);
   }
   return out;
 }
 
-std::vector<Eigen::Isometry3d> run_live(const std::string& input, const fs::path& out,
-                                        std::vector<std::string> options) {
+std::vector<Isometry3d> run_live(const std::string& input, const fs::path& out, std::vector<std::string> options) {
   options.insert(options.begin(), {"odometry", input, "--live", "--json", "-o", out.string()});
   const Ended ended = run_program(options);
   EXPECT_EQ(ended.status, 0) << out << ended.err;
@@ -42,10 +30,10 @@ std::vector<Eigen::Isometry3d> run_live(const std::string& input, const fs::path
 TEST(OdometrySoak, TheBaseFrameIsAFrameOfTheBag) {
   const fs::path folder = test_folder();
   const std::string bag = (folder / "stroll.mcap").string();
-  ASSERT_EQ(run_program({"export", short_stroll().string(), "-o", bag}).status, 0);
+  run_successfully({"export", short_stroll().string(), "-o", bag});
   const auto of_imu = run_live(bag, folder / "imu", {}),
              of_body = run_live(bag, folder / "body", {"--base-frame", "body"});
-  const Eigen::Isometry3d T_imu_body = scenarios::read_sensors(short_stroll()).imus.front().T_BI.inverse();
+  const Isometry3d T_imu_body = scenarios::read_sensors(short_stroll()).imus.front().T_BI.inverse();
   ASSERT_GT(T_imu_body.translation().norm(), 0.05);
   ASSERT_GT(of_imu.size(), 600u);
   ASSERT_EQ(of_body.size(), of_imu.size());
@@ -55,7 +43,7 @@ TEST(OdometrySoak, TheBaseFrameIsAFrameOfTheBag) {
 TEST(Odometry, WritesPosesOfTheBaseFrame) {
   const fs::path folder = test_folder();
   const std::string recording = short_stroll().string(), bag = (folder / "stroll.mcap").string();
-  ASSERT_EQ(run_program({"export", recording, "-o", bag}).status, 0);
+  run_successfully({"export", recording, "-o", bag});
   const auto of_imu = run_live(recording, folder / "imu", {}),
              shifted = run_live(recording, folder / "shifted", {"--T-base-imu", "0.3", "0", "0", "0", "0", "0", "1"});
   ASSERT_GT(of_imu.size(), 600u);

@@ -1,24 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test runs a user's Python function and a C program on a small benchmark: page, lines of JSON, and rejected input.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <stdlib.h>
 
-#include <cstdlib>
-#include <fstream>
-#include <iterator>
-#include <sstream>
-
 #include "system/program.hpp"
-#include "tests/tree.hpp"
 
 namespace tumble::system_test {
 namespace {
-
-namespace fs = std::filesystem;
-using nlohmann::json;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 std::vector<json> lines_of(const std::string& text) {
   std::vector<json> lines;
@@ -47,7 +34,7 @@ class Bench : public ::testing::Test {
 
   /// Expects that the report which `bench` recommends compares both methods, and that each command on its page works.
   void expect_page_of(const std::string& database) const {
-    ASSERT_EQ(run_program({"report", database, "-o", path("page.html")}).status, 0);
+    run_successfully({"report", database, "-o", path("page.html")});
     const std::string page = read_file(folder_ / "page.html");
     EXPECT_THAT(page, HasSubstr("theirs"));
     EXPECT_THAT(page, HasSubstr("published result of build"));
@@ -64,7 +51,7 @@ class Bench : public ::testing::Test {
       EXPECT_EQ(ended.status, 0) << testing::PrintToString(words) << ended.err;
     }
     EXPECT_THAT(verbs, testing::IsSupersetOf({"sweep", "report", "compare"}));
-    EXPECT_THAT(verbs, Not(testing::Contains("sensitivity"))) << "which needs more draws";
+    EXPECT_THAT(verbs, Not(Contains("sensitivity"))) << "which needs more draws";
   }
 
   const fs::path folder_ = test_folder();

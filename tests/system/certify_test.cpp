@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test checks the certificate as the program prints it. Other tests cover the measurements of the rows.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "system/program.hpp"
 
 namespace tumble::system_test {
 namespace {
 
-using nlohmann::json;
-using ::testing::HasSubstr;
-
 TEST(Certify, PrintsRowsWithBoundAndVerdict) {
-  const Ended ended = run_program({"certify", "--row", "free_fall", "--row", "flight_force"});
-  EXPECT_EQ(ended.status, 0) << ended.err;
+  const Ended ended = run_successfully({"certify", "--row", "free_fall", "--row", "flight_force"});
   for (const char* word : {"free_fall_time", "flight_specific_force", "<= 1e-06", "m/s^2", "pass"}) {
     EXPECT_THAT(ended.out, HasSubstr(word));
   }

@@ -1,26 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test checks the comparison of two methods and the causes of their failures, from a database made by hand.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "scenarios/draw/drawn_numbers.hpp"
 #include "scenarios/provenance/data_digest.hpp"
 #include "scenarios/sweep/database_owner.hpp"
 #include "scenarios/sweep/results.hpp"
 #include "sim/random/stream.hpp"
 #include "system/program.hpp"
-#include "tests/tree.hpp"
 
 namespace tumble::system_test {
 namespace {
 
-namespace fs = std::filesystem;
-using nlohmann::json;
 using scenarios::OutcomeStatus;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 const std::string kError = "rate_error_clipped_median_rad_s";
 
@@ -63,8 +53,7 @@ TEST(Compare, SaysWhoIsBetterByHowMuchAndHowSure) {
   ASSERT_EQ(found["failures"].size(), 1u);
   EXPECT_EQ(found["failures"][0]["only_against"], 6);
   EXPECT_EQ(found["failures"][0]["mcnemar_p"], 0.03125);
-  const Ended text = run_program({"compare", database, "--method", "raw", "--method", "rate/saave"});
-  EXPECT_EQ(text.status, 0) << text.err;
+  const Ended text = run_successfully({"compare", database, "--method", "raw", "--method", "rate/saave"});
   EXPECT_THAT(text.out, HasSubstr("hill: rate, paired with saave"));
   EXPECT_THAT(text.out, HasSubstr(" worse"));
 }

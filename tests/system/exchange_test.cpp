@@ -1,21 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test exports recordings to other formats and imports them. The library's tests cover the formats themselves.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <fstream>
-#include <sstream>
-
 #include "stand_ins/stand_ins.hpp"
 #include "system/program.hpp"
 
 namespace tumble::system_test {
 namespace {
-
-namespace fs = std::filesystem;
-using nlohmann::json;
-using ::testing::HasSubstr;
 
 /// The user's scenario has a sensor that is neither IMU nor lidar, and ends during the fall.
 TEST(Exchange, OtherSensorsAreExportedOrReported) {
@@ -31,15 +20,12 @@ sensors:
   - {name: imu, kind: imu, device: mti30, site: mti30}
   - {name: height, kind: barometer, device: bmp388, site: rs16}
 )";
-  const Ended recorded = run_program({"record", scenario, "--seed", "1", "-o", recording});
-  ASSERT_EQ(recorded.status, 0) << recorded.err;
+  const Ended recorded = run_successfully({"record", scenario, "--seed", "1", "-o", recording});
   EXPECT_THAT(recorded.out, testing::ContainsRegex("height +bmp388 +75"));
   EXPECT_THAT(recorded.err, HasSubstr("the robot still moves at the end of the recording, with "));
-  const Ended csv = run_program({"export", recording, "--format", "csv", "-o", (folder / "csv").string()});
-  ASSERT_EQ(csv.status, 0) << csv.err;
+  const Ended csv = run_successfully({"export", recording, "--format", "csv", "-o", (folder / "csv").string()});
   EXPECT_EQ(line_count(read_file(folder / "csv" / "height.csv")), 76u);
-  const Ended bag = run_program({"export", recording, "-o", (folder / "a.mcap").string()});
-  ASSERT_EQ(bag.status, 0) << bag.err;
+  const Ended bag = run_successfully({"export", recording, "-o", (folder / "a.mcap").string()});
   EXPECT_THAT(bag.err, HasSubstr("sensor 'height' of kind 'barometer' is left out"));
 }
 
@@ -48,14 +34,12 @@ TEST(Exchange, SweepsWithAnImuAndReferencePosesAreScored) {
   const fs::path folder = test_folder();
   const std::string recording = (shared_run("roll") / "recording.h5").string(), back = (folder / "back.h5").string();
   for (const auto& [format, out] : {std::pair{"ply", "ply"}, {"csv", "csv"}, {"tum", "truth.txt"}}) {
-    ASSERT_EQ(run_program({"export", recording, "--format", format, "-o", (folder / out).string(), "--quiet"}).status,
-              0);
+    run_successfully({"export", recording, "--format", format, "-o", (folder / out).string(), "--quiet"});
   }
   const Ended imported =
-      run_program({"import", (folder / "ply").string(), "--imu", (folder / "csv" / "imu.csv").string(), "--device",
-                   "phidget1044", "--lidar", "mid100", "--robot", "sphere", "--radius", "0.145", "--reference",
-                   (folder / "truth.txt").string(), "--reference-frame", "body", "-o", back, "--json"});
-  ASSERT_EQ(imported.status, 0) << imported.err;
+      run_successfully({"import", (folder / "ply").string(), "--imu", (folder / "csv" / "imu.csv").string(), "--device",
+                        "phidget1044", "--lidar", "mid100", "--robot", "sphere", "--radius", "0.145", "--reference",
+                        (folder / "truth.txt").string(), "--reference-frame", "body", "-o", back, "--json"});
   const json said = json_of(imported);
   EXPECT_EQ(said["has_reference"], true);
   EXPECT_EQ(said["point_times"], "measured");
@@ -63,18 +47,16 @@ TEST(Exchange, SweepsWithAnImuAndReferencePosesAreScored) {
   EXPECT_EQ(said["origin_ns"], 1000000000000000000) << "all exports have one clock";
   // the truth as a foreign estimate has no error, and the truth shifted in time has one
   const std::vector<std::string> score = {"score", (folder / "truth.txt").string(), back, "--frame", "body", "--json"};
-  const Ended scored = run_program(score);
-  ASSERT_EQ(scored.status, 0) << scored.err;
+  const Ended scored = run_successfully(score);
   EXPECT_EQ(json_of(scored)["status"], "ok");
   EXPECT_LT(metric(json_of(scored), "ate_m"), 1e-9);
   const Ended of_lidar =
       run_program({"score", (folder / "truth.txt").string(), recording, "--frame", "centre", "--json"});
   EXPECT_GE(metric(json_of(of_lidar), "ate_m"), 0.0) << of_lidar.err;
   // an estimate from these files is scored like any other
-  const Ended estimate = run_program({"estimate", back, "--method", "position/rolling", "-o", (folder / "e").string()});
-  ASSERT_EQ(estimate.status, 0) << estimate.err;
-  const Ended rolled = run_program({"score", (folder / "e").string(), back, "--json"});
-  ASSERT_EQ(rolled.status, 0) << rolled.err;
+  const Ended estimate =
+      run_successfully({"estimate", back, "--method", "position/rolling", "-o", (folder / "e").string()});
+  const Ended rolled = run_successfully({"score", (folder / "e").string(), back, "--json"});
   EXPECT_EQ(run_program({"score", back, (folder / "e").string(), "--json"}).out, rolled.out) << "the recording first";
   EXPECT_LT(metric(json_of(rolled), "position_end_error_m"), 1.0);
 }
@@ -99,15 +81,13 @@ void copy_sweeps(const fs::path& from, const fs::path& to, int first, int count)
 TEST(Exchange, SweepsAloneAreImported) {
   const fs::path folder = test_folder();
   const std::string recording = (folder / "hill.h5").string(), truth = (folder / "truth.txt").string();
-  ASSERT_EQ(run_program({"record", "hill", "--seed", "1001", "-o", recording, "--quiet"}).status, 0);
-  ASSERT_EQ(run_program({"export", recording, "--format", "ply", "-o", (folder / "all").string(), "--quiet"}).status,
-            0);
-  ASSERT_EQ(run_program({"export", recording, "--format", "tum", "-o", truth, "--quiet"}).status, 0);
+  run_successfully({"record", "hill", "--seed", "1001", "-o", recording, "--quiet"});
+  run_successfully({"export", recording, "--format", "ply", "-o", (folder / "all").string(), "--quiet"});
+  run_successfully({"export", recording, "--format", "tum", "-o", truth, "--quiet"});
   copy_sweeps(folder / "all", folder / "some", 60, 12);  // the rig has landed and rocks
   const std::string back = (folder / "back.h5").string();
-  const Ended imported = run_program({"import", (folder / "some").string(), "--lidar", "rs16", "--robot", "rig",
-                                      "--reference", truth, "--reference-frame", "body", "-o", back, "--json"});
-  ASSERT_EQ(imported.status, 0) << imported.err;
+  const Ended imported = run_successfully({"import", (folder / "some").string(), "--lidar", "rs16", "--robot", "rig",
+                                           "--reference", truth, "--reference-frame", "body", "-o", back, "--json"});
   EXPECT_EQ(json_of(imported)["sweeps"], 12);
   EXPECT_EQ(json_of(imported)["has_reference"], true);
   EXPECT_FALSE(json_of(imported).contains("samples"));
@@ -121,10 +101,9 @@ TEST(Exchange, AnMcapIsRecognisedByItsNameAndContainsEstimates) {
   const fs::path folder = test_folder();
   const std::string recording = (shared_run("roll") / "recording.h5").string(), mcap = (folder / "a.mcap").string();
   const std::string estimate = (folder / "rolled").string(), back = (folder / "back.h5").string();
-  ASSERT_EQ(run_program({"estimate", recording, "--method", "position/rolling", "-o", estimate, "--quiet"}).status, 0);
+  run_successfully({"estimate", recording, "--method", "position/rolling", "-o", estimate, "--quiet"});
   const Ended exported =
-      run_program({"export", recording, "--with-truth", "--estimate", estimate, "-o", mcap, "--json"});
-  ASSERT_EQ(exported.status, 0) << exported.err;
+      run_successfully({"export", recording, "--with-truth", "--estimate", estimate, "-o", mcap, "--json"});
   EXPECT_EQ(json_of(exported)["format"], "mcap");
   // the estimate's topic is a reference like the truth's: a comparison with it gives what `score` reports of the
   // estimate
@@ -132,15 +111,13 @@ TEST(Exchange, AnMcapIsRecognisedByItsNameAndContainsEstimates) {
                                            "0.145",  "-o", back,      "--json"};
   std::vector<std::string> with_reference = import;
   with_reference.insert(with_reference.end(), {"--reference-topic", "/position_rolling"});
-  const Ended imported = run_program(with_reference);
-  ASSERT_EQ(imported.status, 0) << imported.err;
+  const Ended imported = run_successfully(with_reference);
   EXPECT_EQ(json_of(imported)["has_reference"], true);
   EXPECT_THAT(json_of(imported)["notes"].dump(),
               HasSubstr("/position_rolling/points: the points are in frame 'world'"));
-  const Ended tum = run_program({"export", back, "-o", (folder / "rolled.tum").string(), "--quiet"});
-  ASSERT_EQ(tum.status, 0) << tum.err;
-  const Ended again = run_program({"score", (folder / "rolled.tum").string(), recording, "--frame", "body", "--json"});
-  ASSERT_EQ(again.status, 0) << again.err;
+  const Ended tum = run_successfully({"export", back, "-o", (folder / "rolled.tum").string(), "--quiet"});
+  const Ended again =
+      run_successfully({"score", (folder / "rolled.tum").string(), recording, "--frame", "body", "--json"});
   EXPECT_NEAR(metric(json_of(again), "position_end_error_m"),
               metric(json_of(run_program({"score", estimate, recording, "--json"})), "position_end_error_m"), 0.02);
   for (const auto& [words, complaint] :
@@ -164,11 +141,9 @@ TEST(Exchange, ATrajectoryAloneIsARecordingToScoreAgainst) {
   std::ofstream(folder / "estimate.tum") << "1617333602.0 5 0 0 0 0 0 1\n1617333602.1 6 0 0 0 0 0 1\n"
                                             "1617333602.2 7 0 0 0 0 0 1\n1617333602.3 8 0.5 0 0 0 0 1\n";
   const std::string recording = (folder / "r.h5").string();
-  const Ended imported = run_program({"import", (folder / "reference.txt").string(), "-o", recording, "--json"});
-  ASSERT_EQ(imported.status, 0) << imported.err;
+  const Ended imported = run_successfully({"import", (folder / "reference.txt").string(), "-o", recording, "--json"});
   EXPECT_EQ(json_of(imported)["origin_ns"], 1617333602000000000);
-  const Ended scored = run_program({"score", (folder / "estimate.tum").string(), recording, "--json"});
-  ASSERT_EQ(scored.status, 0) << scored.err;
+  const Ended scored = run_successfully({"score", (folder / "estimate.tum").string(), recording, "--json"});
   EXPECT_NEAR(metric(json_of(scored), "position_end_error_m"), 0.5, 1e-9);
   const Ended drawn = run_program({"render", recording, "-o", (folder / "x.png").string()});
   EXPECT_EQ(drawn.status, 2);
@@ -183,7 +158,7 @@ TEST(Exchange, ATrajectoryAloneIsARecordingToScoreAgainst) {
 TEST(Exchange, ATrajectoryIsScoredWithItsRotationAndOverWhatItCovers) {
   const fs::path folder = test_folder();
   const std::string recording = (shared_run("roll") / "recording.h5").string(), tum = (folder / "t.tum").string();
-  ASSERT_EQ(run_program({"export", recording, "--format", "tum", "-o", tum, "--quiet"}).status, 0);
+  run_successfully({"export", recording, "--format", "tum", "-o", tum, "--quiet"});
   const auto score = [&](const std::vector<std::string>& more) {
     std::vector<std::string> words = {"score", tum, recording, "--frame", "body", "--json"};
     words.insert(words.end(), more.begin(), more.end());
@@ -243,6 +218,66 @@ TEST(Exchange, FilesOfOtherDataSetsAreReferredToThePythonPackage) {
     EXPECT_EQ(line_count(ended.err), 1u) << ended.err;
     EXPECT_THAT(ended.err, HasSubstr(reader));
   }
+}
+
+// The test checks exports and imports of one recording: their clock, tables, and what the user states.
+TEST(Exchange, AStatedZeroIsAPoseAndColumnsAreNamed) {
+  const fs::path folder = test_folder();
+  const std::string table = (folder / "a.csv").string(), back = (folder / "back.h5").string();
+  {
+    std::ofstream file(table);
+    file << "clock,w1,w2,w3,f1,f2,f3\n";
+    for (int k = 0; k < 100; ++k) file << 5000 * k << ",0,0,0,0,0,9.8\n";
+  }
+  const std::vector<std::string> import = {"import", table, "-o", back};
+  EXPECT_THAT(run_program(import).err, HasSubstr("Name the columns: --columns time=NAME,gyro=X,Y,Z,accel=X,Y,Z"));
+  std::vector<std::string> named = import;
+  named.insert(named.end(), {"--columns", "time=clock,gyro=w1,w2,w3,accel=f1,f2,f3"});
+  const Ended without = run_successfully(named);
+  EXPECT_THAT(without.err, HasSubstr("--lever-arm is missing"));
+  named.insert(named.end(), {"--lever-arm", "0", "0", "0"});
+  const Ended stated = run_successfully(named);
+  EXPECT_THAT(stated.err, Not(HasSubstr("--lever-arm")));
+}
+
+TEST(Exchange, AFolderOfTablesComesBackWithItsTruth) {
+  const fs::path folder = test_folder();
+  const std::string recording = (shared_run("hill") / "recording.h5").string(), csv = (folder / "csv").string();
+  const std::string back = (folder / "back.h5").string(), tum = (folder / "truth.tum").string();
+  for (const auto& [format, out] : {std::pair{"csv", csv}, {"tum", tum}})
+    run_successfully({"export", recording, "--format", format, "-o", out, "--quiet"});
+  std::ofstream(folder / "csv" / "notes.csv") << "day,weather\nMonday,rain\n";
+  const Ended imported = run_successfully({"import", csv, "--robot", "rig", "-o", back, "--json"});
+  const json said = json_of(imported);
+  EXPECT_EQ(said["format"], "csv");
+  EXPECT_EQ(said["has_reference"], true);
+  EXPECT_THAT(said["notes"].dump(), HasSubstr("the reference poses come from truth.csv in the imported folder"));
+  EXPECT_THAT(said["notes"].dump(), HasSubstr("'imu' is the primary IMU"));
+  EXPECT_THAT(said["notes"].dump(), HasSubstr("notes.csv:1: the header contains no known column name"));
+  const Ended scored = run_successfully({"score", tum, back, "--frame", "body", "--json"});
+  EXPECT_LT(metric(json_of(scored), "ate_m"), 1e-6);
+}
+
+// a user wrote rates at the stamps of the exported table
+TEST(Exchange, RatesAtTheStampsOfAnExportAreScored) {
+  const fs::path folder = test_folder(), given = folder / "estimate";
+  const fs::path rates = folder / "rates";
+  const std::string recording = (shared_run("hill") / "recording.h5").string();
+  run_successfully({"estimate", recording, "--method", "rate/raw", "-o", rates.string(), "--quiet"});
+  fs::copy(rates, given);
+  std::istringstream rows(read_file(rates / "rates.csv"));
+  std::ofstream moved(given / "rates.csv");
+  std::string line;
+  std::getline(rows, line);
+  moved << line << '\n';
+  while (std::getline(rows, line)) {
+    const std::size_t comma = line.find(',');
+    moved << std::stoll(line.substr(0, comma)) + 1'000'000'000'000'000'000 << line.substr(comma) << '\n';
+  }
+  moved.close();
+  const Ended of_export = run_successfully({"score", given.string(), recording, "--json"});
+  EXPECT_EQ(json_of(of_export)["scores"],
+            json_of(run_program({"score", rates.string(), recording, "--json"}))["scores"]);
 }
 
 }  // namespace

@@ -1,24 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test runs an external command in run and sweep: its answers are scored like those of the project's methods, and
 // its faults are outcomes.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <csignal>
-#include <cstdlib>
-#include <fstream>
 
 #include "scenarios/sweep/results.hpp"
 #include "system/program.hpp"
-#include "tests/tree.hpp"
 
 namespace tumble::system_test {
 namespace {
-
-namespace fs = std::filesystem;
-using nlohmann::json;
-using ::testing::HasSubstr;
 
 std::string example() {
   return (test::source_dir() / "examples" / "methods" / "raw.yaml").string();
@@ -62,8 +53,7 @@ TEST(External, WhatGoesWrongIsAnOutcomeOfTheSweep) {
                                           "--method",   describe(folder, "silent", "true"),
                                           "--examples", "0",
                                           "--db",       (folder / "out.db").string()};
-  const Ended ended = run_program(sweep, in_short_catalogue());
-  ASSERT_EQ(ended.status, 0) << ended.err;
+  run_successfully(sweep, in_short_catalogue());
   std::map<std::string, std::string> status;
   {
     const scenarios::Results results(folder / "out.db", scenarios::Results::Mode::read_only);

@@ -1,19 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test runs gate and triage as the program does, on fast draws of the sphere.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <fstream>
-
 #include "system/program.hpp"
-#include "tests/tree.hpp"
 
 namespace tumble::system_test {
 namespace {
-
-namespace fs = std::filesystem;
-using nlohmann::json;
-using ::testing::HasSubstr;
 
 /// Writes a suite of two draws.
 fs::path small_suite(const fs::path& folder) {
@@ -29,9 +19,8 @@ TEST(Gate, HoldsARunToTheAcceptedOne) {
                                         "--db", database,       "--json",    "--quiet"};
   std::vector<std::string> accept = arguments;
   accept.emplace_back("--accept");
-  EXPECT_EQ(run_program(accept, in_short_catalogue()).status, 0);
-  const Ended same = run_program(arguments, in_short_catalogue());
-  EXPECT_EQ(same.status, 0) << same.err;
+  run_successfully(accept, in_short_catalogue());
+  const Ended same = run_successfully(arguments, in_short_catalogue());
   EXPECT_EQ(same.err, "");
   const json held = json_of(same);
   EXPECT_EQ(held["verdict"], "pass");
@@ -78,10 +67,9 @@ TEST(Shrink, LeavesACaseThatTheGateHolds) {
     fs::create_symlink(test::source_dir() / "scenarios" / name, folder / "scenarios" / name);
   const fs::path file = folder / "scenarios" / "regressions" / "raw_clips.yaml";
   const Ended shrunk =
-      run_program({"shrink", "swing", "--seed", "1", "--method", "rate/raw", "--failure",
-                   "rate_error_free_median_rad_s > 0.0001", "--budget", "6", "-o", file.string(), "--json"},
-                  in_own_data);
-  ASSERT_EQ(shrunk.status, 0) << shrunk.err;
+      run_successfully({"shrink", "swing", "--seed", "1", "--method", "rate/raw", "--failure",
+                        "rate_error_free_median_rad_s > 0.0001", "--budget", "6", "-o", file.string(), "--json"},
+                       in_own_data);
   EXPECT_THAT(shrunk.err, HasSubstr("6 of at most 6: "));
   const json document = json_of(shrunk);
   EXPECT_EQ(document["runs"], 6);
@@ -107,18 +95,17 @@ TEST(Shrink, LeavesACaseThatTheGateHolds) {
   const Ended cured = run_program(gate, in_own_data);
   EXPECT_EQ(cured.status, 1);
   EXPECT_THAT(json_of(cured)["cases"][0]["fault"].get<std::string>(), HasSubstr("cured"));
-  EXPECT_EQ(run_program({"gate", "raw_clips", "--accept", "--quiet"}, in_own_data).status, 0);
+  run_successfully({"gate", "raw_clips", "--accept", "--quiet"}, in_own_data);
   EXPECT_THAT(read_file(file), HasSubstr("run: holds"));
-  EXPECT_EQ(run_program(gate, in_own_data).status, 0);
+  run_successfully(gate, in_own_data);
 }
 
 TEST(Triage, OfASuiteSaysWhichInputMattersMost) {
   const fs::path folder = test_folder();
   std::ofstream(folder / "small.yaml")
       << "name: small\ndoc: two draws\nscenarios: [swing]\nseeds: {first: 1, last: 2}\n";
-  const Ended ended = run_program({"triage", (folder / "small.yaml").string(), "--method", "rate/raw", "--failure",
-                                   "rate_error_free_median_rad_s > 0.0001", "--jobs", "2", "--json"});
-  EXPECT_EQ(ended.status, 0) << ended.err;
+  const Ended ended = run_successfully({"triage", (folder / "small.yaml").string(), "--method", "rate/raw", "--failure",
+                                        "rate_error_free_median_rad_s > 0.0001", "--jobs", "2", "--json"});
   EXPECT_THAT(ended.err, HasSubstr("gyro_exact"));
   EXPECT_THAT(ended.err, HasSubstr("has the strongest influence: its true value prevents 2 of 2 failures"));
   const json triage = json_of(ended);

@@ -1,16 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test scores a foreign TUM file that shares little or nothing with the recording.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <fstream>
-#include <sstream>
-#include <string>
-#include <vector>
-
 #include "scenarios/recordings/number_text.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "system/program.hpp"
@@ -18,17 +7,13 @@
 namespace tumble::system_test {
 namespace {
 
-namespace fs = std::filesystem;
-using ::testing::HasSubstr;
-using ::testing::Not;
-
 class GivenTrajectory : public testing::Test {
  protected:
   void SetUp() override {
     folder_ = test_folder();
     recording_ = (shared_run("roll") / "recording.h5").string();
     const std::string tum = (folder_ / "truth.tum").string();
-    ASSERT_EQ(run_program({"export", recording_, "--format", "tum", "-o", tum, "--quiet"}).status, 0);
+    run_successfully({"export", recording_, "--format", "tum", "-o", tum, "--quiet"});
     std::ifstream file(tum);
     for (std::string line; std::getline(file, line);) {
       if (!line.starts_with('#')) lines_.push_back(line);
@@ -95,8 +80,7 @@ TEST_F(GivenTrajectory, HowMuchWasComparedStandsInTheTable) {
   EXPECT_EQ(document["covered"]["poses"], half);
   // an estimate in a folder states what it is, and has no such rows
   const Ended own =
-      run_program({"score", (shared_run("roll") / "estimates" / "position-rolling").string(), recording_});
-  EXPECT_EQ(own.status, 0) << own.err;
+      run_successfully({"score", (shared_run("roll") / "estimates" / "position-rolling").string(), recording_});
   EXPECT_THAT(own.out, Not(HasSubstr("covered_share")));
 }
 
@@ -110,15 +94,14 @@ TEST_F(GivenTrajectory, AFolderThatNamesNoRecordingIsACaution) {
   nlohmann::json header = nlohmann::json::parse(read_file(given / "estimate.json"));
   header.erase("sensors_digest");
   std::ofstream(given / "estimate.json") << header;
-  const Ended ended = run_program({"score", given.string(), recording_});
-  EXPECT_EQ(ended.status, 0) << ended.err;
+  const Ended ended = run_successfully({"score", given.string(), recording_});
   EXPECT_THAT(ended.err, HasSubstr("caution: " + given.string() + " does not name its recording"));
 }
 
 TEST_F(GivenTrajectory, QuaternionsInAnotherOrderAreSaid) {
   const std::string recording = (shared_run("hill") / "recording.h5").string();
   const fs::path truth = folder_ / "hill.tum", tum = folder_ / "theirs.tum";
-  ASSERT_EQ(run_program({"export", recording, "--format", "tum", "-o", truth.string(), "--quiet"}).status, 0);
+  run_successfully({"export", recording, "--format", "tum", "-o", truth.string(), "--quiet"});
   const auto said = [&](bool w_first) {
     {
       std::ifstream as_it_is(truth);
@@ -133,8 +116,7 @@ TEST_F(GivenTrajectory, QuaternionsInAnotherOrderAreSaid) {
         file << '\n';
       }
     }
-    const Ended ended = run_program({"score", tum.string(), recording, "--frame", "body"});
-    EXPECT_EQ(ended.status, 0) << ended.err;
+    const Ended ended = run_successfully({"score", tum.string(), recording, "--frame", "body"});
     return ended.err;
   };
   EXPECT_THAT(said(true), HasSubstr("if the quaternions were stored with w first (expected order: x y z w)"));

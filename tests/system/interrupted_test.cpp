@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test checks what a verb leaves when a signal ends it.
-#include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <csignal>
-#include <cstdlib>
 
 #include "scenarios/recordings/bags/packed.hpp"
 #include "scenarios/recordings/bags/ros1_chunks.hpp"
@@ -12,8 +10,6 @@
 
 namespace tumble::system_test {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// Ends a verb by a signal as soon as `folder` contains something, and returns its exit status.
 int status_after(const std::vector<std::string>& arguments, const fs::path& folder, int number) {
@@ -32,7 +28,7 @@ TEST(Interrupted, NothingHalfDoneIsLeft) {
   const fs::path made = shared_run("hill");
   const std::string recording = (made / "recording.h5").string();
   const fs::path bags = test_folder();
-  ASSERT_EQ(run_program({"export", recording, "--format", "rosbag1", "-o", (bags / "plain.bag").string()}).status, 0);
+  run_successfully({"export", recording, "--format", "rosbag1", "-o", (bags / "plain.bag").string()});
   scenarios::copy_ros1_bag(bags / "plain.bag", bags / "lz4.bag", [](scenarios::Ros1Chunk& chunk) {
     chunk.data = scenarios::packed_lz4(chunk.data);
     chunk.compression = "lz4";
@@ -75,7 +71,7 @@ TEST(Interrupted, WhatWasThereStays) {
   EXPECT_TRUE(fs::is_directory(folder));
   EXPECT_TRUE(fs::is_empty(folder));
   const fs::path file = folder / "a.mcap";
-  ASSERT_EQ(run_program({"export", (shared_run("roll") / "recording.h5").string(), "-o", file.string()}).status, 0);
+  run_successfully({"export", (shared_run("roll") / "recording.h5").string(), "-o", file.string()});
   const std::string before = read_file(file);
   Running running({"export", recording, "-o", file.string()});
   while (std::distance(fs::directory_iterator(folder), fs::directory_iterator()) < 2 && !running.has_ended())

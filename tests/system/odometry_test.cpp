@@ -1,31 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test runs `tumble odometry` and `tumble doctor` on bags of other drivers, sound and with faults.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <fstream>
-#include <map>
-#include <span>
-#include <sstream>
-
 #include "scenarios/estimates/map_file.hpp"
 #include "scenarios/recordings/dialects/export_for.hpp"
 #include "scenarios/recordings/left_out.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "system/program.hpp"
-#include "tests/tree.hpp"
 
 namespace tumble::system_test {
 namespace {
 
-namespace fs = std::filesystem;
-using nlohmann::json;
-using ::testing::HasSubstr;
-using ::testing::Not;
-
-void scale(std::vector<Eigen::Vector3d>& rows, double factor) {
-  for (Eigen::Vector3d& row : rows) row *= factor;
+void scale(std::vector<Vector3d>& rows, double factor) {
+  for (Vector3d& row : rows) row *= factor;
 }
 
 /// Drops the sweeps for which `dropped` is true.
@@ -72,12 +57,12 @@ const Fault kFaults[] = {
     {"z axis of the IMU mirrored", "the axes of the IMU are mirrored (left-handed): the sign of the z axis is wrong",
      "",
      [](sim::ImuRecord& imu, sim::LidarRecord&) {
-       for (Eigen::Vector3d& rate : imu.gyro_rad_s) rate.z() = -rate.z();
-       for (Eigen::Vector3d& force : imu.accel_m_s2) force.z() = -force.z();
+       for (Vector3d& rate : imu.gyro_rad_s) rate.z() = -rate.z();
+       for (Vector3d& force : imu.accel_m_s2) force.z() = -force.z();
      }},
     {"gyro axes x and y swapped", "the axes", "",
      [](sim::ImuRecord& imu, sim::LidarRecord&) {
-       for (Eigen::Vector3d& rate : imu.gyro_rad_s) std::swap(rate.x(), rate.y());
+       for (Vector3d& rate : imu.gyro_rad_s) std::swap(rate.x(), rate.y());
      }},
     {"point times a hundred times too short", "point times span less than 2 %", "--time-unit",
      [](sim::ImuRecord&, sim::LidarRecord& lidar) {
@@ -108,8 +93,8 @@ const Fault kFaults[] = {
     {"gyro saturated at half of its largest rate", "the gyro is saturated", "",
      [](sim::ImuRecord& imu, sim::LidarRecord&) {
        double most = 0.0;
-       for (const Eigen::Vector3d& rate : imu.gyro_rad_s) most = std::max(most, rate.cwiseAbs().maxCoeff());
-       for (Eigen::Vector3d& rate : imu.gyro_rad_s) rate = rate.cwiseMax(-0.5 * most).cwiseMin(0.5 * most);
+       for (const Vector3d& rate : imu.gyro_rad_s) most = std::max(most, rate.cwiseAbs().maxCoeff());
+       for (Vector3d& rate : imu.gyro_rad_s) rate = rate.cwiseMax(-0.5 * most).cwiseMin(0.5 * most);
      },
      0},
 };
@@ -169,8 +154,7 @@ TEST(Odometry, WritesAllFilesOfABagThatNeedsARepair) {
   const fs::path folder = test_folder();
   const fs::path bag = bag_of(folder / "bag", "fast-lio", &kFaults[1]);
   const fs::path out = folder / "out";
-  const Ended ended = run_program({"odometry", bag.string(), "-o", out.string(), "--json"});
-  ASSERT_EQ(ended.status, 0) << ended.err;
+  const Ended ended = run_successfully({"odometry", bag.string(), "-o", out.string(), "--json"});
   for (const char* file : {"trajectory.tum", "map.ply", "map.pcd", "estimate.json", "replay.html"})
     EXPECT_GT(fs::file_size(out / file), 100u) << file;
   EXPECT_THAT(read_file(out / "map.pcd"), HasSubstr("FIELDS x y z normal_x normal_y normal_z sigma\n"));
@@ -200,7 +184,7 @@ TEST(Odometry, WritesAllFilesOfABagThatNeedsARepair) {
 
   // the estimate fits the imported recording, whose sensors have shorter names
   const std::string imported = (folder / "r.h5").string();
-  ASSERT_EQ(run_program({"import", bag.string(), "-o", imported, "--gyro-unit", "deg/s"}).status, 0);
+  run_successfully({"import", bag.string(), "-o", imported, "--gyro-unit", "deg/s"});
   EXPECT_EQ(estimate["sensors_digest"], scenarios::digest(scenarios::read_sensors(imported), nullptr));
 }
 
@@ -230,19 +214,19 @@ TEST(Odometry, AnEstimateThatItsHealthInvalidatesIsDiverged) {
   const sim::Truth truth = scenarios::read_truth(short_stroll());
   scale(sensors.imus.front().accel_m_s2, 0.5);
   scenarios::write_recording(recording, scenarios::read_info(short_stroll()), sensors, &truth);
-  const Ended estimate = run_program({"estimate", recording, "--method", "rate/tumble_lag", "-o", rates, "--json"});
-  EXPECT_EQ(estimate.status, 0) << estimate.err;
+  const Ended estimate =
+      run_successfully({"estimate", recording, "--method", "rate/tumble_lag", "-o", rates, "--json"});
   EXPECT_EQ(json_of(estimate)["status"], "diverged");
   EXPECT_EQ(json_of(run_program({"score", rates, recording, "--json"}))["status"], "diverged");
 }
 
-std::map<double, Eigen::Vector3d> positions_m(const fs::path& trajectory) {
+std::map<double, Vector3d> positions_m(const fs::path& trajectory) {
   std::ifstream file(trajectory);
-  std::map<double, Eigen::Vector3d> out;
+  std::map<double, Vector3d> out;
   for (std::string line; std::getline(file, line);) {
     std::istringstream row(line);
     double time_s = 0.0;
-    Eigen::Vector3d p_m;
+    Vector3d p_m;
     if (line.front() != '#' && row >> time_s >> p_m.x() >> p_m.y() >> p_m.z()) out[time_s] = p_m;
   }
   return out;
@@ -251,9 +235,8 @@ std::map<double, Eigen::Vector3d> positions_m(const fs::path& trajectory) {
 TEST(Odometry, AllPosesAreInTheFrameOfThePriorMap) {
   const fs::path folder = test_folder(), first = folder / "first";
   const std::string recording = short_stroll().string(), map = (folder / "moved.tumblemap").string();
-  ASSERT_EQ(run_program({"odometry", recording, "-o", first.string()}).status, 0);
-  const Eigen::Isometry3d T_MW =
-      Eigen::Translation3d(7.0, -12.0, 3.0) * Eigen::AngleAxisd(2.0, Eigen::Vector3d::UnitZ());
+  run_successfully({"odometry", recording, "-o", first.string()});
+  const Isometry3d T_MW = Eigen::Translation3d(7.0, -12.0, 3.0) * Eigen::AngleAxisd(2.0, Eigen::Vector3d::UnitZ());
   std::vector<MapPoint> points = scenarios::read_prior_map(first / "map.tumblemap");
   for (MapPoint& point : points) {
     point.position_W_m = T_MW.cast<float>() * point.position_W_m;
@@ -264,14 +247,13 @@ TEST(Odometry, AllPosesAreInTheFrameOfThePriorMap) {
   const auto expect_in_map = [&](const fs::path& out, const std::string& text, std::vector<std::string> options) {
     std::vector<std::string> command{"odometry", recording, "-o", out.string(), "--map", map, "--json"};
     command.insert(command.end(), options.begin(), options.end());
-    const Ended ended = run_program(command);
-    ASSERT_EQ(ended.status, 0) << ended.err;
+    const Ended ended = run_successfully(command);
     EXPECT_GT(json_of(ended)["health"]["prior_map_sweep"].get<int>(), 0);
     EXPECT_EQ(json_of(ended)["health"]["localised"], 1.0);
     EXPECT_THAT(ended.err, HasSubstr(text));
     EXPECT_THAT(ended.err, Not(HasSubstr("not localised")));
-    const std::map<double, Eigen::Vector3d> p_W_m = positions_m(first / "trajectory.tum"),
-                                            p_M_m = positions_m(out / "trajectory.tum");
+    const std::map<double, Vector3d> p_W_m = positions_m(first / "trajectory.tum"),
+                                     p_M_m = positions_m(out / "trajectory.tum");
     ASSERT_GT(p_M_m.size(), 300u);
     for (const auto& [time_s, position_m] : p_M_m) {
       const auto same = p_W_m.lower_bound(time_s - 1e-6);
@@ -287,18 +269,17 @@ TEST(Odometry, AllPosesAreInTheFrameOfThePriorMap) {
 TEST(Odometry, AWrongPositionOfTheLidarIsFound) {
   const fs::path folder = test_folder();
   const std::string recording = short_stroll().string();
-  const Ended right = run_program({"odometry", recording, "-o", (folder / "right").string(), "--json"});
-  ASSERT_EQ(right.status, 0) << right.err;
+  const Ended right = run_successfully({"odometry", recording, "-o", (folder / "right").string(), "--json"});
   EXPECT_FALSE(json_of(right)["health"].contains("lidar_calibration_replaced"));
   // half a metre from the position in the recording
-  const Ended wrong = run_program({"odometry", recording, "-o", (folder / "wrong").string(), "--json", "--T-body-lidar",
-                                   "-0.0045", "0.497", "0.1", "0.00497", "-0.002", "-0.707", "0.707"});
-  ASSERT_EQ(wrong.status, 0) << wrong.err;
+  const Ended wrong =
+      run_successfully({"odometry", recording, "-o", (folder / "wrong").string(), "--json", "--T-body-lidar", "-0.0045",
+                        "0.497", "0.1", "0.00497", "-0.002", "-0.707", "0.707"});
   EXPECT_EQ(json_of(wrong)["health"].value("lidar_calibration_replaced", 0.0), 1.0);
   EXPECT_THAT(wrong.err, HasSubstr("contradicts the recording: --T-body-lidar "));
   EXPECT_THAT(read_file(folder / "wrong" / "estimate.json"),
               HasSubstr("The pose before the run was (-0.0045 0.497 0.1)"));
-  const Eigen::Vector3d expected_m = positions_m(folder / "right" / "trajectory.tum").rbegin()->second;
+  const Vector3d expected_m = positions_m(folder / "right" / "trajectory.tum").rbegin()->second;
   EXPECT_LT((positions_m(folder / "wrong" / "trajectory.tum").rbegin()->second - expected_m).norm(), 0.15);
 
   // 0.3 m: the mounting hardly changes, but the change is larger than a correct mounting explains
@@ -312,9 +293,8 @@ TEST(Odometry, AWrongPositionOfTheLidarIsFound) {
 TEST(Odometry, DropsPointsInsideTheGivenBox) {
   const auto map_of = [](const std::string& corner) {
     const std::string out = (test_folder() / ("box" + corner)).string(), low = "-" + corner;
-    const Ended ended = run_program({"odometry", short_stroll().string(), "--own-body", low, low, low, corner, corner,
-                                     corner, "-o", out, "--live"});
-    EXPECT_EQ(ended.status, 0) << ended.err;
+    run_successfully({"odometry", short_stroll().string(), "--own-body", low, low, low, corner, corner, corner, "-o",
+                      out, "--live"});
     return fs::file_size(fs::path(out) / "map.ply");
   };
   EXPECT_LT(map_of("3"), map_of("0.3"));

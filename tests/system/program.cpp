@@ -2,23 +2,13 @@
 #include "system/program.hpp"
 
 #include <fcntl.h>
-#include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
-#include <fstream>
-#include <map>
-
 #include "stand_ins/short_scenario.hpp"
-#include "tests/tree.hpp"
 
 namespace tumble::system_test {
-
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -94,6 +84,12 @@ Ended run_program(const std::vector<std::string>& arguments, const std::function
   return Running(arguments, prepare).wait();
 }
 
+Ended run_successfully(const std::vector<std::string>& arguments, const std::function<void()>& prepare) {
+  const Ended ended = run_program(arguments, prepare);
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  return ended;
+}
+
 fs::path test_folder() {
   const auto* test = testing::UnitTest::GetInstance()->current_test_info();
   std::string name = std::string(test->test_suite_name()) + "_" + test->name();
@@ -142,11 +138,6 @@ fs::path short_stroll() {
     return folder / "stroll.h5";
   }();
   return recording;
-}
-
-std::string read_file(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 nlohmann::json json_of(const Ended& ended) {

@@ -1,14 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test checks the files that a sweep writes next to its database, and the report made of both.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
-
-#include <algorithm>
-#include <chrono>
-#include <fstream>
-#include <thread>
 
 #include "scenarios/sweep/results.hpp"
 #include "system/program.hpp"
@@ -16,11 +9,6 @@
 
 namespace tumble::system_test {
 namespace {
-
-namespace fs = std::filesystem;
-using nlohmann::json;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 /// Returns a page up to the Plotly bundle, which contains pictures and addresses that are not the page's.
 std::string own_part(const fs::path& page) {

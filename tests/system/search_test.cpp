@@ -1,23 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test searches failures as a user does: search, reproduce a found draw, continue with a larger budget.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdint>
-#include <filesystem>
-#include <string>
-#include <vector>
-
 #include "system/program.hpp"
 #include "system/short_sweep.hpp"
 
 namespace tumble::system_test {
 namespace {
-
-namespace fs = std::filesystem;
-using nlohmann::json;
-using ::testing::HasSubstr;
 
 constexpr const char* kMetric = "rate_error_free_median_rad_s";
 

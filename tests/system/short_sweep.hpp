@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "system/program.hpp"
 
@@ -16,13 +13,13 @@ inline Ended run_shortened(const std::vector<std::string>& arguments) {
 }
 
 /// Returns the arguments of the shared sweep: short draws of the sphere.
-inline std::vector<std::string> sweep_arguments(const std::filesystem::path& database, const std::string& seeds,
+inline std::vector<std::string> sweep_arguments(const fs::path& database, const std::string& seeds,
                                                 const std::string& examples = "0") {
   return {"sweep",   "roll", "--seeds", seeds,        "--method", "rate/raw", "--method",
           "rolling", "--db", database,  "--examples", examples,   "--json"};
 }
 
-inline nlohmann::json report_json(const std::filesystem::path& database) {
+inline nlohmann::json report_json(const fs::path& database) {
   return json_of(run_shortened({"report", database.string(), "--json"}));
 }
 

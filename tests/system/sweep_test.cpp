@@ -1,13 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test checks sweeps that are stopped and resumed, shards and their merge, and draws that are kept.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <signal.h>
-
-#include <chrono>
-#include <cstdint>
-#include <fstream>
-#include <thread>
 
 #include "system/program.hpp"
 #include "system/short_sweep.hpp"
@@ -15,11 +8,7 @@
 namespace tumble::system_test {
 namespace {
 
-namespace fs = std::filesystem;
-using nlohmann::json;
 using ::testing::AnyOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 /// Returns the scores of a report without costs.
 json comparable(json report) {

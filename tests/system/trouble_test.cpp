@@ -1,19 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test checks errors of the surroundings (paths, limits, a full standard output), and gaps in the data.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/resource.h>
-
-#include <cstdio>
-#include <fstream>
 
 #include "system/program.hpp"
 
 namespace tumble::system_test {
 namespace {
-
-namespace fs = std::filesystem;
-using ::testing::HasSubstr;
 
 void expect_one_line(const Ended& ended, const std::string& says) {
   EXPECT_EQ(ended.status, 2) << ended.err;

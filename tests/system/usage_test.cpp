@@ -1,20 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test checks help, names and listings, which a newcomer uses first.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sched.h>
-#include <cstdlib>
-#include <filesystem>
-#include <ostream>
 
 #include "system/program.hpp"
-#include "tests/tree.hpp"
 
 namespace tumble::system_test {
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 class EachVerb : public testing::TestWithParam<const char*> {};
 
@@ -38,7 +29,7 @@ TEST(Program, BeginsWithoutTheLibrariesThatFewVerbsNeed) {
   EXPECT_THAT(listed.out, HasSubstr("libmujoco"));
   for (const char* dear : {"libOSMesa", "libLLVM", "libpcl_io", "libvtk"})
     EXPECT_THAT(listed.out, Not(HasSubstr(dear)));
-  const std::filesystem::path folder = test::program().parent_path().parent_path();
+  const fs::path folder = test::program().parent_path().parent_path();
   EXPECT_THAT(read_file(folder / "lib/tumble/tumble_pcl_reader.so"), HasSubstr("libpcl_io")) << "negative control";
 }
 

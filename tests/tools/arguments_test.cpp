@@ -1,23 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/tumble/arguments.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <filesystem>
-#include <fstream>
-#include <numeric>
-
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/recordings/replace_file.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::tools {
 namespace {
 
 using scenarios::BadInput;
-using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
 TEST(ParseSeed, TakesWholeNumbersAlone) {
@@ -107,27 +99,23 @@ TEST(SelectMethods, TakesEachOnceAndRefusesUnknownOnes) {
   EXPECT_THAT([] { select_methods({"saavee"}); }, ThrowsMessage<BadInput>(HasSubstr("saave")));
 }
 
-TEST(MakeFolder, IsRefusedBelowAFileAndLeavesNothing) {
-  const std::filesystem::path folder =
-      std::filesystem::path(::testing::TempDir()) / ("tumble_write_file_" + std::to_string(getpid()));
-  std::filesystem::remove_all(folder);
+using OutputFolder = test::TemporaryFolder;
+
+TEST_F(OutputFolder, IsRefusedBelowAFileAndLeavesNothing) {
+  const fs::path folder = folder_ / "made";
   make_folder(folder);
   scenarios::replace_file(folder / "a.txt", "content");
-  std::ifstream stream(folder / "a.txt");
-  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(stream), {}), "content");
+  EXPECT_EQ(test::read_file(folder / "a.txt"), "content");
   // a path below a regular file cannot be written, even by root
   EXPECT_THAT([&] { scenarios::replace_file(folder / "a.txt" / "b", "x"); },
               ThrowsMessage<BadInput>(HasSubstr("a.txt/b")));
   EXPECT_THAT([&] { make_folder(folder / "a.txt" / "b"); }, ThrowsMessage<BadInput>(HasSubstr("a.txt/b")));
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1) << "no partial file stays";
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1) << "no partial file stays";
 }
 
 // the program rejects the path before it computes anything
-TEST(PrepareFile, RefusesWhatCannotBeOneAndLeavesNothing) {
-  const std::filesystem::path folder =
-      std::filesystem::path(::testing::TempDir()) / ("tumble_prepare_file_" + std::to_string(getpid()));
-  std::filesystem::remove_all(folder);
-  make_folder(folder);
+TEST_F(OutputFolder, PrepareFileRefusesWhatCannotBeOneAndLeavesNothing) {
+  const fs::path folder = folder_;
   make_folder(folder / "a.h5");
   EXPECT_THAT([&] { prepare_file(folder / "a.h5", {}, {".h5"}); },
               ThrowsMessage<BadInput>(HasSubstr("Is a directory")));
@@ -140,9 +128,9 @@ TEST(PrepareFile, RefusesWhatCannotBeOneAndLeavesNothing) {
         prepare_file(folder / "none" / "x.yaml", {}, {".h5", ".hdf5"});
       },
       ThrowsMessage<BadInput>(HasSubstr("x.yaml: the name of this output must end in .h5 or .hdf5")));
-  EXPECT_FALSE(std::filesystem::exists(folder / "none"));
+  EXPECT_FALSE(fs::exists(folder / "none"));
   EXPECT_NO_THROW(prepare_file(folder / "below" / "x.h5", {}, {".h5"}));
-  EXPECT_TRUE(std::filesystem::is_empty(folder / "below"));
+  EXPECT_TRUE(fs::is_empty(folder / "below"));
 }
 
 }  // namespace

@@ -1,22 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/tumble/asked.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/sweep/small_catalogue.hpp"
+#include "tests/testing.hpp"
 #include "tools/tumble/sweeping.hpp"
 
 namespace tumble::tools {
 namespace {
 
 using scenarios::BadInput;
-using ::testing::HasSubstr;
 
 constexpr const char* kAsked = "position/rolling:position/autogain_fusion:position_end_error_share";
 

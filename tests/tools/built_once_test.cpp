@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test counts how often one draw composes its world, from the simulation over the scores of maps to the pictures:
 // only composing opens the robot's MJCF file, so the test counts how often that file is opened.
-#include <gtest/gtest.h>
 #include <sys/inotify.h>
 #include <unistd.h>
-
-#include <algorithm>
-#include <array>
 
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/sweep/evaluate.hpp"
-#include "tests/temporary_folder.hpp"
-#include "tests/tree.hpp"
+#include "tests/scenarios/testing.hpp"
 #include "tools/examples/make_example.hpp"
 
 namespace tumble::tools {
@@ -33,7 +28,7 @@ sensors:
 class Openings {
  public:
   /// Closings are watched too, because the kernel merges equal events that follow each other.
-  explicit Openings(const std::filesystem::path& file) : fd_(inotify_init1(IN_NONBLOCK)) {
+  explicit Openings(const fs::path& file) : fd_(inotify_init1(IN_NONBLOCK)) {
     if (fd_ < 0 || inotify_add_watch(fd_, file.c_str(), IN_OPEN | IN_CLOSE) < 0) throw std::runtime_error("inotify");
   }
   ~Openings() { close(fd_); }
@@ -56,12 +51,11 @@ class Openings {
   int fd_;
 };
 
-class BuiltOnce : public scenarios::testing::TemporaryFolder {
+class BuiltOnce : public test::TemporaryFolder {
  protected:
   void SetUp() override {
-    TemporaryFolder::SetUp();
     write("scenarios/catalogue/short.yaml", kShort);
-    std::filesystem::copy(test::source_dir() / "models", folder_ / "models", std::filesystem::copy_options::recursive);
+    fs::copy(test::source_dir() / "models", folder_ / "models", fs::copy_options::recursive);
   }
   scenarios::DataRoot data() const { return {folder_}; }
 };

@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/report/contests.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-
+#include "tests/testing.hpp"
 #include "tools/report/badge.hpp"
 
 namespace tumble::tools {
@@ -16,8 +11,6 @@ using scenarios::Kind;
 using scenarios::MethodSummary;
 using scenarios::Section;
 using scenarios::Summary;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 constexpr const char* kRateError = "rate_error_clipped_median_rad_s";
 constexpr double kInfinite = std::numeric_limits<double>::infinity();

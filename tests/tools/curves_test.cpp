@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/report/curves.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tests/testing.hpp"
 #include "tests/tools/results_fixture.hpp"
 #include "tools/report/page.hpp"
 
@@ -17,9 +13,6 @@ namespace {
 using scenarios::find_curves;
 using scenarios::Kind;
 using scenarios::Setting;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 constexpr const char* kMedian = "rate_error_clipped_median_rad_s";
 constexpr const char* kOffset = "given.time_offset_s";

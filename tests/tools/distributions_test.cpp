@@ -1,22 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/report/distributions.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tests/testing.hpp"
 #include "tools/report/cost_html.hpp"
 
 namespace tumble::tools {
 namespace {
 
 using scenarios::motion_spreads;
-
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 std::vector<scenarios::DrawValues> draws() {
   std::vector<scenarios::DrawValues> out;

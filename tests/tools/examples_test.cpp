@@ -1,27 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/examples/example.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <fstream>
-#include <iterator>
-#include <limits>
 #include <nlohmann/json.hpp>
-#include <vector>
 
-#include "scenarios/errors.hpp"
 #include "scenarios/methods/registry.hpp"
-#include "tests/temporary_folder.hpp"
+#include "tests/scenarios/testing.hpp"
 #include "tools/examples/draw_plots.hpp"
 #include "tools/report/plots.hpp"
 
 namespace tumble::tools {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 /// Returns a recording of four samples whose gyro y axis is flat, with the estimate of raw.
 scenarios::RunResult clipped_run() {
@@ -108,19 +96,19 @@ TEST(Figure, OfAPlotKeepsGapsSpansAndWhatIsHidden) {
   EXPECT_EQ(nlohmann::json::parse(figure.layout)["shapes"][0]["x1"], 2.0);
 }
 
-bool nothing_stands_in(const std::filesystem::path& folder) {
+bool nothing_stands_in(const fs::path& folder) {
   const FoundExamples found = read_examples(folder, Pictures::read);
   return found.examples.empty() && found.unreadable.empty();
 }
 
 /// Returns whether no example is found, with the reason and the path.
-bool all_is_unreadable_in(const std::filesystem::path& folder) {
+bool all_is_unreadable_in(const fs::path& folder) {
   const FoundExamples found = read_examples(folder, Pictures::read);
   return found.examples.empty() && found.unreadable.size() == 1 &&
          found.unreadable[0].find((folder / "examples.json").string()) == 0;
 }
 
-class ExamplesTest : public scenarios::testing::TemporaryFolder {
+class ExamplesTest : public test::TemporaryFolder {
  protected:
   /// Returns an example with every field of a list, each with a different value.
   static Example sample(std::uint64_t seed) {
@@ -167,7 +155,7 @@ TEST_F(ExamplesTest, ComeBackAsTheyWereLeft) {
   EXPECT_EQ(read[0].plots[0].lines[0].x[2], 0.1);
   EXPECT_TRUE(read_examples(folder_, Pictures::left_out).examples[0].pictures[0].png.empty());
   EXPECT_EQ(read[0].replay, "hill-3-replay.html");
-  EXPECT_EQ(std::filesystem::file_size(folder_ / read[0].replay), sample(3).replay_page.size());
+  EXPECT_EQ(fs::file_size(folder_ / read[0].replay), sample(3).replay_page.size());
   EXPECT_TRUE(nothing_stands_in(folder_ / "nowhere"));
 }
 
@@ -177,7 +165,7 @@ TEST_F(ExamplesTest, AReplayThatIsGoneOrElsewhereIsRefusedAndNoneIsNone) {
   leave({without});
   EXPECT_EQ(read_examples(folder_, Pictures::read).examples.at(0).replay, "") << "as earlier versions have left it";
   leave({sample(3)});
-  std::filesystem::remove(folder_ / "hill-3-replay.html");
+  fs::remove(folder_ / "hill-3-replay.html");
   EXPECT_TRUE(all_is_unreadable_in(folder_));
   for (const char* name : {"../hill-3-replay.html", ".hidden.html", "examples.json"}) {
     Example elsewhere = sample(3);
@@ -191,16 +179,16 @@ TEST_F(ExamplesTest, WhatANewListHasNotIsRemovedAndNothingElse) {
   leave({sample(3), sample(4)});
   std::ofstream(folder_ / "mine.png") << "mine";
   leave({sample(4)});
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "hill-3-scene.png"));
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "hill-3-replay.html"));
-  EXPECT_TRUE(std::filesystem::exists(folder_ / "hill-4-scene.png"));
-  EXPECT_TRUE(std::filesystem::exists(folder_ / "hill-4-replay.html"));
-  EXPECT_TRUE(std::filesystem::exists(folder_ / "mine.png"));
+  EXPECT_FALSE(fs::exists(folder_ / "hill-3-scene.png"));
+  EXPECT_FALSE(fs::exists(folder_ / "hill-3-replay.html"));
+  EXPECT_TRUE(fs::exists(folder_ / "hill-4-scene.png"));
+  EXPECT_TRUE(fs::exists(folder_ / "hill-4-replay.html"));
+  EXPECT_TRUE(fs::exists(folder_ / "mine.png"));
 }
 
 TEST_F(ExamplesTest, AListThatIsDamagedIsRefused) {
   leave({sample(3)});
-  std::filesystem::remove(folder_ / "hill-3-scene.png");
+  fs::remove(folder_ / "hill-3-scene.png");
   EXPECT_TRUE(all_is_unreadable_in(folder_)) << "a picture is gone";
   for (const char* text : {"", "{", "[]", "{\"format\": \"other\", \"version\": 1, \"examples\": []}",
                            "{\"format\": \"tumble examples\", \"version\": 1, \"examples\": [{}]}"}) {
@@ -211,20 +199,19 @@ TEST_F(ExamplesTest, AListThatIsDamagedIsRefused) {
 
 TEST_F(ExamplesTest, WhatIsDamagedCostsTheOthersNothing) {
   leave({sample(3), sample(4), sample(5)});
-  const std::filesystem::path list = folder_ / "examples.json";
-  std::ifstream file(list);
-  const std::string whole((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  const fs::path list = folder_ / "examples.json";
+  const std::string whole = test::read_file(list);
   const auto seeds = [&] {
     std::vector<std::uint64_t> out;
     for (const Example& example : read_examples(folder_, Pictures::read).examples) out.push_back(example.seed);
     return out;
   };
   // the picture of this example is missing
-  std::filesystem::remove(folder_ / "hill-4-scene.png");
+  fs::remove(folder_ / "hill-4-scene.png");
   EXPECT_THAT(seeds(), ElementsAre(3u, 5u));
   ASSERT_EQ(read_examples(folder_, Pictures::read).unreadable.size(), 1u);
   EXPECT_THAT(read_examples(folder_, Pictures::read).unreadable[0],
-              ::testing::AllOf(HasSubstr("example 2"), HasSubstr("hill-4-scene.png")));
+              AllOf(HasSubstr("example 2"), HasSubstr("hill-4-scene.png")));
   // this example lacks a field
   std::string text = whole;
   text.replace(text.find("\"motion\""), 8, "\"notion\"");
@@ -235,32 +222,32 @@ TEST_F(ExamplesTest, WhatIsDamagedCostsTheOthersNothing) {
   EXPECT_THAT(seeds(), ElementsAre(3u));
   EXPECT_EQ(read_examples(folder_, Pictures::read).unreadable.size(), 2u) << "the cut, and the picture";
   EXPECT_EQ(set_damaged_aside(folder_), folder_ / "examples.json.damaged");
-  EXPECT_EQ(std::filesystem::file_size(folder_ / "examples.json.damaged"), whole.size() - 200);
+  EXPECT_EQ(fs::file_size(folder_ / "examples.json.damaged"), whole.size() - 200);
 }
 
 TEST_F(ExamplesTest, AFolderInAFilesPlaceIsRefused) {
   leave({sample(3)});
-  const std::filesystem::path picture = folder_ / "hill-3-scene.png", list = folder_ / "examples.json";
-  std::filesystem::remove(picture);
-  std::filesystem::create_directories(picture);
+  const fs::path picture = folder_ / "hill-3-scene.png", list = folder_ / "examples.json";
+  fs::remove(picture);
+  fs::create_directories(picture);
   EXPECT_TRUE(all_is_unreadable_in(folder_));
-  std::filesystem::remove(list);
+  fs::remove(list);
   EXPECT_TRUE(nothing_stands_in(folder_)) << "an absent list is none";
-  std::filesystem::create_directories(list);
+  fs::create_directories(list);
   EXPECT_TRUE(all_is_unreadable_in(folder_)) << "one that cannot be read is not absent";
 }
 
 TEST_F(ExamplesTest, AListNamesFilesOfItsOwnFolderAlone) {
-  const std::filesystem::path secret = folder_ / "secret.png", own = folder_ / "own";
+  const fs::path secret = folder_ / "secret.png", own = folder_ / "own";
   std::ofstream(secret) << "secret";
-  std::filesystem::create_directories(own);
+  fs::create_directories(own);
   std::string list = "{\"format\": \"tumble examples\", \"version\": 1, \"examples\": [" + to_json(sample(3)) + "]}";
   const std::string name = "hill-3-scene.png";
   list.replace(list.find(name), name.size(), "../secret.png");
   std::ofstream(own / "examples.json") << list;
   EXPECT_TRUE(all_is_unreadable_in(own));
   write_examples(own, {});
-  EXPECT_TRUE(std::filesystem::exists(secret)) << "nor is one removed";
+  EXPECT_TRUE(fs::exists(secret)) << "nor is one removed";
 }
 
 }  // namespace

@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/report/failures.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
-
 #include "scenarios/sweep/run_again.hpp"
+#include "tests/testing.hpp"
 #include "tests/tools/results_fixture.hpp"
 
 namespace tumble::tools {
@@ -15,7 +10,6 @@ namespace {
 
 using scenarios::Kind;
 using scenarios::OutcomeStatus;
-using ::testing::UnorderedElementsAre;
 
 class FailedDrawsTest : public testing::ResultsFixture {
  protected:
@@ -84,7 +78,7 @@ TEST_F(FailedDrawsTest, ThatAreKeptHaveACommandThatShowsThem) {
   store(1, "raw", OutcomeStatus::failed);
   store(2, "raw", OutcomeStatus::failed);
   const auto kept = folder_ / "a.db.files" / "kept" / "hill" / "2";
-  std::filesystem::create_directories(kept / "estimates");
+  fs::create_directories(kept / "estimates");
   std::ofstream(kept / "recording.h5") << "a recording";
   const FailedDraws failed = found();
   ASSERT_EQ(failed.shown.size(), 2u);

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test checks a page's figures and the tables next to them: how they show failed draws and distinguish methods.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <nlohmann/json.hpp>
-#include <set>
-#include <string>
 
+#include "tests/testing.hpp"
 #include "tests/tools/some_summary.hpp"
 #include "tools/pictures/colours.hpp"
 #include "tools/report/page.hpp"
@@ -20,8 +16,6 @@ using scenarios::Kind;
 using scenarios::MetricSummary;
 using scenarios::Section;
 using scenarios::Summary;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 TEST(BoxFigure, HasATracePerMethodWithEveryDraw) {
   const Figure figure = box_figure(page_summary("hill"), Kind::rate, "rate_error_clipped_median_rad_s", "");

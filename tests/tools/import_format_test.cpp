@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "scenarios/errors.hpp"
-#include "tests/temporary_folder.hpp"
+#include "tests/scenarios/testing.hpp"
 #include "tools/tumble/import_options.hpp"
 
 namespace tumble::tools {
 namespace {
 
-class ImportFormat : public scenarios::testing::TemporaryFolder {
+class ImportFormat : public test::TemporaryFolder {
  protected:
   std::string format(const std::string& name) const {
     ImportOptions options;
@@ -44,8 +40,8 @@ TEST_F(ImportFormat, TheContentCountsWithoutAnEndingOrAgainstIt) {
   EXPECT_EQ(format("xsens.txt"), "csv");
   EXPECT_EQ(format("poses.txt"), "tum");
   write("run.dat", "1 2 3\n");
-  EXPECT_THAT(format("run.dat"), ::testing::HasSubstr("the file name does not reveal the format; give --format"));
-  EXPECT_THAT(format("absent.dat"), ::testing::HasSubstr("the file does not exist"));
+  EXPECT_THAT(format("run.dat"), HasSubstr("the file name does not reveal the format; give --format"));
+  EXPECT_THAT(format("absent.dat"), HasSubstr("the file does not exist"));
 }
 
 TEST_F(ImportFormat, AFolderOfBagsIsOneBagInParts) {
@@ -54,9 +50,9 @@ TEST_F(ImportFormat, AFolderOfBagsIsOneBagInParts) {
   write("loose/run_0.mcap", ""), write("loose/run_1.mcap", "");
   EXPECT_EQ(format("loose"), "rosbag2");
   write("loose/run_0.bag", "");
-  EXPECT_THAT(format("loose"), ::testing::HasSubstr("this folder contains files of the formats"));
-  std::filesystem::create_directory(folder_ / "empty");
-  EXPECT_THAT(format("empty"), ::testing::HasSubstr("contains no .ply, .pcd, .vtk"));
+  EXPECT_THAT(format("loose"), HasSubstr("this folder contains files of the formats"));
+  fs::create_directory(folder_ / "empty");
+  EXPECT_THAT(format("empty"), HasSubstr("contains no .ply, .pcd, .vtk"));
 }
 
 }  // namespace

@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/pictures/map_pictures.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <limits>
-#include <stdexcept>
-
+#include "tests/testing.hpp"
 #include "tests/tools/replays.hpp"
 
 namespace tumble::tools {
@@ -34,19 +29,19 @@ sim::Truth straight_path() {
 
 /// Returns the truth in a turned and moved world, with a map of points at two heights there.
 scenarios::Estimate estimate_elsewhere(const sim::Truth& truth) {
-  const Eigen::Isometry3d T_VW(Eigen::Translation3d(3, -4, 1) * Eigen::AngleAxisd(1.1, Eigen::Vector3d::UnitZ()));
+  const Isometry3d T_VW(Eigen::Translation3d(3, -4, 1) * Eigen::AngleAxisd(1.1, Eigen::Vector3d::UnitZ()));
   scenarios::Estimate estimate;
   estimate.frame = scenarios::Frame::body;
   for (std::size_t k = 0; k < truth.p_WB_m.size(); ++k) {
     PoseState pose;
     pose.time_ns = static_cast<std::int64_t>(k) * truth.period_ns;
     pose.position_W_m = T_VW * truth.p_WB_m[k];
-    pose.orientation_W = Eigen::Quaterniond(T_VW.linear()) * truth.q_WB[k];
+    pose.orientation_W = Quaterniond(T_VW.linear()) * truth.q_WB[k];
     estimate.poses.push_back(pose);
   }
   for (const double height_m : {0.0, 0.0, 0.0, 0.4}) {
     MapPoint point;
-    point.position_W_m = (T_VW * Eigen::Vector3d(1.0, 0.5, height_m)).cast<float>();
+    point.position_W_m = (T_VW * Vector3d(1.0, 0.5, height_m)).cast<float>();
     estimate.map.push_back(point);
   }
   MapPoint lost;
@@ -72,7 +67,7 @@ TEST(ErrorMap, IsComparedWithTheTrueSurfaceInTheTruthsWorld) {
   const sim::Truth truth = straight_path();
   const ErrorMap map = map_by_error("slam/test", estimate_elsewhere(truth), truth, surface());
   ASSERT_EQ(map.points_W_m.size(), 4u) << "the point that is none is left out";
-  EXPECT_NEAR((map.points_W_m[3] - Eigen::Vector3f(1.0f, 0.5f, 0.4f)).norm(), 0.0f, 1e-5f);
+  EXPECT_NEAR((map.points_W_m[3] - Vector3f(1.0f, 0.5f, 0.4f)).norm(), 0.0f, 1e-5f);
   EXPECT_NEAR(map.error_m[0], 0.0f, 1e-5f);
   EXPECT_NEAR(map.error_m[3], 0.4f, 1e-5f);
   EXPECT_NEAR(map.share_within(0.1f), 0.75, 1e-12);

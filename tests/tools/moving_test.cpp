@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/pictures/moving.hpp"
 
-#include <gtest/gtest.h>
 #include <webp/demux.h>
 
-#include <array>
-#include <cstdint>
-#include <memory>
-#include <stdexcept>
-#include <vector>
-
 #include "scenarios/errors.hpp"
+#include "tests/testing.hpp"
 #include "tools/pictures/webp.hpp"
 
 namespace tumble::tools {

@@ -2,15 +2,10 @@
 #include "tools/report/page.hpp"
 #include "tools/report/sensitivity_html.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <limits>
 #include <nlohmann/json.hpp>
-#include <set>
-#include <string>
 
 #include "scenarios/summary/comparison.hpp"
+#include "tests/testing.hpp"
 #include "tests/tools/some_summary.hpp"
 #include "tools/report/plots.hpp"
 
@@ -20,8 +15,6 @@ namespace {
 using scenarios::Kind;
 using scenarios::MetricSummary;
 using scenarios::Summary;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 /// Returns an example with one picture, one plot and a legend, under names that would end an element.
 ShownExample evil_example(const std::string& evil) {

@@ -1,22 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test checks that the palette's colours are distinguishable by everybody: the distances are in CIELAB, as seen by
 // normal, protan, deutan and tritan eyes.
-#include <gtest/gtest.h>
-
-#include <Eigen/Core>
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-#include <vector>
-
+#include "tests/testing.hpp"
 #include "tools/pictures/colours.hpp"
 
 namespace tumble::tools {
 namespace {
-
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
 
 /// Converts sRGB to linear light (IEC 61966-2-1).
 Vector3d linear(Colour colour) {

@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/pictures/paths.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
+#include "tests/testing.hpp"
 
 namespace tumble::tools {
 namespace {
 
 using Eigen::AngleAxisd;
-using Eigen::Isometry3d;
-using Eigen::Quaterniond;
-using Eigen::Vector3d;
 
 constexpr std::int64_t kPeriodNs = 1000000;
 

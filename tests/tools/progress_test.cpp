@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/tumble/progress.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <limits>
+#include "tests/testing.hpp"
 
 namespace tumble::tools {
 namespace {
 
 using scenarios::SweepProgress;
-using ::testing::ElementsAre;
 
 SweepProgress progress(std::uint64_t done, std::uint64_t total, double elapsed_s, double left_s) {
   SweepProgress p;

@@ -1,18 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The report is a function of results: the test checks that its sources name no scenario, no method and no metric.
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <regex>
-#include <set>
-#include <string>
-
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/estimates/method.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/scoring/score.hpp"
+#include "tests/testing.hpp"
 #include "tests/tree.hpp"
 
 namespace tumble::tools {
@@ -48,13 +40,11 @@ TEST(ReportSources, NameNoScenarioNoMethodAndNoMetric) {
   const std::set<std::string> names = known_names();
   ASSERT_GT(names.size(), 80u) << "too few to mean anything";
   std::size_t files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(test::source_dir() / "tools" / "report")) {
+  for (const auto& entry : fs::directory_iterator(test::source_dir() / "tools" / "report")) {
     const std::string extension = entry.path().extension().string();
     if (extension != ".cpp" && extension != ".hpp") continue;
     ++files;
-    std::ifstream file(entry.path());
-    const std::string source((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-    EXPECT_EQ(names_in(source, names), std::set<std::string>{}) << entry.path();
+    EXPECT_EQ(names_in(test::read_file(entry.path()), names), std::set<std::string>{}) << entry.path();
   }
   EXPECT_GT(files, 10u);
   // negative controls

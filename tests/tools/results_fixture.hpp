@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "scenarios/sweep/results.hpp"
-#include "tests/temporary_folder.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::tools::testing {
 
@@ -26,13 +20,10 @@ inline scenarios::Outcome hill_outcome(std::uint64_t seed, scenarios::Kind kind,
 }
 
 /// ResultsFixture is a test with a new results database.
-class ResultsFixture : public scenarios::testing::TemporaryFolder {
+class ResultsFixture : public test::TemporaryFolder {
  protected:
-  void SetUp() override {
-    TemporaryFolder::SetUp();
-    results_.emplace(database(), scenarios::Results::Mode::create_or_append);
-  }
-  std::filesystem::path database() const { return folder_ / "a.db"; }
+  void SetUp() override { results_.emplace(database(), scenarios::Results::Mode::create_or_append); }
+  fs::path database() const { return folder_ / "a.db"; }
   scenarios::Results& results() { return *results_; }
   const scenarios::Results& results() const { return *results_; }
 

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "scenarios/summary/summary.hpp"
+#include "tests/testing.hpp"
 
 /// The functions here make summaries of two methods on two draws, for tests of pages and figures.
 namespace tumble::tools {

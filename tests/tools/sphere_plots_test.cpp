@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/registry.hpp"
+#include "tests/testing.hpp"
 #include "tools/examples/draw_plots.hpp"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
 
 namespace tumble::tools {
 namespace {
@@ -54,7 +49,7 @@ scenarios::RunResult sample_roll() {
     const auto k = static_cast<std::size_t>(time_ns / kPeriod_ns);
     AttitudeState attitude;
     attitude.time_ns = time_ns;
-    attitude.orientation_W = Eigen::AngleAxisd(sign * kTremor_rad, Eigen::Vector3d(1.0, 1.0, 0.0).normalized());
+    attitude.orientation_W = Eigen::AngleAxisd(sign * kTremor_rad, Vector3d(1.0, 1.0, 0.0).normalized());
     run.estimates[0].attitudes.push_back(attitude);
     sign = -sign;
     PoseState pose;

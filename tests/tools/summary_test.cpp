@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/report/score_html.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-
+#include "tests/testing.hpp"
 #include "tests/tools/results_fixture.hpp"
 
 namespace tumble::tools {
@@ -19,7 +14,6 @@ using scenarios::MetricSummary;
 using scenarios::Section;
 using scenarios::summarize;
 using scenarios::Summary;
-using ::testing::ElementsAre;
 
 constexpr const char* kError = "rate_error_clipped_median_rad_s";
 

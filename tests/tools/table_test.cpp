@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/tables/table.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
-#include <sstream>
-#include <stdexcept>
 
+#include "tests/testing.hpp"
 #include "tests/tools/results_fixture.hpp"
 #include "tools/tumble/score_tables.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/tumble/session.hpp"
 
-#include <gtest/gtest.h>
+#include "tests/testing.hpp"
 
 namespace tumble::tools {
 namespace {

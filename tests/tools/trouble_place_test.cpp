@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/tumble/chosen_method.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "scenarios/methods/bridge.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::tools {
 namespace {

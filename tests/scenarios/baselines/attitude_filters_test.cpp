@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
-
 #include "estimator/attitude/filter_contract.hpp"
 #include "scenarios/baselines/attitude/complementary.hpp"
+#include "tests/testing.hpp"
 #include "tumble/attitude/detail/vqf.hpp"
 
 namespace tumble::baselines {
@@ -38,12 +32,12 @@ TYPED_TEST(Baseline, RefusesBadParams) {
 
 TYPED_TEST(Baseline, FollowsAPerfectTurnExactly) {
   const TypeParam filter({});
-  const Eigen::Vector3d rate(0.7, -1.1, 0.4);
+  const Vector3d rate(0.7, -1.1, 0.4);
   typename TypeParam::State state;
   double error_max_rad = 0.0;
   for (int k = 0; k <= 5000; ++k) {
-    const Eigen::Quaterniond truth = so3::exp(rate * (k * seconds(kPeriod_ns)));
-    const Eigen::Vector3d f_I = truth.conjugate() * Eigen::Vector3d(0, 0, kGravity_m_s2);
+    const Quaterniond truth = so3::exp(rate * (k * seconds(kPeriod_ns)));
+    const Vector3d f_I = truth.conjugate() * Vector3d(0, 0, kGravity_m_s2);
     ASSERT_TRUE(filter.step({k * kPeriod_ns, rate, f_I, 0}, state).ok());
     error_max_rad = std::max(error_max_rad, so3::logarithm(truth.conjugate() * state.q_WI).norm());
   }
@@ -87,10 +81,10 @@ TEST(Complementary, CorrectionTurnsNoHeadingIn) {
   Complementary::State state;
   state.q_WI = so3::exp({0.0, 0.0, 0.4}) * so3::exp({0.3, -1.2, 0.0});
   state.started = true;
-  const Eigen::Quaterniond start = state.q_WI;
+  const Quaterniond start = state.q_WI;
   for (int k = 1; k <= 1000; ++k)
     ASSERT_TRUE(filter.step({k * kPeriod_ns, {0, 0, 0}, {0, 0, kGravity_m_s2}, 0}, state).ok());
-  const Eigen::Vector3d turned = so3::logarithm(state.q_WI * start.conjugate());
+  const Vector3d turned = so3::logarithm(state.q_WI * start.conjugate());
   EXPECT_NEAR(turned.z(), 0.0, 1e-12);
   EXPECT_GT(turned.norm(), 1.0);
 }
@@ -123,7 +117,7 @@ TEST(Vqf, OscillatingAccelerationAveragesOut) {
   double worst = 0.0;
   for (int k = 0; k <= 10000; ++k) {
     const double t = k * seconds(kPeriod_ns);
-    const Eigen::Vector3d f(3.0 * std::sin(2.0 * std::numbers::pi * t), 0.0, kGravity_m_s2);
+    const Vector3d f(3.0 * std::sin(2.0 * std::numbers::pi * t), 0.0, kGravity_m_s2);
     ASSERT_TRUE(filter.step({k * kPeriod_ns, {0, 0, 0}, f, 0}, state).ok());
     if (t > 30.0) worst = std::max(worst, tilt(state.q_WI));
   }

@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/baselines/attitude/autogain.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
-#include <vector>
-
 #include "estimator/attitude/filter_contract.hpp"
 #include "scenarios/baselines/sphere_log.hpp"
 #include "stand_ins/stand_ins.hpp"
+#include "tests/testing.hpp"
 #include "tumble/attitude/detail/strapdown.hpp"
 
 namespace tumble::baselines {
@@ -51,7 +44,7 @@ TEST(Autogain, FactorsOfTheCodeHaveADeadZoneInTheGainsAlone) {
 TEST(Autogain, SmoothProfileDoesNotDependOnTheMounting) {
   const Autogain smooth({.profile = AutogainProfile::smooth});
   const Autogain paper({});
-  const Eigen::Vector3d diagonal = 2.1 / std::numbers::sqrt3 * Eigen::Vector3d::Ones();
+  const Vector3d diagonal = 2.1 / std::numbers::sqrt3 * Eigen::Vector3d::Ones();
   EXPECT_NEAR(smooth.gains(diagonal, kPeriod_s).beta, 1.0, 1e-12);
   EXPECT_NEAR(smooth.gains({1.1, 0, 0}, kPeriod_s).beta, 0.5, 1e-12);
   EXPECT_NEAR(paper.gains(diagonal, kPeriod_s).beta, 0.31, 0.005) << "the paper's does: 1 about one axis";
@@ -64,7 +57,7 @@ TEST(Autogain, ShareFollowsTheTimeConstantAtAnyPeriod) {
   EXPECT_NEAR(1.0 - once, std::pow(1.0 - half, 2), 1e-15);
 }
 
-double tilt_after_rest(const Autogain::Params& params, const Eigen::Quaterniond& start) {
+double tilt_after_rest(const Autogain::Params& params, const Quaterniond& start) {
   const Autogain filter(params);
   Autogain::State state;
   state.q_WI = start;
@@ -76,7 +69,7 @@ double tilt_after_rest(const Autogain::Params& params, const Eigen::Quaterniond&
 }
 
 TEST(Autogain, LevelsRollAndPitchUnlessTheRollErrorIsAskedFor) {
-  const Eigen::Quaterniond roll = so3::exp({0.4, 0, 0}), pitch = so3::exp({0, 0.4, 0});
+  const Quaterniond roll = so3::exp({0.4, 0, 0}), pitch = so3::exp({0, 0.4, 0});
   EXPECT_NEAR(tilt_after_rest({}, roll), 0.0, 1e-9);
   EXPECT_NEAR(tilt_after_rest({}, pitch), 0.0, 1e-9);
   EXPECT_NEAR(tilt_after_rest({.roll_error_2021 = true}, roll), 0.4, 1e-9);
@@ -89,8 +82,8 @@ TEST(Autogain, PassesPitchOfNinetyDegrees) {
     const Autogain filter({.profile = profile});
     Autogain::State state;
     for (int k = 0; k <= 2000; ++k) {  // a rotation of 6.4 rad about y at 0.4 rad/s
-      const Eigen::Quaterniond truth = so3::exp({0.0, 0.4 * 0.008 * k, 0.0});
-      const Eigen::Vector3d f = truth.conjugate() * Eigen::Vector3d(0, 0, kGravity_m_s2);
+      const Quaterniond truth = so3::exp({0.0, 0.4 * 0.008 * k, 0.0});
+      const Vector3d f = truth.conjugate() * Vector3d(0, 0, kGravity_m_s2);
       ASSERT_TRUE(filter.step({k * TimeNs{8'000'000}, {0, 0.4, 0}, f, 0}, state).ok());
       ASSERT_TRUE(state.q_WI.coeffs().allFinite());
       // Madgwick's step compares the force with the attitude before the turn and pulls back by 2 gamma dt each time;

@@ -1,15 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/baselines/attitude/madgwick.hpp"
 
-#include <gtest/gtest.h>
-
-#include <Eigen/Dense>
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
-
 #include "estimator/attitude/filter_contract.hpp"
+#include "tests/testing.hpp"
 #include "tumble/attitude/detail/strapdown.hpp"
 
 namespace tumble::baselines {
@@ -21,13 +14,12 @@ using testing::tilt;
 
 /// This is a second implementation of the published step: q is (w, x, y, z), the rate is a 4x4 matrix, the objective
 /// uses the rotation matrix R(q), and its gradient comes from central differences instead of a published Jacobian.
-Eigen::Vector4d reference_step(const Eigen::Vector4d& q, const Eigen::Vector3d& w, const Eigen::Vector3d& f,
-                               double gain, double dt) {
-  const Eigen::Vector3d up = f.normalized();
+Eigen::Vector4d reference_step(const Eigen::Vector4d& q, const Vector3d& w, const Vector3d& f, double gain, double dt) {
+  const Vector3d up = f.normalized();
   const auto objective = [&up](const Eigen::Vector4d& p) {
     // the third row of R(q) has the form of the report (eq 25); published forms differ where |q| is not 1
-    const Eigen::Vector3d row(2 * (p[1] * p[3] - p[0] * p[2]), 2 * (p[0] * p[1] + p[2] * p[3]),
-                              2 * (0.5 - p[1] * p[1] - p[2] * p[2]));
+    const Vector3d row(2 * (p[1] * p[3] - p[0] * p[2]), 2 * (p[0] * p[1] + p[2] * p[3]),
+                       2 * (0.5 - p[1] * p[1] - p[2] * p[2]));
     return 0.5 * (row - up).squaredNorm();
   };
   Eigen::Vector4d gradient;
@@ -49,7 +41,7 @@ TEST(Madgwick, AgreesWithAMatrixFormStepByStep) {
     const Madgwick::State before = state;
     ASSERT_TRUE(filter.step(sample, state).ok());
     if (!before.started) continue;
-    const Eigen::Quaterniond& p = before.q_WI;
+    const Quaterniond& p = before.q_WI;
     const Eigen::Vector4d expected = reference_step({p.w(), p.x(), p.y(), p.z()}, sample.angular_velocity_rad_s,
                                                     sample.specific_force_m_s2, gain, seconds(kPeriod_ns));
     const Eigen::Vector4d got(state.q_WI.w(), state.q_WI.x(), state.q_WI.y(), state.q_WI.z());
@@ -99,7 +91,7 @@ TEST(Madgwick, ChattersByTwiceGainTimesStepOnPerfectData) {
   state.started = true;
   double previous = 0.0;
   for (int k = 1; k <= 50; ++k) {
-    const Eigen::Quaterniond before = state.q_WI;
+    const Quaterniond before = state.q_WI;
     ASSERT_TRUE(filter.step({k * kPeriod_ns, {0, 0, 0}, {0, 0, kGravity_m_s2}, 0}, state).ok());
     // the filter makes steps of fixed size to and fro about the truth: the sign alternates and the size never shrinks
     const double moved = so3::logarithm(before.conjugate() * state.q_WI).x();

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/baselines/mapping/published_chain.hpp"
 
-#include <gtest/gtest.h>
-
-#include <vector>
-
 #include "tests/estimator/mapping/synthetic_room.hpp"
+#include "tests/testing.hpp"
 #include "tumble/common/parameters.hpp"
 
 namespace tumble::baselines {
@@ -81,10 +78,10 @@ TEST(PublishedChain, FollowsAGentleMotionAndDrawsItsMap) {
     EXPECT_EQ(reports.back().verdict, k == 0 ? SweepVerdict::first : SweepVerdict::registered) << k;
   }
   const auto pose = [](const PoseState& state) {
-    return Eigen::Isometry3d(Eigen::Translation3d(state.position_W_m) * state.orientation_W);
+    return Isometry3d(Eigen::Translation3d(state.position_W_m) * state.orientation_W);
   };
-  const Eigen::Isometry3d moved = pose(reports.front().pose).inverse() * pose(reports.back().pose);
-  const Eigen::Isometry3d truly = room.motion.pose(0.1).inverse() * room.motion.pose(0.1 * 15);
+  const Isometry3d moved = pose(reports.front().pose).inverse() * pose(reports.back().pose);
+  const Isometry3d truly = room.motion.pose(0.1).inverse() * room.motion.pose(0.1 * 15);
   EXPECT_GT(truly.translation().norm(), 0.1) << "or nothing was asked";
   EXPECT_LT((moved.translation() - truly.translation()).norm(), 0.05);
   EXPECT_GT(chain.map().size(), 1000u);

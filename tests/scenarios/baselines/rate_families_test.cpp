@@ -1,23 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test runs the interpolation of clipped readings on a swing in closed form, for which it was made.
-#include <gtest/gtest.h>
-
-#include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <numbers>
-#include <vector>
-
 #include "scenarios/baselines/angular_velocity/clipped_baseline.hpp"
+#include "tests/testing.hpp"
 #include "tumble/angular_velocity/detail/partial_saturation.hpp"
 #include "tumble/angular_velocity/detail/rate_observation.hpp"
 
 namespace tumble::baselines {
 namespace {
-
-using Eigen::Vector3d;
 
 constexpr double kRail = 10.5, kPeriod = 0.01, kGravity = 9.80665;
 

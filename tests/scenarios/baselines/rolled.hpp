@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <cstddef>
-
 #include "estimator/rolling/rolling_truth.hpp"
+#include "tests/testing.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble::baselines {

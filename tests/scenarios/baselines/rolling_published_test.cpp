@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <numbers>
-
 #include "estimator/rolling/rolling_truth.hpp"
 #include "scenarios/baselines/rolling/autogain_fusion.hpp"
 #include "tests/scenarios/baselines/rolled.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::baselines {
 namespace {
@@ -27,7 +22,7 @@ TEST(AutogainFusion, SplitRunsAndSignOfQ) {
     EXPECT_FALSE(carried == whole);
     EXPECT_TRUE(whole == rolled(method, truth, cut, count, carried)) << cut;
   }
-  for (Eigen::Quaterniond& q : truth.q_WI) q.coeffs() = -q.coeffs();
+  for (Quaterniond& q : truth.q_WI) q.coeffs() = -q.coeffs();
   EXPECT_EQ(rolled(method, truth).p_WG_m, whole.p_WG_m);
 }
 
@@ -36,20 +31,20 @@ TEST(AutogainFusion, RefusesBadInputAndKeepsItsState) {
   const RollingTruth truth =
       testing::roll({.velocity_m_s = l_shape, .contact_velocity_m_s = no_slip, .duration_s = 3.0});
   const auto before = rolled(method, truth, 0, 700);
-  const auto refused = [&](const ImuSample& sample, const Eigen::Quaterniond& q) {
+  const auto refused = [&](const ImuSample& sample, const Quaterniond& q) {
     auto state = before;
     const ErrorCode error_code = method.step(sample, q, state).error_code;
     EXPECT_TRUE(state == before) << to_string(error_code);
     return error_code;
   };
   const ImuSample good = truth.samples[700];
-  const Eigen::Quaterniond q = truth.q_WI[700];
+  const Quaterniond q = truth.q_WI[700];
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   ImuSample bad = good;
   bad.specific_force_m_s2.y() = kNan;
   EXPECT_EQ(refused(bad, q), ErrorCode::non_finite);
-  EXPECT_EQ(refused(good, Eigen::Quaterniond(1, kNan, 0, 0)), ErrorCode::non_finite);
-  EXPECT_EQ(refused(good, Eigen::Quaterniond(0.5, 0, 0, 0)), ErrorCode::out_of_range);
+  EXPECT_EQ(refused(good, Quaterniond(1, kNan, 0, 0)), ErrorCode::non_finite);
+  EXPECT_EQ(refused(good, Quaterniond(0.5, 0, 0, 0)), ErrorCode::out_of_range);
   bad = good;
   bad.time_ns = before.last_time_ns;
   EXPECT_EQ(refused(bad, q), ErrorCode::time_order);
@@ -110,7 +105,7 @@ TEST(AutogainFusion, ClimbingFasterThanRollingIsLimitedWithoutNaN) {
 TEST(AutogainFusion, MountingDoesNotMatterWithTheNormBasedFactor) {
   const RollingTruth truth = testing::roll({.velocity_m_s = l_shape, .contact_velocity_m_s = no_slip});
   RollingTruth turned = truth;
-  const Eigen::Quaterniond q_IB = so3::exp({0.4, -1.3, 0.9});
+  const Quaterniond q_IB = so3::exp({0.4, -1.3, 0.9});
   for (std::size_t k = 0; k < truth.samples.size(); ++k) {
     turned.samples[k].angular_velocity_rad_s = q_IB * truth.samples[k].angular_velocity_rad_s;
     turned.samples[k].specific_force_m_s2 = q_IB * truth.samples[k].specific_force_m_s2;
@@ -127,12 +122,12 @@ TEST(AutogainFusion, MountingDoesNotMatterWithTheNormBasedFactor) {
 
 TEST(AutogainFusion, EachSwitchChangesTheResult) {
   // the start is turned, so that no world axis is a body axis
-  const RollingTruth truth = testing::roll({.velocity_m_s = [](double t) -> Eigen::Vector3d {
+  const RollingTruth truth = testing::roll({.velocity_m_s = [](double t) -> Vector3d {
                                               return Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ()) * l_shape(t);
                                             },
                                             .contact_velocity_m_s = no_slip,
                                             .q_start = so3::exp({0.3, 0.2, 0.1})});
-  const Eigen::Vector3d printed = rolled(AutogainFusion({}), truth).p_WG_m;
+  const Vector3d printed = rolled(AutogainFusion({}), truth).p_WG_m;
   const AutogainFusion::Params switched[] = {{.integrate_in_body = false}, {.direction_only = true},
                                              {.recursive_coupling = true}, {.limit_per_axis = false},
                                              {.shrink_per_axis = false},   {.vertical_by_norm = true}};

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/baselines/sphere_log.hpp"
 
-#include <algorithm>
-#include <fstream>
-#include <sstream>
-#include <stdexcept>
+#include "tests/testing.hpp"
 
 namespace tumble::testing {
 
@@ -56,9 +53,9 @@ SphereLog read_sphere_log(const std::string& path) {
     ImuSample sample;
     sample.time_ns = parse_stamp(cells[stamp]) - start_ns;
     sample.angular_velocity_rad_s = {number(w[0]), number(w[1]), number(w[2])};
-    sample.specific_force_m_s2 = kOneG_m_s2 * Eigen::Vector3d(number(f[0]), number(f[1]), number(f[2]));
+    sample.specific_force_m_s2 = kOneG_m_s2 * Vector3d(number(f[0]), number(f[1]), number(f[2]));
     log.samples.push_back(sample);
-    log.q_WI.push_back(Eigen::Quaterniond(number(q[0]), number(q[1]), number(q[2]), number(q[3])).normalized());
+    log.q_WI.push_back(Quaterniond(number(q[0]), number(q[1]), number(q[2]), number(q[3])).normalized());
   }
   return log;
 }

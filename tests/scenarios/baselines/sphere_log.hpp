@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Geometry>
-#include <string>
-#include <vector>
-
+#include "tests/testing.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble::testing {
@@ -13,7 +10,7 @@ namespace tumble::testing {
 /// and the attitude after each sample.
 struct SphereLog {
   std::vector<ImuSample> samples;
-  std::vector<Eigen::Quaterniond> q_WI;
+  std::vector<Quaterniond> q_WI;
 };
 
 /// Reads the log by the column names in its header line. Throws std::runtime_error when the log cannot be read.

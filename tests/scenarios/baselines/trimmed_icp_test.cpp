@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/baselines/mapping/trimmed_icp.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "tests/estimator/mapping/synthetic_room.hpp"
+#include "tests/testing.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble::baselines {
@@ -17,10 +13,10 @@ VoxelMap map_of(const test::Room& room) {
   test::Motion still;
   still.rest_s = 1e9;
   for (int place = 0; place < 9; ++place) {
-    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+    Isometry3d T = Eigen::Isometry3d::Identity();
     const int column = place % 3, row = place / 3;
-    T.translation() = Eigen::Vector3d(1.5 * (column - 1), 1.0 * (row - 1), 0.2 * place);
-    T.linear() = so3::exp(0.7 * place * Eigen::Vector3d(1.0, 0.5, 0.2)).toRotationMatrix();
+    T.translation() = Vector3d(1.5 * (column - 1), 1.0 * (row - 1), 0.2 * place);
+    T.linear() = so3::exp(0.7 * place * Vector3d(1.0, 0.5, 0.2)).toRotationMatrix();
     for (const LidarPoint& point : test::make_sweep(room, still, T, place)) {
       map.insert((T * point.position_L_m.cast<double>()).cast<float>(), 0.02f, 0);
     }
@@ -31,7 +27,7 @@ VoxelMap map_of(const test::Room& room) {
 std::vector<TrimmedIcp::Point> sweep_of(const test::Room& room) {
   test::Motion still;
   still.rest_s = 1e9;
-  const Eigen::Isometry3d T(so3::exp({0.5, -0.4, 0.3}));
+  const Isometry3d T(so3::exp({0.5, -0.4, 0.3}));
   std::vector<TrimmedIcp::Point> points;
   int k = 0;
   for (const LidarPoint& point : test::make_sweep(room, still, T, 40)) {
@@ -42,8 +38,8 @@ std::vector<TrimmedIcp::Point> sweep_of(const test::Room& room) {
 
 TEST(TrimmedIcp, FindsAKnownPose) {
   TrimmedIcp icp(TrimmedIcp::Params{});
-  Eigen::Isometry3d prior(so3::exp({0.02, -0.02, 0.03}));
-  prior.translation() = Eigen::Vector3d(0.15, -0.1, 0.08);
+  Isometry3d prior(so3::exp({0.02, -0.02, 0.03}));
+  prior.translation() = Vector3d(0.15, -0.1, 0.08);
   const auto result =
       icp.align(sweep_of(test::Room::box_with_pillars()), prior, map_of(test::Room::box_with_pillars()));
   ASSERT_EQ(result.verdict, RegistrationVerdict::converged);
@@ -61,7 +57,7 @@ TEST(TrimmedIcp, NoMatchesAndFarCorrectionsAreNoSuccess) {
             RegistrationVerdict::too_few_matches);
   TrimmedIcp::Params strict;
   strict.correction_max_m = 0.05;
-  Eigen::Isometry3d prior = Eigen::Isometry3d::Identity();
+  Isometry3d prior = Eigen::Isometry3d::Identity();
   prior.translation().x() = 0.3;
   TrimmedIcp bounded(strict);
   const auto result = bounded.align(points, prior, map_of(test::Room::box()));
@@ -71,7 +67,7 @@ TEST(TrimmedIcp, NoMatchesAndFarCorrectionsAreNoSuccess) {
 
 TEST(TrimmedIcp, ACorridorLooksLikeASuccess) {
   TrimmedIcp icp(TrimmedIcp::Params{});
-  Eigen::Isometry3d prior = Eigen::Isometry3d::Identity();
+  Isometry3d prior = Eigen::Isometry3d::Identity();
   prior.translation().x() = 0.4;
   const auto result = icp.align(sweep_of(test::Room::corridor()), prior, map_of(test::Room::corridor()));
   EXPECT_EQ(result.verdict, RegistrationVerdict::converged);  // the known error of the published chain, reproduced

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "scenarios/bench/bench_result.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::scenarios::testing {
 

@@ -1,21 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/cases/complication.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <set>
-
 #include "scenarios/draw/fixed_scenario.hpp"
-#include "tests/scenarios/tree_data.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
 
 Scenario fixed(const std::string& name) {
-  const Scenario scenario = load_scenario(tree_data(), name);
-  return fixed_as(scenario, draw(tree_data(), scenario, 1));
+  const Scenario scenario = load_scenario(test::tree_data(), name);
+  return fixed_as(scenario, draw(test::tree_data(), scenario, 1));
 }
 
 /// The test checks, for every scenario, that each complication can be removed alone, that the remaining scenario can be
@@ -23,7 +17,7 @@ Scenario fixed(const std::string& name) {
 TEST(Complications, EachGoesAndTheDrawStays) {
   // testing all scenarios takes many seconds
   const std::set<std::string> one_of_a_robot = {"hill_consumer", "slip", "swing"};
-  for (const std::string& name : scenario_names(tree_data())) {
+  for (const std::string& name : scenario_names(test::tree_data())) {
     const Scenario scenario = fixed(name);
     const std::vector<Complication> all = complications(scenario);
     EXPECT_GT(all.size(), 5u) << name;
@@ -34,15 +28,15 @@ TEST(Complications, EachGoesAndTheDrawStays) {
       Scenario without = scenario;
       take_away(each, without);
       if (one_of_a_robot.contains(name)) {
-        EXPECT_NO_THROW(draw(tree_data(), without, 1)) << name << ", " << each.name;
+        EXPECT_NO_THROW(draw(test::tree_data(), without, 1)) << name << ", " << each.name;
       }
       const std::vector<Complication> left = complications(without);
       EXPECT_EQ(left.size(), all.size() - 1) << name << ", " << each.name;
       EXPECT_TRUE(std::none_of(left.begin(), left.end(), [&](const Complication& l) { return l.name == each.name; }));
       take_away(each, simple);
     }
-    EXPECT_THAT(complications(simple), testing::IsEmpty()) << name;
-    EXPECT_NO_THROW(draw(tree_data(), simple, 1)) << name;
+    EXPECT_THAT(complications(simple), IsEmpty()) << name;
+    EXPECT_NO_THROW(draw(test::tree_data(), simple, 1)) << name;
   }
 }
 

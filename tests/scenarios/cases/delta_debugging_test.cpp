@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/cases/delta_debugging.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <set>
+#include "tests/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
 
 using Indices = std::vector<std::size_t>;
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
 
 /// Conjunction fails when all of `causes` are present.
 struct Conjunction {

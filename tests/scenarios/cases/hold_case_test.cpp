@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/cases/hold_case.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <limits>
-
-#include "scenarios/errors.hpp"
+#include "scenarios/cases/complication.hpp"
+#include "scenarios/draw/fixed_scenario.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 constexpr const char* kMetric = "translation_error_end_m";
 
@@ -125,6 +119,25 @@ TEST(HoldCase, UnknownMethodsMetricsAndStatusesAreRefused) {
   refuses([](Expectation& e) { e.method = "tumble"; });
   refuses([](Expectation& e) { e.metric = "rate_error_free_median_rad_s"; });
   refuses([](Expectation& e) { e.status = "okay"; });
+}
+
+// The test checks the files of the named cases in the repository; tools/tumble/gate_cases.cpp runs them.
+TEST(NamedCases, AreCompleteAndExpectWhatThereIs) {
+  const DataRoot data{test::source_dir()};
+  const std::vector<std::string> scenarios = scenario_names(data), names = case_names(data);
+  EXPECT_FALSE(names.empty());
+  for (const std::string& name : names) {
+    EXPECT_FALSE(std::binary_search(scenarios.begin(), scenarios.end(), name)) << name << " is a scenario's name too";
+    const Scenario scenario = load_scenario(data, name);
+    EXPECT_NO_THROW(require_known(scenario)) << name;
+    const Scenario drawn = load_scenario(data, scenario.named_case->scenario);
+    const sim::ResolvedSituation situation = draw(data, scenario, scenario.named_case->seed);
+    // the file contains every number of the draw, so changes of data sheets and defaults do not change the case
+    EXPECT_EQ(to_yaml(fixed_as(scenario, situation)), to_yaml(scenario)) << name;
+    EXPECT_LE(complications(scenario).size(),
+              complications(fixed_as(drawn, draw(data, drawn, scenario.named_case->seed))).size())
+        << name << " is no simpler than its draw";
+  }
 }
 
 }  // namespace

@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/cases/same_failure.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-#include "tests/complaint.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -53,10 +48,10 @@ TEST(SameFailure, WhatDoesNotFailIsRefused) {
     return test::complaint([&] { const SameFailure same(failure, of); });
   };
   EXPECT_THAT(complaint({"ate_m", 1.0}, outcome(OutcomeStatus::ok, {{"ate_m", 0.5}})),
-              testing::HasSubstr("ate_m is 0.5, which is not worse than the limit 1"));
-  EXPECT_THAT(complaint({"ate_m", 1.0}, outcome(OutcomeStatus::ok)), testing::HasSubstr("ate_m is missing"));
-  EXPECT_THAT(complaint({}, outcome(OutcomeStatus::ok, {{"map_failed", 0.0}})), testing::HasSubstr("does not fail"));
-  EXPECT_THAT(complaint({}, outcome(OutcomeStatus::killed)), testing::HasSubstr("the operating system"));
+              HasSubstr("ate_m is 0.5, which is not worse than the limit 1"));
+  EXPECT_THAT(complaint({"ate_m", 1.0}, outcome(OutcomeStatus::ok)), HasSubstr("ate_m is missing"));
+  EXPECT_THAT(complaint({}, outcome(OutcomeStatus::ok, {{"map_failed", 0.0}})), HasSubstr("does not fail"));
+  EXPECT_THAT(complaint({}, outcome(OutcomeStatus::killed)), HasSubstr("the operating system"));
 }
 
 }  // namespace

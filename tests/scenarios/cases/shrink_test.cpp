@@ -2,27 +2,18 @@
 #include "scenarios/cases/shrink.hpp"
 #include "scenarios/methods/registry.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
 #include "scenarios/draw/fixed_scenario.hpp"
-#include "scenarios/errors.hpp"
-#include "tests/scenarios/tree_data.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 constexpr std::uint64_t kSeed = 5;
 constexpr double kDrawn_s = 6.0, kShortest_s = 3.1;
 
 /// Returns the beginning of a pendulum's swing whose IMU loses samples; no draw takes less time to simulate.
 Scenario losing_samples() {
-  Scenario scenario = load_scenario(tree_data(), "swing");
+  Scenario scenario = load_scenario(test::tree_data(), "swing");
   fix_number(scenario, "duration_s", kDrawn_s);
   fix_number(scenario, "sensors.imu.dropout_share", 0.2);
   return scenario;
@@ -61,7 +52,7 @@ std::vector<std::string> names_with(const Shrunk& shrunk, Fate fate) {
 
 TEST(Shrink, FindsTheKnownCauseOfAToyExactly) {
   const Method toy = breaks_on(true, true);
-  const Shrunk shrunk = shrink(tree_data(), losing_samples(), kSeed, toy, {});
+  const Shrunk shrunk = shrink(test::tree_data(), losing_samples(), kSeed, toy, {});
   EXPECT_TRUE(shrunk.complete);
   EXPECT_EQ(shrunk.failure, "failed");
   EXPECT_THAT(names_with(shrunk, Fate::needed), ElementsAre("sensors.imu: rail of the gyro"));
@@ -85,7 +76,7 @@ TEST(Shrink, FindsTheKnownCauseOfAToyExactly) {
   // the remaining scenario fails when it is shrunk again
   ShrinkOptions once;
   once.budget = 1;
-  EXPECT_EQ(shrink(tree_data(), shrunk.scenario, kSeed, toy, once).drawn.status, OutcomeStatus::failed);
+  EXPECT_EQ(shrink(test::tree_data(), shrunk.scenario, kSeed, toy, once).drawn.status, OutcomeStatus::failed);
 }
 
 TEST(Shrink, TwiceIsTheSame) {
@@ -93,9 +84,9 @@ TEST(Shrink, TwiceIsTheSame) {
   std::vector<std::string> first, second;
   ShrinkOptions options;
   options.on_trial = [&](const ShrinkTrial& trial) { first.push_back(trial.what + (trial.kept ? "+" : "-")); };
-  const Shrunk once = shrink(tree_data(), losing_samples(), kSeed, toy, options);
+  const Shrunk once = shrink(test::tree_data(), losing_samples(), kSeed, toy, options);
   options.on_trial = [&](const ShrinkTrial& trial) { second.push_back(trial.what + (trial.kept ? "+" : "-")); };
-  const Shrunk again = shrink(tree_data(), losing_samples(), kSeed, toy, options);
+  const Shrunk again = shrink(test::tree_data(), losing_samples(), kSeed, toy, options);
   EXPECT_EQ(first, second);
   EXPECT_EQ(static_cast<int>(first.size()), once.runs);
   EXPECT_EQ(to_yaml(once.scenario), to_yaml(again.scenario));
@@ -109,7 +100,7 @@ TEST(Shrink, ADrawThatDoesNotFailIsRefused) {
   int runs = 0;
   ShrinkOptions options;
   options.on_trial = [&](const ShrinkTrial&) { ++runs; };
-  EXPECT_THROW(shrink(tree_data(), scenario, kSeed, breaks_on(true, false), options), BadInput);
+  EXPECT_THROW(shrink(test::tree_data(), scenario, kSeed, breaks_on(true, false), options), BadInput);
   EXPECT_EQ(runs, 0);
 }
 
@@ -119,7 +110,7 @@ TEST(Shrink, WhatTheControlCannotDoEitherIsNotKept) {
   const Method toy = breaks_on(false, false);
   ShrinkOptions options;
   options.budget = 40;
-  const Shrunk alone = shrink(tree_data(), losing_samples(), kSeed, toy, options);
+  const Shrunk alone = shrink(test::tree_data(), losing_samples(), kSeed, toy, options);
   EXPECT_THAT(names_with(alone, Fate::needed), ElementsAre());
   EXPECT_FALSE(alone.controlled);
 
@@ -130,7 +121,7 @@ TEST(Shrink, WhatTheControlCannotDoEitherIsNotKept) {
     return run(sensors, values, oracle);
   };
   options.control = unowned(control);
-  const Shrunk held = shrink(tree_data(), losing_samples(), kSeed, toy, options);
+  const Shrunk held = shrink(test::tree_data(), losing_samples(), kSeed, toy, options);
   EXPECT_TRUE(held.controlled);
   EXPECT_THAT(names_with(held, Fate::needed), ElementsAre("sensors.imu: rail of the gyro"));
 }
@@ -145,30 +136,31 @@ TEST(Shrink, OnlyWhatTheSameInputCuresIsKept) {
   toy.run = [run = toy.run](const sim::Sensors& sensors, const sim::Values& values, const OracleInput& oracle) {
     const sim::ImuRecord& imu = sensors.imus.front();
     double largest = 0.0;
-    for (const Eigen::Vector3d& rate : imu.gyro_rad_s) largest = std::max(largest, rate.lpNorm<Eigen::Infinity>());
+    for (const Vector3d& rate : imu.gyro_rad_s) largest = std::max(largest, rate.lpNorm<Eigen::Infinity>());
     if (imu.stated_gyro_range_rad_s > 50.0) throw BadInput("another cause");
     if (largest < 1.5) throw BadInput("it clips");
     return run(sensors, values, oracle);
   };
-  const Shrunk shrunk = shrink(tree_data(), scenario, kSeed, toy, {});
+  const Shrunk shrunk = shrink(test::tree_data(), scenario, kSeed, toy, {});
   EXPECT_EQ(shrunk.cure, "gyro_unclipped");
-  EXPECT_THAT(names_with(shrunk, Fate::needed), ::testing::Contains("sensors.imu: rail of the gyro"));
+  EXPECT_THAT(names_with(shrunk, Fate::needed), Contains("sensors.imu: rail of the gyro"));
 }
 
 TEST(Shrink, ASpentBudgetSaysWhatWasNotTried) {
   ShrinkOptions options;
   options.budget = 8;
-  const Shrunk shrunk = shrink(tree_data(), losing_samples(), kSeed, breaks_on(true, true), options);
+  const Shrunk shrunk = shrink(test::tree_data(), losing_samples(), kSeed, breaks_on(true, true), options);
   EXPECT_EQ(shrunk.runs, 8);
   EXPECT_FALSE(shrunk.complete);
   EXPECT_FALSE(names_with(shrunk, Fate::not_tried).empty());
 }
 
 TEST(Shrink, MethodsThatDoNotApplyAreRefused) {
-  EXPECT_THROW(shrink(tree_data(), losing_samples(), kSeed, *find_methods("position/rolling").front(), {}), BadInput);
+  EXPECT_THROW(shrink(test::tree_data(), losing_samples(), kSeed, *find_methods("position/rolling").front(), {}),
+               BadInput);
   ShrinkOptions options;
   options.control = find_methods("slam/oracle").front();
-  EXPECT_THROW(shrink(tree_data(), losing_samples(), kSeed, breaks_on(true, true), options), BadInput);
+  EXPECT_THROW(shrink(test::tree_data(), losing_samples(), kSeed, breaks_on(true, true), options), BadInput);
 }
 
 }  // namespace

@@ -1,28 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/certificate/certificate_store.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <fstream>
-
-#include "scenarios/errors.hpp"
 #include "scenarios/provenance/build_id.hpp"
 #include "scenarios/sweep/certified_results.hpp"
-#include "tests/temporary_folder.hpp"
-#include "tests/tree.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
 
-class CertificateStoreTest : public testing::TemporaryFolder {
+class CertificateStoreTest : public test::TemporaryFolder {
  protected:
   static Certificate sample() {
     return {build_id(),
             {{"free_flight_energy", "rig", "law", "1", 1.0 / 3.0, 0.0, 1e-8, ""},
              {"digest_restart", "slip", "law", "1", 0.0, 0.0, 0.0, "a note"}}};
   }
-  CertificateStore store() const { return {folder_ / "cache", DataRoot{test::source_dir()}}; }
+  CertificateStore store() const { return {folder_ / "cache", test::tree_data()}; }
   Results results() const { return Results(folder_ / "r.db", Results::Mode::create_or_append); }
 };
 
@@ -40,33 +33,32 @@ TEST_F(CertificateStoreTest, KeepsOnePerBuildAndSurvivesDamage) {
   store().keep(sample());
   ASSERT_TRUE(store().find().has_value());
   EXPECT_EQ(*store().find(), sample());
-  for (const auto& entry : std::filesystem::directory_iterator(folder_ / "cache")) {
+  for (const auto& entry : fs::directory_iterator(folder_ / "cache")) {
     std::ofstream(entry.path()) << "{\"build\": ";
   }
   EXPECT_FALSE(store().find().has_value()) << "a file that was cut off";
-  EXPECT_FALSE(CertificateStore({}, DataRoot{test::source_dir()}).find().has_value());
+  EXPECT_FALSE(CertificateStore({}, test::tree_data()).find().has_value());
 }
 
 TEST_F(CertificateStoreTest, AFolderThatCannotBeWrittenIsNoError) {
   std::ofstream(folder_ / "file") << "x";
-  const CertificateStore below(folder_ / "file" / "cache", DataRoot{test::source_dir()});
+  const CertificateStore below(folder_ / "file" / "cache", test::tree_data());
   below.keep(sample());
   EXPECT_FALSE(below.find().has_value());
 }
 
 TEST_F(CertificateStoreTest, OnlyARegularFileIsReplaced) {
   store().keep(sample());
-  const auto file = std::filesystem::directory_iterator(folder_ / "cache")->path();
-  std::filesystem::remove(file);
-  std::filesystem::create_symlink("/dev/null", file);
+  const auto file = fs::directory_iterator(folder_ / "cache")->path();
+  fs::remove(file);
+  fs::create_symlink("/dev/null", file);
   store().keep(sample());  // must not throw; the certificate is not cached
-  EXPECT_TRUE(std::filesystem::is_symlink(file));
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_ / "cache"), {}), 1)
-      << "nothing is left beside it";
+  EXPECT_TRUE(fs::is_symlink(file));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "cache"), {}), 1) << "nothing is left beside it";
 }
 
 TEST_F(CertificateStoreTest, ResultsGetItOnceAndKeepIt) {
-  const CertificateInput input{DataRoot{test::source_dir()}, ""};
+  const CertificateInput input{test::tree_data(), ""};
   CertifyOptions options;
   options.rows = {"free_fall"};
   int measured = 0;
@@ -93,7 +85,7 @@ TEST_F(CertificateStoreTest, WhatIsKnownIsFoundAndNothingIsMeasured) {
   ASSERT_TRUE(known_certificate(all, store()).has_value());
   ASSERT_EQ(all.certificates().size(), 1u) << "it goes with the results";
   EXPECT_EQ(all.certificates().front(), certificate);
-  EXPECT_EQ(known_certificate(all, CertificateStore({}, DataRoot{test::source_dir()})), certificate);
+  EXPECT_EQ(known_certificate(all, CertificateStore({}, test::tree_data())), certificate);
 }
 
 TEST_F(CertificateStoreTest, AStoppedMeasuringIsKeptNowhere) {
@@ -101,7 +93,7 @@ TEST_F(CertificateStoreTest, AStoppedMeasuringIsKeptNowhere) {
   CertifyOptions options;
   options.stop = &stop;
   Results all = results();
-  EXPECT_TRUE(certify_results(all, store(), {DataRoot{test::source_dir()}, ""}, options).entries.empty());
+  EXPECT_TRUE(certify_results(all, store(), {test::tree_data(), ""}, options).entries.empty());
   EXPECT_TRUE(all.certificates().empty());
   EXPECT_FALSE(store().find().has_value());
 }

@@ -1,30 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test checks that every row of the certificate passes on this build, and fails when one part of its set-up is
 // wrong.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <unistd.h>
-
-#include <cmath>
-#include <filesystem>
-#include <set>
-#include <string>
 
 #include "scenarios/certificate/certificate_store.hpp"
 #include "scenarios/certificate/rows.hpp"
-#include "scenarios/errors.hpp"
 #include "stand_ins/short_scenario.hpp"
-#include "tests/tree.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
 
-using testing::HasSubstr;
-using testing::IsEmpty;
-
 CertificateInput input() {
-  return {DataRoot{test::source_dir()}, test::program()};
+  return {test::tree_data(), test::program()};
 }
 
 /// Returns "row (subject)" of every entry that does not pass.
@@ -41,13 +29,12 @@ TEST(Certificate, OfThisBuildPassesAndSaysWhatItMeasured) {
   CertifyOptions options;
   options.on_row = [&](const CertificateRow& row, double) { announced.push_back(row.name); };
   // the certificate is measured over the data of the sweep tests, so that those measure no certificate of their own
-  const std::filesystem::path folder =
-      std::filesystem::path(testing::TempDir()) / ("tumble_certificate_" + std::to_string(getpid()));
-  std::filesystem::create_directories(folder);
+  const fs::path folder = fs::path(testing::TempDir()) / ("tumble_certificate_" + std::to_string(getpid()));
+  fs::create_directories(folder);
   const DataRoot data{test::write_short_data(folder)};
   const Certificate certificate = measure_certificate({data, test::program()}, options);
   CertificateStore(test::certificates(), data).keep(certificate);
-  std::filesystem::remove_all(folder);
+  fs::remove_all(folder);
   EXPECT_EQ(announced.size(), certificate_rows().size());
   EXPECT_THAT(failures(certificate.entries), IsEmpty());
   EXPECT_TRUE(certificate.passes());
@@ -90,198 +77,132 @@ TEST(Certificate, StopsBetweenRows) {
   EXPECT_EQ(measure_certificate(input(), options).entries.size(), 1u);
 }
 
-TEST(Rows, EulerIntegrationFailsEnergyAndMomentum) {
-  FreeFlightSetup setup;
-  setup.integrator = sim::Integrator::euler;
-  EXPECT_THAT(failures(certify_free_flight(input(), setup)),
-              testing::ElementsAre("free_flight_energy (rig)", "free_flight_momentum (rig)"));
+/// A WrongSetup is a row of the certificate with one wrong part, and the entries that must fail.
+struct WrongSetup {
+  const char* name;
+  std::vector<CertificateEntry> (*certify)();
+  ::testing::Matcher<std::vector<std::string>> failing;
+};
+
+void PrintTo(const WrongSetup& wrong, std::ostream* out) {
+  *out << wrong.name;
 }
 
-TEST(Rows, ALeverArmOfOneMillimetreFailsTheSpecificForce) {
-  FlightForceSetup setup;
-  setup.lever_arm_m = 0.001;
-  const std::vector<CertificateEntry> entries = certify_flight_force(input(), setup);
+class Rows : public ::testing::TestWithParam<WrongSetup> {};
+
+TEST_P(Rows, FailIfOnePartOfTheirSetupIsWrong) {
+  EXPECT_THAT(failures(GetParam().certify()), GetParam().failing);
+}
+
+/// Returns the row of the planes measured on real gyros.
+std::vector<CertificateEntry> real_rails(RealRailsSetup setup) {
+  setup.devices = 100;
+  return certify_real_rails(input(), setup);
+}
+
+/// Returns a matcher for entries that contain each of the combinations of row, device and sensor.
+::testing::Matcher<std::vector<std::string>> contains_each(const std::string& row,
+                                                           const std::vector<std::string>& subjects) {
+  std::vector<::testing::Matcher<std::vector<std::string>>> each;
+  for (const std::string& subject : subjects) each.push_back(Contains(row + " (" + subject + ")"));
+  return ::testing::AllOfArray(each);
+}
+
+const std::vector<std::string> kSensors = {"mti30 gyro",  "mti30 accel",      "vn100 gyro",
+                                           "vn100 accel", "phidget1044 gyro", "phidget1044 accel"};
+
+INSTANTIATE_TEST_SUITE_P(
+    , Rows,
+    ::testing::Values(
+        WrongSetup{"EulerIntegration",
+                   [] { return certify_free_flight(input(), {.integrator = sim::Integrator::euler}); },
+                   ElementsAre("free_flight_energy (rig)", "free_flight_momentum (rig)")},
+        // 2.3 ms earlier, 4.5 steps
+        WrongSetup{"AnotherHeight", [] { return certify_free_fall(input(), {.stated_height_m = 0.99}); },
+                   ::testing::SizeIs(1)},
+        WrongSetup{"AnotherFriction", [] { return certify_slip_to_grip(input(), {.friction = 0.102}); },
+                   ::testing::SizeIs(1)},
+        WrongSetup{"ALongStep", [] { return certify_impact(input(), {.step_s = 0.008}); },
+                   Contains("impact_peak_step (rig)")},
+        // the simulator keeps the time constant of a contact above two steps: below that, a smaller value changes
+        // nothing
+        WrongSetup{"SoftnessThatTheEngineCannotFollow",
+                   [] { return certify_impact(input(), {.step_s = 0.004, .soft_s = 0.008, .hard_s = 0.005}); },
+                   Contains("impact_peak_softness (rig)")},
+        WrongSetup{"TwoMillimetresOfRange", [] { return certify_lidar_range(input(), {.added_range_m = 0.002}); },
+                   ElementsAre("lidar_range_analytic (rs16)", "lidar_range_analytic (mid100)")},
+        WrongSetup{"AMirrorLiftedByTwoMillimetres",
+                   [] { return certify_lidar_rays(input(), {.rays = 320, .mirror_shift_m = 0.002}); },
+                   Contains("lidar_range_engine (hill)")},
+        WrongSetup{"AMirrorThatNamesOtherSurfaces",
+                   [] { return certify_lidar_rays(input(), {.rays = 320, .surface_shift = 1}); },
+                   contains_each("lidar_surface_engine", {"hill", "corridor", "tube"})},
+        WrongSetup{"FivePerCentMoreNoise", [] { return certify_imu_noise(input(), {.noise_factor = 1.05}); },
+                   contains_each("imu_white_noise", kSensors)},
+        WrongSetup{"TwiceTheBias", [] { return certify_imu_noise(input(), {.bias_factor = 2.0}); },
+                   AllOf(contains_each("imu_bias_instability", kSensors),
+                         contains_each("imu_bias_walk", {kSensors.begin(), kSensors.begin() + 4}))},
+        WrongSetup{"RightTilt", [] { return certify_tilted_rail(input(), {.devices = 1}); }, IsEmpty()},
+        // a tenth of the tilt tolerance of real devices
+        WrongSetup{"ATiltOfTwoTenThousandths",
+                   [] { return certify_tilted_rail(input(), {.assumed_tilt = 2e-4, .devices = 1}); },
+                   ElementsAre("tilted_rail_slope (mti30 gyro)", "tilted_rail_slope (mti30 accel)")},
+        WrongSetup{"NoDevice", [] { return certify_tilted_rail(input(), {.devices = 0}); }, ::testing::SizeIs(4)},
+        WrongSetup{"RealRails", [] { return real_rails({}); }, IsEmpty()},
+        // the rows of a slope whose interval contains 0 are measured without a sign, so they fail for a level plane too
+        WrongSetup{"LevelRails", [] { return real_rails({.tilt_factor = 0.0}); },
+                   ElementsAre("real_rail_slope (wand x, z)", "real_rail_slope (wand y, z)",
+                               "real_rail_slope (pendulum z, x)", "real_rail_slope (pendulum z, y)")},
+        WrongSetup{"RailsTiltedToTheOtherSide", [] { return real_rails({.tilt_factor = -1.0}); },
+                   Contains("real_rail_slope (wand y, x)")},
+        WrongSetup{"RailsTiltedByOneHundredthMore", [] { return real_rails({.added_tilt = 0.01}); },
+                   ElementsAre("real_rail_slope (wand x, y)", "real_rail_slope (wand x, z)",
+                               "real_rail_slope (wand y, z)", "real_rail_slope (wand y, x)",
+                               "real_rail_slope (pendulum z, x)", "real_rail_slope (pendulum z, y)")},
+        WrongSetup{"RailsAThousandthHigher", [] { return real_rails({.rail_factor = 1.001}); },
+                   ElementsAre("real_rail_distance (wand x)", "real_rail_distance (wand y)",
+                               "real_rail_distance (pendulum z)")},
+        WrongSetup{
+            "AnotherOffsetOfTheElements", [] { return real_rails({.added_offset_rad_s = 0.01}); },
+            ElementsAre("real_rail_offset (wand x)", "real_rail_offset (wand y)", "real_rail_offset (pendulum z)")},
+        WrongSetup{"ElementsDrawnHalfAsWide", [] { return real_rails({.spread_factor = 0.5}); },
+                   AllOf(contains_each("real_rail_slope_drawn",
+                                       {"mti30 gyro", "vn100 gyro", "phidget1044 gyro", "mpu6050 gyro"}),
+                         contains_each("real_rail_offset_drawn", {"mti30 gyro", "vn100 gyro", "phidget1044 gyro"}))},
+        // the data sheet of this device states offsets more than twice as wide
+        WrongSetup{"ElementsDrawnAThirdAsWide", [] { return real_rails({.spread_factor = 0.3}); },
+                   Contains("real_rail_offset_drawn (mpu6050 gyro)")},
+        // slope and offset of each of the sixteen data sheets
+        WrongSetup{"UprightElements", [] { return real_rails({.spread_factor = 0.0}); }, ::testing::SizeIs(32)},
+        // 0.25001 m instead of 0.25 m
+        WrongSetup{"APendulumOfAnotherLength", [] { return certify_pendulum(input(), {.stated_segment_m = 0.25001}); },
+                   ElementsAre("pendulum_energy (pendulum)", "pendulum_period (pendulum)")},
+        WrongSetup{"ALeverArmOfOneMillimetreOnThePendulum",
+                   [] { return certify_pendulum(input(), {.duration_s = 0.1, .lever_arm_error_m = 0.001}); },
+                   ElementsAre("pendulum_specific_force (pendulum)")},
+        WrongSetup{"OtherDraws",
+                   [] { return certify_digests(input(), {.restart_seed = 2, .duration_s = 2.5, .disturbance = 0.1}); },
+                   ElementsAre("digest_threads (hill)", "digest_order (hill, slip)", "digest_restart (slip)")}),
+    [](const auto& each) { return std::string(each.param.name); });
+
+TEST(Certificate, ALeverArmOfOneMillimetreFailsTheSpecificForce) {
+  const std::vector<CertificateEntry> entries = certify_flight_force(input(), {.lever_arm_m = 0.001});
   ASSERT_EQ(entries.size(), 1u);
   EXPECT_FALSE(entries[0].passes());
   EXPECT_NEAR(entries[0].value, 18.0 * 18.0 * 0.001, 0.02);  // w^2 r; the small rates of the other axes change little
 }
 
-TEST(Rows, ADropFromElsewhereFailsTheFreeFall) {
-  FreeFallSetup setup;
-  setup.stated_height_m = 0.99;  // 2.3 ms earlier, 4.5 steps
-  EXPECT_THAT(failures(certify_free_fall(input(), setup)), testing::SizeIs(1));
-}
-
-TEST(Rows, AnotherRadiusFailsTheRollingLawOnEachGround) {
-  RollingSetup setup;
-  setup.stated_radius_m = 0.148;  // 2 %
-  const std::vector<CertificateEntry> entries = certify_rolling(input(), setup);
+TEST(Certificate, AnotherRadiusFailsTheRollingLawOnEachGround) {
+  const std::vector<CertificateEntry> entries = certify_rolling(input(), {.stated_radius_m = 0.148});  // 2 %
   ASSERT_GT(entries.size(), 2u);
   EXPECT_EQ(failures(entries).size(), entries.size());
 }
 
-TEST(Rows, AnotherFrictionFailsTheSlipToGripTime) {
-  SlipToGripSetup setup;
-  setup.friction = 0.102;
-  EXPECT_THAT(failures(certify_slip_to_grip(input(), setup)), testing::SizeIs(1));
-}
-
-TEST(Rows, ALongStepFailsTheImpactPeak) {
-  ImpactSetup setup;
-  setup.step_s = 0.008;
-  EXPECT_THAT(failures(certify_impact(input(), setup)), testing::Contains("impact_peak_step (rig)"));
-}
-
-TEST(Rows, SoftnessThatTheEngineCannotFollowFailsItsExponent) {
-  ImpactSetup setup;
-  // the simulator keeps the time constant of a contact above two steps: below that, a smaller value changes nothing
-  setup.soft_s = 0.008;
-  setup.hard_s = 0.005;
-  setup.step_s = 0.004;
-  EXPECT_THAT(failures(certify_impact(input(), setup)), testing::Contains("impact_peak_softness (rig)"));
-}
-
-TEST(Rows, TwoMillimetresOfRangeFailTheLidar) {
-  LidarRangeSetup setup;
-  setup.added_range_m = 0.002;
-  EXPECT_THAT(failures(certify_lidar_range(input(), setup)),
-              testing::ElementsAre("lidar_range_analytic (rs16)", "lidar_range_analytic (mid100)"));
-}
-
-TEST(Rows, AMirrorLiftedByTwoMillimetresFailsTheRays) {
-  LidarRaysSetup setup;
-  setup.rays = 320;
-  setup.mirror_shift_m = 0.002;
-  EXPECT_THAT(failures(certify_lidar_rays(input(), setup)), testing::Contains("lidar_range_engine (hill)"));
-}
-
-TEST(Rows, AMirrorThatNamesOtherSurfacesFailsTheRays) {
-  LidarRaysSetup setup;
-  setup.rays = 320;
-  setup.surface_shift = 1;
-  const std::vector<std::string> failed = failures(certify_lidar_rays(input(), setup));
-  for (const char* world : {"hill", "corridor", "tube"}) {
-    EXPECT_THAT(failed, testing::Contains("lidar_surface_engine (" + std::string(world) + ")"));
-  }
-}
-
-TEST(Rows, FivePerCentMoreNoiseFailsTheImus) {
-  ImuNoiseSetup setup;
-  setup.noise_factor = 1.05;
-  const std::vector<std::string> failed = failures(certify_imu_noise(input(), setup));
-  for (const char* device : {"mti30", "vn100", "phidget1044"}) {
-    EXPECT_THAT(failed, testing::Contains("imu_white_noise (" + std::string(device) + " gyro)"));
-    EXPECT_THAT(failed, testing::Contains("imu_white_noise (" + std::string(device) + " accel)"));
-  }
-}
-
-TEST(Rows, TwiceTheBiasFailsTheImus) {
-  ImuNoiseSetup setup;
-  setup.bias_factor = 2.0;
-  const std::vector<std::string> failed = failures(certify_imu_noise(input(), setup));
-  for (const char* device : {"mti30", "vn100", "phidget1044"}) {
-    EXPECT_THAT(failed, testing::Contains("imu_bias_instability (" + std::string(device) + " gyro)"));
-    EXPECT_THAT(failed, testing::Contains("imu_bias_instability (" + std::string(device) + " accel)"));
-  }
-  for (const char* walking : {"mti30 gyro", "mti30 accel", "vn100 gyro", "vn100 accel"}) {
-    EXPECT_THAT(failed, testing::Contains("imu_bias_walk (" + std::string(walking) + ")"));
-  }
-}
-
-TEST(Rows, ATiltOfTwoTenThousandthsFailsTheTiltedRail) {
-  TiltedRailSetup setup;
-  setup.devices = 1;
-  EXPECT_THAT(failures(certify_tilted_rail(input(), setup)), IsEmpty());
-  setup.assumed_tilt = 2e-4;  // a tenth of the tilt tolerance of real devices
-  EXPECT_THAT(failures(certify_tilted_rail(input(), setup)),
-              testing::ElementsAre("tilted_rail_slope (mti30 gyro)", "tilted_rail_slope (mti30 accel)"));
-}
-
-TEST(Rows, WithoutADeviceTheTiltedRailSaysNothing) {
-  TiltedRailSetup setup;
-  setup.devices = 0;
-  EXPECT_EQ(failures(certify_tilted_rail(input(), setup)).size(), 4u);
-}
-
-/// Returns which rows fail for the planes measured on real gyros, after a check that one of them passes.
-std::vector<std::string> real_rail_failures(RealRailsSetup setup) {
-  setup.devices = 100;
-  return failures(certify_real_rails(input(), setup));
-}
-
-TEST(Rows, ALevelRailIsNoneOfTheRealOnes) {
-  EXPECT_THAT(real_rail_failures({}), IsEmpty());
-  // the rows of a slope whose interval contains 0 are measured without a sign, so they fail for a level plane too
-  EXPECT_THAT(real_rail_failures({.tilt_factor = 0.0}),
-              testing::ElementsAre("real_rail_slope (wand x, z)", "real_rail_slope (wand y, z)",
-                                   "real_rail_slope (pendulum z, x)", "real_rail_slope (pendulum z, y)"));
-  EXPECT_THAT(real_rail_failures({.tilt_factor = -1.0}), testing::Contains("real_rail_slope (wand y, x)"));
-}
-
-TEST(Rows, ATiltOfOneHundredthMoreIsNoneOfTheRealRails) {
-  EXPECT_THAT(real_rail_failures({.added_tilt = 0.01}),
-              testing::ElementsAre("real_rail_slope (wand x, y)", "real_rail_slope (wand x, z)",
-                                   "real_rail_slope (wand y, z)", "real_rail_slope (wand y, x)",
-                                   "real_rail_slope (pendulum z, x)", "real_rail_slope (pendulum z, y)"));
-}
-
-TEST(Rows, ARailAThousandthHigherIsNoneOfTheRealOnes) {
-  EXPECT_THAT(real_rail_failures({.rail_factor = 1.001}),
-              testing::ElementsAre("real_rail_distance (wand x)", "real_rail_distance (wand y)",
-                                   "real_rail_distance (pendulum z)"));
-}
-
-TEST(Rows, AnotherOffsetOfTheElementsIsNoneOfTheRealOnes) {
-  EXPECT_THAT(
-      real_rail_failures({.added_offset_rad_s = 0.01}),
-      testing::ElementsAre("real_rail_offset (wand x)", "real_rail_offset (wand y)", "real_rail_offset (pendulum z)"));
-}
-
-TEST(Rows, ElementsDrawnHalfAsWideDoNotReachTheRealRails) {
-  const std::vector<std::string> failed = real_rail_failures({.spread_factor = 0.5});
-  for (const char* device : {"mti30", "vn100", "phidget1044", "mpu6050"})
-    EXPECT_THAT(failed, testing::Contains("real_rail_slope_drawn (" + std::string(device) + " gyro)"));
-  for (const char* device : {"mti30", "vn100", "phidget1044"})
-    EXPECT_THAT(failed, testing::Contains("real_rail_offset_drawn (" + std::string(device) + " gyro)"));
-  // the data sheet of the fourth device states offsets more than twice as wide
-  EXPECT_THAT(real_rail_failures({.spread_factor = 0.3}), testing::Contains("real_rail_offset_drawn (mpu6050 gyro)"));
-}
-
-TEST(Rows, UprightElementsDoNotReachTheRealRails) {
-  const std::vector<std::string> failed = real_rail_failures({.spread_factor = 0.0});
-  EXPECT_EQ(failed.size(), 32u);  // slope and offset of each of the sixteen data sheets
-}
-
-TEST(Rows, APendulumOfAnotherLengthFailsEnergyAndPeriods) {
-  PendulumSetup setup;
-  setup.stated_segment_m = 0.25001;  // instead of 0.25
-  EXPECT_THAT(failures(certify_pendulum(input(), setup)),
-              testing::ElementsAre("pendulum_energy (pendulum)", "pendulum_period (pendulum)"));
-}
-
-TEST(Rows, ALeverArmOfOneMillimetreFailsThePendulumsSpecificForce) {
-  PendulumSetup setup;
-  setup.duration_s = 0.1;
-  setup.lever_arm_error_m = 0.001;
-  EXPECT_THAT(failures(certify_pendulum(input(), setup)), testing::ElementsAre("pendulum_specific_force (pendulum)"));
-}
-
-TEST(Rows, OtherDrawsFailTheDigests) {
-  DigestSetup setup;
-  setup.duration_s = 2.5;
-  setup.disturbance = 0.1;
-  setup.restart_seed = 2;
-  EXPECT_THAT(failures(certify_digests(input(), setup)),
-              testing::ElementsAre("digest_threads (hill)", "digest_order (hill, slip)", "digest_restart (slip)"));
-}
-
-TEST(Rows, AProgramThatCannotBeStartedFailsTheRestart) {
+TEST(Certificate, AProgramThatCannotBeStartedFailsTheRestart) {
   CertificateInput without = input();
   without.program = "/nowhere/tumble";
-  DigestSetup setup;
-  setup.duration_s = 2.5;
-  const std::vector<CertificateEntry> entries = certify_digests(without, setup);
-  EXPECT_THAT(failures(entries), testing::ElementsAre("digest_restart (slip)"));
+  const std::vector<CertificateEntry> entries = certify_digests(without, {.duration_s = 2.5});
+  EXPECT_THAT(failures(entries), ElementsAre("digest_restart (slip)"));
   EXPECT_THAT(entries.back().note, HasSubstr("/nowhere/tumble"));
 }
 

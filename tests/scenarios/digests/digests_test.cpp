@@ -2,19 +2,10 @@
 // The test checks that draws give the same bits on every x86-64 machine with AVX2 and FMA: it compares their digests
 // with those stored here. A change of the simulation, the models or the catalogue changes the digests, and then the new
 // ones are accepted: the failure message prints the line to store.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <fstream>
-#include <ostream>
-#include <sstream>
-#include <string>
-#include <vector>
-
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/provenance/data_digest.hpp"
 #include "scenarios/sweep/evaluate.hpp"
-#include "tests/tree.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {

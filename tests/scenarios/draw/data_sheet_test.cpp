@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/draw/data_sheet.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
-
 #include "scenarios/draw/fixture_registry.hpp"
 #include "scenarios/draw/scenario_text.hpp"
-#include "tests/tree.hpp"
+#include "tests/scenarios/testing.hpp"
+#include "tumble/odometry/sensor_sheets.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -17,10 +12,7 @@ namespace {
 using fixture::kSheet;
 using fixture::with;
 using fixture::Wrong;
-using testing::ElementsAre;
-using testing::HasSubstr;
 using testing::IsSupersetOf;
-using testing::StartsWith;
 
 TEST(DataSheet, ReadsValuesWithUnitAndSource) {
   const DataSheet sheet = parse_data_sheet(kSheet, "mti30.yaml", fixture::registry());
@@ -39,8 +31,8 @@ class WrongSheet : public testing::TestWithParam<Wrong> {};
 
 TEST_P(WrongSheet, IsRefusedWithFileLineAndReason) {
   const Wrong& wrong = GetParam();
-  const std::string message = fixture::complaint(
-      [&] { parse_data_sheet(with(kSheet, wrong.from, wrong.to), "mti30.yaml", fixture::registry()); });
+  const std::string message =
+      test::complaint([&] { parse_data_sheet(with(kSheet, wrong.from, wrong.to), "mti30.yaml", fixture::registry()); });
   EXPECT_THAT(message, StartsWith(wrong.where));
   EXPECT_THAT(message, HasSubstr(wrong.what));
 }
@@ -71,27 +63,27 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(DataSheet, UnknownDeviceNamesTheNearest) {
   const DataRoot data{test::source_dir()};
   EXPECT_THAT(device_names(data), IsSupersetOf({"mid100", "rs16"}));
-  EXPECT_EQ(fixture::complaint([&] { load_data_sheet(data, "rs17"); }), "unknown device 'rs17'; did you mean 'rs16'?");
+  EXPECT_EQ(test::complaint([&] { load_data_sheet(data, "rs17"); }), "unknown device 'rs17'; did you mean 'rs16'?");
   const DataRoot nowhere{"no_such_folder"};
-  EXPECT_THAT(fixture::complaint([&] { device_names(nowhere); }), HasSubstr("no_such_folder"));
+  EXPECT_THAT(test::complaint([&] { device_names(nowhere); }), HasSubstr("no_such_folder"));
 }
 
 // the simulator would use the default for the missing number, whatever the device has
-TEST(DataSheet, ANumberThatIsMissingIsNamed) {
-  const DataRoot whole{test::source_dir()}, own{std::filesystem::path(testing::TempDir()) / "data_sheet_without"};
-  std::filesystem::create_directories(own.data_sheets());
+using DataSheetFile = test::TemporaryFolder;
+TEST_F(DataSheetFile, ANumberThatIsMissingIsNamed) {
+  const DataRoot whole = test::tree_data(), own{folder_};
+  fs::create_directories(own.data_sheets());
   std::ifstream sheet(whole.data_sheets() / "mti30.yaml");
   std::ofstream less(own.data_sheets() / "mti30.yaml");
   for (std::string line; std::getline(sheet, line);) {
     if (line.find("  accel_rail_m_s2:") == std::string::npos) less << line << "\n";
   }
   less.close();
-  EXPECT_EQ(fixture::complaint([&] { load_data_sheet(whole, "mti30"); }), "");
+  EXPECT_EQ(test::complaint([&] { load_data_sheet(whole, "mti30"); }), "");
   EXPECT_THAT(
-      fixture::complaint([&] { load_data_sheet(own, "mti30"); }),
+      test::complaint([&] { load_data_sheet(own, "mti30"); }),
       HasSubstr(
           "mti30.yaml: the number 'accel_rail_m_s2' is missing; a data sheet of kind 'imu' must state this number"));
-  std::filesystem::remove_all(own.root);
 }
 
 // The test checks each data sheet of the project against the registries of this build.
@@ -104,6 +96,66 @@ TEST(DataSheet, EverySheetOfTheProjectIsRight) {
     EXPECT_EQ(sheet.device, name);
     EXPECT_FALSE(sheet.entries.empty()) << name;
   }
+}
+
+// The test checks that the library's data sheets agree with models/sensors, where each number has its source.
+/// Compare compares each number of a library's data sheet with the device of that name.
+class Compare {
+ public:
+  explicit Compare(sim::Values device) : device_(std::move(device)) {}
+  void operator()(double value, const ParameterInfo& field) {
+    const std::string name = std::string(field.name) == "rate_hz" ? "output_rate_hz" : field.name;
+    ASSERT_TRUE(device_.has(name)) << name;
+    different_ += value != device_.at(name);
+    ++count_;
+  }
+  int count() const { return count_; }
+  int different() const { return different_; }
+
+ private:
+  sim::Values device_;
+  int count_ = 0, different_ = 0;
+};
+
+template <class Sheet>
+Compare compare(const Sheet& sheet, const std::string& device) {
+  Compare out(load_data_sheet(test::tree_data(), device).values());
+  Sheet::fields(sheet, out);
+  return out;
+}
+
+TEST(LibrarySheets, AreThoseOfTheModels) {
+  for (const auto& [device, sheet] : sheets::imus()) {
+    const Compare found = compare(sheet, device);
+    EXPECT_EQ(found.count(), 5) << device;
+    EXPECT_EQ(found.different(), 0) << device;
+  }
+  for (const auto& [device, sheet] : sheets::lidars()) {
+    const Compare found = compare(sheet, device);
+    EXPECT_EQ(found.count(), 2) << device;
+    EXPECT_EQ(found.different(), 0) << device;
+  }
+}
+
+TEST(LibrarySheets, HaveEveryImuAndLidarOfTheModels) {
+  std::set<std::string> listed;
+  for (const auto& [device, sheet] : sheets::imus()) listed.insert(device);
+  for (const auto& [device, sheet] : sheets::lidars()) listed.insert(device);
+  std::set<std::string> models;
+  const DataRoot root{test::source_dir()};
+  for (const std::string& device : device_names(root)) {
+    const std::string kind = load_data_sheet(root, device).sensor_kind;
+    if (kind == "imu" || kind.ends_with("_lidar")) models.insert(device);
+  }
+  EXPECT_GE(models.size(), 28u);
+  EXPECT_EQ(listed, models);
+}
+
+// negative control
+TEST(LibrarySheets, AnotherNumberIsReported) {
+  ImuDataSheet sheet = sheets::mti30();
+  sheet.accel_range_m_s2 = 147.1;
+  EXPECT_EQ(compare(sheet, "mti30").different(), 1);
 }
 
 }  // namespace

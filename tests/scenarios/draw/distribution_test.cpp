@@ -1,18 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/draw/distribution.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <boost/math/special_functions/erf.hpp>
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <set>
-#include <vector>
 
 #include "scenarios/draw/fixture_registry.hpp"
-#include "scenarios/errors.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {

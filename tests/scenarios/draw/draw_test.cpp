@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
-
 #include "scenarios/draw/fixture_registry.hpp"
 #include "scenarios/draw/scenario_text.hpp"
-#include "tests/tree.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -15,7 +9,6 @@ namespace {
 using fixture::kScenario;
 using fixture::kSheet;
 using fixture::with;
-using testing::HasSubstr;
 
 sim::Situation draw_text(const std::string& text, std::uint64_t seed) {
   const Scenario scenario = parse_scenario(text, "hill.yaml", fixture::registry());
@@ -63,33 +56,31 @@ TEST(Draw, RefusesADeviceOfAnotherKind) {
   const Scenario scenario = parse_scenario(kScenario, "hill.yaml", fixture::registry());
   std::vector<DataSheet> sheets(2, parse_data_sheet(kSheet, "mti30.yaml", fixture::registry()));
   sheets[1].sensor_kind = "spinning_lidar";
-  const std::string message = fixture::complaint([&] { draw_given(scenario, sheets, 1); });
+  const std::string message = test::complaint([&] { draw_given(scenario, sheets, 1); });
   EXPECT_EQ(message,
             "hill.yaml:11: sensors.imu_reference: the device 'mti30' is a sensor of kind 'spinning_lidar'; it must be "
             "of kind 'imu'");
 }
 
 /// DrawFiles has a data root in a temporary folder.
-class DrawFiles : public testing::Test {
+class DrawFiles : public test::TemporaryFolder {
  protected:
-  DrawFiles() : data_{std::filesystem::path(testing::TempDir()) / "scenarios_draw_tests_root"} {
-    std::filesystem::remove_all(data_.root);
-    std::filesystem::create_directories(data_.catalogue());
-    std::filesystem::create_directories(data_.data_sheets());
+  DrawFiles() {
+    fs::create_directories(data_.catalogue());
+    fs::create_directories(data_.data_sheets());
   }
-  ~DrawFiles() override { std::filesystem::remove_all(data_.root); }
   void put(const std::string& name, const std::string& text) { std::ofstream(data_.catalogue() / name) << text; }
   std::string complaint_of(const std::string& name) {
-    return fixture::complaint([&] { load_scenario(data_, name); });
+    return test::complaint([&] { load_scenario(data_, name); });
   }
-  DataRoot data_;
+  const DataRoot data_{folder_ / "root"};
 };
 
 TEST_F(DrawFiles, NamesAreSortedAndTheNearestIsNamed) {
   put("hill.yaml", kScenario);
   put("bare.yaml", kScenario);
   put("notes.txt", "not a scenario");
-  EXPECT_THAT(scenario_names(data_), testing::ElementsAre("bare", "hill"));
+  EXPECT_THAT(scenario_names(data_), ElementsAre("bare", "hill"));
   EXPECT_EQ(complaint_of("hil"), "unknown scenario 'hil'; did you mean 'hill'?");
   EXPECT_EQ(complaint_of("corridor"), "unknown scenario 'corridor'; known names: bare hill");
   EXPECT_THAT(complaint_of("../hill"), HasSubstr("unknown scenario"));
@@ -116,13 +107,10 @@ sensors:
 
 class DrawReal : public DrawFiles {
  protected:
-  DrawReal() {
-    std::filesystem::copy(DataRoot{test::source_dir()}.data_sheets(), data_.data_sheets(),
-                          std::filesystem::copy_options::recursive);
-  }
+  DrawReal() { fs::copy(test::tree_data().data_sheets(), data_.data_sheets(), fs::copy_options::recursive); }
   std::string draw_complaint(const std::string& from, const std::string& to, std::uint64_t seed) {
     put("slope.yaml", with(kReal, from, to));
-    return fixture::complaint([&] { draw(data_, load_scenario(data_, "slope"), seed); });
+    return test::complaint([&] { draw(data_, load_scenario(data_, "slope"), seed); });
   }
 };
 
@@ -189,12 +177,12 @@ TEST_F(DrawReal, AScenarioDrawsTheSameNumbersAsItsBase) {
 
 TEST_F(DrawReal, ABaseIsInTheFolderOfTheFileOrInTheCatalogue) {
   put("slope.yaml", kReal);
-  const std::filesystem::path elsewhere = data_.root / "elsewhere";
-  std::filesystem::create_directories(elsewhere);
+  const fs::path elsewhere = data_.root / "elsewhere";
+  fs::create_directories(elsewhere);
   std::ofstream(elsewhere / "slope.yaml") << "name: slope\ndoc: a copy\nextends: slope\nduration_s: 7\n";
   std::ofstream(elsewhere / "other.yaml") << extending("");
   EXPECT_EQ(load_scenario(data_, (elsewhere / "other.yaml").string()).duration_s.numbers, std::vector{7.0});
-  std::filesystem::remove(elsewhere / "slope.yaml");
+  fs::remove(elsewhere / "slope.yaml");
   EXPECT_EQ(load_scenario(data_, (elsewhere / "other.yaml").string()).duration_s.numbers, (std::vector{5.0, 6.0}));
 }
 
@@ -214,7 +202,7 @@ TEST_F(DrawReal, MistakesWithABaseAreNamedWithFileAndLine) {
               HasSubstr(folder + "other.yaml:6: sensors[1]: a sensor with the name 'imu' exists already in line 5"));
   put("slope.yaml", with(kReal, "device: rs16", "device: rs17"));
   put("other.yaml", extending(""));
-  EXPECT_THAT(fixture::complaint([&] { draw(data_, load_scenario(data_, "other"), 5); }),
+  EXPECT_THAT(test::complaint([&] { draw(data_, load_scenario(data_, "other"), 5); }),
               HasSubstr(folder + "other.yaml:3: sensors.lidar: unknown device 'rs17'"));
   put("slope.yaml", with(kReal, "world: {type: hill}", "world: {type: hil}"));
   EXPECT_THAT(complaint_of("other"), HasSubstr(folder + "slope.yaml:4: world.type: unknown 'hil'"));

@@ -1,21 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/draw/fixed_scenario.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
-
 #include "scenarios/draw/scenario_text.hpp"
-#include "scenarios/errors.hpp"
-#include "tests/complaint.hpp"
-#include "tests/tree.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
-
-using ::testing::HasSubstr;
 
 DataRoot data() {
   return DataRoot{test::source_dir()};
@@ -82,43 +72,81 @@ TEST(NamedCase, WhatIsWrongIsNamedWithItsPlace) {
 }
 
 /// CaseFiles has a temporary folder with the models of this repository.
-class CaseFiles : public testing::Test {
+class CaseFiles : public test::TemporaryFolder {
  protected:
-  CaseFiles() : data_{std::filesystem::path(testing::TempDir()) / "scenarios_draw_cases"} {
-    std::filesystem::remove_all(data_.root);
-    std::filesystem::create_directories(data_.catalogue());
-    Scenario scenario = load_scenario(DataRoot{test::source_dir()}, "cliff");
-    scenario = fixed_as(scenario, draw(DataRoot{test::source_dir()}, scenario, 7));
+  CaseFiles() {
+    fs::create_directories(data_.catalogue());
+    Scenario scenario = load_scenario(test::tree_data(), "cliff");
+    scenario = fixed_as(scenario, draw(test::tree_data(), scenario, 7));
     scenario.name = "lost";
     scenario.named_case = some_case();
     case_ = to_yaml(scenario);
     scenario.named_case.reset();
     plain_ = to_yaml(scenario);
   }
-  ~CaseFiles() override { std::filesystem::remove_all(data_.root); }
-  void put(const std::filesystem::path& folder, const std::string& text) {
-    std::filesystem::create_directories(folder);
+  void put(const fs::path& folder, const std::string& text) {
+    fs::create_directories(folder);
     std::ofstream(folder / "lost.yaml") << text;
   }
   std::string complaint(const std::string& name) {
     return test::complaint([&] { load_scenario(data_, name); });
   }
-  DataRoot data_;
+  const DataRoot data_{folder_};
   std::string case_, plain_;
 };
 
 TEST_F(CaseFiles, StandWhereAScenarioMay) {
-  EXPECT_THAT(case_names(data_), testing::IsEmpty()) << "no folder, no case";
+  EXPECT_THAT(case_names(data_), IsEmpty()) << "no folder, no case";
   EXPECT_THAT(complaint("lost"), HasSubstr("unknown scenario 'lost'"));
   put(data_.regressions(), case_);
-  EXPECT_THAT(case_names(data_), testing::ElementsAre("lost"));
-  EXPECT_THAT(scenario_names(data_), testing::IsEmpty()) << "the catalogue is without";
+  EXPECT_THAT(case_names(data_), ElementsAre("lost"));
+  EXPECT_THAT(scenario_names(data_), IsEmpty()) << "the catalogue is without";
   EXPECT_TRUE(load_scenario(data_, "lost").named_case.has_value());
   EXPECT_EQ(complaint("lots"), "unknown scenario 'lots'; did you mean 'lost'?");
   put(data_.regressions(), plain_);
   EXPECT_THAT(complaint("lost"), HasSubstr("key 'case' is missing"));
   put(data_.catalogue(), plain_);
   EXPECT_THAT(complaint("lost"), HasSubstr("a scenario and a named case"));
+}
+
+const DataRoot kData{test::source_dir()};
+
+std::string complaint(const std::string& key, double value) {
+  Scenario scenario = load_scenario(kData, "hill");
+  return test::complaint([&] { fix_number(scenario, key, value); });
+}
+
+TEST(FixNumber, SetsOneNumberAndLeavesTheDrawsOfAllOthersAlone) {
+  const sim::Situation before = draw(kData, load_scenario(kData, "hill"), 5001);
+  Scenario scenario = load_scenario(kData, "hill");
+  fix_number(scenario, "world.trunk_count", 7);
+  fix_number(scenario, "sensors.lidar.mount_error.yaw_rad", 0.125);
+  fix_number(scenario, "sensors.imu.output_rate_hz", 200);  // the data sheet's value before
+  fix_number(scenario, "duration_s", 3);
+  sim::Situation after = draw(kData, scenario, 5001);
+  EXPECT_EQ(after.world.values.at("trunk_count"), 7.0);
+  EXPECT_EQ(after.sensors[2].mount_error.at("yaw_rad"), 0.125);
+  EXPECT_EQ(after.sensors[0].values.at("output_rate_hz"), 200.0);
+  EXPECT_EQ(after.duration_s, 3.0);
+  EXPECT_NE(before.sensors[0].values.at("output_rate_hz"), 200.0) << "or the test shows nothing";
+  // after the test restores these numbers by hand, all else is equal
+  after.world.values.set("trunk_count", before.world.values.at("trunk_count"));
+  after.sensors[2].mount_error.set("yaw_rad", before.sensors[2].mount_error.at("yaw_rad"));
+  after.sensors[0].values.set("output_rate_hz", before.sensors[0].values.at("output_rate_hz"));
+  after.duration_s = before.duration_s;
+  EXPECT_EQ(after, before);
+}
+
+TEST(FixNumber, ComplaintsNameTheNearestAndTheBound) {
+  EXPECT_THAT(complaint("world.trunk_cont", 7), HasSubstr("did you mean 'trunk_count'"));
+  EXPECT_THAT(complaint("world.trunk_count", -1), HasSubstr("must be within [0,"));
+  EXPECT_THAT(complaint("world.trunk_count", std::nan("")), HasSubstr("must be within"));
+  EXPECT_THAT(complaint("word.trunk_count", 7), HasSubstr("did you mean 'world'"));
+  EXPECT_THAT(complaint("sensors.imo.output_rate_hz", 100), HasSubstr("did you mean 'imu'"));
+  EXPECT_THAT(complaint("sensors.imu", 100), HasSubstr("names a sensor without a parameter"));
+  EXPECT_THAT(complaint("sensors.imu.mount_error.yaw_rd", 0), HasSubstr("did you mean 'yaw_rad'"));
+  EXPECT_THAT(complaint("", 0), HasSubstr("the scenario has no number with the key"));
+  EXPECT_EQ(complaint("motion.rest_s", 1.0), "") << "or everything is refused";
 }
 
 }  // namespace

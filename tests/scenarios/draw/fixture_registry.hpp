@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
-#include <string>
-
 #include "scenarios/draw/registry.hpp"
-#include "tests/complaint.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios::fixture {
 

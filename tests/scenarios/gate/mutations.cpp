@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/gate/mutations.hpp"
 
-#include <algorithm>
-#include <array>
+#include "tests/testing.hpp"
 
 namespace tumble::scenarios::testing {
 
@@ -23,7 +22,7 @@ void flip_lever_arms(sim::Sensors& sensors) {
 
 /// Adds the lidar's position in the body where it must be subtracted.
 void flip_lever_arm_of_poses(const sim::Recording& recording, Estimate& estimate) {
-  const Eigen::Vector3d arm = recording.sensors.lidars.front().T_BL.translation();
+  const Vector3d arm = recording.sensors.lidars.front().T_BL.translation();
   const auto flip = [&](PoseState& pose) { pose.position_W_m += 2.0 * (pose.orientation_W * arm); };
   for (PoseState& pose : estimate.poses) flip(pose);
   for (auto& sweep : estimate.sweeps) {
@@ -64,12 +63,11 @@ std::array<std::int64_t, 2> first_bump_ns(const sim::Truth& truth) {
 /// Removes the path over the first bump: the estimate stays at the position where it reached the bump.
 void lose_a_bump(const sim::Recording& recording, Estimate& estimate) {
   const auto [begin_ns, end_ns] = first_bump_ns(recording.truth);
-  Eigen::Vector3d met = Eigen::Vector3d::Zero(), lost = Eigen::Vector3d::Zero();
+  Vector3d met = Eigen::Vector3d::Zero(), lost = Eigen::Vector3d::Zero();
   for (PoseState& pose : estimate.poses) {
     if (pose.time_ns <= begin_ns) met = pose.position_W_m;
     if (pose.time_ns > begin_ns && pose.time_ns <= end_ns) lost = pose.position_W_m - met;
-    if (pose.time_ns > begin_ns)
-      pose.position_W_m -= pose.time_ns <= end_ns ? Eigen::Vector3d(pose.position_W_m - met) : lost;
+    if (pose.time_ns > begin_ns) pose.position_W_m -= pose.time_ns <= end_ns ? Vector3d(pose.position_W_m - met) : lost;
   }
 }
 
@@ -113,7 +111,7 @@ void break_sweep_borders(const sim::Recording&, Estimate& estimate) {
 /// Turns the last sweeps by a degree.
 void turn_the_end(const sim::Recording&, Estimate& estimate) {
   constexpr std::size_t kLast = 5;
-  const Eigen::Quaterniond turn(Eigen::AngleAxisd(kMapRotation_rad, Eigen::Vector3d::UnitZ()));
+  const Quaterniond turn(Eigen::AngleAxisd(kMapRotation_rad, Eigen::Vector3d::UnitZ()));
   for (std::size_t k = 0; k < std::min(kLast, estimate.sweeps.size()); ++k) {
     PoseState& pose = estimate.sweeps[estimate.sweeps.size() - 1 - k].pose;
     pose.orientation_W = turn * pose.orientation_W;
@@ -122,11 +120,11 @@ void turn_the_end(const sim::Recording&, Estimate& estimate) {
 
 /// Moves the map away from the run's path.
 void move_the_map(const sim::Recording&, Estimate& estimate) {
-  for (MapPoint& point : estimate.map) point.position_W_m += Eigen::Vector3f(0.7f, 0.7f, 1.5f);
+  for (MapPoint& point : estimate.map) point.position_W_m += Vector3f(0.7f, 0.7f, 1.5f);
 }
 
 void tilt_attitudes(const sim::Recording&, Estimate& estimate) {
-  const Eigen::Quaterniond tilt(Eigen::AngleAxisd(kTilt_rad, Eigen::Vector3d::UnitX()));
+  const Quaterniond tilt(Eigen::AngleAxisd(kTilt_rad, Eigen::Vector3d::UnitX()));
   for (AttitudeState& attitude : estimate.attitudes) attitude.orientation_W = tilt * attitude.orientation_W;
 }
 
@@ -189,7 +187,7 @@ void draw_map_twice(const sim::Recording&, Estimate& estimate) {
 /// Adds every map point a second time, from a pose that is wrong by a degree.
 void draw_map_twice_turned(const sim::Recording&, Estimate& estimate) {
   if (estimate.poses.empty()) return;
-  const Eigen::Vector3d centre = estimate.poses.front().position_W_m;
+  const Vector3d centre = estimate.poses.front().position_W_m;
   const Eigen::AngleAxisd turn(kMapRotation_rad, Eigen::Vector3d::UnitZ());
   const std::vector<MapPoint> once = estimate.map;
   for (MapPoint point : once) {

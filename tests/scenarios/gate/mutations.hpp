@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <span>
-#include <string>
-#include <vector>
-
 #include "scenarios/estimates/method.hpp"
+#include "tests/testing.hpp"
 
 /// A mutation is a fault that somebody might build into a method by mistake: the method runs with a changed input or
 /// returns a changed result. The gate must reject each mutation.

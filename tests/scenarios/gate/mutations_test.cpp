@@ -7,20 +7,10 @@
 #include "scenarios/gate/mutations.hpp"
 #include "scenarios/methods/registry.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdio>
-#include <map>
-#include <optional>
-#include <set>
-#include <string>
-#include <vector>
-
 #include "scenarios/sweep/evaluate.hpp"
 #include "scenarios/sweep/gate.hpp"
 #include "sim/lidar/surface.hpp"
-#include "tests/tree.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -199,7 +189,7 @@ TEST(GateMutations, OfHandHeldMotionAreRefused) {
 TEST(GateMutations, EachMetricOfTheGateRejectsOne) {
   std::set<std::string> rejecting, gated;
   for (const Mutation& mutation : mutations()) rejecting.insert(mutation.metrics.begin(), mutation.metrics.end());
-  for (const MethodRun& run : load_gate(DataRoot{test::source_dir()}, "gate").accepted.methods) {
+  for (const MethodRun& run : load_gate(test::tree_data(), "gate").accepted.methods) {
     for (const auto& [metric, values] : run.values) gated.insert(metric);
   }
   EXPECT_GE(gated.size(), 30u);

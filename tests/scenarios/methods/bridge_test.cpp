@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/bridge.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
-#include "scenarios/errors.hpp"
 #include "scenarios/methods/synthetic_recording.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -33,8 +27,8 @@ TEST(Bridge, SpecificForceAtRestPointsUp) {
   const sim::Recording recording = testing::synthetic_rig();
   std::vector<ImuSample> samples;
   ASSERT_TRUE(bridge::primary_imu_samples(recording.sensors, samples).ok());
-  const Eigen::Matrix3d R_WI = (recording.truth.q_WB.front() * recording.sensors.imus.front().T_BI.linear()).matrix();
-  const Eigen::Vector3d force_W = R_WI * samples.front().specific_force_m_s2;
+  const Matrix3d R_WI = (recording.truth.q_WB.front() * recording.sensors.imus.front().T_BI.linear()).matrix();
+  const Vector3d force_W = R_WI * samples.front().specific_force_m_s2;
   EXPECT_NEAR(force_W.z(), 9.80665, 1e-12);
   EXPECT_NEAR(force_W.head<2>().norm(), 0.0, 1e-12);
 }
@@ -59,7 +53,7 @@ TEST(Bridge, WhatNoDeviceOfThatRangeMeasuresIsRefusedWithItsValue) {
   std::vector<ImuSample> samples;
   record.gyro_rad_s[40].y() = -1.4 * record.stated_gyro_range_rad_s;  // a saturation limit above the stated range
   EXPECT_TRUE(bridge::imu_samples(record, samples).ok());
-  const std::vector<Eigen::Vector3d> read = record.gyro_rad_s;
+  const std::vector<Vector3d> read = record.gyro_rad_s;
   for (std::size_t k = 40; k < 90; ++k) record.gyro_rad_s[k].y() = -3e5;
   const Status gyro = bridge::imu_samples(record, samples);
   EXPECT_EQ(gyro.error_code, ErrorCode::out_of_range);
@@ -90,16 +84,16 @@ TEST(Bridge, ASingleReadingThatNoDeviceOfThatRangeMeasuresIsLeftOut) {
 TEST(Bridge, LeverArmGivesTheCentripetalForceInImuAxes) {
   const sim::Recording recording = testing::synthetic_rig();
   const sim::ImuRecord& record = recording.sensors.imus.front();
-  const Eigen::Vector3d t = bridge::lever_arm_I_m(record);
+  const Vector3d t = bridge::lever_arm_I_m(record);
   EXPECT_NEAR((record.T_BI.linear() * t - record.T_BI.translation()).norm(), 0.0, 1e-15);
-  const Eigen::Vector3d w_B(1.0, -12.0, 5.0);
-  const Eigen::Vector3d force_B = w_B.cross(w_B.cross(record.T_BI.translation()));
-  const Eigen::Vector3d force_I = record.T_BI.linear().transpose() * force_B;
-  const Eigen::Vector3d e = record.T_BI.linear().transpose() * w_B.normalized();
-  const Eigen::Vector3d l = t.dot(e) * e - t;
+  const Vector3d w_B(1.0, -12.0, 5.0);
+  const Vector3d force_B = w_B.cross(w_B.cross(record.T_BI.translation()));
+  const Vector3d force_I = record.T_BI.linear().transpose() * force_B;
+  const Vector3d e = record.T_BI.linear().transpose() * w_B.normalized();
+  const Vector3d l = t.dot(e) * e - t;
   EXPECT_NEAR(force_I.dot(l.normalized()), l.norm() * w_B.squaredNorm(), 1e-12);
   // negative control: with the lever arm in body axes the equation does not hold
-  const Eigen::Vector3d wrong = record.T_BI.translation().dot(e) * e - record.T_BI.translation();
+  const Vector3d wrong = record.T_BI.translation().dot(e) * e - record.T_BI.translation();
   EXPECT_GT(std::abs(force_I.dot(wrong.normalized()) - wrong.norm() * w_B.squaredNorm()), 0.5);
 }
 
@@ -109,16 +103,16 @@ TEST(Bridge, LidarPointsFallOnTheTrueSurfaceThroughT_IL) {
   const sim::ImuRecord& imu = recording.sensors.imus.front();
   ASSERT_EQ(bridge::sweep_count(lidar), 60u);
   const testing::SyntheticMotion motion;
-  const Eigen::Isometry3d T_IL = bridge::T_IL(imu, lidar);
+  const Isometry3d T_IL = bridge::T_IL(imu, lidar);
   for (const std::size_t index : {0u, 25u, 59u}) {
     const bridge::Sweep sweep = bridge::sweep(lidar, index);
     EXPECT_EQ(sweep.end_ns - sweep.start_ns, 100000000);
     ASSERT_GT(sweep.points.size(), 500u);
     for (std::size_t k = 0; k < sweep.points.size(); k += 97) {
       const double t = 1e-9 * static_cast<double>(sweep.start_ns + sweep.points[k].offset_ns);
-      const Eigen::Isometry3d T_WI = Eigen::Translation3d(motion.position_m(t)) * motion.attitude(t) * imu.T_BI;
-      const Eigen::Vector3d hit = T_WI * T_IL * sweep.points[k].position_L_m.cast<double>();
-      const Eigen::Vector3f truth = recording.truth.lidars.front().hit_W_m[lidar.sweep_first[index] + k];
+      const Isometry3d T_WI = Eigen::Translation3d(motion.position_m(t)) * motion.attitude(t) * imu.T_BI;
+      const Vector3d hit = T_WI * T_IL * sweep.points[k].position_L_m.cast<double>();
+      const Vector3f truth = recording.truth.lidars.front().hit_W_m[lidar.sweep_first[index] + k];
       // float32 coordinates of up to 7 m have a resolution of 5e-7 m
       EXPECT_NEAR((hit - truth.cast<double>()).norm(), 0.0, 3e-6);
     }

@@ -2,32 +2,25 @@
 #include "scenarios/estimates/estimate_file.hpp"
 #include "scenarios/methods/registry.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "scenarios/errors.hpp"
 #include "scenarios/estimates/map_file.hpp"
 #include "scenarios/methods/synthetic_recording.hpp"
 #include "scenarios/recordings/table_file.hpp"
 #include "scenarios/scoring/score.hpp"
-#include "tests/complaint.hpp"
-#include "tests/temporary_folder.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
 
-class EstimateFile : public testing::TemporaryFolder {
+class EstimateFile : public test::TemporaryFolder {
  protected:
-  std::filesystem::path write(const std::string& name, const std::string& text) const {
+  fs::path write(const std::string& name, const std::string& text) const {
     TemporaryFolder::write(name, text);
     return folder_ / name;
   }
 
-  std::string complaint(const std::filesystem::path& path) const {
+  std::string complaint(const fs::path& path) const {
     Kind kind;
     std::string method;
     return test::complaint([&] { read_estimate(path, kind, method, Frame::imu); });
@@ -90,7 +83,7 @@ TEST_F(EstimateFile, WhatAProgramSaidStandsBesideItAndGoesWithIt) {
   std::getline(std::ifstream(folder_ / "transcript.txt"), said);
   EXPECT_EQ(said, "out of luck");
   write_estimate(folder_, "raw", Kind::rate, {});
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "transcript.txt"));
+  EXPECT_FALSE(fs::exists(folder_ / "transcript.txt"));
 }
 
 TEST_F(EstimateFile, ReadsATumFileOfSomebodyElse) {
@@ -107,7 +100,7 @@ TEST_F(EstimateFile, ReadsATumFileOfSomebodyElse) {
   EXPECT_EQ(estimate.frame, Frame::lidar);
   ASSERT_EQ(estimate.poses.size(), 2u);
   EXPECT_EQ(estimate.poses[0].time_ns, 1689175049435000123);
-  EXPECT_EQ(estimate.poses[1].position_W_m, Eigen::Vector3d(1.5, 2, 3));
+  EXPECT_EQ(estimate.poses[1].position_W_m, Vector3d(1.5, 2, 3));
   EXPECT_NEAR(estimate.poses[1].orientation_W.norm(), 1.0, 1e-15);
 }
 
@@ -160,17 +153,19 @@ TEST_F(EstimateFile, ATruncatedMapIsRecognised) {
   estimate.map.resize(10);
   write_estimate(folder_, "icp", Kind::slam, estimate);
   EXPECT_EQ(complaint(folder_), "");
-  std::filesystem::resize_file(folder_ / "map.ply", std::filesystem::file_size(folder_ / "map.ply") - 5);
+  fs::resize_file(folder_ / "map.ply", fs::file_size(folder_ / "map.ply") - 5);
   EXPECT_NE(complaint(folder_).find("map.ply: the map file is truncated"), std::string::npos);
 }
 
-TEST_F(EstimateFile, ContactsComeBackAndBelongToTheirPoses) {
+Estimate three_poses() {
   Estimate estimate;
-  for (int k = 0; k < 3; ++k) {
-    PoseState pose;
-    pose.time_ns = 5'000'000 * k;
-    estimate.poses.push_back(pose);
-  }
+  estimate.poses.resize(3);
+  for (int k = 0; k < 3; ++k) estimate.poses[static_cast<std::size_t>(k)].time_ns = 5'000'000 * k;
+  return estimate;
+}
+
+TEST_F(EstimateFile, ContactsComeBackAndBelongToTheirPoses) {
+  Estimate estimate = three_poses();
   estimate.contacts = {sim::ContactLabel::grip, sim::ContactLabel::slide, sim::ContactLabel::air};
   write_estimate(folder_, "tumble", Kind::position, estimate);
   Kind kind;
@@ -188,12 +183,7 @@ TEST_F(EstimateFile, ContactsComeBackAndBelongToTheirPoses) {
 }
 
 TEST_F(EstimateFile, UncertainEventsComeBackWithTheirContacts) {
-  Estimate estimate;
-  for (int k = 0; k < 3; ++k) {
-    PoseState pose;
-    pose.time_ns = 5'000'000 * k;
-    estimate.poses.push_back(pose);
-  }
+  Estimate estimate = three_poses();
   estimate.contacts = {sim::ContactLabel::grip, sim::ContactLabel::slip, sim::ContactLabel::slip};
   estimate.uncertain = {false, true, true};
   write_estimate(folder_, "tumble", Kind::position, estimate);
@@ -227,11 +217,8 @@ TEST_F(EstimateFile, NothingOfAnEarlierEstimateStays) {
 
 // the program writes the file under a temporary name and then renames the file
 TEST_F(EstimateFile, WhatIsNotFinishedReplacesNothing) {
-  const std::filesystem::path path = write("rates.csv", "old\n");
-  const auto text = [&] {
-    std::ifstream file(path);
-    return std::string{std::istreambuf_iterator<char>(file), {}};
-  };
+  const fs::path path = write("rates.csv", "old\n");
+  const auto text = [&] { return test::read_file(path); };
   {
     TableWriter table(path, ',', "a,b");
     for (int k = 0; k < 100000; ++k) {
@@ -241,7 +228,7 @@ TEST_F(EstimateFile, WhatIsNotFinishedReplacesNothing) {
     }
   }  // as with a full disk, or if the run crashes
   EXPECT_EQ(text(), "old\n");
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1) << "nothing is left beside it";
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1) << "nothing is left beside it";
   TableWriter table(path, ',', "a,b");
   table.integer(1);
   table.integer(2);
@@ -252,15 +239,42 @@ TEST_F(EstimateFile, WhatIsNotFinishedReplacesNothing) {
 }
 
 TEST_F(EstimateFile, OnlyRegularFilesAreReplaced) {
-  std::filesystem::create_symlink("/dev/null", folder_ / "link");
+  fs::create_symlink("/dev/null", folder_ / "link");
   EXPECT_THROW(TableWriter(folder_ / "link", ',', "a"), BadInput);
   EXPECT_THROW(write_map(folder_ / "link", std::vector<MapPoint>(3)), BadInput);
-  EXPECT_TRUE(std::filesystem::is_symlink(folder_ / "link"));
+  EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
 }
 
 TEST_F(EstimateFile, AFolderThatCannotBeMadeIsBadInput) {
   write("file", "");
   EXPECT_THROW(write_estimate(folder_ / "file" / "below", "raw", Kind::rate, Estimate{}), BadInput);
+}
+
+using MapFile = test::TemporaryFolder;
+
+std::vector<MapPoint> some_map() {
+  std::vector<MapPoint> map(500);
+  for (std::size_t k = 0; k < map.size(); ++k) {
+    const float x = 0.37f * static_cast<float>(k);
+    map[k] = {{x, -1.0f / (1.0f + x), 1e-6f * x}, Vector3f(std::sin(x), 0.0f, std::cos(x)), 0.001f * x};
+  }
+  map[7].normal_W.setZero();
+  return map;
+}
+
+void expect_equal(const std::vector<MapPoint>& a, const std::vector<MapPoint>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    ASSERT_EQ(a[k].position_W_m, b[k].position_W_m) << k;
+    ASSERT_EQ(a[k].normal_W, b[k].normal_W) << k;
+    ASSERT_EQ(a[k].sigma_m, b[k].sigma_m) << k;
+  }
+}
+
+TEST_F(MapFile, PlyGivesBackEveryBit) {
+  const std::vector<MapPoint> map = some_map();
+  write_map(folder_ / "map.ply", map);
+  expect_equal(read_map(folder_ / "map.ply"), map);
 }
 
 }  // namespace

@@ -4,23 +4,14 @@
 #include "scenarios/external/external_method.hpp"
 #include "scenarios/methods/registry.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <signal.h>
 
-#include <chrono>
-#include <fstream>
-#include <string>
-#include <thread>
-
-#include "scenarios/errors.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "tests/scenarios/methods/external_runs.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
-
-using ::testing::HasSubstr;
 
 /// This awk program returns the gyro's readings unchanged: columns 9 to 11 of the exported CSV contain them, and an
 /// exact time is two whole numbers.
@@ -30,7 +21,7 @@ const std::string kRawByAwk =
 
 class ExternalMethod : public testing::ExternalRuns {
  protected:
-  std::filesystem::path describe(const std::string& kind, const std::string& script, const std::string& more = "") {
+  fs::path describe(const std::string& kind, const std::string& script, const std::string& more = "") {
     write("theirs.yaml",
           "name: theirs\nkind: " + kind + "\ncommand:\n  - sh\n  - -c\n  - >-\n    " + script + "\n" + more);
     return folder_ / "theirs.yaml";
@@ -38,14 +29,7 @@ class ExternalMethod : public testing::ExternalRuns {
 };
 
 TEST_F(ExternalMethod, AnswersAsTheSameMethodOfOursDoes) {
-  const Estimate theirs = run(describe("rate", kRawByAwk));
-  const Estimate ours = find_methods("rate/raw").front()->run(recording().sensors, {}, {});
-  ASSERT_EQ(theirs.rates.size(), ours.rates.size());
-  ASSERT_FALSE(theirs.rates.empty());
-  for (std::size_t k = 0; k < ours.rates.size(); ++k) {
-    EXPECT_EQ(theirs.rates[k].time_ns, ours.rates[k].time_ns);
-    EXPECT_EQ(theirs.rates[k].w_WI_I_rad_s, ours.rates[k].w_WI_I_rad_s);
-  }
+  expect_same_as_raw(run(describe("rate", kRawByAwk)));
 }
 
 TEST_F(ExternalMethod, PosesAndAttitudesComeAsTum) {
@@ -54,7 +38,7 @@ TEST_F(ExternalMethod, PosesAndAttitudesComeAsTum) {
   ASSERT_EQ(poses.poses.size(), 2u);
   EXPECT_EQ(poses.frame, Frame::lidar);
   EXPECT_EQ(poses.poses[1].time_ns, 200'000'000);
-  EXPECT_EQ(poses.poses[1].position_W_m, Eigen::Vector3d(1, 2, 4));
+  EXPECT_EQ(poses.poses[1].position_W_m, Vector3d(1, 2, 4));
   const Estimate attitudes = run(describe("attitude", two));
   EXPECT_EQ(attitudes.attitudes.size(), 2u);
   EXPECT_TRUE(attitudes.poses.empty());
@@ -74,7 +58,7 @@ TEST_F(ExternalMethod, NeverSeesTheTruthAndLeavesNoFolder) {
   std::string scratch;
   std::getline(std::ifstream(place) >> std::ws, scratch);
   ASSERT_FALSE(scratch.empty());
-  EXPECT_FALSE(std::filesystem::exists(scratch));
+  EXPECT_FALSE(fs::exists(scratch));
 }
 
 TEST_F(ExternalMethod, ACrashIsNoAnswerWithItsLastWords) {
@@ -86,7 +70,7 @@ TEST_F(ExternalMethod, ACrashIsNoAnswerWithItsLastWords) {
   // the message must contain the cause, however much output followed it
   const std::string long_one =
       no_answer(describe("rate", "echo the cause; seq 5000; echo the end; exit 3 # {output}")).second;
-  EXPECT_THAT(long_one, ::testing::AllOf(HasSubstr("the cause 1 2 3"), HasSubstr(" ... "), HasSubstr("5000 the end")));
+  EXPECT_THAT(long_one, AllOf(HasSubstr("the cause 1 2 3"), HasSubstr(" ... "), HasSubstr("5000 the end")));
   EXPECT_LT(long_one.size(), 1000u);
 }
 
@@ -177,7 +161,7 @@ TEST_F(ExternalMethod, AMapIsAnyPlyWithPlaces) {
   const Estimate bare =
       run(describe("slam", pose + head + "property float z\\nend_header\\n1 2 3\\n4 5 6\\n' > {map}"));
   ASSERT_EQ(bare.map.size(), 2u);
-  EXPECT_EQ(bare.map[1].position_W_m, Eigen::Vector3f(4, 5, 6));
+  EXPECT_EQ(bare.map[1].position_W_m, Vector3f(4, 5, 6));
   EXPECT_EQ(bare.map[1].sigma_m, 0.0f);
   const Estimate more = run(describe(
       "slam",
@@ -215,9 +199,8 @@ TEST_F(ExternalMethod, StampsInAnotherUnitAreNamedWithTheFirstThatIsOutside) {
                               " }' {csv}/imu.csv > {output}");
   };
   EXPECT_GT(run(in("0")).poses.size(), 100u);
-  EXPECT_THAT(refused(in("9")),
-              ::testing::AllOf(HasSubstr("poses.tum:1: the time stamp is"),
-                               HasSubstr("must be in seconds; the time stamps seem to be in nanoseconds")));
+  EXPECT_THAT(refused(in("9")), AllOf(HasSubstr("poses.tum:1: the time stamp is"),
+                                      HasSubstr("must be in seconds; the time stamps seem to be in nanoseconds")));
   EXPECT_THAT(refused(in("6", "position")), HasSubstr("the time stamps seem to be in microseconds"));
   EXPECT_THAT(refused(in("3", "attitude")), HasSubstr("the time stamps seem to be in milliseconds"));
   EXPECT_THAT(refused(in("-3")), HasSubstr("must be in seconds"));
@@ -227,7 +210,7 @@ TEST_F(ExternalMethod, MessagesDoNotNameAFolderThatIsGone) {
   const std::string gone = "tumble-method";
   const auto plain = [&](const std::string& what) { return what.find(gone) == std::string::npos; };
   const std::string columns = refused(describe("slam", "printf '0.1 1\\n' > {output}"));
-  EXPECT_THAT(columns, ::testing::StartsWith("poses.tum:1: "));
+  EXPECT_THAT(columns, StartsWith("poses.tum:1: "));
   EXPECT_TRUE(plain(columns));
   const std::string said = no_answer(describe("slam", "echo cannot write {output} in $PWD; exit 3")).second;
   EXPECT_THAT(said, HasSubstr("cannot write poses.tum in ."));
@@ -271,7 +254,7 @@ TEST_F(ExternalMethod, AVersionContainsProgramAndDescription) {
   EXPECT_THAT(first, HasSubstr("v7"));
   EXPECT_NE(first, second);
   EXPECT_THAT(refused(describe("rate", "{output}", "version: [\"true\"]\n")),
-              ::testing::AllOf(HasSubstr("theirs.yaml: its version command: "), HasSubstr("printed nothing")));
+              AllOf(HasSubstr("theirs.yaml: its version command: "), HasSubstr("printed nothing")));
 }
 
 // otherwise a sweep or a benchmark would continue with the rows of the old program

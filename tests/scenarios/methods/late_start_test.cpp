@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test checks recordings whose sensors do not start together.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <string>
-#include <vector>
-
 #include "scenarios/estimates/method.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/synthetic_recording.hpp"
 #include "scenarios/scoring/score.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {

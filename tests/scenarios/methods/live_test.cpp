@@ -1,15 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <functional>
-#include <iterator>
-#include <map>
-#include <optional>
-#include <ostream>
-#include <string>
-#include <vector>
-
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/estimates/method.hpp"
 #include "scenarios/methods/registry.hpp"
@@ -17,7 +6,7 @@
 #include "scenarios/scoring/clipping.hpp"
 #include "scenarios/sweep/evaluate.hpp"
 #include "sim/random/stream.hpp"
-#include "tests/tree.hpp"
+#include "tests/scenarios/testing.hpp"
 
 // A live method must report a state before it receives later readings. The reported state must be bitwise equal for any
 // later readings, and without later readings.
@@ -59,8 +48,8 @@ const std::vector<Live> kLive = {
 using Fault = std::function<void(std::size_t from, sim::ImuRecord& imu)>;
 
 /// Limits each axis to half of its largest reading.
-void clip_at_half(std::size_t from, std::vector<Eigen::Vector3d>& readings) {
-  Eigen::Vector3d rail = Eigen::Vector3d::Zero();
+void clip_at_half(std::size_t from, std::vector<Vector3d>& readings) {
+  Vector3d rail = Eigen::Vector3d::Zero();
   for (std::size_t k = from; k < readings.size(); ++k) rail = rail.cwiseMax(0.5 * readings[k].cwiseAbs());
   for (std::size_t k = from; k < readings.size(); ++k) readings[k] = readings[k].cwiseMax(-rail).cwiseMin(rail);
 }
@@ -84,7 +73,7 @@ const std::map<std::string, Fault>& faults() {
        }},
       {"gyro_offset",
        [](std::size_t from, sim::ImuRecord& imu) {
-         for (std::size_t k = from; k < imu.time_ns.size(); ++k) imu.gyro_rad_s[k] += Eigen::Vector3d(1.0, -0.7, 0.5);
+         for (std::size_t k = from; k < imu.time_ns.size(); ++k) imu.gyro_rad_s[k] += Vector3d(1.0, -0.7, 0.5);
        }},
       {"first_saturation",
        [](std::size_t from, sim::ImuRecord& imu) {

@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <limits>
-#include <ostream>
-
-#include "scenarios/errors.hpp"
 #include "scenarios/estimates/method.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/synthetic_recording.hpp"
 #include "scenarios/sweep/outcome.hpp"
+#include "tests/scenarios/testing.hpp"
 
 // the test applies the same rules to every registered method, without naming it
 namespace tumble::scenarios {

@@ -1,17 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test checks that one wild reading in a recording costs the project's methods one reading.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <limits>
-#include <span>
-#include <string>
-#include <vector>
-
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/synthetic_recording.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {

@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test checks that the methods `tumble` and `tumble_lag` use what a recording contains besides the primary IMU's
 // readings (further IMUs, the device's clip flags, stated ranges, saturation of the accelerometer), and report faults.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <string>
-
 #include "scenarios/estimates/method.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/synthetic_recording.hpp"
 #include "scenarios/recordings/import.hpp"
 #include "scenarios/scoring/score.hpp"
 #include "stand_ins/stand_ins.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -34,20 +29,20 @@ double clipped_median(const std::string& method, const sim::Recording& recording
 }
 
 // adds a second IMU of the same kind at another position and orientation, with samples half a period later
-void add_second_imu(const std::string& name, const Eigen::Vector3d& p_B_m, bool with_gyro, sim::Recording& recording) {
+void add_second_imu(const std::string& name, const Vector3d& p_B_m, bool with_gyro, sim::Recording& recording) {
   const testing::SyntheticMotion motion;
   sim::ImuRecord record = recording.sensors.imus.front();
   sim::ImuTruth truth = recording.truth.imus.front();
   record.name = truth.name = name;
   record.T_BI.translation() = p_B_m;
-  record.T_BI.linear() = Eigen::AngleAxisd(1.1, Eigen::Vector3d(-2, 1, 1).normalized()).toRotationMatrix();
+  record.T_BI.linear() = Eigen::AngleAxisd(1.1, Vector3d(-2, 1, 1).normalized()).toRotationMatrix();
   truth.T_BI = record.T_BI;
   const std::int64_t half_ns = record.period_ns / 2;
   for (std::size_t k = 0; k < record.time_ns.size(); ++k) {
     const double middle_s = 1e-9 * static_cast<double>(record.time_ns[k]);
     record.time_ns[k] += half_ns;
-    const Eigen::Matrix3d R_IB = record.T_BI.linear().transpose();
-    const Eigen::Vector3d rate = R_IB * motion.rate_B_rad_s(middle_s);
+    const Matrix3d R_IB = record.T_BI.linear().transpose();
+    const Vector3d rate = R_IB * motion.rate_B_rad_s(middle_s);
     record.gyro_rad_s[k] = rate.cwiseMax(-motion.rail_rad_s).cwiseMin(motion.rail_rad_s);
     if (!with_gyro) record.gyro_rad_s[k] = Eigen::Vector3d::Constant(motion.rail_rad_s);
     record.accel_m_s2[k] = R_IB * motion.specific_force_B_m_s2(middle_s, p_B_m);
@@ -122,8 +117,8 @@ TEST(RateRecording, UnitsThatLookWrongAreReported) {
   sim::Recording recording = testing::synthetic_rig();
   EXPECT_TRUE(estimated_rates("tumble", recording).faults.ok());
   sim::Recording degrees = recording, in_g = recording;
-  for (Eigen::Vector3d& rate : degrees.sensors.imus.front().gyro_rad_s) rate *= 57.29578;
-  for (Eigen::Vector3d& force : in_g.sensors.imus.front().accel_m_s2) force /= 9.80665;
+  for (Vector3d& rate : degrees.sensors.imus.front().gyro_rad_s) rate *= 57.29578;
+  for (Vector3d& force : in_g.sensors.imus.front().accel_m_s2) force /= 9.80665;
   const Status refused = find_methods("rate/tumble").front()->run(degrees.sensors, {}, {&degrees.truth}).status;
   EXPECT_FALSE(refused.ok()) << "beyond twice the range that is stated";
   EXPECT_TRUE(has_finding(HealthFinding::Kind::wrong_force_magnitude_at_rest, estimated_rates("tumble", in_g)));
@@ -135,7 +130,7 @@ TEST(RateRecording, ClippedAxesOfTheAccelerometerAreBounds) {
   sim::Recording recording = testing::synthetic_rig();
   sim::ImuRecord& imu = recording.sensors.imus.front();
   const testing::SyntheticMotion motion;
-  const Eigen::Vector3d p_B = imu.T_BI.translation();
+  const Vector3d p_B = imu.T_BI.translation();
   double largest = 0.0;
   for (std::size_t k = 0; k < imu.time_ns.size(); ++k) {
     const double middle_s = 1e-9 * static_cast<double>(imu.time_ns[k]) - 0.0025;
@@ -147,7 +142,7 @@ TEST(RateRecording, ClippedAxesOfTheAccelerometerAreBounds) {
   const double free = clipped_median("tumble", recording);
   const double rail = 0.85 * largest;
   std::size_t clipped = 0;
-  for (Eigen::Vector3d& force : imu.accel_m_s2) {
+  for (Vector3d& force : imu.accel_m_s2) {
     clipped += force.cwiseAbs().maxCoeff() > rail;
     force = force.cwiseMax(-rail).cwiseMin(rail);
   }

@@ -2,14 +2,8 @@
 #include "scenarios/methods/sample_times.hpp"
 #include "scenarios/methods/registry.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <random>
-#include <vector>
-
 #include "scenarios/methods/synthetic_recording.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {

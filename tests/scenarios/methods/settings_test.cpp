@@ -3,19 +3,9 @@
 // effect, and values beyond them or fractions of whole numbers are rejected.
 #include "scenarios/methods/settings.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <map>
-#include <set>
-#include <string>
-#include <vector>
-
-#include "scenarios/errors.hpp"
 #include "scenarios/estimates/method.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -116,7 +106,7 @@ TEST(Settings, AllOfTheLibraryIsReachable) {
 struct Numbers {
   int count = 3;
   double share = 0.5, gravity_m_s2 = 9.8;
-  Eigen::Vector3d arm_m = {0.1, 0.2, 0.3};
+  Vector3d arm_m = {0.1, 0.2, 0.3};
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
 #include "scenarios/estimates/method.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/synthetic_recording.hpp"
 #include "scenarios/scoring/score.hpp"
 #include "scenarios/sweep/triage.hpp"
 #include "sim/random/stream.hpp"
+#include "tests/testing.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 

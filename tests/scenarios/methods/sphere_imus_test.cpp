@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/sphere_imus.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "scenarios/estimates/findings.hpp"
+#include "tests/testing.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble::scenarios {
@@ -17,7 +11,7 @@ namespace {
 constexpr std::int64_t kPeriod_ns = 4'000'000;
 constexpr int kSamples = 2500;
 
-Eigen::Vector3d rate_at(double time_s) {
+Vector3d rate_at(double time_s) {
   return {2.0 * std::sin(3.0 * time_s), 1.5 * std::cos(4.1 * time_s), std::sin(2.3 * time_s)};
 }
 
@@ -46,6 +40,13 @@ sim::Sensors three(const sim::ImuRecord& second, const sim::ImuRecord& third) {
   return sensors;
 }
 
+MergedImus merged_of(const sim::Sensors& sensors) {
+  MergedImus merged;
+  const Status status = merge_imus(sensors, merged);
+  EXPECT_TRUE(status.ok()) << status.message();
+  return merged;
+}
+
 /// Returns the first fault of the IMUs as "KIND SENSOR AXIS", with the name of the IMU in the recording.
 std::string fault_of(const MergedImus& merged) {
   Estimate estimate;
@@ -69,8 +70,7 @@ double worst_rate_error(const MergedImus& merged) {
 
 TEST(SphereImus, UnitsWithStampsOfTheirOwnAreReadAtThePrimaryOnes) {
   const sim::Sensors sensors = three(unit("imu_2", 1'300'000, 0.0), unit("imu_3", -2'700'000, 0.0));
-  MergedImus merged;
-  ASSERT_TRUE(merge_imus(sensors, merged).ok());
+  const MergedImus merged = merged_of(sensors);
   EXPECT_EQ(merged.merged.imus.size(), 3U);
   ASSERT_EQ(merged.merged.samples.size(), static_cast<std::size_t>(kSamples));
   // between two samples, linear interpolation has an error of w'' T^2 / 8 = 30 rad/s^3 * 2e-6 s^2; the mean of three
@@ -84,8 +84,7 @@ TEST(SphereImus, UnitsWithStampsOfTheirOwnAreReadAtThePrimaryOnes) {
 TEST(SphereImus, ATimeOffsetOfOneUnitIsEstimatedAndReported) {
   constexpr double kLate_s = 2e-3;
   const sim::Sensors sensors = three(unit("imu_2", 0, 0.0), unit("imu_3", 0, kLate_s));
-  MergedImus merged;
-  ASSERT_TRUE(merge_imus(sensors, merged).ok());
+  const MergedImus merged = merged_of(sensors);
   ASSERT_EQ(merged.merged.imus.size(), 3U);
   EXPECT_EQ(merged.merged.imus[2].imu_index, 2U);
   // the offset is relative to the mean of the three units, and the mean is late by a third of the delay
@@ -102,8 +101,7 @@ TEST(SphereImus, AUnitThatEndsEarlyIsLeftOutFromThereOnAndNamed) {
   ends.clip_flags.resize(kSamples / 2);
   sim::ImuRecord nan = unit("imu_3", 0, 0.0);
   nan.gyro_rad_s[7].x() = std::nan("");  // a single missing reading is interpolated
-  MergedImus merged;
-  ASSERT_TRUE(merge_imus(three(ends, nan), merged).ok());
+  const MergedImus merged = merged_of(three(ends, nan));
   EXPECT_EQ(merged.merged.imus.size(), 3U);
   ASSERT_EQ(merged.merged.faults.findings.size(), 1U);
   EXPECT_EQ(fault_of(merged), "imu_silent imu_2 ");
@@ -114,8 +112,7 @@ TEST(SphereImus, AUnitThatEndsEarlyIsLeftOutFromThereOnAndNamed) {
 TEST(SphereImus, ThePrimaryUnitMayDieToo) {
   sim::Sensors sensors = three(unit("imu_2", 0, 0.0), unit("imu_3", 0, 0.0));
   for (std::size_t k = kSamples / 3; k < kSamples; ++k) sensors.imus[0].gyro_rad_s[k].x() = std::nan("");
-  MergedImus merged;
-  ASSERT_TRUE(merge_imus(sensors, merged).ok());
+  const MergedImus merged = merged_of(sensors);
   ASSERT_EQ(merged.merged.samples.size(), static_cast<std::size_t>(kSamples));
   ASSERT_EQ(merged.merged.faults.findings.size(), 1U);
   EXPECT_EQ(fault_of(merged), "imu_silent imu ");
@@ -130,8 +127,7 @@ TEST(SphereImus, ThePrimaryUnitMayBeSilent) {
     const auto lose = [&](auto& rows) { rows.erase(rows.begin() + kFrom, returns ? rows.begin() + kTo : rows.end()); };
     sim::ImuRecord& primary = sensors.imus[0];
     lose(primary.time_ns), lose(primary.gyro_rad_s), lose(primary.accel_m_s2), lose(primary.clip_flags);
-    MergedImus merged;
-    ASSERT_TRUE(merge_imus(sensors, merged).ok());
+    const MergedImus merged = merged_of(sensors);
     ASSERT_EQ(merged.merged.samples.size(), static_cast<std::size_t>(kSamples));
     ASSERT_EQ(merged.merged.faults.findings.size(), 1U);
     EXPECT_EQ(fault_of(merged), "imu_silent imu ");
@@ -142,15 +138,14 @@ TEST(SphereImus, ThePrimaryUnitMayBeSilent) {
 TEST(SphereImus, AFrozenUnitIsLeftOutFromTheBeginningOfItAndNamed) {
   for (std::size_t frozen = 0; frozen < 3; ++frozen) {
     sim::Sensors sensors = three(unit("imu_2", 0, 0.0), unit("imu_3", 0, 0.0));
-    MergedImus merged;
-    ASSERT_TRUE(merge_imus(sensors, merged).ok());
+    MergedImus merged = merged_of(sensors);
     EXPECT_TRUE(merged.merged.faults.ok());
     sim::ImuRecord& record = sensors.imus[frozen];
     for (std::size_t k = kSamples / 3; k < kSamples; ++k) {
       record.gyro_rad_s[k] = record.gyro_rad_s[kSamples / 3];
       record.accel_m_s2[k] = record.accel_m_s2[kSamples / 3];
     }
-    ASSERT_TRUE(merge_imus(sensors, merged).ok());
+    merged = merged_of(sensors);
     ASSERT_EQ(merged.merged.faults.findings.size(), 1U) << frozen;
     EXPECT_EQ(fault_of(merged), "imu_frozen " + record.name + " ");
     EXPECT_NEAR(since_s(merged), 1e-9 * static_cast<double>(record.time_ns[kSamples / 3]), 1e-9);
@@ -160,9 +155,8 @@ TEST(SphereImus, AFrozenUnitIsLeftOutFromTheBeginningOfItAndNamed) {
 
 TEST(SphereImus, AUnitOfOtherUnitsIsLeftOutAndNamed) {
   sim::Sensors sensors = three(unit("imu_2", 0, 0.0), unit("imu_3", 0, 0.0));
-  for (Eigen::Vector3d& force : sensors.imus[1].accel_m_s2) force /= 9.80665;
-  MergedImus merged;
-  ASSERT_TRUE(merge_imus(sensors, merged).ok());
+  for (Vector3d& force : sensors.imus[1].accel_m_s2) force /= 9.80665;
+  const MergedImus merged = merged_of(sensors);
   ASSERT_EQ(merged.merged.faults.findings.size(), 1U);
   EXPECT_EQ(fault_of(merged), "imu_disagrees imu_2 ");
   EXPECT_EQ(merged.merged.imus.size(), 2U);
@@ -178,8 +172,7 @@ sim::ImuRecord frozen_z(sim::ImuRecord record) {
 
 TEST(SphereImus, AUnitOfWhichOneAxisFreezesIsLeftOutAndTheAxisNamed) {
   const sim::Sensors sensors = three(frozen_z(unit("imu_2", 0, 0.0)), unit("imu_3", 0, 0.0));
-  MergedImus merged;
-  ASSERT_TRUE(merge_imus(sensors, merged).ok());
+  const MergedImus merged = merged_of(sensors);
   ASSERT_EQ(merged.merged.faults.findings.size(), 1U);
   EXPECT_EQ(fault_of(merged), "imu_frozen imu_2 gyro_z");
   EXPECT_NEAR(since_s(merged), 1e-9 * static_cast<double>(sensors.imus[0].time_ns[kSamples / 3]), 1e-9);
@@ -199,10 +192,9 @@ TEST(SphereImus, WhereOneAxisFreezesInAllUnitsTheRunIsRefused) {
 TEST(SphereImus, AnAxisAtItsRailOrThatIsReadMoreSlowlyIsNotFrozen) {
   sim::ImuRecord clips = unit("imu_2", 0, 0.0), slow = unit("imu_3", 0, 0.0);
   clips.stated_gyro_range_rad_s = 0.5;  // for up to a second
-  for (Eigen::Vector3d& rate : clips.gyro_rad_s) rate.z() = std::clamp(rate.z(), -0.5, 0.5);
+  for (Vector3d& rate : clips.gyro_rad_s) rate.z() = std::clamp(rate.z(), -0.5, 0.5);
   for (std::size_t k = 0; k < kSamples; ++k) slow.gyro_rad_s[k].z() = slow.gyro_rad_s[k - k % 20].z();
-  MergedImus merged;
-  ASSERT_TRUE(merge_imus(three(clips, slow), merged).ok());
+  const MergedImus merged = merged_of(three(clips, slow));
   for (const HealthFinding& finding : merged.merged.faults.findings) EXPECT_STREQ(finding.axis, "") << finding.sensor;
 }
 
@@ -210,8 +202,7 @@ TEST(SphereImus, ReadingsOfOneUnitBeyondItsRangeAreLeftOutAndCounted) {
   sim::ImuRecord spikes = unit("imu_2", 0, 0.0);
   spikes.stated_gyro_range_rad_s = 5.0;
   for (std::size_t k = 100; k < kSamples; k += 301) spikes.gyro_rad_s[k].x() = 3e5;
-  MergedImus merged;
-  ASSERT_TRUE(merge_imus(three(spikes, unit("imu_3", 0, 0.0)), merged).ok());
+  const MergedImus merged = merged_of(three(spikes, unit("imu_3", 0, 0.0)));
   EXPECT_EQ(merged.beyond_range, 8);
   EXPECT_LT(worst_rate_error(merged), 1e-3);
 }

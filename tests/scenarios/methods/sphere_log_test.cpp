@@ -1,19 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test uses a rolling sphere in the form in which the authors of the real one logged it: a simulated one, whose
 // path is known, and the real log where it is available.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <filesystem>
-#include <string>
-#include <vector>
-
 #include "scenarios/estimates/method.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/recordings/import.hpp"
 #include "stand_ins/stand_ins.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -36,7 +28,7 @@ class SphereLog : public ::testing::TestWithParam<test::DataFolder> {
   static Estimate run(const char* method, const sim::Sensors& sensors) {
     return find_methods(method).front()->run(sensors, {}, {});
   }
-  std::filesystem::path path_;
+  fs::path path_;
 };
 
 INSTANTIATE_TEST_SUITE_P(Logs, SphereLog, ::testing::ValuesIn(test::data_folders("sphere_log")), test::FolderName());

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/methods/synthetic_recording.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
+#include "tests/testing.hpp"
 
 namespace tumble::scenarios::testing {
 
@@ -32,7 +30,7 @@ void add_truth(const SyntheticMotion& motion, sim::Recording& recording) {
   }
 }
 
-void add_imu(const SyntheticMotion& motion, const Eigen::Isometry3d& T_BI, sim::Recording& recording) {
+void add_imu(const SyntheticMotion& motion, const Isometry3d& T_BI, sim::Recording& recording) {
   sim::ImuRecord record;
   record.name = "imu";
   record.device = "synthetic";
@@ -44,12 +42,12 @@ void add_imu(const SyntheticMotion& motion, const Eigen::Isometry3d& T_BI, sim::
   sim::ImuTruth truth;
   truth.name = "imu";
   truth.T_BI = T_BI;
-  const Eigen::Matrix3d R_IB = T_BI.linear().transpose();
+  const Matrix3d R_IB = T_BI.linear().transpose();
   const auto count = static_cast<std::int64_t>(std::llround(motion.duration_s * 1e9)) / kImuPeriodNs;
   for (std::int64_t k = 1; k <= count; ++k) {
     const double middle_s = 1e-9 * (static_cast<double>(k) - 0.5) * static_cast<double>(kImuPeriodNs);
-    const Eigen::Vector3d rate = R_IB * motion.rate_B_rad_s(middle_s);
-    const Eigen::Vector3d force = R_IB * motion.specific_force_B_m_s2(middle_s, T_BI.translation());
+    const Vector3d rate = R_IB * motion.rate_B_rad_s(middle_s);
+    const Vector3d force = R_IB * motion.specific_force_B_m_s2(middle_s, T_BI.translation());
     record.time_ns.push_back(k * kImuPeriodNs);
     record.gyro_rad_s.push_back(rate.cwiseMax(-motion.rail_rad_s).cwiseMin(motion.rail_rad_s));
     record.accel_m_s2.push_back(force);
@@ -67,7 +65,7 @@ void add_imu(const SyntheticMotion& motion, const Eigen::Isometry3d& T_BI, sim::
 
 // returns the distance to the room from inside along a unit direction; it is negative when the ray leaves through the
 // open top
-double range_in_room(const Eigen::Vector3d& from, const Eigen::Vector3d& direction) {
+double range_in_room(const Vector3d& from, const Vector3d& direction) {
   double range = 1e9;
   if (direction.z() < 0.0) range = -from.z() / direction.z();
   for (int j = 0; j < 2; ++j) {
@@ -77,7 +75,7 @@ double range_in_room(const Eigen::Vector3d& from, const Eigen::Vector3d& directi
   return from.z() + range * direction.z() > kRoomHeightM ? -1.0 : range;
 }
 
-void add_lidar(const SyntheticMotion& motion, const Eigen::Isometry3d& T_BL, sim::Recording& recording) {
+void add_lidar(const SyntheticMotion& motion, const Isometry3d& T_BL, sim::Recording& recording) {
   sim::LidarRecord record;
   record.name = "lidar";
   record.device = "synthetic";
@@ -93,12 +91,12 @@ void add_lidar(const SyntheticMotion& motion, const Eigen::Isometry3d& T_BL, sim
     for (int column = 0; column < kColumns; ++column) {
       const std::int64_t offset_ns = column * (kSweepPeriodNs / kColumns);
       const double t = 1e-9 * static_cast<double>(sweep * kSweepPeriodNs + offset_ns);
-      const Eigen::Isometry3d T_WL = Eigen::Translation3d(motion.position_m(t)) * motion.attitude(t) * T_BL;
+      const Isometry3d T_WL = Eigen::Translation3d(motion.position_m(t)) * motion.attitude(t) * T_BL;
       const double azimuth = -2.0 * std::numbers::pi * column / kColumns;
       for (int ring = 0; ring < kRings; ++ring) {
         const double elevation = (-15.0 + 2.0 * ring) * std::numbers::pi / 180.0;
-        const Eigen::Vector3d ray_L(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
-                                    std::sin(elevation));
+        const Vector3d ray_L(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+                             std::sin(elevation));
         const double range = range_in_room(T_WL.translation(), T_WL.linear() * ray_L);
         if (range < 0.0) continue;
         record.position_L_m.push_back((range * ray_L).cast<float>());
@@ -135,38 +133,38 @@ double SyntheticMotion::phase_acceleration(double time_s) const {
   return 60.0 * u * (1.0 - u) * (1.0 - 2.0 * u) / (length_s * length_s);
 }
 
-Eigen::Vector3d SyntheticMotion::position_m(double time_s) const {
+Vector3d SyntheticMotion::position_m(double time_s) const {
   return start_m + phase(time_s) * displacement_m;
 }
 
-Eigen::Quaterniond SyntheticMotion::attitude(double time_s) const {
+Quaterniond SyntheticMotion::attitude(double time_s) const {
   return Eigen::AngleAxisd(angle_rad * phase(time_s), axis_W) * q_start;
 }
 
-Eigen::Vector3d SyntheticMotion::velocity_m_s(double time_s) const {
+Vector3d SyntheticMotion::velocity_m_s(double time_s) const {
   return phase_rate(time_s) * displacement_m;
 }
 
-Eigen::Vector3d SyntheticMotion::rate_B_rad_s(double time_s) const {
+Vector3d SyntheticMotion::rate_B_rad_s(double time_s) const {
   return q_start.conjugate() * (angle_rad * phase_rate(time_s) * axis_W);
 }
 
-Eigen::Vector3d SyntheticMotion::specific_force_B_m_s2(double time_s, const Eigen::Vector3d& p_B_m) const {
-  const Eigen::Vector3d w = rate_B_rad_s(time_s);
-  const Eigen::Vector3d alpha = q_start.conjugate() * (angle_rad * phase_acceleration(time_s) * axis_W);
-  const Eigen::Vector3d of_centre_W = phase_acceleration(time_s) * displacement_m + kGravity * Eigen::Vector3d::UnitZ();
+Vector3d SyntheticMotion::specific_force_B_m_s2(double time_s, const Vector3d& p_B_m) const {
+  const Vector3d w = rate_B_rad_s(time_s);
+  const Vector3d alpha = q_start.conjugate() * (angle_rad * phase_acceleration(time_s) * axis_W);
+  const Vector3d of_centre_W = phase_acceleration(time_s) * displacement_m + kGravity * Eigen::Vector3d::UnitZ();
   return attitude(time_s).conjugate() * of_centre_W + alpha.cross(p_B_m) + w.cross(w.cross(p_B_m));
 }
 
 sim::Recording synthetic_rig(const SyntheticMotion& motion) {
   sim::Recording recording;
   recording.sensors.robot = "rig";
-  Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
-  T_BI.linear() = Eigen::AngleAxisd(0.4, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
-  T_BI.translation() = Eigen::Vector3d(-0.02, -0.08, 0.05);
-  Eigen::Isometry3d T_BL = Eigen::Isometry3d::Identity();
+  Isometry3d T_BI = Eigen::Isometry3d::Identity();
+  T_BI.linear() = Eigen::AngleAxisd(0.4, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  T_BI.translation() = Vector3d(-0.02, -0.08, 0.05);
+  Isometry3d T_BL = Eigen::Isometry3d::Identity();
   T_BL.linear() = Eigen::AngleAxisd(-1.5, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  T_BL.translation() = Eigen::Vector3d(0.01, 0.02, 0.1);
+  T_BL.translation() = Vector3d(0.01, 0.02, 0.1);
   add_truth(motion, recording);
   add_imu(motion, T_BI, recording);
   add_lidar(motion, T_BL, recording);
@@ -175,7 +173,7 @@ sim::Recording synthetic_rig(const SyntheticMotion& motion) {
 
 sim::Recording synthetic_sphere(double distance_m, double direction_rad) {
   SyntheticMotion motion;
-  const Eigen::Vector3d direction(std::cos(direction_rad), std::sin(direction_rad), 0.0);
+  const Vector3d direction(std::cos(direction_rad), std::sin(direction_rad), 0.0);
   // rolling gives v = r w x z, so that w = z x v / r
   motion.axis_W = Eigen::Vector3d::UnitZ().cross(direction);
   motion.angle_rad = distance_m / kSphereRadiusM;
@@ -185,9 +183,9 @@ sim::Recording synthetic_sphere(double distance_m, double direction_rad) {
   sim::Recording recording;
   recording.sensors.robot = "sphere";
   recording.sensors.sphere_radius_m = kSphereRadiusM;
-  Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
-  T_BI.linear() = Eigen::AngleAxisd(1.2, Eigen::Vector3d(-1, 1, 0.5).normalized()).toRotationMatrix();
-  T_BI.translation() = Eigen::Vector3d(0.03, 0.01, -0.02);
+  Isometry3d T_BI = Eigen::Isometry3d::Identity();
+  T_BI.linear() = Eigen::AngleAxisd(1.2, Vector3d(-1, 1, 0.5).normalized()).toRotationMatrix();
+  T_BI.translation() = Vector3d(0.03, 0.01, -0.02);
   add_truth(motion, recording);
   add_imu(motion, T_BI, recording);
   add_lidar(motion, Eigen::Isometry3d::Identity(), recording);

@@ -1,20 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/external/turning_sense.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-
 #include "tests/scenarios/methods/synthetic_recording.hpp"
+#include "tests/testing.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble::scenarios {
 namespace {
 
-using ::testing::HasSubstr;
-using Changed = std::function<Eigen::Quaterniond(const Eigen::Quaterniond&)>;
+using Changed = std::function<Quaterniond(const Quaterniond&)>;
 
 /// The motion is slow enough for the gyro, and its axis is no axis of a sensor.
 const testing::SyntheticMotion kMotion{.angle_rad = 6.0};
@@ -23,36 +17,35 @@ const testing::SyntheticMotion kMotion{.angle_rad = 6.0};
 sim::Sensors sensors() {
   sim::Sensors out = testing::synthetic_rig(kMotion).sensors;
   out.lidars.front().T_BL.linear() =
-      out.imus.front().T_BI.linear() * so3::exp(0.7 * Eigen::Vector3d(0.6, -0.8, 0.0)).toRotationMatrix();
+      out.imus.front().T_BI.linear() * so3::exp(0.7 * Vector3d(0.6, -0.8, 0.0)).toRotationMatrix();
   return out;
 }
 
 /// Returns the true attitudes of a sensor at 20 Hz, each as `changed` writes it.
-Estimate attitudes(const Eigen::Matrix3d& R_BA, Frame stated, const Changed& changed) {
+Estimate attitudes(const Matrix3d& R_BA, Frame stated, const Changed& changed) {
   Estimate out;
   out.frame = stated;
   for (int k = 0; k < 110; ++k) {
     const double time_s = 0.05 * k + 0.2;
-    out.attitudes.push_back(
-        {std::llround(1e9 * time_s), changed(kMotion.attitude(time_s) * Eigen::Quaterniond(R_BA)), {}});
+    out.attitudes.push_back({std::llround(1e9 * time_s), changed(kMotion.attitude(time_s) * Quaterniond(R_BA)), {}});
   }
   return out;
 }
 
-Eigen::Quaterniond as_is(const Eigen::Quaterniond& q) {
+Quaterniond as_is(const Quaterniond& q) {
   return q;
 }
-Eigen::Quaterniond with_w_first(const Eigen::Quaterniond& q) {
+Quaterniond with_w_first(const Quaterniond& q) {
   return {q.z(), q.w(), q.x(), q.y()};  // w x y z, interpreted as x y z w
 }
-Eigen::Quaterniond inverse(const Eigen::Quaterniond& q) {
+Quaterniond inverse(const Quaterniond& q) {
   return q.conjugate();
 }
 
 class TurningSense : public ::testing::TestWithParam<Frame> {
  protected:
   const sim::Sensors sensors_ = sensors();
-  Eigen::Matrix3d R_BA(Frame frame) const {
+  Matrix3d R_BA(Frame frame) const {
     if (frame == Frame::body) return Eigen::Matrix3d::Identity();
     return frame == Frame::imu ? sensors_.imus.front().T_BI.linear() : sensors_.lidars.front().T_BL.linear();
   }
@@ -69,9 +62,9 @@ TEST_P(TurningSense, WFirstAndInverseAreNamed) {
 }
 
 TEST_P(TurningSense, WhatIsOnlyWrongIsNotComplainedOf) {
-  EXPECT_EQ(complaint([](const Eigen::Quaterniond&) { return Eigen::Quaterniond::Identity(); }), "");
-  Eigen::Quaterniond walked = Eigen::Quaterniond::Identity();
-  EXPECT_EQ(complaint([&](const Eigen::Quaterniond&) {
+  EXPECT_EQ(complaint([](const Quaterniond&) { return Eigen::Quaterniond::Identity(); }), "");
+  Quaterniond walked = Eigen::Quaterniond::Identity();
+  EXPECT_EQ(complaint([&](const Quaterniond&) {
               walked = walked * so3::exp({0.2, -0.1, 0.15});
               return walked;
             }),

@@ -1,14 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <map>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/estimates/method.hpp"
 #include "scenarios/methods/registry.hpp"
@@ -16,7 +6,7 @@
 #include "scenarios/sweep/evaluate.hpp"
 #include "tests/scenarios/methods/rates_without_suspect_terms.hpp"
 #include "tests/scenarios/methods/wrong_inputs.hpp"
-#include "tests/tree.hpp"
+#include "tests/scenarios/testing.hpp"
 
 // the test checks what methods report when their inputs are wrong; tests/bench/verdicts has the figures over many draws
 namespace tumble::scenarios {

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/scenarios/methods/wrong_inputs.hpp"
 
-#include <algorithm>
-#include <utility>
-
 #include "sim/random/stream.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::scenarios::testing {
 
@@ -12,7 +10,7 @@ namespace {
 
 constexpr double kDegree = 57.29577951308232, kOneG_m_s2 = 9.80665;
 
-void each_reading(sim::Sensors& sensors, const std::function<void(Eigen::Vector3d&, Eigen::Vector3d&)>& change) {
+void each_reading(sim::Sensors& sensors, const std::function<void(Vector3d&, Vector3d&)>& change) {
   for (sim::ImuRecord& imu : sensors.imus) {
     for (std::size_t k = 0; k < imu.time_ns.size(); ++k) change(imu.gyro_rad_s[k], imu.accel_m_s2[k]);
   }
@@ -24,20 +22,20 @@ void shift_lidar(sim::Sensors& sensors, std::int64_t by_ns) {
   }
 }
 
-void freeze(std::vector<Eigen::Vector3d>& readings) {
+void freeze(std::vector<Vector3d>& readings) {
   for (std::size_t k = readings.size() / 3; k < readings.size(); ++k) readings[k] = readings[readings.size() / 3];
 }
 
 /// Freezes an axis from a fifth of the recording on, which is during the motion.
-void freeze_axis(std::vector<Eigen::Vector3d>& readings, int axis) {
+void freeze_axis(std::vector<Vector3d>& readings, int axis) {
   const std::size_t from = readings.size() / 5;
   for (std::size_t k = from; k < readings.size(); ++k) readings[k][axis] = readings[from][axis];
 }
 
 /// Subtracts the mean force over a second, as devices that report "linear acceleration" do.
-void take_gravity_out(std::vector<Eigen::Vector3d>& forces, const std::vector<std::int64_t>& time_ns) {
+void take_gravity_out(std::vector<Vector3d>& forces, const std::vector<std::int64_t>& time_ns) {
   constexpr double kMean_s = 1.0;
-  Eigen::Vector3d gravity = forces.empty() ? Eigen::Vector3d::Zero() : forces.front();
+  Vector3d gravity = forces.empty() ? Eigen::Vector3d::Zero() : forces.front();
   for (std::size_t k = 1; k < forces.size(); ++k) {
     const double share = 1e-9 * static_cast<double>(time_ns[k] - time_ns[k - 1]) / kMean_s;
     gravity += std::min(1.0, share) * (forces[k] - gravity);
@@ -80,7 +78,7 @@ void silence_imus(sim::Sensors& sensors, std::int64_t for_ns) {
 
 /// Adds a zero offset to the x axis of all gyros, whose recordings start 1.3 s late.
 void offset_late_gyros(sim::Sensors& sensors, double offset_deg_s) {
-  each_reading(sensors, [&](Eigen::Vector3d& w, Eigen::Vector3d&) { w.x() += offset_deg_s / kDegree; });
+  each_reading(sensors, [&](Vector3d& w, Vector3d&) { w.x() += offset_deg_s / kDegree; });
   leave_out(sensors, 0, 1'300'000'000);
 }
 
@@ -122,7 +120,7 @@ void reverse_point_times(sim::Sensors& sensors) {
 
 void scale_ranges(sim::Sensors& sensors, float by) {
   for (sim::LidarRecord& lidar : sensors.lidars) {
-    for (Eigen::Vector3f& position : lidar.position_L_m) position *= by;
+    for (Vector3f& position : lidar.position_L_m) position *= by;
     for (float& range : lidar.range_m) range *= by;
   }
 }
@@ -152,7 +150,7 @@ void dust(sim::Sensors& sensors, double share) {
 }  // namespace
 
 const std::map<std::string, std::function<void(sim::Sensors&)>>& wrong_inputs() {
-  using Vector = Eigen::Vector3d;
+  using Vector = Vector3d;
   static const std::map<std::string, std::function<void(sim::Sensors&)>> all = {
       {"none", [](sim::Sensors&) {}},
       {"accel_in_g", [](sim::Sensors& s) { each_reading(s, [](Vector&, Vector& f) { f /= kOneG_m_s2; }); }},

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <functional>
-#include <map>
-#include <string>
-
 #include "scenarios/estimates/method.hpp"
 #include "sim/recording.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::scenarios::testing {
 

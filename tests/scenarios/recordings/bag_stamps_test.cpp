@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "scenarios/recordings/bag_kinds.hpp"
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/bags/bag_messages.hpp"
@@ -12,24 +9,19 @@
 namespace tumble::scenarios {
 namespace {
 
-using testing::AllOf;
-using testing::Contains;
-using testing::HasSubstr;
-using testing::Not;
-
 constexpr std::int64_t kOrigin_ns = 1'700'000'000'000'000'000, kMs_ns = 1'000'000;
 
 /// Stamps has a bag of an IMU and a lidar whose headers contain the stamps that each test chooses.
-class Stamps : public fixture::Folder, public testing::WithParamInterface<fixture::BagKind> {
+class Stamps : public test::TemporaryFolder, public testing::WithParamInterface<fixture::BagKind> {
  protected:
   using HeaderOf = std::int64_t (*)(std::int64_t record_ns);
 
   Imported written(HeaderOf imu, HeaderOf lidar, StampSource source = StampSource::header) {
-    const std::filesystem::path path = folder_ / ("bag" + std::to_string(count_++));
+    const fs::path path = folder_ / ("bag" + std::to_string(count_++));
     const auto bag = GetParam().writer(path);
     sim::Recording recording = fixture::recording();
     sim::ImuRecord& readings = recording.sensors.imus[0];
-    readings.accel_m_s2.assign(readings.accel_m_s2.size(), Eigen::Vector3d(0.0, 0.0, 9.8));
+    readings.accel_m_s2.assign(readings.accel_m_s2.size(), Vector3d(0.0, 0.0, 9.8));
     for (std::uint32_t& offset : recording.sensors.lidars[0].offset_ns) offset *= offsets_;
     for (int k = 1; k <= 60; ++k) {
       const std::int64_t record_ns = kOrigin_ns + 5 * kMs_ns * k;
@@ -47,7 +39,7 @@ class Stamps : public fixture::Folder, public testing::WithParamInterface<fixtur
     return GetParam().read(path, reading);
   }
   std::string complaint_of(HeaderOf imu, HeaderOf lidar, StampSource source = StampSource::header) {
-    return fixture::complaint([&] { written(imu, lidar, source); });
+    return test::complaint([&] { written(imu, lidar, source); });
   }
   static std::int64_t same(std::int64_t record_ns) { return record_ns; }
   static std::int64_t sweep_before(std::int64_t record_ns) { return record_ns - 100 * kMs_ns; }

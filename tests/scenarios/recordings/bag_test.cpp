@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/bags/bag.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "scenarios/recordings/bag_kinds.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
 #include "scenarios/recordings/export.hpp"
@@ -15,13 +10,11 @@
 namespace tumble::scenarios {
 namespace {
 
-using testing::HasSubstr;
-
-class Bag : public fixture::Folder, public testing::WithParamInterface<fixture::BagKind> {
+class Bag : public test::TemporaryFolder, public testing::WithParamInterface<fixture::BagKind> {
  protected:
   Bag() {
     for (sim::ImuRecord& imu : recording_.sensors.imus) {
-      for (Eigen::Vector3d& force : imu.accel_m_s2) force *= 0.2;  // scaled to a plausible median
+      for (Vector3d& force : imu.accel_m_s2) force *= 0.2;  // scaled to a plausible median
     }
     for (std::uint32_t& offset : recording_.sensors.lidars[0].offset_ns) offset *= 600;  // points cover most of a sweep
     reading_.imu.device = "mti30";
@@ -30,11 +23,11 @@ class Bag : public fixture::Folder, public testing::WithParamInterface<fixture::
   void write() { GetParam().write(recording_.sensors, {}, path_); }
   Imported read() { return GetParam().read(path_, reading_); }
   std::string complaint_of() {
-    return fixture::complaint([&] { read(); });
+    return test::complaint([&] { read(); });
   }
   sim::Recording recording_ = fixture::recording();
   BagReading reading_;
-  std::filesystem::path path_;
+  fs::path path_;
 };
 
 TEST_P(Bag, SensorsComeBackToTheFormatsPrecision) {
@@ -81,7 +74,7 @@ TEST_P(Bag, TheTruthIsLeftOutUnlessAskedFor) {
   reading_.reference_topic = "/truth";
   write();
   EXPECT_THAT(complaint_of(), HasSubstr("no topic '/truth'"));
-  std::filesystem::remove_all(path_);
+  fs::remove_all(path_);
   const StoredTruth truth = fixture::stored_truth(recording_, folder_);
   GetParam().write(recording_.sensors, {0, &truth}, path_);
   const Imported imported = read();
@@ -117,7 +110,7 @@ TEST_P(Bag, TopicsAreChosenByName) {
 }
 
 TEST_P(Bag, AnotherUnitIsSaid) {
-  for (Eigen::Vector3d& force : recording_.sensors.imus[0].accel_m_s2) force /= 9.80665;
+  for (Vector3d& force : recording_.sensors.imus[0].accel_m_s2) force /= 9.80665;
   write();
   EXPECT_THAT(complaint_of(), HasSubstr("topic /imu: the median specific force is"));
 }
@@ -125,13 +118,12 @@ TEST_P(Bag, AnotherUnitIsSaid) {
 // some drivers do not follow sensor_msgs/Imu
 TEST_P(Bag, ForceInGIsReadSoAndSaid) {
   recording_.sensors.imus.resize(1);
-  for (Eigen::Vector3d& force : recording_.sensors.imus[0].accel_m_s2) force = Eigen::Vector3d(0.6, 0.0, -0.8);
+  for (Vector3d& force : recording_.sensors.imus[0].accel_m_s2) force = Vector3d(0.6, 0.0, -0.8);
   write();
   const Imported imported = read();
-  EXPECT_TRUE(imported.sensors.imus.at(0).accel_m_s2.front().isApprox(9.80665 * Eigen::Vector3d(0.6, 0.0, -0.8)));
-  EXPECT_THAT(imported.notes,
-              testing::Contains(testing::AllOf(HasSubstr("/imu: caution: sensor_msgs/Imu requires m/s^2"),
-                                               HasSubstr("(set '--accel-unit m/s^2'"))));
+  EXPECT_TRUE(imported.sensors.imus.at(0).accel_m_s2.front().isApprox(9.80665 * Vector3d(0.6, 0.0, -0.8)));
+  EXPECT_THAT(imported.notes, Contains(AllOf(HasSubstr("/imu: caution: sensor_msgs/Imu requires m/s^2"),
+                                             HasSubstr("(set '--accel-unit m/s^2'"))));
   reading_.accel_unit = AccelUnit::m_s2;
   EXPECT_THAT(complaint_of(), HasSubstr("The specific force may be in g (set '--accel-unit g')"));
 }
@@ -172,7 +164,7 @@ TEST_P(Bag, ASensorIsNoFrameOfTheBags) {
   const StoredTruth truth = fixture::stored_truth(recording_, folder_);
   for (const char* name : {"body", "world", "map", "odom", "base_link", "truth"}) {
     recording_.sensors.lidars[0].name = name;
-    std::filesystem::remove_all(path_);
+    fs::remove_all(path_);
     GetParam().write(recording_.sensors, {0, &truth}, path_);
     const Imported imported = read();
     ASSERT_EQ(imported.sensors.lidars.size(), 1u) << name;
@@ -202,31 +194,30 @@ TEST_P(Bag, RatesInDegreesAreNoticedByGravity) {
       imu.accel_m_s2.emplace_back(0.0, sign * 9.80665 * std::sin(angle), 9.80665 * std::cos(angle));
     }
     imu.clip_flags.assign(imu.time_ns.size(), 0);
-    std::filesystem::remove_all(path_);
+    fs::remove_all(path_);
     write();
   };
   turning(1.0, 1.0);
-  EXPECT_THAT(read().notes, testing::Contains(HasSubstr("gyro and accelerometer agree in units and axes")));
+  EXPECT_THAT(read().notes, Contains(HasSubstr("gyro and accelerometer agree in units and axes")));
   turning(57.29578, 1.0);
   EXPECT_THAT(complaint_of(), HasSubstr("The rates may be in deg/s"));
   reading_.gyro_unit = GyroUnit::deg_s;
   const Imported in_degrees = read();
-  EXPECT_THAT(in_degrees.notes, testing::Contains(HasSubstr("gyro and accelerometer agree in units and axes")));
-  EXPECT_TRUE(in_degrees.sensors.imus[0].gyro_rad_s[0].isApprox(Eigen::Vector3d(1.0, 0.0, 0.0), 1e-7));
+  EXPECT_THAT(in_degrees.notes, Contains(HasSubstr("gyro and accelerometer agree in units and axes")));
+  EXPECT_TRUE(in_degrees.sensors.imus[0].gyro_rad_s[0].isApprox(Vector3d(1.0, 0.0, 0.0), 1e-7));
   turning(1.0, 1.0);
   EXPECT_THAT(complaint_of(), HasSubstr("if the gyro is read in deg/s, the rotation measured by the accelerometer"));
   EXPECT_THAT(complaint_of(), HasSubstr("The rates may be in rad/s"));
   reading_.gyro_unit = GyroUnit::rad_s;
   turning(1.0, -1.0);
-  EXPECT_THAT(read().notes,
-              testing::Contains(HasSubstr("caution: the rotation measured by the accelerometer is -1 times")));
+  EXPECT_THAT(read().notes, Contains(HasSubstr("caution: the rotation measured by the accelerometer is -1 times")));
 }
 
 TEST_P(Bag, AnImuThatIsNoneIsSaidWithTheWayOut) {
-  for (Eigen::Vector3d& force : recording_.sensors.imus[1].accel_m_s2) force.setZero();  // only a gyro
+  for (Vector3d& force : recording_.sensors.imus[1].accel_m_s2) force.setZero();  // only a gyro
   write();
-  EXPECT_THAT(complaint_of(), testing::AllOf(HasSubstr("topic /imu_reference:"),
-                                             HasSubstr("the option --imu-topic can select other topics")));
+  EXPECT_THAT(complaint_of(),
+              AllOf(HasSubstr("topic /imu_reference:"), HasSubstr("the option --imu-topic can select other topics")));
   reading_.imu_topics = {"/imu"};
   EXPECT_EQ(complaint_of(), "");
 }

@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-#include <cstring>
-#include <fstream>
-#include <functional>
 
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/bags/bag_messages.hpp"
@@ -31,8 +26,8 @@ constexpr double kGrowth_mib = kMore_mib / 10.0;
 
 struct Kind {
   const char *name, *format;
-  std::unique_ptr<BagWriter> (*writer)(const std::filesystem::path&);
-  Imported (*read)(const std::filesystem::path&, const BagReading&);
+  std::unique_ptr<BagWriter> (*writer)(const fs::path&);
+  Imported (*read)(const fs::path&, const BagReading&);
 };
 
 /// Writes a bag of a lidar and an IMU, sweep by sweep.
@@ -42,7 +37,7 @@ void write_bag(BagWriter& bag, int sweeps) {
   sim::Recording recording;
   fixture::add_lidar(numbers, recording, "lidar", 1, kPoints);
   sim::ImuRecord imu = fixture::imu_record(numbers, "imu", 1);
-  imu.accel_m_s2 = {Eigen::Vector3d(0.0, 0.0, 9.8)};
+  imu.accel_m_s2 = {Vector3d(0.0, 0.0, 9.8)};
   for (int k = 0; k < sweeps; ++k) {
     const std::int64_t start_ns = kOrigin_ns + k * kPeriod_ns;
     for (int i = 1; i <= 10; ++i) {
@@ -75,16 +70,16 @@ double peak_mib(const std::function<void()>& work) {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-class BoundedMemory : public fixture::Folder, public testing::WithParamInterface<Kind> {
+class BoundedMemory : public test::TemporaryFolder, public testing::WithParamInterface<Kind> {
  protected:
-  std::filesystem::path bag(int sweeps) const { return folder_ / ("bag" + std::to_string(sweeps)); }
-  std::filesystem::path recording(int sweeps) const { return folder_ / (std::to_string(sweeps) + ".h5"); }
+  fs::path bag(int sweeps) const { return folder_ / ("bag" + std::to_string(sweeps)); }
+  fs::path recording(int sweeps) const { return folder_ / (std::to_string(sweeps) + ".h5"); }
   double import_mib(int sweeps, bool aside) {
     return peak_mib([&] {
       BagReading reading;
       if (aside) reading.sweeps.scratch = folder_;
       const Imported read = GetParam().read(bag(sweeps), reading);
-      const std::filesystem::path out = folder_ / "out.h5";
+      const fs::path out = folder_ / "out.h5";
       if (aside)
         write_recording(out, read.info, read.sensors, read.points, nullptr);
       else
@@ -101,11 +96,11 @@ class BoundedMemory : public fixture::Folder, public testing::WithParamInterface
     for (const int sweeps : {kShort, kLong}) {
       write_bag(*GetParam().writer(bag(sweeps)), sweeps);
       ASSERT_GT(import_mib(sweeps, true), 0.0);
-      std::filesystem::rename(folder_ / "out.h5", recording(sweeps));
+      fs::rename(folder_ / "out.h5", recording(sweeps));
     }
     const auto export_mib = [&](int sweeps) {
-      const std::filesystem::path out = folder_ / "out";
-      std::filesystem::remove_all(out);
+      const fs::path out = folder_ / "out";
+      fs::remove_all(out);
       return peak_mib([&] { export_recording(recording(sweeps), GetParam().format, out); });
     };
     EXPECT_LT(export_mib(kLong) - export_mib(kShort), kGrowth_mib);
@@ -132,7 +127,7 @@ TEST_P(BoundedMemorySoak, AnExportDoesNotGrowWithTheRecording) {
 }
 
 /// Writes a recording with the truth of its body, an IMU and the end of each ray, and the same poses as an estimate.
-void write_truthful(const std::filesystem::path& folder, int sweeps) {
+void write_truthful(const fs::path& folder, int sweeps) {
   constexpr int kStates = 200, kSamples = 40;  // for the 0.1 s of a sweep
   fixture::Numbers numbers;
   sim::Recording recording;
@@ -153,14 +148,12 @@ void write_truthful(const std::filesystem::path& folder, int sweeps) {
   for (int i = 0; i < 10 * sweeps; ++i) poses << 0.01 * i << " 1 2 3 0 0 0 1\n";
 }
 
-class BoundedExport : public fixture::Folder {
+class BoundedExport : public test::TemporaryFolder {
  protected:
   BoundedExport() {
     for (const int sweeps : {kShort, kLong}) peak_mib([&] { write_truthful(folder_, sweeps); });
   }
-  std::filesystem::path file(int sweeps, const char* ending) const {
-    return folder_ / (std::to_string(sweeps) + ending);
-  }
+  fs::path file(int sweeps, const char* ending) const { return folder_ / (std::to_string(sweeps) + ending); }
   /// Returns how much more memory the long recording takes than the short one.
   template <class Work>
   double growth_mib(Work&& work) {
@@ -171,7 +164,7 @@ class BoundedExport : public fixture::Folder {
 TEST_F(BoundedExport, DoesNotGrowWithTruthAndEstimates) {
   for (const char* format : {"rosbag1", "rosbag2", "mcap"}) {
     const double growth = growth_mib([&](int sweeps) {
-      const std::filesystem::path estimate[] = {file(sweeps, ".tum")};
+      const fs::path estimate[] = {file(sweeps, ".tum")};
       const ExportChoices beside{true, own_sweep_layout(), [&](const sim::Sensors& sensors, BagWriting& writing) {
                                    add_estimates(estimate, sensors, writing);
                                  }};

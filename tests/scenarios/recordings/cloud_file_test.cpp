@@ -1,24 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/clouds/cloud_file.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include <algorithm>
-#include <array>
 #include <bit>
-#include <cmath>
-#include <cstring>
 
 #include "scenarios/recordings/fixture_recording.hpp"
 
 namespace tumble::scenarios {
 namespace {
-
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
 
 template <class Number>
 std::string bytes(Number number, bool swapped = false) {
@@ -28,14 +18,14 @@ std::string bytes(Number number, bool swapped = false) {
   return out;
 }
 
-class CloudFile : public fixture::Folder {
+class CloudFile : public test::TemporaryFolder {
  protected:
   Cloud read(const std::string& name, const std::string& content) {
     fixture::put(folder_ / name, content);
     return read_cloud(folder_ / name);
   }
   std::string complaint_of(const std::string& name, const std::string& content) {
-    return fixture::complaint([&] { read(name, content); });
+    return test::complaint([&] { read(name, content); });
   }
 };
 
@@ -192,7 +182,7 @@ TEST_F(CloudFile, ColumnsOfABinFileMayBeNamed) {
   EXPECT_EQ((*mixed.find("t"))[0], 70000.0);
   EXPECT_EQ((*mixed.find("ring"))[0], 9.0);
   const auto complaint = [&](const char* columns) {
-    return fixture::complaint([&] { named(sweep_of<float>(5), columns); });
+    return test::complaint([&] { named(sweep_of<float>(5), columns); });
   };
   EXPECT_THAT(complaint("x,y,z,intensity"), "") << "as stated, whatever it looks like";
   EXPECT_THAT(complaint("x,y,intensity"), HasSubstr("'x,y,intensity' lacks the column z"));
@@ -239,14 +229,14 @@ TEST_F(CloudFile, WhatAHeaderStatesIsComparedWithTheFile) {
 TEST_F(CloudFile, APipeIsRefusedAndNotWaitedFor) {
   for (const char* name : {"pipe.ply", "pipe.pcd", "pipe.bin", "pipe.vtk"}) {
     ASSERT_EQ(mkfifo((folder_ / name).c_str(), 0600), 0);
-    EXPECT_THAT(fixture::complaint([&] { read_cloud(folder_ / name); }),
+    EXPECT_THAT(test::complaint([&] { read_cloud(folder_ / name); }),
                 HasSubstr(std::string(name) + ": is a pipe; it must be a regular file"));
   }
 }
 
 TEST_F(CloudFile, DamageIsOneClearLine) {
-  EXPECT_THAT(fixture::complaint([&] { read_cloud(folder_ / "none.ply"); }), HasSubstr("none.ply: no such file"));
-  EXPECT_THAT(fixture::complaint([&] { read_cloud(folder_ / "a.las"); }),
+  EXPECT_THAT(test::complaint([&] { read_cloud(folder_ / "none.ply"); }), HasSubstr("none.ply: no such file"));
+  EXPECT_THAT(test::complaint([&] { read_cloud(folder_ / "a.las"); }),
               HasSubstr("must end in .ply, .pcd, .vtk or .bin"));
   EXPECT_THAT(complaint_of("a.ply", ""), HasSubstr("a.ply:0: the file ends within its header"));
   EXPECT_THAT(complaint_of("a.ply", "plyy\n"), HasSubstr("a.ply:1: the file does not begin with 'ply'"));

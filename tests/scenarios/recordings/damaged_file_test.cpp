@@ -1,22 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "scenarios/recordings/fixture_recording.hpp"
 
 namespace tumble::scenarios {
 namespace {
 
-using testing::HasSubstr;
-using testing::StartsWith;
-
 /// DamagedFile has a small recording as bytes, and a folder for damaged copies.
-class DamagedFile : public fixture::Folder {
+class DamagedFile : public test::TemporaryFolder {
  protected:
   DamagedFile() : path_(folder_ / "a.h5") {
     const sim::Recording recording = fixture::recording();
     write_recording(path_, fixture::info(), recording.sensors, &recording.truth);
-    bytes_ = fixture::bytes_of(path_);
+    bytes_ = test::read_file(path_);
     digest_ = digest(recording.sensors, &recording.truth);
   }
   /// Reads the whole file and returns the digest of what was read.
@@ -26,7 +20,7 @@ class DamagedFile : public fixture::Folder {
     const sim::Truth truth = read_truth(path_);
     return digest(sensors, &truth);
   }
-  std::filesystem::path path_;
+  fs::path path_;
   std::string bytes_;
   std::string digest_;
 };
@@ -44,8 +38,8 @@ TEST_F(DamagedFile, TruncationIsRecognisedAtEveryLength) {
        length += (length < 128 || length + 64 > bytes_.size()) ? 1 : 499) {
     fixture::put(path_, bytes_.substr(0, length));
     for (const std::string& message :
-         {fixture::complaint([&] { read_info(path_); }), fixture::complaint([&] { read_sensors(path_); }),
-          fixture::complaint([&] { read_truth(path_); })}) {
+         {test::complaint([&] { read_info(path_); }), test::complaint([&] { read_sensors(path_); }),
+          test::complaint([&] { read_truth(path_); })}) {
       EXPECT_THAT(message, StartsWith(path_.string() + ": the file is " + (length == 0 ? "empty" : "truncated")))
           << length;
       EXPECT_EQ(message.find('\n'), std::string::npos) << message;
@@ -86,7 +80,7 @@ TEST_F(DamagedFile, ADamagedReadingIsNamedAsSuch) {
   std::string spoiled = bytes_;
   spoiled[at - 8] = static_cast<char>(spoiled[at - 8] ^ 1);  // lowest bit of a double
   fixture::put(path_, spoiled);
-  EXPECT_THAT(fixture::complaint([&] { read_sensors(path_); }),
+  EXPECT_THAT(test::complaint([&] { read_sensors(path_); }),
               HasSubstr("damaged or was changed: the digest of its data is"));
 }
 

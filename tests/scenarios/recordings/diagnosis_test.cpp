@@ -1,20 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/diagnosis/diagnosis.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "scenarios/diagnosis/probable_devices.hpp"
-#include "tests/tree.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
-
-using testing::ElementsAre;
-using testing::IsEmpty;
 
 TEST(Diagnosis, NamesTheOptionThatAMessageRecommends) {
   EXPECT_EQ(recommended_option("the rates may be in deg/s (set '--gyro-unit deg/s')"), "--gyro-unit deg/s");
@@ -72,15 +63,14 @@ TEST(Diagnosis, LateSensorsLossAndMotionAreFound) {
   sim::Sensors moving = at_rest(0.0, 4.0);
   for (std::size_t k = 0; k < 400; ++k) moving.imus[0].gyro_rad_s[k].z() = std::sin(0.1 * static_cast<double>(k));
   EXPECT_THAT(evidence_of(moving),
-              ElementsAre(testing::StartsWith("imu: the robot moves during the first second: angular rates vary")));
+              ElementsAre(StartsWith("imu: the robot moves during the first second: angular rates vary")));
   sim::Sensors untimed = at_rest(0.0, 4.0);
   untimed.lidars[0].point_times = sim::PointTimes::unknown;
-  EXPECT_THAT(evidence_of(untimed), ElementsAre(testing::HasSubstr("the points have no times")));
+  EXPECT_THAT(evidence_of(untimed), ElementsAre(HasSubstr("the points have no times")));
   const std::vector<std::string> fields[] = {{"x", "y", "z", "stamp_us"}};
-  EXPECT_THAT(
-      findings_in_readings(untimed, fields).at(0).repair,
-      testing::HasSubstr("set --time-field NAME to the field that contains the point times (fields of the cloud: "
-                         "x, y, z, stamp_us)"));
+  EXPECT_THAT(findings_in_readings(untimed, fields).at(0).repair,
+              HasSubstr("set --time-field NAME to the field that contains the point times (fields of the cloud: "
+                        "x, y, z, stamp_us)"));
 }
 
 TEST(Diagnosis, SaturationIsANoteAndNoFault) {
@@ -88,7 +78,7 @@ TEST(Diagnosis, SaturationIsANoteAndNoFault) {
   for (std::size_t k = 200; k < 300; ++k) clipped.imus[0].gyro_rad_s[k].z() = 7.8, clipped.imus[0].clip_flags[k] = 4;
   const std::vector<RecordingFinding> found = findings_in_readings(clipped);
   ASSERT_EQ(found.size(), 1u);
-  EXPECT_THAT(found[0].evidence, testing::StartsWith("the gyro is saturated"));
+  EXPECT_THAT(found[0].evidence, StartsWith("the gyro is saturated"));
   EXPECT_FALSE(found[0].fault);
 }
 
@@ -103,8 +93,8 @@ TEST(Diagnosis, AGyroThatSaturatesFarBelowItsStatedRangeIsNoted) {
   };
   const std::vector<RecordingFinding> found = swinging(12.0);
   ASSERT_EQ(found.size(), 1u);
-  EXPECT_THAT(found[0].evidence, testing::HasSubstr("(stated range: 34.9 rad/s)"));
-  EXPECT_THAT(found[0].repair, testing::StartsWith("leave out --device"));
+  EXPECT_THAT(found[0].evidence, HasSubstr("(stated range: 34.9 rad/s)"));
+  EXPECT_THAT(found[0].repair, StartsWith("leave out --device"));
   EXPECT_THAT(swinging(5.0), IsEmpty()) << "negative control: the gyro never saturates";
 }
 
@@ -123,8 +113,8 @@ sim::LidarRecord lidar_with_rings(double lowest, double step, const std::string&
   for (int k = 0; k < 16 * 50; ++k) {
     const double elevation_rad = (lowest + step * (k % 16)) * M_PI / 180.0, azimuth_rad = 0.1 * k;
     lidar.position_L_m.emplace_back(
-        (5.0 * Eigen::Vector3d(std::cos(elevation_rad) * std::cos(azimuth_rad),
-                               std::cos(elevation_rad) * std::sin(azimuth_rad), std::sin(elevation_rad)))
+        (5.0 * Vector3d(std::cos(elevation_rad) * std::cos(azimuth_rad),
+                        std::cos(elevation_rad) * std::sin(azimuth_rad), std::sin(elevation_rad)))
             .cast<float>());
     lidar.range_m.push_back(5.0f);
     lidar.ring.push_back(static_cast<std::uint16_t>(k % 16));
@@ -153,7 +143,7 @@ TEST(ProbableDevices, AnImuIsDetectedFromItsNameUnlessItsReadingsAreBeyondItsRan
   EXPECT_EQ(device_of(probable_imu(imu, sheets)), "mid360_imu");
   imu.name = "ouster_imu";
   EXPECT_EQ(device_of(probable_imu(imu, sheets)), "ouster_imu");
-  for (Eigen::Vector3d& rate : imu.gyro_rad_s) rate.x() = 30.0;
+  for (Vector3d& rate : imu.gyro_rad_s) rate.x() = 30.0;
   EXPECT_EQ(device_of(probable_imu(imu, sheets)), "none") << "the IMU inside an Ouster measures 250 deg/s";
 }
 

@@ -2,11 +2,8 @@
 // The test reads the files for each external program with this project's readers and compares them with what the
 // program's sources require, which the table below repeats. tests/peers reads the same files with other people's
 // packages.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "scenarios/recordings/bags/bag.hpp"
@@ -18,8 +15,6 @@
 
 namespace tumble::scenarios {
 namespace {
-
-using testing::HasSubstr;
 
 /// A Wanted contains what an external program reads of a spinning lidar.
 struct Wanted {
@@ -43,7 +38,7 @@ constexpr Wanted kWanted[] = {
     {"rko-lio", "bag", false, "/imu", "/lidar/points", "t", 6, 1.0},
 };
 
-std::unique_ptr<BagReader> open(const std::filesystem::path& path) {
+std::unique_ptr<BagReader> open(const fs::path& path) {
   if (path.extension() == ".bag") return open_ros1_bag(path);
   if (path.extension() == ".mcap") return open_mcap({path});
   return open_ros2_bag(path);
@@ -63,7 +58,7 @@ sim::Recording unordered(const std::string& device = "rs16") {
   sim::Recording out = fixture::recording();
   out.sensors.robot = "rig";
   for (sim::ImuRecord& imu : out.sensors.imus) {
-    for (Eigen::Vector3d& force : imu.accel_m_s2) force *= 0.2;
+    for (Vector3d& force : imu.accel_m_s2) force *= 0.2;
   }
   sim::LidarRecord& lidar = out.sensors.lidars[0];
   lidar.device = device;
@@ -72,7 +67,7 @@ sim::Recording unordered(const std::string& device = "rs16") {
 }
 
 /// Returns what is wrong with the points of a bag, as that external program reads them, or "" when nothing is wrong.
-std::string problem_of(const Wanted& wanted, const std::filesystem::path& bag, const sim::LidarRecord& lidar) {
+std::string problem_of(const Wanted& wanted, const fs::path& bag, const sim::LidarRecord& lidar) {
   const auto reader = open(bag);
   if (reader->cdr(wanted.points) == wanted.ros1) return "the other ROS";
   const auto clouds = messages<ros::PointCloud2>(*reader, wanted.points);
@@ -101,16 +96,16 @@ std::string problem_of(const Wanted& wanted, const std::filesystem::path& bag, c
   return "";
 }
 
-class Dialects : public fixture::Folder, public testing::WithParamInterface<Wanted> {
+class Dialects : public test::TemporaryFolder, public testing::WithParamInterface<Wanted> {
  protected:
   void write(const sim::Recording& recording) {
     write_recording(folder_ / "a.h5", fixture::info(), recording.sensors, &recording.truth);
   }
-  std::filesystem::path out() const { return folder_ / GetParam().peer; }
-  nlohmann::json manifest() const { return nlohmann::json::parse(fixture::bytes_of(out() / "manifest.json")); }
+  fs::path out() const { return folder_ / GetParam().peer; }
+  nlohmann::json manifest() const { return nlohmann::json::parse(test::read_file(out() / "manifest.json")); }
   std::string complaint_of(const sim::Recording& recording) {
     write(recording);
-    return fixture::complaint([&] { export_for(folder_ / "a.h5", GetParam().peer, folder_ / "refused", false); });
+    return test::complaint([&] { export_for(folder_ / "a.h5", GetParam().peer, folder_ / "refused", false); });
   }
 };
 
@@ -147,7 +142,7 @@ TEST_P(Dialects, AnotherUnitOfTimeIsNoticed) {
   for (PointColumn& column : writing.sweeps.columns) {
     if (column.quantity == PointQuantity::time) column.scale *= 1e-3;
   }
-  const std::filesystem::path place = folder_ / wanted.bag;
+  const fs::path place = folder_ / wanted.bag;
   (wanted.ros1                    ? export_ros1_bag
    : place.extension() == ".mcap" ? export_mcap
                                   : export_ros2_bag)(recording.sensors, writing, place);
@@ -169,14 +164,14 @@ TEST_P(Dialects, TheManifestSaysWhatIsThere) {
   EXPECT_FALSE(said["sources"].empty());
   for (const auto& source : said["sources"]) EXPECT_EQ(source["commit"].get<std::string>().size(), 40u);
   for (const auto& file : said["configuration"]) {
-    EXPECT_TRUE(std::filesystem::exists(out() / file.get<std::string>())) << file;
+    EXPECT_TRUE(fs::exists(out() / file.get<std::string>())) << file;
     EXPECT_NO_THROW(YAML::LoadFile((out() / file.get<std::string>()).string())) << file;
   }
-  const Eigen::Isometry3d T_IL = recording.sensors.imus[0].T_BI.inverse() * recording.sensors.lidars[0].T_BL;
+  const Isometry3d T_IL = recording.sensors.imus[0].T_BI.inverse() * recording.sensors.lidars[0].T_BL;
   const auto p = said["extrinsics"]["T_imu_lidar"]["p_m"].get<std::vector<double>>();
   EXPECT_TRUE(Eigen::Vector3d::Map(p.data()).isApprox(T_IL.translation(), 1e-12));
   // the truth has stamps of the bag's clock
-  EXPECT_THAT(fixture::bytes_of(out() / "truth.tum"), HasSubstr("\n1000000000.001000000 "));
+  EXPECT_THAT(test::read_file(out() / "truth.tum"), HasSubstr("\n1000000000.001000000 "));
 }
 
 TEST_P(Dialects, WhatThePeerCannotDoWithoutIsRefused) {
@@ -187,24 +182,24 @@ TEST_P(Dialects, WhatThePeerCannotDoWithoutIsRefused) {
   recording.truth.imus.clear();
   EXPECT_EQ(complaint_of(recording),
             lidar_alone ? "" : "the recording has no IMU reading; " + peer + " cannot read such a recording");
-  std::filesystem::remove_all(folder_ / "refused");
+  fs::remove_all(folder_ / "refused");
   recording = unordered();
   recording.sensors.lidars[0].point_times = sim::PointTimes::unknown;
   recording.sensors.lidars[0].offset_ns.assign(recording.sensors.lidars[0].offset_ns.size(), 0);
   EXPECT_EQ(
       complaint_of(recording),
       lidar_alone ? "" : "the points of lidar 'lidar' have no time stamps; " + peer + " cannot read such a recording");
-  std::filesystem::remove_all(folder_ / "refused");
+  fs::remove_all(folder_ / "refused");
   recording = unordered();
   recording.sensors.lidars[0].range_m[7] = std::nanf("");
   EXPECT_THAT(complaint_of(recording),
               HasSubstr("point 7 of lidar 'lidar' has a position, range or intensity that is not finite"));
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "refused"));
+  EXPECT_FALSE(fs::exists(folder_ / "refused"));
   recording = unordered();
   recording.sensors.lidars.clear();
   recording.truth.lidars.clear();
   EXPECT_EQ(complaint_of(recording), "the recording has no lidar return; " + peer + " cannot read such a recording");
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "refused"));
+  EXPECT_FALSE(fs::exists(folder_ / "refused"));
 }
 
 // programs that read the last of no points, or reject no sweep without points, do not receive such a sweep
@@ -227,8 +222,8 @@ TEST_P(Dialects, AnEmptySweepIsThereOnlyForThosePeersThatTakeIt) {
             takes ? 2 : 0);
   const std::string note =
       "the export leaves out 2 sweeps without points, because " + peer + " cannot read an empty cloud";
-  EXPECT_THAT(notes, testing::Conditional(takes, testing::IsEmpty(), testing::ElementsAre(note)));
-  EXPECT_EQ(fixture::bytes_of(out() / "manifest.json").find(note) != std::string::npos, !takes);
+  EXPECT_THAT(notes, testing::Conditional(takes, IsEmpty(), ElementsAre(note)));
+  EXPECT_EQ(test::read_file(out() / "manifest.json").find(note) != std::string::npos, !takes);
 }
 
 INSTANTIATE_TEST_SUITE_P(, Dialects, testing::ValuesIn(kWanted), [](const auto& of) {
@@ -237,21 +232,21 @@ INSTANTIATE_TEST_SUITE_P(, Dialects, testing::ValuesIn(kWanted), [](const auto& 
   return name;
 });
 
-class Configuration : public fixture::Folder {
+class Configuration : public test::TemporaryFolder {
  protected:
   YAML::Node yaml(const std::string& peer, const std::string& file, const sim::Recording& recording) {
     write_recording(folder_ / "a.h5", fixture::info(), recording.sensors, &recording.truth);
     export_for(folder_ / "a.h5", peer, folder_ / peer, false);
     return YAML::LoadFile((folder_ / peer / file).string());
   }
-  static Eigen::Isometry3d pose(const YAML::Node& t, const YAML::Node& R) {
-    Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
+  static Isometry3d pose(const YAML::Node& t, const YAML::Node& R) {
+    Isometry3d out = Eigen::Isometry3d::Identity();
     for (int i = 0; i < 3; ++i) out.translation()[i] = t[static_cast<std::size_t>(i)].as<double>();
     for (int i = 0; i < 9; ++i) out.linear()(i / 3, i % 3) = R[static_cast<std::size_t>(i)].as<double>();
     return out;
   }
   sim::Recording recording_ = unordered();
-  Eigen::Isometry3d T_BI_ = recording_.sensors.imus[0].T_BI, T_BL_ = recording_.sensors.lidars[0].T_BL;
+  Isometry3d T_BI_ = recording_.sensors.imus[0].T_BI, T_BL_ = recording_.sensors.lidars[0].T_BL;
 };
 
 // each program has its own sense of the mounting: with a wrong one the map turns around
@@ -267,7 +262,7 @@ TEST_F(Configuration, MountingsAreInThePeersSense) {
   EXPECT_TRUE(pose(lio_sam["extrinsicTrans"], lio_sam["extrinsicRot"]).isApprox(T_BL_.inverse() * T_BI_, 1e-9));
   const YAML::Node glim = yaml("glim", "config_sensors.json", recording_)["sensors"]["T_lidar_imu"];
   const YAML::Node rko = yaml("rko-lio", "rko_lio.yaml", recording_)["extrinsic_imu2base_quat_xyzw_xyz"];
-  const Eigen::Vector3d p_LI = (T_BL_.inverse() * T_BI_).translation();
+  const Vector3d p_LI = (T_BL_.inverse() * T_BI_).translation();
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_NEAR(glim[i].as<double>(), p_LI[static_cast<Eigen::Index>(i)], 1e-9) << "place first";
     EXPECT_NEAR(rko[4 + i].as<double>(), T_BI_.translation()[static_cast<Eigen::Index>(i)], 1e-9) << "quaternion first";
@@ -308,12 +303,12 @@ TEST_F(Configuration, ALivoxComesAsItsDriversMessage) {
     ASSERT_EQ(sweeps.size(), 3u);
     EXPECT_EQ(sweeps[1].points.size(), 50u);
   }
-  EXPECT_THAT(fixture::complaint([&] { yaml("lio-sam", "params.yaml", recording); }),
+  EXPECT_THAT(test::complaint([&] { yaml("lio-sam", "params.yaml", recording); }),
               HasSubstr("the lidar 'mid100' does not scan in rings; lio-sam cannot read such a recording"));
 }
 
 TEST_F(Configuration, AnUnknownPeerIsRefusedWithTheNearest) {
-  EXPECT_THAT(fixture::complaint([&] { yaml("fast_lio", "", recording_); }),
+  EXPECT_THAT(test::complaint([&] { yaml("fast_lio", "", recording_); }),
               HasSubstr("the export target 'fast_lio' is unknown (did you mean 'fast-lio'?)"));
   EXPECT_EQ(peer_dialects().size(), std::size(kWanted)) << "each has its line in the table above";
 }

@@ -1,10 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <functional>
-#include <set>
-#include <vector>
-
 #include "scenarios/recordings/fixture_recording.hpp"
 
 namespace tumble::scenarios {

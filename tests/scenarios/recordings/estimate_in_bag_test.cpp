@@ -1,22 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/scoring/estimate_in_bag.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "scenarios/estimates/estimate_file.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"
 
 namespace tumble::scenarios {
 namespace {
 
-using testing::HasSubstr;
-
 /// InBag has a body that moves steadily along x and turns about z, with a lidar that sees points at rest; the estimate
 /// is the body's own poses, of the lidar, in a world that is turned by 0.5 rad and shifted.
-class InBag : public fixture::Folder {
+class InBag : public test::TemporaryFolder {
  protected:
   InBag() {
     fixture::Numbers numbers;
@@ -41,23 +34,23 @@ class InBag : public fixture::Folder {
     }
     estimate_.frame = Frame::lidar;
     for (std::int64_t time = 0; time <= 300'000'000; time += 5'000'000) {
-      const Eigen::Isometry3d T = T_VW_ * pose_of_lidar(time);
+      const Isometry3d T = T_VW_ * pose_of_lidar(time);
       PoseState pose;
       pose.time_ns = time;
       pose.position_W_m = T.translation();
-      pose.orientation_W = Eigen::Quaterniond(T.linear());
+      pose.orientation_W = Quaterniond(T.linear());
       pose.covariance.diagonal() << 1, 2, 3, 0.01, 0.01, 0.04;
       estimate_.poses.push_back(pose);
     }
   }
-  Eigen::Isometry3d pose_of_body(std::int64_t time_ns) const {
+  Isometry3d pose_of_body(std::int64_t time_ns) const {
     const auto k = static_cast<std::size_t>(time_ns / kStep_ns);
-    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+    Isometry3d T = Eigen::Isometry3d::Identity();
     T.linear() = recording_.truth.q_WB[k].toRotationMatrix();
     T.translation() = recording_.truth.p_WB_m[k];
     return T;
   }
-  Eigen::Isometry3d pose_of_lidar(std::int64_t time_ns) const {
+  Isometry3d pose_of_lidar(std::int64_t time_ns) const {
     return pose_of_body(time_ns) * recording_.truth.lidars[0].T_BL;
   }
   struct InBagWhole {
@@ -81,13 +74,13 @@ class InBag : public fixture::Folder {
     return out;
   }
   static constexpr std::int64_t kStep_ns = 1'000'000;
-  static Eigen::Isometry3d turned() {
-    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  static Isometry3d turned() {
+    Isometry3d T = Eigen::Isometry3d::Identity();
     T.linear() = Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-    T.translation() = Eigen::Vector3d(7, -3, 2);
+    T.translation() = Vector3d(7, -3, 2);
     return T;
   }
-  Eigen::Isometry3d T_VW_ = turned();
+  Isometry3d T_VW_ = turned();
   sim::Recording recording_;
   Estimate estimate_;
 };
@@ -96,9 +89,9 @@ TEST_F(InBag, TheTruthAsAnEstimateHasNoError) {
   const InBagWhole found = placed(true);
   ASSERT_EQ(found.track.poses.size(), estimate_.poses.size());
   for (const BagTrack::Pose& pose : found.track.poses) {
-    const Eigen::Isometry3d T = pose_of_body(pose.time_ns);
+    const Isometry3d T = pose_of_body(pose.time_ns);
     EXPECT_LT((pose.p_WB_m - T.translation()).norm(), 1e-9);
-    EXPECT_LT(pose.q_WB.angularDistance(Eigen::Quaterniond(T.linear())), 1e-7);
+    EXPECT_LT(pose.q_WB.angularDistance(Quaterniond(T.linear())), 1e-7);
   }
   ASSERT_EQ(found.clouds.size(), 3u);
   std::size_t points = 0;
@@ -106,7 +99,7 @@ TEST_F(InBag, TheTruthAsAnEstimateHasNoError) {
     EXPECT_EQ(found.track.cloud_time_ns[sweep], 100'000'000 * static_cast<std::int64_t>(sweep + 1));
     ASSERT_EQ(found.clouds[sweep].position_W_m.size(), 20u);
     for (std::size_t k = 0; k < 20; ++k, ++points) {
-      const Eigen::Vector3f& hit = recording_.truth.lidars[0].hit_W_m[points];
+      const Vector3f& hit = recording_.truth.lidars[0].hit_W_m[points];
       EXPECT_LT((found.clouds[sweep].position_W_m[k] - hit).norm(), 1e-4f);  // float32 of some ten metres
       EXPECT_LT(found.clouds[sweep].error_m[k], 1e-4f);
     }
@@ -116,7 +109,7 @@ TEST_F(InBag, TheTruthAsAnEstimateHasNoError) {
 // a later error must show with its size
 TEST_F(InBag, AnErrorShowsWhereItIs) {
   for (PoseState& pose : estimate_.poses) {
-    if (pose.time_ns >= 100'000'000) pose.position_W_m += T_VW_.linear() * Eigen::Vector3d(0.3, 0, 0.4);
+    if (pose.time_ns >= 100'000'000) pose.position_W_m += T_VW_.linear() * Vector3d(0.3, 0, 0.4);
   }
   const InBagWhole found = placed(true);
   EXPECT_LT(found.clouds[0].error_m[5], 1e-4f);
@@ -136,15 +129,14 @@ TEST_F(InBag, WithoutATruthNothingIsMovedAndNoErrorKnown) {
 // the test computes J C J^T by hand: the position's covariance gains that of the attitude over the lever arm, both
 // turned into the truth's world
 TEST_F(InBag, TheCovarianceIsTheBodys) {
-  const Eigen::Matrix3d R = T_VW_.linear().transpose();
+  const Matrix3d R = T_VW_.linear().transpose();
   const BagTrack::Pose pose = placed(true).track.poses[10];
-  const Eigen::Isometry3d T_WL = pose_of_lidar(pose.time_ns);
-  const Eigen::Vector3d lever = pose.p_WB_m - T_WL.translation();
-  const Eigen::Matrix3d attitude = R * Eigen::Vector3d(0.01, 0.01, 0.04).asDiagonal() * R.transpose();
-  Eigen::Matrix3d cross;
+  const Isometry3d T_WL = pose_of_lidar(pose.time_ns);
+  const Vector3d lever = pose.p_WB_m - T_WL.translation();
+  const Matrix3d attitude = R * Vector3d(0.01, 0.01, 0.04).asDiagonal() * R.transpose();
+  Matrix3d cross;
   cross << 0, -lever.z(), lever.y(), lever.z(), 0, -lever.x(), -lever.y(), lever.x(), 0;
-  const Eigen::Matrix3d place =
-      R * Eigen::Vector3d(1, 2, 3).asDiagonal() * R.transpose() + cross * attitude * cross.transpose();
+  const Matrix3d place = R * Vector3d(1, 2, 3).asDiagonal() * R.transpose() + cross * attitude * cross.transpose();
   EXPECT_TRUE((pose.covariance.topLeftCorner<3, 3>()).isApprox(place, 1e-9));
   EXPECT_TRUE((pose.covariance.bottomRightCorner<3, 3>()).isApprox(attitude, 1e-9));
   EXPECT_GT((cross * attitude * cross.transpose()).norm(), 0.1) << "the lever matters";
@@ -160,7 +152,7 @@ TEST_F(InBag, ReturnsInAHoleAreLeftOut) {
 }
 
 TEST_F(InBag, WhatCannotBePlacedIsRefused) {
-  const auto complaint = [&] { return fixture::complaint([&] { placed(true); }); };
+  const auto complaint = [&] { return test::complaint([&] { placed(true); }); };
   const Estimate good = estimate_;
   estimate_.frame = Frame::imu;
   EXPECT_NE(complaint(), "");
@@ -178,17 +170,17 @@ TEST_F(InBag, FilesAreNamedAfterTheirMethods) {
   write_estimate(folder_ / "b", "mine", Kind::slam, estimate_, "");
   const StoredTruth truth = fixture::stored_truth(recording_, folder_);
   BagWriting writing{0, &truth};
-  const std::filesystem::path paths[] = {folder_ / "a", folder_ / "b"};
+  const fs::path paths[] = {folder_ / "a", folder_ / "b"};
   add_estimates(paths, recording_.sensors, writing);
   ASSERT_EQ(writing.tracks.size(), 2u);
   EXPECT_EQ(writing.tracks[0].name, "slam_mine");
   EXPECT_EQ(writing.tracks[1].name, "slam_mine_2");
   for (const BagTrack& track : writing.tracks) EXPECT_EQ(track.cloud_time_ns.size(), 3u);
   write_estimate(folder_ / "c", "mine", Kind::slam, estimate_, std::string(32, 'a'));
-  const std::filesystem::path other[] = {folder_ / "c"};
-  EXPECT_THAT(fixture::complaint([&] { add_estimates(other, recording_.sensors, writing); }),
-              testing::AllOf(HasSubstr("c: the estimate was made from a recording with digest"),
-                             HasSubstr(std::string(32, 'a'))));
+  const fs::path other[] = {folder_ / "c"};
+  EXPECT_THAT(
+      test::complaint([&] { add_estimates(other, recording_.sensors, writing); }),
+      AllOf(HasSubstr("c: the estimate was made from a recording with digest"), HasSubstr(std::string(32, 'a'))));
 }
 
 }  // namespace

@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/export.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <sstream>
-
 #include "scenarios/recordings/export_names.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"
 #include "scenarios/recordings/recording_file.hpp"
@@ -14,11 +8,7 @@
 namespace tumble::scenarios {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::StartsWith;
-
-std::vector<std::vector<double>> rows_of(const std::filesystem::path& path) {
+std::vector<std::vector<double>> rows_of(const fs::path& path) {
   std::ifstream stream(path);
   std::vector<std::vector<double>> rows;
   for (std::string line; std::getline(stream, line);) {
@@ -30,7 +20,7 @@ std::vector<std::vector<double>> rows_of(const std::filesystem::path& path) {
   return rows;
 }
 
-class Export : public fixture::Folder {
+class Export : public test::TemporaryFolder {
  protected:
   sim::Recording recording_ = fixture::recording();
 };
@@ -42,7 +32,7 @@ TEST_F(Export, TumHoldsTimeAndPoseExactly) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     ASSERT_EQ(rows[i].size(), 8u);
     EXPECT_EQ(rows[i][0], static_cast<double>(i) / 1000.0);
-    EXPECT_EQ(Eigen::Vector3d(rows[i][1], rows[i][2], rows[i][3]), recording_.truth.p_WB_m[i]);
+    EXPECT_EQ(Vector3d(rows[i][1], rows[i][2], rows[i][3]), recording_.truth.p_WB_m[i]);
     EXPECT_EQ(Eigen::Vector4d(rows[i][4], rows[i][5], rows[i][6], rows[i][7]), recording_.truth.q_WB[i].coeffs());
   }
 }
@@ -50,15 +40,15 @@ TEST_F(Export, TumHoldsTimeAndPoseExactly) {
 TEST_F(Export, ATrajectoryIsOfTheFrameThatIsAskedFor) {
   sim::Truth& truth = recording_.truth;
   truth.p_BG_m = {0.01, 0.0, -0.02};
-  const auto expect = [&](const std::string& frame, const Eigen::Isometry3d& T_BA) {
+  const auto expect = [&](const std::string& frame, const Isometry3d& T_BA) {
     export_tum(truth, folder_ / "a.tum", 0, frame);
     export_kitti(truth, folder_ / "a.txt", frame);
     const auto poses = rows_of(folder_ / "a.tum"), matrices = rows_of(folder_ / "a.txt");
     ASSERT_EQ(poses.size(), 40u);
     for (const std::size_t i : {std::size_t{0}, std::size_t{23}}) {
-      const Eigen::Isometry3d T_WA = Eigen::Translation3d(truth.p_WB_m[i]) * truth.q_WB[i] * T_BA;
-      const Eigen::Quaterniond q(poses[i][7], poses[i][4], poses[i][5], poses[i][6]);
-      EXPECT_TRUE(T_WA.translation().isApprox(Eigen::Vector3d(poses[i][1], poses[i][2], poses[i][3]), 1e-12)) << frame;
+      const Isometry3d T_WA = Eigen::Translation3d(truth.p_WB_m[i]) * truth.q_WB[i] * T_BA;
+      const Quaterniond q(poses[i][7], poses[i][4], poses[i][5], poses[i][6]);
+      EXPECT_TRUE(T_WA.translation().isApprox(Vector3d(poses[i][1], poses[i][2], poses[i][3]), 1e-12)) << frame;
       EXPECT_TRUE(T_WA.linear().isApprox(q.toRotationMatrix(), 1e-12)) << frame;
       EXPECT_NEAR(matrices[i][3], T_WA.translation().x(), 1e-12) << frame;
       EXPECT_NEAR(matrices[i][6], T_WA.linear()(1, 2), 1e-12) << frame;
@@ -67,7 +57,7 @@ TEST_F(Export, ATrajectoryIsOfTheFrameThatIsAskedFor) {
   truth.imus[0].T_BI = Eigen::Translation3d(0.1, -0.2, 0.3) * Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitY());
   truth.lidars[0].T_BL = Eigen::Translation3d(-0.3, 0.0, 0.1) * Eigen::AngleAxisd(-1.1, Eigen::Vector3d::UnitZ());
   expect("body", Eigen::Isometry3d::Identity());
-  expect("centre", Eigen::Isometry3d(Eigen::Translation3d(truth.p_BG_m)));
+  expect("centre", Isometry3d(Eigen::Translation3d(truth.p_BG_m)));
   expect(truth.imus[0].name, truth.imus[0].T_BI);
   expect(truth.lidars[0].name, truth.lidars[0].T_BL);
   expect(truth.series[0].name, truth.series[0].T_BX);
@@ -77,18 +67,18 @@ TEST_F(Export, ATrajectoryIsOfTheFrameThatIsAskedFor) {
   choices.frame = truth.imus[0].name;
   export_recording(folder_ / "a.h5", "tum", folder_ / "b.tum", choices);
   export_tum(truth, folder_ / "a.tum", export_origin_ns(fixture::info().origin_ns), choices.frame);
-  EXPECT_EQ(fixture::bytes_of(folder_ / "b.tum"), fixture::bytes_of(folder_ / "a.tum"));
-  EXPECT_THAT(fixture::bytes_of(folder_ / "b.tum"), HasSubstr("true pose of '" + choices.frame + "' in the world"));
+  EXPECT_EQ(test::read_file(folder_ / "b.tum"), test::read_file(folder_ / "a.tum"));
+  EXPECT_THAT(test::read_file(folder_ / "b.tum"), HasSubstr("true pose of '" + choices.frame + "' in the world"));
   choices.frame = "wheel";
-  EXPECT_THAT(fixture::complaint([&] { export_recording(folder_ / "a.h5", "kitti", folder_ / "c", choices); }),
+  EXPECT_THAT(test::complaint([&] { export_recording(folder_ / "a.h5", "kitti", folder_ / "c", choices); }),
               HasSubstr("the recording's truth has no frame 'wheel' (known frames: body centre " + truth.imus[0].name));
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "c"));
+  EXPECT_FALSE(fs::exists(folder_ / "c"));
 }
 
 TEST_F(Export, TumTimesStayExactInLongRecordings) {
   recording_.truth.period_ns = 1234567891;
   export_tum(recording_.truth, folder_ / "truth.tum");
-  EXPECT_THAT(fixture::bytes_of(folder_ / "truth.tum"), HasSubstr("\n48.148147749 "));
+  EXPECT_THAT(test::read_file(folder_ / "truth.tum"), HasSubstr("\n48.148147749 "));
 }
 
 TEST_F(Export, KittiHoldsTheMatrixRowByRow) {
@@ -104,20 +94,20 @@ TEST_F(Export, KittiHoldsTheMatrixRowByRow) {
 
 TEST_F(Export, CsvHasAFilePerImuAndOneOfTheTruth) {
   export_csv(recording_.sensors, &recording_.truth, folder_ / "csv");
-  EXPECT_TRUE(std::filesystem::exists(folder_ / "csv/imu.csv"));
-  EXPECT_TRUE(std::filesystem::exists(folder_ / "csv/imu_reference.csv"));
+  EXPECT_TRUE(fs::exists(folder_ / "csv/imu.csv"));
+  EXPECT_TRUE(fs::exists(folder_ / "csv/imu_reference.csv"));
   const sim::SeriesRecord& barometer = recording_.sensors.series.at(0);
-  std::istringstream series(fixture::bytes_of(folder_ / "csv/barometer.csv"));
+  std::istringstream series(test::read_file(folder_ / "csv/barometer.csv"));
   std::string line;
   ASSERT_TRUE(std::getline(series, line));
   EXPECT_EQ(line, "stamp_s,stamp_ns,frame_id,pressure_pa,temperature_k");
   ASSERT_TRUE(std::getline(series, line));
   ASSERT_THAT(line, StartsWith("0,20000000,barometer,"));
   EXPECT_EQ(std::stod(line.substr(std::string("0,20000000,barometer,").size())), barometer.quantities[0].values[0]);
-  const std::string truth = fixture::bytes_of(folder_ / "csv/truth.csv");
+  const std::string truth = test::read_file(folder_ / "csv/truth.csv");
   EXPECT_EQ(std::count(truth.begin(), truth.end(), '\n'), 41);
   export_csv(recording_.sensors, nullptr, folder_ / "real");
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "real/truth.csv"));
+  EXPECT_FALSE(fs::exists(folder_ / "real/truth.csv"));
 }
 
 TEST_F(Export, EachOfTwoSensorsOfOneNameHasAFrame) {
@@ -146,7 +136,7 @@ TEST_F(Export, NoFileOfASensorIsWrittenOverAnother) {
                   "exported as 'truth_2'",
                   "the sweeps of the lidar are left out; export them with --format pcd or --format ply"));
   const auto lines = [&](const char* file) {
-    const std::string text = fixture::bytes_of(folder_ / "csv" / file);
+    const std::string text = test::read_file(folder_ / "csv" / file);
     return std::count(text.begin(), text.end(), '\n');
   };
   EXPECT_EQ(lines("truth.csv"), 41);
@@ -155,8 +145,8 @@ TEST_F(Export, NoFileOfASensorIsWrittenOverAnother) {
   EXPECT_THAT(export_recording(folder_ / "a.h5", "pcd", folder_ / "pcd"),
               ElementsAre("name conflict in the export: 'lidar' is the name of another sensor, so the sensor lidar 1 "
                           "is exported as 'lidar_2'"));
-  EXPECT_TRUE(std::filesystem::exists(folder_ / "pcd/lidar_000002.pcd"));
-  EXPECT_TRUE(std::filesystem::exists(folder_ / "pcd/lidar_2_000001.pcd"));
+  EXPECT_TRUE(fs::exists(folder_ / "pcd/lidar_000002.pcd"));
+  EXPECT_TRUE(fs::exists(folder_ / "pcd/lidar_2_000001.pcd"));
 }
 
 TEST(ExportNames, ASensorGivesWayOnlyToAnother) {
@@ -186,8 +176,8 @@ TEST(ExportNames, ASensorGivesWayOnlyToAnother) {
 TEST_F(Export, ANameCannotLeadOutOfTheFolder) {
   recording_.sensors.imus[0].name = "../outside";
   export_csv(recording_.sensors, nullptr, folder_ / "csv");
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "outside.csv"));
-  EXPECT_TRUE(std::filesystem::exists(folder_ / "csv/imu_0.csv"));
+  EXPECT_FALSE(fs::exists(folder_ / "outside.csv"));
+  EXPECT_TRUE(fs::exists(folder_ / "csv/imu_0.csv"));
 }
 
 TEST_F(Export, EveryFormatGoesFromFileToFile) {
@@ -195,23 +185,23 @@ TEST_F(Export, EveryFormatGoesFromFileToFile) {
   ASSERT_EQ(export_formats().size(), 9u);
   for (const std::string& format : export_formats()) {
     export_recording(folder_ / "a.h5", format, folder_ / format);
-    EXPECT_TRUE(std::filesystem::exists(folder_ / format)) << format;
+    EXPECT_TRUE(fs::exists(folder_ / format)) << format;
   }
   EXPECT_EQ(rows_of(folder_ / "tum").size(), 40u);
 }
 
 TEST_F(Export, WrongUseIsNamed) {
   write_recording(folder_ / "real.h5", {}, recording_.sensors, nullptr);
-  const auto complaint_of = [&](const std::string& format, const std::filesystem::path& out) {
-    return fixture::complaint([&] { export_recording(folder_ / "real.h5", format, out); });
+  const auto complaint_of = [&](const std::string& format, const fs::path& out) {
+    return test::complaint([&] { export_recording(folder_ / "real.h5", format, out); });
   };
   EXPECT_THAT(complaint_of("tums", folder_ / "x"), HasSubstr("unknown export format 'tums' (did you mean 'tum'?)"));
   EXPECT_THAT(complaint_of("tum", folder_ / "x"), HasSubstr("has no truth"));
   EXPECT_THAT(complaint_of("csv", folder_ / "real.h5"), HasSubstr("cannot be written"));
   sim::Sensors no_lidar = recording_.sensors;
   no_lidar.lidars.clear();
-  EXPECT_THAT(fixture::complaint([&] { export_ply(no_lidar, folder_ / "x"); }), HasSubstr("no lidar"));
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "x"));
+  EXPECT_THAT(test::complaint([&] { export_ply(no_lidar, folder_ / "x"); }), HasSubstr("no lidar"));
+  EXPECT_FALSE(fs::exists(folder_ / "x"));
 }
 
 }  // namespace

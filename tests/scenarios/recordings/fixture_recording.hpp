@@ -1,16 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <string>
-
 #include "scenarios/recordings/recording_file.hpp"
-#include "tests/complaint.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios::fixture {
 
@@ -18,16 +10,16 @@ namespace tumble::scenarios::fixture {
 class Numbers {
  public:
   double next() { return std::sin(static_cast<double>(++count_) * 12.9898) * 43.758; }
-  Eigen::Vector3d vector() {
+  Vector3d vector() {
     const double x = next(), y = next(), z = next();
     return {x, y, z};
   }
-  Eigen::Quaterniond quaternion() {
+  Quaterniond quaternion() {
     const double x = next(), y = next(), z = next(), w = next();
-    return Eigen::Quaterniond(w, x, y, z).normalized();
+    return Quaterniond(w, x, y, z).normalized();
   }
-  Eigen::Isometry3d pose() {
-    Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
+  Isometry3d pose() {
+    Isometry3d out = Eigen::Isometry3d::Identity();
     out.linear() = quaternion().toRotationMatrix();
     out.translation() = vector();
     return out;
@@ -149,34 +141,9 @@ inline RecordingInfo info() {
   return out;
 }
 
-inline std::string bytes_of(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-inline void put(const std::filesystem::path& path, const std::string& bytes) {
+inline void put(const fs::path& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
 }
-
-/// Folder is a temporary folder of the test.
-class Folder : public testing::Test {
- protected:
-  Folder() {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::path(testing::TempDir()) /
-              (std::string("tumble_") + test->test_suite_name() + "_" + test->name());
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  ~Folder() override { std::filesystem::remove_all(folder_); }
-  std::size_t files() const {
-    return static_cast<std::size_t>(
-        std::distance(std::filesystem::directory_iterator(folder_), std::filesystem::directory_iterator()));
-  }
-  std::filesystem::path folder_;
-};
-
-using test::complaint;
 
 /// Returns the sensors of a short recording: three samples of one IMU.
 inline sim::Sensors small_sensors() {
@@ -185,16 +152,16 @@ inline sim::Sensors small_sensors() {
   sensors.imus.resize(1);
   sim::ImuRecord& imu = sensors.imus[0];
   imu.time_ns.resize(3);
-  for (auto* rows : {&imu.gyro_rad_s, &imu.accel_m_s2}) rows->assign(3, Eigen::Vector3d(0, 0, 9.8));
+  for (auto* rows : {&imu.gyro_rad_s, &imu.accel_m_s2}) rows->assign(3, Vector3d(0, 0, 9.8));
   return sensors;
 }
 
 /// Returns the truth of `recording` as it is read back from a file in `folder`.
-inline StoredTruth stored_truth(const sim::Recording& recording, const std::filesystem::path& folder) {
-  const std::filesystem::path file = folder / "with_truth.h5";
+inline StoredTruth stored_truth(const sim::Recording& recording, const fs::path& folder) {
+  const fs::path file = folder / "with_truth.h5";
   write_recording(file, {}, recording.sensors, &recording.truth);
   StoredTruth truth = read_truth(file, folder);
-  std::filesystem::remove(file);
+  fs::remove(file);
   return truth;
 }
 

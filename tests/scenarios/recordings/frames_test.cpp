@@ -1,11 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test checks /tf, /tf_static and /clock in every kind of bag, and how the reader uses the frames.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <limits>
-#include <vector>
-
 #include "scenarios/recordings/bag_kinds.hpp"
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/bags/bag_messages.hpp"
@@ -16,14 +10,11 @@
 namespace tumble::scenarios {
 namespace {
 
-using testing::Contains;
-using testing::HasSubstr;
-
-class Frames : public fixture::Folder, public testing::WithParamInterface<fixture::BagKind> {
+class Frames : public test::TemporaryFolder, public testing::WithParamInterface<fixture::BagKind> {
  protected:
   Frames() {
     for (sim::ImuRecord& imu : recording_.sensors.imus) {
-      for (Eigen::Vector3d& force : imu.accel_m_s2) force *= 0.2;
+      for (Vector3d& force : imu.accel_m_s2) force *= 0.2;
     }
     for (std::uint32_t& offset : recording_.sensors.lidars[0].offset_ns) offset *= 600;
   }
@@ -42,7 +33,7 @@ class Frames : public fixture::Folder, public testing::WithParamInterface<fixtur
     return names;
   }
   sim::Recording recording_ = fixture::recording();
-  std::filesystem::path path_ = folder_ / "bag";
+  fs::path path_ = folder_ / "bag";
 };
 
 INSTANTIATE_TEST_SUITE_P(Kinds, Frames, testing::Values(fixture::kRos1, fixture::kRos2, fixture::kMcap),
@@ -51,19 +42,19 @@ INSTANTIATE_TEST_SUITE_P(Kinds, Frames, testing::Values(fixture::kRos1, fixture:
 TEST_P(Frames, SensorsHangOnTheBody) {
   GetParam().write(recording_.sensors, {}, path_);
   EXPECT_THAT(topics(), Contains("/tf_static tf2_msgs/TFMessage"));
-  EXPECT_THAT(topics(), testing::Not(Contains("/tf tf2_msgs/TFMessage"))) << "nobody says where the body is";
+  EXPECT_THAT(topics(), Not(Contains("/tf tf2_msgs/TFMessage"))) << "nobody says where the body is";
   const std::vector<ros::TFMessage> found = messages<ros::TFMessage>("/tf_static");
   ASSERT_EQ(found.size(), 1u);
   ASSERT_EQ(found[0].transforms.size(), 3u);
   const char* names[] = {"imu", "imu_reference", "lidar"};
-  const Eigen::Isometry3d poses[] = {recording_.sensors.imus[0].T_BI, recording_.sensors.imus[1].T_BI,
-                                     recording_.sensors.lidars[0].T_BL};
+  const Isometry3d poses[] = {recording_.sensors.imus[0].T_BI, recording_.sensors.imus[1].T_BI,
+                              recording_.sensors.lidars[0].T_BL};
   for (std::size_t k = 0; k < 3; ++k) {
     const ros::TransformStamped& each = found[0].transforms[k];
     EXPECT_EQ(each.header.frame_id, "body");
     EXPECT_EQ(each.child_frame_id, names[k]);
     EXPECT_EQ(Eigen::Vector3d::Map(each.translation.data()), poses[k].translation());
-    Eigen::Quaterniond q;
+    Quaterniond q;
     q.coeffs() = Eigen::Vector4d::Map(each.rotation_xyzw.data());
     EXPECT_TRUE(q.toRotationMatrix().isApprox(poses[k].linear(), 1e-14));
   }
@@ -71,7 +62,7 @@ TEST_P(Frames, SensorsHangOnTheBody) {
 
 TEST_P(Frames, TheTruthMovesTheBodyAndEstimatesFramesOfTheirOwn) {
   const StoredTruth truth = fixture::stored_truth(recording_, folder_);
-  const BagTrack track{"slam_mine", {{7'000'000, {1, 2, 3}, Eigen::Quaterniond(0.6, 0.8, 0, 0)}}};
+  const BagTrack track{"slam_mine", {{7'000'000, {1, 2, 3}, Quaterniond(0.6, 0.8, 0, 0)}}};
   GetParam().write(recording_.sensors, {0, &truth, {track}}, path_);
   const std::vector<ros::TFMessage> found = messages<ros::TFMessage>("/tf");
   ASSERT_EQ(found.size(), 9u) << "40 ms in steps of 5, and one of the track";
@@ -85,7 +76,7 @@ TEST_P(Frames, TheTruthMovesTheBodyAndEstimatesFramesOfTheirOwn) {
       EXPECT_EQ(p, recording_.truth.p_WB_m[5 * truths++]);
     } else {
       EXPECT_EQ(each.child_frame_id, "slam_mine");
-      EXPECT_EQ(p, Eigen::Vector3d(1, 2, 3));
+      EXPECT_EQ(p, Vector3d(1, 2, 3));
       EXPECT_EQ(each.rotation_xyzw, (std::array<double, 4>{0.8, 0, 0, 0.6}));
       EXPECT_EQ(each.header.nanosec, 7'000'000u);
       ++tracks;
@@ -95,7 +86,7 @@ TEST_P(Frames, TheTruthMovesTheBodyAndEstimatesFramesOfTheirOwn) {
   EXPECT_EQ(tracks, 1u);
   EXPECT_EQ(messages<ros::Odometry>("/slam_mine").at(0).child_frame_id, "slam_mine");
   // without the truth, the sensors are attached to the first estimate
-  std::filesystem::remove_all(path_);
+  fs::remove_all(path_);
   GetParam().write(recording_.sensors, {0, nullptr, {track}}, path_);
   EXPECT_EQ(messages<ros::TFMessage>("/tf").at(0).transforms.at(0).child_frame_id, "body");
 }
@@ -121,15 +112,14 @@ TEST_P(Frames, AStatedPlaceHoldsAndAContradictionShowsBoth) {
   EXPECT_THAT(found.notes, Contains(HasSubstr("/lidar/points: /tf_static contains the sensor's pose in 'body'")));
   EXPECT_TRUE(found.sensors.lidars[0].T_BL.isApprox(recording_.sensors.lidars[0].T_BL, 1e-12));
   BagReading stated;
-  stated.sweeps.device.T_BL.translation() = Eigen::Vector3d(0.5, 0.25, 0.125);
+  stated.sweeps.device.T_BL.translation() = Vector3d(0.5, 0.25, 0.125);
   const Imported held = GetParam().read(path_, stated);
-  EXPECT_EQ(held.sensors.lidars[0].T_BL.translation(), Eigen::Vector3d(0.5, 0.25, 0.125));
-  EXPECT_THAT(held.notes,
-              Contains(testing::AllOf(HasSubstr("/lidar/points: /tf_static states the sensor's pose in 'body' as"),
-                                      HasSubstr("but your option states (0.5 "))));
+  EXPECT_EQ(held.sensors.lidars[0].T_BL.translation(), Vector3d(0.5, 0.25, 0.125));
+  EXPECT_THAT(held.notes, Contains(AllOf(HasSubstr("/lidar/points: /tf_static states the sensor's pose in 'body' as"),
+                                         HasSubstr("but your option states (0.5 "))));
   // the same position stated twice is no contradiction
   stated.sweeps.device.T_BL = recording_.sensors.lidars[0].T_BL;
-  EXPECT_THAT(GetParam().read(path_, stated).notes, testing::Not(Contains(HasSubstr("caution: /tf_static"))));
+  EXPECT_THAT(GetParam().read(path_, stated).notes, Not(Contains(HasSubstr("caution: /tf_static"))));
 }
 
 TEST_P(Frames, CloudsInTheWorldAreNoSensors) {
@@ -146,14 +136,14 @@ TEST_P(Frames, CloudsInTheWorldAreNoSensors) {
   float numbers[8];
   ASSERT_EQ(written.data.size(), sizeof numbers);
   std::memcpy(numbers, written.data.data(), sizeof numbers);
-  EXPECT_THAT(numbers, testing::ElementsAre(1, 2, 3, 0.5f, 4, 5, 6, 0.25f));
+  EXPECT_THAT(numbers, ElementsAre(1, 2, 3, 0.5f, 4, 5, 6, 0.25f));
   const Imported imported = GetParam().read(path_, {});
   EXPECT_EQ(imported.sensors.lidars.size(), 1u);
   EXPECT_THAT(imported.notes, Contains(HasSubstr("/mine/points: the points are in frame 'world'")));
 }
 
-ros::TransformStamped hung(const std::string& child, const std::string& parent, const Eigen::Vector3d& p,
-                           const Eigen::Quaterniond& q = Eigen::Quaterniond::Identity()) {
+ros::TransformStamped hung(const std::string& child, const std::string& parent, const Vector3d& p,
+                           const Quaterniond& q = Eigen::Quaterniond::Identity()) {
   return transform_message(p, q, child, header_of(1'000'000'000, parent));
 }
 
@@ -178,13 +168,13 @@ void write_frames(BagWriter& bag, const std::vector<ros::TransformStamped>& fram
 }
 
 TEST_P(Frames, AreFollowedThroughOthers) {
-  const Eigen::Quaterniond turn(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()));
+  const Quaterniond turn(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()));
   // as on a robot, both sensors are attached to a mast that is attached to the base
   write_frames(*GetParam().writer(path_),
                {hung("mast", "base_link", {0, 0, 1}, turn), hung("imu", "mast", {0.5, 0, 0})});
   const Imported found = GetParam().read(path_, {});
-  const Eigen::Isometry3d T_BI = found.sensors.imus.at(0).T_BI;
-  EXPECT_TRUE(T_BI.translation().isApprox(Eigen::Vector3d(0, 0.5, 1))) << T_BI.translation();
+  const Isometry3d T_BI = found.sensors.imus.at(0).T_BI;
+  EXPECT_TRUE(T_BI.translation().isApprox(Vector3d(0, 0.5, 1))) << T_BI.translation();
   EXPECT_TRUE(T_BI.linear().isApprox(turn.toRotationMatrix()));
   EXPECT_THAT(found.notes, Contains(HasSubstr("/imu: /tf_static contains the sensor's pose in 'base_link'")));
 }
@@ -196,7 +186,7 @@ TEST_P(Frames, ThatNobodyTiesToTheBodyPlaceNothing) {
 }
 
 TEST_P(Frames, SensorsWithoutABodyStandBesideEachOther) {
-  const Eigen::Quaterniond turn(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()));
+  const Quaterniond turn(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()));
   const auto bag = GetParam().writer(path_);
   bag->write("/robot/tf_static", 1'000'000'000,
              ros::TFMessage{{hung("left", "os_sensor", {0, 0, 1}, turn), hung("right", "os_sensor", {0.5, 0, 1})}});
@@ -206,7 +196,7 @@ TEST_P(Frames, SensorsWithoutABodyStandBesideEachOther) {
   const std::vector<sim::ImuRecord>& imus = found.sensors.imus;
   ASSERT_EQ(imus.size(), 3u);
   EXPECT_TRUE(imus[0].T_BI.isApprox(Eigen::Isometry3d::Identity()));
-  EXPECT_LT((imus[1].T_BI.translation() - Eigen::Vector3d(0, -0.5, 0)).norm(), 1e-12);
+  EXPECT_LT((imus[1].T_BI.translation() - Vector3d(0, -0.5, 0)).norm(), 1e-12);
   EXPECT_TRUE(imus[1].T_BI.linear().isApprox(turn.toRotationMatrix().transpose(), 1e-12));
   EXPECT_THAT(found.notes, Contains(HasSubstr("/right: /tf_static contains the sensor's pose relative to /left")));
   EXPECT_THAT(found.notes, Contains(HasSubstr("/elsewhere: neither /tf_static nor --lever-arm")));
@@ -214,9 +204,9 @@ TEST_P(Frames, SensorsWithoutABodyStandBesideEachOther) {
   // when the pose of the first sensor is given, the second one's follows from it
   BagReading given;
   given.imu_topics = {"/left", "/right"};
-  given.imu.T_BI.translation() = Eigen::Vector3d(1, 2, 3);
+  given.imu.T_BI.translation() = Vector3d(1, 2, 3);
   const Imported held = GetParam().read(path_, given);
-  EXPECT_LT((held.sensors.imus[0].T_BI.translation() - Eigen::Vector3d(1, 2, 3)).norm(), 1e-12);
+  EXPECT_LT((held.sensors.imus[0].T_BI.translation() - Vector3d(1, 2, 3)).norm(), 1e-12);
 }
 
 TEST_P(Frames, APoseOfAnotherFrameIsMovedToTheBody) {
@@ -236,20 +226,18 @@ TEST_P(Frames, APoseOfAnotherFrameIsMovedToTheBody) {
     reading.reference_topic = "/of_" + child;
     reading.reference_of = whose;
     const Imported found = GetParam().read(path_, reading);
-    EXPECT_THAT(found.notes, said[0] == 0
-                                 ? testing::Not(Contains(HasSubstr("according to the messages, the poses belong to")))
-                                 : testing::Matcher<std::vector<std::string>>(Contains(HasSubstr(said))));
+    EXPECT_THAT(found.notes, said[0] == 0 ? Not(Contains(HasSubstr("according to the messages, the poses belong to")))
+                                          : testing::Matcher<std::vector<std::string>>(Contains(HasSubstr(said))));
     return found.reference->p_WB_m.at(0);
   };
   EXPECT_EQ(start("mast", ReferenceOf::named,
                   "/of_mast: according to the messages, the poses belong to the frame 'mast'; the import converts the "
                   "poses to poses "
                   "of the body"),
-            Eigen::Vector3d(7, 7.5, 7));
-  EXPECT_EQ(start("mast", ReferenceOf::body, ""), Eigen::Vector3d(7, 8, 9));
-  EXPECT_EQ(start("base_link", ReferenceOf::named, ""), Eigen::Vector3d(7, 8, 9));
-  EXPECT_EQ(start("unknown", ReferenceOf::named, "The pose of this frame on the body is unknown"),
-            Eigen::Vector3d(7, 8, 9));
+            Vector3d(7, 7.5, 7));
+  EXPECT_EQ(start("mast", ReferenceOf::body, ""), Vector3d(7, 8, 9));
+  EXPECT_EQ(start("base_link", ReferenceOf::named, ""), Vector3d(7, 8, 9));
+  EXPECT_EQ(start("unknown", ReferenceOf::named, "The pose of this frame on the body is unknown"), Vector3d(7, 8, 9));
 }
 
 // a motion capture system sends such a transform
@@ -259,15 +247,15 @@ TEST_P(Frames, ATransformIsAReference) {
   for (int k = 0; k < 5; ++k) {
     const std::int64_t stamp = 1'000'000'000 + 10'000'000 * k;
     bag->write("/vicon", stamp,
-               transform_message({7, 8, 9}, Eigen::Quaterniond(0.6, 0.8, 0, 0), "rig", header_of(stamp, "world")));
+               transform_message({7, 8, 9}, Quaterniond(0.6, 0.8, 0, 0), "rig", header_of(stamp, "world")));
   }
   bag->finish();
   BagReading reading;
   reading.reference_topic = "/vicon";
   const Imported found = GetParam().read(path_, reading);
   ASSERT_TRUE(found.reference.has_value());
-  EXPECT_EQ(found.reference->p_WB_m.at(0), Eigen::Vector3d(7, 8, 9));
-  EXPECT_TRUE(found.reference->q_WB.at(0).isApprox(Eigen::Quaterniond(0.6, 0.8, 0, 0), 1e-12));
+  EXPECT_EQ(found.reference->p_WB_m.at(0), Vector3d(7, 8, 9));
+  EXPECT_TRUE(found.reference->q_WB.at(0).isApprox(Quaterniond(0.6, 0.8, 0, 0), 1e-12));
   EXPECT_THAT(found.notes, Contains(HasSubstr("/vicon: according to the messages, the poses belong to the frame 'rig'. "
                                               "The pose of this frame on the body is unknown")));
 }
@@ -280,21 +268,21 @@ TEST_P(Frames, AStatedZeroIsAMounting) {
   const auto missing = Contains(HasSubstr("neither /tf_static nor --lever-arm states the sensor's pose"));
   EXPECT_THAT(GetParam().read(path_, reading).notes, missing);
   reading.imu_placed = true;
-  EXPECT_THAT(GetParam().read(path_, reading).notes, testing::Not(missing));
+  EXPECT_THAT(GetParam().read(path_, reading).notes, Not(missing));
 }
 
 // --lever-arm states the position of the first IMU; without the rotation of /tf_static, tracking fails
 TEST_P(Frames, AStatedLeverArmKeepsTheOrientationOfTheImuAndTheOtherImus) {
-  const Eigen::Matrix3d mounted = Eigen::AngleAxisd(2.0, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  const Matrix3d mounted = Eigen::AngleAxisd(2.0, Eigen::Vector3d::UnitX()).toRotationMatrix();
   recording_.sensors.imus[0].T_BI.linear() = mounted;
   GetParam().write(recording_.sensors, {}, path_);
   BagReading reading;
   reading.imu_placed = true;
-  reading.imu.T_BI.translation() = Eigen::Vector3d(0.1, 0.2, 0.3);
+  reading.imu.T_BI.translation() = Vector3d(0.1, 0.2, 0.3);
   const std::vector<sim::ImuRecord> imus = GetParam().read(path_, reading).sensors.imus;
   ASSERT_EQ(imus.size(), 2u);
   EXPECT_TRUE(imus[0].T_BI.linear().isApprox(mounted, 1e-12));
-  EXPECT_EQ(imus[0].T_BI.translation(), Eigen::Vector3d(0.1, 0.2, 0.3));
+  EXPECT_EQ(imus[0].T_BI.translation(), Vector3d(0.1, 0.2, 0.3));
   EXPECT_TRUE(imus[1].T_BI.isApprox(recording_.sensors.imus[1].T_BI, 1e-12));
 }
 
@@ -328,9 +316,9 @@ TEST_P(Frames, AMessageThatIsThereTwiceIsTakenOnce) {
 TEST_P(Frames, WhatNoSensorAsksForMayMakeNoSense) {
   write_frames(*GetParam().writer(path_),
                {hung("map", "utm", {456e3, 0, 0}), hung("body", "map", {0, 0, 0}), hung("imu", "body", {0.5, 0, 0}),
-                hung("camera", "camera", {0, 0, 0}), hung("lamp", "body", {0, 0, 0}, Eigen::Quaterniond(0, 0, 0, 0))});
+                hung("camera", "camera", {0, 0, 0}), hung("lamp", "body", {0, 0, 0}, Quaterniond(0, 0, 0, 0))});
   const Imported found = GetParam().read(path_, {});
-  EXPECT_EQ(found.sensors.imus.at(0).T_BI.translation(), Eigen::Vector3d(0.5, 0, 0));
+  EXPECT_EQ(found.sensors.imus.at(0).T_BI.translation(), Vector3d(0.5, 0, 0));
   for (const char* said :
        {"the transform of frame 'map' relative to frame 'utm': the translation must be finite and at most 1 km",
         "'camera': the frame is its own parent", "'lamp' relative to frame 'body': the rotation quaternion has norm"})
@@ -340,9 +328,9 @@ TEST_P(Frames, WhatNoSensorAsksForMayMakeNoSense) {
 TEST_P(Frames, AFrameOnTwoOthersIsReported) {
   write_frames(*GetParam().writer(path_), {hung("imu", "body", {0.5, 0, 0}), hung("imu", "other", {0.1, 0, 0})});
   EXPECT_THAT(GetParam().read(path_, {}).notes, Contains(HasSubstr("'imu' has two parents, 'body' and later 'other'")));
-  std::filesystem::remove_all(path_);
+  fs::remove_all(path_);
   write_frames(*GetParam().writer(path_), {hung("imu", "body", {0.5, 0, 0}), hung("imu", "body", {0.1, 0, 0})});
-  EXPECT_THAT(GetParam().read(path_, {}).notes, testing::Not(Contains(HasSubstr("has two parents")))) << "said anew";
+  EXPECT_THAT(GetParam().read(path_, {}).notes, Not(Contains(HasSubstr("has two parents")))) << "said anew";
 }
 
 TEST_P(Frames, ThatMakeNoSenseAreRefused) {
@@ -355,14 +343,14 @@ TEST_P(Frames, ThatMakeNoSenseAreRefused) {
       {{hung("imu", "body", {kNan, 0, 0})},
        "the transform of frame 'imu' relative to frame 'body': the translation must be finite and at most 1 km"},
       {{hung("imu", "body", {0, 2000, 0})}, "the translation must be finite and at most 1 km"},
-      {{hung("imu", "body", {0, 0, 0}, Eigen::Quaterniond(0, 0, 0, 0))},
+      {{hung("imu", "body", {0, 0, 0}, Quaterniond(0, 0, 0, 0))},
        "the rotation quaternion has norm 0.000000; its norm must be 1"},
-      {{hung("imu", "body", {0, 0, 0}, Eigen::Quaterniond(kNan, 0, 0, 0))}, "the rotation quaternion has norm nan"}};
+      {{hung("imu", "body", {0, 0, 0}, Quaterniond(kNan, 0, 0, 0))}, "the rotation quaternion has norm nan"}};
   for (const auto& [frames, complaint] : cases) {
-    std::filesystem::remove_all(path_);
+    fs::remove_all(path_);
     write_frames(*GetParam().writer(path_), frames);
-    EXPECT_THAT(fixture::complaint([&] { GetParam().read(path_, {}); }),
-                testing::AllOf(HasSubstr("/tf_static: "), HasSubstr(complaint)));
+    EXPECT_THAT(test::complaint([&] { GetParam().read(path_, {}); }),
+                AllOf(HasSubstr("/tf_static: "), HasSubstr(complaint)));
   }
 }
 

@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "scenarios/recordings/clouds/import_sweeps.hpp"
 #include "scenarios/recordings/export.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"
@@ -9,9 +6,6 @@
 
 namespace tumble::scenarios {
 namespace {
-
-using testing::ElementsAre;
-using testing::HasSubstr;
 
 /// Returns an ASCII sweep of points (1, 2, 3), with one more column.
 std::string sweep(const std::string& column = "", const std::vector<std::string>& values = {"", "", ""}) {
@@ -23,7 +17,7 @@ std::string sweep(const std::string& column = "", const std::vector<std::string>
   return text;
 }
 
-class ImportSweeps : public fixture::Folder {
+class ImportSweeps : public test::TemporaryFolder {
  protected:
   ImportSweeps() {
     source_.folder = folder_;
@@ -37,7 +31,7 @@ class ImportSweeps : public fixture::Folder {
     return imported_.sensors.lidars.at(0);
   }
   std::string complaint_of() {
-    return fixture::complaint([&] { import_sweeps(source_); });
+    return test::complaint([&] { import_sweeps(source_); });
   }
   SweepSource source_;
   Imported imported_;
@@ -80,7 +74,7 @@ TEST_F(ImportSweeps, WithoutPointTimesTheyAreUnknownOrNotSkewed) {
   write_recording(folder_ / "a.h5", imported_.info, imported_.sensors, nullptr);
   EXPECT_EQ(read_sensors(folder_ / "a.h5").lidars[0].point_times, sim::PointTimes::not_skewed);
   export_ply(imported_.sensors, folder_ / "again");
-  EXPECT_THAT(fixture::bytes_of(folder_ / "again/lidar_000000.ply"), testing::Not(HasSubstr("offset_ns")));
+  EXPECT_THAT(test::read_file(folder_ / "again/lidar_000000.ply"), Not(HasSubstr("offset_ns")));
 }
 
 TEST_F(ImportSweeps, PointsFarBeyondTheSheetAreRefused) {
@@ -119,8 +113,8 @@ TEST_F(ImportSweeps, AViewpointIsReported) {
   source_.format = "pcd";
   source_.steady_ns = 100000000;
   import();
-  EXPECT_THAT(imported_.notes, testing::Contains(testing::AllOf(HasSubstr("1 sweeps have a VIEWPOINT"),
-                                                                HasSubstr("2.pcd: 5 0 0 1 0 0 0"))));
+  EXPECT_THAT(imported_.notes,
+              Contains(AllOf(HasSubstr("1 sweeps have a VIEWPOINT"), HasSubstr("2.pcd: 5 0 0 1 0 0 0"))));
 }
 
 TEST_F(ImportSweeps, FilesStandInNaturalOrder) {
@@ -139,7 +133,7 @@ TEST_F(ImportSweeps, StampsComeFromNamesOfSeveralKinds) {
     EXPECT_THAT(import().sweep_start_ns, ElementsAre(0, 100000000)) << kind[0];
     EXPECT_EQ(imported_.info.origin_ns, 1617333602223639727) << kind[0];
     EXPECT_EQ(imported_.sensors.lidars[0].sweep_period_ns, 100000000);
-    for (const char* name : kind) std::filesystem::remove(folder_ / name);
+    for (const char* name : kind) fs::remove(folder_ / name);
   }
 }
 
@@ -206,9 +200,9 @@ TEST_F(ImportSweeps, MissesAreLeftOutAndIntensityIsScaled) {
   EXPECT_THAT(lidar.range_m, ElementsAre(3.0f, 5.0f, testing::_, testing::_, testing::_));
   EXPECT_THAT(lidar.intensity, ElementsAre(0.2f, 1.0f, 0.0f, 0.0f, 0.0f));
   EXPECT_THAT(lidar.ring, ElementsAre(3, 15, 0, 0, 0));
-  EXPECT_THAT(imported_.notes, testing::Contains(HasSubstr("2 points are treated as missing returns")));
-  EXPECT_THAT(imported_.notes, testing::Contains(HasSubstr("3 points have no valid intensity")));
-  EXPECT_THAT(imported_.notes, testing::Contains("ignored fields: normal_x"));
+  EXPECT_THAT(imported_.notes, Contains(HasSubstr("2 points are treated as missing returns")));
+  EXPECT_THAT(imported_.notes, Contains(HasSubstr("3 points have no valid intensity")));
+  EXPECT_THAT(imported_.notes, Contains("ignored fields: normal_x"));
 }
 
 TEST_F(ImportSweeps, HostileInputIsOneClearLine) {
@@ -250,9 +244,9 @@ TEST_F(ImportSweeps, EqualPointTimesMeanSweepsThatAreNotSkewed) {
   for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("float time", {"0", "0", "0"}));
   for (const bool stamped : {true, false}) {
     if (stamped) put("times.txt", "1.0\n1.1\n");
-    if (!stamped) std::filesystem::remove(folder_ / "times.txt"), source_.steady_ns = 100000000;
+    if (!stamped) fs::remove(folder_ / "times.txt"), source_.steady_ns = 100000000;
     EXPECT_EQ(import().point_times, sim::PointTimes::not_skewed) << stamped;
-    EXPECT_THAT(imported_.notes, testing::Contains(HasSubstr("all points of a sweep have the same time")));
+    EXPECT_THAT(imported_.notes, Contains(HasSubstr("all points of a sweep have the same time")));
   }
 }
 
@@ -277,18 +271,17 @@ TEST_F(ImportSweeps, TimesOverAPartOfASweepAreReadWithACaution) {
   put("times.txt", "1.0\n1.1\n");
   for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("uint time_stamp", ns));
   EXPECT_EQ(import().point_times, sim::PointTimes::measured);
-  EXPECT_THAT(
-      imported_.notes,
-      testing::Contains("the point times come from field 'time_stamp', which counts ns from the sweep's time stamp"));
-  EXPECT_THAT(imported_.notes, testing::Contains(HasSubstr("caution: the point times span less than 2 %")));
+  EXPECT_THAT(imported_.notes,
+              Contains("the point times come from field 'time_stamp', which counts ns from the sweep's time stamp"));
+  EXPECT_THAT(imported_.notes, Contains(HasSubstr("caution: the point times span less than 2 %")));
 }
 
 TEST_F(ImportSweeps, UnknownFieldsAreNamedWithTheOption) {
   put("times.txt", "1.0\n1.1\n");
   for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("float firing", {"0.01", "0.05", "0.09"}));
   import();
-  EXPECT_THAT(imported_.notes, testing::Contains("the points have no time stamps, so sweeps cannot be deskewed (set "
-                                                 "'--time-field' to a field with times): firing"));
+  EXPECT_THAT(imported_.notes, Contains("the points have no time stamps, so sweeps cannot be deskewed (set "
+                                        "'--time-field' to a field with times): firing"));
 }
 
 TEST_F(ImportSweeps, AUnitThatTheNumbersContradictIsRefusedWithBoth) {
@@ -298,7 +291,7 @@ TEST_F(ImportSweeps, AUnitThatTheNumbersContradictIsRefusedWithBoth) {
   for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("float time", us));
   import();
   EXPECT_THAT(imported_.notes,
-              testing::Contains("the point times come from field 'time', which counts us from the sweep's time stamp"));
+              Contains("the point times come from field 'time', which counts us from the sweep's time stamp"));
   source_.reading.time_unit = "ns";
   EXPECT_THAT(
       complaint_of(),
@@ -323,8 +316,8 @@ TEST_F(ImportSweeps, NoPointAtAllIsRefused) {
 
 TEST_F(ImportSweeps, AnImuInTheSameClockJoinsAndInAnotherDoesNot) {
   sim::Recording recording = fixture::recording();
-  for (Eigen::Vector3d& force : recording.sensors.imus[1].accel_m_s2) force *= 0.2;  // scaled to a plausible median
-  recording.sensors.imus[1].stated_gyro_range_rad_s = 80.0;                          // also scales the rates
+  for (Vector3d& force : recording.sensors.imus[1].accel_m_s2) force *= 0.2;  // scaled to a plausible median
+  recording.sensors.imus[1].stated_gyro_range_rad_s = 80.0;                   // also scales the rates
   export_csv(recording.sensors, nullptr, folder_);
   export_ply(recording.sensors, folder_ / "sweeps");
   source_.folder = folder_ / "sweeps";
@@ -337,7 +330,7 @@ TEST_F(ImportSweeps, AnImuInTheSameClockJoinsAndInAnotherDoesNot) {
   EXPECT_EQ(both.sensors.lidars[0].sweep_start_ns, recording.sensors.lidars[0].sweep_start_ns);
   Imported elsewhere = import_imu_csv(folder_ / "imu_reference.csv", given);
   elsewhere.info.origin_ns += 3600000000000;
-  EXPECT_THAT(fixture::complaint([&] { attach_imus(both, std::move(elsewhere)); }),
+  EXPECT_THAT(test::complaint([&] { attach_imus(both, std::move(elsewhere)); }),
               HasSubstr("check that both use the same clock"));
 }
 

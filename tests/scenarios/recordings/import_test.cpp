@@ -1,14 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/import.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <sstream>
 
 #include "scenarios/recordings/export.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"
@@ -18,11 +11,6 @@
 namespace tumble::scenarios {
 namespace {
 
-using testing::Contains;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::Not;
-
 const std::string kHeader = "s,ns,frame,qx,qy,qz,qw,qc,wx,wy,wz,wc,ax,ay,az,ac\n";
 
 std::string line(const std::string& stamp, const std::string& wx = "0.25") {
@@ -30,7 +18,7 @@ std::string line(const std::string& stamp, const std::string& wx = "0.25") {
          ",-1e-3,3,[0 0 0 0 0 0 0 0 0],9.5,0,-0.5,[0 0 0 0 0 0 0 0 0]\n";
 }
 
-class ImportCsv : public fixture::Folder {
+class ImportCsv : public test::TemporaryFolder {
  protected:
   Imported import(const std::string& text) {
     fixture::put(folder_ / "run_1_xsens.csv", text);
@@ -42,7 +30,7 @@ class ImportCsv : public fixture::Folder {
     return import_imu_csv(folder_ / "run_1_xsens.csv", device);
   }
   std::string complaint_of(const std::string& text) {
-    return fixture::complaint([&] { import(text); });
+    return test::complaint([&] { import(text); });
   }
 };
 
@@ -55,8 +43,8 @@ TEST_F(ImportCsv, ReadsTheColumnsOfTheLayout) {
   EXPECT_EQ(imu.stated_gyro_range_rad_s, 80.0);
   EXPECT_THAT(imu.time_ns, ElementsAre(0, 10000000, 20000000));
   EXPECT_EQ(imu.period_ns, 10000000);
-  EXPECT_EQ(imu.gyro_rad_s[1], Eigen::Vector3d(0.25, -1e-3, 3.0));
-  EXPECT_EQ(imu.accel_m_s2[2], Eigen::Vector3d(9.5, 0.0, -0.5));
+  EXPECT_EQ(imu.gyro_rad_s[1], Vector3d(0.25, -1e-3, 3.0));
+  EXPECT_EQ(imu.accel_m_s2[2], Vector3d(9.5, 0.0, -0.5));
   EXPECT_THAT(imu.clip_flags, ElementsAre(0, 0, 0));
   EXPECT_THAT(imported.info.attribution, HasSubstr("run_1_xsens.csv (first time stamp: 1632000000990000000 ns)"));
   write_recording(folder_ / "a.h5", imported.info, imported.sensors, nullptr);
@@ -65,8 +53,8 @@ TEST_F(ImportCsv, ReadsTheColumnsOfTheLayout) {
 
 TEST_F(ImportCsv, TakesBackWhatExportWrote) {
   sim::Recording recording = fixture::recording();
-  for (Eigen::Vector3d& force : recording.sensors.imus[1].accel_m_s2) force *= 0.2;  // scaled to a plausible median
-  recording.sensors.imus[1].stated_gyro_range_rad_s = 80.0;                          // also the fixture's rates
+  for (Vector3d& force : recording.sensors.imus[1].accel_m_s2) force *= 0.2;  // scaled to a plausible median
+  recording.sensors.imus[1].stated_gyro_range_rad_s = 80.0;                   // also the fixture's rates
   export_csv(recording.sensors, nullptr, folder_);
   const sim::ImuRecord& given = recording.sensors.imus[1];
   const Imported imported = import_imu_csv(folder_ / "imu_reference.csv", given);
@@ -120,8 +108,8 @@ TEST_F(ImportCsv, FindsColumnsByNameAndReadsStampsToTheNanosecond) {
   const Imported imported = import_imu_csv(folder_ / "a.csv", {}, AccelUnit::g);
   const sim::ImuRecord& imu = imported.sensors.imus.at(0);
   EXPECT_THAT(imu.time_ns, ElementsAre(0, 231600000 - 223639727));
-  EXPECT_EQ(imu.gyro_rad_s[1], Eigen::Vector3d(0.1, 0.2, 0.4));
-  EXPECT_EQ(imu.accel_m_s2[0], 9.80665 * Eigen::Vector3d(-0.5, 0.0, 1.0));
+  EXPECT_EQ(imu.gyro_rad_s[1], Vector3d(0.1, 0.2, 0.4));
+  EXPECT_EQ(imu.accel_m_s2[0], 9.80665 * Vector3d(-0.5, 0.0, 1.0));
   EXPECT_THAT(imported.info.attribution, HasSubstr("first time stamp: 1617333602223639727 ns"));
 }
 
@@ -171,10 +159,10 @@ class ImportOwnCsv : public ImportCsv {
  protected:
   ImportOwnCsv() {
     sim::Recording recording = fixture::recording();
-    for (Eigen::Vector3d& force : recording.sensors.imus[1].accel_m_s2) force *= 0.2;  // scaled to a plausible median
+    for (Vector3d& force : recording.sensors.imus[1].accel_m_s2) force *= 0.2;  // scaled to a plausible median
     export_csv(recording.sensors, nullptr, folder_);
     given_ = recording.sensors.imus[1];
-    text_ = fixture::bytes_of(folder_ / "imu_reference.csv");
+    text_ = test::read_file(folder_ / "imu_reference.csv");
   }
   sim::ImuRecord given_;
   std::string text_;
@@ -204,7 +192,7 @@ TEST_F(ImportOwnCsv, DoubledUnknownAndMissingColumnsAreRefused) {
   EXPECT_THAT(complaint_of(reordered(text_, {0, 1, 2, 3, 8, 9, 10, 12, 13})),
               HasSubstr("csv:1: missing columns: fz_m_s2"));
   fixture::put(folder_ / "a.csv", text_);
-  EXPECT_THAT(fixture::complaint([&] { import_imu_csv(folder_ / "a.csv", {}, AccelUnit::g); }),
+  EXPECT_THAT(test::complaint([&] { import_imu_csv(folder_ / "a.csv", {}, AccelUnit::g); }),
               HasSubstr("the column names state rad/s and m/s^2"));
 }
 
@@ -218,11 +206,11 @@ TEST_F(ImportCsv, AGapDoesNotChangeThePeriod) {
   std::string text = kHeader;
   for (const char* stamp : {"1,0", "1,10000000", "1,20000000", "1,920000000", "1,930000000"}) text += line(stamp);
   EXPECT_EQ(import(text).sensors.imus[0].period_ns, 10000000);
-  EXPECT_THAT(import(text).notes, testing::Not(testing::Contains(HasSubstr("gap"))));
+  EXPECT_THAT(import(text).notes, Not(Contains(HasSubstr("gap"))));
   const Imported silent = import(text + line("5,0") + line("86405,0"));
-  EXPECT_THAT(silent.notes,
-              testing::Contains(HasSubstr(
-                  "2 gaps of more than 1 s without data; the longest gap lasts 8.64e+04 s before reading 6")));
+  EXPECT_THAT(
+      silent.notes,
+      Contains(HasSubstr("2 gaps of more than 1 s without data; the longest gap lasts 8.64e+04 s before reading 6")));
 }
 
 TEST_F(ImportCsv, WindowsLineEndsAreRead) {
@@ -258,9 +246,8 @@ TEST_F(ImportCsv, BadInputHasFileAndLine) {
   EXPECT_THAT(complaint_of("1,2\n"), HasSubstr("csv:1: the file has 2 columns and no header; a file without header"));
   EXPECT_THAT(complaint_of(good.substr(0, good.size() - 1)), HasSubstr("csv:3: the last line has no line end"))
       << "a last number may be cut in its middle";
-  EXPECT_THAT(fixture::complaint([&] { import_imu_csv(folder_ / "none.csv", {}); }),
-              HasSubstr("none.csv: no such file"));
-  EXPECT_THAT(fixture::complaint([&] { import_imu_csv(folder_, {}); }), HasSubstr("is a folder; it must be a file"));
+  EXPECT_THAT(test::complaint([&] { import_imu_csv(folder_ / "none.csv", {}); }), HasSubstr("none.csv: no such file"));
+  EXPECT_THAT(test::complaint([&] { import_imu_csv(folder_, {}); }), HasSubstr("is a folder; it must be a file"));
 }
 
 TEST_F(ImportCsv, BytesThatAreNoLinesOfTextAreCalledSo) {
@@ -280,8 +267,88 @@ TEST_F(ImportCsv, BytesThatAreNoLinesOfTextAreCalledSo) {
 // opening a pipe for reading would wait for a writer
 TEST_F(ImportCsv, APipeIsRefusedAndNotWaitedFor) {
   ASSERT_EQ(mkfifo((folder_ / "pipe.csv").c_str(), 0600), 0);
-  EXPECT_THAT(fixture::complaint([&] { import_imu_csv(folder_ / "pipe.csv", {}); }),
+  EXPECT_THAT(test::complaint([&] { import_imu_csv(folder_ / "pipe.csv", {}); }),
               HasSubstr("pipe.csv: is a pipe; it must be a regular file"));
+}
+
+// The test checks rates and stamps in another unit than stated, which a rolling sphere's readings reveal.
+/// Returns a table of a sphere that turns about y, so that gravity turns the other way in its axes; the stamps have
+/// steps of `step_ns`.
+std::string rolled(double rate_rad_s, double written_for_one, std::int64_t step_ns = 4'000'000) {
+  std::ostringstream text;
+  text << "sec,nsec,wx,wy,wz,fx,fy,fz\n";
+  for (std::int64_t k = 0; k < 1000; ++k) {
+    const double angle = rate_rad_s * 0.004 * static_cast<double>(k);
+    text << k * step_ns / 1'000'000'000 << ',' << k * step_ns % 1'000'000'000 << ",0," << rate_rad_s * written_for_one
+         << ",0," << -9.81 * std::sin(angle) << ",0," << 9.81 * std::cos(angle) << '\n';
+  }
+  return text.str();
+}
+
+class ImportSphere : public test::TemporaryFolder {
+ protected:
+  Imported import(const std::string& text, double range_rad_s, GyroUnit unit = GyroUnit::rad_s) {
+    fixture::put(folder_ / "sphere.csv", text);
+    sim::ImuRecord device;
+    device.name = "imu";
+    device.stated_gyro_range_rad_s = range_rad_s;
+    return import_imu_csv(folder_ / "sphere.csv", device, AccelUnit::m_s2, unit);
+  }
+  std::string complaint_of(const std::string& text, double range_rad_s, GyroUnit unit = GyroUnit::rad_s) {
+    return test::complaint([&] { import(text, range_rad_s, unit); });
+  }
+};
+
+// within 0.2 s the sphere turns too far for the windows; a range of 150 rad/s admits 229
+TEST_F(ImportSphere, RatesInDegreesAreMetByTheTurning) {
+  constexpr double kDegrees = 57.29577951308232;
+  const Imported good = import(rolled(4.0, 1.0), 150.0);
+  EXPECT_EQ(gravity_rotation(good.sensors.imus[0], RotationWindows::even).windows, 0);
+  EXPECT_THAT(good.notes, Contains(HasSubstr("gyro and accelerometer agree in units and axes")));
+  EXPECT_THAT(complaint_of(rolled(4.0, kDegrees), 150.0), HasSubstr("The rates may be in deg/s"));
+  EXPECT_EQ(complaint_of(rolled(4.0, kDegrees), 150.0, GyroUnit::deg_s), "");
+  EXPECT_THAT(complaint_of(rolled(4.0, 1.0), 150.0, GyroUnit::deg_s), HasSubstr("The rates may be in rad/s"));
+}
+
+TEST_F(ImportSphere, RatesBeyondTheRangeAreAnotherUnit) {
+  EXPECT_THAT(complaint_of(rolled(5.0, 57.3), 7.854),
+              AllOf(HasSubstr("100 % of the rates exceed 15.7 rad/s"), HasSubstr("The rates may be in deg/s")));
+  EXPECT_THAT(complaint_of(rolled(5.0, 57.3), 0.0), HasSubstr("exceed 100 rad/s (above any robot's rate)"));
+  EXPECT_THAT(complaint_of(rolled(5.0, 7505.0), 7.854), HasSubstr("The rates may be in raw counts of the sensor"));
+  EXPECT_EQ(complaint_of(rolled(5.0, 1.0), 7.854), "");
+}
+
+TEST_F(ImportSphere, ForcesWithoutGravityAreMet) {
+  std::string text = "sec,nsec,wx,wy,wz,fx,fy,fz\n";
+  for (int k = 0; k < 100; ++k) text += "0," + std::to_string(k * 10'000'000) + ",0,0,0,0.1,0,0.02\n";
+  EXPECT_THAT(complaint_of(text, 7.854), HasSubstr("the readings may be linear acceleration, without gravity"));
+  text = "sec,nsec,wx,wy,wz,fx,fy,fz\n";
+  for (int k = 0; k < 300; ++k)
+    text += "0," + std::to_string(k * 3'000'000) + ",0,0,0," + (k < 100 ? "0.1" : "1.4") + ",0,0.02\n";
+  EXPECT_THAT(complaint_of(text, 7.854),
+              AllOf(HasSubstr("the specific force is 0.102 at the start and 1.4 in the median"),
+                    Not(HasSubstr("--accel-unit"))))
+      << "a robot at rest would measure 1 in g";
+}
+
+TEST_F(ImportSphere, AGyroThatReadsNothingIsSaid) {
+  EXPECT_THAT(import(rolled(2.5, 0.0), 7.854).notes, Contains(HasSubstr("reads 0 on all axes in all 1000")));
+  EXPECT_THAT(import(rolled(2.5, 1.0), 7.854).notes, Not(Contains(HasSubstr("caution"))));
+}
+
+// gravity turns about another axis than the gyro reports
+TEST_F(ImportSphere, WhatTurnsButNotAsTheGyroSaysIsNotCalledStill) {
+  std::string text = rolled(2.5, 1.0);
+  text.replace(0, text.find('\n'), "sec,nsec,wy,wx,wz,fx,fy,fz");
+  EXPECT_THAT(import(text, 7.854).notes, Contains(HasSubstr("gyro and accelerometer measure different rotations")));
+}
+
+TEST_F(ImportSphere, StampsInAnotherUnitAreMet) {
+  // the stamps are ms and us where seconds are expected, and us where nanoseconds are expected
+  for (const std::int64_t step_ns : {4'000'000'000, 4'000'000'000'000})
+    EXPECT_THAT(complaint_of(rolled(2.5, 1.0, step_ns), 7.854), HasSubstr("The time stamps may be in another unit"));
+  EXPECT_THAT(complaint_of(rolled(2.5, 1.0, 4'000), 7.854),
+              HasSubstr("the median time step is 4e-06 s; it must be from 2e-05 to 2 s."));
 }
 
 }  // namespace

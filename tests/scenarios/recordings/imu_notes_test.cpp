@@ -2,18 +2,11 @@
 // The test checks what an import reports about readings that cannot be what their names state.
 #include "scenarios/methods/imu_check.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-
+#include "tests/testing.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble::scenarios {
 namespace {
-
-using testing::HasSubstr;
 
 constexpr double kGravity_m_s2 = 9.81;
 
@@ -23,14 +16,14 @@ sim::ImuRecord turning() {
   sim::ImuRecord imu;
   imu.name = "imu";
   imu.period_ns = 10'000'000;
-  Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
+  Quaterniond q_WI = Eigen::Quaterniond::Identity();
   for (int k = 0; k < 2000; ++k) {
     const double t = 0.01 * k;
-    const Eigen::Vector3d rate(0.9 * std::sin(0.8 * t), 0.7 * std::cos(0.6 * t), 0.5 * std::sin(0.3 * t + 1.0));
-    q_WI = (q_WI * so3::exp(Eigen::Vector3d(0.01 * rate))).normalized();
+    const Vector3d rate(0.9 * std::sin(0.8 * t), 0.7 * std::cos(0.6 * t), 0.5 * std::sin(0.3 * t + 1.0));
+    q_WI = (q_WI * so3::exp(Vector3d(0.01 * rate))).normalized();
     imu.time_ns.push_back((k + 1) * imu.period_ns);
-    imu.gyro_rad_s.emplace_back(rate + 1e-3 * Eigen::Vector3d(std::sin(7.1 * k), std::cos(3.3 * k), std::sin(1.7 * k)));
-    imu.accel_m_s2.emplace_back(q_WI.conjugate() * Eigen::Vector3d(0.0, 0.0, kGravity_m_s2));
+    imu.gyro_rad_s.emplace_back(rate + 1e-3 * Vector3d(std::sin(7.1 * k), std::cos(3.3 * k), std::sin(1.7 * k)));
+    imu.accel_m_s2.emplace_back(q_WI.conjugate() * Vector3d(0.0, 0.0, kGravity_m_s2));
     imu.clip_flags.push_back(0);
   }
   return imu;
@@ -57,11 +50,11 @@ TEST(ImuNotes, WhatFrozeIsSaid) {
 TEST(ImuNotes, AxesThatContradictTheRotationAreSaid) {
   // the accelerometer's x contains what belongs to the gyro's y, and so on
   EXPECT_THAT(note_of([](sim::ImuRecord& imu) {
-                for (Eigen::Vector3d& f : imu.accel_m_s2) f = Eigen::Vector3d(f.y(), f.z(), f.x());
+                for (Vector3d& f : imu.accel_m_s2) f = Vector3d(f.y(), f.z(), f.x());
               }),
               HasSubstr("caution: the gyro contradicts the rotation"));
   EXPECT_THAT(note_of([](sim::ImuRecord& imu) {
-                for (Eigen::Vector3d& f : imu.accel_m_s2) f.z() = -f.z();
+                for (Vector3d& f : imu.accel_m_s2) f.z() = -f.z();
               }),
               HasSubstr("caution: the gyro contradicts the rotation"));
 }
@@ -79,8 +72,8 @@ TEST(ImuNotes, EachImuIsNamed) {
   imported.sensors.gravity_m_s2 = kGravity_m_s2;
   imported.sensors.imus = {turning(), turning()};
   imported.sensors.imus[1].name = "second";
-  for (Eigen::Vector3d& w : imported.sensors.imus[1].gyro_rad_s) w *= -1.0;
-  EXPECT_THAT(imu_notes(imported), testing::ElementsAre(testing::StartsWith("second: caution: ")));
+  for (Vector3d& w : imported.sensors.imus[1].gyro_rad_s) w *= -1.0;
+  EXPECT_THAT(imu_notes(imported), ElementsAre(StartsWith("second: caution: ")));
 }
 
 }  // namespace

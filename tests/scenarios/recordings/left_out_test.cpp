@@ -2,12 +2,6 @@
 // The test checks bags and tables with single faulty readings or clouds.
 #include "scenarios/recordings/left_out.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cstdio>
-#include <functional>
-#include <limits>
 #include <variant>
 
 #include "scenarios/recordings/bag_kinds.hpp"
@@ -17,12 +11,6 @@
 
 namespace tumble::scenarios {
 namespace {
-
-using testing::AllOf;
-using testing::Contains;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::Not;
 
 constexpr std::int64_t kFirstStamp_ns = 1'700'000'000'000'000'000, kMilli_ns = 1'000'000;
 constexpr int kReadings = 150, kClouds = 15, kPoints = 128;
@@ -51,7 +39,7 @@ TEST(LeftOut, FewFaultsAreNotedAndManyAreRefused) {
             "does not increase); 1 because of faulty data (first error: a.csv:9: is not finite)");
   EXPECT_NO_THROW(left_out.require_few(38));
   EXPECT_EQ(
-      fixture::complaint([&] { left_out.require_few(37); }),
+      test::complaint([&] { left_out.require_few(37); }),
       "a.csv:3: does not increase (2 of 39 readings are faulty; the import leaves out at most 5 % of a sensor's data)");
   LeftOut one("clouds");
   one.add("faulty data", "cut");
@@ -60,7 +48,7 @@ TEST(LeftOut, FewFaultsAreNotedAndManyAreRefused) {
 }
 
 /// OddBag is a bag of an IMU and a lidar in which each test changes single messages.
-class OddBag : public fixture::Folder, public testing::WithParamInterface<fixture::BagKind> {
+class OddBag : public test::TemporaryFolder, public testing::WithParamInterface<fixture::BagKind> {
  protected:
   OddBag() {
     recording_.sensors.imus[0] = {};
@@ -81,7 +69,7 @@ class OddBag : public fixture::Folder, public testing::WithParamInterface<fixtur
     lidar.sweep_period_ns = 100 * kMilli_ns;
   }
 
-  void write(const std::filesystem::path& path, int first_reading = 0, int end_reading = kReadings) {
+  void write(const fs::path& path, int first_reading = 0, int end_reading = kReadings) {
     const auto bag = GetParam().writer(path);
     for (int k = first_reading; k < end_reading; ++k) {
       const std::int64_t record_ns = kFirstStamp_ns + 10 * kMilli_ns * k;
@@ -106,12 +94,12 @@ class OddBag : public fixture::Folder, public testing::WithParamInterface<fixtur
     bag->finish();
   }
   Imported read(const BagReading& reading = {}) {
-    const std::filesystem::path path = folder_ / ("bag" + std::to_string(count_++));
+    const fs::path path = folder_ / ("bag" + std::to_string(count_++));
     write(path);
     return GetParam().read(path, reading);
   }
   std::string complaint() {
-    return fixture::complaint([&] { read(); });
+    return test::complaint([&] { read(); });
   }
   /// Expects that one reading or one cloud is left out, with this note.
   void expect_one_left_out(std::size_t readings, std::size_t clouds, const std::string& note) {
@@ -292,13 +280,13 @@ TEST_P(OddBag, CloudsWithPointTimesAreThePrimaryLidar) {
 }
 
 TEST_P(OddBag, PartsAreReadTogetherByTime) {
-  const std::filesystem::path bag = folder_ / "parts";
+  const fs::path bag = folder_ / "parts";
   if (std::string(GetParam().name) == "Ros1") {
-    std::filesystem::create_directory(bag);
+    fs::create_directory(bag);
     write(bag / "z.bag", 0, 80), write(bag / "a.bag", 80, 150);
   } else if (std::string(GetParam().name) == "Ros2") {
     write(folder_ / "other", 0, 80), write(bag, 80, 150);
-    std::filesystem::rename(folder_ / "other/other_0.db3", bag / "parts_1.db3");
+    fs::rename(folder_ / "other/other_0.db3", bag / "parts_1.db3");
   } else {
     return;  // an MCAP file has only one part
   }
@@ -317,14 +305,14 @@ TEST_P(OddBag, PartsAreReadTogetherByTime) {
 TEST_P(OddBag, ErrorsListTheTopics) {
   BagReading named;
   named.imu_topics = {"/gyro"};
-  EXPECT_THAT(fixture::complaint([&] { read(named); }),
+  EXPECT_THAT(test::complaint([&] { read(named); }),
               AllOf(HasSubstr("there is no topic '/gyro'"), HasSubstr("/imu sensor_msgs/Imu")));
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, OddBag, testing::Values(fixture::kRos1, fixture::kRos2, fixture::kMcap),
                          fixture::name_of);
 
-class OddTable : public fixture::Folder {};
+class OddTable : public test::TemporaryFolder {};
 
 TEST_F(OddTable, OneFaultyLineCostsOneReading) {
   for (const char* odd : {"0.6,nan,0,0,0,0,9.8\n", "0.6,x,0,0,0,0,9.8\n", "0.59,0.1,0,0,0,0,9.8\n", "0.6,0.1\n",
@@ -358,7 +346,7 @@ TEST_F(OddTable, OneFaultyFileCostsOneSweep) {
   source.folder = folder_;
   source.format = "ply";
   fixture::put(folder_ / "times.txt", times);
-  EXPECT_THAT(fixture::complaint([&] { import_sweeps(source); }), HasSubstr("2 of 10 clouds are faulty"));
+  EXPECT_THAT(test::complaint([&] { import_sweeps(source); }), HasSubstr("2 of 10 clouds are faulty"));
   fixture::put(folder_ / "4.PLY", head + "1 2 3\n1 2 4\n");
   const Imported imported = import_sweeps(source);
   EXPECT_EQ(imported.sensors.lidars.at(0).sweep_start_ns.size(), 9u);

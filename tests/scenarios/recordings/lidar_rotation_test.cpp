@@ -2,30 +2,19 @@
 // The test checks what a lidar that turns in a room reveals about a gyro with wrong units, axes, mountings and clocks.
 #include "scenarios/diagnosis/lidar_rotation.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-
-#include "scenarios/errors.hpp"
 #include "scenarios/recordings/repairable.hpp"
+#include "tests/scenarios/testing.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble::scenarios {
 namespace {
-
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
 
 constexpr std::int64_t kSweep_ns = 100'000'000, kSample_ns = 2'500'000;
 constexpr double kDegrees = 57.29577951308232;
 
 /// Returns the rate of the body, whose axes are those of IMU and lidar: it turns about all three, with sizes that rise
 /// and fall. `haste` multiplies the frequency of the rate.
-Eigen::Vector3d rate_at(double time_s, double haste = 1.0) {
+Vector3d rate_at(double time_s, double haste = 1.0) {
   const double t = haste * time_s;
   return {0.5 * std::sin(1.3 * t), 0.4 * std::sin(1.9 * t + 1.0), 0.6 * std::cos(0.8 * t)};
 }
@@ -43,16 +32,16 @@ sim::ImuRecord gyro(double length_s, double haste = 1.0) {
 }
 
 /// Returns attitudes of the body in the world every millisecond.
-std::vector<Eigen::Quaterniond> attitudes(double length_s, double haste = 1.0) {
-  std::vector<Eigen::Quaterniond> out{Eigen::Quaterniond::Identity()};
+std::vector<Quaterniond> attitudes(double length_s, double haste = 1.0) {
+  std::vector<Quaterniond> out{Eigen::Quaterniond::Identity()};
   for (int k = 0; k < static_cast<int>(1000.0 * length_s); ++k)
-    out.push_back((out.back() * so3::exp(Eigen::Vector3d(1e-3 * rate_at(1e-3 * k + 5e-4, haste)))).normalized());
+    out.push_back((out.back() * so3::exp(Vector3d(1e-3 * rate_at(1e-3 * k + 5e-4, haste)))).normalized());
   return out;
 }
 
 /// Returns the range from inside a room of 8 x 6 x 3 m with an upright beam, along a unit ray.
-double range_in_room(const Eigen::Vector3d& ray) {
-  const Eigen::Vector3d half(4.0, 3.0, 1.5), at(0.7, -0.4, 0.2);
+double range_in_room(const Vector3d& ray) {
+  const Vector3d half(4.0, 3.0, 1.5), at(0.7, -0.4, 0.2);
   double range = 1e9;
   for (int i = 0; i < 3; ++i) {
     if (ray[i] != 0.0) range = std::min(range, (std::copysign(half[i], ray[i]) - at[i]) / ray[i]);
@@ -72,8 +61,8 @@ sim::LidarRecord lidar_in_room(std::size_t sweeps, double haste = 1.0) {
     for (int column = 0; column < 180; ++column) {
       for (int ring = 0; ring < 16; ++ring) {
         const double azimuth = 2.0 * M_PI * column / 180.0, elevation = (4.0 * ring - 30.0) / kDegrees;
-        const Eigen::Vector3d ray_L(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
-                                    std::sin(elevation));
+        const Vector3d ray_L(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+                             std::sin(elevation));
         const auto at_ms = k * 100 + static_cast<std::size_t>(column) * 100 / 180;
         const double range = range_in_room(q_WL[at_ms] * ray_L);
         lidar.position_L_m.push_back((range * ray_L).cast<float>());
@@ -94,8 +83,8 @@ std::vector<SeenRotation> exact_rotations(int pairs) {
   std::vector<SeenRotation> out;
   for (std::size_t k = 0; k < static_cast<std::size_t>(pairs); ++k) {
     const auto at_ns = static_cast<std::int64_t>(k) * kSweep_ns;
-    out.push_back({at_ns, at_ns + kSweep_ns,
-                   so3::logarithm(Eigen::Quaterniond(q_WL[100 * k].conjugate() * q_WL[100 * (k + 1)]))});
+    out.push_back(
+        {at_ns, at_ns + kSweep_ns, so3::logarithm(Quaterniond(q_WL[100 * k].conjugate() * q_WL[100 * (k + 1)]))});
   }
   return out;
 }
@@ -109,10 +98,10 @@ std::string text_of(const std::function<void(sim::ImuRecord&, sim::LidarRecord&)
   return found ? agreement_text("bag: 'imu'", *found, unit) : "nothing told";
 }
 
-std::string with_gyro(const Eigen::Matrix3d& matrix, GyroUnit unit = GyroUnit::rad_s) {
+std::string with_gyro(const Matrix3d& matrix, GyroUnit unit = GyroUnit::rad_s) {
   return text_of(
       [&](sim::ImuRecord& imu, sim::LidarRecord&) {
-        for (Eigen::Vector3d& rate : imu.gyro_rad_s) rate = matrix * rate;
+        for (Vector3d& rate : imu.gyro_rad_s) rate = matrix * rate;
       },
       unit);
 }
@@ -123,7 +112,7 @@ TEST(LidarRotation, WhatAgreesSaysSo) {
 }
 
 TEST(LidarRotation, DegreesAreRefusedWithTheOptionThatTakesThem) {
-  const Eigen::Matrix3d degrees = kDegrees * Eigen::Matrix3d::Identity();
+  const Matrix3d degrees = kDegrees * Eigen::Matrix3d::Identity();
   try {
     with_gyro(-degrees);
     FAIL() << "degrees per second were taken for radians";
@@ -137,15 +126,15 @@ TEST(LidarRotation, DegreesAreRefusedWithTheOptionThatTakesThem) {
 }
 
 TEST(LidarRotation, FlippedAndPermutedAxesAreNamed) {
-  const Eigen::Matrix3d flipped = Eigen::Vector3d(-1.0, 1.0, 1.0).asDiagonal();
+  const Matrix3d flipped = Vector3d(-1.0, 1.0, 1.0).asDiagonal();
   EXPECT_THAT(with_gyro(flipped),
               AllOf(HasSubstr("caution: the axes of the IMU are mirrored (left-handed): the sign of "
                               "the x axis is wrong"),
                     HasSubstr("No rotation and no option repairs mirrored axes")));
-  const Eigen::Matrix3d turned = Eigen::Vector3d(-1.0, -1.0, 1.0).asDiagonal();
-  EXPECT_THAT(with_gyro(turned), AllOf(HasSubstr("(-x, -y, z)"), testing::Not(HasSubstr("mirrored"))));
+  const Matrix3d turned = Vector3d(-1.0, -1.0, 1.0).asDiagonal();
+  EXPECT_THAT(with_gyro(turned), AllOf(HasSubstr("(-x, -y, z)"), Not(HasSubstr("mirrored"))));
   EXPECT_THAT(with_gyro(-Eigen::Matrix3d::Identity()), HasSubstr("(-x, -y, -z)"));
-  Eigen::Matrix3d swapped;
+  Matrix3d swapped;
   swapped << 0, 1, 0, 1, 0, 0, 0, 0, 1;
   EXPECT_THAT(with_gyro(swapped), HasSubstr("(y, x, z)"));
 }
@@ -172,17 +161,17 @@ TEST(LidarRotation, AnotherClockIsReported) {
   };
   EXPECT_THAT(shifted(200'000'000), AllOf(HasSubstr("caution"), HasSubstr("0.2 s later"), HasSubstr("axes agree")));
   EXPECT_THAT(shifted(-200'000'000), HasSubstr("0.2 s earlier"));
-  EXPECT_THAT(shifted(10'000'000), testing::Not(HasSubstr("caution")));
+  EXPECT_THAT(shifted(10'000'000), Not(HasSubstr("caution")));
 }
 
 TEST(LidarRotation, WithoutEvidenceNothingIsReported) {
   const auto dead = [](sim::ImuRecord& imu, sim::LidarRecord&) {
-    for (Eigen::Vector3d& rate : imu.gyro_rad_s) rate.setZero();
+    for (Vector3d& rate : imu.gyro_rad_s) rate.setZero();
   };
   EXPECT_EQ(text_of(dead), "nothing told");
   const auto other = [](sim::ImuRecord& imu, sim::LidarRecord&) {  // the same sizes, but another motion
     for (std::size_t k = 0; k < imu.gyro_rad_s.size(); ++k)
-      imu.gyro_rad_s[k] = so3::exp(Eigen::Vector3d(0.0, 0.011 * static_cast<double>(k), 0.7)) * imu.gyro_rad_s[k];
+      imu.gyro_rad_s[k] = so3::exp(Vector3d(0.0, 0.011 * static_cast<double>(k), 0.7)) * imu.gyro_rad_s[k];
   };
   EXPECT_EQ(text_of(other), "nothing told");
   EXPECT_FALSE(rotation_agreement(gyro(8.0), {}, exact_rotations(11)));
@@ -199,7 +188,7 @@ TEST(LidarRotation, SweepsOfARoomCheckTheGyro) {
   EXPECT_GE(seen_rotations(recording.sensors.lidars.front(), nullptr).size(), 20U);
   EXPECT_THAT(check_lidar_rotation("bag", recording, GyroUnit::rad_s).notes,
               ElementsAre(AllOf(HasSubstr("imu: the rotations of lidar and gyro agree"), HasSubstr("axes agree"))));
-  for (Eigen::Vector3d& rate : recording.sensors.imus.front().gyro_rad_s) rate.z() = -rate.z();
+  for (Vector3d& rate : recording.sensors.imus.front().gyro_rad_s) rate.z() = -rate.z();
   const LidarRotationCheck mirrored = check_lidar_rotation("bag", recording, GyroUnit::rad_s);
   EXPECT_THAT(mirrored.notes, ElementsAre(HasSubstr("the sign of the z axis is wrong")));
   EXPECT_FALSE(mirrored.better_BL) << "no mounting repairs mirrored axes";
@@ -221,7 +210,7 @@ TEST(LidarRotation, AnUnknownPositionIsNotRecommendedAsZeros) {
   Imported recording;
   recording.sensors.imus.push_back(gyro(4.0));
   recording.sensors.lidars.push_back(lidar_in_room(36));
-  for (Eigen::Vector3d& rate : recording.sensors.imus.front().gyro_rad_s) rate = {rate.x(), -rate.z(), rate.y()};
+  for (Vector3d& rate : recording.sensors.imus.front().gyro_rad_s) rate = {rate.x(), -rate.z(), rate.y()};
   EXPECT_THAT(check_lidar_rotation("bag", recording, GyroUnit::rad_s).notes,
               ElementsAre(HasSubstr("(set '--T-body-lidar X Y Z 0.707")));
   recording.sensors.lidars.front().T_BL.translation().x() = 0.1;

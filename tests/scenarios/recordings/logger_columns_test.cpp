@@ -2,14 +2,6 @@
 // The test checks IMU tables as loggers and data sets write them: the names, units and times differ, and the readings
 // are the same.
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <Eigen/Geometry>
-#include <cmath>
-#include <cstdint>
-#include <sstream>
-#include <tuple>
 
 #include "scenarios/recordings/fixture_recording.hpp"
 #include "scenarios/recordings/import.hpp"
@@ -17,13 +9,7 @@
 namespace tumble::scenarios {
 namespace {
 
-using testing::AllOf;
-using testing::Contains;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::Not;
-
-class LoggerTable : public fixture::Folder {
+class LoggerTable : public test::TemporaryFolder {
  protected:
   Imported import(const std::string& text, AccelUnit unit = AccelUnit::m_s2, GyroUnit gyro_unit = GyroUnit::rad_s) {
     fixture::put(folder_ / "log.csv", text);
@@ -34,7 +20,7 @@ class LoggerTable : public fixture::Folder {
     return import_imu_csv(folder_ / "log.csv", {}, AccelUnit::m_s2, GyroUnit::rad_s, columns);
   }
   std::string complaint_of(const std::string& text, AccelUnit unit = AccelUnit::m_s2) {
-    return fixture::complaint([&] { import(text, unit); });
+    return test::complaint([&] { import(text, unit); });
   }
 };
 
@@ -49,8 +35,8 @@ void expect_the_readings(const Imported& imported) {
   const sim::ImuRecord& imu = imported.sensors.imus.at(0);
   ASSERT_THAT(imu.time_ns, ElementsAre(0, 5'000'000, 10'000'000));
   EXPECT_EQ(imu.period_ns, 5'000'000);
-  EXPECT_TRUE(imu.gyro_rad_s[1].isApprox(Eigen::Vector3d(0.1, 0.2, 0.3), 1e-12));
-  EXPECT_TRUE(imu.accel_m_s2[1].isApprox(Eigen::Vector3d(-0.5, 0.0, 9.8), 1e-12));
+  EXPECT_TRUE(imu.gyro_rad_s[1].isApprox(Vector3d(0.1, 0.2, 0.3), 1e-12));
+  EXPECT_TRUE(imu.accel_m_s2[1].isApprox(Vector3d(-0.5, 0.0, 9.8), 1e-12));
 }
 
 const std::vector<std::string> kSeconds = {"12.5", "12.505", "12.51"};
@@ -262,16 +248,15 @@ TEST_F(LoggerTable, AFurtherImuWithoutAKnownPositionIsLeftOut) {
 
 /// Returns a table of two IMUs on one body that turns about changing axes. The second IMU is at `arm` from the first
 /// one, its rates are multiplied by `scale`, and the times start at `from_s`.
-std::string two_imus(const Eigen::Vector3d& arm, double scale, double from_s) {
+std::string two_imus(const Vector3d& arm, double scale, double from_s) {
   std::string text = "time,id,gx,gy,gz,ax,ay,az\n";
   for (int k = 0; k < 1000; ++k) {
     const double t = 0.01 * k;
-    const Eigen::Vector3d w(6.0 * std::sin(0.7 * t), 5.0 * std::cos(1.1 * t), 4.0 * std::sin(1.3 * t + 0.4));
-    const Eigen::Vector3d a(4.2 * std::cos(0.7 * t), -5.5 * std::sin(1.1 * t), 5.2 * std::cos(1.3 * t + 0.4));
-    const Eigen::Vector3d first(9.0 * std::cos(0.2 * t), 9.0 * std::sin(0.2 * t), 3.0);
-    const Eigen::Vector3d second = first + a.cross(arm) + w.cross(w.cross(arm)) + Eigen::Vector3d(0.1, -0.2, 0.05);
-    for (const auto& [id, rate, force] :
-         {std::tuple{"A", w, first}, std::tuple{"B", Eigen::Vector3d(scale * w), second}})
+    const Vector3d w(6.0 * std::sin(0.7 * t), 5.0 * std::cos(1.1 * t), 4.0 * std::sin(1.3 * t + 0.4));
+    const Vector3d a(4.2 * std::cos(0.7 * t), -5.5 * std::sin(1.1 * t), 5.2 * std::cos(1.3 * t + 0.4));
+    const Vector3d first(9.0 * std::cos(0.2 * t), 9.0 * std::sin(0.2 * t), 3.0);
+    const Vector3d second = first + a.cross(arm) + w.cross(w.cross(arm)) + Vector3d(0.1, -0.2, 0.05);
+    for (const auto& [id, rate, force] : {std::tuple{"A", w, first}, std::tuple{"B", Vector3d(scale * w), second}})
       text += fmt::format("{:.6f},{},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f}\n", from_s + t, id, rate.x(), rate.y(),
                           rate.z(), force.x(), force.y(), force.z());
   }
@@ -279,7 +264,7 @@ std::string two_imus(const Eigen::Vector3d& arm, double scale, double from_s) {
 }
 
 TEST_F(LoggerTable, AFurtherImuIsPlacedByTheRotation) {
-  const Eigen::Vector3d arm(0.03, -0.02, 0.05);
+  const Vector3d arm(0.03, -0.02, 0.05);
   const Imported imported = import(two_imus(arm, 1.0, 2.0));
   ASSERT_EQ(imported.sensors.imus.size(), 2u);
   EXPECT_EQ(imported.sensors.imus[0].time_ns, imported.sensors.imus[1].time_ns);
@@ -320,7 +305,7 @@ TEST_F(LoggerTable, TheUserNamesColumns) {
   const Imported seconds = import_columns(split, "time=a,b,gyro=c,d,e,accel=f,g,h");
   expect_the_readings(seconds);
   EXPECT_EQ(seconds.info.origin_ns, 12'500'000'000);
-  const auto refused = [&](const char* choice) { return fixture::complaint([&] { import_columns(split, choice); }); };
+  const auto refused = [&](const char* choice) { return test::complaint([&] { import_columns(split, choice); }); };
   EXPECT_THAT(refused("time=a,b,gyro=c,d,e,accel=f,g,z"),
               HasSubstr("log.csv:1: --columns names 'z', but 0 of the 8 columns have this name"));
   EXPECT_THAT(refused("time=a,b,gyro=c,d,accel=f,g,h"), HasSubstr("--columns: gyro has 2 columns; it must have 3"));

@@ -4,17 +4,12 @@
 #include <zlib.h>
 #include <zstd.h>
 
-#include <functional>
-#include <map>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "scenarios/recordings/bags/bag_messages.hpp"
 #include "scenarios/recordings/bags/mcap_records.hpp"
 #include "scenarios/recordings/bags/packed.hpp"
 #include "scenarios/recordings/bags/ros2_metadata.hpp"
 #include "scenarios/recordings/bags/ros_bytes.hpp"
+#include "tests/testing.hpp"
 
 /// The functions here write MCAP files as other programs do, and malformed ones: the same messages of one IMU in every
 /// variant of the format, with a false value at any position.

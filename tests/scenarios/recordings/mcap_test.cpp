@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test checks that MCAP files of every variant are read alike, and that a false value at any position of one is
 // rejected. tests/peers/bags_test.py gives files of this project to other people's readers.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"
@@ -14,18 +11,17 @@ namespace tumble::scenarios {
 namespace {
 
 using fixture::McapShape;
-using testing::HasSubstr;
 
-class Mcap : public fixture::Folder {
+class Mcap : public test::TemporaryFolder {
  protected:
   Mcap() { shape_.chunks = {{messages_.begin(), messages_.begin() + 20}, {messages_.begin() + 20, messages_.end()}}; }
-  std::filesystem::path file() const { return folder_ / "a.mcap"; }
+  fs::path file() const { return folder_ / "a.mcap"; }
   Imported read(const std::string& bytes) {
     fixture::put(file(), bytes);
     return import_mcap(file(), {});
   }
   std::string complaint_of(const std::string& bytes) {
-    return fixture::complaint([&] { read(bytes); });
+    return test::complaint([&] { read(bytes); });
   }
   std::string complaint_of(const McapShape& shape) { return complaint_of(fixture::mcap_bytes(shape)); }
   /// Returns the rates of the messages in the order in which the reader gives them.
@@ -90,13 +86,13 @@ TEST_F(Mcap, OtherEncodingsAreNamed) {
   fixture::put(file(), fixture::mcap_bytes(shape_));
   BagReading reading;
   reading.imu_topics = {"/imu"};
-  EXPECT_THAT(fixture::complaint([&] { import_mcap(file(), reading); }),
+  EXPECT_THAT(test::complaint([&] { import_mcap(file(), reading); }),
               HasSubstr("is of type sensor_msgs/msg/Imu as json (ros2msg); it must be sensor_msgs/Imu"));
 }
 
 TEST_F(Mcap, AFolderOfRos2MayHoldIt) {
   const std::vector<fixture::Logged> all = messages_;
-  std::filesystem::create_directories(folder_ / "bag");
+  fs::create_directories(folder_ / "bag");
   for (const int part : {0, 1}) {
     shape_.chunks = {{all.begin() + 25 * part, all.begin() + 25 * part + 25}};
     fixture::put(folder_ / "bag" / ("b_" + std::to_string(part) + ".mcap"), fixture::mcap_bytes(shape_));
@@ -105,8 +101,8 @@ TEST_F(Mcap, AFolderOfRos2MayHoldIt) {
       folder_ / "bag" / "metadata.yaml",
       "rosbag2_bagfile_information:\n  storage_identifier: mcap\n  relative_file_paths: [b_0.mcap, b_1.mcap]\n");
   EXPECT_EQ(import_ros2_bag(folder_ / "bag", {}).sensors.imus.at(0).time_ns.size(), 50u);
-  std::filesystem::remove(folder_ / "bag" / "b_1.mcap");
-  EXPECT_THAT(fixture::complaint([&] { import_ros2_bag(folder_ / "bag", {}); }),
+  fs::remove(folder_ / "bag" / "b_1.mcap");
+  EXPECT_THAT(test::complaint([&] { import_ros2_bag(folder_ / "bag", {}); }),
               HasSubstr("b_1.mcap: the file does not exist"));
 }
 
@@ -125,7 +121,7 @@ TEST_P(McapLie, IsRefusedWithItsPlace) {
   const std::string complaint = complaint_of(shape_);
   EXPECT_THAT(complaint, HasSubstr(GetParam().complaint));
   EXPECT_THAT(complaint, HasSubstr("a.mcap: at byte "));
-  EXPECT_THAT(complaint, testing::Not(HasSubstr("\n")));
+  EXPECT_THAT(complaint, Not(HasSubstr("\n")));
 }
 
 const Lie kLies[] = {
@@ -261,7 +257,7 @@ TEST_F(Mcap, LiesAreFoundWithoutASummaryToo) {
 // every byte of the written file is covered by some checksum
 TEST_F(Mcap, AnyChangedByteOfOursIsRefused) {
   export_mcap(fixture::small_sensors(), {}, file());
-  const std::string whole = fixture::bytes_of(file());
+  const std::string whole = test::read_file(file());
   ASSERT_EQ(complaint_of(whole), "");
   ASSERT_GT(whole.size(), 5000u);
   const std::size_t far = whole.size() - 300;  // the last chunk's index, the offsets and the footer
@@ -270,26 +266,26 @@ TEST_F(Mcap, AnyChangedByteOfOursIsRefused) {
     bytes[at] = static_cast<char>(bytes[at] ^ (1 << (at % 8)));
     const std::string complaint = complaint_of(bytes);
     ASSERT_THAT(complaint, HasSubstr("a.mcap: at byte ")) << at;
-    ASSERT_THAT(complaint, testing::Not(HasSubstr("\n"))) << at;
+    ASSERT_THAT(complaint, Not(HasSubstr("\n"))) << at;
   }
 }
 
 TEST_F(Mcap, AnyCutOfOursIsRefused) {
   export_mcap(fixture::small_sensors(), {}, file());
-  const std::string whole = fixture::bytes_of(file());
+  const std::string whole = test::read_file(file());
   for (std::size_t size = 0; size < whole.size(); size += size < 100 || size + 100 > whole.size() ? 1 : 97)
     ASSERT_THAT(complaint_of(whole.substr(0, size)), HasSubstr("a.mcap: at byte ")) << size;
   EXPECT_THAT(complaint_of(whole.substr(0, whole.size() / 2)), HasSubstr("repair the file with 'mcap recover'"));
   EXPECT_THAT(complaint_of("hello"),
               HasSubstr("the file does not begin with the magic bytes of MCAP 0, so it is not an MCAP file"));
-  EXPECT_THAT(fixture::complaint([&] { import_mcap(folder_ / "none.mcap", {}); }), HasSubstr("no such file"));
+  EXPECT_THAT(test::complaint([&] { import_mcap(folder_ / "none.mcap", {}); }), HasSubstr("no such file"));
 }
 
 TEST_F(Mcap, TheSameRecordingGivesTheSameBytes) {
   export_mcap(fixture::small_sensors(), {}, file());
   export_mcap(fixture::small_sensors(), {}, folder_ / "b.mcap");
-  EXPECT_TRUE(fixture::bytes_of(file()) == fixture::bytes_of(folder_ / "b.mcap"));
-  EXPECT_THAT(fixture::complaint([&] { export_mcap(fixture::small_sensors(), {}, folder_ / "none" / "a.mcap"); }),
+  EXPECT_TRUE(test::read_file(file()) == test::read_file(folder_ / "b.mcap"));
+  EXPECT_THAT(test::complaint([&] { export_mcap(fixture::small_sensors(), {}, folder_ / "none" / "a.mcap"); }),
               HasSubstr("cannot be written"));
   EXPECT_EQ(files(), 2u) << "nothing is left of it";
 }

@@ -1,13 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test checks clouds of libpointmatcher (VTK) and tables of nav_msgs/Odometry, as norlab's mapper writes them.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <utility>
-
 #include "scenarios/recordings/clouds/import_sweeps.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"
 #include "scenarios/recordings/import.hpp"
@@ -16,12 +8,10 @@
 namespace tumble::scenarios {
 namespace {
 
-using testing::HasSubstr;
-
 class Norlab : public testing::TestWithParam<test::DataFolder> {
  protected:
   Imported import(const char* poses) const {
-    const std::filesystem::path folder = test::written(GetParam());
+    const fs::path folder = test::written(GetParam());
     SweepSource source;
     source.folder = folder;
     source.format = "vtk";
@@ -36,11 +26,11 @@ class Norlab : public testing::TestWithParam<test::DataFolder> {
 };
 
 /// Returns the lidar's pose at a time of the recording, interpolated between the truth's samples.
-Eigen::Isometry3d pose_at(const sim::Truth& truth, double time_ns) {
+Isometry3d pose_at(const sim::Truth& truth, double time_ns) {
   const double at = time_ns / static_cast<double>(truth.period_ns);
   const auto i = std::min(static_cast<std::size_t>(at), truth.p_WB_m.size() - 2);
   const double share = at - static_cast<double>(i);
-  Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
+  Isometry3d out = Eigen::Isometry3d::Identity();
   out.linear() = truth.q_WB[i].slerp(share, truth.q_WB[i + 1]).toRotationMatrix();
   out.translation() = (1.0 - share) * truth.p_WB_m[i] + share * truth.p_WB_m[i + 1];
   return out;
@@ -59,7 +49,7 @@ TEST_P(Norlab, TheFolderIsTakenAsItIs) {
   EXPECT_LE(*std::max_element(lidar.intensity.begin(), lidar.intensity.end()), 1.0f);
   if (GetParam().real) {
     EXPECT_EQ(lidar.sweep_first[1], 41400u) << "POINTS of the first file";
-    EXPECT_EQ(lidar.position_L_m[0], Eigen::Vector3f(4.39017f, -0.830303f, -0.814437f)) << "its first line";
+    EXPECT_EQ(lidar.position_L_m[0], Vector3f(4.39017f, -0.830303f, -0.814437f)) << "its first line";
   }
 }
 
@@ -84,10 +74,10 @@ TEST_P(Norlab, TheReferenceIsTheTables) {
   const Imported imported = import("trajectory.csv");
   ASSERT_TRUE(imported.reference.has_value());
   const sim::Truth& truth = *imported.reference;
-  const Eigen::Isometry3d first = pose_at(truth, 0.0), fourth = pose_at(truth, 299852288.0);
+  const Isometry3d first = pose_at(truth, 0.0), fourth = pose_at(truth, 299852288.0);
   if (GetParam().real) {
-    EXPECT_TRUE(first.translation().isApprox(Eigen::Vector3d(0.85824662, -0.13771612, 0.03212672), 1e-5));
-    EXPECT_TRUE(fourth.translation().isApprox(Eigen::Vector3d(0.85897767, -0.13214987, 0.03379368), 1e-2));
+    EXPECT_TRUE(first.translation().isApprox(Vector3d(0.85824662, -0.13771612, 0.03212672), 1e-5));
+    EXPECT_TRUE(fourth.translation().isApprox(Vector3d(0.85897767, -0.13214987, 0.03379368), 1e-2));
   } else {
     EXPECT_TRUE(first.isApprox(test::norlab_pose(0.0), 1e-9));
     EXPECT_TRUE(fourth.isApprox(test::norlab_pose(0.299852288), 1e-9));
@@ -96,7 +86,7 @@ TEST_P(Norlab, TheReferenceIsTheTables) {
 
 // each point, placed with the reference pose of the lidar at the point's own time, lies on a wall of the room
 TEST(NorlabStandIn, PointsAndPosesBelongTogether) {
-  const std::filesystem::path folder = test::written(test::data_folders("norlab").front());
+  const fs::path folder = test::written(test::data_folders("norlab").front());
   SweepSource source;
   source.folder = folder;
   source.format = "vtk";
@@ -112,7 +102,7 @@ TEST(NorlabStandIn, PointsAndPosesBelongTogether) {
     for (std::size_t sweep = 0; sweep < 5; ++sweep) {
       for (std::size_t k = lidar.sweep_first[sweep]; k < lidar.sweep_first[sweep + 1]; ++k) {
         const double time_ns = static_cast<double>(lidar.sweep_start_ns[sweep]) + lidar.offset_ns[k];
-        const Eigen::Vector3d p = pose_at(*imported.reference, time_ns) * lidar.position_L_m[k].cast<double>();
+        const Vector3d p = pose_at(*imported.reference, time_ns) * lidar.position_L_m[k].cast<double>();
         double off = 1e9;
         for (int axis = 0; axis < 3; ++axis)
           off = std::min(off, std::abs(std::abs(p[axis]) - test::kNorlabRoom_m[static_cast<std::size_t>(axis)]));
@@ -127,14 +117,14 @@ TEST(NorlabStandIn, PointsAndPosesBelongTogether) {
 
 INSTANTIATE_TEST_SUITE_P(, Norlab, testing::ValuesIn(test::data_folders("norlab")), test::FolderName());
 
-class Vtk : public fixture::Folder {
+class Vtk : public test::TemporaryFolder {
  protected:
   Cloud read(const std::string& text) {
     fixture::put(folder_ / "a.vtk", text);
     return read_cloud(folder_ / "a.vtk");
   }
   std::string complaint_of(const std::string& text) {
-    return fixture::complaint([&] { read(text); });
+    return test::complaint([&] { read(text); });
   }
   const std::string head_ = "# vtk DataFile Version 3.0\nby hand\nASCII\nDATASET POLYDATA\n";
   const std::string points_ = "POINTS 2 float\n1 2 3\nnan -5e-1 6\n";
@@ -145,7 +135,7 @@ TEST_F(Vtk, ReadsPointsAndScalars) {
                            "VERTICES 2 4\n1 0\n1 1\nPOINT_DATA 2\nNORMALS n float\n0 0 1\n0 0 1\n"
                            "SCALARS two float 2\nLOOKUP_TABLE default\n1 2 3 4\nCOLOR_SCALARS c 3\n0 0 0 1 1 1\n"
                            "SCALARS t float\nLOOKUP_TABLE default\n0\n9.97396e+07\n");
-  EXPECT_THAT(cloud.names, testing::ElementsAre("x", "y", "z", "t"));
+  EXPECT_THAT(cloud.names, ElementsAre("x", "y", "z", "t"));
   EXPECT_EQ(cloud.points, 2u);
   EXPECT_TRUE(std::isnan((*cloud.find("x"))[1]));
   EXPECT_EQ((*cloud.find("y"))[1], -0.5);
@@ -176,14 +166,14 @@ TEST_F(Vtk, WhatIsNoneIsRefusedWithItsLine) {
   EXPECT_THAT(complaint_of(head_), HasSubstr("has no POINTS section"));
 }
 
-class OdometryTable : public fixture::Folder {
+class OdometryTable : public test::TemporaryFolder {
  protected:
   std::string complaint_of(const std::string& text) {
     fixture::put(folder_ / "a.csv", text);
     ReferenceSource source;
     source.file = folder_ / "a.csv";
     source.format = "odometry";
-    return fixture::complaint([&] { import_trajectory(source); });
+    return test::complaint([&] { import_trajectory(source); });
   }
   const std::string head_ =
       "header.stamp.sec,header.stamp.nanosec,pose.pose.position.x,pose.pose.position.y,pose.pose.position.z,"
@@ -215,34 +205,30 @@ TEST_F(OdometryTable, BadLinesAreRefusedWithTheirPlace) {
 }
 
 // `evo_traj --save_as_tum` and `--save_as_kitti` write such files, with numpy's "%.18e"
-TEST(Evo, ItsFilesOfPosesAreRead) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "tumble_evo";
-  std::filesystem::create_directories(folder);
-  fixture::put(folder / "a.tum",
+using PoseFiles = test::TemporaryFolder;
+TEST_F(PoseFiles, OfEvoAreRead) {
+  fixture::put(folder_ / "a.tum",
                "1.690309709285305500e+09 1.000000000000000000e+00 2.000000000000000000e+00 3.000000000000000000e+00 "
                "0.000000000000000000e+00 0.000000000000000000e+00 0.000000000000000000e+00 1.000000000000000000e+00\n"
                "1.690309709385259150e+09 1.500000000000000000e+00 2.000000000000000000e+00 3.000000000000000000e+00 "
                "0.000000000000000000e+00 0.000000000000000000e+00 0.000000000000000000e+00 1.000000000000000000e+00\n");
-  EXPECT_EQ(pose_format(folder / "a.tum"), "tum");
-  const std::vector<ReferencePose> poses = read_tum_poses(folder / "a.tum", false);
+  EXPECT_EQ(pose_format(folder_ / "a.tum"), "tum");
+  const std::vector<ReferencePose> poses = read_tum_poses(folder_ / "a.tum", false);
   ASSERT_EQ(poses.size(), 2u);
   // a double of such seconds is accurate to 0.24 us
   EXPECT_NEAR(static_cast<double>(poses[0].time_ns - 1690309709'285305600), 0.0, 250.0);
   EXPECT_EQ(poses[1].p_WA_m.x(), 1.5);
   const std::string one = "1.000000000000000000e+00 ", none = "0.000000000000000000e+00 ";
-  fixture::put(folder / "a.kitti", one + none + none + one + none + one + none + none + none + none + one +
-                                       "2.5e+00\n" + one + none + none + none + none + one + none + none + none + none +
-                                       one + "3e+00\n");
-  EXPECT_EQ(pose_format(folder / "a.kitti"), "kitti");
-  EXPECT_EQ(read_kitti_poses(folder / "a.kitti", {0, 1})[0].p_WA_m, Eigen::Vector3d(1.0, 0.0, 2.5));
-  std::filesystem::remove_all(folder);
+  fixture::put(folder_ / "a.kitti", one + none + none + one + none + one + none + none + none + none + one +
+                                        "2.5e+00\n" + one + none + none + none + none + one + none + none + none +
+                                        none + one + "3e+00\n");
+  EXPECT_EQ(pose_format(folder_ / "a.kitti"), "kitti");
+  EXPECT_EQ(read_kitti_poses(folder_ / "a.kitti", {0, 1})[0].p_WA_m, Vector3d(1.0, 0.0, 2.5));
 }
 
 // The test reads the same two poses from every kind of file.
-TEST(PoseTables, AreReadWithTheirNamesAndUnits) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "tumble_pose_tables";
-  std::filesystem::create_directories(folder);
-  const std::filesystem::path file = folder / "poses.csv";
+TEST_F(PoseFiles, AreReadWithTheirNamesAndUnits) {
+  const fs::path file = folder_ / "poses.csv";
   const std::string short_rows = "1700000000.25,1,2,3,0,0,0.6,0.8\n1700000000.75,4,5,6,0,0,0,1\n";
   const auto with = [](std::string text, char by) {
     std::replace(text.begin(), text.end(), ',', by);
@@ -274,25 +260,23 @@ TEST(PoseTables, AreReadWithTheirNamesAndUnits) {
     ASSERT_EQ(poses.size(), 2u);
     EXPECT_EQ(poses[0].time_ns, 1'700'000'000'250'000'000);
     EXPECT_EQ(poses[1].time_ns, 1'700'000'000'750'000'000);
-    EXPECT_EQ(poses[0].p_WA_m, Eigen::Vector3d(1, 2, 3));
+    EXPECT_EQ(poses[0].p_WA_m, Vector3d(1, 2, 3));
     EXPECT_TRUE(poses[0].q_WA.coeffs().isApprox(Eigen::Vector4d(0, 0, 0.6, 0.8), 1e-12));
   }
   // IMU readings are not poses
   fixture::put(file, "time,gx,gy,gz,ax,ay,az,temp\n0,0,0,0,0,0,9.8,20\n0.01,0,0,0,0,0,9.8,20\n");
   EXPECT_FALSE(is_pose_table(file));
-  EXPECT_THAT(fixture::complaint([&] { pose_format(file); }), HasSubstr("8 other words"));
-  std::filesystem::remove_all(folder);
+  EXPECT_THAT(test::complaint([&] { pose_format(file); }), HasSubstr("8 other words"));
 }
 
 // the times are those of timestamps.txt of KITTI's raw data
-TEST(KittiRaw, ItsTimesAreDates) {
-  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "tumble_timestamps.txt";
+TEST_F(PoseFiles, TimesOfKittiAreDates) {
+  const fs::path file = folder_ / "timestamps.txt";
   fixture::put(file, "2011-09-26 13:02:25.964389445\n2011-09-26 13:02:26.067\n");
-  EXPECT_THAT(read_stamps(file), testing::ElementsAre(1317042145'964389445, 1317042146'067000000));
+  EXPECT_THAT(read_stamps(file), ElementsAre(1317042145'964389445, 1317042146'067000000));
   fixture::put(file, "2011-13-26 13:02:25.9\n");
-  EXPECT_THAT(fixture::complaint([&] { read_stamps(file); }),
+  EXPECT_THAT(test::complaint([&] { read_stamps(file); }),
               HasSubstr("timestamps.txt:1: the time stamp '2011-13-26 13:02:25.9' must be in seconds"));
-  std::filesystem::remove(file);
 }
 
 }  // namespace

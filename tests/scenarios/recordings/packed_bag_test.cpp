@@ -1,22 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test checks ROS 2 bags that were compressed by Zstandard during recording.
 #include <SQLiteCpp/SQLiteCpp.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <zstd.h>
-
-#include <functional>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"
 
 namespace tumble::scenarios {
 namespace {
-
-using testing::HasSubstr;
 
 std::string packed_by_zstd(std::string_view plain) {
   std::string out(ZSTD_compressBound(plain.size()), '\0');
@@ -25,18 +16,18 @@ std::string packed_by_zstd(std::string_view plain) {
 }
 
 /// PackedBag is a ROS 2 bag as `ros2 bag record --compression-format zstd` writes it.
-class PackedBag : public fixture::Folder {
+class PackedBag : public test::TemporaryFolder {
  protected:
   PackedBag() {
     sim::Sensors sensors = fixture::recording().sensors;
     for (std::uint32_t& offset : sensors.lidars[0].offset_ns) offset *= 600;  // points cover most of a sweep
     sensors.imus.resize(1);
-    for (Eigen::Vector3d& force : sensors.imus[0].accel_m_s2) force = Eigen::Vector3d(0.0, 0.0, 9.8);
+    for (Vector3d& force : sensors.imus[0].accel_m_s2) force = Vector3d(0.0, 0.0, 9.8);
     export_ros2_bag(sensors, {}, bag_);
     plain_ = import_ros2_bag(bag_, {});
   }
   void state(const std::string& mode, const std::string& file) {
-    std::string text = fixture::bytes_of(bag_ / "metadata.yaml");
+    std::string text = test::read_file(bag_ / "metadata.yaml");
     const auto put = [&](const std::string& from, const std::string& to) {
       const std::size_t at = text.find(from);
       ASSERT_NE(at, std::string::npos) << from;
@@ -48,8 +39,8 @@ class PackedBag : public fixture::Folder {
     fixture::put(bag_ / "metadata.yaml", text);
   }
   void pack_file() {
-    packed_ = packed_by_zstd(fixture::bytes_of(bag_ / "bag_0.db3"));
-    std::filesystem::remove(bag_ / "bag_0.db3");
+    packed_ = packed_by_zstd(test::read_file(bag_ / "bag_0.db3"));
+    fs::remove(bag_ / "bag_0.db3");
     fixture::put(bag_ / "bag_0.db3.zstd", packed_);
     state("FILE", "bag_0.db3.zstd");
   }
@@ -70,7 +61,7 @@ class PackedBag : public fixture::Folder {
     }
   }
   std::string complaint() {
-    return fixture::complaint([&] { import_ros2_bag(bag_, {}); });
+    return test::complaint([&] { import_ros2_bag(bag_, {}); });
   }
   void expect_all_is_there(const Imported& read) {
     EXPECT_EQ(read.sensors.imus.at(0).gyro_rad_s, plain_.sensors.imus.at(0).gyro_rad_s);
@@ -79,11 +70,11 @@ class PackedBag : public fixture::Folder {
   }
   static std::size_t left_behind() {
     std::size_t count = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::temp_directory_path()))
+    for (const auto& entry : fs::directory_iterator(fs::temp_directory_path()))
       count += entry.path().filename().string().starts_with("tumble-bag-");
     return count;
   }
-  std::filesystem::path bag_ = folder_ / "bag";
+  fs::path bag_ = folder_ / "bag";
 
   Imported plain_;
   std::string packed_;

@@ -1,20 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/recording_check.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <vector>
-
 #include "scenarios/recordings/fixture_recording.hpp"
 
 namespace tumble::scenarios {
 namespace {
-
-using testing::HasSubstr;
 
 TEST(RecordingCheck, AcceptsASoundRecording) {
   const sim::Recording recording = fixture::recording();

@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/recording_clock.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <vector>
-
-#include "scenarios/errors.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"
 
 namespace tumble::scenarios {
@@ -80,14 +74,12 @@ TEST(RecordingClock, AReferenceFromZeroFitsAnExport) {
   imported.sensors = recording.sensors;
   imported.info.origin_ns = kExportOrigin_ns;
   std::vector<ReferencePose> poses;
-  for (int k = 0; k < 4; ++k)
-    poses.push_back({10'000'000 * k, Eigen::Vector3d(k, 0, 0), Eigen::Quaterniond::Identity()});
+  for (int k = 0; k < 4; ++k) poses.push_back({10'000'000 * k, Vector3d(k, 0, 0), Eigen::Quaterniond::Identity()});
   attach_poses(imported, poses, Eigen::Isometry3d::Identity(), "poses");
   ASSERT_TRUE(imported.reference.has_value());
   EXPECT_EQ(imported.reference->p_WB_m.at(1).x(), 1.0);
-  EXPECT_THAT(imported.notes,
-              testing::Contains(testing::HasSubstr("the time stamps of the reference count from 0 s. "
-                                                   "The import shifts these time stamps by 1000000000 s")));
+  EXPECT_THAT(imported.notes, Contains(HasSubstr("the time stamps of the reference count from 0 s. "
+                                                 "The import shifts these time stamps by 1000000000 s")));
 }
 
 }  // namespace

@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"
@@ -14,39 +10,35 @@
 namespace tumble::scenarios {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
-
 constexpr double kEnd_s = 12.0;
 constexpr std::int64_t kStep_ns = 10'000'000;
 constexpr double kUp_m_s2 = 9.81;
 
 /// Returns the rotation from body to world: every axis rotates, at up to 1.5 rad/s, as a hand turns a sensor.
-Eigen::Quaterniond hand_held(double time_s) {
+Quaterniond hand_held(double time_s) {
   return so3::exp({0.0, 0.0, 0.9 * std::sin(1.1 * time_s) + 0.3 * time_s}) *
          so3::exp({0.0, 0.6 * std::sin(1.7 * time_s + 0.4), 0.0}) * so3::exp({0.5 * std::sin(2.3 * time_s), 0.0, 0.0});
 }
 
 /// Returns the rotation of a sphere on a straight path: it turns about y alone.
-Eigen::Quaterniond rolling(double time_s) {
+Quaterniond rolling(double time_s) {
   return so3::exp({0.0, 1.2 * time_s + 0.8 * std::sin(time_s), 0.0});
 }
 
-using Motion = Eigen::Quaterniond (*)(double time_s);
-using Changed = Eigen::Quaterniond (*)(const Eigen::Quaterniond&);
+using Motion = Quaterniond (*)(double time_s);
+using Changed = Quaterniond (*)(const Quaterniond&);
 
-Eigen::Quaterniond as_is(const Eigen::Quaterniond& q) {
+Quaterniond as_is(const Quaterniond& q) {
   return q;
 }
 /// Returns the quaternion of a file with "qw qx qy qz" that was read as "qx qy qz qw".
-Eigen::Quaterniond with_w_first(const Eigen::Quaterniond& q) {
+Quaterniond with_w_first(const Quaterniond& q) {
   return {q.z(), q.w(), q.x(), q.y()};
 }
-Eigen::Quaterniond inverted(const Eigen::Quaterniond& q) {
+Quaterniond inverted(const Quaterniond& q) {
   return q.conjugate();
 }
-Eigen::Quaterniond turned(const Eigen::Quaterniond& q) {
+Quaterniond turned(const Quaterniond& q) {
   return q * so3::exp({0.0, 0.0, 1.5});
 }
 
@@ -58,13 +50,13 @@ sim::Sensors sensors_of(Motion motion) {
   imu.name = "imu";
   imu.period_ns = kStep_ns;
   imu.T_BI.linear() = so3::exp({0.2, -0.3, 0.2}).toRotationMatrix();
-  const Eigen::Quaterniond q_BI(imu.T_BI.linear());
+  const Quaterniond q_BI(imu.T_BI.linear());
   const double step_s = 1e-9 * static_cast<double>(kStep_ns);
   for (int k = 1; k * step_s <= kEnd_s; ++k) {
-    const Eigen::Quaterniond before = motion((k - 1) * step_s) * q_BI, after = motion(k * step_s) * q_BI;
+    const Quaterniond before = motion((k - 1) * step_s) * q_BI, after = motion(k * step_s) * q_BI;
     imu.time_ns.push_back(k * kStep_ns);
     imu.gyro_rad_s.push_back(so3::logarithm(before.conjugate() * after) / step_s);
-    imu.accel_m_s2.push_back(after.conjugate() * Eigen::Vector3d(0.0, 0.0, kUp_m_s2));
+    imu.accel_m_s2.push_back(after.conjugate() * Vector3d(0.0, 0.0, kUp_m_s2));
     imu.clip_flags.push_back(0);
   }
   return sensors;
@@ -74,8 +66,7 @@ std::vector<ReferencePose> poses_of(Motion motion, Changed changed, double late_
   std::vector<ReferencePose> poses;
   for (int k = 0; k * step_s <= kEnd_s; ++k) {
     const double time_s = k * step_s;
-    poses.push_back(
-        {std::llround(1e9 * (time_s + late_s)), Eigen::Vector3d(time_s, 0.0, 0.0), changed(motion(time_s))});
+    poses.push_back({std::llround(1e9 * (time_s + late_s)), Vector3d(time_s, 0.0, 0.0), changed(motion(time_s))});
   }
   return poses;
 }
@@ -84,7 +75,7 @@ std::vector<ReferencePose> poses_of(Motion motion, Changed changed, double late_
 std::string said(Motion motion, Changed changed, double late_s = 0.0, double step_s = 0.01) {
   Imported imported;
   imported.sensors = sensors_of(motion);
-  const std::string complaint = fixture::complaint([&] {
+  const std::string complaint = test::complaint([&] {
     attach_poses(imported, poses_of(motion, changed, late_s, step_s), Eigen::Isometry3d::Identity(), "ref.tum");
   });
   EXPECT_EQ(imported.reference.has_value(), complaint.empty());
@@ -152,7 +143,7 @@ TEST(ReferenceCheck, AnotherMountingIsACaution) {
 }
 
 TEST(ReferenceCheck, WhatCannotBeDecidedIsReported) {
-  EXPECT_THAT(said(hand_held, [](const Eigen::Quaterniond&) { return Eigen::Quaterniond::Identity(); }),
+  EXPECT_THAT(said(hand_held, [](const Quaterniond&) { return Eigen::Quaterniond::Identity(); }),
               HasSubstr("the reference is not checked against the gyro of 'imu': there are too few pairs of poses"));
   EXPECT_THAT(said([](double) { return Eigen::Quaterniond::Identity(); }, as_is), HasSubstr("not checked"));
   EXPECT_THAT(said(
@@ -170,7 +161,7 @@ TEST(ReferenceCheck, WhatCannotBeDecidedIsReported) {
   EXPECT_THAT(without_imu.notes.back(), HasSubstr("not checked against a gyro: the recording has no IMU"));
 }
 
-class ReferenceCheckOfFiles : public fixture::Folder {};
+class ReferenceCheckOfFiles : public test::TemporaryFolder {};
 
 TEST_F(ReferenceCheckOfFiles, ATumFileIsChecked) {
   for (const auto& [changed, complaint] : {std::pair{&as_is, ""}, {&with_w_first, "have w first"}}) {
@@ -183,7 +174,7 @@ TEST_F(ReferenceCheckOfFiles, ATumFileIsChecked) {
     fixture::put(folder_ / "ref.tum", text);
     Imported imported;
     imported.sensors = sensors_of(hand_held);
-    EXPECT_THAT(fixture::complaint([&] {
+    EXPECT_THAT(test::complaint([&] {
                   attach_reference(imported, {folder_ / "ref.tum", "tum", true, false, {}, 0});
                 }),
                 HasSubstr(complaint));
@@ -201,11 +192,11 @@ TEST_F(ReferenceCheckOfFiles, ATopicIsChecked) {
   for (const auto& [changed, complaint] :
        {std::pair{&as_is, ""}, {&inverted, "bag.mcap: topic /truth: the rotations"}}) {
     recording.truth = *sound.reference;
-    for (Eigen::Quaterniond& q : recording.truth.q_WB) q = changed(q);
+    for (Quaterniond& q : recording.truth.q_WB) q = changed(q);
     const StoredTruth truth = fixture::stored_truth(recording, folder_);
     export_mcap(recording.sensors, {0, &truth}, folder_ / "bag.mcap");
     reading.imu.T_BI = recording.sensors.imus.front().T_BI;
-    const std::string found = fixture::complaint([&] { import_mcap(folder_ / "bag.mcap", reading); });
+    const std::string found = test::complaint([&] { import_mcap(folder_ / "bag.mcap", reading); });
     EXPECT_THAT(found, HasSubstr(complaint));
     EXPECT_EQ(found.empty(), std::string(complaint).empty()) << found;
   }

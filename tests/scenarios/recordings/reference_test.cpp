@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/trajectories/reference.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-
 #include "scenarios/recordings/export.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"
 #include "scenarios/recordings/import.hpp"
@@ -14,16 +8,13 @@
 namespace tumble::scenarios {
 namespace {
 
-using testing::HasSubstr;
-
 /// Returns poses of a steady motion: 1 m/s along x, 0.5 rad/s about z, a pose every `step_ns`.
 std::vector<ReferencePose> steady(std::int64_t first_ns, std::int64_t step_ns, int count) {
   std::vector<ReferencePose> poses;
   for (int k = 0; k < count; ++k) {
     const std::int64_t time = first_ns + k * step_ns;
     const double t = static_cast<double>(time) * 1e-9;
-    poses.push_back(
-        {time, Eigen::Vector3d(t, 0, 0), Eigen::Quaterniond(Eigen::AngleAxisd(0.5 * t, Eigen::Vector3d::UnitZ()))});
+    poses.push_back({time, Vector3d(t, 0, 0), Quaterniond(Eigen::AngleAxisd(0.5 * t, Eigen::Vector3d::UnitZ()))});
   }
   return poses;
 }
@@ -53,9 +44,9 @@ TEST(ReferenceTruth, OtherwiseItIsInterpolatedWhereTwoPosesAreNear) {
     EXPECT_EQ(truth.p_WB_m[k].allFinite(), expected) << t;
     if (!expected) continue;
     ++known;
-    EXPECT_NEAR((truth.p_WB_m[k] - Eigen::Vector3d(t, 0, 0)).norm(), 0.0, 1e-9);
-    EXPECT_NEAR(truth.q_WB[k].angularDistance(Eigen::Quaterniond(Eigen::AngleAxisd(0.5 * t, Eigen::Vector3d::UnitZ()))),
-                0.0, 1e-7);
+    EXPECT_NEAR((truth.p_WB_m[k] - Vector3d(t, 0, 0)).norm(), 0.0, 1e-9);
+    EXPECT_NEAR(truth.q_WB[k].angularDistance(Quaterniond(Eigen::AngleAxisd(0.5 * t, Eigen::Vector3d::UnitZ()))), 0.0,
+                1e-7);
   }
   EXPECT_EQ(known, 300 + 300);
 }
@@ -63,17 +54,17 @@ TEST(ReferenceTruth, OtherwiseItIsInterpolatedWhereTwoPosesAreNear) {
 TEST(ReferenceTruth, EndsWithTheSensorsAndMustMeetThem) {
   EXPECT_EQ(reference_truth(steady(0, 50000000, 21), 400000000).p_WB_m.size(), 9u);
   const auto complaint = [](const std::vector<ReferencePose>& poses) {
-    return fixture::complaint([&] { reference_truth(poses, 1000000000); });
+    return test::complaint([&] { reference_truth(poses, 1000000000); });
   };
   EXPECT_THAT(complaint(steady(2000000000, 50000000, 3)), HasSubstr("check that both use the same clock"));
   EXPECT_THAT(complaint(steady(-2000000000, 50000000, 3)), HasSubstr("check that both use the same clock"));
   EXPECT_THAT(complaint({}), HasSubstr("contains no pose"));
-  EXPECT_THAT(fixture::complaint(
-                  [] { reference_truth(steady(0, 50000000000000, 3), std::numeric_limits<std::int64_t>::max()); }),
-              HasSubstr("at most one day"));
+  EXPECT_THAT(
+      test::complaint([] { reference_truth(steady(0, 50000000000000, 3), std::numeric_limits<std::int64_t>::max()); }),
+      HasSubstr("at most one day"));
 }
 
-using Reference = fixture::Folder;
+using Reference = test::TemporaryFolder;
 
 TEST_F(Reference, TumWrittenByExportComesBackToTheBit) {
   const sim::Truth given = fixture::recording().truth;
@@ -102,7 +93,7 @@ TEST_F(Reference, KittiWrittenByExportComesBack) {
   // the quaternion is converted to a matrix and back: measured 3e-16
   for (std::size_t k = 0; k < given.q_WB.size(); ++k)
     EXPECT_NEAR(std::abs(imported.reference->q_WB[k].dot(given.q_WB[k])), 1.0, 1e-14) << k;
-  EXPECT_THAT(fixture::complaint([&] {
+  EXPECT_THAT(test::complaint([&] {
                 import_trajectory({folder_ / "truth.txt", "kitti", true, false, {}, 0});
               }),
               HasSubstr("the KITTI format has no times; give a file of time stamps (--times)"));
@@ -111,7 +102,7 @@ TEST_F(Reference, KittiWrittenByExportComesBack) {
 TEST_F(Reference, BadLinesAreNamed) {
   const auto complaint = [&](const std::string& text) {
     fixture::put(folder_ / "a.txt", text);
-    return fixture::complaint([&] { read_tum_poses(folder_ / "a.txt", false); });
+    return test::complaint([&] { read_tum_poses(folder_ / "a.txt", false); });
   };
   const std::string good = "# t x y z q\n1.0 0 0 0 0 0 0 1\n1.5 1 0 0 0 0 0 1\n";
   EXPECT_EQ(complaint(good), "");
@@ -133,16 +124,16 @@ TEST_F(Reference, BadLinesAreNamed) {
   EXPECT_EQ(sorted[1].p_WA_m.x(), 5.0);
   EXPECT_EQ(sorted[2].p_WA_m.x(), 1.0) << "of equal stamps the first";
   fixture::put(folder_ / "k.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n2 0 0 0 0 1 0 0 0 0 1 0\n");
-  EXPECT_THAT(fixture::complaint([&] {
+  EXPECT_THAT(test::complaint([&] {
                 read_kitti_poses(folder_ / "k.txt", {0, 1});
               }),
               HasSubstr("k.txt:2: the first three columns of the matrix differ from a rotation by 3.0"));
-  EXPECT_THAT(fixture::complaint([&] {
+  EXPECT_THAT(test::complaint([&] {
                 read_kitti_poses(folder_ / "k.txt", {0, 1, 2});
               }),
               HasSubstr("has 2 poses, but there are 3 times"));
   fixture::put(folder_ / "c.txt", "1 2 3\n");
-  EXPECT_THAT(fixture::complaint([&] { pose_format(folder_ / "c.txt"); }),
+  EXPECT_THAT(test::complaint([&] { pose_format(folder_ / "c.txt"); }),
               HasSubstr("has 3 numbers. A line of a TUM file has 8"));
 }
 
@@ -156,21 +147,20 @@ TEST_F(Reference, PosesOfTheLidarBecomePosesOfTheBody) {
   Imported imported = import_sweeps(source);
   fixture::put(folder_ / "poses.tum", "0 1 2 3 0 0 0 1\n0.1 1 2 3 0 0 0 1\n0.2 1 2 3 0 0 0 1\n");
   attach_reference(imported, {folder_ / "poses.tum", "tum", false, false, {}, 0});
-  const Eigen::Isometry3d T_WB =
-      Eigen::Translation3d(1, 2, 3) * recording.sensors.lidars[0].T_BL.inverse(Eigen::Isometry);
+  const Isometry3d T_WB = Eigen::Translation3d(1, 2, 3) * recording.sensors.lidars[0].T_BL.inverse(Eigen::Isometry);
   const sim::Truth& truth = *imported.reference;
   ASSERT_EQ(truth.p_WB_m.size(), 3u);
   EXPECT_NEAR((truth.p_WB_m[1] - T_WB.translation()).norm(), 0.0, 1e-12);
-  EXPECT_NEAR(truth.q_WB[1].angularDistance(Eigen::Quaterniond(T_WB.linear())), 0.0, 1e-7);
+  EXPECT_NEAR(truth.q_WB[1].angularDistance(Quaterniond(T_WB.linear())), 0.0, 1e-7);
   ASSERT_EQ(truth.lidars.size(), 1u);
   EXPECT_EQ(truth.lidars[0].T_BL.matrix(), source.reading.device.T_BL.matrix());
   // the recording can be used like any other, and the frame makes a difference
   write_recording(folder_ / "a.h5", imported.info, imported.sensors, &truth);
   EXPECT_EQ(read_truth(folder_ / "a.h5").period_ns, 100000000);
   attach_reference(imported, {folder_ / "poses.tum", "tum", true, false, {}, 0});
-  EXPECT_EQ(imported.reference->p_WB_m[1], Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(imported.reference->p_WB_m[1], Vector3d(1, 2, 3));
   fixture::put(folder_ / "two.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 0\n");
-  EXPECT_THAT(fixture::complaint([&] {
+  EXPECT_THAT(test::complaint([&] {
                 attach_reference(imported, {folder_ / "two.txt", "kitti", false, false, {}, 0});
               }),
               HasSubstr("has 2 poses, but there are 3 times"));

@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/regular_file.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
-
-#include <filesystem>
-#include <string>
 
 #include "scenarios/estimates/estimate_file.hpp"
 #include "scenarios/recordings/bags/bag.hpp"
@@ -20,10 +15,9 @@
 namespace tumble::scenarios {
 namespace {
 
-using fixture::complaint;
-using testing::HasSubstr;
+using test::complaint;
 
-class RegularFile : public fixture::Folder {
+class RegularFile : public test::TemporaryFolder {
  protected:
   std::string refused(const std::string& name) const {
     const std::string said = complaint([&] { require_regular_file(folder_ / name); });
@@ -34,7 +28,7 @@ class RegularFile : public fixture::Folder {
 
 TEST_F(RegularFile, IsTakenAlsoBehindALink) {
   fixture::put(folder_ / "file", "text");
-  std::filesystem::create_symlink("file", folder_ / "link");
+  fs::create_symlink("file", folder_ / "link");
   for (const char* name : {"file", "link"}) {
     EXPECT_EQ(refused(name), "");
     std::string word;
@@ -46,17 +40,17 @@ TEST_F(RegularFile, IsTakenAlsoBehindALink) {
 TEST_F(RegularFile, AnythingElseIsCalledWhatItIs) {
   const std::string at = folder_.string() + "/";
   EXPECT_EQ(refused("none"), at + "none: no such file");
-  std::filesystem::create_symlink("none", folder_ / "to_none");
+  fs::create_symlink("none", folder_ / "to_none");
   EXPECT_EQ(refused("to_none"), at + "to_none: no such file");
   fixture::put(folder_ / "file", "text");
   EXPECT_EQ(refused("file/below"), at + "file/below: no such file");
-  std::filesystem::create_directory(folder_ / "folder");
+  fs::create_directory(folder_ / "folder");
   EXPECT_EQ(refused("folder"), at + "folder: is a folder; it must be a file");
   ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
   EXPECT_EQ(refused("pipe"), at + "pipe: is a pipe; it must be a regular file");
-  std::filesystem::create_symlink("/dev/zero", folder_ / "device");
+  fs::create_symlink("/dev/zero", folder_ / "device");
   EXPECT_EQ(refused("device"), at + "device: is a device; it must be a regular file");
-  std::filesystem::create_symlink("ring", folder_ / "ring");
+  fs::create_symlink("ring", folder_ / "ring");
   EXPECT_THAT(refused("ring"), HasSubstr("ring: cannot be read: Too many levels of symbolic links"));
   EXPECT_THAT(refused(std::string(300, 'x')), HasSubstr("cannot be read: File name too long"));
 
@@ -79,7 +73,7 @@ TEST_F(RegularFile, WhatIsReadOnceMayBeAPipe) {
 
 // opening a pipe for reading would wait for a writer
 TEST_F(RegularFile, ReadersRefuseAPipeAndDoNotWaitForIt) {
-  const std::filesystem::path pipe = folder_ / "pipe";
+  const fs::path pipe = folder_ / "pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
   const std::string said = pipe.string() + ": is a pipe; it must be a regular file";
   EXPECT_EQ(complaint([&] { import_imu_csv(pipe, {}); }), said);
@@ -91,7 +85,7 @@ TEST_F(RegularFile, ReadersRefuseAPipeAndDoNotWaitForIt) {
   EXPECT_EQ(complaint([&] { read_pose_table(pipe, false); }), said);
   Kind kind{};
   std::string method;
-  std::filesystem::create_directory(folder_ / "estimate");
+  fs::create_directory(folder_ / "estimate");
   ASSERT_EQ(mkfifo((folder_ / "estimate/estimate.json").c_str(), 0600), 0);
   EXPECT_THAT(complaint([&] { read_estimate(folder_ / "estimate", kind, method, Frame::body); }),
               HasSubstr("estimate.json: is a pipe"));

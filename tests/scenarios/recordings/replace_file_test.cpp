@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/recordings/replace_file.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
-#include <cstdlib>
 #include <iostream>
-#include <string>
-#include <vector>
 
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"
@@ -20,18 +15,17 @@
 namespace tumble::scenarios {
 namespace {
 
-using fixture::bytes_of;
-using testing::HasSubstr;
-using ReplaceFile = fixture::Folder;
+using test::read_file;
+using ReplaceFile = test::TemporaryFolder;
 
 TEST_F(ReplaceFile, WritesAndReplaces) {
-  const std::filesystem::path path = folder_ / "a";
+  const fs::path path = folder_ / "a";
   replace_file(path, "first, and longer");
-  EXPECT_EQ(bytes_of(path), "first, and longer");
+  EXPECT_EQ(read_file(path), "first, and longer");
   replace_file(path, "second");
-  EXPECT_EQ(bytes_of(path), "second");
+  EXPECT_EQ(read_file(path), "second");
   replace_file(path, std::string_view());
-  EXPECT_EQ(bytes_of(path), "");
+  EXPECT_EQ(read_file(path), "");
   EXPECT_EQ(files(), 1u);
 }
 
@@ -53,16 +47,16 @@ TEST_F(ReplaceFile, AFolderOfAKilledProcessIsUsedAgain) {
     kill(getpid(), SIGKILL);
   }
   ASSERT_EQ(waitpid(child, nullptr, 0), child);
-  ASSERT_FALSE(std::filesystem::is_empty(folder_ / "bag"));
+  ASSERT_FALSE(fs::is_empty(folder_ / "bag"));
   export_ros2_bag(fixture::small_sensors(), {}, folder_ / "bag");
   std::size_t count = 0;
-  for ([[maybe_unused]] const auto& each : std::filesystem::directory_iterator(folder_ / "bag")) ++count;
+  for ([[maybe_unused]] const auto& each : fs::directory_iterator(folder_ / "bag")) ++count;
   EXPECT_EQ(count, 2u) << "bag_0.db3 and metadata.yaml";
 }
 
 // the next process removes the files that a killed process leaves, and keeps the files that a living one writes
 TEST_F(ReplaceFile, FilesOfKilledProcessesAreRemoved) {
-  std::filesystem::create_directory(folder_ / "x");
+  fs::create_directory(folder_ / "x");
   const OutputFile own(folder_ / "x" / ".." / "own");  // the same folder under another name, for a second look
   const pid_t child = fork();
   if (child == 0) {
@@ -72,19 +66,17 @@ TEST_F(ReplaceFile, FilesOfKilledProcessesAreRemoved) {
   ASSERT_EQ(waitpid(child, nullptr, 0), child);
   ASSERT_EQ(files(), 3u);
   replace_file(folder_ / "b", "x");
-  EXPECT_TRUE(std::filesystem::exists(own.unfinished()));
+  EXPECT_TRUE(fs::exists(own.unfinished()));
   EXPECT_EQ(files(), 3u) << "x, own and b";
 }
 
 TEST_F(ReplaceFile, ImpossiblePlacesAreNamed) {
-  const auto complaint_of = [](const std::filesystem::path& path) {
-    return fixture::complaint([&] { replace_file(path, "x"); });
-  };
+  const auto complaint_of = [](const fs::path& path) { return test::complaint([&] { replace_file(path, "x"); }); };
   EXPECT_EQ(complaint_of(folder_ / "none/a"),
             (folder_ / "none/a").string() + ": cannot be written: No such file or directory");
   replace_file(folder_ / "file", "x");
   EXPECT_THAT(complaint_of(folder_ / "file/a"), HasSubstr("Not a directory"));
-  std::filesystem::create_directories(folder_ / "folder/full");
+  fs::create_directories(folder_ / "folder/full");
   EXPECT_THAT(complaint_of(folder_ / "folder"), HasSubstr("Is a directory"));
   EXPECT_THAT(complaint_of("/proc/tumble_recording"), HasSubstr("cannot be written"))
       << "not even root can write there";
@@ -92,51 +84,50 @@ TEST_F(ReplaceFile, ImpossiblePlacesAreNamed) {
 }
 
 TEST_F(ReplaceFile, ReadOnlyFolderIsRefused) {
-  using std::filesystem::perms;
-  std::filesystem::permissions(folder_,
-                               perms::owner_read | perms::owner_exec | perms::others_read | perms::others_exec);
+  using fs::perms;
+  fs::permissions(folder_, perms::owner_read | perms::owner_exec | perms::others_read | perms::others_exec);
   // root may write into a read-only folder, so another user tries
   constexpr uid_t kNobody = 65534;
   const bool root = geteuid() == 0;
   if (root && seteuid(kNobody) != 0) {  // a container with one user: in the kernel's folders, root cannot write either
-    std::filesystem::permissions(folder_, perms::owner_all);
-    EXPECT_THAT(fixture::complaint([] { replace_file("/sys/kernel/a", "x"); }), HasSubstr("cannot be written"));
+    fs::permissions(folder_, perms::owner_all);
+    EXPECT_THAT(test::complaint([] { replace_file("/sys/kernel/a", "x"); }), HasSubstr("cannot be written"));
     return;
   }
-  const std::string message = fixture::complaint([&] { replace_file(folder_ / "a", "x"); });
+  const std::string message = test::complaint([&] { replace_file(folder_ / "a", "x"); });
   if (root) {
     ASSERT_EQ(seteuid(0), 0);
   }
-  std::filesystem::permissions(folder_, std::filesystem::perms::owner_all);
+  fs::permissions(folder_, fs::perms::owner_all);
   EXPECT_THAT(message, HasSubstr("Permission denied"));
 }
 
 TEST_F(ReplaceFile, ADeviceAPipeAndASocketStay) {
-  const std::filesystem::path pipe = folder_ / "pipe";
+  const fs::path pipe = folder_ / "pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  EXPECT_THAT(fixture::complaint([&] { replace_file(pipe, "x"); }), HasSubstr("it must be a regular file"));
-  EXPECT_TRUE(std::filesystem::is_fifo(pipe));
-  EXPECT_THAT(fixture::complaint([&] { replace_file("/dev/null", "x"); }), HasSubstr("it must be a regular file"));
-  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+  EXPECT_THAT(test::complaint([&] { replace_file(pipe, "x"); }), HasSubstr("it must be a regular file"));
+  EXPECT_TRUE(fs::is_fifo(pipe));
+  EXPECT_THAT(test::complaint([&] { replace_file("/dev/null", "x"); }), HasSubstr("it must be a regular file"));
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
   EXPECT_EQ(files(), 1u);
 }
 
 TEST_F(ReplaceFile, FollowsSymbolicLinks) {
-  std::filesystem::create_directory(folder_ / "far");
-  std::filesystem::create_symlink("far/target", folder_ / "link");
-  std::filesystem::create_symlink("link", folder_ / "link_to_link");
+  fs::create_directory(folder_ / "far");
+  fs::create_symlink("far/target", folder_ / "link");
+  fs::create_symlink("link", folder_ / "link_to_link");
   replace_file(folder_ / "link_to_link", "made at its end");
-  EXPECT_TRUE(std::filesystem::is_symlink(folder_ / "link_to_link"));
-  EXPECT_TRUE(std::filesystem::is_symlink(folder_ / "link"));
-  EXPECT_EQ(bytes_of(folder_ / "far/target"), "made at its end");
+  EXPECT_TRUE(fs::is_symlink(folder_ / "link_to_link"));
+  EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
+  EXPECT_EQ(read_file(folder_ / "far/target"), "made at its end");
   replace_file(folder_ / "link", "replaced");
-  EXPECT_EQ(bytes_of(folder_ / "far/target"), "replaced");
-  std::filesystem::create_symlink("round", folder_ / "round");
-  EXPECT_THAT(fixture::complaint([&] { replace_file(folder_ / "round", "x"); }), HasSubstr("symbolic links"));
+  EXPECT_EQ(read_file(folder_ / "far/target"), "replaced");
+  fs::create_symlink("round", folder_ / "round");
+  EXPECT_THAT(test::complaint([&] { replace_file(folder_ / "round", "x"); }), HasSubstr("symbolic links"));
 }
 
 TEST_F(ReplaceFile, KeepsModeAndOwner) {
-  const std::filesystem::path path = folder_ / "a";
+  const fs::path path = folder_ / "a";
   replace_file(path, "first");
   ASSERT_EQ(chmod(path.c_str(), 0600), 0);
   const bool root = geteuid() == 0;
@@ -149,17 +140,17 @@ TEST_F(ReplaceFile, KeepsModeAndOwner) {
   EXPECT_EQ(status.st_mode & 07777u, 0600u);
   EXPECT_EQ(status.st_uid, root ? 1234u : geteuid());
   EXPECT_EQ(status.st_gid, root ? 1235u : getegid());
-  EXPECT_EQ(bytes_of(path), "second");
+  EXPECT_EQ(read_file(path), "second");
 }
 
 TEST_F(ReplaceFile, AnInputIsKnownUnderAnyName) {
   replace_file(folder_ / "in", "x");
-  std::filesystem::create_symlink("in", folder_ / "link");
-  std::filesystem::create_hard_link(folder_ / "in", folder_ / "hard");
-  const std::vector<std::filesystem::path> inputs = {"", folder_ / "none", folder_ / "in"};
+  fs::create_symlink("in", folder_ / "link");
+  fs::create_hard_link(folder_ / "in", folder_ / "hard");
+  const std::vector<fs::path> inputs = {"", folder_ / "none", folder_ / "in"};
   for (const char* name : {"in", "link", "hard", "../"}) {
-    const std::filesystem::path output = name == std::string("../") ? folder_ / "." / "in" : folder_ / name;
-    EXPECT_THAT(fixture::complaint([&] { require_not_an_input(output, inputs); }), HasSubstr("both input and output"))
+    const fs::path output = name == std::string("../") ? folder_ / "." / "in" : folder_ / name;
+    EXPECT_THAT(test::complaint([&] { require_not_an_input(output, inputs); }), HasSubstr("both input and output"))
         << output;
   }
   replace_file(folder_ / "other", "x");
@@ -168,16 +159,16 @@ TEST_F(ReplaceFile, AnInputIsKnownUnderAnyName) {
 }
 
 TEST_F(ReplaceFile, AFileOfAFolderThatIsReadIsNotWrittenOver) {
-  std::filesystem::create_directories(folder_ / "in/deep");
+  fs::create_directories(folder_ / "in/deep");
   replace_file(folder_ / "in/a", "x");
   replace_file(folder_ / "in/deep/b", "x");
   replace_file(folder_ / "inside", "x");
-  std::filesystem::create_directory_symlink("in", folder_ / "link");
-  std::filesystem::create_symlink("in/a", folder_ / "to_a");
+  fs::create_directory_symlink("in", folder_ / "link");
+  fs::create_symlink("in/a", folder_ / "to_a");
   for (const char* input : {"in", "link", "in/"}) {
-    const std::vector<std::filesystem::path> inputs = {"", folder_ / "none", folder_ / input};
+    const std::vector<fs::path> inputs = {"", folder_ / "none", folder_ / input};
     for (const char* output : {"in/a", "link/a", "in/deep/b", "in/deep/../a", "to_a"}) {
-      EXPECT_THAT(fixture::complaint([&] { require_not_an_input(folder_ / output, inputs); }),
+      EXPECT_THAT(test::complaint([&] { require_not_an_input(folder_ / output, inputs); }),
                   HasSubstr("is one of the files in the input folder"))
           << output;
     }
@@ -187,39 +178,39 @@ TEST_F(ReplaceFile, AFileOfAFolderThatIsReadIsNotWrittenOver) {
 }
 
 TEST_F(ReplaceFile, AFolderIsFreshOrRefusedAndGoesWithoutBeingKept) {
-  const std::filesystem::path made = folder_ / "a/b";
+  const fs::path made = folder_ / "a/b";
   {
     const OutputFolder output(made);
     replace_file(made / "half", "x");
   }
-  EXPECT_FALSE(std::filesystem::exists(made));
+  EXPECT_FALSE(fs::exists(made));
   {
     OutputFolder output(made);
     replace_file(made / "whole", "x");
     output.keep();
   }
-  EXPECT_EQ(bytes_of(made / "whole"), "x");
-  EXPECT_THAT(fixture::complaint([&] { OutputFolder again(made); }), HasSubstr("the output folder contains files"));
-  EXPECT_EQ(bytes_of(made / "whole"), "x");
-  EXPECT_THAT(fixture::complaint([&] { OutputFolder file(made / "whole"); }), HasSubstr("cannot be written"));
-  std::filesystem::create_directory(folder_ / "empty");
+  EXPECT_EQ(read_file(made / "whole"), "x");
+  EXPECT_THAT(test::complaint([&] { OutputFolder again(made); }), HasSubstr("the output folder contains files"));
+  EXPECT_EQ(read_file(made / "whole"), "x");
+  EXPECT_THAT(test::complaint([&] { OutputFolder file(made / "whole"); }), HasSubstr("cannot be written"));
+  fs::create_directory(folder_ / "empty");
   {
     const OutputFolder output(folder_ / "empty");
     replace_file(folder_ / "empty/half", "x");
   }
-  EXPECT_TRUE(std::filesystem::is_empty(folder_ / "empty"));
+  EXPECT_TRUE(fs::is_empty(folder_ / "empty"));
 }
 
 /// Exports a bag with little disk space; the process ends with 0 when BadInput reports that and no file is left.
-[[noreturn]] void export_with_little_room(const std::filesystem::path& folder) {
+[[noreturn]] void export_with_little_room(const fs::path& folder) {
   std::signal(SIGXFSZ, SIG_IGN);
   const rlimit limit{4096, 4096};
   setrlimit(RLIMIT_FSIZE, &limit);
   const sim::Recording recording = fixture::recording();
-  const std::string message = fixture::complaint([&] { export_ros1_bag(recording.sensors, {}, folder / "a.bag"); });
+  const std::string message = test::complaint([&] { export_ros1_bag(recording.sensors, {}, folder / "a.bag"); });
   std::cerr << message;
   // the process skips the leak check at its end, because the library keeps its buffers when its file cannot be closed
-  std::_Exit(message.empty() || !std::filesystem::is_empty(folder) ? 1 : 0);
+  std::_Exit(message.empty() || !fs::is_empty(folder) ? 1 : 0);
 }
 
 // the library closes the file in its destructor, which throws
@@ -228,23 +219,23 @@ TEST_F(ReplaceFile, AFullDiskEndsABagInOneLine) {
 }
 
 /// Ends the process with 0 when a recording cannot be written, BadInput reports that and no file is left.
-[[noreturn]] void write_with_little_room(const std::filesystem::path& folder, const std::string& old_bytes) {
+[[noreturn]] void write_with_little_room(const fs::path& folder, const std::string& old_bytes) {
   std::signal(SIGXFSZ, SIG_IGN);
   const rlimit limit{4096, 4096};
   setrlimit(RLIMIT_FSIZE, &limit);
   const sim::Recording recording = fixture::recording();
-  const std::string message = fixture::complaint(
-      [&] { write_recording(folder / "a.h5", fixture::info(), recording.sensors, &recording.truth); });
-  const auto left = std::distance(std::filesystem::directory_iterator(folder), std::filesystem::directory_iterator());
+  const std::string message =
+      test::complaint([&] { write_recording(folder / "a.h5", fixture::info(), recording.sensors, &recording.truth); });
+  const auto left = std::distance(fs::directory_iterator(folder), fs::directory_iterator());
   std::cerr << message;
-  std::exit(message.empty() || left != 1 || bytes_of(folder / "a.h5") != old_bytes ? 1 : 0);
+  std::exit(message.empty() || left != 1 || read_file(folder / "a.h5") != old_bytes ? 1 : 0);
 }
 
 // A limit on the size of files makes write() fail midway as a full disk does (with EFBIG instead of ENOSPC).
 TEST_F(ReplaceFile, AFullDiskLeavesTheOldFileAndNoPart) {
   const sim::Recording recording = fixture::recording();
   write_recording(folder_ / "a.h5", {}, recording.sensors, nullptr);
-  const std::string old_bytes = bytes_of(folder_ / "a.h5");
+  const std::string old_bytes = read_file(folder_ / "a.h5");
   ASSERT_GT(old_bytes.size(), 4096u);
   EXPECT_EXIT(write_with_little_room(folder_, old_bytes), testing::ExitedWithCode(0),
               "a.h5: cannot be written: File too large");

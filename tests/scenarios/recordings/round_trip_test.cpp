@@ -1,23 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
 #include <hdf5.h>
 
-#include <cmath>
-#include <limits>
-
 #include "scenarios/recordings/fixture_recording.hpp"
-#include "tests/tree.hpp"
 
 namespace tumble::scenarios {
 namespace {
 
 using fixture::info;
-using RoundTrip = fixture::Folder;
+using RoundTrip = test::TemporaryFolder;
 
 // Digest.EveryFieldCounts shows that equal digests mean equal fields; the comparisons below do not depend on the digest
 TEST_F(RoundTrip, EveryFieldComesBackExactly) {
   const sim::Recording recording = fixture::recording();
-  const std::filesystem::path path = folder_ / "a.h5";
+  const fs::path path = folder_ / "a.h5";
   write_recording(path, info(), recording.sensors, &recording.truth);
   EXPECT_EQ(files(), 1u) << "no temporary file stays";
   const sim::Sensors sensors = read_sensors(path);
@@ -33,7 +28,7 @@ TEST_F(RoundTrip, EveryFieldComesBackExactly) {
 
 TEST_F(RoundTrip, WhatIsKnownOfPointTimesComesBackAndTheUsualLeavesNoTrace) {
   sim::Recording recording = fixture::recording();
-  const std::filesystem::path path = folder_ / "a.h5";
+  const fs::path path = folder_ / "a.h5";
   const std::string measured = digest(recording.sensors, nullptr);
   const auto has_attribute = [&] {
     const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
@@ -62,7 +57,7 @@ TEST_F(RoundTrip, SensingElementsComeBackAndUprightOnesLeaveNoTrace) {
   tilted.accel_elements = {{1.0, 0.01, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 0.97}};
   tilted.gyro_element_offset_rad_s = {0.05, 0.0, -0.02};
   tilted.accel_element_offset_m_s2 = {0.2, 0.1, 0.0};
-  const std::filesystem::path path = folder_ / "a.h5";
+  const fs::path path = folder_ / "a.h5";
   write_recording(path, info(), recording.sensors, &recording.truth);
   const sim::Truth truth = read_truth(path);
   EXPECT_EQ(truth.imus[1].gyro_elements, tilted.gyro_elements);
@@ -85,7 +80,7 @@ TEST_F(RoundTrip, AnImuWithoutMagnetometerLeavesNoTraceOfOne) {
     imu.earth_field_W_t.setZero();
   }
   for (sim::ImuTruth& imu : recording.truth.imus) imu.magnetic_field_t.clear();
-  const std::filesystem::path path = folder_ / "a.h5";
+  const fs::path path = folder_ / "a.h5";
   write_recording(path, info(), recording.sensors, &recording.truth);
   const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   EXPECT_GT(H5Lexists(file, "sensors/imus/0/clip_flags", H5P_DEFAULT), 0);
@@ -118,11 +113,11 @@ TEST_F(RoundTrip, InfoComesBackAndTheWriterFillsItsOwnPart) {
 
 TEST_F(RoundTrip, ARealRecordingHasNoTruth) {
   const sim::Recording recording = fixture::recording();
-  const std::filesystem::path path = folder_ / "real.h5";
+  const fs::path path = folder_ / "real.h5";
   write_recording(path, {}, recording.sensors, nullptr);
   EXPECT_FALSE(read_info(path).has_truth);
   EXPECT_EQ(read_info(path).digest, digest(read_sensors(path), nullptr));
-  EXPECT_EQ(fixture::complaint([&] { read_truth(path); }),
+  EXPECT_EQ(test::complaint([&] { read_truth(path); }),
             path.string() +
                 ": the recording has no truth; only simulated recordings and recordings with a reference have truth");
 }
@@ -152,12 +147,12 @@ TEST_F(RoundTrip, EqualRecordingsGiveEqualFiles) {
   const sim::Recording recording = fixture::recording();
   for (const char* name : {"a.h5", "b.h5"})
     write_recording(folder_ / name, info(), recording.sensors, &recording.truth);
-  EXPECT_TRUE(fixture::bytes_of(folder_ / "a.h5") == fixture::bytes_of(folder_ / "b.h5"));
+  EXPECT_TRUE(test::read_file(folder_ / "a.h5") == test::read_file(folder_ / "b.h5"));
   sim::Sensors other = recording.sensors;
   double& last_bit = other.imus[0].gyro_rad_s[3].x();
   last_bit = std::nextafter(last_bit, 1e9);
   write_recording(folder_ / "b.h5", info(), other, &recording.truth);
-  EXPECT_FALSE(fixture::bytes_of(folder_ / "a.h5") == fixture::bytes_of(folder_ / "b.h5"));
+  EXPECT_FALSE(test::read_file(folder_ / "a.h5") == test::read_file(folder_ / "b.h5"));
 }
 
 TEST_F(RoundTrip, ContradictingDataAreRefusedBeforeAnyFileIsTouched) {
@@ -180,7 +175,7 @@ herr_t note_dataset(hid_t root, const char* name, const H5O_info_t* object, void
 TEST_F(RoundTrip, EveryDatasetHasAUnitAndIsDocumented) {
   const sim::Recording recording = fixture::recording();
   write_recording(folder_ / "a.h5", info(), recording.sensors, &recording.truth);
-  const std::string page = fixture::bytes_of((test::source_dir() / "scenarios/recordings/FORMAT.md").string());
+  const std::string page = test::read_file((test::source_dir() / "scenarios/recordings/FORMAT.md").string());
   std::vector<std::pair<std::string, bool>> datasets;
   const hid_t file = H5Fopen((folder_ / "a.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, note_dataset, &datasets, H5O_INFO_BASIC);

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 
 #include <csignal>
-#include <cstdlib>
 #include <iostream>
 
 #include "scenarios/recordings/bags/bag.hpp"
@@ -15,10 +12,8 @@
 namespace tumble::scenarios {
 namespace {
 
-using testing::HasSubstr;
-
 /// StoredPoints keeps the points on the disk instead of in the record; the written files must be the same.
-class StoredPoints : public fixture::Folder {
+class StoredPoints : public test::TemporaryFolder {
  protected:
   /// The recording has columns of several chunks and is written as a bag.
   StoredPoints() {
@@ -26,7 +21,7 @@ class StoredPoints : public fixture::Folder {
     sim::Recording recording;
     recording.sensors.imus.push_back(fixture::imu_record(numbers, "imu", 400));
     sim::ImuRecord& imu = recording.sensors.imus[0];
-    imu.accel_m_s2.assign(imu.accel_m_s2.size(), Eigen::Vector3d(0.0, 0.0, 9.8));
+    imu.accel_m_s2.assign(imu.accel_m_s2.size(), Vector3d(0.0, 0.0, 9.8));
     fixture::add_lidar(numbers, recording, "lidar", 12, 20000);
     fixture::add_lidar(numbers, recording, "second", 12, 500);
     for (std::uint32_t& offset : recording.sensors.lidars[1].offset_ns) offset *= 50;  // points cover most of a sweep
@@ -34,7 +29,7 @@ class StoredPoints : public fixture::Folder {
       intensity *= 200.0f;  // the reader scales the intensity at the end
     export_mcap(recording.sensors, {}, folder_ / "a.mcap");
   }
-  Imported read(const std::filesystem::path& scratch) {
+  Imported read(const fs::path& scratch) {
     BagReading reading;
     reading.sweeps.scratch = scratch;
     return import_mcap(folder_ / "a.mcap", reading);
@@ -50,7 +45,7 @@ TEST_F(StoredPoints, GiveTheSameFile) {
   write_recording(folder_ / "held.h5", held.info, held.sensors, nullptr);
   write_recording(folder_ / "stored.h5", stored.info, stored.sensors, stored.points, nullptr);
   EXPECT_EQ(read_info(folder_ / "stored.h5").digest, read_info(folder_ / "held.h5").digest);
-  EXPECT_TRUE(fixture::bytes_of(folder_ / "stored.h5") == fixture::bytes_of(folder_ / "held.h5"));
+  EXPECT_TRUE(test::read_file(folder_ / "stored.h5") == test::read_file(folder_ / "held.h5"));
   EXPECT_EQ(files(), 3u) << "nothing else stays";
   // a file with one different number must be a different file
   Imported changed = read(folder_);
@@ -69,17 +64,17 @@ TEST_F(StoredPoints, AreReadFromARecordingAndGiveTheSameBag) {
   EXPECT_EQ(digest(sensors, points, nullptr), digest(held.sensors, nullptr));
   export_mcap(held.sensors, {held.info.origin_ns}, folder_ / "held.mcap");
   export_recording(folder_ / "a.h5", "mcap", folder_ / "stored.mcap");
-  EXPECT_TRUE(fixture::bytes_of(folder_ / "stored.mcap") == fixture::bytes_of(folder_ / "held.mcap"));
+  EXPECT_TRUE(test::read_file(folder_ / "stored.mcap") == test::read_file(folder_ / "held.mcap"));
   export_recording(folder_ / "a.h5", "rosbag2", folder_ / "new/folders/bag");
-  EXPECT_TRUE(std::filesystem::exists(folder_ / "new/folders/bag/metadata.yaml"));
+  EXPECT_TRUE(fs::exists(folder_ / "new/folders/bag/metadata.yaml"));
   // damage is found when the points are on the disk too
-  std::string bytes = fixture::bytes_of(folder_ / "a.h5");
+  std::string bytes = test::read_file(folder_ / "a.h5");
   const float first = held.sensors.lidars[0].range_m[1000];
   const std::size_t at = bytes.find(std::string(reinterpret_cast<const char*>(&first), sizeof(first)));
   ASSERT_NE(at, std::string::npos);
   bytes[at] = static_cast<char>(bytes[at] ^ 1);
   fixture::put(folder_ / "a.h5", bytes);
-  EXPECT_THAT(fixture::complaint([&] { read_sensors(folder_ / "a.h5", folder_, points); }),
+  EXPECT_THAT(test::complaint([&] { read_sensors(folder_ / "a.h5", folder_, points); }),
               HasSubstr("damaged or was changed"));
 }
 
@@ -96,18 +91,18 @@ TEST_F(StoredPoints, AreComparedWithTheirSweeps) {
 }
 
 TEST_F(StoredPoints, NeedAFolder) {
-  EXPECT_THAT(fixture::complaint([&] { read(folder_ / "none"); }),
+  EXPECT_THAT(test::complaint([&] { read(folder_ / "none"); }),
               HasSubstr("none: cannot create a file in the folder for temporary files: No such file"));
 }
 
 /// Ends the process with 0 when BadInput reports the full disk, and only the earlier files are left.
-[[noreturn]] void write_with_little_room(const Imported& stored, const std::filesystem::path& folder, rlim_t bytes) {
+[[noreturn]] void write_with_little_room(const Imported& stored, const fs::path& folder, rlim_t bytes) {
   std::signal(SIGXFSZ, SIG_IGN);
   const rlimit limit{bytes, bytes};
   setrlimit(RLIMIT_FSIZE, &limit);
-  const std::string message = fixture::complaint(
-      [&] { write_recording(folder / "a.h5", stored.info, stored.sensors, stored.points, nullptr); });
-  const auto left = std::distance(std::filesystem::directory_iterator(folder), std::filesystem::directory_iterator());
+  const std::string message =
+      test::complaint([&] { write_recording(folder / "a.h5", stored.info, stored.sensors, stored.points, nullptr); });
+  const auto left = std::distance(fs::directory_iterator(folder), fs::directory_iterator());
   std::cerr << message;
   std::_Exit(message.empty() || left != 1 ? 1 : 0);
 }

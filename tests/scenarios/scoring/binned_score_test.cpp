@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <limits>
-
 #include "scenarios/scoring/binned_metric.hpp"
 #include "scenarios/scoring/clipping.hpp"
 #include "scenarios/scoring/perfect_estimate.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -73,7 +70,7 @@ TEST(BinnedScores, SortByLengthOfTheSegmentAndByTheNumberOfAxes) {
   // s and 0.06 s
   imu.gyro_rad_s = exact.gyro_unclipped_rad_s;
   for (std::size_t k = 100; k < 103; ++k) imu.gyro_rad_s[k].x() -= 2.0;
-  for (std::size_t k = 200; k < 212; ++k) imu.gyro_rad_s[k] -= Eigen::Vector3d(0.0, 2.0, 1.0);
+  for (std::size_t k = 200; k < 212; ++k) imu.gyro_rad_s[k] -= Vector3d(0.0, 2.0, 1.0);
   Estimate estimate = perfect_estimate(recording);
   for (std::size_t k = 100; k < 103; ++k) estimate.rates[k].w_WI_I_rad_s.x() += 1.0;
   for (std::size_t k = 200; k < 212; ++k) estimate.rates[k].w_WI_I_rad_s.x() += 2.0;
@@ -92,16 +89,16 @@ TEST(BinnedScores, SortByLengthOfTheSegmentAndByTheNumberOfAxes) {
 TEST(ClippedAxes, CrossAxisErrorsHaveTheirOwnCoverage) {
   sim::Recording recording = testing::synthetic_rig();
   sim::ImuTruth& imu = recording.truth.imus.front();
-  Eigen::Matrix3d elements = Eigen::Matrix3d::Identity();
+  Matrix3d elements = Eigen::Matrix3d::Identity();
   elements(0, 1) = 0.05;
   for (int i = 0; i < 3; ++i) imu.gyro_elements.emplace_back(elements.row(i));
-  std::vector<Eigen::Vector3d>& readings = recording.sensors.imus.front().gyro_rad_s;
+  std::vector<Vector3d>& readings = recording.sensors.imus.front().gyro_rad_s;
   readings = imu.gyro_unclipped_rad_s;
-  for (std::size_t k = 600; k < 700; ++k) readings[k] -= elements.inverse() * Eigen::Vector3d(0.0, 3.0, 0.0);
+  for (std::size_t k = 600; k < 700; ++k) readings[k] -= elements.inverse() * Vector3d(0.0, 3.0, 0.0);
   Estimate estimate = perfect_estimate(recording);
   for (AngularRateState& rate : estimate.rates) {
     rate.covariance_rad2_s2 = 0.01 * Eigen::Matrix3d::Identity();
-    rate.w_WI_I_rad_s += Eigen::Vector3d(0.5, 0.1, 9.0);  // z is neither clipped nor affected
+    rate.w_WI_I_rad_s += Vector3d(0.5, 0.1, 9.0);  // z is neither clipped nor affected
   }
   const auto values = scores(Kind::rate, estimate, recording);
   EXPECT_EQ(values.at("rate_coverage_3sigma"), 1.0);

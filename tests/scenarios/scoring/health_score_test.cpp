@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests of the health as a classifier of wrong estimates, and of the status of a run whose health invalidates the
 // estimate.
-#include <gtest/gtest.h>
-
 #include "scenarios/estimates/findings.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/scoring/perfect_estimate.hpp"
 #include "scenarios/sweep/evaluate.hpp"
-#include "tests/scenarios/scoring/rig.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {

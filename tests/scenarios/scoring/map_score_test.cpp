@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-#include <cmath>
-
 #include "scenarios/scoring/perfect_estimate.hpp"
 #include "sim/lidar/surface.hpp"
-#include "tests/scenarios/scoring/rig.hpp"
-#include "tests/tree.hpp"
+#include "tests/scenarios/testing.hpp"
 
 // the test compares maps with the true surface of an empty square room: its floor is at z = 0
 namespace tumble::scenarios {

@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/scoring/metric.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <map>
-
 #include "scenarios/scoring/score.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {

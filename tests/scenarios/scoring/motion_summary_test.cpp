@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/scoring/motion_summary.hpp"
 
-#include <gtest/gtest.h>
-
-#include "scenarios/errors.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -37,7 +35,7 @@ sim::Recording hand_made() {
   for (std::size_t i = 0; i < kSamples; ++i) {
     const std::size_t k = (i + 1) * kStepsPerSample;
     record.time_ns.push_back(static_cast<std::int64_t>(i + 1) * kImu_ns);
-    Eigen::Vector3d rate = truth.w_WB_B_rad_s[k], force(0.0, 0.0, k == 1200 ? 90.0 : 9.8);
+    Vector3d rate = truth.w_WB_B_rad_s[k], force(0.0, 0.0, k == 1200 ? 90.0 : 9.8);
     if (k >= 2000 && k < 2400) rate.z() = -16.0;  // |w| = 20
     imu.rate_rad_s.push_back(rate);
     imu.gyro_unclipped_rad_s.push_back(rate);
@@ -70,8 +68,8 @@ TEST(MotionSummary, OfAMotionMadeByHand) {
 
 TEST(MotionSummary, OfARobotThatNeverMovesHoldsNothing) {
   sim::Recording recording = hand_made();
-  for (Eigen::Vector3d& v : recording.truth.v_WB_m_s) v.setZero();
-  for (Eigen::Vector3d& w : recording.truth.w_WB_B_rad_s) w.setZero();
+  for (Vector3d& v : recording.truth.v_WB_m_s) v.setZero();
+  for (Vector3d& w : recording.truth.w_WB_B_rad_s) w.setZero();
   const MotionSummary motion = summarise_motion(recording.sensors, recording.truth);
   EXPECT_EQ(motion.samples, 0u);
   EXPECT_EQ(motion.clipped_samples, 0u);

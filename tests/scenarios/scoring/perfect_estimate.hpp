@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <map>
-#include <string>
-
 #include "scenarios/estimates/method.hpp"
 #include "scenarios/methods/synthetic_recording.hpp"
 #include "scenarios/scoring/score.hpp"
 #include "scenarios/scoring/truth_track.hpp"
+#include "tests/testing.hpp"
 
-namespace tumble::scenarios::testing {
+namespace tumble::scenarios {
+
+/// Returns the synthetic recording, which is generated once.
+inline const sim::Recording& rig() {
+  static const sim::Recording recording = testing::synthetic_rig();
+  return recording;
+}
+
+namespace testing {
 
 /// Returns an estimate that is the truth: rates at the samples, attitudes and poses of `frame` at IMU times, sweeps
 /// within the truth, and a map of the true hits.
@@ -41,7 +47,7 @@ inline Estimate perfect_estimate(const sim::Recording& recording, Frame frame = 
     estimate.sweeps.push_back(sweep);
     estimate.sweep_end_ns.push_back(end_ns);
   }
-  for (const Eigen::Vector3f& hit : recording.truth.lidars.front().hit_W_m) {
+  for (const Vector3f& hit : recording.truth.lidars.front().hit_W_m) {
     MapPoint point;
     point.position_W_m = hit;
     estimate.map.push_back(point);
@@ -50,8 +56,8 @@ inline Estimate perfect_estimate(const sim::Recording& recording, Frame frame = 
 }
 
 /// Moves and turns the whole estimate by `T`, so that it has another world frame.
-inline void move_world(const Eigen::Isometry3d& T, Estimate& estimate) {
-  const Eigen::Quaterniond q(T.linear());
+inline void move_world(const Isometry3d& T, Estimate& estimate) {
+  const Quaterniond q(T.linear());
   const auto move = [&](PoseState& pose) {
     pose.position_W_m = T * pose.position_W_m;
     pose.orientation_W = q * pose.orientation_W;
@@ -79,4 +85,5 @@ inline OutcomeStatus verdict_of(Kind kind, const Estimate& estimate, const sim::
   return verdict(kind, {estimate, {&recording.sensors, &recording.truth, nullptr}});
 }
 
-}  // namespace tumble::scenarios::testing
+}  // namespace testing
+}  // namespace tumble::scenarios

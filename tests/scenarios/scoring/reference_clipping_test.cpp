@@ -1,16 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/scoring/reference_clipping.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <map>
-#include <random>
-
 #include "scenarios/scoring/clipping.hpp"
 #include "scenarios/scoring/score.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -20,7 +13,7 @@ constexpr double kRail = 7.3, kTilt = 0.05, kOffset = -0.05;
 
 /// A Made contains a gyro whose saturation level on x is tilted and offset, and a reference with noise and a gap.
 struct Made {
-  std::vector<Eigen::Vector3d> rate, reading, reference;
+  std::vector<Vector3d> rate, reading, reference;
   std::vector<bool> clipped;
 };
 
@@ -30,15 +23,15 @@ Made made(double peak_rad_s, double reference_noise_rad_s) {
   std::normal_distribution<double> noise;
   for (int k = 0; k < 6000; ++k) {
     const double t = 0.01 * k;
-    const Eigen::Vector3d w(peak_rad_s * std::sin(2.1 * t) * std::sin(0.3 * t), 2.0 * std::sin(1.7 * t),
-                            3.0 * std::sin(1.1 * t));
+    const Vector3d w(peak_rad_s * std::sin(2.1 * t) * std::sin(0.3 * t), 2.0 * std::sin(1.7 * t),
+                     3.0 * std::sin(1.1 * t));
     const double up = kRail + kOffset + kTilt * w.z(), down = -kRail + kOffset + kTilt * w.z();
-    Eigen::Vector3d y(std::clamp(w.x(), down, up), w.y(), w.z());
+    Vector3d y(std::clamp(w.x(), down, up), w.y(), w.z());
     out.clipped.push_back(y.x() != w.x());
     out.rate.push_back(w);
     for (int j = 0; j < 3; ++j) y[j] += 0.005 * noise(engine);
     out.reading.push_back(y);
-    Eigen::Vector3d seen = w;
+    Vector3d seen = w;
     for (int j = 0; j < 3; ++j) seen[j] += reference_noise_rad_s * noise(engine);
     if (k >= 3000 && k < 3050) seen.setConstant(kNaN);
     out.reference.push_back(seen);
@@ -105,7 +98,7 @@ sim::Recording recorded(const Made& made) {
   return recording;
 }
 
-Estimate estimate_of(const std::vector<Eigen::Vector3d>& rates, double sigma_rad_s, std::uint8_t clipped_axes) {
+Estimate estimate_of(const std::vector<Vector3d>& rates, double sigma_rad_s, std::uint8_t clipped_axes) {
   Estimate estimate;
   for (std::size_t k = 0; k < rates.size(); ++k) {
     AngularRateState state;
@@ -159,10 +152,10 @@ TEST(ReferenceRateScores, OfTheTruthAndOfTheReadings) {
 // a turned frame changes the components and keeps the size
 TEST(ReferenceRateScores, SpeedIsBlindToAFrameThatIsTurned) {
   Made made_ = made(12.0, 0.0);
-  const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  const Matrix3d turn = Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   const sim::Recording recording = recorded(made_);
-  std::vector<Eigen::Vector3d> turned;
-  for (const Eigen::Vector3d& w : made_.rate) turned.push_back(turn * w);
+  std::vector<Vector3d> turned;
+  for (const Vector3d& w : made_.rate) turned.push_back(turn * w);
   const auto values = scores_of(estimate_of(turned, 0.01, 1), recording);
   EXPECT_LT(values.at("rate_speed_error_clipped_median_rad_s"), 1e-9);
   EXPECT_GT(values.at("rate_error_clipped_median_rad_s"), 0.5);

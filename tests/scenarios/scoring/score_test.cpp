@@ -1,18 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/scoring/score.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <set>
-
-#include "scenarios/errors.hpp"
 #include "scenarios/scoring/binned_metric.hpp"
 #include "scenarios/scoring/clipping.hpp"
 #include "scenarios/scoring/perfect_estimate.hpp"
-#include "tests/scenarios/scoring/rig.hpp"
+#include "tests/scenarios/testing.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble::scenarios {
@@ -23,12 +15,12 @@ using testing::perfect_estimate;
 using testing::scores;
 using testing::verdict_of;
 
-Eigen::Isometry3d turned_world() {
+Isometry3d turned_world() {
   return Eigen::Translation3d(3.0, -7.0, 2.0) * Eigen::AngleAxisd(2.5, Eigen::Vector3d::UnitZ());
 }
 
-Eigen::Isometry3d tilted_world(double tilt_rad) {
-  return Eigen::Isometry3d(Eigen::AngleAxisd(tilt_rad, Eigen::Vector3d::UnitX()));
+Isometry3d tilted_world(double tilt_rad) {
+  return Isometry3d(Eigen::AngleAxisd(tilt_rad, Eigen::Vector3d::UnitX()));
 }
 
 TEST(Metrics, AreNamedByTheirUnitAndDescribed) {
@@ -66,7 +58,7 @@ TEST(RateScores, AnOffsetIsItsOwnError) {
   const ClippingTruth truth(rig().sensors, rig().truth);
   for (std::size_t k = 0; k < estimate.rates.size(); ++k) {
     const double error = truth.clipped_axes(k) ? 5.0 : 0.5;
-    estimate.rates[k].w_WI_I_rad_s += error * Eigen::Vector3d(0.6, 0.0, 0.8);
+    estimate.rates[k].w_WI_I_rad_s += error * Vector3d(0.6, 0.0, 0.8);
   }
   const auto values = scores(Kind::rate, estimate, rig());
   EXPECT_NEAR(values.at("rate_error_clipped_median_rad_s"), 5.0, 1e-12);
@@ -201,7 +193,7 @@ TEST(AttitudeScores, AHeadingAtTheStartIsRemovedATiltIsNot) {
 
 TEST(PositionScores, AGrowingOffsetGivesKnownErrors) {
   Estimate estimate = perfect_estimate(rig(), Frame::body);
-  const Eigen::Vector3d start = estimate.poses.front().position_W_m;
+  const Vector3d start = estimate.poses.front().position_W_m;
   for (PoseState& pose : estimate.poses) pose.position_W_m = start + 1.1 * (pose.position_W_m - start);
   const testing::SyntheticMotion motion;
   const double length = motion.displacement_m.norm();
@@ -257,7 +249,7 @@ TEST(AttitudeScores, TheTiltIsComparedWithItsCovarianceForAnyHeading) {
   EXPECT_FALSE(scores(Kind::attitude, estimate, rig()).contains("inclination_nees_median")) << "nothing is stated";
   for (AttitudeState& attitude : estimate.attitudes) {
     // q_true = Exp(phi) q, with phi about x and y of the estimate's world frame, which is rotated about the vertical
-    const Eigen::Quaterniond tilt(Eigen::AngleAxisd(kTilt, Eigen::Vector3d(1.0, 1.0, 0.0).normalized()));
+    const Quaterniond tilt(Eigen::AngleAxisd(kTilt, Vector3d(1.0, 1.0, 0.0).normalized()));
     attitude.orientation_W =
         tilt.conjugate() * Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitZ()) * attitude.orientation_W;
   }
@@ -272,15 +264,14 @@ TEST(AttitudeScores, TheTiltIsComparedWithItsCovarianceForAnyHeading) {
 
 TEST(TrajectoryScores, AteIsTheRmsOfAConstantShift) {
   Estimate estimate = perfect_estimate(rig());
-  for (std::size_t k = 1; k < estimate.poses.size(); ++k)
-    estimate.poses[k].position_W_m += Eigen::Vector3d(0.3, 0.4, 0.0);
+  for (std::size_t k = 1; k < estimate.poses.size(); ++k) estimate.poses[k].position_W_m += Vector3d(0.3, 0.4, 0.0);
   const double n = static_cast<double>(estimate.poses.size());
   EXPECT_NEAR(scores(Kind::slam, estimate, rig()).at("ate_m"), 0.5 * std::sqrt((n - 1.0) / n), 1e-9);
 }
 
 TEST(TrajectoryScores, AteOfTheRotationIsTheRmsOfAConstantTurn) {
   Estimate estimate = perfect_estimate(rig());
-  const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.2, Eigen::Vector3d(1, 2, 2) / 3.0));
+  const Quaterniond turn(Eigen::AngleAxisd(0.2, Vector3d(1, 2, 2) / 3.0));
   for (std::size_t k = 1; k < estimate.poses.size(); ++k)
     estimate.poses[k].orientation_W = estimate.poses[k].orientation_W * turn;
   const double n = static_cast<double>(estimate.poses.size());
@@ -301,13 +292,13 @@ TEST(TrajectoryScores, ATiltedStartIsAnError) {
 TEST(EndPoseScores, CountFromTheSixthRegisteredSweep) {
   Estimate estimate = perfect_estimate(rig());
   // the sweeps are wrong until the fifth and right from the sixth on, so the error is zero
-  for (std::size_t k = 0; k < 5; ++k) estimate.sweeps[k].pose.position_W_m += Eigen::Vector3d(1, 1, 1);
+  for (std::size_t k = 0; k < 5; ++k) estimate.sweeps[k].pose.position_W_m += Vector3d(1, 1, 1);
   EXPECT_NEAR(scores(Kind::slam, estimate, rig()).at("translation_error_end_m"), 0.0, 1e-9);
   estimate.sweeps[2].verdict = SweepVerdict::rejected;
-  estimate.sweeps[5].pose.position_W_m += Eigen::Vector3d(1, 1, 1);
+  estimate.sweeps[5].pose.position_W_m += Vector3d(1, 1, 1);
   EXPECT_NEAR(scores(Kind::slam, estimate, rig()).at("translation_error_end_m"), 0.0, 1e-9);
   estimate.sweeps.back().verdict = SweepVerdict::rejected;  // the last sweep counts even if it is rejected
-  estimate.sweeps.back().pose.position_W_m += Eigen::Vector3d(0.0, 0.0, 0.25);
+  estimate.sweeps.back().pose.position_W_m += Vector3d(0.0, 0.0, 0.25);
   estimate.sweeps.back().pose.orientation_W =
       Eigen::AngleAxisd(2.8, Eigen::Vector3d::UnitY()) * estimate.sweeps.back().pose.orientation_W;
   const auto values = scores(Kind::slam, estimate, rig());
@@ -325,7 +316,7 @@ TEST(EndPoseScores, FewerThanSixSweepsAreADivergence) {
 TEST(SweepBorderScores, AJumpAtEveryBorderIsFound) {
   Estimate estimate = perfect_estimate(rig());
   for (std::size_t k = 1; k < estimate.sweeps.size(); k += 2) {
-    for (PoseState& pose : estimate.sweeps[k].trajectory) pose.velocity_W_m_s += Eigen::Vector3d(0.0, 0.3, 0.4);
+    for (PoseState& pose : estimate.sweeps[k].trajectory) pose.velocity_W_m_s += Vector3d(0.0, 0.3, 0.4);
   }
   const auto values = scores(Kind::slam, estimate, rig());
   EXPECT_NEAR(values.at("sweep_jump_m_s"), 0.5, 1e-9);

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/scoring/score.hpp"
 
-#include <gtest/gtest.h>
-
-#include "scenarios/errors.hpp"
 #include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/perfect_estimate.hpp"
-#include "tests/scenarios/scoring/rig.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -71,7 +68,7 @@ TEST(ScoredEstimate, ScoresAreThoseOfAnEstimateThatNobodyAskedBefore) {
 
 TEST(PairedRates, StandBesideTheRatesAndLeaveOutWhatTheTruthDoesNotKnow) {
   Estimate estimate = testing::perfect_estimate(rig());
-  const Eigen::Vector3d error(0.1, -0.2, 0.3);
+  const Vector3d error(0.1, -0.2, 0.3);
   for (AngularRateState& rate : estimate.rates) rate.w_WI_I_rad_s += error;
   estimate.rates.back().time_ns = rig().sensors.imus.front().time_ns.back() + 1;
   const ScoredEstimate scored(estimate, input());

@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test checks time offsets in closed form: the estimates are the truth of another instant.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <map>
-#include <string>
-
 #include "scenarios/scoring/clipping.hpp"
 #include "scenarios/scoring/perfect_estimate.hpp"
+#include "tests/testing.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble::scenarios {
@@ -66,7 +61,7 @@ TEST(TimeOffset, OfAttitudesIsTheSameInAWorldOfItsOwn) {
 }
 
 /// Returns the recording with a rate that rises steadily and no saturation: differences of the rate are exact.
-sim::Recording steadily_faster(const Eigen::Vector3d& acceleration_rad_s2) {
+sim::Recording steadily_faster(const Vector3d& acceleration_rad_s2) {
   sim::Recording recording = moving_rig();
   sim::ImuTruth& truth = recording.truth.imus.front();
   for (std::size_t k = 0; k < truth.rate_rad_s.size(); ++k) {
@@ -78,7 +73,7 @@ sim::Recording steadily_faster(const Eigen::Vector3d& acceleration_rad_s2) {
 }
 
 TEST(TimeOffset, OfRatesIsWhatTheyAreLateBy) {
-  const Eigen::Vector3d acceleration_rad_s2(2.0, -1.0, 0.5);
+  const Vector3d acceleration_rad_s2(2.0, -1.0, 0.5);
   const sim::Recording recording = steadily_faster(acceleration_rad_s2);
   for (const double late_s : {kLate_s, -kLate_s, 1e-3}) {
     Estimate estimate = perfect_estimate(recording);
@@ -94,7 +89,7 @@ TEST(TimeOffset, OfRatesUsesUnclippedSamples) {
   std::size_t clipped = 0;
   for (std::size_t k = 0; k < estimate.rates.size(); ++k) {
     const double middle_s = 1e-9 * static_cast<double>(estimate.rates[k].time_ns) - 2.5e-3;
-    const Eigen::Matrix3d R_IB = moving_rig().truth.imus.front().T_BI.linear().transpose();
+    const Matrix3d R_IB = moving_rig().truth.imus.front().T_BI.linear().transpose();
     estimate.rates[k].w_WI_I_rad_s = R_IB * motion().rate_B_rad_s(middle_s - kLate_s);
     if (truth.clipped_axes(k) == 0) continue;
     ++clipped;
@@ -109,7 +104,7 @@ TEST(TimeOffset, OfRatesUsesUnclippedSamples) {
 // zero at the start of the estimate, where its world is aligned
 TEST(TimeOffset, OfAnErrorThatIsNoneOfTimeIsZero) {
   Estimate estimate = late_estimate(0.0);
-  const Eigen::Vector3d across_W = Eigen::Vector3d::UnitZ().cross(motion().axis_W).normalized();
+  const Vector3d across_W = Eigen::Vector3d::UnitZ().cross(motion().axis_W).normalized();
   for (AttitudeState& attitude : estimate.attitudes)
     attitude.orientation_W = so3::exp(0.02 * across_W) * attitude.orientation_W;
   for (std::size_t k = 1; k < estimate.poses.size(); k += 2) {
@@ -117,7 +112,7 @@ TEST(TimeOffset, OfAnErrorThatIsNoneOfTimeIsZero) {
     pose.orientation_W = so3::exp((k % 4 == 1 ? 0.02 : -0.02) * motion().axis_W) * pose.orientation_W;
     pose.position_W_m.x() += 0.5;
   }
-  for (AngularRateState& rate : estimate.rates) rate.w_WI_I_rad_s += Eigen::Vector3d(0.3, -0.2, 0.1);
+  for (AngularRateState& rate : estimate.rates) rate.w_WI_I_rad_s += Vector3d(0.3, -0.2, 0.1);
   EXPECT_NEAR(scores(Kind::attitude, estimate, moving_rig()).at("attitude_rmse_rad"), 0.02, 1e-6);
   EXPECT_NEAR(scores(Kind::slam, estimate, moving_rig()).at("ate_rad"), 0.02 / std::sqrt(2.0), 1e-4);
   EXPECT_NEAR(scores(Kind::attitude, estimate, moving_rig()).at("attitude_time_offset_s"), 0.0, 1e-9);

@@ -1,19 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/scoring/truth_track.hpp"
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <limits>
-#include <numbers>
-#include <set>
-#include <vector>
-
-#include "scenarios/errors.hpp"
 #include "scenarios/methods/synthetic_recording.hpp"
 #include "scenarios/scoring/clipping.hpp"
 #include "scenarios/scoring/nearness.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -22,20 +13,18 @@ TEST(TruthTrack, InterpolatesBetweenPhysicsSamples) {
   const testing::SyntheticMotion motion;
   const sim::Recording recording = testing::synthetic_rig(motion);
   const TruthTrack track(recording.truth, Frame::imu);
-  const Eigen::Isometry3d T_BI = recording.truth.imus.front().T_BI;
+  const Isometry3d T_BI = recording.truth.imus.front().T_BI;
   for (const std::int64_t time_ns : {0L, 1700000123L, 3000000000L, 3000249999L, 4444444444L, 6000000000L}) {
     ASSERT_TRUE(track.covers(time_ns));
     const double t = 1e-9 * static_cast<double>(time_ns);
-    const Eigen::Vector3d p = motion.position_m(t) + motion.attitude(t) * T_BI.translation();
+    const Vector3d p = motion.position_m(t) + motion.attitude(t) * T_BI.translation();
     const PoseState pose = track.pose(time_ns);
     // linear interpolation between samples errs by acceleration dt^2 / 8 = 21 m/s^2 x 3.1e-8 s^2
     EXPECT_NEAR((pose.position_W_m - p).norm(), 0.0, 1e-6);
-    EXPECT_NEAR(
-        rotation_angle_rad((motion.attitude(t) * Eigen::Quaterniond(T_BI.linear())).conjugate() * pose.orientation_W),
-        0.0, 1e-6);
+    EXPECT_NEAR(rotation_angle_rad((motion.attitude(t) * Quaterniond(T_BI.linear())).conjugate() * pose.orientation_W),
+                0.0, 1e-6);
     // the velocity errs by jerk dt^2 / 8 of the IMU on its lever arm of 0.1 m: 14^3 x 0.1 x 3.1e-8
-    const Eigen::Vector3d v =
-        motion.velocity_m_s(t) + motion.attitude(t) * motion.rate_B_rad_s(t).cross(T_BI.translation());
+    const Vector3d v = motion.velocity_m_s(t) + motion.attitude(t) * motion.rate_B_rad_s(t).cross(T_BI.translation());
     EXPECT_NEAR((pose.velocity_W_m_s - v).norm(), 0.0, 2e-5);
   }
   EXPECT_FALSE(track.covers(-1));
@@ -98,7 +87,7 @@ TEST(TruthTrack, RefusesTruthThatDoesNotFit) {
 TEST(Alignment, RemovesYawAndPositionAndLeavesTilt) {
   PoseState truth;
   truth.position_W_m = {1, 2, 3};
-  truth.orientation_W = Eigen::AngleAxisd(0.8, Eigen::Vector3d(1, -1, 0.5).normalized());
+  truth.orientation_W = Eigen::AngleAxisd(0.8, Vector3d(1, -1, 0.5).normalized());
   for (const double yaw : {-3.0, -0.1, 0.0, 1.0, 3.1}) {
     for (const double tilt : {0.0, 0.02}) {
       PoseState estimate;
@@ -115,9 +104,9 @@ TEST(Alignment, RemovesYawAndPositionAndLeavesTilt) {
 
 TEST(RotationAngle, IsExactForSmallAndLargeAngles) {
   for (const double angle : {0.0, 1e-9, 0.3, 1.6, 3.0, std::numbers::pi}) {
-    const Eigen::Quaterniond q(Eigen::AngleAxisd(angle, Eigen::Vector3d(2, -1, 1).normalized()));
+    const Quaterniond q(Eigen::AngleAxisd(angle, Vector3d(2, -1, 1).normalized()));
     EXPECT_NEAR(rotation_angle_rad(q), angle, 1e-15 + 1e-15 * angle);
-    EXPECT_NEAR(rotation_angle_rad(Eigen::Quaterniond(-q.w(), -q.x(), -q.y(), -q.z())), angle, 1e-15 + 1e-15 * angle);
+    EXPECT_NEAR(rotation_angle_rad(Quaterniond(-q.w(), -q.x(), -q.y(), -q.z())), angle, 1e-15 + 1e-15 * angle);
   }
 }
 
@@ -136,7 +125,7 @@ TEST(ClippingTruth, NamesTheSaturatedAxes) {
   EXPECT_GT(clipped, 50u);
   // the truth is the stored one at a stamp, interpolated between two stamps, and absent outside
   EXPECT_EQ(truth.at(imu.time_ns[500])->rate_rad_s, recording.truth.imus.front().rate_rad_s[500]);
-  const Eigen::Vector3d middle =
+  const Vector3d middle =
       0.5 * (recording.truth.imus.front().rate_rad_s[499] + recording.truth.imus.front().rate_rad_s[500]);
   EXPECT_NEAR((truth.at((imu.time_ns[499] + imu.time_ns[500]) / 2)->rate_rad_s - middle).norm(), 0.0, 1e-12);
   EXPECT_FALSE(truth.at(imu.time_ns.front() - 1).has_value());
@@ -157,11 +146,11 @@ TEST(ClippingTruth, DifferencesBelowTheNoiseAreNoClipping) {
 TEST(ClippingTruth, CrossAxisErrorsAreNoClipping) {
   sim::Recording recording = testing::synthetic_sphere();
   sim::ImuTruth& imu = recording.truth.imus.front();
-  Eigen::Matrix3d elements = Eigen::Matrix3d::Identity();
+  Matrix3d elements = Eigen::Matrix3d::Identity();
   elements(0, 1) = 0.03;
   elements(2, 1) = -0.02;
   for (int i = 0; i < 3; ++i) imu.gyro_elements.emplace_back(elements.row(i));
-  const auto lose = [&](std::size_t k, const Eigen::Vector3d& deficit_rad_s) {
+  const auto lose = [&](std::size_t k, const Vector3d& deficit_rad_s) {
     recording.sensors.imus.front().gyro_rad_s[k] = imu.gyro_unclipped_rad_s[k] - elements.inverse() * deficit_rad_s;
   };
   lose(10, {0.0, 4.0, 0.0});
@@ -181,7 +170,7 @@ TEST(ClippingTruth, CrossAxisErrorsAreNoClipping) {
 
 TEST(Nearness, AgreesWithBruteForce) {
   // the points form a lattice with irrational steps, so that no distance equals the limit
-  std::vector<Eigen::Vector3f> points;
+  std::vector<Vector3f> points;
   for (int k = 0; k < 400; ++k) {
     const auto f = [k](float step) { return std::fmod(static_cast<float>(k) * step, 4.0f) - 2.0f; };
     points.emplace_back(f(0.7548777f), f(0.5698403f), f(1.3247179f));
@@ -193,9 +182,9 @@ TEST(Nearness, AgreesWithBruteForce) {
   int no = 0;
   for (int k = 0; k < 1000; ++k) {
     const auto f = [k](float step) { return std::fmod(static_cast<float>(k) * step, 5.0f) - 2.5f; };
-    const Eigen::Vector3f query(f(0.61803399f), f(1.4142136f), f(0.7320508f));
+    const Vector3f query(f(0.61803399f), f(1.4142136f), f(0.7320508f));
     bool brute = false;
-    for (const Eigen::Vector3f& point : points) brute = brute || (point - query).norm() <= distance;
+    for (const Vector3f& point : points) brute = brute || (point - query).norm() <= distance;
     EXPECT_EQ(near.has_neighbour(query), brute);
     (brute ? yes : no) += 1;
   }
@@ -204,7 +193,7 @@ TEST(Nearness, AgreesWithBruteForce) {
 }
 
 TEST(Nearness, OnePerCellKeepsTheFirst) {
-  const std::vector<Eigen::Vector3f> points = {{0.01f, 0, 0}, {0.02f, 0, 0}, {0.15f, 0, 0}, {-0.01f, 0, 0}};
+  const std::vector<Vector3f> points = {{0.01f, 0, 0}, {0.02f, 0, 0}, {0.15f, 0, 0}, {-0.01f, 0, 0}};
   const auto kept = one_per_cell(points, 0.1f);
   ASSERT_EQ(kept.size(), 3u);
   EXPECT_EQ(kept[0], points[0]);
@@ -213,7 +202,7 @@ TEST(Nearness, OnePerCellKeepsTheFirst) {
 }
 
 TEST(Nearness, OnePerCellOfManyPointsIsThatOfASetOfCells) {
-  std::vector<Eigen::Vector3f> points;
+  std::vector<Vector3f> points;
   for (int k = 0; k < 20000; ++k) {
     const auto f = [k](float step) { return std::fmod(static_cast<float>(k) * step, 3.0f) - 1.5f; };
     points.emplace_back(f(0.7548777f), f(0.5698403f), f(1.3247179f));
@@ -221,8 +210,8 @@ TEST(Nearness, OnePerCellOfManyPointsIsThatOfASetOfCells) {
     if (k % 1000 == 0) points.emplace_back(0.0f, std::nanf(""), 0.0f);
   }
   std::set<std::array<int, 3>> taken;
-  std::vector<Eigen::Vector3f> expected;
-  for (const Eigen::Vector3f& point : points) {
+  std::vector<Vector3f> expected;
+  for (const Vector3f& point : points) {
     if (!point.allFinite()) continue;
     const auto cell = [&](int axis) {
       return static_cast<int>(std::floor(static_cast<double>(point[axis]) / static_cast<double>(0.1f)));

@@ -1,32 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/search/failure_search.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <atomic>
 #include <boost/math/distributions/normal.hpp>
-#include <cmath>
-#include <cstdlib>
-#include <limits>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "scenarios/draw/fixed_scenario.hpp"
 #include "scenarios/draw/scenario_text.hpp"
-#include "scenarios/errors.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/search/input_shift.hpp"
 #include "scenarios/sweep/evaluate.hpp"
-#include "tests/scenarios/tree_data.hpp"
-#include "tests/temporary_folder.hpp"
+#include "sim/random/stream.hpp"
+#include "tests/scenarios/testing.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::UnorderedElementsAre;
 
 constexpr const char* kMetric = "rate_error_free_median_rad_s";
 constexpr const char* kX = "sensors.imu.mount_error.x_m";
@@ -53,11 +41,11 @@ Scenario roll() {
 }
 
 /// Returns the lever arm without error [m].
-Eigen::Vector3d lever_arm_m() {
+Vector3d lever_arm_m() {
   Scenario exact = roll();
   fix_number(exact, kX, 0.0);
   fix_number(exact, kY, 0.0);
-  return simulate_draw(tree_data(), exact, 1, 1).recording.sensors.imus.front().T_BI.translation();
+  return simulate_draw(test::tree_data(), exact, 1, 1).recording.sensors.imus.front().T_BI.translation();
 }
 
 /// Returns a method with a fault of known probability: its error is exp(v) rad/s, where the sum v of both lever-arm
@@ -71,7 +59,7 @@ Method planted(double lost_beyond = std::numeric_limits<double>::infinity()) {
   method.run = [oracle, lost_beyond, exact = lever_arm_m()](const sim::Sensors& sensors, const sim::Values& values,
                                                             const OracleInput& input) {
     Estimate estimate = oracle.run(sensors, values, input);
-    const Eigen::Vector3d error = sensors.imus.front().T_BI.translation() - exact;
+    const Vector3d error = sensors.imus.front().T_BI.translation() - exact;
     const double v = (error.x() + error.y()) / (kSigma_m * std::sqrt(2.0));
     for (AngularRateState& state : estimate.rates) state.w_WI_I_rad_s.x() += std::exp(v);
     if (v > lost_beyond) estimate.status = {ErrorCode::empty, "planted", v, lost_beyond};
@@ -84,12 +72,12 @@ double quantile_beyond(double probability) {
   return quantile(complement(boost::math::normal(), probability));
 }
 
-class FailureSearch : public testing::TemporaryFolder {
+class FailureSearch : public test::TemporaryFolder {
  protected:
   SearchResult search(const std::string& file, const Method& method, const FailureGoal& goal,
                       const SearchOptions& options) const {
     Results results(folder_ / file, Results::Mode::create_or_append);
-    return search_failures(tree_data(), roll(), method, goal, results, options);
+    return search_failures(test::tree_data(), roll(), method, goal, results, options);
   }
 };
 
@@ -144,7 +132,7 @@ TEST_F(FailureSearch, AFoundDrawIsReproducedBitForBit) {
   ASSERT_NE(row, stored.end());
   // through the text of a scenario file, as the program writes it
   const Scenario read = parse_scenario(to_yaml(draw.scenario), "found.yaml", Registry::of_simulation());
-  const SimulatedDraw again = simulate_draw(tree_data(), read, draw.seed, 1);
+  const SimulatedDraw again = simulate_draw(test::tree_data(), read, draw.seed, 1);
   Outcome outcome;
   const Method method = planted();
   assess(method, again, nullptr, run_method(method, again, outcome), outcome);
@@ -218,7 +206,43 @@ TEST_F(FailureSearch, RejectsAnotherSearchAndAFixedScenario) {
   Scenario fixed = roll();
   for (const DrawnNumber& number : drawn_numbers(roll())) fix_number(fixed, number.place, number.of(1));
   Results results(folder_ / "f.db", Results::Mode::create_or_append);
-  EXPECT_THROW(search_failures(tree_data(), fixed, planted(), {kMetric, 1.0}, results, small(4, 4)), BadInput);
+  EXPECT_THROW(search_failures(test::tree_data(), fixed, planted(), {kMetric, 1.0}, results, small(4, 4)), BadInput);
+}
+
+const std::vector<DrawnNumber> kNumbers = {{"a", {Distribution::Shape::uniform, {0.0, 1.0}}},
+                                           {"b", {Distribution::Shape::normal, {10.0, 2.0}}}};
+
+/// Draws without influence, except that `b` is shifted. Each family has `size` draws.
+std::vector<ScoredPoint> draws(std::uint64_t seed, std::size_t families, std::size_t size, double shift) {
+  sim::Stream stream(seed, "test");
+  std::vector<ScoredPoint> out;
+  for (std::size_t family = 0; family < families; ++family) {
+    const std::vector<double> normals = {stream.normal(), stream.normal() + shift};
+    for (std::size_t i = 0; i < size; ++i) out.push_back({{normals, {0}}, 0.0, family});
+  }
+  return out;
+}
+
+TEST(InputShift, TheShiftedParameterIsFirst) {
+  const std::vector<InputShift> shifts = input_shifts(kNumbers, draws(1, 40, 1, -2.0));
+  ASSERT_EQ(shifts.size(), 2u);
+  EXPECT_EQ(shifts[0].number, "b");
+  EXPECT_NEAR(shifts[0].shift, -2.0, 4.0 / std::sqrt(40.0)) << "four standard errors";
+  EXPECT_LT(shifts[0].corrected, 1e-6);
+  EXPECT_GT(shifts[1].corrected, 1e-3);
+  EXPECT_NEAR(shifts[0].scenario_median, 10.0, 1e-9);
+  EXPECT_NEAR(shifts[0].scenario_high, 10.0 + 2.0 * 1.2816, 1e-3);
+  EXPECT_NEAR(shifts[1].scenario_low, 0.1, 1e-9);
+  EXPECT_LT(shifts[0].high, 10.0);
+}
+
+/// Copies of one draw must not count as independent draws: p-values below 5 % occur in at most 5 % of the cases.
+TEST(InputShift, CopiesAreNoEvidence) {
+  int significant = 0;
+  for (std::uint64_t seed = 1; seed <= 400; ++seed)
+    significant += input_shifts(kNumbers, draws(seed, 4, 25, 0.0)).front().corrected < 0.05 ? 1 : 0;
+  EXPECT_LE(significant, 34) << "of 400, where 20 are expected; exceeded with a probability of 1e-3";
+  EXPECT_GE(significant, 8);
 }
 
 }  // namespace

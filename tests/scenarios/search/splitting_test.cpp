@@ -1,24 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/search/splitting.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <boost/math/distributions/normal.hpp>
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <numeric>
-#include <string>
-#include <vector>
 
 #include "sim/random/stream.hpp"
-#include "tests/complaint.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
-
-using ::testing::HasSubstr;
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 constexpr std::size_t kUnlimited = 1000000;

@@ -1,21 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/statistics/dependence.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
-#include <vector>
-
-#include "scenarios/errors.hpp"
 #include "sim/random/stream.hpp"
 #include "tests/scenarios/statistics/samples.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
-
-using ::testing::ElementsAre;
 
 TEST(MeanRanks, ShareTheirMeanInTies) {
   EXPECT_THAT(mean_ranks(std::vector<double>{3.0, 1.0, kInfinity, 1.0, -kInfinity, kInfinity}),

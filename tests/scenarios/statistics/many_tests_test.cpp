@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/statistics/paired.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "sim/random/stream.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
 
 using ::testing::DoubleNear;
-using ::testing::ElementsAre;
 
 // the worked example of Holm's steps gives 4 x 0.01, 3 x 0.02, 2 x 0.03, which may not fall below the value before, and
 // 0.04

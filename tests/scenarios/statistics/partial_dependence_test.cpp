@@ -1,15 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <numbers>
-#include <vector>
-
-#include "scenarios/errors.hpp"
 #include "scenarios/statistics/dependence.hpp"
 #include "sim/random/stream.hpp"
 #include "tests/scenarios/statistics/samples.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {

@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/statistics/sample_size.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
-
-#include "scenarios/errors.hpp"
 #include "scenarios/statistics/paired.hpp"
 #include "sim/random/stream.hpp"
 #include "tests/scenarios/statistics/samples.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {

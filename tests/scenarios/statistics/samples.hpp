@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstddef>
-#include <limits>
-#include <vector>
-
 #include "sim/random/stream.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::scenarios {
 

@@ -1,23 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/summary/comparison.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <optional>
-
 #include "scenarios/statistics/paired.hpp"
 #include "sim/random/stream.hpp"
-#include "tests/complaint.hpp"
 #include "tests/scenarios/summary/rate_error.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
-
-using ::testing::HasSubstr;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const std::string kOverlap = "map_overlap";            // higher is better

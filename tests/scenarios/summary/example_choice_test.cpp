@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/summary/example_choice.hpp"
 
-#include <gtest/gtest.h>
+#include "tests/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/summary/motion_map.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numeric>
+#include "tests/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {

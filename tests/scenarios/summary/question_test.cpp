@@ -1,22 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/summary/question.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <functional>
-#include <limits>
-#include <optional>
-
-#include "scenarios/errors.hpp"
 #include "tests/scenarios/summary/rate_error.hpp"
-#include "tests/temporary_folder.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
-
-using ::testing::HasSubstr;
 
 Question sound_question() {
   Question question;
@@ -27,7 +16,7 @@ Question sound_question() {
   return question;
 }
 
-class QuestionTest : public testing::TemporaryFolder {
+class QuestionTest : public test::TemporaryFolder {
  protected:
   using Value = std::function<std::optional<double>(std::uint64_t)>;
 
@@ -53,7 +42,7 @@ class QuestionTest : public testing::TemporaryFolder {
     return answers(Results(path(), Results::Mode::read_only), question, last_seed);
   }
 
-  std::filesystem::path path() const { return folder_ / "a.db"; }
+  fs::path path() const { return folder_ / "a.db"; }
 };
 
 // eight better runs without a worse one: 9 / 2^8 < 0.05

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/summary/selection.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
 
 /// Returns a summary of seeds 1 to 10; the values are ten times the seed, and every third run failed.
 Summary ten_draws() {

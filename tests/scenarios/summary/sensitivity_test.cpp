@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/summary/sensitivity.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "scenarios/draw/drawn_numbers.hpp"
-#include "scenarios/errors.hpp"
 #include "sim/random/stream.hpp"
 #include "tests/scenarios/summary/rate_error.hpp"
-#include "tests/tree.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {

@@ -1,21 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <map>
-#include <set>
-
 #include "scenarios/sweep/results.hpp"
 #include "scenarios/sweep/small_catalogue.hpp"
 #include "scenarios/sweep/sweep.hpp"
-#include "tests/complaint.hpp"
+#include "tests/scenarios/testing.hpp"
 
 // the suites vary a number on the sphere, whose draws are short
 namespace tumble::scenarios {
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::UnorderedElementsAre;
 
 constexpr const char* kHead =
     "name: test\ndoc: d\nscenarios: [roll]\nseeds: {first: 1, last: 1}\nmethods: [rate/raw, rolling]\nvary:\n";

@@ -1,28 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/database_owner.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/scenarios/testing.hpp"
+
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <string>
-
-#include "scenarios/errors.hpp"
-#include "tests/complaint.hpp"
-#include "tests/temporary_folder.hpp"
-
 namespace tumble::scenarios {
 namespace {
 
-using ::testing::HasSubstr;
-
-class DatabaseOwnerTest : public testing::TemporaryFolder {
+class DatabaseOwnerTest : public test::TemporaryFolder {
  protected:
-  std::filesystem::path database() const { return folder_ / "results.db"; }
-  std::filesystem::path lock() const { return folder_ / "results.db.lock"; }
-  std::string complaint(const std::filesystem::path& path) const {
+  fs::path database() const { return folder_ / "results.db"; }
+  fs::path lock() const { return folder_ / "results.db.lock"; }
+  std::string complaint(const fs::path& path) const {
     return test::complaint([&] { const DatabaseOwner owner(path); });
   }
 };
@@ -30,7 +22,7 @@ class DatabaseOwnerTest : public testing::TemporaryFolder {
 /// Holder is a child process that owns the database until it is killed.
 class Holder {
  public:
-  explicit Holder(const std::filesystem::path& database) {
+  explicit Holder(const fs::path& database) {
     int ends[2];
     EXPECT_EQ(pipe(ends), 0);
     pid_ = fork();
@@ -60,17 +52,17 @@ class Holder {
 TEST_F(DatabaseOwnerTest, IsOneAtATime) {
   {
     const DatabaseOwner owner(database());
-    EXPECT_TRUE(std::filesystem::exists(lock()));
+    EXPECT_TRUE(fs::exists(lock()));
     EXPECT_THAT(complaint(database()), HasSubstr("results.db: process " + std::to_string(getpid()) + " on "));
     EXPECT_EQ(complaint(folder_ / "other.db"), "") << "of its own file alone";
   }
-  EXPECT_FALSE(std::filesystem::exists(lock()));
+  EXPECT_FALSE(fs::exists(lock()));
   EXPECT_EQ(complaint(database()), "");
 }
 
 TEST_F(DatabaseOwnerTest, IsKnownUnderEveryName) {
   write("results.db", "");
-  std::filesystem::create_symlink("results.db", folder_ / "link.db");
+  fs::create_symlink("results.db", folder_ / "link.db");
   const DatabaseOwner owner(database());
   EXPECT_THAT(complaint(folder_ / "link.db"), HasSubstr("is writing to this database"));
 }
@@ -80,9 +72,9 @@ TEST_F(DatabaseOwnerTest, AKilledOneLeavesItToTheNext) {
   EXPECT_THAT(complaint(database()), HasSubstr("process " + std::to_string(holder.pid()) + " on "));
   EXPECT_THAT(complaint(database()), HasSubstr(" since 20"));
   holder.kill();
-  ASSERT_TRUE(std::filesystem::exists(lock())) << "left behind, and held by nobody";
+  ASSERT_TRUE(fs::exists(lock())) << "left behind, and held by nobody";
   EXPECT_EQ(complaint(database()), "");
-  EXPECT_FALSE(std::filesystem::exists(lock()));
+  EXPECT_FALSE(fs::exists(lock()));
 }
 
 TEST_F(DatabaseOwnerTest, AFolderThatIsNotThereIsBadInput) {

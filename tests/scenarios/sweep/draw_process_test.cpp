@@ -1,22 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/draw_process.hpp"
 
-#include <gtest/gtest.h>
 #include <malloc.h>
 #include <unistd.h>
-
-#include <cstddef>
-#include <fstream>
-#include <memory>
-#include <optional>
-#include <sstream>
-#include <string>
-#include <vector>
 
 #include "scenarios/processes/process_pool.hpp"
 #include "scenarios/sweep/message.hpp"
 #include "scenarios/sweep/small_catalogue.hpp"
 #include "scenarios/sweep/sweep_plan.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {

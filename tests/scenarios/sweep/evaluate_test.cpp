@@ -1,32 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/evaluate.hpp"
 #include "scenarios/methods/registry.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
-#include "tests/complaint.hpp"
-#include "tests/tree.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
 
-using ::testing::HasSubstr;
-
 std::size_t applicable_of(Kind kind, const std::string& scenario) {
   std::vector<MethodPointer> all;
   for (const Method& method : methods()) all.push_back(unowned(method));
-  const std::vector<MethodPointer> chosen =
-      applicable(all, subject_of(load_scenario(DataRoot{test::source_dir()}, scenario)));
+  const std::vector<MethodPointer> chosen = applicable(all, subject_of(load_scenario(test::tree_data(), scenario)));
   return static_cast<std::size_t>(
       std::count_if(chosen.begin(), chosen.end(), [&](const auto& method) { return method->info.kind == kind; }));
 }
 
 std::string complaint(const std::string& method, const std::string& scenario) {
   return test::complaint(
-      [&] { require_applies(*find_methods(method).front(), load_scenario(DataRoot{test::source_dir()}, scenario)); });
+      [&] { require_applies(*find_methods(method).front(), load_scenario(test::tree_data(), scenario)); });
 }
 
 // the wand and the pendulum of the catalogue have no lidar
@@ -74,8 +64,7 @@ TEST(JudgeWithoutTruth, AFaultThatInvalidatesOurEstimateIsADivergence) {
   add_finding(finding(HealthFinding::Kind::frozen_axis), estimate);
   EXPECT_EQ(status_of(ours, estimate), "ok") << "one axis does not invalidate the estimate";
   add_finding(finding(HealthFinding::Kind::wrong_force_magnitude_at_rest), estimate);
-  EXPECT_THAT(status_of(ours, estimate),
-              ::testing::AllOf(HasSubstr("diverged: health: imu: "), HasSubstr("wrong unit or scale")));
+  EXPECT_THAT(status_of(ours, estimate), AllOf(HasSubstr("diverged: health: imu: "), HasSubstr("wrong unit or scale")));
   EXPECT_EQ(status_of(baseline, estimate), "ok") << "baselines do not report their health";
   estimate.status = {ErrorCode::insufficient_data, "lidar.sweeps_registered", 0.0, 1.0};
   EXPECT_THAT(status_of(ours, estimate), HasSubstr("failed: insufficient_data"));

@@ -1,21 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/gate.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-
-#include "scenarios/errors.hpp"
-#include "tests/complaint.hpp"
-#include "tests/temporary_folder.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
-
-using ::testing::HasSubstr;
 
 constexpr std::uint64_t kDraws = 16;
 constexpr const char *kError = "translation_error_end_m", *kShare = "map_overlap", *kNees = "pose_nees",
@@ -175,9 +164,8 @@ TEST(Gate, AMetricThatAnOkOutcomeHadMayNotGo) {
   };
   EXPECT_EQ(fault_after(kNees, drop),
             "the metric has a value in the accepted results, but no value in this run at seed 3");
-  EXPECT_THAT(
-      fault_after(kNees, [](Outcome& o) { score_of(o, kNees) = std::nan(""); }),
-      ::testing::StartsWith("the metric has a value in the accepted results, but no value in this run at seed"));
+  EXPECT_THAT(fault_after(kNees, [](Outcome& o) { score_of(o, kNees) = std::nan(""); }),
+              StartsWith("the metric has a value in the accepted results, but no value in this run at seed"));
 }
 
 TEST(Gate, AFailureThatWasAcceptedMayStayOrGo) {
@@ -203,7 +191,7 @@ TEST(Gate, AMethodOrARunThatIsMissingFails) {
   EXPECT_NO_THROW(require_acceptable(gate.accepted));
 }
 
-class GateFiles : public testing::TemporaryFolder {
+class GateFiles : public test::TemporaryFolder {
  protected:
   static constexpr const char* kPolicy =
       "suite: small\nrisk: 0.05\nmargin: 0.02\nshare_margin: 0.005\ntime_margin_s: 5e-05\nworst: 2\n";
@@ -226,7 +214,7 @@ TEST_F(GateFiles, ReadBackExactly) {
   write("scenarios/gates/small.yaml", to_yaml(gate));
   write("scenarios/gates/small.csv", to_csv(gate.accepted));
   const DataRoot data{folder_};
-  EXPECT_THAT(gate_names(data), ::testing::ElementsAre("small"));
+  EXPECT_THAT(gate_names(data), ElementsAre("small"));
   const Gate back = load_gate(data, "small");
   EXPECT_EQ(back.suite, "small");
   EXPECT_EQ(back.policy.risk, 0.01);
@@ -242,7 +230,7 @@ TEST_F(GateFiles, SayWhatIsWrongAndWhere) {
   const std::string head = kHead, good = head + "hill,slam,tumble,status,ok,ok\n";
   EXPECT_EQ(complaint(kPolicy, good), "");
   EXPECT_THAT(complaint(kPolicy, head + "hill,slm,tumble,status,ok,ok\n"),
-              ::testing::AllOf(HasSubstr("bad.csv:2"), HasSubstr("'slam'")));
+              AllOf(HasSubstr("bad.csv:2"), HasSubstr("'slam'")));
   EXPECT_THAT(complaint(kPolicy, head + "hill,slam,tumbel,status,ok,ok\n"), HasSubstr("tumble"));
   EXPECT_THAT(complaint(kPolicy, head + "hill,slam,tumble,status,ok,fine\n"), HasSubstr("'fine'"));
   EXPECT_THAT(complaint(kPolicy, good + "hill,slam,tumble,map_overlp,1,1\n"), HasSubstr("'map_overlap'"));

@@ -2,14 +2,9 @@
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/sweep/variation.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
-#include "scenarios/errors.hpp"
 #include "scenarios/methods/synthetic_recording.hpp"
 #include "scenarios/scoring/clipping.hpp"
-#include "tests/tree.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -21,7 +16,7 @@ SimulatedDraw sample_draw(std::uint64_t seed = 5001) {
   SimulatedDraw draw;
   draw.recording = testing::synthetic_rig();
   sim::Sensors& sensors = draw.recording.sensors;
-  sensors.imus[0].T_BI.translation() += Eigen::Vector3d(0.004, -0.003, 0.001);
+  sensors.imus[0].T_BI.translation() += Vector3d(0.004, -0.003, 0.001);
   sensors.lidars[0].T_BL.linear() *= Eigen::AngleAxisd(0.02, Eigen::Vector3d::UnitY()).toRotationMatrix();
   sensors.imus[0].clip_flags.assign(sensors.imus[0].time_ns.size(), 0b111111);
   sim::SensorSpec imu{"imu", "imu", "ideal", "mti30", {}, {}};
@@ -32,15 +27,15 @@ SimulatedDraw sample_draw(std::uint64_t seed = 5001) {
   return draw;
 }
 
-Eigen::Vector3d lever_error_m(const SimulatedDraw& draw) {
+Vector3d lever_error_m(const SimulatedDraw& draw) {
   return draw.recording.sensors.imus[0].T_BI.translation() - draw.recording.truth.imus[0].T_BI.translation();
 }
 
 double extrinsic_angle_rad(const SimulatedDraw& draw) {
   const auto& [sensors, truth] = draw.recording;
-  const Eigen::Matrix3d given = sensors.imus[0].T_BI.linear().transpose() * sensors.lidars[0].T_BL.linear();
-  const Eigen::Matrix3d exact = truth.imus[0].T_BI.linear().transpose() * truth.lidars[0].T_BL.linear();
-  return Eigen::AngleAxisd(Eigen::Matrix3d(exact.transpose() * given)).angle();
+  const Matrix3d given = sensors.imus[0].T_BI.linear().transpose() * sensors.lidars[0].T_BL.linear();
+  const Matrix3d exact = truth.imus[0].T_BI.linear().transpose() * truth.lidars[0].T_BL.linear();
+  return Eigen::AngleAxisd(Matrix3d(exact.transpose() * given)).angle();
 }
 
 TEST(GivenErrors, OfTheLeverArmHaveTheirSizeAndOneDirection) {
@@ -91,7 +86,7 @@ TEST(GivenErrors, OfTheRateAreConstantOverASegmentAndNowhereElse) {
   const sim::ImuRecord& before = draw.recording.sensors.imus[0];
   const sim::ImuRecord& after = wrong.recording.sensors.imus[0];
   std::size_t clipped = 0;
-  Eigen::Vector3d last = Eigen::Vector3d::Zero();
+  Vector3d last = Eigen::Vector3d::Zero();
   double largest = 0.0;
   for (std::size_t k = 0; k < clipping.size(); ++k) {
     largest = std::max(largest, after.gyro_rad_s[k].lpNorm<Eigen::Infinity>());
@@ -100,7 +95,7 @@ TEST(GivenErrors, OfTheRateAreConstantOverASegmentAndNowhereElse) {
       ASSERT_EQ(after.gyro_rad_s[k], before.gyro_rad_s[k]);
       continue;
     }
-    const Eigen::Vector3d error = after.gyro_rad_s[k] - draw.recording.truth.imus[0].gyro_unclipped_rad_s[k];
+    const Vector3d error = after.gyro_rad_s[k] - draw.recording.truth.imus[0].gyro_unclipped_rad_s[k];
     EXPECT_NEAR(error.norm(), 0.5, 1e-12);
     if (clipped > 0 && clipping.clipped_axes(k - 1) != 0) {
       EXPECT_NEAR((error - last).norm(), 0.0, 1e-12);

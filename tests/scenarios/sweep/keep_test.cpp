@@ -2,13 +2,6 @@
 #include "scenarios/sweep/keep.hpp"
 #include "scenarios/methods/registry.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <fstream>
-#include <limits>
-#include <optional>
-
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/draw/strict_yaml.hpp"
 #include "scenarios/estimates/estimate_file.hpp"
@@ -17,13 +10,10 @@
 #include "scenarios/sweep/merge.hpp"
 #include "scenarios/sweep/small_catalogue.hpp"
 #include "scenarios/sweep/sweep.hpp"
-#include "tests/complaint.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 TEST(Keep, IsReadAndWritten) {
   for (const char* text : {"none", "failed", "all", "worst:1", "worst:1000"})
@@ -58,13 +48,11 @@ class KeepTest : public testing::SmallCatalogue {
   /// Returns every kept file with its bytes.
   std::map<std::string, std::string> kept(const std::string& name) const {
     std::map<std::string, std::string> out;
-    const std::filesystem::path root = folder_ / (name + ".files") / "kept";
-    if (!std::filesystem::exists(root)) return out;
-    for (const auto& each : std::filesystem::recursive_directory_iterator(root)) {
+    const fs::path root = folder_ / (name + ".files") / "kept";
+    if (!fs::exists(root)) return out;
+    for (const auto& each : fs::recursive_directory_iterator(root)) {
       if (!each.is_regular_file()) continue;
-      std::ifstream file(each.path(), std::ios::binary);
-      out[each.path().lexically_relative(root).string()] =
-          std::string(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+      out[each.path().lexically_relative(root).string()] = test::read_file(each.path());
     }
     return out;
   }
@@ -121,7 +109,7 @@ TEST_F(KeepTest, AllAreReadableAndTheSameForAnyNumberOfJobs) {
             "tumble run roll --seed 2 --method rate/raw --method position/rolling -o roll_2\n");
 
   const Results results(folder_ / "one.db", Results::Mode::read_only);
-  const std::filesystem::path draw = KeptDraws(folder_ / "one.db").folder_of({"roll", 2});
+  const fs::path draw = KeptDraws(folder_ / "one.db").folder_of({"roll", 2});
   for (const Outcome& row : results.outcomes_of("roll", 2)) {
     EXPECT_EQ(read_info(draw / "recording.h5").digest, row.recording_digest);
     Kind kind = Kind::slam;
@@ -150,11 +138,11 @@ TEST_F(KeepTest, TheWorstAreTheSameResumedAndInShards) {
 
   run("shard_1.db", 1, 2, "worst:1");
   run("shard_2.db", 3, 4, "worst:1", 2);
-  const std::vector<std::filesystem::path> shards = {folder_ / "shard_1.db", folder_ / "shard_2.db"};
+  const std::vector<fs::path> shards = {folder_ / "shard_1.db", folder_ / "shard_2.db"};
   merge_results(DatabaseOwner(folder_ / "merged.db"), shards, false);
   EXPECT_EQ(merge_kept(DatabaseOwner(folder_ / "merged.db"), shards), seeds("whole.db").size());
   EXPECT_EQ(kept("merged.db"), whole);
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "merged.db.files/kept/.unfinished"));
+  EXPECT_FALSE(fs::exists(folder_ / "merged.db.files/kept/.unfinished"));
 }
 
 // the unfinished files of a killed process do not count as a draw, and missing draws are made again
@@ -162,15 +150,15 @@ TEST_F(KeepTest, WhatIsMissingIsMadeAgain) {
   run("a.db", 1, 2, "all");
   const auto before = kept("a.db");
   const KeptDraws draws(folder_ / "a.db");
-  std::filesystem::remove_all(draws.folder_of({"roll", 1}) / "estimates" / "rate-raw");
-  std::filesystem::remove_all(draws.folder_of({"roll", 2}));
-  std::filesystem::create_directories(folder_ / "a.db.files/kept/.unfinished/roll-2");
+  fs::remove_all(draws.folder_of({"roll", 1}) / "estimates" / "rate-raw");
+  fs::remove_all(draws.folder_of({"roll", 2}));
+  fs::create_directories(folder_ / "a.db.files/kept/.unfinished/roll-2");
   EXPECT_FALSE(draws.holds({"roll", 2}, {}));
   const SweepProgress progress = run("a.db", 1, 2, "all");
   EXPECT_EQ(progress.outcomes, 0u) << "the rows stand";
   EXPECT_EQ(progress.kept, 2u);
   EXPECT_EQ(kept("a.db"), before);
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.db.files/kept/.unfinished"));
+  EXPECT_FALSE(fs::exists(folder_ / "a.db.files/kept/.unfinished"));
 
   // another rule removes the draws that it does not select; no rule keeps them
   run("a.db", 1, 2, "none");
@@ -197,21 +185,21 @@ TEST_F(KeepTest, ADrawIsKeptWholeOrNotAtAll) {
   keeping.folder = folder_ / "kept" / "roll" / "1";
   const auto finished = [&](const std::string& missed) {
     DrawFiles files(keeping);
-    std::filesystem::create_directories(files.estimate(find_methods("rate/raw").front()->info));
+    fs::create_directories(files.estimate(find_methods("rate/raw").front()->info));
     if (!missed.empty()) files.miss(missed);
     files.finish(draw, false);
     return files.error_code();
   };
   EXPECT_EQ(finished("no space left on device"), "no space left on device");
-  EXPECT_FALSE(std::filesystem::exists(keeping.folder));
+  EXPECT_FALSE(fs::exists(keeping.folder));
   EXPECT_EQ(finished(""), "");
-  EXPECT_TRUE(std::filesystem::exists(keeping.folder / "recording.h5"));
+  EXPECT_TRUE(fs::exists(keeping.folder / "recording.h5"));
 }
 
 TEST_F(KeepTest, TwoRulesAreNotMerged) {
   run("a.db", 1, 1, "all");
   run("b.db", 2, 2, "failed");
-  const std::vector<std::filesystem::path> in = {folder_ / "a.db", folder_ / "b.db"};
+  const std::vector<fs::path> in = {folder_ / "a.db", folder_ / "b.db"};
   merge_results(DatabaseOwner(folder_ / "out.db"), in, false);
   EXPECT_EQ(merge_kept(DatabaseOwner(folder_ / "out.db"), in), 0u);
   EXPECT_TRUE(kept("out.db").empty());
@@ -225,7 +213,7 @@ TEST_F(KeepTest, AMergeIntoRowsOfAnotherRuleLeavesWhatIsKept) {
   const auto before = kept("all.db");
   const auto merged = [&](const char* out, const char* in) {
     const DatabaseOwner owner(folder_ / out);
-    const std::vector<std::filesystem::path> inputs = {folder_ / in};
+    const std::vector<fs::path> inputs = {folder_ / in};
     merge_results(owner, inputs, false);
     return merge_kept(owner, inputs);
   };
@@ -276,7 +264,7 @@ TEST_F(KeepTest, ACrashCostsTheRecordingNoLidar) {
   const SweepProgress progress = sweep(data(), ride, DatabaseOwner(folder_ / "a.db"), options);
   EXPECT_EQ(progress.outcomes, 0u) << "the rows stand";
   ASSERT_EQ(progress.kept, 1u) << progress.not_kept;
-  const std::filesystem::path draw = KeptDraws(folder_ / "a.db").folder_of({"ride", 1});
+  const fs::path draw = KeptDraws(folder_ / "a.db").folder_of({"ride", 1});
   EXPECT_EQ(read_sensors(draw / "recording.h5").lidars.size(), 1u);
 }
 

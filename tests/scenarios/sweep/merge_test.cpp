@@ -2,28 +2,18 @@
 #include "scenarios/sweep/merge.hpp"
 
 #include <SQLiteCpp/SQLiteCpp.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <unistd.h>
-
-#include <cmath>
-#include <limits>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "scenarios/sweep/database_owner.hpp"
 #include "scenarios/sweep/results.hpp"
 #include "scenarios/sweep/run_again.hpp"
-#include "tests/complaint.hpp"
-#include "tests/temporary_folder.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
 
-using ::testing::HasSubstr;
-using Paths = std::vector<std::filesystem::path>;
+using Paths = std::vector<fs::path>;
 
 Outcome row(std::uint64_t seed, OutcomeStatus status, const std::string& digest = "e") {
   Outcome outcome;
@@ -40,10 +30,10 @@ Outcome row(std::uint64_t seed, OutcomeStatus status, const std::string& digest 
   return outcome;
 }
 
-class MergeTest : public testing::TemporaryFolder {
+class MergeTest : public test::TemporaryFolder {
  protected:
-  std::filesystem::path make(const std::string& name, const std::vector<Outcome>& rows,
-                             const std::vector<RejectedDraw>& rejected = {}) {
+  fs::path make(const std::string& name, const std::vector<Outcome>& rows,
+                const std::vector<RejectedDraw>& rejected = {}) {
     Results results(folder_ / name, Results::Mode::create_or_append);
     for (const Outcome& each : rows) results.store(each);
     for (const RejectedDraw& each : rejected) results.store(each);
@@ -53,23 +43,15 @@ class MergeTest : public testing::TemporaryFolder {
     return test::complaint([&] { merge_results(DatabaseOwner(out_), in, mixed); });
   }
   std::vector<Outcome> merged() const { return Results(out_, Results::Mode::read_only).outcomes(); }
-  std::size_t files() const {
-    return static_cast<std::size_t>(
-        std::distance(std::filesystem::directory_iterator(folder_), std::filesystem::directory_iterator()));
-  }
-  void SetUp() override {
-    TemporaryFolder::SetUp();
-    out_ = folder_ / "out.db";
-  }
-  std::filesystem::path out_;
+  const fs::path out_ = folder_ / "out.db";
 };
 
 TEST_F(MergeTest, WhatWasScoredStaysInEitherOrder) {
   for (const OutcomeStatus worse : {OutcomeStatus::crashed, OutcomeStatus::timeout, OutcomeStatus::killed}) {
     for (const bool good_first : {true, false}) {
-      std::filesystem::remove(out_);
-      std::filesystem::remove(folder_ / "good.db");
-      std::filesystem::remove(folder_ / "bad.db");
+      fs::remove(out_);
+      fs::remove(folder_ / "good.db");
+      fs::remove(folder_ / "bad.db");
       const auto good = make("good.db", {row(1, OutcomeStatus::ok)});
       const auto bad = make("bad.db", {row(1, worse), row(2, OutcomeStatus::killed)});
       const MergeCounts counts =
@@ -109,7 +91,7 @@ TEST_F(MergeTest, TwoAnswersOfOneBuildAreRefusedAndNothingIsLeft) {
   const auto b = make("b.db", {row(1, OutcomeStatus::ok, "two")});
   EXPECT_THAT(complaint({a, b}), HasSubstr("b.db: hill, seed 1, slam/icp: the result has status ok and digest 'two', "
                                            "but another database has status ok"));
-  EXPECT_FALSE(std::filesystem::exists(out_));
+  EXPECT_FALSE(fs::exists(out_));
   EXPECT_EQ(files(), 2u);
   const auto c = make("c.db", {row(1, OutcomeStatus::diverged, "one")});
   EXPECT_THAT(complaint({a, c}), HasSubstr("has status diverged and digest"));
@@ -140,16 +122,16 @@ TEST_F(MergeTest, OneEstimateHasOneScore) {
         {{{"ate_m", inf}}, "ate_m is inf, but 0.5 in another database"},
         {{}, "ate_m is none, but 0.5 in another database"},
         {{{"ate_m", 0.5}, {"rpe_1m_m", 1.0}}, "rpe_1m_m is 1, but none in another database"}}) {
-    std::filesystem::remove(folder_ / "b.db");
-    std::filesystem::remove(out_);
+    fs::remove(folder_ / "b.db");
+    fs::remove(out_);
     const auto b = make("b.db", {scored(values), row(2, OutcomeStatus::ok)});
     EXPECT_THAT(complaint({a, b}), HasSubstr(std::string("b.db: hill, seed 1, slam/icp: ") + says));
-    EXPECT_FALSE(std::filesystem::exists(out_));
+    EXPECT_FALSE(fs::exists(out_));
     EXPECT_EQ(complaint({a, b}, true), "") << "asked for, the first stays";
     EXPECT_EQ(Results(out_, Results::Mode::read_only).scores().size(), 4u);
   }
   const auto unknown = make("unknown.db", {scored({{"ate_m", nan}})});
-  std::filesystem::remove(out_);
+  fs::remove(out_);
   EXPECT_EQ(complaint({unknown, unknown}), "") << "what is unknown twice does not differ";
 }
 
@@ -157,14 +139,14 @@ TEST_F(MergeTest, AScoreThatIsNoNumberIsNoZero) {
   const auto a = make("a.db", {row(1, OutcomeStatus::ok)});
   SQLite::Database(a.string(), SQLite::OPEN_READWRITE).exec("UPDATE score_values SET value = 'good'");
   EXPECT_THAT(complaint({a}), HasSubstr("a.db: hill, seed 1, slam/icp, ate_m: is text; it must be a number or null"));
-  EXPECT_FALSE(std::filesystem::exists(out_));
+  EXPECT_FALSE(fs::exists(out_));
 }
 
 TEST_F(MergeTest, ARejectionGivesWayToAnOutcome) {
   const auto rejected = make("a.db", {}, {{"hill", 1, "no place", {}}, {"hill", 2, "no place", {}}});
   const auto run = make("b.db", {row(1, OutcomeStatus::ok)});
   for (const Paths& in : {Paths{rejected, run}, Paths{run, rejected}}) {
-    std::filesystem::remove(out_);
+    fs::remove(out_);
     merge_results(DatabaseOwner(out_), in, false);
     const Results results(out_, Results::Mode::read_only);
     EXPECT_EQ(results.outcomes().size(), 1u);
@@ -191,7 +173,7 @@ TEST_F(MergeTest, HasAllThatTheShardsHave) {
     plain.scores.clear();
     rows.push_back(plain);
   }
-  const auto fill = [&](const std::filesystem::path& path, std::size_t first, std::size_t step) {
+  const auto fill = [&](const fs::path& path, std::size_t first, std::size_t step) {
     Results results(path, Results::Mode::create_or_append);
     for (std::size_t i = first; i < rows.size(); i += step) {
       results.store(rows[i]);
@@ -247,7 +229,7 @@ TEST_F(MergeTest, ScoresInAnyNumberArriveAndBelongToTheirOutcomes) {
   const MergeCounts counts = merge_results(DatabaseOwner(out_), Paths{bad, good}, false);
   EXPECT_EQ(counts.added, numbers.size());
   EXPECT_EQ(counts.replaced, numbers.size());
-  const auto everything = [](const std::filesystem::path& path) {
+  const auto everything = [](const fs::path& path) {
     std::vector<std::string> lines;
     const Results results(path, Results::Mode::read_only);
     for (const ScoreRow& s : results.scores(Rows::all))
@@ -275,7 +257,7 @@ TEST_F(MergeTest, ADamagedShardIsNamedAndNothingIsLeft) {
   std::vector<Outcome> rows;
   for (std::uint64_t seed = 1; seed <= 400; ++seed) rows.push_back(row(seed, OutcomeStatus::ok));
   const auto a = make("a.db", rows);
-  std::filesystem::resize_file(a, std::filesystem::file_size(a) / 2);
+  fs::resize_file(a, fs::file_size(a) / 2);
   EXPECT_THAT(complaint({a}), HasSubstr("a.db"));
   EXPECT_EQ(files(), 1u);
 }
@@ -284,12 +266,12 @@ TEST_F(MergeTest, WaitsForNobodyWhoWrites) {
   const auto a = make("a.db", {row(1, OutcomeStatus::ok)});
   const DatabaseOwner owner(out_);
   EXPECT_THAT(complaint({a}), HasSubstr("out.db: process " + std::to_string(getpid()) + " on "));
-  EXPECT_FALSE(std::filesystem::exists(out_));
+  EXPECT_FALSE(fs::exists(out_));
 }
 
 TEST_F(MergeTest, AnInputUnderAnotherNameIsNoOutput) {
   const auto a = make("a.db", {row(1, OutcomeStatus::ok)});
-  std::filesystem::create_symlink("a.db", out_);
+  fs::create_symlink("a.db", out_);
   EXPECT_THAT(complaint({a}), HasSubstr("both input and output"));
 }
 

@@ -2,22 +2,17 @@
 #include "scenarios/processes/process.hpp"
 #include "scenarios/methods/registry.hpp"
 
-#include <gtest/gtest.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <cmath>
-#include <cstdlib>
-#include <limits>
 #include <new>
-#include <stdexcept>
-#include <vector>
 
 #include "scenarios/methods/synthetic_recording.hpp"
 #include "scenarios/sweep/draw_process.hpp"
 #include "scenarios/sweep/message.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {

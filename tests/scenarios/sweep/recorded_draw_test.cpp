@@ -1,32 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenarios/sweep/recorded_draw.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <map>
-
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/sweep/results.hpp"
 #include "scenarios/sweep/sweep.hpp"
 #include "stand_ins/synthetic_repoimu.hpp"
-#include "tests/complaint.hpp"
-#include "tests/temporary_folder.hpp"
-#include "tests/tree.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
 
-using ::testing::HasSubstr;
-
 // RecordedSweep has recordings like the published ones, one with and one without a reference
-class RecordedSweep : public testing::TemporaryFolder {
+class RecordedSweep : public test::TemporaryFolder {
  protected:
   void SetUp() override {
-    TemporaryFolder::SetUp();
     write("scenarios/catalogue/hill.yaml", "");
-    std::filesystem::create_directory_symlink(test::source_dir() / "models", folder_ / "models");
+    fs::create_directory_symlink(test::source_dir() / "models", folder_ / "models");
     write("scenarios/suites/real.yaml",
           "name: real\ndoc: Some words.\nrecordings: [wands/*.h5]\nmethods: [rate/raw, rate/interpolate, rate/oracle, "
           "attitude/vqf, slam/icp_raw]\ntimeout_s: 60\n");
@@ -45,10 +34,10 @@ class RecordedSweep : public testing::TemporaryFolder {
     imu.period_ns = truth.period_ns = kPeriod_ns;
     for (std::int64_t time_ns = 0; time_ns < std::llround(1e9 * duration_s); time_ns += kPeriod_ns) {
       const double t = 1e-9 * static_cast<double>(time_ns);
-      const Eigen::Vector3d w = fixture::Wand::rate(t);
+      const Vector3d w = fixture::Wand::rate(t);
       imu.time_ns.push_back(time_ns);
       imu.gyro_rad_s.push_back(fixture::clipped({}, w));
-      imu.accel_m_s2.push_back(attitude.at(t).conjugate() * Eigen::Vector3d(0.0, 0.0, 9.80665));
+      imu.accel_m_s2.push_back(attitude.at(t).conjugate() * Vector3d(0.0, 0.0, 9.80665));
       imu.clip_flags.push_back(0);
       truth.q_WB.push_back(attitude.at(t));
       truth.w_WB_B_rad_s.push_back(w);
@@ -56,7 +45,7 @@ class RecordedSweep : public testing::TemporaryFolder {
         unknown->push_back(Eigen::Vector3d::Constant(std::nan("")));
       truth.imus[0].rate_rad_s.push_back(w);
     }
-    std::filesystem::create_directories(folder_ / "data/wands");
+    fs::create_directories(folder_ / "data/wands");
     write_recording(folder_ / "data/wands" / (name + ".h5"), {}, sensors, with_reference ? &truth : nullptr);
   }
 
@@ -66,14 +55,14 @@ class RecordedSweep : public testing::TemporaryFolder {
     return suite;
   }
 
-  std::map<std::string, std::string> digests(const std::filesystem::path& database) const {
+  std::map<std::string, std::string> digests(const fs::path& database) const {
     std::map<std::string, std::string> found;
     for (const Outcome& row : Results(database, Results::Mode::read_only).outcomes())
       found[row.scenario + to_string(row.kind) + row.method] = row.recording_digest + row.estimate_digest;
     return found;
   }
 
-  std::string complaint(const Suite& suite, const std::filesystem::path& database) const {
+  std::string complaint(const Suite& suite, const fs::path& database) const {
     return test::complaint([&] { sweep(DataRoot{folder_}, suite, DatabaseOwner(database), {}); });
   }
 };
@@ -117,8 +106,8 @@ TEST_F(RecordedSweep, ARecordingThatHasChangedIsRefused) {
   Suite elsewhere = suite();
   elsewhere.recordings_folder = folder_ / "nowhere";
   EXPECT_THAT(complaint(elsewhere, folder_ / "d.db"), HasSubstr("no recording matches 'wands/*.h5'"));
-  std::filesystem::create_directories(folder_ / "data/other");
-  std::filesystem::copy(folder_ / "data/wands/wand_a.h5", folder_ / "data/other/wand_a.h5");
+  fs::create_directories(folder_ / "data/other");
+  fs::copy(folder_ / "data/wands/wand_a.h5", folder_ / "data/other/wand_a.h5");
   Suite twice = suite();
   twice.recordings = {"wands/*.h5", "other/*.h5"};
   EXPECT_THAT(complaint(twice, folder_ / "e.db"), HasSubstr("has the same name"));

@@ -2,25 +2,14 @@
 #include "scenarios/sweep/results.hpp"
 
 #include <SQLiteCpp/SQLiteCpp.h>
-#include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmath>
-#include <cstdint>
-#include <fstream>
-#include <iterator>
-#include <limits>
-#include <string>
-#include <utility>
-
-#include "scenarios/errors.hpp"
 #include "scenarios/provenance/build_id.hpp"
-#include "tests/complaint.hpp"
-#include "tests/temporary_folder.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -49,14 +38,10 @@ bool holds(const Results& results, const std::string& scenario, std::uint64_t se
   return results.find(key).has_value();
 }
 
-class ResultsTest : public testing::TemporaryFolder {
+class ResultsTest : public test::TemporaryFolder {
  protected:
-  std::filesystem::path path() const { return folder_ / "results.db"; }
+  fs::path path() const { return folder_ / "results.db"; }
 
-  std::string bytes_of(const std::string& name) const {
-    std::ifstream file(folder_ / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
   std::string complaint(Results::Mode mode) const {
     return test::complaint([&] { Results results(path(), mode); });
   }
@@ -192,7 +177,7 @@ TEST_F(ResultsTest, AValueThatIsNoNumberIsNamed) {
 
 TEST_F(ResultsTest, WhatTheSchemaHasIsThereOrNamed) {
   { Results(path(), Results::Mode::create_or_append).store(sample_outcome(1)); }
-  const std::string whole = bytes_of("results.db");
+  const std::string whole = test::read_file(path());
   for (const auto& [change, missing] :
        {std::pair{"DROP TABLE score_values", "table score_values"},
         {"DROP TABLE notes", "table notes"},
@@ -226,14 +211,14 @@ TEST_F(ResultsTest, AnotherBuildMayReadButNotAppend) {
 
 TEST_F(ResultsTest, OtherFilesAreRefusedAndLeftAlone) {
   EXPECT_NE(complaint(Results::Mode::read_only).find("no such file"), std::string::npos);
-  EXPECT_FALSE(std::filesystem::exists(path()));
+  EXPECT_FALSE(fs::exists(path()));
 
   write("results.db",
         "this is no database, whatever its name says; it is long enough to have a header of 100 bytes .....");
   EXPECT_NE(complaint(Results::Mode::read_only).find("not a"), std::string::npos);
   EXPECT_NE(complaint(Results::Mode::create_or_append).find("not a"), std::string::npos);
 
-  std::filesystem::remove(path());
+  fs::remove(path());
   { SQLite::Database(path().string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec("CREATE TABLE theirs (x)"); }
   EXPECT_NE(complaint(Results::Mode::create_or_append).find("not a results database"), std::string::npos);
   SQLite::Database theirs(path().string());
@@ -245,7 +230,7 @@ TEST_F(ResultsTest, ATruncatedDatabaseIsBadInput) {
     Results results(path(), Results::Mode::create_or_append);
     for (std::uint64_t seed = 0; seed < 200; ++seed) results.store(sample_outcome(seed));
   }
-  std::filesystem::resize_file(path(), std::filesystem::file_size(path()) / 2);
+  fs::resize_file(path(), fs::file_size(path()) / 2);
   EXPECT_THROW(
       {
         const Results results(path(), Results::Mode::read_only);
@@ -257,7 +242,7 @@ TEST_F(ResultsTest, ATruncatedDatabaseIsBadInput) {
 // opening a pipe would wait for ever
 TEST_F(ResultsTest, APipeAndAFolderAreRefused) {
   for (const bool pipe : {true, false}) {
-    std::filesystem::remove(path());
+    fs::remove(path());
     ASSERT_EQ(pipe ? mkfifo(path().c_str(), 0600) : mkdir(path().c_str(), 0700), 0);
     for (const Results::Mode mode : {Results::Mode::read_only, Results::Mode::create_or_append})
       EXPECT_NE(complaint(mode).find(pipe ? "is a pipe; it must be a regular file" : "is a folder; it must be a file"),
@@ -336,7 +321,7 @@ TEST_F(ResultsTest, WhatHasBeenStoredSurvivesAKill) {
 // a copy of the files during a large transaction is what a killed writer leaves
 TEST_F(ResultsTest, ReadersRollBackTheTransactionOfAKilledWriter) {
   Results(path(), Results::Mode::create_or_append).store(sample_outcome(1));
-  const std::filesystem::path killed = folder_ / "killed.db";
+  const fs::path killed = folder_ / "killed.db";
   {
     SQLite::Database writer(path().string(), SQLite::OPEN_READWRITE);
     writer.exec("PRAGMA cache_size = 1");  // changed pages are written before the end of the transaction
@@ -348,8 +333,8 @@ TEST_F(ResultsTest, ReadersRollBackTheTransactionOfAKilledWriter) {
       insert.exec();
       insert.reset();
     }
-    std::filesystem::copy_file(path(), killed);
-    std::filesystem::copy_file(path().string() + "-journal", killed.string() + "-journal");
+    fs::copy_file(path(), killed);
+    fs::copy_file(path().string() + "-journal", killed.string() + "-journal");
   }
   const Results results(killed, Results::Mode::read_only);
   EXPECT_EQ(results.note("key 0"), "");

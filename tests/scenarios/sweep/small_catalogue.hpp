@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <filesystem>
-
-#include "scenarios/data_root.hpp"
-#include "tests/temporary_folder.hpp"
-#include "tests/tree.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios::testing {
 
@@ -21,12 +17,11 @@ sensors:
 )";
 
 /// SmallCatalogue has the project's models and a catalogue of that one scenario.
-class SmallCatalogue : public TemporaryFolder {
+class SmallCatalogue : public test::TemporaryFolder {
  protected:
   void SetUp() override {
-    TemporaryFolder::SetUp();
     write("scenarios/catalogue/roll.yaml", kRoll);
-    std::filesystem::create_directory_symlink(test::source_dir() / "models", folder_ / "models");
+    fs::create_directory_symlink(test::source_dir() / "models", folder_ / "models");
   }
   DataRoot data() const { return {folder_}; }
 };

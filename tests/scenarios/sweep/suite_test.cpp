@@ -1,22 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/estimates/method.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/sweep/sweep.hpp"
-#include "tests/complaint.hpp"
-#include "tests/temporary_folder.hpp"
-#include "tests/tree.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
 
-class SuiteTest : public testing::TemporaryFolder {
+class SuiteTest : public test::TemporaryFolder {
  protected:
   void SetUp() override {
-    TemporaryFolder::SetUp();
     // the suite reads only the names of scenarios
     write("scenarios/catalogue/hill.yaml", "");
     write("scenarios/catalogue/roll.yaml", "");
@@ -71,13 +65,13 @@ TEST_F(SuiteTest, ComplaintsNameFileLineAndNearestName) {
   EXPECT_NE(complaint(head + "scenarios: [hill]\nseeds: {first: 1, last: 2}\ntimeout_s: -5\n").find("timeout_s"),
             std::string::npos);
   EXPECT_NE(complaint(head + "seeds: {first: 1, last: 2}\n"), "");
-  EXPECT_THAT(test::complaint([&] { load_suite(data(), "tset"); }), ::testing::HasSubstr("did you mean 'test'"));
+  EXPECT_THAT(test::complaint([&] { load_suite(data(), "tset"); }), HasSubstr("did you mean 'test'"));
 }
 
 TEST_F(SuiteTest, AScenarioIsDistinguishedFromASuite) {
-  EXPECT_THAT(complaint("name: icy\ndoc: d\nduration_s: 4\nmotion: {type: push}\n"),
-              ::testing::AllOf(::testing::HasSubstr("test.yaml:4: motion: this key belongs to a scenario"),
-                               ::testing::HasSubstr("scenarios/catalogue")));
+  EXPECT_THAT(
+      complaint("name: icy\ndoc: d\nduration_s: 4\nmotion: {type: push}\n"),
+      AllOf(HasSubstr("test.yaml:4: motion: this key belongs to a scenario"), HasSubstr("scenarios/catalogue")));
 }
 
 TEST_F(SuiteTest, DrawsMayBeNamedInClasses) {
@@ -98,19 +92,18 @@ TEST_F(SuiteTest, DrawsMayBeNamedInClasses) {
   EXPECT_EQ(suite.draw_count(), 2u);
 
   const std::string head = "name: test\ndoc: d\n";
-  EXPECT_THAT(complaint(head + "draws: {mild: {hil: [1]}}\n"), ::testing::HasSubstr("did you mean 'hill'"));
-  EXPECT_THAT(complaint(head + "draws: {mild: {hill: [1]}, wild: {hill: [1]}}\n"), ::testing::HasSubstr("twice"));
-  EXPECT_THAT(complaint(head + "draws: {mild: {}}\n"), ::testing::HasSubstr("needs at least one simulated run"));
-  EXPECT_THAT(complaint(head + "draws: {}\n"), ::testing::HasSubstr("needs at least one simulated run"));
-  EXPECT_THAT(complaint(head + "draws: {mild: {hill: [1]}}\nscenarios: [hill]\n"),
-              ::testing::HasSubstr("is not allowed"));
-  EXPECT_THAT(complaint(head + "draws: {mild: {hill: [1]}}\nmetrics: [ate]\n"), ::testing::HasSubstr("ate_m"));
+  EXPECT_THAT(complaint(head + "draws: {mild: {hil: [1]}}\n"), HasSubstr("did you mean 'hill'"));
+  EXPECT_THAT(complaint(head + "draws: {mild: {hill: [1]}, wild: {hill: [1]}}\n"), HasSubstr("twice"));
+  EXPECT_THAT(complaint(head + "draws: {mild: {}}\n"), HasSubstr("needs at least one simulated run"));
+  EXPECT_THAT(complaint(head + "draws: {}\n"), HasSubstr("needs at least one simulated run"));
+  EXPECT_THAT(complaint(head + "draws: {mild: {hill: [1]}}\nscenarios: [hill]\n"), HasSubstr("is not allowed"));
+  EXPECT_THAT(complaint(head + "draws: {mild: {hill: [1]}}\nmetrics: [ate]\n"), HasSubstr("ate_m"));
 }
 
 // the project's suites are loaded with the project's catalogue
 TEST(Suites, OfTheTreeLoad) {
   const DataRoot data{test::source_dir()};
-  ASSERT_TRUE(std::filesystem::exists(data.catalogue())) << data.catalogue();
+  ASSERT_TRUE(fs::exists(data.catalogue())) << data.catalogue();
   const auto names = suite_names(data);
   ASSERT_GE(names.size(), 4u);
   for (const std::string& name : names) EXPECT_NO_THROW(load_suite(data, name)) << name;

@@ -2,18 +2,13 @@
 #include "scenarios/sweep/sweep.hpp"
 #include "scenarios/methods/registry.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include <map>
-
 #include "scenarios/draw/scenario.hpp"
-#include "scenarios/errors.hpp"
 #include "scenarios/sweep/evaluate.hpp"
 #include "scenarios/sweep/results.hpp"
 #include "scenarios/sweep/small_catalogue.hpp"
-#include "tests/complaint.hpp"
+#include "tests/scenarios/testing.hpp"
 
 // the test runs a whole sweep on the sphere, whose draws are short and have no map to score
 namespace tumble::scenarios {
@@ -30,7 +25,7 @@ Suite small_suite(std::uint64_t last_seed) {
   return suite;
 }
 
-std::map<std::string, std::string> digests(const std::filesystem::path& database) {
+std::map<std::string, std::string> digests(const fs::path& database) {
   std::map<std::string, std::string> found;
   for (const Outcome& outcome : Results(database, Results::Mode::read_only).outcomes()) {
     found[std::to_string(outcome.seed) + to_string(outcome.kind)] = outcome.recording_digest + outcome.estimate_digest;
@@ -195,7 +190,7 @@ TEST_F(SweepTest, RefusesADatabaseOfOtherScenarios) {
   const auto path = folder_ / "a.db";
   Results(path, Results::Mode::create_or_append).set_note("data", "another catalogue");
   EXPECT_THAT(test::complaint([&] { sweep(data(), small_suite(1), DatabaseOwner(path), {}); }),
-              ::testing::HasSubstr("made from other models or scenarios"));
+              HasSubstr("made from other models or scenarios"));
 }
 
 TEST_F(SweepTest, WrongUseIsBadInputBeforeAnythingRuns) {

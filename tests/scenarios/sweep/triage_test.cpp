@@ -2,14 +2,8 @@
 #include "scenarios/sweep/triage.hpp"
 #include "scenarios/methods/registry.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
-#include "scenarios/errors.hpp"
 #include "scenarios/scoring/truth_track.hpp"
-#include "tests/scenarios/tree_data.hpp"
+#include "tests/scenarios/testing.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -17,11 +11,11 @@ namespace {
 /// Returns a tumble with all sensors, made once for all tests.
 const SimulatedDraw& tumble() {
   static const SimulatedDraw kDraw = [] {
-    Scenario scenario = load_scenario(tree_data(), "hill");
+    Scenario scenario = load_scenario(test::tree_data(), "hill");
     scenario.duration_s.shape = Distribution::Shape::constant;
     scenario.duration_s.numbers = {5.0};
     scenario.sensors.push_back({"barometer", "barometer", "bmp388", "rs16", {}, {}, 0});
-    return simulate_draw(tree_data(), scenario, 1, 1);
+    return simulate_draw(test::tree_data(), scenario, 1, 1);
   }();
   return kDraw;
 }
@@ -73,7 +67,7 @@ double largest_miss_m(const sim::Sensors& sensors, const sim::Truth& truth, std:
       const std::int64_t time_ns = lidar.sweep_start_ns[sweep] + lidar.offset_ns[i];
       if (!track.covers(time_ns)) continue;
       const PoseState pose = track.pose(time_ns);
-      const Eigen::Vector3d p_W_m = pose.orientation_W * lidar.position_L_m[i].cast<double>() + pose.position_W_m;
+      const Vector3d p_W_m = pose.orientation_W * lidar.position_L_m[i].cast<double>() + pose.position_W_m;
       largest = std::max(largest, (p_W_m - truth.lidars[0].hit_W_m[i].cast<double>()).norm());
     }
   }
@@ -106,13 +100,14 @@ TEST(TrueInputs, UnbentSweepsLieRightAtOneInstant) {
 
 /// The rate of `raw` fails where the gyro is saturated: the unsaturated gyro cures it, and the accelerometer does not.
 TEST(Triage, TheClippedGyroIsTheCauseOfRawsError) {
-  Scenario scenario = load_scenario(tree_data(), "hill");
+  Scenario scenario = load_scenario(test::tree_data(), "hill");
   scenario.duration_s.shape = Distribution::Shape::constant;
   scenario.duration_s.numbers = {5.0};
   std::erase_if(scenario.sensors, [](const Scenario::Sensor& sensor) { return sensor.name == "lidar"; });
   TriageOptions options;
   options.failure = {"rate_error_clipped_median_rad_s", 0.1};
-  const std::vector<TriageRow> rows = triage(tree_data(), scenario, 1, *find_methods("rate/raw").front(), options);
+  const std::vector<TriageRow> rows =
+      triage(test::tree_data(), scenario, 1, *find_methods("rate/raw").front(), options);
   ASSERT_GT(rows.size(), 4u);
   EXPECT_EQ(rows[0].input, "none");
   EXPECT_TRUE(rows[0].fails) << "seed 1 clips";
@@ -120,13 +115,13 @@ TEST(Triage, TheClippedGyroIsTheCauseOfRawsError) {
   for (const TriageRow& row : rows) {
     if (!row.fails) cures.push_back(row.input);
   }
-  EXPECT_THAT(cures, ::testing::ElementsAre("gyro_unclipped", "gyro_exact", "all"));
+  EXPECT_THAT(cures, ElementsAre("gyro_unclipped", "gyro_exact", "all"));
 }
 
 TEST(Triage, AMethodOfAnotherRobotIsRefused) {
-  EXPECT_THROW(
-      triage(tree_data(), load_scenario(tree_data(), "hill"), 1, *find_methods("position/rolling").front(), {}),
-      BadInput);
+  EXPECT_THROW(triage(test::tree_data(), load_scenario(test::tree_data(), "hill"), 1,
+                      *find_methods("position/rolling").front(), {}),
+               BadInput);
 }
 
 }  // namespace

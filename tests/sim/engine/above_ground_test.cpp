@@ -2,22 +2,13 @@
 // The test uses synthetic poses of a sensor over and under a slope, whose depth is known in closed form.
 #include "sim/truth/above_ground.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string>
-
 #include "sim/engine/height_field.hpp"
 #include "sim/simulate.hpp"
 #include "tests/sim/lidar/test_worlds.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 namespace {
-
-using Eigen::Vector3d;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
 
 constexpr double kSlope = 0.5;
 

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/built_situation.hpp"
 
-#include <gtest/gtest.h>
 #include <unistd.h>
-
-#include <algorithm>
-#include <type_traits>
 
 #include "sim/compose.hpp"
 #include "sim/engine/physics.hpp"
@@ -15,6 +11,7 @@
 #include "sim/simulate.hpp"
 #include "sim/trial/ray_trial.hpp"
 #include "sim/trial/trial.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 namespace {
@@ -26,7 +23,7 @@ static_assert(!std::is_constructible_v<ResolvedSituation, Situation>);
 static_assert(!std::is_assignable_v<ResolvedSituation&, Situation>);
 static_assert(!std::is_convertible_v<ResolvedSituation&, Situation&>, "no number of a resolved one is changed");
 static_assert(std::is_same_v<decltype(resolve(std::declval<Situation>())), ResolvedSituation>);
-static_assert(!std::is_constructible_v<BuiltSituation, Situation, std::filesystem::path>);
+static_assert(!std::is_constructible_v<BuiltSituation, Situation, fs::path>);
 template <typename World>
 concept Serves = std::is_constructible_v<Surface, World> && std::is_constructible_v<Renderer, World> &&
     std::is_constructible_v<Trial, World> && std::is_invocable_v<decltype(&start_pose), World> &&
@@ -82,17 +79,16 @@ TEST(BuiltSituation, CopiesShareTheWorld) {
 
 // The robot's file is read wherever a world is composed: without that file everything except composing works.
 TEST(BuiltSituation, NothingThatIsMadeFromItComposesAgain) {
-  const std::filesystem::path models =
-      std::filesystem::temp_directory_path() / ("tumble_built_" + std::to_string(getpid()));
-  std::filesystem::create_directories(models);
-  std::filesystem::copy_file(models_folder() / "rig.xml", models / "rig.xml");
+  const fs::path models = fs::temp_directory_path() / ("tumble_built_" + std::to_string(getpid()));
+  fs::create_directories(models);
+  fs::copy_file(models_folder() / "rig.xml", models / "rig.xml");
   const BuiltSituation only(resolve(tumble_down(1.0, 100.0)), models);
-  std::filesystem::remove_all(models);
+  fs::remove_all(models);
   ASSERT_THROW(BuiltSituation(resolve(tumble_down(1.0, 100.0)), models), InvalidSituation);
 
   EXPECT_EQ(simulate(only).truth.p_WB_m, simulate(built(tumble_down(1.0, 100.0))).truth.p_WB_m);
   EXPECT_GT(start_pose(only).translation().norm(), 0.0);
-  EXPECT_EQ(Surface(only).distances(std::vector<Eigen::Vector3f>{{0.0f, 0.0f, 50.0f}}, 1.0f).front(), 1.0f);
+  EXPECT_EQ(Surface(only).distances(std::vector<Vector3f>{{0.0f, 0.0f, 50.0f}}, 1.0f).front(), 1.0f);
   EXPECT_GT(Trial(only).mass_kg(), 1.0);
   EXPECT_EQ(compare_rays(only, {100}).rays, 100);
 }
@@ -102,7 +98,7 @@ BodyState fallen(engine::World world) {
   engine::Physics physics(world);
   BodyState state = physics.state();
   if (world.free) {
-    state.p_WB_m = world.start_W_m + Eigen::Vector3d(0.3, 0.1, 0.4);
+    state.p_WB_m = world.start_W_m + Vector3d(0.3, 0.1, 0.4);
     state.w_WB_B_rad_s = {2.0, 9.0, -3.0};
     physics.set_state(state);
   }

@@ -3,23 +3,13 @@
 // forces, whatever its table contains.
 #include "sim/engine/field_contact.hpp"
 
-#include <gtest/gtest.h>
-
-#include <Eigen/Geometry>
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-#include <optional>
-#include <string>
-
 #include "sim/random/stream.hpp"
 #include "tests/sim/lidar/test_worlds.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim::engine {
 namespace {
 
-using Eigen::Vector3d;
 using Contacts = std::array<mjPreContact, mjMAXCONPAIR>;
 
 /// Ground has a strut above 6 m x 4 m of ground that is rough to 0.2 m over cells of 0.2 m by 0.16 m.
@@ -39,7 +29,7 @@ class Ground {
     }
   }
 
-  void put(const Vector3d& at_m, const Eigen::Quaterniond& turn) {
+  void put(const Vector3d& at_m, const Quaterniond& turn) {
     Vector3d::Map(data_->qpos) = at_m;
     data_->qpos[3] = turn.w();
     Vector3d::Map(data_->qpos + 4) = turn.vec();
@@ -60,8 +50,8 @@ class Ground {
   DataPtr data_;
 };
 
-Eigen::Quaterniond any_attitude(Stream& chance) {
-  Eigen::Quaterniond turn(chance.normal(), chance.normal(), chance.normal(), chance.normal());
+Quaterniond any_attitude(Stream& chance) {
+  Quaterniond turn(chance.normal(), chance.normal(), chance.normal(), chance.normal());
   return turn.normalized();
 }
 
@@ -106,7 +96,7 @@ TEST(FieldContact, ContactsAreTheEngines) {
 TEST(FieldContact, TheComparisonSeesAMicrometre) {
   Ground ground;
   Contacts contacts;
-  const Eigen::Quaterniond level(Eigen::AngleAxisd(1.5, Vector3d::UnitY()));
+  const Quaterniond level(Eigen::AngleAxisd(1.5, Vector3d::UnitY()));
   Vector3d at_m(0.0, 0.0, 0.5);
   std::optional<int> count = 0;
   for (; count && *count == 0; at_m.z() -= 0.002) {  // down to the first contact
@@ -122,7 +112,7 @@ TEST(FieldContact, TheComparisonSeesAMicrometre) {
 TEST(FieldContact, LeavesToTheEngineWhatItCannotDecide) {
   Ground level, turned("0 5 0");
   Contacts contacts;
-  const Eigen::Quaterniond upright = Eigen::Quaterniond::Identity();
+  const Quaterniond upright = Eigen::Quaterniond::Identity();
   level.put({0, 0, 2}, upright);
   turned.put({0, 0, 2}, upright);
   EXPECT_EQ(level.ours(contacts), 0);

@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "sim/compose.hpp"
 #include "sim/engine/physics.hpp"
 #include "sim/truth/record_truth.hpp"
 #include "tests/sim/engine/worlds.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 namespace {
-
-using Eigen::Vector3d;
 
 /// Flight has the rig, spun near its unstable axis at 18 rad/s and thrown 100 m above the hill.
 class Flight : public ::testing::Test {

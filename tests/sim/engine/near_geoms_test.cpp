@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/engine/near_geoms.hpp"
 
-#include <gtest/gtest.h>
-
-#include <Eigen/Geometry>
-#include <string>
-#include <vector>
-
 #include "sim/lidar/test_worlds.hpp"
 #include "sim/random/stream.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim::engine {
 namespace {
-
-using Eigen::Vector3d;
 
 /// Returns a cage of three struts among many rocks on a height field or, without one, on a plane.
 World crowd(bool with_field) {
@@ -38,7 +31,7 @@ World crowd(bool with_field) {
 }
 
 /// Returns distances and geoms of all contacts, in their order, with the robot at a position.
-std::vector<double> contacts_at(const mjModel& model, mjData& data, const Vector3d& p_m, const Eigen::Quaterniond& q) {
+std::vector<double> contacts_at(const mjModel& model, mjData& data, const Vector3d& p_m, const Quaterniond& q) {
   Vector3d::Map(data.qpos) = p_m;
   data.qpos[3] = q.w();
   for (int i = 0; i < 3; ++i) data.qpos[4 + i] = q.vec()[i];
@@ -70,8 +63,7 @@ Comparison walk(bool with_field, bool told) {
     const double reach_m = k % 100 == 0 ? 5.0 : 0.05;
     p_m += reach_m * Vector3d(chance.normal(), chance.normal(), 0.3 * chance.normal());
     p_m = p_m.cwiseMin(Vector3d(8.0, 8.0, 1.5)).cwiseMax(Vector3d(-8.0, -8.0, 0.0));
-    const Eigen::Quaterniond q =
-        Eigen::Quaterniond(chance.normal(), chance.normal(), chance.normal(), chance.normal()).normalized();
+    const Quaterniond q = Quaterniond(chance.normal(), chance.normal(), chance.normal(), chance.normal()).normalized();
     if (told) geoms.around(p_m);
     const std::vector<double> expected = contacts_at(*all.model, *all_data, p_m, q);
     out.with_contacts += !expected.empty();

@@ -3,14 +3,10 @@
 // face, at an edge, at a corner, across and along an edge.
 #include "sim/engine/prism.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
+#include "tests/testing.hpp"
 
 namespace tumble::sim::engine {
 namespace {
-
-using Eigen::Vector3d;
 
 // this prism has a right angle at the origin, legs of 1 m, and a level top at 0
 const Prism kLevel{{Vector3d(0, 0, 0), Vector3d(1, 0, 0), Vector3d(0, 1, 0)}, -5.0};

@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "sim/compose.hpp"
 #include "sim/engine/physics.hpp"
 #include "sim/simulate.hpp"
 #include "tests/sim/engine/worlds.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 namespace {
 
-using Eigen::Vector3d;
 const double kRadius_m = 0.145;
 
 Vector3d centre_velocity(const Truth& truth, std::size_t k) {

@@ -1,24 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/simulate.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <string>
-#include <utility>
-
 #include "sim/compose.hpp"
 #include "sim/engine/physics.hpp"
 #include "tests/sim/engine/worlds.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 namespace {
-
-using Eigen::Vector3d;
 
 /// DeadReckoning contains the attitude, velocity and position integrated from the samples of an ideal IMU, next to the
 /// truth at its position.
@@ -29,17 +18,17 @@ struct DeadReckoning {
 DeadReckoning integrate(const Recording& recording) {
   const ImuRecord& imu = recording.sensors.imus[0];
   const Truth& truth = recording.truth;
-  const Eigen::Isometry3d& T_BI = truth.imus[0].T_BI;
+  const Isometry3d& T_BI = truth.imus[0].T_BI;
   const auto true_velocity = [&](std::size_t k) -> Vector3d {
     return truth.v_WB_m_s[k] + truth.q_WB[k] * truth.w_WB_B_rad_s[k].cross(T_BI.translation());
   };
-  Eigen::Quaterniond q = truth.q_WB[0] * Eigen::Quaterniond(T_BI.linear());
+  Quaterniond q = truth.q_WB[0] * Quaterniond(T_BI.linear());
   Vector3d v = true_velocity(0), p = truth.p_WB_m[0] + truth.q_WB[0] * T_BI.translation();
   DeadReckoning out{};
   const double dt = static_cast<double>(imu.period_ns) * 1e-9;
   for (std::size_t i = 0; i < imu.time_ns.size(); ++i) {
     const Vector3d turn = imu.gyro_rad_s[i] * dt;
-    const Eigen::Quaterniond half(Eigen::AngleAxisd(turn.norm() / 2, turn.normalized()));
+    const Quaterniond half(Eigen::AngleAxisd(turn.norm() / 2, turn.normalized()));
     const Vector3d a = (q * half) * imu.accel_m_s2[i] - Vector3d(0, 0, 9.80665);
     p += v * dt + a * (dt * dt / 2);
     v += a * dt;
@@ -48,7 +37,7 @@ DeadReckoning integrate(const Recording& recording) {
     out.peak_rad_s = std::max(out.peak_rad_s, imu.gyro_rad_s[i].norm());
   }
   const std::size_t last = truth.q_WB.size() - 1;
-  out.attitude_rad = q.angularDistance(truth.q_WB[last] * Eigen::Quaterniond(T_BI.linear()));
+  out.attitude_rad = q.angularDistance(truth.q_WB[last] * Quaterniond(T_BI.linear()));
   out.velocity_m_s = (v - true_velocity(last)).norm();
   out.position_m = (p - truth.p_WB_m[last] - truth.q_WB[last] * T_BI.translation()).norm();
   return out;
@@ -157,8 +146,7 @@ TEST(Simulate, AWarningOfTheEngineFailsTheDraw) {
     for (int k = 0; k < 3; ++k) physics.step(broken);
     FAIL() << "a force that is not a number went through";
   } catch (const SimulationFailure& error) {
-    EXPECT_THAT(error.what(),
-                ::testing::AllOf(::testing::HasSubstr("engine warning: bad number"), ::testing::HasSubstr(" s")));
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("engine warning: bad number"), HasSubstr(" s")));
   }
 }
 
@@ -172,7 +160,7 @@ TEST(Simulate, LeavingTheWorldFailsTheDraw) {
         try {
           simulate(built(situation));
         } catch (const SimulationFailure& error) {
-          EXPECT_THAT(error.what(), ::testing::HasSubstr("left its world at"));
+          EXPECT_THAT(error.what(), HasSubstr("left its world at"));
           throw;
         }
       },
@@ -193,7 +181,7 @@ TEST(Simulate, StayingInTheGroundFailsTheDraw) {
         try {
           simulate(built(situation));
         } catch (const SimulationFailure& error) {
-          EXPECT_THAT(error.what(), ::testing::HasSubstr("'imu' was below the ground for"));
+          EXPECT_THAT(error.what(), HasSubstr("'imu' was below the ground for"));
           throw;
         }
       },
@@ -203,10 +191,10 @@ TEST(Simulate, StayingInTheGroundFailsTheDraw) {
 TEST(Simulate, StartPoseIsWhereTheTruthBegins) {
   const Situation situation = tumble_down(3.0, 100.0);
   const Truth truth = simulate(built(situation)).truth;
-  const Eigen::Isometry3d T_WB = start_pose(built(situation));
+  const Isometry3d T_WB = start_pose(built(situation));
   // the rig settles through 3 mm of gap into its soft contacts and leans on uneven ground (measured: 7 mm, 0.040 rad)
   EXPECT_LT((T_WB.translation() - truth.p_WB_m.front()).norm(), 0.03);
-  EXPECT_LT(Eigen::Quaterniond(T_WB.linear()).angularDistance(truth.q_WB.front()), 0.1);
+  EXPECT_LT(Quaterniond(T_WB.linear()).angularDistance(truth.q_WB.front()), 0.1);
 }
 
 TEST(Simulate, AnUnknownSiteNamesTheNearest) {
@@ -218,7 +206,7 @@ TEST(Simulate, AnUnknownSiteNamesTheNearest) {
       simulate(built(situation));
       FAIL() << "site " << site << " was accepted";
     } catch (const InvalidSituation& error) {
-      EXPECT_THAT(error.what(), ::testing::HasSubstr(told));
+      EXPECT_THAT(error.what(), HasSubstr(told));
     }
   }
 }
@@ -228,8 +216,8 @@ TEST(Simulate, AMissingFolderOfModelsIsOneLine) {
     simulate(BuiltSituation(resolve(tumble_down(1.0, 100.0)), "/nowhere"));
     FAIL() << "no models, no error";
   } catch (const InvalidSituation& error) {
-    EXPECT_THAT(error.what(), ::testing::HasSubstr("rig.xml"));
-    EXPECT_THAT(std::string(error.what()), ::testing::Not(::testing::HasSubstr("\n")));
+    EXPECT_THAT(error.what(), HasSubstr("rig.xml"));
+    EXPECT_THAT(std::string(error.what()), Not(HasSubstr("\n")));
   }
 }
 

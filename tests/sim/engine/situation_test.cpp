@@ -1,15 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/situation.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <set>
-
 #include "tests/sim/engine/worlds.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 namespace {

@@ -1,14 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test compares the devices' data sheets with an hour of simulated rest, and checks the options of a scenario that
 // the simulation uses.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <map>
-#include <string>
-#include <vector>
-
 #include "scenarios/draw/data_sheet.hpp"
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/draw/scenario_text.hpp"
@@ -16,12 +8,12 @@
 #include "sim/imu/allan.hpp"
 #include "sim/imu/bias.hpp"
 #include "sim/imu/imu_simulation.hpp"
+#include "tests/testing.hpp"
 #include "tests/tree.hpp"
 
 namespace tumble::scenarios {
 namespace {
 
-using Eigen::Vector3d;
 using sim::AllanInterval;
 using sim::AllanNoise;
 using sim::AllanPoint;
@@ -277,11 +269,9 @@ TEST(ScenarioOptions, UnknownAndContradictoryKeysAreRefused) {
     }
     return "";
   };
-  EXPECT_THAT(complaint(", gyro_warp: 1"), testing::HasSubstr("did you mean 'gyro_wrap'"));
-  EXPECT_THAT(complaint(", gyro_rail_rad_s: 0, gyro_wrap: 1"),
-              testing::HasSubstr("gyro_wrap needs a saturation level"));
-  EXPECT_THAT(complaint(", accel_plateau_axis_spread_m_s2: 90"),
-              testing::HasSubstr("below a third of accel_rail_m_s2"));
+  EXPECT_THAT(complaint(", gyro_warp: 1"), HasSubstr("did you mean 'gyro_wrap'"));
+  EXPECT_THAT(complaint(", gyro_rail_rad_s: 0, gyro_wrap: 1"), HasSubstr("gyro_wrap needs a saturation level"));
+  EXPECT_THAT(complaint(", accel_plateau_axis_spread_m_s2: 90"), HasSubstr("below a third of accel_rail_m_s2"));
 }
 
 }  // namespace

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <map>
-#include <string>
-
 #include "sim/sensor_type.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 

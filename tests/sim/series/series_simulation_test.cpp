@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/series/series_simulation.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "fixed_series.hpp"
 #include "scenarios/draw/scenario.hpp"
 #include "scenarios/recordings/recording_check.hpp"
 #include "sim/engine/model.hpp"
+#include "sim/series/series_sensors.hpp"
 #include "sim/simulate.hpp"
-#include "tests/scenarios/tree_data.hpp"
+#include "tests/scenarios/testing.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 namespace {
@@ -22,7 +19,7 @@ Recording sevens(const std::map<std::string, double>& given, const ReadingErrors
   Recording recording;
   recording.truth = rising(duration_s);
   const SensorSpec spec = sensor("barometer", given);
-  const Eigen::Isometry3d T_BX(Eigen::Translation3d(1.0, 2.0, 3.0)), given_T_BX(Eigen::Translation3d(1.0, 2.0, 3.5));
+  const Isometry3d T_BX(Eigen::Translation3d(1.0, 2.0, 3.0)), given_T_BX(Eigen::Translation3d(1.0, 2.0, 3.5));
   const engine::World world{};
   const auto seven = [](std::size_t) { return 7.0; };
   const auto fourteen = [](std::size_t) { return 14.0; };
@@ -100,7 +97,7 @@ TEST(Series, ARateThatDoesNotDivideIsRefused) {
 }
 
 TEST(Series, AScenarioCarriesOneAndNoOtherSensorChanges) {
-  const scenarios::DataRoot data = scenarios::tree_data();
+  const scenarios::DataRoot data = test::tree_data();
   scenarios::Scenario scenario = scenarios::load_scenario(data, "bare");
   scenario.duration_s.shape = scenarios::Distribution::Shape::constant;
   scenario.duration_s.numbers = {3.0};
@@ -125,6 +122,41 @@ TEST(Series, AScenarioCarriesOneAndNoOtherSensorChanges) {
     EXPECT_NEAR(pressure.values[k] - exact_pa[k], mean_pa, 10.0) << k;
   // the body rolls down some metres, each of 11.8 Pa
   EXPECT_GT(exact_pa.back() - exact_pa.front(), 5.0);
+}
+
+constexpr double kGravity_m_s2 = 9.80665;
+
+TEST(Barometer, FollowsTheStandardAtmosphere) {
+  EXPECT_EQ(air_pressure_pa(101325.0, 288.15, kGravity_m_s2, 0.0), 101325.0);
+  // the scale height is R T / (g M) = 8434.5 m at 15 degrees Celsius
+  EXPECT_NEAR(air_pressure_pa(101325.0, 288.15, kGravity_m_s2, 8434.5), 101325.0 / std::exp(1.0), 1.0);
+}
+
+TEST(Barometer, WithoutErrorsSaysTheMeanOverItsWindowAtItsPlace) {
+  Recording recording;
+  recording.truth = rising(10.0);
+  const SensorSpec spec = sensor("barometer", {});
+  const Isometry3d T_BX(Eigen::Translation3d(0.0, 0.0, 0.1));
+  const engine::World world{};
+  barometer_sensor().simulate({world, spec, T_BX, T_BX, kGravity_m_s2, 1, 1}, recording);
+  ASSERT_EQ(recording.sensors.series.size(), 1u);
+  const SeriesRecord& series = recording.sensors.series[0];
+  EXPECT_EQ(series.kind, "barometer");
+  ASSERT_EQ(series.quantities.size(), 1u);
+  EXPECT_EQ(series.quantities[0].name, "pressure_pa");
+  ASSERT_EQ(series.quantities[0].values.size(), 500u);
+  for (std::size_t k = 0; k < 500; ++k) {
+    // the body is upside down, 0.1 m below the centre of mass; the steps of a window are from half a step before to its
+    // end
+    const double height_m = 0.02 * static_cast<double>(k) + 0.01025 - 0.1;
+    EXPECT_NEAR(series.quantities[0].values[k], air_pressure_pa(101325.0, 288.15, kGravity_m_s2, height_m), 1e-6) << k;
+  }
+}
+
+TEST(Barometer, RefusesARangeThatIsNone) {
+  const SensorSpec spec = sensor("barometer", {{"pressure_min_pa", 2e5}});
+  EXPECT_THROW(barometer_sensor().check(spec.values, "sensors.it"), InvalidSituation);
+  EXPECT_NO_THROW(barometer_sensor().check(sensor("barometer", {}).values, "sensors.it"));
 }
 
 }  // namespace
