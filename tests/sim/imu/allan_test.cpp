@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/imu/allan.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <stdexcept>
-#include <vector>
-
 #include "sim/random/stream.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 namespace {

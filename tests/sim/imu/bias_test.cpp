@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/imu/bias.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
-
 #include "sim/imu/allan.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 namespace {
-
-using Eigen::Vector3d;
 
 /// Returns the mean Allan curve of the three axes of a bias alone.
 std::vector<AllanPoint> curve_of(const Bias::Params& params, double period_s, double duration_s, std::uint64_t seed) {

@@ -2,17 +2,10 @@
 // The test compares sensing elements that have their own axes with the closed form of elements.hpp.
 #include "sim/imu/elements.hpp"
 
-#include <gtest/gtest.h>
-
-#include <Eigen/LU>
-#include <cmath>
-#include <string>
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 namespace {
-
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
 
 constexpr double kRail = 10.27;
 

@@ -1,27 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test checks the ideal signal: an IMU without errors measures the true motion, in flight and through impacts, at
 // any rate.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "oracles/torque_free_rotation.hpp"
 #include "sim/imu/imu_simulation.hpp"
 #include "sim/simulate.hpp"
 #include "tests/sim/engine/worlds.hpp"
 #include "tests/sim/imu/simulated_imu.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 namespace {
 
-using Eigen::Quaterniond;
-using Eigen::Vector3d;
-
 constexpr double kStep_s = 0.0005;
 
-Eigen::Isometry3d mounting(const Vector3d& p_BI_m) {
-  Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
+Isometry3d mounting(const Vector3d& p_BI_m) {
+  Isometry3d T_BI = Eigen::Isometry3d::Identity();
   T_BI.linear() = Eigen::AngleAxisd(0.7, Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
   T_BI.translation() = p_BI_m;
   return T_BI;
@@ -64,7 +57,7 @@ Truth flight_with_impacts(double duration_s) {
   return truth;
 }
 
-SimulatedImu ideal_imu(const Truth& truth, double rate_hz, const Eigen::Isometry3d& T_BI) {
+SimulatedImu ideal_imu(const Truth& truth, double rate_hz, const Isometry3d& T_BI) {
   SensorSpec sensor = imu_at("imu", "", rate_hz);
   sensor.values = resolve("sensors.imu", sensor.values, imu_parameters());
   return simulated(truth, sensor, T_BI);
@@ -76,7 +69,7 @@ struct Departure {
 
 /// Returns the largest deviation, over all samples, of the integrated samples from the true attitude and velocity at
 /// T_BI.
-Departure dead_reckon(const ImuRecord& imu, const Truth& truth, const Eigen::Isometry3d& T_BI) {
+Departure dead_reckon(const ImuRecord& imu, const Truth& truth, const Isometry3d& T_BI) {
   const auto velocity = [&](std::size_t k) -> Vector3d {
     return truth.v_WB_m_s[k] + truth.q_WB[k] * truth.w_WB_B_rad_s[k].cross(T_BI.translation());
   };
@@ -116,7 +109,7 @@ TEST(IdealMotion, AMillimetreBesideTheCentreOfMassIsFelt) {
 TEST(IdealMotion, LeverArmFeelsWhatTheClosedFormSays) {
   // at 2000 Hz a step turns by 9 mrad: its mean differs from the middle by (9e-3)^2/24 and by the jerk, together 1e-5
   const oracles::TorqueFreeRotation rotation({0.14, 0.161, 0.154}, {0.3, 0.2, 18.0});
-  const Eigen::Isometry3d T_BI = mounting({-0.022, -0.085, 0.055});
+  const Isometry3d T_BI = mounting({-0.022, -0.085, 0.055});
   const SimulatedImu r = ideal_imu(flight(0.5), 2000.0, T_BI);
   ASSERT_EQ(r.record.accel_m_s2.size(), 1000u);
   for (std::size_t i = 0; i < 1000; ++i) {
@@ -130,7 +123,7 @@ TEST(IdealMotion, LeverArmFeelsWhatTheClosedFormSays) {
 
 TEST(IdealMotion, SamplesIntegrateToTheMotionThroughImpactsAtEveryRate) {
   const Truth truth = flight_with_impacts(2.0);
-  const Eigen::Isometry3d T_BI = mounting({-0.022, -0.085, 0.055});
+  const Isometry3d T_BI = mounting({-0.022, -0.085, 0.055});
   for (const double rate_hz : {100.0, 200.0, 250.0, 400.0, 2000.0}) {
     const SimulatedImu r = ideal_imu(truth, rate_hz, T_BI);
     const Departure d = dead_reckon(r.record, truth, T_BI);
@@ -153,7 +146,7 @@ TEST(IdealMotion, SamplesIntegrateToTheMotionOfTheEngine) {
 TEST(IdealMotion, PlainMeansWouldNotIntegrateToTheMotion) {
   // negative control: the means of the steps' rates ignore that the window turns
   const Truth truth = flight_with_impacts(2.0);
-  const Eigen::Isometry3d T_BI = mounting({-0.022, -0.085, 0.055});
+  const Isometry3d T_BI = mounting({-0.022, -0.085, 0.055});
   const SimulatedImu fine = ideal_imu(truth, 2000.0, T_BI);
   SimulatedImu coarse = ideal_imu(truth, 100.0, T_BI);
   for (std::size_t i = 0; i < coarse.record.time_ns.size(); ++i) {

@@ -1,21 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/imu/imu_simulation.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <initializer_list>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "tests/sim/imu/simulated_imu.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 namespace {
-
-using Eigen::Vector3d;
 
 /// Returns a body that turns about z with a constant rate while its origin moves along x with an acceleration of a sin.
 Truth turning(double rate_rad_s, double duration_s, double acceleration_m_s2 = 3.0) {
@@ -36,23 +26,13 @@ Truth swinging(double duration_s) {
   Truth truth = turning(0.0, duration_s, 5.0);
   for (std::size_t k = 0; k < truth.q_WB.size(); ++k) {
     const double t = static_cast<double>(k) * 0.0005, angle_rad = 3.0 * (1.0 - std::cos(4.0 * t));
-    truth.q_WB[k] = Eigen::Quaterniond(Eigen::AngleAxisd(angle_rad, Vector3d(0.9, 0.4, 0.174).normalized()));
+    truth.q_WB[k] = Quaterniond(Eigen::AngleAxisd(angle_rad, Vector3d(0.9, 0.4, 0.174).normalized()));
   }
   return truth;
 }
 
-SensorSpec ideal(double rate_hz = 100.0) {
-  SensorSpec sensor;
-  sensor.name = "imu";
-  sensor.kind = "imu";
-  Values given;
-  given.set("output_rate_hz", rate_hz);
-  sensor.values = resolve("sensors.imu", given, imu_parameters());
-  return sensor;
-}
-
 TEST(ImuSimulation, IdealDeviceSaysTheTruth) {
-  const SimulatedImu r = simulated(turning(12.0, 1.0), ideal());
+  const SimulatedImu r = simulated(turning(12.0, 1.0), imu_with());
   ASSERT_EQ(r.record.time_ns.size(), 100u);
   EXPECT_EQ(r.record.period_ns, 10'000'000);
   EXPECT_EQ(r.record.time_ns.front(), 10'000'000);
@@ -65,9 +45,9 @@ TEST(ImuSimulation, IdealDeviceSaysTheTruth) {
 }
 
 TEST(ImuSimulation, LeverArmGivesTheCentripetalForce) {
-  Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
+  Isometry3d T_BI = Eigen::Isometry3d::Identity();
   T_BI.translation() = Vector3d(0.1, 0, 0.03);
-  const SimulatedImu r = simulated(turning(15.0, 0.5, 0.0), ideal(), T_BI);
+  const SimulatedImu r = simulated(turning(15.0, 0.5, 0.0), imu_with(), T_BI);
   // the velocity gain from w^2 r towards the axis, over a turn of 0.15 rad: the chord is shorter than the arc
   const Vector3d expected(-22.5 * std::sin(0.075) / 0.075, 0, kGravity_m_s2);
   ASSERT_EQ(r.record.accel_m_s2.size(), 50u);
@@ -75,18 +55,16 @@ TEST(ImuSimulation, LeverArmGivesTheCentripetalForce) {
 }
 
 TEST(ImuSimulation, MountingTurnsTheAxes) {
-  Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
+  Isometry3d T_BI = Eigen::Isometry3d::Identity();
   T_BI.linear() = Eigen::AngleAxisd(M_PI / 2, Vector3d::UnitX()).toRotationMatrix();  // y of I equals z of B
-  const SimulatedImu r = simulated(turning(5.0, 0.1, 0.0), ideal(), T_BI);
+  const SimulatedImu r = simulated(turning(5.0, 0.1, 0.0), imu_with(), T_BI);
   ASSERT_EQ(r.record.gyro_rad_s.size(), 10u);
   EXPECT_NEAR((r.record.gyro_rad_s[5] - Vector3d(0, 5, 0)).norm(), 0.0, 1e-9);
   EXPECT_NEAR((r.record.accel_m_s2[5] - Vector3d(0, kGravity_m_s2, 0)).norm(), 0.0, 1e-9);
 }
 
 TEST(ImuSimulation, RailClipsTheReadingAndNotTheTwin) {
-  SensorSpec sensor = ideal();
-  sensor.values.set("gyro_rail_rad_s", 10.5);
-  sensor.values.set("clip_flags", 1);
+  SensorSpec sensor = imu_with({{"gyro_rail_rad_s", 10.5}, {"clip_flags", 1}});
   const SimulatedImu clipped = simulated(turning(12.0, 0.1), sensor), free = simulated(turning(10.0, 0.1), sensor);
   for (std::size_t k = 0; k < 10; ++k) {
     ASSERT_DOUBLE_EQ(clipped.record.gyro_rad_s[k].z(), 10.5);
@@ -102,9 +80,7 @@ TEST(ImuSimulation, RailBeforeTheMeanCutsAnOscillationThatTheMeanHides) {
     truth.v_WB_m_s[k].x() = 0.05 * std::sin(2 * M_PI * 200.0 * static_cast<double>(k) * 0.0005);  // peaks of 63 m/s^2
     truth.v_WB_m_s[k].x() += 20.0 * static_cast<double>(k) * 0.0005;
   }
-  SensorSpec sensor = ideal();
-  sensor.values.set("accel_rail_m_s2", 50.0);
-  sensor.values.set("clip_flags", 1);
+  SensorSpec sensor = imu_with({{"accel_rail_m_s2", 50.0}, {"clip_flags", 1}});
   const SimulatedImu before = simulated(truth, sensor);
   sensor.values.set("clip_after_low_pass", 1);
   const SimulatedImu after = simulated(truth, sensor);
@@ -118,9 +94,7 @@ TEST(ImuSimulation, RailBeforeTheMeanCutsAnOscillationThatTheMeanHides) {
 }
 
 TEST(ImuSimulation, TwinHasTheSameNoise) {
-  SensorSpec sensor = ideal();
-  sensor.values.set("gyro_noise_rad_s_sqrt_hz", 0.01);
-  sensor.values.set("gyro_rail_rad_s", 10.5);
+  SensorSpec sensor = imu_with({{"gyro_noise_rad_s_sqrt_hz", 0.01}, {"gyro_rail_rad_s", 10.5}});
   const SimulatedImu r = simulated(turning(5.0, 1.0), sensor);
   EXPECT_EQ(r.record.gyro_rad_s, r.truth.gyro_unclipped_rad_s);
   EXPECT_NE(r.record.gyro_rad_s, r.truth.rate_rad_s);
@@ -128,7 +102,7 @@ TEST(ImuSimulation, TwinHasTheSameNoise) {
 
 TEST(ImuSimulation, NoiseOfAReadingFollowsTheOutputRate) {
   for (const double rate_hz : {100.0, 400.0}) {
-    SensorSpec sensor = ideal(rate_hz);
+    SensorSpec sensor = imu_with({}, rate_hz);
     sensor.values.set("gyro_noise_rad_s_sqrt_hz", 0.01);
     const SimulatedImu r = simulated(turning(1.0, 10.0), sensor);
     double sum = 0.0;
@@ -140,9 +114,7 @@ TEST(ImuSimulation, NoiseOfAReadingFollowsTheOutputRate) {
 }
 
 TEST(ImuSimulation, BiasInForceIsTheErrorOfTheReading) {
-  SensorSpec sensor = ideal(2000.0);
-  sensor.values.set("accel_bias_turn_on_m_s2", 0.1);
-  sensor.values.set("accel_bias_walk_m_s2_sqrt_s", 0.01);
+  SensorSpec sensor = imu_with({{"accel_bias_turn_on_m_s2", 0.1}, {"accel_bias_walk_m_s2_sqrt_s", 0.01}}, 2000.0);
   const SimulatedImu r = simulated(turning(1.0, 0.2), sensor);
   ASSERT_EQ(r.record.accel_m_s2.size(), 400u);
   for (std::size_t k = 0; k < 400; ++k) {
@@ -153,16 +125,14 @@ TEST(ImuSimulation, BiasInForceIsTheErrorOfTheReading) {
 }
 
 TEST(ImuSimulation, GyroFeelsTheSpecificForce) {
-  SensorSpec sensor = ideal();
-  sensor.values.set("gyro_g_sensitivity_s_m", 1e-3);
+  SensorSpec sensor = imu_with({{"gyro_g_sensitivity_s_m", 1e-3}});
   const SimulatedImu r = simulated(turning(0.0, 0.1, 0.0), sensor);
   ASSERT_FALSE(r.record.gyro_rad_s.empty());
   EXPECT_NEAR((r.record.gyro_rad_s[0] - Vector3d(0, 0, 1e-3 * kGravity_m_s2)).norm(), 0.0, 1e-12);
 }
 
 TEST(ImuSimulation, ReadingsAtTheRateOfTheConverterAreMultiplesOfTheQuantum) {
-  SensorSpec sensor = ideal(2000.0);
-  sensor.values.set("accel_quantum_m_s2", 0.25);
+  SensorSpec sensor = imu_with({{"accel_quantum_m_s2", 0.25}}, 2000.0);
   const SimulatedImu r = simulated(turning(3.0, 0.5), sensor);
   ASSERT_EQ(r.record.accel_m_s2.size(), 1000u);
   for (std::size_t k = 0; k < 1000; ++k) {
@@ -174,7 +144,7 @@ TEST(ImuSimulation, ReadingsAtTheRateOfTheConverterAreMultiplesOfTheQuantum) {
 
 TEST(ImuSimulation, EachOptionOffIsTheIdealSignalAndOnIsNot) {
   const Truth motion = swinging(1.0);
-  const SimulatedImu exact = simulated(motion, ideal());
+  const SimulatedImu exact = simulated(motion, imu_with());
   ASSERT_EQ(exact.record.gyro_rad_s, exact.truth.rate_rad_s);
   // the list contains every number that makes an error, with a visible size, after the numbers without which it has no
   // effect
@@ -226,7 +196,7 @@ TEST(ImuSimulation, EachOptionOffIsTheIdealSignalAndOnIsNot) {
       {{"start_delay_s", 0.5}},
       {{"glitch_share", 0.1}}};
   for (const auto& option : options) {
-    SensorSpec sensor = ideal();
+    SensorSpec sensor = imu_with();
     for (const auto& [name, value] : option) sensor.values.set(name, value);
     const SimulatedImu on = simulated(motion, sensor);
     sensor.values.set(option.back().first, resolve("imu", {}, imu_parameters()).at(option.back().first));
@@ -244,15 +214,13 @@ TEST(ImuSimulation, EachOptionOffIsTheIdealSignalAndOnIsNot) {
 
 TEST(ImuSimulation, TwinIsTheReadingWhereverNothingClippedOnThatAxis) {
   // x swings through the saturation level while y and z stay below it; noise, bias and axis errors are on
-  SensorSpec sensor = ideal(200.0);
-  for (const auto& [name, value] :
-       std::initializer_list<std::pair<const char*, double>>{{"gyro_rail_rad_s", 8.0},
-                                                             {"gyro_noise_rad_s_sqrt_hz", 1e-3},
-                                                             {"gyro_bias_in_run_rad_s", 0.01},
-                                                             {"gyro_misalignment_rad", 0.01},
-                                                             {"gyro_bandwidth_hz", 400.0},
-                                                             {"clip_flags", 1.0}})
-    sensor.values.set(name, value);
+  SensorSpec sensor = imu_with({{"gyro_rail_rad_s", 8.0},
+                                {"gyro_noise_rad_s_sqrt_hz", 1e-3},
+                                {"gyro_bias_in_run_rad_s", 0.01},
+                                {"gyro_misalignment_rad", 0.01},
+                                {"gyro_bandwidth_hz", 400.0},
+                                {"clip_flags", 1.0}},
+                               200.0);
   const SimulatedImu r = simulated(swinging(1.0), sensor);
   int clipped = 0, free = 0;
   for (std::size_t k = 0; k < r.record.gyro_rad_s.size(); ++k) {
@@ -272,8 +240,7 @@ TEST(ImuSimulation, TwinIsTheReadingWhereverNothingClippedOnThatAxis) {
 
 TEST(ImuSimulation, WholeWindowsAtTheRailReadExactlyTheRail) {
   // the axis of the rotation itself turns: coning would move a compensated reading away from the plateau
-  SensorSpec sensor = ideal();
-  sensor.values.set("gyro_rail_rad_s", 7.5);
+  SensorSpec sensor = imu_with({{"gyro_rail_rad_s", 7.5}});
   Truth truth = turning(0.0, 0.5);
   for (std::size_t k = 0; k < truth.q_WB.size(); ++k) {
     const double t = static_cast<double>(k) * 0.0005;
@@ -294,7 +261,7 @@ TEST(ImuSimulation, WholeWindowsAtTheRailReadExactlyTheRail) {
 TEST(ImuSimulation, AccelerometerComesLateAgainstTheGyroscope) {
   Truth truth = turning(0.0, 0.2, 0.0);
   for (std::size_t k = 200; k < truth.q_WB.size(); ++k) truth.v_WB_m_s[k].x() = 0.5;  // an impact at 0.1 s
-  SensorSpec sensor = ideal(1000.0);
+  SensorSpec sensor = imu_with({}, 1000.0);
   const SimulatedImu now = simulated(truth, sensor);
   sensor.values.set("accel_delay_s", 0.004);
   const SimulatedImu late = simulated(truth, sensor);
@@ -305,9 +272,8 @@ TEST(ImuSimulation, AccelerometerComesLateAgainstTheGyroscope) {
 }
 
 TEST(ImuSimulation, LostSamplesAreLostFromTheTruthToo) {
-  SensorSpec sensor = ideal();
-  sensor.values.set("dropout_share", 0.3);
-  const SimulatedImu r = simulated(turning(3.0, 2.0), sensor), all = simulated(turning(3.0, 2.0), ideal());
+  SensorSpec sensor = imu_with({{"dropout_share", 0.3}});
+  const SimulatedImu r = simulated(turning(3.0, 2.0), sensor), all = simulated(turning(3.0, 2.0), imu_with());
   ASSERT_LT(r.record.time_ns.size(), 180u);
   ASSERT_GT(r.record.time_ns.size(), 80u);
   ASSERT_EQ(r.truth.rate_rad_s.size(), r.record.time_ns.size());
@@ -319,12 +285,9 @@ TEST(ImuSimulation, LostSamplesAreLostFromTheTruthToo) {
 }
 
 TEST(ImuSimulation, HandoverQuietensSlowAxes) {
-  SensorSpec sensor = ideal();
-  for (const auto& [name, value] :
-       std::initializer_list<std::pair<const char*, double>>{{"gyro_noise_rad_s_sqrt_hz", 0.01},
-                                                             {"gyro_handover_rad_s", 1.745},
-                                                             {"gyro_precise_noise_rad_s_sqrt_hz", 0.001}})
-    sensor.values.set(name, value);
+  SensorSpec sensor = imu_with({{"gyro_noise_rad_s_sqrt_hz", 0.01},
+                                {"gyro_handover_rad_s", 1.745},
+                                {"gyro_precise_noise_rad_s_sqrt_hz", 0.001}});
   const SimulatedImu r = simulated(turning(5.0, 10.0), sensor);  // fast rotation about z
   Vector3d sum = Vector3d::Zero();
   for (std::size_t k = 0; k < r.record.gyro_rad_s.size(); ++k)
@@ -336,17 +299,14 @@ TEST(ImuSimulation, HandoverQuietensSlowAxes) {
 }
 
 TEST(ImuSimulation, RefusesNumbersThatContradictEachOther) {
-  const auto complaint = [](std::initializer_list<std::pair<const char*, double>> numbers) -> std::string {
-    SensorSpec sensor = ideal();
-    for (const auto& [name, value] : numbers) sensor.values.set(name, value);
+  const auto complaint = [](Numbers numbers) -> std::string {
     try {
-      simulated(turning(1.0, 0.1), sensor);
+      simulated(turning(1.0, 0.1), imu_with(numbers));
     } catch (const InvalidSituation& error) {
       return error.what();
     }
     return "";
   };
-  using testing::HasSubstr;
   EXPECT_THAT(complaint({{"gyro_wrap", 1}}), HasSubstr("sensors.imu.gyro_wrap needs a saturation level"));
   EXPECT_THAT(complaint({{"accel_slow_recovery_s", 1}}), HasSubstr("accel_slow_recovery_s needs a saturation level"));
   EXPECT_THAT(complaint({{"gyro_rail_rad_s", 3}, {"gyro_plateau_axis_spread_rad_s", 1}}), HasSubstr("below a third"));
@@ -357,7 +317,7 @@ TEST(ImuSimulation, RefusesNumbersThatContradictEachOther) {
 }
 
 TEST(ImuSimulation, TimeOffsetMovesTheStampsAlone) {
-  SensorSpec sensor = ideal();
+  SensorSpec sensor = imu_with();
   const SimulatedImu exact = simulated(turning(3.0, 0.1), sensor);
   sensor.values.set("time_offset_s", -0.004);
   const SimulatedImu late = simulated(turning(3.0, 0.1), sensor);
@@ -366,8 +326,7 @@ TEST(ImuSimulation, TimeOffsetMovesTheStampsAlone) {
 }
 
 TEST(ImuSimulation, SeedAndNameDecideTheNoise) {
-  SensorSpec sensor = ideal();
-  sensor.values.set("gyro_noise_rad_s_sqrt_hz", 0.01);
+  SensorSpec sensor = imu_with({{"gyro_noise_rad_s_sqrt_hz", 0.01}});
   const auto same_T = Eigen::Isometry3d::Identity();
   const SimulatedImu a = simulated(turning(3.0, 0.1), sensor, same_T, 1),
                      again = simulated(turning(3.0, 0.1), sensor, same_T, 1);
@@ -381,10 +340,10 @@ TEST(ImuSimulation, SeedAndNameDecideTheNoise) {
 
 TEST(ImuSimulation, RefusesARateThatDoesNotDivideThePhysics) {
   try {
-    simulated(turning(1.0, 0.1), ideal(300.0));
+    simulated(turning(1.0, 0.1), imu_with({}, 300.0));
     FAIL() << "300 Hz was accepted";
   } catch (const InvalidSituation& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("sensors.imu.output_rate_hz is 300"));
+    EXPECT_THAT(error.what(), HasSubstr("sensors.imu.output_rate_hz is 300"));
   }
 }
 

@@ -1,20 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/imu/magnetometer.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <vector>
-
 #include "sim/imu/imu_simulation.hpp"
 #include "tests/sim/imu/simulated_imu.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 namespace {
-
-using Eigen::Vector3d;
 
 Values numbers(const std::map<std::string, double>& given) {
   Values values = resolve("imu", {}, imu_parameters());
@@ -42,7 +34,7 @@ TEST(MagneticField, OfADipoleHasNoSourceAndNoCurl) {
   field.dipoles.push_back({{0.1, -0.2, 0}, {1.0, 2.0, -3.0}});
   const Vector3d p(0.6, 0.3, 0.5);
   constexpr double h = 1e-4;
-  Eigen::Matrix3d gradient;
+  Matrix3d gradient;
   for (int j = 0; j < 3; ++j)
     gradient.col(j) = (field.at(p + h * Vector3d::Unit(j)) - field.at(p - h * Vector3d::Unit(j))) / (2 * h);
   EXPECT_NEAR(gradient.trace() / gradient.norm(), 0.0, 1e-6);
@@ -126,7 +118,7 @@ SimulatedImu measured_field(const std::map<std::string, double>& given) {
   SensorSpec sensor;
   sensor.name = "imu";
   sensor.values = numbers(given);
-  Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
+  Isometry3d T_BI = Eigen::Isometry3d::Identity();
   T_BI.linear() = Eigen::AngleAxisd(std::numbers::pi / 2, Vector3d::UnitX()).toRotationMatrix();
   T_BI.translation() = Vector3d(0.1, 0, 0);
   return simulated(turning_along(), sensor, T_BI, 3);

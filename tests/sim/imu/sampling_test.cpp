@@ -2,22 +2,12 @@
 // The test checks devices that sample: their windows, delays and rates.
 #include "sim/imu/sampling.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <initializer_list>
-#include <string>
-#include <utility>
-
 #include "sim/imu/imu_simulation.hpp"
 #include "tests/sim/imu/simulated_imu.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 namespace {
-
-using Eigen::Vector3d;
-using Numbers = std::initializer_list<std::pair<const char*, double>>;
 
 constexpr double kSteps_hz = 2000.0;
 
@@ -105,14 +95,7 @@ Truth ramp(double duration_s) {
 }
 
 SimulatedImu sampled_ramp(Numbers numbers, double rate_hz = 100.0) {
-  SensorSpec sensor;
-  sensor.name = "imu";
-  sensor.kind = "imu";
-  Values given;
-  given.set("output_rate_hz", rate_hz);
-  for (const auto& [name, value] : numbers) given.set(name, value);
-  sensor.values = resolve("sensors.imu", given, imu_parameters());
-  return simulated(ramp(1.0), sensor);
+  return simulated(ramp(1.0), imu_with(numbers, rate_hz));
 }
 
 TEST(SampledDevice, AWindowAsLongAsTheOutputsSaysTheSameAboutOneAxis) {

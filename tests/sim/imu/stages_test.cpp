@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/imu/stages.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 namespace {
-
-using Eigen::Vector3d;
 
 /// Returns the amplitude of the low-pass's response to a sine, after its transient.
 double gain(double cutoff_hz, double tone_hz) {
@@ -67,7 +61,7 @@ TEST(AxisErrorStage, DrawsScaleOnTheDiagonalAndAnglesBesideIt) {
   constexpr int kDraws = 4000;
   Stream stream(1, "test");
   for (int i = 0; i < kDraws; ++i) {
-    const Eigen::Matrix3d errors = draw_axis_errors(stream, 0.003, 0.01) - Eigen::Matrix3d::Identity();
+    const Matrix3d errors = draw_axis_errors(stream, 0.003, 0.01) - Eigen::Matrix3d::Identity();
     scale += errors.diagonal().squaredNorm();
     angle += errors.squaredNorm() - errors.diagonal().squaredNorm();
   }

@@ -1,24 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test runs tilted sensing elements through all stages of a device.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <initializer_list>
-#include <optional>
-#include <string>
-#include <utility>
-
 #include "sim/imu/imu_simulation.hpp"
 #include "tests/sim/imu/simulated_imu.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 namespace {
-
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-using Numbers = std::initializer_list<std::pair<const char*, double>>;
 
 constexpr double kRail_rad_s = 10.0;
 
@@ -26,7 +13,7 @@ constexpr double kRail_rad_s = 10.0;
 /// with a shake along x.
 Truth wobbling(double duration_s, double size) {
   Truth truth;
-  Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
+  Quaterniond q = Eigen::Quaterniond::Identity();
   for (int k = 0; k <= std::lround(duration_s / 0.0005); ++k) {
     const double t = k * 0.0005;
     const Vector3d rate = size * Vector3d(6.0 * std::sin(9.0 * t), 6.0 * std::cos(13.0 * t), 15.0 * std::sin(3.0 * t));
@@ -34,21 +21,15 @@ Truth wobbling(double duration_s, double size) {
     truth.w_WB_B_rad_s.push_back(rate);
     truth.v_WB_m_s.emplace_back(0.5 * std::sin(40.0 * t), 0.0, 0.0);
     truth.p_WB_m.emplace_back(Vector3d::Zero());
-    q = (q * Eigen::Quaterniond(Eigen::AngleAxisd(rate.norm() * 0.0005, rate.normalized()))).normalized();
+    q = (q * Quaterniond(Eigen::AngleAxisd(rate.norm() * 0.0005, rate.normalized()))).normalized();
   }
   return truth;
 }
 
 SensorSpec device(Numbers numbers, double rate_hz = 100.0) {
-  SensorSpec sensor;
-  sensor.name = "imu";
-  sensor.kind = "imu";
-  Values given;
-  given.set("output_rate_hz", rate_hz);
-  given.set("gyro_rail_rad_s", kRail_rad_s);
-  given.set("clip_flags", 1.0);
-  for (const auto& [name, value] : numbers) given.set(name, value);
-  sensor.values = resolve("sensors.imu", given, imu_parameters());
+  SensorSpec sensor = imu_with(numbers, rate_hz);
+  sensor.values.set("gyro_rail_rad_s", kRail_rad_s);
+  sensor.values.set("clip_flags", 1.0);
   return sensor;
 }
 
@@ -192,7 +173,7 @@ TEST(TiltedRail, AccelerometerHasElementsOfItsOwn) {
 TEST(TiltedRail, TheSeedDrawsTheDevice) {
   const SensorSpec sensor = device({{"gyro_element_misalignment", 0.02}, {"accel_element_misalignment", 0.02}});
   const Truth still = wobbling(0.1, 0.1);
-  const Eigen::Isometry3d same_T = Eigen::Isometry3d::Identity();
+  const Isometry3d same_T = Eigen::Isometry3d::Identity();
   const SimulatedImu a = simulated(still, sensor), again = simulated(still, sensor),
                      b = simulated(still, sensor, same_T, 2);
   EXPECT_EQ(a.truth.gyro_elements, again.truth.gyro_elements);
@@ -205,8 +186,8 @@ TEST(TiltedRail, RefusesOffsetsThatLeaveNoRail) {
     simulated(wobbling(0.1, 0.1), device({{"gyro_element_offset_rad_s", 4.0}}));
     FAIL() << "an offset of 4 was accepted for a rail of 10";
   } catch (const InvalidSituation& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("gyro_element_offset_rad_s"));
-    EXPECT_THAT(error.what(), testing::HasSubstr("below a third of gyro_rail_rad_s, which is 10"));
+    EXPECT_THAT(error.what(), HasSubstr("gyro_element_offset_rad_s"));
+    EXPECT_THAT(error.what(), HasSubstr("below a third of gyro_rail_rad_s, which is 10"));
   }
 }
 

@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string>
-
 #include "sim/lidar/casting.hpp"
 #include "sim/lidar/test_worlds.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 namespace {
 
-using Eigen::Vector3d;
 using testing::Cast;
 using testing::cast;
 using testing::resting;

@@ -1,17 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <Eigen/Core>
-#include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "sim/lidar/lidar_simulation.hpp"
 #include "sim/lidar/test_worlds.hpp"
+#include "tests/testing.hpp"
 
 /// This namespace has a lidar, a motion and a closed room whose ranges are known in closed form.
 namespace tumble::sim::testing {
@@ -19,28 +11,28 @@ namespace tumble::sim::testing {
 inline constexpr std::int64_t kPeriod_ns = 500000;
 
 struct Motion {
-  std::vector<Eigen::Vector3d> p_WB_m;
-  std::vector<Eigen::Quaterniond> q_WB;
+  std::vector<Vector3d> p_WB_m;
+  std::vector<Quaterniond> q_WB;
   MotionTrack track() const { return {kPeriod_ns, p_WB_m, q_WB}; }
 };
 
 /// Returns a motion with constant velocity and constant rate about a fixed axis, which the interpolation follows
 /// exactly.
-inline Motion moving(double duration_s, const Eigen::Vector3d& start_m, const Eigen::Vector3d& velocity_m_s,
-                     const Eigen::Vector3d& rate_rad_s) {
+inline Motion moving(double duration_s, const Vector3d& start_m, const Vector3d& velocity_m_s,
+                     const Vector3d& rate_rad_s) {
   Motion motion;
   const auto samples = static_cast<int>(std::lround(duration_s * 1e9 / kPeriod_ns)) + 1;
   for (int i = 0; i < samples; ++i) {
     const double t = i * kPeriod_ns * 1e-9;
     const double angle = rate_rad_s.norm() * t;
     motion.p_WB_m.push_back(start_m + t * velocity_m_s);
-    motion.q_WB.push_back(angle > 0.0 ? Eigen::Quaterniond(Eigen::AngleAxisd(angle, rate_rad_s.normalized()))
+    motion.q_WB.push_back(angle > 0.0 ? Quaterniond(Eigen::AngleAxisd(angle, rate_rad_s.normalized()))
                                       : Eigen::Quaterniond::Identity());
   }
   return motion;
 }
 
-inline Motion resting(double duration_s, const Eigen::Vector3d& at_m = Eigen::Vector3d::Zero()) {
+inline Motion resting(double duration_s, const Vector3d& at_m = Eigen::Vector3d::Zero()) {
   return moving(duration_s, at_m, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
 }
 
@@ -50,20 +42,20 @@ struct Cast {
 };
 
 inline Cast cast(const engine::World& world, const SensorSpec& sensor, const Motion& motion, int threads = 1,
-                 const Eigen::Isometry3d& T_BL = Eigen::Isometry3d::Identity(), std::uint64_t seed = 1) {
+                 const Isometry3d& T_BL = Eigen::Isometry3d::Identity(), std::uint64_t seed = 1) {
   Cast out;
   simulate_lidar(world, sensor, T_BL, motion.track(), seed, threads, out.record, out.truth);
   return out;
 }
 
 /// kRoom is half the size of a closed room of 6 m x 10 m x 4 m, seen from inside.
-inline const Eigen::Vector3d kRoom(3.0, 5.0, 2.0);
+inline const Vector3d kRoom(3.0, 5.0, 2.0);
 inline engine::World room() {
   return world_of("<mujoco><worldbody><geom name='room' type='box' size='3 5 2'/></worldbody></mujoco>");
 }
 
 /// Returns the closed form of the range inside the room.
-inline double room_range(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
+inline double room_range(const Vector3d& origin, const Vector3d& direction) {
   double range = 1e9;
   for (int axis = 0; axis < 3; ++axis) {
     if (direction[axis] != 0.0) {
@@ -73,14 +65,14 @@ inline double room_range(const Eigen::Vector3d& origin, const Eigen::Vector3d& d
   return range;
 }
 
-inline double distance_to_walls(const Eigen::Vector3d& p) {
+inline double distance_to_walls(const Vector3d& p) {
   return std::abs((p.cwiseAbs() - kRoom).maxCoeff());
 }
 
-inline Eigen::Isometry3d mounting() {
-  Eigen::Isometry3d T_BL = Eigen::Isometry3d::Identity();
-  T_BL.linear() = Eigen::AngleAxisd(-1.2, Eigen::Vector3d(0.1, 0.2, 1.0).normalized()).toRotationMatrix();
-  T_BL.translation() = Eigen::Vector3d(0.05, -0.1, 0.09);
+inline Isometry3d mounting() {
+  Isometry3d T_BL = Eigen::Isometry3d::Identity();
+  T_BL.linear() = Eigen::AngleAxisd(-1.2, Vector3d(0.1, 0.2, 1.0).normalized()).toRotationMatrix();
+  T_BL.translation() = Vector3d(0.05, -0.1, 0.09);
   return T_BL;
 }
 

@@ -1,23 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test checks every option of a lidar: when it is off the signal is exactly the ideal one, and when it is on the
 // signal changes.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <ostream>
-#include <utility>
-#include <vector>
-
 #include "sim/lidar/casting.hpp"
 #include "sim/lidar/scene_geometry.hpp"
 #include "sim/lidar/test_worlds.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 namespace {
 
-using Eigen::Isometry3d;
-using Eigen::Vector3d;
 using testing::Cast;
 using testing::cast;
 using testing::expect_same;
@@ -48,8 +39,7 @@ engine::World stage() {
 }
 
 Cast cast_with(const Settings& settings) {
-  SensorSpec sensor = testing::exact_lidar_of("spinning_lidar");
-  sensor.values.set("sees_own_cage", 0.0);
+  SensorSpec sensor = testing::exact_lidar_of("spinning_lidar", {{"sees_own_cage", 0.0}});
   for (const auto& [name, value] : settings) sensor.values.set(name, value);
   return cast(stage(), sensor, moving(0.2, Vector3d(-0.5, 0.3, 0.1), Vector3d(1, 0, 0), Vector3d(3, -5, 8)));
 }
@@ -113,7 +103,7 @@ TEST(RosetteLidar, FieldOfViewIsTheDataSheets) {
   const Cast out = cast(testing::room(), testing::exact_lidar_of("rosette_lidar"), resting(1.0));
   double left = 0.0, right = 0.0, up = 0.0;
   ASSERT_EQ(out.record.range_m.size(), 300000u);
-  for (const Eigen::Vector3f& p : out.record.position_L_m) {
+  for (const Vector3f& p : out.record.position_L_m) {
     const double azimuth = std::atan2(p.y(), p.x());
     left = std::max(left, azimuth);
     right = std::min(right, azimuth);
@@ -132,14 +122,13 @@ TEST(SpinningLidar, DeskewIdentityThroughImpacts) {
   // up to 20 rad/s and 5 m/s, with new values every half millisecond
   for (std::size_t i = 1; i < motion.q_WB.size(); ++i) {
     const Vector3d turn = 0.01 * Vector3d(chance.uniform(-1, 1), chance.uniform(-1, 1), chance.uniform(-1, 1));
-    motion.q_WB[i] = motion.q_WB[i - 1] * Eigen::Quaterniond(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
+    motion.q_WB[i] = motion.q_WB[i - 1] * Quaterniond(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
     motion.p_WB_m[i] =
         motion.p_WB_m[i - 1] + 0.0025 * Vector3d(chance.uniform(-1, 1), chance.uniform(-1, 1), chance.uniform(-1, 1));
   }
   const Isometry3d T_BL = testing::mounting();
   for (const double current_timing : {0.0, 1.0}) {
-    SensorSpec sensor = testing::exact_lidar_of("spinning_lidar");
-    sensor.values.set("current_driver_timing", current_timing);
+    SensorSpec sensor = testing::exact_lidar_of("spinning_lidar", {{"current_driver_timing", current_timing}});
     const Cast out = cast(testing::room(), sensor, motion, 1, T_BL);
     ASSERT_GT(out.record.range_m.size(), 50000u);
     double worst_m = 0.0;

@@ -1,22 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/lidar/lidar_simulation.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <vector>
-
 #include "sim/lidar/casting.hpp"
 #include "sim/lidar/scene_geometry.hpp"
 #include "sim/lidar/test_worlds.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 namespace {
-
-using Eigen::Isometry3d;
-using Eigen::Vector3d;
 
 using testing::Cast;
 using testing::cast;
@@ -95,7 +86,7 @@ TEST(SpinningLidar, RingsCountFromBottomToTop) {
   for (std::size_t i = 0; i < 16; ++i) {
     // in the published driver the ring is the channel for the first eight, and 23 - channel for the others
     EXPECT_EQ(out.record.ring[i], i < 8 ? i : 23 - i);
-    const Eigen::Vector3f p = out.record.position_L_m[i];
+    const Vector3f p = out.record.position_L_m[i];
     elevation_of[out.record.ring[i]] = std::atan2(p.z() + 0.010875, p.head<2>().norm() - 0.04638);
   }
   EXPECT_TRUE(std::is_sorted(elevation_of.begin(), elevation_of.end()));
@@ -104,12 +95,10 @@ TEST(SpinningLidar, RingsCountFromBottomToTop) {
 }
 
 TEST(SpinningLidar, CurrentVendorTimingKeepsItsClockAcrossSweeps) {
-  SensorSpec sensor = testing::exact_lidar_of("spinning_lidar");
-  sensor.values.set("current_driver_timing", 1.0);
+  SensorSpec sensor = testing::exact_lidar_of("spinning_lidar", {{"current_driver_timing", 1.0}});
   const Cast out = cast(room(), sensor, resting(0.3));
-  SensorSpec spelled = testing::exact_lidar_of("spinning_lidar");
-  spelled.values.set("firing_period_s", 2.8e-6);
-  spelled.values.set("sequence_period_s", 55.5e-6);
+  const SensorSpec spelled =
+      testing::exact_lidar_of("spinning_lidar", {{"firing_period_s", 2.8e-6}, {"sequence_period_s", 55.5e-6}});
   expect_same(out, cast(room(), spelled, resting(0.3)));
   ASSERT_EQ(out.record.sweep_start_ns.size(), 3u);
   // firing sequences start at multiples of 55.5 us: 1802 of them start within the first 0.1 s, the next at 100.011 ms
@@ -119,8 +108,7 @@ TEST(SpinningLidar, CurrentVendorTimingKeepsItsClockAcrossSweeps) {
 }
 
 TEST(SpinningLidar, FaultyDriverStampsCompressPackets) {
-  SensorSpec sensor = testing::exact_lidar_of("spinning_lidar");
-  sensor.values.set("driver_stamp_fault", 1.0);
+  SensorSpec sensor = testing::exact_lidar_of("spinning_lidar", {{"driver_stamp_fault", 1.0}});
   const Cast faulty = cast(room(), sensor, resting(0.1));
   const Cast right = cast(room(), testing::exact_lidar_of("spinning_lidar"), resting(0.1));
   EXPECT_EQ(faulty.record.position_L_m, right.record.position_L_m);
@@ -139,11 +127,11 @@ TEST(ColumnLidar, RingsAreEvenlySpacedAndTurnWithTheColumn) {
   ASSERT_EQ(out.record.ring.size(), (1024u * 4u + 1u) * 16u);
   double worst_rad = 0.0;
   for (std::size_t i = 0; i < out.record.ring.size(); ++i) {
-    const Eigen::Vector3d direction = out.record.position_L_m[i].cast<double>().normalized();
+    const Vector3d direction = out.record.position_L_m[i].cast<double>().normalized();
     const double elevation_rad = (-22.5 + 45.0 * out.record.ring[i] / 63.0) * M_PI / 180.0;
     const double azimuth_rad = -2.0 * M_PI * 1e-8 * out.record.offset_ns[i];  // clockwise, 10 Hz
-    const Eigen::Vector3d expected(std::cos(elevation_rad) * std::cos(azimuth_rad),
-                                   std::cos(elevation_rad) * std::sin(azimuth_rad), std::sin(elevation_rad));
+    const Vector3d expected(std::cos(elevation_rad) * std::cos(azimuth_rad),
+                            std::cos(elevation_rad) * std::sin(azimuth_rad), std::sin(elevation_rad));
     worst_rad = std::max(worst_rad, (direction - expected).norm());
   }
   EXPECT_LT(worst_rad, 1e-6) << "float positions";
@@ -156,13 +144,12 @@ TEST(ColumnLidar, RingsAreEvenlySpacedAndTurnWithTheColumn) {
 }
 
 TEST(ColumnLidar, ElevationsShiftFromSweepToSweep) {
-  SensorSpec sensor = testing::exact_lidar_of("column_lidar");
-  sensor.values.set("elevation_shift_share", 0.25);
+  SensorSpec sensor = testing::exact_lidar_of("column_lidar", {{"elevation_shift_share", 0.25}});
   const Cast out = cast(room(), sensor, resting(0.5));
   const auto lowest_rad = [&](std::size_t sweep) {
     std::size_t i = out.record.sweep_first[sweep];
     while (out.record.ring[i] != 0) ++i;  // a sweep may start with another bank of rings
-    const Eigen::Vector3d p = out.record.position_L_m[i].cast<double>();
+    const Vector3d p = out.record.position_L_m[i].cast<double>();
     return std::asin(p.z() / p.norm());
   };
   const double spacing_rad = 45.0 / 63.0 * M_PI / 180.0;
@@ -171,8 +158,7 @@ TEST(ColumnLidar, ElevationsShiftFromSweepToSweep) {
 }
 
 TEST(ColumnLidar, RefusesRingsThatAreNoMultipleOf16) {
-  SensorSpec sensor = testing::exact_lidar_of("column_lidar");
-  sensor.values.set("rings", 40.0);
+  SensorSpec sensor = testing::exact_lidar_of("column_lidar", {{"rings", 40.0}});
   EXPECT_THROW(cast(room(), sensor, resting(0.1)), InvalidSituation);
 }
 
@@ -319,8 +305,7 @@ TEST(LidarSimulation, DropOutByRangeAndReflectivity) {
 TEST(LidarSimulation, IntensityIsReflectivityTimesCosine) {
   const engine::World wall = testing::world_of(
       "<mujoco><worldbody><geom type='box' size='1 9 9' pos='5 0 0' rgba='0.6 0.6 0.6 1'/></worldbody></mujoco>");
-  SensorSpec sensor = testing::exact_lidar_of("rosette_lidar");
-  sensor.values.set("intensity_quantum", 0.0);
+  SensorSpec sensor = testing::exact_lidar_of("rosette_lidar", {{"intensity_quantum", 0.0}});
   const Cast out = cast(wall, sensor, resting(0.1));
   ASSERT_GT(out.record.range_m.size(), 10000u);
   for (std::size_t i = 0; i < out.record.range_m.size(); ++i) {
@@ -336,8 +321,7 @@ TEST(LidarSimulation, OwnCageMovesWithTheLidarAndHousingIsTransparent) {
       "<geom type='capsule' size='0.02 0.2' pos='0.3 0 0' mass='0.1'/>"
       "<geom type='sphere' size='0.05' pos='0 0.3 0' contype='0' conaffinity='0' "
       "mass='0.1'/></body></worldbody></mujoco>");
-  SensorSpec sensor = testing::exact_lidar_of("spinning_lidar");
-  sensor.values.set("range_min_m", 0.2);
+  SensorSpec sensor = testing::exact_lidar_of("spinning_lidar", {{"range_min_m", 0.2}});
   const Cast still = cast(world, sensor, resting(0.1));
   const Cast turned = cast(world, sensor, moving(0.1, Vector3d(0.3, 0.2, 0.1), Vector3d(1, 1, 0), Vector3d(5, -3, 12)));
   std::size_t cage_hits = 0;
@@ -348,9 +332,9 @@ TEST(LidarSimulation, OwnCageMovesWithTheLidarAndHousingIsTransparent) {
     if (still.truth.surface_id[i] != kOwnCage) continue;
     ++cage_hits;
     EXPECT_EQ(still.record.range_m[i], turned.record.range_m[i]);
-    const Eigen::Vector3f p = still.record.position_L_m[i];
+    const Vector3f p = still.record.position_L_m[i];
     EXPECT_NEAR(std::hypot(p.x() - 0.3f, p.y()), 0.02, 1e-5);
-    EXPECT_LT((turned.truth.hit_W_m[i] - Eigen::Vector3f(0.3f, 0.2f, 0.1f)).norm(), 0.7f);
+    EXPECT_LT((turned.truth.hit_W_m[i] - Vector3f(0.3f, 0.2f, 0.1f)).norm(), 0.7f);
   }
   // beams are radial from the axis: the post covers 2 asin(0.02 / 0.3) = 0.1334 rad of the turn, in all 16 channels
   EXPECT_NEAR(static_cast<double>(cage_hits), 2 * std::asin(0.02 / 0.3) / (2 * M_PI) * 32000, 16);

@@ -1,21 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/lidar/ray_scene.hpp"
 
-#include <gtest/gtest.h>
-
-#include <Eigen/Geometry>
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-#include <string>
-
 #include "sim/lidar/test_worlds.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 namespace {
-
-using Eigen::Vector3d;
 
 constexpr double kReach_m = 1000.0;
 
@@ -24,8 +14,24 @@ struct Disagreement {
   std::array<int, mjNGEOMTYPES> hits_of_type{};
 };
 
-Vector3d random_direction(Stream& chance) {
-  return Vector3d(chance.normal(), chance.normal(), chance.normal()).normalized();
+void set_ray(RayPacket& rays, int i, const Vector3d& origin, const Vector3d& direction, double range_m) {
+  rays.origin_x[i] = static_cast<float>(origin.x());
+  rays.origin_y[i] = static_cast<float>(origin.y());
+  rays.origin_z[i] = static_cast<float>(origin.z());
+  rays.direction_x[i] = static_cast<float>(direction.x());
+  rays.direction_y[i] = static_cast<float>(direction.y());
+  rays.direction_z[i] = static_cast<float>(direction.z());
+  rays.range[i] = static_cast<float>(range_m);
+  rays.surface_id[i] = kNothing;
+}
+
+/// Sets a ray of random direction whose origin is in the box from `low` to `high`.
+void set_random(Stream& chance, RayPacket& rays, int i, const Vector3d& low, const Vector3d& high,
+                double range_m = kReach_m) {
+  const Vector3d direction = Vector3d(chance.normal(), chance.normal(), chance.normal()).normalized();
+  Vector3d origin;
+  for (int axis = 0; axis < 3; ++axis) origin[axis] = chance.uniform(low[axis], high[axis]);
+  set_ray(rays, i, origin, direction, range_m);
 }
 
 /// The test casts random rays through the world, by this project's ray caster and by the engine. The surface comparison
@@ -38,17 +44,7 @@ Disagreement compare_with_engine(const engine::World& world, const SceneGeometry
   Disagreement out;
   for (int p = 0; p < packets; ++p) {
     RayPacket rays;
-    for (int i = 0; i < kLanes; ++i) {
-      const Vector3d direction = random_direction(chance);
-      rays.origin_x[i] = static_cast<float>(chance.uniform(-18, 18));
-      rays.origin_y[i] = static_cast<float>(chance.uniform(-18, 18));
-      rays.origin_z[i] = static_cast<float>(chance.uniform(-6, 8));
-      rays.direction_x[i] = static_cast<float>(direction.x());
-      rays.direction_y[i] = static_cast<float>(direction.y());
-      rays.direction_z[i] = static_cast<float>(direction.z());
-      rays.range[i] = static_cast<float>(kReach_m);
-      rays.surface_id[i] = kNothing;
-    }
+    for (int i = 0; i < kLanes; ++i) set_random(chance, rays, i, {-18, -18, -6}, {18, 18, 8});
     scene.cast(rays);
     for (int i = 0; i < kLanes; ++i) {
       const double origin[3] = {rays.origin_x[i], rays.origin_y[i], rays.origin_z[i]};
@@ -137,7 +133,7 @@ TEST(RayScene, NegativeControlGeometryShiftedByOneCentimetreIsFound) {
   SceneGeometry shifted = static_geometry(world, HeightFieldSides::closed);
   for (SceneShape& part : shifted.shapes) part.shape.p_FS_m.z() += 0.01;
   for (SceneMesh& part : shifted.meshes) {
-    for (Eigen::Vector3f& v : part.mesh.vertices_F_m) v.z() += 0.01f;
+    for (Vector3f& v : part.mesh.vertices_F_m) v.z() += 0.01f;
   }
   const Disagreement d = compare_with_engine(world, shifted, 250);
   EXPECT_GT(d.farther_than_1_mm, d.hits / 2);
@@ -163,26 +159,11 @@ TEST(RayScene, VisualGeomsAreTransparent) {
   const RayScene scene(static_geometry(world, HeightFieldSides::closed));
   RayPacket rays;
   rays.count = 1;
-  rays.origin_x[0] = rays.origin_y[0] = rays.origin_z[0] = rays.direction_y[0] = rays.direction_z[0] = 0.0f;
-  rays.direction_x[0] = 1.0f;
-  rays.range[0] = 100.0f;
-  rays.surface_id[0] = kNothing;
+  set_ray(rays, 0, Vector3d::Zero(), Vector3d::UnitX(), 100.0);
   scene.cast(rays);
   EXPECT_EQ(rays.surface_id[0], 1);
   EXPECT_FLOAT_EQ(rays.range[0], 8.0f);
   EXPECT_FLOAT_EQ(rays.cosine[0], 1.0f);
-}
-
-void fill(Stream& chance, RayPacket& rays, int i) {
-  const Vector3d direction = random_direction(chance);
-  rays.origin_x[i] = static_cast<float>(chance.uniform(-18, 18));
-  rays.origin_y[i] = static_cast<float>(chance.uniform(-18, 18));
-  rays.origin_z[i] = static_cast<float>(chance.uniform(-6, 8));
-  rays.direction_x[i] = static_cast<float>(direction.x());
-  rays.direction_y[i] = static_cast<float>(direction.y());
-  rays.direction_z[i] = static_cast<float>(direction.z());
-  rays.range[i] = static_cast<float>(kReach_m);
-  rays.surface_id[i] = kNothing;
 }
 
 // the content of unused lanes, and which rays share a packet, change no bit: a kernel that depended on either would
@@ -194,7 +175,7 @@ TEST(RayScene, ALaneIsAloneAndUnusedOnesMayHoldAnything) {
   int hits = 0;
   for (int p = 0; p < 200; ++p) {
     RayPacket together;
-    for (int i = 0; i < kLanes; ++i) fill(chance, together, i);
+    for (int i = 0; i < kLanes; ++i) set_random(chance, together, i, {-18, -18, -6}, {18, 18, 8});
     const RayPacket given = together;
     scene.cast(together);
     for (int i = 0; i < kLanes; ++i) {
@@ -233,14 +214,7 @@ TEST(RayScene, AnalyticPlaneSphereBox) {
   RayPacket rays;
   rays.count = 3;
   const Vector3d directions[3] = {Vector3d(1.0, 0.5, -0.5).normalized(), Vector3d::UnitY(), -Vector3d::UnitX()};
-  for (int i = 0; i < 3; ++i) {
-    rays.origin_x[i] = rays.origin_y[i] = rays.origin_z[i] = 0.0f;
-    rays.direction_x[i] = static_cast<float>(directions[i].x());
-    rays.direction_y[i] = static_cast<float>(directions[i].y());
-    rays.direction_z[i] = static_cast<float>(directions[i].z());
-    rays.range[i] = 1e3f;
-    rays.surface_id[i] = kNothing;
-  }
+  for (int i = 0; i < 3; ++i) set_ray(rays, i, Vector3d::Zero(), directions[i], kReach_m);
   scene.cast(rays);
   const double half_chord = std::sqrt(1.5 * 1.5 - 0.5 * 0.5);
   const double expected[3] = {2.0 / -directions[0].z(), 10.0 - half_chord, 8.0 - 1.0 / std::cos(0.5)};
@@ -271,17 +245,7 @@ TEST(RayScene, AnalyticPrimitivesHoldTheirEquation) {
     double worst_m = 0.0;
     for (int p = 0; p < 100; ++p) {
       RayPacket rays;
-      for (int i = 0; i < kLanes; ++i) {
-        const Vector3d direction = random_direction(chance);
-        rays.origin_x[i] = static_cast<float>(chance.uniform(-1.5, 1.5));
-        rays.origin_y[i] = static_cast<float>(chance.uniform(-1.5, 1.5));
-        rays.origin_z[i] = static_cast<float>(chance.uniform(-1.5, 1.5));
-        rays.direction_x[i] = static_cast<float>(direction.x());
-        rays.direction_y[i] = static_cast<float>(direction.y());
-        rays.direction_z[i] = static_cast<float>(direction.z());
-        rays.range[i] = 10.0f;
-        rays.surface_id[i] = kNothing;
-      }
+      for (int i = 0; i < kLanes; ++i) set_random(chance, rays, i, {-1.5, -1.5, -1.5}, {1.5, 1.5, 1.5}, 10.0);
       scene.cast(rays);
       for (int i = 0; i < kLanes; ++i) {
         const Vector3d origin(rays.origin_x[i], rays.origin_y[i], rays.origin_z[i]);

@@ -1,19 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/lidar/shape_lanes.hpp"
 
-#include <gtest/gtest.h>
-
-#include <Eigen/Geometry>
-#include <array>
-#include <cmath>
-#include <string>
-
 #include "sim/random/stream.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 namespace {
-
-using Eigen::Vector3d;
 
 struct EightRays {
   std::array<std::array<float, kShapeLanes>, 6> coordinate;

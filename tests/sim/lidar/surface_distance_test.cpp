@@ -1,20 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <vector>
-
 #include "sim/lidar/ray_scene.hpp"
 #include "sim/lidar/test_worlds.hpp"
 #include "sim/lidar/triangle.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 namespace {
-
-using Eigen::Vector3d;
-using Eigen::Vector3f;
 
 /// Returns points on the whole surface of a shape, from rays cast at it from far away in every direction and from its
 /// centre.

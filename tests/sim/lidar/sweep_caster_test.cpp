@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/lidar/sweep_caster.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <atomic>
-#include <cmath>
-#include <cstdlib>
 #include <new>
 
 #include "sim/lidar/casting.hpp"
 #include "sim/lidar/test_worlds.hpp"
 #include "sim/random/philox.hpp"
+#include "tests/testing.hpp"
 
 namespace {
 
@@ -36,9 +32,6 @@ void operator delete(void* memory, std::size_t) noexcept {
 
 namespace tumble::sim {
 namespace {
-
-using Eigen::Isometry3d;
-using Eigen::Vector3d;
 
 TEST(SweepCaster, ASweepAllocatesNothing) {
   const engine::World world = testing::rough_world(60, 40);

@@ -71,15 +71,15 @@ inline SensorSpec lidar_of(const std::string& kind) {
   return sensor;
 }
 
-/// Returns the same lidar with every error off and a range of 1000 m.
-inline SensorSpec exact_lidar_of(const std::string& kind) {
+/// Returns the same lidar with every error off and a range of 1000 m, except that `numbers` differ.
+inline SensorSpec exact_lidar_of(const std::string& kind,
+                                 std::initializer_list<std::pair<const char*, double>> numbers = {}) {
   SensorSpec sensor = lidar_of(kind);
-  sensor.values.set("range_noise_m", 0.0);
-  sensor.values.set("range_quantum_m", 0.0);
-  sensor.values.set("intensity_quantum", 0.0);
-  sensor.values.set("detection_range_m", 0.0);
-  sensor.values.set("range_min_m", 0.0);
+  for (const char* error :
+       {"range_noise_m", "range_quantum_m", "intensity_quantum", "detection_range_m", "range_min_m"})
+    sensor.values.set(error, 0.0);
   sensor.values.set("range_max_m", 1000.0);
+  for (const auto& [name, value] : numbers) sensor.values.set(name, value);
   return sensor;
 }
 

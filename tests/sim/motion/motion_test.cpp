@@ -1,21 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/motion/motion_type.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <utility>
-
 #include "sim/compose.hpp"
 #include "sim/motion/rigid_body.hpp"
 #include "sim/simulate.hpp"
 #include "tests/sim/engine/worlds.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 namespace {
-
-using Eigen::Vector3d;
 
 Situation moved_by(const std::string& type, double duration_s) {
   Situation situation = tumble_down(duration_s, 2000.0);

@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/random/stream.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <set>
-#include <vector>
-
 #include "sim/random/philox.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 namespace {

@@ -1,22 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/render/renderer.hpp"
 
-#include <gtest/gtest.h>
 #include <png.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
-#include <set>
-#include <thread>
 
 #include "sim/render/framing.hpp"
 #include "tests/sim/render/built_world.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 namespace {
-
-using Eigen::Vector3d;
 
 View small_view() {
   View view;

@@ -1,21 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/render/world_mesh.hpp"
 
-#include <gtest/gtest.h>
-
-#include <Eigen/Geometry>
-#include <algorithm>
-#include <numbers>
-
 #include "sim/lidar/surface.hpp"
 #include "sim/render/tessellation.hpp"
 #include "tests/sim/render/built_world.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 namespace {
-
-using Eigen::Vector3d;
-using Eigen::Vector3f;
 
 /// Returns the volume enclosed by the triangles, which is positive when they turn to the left seen from outside
 /// (divergence theorem).

@@ -1,22 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "sim/compose.hpp"
 #include "sim/engine/jointed.hpp"
 #include "sim/engine/physics.hpp"
 #include "sim/simulate.hpp"
 #include "sim/trial/trial.hpp"
 #include "tests/sim/engine/worlds.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 namespace {
-
-using Eigen::Vector3d;
 
 constexpr double kHeight_m = 1.3, kSegment_m = 0.25;
 
@@ -112,7 +104,7 @@ TEST(Reach, TurnsTheJointsToThePoseOrAsNearAsTheyLetIt) {
   std::copy(angles_rad, angles_rad + 5, there->qpos);
   engine::update_bodies(*world.model, *there);
   const BodyState state = engine::state_on_joints(*world.model, *there, world.robot_body);
-  Eigen::Isometry3d T_WB = Eigen::Isometry3d::Identity();
+  Isometry3d T_WB = Eigen::Isometry3d::Identity();
   T_WB.translation() = state.p_WB_m;
   T_WB.linear() = state.q_WB.toRotationMatrix();
 

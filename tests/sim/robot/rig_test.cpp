@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <Eigen/Eigenvalues>
-#include <cmath>
-#include <string>
-
 #include "sim/compose.hpp"
 #include "sim/engine/model.hpp"
 #include "sim/motion/rigid_body.hpp"
 #include "sim/robot/robot_type.hpp"
 #include "tests/sim/engine/worlds.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 namespace {
@@ -45,17 +40,17 @@ TEST(Rig, CageKeepsWithinThePublishedCropBox) {
   const engine::World world = rig({});
   const int lidar = mj_name2id(world.model.get(), mjOBJ_SITE, "rs16");
   ASSERT_GE(lidar, 0);
-  const Eigen::Vector3d p_BL_m = Eigen::Map<const Eigen::Vector3d>(world.model->site_pos + 3 * lidar);
+  const Vector3d p_BL_m = Eigen::Map<const Vector3d>(world.model->site_pos + 3 * lidar);
   int struts = 0;
   for (int g = 0; g < world.model->ngeom; ++g) {
     if (world.model->geom_type[g] != mjGEOM_CAPSULE) continue;
     ++struts;
-    const Eigen::Map<const Eigen::Vector3d> p(world.model->geom_pos + 3 * g);
+    const Eigen::Map<const Vector3d> p(world.model->geom_pos + 3 * g);
     const mjtNum* q = world.model->geom_quat + 4 * g;
-    const Eigen::Vector3d axis = Eigen::Quaterniond(q[0], q[1], q[2], q[3]) * Eigen::Vector3d::UnitZ();
+    const Vector3d axis = Quaterniond(q[0], q[1], q[2], q[3]) * Eigen::Vector3d::UnitZ();
     const double half_m = world.model->geom_size[3 * g + 1], radius_m = world.model->geom_size[3 * g];
     for (const double end : {-1.0, 1.0}) {
-      const Eigen::Vector3d tip = p + end * half_m * axis - p_BL_m;
+      const Vector3d tip = p + end * half_m * axis - p_BL_m;
       EXPECT_LE(std::abs(tip.x()) + radius_m, 0.4);
       EXPECT_LE(std::abs(tip.y()) + radius_m, 0.4);
       EXPECT_GE(tip.z() - radius_m, -0.27);
@@ -72,8 +67,8 @@ TEST(Rig, PrincipalAxesTurnWithTheCage) {
   values.set("inertia_ratio_z", 1.7);
   values.set("inertia_yaw_rad", 0.5);
   const engine::World world = rig(values);
-  const Eigen::Matrix3d J = inertia_W_kg_m2(*world.model, world.robot_body, Eigen::Quaterniond::Identity());
-  const Eigen::Vector3d first(std::cos(0.5), std::sin(0.5), 0.0), second(-std::sin(0.5), std::cos(0.5), 0.0);
+  const Matrix3d J = inertia_W_kg_m2(*world.model, world.robot_body, Eigen::Quaterniond::Identity());
+  const Vector3d first(std::cos(0.5), std::sin(0.5), 0.0), second(-std::sin(0.5), std::cos(0.5), 0.0);
   EXPECT_NEAR((J * first - 0.2 * first).norm(), 0.0, 1e-9);
   EXPECT_NEAR((J * second - 0.3 * second).norm(), 0.0, 1e-9);
   EXPECT_NEAR(J(2, 2), 0.34, 1e-9);

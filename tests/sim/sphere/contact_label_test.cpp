@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "tests/sim/sphere/free_sphere.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 namespace {
-
-using Eigen::Vector3d;
 
 /// The contact point of a sphere that is launched with slip speed u0 stops slipping after T = u0 / k, with k = mu g (1
 /// + m r^2 / I). The label is grip once the mean of k (T - t) over 10 ms before and after is below 0.02 m/s: the window

@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-
 #include "sim/motion/path.hpp"
 #include "sim/motion/tremor.hpp"
 #include "sim/simulate.hpp"
 #include "tests/sim/sphere/free_sphere.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 namespace {
@@ -78,7 +73,7 @@ Situation along(double shape) {
   return situation;
 }
 
-Eigen::Vector3d centre_m(const Truth& truth, std::size_t k) {
+Vector3d centre_m(const Truth& truth, std::size_t k) {
   return truth.p_WB_m[k] + truth.q_WB[k] * truth.p_BG_m;
 }
 
@@ -90,8 +85,8 @@ TEST(HandPath, LeadsTheSphereAlongThePathFromRestToRest) {
       path_length_m += (centre_m(truth, k) - centre_m(truth, k - 1)).head<2>().norm();
     // corners are rounded: averaging over 0.3 s at 0.6 m/s shortens the path by 4 cm; the tremor lengthens it a little
     EXPECT_NEAR(path_length_m, 3.0, 0.08) << shape;
-    const Eigen::Vector3d moved = centre_m(truth, truth.q_WB.size() - 1) - centre_m(truth, 0);
-    const Eigen::Vector3d aim = shape == 1.0 ? Eigen::Vector3d(1.5, 1.5, 0.0) : Eigen::Vector3d::Zero();
+    const Vector3d moved = centre_m(truth, truth.q_WB.size() - 1) - centre_m(truth, 0);
+    const Vector3d aim = shape == 1.0 ? Vector3d(1.5, 1.5, 0.0) : Eigen::Vector3d::Zero();
     EXPECT_LT((moved - aim).norm(), 0.02);
     EXPECT_LT(truth.v_WB_m_s.front().norm(), 0.005);
     EXPECT_LT(truth.v_WB_m_s.back().norm(), 0.005);
@@ -135,7 +130,7 @@ TEST(HandPath, ABurstOfTorqueOnIceSpins) {
   const Truth truth = simulate(built(over_ice(1.0, 5.0))).truth;
   EXPECT_GT(static_cast<double>(count(truth, ContactLabel::slip)) * 0.0005, 0.5);
   double fastest_rad_s = 0.0;
-  for (const Eigen::Vector3d& w : truth.w_WB_B_rad_s) fastest_rad_s = std::max(fastest_rad_s, w.norm());
+  for (const Vector3d& w : truth.w_WB_B_rad_s) fastest_rad_s = std::max(fastest_rad_s, w.norm());
   EXPECT_NEAR(fastest_rad_s, 5.0 * 0.6 / kRadius_m, 0.35 * 5.0 * 0.6 / kRadius_m);  // pushes vary the speed
 }
 

@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "sim/lidar/ray_scene.hpp"
 #include "sim/simulate.hpp"
 #include "tests/sim/sphere/free_sphere.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 namespace {
-
-using Eigen::Vector3d;
 
 Situation in_world(const std::string& type) {
   Situation situation = roll_along(1.0);

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "sim/world/terrain/rocks.hpp"
 #include "sim/world/terrain/trunks.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 namespace {

@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/world/world_type.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "sim/compose.hpp"
 #include "sim/engine/physics.hpp"
 #include "sim/simulate.hpp"
 #include "tests/sim/engine/worlds.hpp"
+#include "tests/testing.hpp"
 
 namespace tumble::sim {
 namespace {
@@ -129,8 +124,7 @@ TEST(Hill, ACrowdedForestIsRefusedInOneLine) {
     compose_world("hill", 1, values);
     FAIL() << "300 trunks found room";
   } catch (const InvalidSituation& error) {
-    EXPECT_THAT(error.what(),
-                testing::HasSubstr("the area has no space left; reduce the number of objects of the kind trunk"));
+    EXPECT_THAT(error.what(), HasSubstr("the area has no space left; reduce the number of objects of the kind trunk"));
   }
 }
 
