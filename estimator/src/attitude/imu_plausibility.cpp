@@ -93,7 +93,9 @@ void ImuPlausibility::step(const ImuSample& sample, State& state) const {
     const Status follows = elapsed_time_since_last(sample.time_ns, state.last_time_ns, kWindowGapMax_s, dt_s);
     if (follows.error_code == ErrorCode::time_order) return;
     if (follows.ok()) {
-      add_repeated_reading(sample.angular_velocity_rad_s, dt_s, state.gyro);
+      // a gyro that is saturated on all axes also repeats one reading
+      if (sample.angular_velocity_rad_s.cwiseAbs().minCoeff() < setup_.gyro_range_rad_s)
+        add_repeated_reading(sample.angular_velocity_rad_s, dt_s, state.gyro);
       add_repeated_reading(sample.specific_force_m_s2, dt_s, state.accel);
     }
     if (!follows.ok()) {

@@ -43,7 +43,7 @@ Status check_force_at_rest(const ImuDescription& imu, std::span<const ImuSample>
 
 /// Returns whether the rotation measured by the gyro agrees with the rotation of the specific-force vector.
 bool check_readings(const ImuDescription& imu, std::span<const ImuSample> samples, SensorHealth& health) {
-  const ImuPlausibility plausibility(plausibility_setup(imu.gravity_m_s2, imu.is_merged ? 0.0 : imu.gyro_range_rad_s));
+  const ImuPlausibility plausibility(plausibility_setup(imu.gravity_m_s2, imu.gyro_range_rad_s));
   ImuPlausibility::State state;
   for (const ImuSample& sample : samples) plausibility.step(sample, state);
   add_findings(plausibility, state, kImu, health);

@@ -295,5 +295,20 @@ TEST(ImuPlausibility, AGyroThatNeverMovedIsDeadWhereTheBodyIsPushed) {
   EXPECT_EQ(frozen_s(2.0, 0.0), 0.0) << "a device that rests with a coarse quantum";
 }
 
+TEST(ImuPlausibility, AGyroThatIsSaturatedOnAllAxesIsNotFrozen) {
+  const auto frozen_s = [](double reading_rad_s) {
+    const ImuPlausibility plausibility({.gyro_range_rad_s = 30.0});
+    ImuPlausibility::State state;
+    for (int k = 0; k < 600; ++k) {
+      ImuSample sample{k * TimeNs{10'000'000}, {}, {0.01 * k, 0.0, 9.81}, 0};
+      sample.angular_velocity_rad_s.setConstant(k < 200 ? 0.1 * k : -reading_rad_s);
+      plausibility.step(sample, state);
+    }
+    return plausibility.frozen_s(state);
+  };
+  EXPECT_EQ(frozen_s(30.5), 0.0);
+  EXPECT_NEAR(frozen_s(29.5), 4.0, 0.05) << "within the range, a repeated reading is a fault";
+}
+
 }  // namespace
 }  // namespace tumble

@@ -15,15 +15,16 @@ namespace tumble {
 /// measures: imu_merge.md (I20).
 ///
 /// A sensor is frozen if one reading repeats bit for bit for at least a second, and ten times longer than any earlier
-/// repetition. A gyro with constant readings is frozen only if the specific force excludes rest. An accelerometer that
-/// always reads 0 is frozen if the gyro measures motion.
+/// repetition. A gyro that is saturated on all axes is not frozen. A gyro with constant readings is frozen only if the
+/// specific force excludes rest. An accelerometer that always reads 0 is frozen if the gyro measures motion.
 ///
 /// ImuPlausibility does not detect errors of a few per cent, exchanged axes, or errors while the body is pushed.
 class ImuPlausibility {
  public:
   struct Setup {
     double gravity_m_s2 = 9.80665;
-    double gyro_range_rad_s = 1e6;  ///< windows with a larger rate component are ignored
+    double gyro_range_rad_s =
+        1e6;  ///< windows with a larger rate component are ignored; a gyro with all components above is saturated
   };
 
   struct RepeatedReadingTime {
