@@ -123,6 +123,12 @@ SaturationPlane merged_plane(const SaturationPlaneFinder::Params& params, const 
   return out;
 }
 
+/// While several gyro axes are saturated together, their readings do not change, and the fit may give any slopes.
+bool has_plausible_slopes(const SaturationPlane& plane, int axis) {
+  constexpr double kFittedSlopeMax = 2.0 * SaturationPlaneFinder::Params::kSlopeMax;
+  return other_axes_readings(plane.row, axis).cwiseAbs().maxCoeff() <= kFittedSlopeMax;
+}
+
 using Pair = std::array<std::optional<SaturationPlaneSide>, 2>;
 
 SaturationPlane merged_plane(const SaturationPlaneFinder::Params& params, const DistinctReadings& readings,
@@ -239,9 +245,15 @@ SaturationPlanes SaturationPlaneFinder::find(std::span<const Vector3d> readings_
       Pair& pair = sides[element];
       for (std::size_t i = 0; i < 2; ++i) {
         const bool kept = held && held->was_reached(i == 0 ? -1 : 1);
+        const Pair earlier = pair;
         if (pair[i] || !search.add(axis, i, kept, found, pair)) continue;
+        const SaturationPlane merged = merged_plane(params_, readings, pair);
+        if (!has_plausible_slopes(merged, axis)) {
+          pair = earlier;
+          continue;
+        }
         added = true;
-        found.sensing_axis[element] = merged_plane(params_, readings, pair);
+        found.sensing_axis[element] = merged;
       }
     }
   }
