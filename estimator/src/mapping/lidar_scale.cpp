@@ -23,7 +23,7 @@ constexpr std::size_t kChangesMin = 5, kChangesMax = 1000;
 constexpr int kDisjointMin = 4;       // minimum number of velocity changes without a common sweep, to determine sigma
 constexpr std::size_t kSpanMax = 64;  // maximum number of buffered sweeps
 constexpr int kIterations = 10;
-constexpr double kBias_m_s2 = 0.05;         // constant error of the acceleration, from accelerometer bias and tilt
+constexpr double kBias_m_s2 = 0.05;         // constant error of the acceleration, without the error from the tilt
 constexpr double kForgettingTime_s = 60.0;  // maximum age of a velocity change, so that a finding ends
 // width of the Huber kernel in standard deviations; ratio of the standard deviation to the median absolute deviation
 constexpr double kHuber = 1.5, kPerMedian = 1.4826;
@@ -37,6 +37,12 @@ class ImuMotion {
       : samples_(samples), gravity_W_m_s2_(0.0, 0.0, -gravity_m_s2) {
     for (const SweepResult& sweep : sweeps)
       attitudes_.insert(attitudes_.end(), sweep.trajectory.begin(), sweep.trajectory.end());
+  }
+
+  /// Returns the standard deviation of the acceleration from bias and tilt.
+  double acceleration_sigma_m_s2(const PoseState& pose) const {
+    const double tilt_variance_rad2 = std::max(pose.covariance(3, 3), pose.covariance(4, 4));
+    return std::hypot(kBias_m_s2, gravity_W_m_s2_.z() * std::sqrt(std::max(0.0, tilt_variance_rad2)));
   }
 
   /// Returns the mean velocity from `middle_ns` to `to_ns`, minus the mean velocity from `from_ns` to `middle_ns`.
@@ -101,7 +107,8 @@ std::optional<Change> velocity_change_until(std::size_t last, std::size_t span, 
   if (!by_imu || !(by_imu->norm() >= kChange_m_s)) return std::nullopt;
   return Change{to.time_ns, *by_imu,
                 (to.position_W_m - middle.position_W_m) / seconds(to.time_ns - middle.time_ns) -
-                    (middle.position_W_m - from.position_W_m) / seconds(middle.time_ns - from.time_ns)};
+                    (middle.position_W_m - from.position_W_m) / seconds(middle.time_ns - from.time_ns),
+                imu_motion.acceleration_sigma_m_s2(middle)};
 }
 
 template <class Changes>
@@ -155,7 +162,7 @@ LidarScale fit(const Changes& changes) {
       const double weight = std::min(1.0, kHuber * deviation / std::max(sizes[k], 1e-12));
       together += weight * changes[k].imu_velocity_change_m_s.dot(changes[k].lidar_velocity_change_m_s);
       squared += weight * changes[k].imu_velocity_change_m_s.squaredNorm();
-      by_bias += weight * kSpan_s * changes[k].imu_velocity_change_m_s;
+      by_bias += weight * kSpan_s * changes[k].acceleration_sigma_m_s2 * changes[k].imu_velocity_change_m_s;
       residuals[k] *= weight;
     }
     out.scale = together / squared;
@@ -163,7 +170,7 @@ LidarScale fit(const Changes& changes) {
     // The variance from n disjoint velocity changes is multiplied by n / (n - 1), because the fit estimates one
     // parameter, the scale.
     const double residual = score_variance(changes, residuals) * disjoint / (disjoint - 1.0);
-    out.sigma = std::sqrt(residual + kBias_m_s2 * kBias_m_s2 * by_bias.squaredNorm()) / squared;
+    out.sigma = std::sqrt(residual + by_bias.squaredNorm()) / squared;
   }
   return out;
 }

@@ -29,7 +29,8 @@ struct LidarScale {
 /// consecutive intervals of 0.4 s, are compared with the integrated acceleration of the IMU by robust regression
 /// (Huber, 1964). Intervals with a saturated accelerometer or with unconstrained sweeps are skipped. Without
 /// acceleration, the scale is not observable. The standard deviation includes the correlation of overlapping intervals
-/// (Newey and West, 1987), and an acceleration error of 0.05 m/s^2 from bias and tilt. Cost: O(N).
+/// (Newey and West, 1987), and the acceleration errors from the bias (0.05 m/s^2) and from the tilt's uncertainty.
+/// Cost: O(N).
 LidarScale find_sweep_scale(std::span<const ImuSample> samples, std::span<const SweepResult> sweeps,
                             double gravity_m_s2);
 
@@ -41,6 +42,7 @@ class LidarScaleEstimator {
     TimeNs time_ns = 0;
     Eigen::Vector3d imu_velocity_change_m_s = Eigen::Vector3d::Zero(),
                     lidar_velocity_change_m_s = Eigen::Vector3d::Zero();
+    double acceleration_sigma_m_s2 = 0.0;  ///< constant error of the IMU's acceleration, from bias and tilt
   };
 
   /// `samples_max` is the size of the buffer for IMU samples, which should cover two seconds. A sweep with more samples
