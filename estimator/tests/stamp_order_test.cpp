@@ -27,6 +27,12 @@ TumblingOdometry tumbling() {
 RollingOdometry rolling() {
   return RollingOdometry(test::params_of({test::kPositions[0]}));
 }
+/// receives the readings with the number of their IMU, as a robot with several IMUs does
+class RollingByImuNumber : public RollingOdometry {
+ public:
+  RollingByImuNumber() : RollingOdometry(rolling()) {}
+  Status add_imu(const ImuSample& sample) { return RollingOdometry::add_imu(0, sample); }
+};
 std::vector<ImuSample> samples_for(const TumblingOdometry& /*of*/) {
   return ThrownBody{.rest_s = 2.5, .end_s = 2.5}.imu();
 }
@@ -58,7 +64,11 @@ template <>
 RollingOdometry StampOrderOf<RollingOdometry>::fresh() const {
   return rolling();
 }
-using Classes = testing::Types<TumblingOdometry, RollingOdometry>;
+template <>
+RollingByImuNumber StampOrderOf<RollingByImuNumber>::fresh() const {
+  return {};
+}
+using Classes = testing::Types<TumblingOdometry, RollingOdometry, RollingByImuNumber>;
 TYPED_TEST_SUITE(StampOrderOf, Classes);
 
 TYPED_TEST(StampOrderOf, OneWrongStampCostsOneSample) {

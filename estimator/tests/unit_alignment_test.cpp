@@ -156,6 +156,25 @@ TEST(RollingOdometryUnits, SingleReadingsGiveTheBitsOfSimultaneousOnes) {
   EXPECT_FALSE(together.take());
 }
 
+TEST(RollingOdometryUnits, AClockThatStepsBackRestartsAllUnitsTogether) {
+  const std::vector<std::vector<ImuSample>> units = three_units();
+  RollingOdometry odometry(params_of(kPositions));
+  constexpr std::size_t kStep = 600;
+  constexpr TimeNs kBack_ns = 5'000'000'000;
+  std::size_t refused = 0;
+  for (std::size_t k = 0; k < units[0].size(); ++k) {
+    for (std::size_t unit = 0; unit < units.size(); ++unit) {
+      ImuSample sample = units[unit][k];
+      if (k >= kStep) sample.time_ns -= kBack_ns;
+      refused += odometry.add_imu(unit, sample).ok() ? 0u : 1u;
+    }
+  }
+  EXPECT_EQ(odometry.restart_count(), 1u);
+  EXPECT_NEAR(double(refused), 3.0 * 50.0, 6.0) << "0.2 s at 250 Hz";
+  ASSERT_TRUE(odometry.newest());
+  EXPECT_EQ(odometry.newest()->pose.time_ns, units[0].back().time_ns - kBack_ns);
+}
+
 TEST(RollingOdometryUnits, WithTheWholeRecordingAllPosesComeAtTheEnd) {
   RollingOdometry::Params params = params_of(kPositions);
   params.lag_s = RollingOdometry::kWholeRecording;

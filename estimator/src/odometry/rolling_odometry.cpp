@@ -110,8 +110,35 @@ Status RollingOdometry::Impl::add_imu(std::size_t unit, const ImuSample& sample)
   const std::size_t units = params_.imus.size();
   if (unit >= units) return {ErrorCode::out_of_range, "unit", double(unit), double(units - 1)};
   if (uses_whole_recording()) return record_sample(unit, sample);
-  if (Status status = imu_time_alignment_.push(unit, sample, imu_time_alignment_state_); !status.ok()) return status;
+  if (!check_sample(sample).ok()) return {};
+  StampOrder::Verdict verdict{};
+  if (const Status status = stamp_order_.order_of_stamp(sample.time_ns, unit_stamp_order_states_[unit], verdict);
+      !status.ok())
+    return status;
+  if (verdict == StampOrder::Verdict::restarts_after_step_back) {
+    restart_at_newest(StampOrder::kStepBack_s);
+    forget_waiting_readings();
+  }
+  OutlierFilter::State& outliers = outlier_filter_state_[unit];
+  for (const ImuSample& confirmed : outlier_filters_[unit].filter_sample(sample, outliers)) {
+    if (const Status status = add_inlier(unit, confirmed); !status.ok()) return status;
+  }
+  if (outlier_filters_[unit].must_delay_for_check(sample, outliers)) return {};
+  return add_inlier(unit, sample);
+}
+
+/// Resamples a reading of one IMU, which OutlierFilter accepted, with the readings of the other IMUs.
+Status RollingOdometry::Impl::add_inlier(std::size_t unit, const ImuSample& sample) {
+  if (const Status status = imu_time_alignment_.push(unit, sample, imu_time_alignment_state_); !status.ok())
+    return status;
+  OutlierFilter::mark_accepted(sample, outlier_filter_state_[unit]);
+  StampOrder::accept(sample.time_ns, unit_stamp_order_states_[unit]);
   return add_time_aligned_readings(false);
+}
+
+void RollingOdometry::Impl::forget_waiting_readings() {
+  imu_time_alignment_state_ = {};
+  unit_stamp_order_states_ = {};
 }
 
 /// `ended` is true if no further IMU readings will follow. Returns the first error.
@@ -119,7 +146,10 @@ Status RollingOdometry::Impl::add_time_aligned_readings(bool ended) {
   Status first;
   ImuTimeAlignment::Readings readings;
   while (imu_time_alignment_.next(imu_time_alignment_state_, readings, ended)) {
-    const Status status = add_imus(std::span(readings).first(params_.imus.size()));
+    const std::optional<TimeNs>& newest_ns = stamp_order_state_.newest_ns;
+    const double passed_s = newest_ns ? seconds(readings.front().time_ns - *newest_ns) : 0.0;
+    if (passed_s > RollingGapParams::kGapMax_s) restart_at_newest(passed_s);
+    const Status status = add_inliers(std::span(readings).first(params_.imus.size()));
     if (first.ok()) first = status;
   }
   return first;
@@ -288,7 +318,7 @@ void RollingOdometry::Impl::end_continuous_run() {
 
 void RollingOdometry::Impl::reset() {
   start_continuous_run();
-  imu_time_alignment_state_ = {};
+  forget_waiting_readings();
   recorded_samples_ = {};
 }
 

@@ -66,7 +66,9 @@ struct RollingOdometry::Impl {
   bool is_delayed_after(std::span<const ImuSample> next, std::size_t unit);
   Status add_inliers(std::span<const ImuSample> samples);
   Status process_ordered_sample(const ImuSample& merged);
+  Status add_inlier(std::size_t unit, const ImuSample& sample);
   Status add_time_aligned_readings(bool ended);
+  void forget_waiting_readings();
   Status record_sample(std::size_t unit, ImuSample sample);
   Status finish_whole_recording();
   bool uses_whole_recording() const { return params_.lag_s >= kWholeRecording; }
@@ -86,6 +88,7 @@ struct RollingOdometry::Impl {
   std::vector<StreamingClippingFinder> clipping_finders_;  ///< one per IMU
   ImuTimeAlignment imu_time_alignment_;
   ImuTimeAlignment::State imu_time_alignment_state_;
+  std::array<StampOrder::State, ImuMerge::kImus> unit_stamp_order_states_;  ///< order of the readings of each IMU
   std::array<std::vector<ImuSample>, ImuMerge::kImus>
       recorded_samples_;  ///< readings of each IMU, with kWholeRecording
   HeapValue<ImuMerge::State> imu_merge_state_, merge_state_buffer_;

@@ -132,8 +132,8 @@ class RollingOdometry {
   /// Processes a sample of the IMU with the index `imu_index`, if the samples of the IMUs are not simultaneous.
   /// RollingOdometry resamples the readings of all IMUs to common times, which delays the poses by at most 0.05 s.
   /// RollingOdometry treats an IMU without readings as absent. Returns `ok`, an error of add_imus(), or `out_of_range`
-  /// for an invalid IMU number. If the clock of an IMU steps back, add_imu() rejects samples of this IMU until reset(),
-  /// or until a time stamp exceeds the newest accepted time stamp.
+  /// for an invalid IMU number. If the clock of an IMU steps back, add_imu() restarts as add_imus() does, and drops the
+  /// readings of all IMUs that wait for readings of other IMUs.
   Status add_imu(std::size_t imu_index, const ImuSample& sample);
 
   /// Returns the pose at the newest sample, estimated from all data so far, or an empty value before the first sample.
