@@ -81,7 +81,7 @@ std::vector<bool> find_usable(std::span<const ImuSample> samples) {
 
 // Only isolated IMU readings beyond the range are removed. Frequent readings beyond the range are kept, so that a later
 // check rejects the recording.
-void leave_out_faulty(const sim::ImuRecord& record, std::vector<ImuSample>& samples) {
+std::vector<bool> kept_samples(const sim::ImuRecord& record, std::span<const ImuSample> samples) {
   std::vector<bool> kept = find_usable(samples);
   std::size_t beyond = 0;
   for (std::size_t k = 0; k < samples.size(); ++k) beyond += kept[k] && !in_range(record, samples[k]) ? 1 : 0;
@@ -89,7 +89,7 @@ void leave_out_faulty(const sim::ImuRecord& record, std::vector<ImuSample>& samp
     const std::vector<bool> inlier = find_inliers(record);
     for (std::size_t k = 0; k < samples.size(); ++k) kept[k] = kept[k] && (inlier[k] || in_range(record, samples[k]));
   }
-  keep_rows(kept, samples);
+  return kept;
 }
 
 Status check_stream(const sim::ImuRecord& record, std::span<const ImuSample> samples, double gap_max_s) {
@@ -157,10 +157,24 @@ Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out, do
   require_length(place, "accel_m_s2", record.accel_m_s2.size(), count);
   if (!record.clip_flags.empty()) require_length(place, "clip_flags", record.clip_flags.size(), count);
   std::vector<ImuSample> samples = samples_of(record);
-  leave_out_faulty(record, samples);
+  keep_rows(kept_samples(record, samples), samples);
   const Status status = check_stream(record, samples, gap_max_s);
   if (status.ok()) out = std::move(samples);
   return status;
+}
+
+Status delivered_samples(const sim::ImuRecord& record, DeliveredSamples& out) {
+  out = {};
+  std::vector<ImuSample> kept_only;
+  if (Status status = imu_samples(record, kept_only, kAnyGapS); !status.ok()) return status;
+  out.samples = samples_of(record);
+  const std::vector<bool> kept = kept_samples(record, out.samples);
+  TimeNs arrival_ns = kept_only.front().time_ns;
+  for (std::size_t k = 0; k < out.samples.size(); ++k) {
+    if (kept[k]) arrival_ns = out.samples[k].time_ns;
+    out.arrival_ns.push_back(arrival_ns);
+  }
+  return {};
 }
 
 Status primary_imu_samples(const sim::Sensors& sensors, std::vector<ImuSample>& out, double gap_max_s) {

@@ -50,6 +50,17 @@ std::vector<bool> find_inliers(const sim::ImuRecord& record);
 /// 20-fold from the stated sample period. On error, `out` is empty.
 Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out, double gap_max_s = kGapMaxS);
 
+/// All samples of an IMU record, with the times at which they reach the estimator. A sample with a faulty time stamp
+/// arrives with the sample before.
+struct DeliveredSamples {
+  std::vector<ImuSample> samples;
+  std::vector<TimeNs> arrival_ns;
+};
+
+/// Returns all samples if imu_samples() returns `ok`, and otherwise its error. An online estimator cannot leave out
+/// samples because of later samples, so the estimator itself must reject faulty samples.
+Status delivered_samples(const sim::ImuRecord& record, DeliveredSamples& out);
+
 Status primary_imu_samples(const sim::Sensors& sensors, std::vector<ImuSample>& out, double gap_max_s = kGapMaxS);
 
 Status unclipped_samples(const sim::ImuRecord& record, const sim::ImuTruth& truth, std::vector<ImuSample>& out);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "scenarios/errors.hpp"
+#include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/robot_presets.hpp"
 #include "scenarios/methods/sample_times.hpp"
@@ -105,7 +106,20 @@ void report_lever_arm(const MergedImuRecording& whole, Estimate& estimate) {
     estimate.health["lever_arm_agreement"] = *whole.recordings.lever_arm_agreement;
 }
 
-Status replay_imus(const std::vector<ImuRecording>& recordings, RollingOdometry& odometry, double radius_m,
+/// Returns the samples of each IMU. An IMU that bridge::imu_samples() rejects delivers only its usable samples.
+std::vector<bridge::DeliveredSamples> delivered_samples(const sim::Sensors& sensors, const SphereImus& units) {
+  std::vector<bridge::DeliveredSamples> out;
+  for (std::size_t k = 0; k < units.names.size(); ++k) {
+    const auto record = std::ranges::find(sensors.imus, units.names[k], &sim::ImuRecord::name);
+    bridge::DeliveredSamples& unit = out.emplace_back();
+    if (bridge::delivered_samples(*record, unit).ok()) continue;
+    unit = {.samples = units.recordings[k].samples, .arrival_ns = {}};
+    for (const ImuSample& sample : unit.samples) unit.arrival_ns.push_back(sample.time_ns);
+  }
+  return out;
+}
+
+Status replay_imus(const std::vector<bridge::DeliveredSamples>& units, RollingOdometry& odometry, double radius_m,
                    std::span<const std::string> names, Estimate& estimate) {
   TimeNs checked_ns = 0;
   SensorHealth found;
@@ -115,20 +129,20 @@ Status replay_imus(const std::vector<ImuRecording>& recordings, RollingOdometry&
     checked_ns = estimate.poses.back().time_ns;
     found.add_current_and_end_others(odometry.health());
   };
-  std::vector<std::size_t> next(recordings.size(), 0);
+  std::vector<std::size_t> next(units.size(), 0);
   while (true) {
-    std::optional<std::size_t> first;  // index of the IMU with the earliest reading
+    std::optional<std::size_t> first;  // index of the IMU whose next sample arrives first
     TimeNs first_ns = std::numeric_limits<TimeNs>::max();
-    for (std::size_t k = 0; k < recordings.size(); ++k) {
-      if (next[k] == recordings[k].samples.size() || recordings[k].samples[next[k]].time_ns >= first_ns) continue;
+    for (std::size_t k = 0; k < units.size(); ++k) {
+      if (next[k] == units[k].samples.size() || units[k].arrival_ns[next[k]] >= first_ns) continue;
       first = k;
-      first_ns = recordings[k].samples[next[k]].time_ns;
+      first_ns = units[k].arrival_ns[next[k]];
     }
     if (!first) break;
-    const Status status = odometry.add_imu(*first, recordings[*first].samples[next[*first]++]);
     // The estimator rejects the first sample after a gap until a second sample confirms the time stamp, so the error
     // `gap` is ignored here.
-    if (!status.ok() && status.error_code != ErrorCode::gap) return status;
+    const Status status = odometry.add_imu(*first, units[*first].samples[next[*first]++]);
+    if (!status.ok() && status.error_code != ErrorCode::gap) estimate.health["rejected_readings"] += 1.0;
     collect();
   }
   const Status status = odometry.finish();
@@ -141,7 +155,7 @@ Status replay_imus(const std::vector<ImuRecording>& recordings, RollingOdometry&
 void report_counters(const RollingOdometry& odometry, const RollingOdometry::Params& params, Estimate& estimate) {
   if (odometry.restart_count() > 0) estimate.health["gaps"] = static_cast<double>(odometry.restart_count());
   if (odometry.rejected_readings() > 0)
-    estimate.health["rejected_readings"] = static_cast<double>(odometry.rejected_readings());
+    estimate.health["rejected_readings"] += static_cast<double>(odometry.rejected_readings());
   if (params.lag_s > 0.0) estimate.centre_B_m = odometry.sphere_calibration().sphere_centre_B_m;
 }
 
@@ -156,7 +170,7 @@ Estimate roll_along(const char* method, const Settings<RollingOdometry::Params>&
   RollingOdometry::Params params = stated_params(sensors, units, settings.defaults());
   settings.apply(parameters, params);
   RollingOdometry odometry(params);
-  estimate.status = replay_imus(units.recordings, odometry, params.radius_m, units.names, estimate);
+  estimate.status = replay_imus(delivered_samples(sensors, units), odometry, params.radius_m, units.names, estimate);
   estimate.health["imus"] = static_cast<double>(params.imus.size());
   if (odometry.whole_recording_result() != nullptr) report_lever_arm(*odometry.whole_recording_result(), estimate);
   report_beyond_range(units.beyond_range, estimate);

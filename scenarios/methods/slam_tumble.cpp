@@ -169,8 +169,9 @@ class Collector {
 
 /// Replays IMU samples at the end of their averaging windows, and sweeps after their last points, as in real time. A
 /// sweep that ends after the last IMU sample is used only if the estimate may use the whole recording (`whole`).
-Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, bool whole, TumblingOdometry& odometry,
-              Collector& collector, const SweepProgress& on_sweep, Estimate& estimate) {
+Status replay(const sim::Sensors& sensors, const bridge::DeliveredSamples& delivered, bool whole,
+              TumblingOdometry& odometry, Collector& collector, const SweepProgress& on_sweep, std::size_t& rejected,
+              Estimate& estimate) {
   const sim::LidarRecord& lidar = sensors.lidars.front();
   const std::size_t sweeps = bridge::sweep_count(lidar);
   std::optional<bridge::Sweep> present;
@@ -178,20 +179,21 @@ Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, b
   const auto add_sweep = [&](const bridge::Sweep& sweep) {
     return odometry.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points);
   };
-  std::optional<TimeNs> last_ns;
-  for (const ImuSample& sample : samples) {
-    const TimeNs gap_ns = last_ns ? sample.time_ns - *last_ns : 0;
-    last_ns = sample.time_ns;
+  for (std::size_t k = 0; k < delivered.samples.size(); ++k) {
+    const TimeNs now_ns = delivered.arrival_ns[k];
+    const TimeNs gap_ns = k > 0 ? now_ns - delivered.arrival_ns[k - 1] : 0;
     while (seconds(gap_ns) > bridge::kGapMaxS && (present || next < sweeps)) {
       if (!present) present = bridge::sweep(lidar, next++);
-      if (present->end_ns > sample.time_ns) break;
+      if (present->end_ns > now_ns) break;
       if (!add_sweep(*present).ok()) estimate.health["sweeps_without_imu"] += 1.0;
       present.reset();
     }
-    if (Status status = odometry.add_imu(sample); !status.ok() && status.error_code != ErrorCode::gap) return status;
+    if (const Status status = odometry.add_imu(delivered.samples[k]);
+        !status.ok() && status.error_code != ErrorCode::gap)
+      ++rejected;
     while (present || next < sweeps) {
       if (!present) present = bridge::sweep(lidar, next++);
-      if (present->end_ns > sample.time_ns) break;
+      if (present->end_ns > now_ns) break;
       if (Status status = add_sweep(*present); !status.ok()) return status;
       present.reset();
       if (!whole && on_sweep) on_sweep(next, sweeps);
@@ -233,8 +235,12 @@ Estimate run(SlamOutput output, const Settings<TumblingOdometry::Params>& settin
              const sim::Values& parameters, const SweepProgress& on_sweep, const PriorMap* map = nullptr) {
   Estimate estimate;
   estimate.frame = Frame::imu;
-  std::vector<ImuSample> samples;
-  estimate.status = bridge::primary_imu_samples(sensors, samples, bridge::kAnyGapS);
+  bridge::DeliveredSamples delivered;
+  if (sensors.imus.empty()) {
+    estimate.status = {ErrorCode::empty, "imus", 0.0, 1.0};
+    return estimate;
+  }
+  estimate.status = bridge::delivered_samples(sensors.imus.front(), delivered);
   if (!estimate.status.ok()) return estimate;
   if (sensors.lidars.empty() || bridge::sweep_count(sensors.lidars.front()) == 0) {
     const char* const missing = sensors.lidars.empty() ? "lidars" : "lidar.sweep_start_ns";
@@ -248,11 +254,12 @@ Estimate run(SlamOutput output, const Settings<TumblingOdometry::Params>& settin
   if (map != nullptr) estimate.status = odometry.set_prior_map(*map);
   if (!estimate.status.ok()) return estimate;
   Collector collector(output, sensors.imus.front().name, estimate);
-  estimate.status = replay(sensors, samples, output == SlamOutput::whole, odometry, collector, on_sweep, estimate);
+  std::size_t rejected = 0;
+  estimate.status =
+      replay(sensors, delivered, output == SlamOutput::whole, odometry, collector, on_sweep, rejected, estimate);
   if (odometry.whole_recording_result()) report_whole(*odometry.whole_recording_result(), sensors, estimate);
   if (!estimate.status.ok()) return estimate;
-  const std::size_t left_out = sensors.imus.front().time_ns.size() - samples.size();
-  const std::size_t rejected = left_out + odometry.rejected_readings();
+  rejected += odometry.rejected_readings();
   if (output != SlamOutput::whole || rejected > 0) estimate.health["rejected_readings"] = static_cast<double>(rejected);
   if (odometry.sweeps_before_first_imu() > 0)
     estimate.health["sweeps_before_imu"] = static_cast<double>(odometry.sweeps_before_first_imu());

@@ -160,6 +160,13 @@ TEST(Bridge, OneFaultyReadingCostsOneReading) {
     EXPECT_EQ(samples.size() + 1, good.time_ns.size());
     const std::vector<bool> inlier = bridge::find_inliers(record);
     EXPECT_EQ(std::count(inlier.begin(), inlier.end(), false), 1);
+    // an online estimator receives the faulty sample as well, in the order of recording
+    bridge::DeliveredSamples delivered;
+    EXPECT_TRUE(bridge::delivered_samples(record, delivered).ok());
+    EXPECT_EQ(delivered.samples.size(), good.time_ns.size());
+    EXPECT_TRUE(std::ranges::is_sorted(delivered.arrival_ns));
+    EXPECT_EQ(delivered.arrival_ns.front(), inlier.front() ? good.time_ns[0] : good.time_ns[1]);
+    EXPECT_EQ(delivered.arrival_ns.back(), good.time_ns.back());
   };
   expect_one_less([](sim::ImuRecord& r) { r.gyro_rad_s[7].y() = kNaN; });
   expect_one_less([](sim::ImuRecord& r) { r.accel_m_s2[7].z() = 1e7; });
