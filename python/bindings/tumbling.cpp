@@ -297,10 +297,8 @@ void bind_tumbling(nb::module_& m) {
           nb::arg("map"), nb::arg("start_T_MI") = nb::none(), nb::arg("start_position_sigma_m") = 0.0,
           nb::arg("start_heading_sigma_rad") = 0.0, nb::arg("extend") = true,
           "Localises the run in the map of an earlier run; call it before the first sweep. start_T_MI (4, 4): pose of "
-          "the "
-          "IMU "
-          "in\n"
-          "the map at the start, with its standard deviations per axis and of the heading; None: the whole map is "
+          "the IMU\n"
+          "in the map at the start, with its standard deviations per axis and of the heading; None: the whole map is\n"
           "searched.\n"
           "extend=False keeps the map unchanged. Until result.in_prior_map is true, poses are in a local frame, and\n"
           "health() reports that the robot is not localised.")

@@ -167,8 +167,9 @@ std::string delay_text(const RotationAgreement& found) {
   if (std::abs(found.delay_s) < kDelaySaid_s) return "";
   return fmt::format(
       "caution: the lidar measures rotations {}{} than the gyro; check that both sensors use one clock and that sweep "
-      "stamps are start times. After correction of the time offset: ",
-      rounded(std::abs(found.delay_s)), found.delay_s > 0.0 ? " s later" : " s earlier");
+      "stamps are start times. If the offset is constant, an option corrects it (set '--imu-minus-lidar-clock {}'). "
+      "After correction of the time offset: ",
+      rounded(std::abs(found.delay_s)), found.delay_s > 0.0 ? " s later" : " s earlier", rounded(-found.delay_s));
 }
 
 /// Throws RepairableInput if lidar and gyro disagree with the header stamps of the messages, but agree with the record
@@ -330,6 +331,7 @@ LidarRotationCheck check_lidar_rotation(const std::string& where, const Imported
   const sim::LidarRecord& lidar = sensors.lidars.front();
   const std::vector<SeenRotation> seen =
       seen_rotations(lidar, recording.points.empty() ? nullptr : &recording.points.front());
+  bool primary_agrees = false;
   for (const sim::ImuRecord& imu : sensors.imus) {
     auto agreement = rotation_agreement(imu, lidar, seen);
     // Points without times were measured on average half a sweep period after the stamp of their sweep.
@@ -340,11 +342,12 @@ LidarRotationCheck check_lidar_rotation(const std::string& where, const Imported
     std::string text = agreement_text(where + ": '" + imu.name + "'", *agreement, unit);
     if (&imu == &sensors.imus.front()) {
       out.primary = agreement;
+      primary_agrees = !text.starts_with("caution");
       if (const auto R_BL = better_attitude(imu, lidar, *agreement)) {
         out.better_BL = better_pose(lidar, *R_BL);
         text += better_pose_text(lidar, *out.better_BL);
       }
-    } else if (text.starts_with("caution") && sensors.imus.front().name.starts_with('/')) {
+    } else if (primary_agrees && text.starts_with("caution") && sensors.imus.front().name.starts_with('/')) {
       text += fmt::format(" (set '--imu-topic {}' to use only this IMU)", sensors.imus.front().name);
     }
     if (!text.empty()) out.notes.push_back(imu.name + ": " + text);

@@ -75,7 +75,7 @@ const Fault kFaults[] = {
        };
        drop_sweeps(lidar, late);
      }},
-    {"clock of the lidar 0.2 s late", "the lidar measures rotations", "",
+    {"clock of the lidar 0.2 s late", "the lidar measures rotations", "--imu-minus-lidar-clock -0.2",
      [](sim::ImuRecord&, sim::LidarRecord& lidar) {
        for (std::int64_t& start : lidar.sweep_start_ns) start += 200'000'000;
      }},
@@ -148,6 +148,14 @@ TEST(Doctor, FindsFaultsOfUnitsAndMountings) {
 
 TEST(DoctorSoak, FindsEachFaultAndNamesItsRepair) {
   expect_found(kFaults);
+}
+
+TEST(DoctorSoak, AnOptionCorrectsTheClockOfTheLidar) {
+  const auto late = std::ranges::find_if(
+      kFaults, [](const Fault& fault) { return std::string(fault.repair).starts_with("--imu-minus-lidar-clock"); });
+  const fs::path bag = bag_of(test_folder() / "bag", kPeers[0], late);
+  const Ended ended = run_program({"doctor", bag.string(), "--imu-minus-lidar-clock", "-0.2"});
+  EXPECT_EQ(ended.status, 0) << ended.out << ended.err;
 }
 
 TEST(Odometry, WritesAllFilesOfABagThatNeedsARepair) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "scenarios/external/external_method.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "tools/tumble/progress.hpp"
 #include "tumble/common/types.hpp"
 #include "tumble/mapping/detail/odometry_params.hpp"
 
@@ -50,10 +52,22 @@ scenarios::MethodPointer chosen_method(const std::string& name, const scenarios:
   return fitting.front();
 }
 
-scenarios::Estimate run_method(const scenarios::Method& method, const sim::Sensors& sensors,
-                               std::function<void(std::size_t done, std::size_t all)> on_sweep) {
+scenarios::Estimate run_method(const Session& session, const scenarios::Method& method, const sim::Sensors& sensors) {
+  using Clock = std::chrono::steady_clock;
+  ProgressDisplay display = ProgressDisplay::on_standard_error();
+  Clock::time_point pass = Clock::now();
+  RegistrationProgress progress;
+  scenarios::OracleInput input;
+  if (!session.quiet && display.is_on_terminal())
+    input.on_sweep = [&](std::size_t done, std::size_t all) {
+      if (done <= progress.done) pass = Clock::now();
+      progress = {done, all, std::chrono::duration<double>(Clock::now() - pass).count()};
+      display.show(progress);
+    };
   try {
-    return method.run(sensors, {}, {.truth = nullptr, .on_sweep = std::move(on_sweep)});
+    scenarios::Estimate estimate = method.run(sensors, {}, input);
+    if (progress.all > 0) display.finish(progress);
+    return estimate;
   } catch (const scenarios::NoAnswer& error) {
     throw BadInput(full_name(method.info) + ": " + error.what());
   }

@@ -1,21 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstddef>
-#include <functional>
 #include <string>
 
 #include "scenarios/estimates/method.hpp"
 #include "sim/recording.hpp"
+#include "tools/tumble/session.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble::tools {
 
 scenarios::MethodPointer chosen_method(const std::string& name, const scenarios::Subject& subject);
 
-/// `on_sweep` is that of scenarios::OracleInput.
-scenarios::Estimate run_method(const scenarios::Method& method, const sim::Sensors& sensors,
-                               std::function<void(std::size_t done, std::size_t all)> on_sweep = {});
+/// Shows the progress on a terminal.
+scenarios::Estimate run_method(const Session& session, const scenarios::Method& method, const sim::Sensors& sensors);
 
 std::string failure_reason(const Status& status, const sim::Sensors& sensors);
 

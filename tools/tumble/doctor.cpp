@@ -24,8 +24,9 @@ void append_findings(std::vector<RecordingFinding> more, std::vector<RecordingFi
   std::move(more.begin(), more.end(), std::back_inserter(out));
 }
 
-std::vector<RecordingFinding> findings_of_method(const scenarios::Method& method, const sim::Sensors& sensors) {
-  const scenarios::Estimate estimate = run_method(method, sensors);
+std::vector<RecordingFinding> findings_of_method(const Session& session, const scenarios::Method& method,
+                                                 const sim::Sensors& sensors) {
+  const scenarios::Estimate estimate = run_method(session, method, sensors);
   const std::string name = full_name(method.info);
   std::vector<RecordingFinding> out =
       scenarios::findings_in_estimate(estimate, name, sensors.lidars.front().sweep_start_ns.size());
@@ -40,11 +41,11 @@ bool any_fault(const std::vector<RecordingFinding>& findings) {
 }
 
 /// Rotations do not reveal that all axes of the accelerometer are inverted, so the method tests this hypothesis.
-bool is_accel_inverted(const scenarios::Method& method, sim::Sensors sensors) {
+bool is_accel_inverted(const Session& session, const scenarios::Method& method, sim::Sensors sensors) {
   for (sim::ImuRecord& imu : sensors.imus) {
     for (Eigen::Vector3d& force_m_s2 : imu.accel_m_s2) force_m_s2 = -force_m_s2;
   }
-  return !any_fault(findings_of_method(method, sensors));
+  return !any_fault(findings_of_method(session, method, sensors));
 }
 
 /// @param out  Findings in the readings. The findings of the odometry are appended.
@@ -52,8 +53,8 @@ void append_findings_of_odometry(const Session& session, const OdometryOptions& 
                                  std::vector<RecordingFinding>& out) {
   const sim::Sensors& sensors = recording.content.sensors;
   const OdometrySetup setup = set_up_odometry(session, options, recording);
-  std::vector<RecordingFinding> consequences = findings_of_method(setup.method, sensors);
-  if (!any_fault(out) && any_fault(consequences) && is_accel_inverted(setup.method, sensors))
+  std::vector<RecordingFinding> consequences = findings_of_method(session, setup.method, sensors);
+  if (!any_fault(out) && any_fault(consequences) && is_accel_inverted(session, setup.method, sensors))
     out.push_back({sensors.imus.front().name,
                    fmt::format("the accelerometer seems to be inverted: with the opposite sign of all its axes, the "
                                "faults that '{}' finds disappear",

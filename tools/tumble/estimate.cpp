@@ -79,7 +79,7 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
   const std::vector<scenarios::Method> methods = scenarios::with_parameters(selected, options.parameters);
   scenarios::OutputFolder folder(options.folder);
   note_time_limits(session, std::span(&options.method, 1));
-  scenarios::Estimate estimate = run_method(methods.front(), sensors);
+  scenarios::Estimate estimate = run_method(session, methods.front(), sensors);
   const bool with_digest = scenarios::states_digest(options.recording);
   if (!with_digest) estimate.health["recording_without_digest"] = 1.0;
   scenarios::write_estimate(options.folder, method.info.name, method.info.kind, estimate,

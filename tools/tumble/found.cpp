@@ -227,14 +227,14 @@ class Found {
       return add("clock of the lidar",
                  "the lidar's time stamps are unchanged; mapping calibrates the offset of the lidar's clock to the "
                  "IMU's clock",
-                 kAssumed, "--stamps");
+                 kAssumed, "--imu-minus-lidar-clock");
     add("clock of the lidar",
         agreement->delay_s == 0.0
             ? std::string(
                   "the lidar's clock agrees with the IMU's clock within about 10 ms; mapping calibrates the offset")
             : fmt::format("the lidar measures the same rotation {} s {} than the gyro",
                           rounded(std::abs(agreement->delay_s)), agreement->delay_s > 0.0 ? "later" : "earlier"),
-        kMeasured, "--stamps");
+        kMeasured, "--imu-minus-lidar-clock");
   }
 
   OpenRecording& recording_;

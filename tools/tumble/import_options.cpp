@@ -103,6 +103,9 @@ void declare_lidar(VerbOptions& verb, ImportOptions& options) {
           "the body frame is the centre of mass. The axes of the body frame are the axes of 'body' or 'base_link' in "
           "/tf_static; without these frames, the axes of the IMU [default: the pose in /tf_static, otherwise identity]")
       .words(7);
+  verb.add("--imu-minus-lidar-clock", options.imu_minus_lidar_clock_s,
+           "adds this time to the time stamps of all sweeps, s [default: 0; mapping estimates offsets of a few ms]")
+      .within(-1e6, 1e6);
   verb.add("--stem", options.stem,
            "selects one lidar in a folder of several lidars: the file names of its sweeps are this text, followed by a "
            "number");
@@ -222,8 +225,9 @@ void require_fitting(const ImportOptions& options, const std::string& format) {
   refuse(!options.bin_columns.empty() && (!sweeps || format != "kitti"), "--bin-columns",
          "this option applies only to a folder of .bin sweeps");
   const bool lidar = !options.lidar.empty() || !options.T_body_lidar.empty() || !options.time_field.empty() ||
-                     !options.time_unit.empty() || options.not_skewed;
-  refuse(lidar && !sweeps && !bag, "--lidar --T-body-lidar --time-field --time-unit --not-skewed",
+                     options.imu_minus_lidar_clock_s != 0.0 || !options.time_unit.empty() || options.not_skewed;
+  refuse(lidar && !sweeps && !bag,
+         "--lidar --T-body-lidar --imu-minus-lidar-clock --time-field --time-unit --not-skewed",
          "these options apply only to a folder of sweeps or a bag");
   refuse(!options.times.empty() && !sweeps && format != "kitti", "--times",
          "this option applies only to a folder of sweeps or to KITTI poses");

@@ -21,6 +21,7 @@ struct ImportOptions {
   std::filesystem::path imu;
   std::string lidar, stem, bin_columns, time_field, time_unit;
   std::vector<double> T_body_lidar;
+  double imu_minus_lidar_clock_s = 0.0;
   std::filesystem::path times;
   double sweep_period_s = 0.0;
   bool not_skewed = false;

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <map>
 #include <string_view>
@@ -54,6 +56,13 @@ void say_what_is_assumed(const ImportOptions& options, const std::string& format
   }
 }
 
+void move_sweeps(const ImportOptions& options, sim::Sensors& sensors) {
+  const std::int64_t offset_ns = std::llround(1e9 * options.imu_minus_lidar_clock_s);
+  for (sim::LidarRecord& lidar : sensors.lidars) {
+    for (std::int64_t& start_ns : lidar.sweep_start_ns) start_ns += offset_ns;
+  }
+}
+
 bool set_option(const scenarios::ImportOption& option, ImportOptions& options) {
   const std::pair<const char*, std::string*> known[] = {
       {"--accel-unit", &options.accel_unit}, {"--gyro-unit", &options.gyro_unit}, {"--stamps", &options.stamps}};
@@ -68,6 +77,7 @@ bool set_option(const scenarios::ImportOption& option, ImportOptions& options) {
 void require_own_options(ImportOptions options) {
   for (std::string* name : {&options.device, &options.lidar}) name->clear();
   for (std::vector<double>* pose : {&options.lever_arm_m, &options.T_body_lidar}) pose->clear();
+  options.imu_minus_lidar_clock_s = 0.0;
   require_fitting(options, "recording");
 }
 
@@ -79,6 +89,7 @@ void apply_mounting(const Session& session, const ImportOptions& options, sim::S
   }
   if (!sensors.lidars.empty() && !options.T_body_lidar.empty())
     sensors.lidars.front().T_BL = sweep_source(session, options, "").reading.device.T_BL;
+  move_sweeps(options, sensors);
 }
 
 void open_own(const Session& session, OpenRecording& out) {
@@ -118,6 +129,7 @@ Imported import_recording(const Session& session, const ImportOptions& options, 
     throw BadInput(options.path.string() + ": this file is already a recording; use the file directly, without import");
   }
   Imported imported = import_format(session, options, format);
+  move_sweeps(options, imported.sensors);
   if (!options.imu.empty()) {
     scenarios::attach_imus(imported, imu_table(session, options, options.imu));
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -239,7 +240,7 @@ Listing list_sensors(const scenarios::DataRoot& data, const std::string& only) {
   }
   out.tables.push_back(std::move(table));
   if (only.empty()) add_sensor_kinds("", out);
-  for (Table& sheet : sheets) out.tables.push_back(std::move(sheet));
+  if (!only.empty()) std::ranges::move(sheets, std::back_inserter(out.tables));
   return out;
 }
 

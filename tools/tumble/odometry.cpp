@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <functional>
 #include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -20,7 +19,6 @@
 #include "tools/replay/replay.hpp"
 #include "tools/tumble/chosen_method.hpp"
 #include "tools/tumble/odometry_options.hpp"
-#include "tools/tumble/progress.hpp"
 #include "tools/tumble/verbs.hpp"
 
 namespace tumble::tools {
@@ -45,28 +43,6 @@ void require_both_sensors(const std::filesystem::path& path, const sim::Sensors&
           ? fmt::format(
                 "For an IMU alone: 'tumble import {} -o r.h5', then 'tumble estimate r.h5 --method rate/tumble'", file)
           : "Add IMU readings with --imu FILE.csv"));
-}
-
-double run_with_progress(const Session& session, const scenarios::Method& method, const sim::Sensors& sensors,
-                         Estimate& estimate) {
-  using Clock = std::chrono::steady_clock;
-  const auto since = [](Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-  };
-  ProgressDisplay display = ProgressDisplay::on_standard_error();
-  const Clock::time_point start = Clock::now();
-  Clock::time_point pass = start;
-  RegistrationProgress progress;
-  std::function<void(std::size_t, std::size_t)> on_sweep;
-  if (!session.quiet && display.is_on_terminal())
-    on_sweep = [&](std::size_t done, std::size_t all) {
-      if (done <= progress.done) pass = Clock::now();
-      progress = {done, all, since(pass)};
-      display.show(progress);
-    };
-  estimate = run_method(method, sensors, on_sweep);
-  if (progress.all > 0) display.finish(progress);
-  return since(start);
 }
 
 /// Only the ends of the sweeps count for the path length, because the poses between would add noise. The step from the
@@ -136,7 +112,8 @@ void write_replay(const std::filesystem::path& page, const OpenRecording& record
   scenarios::replace_file(page, replay_page(replay_of(input, {})));
 }
 
-void print_notes(const Session& session, const OpenRecording& recording, const Estimate& estimate) {
+void print_notes(const Session& session, const OpenRecording& recording, const std::string& method,
+                 const Estimate& estimate) {
   if (std::ranges::any_of(estimate.sweeps, [](const auto& sweep) { return sweep.verdict == SweepVerdict::degenerate; }))
     session.note(
         "in a degenerate sweep, the lidar determines the pose in some directions only. In the other directions, the "
@@ -151,7 +128,9 @@ void print_notes(const Session& session, const OpenRecording& recording, const E
         fmt::format("the program set the option {} {}: {}", repair.option.name, repair.option.value, repair.cause));
   for (const scenarios::RecordingFinding& each : scenarios::findings_in_notes(recording.content.notes))
     session.note(each.where + ": " + each.evidence);
-  for (const HealthFinding& each : estimate.faults.findings) session.note(scenarios::report_text(each));
+  const std::size_t sweeps = recording.content.sensors.lidars.front().sweep_start_ns.size();
+  for (const scenarios::RecordingFinding& each : scenarios::findings_in_estimate(estimate, method, sweeps))
+    session.note(each.evidence + (each.repair.empty() ? "" : ". Repair: " + each.repair));
 }
 
 int run_odometry(const Session& session, const OdometryCommand& command) {
@@ -164,8 +143,10 @@ int run_odometry(const Session& session, const OdometryCommand& command) {
   OdometrySetup setup = set_up_odometry(session, options, recording);
   if (!session.json) session.print({found_table(setup.found)}, {});
   const scenarios::MethodInfo& info = setup.method.info;
-  Estimate estimate;
-  const double run_s = run_with_progress(session, setup.method, sensors, estimate);
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start = Clock::now();
+  Estimate estimate = run_method(session, setup.method, sensors);
+  const double run_s = std::chrono::duration<double>(Clock::now() - start).count();
   if (estimate.replaced_T_BL) set_replaced_pose(*estimate.replaced_T_BL, setup.found);
   estimate.settings = setup.found;
   estimate.T_base_imu = recording.content.T_base_imu;
@@ -178,7 +159,7 @@ int run_odometry(const Session& session, const OdometryCommand& command) {
   if (!estimate.poses.empty()) write_replay(command.folder / "replay.html", recording, full_name(info), estimate);
   folder.keep();
 
-  print_notes(session, recording, estimate);
+  print_notes(session, recording, full_name(info), estimate);
   if (!options.prior_map.map.empty()) session.note(localisation_text(options.prior_map, estimate));
   scenarios::Outcome outcome;
   judge_without_truth(info, estimate, outcome);

@@ -159,7 +159,8 @@ TEST(LidarRotation, AnotherClockIsReported) {
       for (std::int64_t& time : imu.time_ns) time -= by_ns;
     });
   };
-  EXPECT_THAT(shifted(200'000'000), AllOf(HasSubstr("caution"), HasSubstr("0.2 s later"), HasSubstr("axes agree")));
+  EXPECT_THAT(shifted(200'000'000), AllOf(HasSubstr("caution"), HasSubstr("0.2 s later"), HasSubstr("axes agree"),
+                                          HasSubstr("set '--imu-minus-lidar-clock -0.2'")));
   EXPECT_THAT(shifted(-200'000'000), HasSubstr("0.2 s earlier"));
   EXPECT_THAT(shifted(10'000'000), Not(HasSubstr("caution")));
 }
