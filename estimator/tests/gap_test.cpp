@@ -11,7 +11,7 @@
 #include "rolled_sphere.hpp"
 #include "thrown_body.hpp"
 #include "thrown_params.hpp"
-#include "tumble/odometry/detail/recording_estimate.hpp"
+#include "tumble/odometry/detail/mapping_passes.hpp"
 #include "tumble/odometry/rolling_odometry.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A gyro's zero offset beyond the bound of the rest detection is estimated at the initial rest.
-#include "angular_velocity/gyro_offset.hpp"
+#include "tumble/angular_velocity/detail/rest_detector.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Wrong stamps, gaps and clocks that step back: one rule for both odometry classes.
-#include "odometry/stamp_order.hpp"
 #include "answers.hpp"
+#include "odometry/imu_time_alignment.hpp"
 
 #include <gtest/gtest.h>
 

@@ -10,8 +10,8 @@
 
 #include "thrown_body.hpp"
 #include "thrown_params.hpp"
-#include "tumble/mapping/detail/odometer_reading.hpp"
-#include "tumble/odometry/detail/recording_estimate.hpp"
+#include "tumble/mapping/detail/deskew.hpp"
+#include "tumble/odometry/detail/mapping_passes.hpp"
 #include "tumble/odometry/detail/waiting_input.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
 

@@ -14,9 +14,9 @@
 #include "rails.hpp"
 #include "results.hpp"
 #include "trouble.hpp"
-#include "tumble/angular_velocity/detail/recording_check.hpp"
-#include "tumble/attitude/detail/clipped_readings.hpp"
 #include "tumble/attitude/detail/hand_held_smoother.hpp"
+#include "tumble/attitude/detail/regime_smoother.hpp"
+#include "tumble/common/detail/sample_check.hpp"
 
 namespace tumble::python {
 

@@ -12,7 +12,7 @@
 #include "bindings.hpp"
 #include "streams.hpp"
 #include "trouble.hpp"
-#include "tumble/angular_velocity/detail/recording_check.hpp"
+#include "tumble/common/detail/sample_check.hpp"
 
 namespace tumble::python {
 

@@ -19,7 +19,7 @@
 #include "rig.hpp"
 #include "saving.hpp"
 #include "streams.hpp"
-#include "tumble/odometry/detail/recording_estimate.hpp"
+#include "tumble/odometry/detail/mapping_passes.hpp"
 
 namespace tumble::python {
 

@@ -10,7 +10,7 @@
 
 #include "scenarios/estimates/estimate.hpp"
 #include "scenarios/estimates/json_members.hpp"
-#include "tumble/odometry/detail/merge_recordings.hpp"
+#include "tumble/odometry/detail/imu_findings.hpp"
 
 namespace tumble::scenarios {
 

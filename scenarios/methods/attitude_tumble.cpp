@@ -16,8 +16,8 @@
 #include "scenarios/methods/settings.hpp"
 #include "scenarios/methods/sphere_imus.hpp"
 #include "tumble/angular_velocity/detail/clipping_finder.hpp"
-#include "tumble/attitude/detail/clipped_readings.hpp"
 #include "tumble/attitude/detail/hand_held_smoother.hpp"
+#include "tumble/attitude/detail/regime_smoother.hpp"
 #include "tumble/attitude/detail/tumble_attitude.hpp"
 
 namespace tumble::scenarios {

@@ -12,7 +12,6 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/left_out.hpp"
-#include "tumble/angular_velocity/detail/recording_check.hpp"
 #include "tumble/common/detail/sample_check.hpp"
 
 namespace tumble::scenarios::bridge {

@@ -16,7 +16,6 @@
 #include "scenarios/methods/settings.hpp"
 #include "scenarios/methods/sphere_imus.hpp"
 #include "tumble/odometry/detail/imu_findings.hpp"
-#include "tumble/odometry/detail/merge_recordings.hpp"
 #include "tumble/odometry/expert_params.hpp"
 #include "tumble/rolling/detail/rolling_smoother.hpp"
 

@@ -11,9 +11,7 @@
 #include "scenarios/methods/settings.hpp"
 #include "sim/parameters.hpp"
 #include "sim/recording.hpp"
-#include "tumble/angular_velocity/detail/auxiliary_recording.hpp"
 #include "tumble/angular_velocity/detail/rate_smoother.hpp"
-#include "tumble/attitude/detail/recording_rates.hpp"
 #include "tumble/attitude/detail/regime_smoother.hpp"
 
 namespace tumble::scenarios {

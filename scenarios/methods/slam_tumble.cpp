@@ -14,7 +14,7 @@
 #include "scenarios/methods/robot_presets.hpp"
 #include "scenarios/methods/settings.hpp"
 #include "scenarios/methods/sweep_log.hpp"
-#include "tumble/odometry/detail/recording_estimate.hpp"
+#include "tumble/odometry/detail/mapping_passes.hpp"
 #include "tumble/odometry/expert_params.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
 

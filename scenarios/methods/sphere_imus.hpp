@@ -6,7 +6,7 @@
 
 #include "scenarios/estimates/method.hpp"
 #include "sim/recording.hpp"
-#include "tumble/odometry/detail/merge_recordings.hpp"
+#include "tumble/odometry/detail/imu_findings.hpp"
 
 namespace tumble::scenarios {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/detail/auxiliary_recording.hpp"
+#include "tumble/angular_velocity/detail/rate_smoother.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,7 @@
 #include <utility>
 
 #include "tumble/angular_velocity/detail/clipping_finder.hpp"
-#include "tumble/angular_velocity/detail/recording_check.hpp"
-#include "tumble/common/detail/imu_interpolation.hpp"
+#include "tumble/common/detail/imu_average.hpp"
 #include "tumble/common/detail/sample_check.hpp"
 
 namespace tumble {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/detail/device_uncertainty.hpp"
+#include "tumble/angular_velocity/detail/sensor_errors.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "element_clipping.hpp"
+#include "possible_saturation.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "tumble/angular_velocity/detail/partial_saturation.hpp"
-#include "tumble/angular_velocity/detail/rail_ratios.hpp"
+#include "tumble/angular_velocity/detail/rate_observation.hpp"
+#include "tumble/angular_velocity/detail/saturation_plane.hpp"
 
 namespace tumble {
 

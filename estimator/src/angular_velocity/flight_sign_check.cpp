@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "tumble/angular_velocity/detail/rail_ratios.hpp"
+#include "tumble/angular_velocity/detail/saturation_plane.hpp"
 #include "tumble/common/parameters.hpp"
 
 namespace tumble {

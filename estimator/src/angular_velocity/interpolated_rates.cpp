@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/angular_velocity/detail/interpolated_rates.hpp"
 
-#include <algorithm>
-
-#include "sample_hold.hpp"
-#include "tumble/angular_velocity/detail/recording_check.hpp"
+#include "tumble/angular_velocity/detail/repeat_detector.hpp"
+#include "tumble/common/detail/sample_check.hpp"
 
 namespace tumble {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "tumble/angular_velocity/detail/partial_saturation.hpp"
 #include "tumble/angular_velocity/detail/rate_model.hpp"
+#include "tumble/angular_velocity/detail/rate_observation.hpp"
 
 namespace tumble {
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cmath>
-
 #include "tumble/angular_velocity/detail/rate_model.hpp"
 
 namespace tumble {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rate_rounds.hpp"
+#include "rate_descent.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "triad_delay.hpp"
-#include "tumble/angular_velocity/detail/recording_check.hpp"
+#include "tumble/angular_velocity/detail/impact_sums.hpp"
+#include "tumble/common/detail/sample_check.hpp"
 
 namespace tumble {
 

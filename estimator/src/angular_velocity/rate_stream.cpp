@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
@@ -7,7 +6,7 @@
 #include <limits>
 #include <memory>
 
-#include "element_clipping.hpp"
+#include "possible_saturation.hpp"
 #include "rate_stream_impl.hpp"
 
 namespace tumble {
@@ -375,6 +374,14 @@ BodyImuConstants::Matrix AngularRateStream::Impl::inflated_calibration_covarianc
     factor[i] = of_gyro ? 1.0 : std::clamp(before, 1.0, largest);
   }
   return factor.asDiagonal() * state.rig_covariance * factor.asDiagonal();
+}
+
+SensorHealth AngularRateStream::health(const State& state) const {
+  SensorHealth out;
+  impl_->frozen_axes.add_findings(HealthFinding::Kind::frozen_axis, "imu", state.frozen_axes, out);
+  out.add(HealthFinding::Kind::inverted_accel_in_flight,
+          impl_->flight_axis_sign_check.current_verdict(state.flight_sign_check), "imu");
+  return out;
 }
 
 }  // namespace tumble

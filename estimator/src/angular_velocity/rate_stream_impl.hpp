@@ -7,13 +7,12 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/arrow_solver.hpp"
-#include "tumble/angular_velocity/detail/device_uncertainty.hpp"
+#include "tumble/angular_velocity/detail/clipping_finder.hpp"
 #include "tumble/angular_velocity/detail/flight_sign_check.hpp"
-#include "tumble/angular_velocity/detail/frozen_axes.hpp"
 #include "tumble/angular_velocity/detail/rate_model.hpp"
 #include "tumble/angular_velocity/detail/repeat_detector.hpp"
 #include "tumble/angular_velocity/detail/rest_detector.hpp"
-#include "tumble/angular_velocity/detail/streaming_clipping_finder.hpp"
+#include "tumble/angular_velocity/detail/sensor_errors.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
 
 namespace tumble {

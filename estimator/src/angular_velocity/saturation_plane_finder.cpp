@@ -10,9 +10,8 @@
 #include <optional>
 #include <vector>
 
-#include "saturation_plane_evidence.hpp"
 #include "saturation_plane_fit.hpp"
-#include "tumble/angular_velocity/detail/rail_ratios.hpp"
+#include "tumble/angular_velocity/detail/saturation_plane.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble {
@@ -207,6 +206,11 @@ struct PlaneSideSearch {
   }
 };
 
+constexpr double kBeyondTolerance = 4.0;
+constexpr int kMinContradictions = 2;
+// maximum relative difference between the saturation levels of one device in two runs
+constexpr double kSameShare = 0.003;
+
 }  // namespace
 
 SaturationPlaneFinder::SaturationPlaneFinder(const Params& params) : params_(params) {
@@ -258,6 +262,46 @@ SaturationPlanes SaturationPlaneFinder::find(std::span<const Vector3d> readings_
     }
   }
   return merge_known_saturation_planes(found, readings.rates);
+}
+
+SaturationPlanes SaturationPlaneFinder::merge_known_saturation_planes(const SaturationPlanes& found,
+                                                                      std::span<const Vector3d> readings_rad_s) const {
+  SaturationPlanes out = found;
+  for (std::size_t j = 0; j < 3; ++j) {
+    const auto& earlier = params_.known_limits.sensing_axis[j];
+    auto& rail = out.sensing_axis[j];
+    if (!earlier) continue;
+    if (!rail && !earlier->is_contradicted_by_readings(readings_rad_s)) rail = earlier;
+    for (const int sign : {-1, 1}) {
+      if (!rail || rail->was_reached(sign) || !earlier->was_reached(sign)) continue;
+      const double apart = std::abs(rail->saturation_limit_rad_s - earlier->saturation_limit_rad_s);
+      const std::size_t i = sign > 0 ? 1 : 0;
+      if (apart <= kSameShare * earlier->saturation_limit_rad_s) rail->samples[i] = earlier->samples[i];
+    }
+  }
+  return out;
+}
+
+bool SaturationPlane::is_contradicted_by_readings(std::span<const Vector3d> readings_rad_s) const {
+  int beyond = 0;
+  for (const Vector3d& y : readings_rad_s) {
+    for (const int sign : {-1, 1}) {
+      beyond += was_reached(sign) && distance_to_plane_rad_s(y, sign) < -kBeyondTolerance * tolerance_rad_s ? 1 : 0;
+    }
+  }
+  return beyond >= kMinContradictions;
+}
+
+SensingDirections sensing_directions(const SaturationPlanes& planes, double unknown_sigma) {
+  SensingDirections out;
+  for (std::size_t j = 0; j < 3; ++j) {
+    const auto i = static_cast<Eigen::Index>(j);
+    const std::optional<SaturationPlane>& plane = planes.sensing_axis[j];
+    out.cross_axis_slope_sigma[i] =
+        plane ? std::sqrt(0.5 * plane->covariance.topLeftCorner<2, 2>().trace()) : unknown_sigma;
+    if (plane) out.sensing_directions.row(i) = plane->row.transpose();
+  }
+  return out;
 }
 
 }  // namespace tumble

@@ -2,9 +2,214 @@
 #include "saturation_plane_fit.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <vector>
+
+#include "tumble/angular_velocity/detail/saturation_plane.hpp"
+
+namespace tumble {
+
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+// prior probability that a long segment of equal readings is a constant rate (spin, turntable) instead of saturation
+constexpr double kConstantRateFraction = 0.05;
+constexpr double kBendRatioMin = 3.0;
+constexpr double kLevelRangeFraction = 0.2;
+constexpr std::size_t kNoiseWindow = 9;
+constexpr double kNoiseQuantile = 0.2;
+// A kink is a change of the clipped axis' slope, while the slopes of other axes remain constant, at the start or end of
+// a saturation.
+constexpr double kMaxKinkLogLikelihood = 2.5;
+constexpr double kMotionSigmasMin = 10.0;
+constexpr double kThinLogLikelihoodMin = 8.0;
+// The fitted line uses two degrees of freedom, and the partly saturated first and last readings use two more.
+constexpr std::size_t kThinLostFreedom = 4;
+constexpr double kAtRailSigmas = 4.0, kAtRailRatioMax = 0.006;
+constexpr double kBeyondPenalty = 5.0, kOutlierFraction = 0.02;
+
+// See rails.md (R56).
+double window_noise(std::span<const Vector3d> window, int axis) {
+  double squares = 0.0;
+  const std::size_t count = window.size() - 3;
+  for (std::size_t i = 0; i < count; ++i) {
+    // The third difference of white noise with variance 1 has variance 20.
+    const double d = window[i + 3][axis] - 3.0 * window[i + 2][axis] + 3.0 * window[i + 1][axis] - window[i][axis];
+    squares += d * d;
+  }
+  return std::sqrt(squares / (20.0 * static_cast<double>(count)));
+}
+
+struct Segment {
+  std::size_t first, last;
+  std::size_t size() const { return last - first + 1; }
+};
+
+Segment next_segment(std::span<const std::size_t> inliers, std::size_t& at) {
+  Segment out{inliers[at], inliers[at]};
+  for (++at; at < inliers.size() && inliers[at] == out.last + 1; ++at) ++out.last;
+  return out;
+}
+
+// Returns the log-likelihood ratio of two hypotheses, saturated and unsaturated readings: rails.md (R65). If the device
+// clips the sum of rate and noise, saturated readings contain no noise.
+double plane_thickness_log_likelihood(const DistinctReadings& readings, const SaturationPlaneCandidate& facet,
+                                      const Segment& s) {
+  if (s.size() <= kThinLostFreedom) return 0.0;
+  const std::size_t first = s.first + 1, count = s.size() - 2;
+  const double middle = 0.5 * static_cast<double>(count - 1);
+  double mean = 0.0, slope = 0.0, moment = 0.0, squares = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double value = facet.row.dot(readings.rates[first + i]), at = static_cast<double>(i) - middle;
+    mean += value / static_cast<double>(count);
+    slope += value * at;
+    moment += at * at;
+  }
+  slope /= moment;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double line = mean + slope * (static_cast<double>(i) - middle);
+    squares += std::pow(facet.row.dot(readings.rates[first + i]) - line, 2);
+  }
+  const double free = static_cast<double>(s.size() - kThinLostFreedom),
+               digit = readings.min_reading_change[facet.axis] / std::sqrt(12.0);
+  const double least = std::max(digit, kEqualReadingsRatio * facet.plane_distance);
+  const double noise = std::hypot(readings.noise[facet.axis], digit);
+  const double scatter = std::max(least, std::sqrt(squares / free));
+  return scatter < noise ? free * (std::log(noise / scatter) - 0.5 * (1.0 - std::pow(scatter / noise, 2))) : 0.0;
+}
+
+struct CurvatureAtSegment {
+  double curvature_at_ends = 0.0, curvature_in_segment = 0.0;
+  bool is_curved_at_ends() const { return curvature_at_ends >= kBendRatioMin * curvature_in_segment; }
+};
+
+std::optional<CurvatureAtSegment> curvature_at_segment(const DistinctReadings& readings,
+                                                       const SaturationPlaneCandidate& facet, const Segment& s) {
+  const std::vector<Vector3d>& rates = readings.rates;
+  const auto value = [&](std::size_t k) { return facet.side * facet.row.dot(rates[k]); };
+  double depth = std::numeric_limits<double>::max();
+  if (s.first >= 2) depth = std::min(depth, facet.plane_distance - value(s.first - 2));
+  if (s.last + 2 < rates.size()) depth = std::min(depth, facet.plane_distance - value(s.last + 2));
+  if (s.size() < 2 || depth == std::numeric_limits<double>::max()) return std::nullopt;
+  double low = std::numeric_limits<double>::max(), high = -low;
+  for (std::size_t k = s.first; k <= s.last; ++k) {
+    low = std::min(low, value(k));
+    high = std::max(high, value(k));
+  }
+  // See rails.md (R61).
+  const double n = static_cast<double>(s.size()), inside = (n - 1.0) / (n + 3.0);
+  return CurvatureAtSegment{depth * inside * inside, std::max(high - low, 2.0 * facet.noise_sigma_rad_s)};
+}
+
+// Returns the log likelihood of saturation, computed from the change of slope at the start and end of the saturation:
+// rails.md (R64).
+double end_kink_evidence(const DistinctReadings& readings, const SaturationPlaneCandidate& facet, const Segment& s,
+                         bool after) {
+  const std::vector<Vector3d>& rates = readings.rates;
+  if (s.size() < 3 || (after ? s.last + 3 >= rates.size() : s.first < 3)) return 0.0;
+  const double noise = readings.noise[facet.axis];
+  const std::size_t end = after ? s.last : s.first;
+  const std::size_t outside = after ? end + 2 : end - 2, inside_of = after ? end - 2 : end + 2;
+  const Vector3d bent = rates[outside] - 2.0 * rates[end] + rates[inside_of];
+  const double own = std::abs(facet.row.dot(bent));
+  Vector3d beside = bent, moving = rates[outside] - rates[inside_of];
+  beside[facet.axis] = moving[facet.axis] = 0.0;
+  if (moving.norm() < kMotionSigmasMin * noise) return 0.0;
+  const double ratio = std::max(beside.norm(), 2.0 * noise) / std::max(own, 1e-9);
+  return std::clamp(-std::log(5.0 * ratio), -0.5, kMaxKinkLogLikelihood);
+}
+
+Eigen::Matrix3d information_of(const DistinctReadings& readings, const SaturationPlaneCandidate& facet,
+                               const Segment& s) {
+  Vector3d mean = Vector3d::Zero();
+  for (std::size_t k = s.first; k <= s.last; ++k) mean += readings.rates[k] / static_cast<double>(s.size());
+  Vector3d A;
+  A << -facet.side * mean[(facet.axis + 1) % 3], -facet.side * mean[(facet.axis + 2) % 3], 1.0;
+  return A * A.transpose() / (facet.noise_sigma_rad_s * facet.noise_sigma_rad_s);
+}
+
+}  // namespace
+
+DistinctReadings distinct_readings(std::span<const Vector3d> readings, std::vector<Vector3d>& rates,
+                                   std::vector<double>& noises) {
+  DistinctReadings out{rates};
+  rates.clear();
+  out.min_reading_change.setConstant(std::numeric_limits<double>::max());
+  for (const Vector3d& y : readings) {
+    if (!out.rates.empty() && out.rates.back() == y) continue;
+    out.peak = out.peak.cwiseMax(y.cwiseAbs());
+    for (int j = 0; j < 3 && !out.rates.empty(); ++j) {
+      const double change = std::abs(y[j] - out.rates.back()[j]);
+      // The rounding error of a floating-point sum is smaller than any quantisation step of a sensor.
+      if (change > 1e-9 * (1.0 + std::abs(y[j])))
+        out.min_reading_change[j] = std::min(out.min_reading_change[j], change);
+    }
+    out.rates.push_back(y);
+  }
+  for (int j = 0; j < 3; ++j) {
+    if (out.min_reading_change[j] == std::numeric_limits<double>::max()) out.min_reading_change[j] = 0.0;
+    noises.clear();
+    for (std::size_t k = 0; k + kNoiseWindow <= out.rates.size(); k += kNoiseWindow) {
+      const std::span<const Vector3d> window = std::span(out.rates).subspan(k, kNoiseWindow);
+      const bool clear = std::all_of(window.begin(), window.end(),
+                                     [&](const Vector3d& y) { return std::abs(y[j]) < 0.8 * out.peak[j]; });
+      if (clear) noises.push_back(window_noise(window, j));
+    }
+    if (noises.empty()) continue;
+    const auto at = static_cast<std::ptrdiff_t>(kNoiseQuantile * static_cast<double>(noises.size() - 1));
+    std::nth_element(noises.begin(), noises.begin() + at, noises.end());
+    out.noise[j] = noises[static_cast<std::size_t>(at)];
+  }
+  return out;
+}
+
+double plateau_segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d& slope_information,
+                                std::span<const std::size_t> inliers, SaturationPlaneCandidate& facet) {
+  const double thickness = 2.5 * facet.noise_sigma_rad_s, noise = readings.noise[facet.axis];
+  const double of_level = std::log(kLevelRangeFraction * facet.plane_distance / thickness);
+  double odds = 0.0;
+  facet.segments = 0;
+  Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
+  H.topLeftCorner<2, 2>() = slope_information;
+  for (std::size_t at = 0; at < inliers.size();) {
+    const Segment s = next_segment(inliers, at);
+    const std::optional<CurvatureAtSegment> shape = curvature_at_segment(readings, facet, s);
+    if (!shape) continue;
+    const double thin = plane_thickness_log_likelihood(readings, facet, s);
+    if (!shape->is_curved_at_ends() && thin < kThinLogLikelihoodMin) continue;
+    ++facet.segments;
+    odds += std::max(0.0, thin);
+    if (!shape->is_curved_at_ends()) continue;
+    // See rails.md (R62), (R63).
+    const double flatness =
+        static_cast<double>(s.size() - 1) * std::log(shape->curvature_at_ends / shape->curvature_in_segment);
+    odds += std::min(flatness, -std::log(kConstantRateFraction)) + of_level;
+    for (const bool after : {false, true}) odds += end_kink_evidence(readings, facet, s, after);
+    H += information_of(readings, facet, s);
+  }
+  const auto beyond = std::count_if(inliers.begin(), inliers.end(), [&](std::size_t k) {
+    return facet.side * facet.row.dot(readings.rates[k]) > facet.plane_distance + facet.plane_tolerance_rad_s;
+  });
+  odds -= kBeyondPenalty *
+          std::max(0.0, static_cast<double>(beyond) - kOutlierFraction * static_cast<double>(inliers.size()));
+  if (facet.segments == 0) return -std::numeric_limits<double>::infinity();
+  facet.plane_tolerance_rad_s =
+      std::max(facet.plane_tolerance_rad_s, std::min(kAtRailSigmas * noise, kAtRailRatioMax * facet.plane_distance));
+  // The Occam factor is the ratio of posterior to prior parameter volume: rails.md (R66).
+  const Eigen::Matrix3d posterior_covariance = H.inverse();
+  const double of_slopes =
+      0.5 * std::log(std::max(1.0, 1.0 / (posterior_covariance.topLeftCorner<2, 2>().determinant() *
+                                          slope_information.determinant())));
+  return odds - of_level - of_slopes;
+}
+
+}  // namespace tumble
 
 namespace tumble::rails {
 

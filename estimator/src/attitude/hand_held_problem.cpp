@@ -1,9 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "hand_held_problem.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
+
+#include "tumble/attitude/detail/hand_held_model.hpp"
+#include "tumble/common/types.hpp"
+
+namespace tumble {
+
+template struct BlockArrowSystem<hand_held::kBlockSize, hand_held::kBorderSize>;
+
+}  // namespace tumble
 
 namespace tumble::hand_held {
 
@@ -26,6 +37,23 @@ constexpr int kLastAdaptIteration = 8;
 constexpr int kHalvings = 4;          // maximum number of times that a step is halved if the cost increases
 constexpr double kCostRiseMax = 0.2;  // tolerated increase of the cost, corresponding to odds of 1.1
 constexpr ErrorCode kLost = ErrorCode::diverged;
+
+// The reported covariance neglects the lower bounds from saturated readings. For averaging windows of length P and the
+// jerk density q, the mean rate minus the rate at the window's centre has the variance q P^3/320: carried.md (C26).
+ReadingNoise noise_from_data_sheet(const HandHeldSmoother::Params& params, ReadingNoise noise, double period_s) {
+  noise.bound = 0.0;
+  noise.window_rate_sigma_rad_s = params.jerk_rad_s3_sqrts * std::sqrt(period_s * period_s * period_s / 320.0);
+  return noise;
+}
+
+// The optimisation has converged if the cost changes by less than kCostChange. A cost change of kCostChange multiplies
+// the odds between two solutions by 1.1.
+constexpr double kCostChange = 0.2;
+constexpr int kStepsMax = 30;
+
+NodeMessage message(const Node& about, const System::StateBlock& block) {
+  return {about, block.diagonal, block.gradient};
+}
 
 }  // namespace
 
@@ -54,18 +82,6 @@ ReadingNoise reading_noise(const HandHeldSmoother::Params& p, double period_s) {
   out.stationary_acceleration_sigma_m_s2 = kRestSigma_m_s2;
   return out;
 }
-
-namespace {
-
-// The reported covariance neglects the lower bounds from saturated readings. For averaging windows of length P and the
-// jerk density q, the mean rate minus the rate at the window's centre has the variance q P^3/320: carried.md (C26).
-ReadingNoise noise_from_data_sheet(const HandHeldSmoother::Params& params, ReadingNoise noise, double period_s) {
-  noise.bound = 0.0;
-  noise.window_rate_sigma_rad_s = params.jerk_rad_s3_sqrts * std::sqrt(period_s * period_s * period_s / 320.0);
-  return noise;
-}
-
-}  // namespace
 
 HandHeldProblem::HandHeldProblem(const HandHeldSmoother::Params& params, const Eigen::Matrix3d& rows,
                                  const NodeData& collected, std::vector<Node> nodes)
@@ -261,6 +277,90 @@ Status HandHeldProblem::covariances(HandHeldSmoother::Report& report) {
     next = here;
   }
   return {};
+}
+
+System::StateVector node_difference(const Node& from, const Node& to) {
+  System::StateVector out;
+  out << so3::logarithm(from.q_WI.conjugate() * to.q_WI), to.w_WI_I_rad_s - from.w_WI_I_rad_s,
+      to.angular_acceleration_rad_s2 - from.angular_acceleration_rad_s2, to.a_W_m_s2 - from.a_W_m_s2,
+      to.v_W_m_s - from.v_W_m_s, to.p_W_m - from.p_W_m;
+  return out;
+}
+
+double NodeMessage::add(const Node& node, System::StateBlock& block) const {
+  const System::StateVector x = node_difference(linearisation_node, node), pull = information * x;
+  block.diagonal += information;
+  block.gradient += gradient - pull;
+  return x.dot(pull) - 2.0 * x.dot(gradient);
+}
+
+HandHeldProblem::HandHeldProblem(const HandHeldProblem& whole, const ProblemSegment& part)
+    : params_(whole.params_),
+      sensing_directions_(whole.sensing_directions_),
+      readings_(whole.readings_.subspan(part.first, part.last - part.first + 1)),
+      motion_(whole.motion_),
+      noise_(whole.noise_),
+      g_W_m_s2_(whole.g_W_m_s2_),
+      problem_segment_(part),
+      nodes_(whole.nodes_.begin() + static_cast<std::ptrdiff_t>(part.first),
+             whole.nodes_.begin() + static_cast<std::ptrdiff_t>(part.last + 1)),
+      constants_(whole.constants_),
+      jerk_(nodes_.size(), 1.0),
+      hand_acceleration_factors_(whole.hand_acceleration_factors_.begin() + static_cast<std::ptrdiff_t>(part.first),
+                                 whole.hand_acceleration_factors_.begin() + static_cast<std::ptrdiff_t>(part.last + 1)),
+      state_blocks_(nodes_.size()) {}
+
+// See carried.md (C17).
+bool HandHeldProblem::condense_other_nodes(std::span<ProblemSegment> parts) const {
+  System::BorderBlock unused;
+  System::StateBlock here, next;
+  motion_.add_initial_prior(nodes_[0], here);
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    for (ProblemSegment& part : parts)
+      if (part.first == i) part.message_from_before = message(nodes_[i], here);
+    if (i + 1 == nodes_.size()) break;
+    next = {};
+    add_node(i, here, unused);
+    motion_.add_motion_model(nodes_[i], nodes_[i + 1], hand_acceleration_factors_[i], here, next);
+    if (!System::eliminate(here, &next, unused)) return false;
+    here = next;
+    here.border_coupling.setZero();
+  }
+  here = {};
+  for (std::size_t i = nodes_.size(); i-- > 0;) {
+    for (ProblemSegment& part : parts)
+      if (part.last == i) part.message_from_after = message(nodes_[i], here);
+    if (i == 0) break;
+    System::StateBlock before;
+    add_node(i, here, unused);
+    motion_.add_motion_model(nodes_[i - 1], nodes_[i], hand_acceleration_factors_[i - 1], before, here);
+    const Eigen::LLT<System::StateMatrix> factor(here.diagonal);
+    if (factor.info() != Eigen::Success) return false;
+    const System::StateMatrix by = before.coupling_to_next_state * factor.solve(System::StateMatrix::Identity());
+    before.diagonal -= by * before.coupling_to_next_state.transpose();
+    before.gradient -= by * here.gradient;
+    here = {};
+    here.diagonal = 0.5 * (before.diagonal + before.diagonal.transpose());
+    here.gradient = before.gradient;
+  }
+  return true;
+}
+
+double HandHeldProblem::iterate_to_convergence() {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  double before = kNone;
+  for (int k = 0; k < kStepsMax; ++k) {
+    const double cost = linearise();
+    if (std::abs(cost - before) < kCostChange) return cost;
+    before = cost;
+    double largest = 0.0;
+    if (!step(largest)) return kNone;
+  }
+  return kNone;
+}
+
+void HandHeldProblem::set_nodes(std::size_t first, std::span<const Node> nodes) {
+  std::copy(nodes.begin(), nodes.end(), nodes_.begin() + static_cast<std::ptrdiff_t>(first));
 }
 
 }  // namespace tumble::hand_held

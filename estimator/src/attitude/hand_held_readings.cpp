@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "hand_held_readings.hpp"
+#include "hand_held_problem.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "../angular_velocity/sample_hold.hpp"
 #include "tumble/angular_velocity/detail/clipping_finder.hpp"
-#include "tumble/angular_velocity/detail/partial_saturation.hpp"
-#include "tumble/angular_velocity/detail/recording_check.hpp"
+#include "tumble/angular_velocity/detail/rate_observation.hpp"
+#include "tumble/angular_velocity/detail/repeat_detector.hpp"
 #include "tumble/attitude/detail/vqf.hpp"
+#include "tumble/common/detail/sample_check.hpp"
 
 namespace tumble {
 
@@ -220,6 +220,30 @@ TimedReadings timed_readings(std::span<const ImuSample> samples, const SensingAx
   return out;
 }
 
+/// Returns the gyro's rates, with clipped readings replaced by a cubic polynomial. The cubic polynomial is limited to
+/// values between 1 and kFillRatioMax times the saturation level.
+std::vector<Vector3d> filled_rates(std::span<const ImuSample> samples, const SensingAxisClipSigns& clipped) {
+  const std::size_t count = samples.size();
+  std::vector<Vector3d> rates(count);
+  for (std::size_t k = 0; k < count; ++k) rates[k] = clipped.sensing_directions * samples[k].angular_velocity_rad_s;
+  std::vector<double> raw(count), filled;
+  for (std::size_t j = 0; j < 3 && !clipped.clip_signs.empty(); ++j) {
+    const auto axis = static_cast<Eigen::Index>(j);
+    for (std::size_t k = 0; k < count; ++k) raw[k] = rates[k][axis];
+    filled = raw;
+    for (std::size_t begin = 0; begin < count;) {
+      const ClippedSegment segment = clipped_segment(clipped.clip_signs, j, begin, raw);
+      if (segment.saturated_side != 0)
+        interpolate_segment(samples, raw, begin, segment.clipped_segment_end, segment.saturated_side, filled);
+      begin = segment.clipped_segment_end;
+    }
+    for (std::size_t k = 0; k < count; ++k) rates[k][axis] = filled[k];
+  }
+  const Eigen::Matrix3d inverse = clipped.sensing_directions.inverse();
+  for (Vector3d& rate : rates) rate = (inverse * rate).eval();
+  return rates;
+}
+
 }  // namespace
 
 bool clips(const NodeReadings& readings) {
@@ -287,28 +311,6 @@ NodeData collect_node_data(const HandHeldSmoother::Params& params, std::span<con
     if (rest[k]) out.nodes[out.samples.node_of[k]].is_stationary = true;
   }
   return out;
-}
-
-std::vector<Vector3d> filled_rates(std::span<const ImuSample> samples, const SensingAxisClipSigns& clipped) {
-  const std::size_t count = samples.size();
-  std::vector<Vector3d> rates(count);
-  for (std::size_t k = 0; k < count; ++k) rates[k] = clipped.sensing_directions * samples[k].angular_velocity_rad_s;
-  std::vector<double> raw(count), filled;
-  for (std::size_t j = 0; j < 3 && !clipped.clip_signs.empty(); ++j) {
-    const auto axis = static_cast<Eigen::Index>(j);
-    for (std::size_t k = 0; k < count; ++k) raw[k] = rates[k][axis];
-    filled = raw;
-    for (std::size_t begin = 0; begin < count;) {
-      const ClippedSegment segment = clipped_segment(clipped.clip_signs, j, begin, raw);
-      if (segment.saturated_side != 0)
-        interpolate_segment(samples, raw, begin, segment.clipped_segment_end, segment.saturated_side, filled);
-      begin = segment.clipped_segment_end;
-    }
-    for (std::size_t k = 0; k < count; ++k) rates[k][axis] = filled[k];
-  }
-  const Eigen::Matrix3d inverse = clipped.sensing_directions.inverse();
-  for (Vector3d& rate : rates) rate = (inverse * rate).eval();
-  return rates;
 }
 
 Status start_nodes(const HandHeldSmoother::Params& params, const Eigen::Matrix3d& rows, const NodeData& collected,

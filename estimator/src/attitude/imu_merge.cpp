@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "rigid_forces.hpp"
-#include "tumble/attitude/detail/timing.hpp"
+#include "tumble/common/detail/sample_check.hpp"
 #include "tumble/common/detail/scalar_update.hpp"
 #include "tumble/common/types.hpp"
 

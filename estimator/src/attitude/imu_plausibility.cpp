@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tumble/attitude/detail/timing.hpp"
+#include "tumble/common/detail/sample_check.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble {

@@ -2,13 +2,14 @@
 #include "tumble/attitude/detail/regime_smoother.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 
+#include "../angular_velocity/possible_saturation.hpp"
 #include "tumble/angular_velocity/detail/interpolated_rates.hpp"
-#include "tumble/attitude/detail/clipped_readings.hpp"
 
 namespace tumble {
 
@@ -39,7 +40,64 @@ std::uint8_t saturated_forces(const ImuSample& sample, const AngularRateReport& 
   return static_cast<std::uint8_t>(out);
 }
 
+bool keeps_estimated_rate(const AngularRateState& rate, ReadingsToReplace replaced) {
+  return rate.clipped_axes == 0 &&
+         (replaced == ReadingsToReplace::clipped || rate.source == AngularRateSource::measured);
+}
+
+bool any_clips(std::span<const ClipSigns> signs) {
+  return std::any_of(signs.begin(), signs.end(),
+                     [](const ClipSigns& sign) { return sign.gyro != std::array<std::int8_t, 3>{}; });
+}
+
+Eigen::Vector3d bias_rad_s(std::span<const ImuSample> samples, std::span<const AngularRateState> rates,
+                           ReadingsToReplace replaced) {
+  double kept = 0.0;
+  Eigen::Vector3d bias = Eigen::Vector3d::Zero();
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (!keeps_estimated_rate(rates[k], replaced)) continue;
+    kept += 1.0;
+    bias += (samples[k].angular_velocity_rad_s - rates[k].w_WI_I_rad_s - bias) / kept;
+  }
+  return bias;
+}
+
 }  // namespace
+
+void ClippedReadings::mark_suspected_saturation(std::span<const ImuSample> samples,
+                                                std::span<const std::uint8_t> axes) {
+  for (std::size_t k = 0; k < axes.size(); ++k) {
+    for (int j = 0; j < 3; ++j) {
+      std::int8_t& sign = clip_signs[k].gyro[static_cast<std::size_t>(j)];
+      if ((axes[k] >> j & 1u) != 0 && sign == 0) sign = samples[k].angular_velocity_rad_s[j] < 0.0 ? -1 : 1;
+    }
+  }
+}
+
+void ClippedReadings::mark_partly_saturated(std::span<AngularRateState> rates) const {
+  for (std::size_t k = 0; k < rates.size(); ++k) {
+    if (possibly_clipped_axes[k] != 0 && rates[k].source == AngularRateSource::measured)
+      rates[k].source = AngularRateSource::lower_bound_only;
+  }
+}
+
+ClippedReadings clipped_readings_of(std::span<const ImuSample> samples,
+                                    const ClippingFinder::ClippingSearchResult& found) {
+  ClippedReadings out;
+  out.clip_signs.resize(samples.size());
+  for (std::size_t k = 0; k < samples.size(); ++k)
+    out.clip_signs[k] = clip_signs(samples[k], found.clipping_per_sample[k]);
+  out.possibly_clipped_axes =
+      possible_partial_saturation(samples, found.saturation_levels.gyro_clips_after_compensation
+                                               ? SaturationPlanes{}
+                                               : found.saturation_levels.saturation_planes_in_use());
+  for (int j = 0; j < 3; ++j) {
+    const std::optional<SaturationPlane>& plane =
+        found.saturation_levels.gyro_planes.sensing_axis[static_cast<std::size_t>(j)];
+    if (plane) out.sensing_directions.row(j) = plane->row.transpose();
+  }
+  return out;
+}
 
 MotionRegimeSmoother::MotionRegimeSmoother(const Params& params)
     : params_(params),
@@ -159,6 +217,55 @@ std::vector<double> MotionRegimeSmoother::segment_hand_held_probability(
       double least = 1.0;
       for (std::size_t j = a; j <= std::max(a, b); ++j) least = std::min(least, probabilities[j].hand_held);
       out[i] = std::max(out[i], least);
+    }
+  }
+  return out;
+}
+
+Status estimate_rates(std::span<const ImuSample> samples, std::span<const AuxiliaryRecording> auxiliary_imus,
+                      const MotionRegimeSmoother::Params& params, std::vector<AngularRateState>& rates,
+                      MotionRegimeSmoother::Report& report) {
+  MotionRegimeSmoother::Params all = params;
+  std::vector<std::vector<AuxiliaryReading>> readings;
+  const Status status = align(auxiliary_imus, samples, params.rate.kGapMax_s, all.rate.model, readings);
+  return status.ok() ? MotionRegimeSmoother(all).estimate(samples, readings, rates, report) : status;
+}
+
+RecoveredRates recover_rates(std::span<const ImuSample> samples, std::span<const AuxiliaryRecording> auxiliary_imus,
+                             const MotionRegimeSmoother::Params& params, ReadingsToReplace replaced) {
+  RecoveredRates out;
+  out.samples.assign(samples.begin(), samples.end());
+  out.covariances_rad2_s2.assign(samples.size(), Eigen::Matrix3d::Zero());
+  out.sources.assign(samples.size(), AngularRateSource::measured);
+  ClippingFinder::Params clipping;
+  clipping.axis_limit_params = params.rate.saturation_detector;
+  const ClippingFinder::ClippingSearchResult found = ClippingFinder(clipping).find(samples);
+  out.saturation_levels = found.saturation_levels;
+  std::vector<AngularRateState> rates;
+  out.estimated = any_clips(clipped_readings_of(samples, found).clip_signs) &&
+                  estimate_rates(samples, auxiliary_imus, params, rates, out.report).ok();
+  if (!out.estimated) rates.clear();
+  const Eigen::Vector3d bias = out.estimated ? bias_rad_s(samples, rates, replaced) : Eigen::Vector3d::Zero();
+  const auto replace = [&](std::size_t k) {
+    out.samples[k].angular_velocity_rad_s = rates[k].w_WI_I_rad_s + bias;
+    out.covariances_rad2_s2[k] = rates[k].covariance_rad2_s2;
+  };
+  std::vector<std::uint8_t> hidden(samples.size(), 0);
+  for (std::size_t k = 0; k < rates.size(); ++k) {
+    out.sources[k] = rates[k].source;
+    if (keeps_estimated_rate(rates[k], replaced)) continue;
+    replace(k);
+    hidden[k] = 1;
+    ++out.replaced_reading_count;
+  }
+  if (replaced == ReadingsToReplace::clipped) return out;
+  const std::vector<std::optional<InterpolatedRate>> interpolated = rates_between_readings(samples, hidden);
+  for (std::size_t k = 0; k < interpolated.size(); ++k) {
+    if (interpolated[k]) {
+      out.samples[k].angular_velocity_rad_s = interpolated[k]->rate_rad_s;
+      out.covariances_rad2_s2[k].setZero();
+    } else if (out.estimated) {
+      replace(k);
     }
   }
   return out;

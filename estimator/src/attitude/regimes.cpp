@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tumble/common/detail/squared.hpp"
+#include "tumble/common/detail/scalar_update.hpp"
 
 namespace tumble {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tumble/angular_velocity/detail/rail_ratios.hpp"
-#include "tumble/attitude/detail/timing.hpp"
+#include "tumble/angular_velocity/detail/saturation_plane.hpp"
+#include "tumble/common/detail/sample_check.hpp"
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/types.hpp"
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "spin_models.hpp"
+#include "tumble/attitude/detail/spin_tracker.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "tumble/common/detail/scalar_update.hpp"
-#include "tumble/common/detail/squared.hpp"
 
 namespace tumble {
 

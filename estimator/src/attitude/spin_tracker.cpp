@@ -6,9 +6,8 @@
 #include <cmath>
 #include <cstddef>
 
-#include "spin_models.hpp"
 #include "tumble/attitude/detail/regimes.hpp"
-#include "tumble/common/detail/squared.hpp"
+#include "tumble/common/detail/scalar_update.hpp"
 
 namespace tumble {
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "tumble/attitude/detail/timing.hpp"
+#include "tumble/common/detail/sample_check.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble {

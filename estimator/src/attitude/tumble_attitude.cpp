@@ -6,9 +6,8 @@
 #include <cmath>
 
 #include "tumble/attitude/detail/strapdown.hpp"
-#include "tumble/attitude/detail/timing.hpp"
+#include "tumble/common/detail/sample_check.hpp"
 #include "tumble/common/detail/scalar_update.hpp"
-#include "tumble/common/detail/squared.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble {

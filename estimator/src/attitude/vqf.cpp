@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/attitude/detail/vqf.hpp"
 
-#include <cmath>
-
+#include "tumble/attitude/detail/coarse_alignment.hpp"
 #include "tumble/attitude/detail/strapdown.hpp"
-#include "tumble/attitude/detail/tilt.hpp"
-#include "tumble/attitude/detail/timing.hpp"
+#include "tumble/common/detail/sample_check.hpp"
 #include "tumble/common/detail/scalar_update.hpp"
 #include "tumble/common/types.hpp"
 

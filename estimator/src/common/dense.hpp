@@ -3,9 +3,22 @@
 
 #include <Eigen/Core>
 
-/// The functions in this file accept matrices of all sizes, because decompositions of fixed-size Eigen matrices would
-/// double the compile time. The factorisations are bit-identical to Eigen's factorisations, and the eigenvalues are
-/// equal up to rounding. Each decomposition allocates memory.
+namespace tumble {
+
+/// Replaces P by (P + P^T) / 2 in place, because a copy of the matrix would need too much stack.
+template <class Matrix>
+void make_symmetric(Matrix& P) {
+  for (int j = 0; j < P.cols(); ++j) {
+    for (int i = 0; i < j; ++i) P(i, j) = P(j, i) = 0.5 * (P(i, j) + P(j, i));
+  }
+}
+
+}  // namespace tumble
+
+/// The functions in the namespace dense accept matrices of all sizes, because decompositions of fixed-size Eigen
+/// matrices would double the compile time. The factorisations are bit-identical to Eigen's factorisations, and the
+/// eigenvalues are equal up to rounding. Each decomposition allocates memory.
+
 namespace tumble::dense {
 
 using Symmetric = Eigen::Ref<const Eigen::MatrixXd>;  ///< only the lower triangle is read

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "before_map.hpp"
+#include "odometry_impl.hpp"
 
 #include <Eigen/LU>
 #include <cmath>
 
-#include "inertial_prior.hpp"
+#include "inertial_track.hpp"
 #include "tumble/common/types.hpp"
 #include "unknowns.hpp"
 

@@ -1,15 +1,56 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Core>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "gap_bridge.hpp"
-#include "inertial_prior.hpp"
 #include "tumble/angular_velocity/detail/rest_detector.hpp"
+#include "tumble/mapping/detail/sweep_trajectory.hpp"
+#include "tumble/mapping/lidar_inertial_odometry.hpp"
 
 namespace tumble::mapping {
+
+/// Returns the covariance that inertial integration over one sweep adds to the errors of position, attitude and
+/// velocity. Angular rate errors are mostly due to saturation, and therefore assumed constant over the sweep. The
+/// registration estimates the saturation deficits of the clipped gyro axes in the bit mask `deficit_axes`, so these
+/// axes add no noise.
+Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& params,
+                                           const SweepTrajectory& trajectory, std::span<const MotionSample> samples,
+                                           unsigned deficit_axes);
+
+/// Returns the covariance, in world axes, of the velocity change over a sweep due to accelerometer saturation. The
+/// error of a saturated accelerometer axis is assumed constant during the saturation.
+Eigen::Matrix3d velocity_variance_from_clipping(const SweepTrajectory& trajectory,
+                                                std::span<const MotionSample> samples);
+
+/// Computes the initial state of an IMU at rest, at the origin of the world frame with yaw 0. The mean specific force
+/// of the first 0.5 s determines roll and pitch. Returns `degenerate` if the mean specific force is below 1 m/s^2.
+Status start_at_rest(std::span<const MotionSample> samples, MotionState& state);
+Status level_at_rest(const Eigen::Vector3d& force_I_m_s2, MotionState& state);
+
+/// Returns the standard deviation of the angular rate per axis. For clipped gyro axes without a recovered rate, the
+/// standard deviation is increased.
+Eigen::Vector3d assumed_rate_sigma(const LidarInertialOdometry::Params& params, const AngularRateState& rate);
+
+/// If two IMU samples are more than kGap_ns apart, the interval is a gap, because one reading does not describe the
+/// motion over 50 ms.
+inline constexpr TimeNs kGap_ns = 50'000'000;
+
+struct WindowRate {
+  Eigen::Vector3d rate_rad_s;
+  Eigen::Vector3d sigma_rad_s;
+  TimeNs from_ns, time_ns;
+
+  TimeNs middle_ns() const { return from_ns + (time_ns - from_ns) / 2; }
+};
+
+/// Fills the gap from the end of `before` to the start of `after` with linearly interpolated angular rates: mapping.md
+/// (R44). In a gap, all gyro axes count as clipped, so that the registration also estimates the interpolation error. In
+/// a gap of up to 0.64 s, each appended sample covers 10 ms. In a longer gap, each appended sample covers about 1/64 of
+/// the gap.
+void bridge_gap(const WindowRate& before, const WindowRate& after, std::vector<MotionSample>& samples);
 
 /// InertialTrack stores the IMU samples since the end of the last sweep, detects rest, and fills gaps between IMU
 /// samples.
@@ -62,5 +103,9 @@ class InertialTrack {
   std::vector<Eigen::Vector3d> pending_rates_rad_s_;  // rates of samples that the rest detector has not averaged yet
   std::optional<WindowRate> second_newest_rate_, newest_rate_;
 };
+
+/// Bounds of StationaryBounds: at rest, the angular rate differs from the gyro bias by at most `kRate_rad_s`, and the
+/// specific force differs from gravity by at most `kForce_m_s2`.
+RestDetector::Params mapping_stationary_params(const LidarInertialOdometry::Params& params);
 
 }  // namespace tumble::mapping

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lag_window.hpp"
 
-#include <Eigen/Cholesky>
 #include <array>
 #include <memory>
 
 #include "../common/dense.hpp"
-#include "../common/symmetric.hpp"
 #include "state_estimate.hpp"
 
 namespace tumble::mapping {

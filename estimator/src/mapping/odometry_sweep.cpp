@@ -5,9 +5,8 @@
 #include <optional>
 #include <utility>
 
-#include "before_map.hpp"
 #include "odometry_impl.hpp"
-#include "tumble/mapping/detail/sweep_check.hpp"
+#include "tumble/mapping/detail/deskew.hpp"
 #include "unknowns.hpp"
 
 namespace tumble {

@@ -6,8 +6,7 @@
 #include <cmath>
 
 #include "../common/dense.hpp"
-#include "../common/symmetric.hpp"
-#include "inertial_prior.hpp"
+#include "inertial_track.hpp"
 #include "tumble/common/types.hpp"
 #include "unknowns.hpp"
 
@@ -35,6 +34,12 @@ constexpr int kRestingSweepsMin = 3;
 
 namespace u = unknowns;
 using Params = LidarInertialOdometry::Params;
+
+/// Returns the correlation between the saturation deficits at two successive instants (start, middle or end of a
+/// sweep): mapping.md (R46).
+double deficit_knot_correlation(const SweepTrajectory& trajectory) {
+  return std::exp(-trajectory.duration_s() / (SweepTrajectory::kKnots - 1) / kDeficitTime_s);
+}
 
 /// The gyro's saturation deficit at the end of a sweep continues in the next sweep, and decays exponentially:
 /// mapping.md (R48).
@@ -91,10 +96,6 @@ void add_saturation_deficit_noise(const Params& params, const MotionWindow& wind
 }
 
 }  // namespace
-
-double deficit_knot_correlation(const SweepTrajectory& trajectory) {
-  return std::exp(-trajectory.duration_s() / (SweepTrajectory::kKnots - 1) / kDeficitTime_s);
-}
 
 /// See mapping.md (R32).
 void Prediction::compose_with_boundary(const StateEstimate& at_boundary) {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Core>
 #include <optional>
 #include <span>
 
-#include "reading_update.hpp"
 #include "state_estimate.hpp"
+#include "tumble/mapping/types.hpp"
 
 namespace tumble::mapping {
 
@@ -75,8 +76,12 @@ void sweep_boundary_after(const LidarInertialOdometry::Params& params, const Sta
                           const MotionWindow& window, const SweepTrajectory& trajectory,
                           const Registration::Result* alignment, SweepBoundary& boundary);
 
-/// Returns the correlation between the saturation deficits at two successive instants (start, middle or end of a
-/// sweep): mapping.md (R46).
-double deficit_knot_correlation(const SweepTrajectory& trajectory);
+/// process noise covariance of position, attitude and velocity within a sweep
+using MotionNoise = Eigen::Matrix<double, 9, 9>;
+
+/// Updates the prediction of a sweep with an odometer reading that was measured during the sweep: mapping.md (R34) to
+/// (R37). An odometer reading from a time outside of the sweep has no effect.
+void fuse_reading(const OdometerReading& reading, const SweepBoundary& boundary, const MotionWindow& window,
+                  const MotionNoise& within, Prediction& prediction);
 
 }  // namespace tumble::mapping

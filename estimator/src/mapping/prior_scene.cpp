@@ -9,7 +9,7 @@
 
 #include "tumble/common/types.hpp"
 #include "tumble/mapping/detail/plane_fit.hpp"
-#include "voxel_cube.hpp"
+#include "tumble/mapping/detail/spatial_hash.hpp"
 
 namespace tumble::mapping {
 

@@ -3,12 +3,17 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <vector>
 
+#include "lag_window.hpp"
+#include "prediction.hpp"
 #include "tumble/mapping/detail/voxel_map.hpp"
 #include "tumble/mapping/types.hpp"
 
 /// See mapping.md, "Localisation in a prior map".
+
 namespace tumble::mapping {
 
 /// A list of surface points contains at most one point per cube of 1 m, so that the errors of the points are nearly
@@ -90,5 +95,74 @@ class PriorMapScene {
 
 /// maximum distance from the sensor of surface points that are compared with the prior map
 inline constexpr float kQueryRadius_m = 20.0f;
+
+/// MapLocaliser estimates the pose of the local map frame W in the frame M of a prior map: mapping.md, "Localisation in
+/// a prior map".
+///
+/// A pose is accepted when several successive sweeps have passed a statistical test, and rejected after two failed
+/// tests.
+class MapLocaliser {
+ public:
+  MapLocaliser() = default;
+  explicit MapLocaliser(PriorMap map) : prior_scene_(std::make_shared<const PriorMapScene>(std::move(map))) {}
+
+  bool has_map() const { return prior_scene_ != nullptr; }
+  bool is_localised() const { return localised_; }
+  const PriorMap& map() const { return prior_scene_->map(); }
+  /// Restarts the localisation in the prior map. If the IMU pose `T_MI` in the prior map is given, the search is
+  /// limited to the region around this pose.
+  void restart(const std::optional<Eigen::Isometry3d>& T_MI);
+
+  /// Returns the pose of the local map frame in the prior map when three successive sweeps have confirmed this pose.
+  /// Cost: a few milliseconds. While no pose is proposed, every fifth call takes about a second.
+  std::optional<FramePose> match_local_map(const VoxelMap& local, const Eigen::Vector3d& p_WI_m);
+  /// Returns `degenerate` if the robot is not localised in the prior map.
+  Status status() const;
+
+ private:
+  void propose_map_pose(const std::vector<SurfacePoint>& points, const Eigen::Vector3d& p_WI_m);
+  bool matches_prior_map(const FramePose& pose) const;
+
+  std::shared_ptr<const PriorMapScene> prior_scene_;
+  bool localised_ = false;
+  std::optional<Eigen::Isometry3d> T_prior_map_world_;  // proposed pose
+  double random_agreement_fraction_ = 0.0;  // fraction of surface points that agree with the prior map at a wrong pose
+  double compared_pose_count_ = 1.0;        // number of poses that the search compared
+  int successive_passed_tests_ = 0, successive_failed_tests_ = 0;  // successive sweeps that passed or failed the test
+  int attempts_ = 0, sweeps_since_search_ = 0;
+};
+
+/// FrameChange converts estimates from the local map frame W to the frame M of a prior map.
+struct FrameChange {
+  Eigen::Isometry3d T_prior_map_world;
+  /// covariance of the transform from the local frame W to the prior map frame M, in axes of M: displacement and
+  /// rotation of frame W about the point `sensor_in_prior_map_m`
+  Eigen::Matrix<double, 6, 6> covariance;
+  Eigen::Vector3d sensor_in_prior_map_m;
+
+  void apply(SweepBoundary& boundary) const;
+  void apply(LagWindow& window) const;
+
+ private:
+  void apply(Registration::Estimate& mean) const;
+  void apply(const Registration::Estimate& mean, Registration::Matrix& of_all) const;
+  Registration::Matrix rotation() const;
+};
+
+/// PosesBeforeChange transforms poses from before the localisation to the frame M of the prior map.
+class PosesBeforeChange {
+ public:
+  /// `last` is the pose in the local map frame W at the time of the localisation in the prior map.
+  PosesBeforeChange(const FrameChange& change, const PoseState& last);
+
+  /// Computes the covariance of an earlier pose from the covariance of the last pose and the displacement between the
+  /// two poses.
+  void apply(PoseState& pose) const;
+
+ private:
+  Eigen::Isometry3d T_prior_map_world_;
+  Eigen::Vector3d last_M_m_;                       // position of the last pose
+  Eigen::Matrix<double, 6, 6> last_covariance_M_;  // covariance of the last pose
+};
 
 }  // namespace tumble::mapping

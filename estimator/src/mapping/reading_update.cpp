@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // See mapping.md, heading "Prediction from sweep to sweep".
-#include "reading_update.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <memory>
 
-#include "../common/symmetric.hpp"
+#include "../common/dense.hpp"
 #include "prediction.hpp"
 #include "tumble/common/types.hpp"
-#include "tumble/mapping/detail/odometer_reading.hpp"
+#include "tumble/mapping/detail/deskew.hpp"
 #include "unknowns.hpp"
 
 namespace tumble::mapping {

@@ -8,7 +8,6 @@
 #include <memory>
 
 #include "../common/dense.hpp"
-#include "registration_sums.hpp"
 #include "state_estimate.hpp"
 #include "tumble/common/types.hpp"
 #include "unknowns.hpp"

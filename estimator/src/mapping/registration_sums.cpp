@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "registration_sums.hpp"
-
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <functional>
 #include <limits>
 
-#include "point_motion.hpp"
+#include "unknowns.hpp"
 
 namespace tumble {
+
+namespace u = mapping::unknowns;
 
 namespace {
 
@@ -19,6 +21,62 @@ constexpr float kRounding = 1.0001f;
 
 constexpr std::size_t partial_sum_count(std::size_t points, std::size_t block) {
   return (points + block - 1) / block;
+}
+
+void run_parallel(const ParallelFor& parallel_for, std::size_t count, const std::function<void(std::size_t)>& body) {
+  if (parallel_for && count > 1) {
+    parallel_for(count, body);
+  } else {
+    for (std::size_t i = 0; i < count; ++i) body(i);
+  }
+}
+
+class PointMotion {
+ public:
+  PointMotion(const SweepTrajectory& trajectory, const LidarImuCalibration& calibration, const SweepPoint& point,
+              std::size_t& hint);
+
+  /// Computes the derivative of the lidar point's position along `direction_W` with respect to the 28 unknowns of the
+  /// registration: mapping.md (R17).
+  void derivative_along_normal(const Eigen::Vector3d& direction_W, RegistrationUnknowns::Vector& derivative) const;
+
+  /// Returns the lever vector u of the lidar return in world axes, which is the sum of the displacement S and the
+  /// vector from the IMU to the lidar return: mapping.md (R3).
+  const Eigen::Vector3d& lever_m() const { return lever_arm_; }
+
+ private:
+  double t_s_;
+  bool clipped_;
+  SweepTrajectory::PreintegratedMotion now_;
+  Eigen::Vector3d rotated_point_, lever_arm_, point_from_lidar_I_, velocity_m_s_;
+  SweepTrajectory::SaturationDeficitJacobian saturation_deficit_jacobian_;  // used if an axis of the gyro is clipped
+};
+
+PointMotion::PointMotion(const SweepTrajectory& trajectory, const LidarImuCalibration& calibration,
+                         const SweepPoint& point, std::size_t& hint)
+    : t_s_(point.t_s), clipped_(trajectory.clipped_axes() != 0) {
+  const Eigen::Vector3d x_I = point.x_I_m.cast<double>();
+  now_ = trajectory.at(t_s_, x_I, hint, velocity_m_s_);
+  rotated_point_ = now_.q_WI * x_I;
+  lever_arm_ = now_.preintegrated_position_m + rotated_point_;
+  point_from_lidar_I_ = x_I - calibration.T_IL.translation();
+  if (clipped_) saturation_deficit_jacobian_ = trajectory.saturation_deficit_jacobian(t_s_, hint);
+}
+
+void PointMotion::derivative_along_normal(const Eigen::Vector3d& n, RegistrationUnknowns::Vector& derivative) const {
+  const Eigen::Vector3d n_I = now_.q_WI.conjugate() * n;
+  u::segment(derivative, u::position) = n;
+  u::segment(derivative, u::attitude) = lever_arm_.cross(n);
+  u::segment(derivative, u::velocity) = t_s_ * n;
+  auto of_deficit = u::segment(derivative, u::deficit);
+  if (clipped_) {
+    of_deficit = saturation_deficit_jacobian_.position_jacobian_m_s.transpose() * n +
+                 saturation_deficit_jacobian_.attitude_by_deficit_s.transpose() * rotated_point_.cross(n);
+  } else {
+    of_deficit.setZero();
+  }
+  u::segment(derivative, u::calibration) << point_from_lidar_I_.cross(n_I), n_I, n.dot(velocity_m_s_),
+      (0.5 * t_s_ * t_s_) * n;
 }
 
 }  // namespace
@@ -84,7 +142,7 @@ double Registration::point_variance_m2(const SweepPoint& point) const {
 double Registration::residual(const SweepTrajectory& trajectory, const LidarImuCalibration& calibration,
                               const SweepPoint& point, const PlaneFit& plane, std::size_t& hint, Vector& derivative) {
   const Eigen::Vector3d n = plane.normal_W.cast<double>();
-  const mapping::PointMotion motion(trajectory, calibration, point, hint);
+  const PointMotion motion(trajectory, calibration, point, hint);
   motion.derivative_along_normal(n, derivative);
   return n.dot(trajectory.gravity_free_position_m(point.t_s) + motion.lever_m() -
                plane.plane_centre_W_m.cast<double>());
@@ -189,7 +247,7 @@ void Registration::accumulate_block(std::span<const SweepPoint> points, std::siz
       rows.col(count).head<kRigid>() = root * j;
     } else {
       Vector full;
-      mapping::PointMotion(trajectory, calibration, points[i], hint).derivative_along_normal(n, full);
+      PointMotion(trajectory, calibration, points[i], hint).derivative_along_normal(n, full);
       for (int k = 0; k < unknowns.count; ++k) {
         rows(k, count) = root * full[unknowns.free_unknowns[static_cast<std::size_t>(k)]];
       }
@@ -228,7 +286,7 @@ struct Registration::SurfaceNormalNoise {
 
   explicit SurfaceNormalNoise(const Unknowns& of) : unknowns(of) {}
 
-  void add(const mapping::PointMotion& motion, const PlaneFit& plane, double root) {
+  void add(const PointMotion& motion, const PlaneFit& plane, double root) {
     for (int axis = 0; axis < 2; ++axis) {
       Vector derivative;
       motion.derivative_along_normal(plane.normal_sigma_W.col(axis).cast<double>(), derivative);
@@ -264,8 +322,7 @@ struct Registration::ClusterGradients {
   std::vector<Vector>& gradients;
   float cubes_per_m;
 
-  void add(const mapping::PointMotion& motion, const PlaneFit& plane, const Eigen::Vector3f& position_W_m,
-           double weighted_m) {
+  void add(const PointMotion& motion, const PlaneFit& plane, const Eigen::Vector3f& position_W_m, double weighted_m) {
     const Eigen::Vector3f cube = (position_W_m * cubes_per_m).array().floor();
     if (!(cube.cwiseAbs().maxCoeff() < static_cast<float>(SpatialHash::kCoordinateLimit - 2))) return;
     const std::uint32_t cluster =
@@ -298,7 +355,7 @@ void Registration::compute_error_statistics(std::span<const SweepPoint> points, 
     if (match.plane.verdict != PlaneVerdict::plane) continue;
     const double r = residual_distances_m_[i];
     const double information = compute_weight(points[i], match, r, kernel_m).information;
-    const mapping::PointMotion motion(trajectory, calibration, points[i], hint);
+    const PointMotion motion(trajectory, calibration, points[i], hint);
     noise.add(motion, match.plane, std::sqrt(information));
     pulls.add(motion, match.plane, positions_[i], information * r);
   }

@@ -7,7 +7,7 @@
 
 #include "../common/dense.hpp"
 #include "tumble/common/types.hpp"
-#include "tumble/mapping/detail/odometer_reading.hpp"
+#include "tumble/mapping/detail/deskew.hpp"
 
 namespace tumble {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/odometry/detail/merge_recordings.hpp"
+#include "imu_time_alignment.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,12 +7,57 @@
 #include <memory>
 #include <utility>
 
-#include "imu_time_alignment.hpp"
-#include "tumble/angular_velocity/detail/frozen_axes.hpp"
+#include "tumble/angular_velocity/detail/repeat_detector.hpp"
+#include "tumble/common/detail/imu_average.hpp"
+#include "tumble/common/detail/sample_check.hpp"
+#include "tumble/odometry/detail/imu_findings.hpp"
 
 namespace tumble {
 
 namespace {
+
+ImuSample absent_sample(TimeNs time_ns) {
+  ImuSample sample;
+  sample.time_ns = time_ns;
+  sample.angular_velocity_rad_s.setConstant(std::numeric_limits<double>::quiet_NaN());
+  return sample;
+}
+
+TimeNs newest_ns(std::size_t unit, const ImuTimeAlignment::State& state) {
+  const std::vector<ImuSample>& readings = state.readings[unit];
+  return readings.empty() ? *state.first_ns : readings.back().time_ns;
+}
+
+TimeNs newest_ns(const ImuTimeAlignment::State& state) {
+  TimeNs out = *state.first_ns;
+  for (const std::vector<ImuSample>& readings : state.readings) {
+    if (!readings.empty()) out = std::max(out, readings.back().time_ns);
+  }
+  return out;
+}
+
+bool is_silent(std::size_t unit, const ImuTimeAlignment::State& state) {
+  return seconds(newest_ns(state) - newest_ns(unit, state)) > ImuTimeAlignment::kSilentMax_s;
+}
+
+auto samples_after_common_time(const std::vector<ImuSample>& readings, const ImuTimeAlignment::State& state) {
+  return std::find_if(readings.begin(), readings.end(), [&](const ImuSample& reading) {
+    return !state.newest_common_time_ns || reading.time_ns > *state.newest_common_time_ns;
+  });
+}
+
+ImuSample reading_at(TimeNs time_ns, const std::vector<ImuSample>& readings) {
+  const auto after = std::find_if(readings.begin(), readings.end(),
+                                  [&](const ImuSample& reading) { return reading.time_ns >= time_ns; });
+  if (after != readings.end() && after->time_ns == time_ns) return *after;
+  if (after == readings.end() || after == readings.begin()) return absent_sample(time_ns);
+  const std::span<const ImuSample> neighbours(&*(after - 1), 2);
+  if (seconds(time_ns - neighbours[0].time_ns) > ImuTimeAlignment::kSilentMax_s ||
+      seconds(neighbours[1].time_ns - time_ns) > ImuTimeAlignment::kSilentMax_s)
+    return absent_sample(time_ns);
+  ImuInterpolation unit(neighbours);
+  return unit.at(time_ns, unit.samples_around(time_ns));
+}
 
 using Kind = HealthFinding::Kind;
 
@@ -226,6 +271,76 @@ void report_calibration(const ImuMerge& merge, const ImuMerge::State& state, con
 }
 
 }  // namespace
+
+Status StampOrder::order_of_stamp(TimeNs stamp_ns, State& state, Verdict& verdict) const {
+  verdict = Verdict::continues_in_order;
+  if (const Status status = check_stamp(stamp_ns, "time_ns"); !status.ok()) return status;
+  if (!state.newest_ns) return {};
+  const Status status = check_stamp_order(stamp_ns, *state.newest_ns, gap_max_s_);
+  if (status.ok()) {
+    state.rejected.reset();
+    return {};
+  }
+  const bool gap = status.error_code == ErrorCode::gap;
+  if (!state.rejected || !check_stamp_order(stamp_ns, state.rejected->last_ns, gap_max_s_).ok()) {
+    state.rejected = RejectedStamps{stamp_ns, stamp_ns};
+    return status;
+  }
+  state.rejected->last_ns = stamp_ns;
+  const bool confirmed =
+      check_stamp_order(stamp_ns, state.rejected->first_ns, kStepBack_s).error_code == ErrorCode::gap;
+  if (!gap && !state.only_one_sample && !confirmed) return status;
+  verdict = gap ? Verdict::restarts_after_gap : Verdict::restarts_after_step_back;
+  return {};
+}
+
+void StampOrder::accept(TimeNs stamp_ns, State& state) {
+  state = {.newest_ns = stamp_ns, .only_one_sample = !state.newest_ns, .rejected = std::nullopt};
+}
+
+Status ImuTimeAlignment::push(std::size_t unit, const ImuSample& sample, State& state) const {
+  if (!check_sample(sample).ok()) return {};
+  std::vector<ImuSample>& readings = state.readings[unit];
+  if (!readings.empty() && sample.time_ns <= readings.back().time_ns)
+    return {ErrorCode::time_order, "time_ns", double(sample.time_ns), double(readings.back().time_ns)};
+  state.first_ns = state.first_ns ? std::min(*state.first_ns, sample.time_ns) : sample.time_ns;
+  readings.push_back(sample);
+  return {};
+}
+
+bool ImuTimeAlignment::next(State& state, Readings& out, bool ended) const {
+  if (!state.first_ns) return false;
+  choose_reference(state);
+  const auto at = samples_after_common_time(state.readings[state.reference_imu], state);
+  if (at == state.readings[state.reference_imu].end()) return false;
+  const TimeNs time_ns = at->time_ns;
+  for (std::size_t unit = 0; unit < imu_count_; ++unit) {
+    if (!ended && !is_complete(unit, time_ns, state)) return false;
+  }
+  state.newest_common_time_ns = time_ns;
+  for (std::size_t unit = 0; unit < imu_count_; ++unit) {
+    std::vector<ImuSample>& readings = state.readings[unit];
+    out[unit] = reading_at(time_ns, readings);
+    const auto later = samples_after_common_time(readings, state);
+    if (later > readings.begin() + 1) readings.erase(readings.begin(), later - 1);
+  }
+  return true;
+}
+
+void ImuTimeAlignment::choose_reference(State& state) const {
+  const std::vector<ImuSample>& readings = state.readings[state.reference_imu];
+  if (samples_after_common_time(readings, state) != readings.end() || !is_silent(state.reference_imu, state)) return;
+  for (std::size_t unit = 0; unit < imu_count_; ++unit) {
+    if (is_silent(unit, state)) continue;
+    state.reference_imu = unit;
+    return;
+  }
+}
+
+bool ImuTimeAlignment::is_complete(std::size_t unit, TimeNs time_ns, const State& state) const {
+  const std::vector<ImuSample>& readings = state.readings[unit];
+  return (!readings.empty() && readings.back().time_ns >= time_ns) || is_silent(unit, state);
+}
 
 ClippingFinder::Params clipping_finder_params(const ImuDataSheet& sheet) {
   ClippingFinder::Params out;

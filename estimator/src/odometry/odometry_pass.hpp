@@ -9,7 +9,6 @@
 
 #include "tumble/attitude/detail/regime_stream.hpp"
 #include "tumble/attitude/detail/rest_gravity.hpp"
-#include "tumble/mapping/detail/lidar_scale.hpp"
 #include "tumble/mapping/detail/localisation.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 

@@ -6,8 +6,6 @@
 #include <limits>
 #include <utility>
 
-#include "rolling_odometry_params.hpp"
-
 namespace tumble {
 
 using odometry::outlier_filters_of, odometry::merge_setup, odometry::rolling_params, odometry::clipping_finders_of,

@@ -14,6 +14,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "tumble/angular_velocity/detail/clipping_finder.hpp"
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/common/types.hpp"
@@ -31,6 +32,7 @@
 /// | 40 | contents |
 ///
 /// If the contents of a SavedStateKind change, the layout number of this kind in saved_bytes.cpp must change.
+
 namespace tumble::odometry {
 
 enum class SavedStateKind : std::uint32_t { tumbling = 1, rolling = 2, map = 9 };
@@ -140,5 +142,11 @@ void visit_pose(Visit& visit, Pose& pose) {
   visit("pose.covariance", pose.covariance, -kVarianceMax, kVarianceMax);
 }
 void check_pose(SavedStateReader& in, const PoseState& pose);
+
+void write_saturation_levels(const SaturationLevels& rails, SavedStateWriter& out);
+void read_saturation_levels(SavedStateReader& in, SaturationLevels& rails);
+
+void start_from_saturation_levels(const SaturationLevels& rails, SaturationLimitDetector::Params& detector,
+                                  SaturationPlaneFinder::Params& gyro, SaturationPlaneFinder::Params& accel);
 
 }  // namespace tumble::odometry

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "../mapping/mapper_rest.hpp"
+#include "../mapping/inertial_track.hpp"
 
 namespace tumble {
 

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "tumble/angular_velocity/detail/rail_ratios.hpp"
+#include "tumble/angular_velocity/detail/saturation_plane.hpp"
 
 namespace tumble {
 

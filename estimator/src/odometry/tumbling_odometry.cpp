@@ -7,8 +7,7 @@
 #include <utility>
 
 #include "tumble/common/detail/sample_check.hpp"
-#include "tumble/mapping/detail/sweep_check.hpp"
-#include "tumbling_odometry_params.hpp"
+#include "tumble/mapping/detail/deskew.hpp"
 
 namespace tumble {
 

@@ -9,16 +9,17 @@
 #include <span>
 #include <vector>
 
-#include "../angular_velocity/gyro_offset.hpp"
-#include "further_lidars.hpp"
+#include "imu_time_alignment.hpp"
 #include "odometry_pass.hpp"
 #include "position_alignment.hpp"
 #include "second_pass.hpp"
-#include "stamp_order.hpp"
+#include "tumble/angular_velocity/detail/rest_detector.hpp"
 #include "tumble/attitude/detail/imu_plausibility.hpp"
+#include "tumble/attitude/detail/regime_smoother.hpp"
 #include "tumble/common/detail/outlier_filter.hpp"
 #include "tumble/common/sample_clock.hpp"
-#include "tumble/odometry/detail/recording_estimate.hpp"
+#include "tumble/mapping/lidar_inertial_odometry.hpp"
+#include "tumble/odometry/detail/mapping_passes.hpp"
 #include "tumble/odometry/detail/waiting_input.hpp"
 #include "tumble/odometry/expert_params.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
@@ -100,3 +101,17 @@ struct TumblingOdometry::Impl {
 };
 
 }  // namespace tumble
+
+namespace tumble::odometry {
+
+/// Throws InvalidParams if a parameter of TumblingOdometry is out of bounds.
+MotionRegimeStream::Params rate_stream_params(const TumblingOdometry::Params& params);
+
+/// When estimating a whole recording, the prior standard deviations of accelerometer bias and inertia are larger than
+/// in live operation (see AngularRateStreamParams::model).
+MotionRegimeSmoother::Params recording_rate_params(const TumblingOdometry::Params& params);
+
+OutlierFilter::ImuRanges outlier_params(const TumblingOdometry::Params& params);
+LidarInertialOdometry::Params mapper_params(const TumblingOdometry::Params& params);
+
+}  // namespace tumble::odometry

@@ -4,12 +4,32 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lost_heading.hpp"
 #include "rolling_node.hpp"
 #include "rolling_window.hpp"
 #include "tumble/attitude/detail/strapdown.hpp"
-#include "tumble/attitude/detail/timing.hpp"
+#include "tumble/common/detail/sample_check.hpp"
+#include "tumble/common/parameters.hpp"
 #include "tumble/common/types.hpp"
+#include "tumble/rolling/detail/rolling_params.hpp"
+
+namespace tumble::rolling {
+
+/// See rolling.md (R1).
+void move_linearisation_point(const Vector& x, RollingNominalState& nominal) {
+  nominal.q_WI = (so3::exp(x.segment<3>(kAttitude)) * nominal.q_WI).normalized();
+  nominal.v_WI_m_s += x.segment<3>(kVelocity);
+  nominal.p_WI_m += x.segment<3>(kPosition);
+  nominal.gyro_bias_rad_s += x.segment<3>(kGyroBias);
+  nominal.accel_bias_m_s2 += x.segment<3>(kAccelBias);
+  nominal.accel_scale += Eigen::Map<const Eigen::Matrix3d>(x.data() + kAccelScale);
+  nominal.gyro_scale += Eigen::Map<const Eigen::Matrix3d>(x.data() + kGyroScale);
+  nominal.accel_delay_s += x[kDelay];
+  nominal.lever_arm_error_m += x.segment<3>(kLeverArm);
+  nominal.floor_slope += x.segment<2>(kSlope);
+  nominal.radius_error_m += x[kRadius];
+}
+
+}  // namespace tumble::rolling
 
 namespace tumble {
 
@@ -23,7 +43,22 @@ constexpr double kSpinSigmas = 4.0;
 
 static_assert(RollingFilter::kStates == rolling::kStates);
 
+/// Returns the calibration constants of a nominal state, in the order of rolling.md (R1).
+Eigen::Matrix<double, RollingCalibration::kSize, 1> constants_of(const RollingNominalState& nominal) {
+  Eigen::Matrix<double, RollingCalibration::kSize, 1> out;
+  out << nominal.gyro_bias_rad_s, nominal.accel_bias_m_s2, nominal.accel_scale.reshaped(),
+      nominal.gyro_scale.reshaped(), nominal.accel_delay_s, nominal.lever_arm_error_m, nominal.floor_slope,
+      nominal.radius_error_m;
+  return out;
+}
+
 }  // namespace
+
+void require_valid(const RollingParams& p) {
+  require_valid_fields(p);
+  require_in_interval("lever_arm_m", p.lever_arm_m.norm(), 0.0, 10.0);
+  if (p.q_WI_start) require_in_interval("q_WI_start", p.q_WI_start->norm(), 1.0 - 1e-6, 1.0 + 1e-6);
+}
 
 RollingFilter::RollingFilter(const Params& p) : params_(p), rest_detector_(p.expert.rest_detector) {
   require_valid(p);
@@ -243,7 +278,7 @@ ContactMode RollingFilter::most_probable_mode(const State& state) {
 
 RollingCalibration RollingFilter::calibration(const State& state) {
   RollingCalibration out{
-      rolling::constants_of(state.nominal),
+      constants_of(state.nominal),
       state.hypotheses[0].covariance.bottomRightCorner<RollingCalibration::kSize, RollingCalibration::kSize>()};
   constexpr int kSlope = rolling::kSlope - rolling::kGyroBias;  // the floor slope is no calibration constant
   out.constants.segment<2>(kSlope).setZero();

@@ -9,8 +9,6 @@
 #include <tuple>
 #include <utility>
 
-#include "lost_heading.hpp"
-#include "node_rows.hpp"
 #include "rolling_node.hpp"
 #include "tumble/rolling/detail/rolling_filter.hpp"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../common/symmetric.hpp"
+#include "../common/dense.hpp"
 #include "tumble/common/detail/scalar_update.hpp"
 #include "tumble/common/types.hpp"
 

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "tumble/common/detail/squared.hpp"
+#include "tumble/common/detail/scalar_update.hpp"
 #include "tumble/common/types.hpp"
 #include "tumble/rolling/detail/rolling_model.hpp"
 #include "tumble/rolling/detail/rolling_params.hpp"
@@ -106,10 +106,77 @@ void update(const Row& row, double measured, double variance, Vector& x, Covaria
 
 void update(int index, double measured, double variance, Vector& x, Covariance& P);
 
-/// Returns the calibration constants of a nominal state, in the order of rolling.md (R1).
-Eigen::Matrix<double, RollingCalibration::kSize, 1> constants_of(const RollingNominalState& nominal);
-
 /// Adds the estimated error `x` to the nominal trajectory and constants.
 void move_linearisation_point(const Vector& x, RollingNominalState& nominal);
+
+// The following functions call `take(row, measured, variance)` for each scalar measurement of the error state x:
+// measured = row * x + noise. `row` is a Row, or the index of a single state. Each call of `take` may change the state
+// `x` and its covariance `P`.
+
+/// During grip, the contact point is at rest. During slip, the contact point moves along the floor: rolling.md (R17),
+/// (R20). If the velocity of the sphere is very uncertain, a weak pseudo-measurement of zero velocity is added.
+template <class EstimateCallback>
+void contact_measurement_rows(const Contact& c, ContactMode mode, double node_s, const Eigen::Vector3d& v_WI_m_s,
+                              const Vector& x, const Covariance& P, EstimateCallback&& take) {
+  // The contact velocity is not linear in the error state. The nonlinear part of the contact velocity is subtracted
+  // from the measurement.
+  const Eigen::Vector3d u = c.velocity(x) - c.measurement_jacobian * x, variance = contact_variance(c, mode);
+  if (!may_slip(mode)) {
+    for (int axis = 0; axis < 2; ++axis) take(Row(c.measurement_jacobian.row(axis)), -u[axis], variance[axis]);
+  }
+  if (mode != ContactMode::bump_or_flight) take(Row(c.measurement_jacobian.row(2)), -u.z(), variance.z());
+  if (const auto lost = velocity_variance_if_lost(node_s, P)) {
+    for (int axis = 0; axis < 2; ++axis) take(kVelocity + axis, -v_WI_m_s[axis], *lost);
+  }
+}
+
+/// See rolling.md (R28).
+template <class EstimateCallback>
+void stationary_measurement_rows(const RollingNodeIntegrals& sums, const RollingNominalState& nominal,
+                                 bool spins_in_place, EstimateCallback&& take) {
+  for (int axis = 0; axis < 3; ++axis) {
+    take(kVelocity + axis, -nominal.v_WI_m_s[axis], squared(RollingContactParams::kRestVelocitySigma_m_s));
+    if (spins_in_place) continue;
+    const double bias_rad_s = sums.rate_integral_I_rad[axis] / sums.node_interval_s;
+    take(kGyroBias + axis, bias_rad_s, squared(RollingContactParams::kRestRateSigma_rad_s));
+  }
+}
+
+// Rolling does not determine the heading, because a rotation of the whole run about the vertical leaves all readings
+// unchanged. If the heading error is large, a linearised filter nevertheless reduces the heading's variance, which is
+// wrong: rolling.md (R34) to (R36).
+
+/// standard deviation of the heading, above which a measurement must not reduce the variance of the heading
+inline constexpr double kLostHeading_rad = 0.1;
+
+inline bool heading_lost(const Covariance& P) {
+  return P(kAttitude + 2, kAttitude + 2) > squared(kLostHeading_rad);
+}
+
+/// Removes the derivative of the contact velocity with respect to the heading error: rolling.md (R35).
+inline void remove_heading_component(Contact& c) {
+  c.measurement_jacobian.col(kAttitude + 2) -= Eigen::Vector3d::UnitZ().cross(c.contact_velocity_W_m_s);
+}
+
+/// See rolling.md (R36).
+inline Vector heading_component(const Vector& x) {
+  const auto turned = [](const auto& v) { return Eigen::Vector2d(-v.y(), v.x()); };
+  Vector out = Vector::Zero();
+  out.segment<2>(kVelocity) = turned(x.segment<2>(kVelocity));
+  out.segment<2>(kPosition) = turned(x.segment<2>(kPosition));
+  out.segment<2>(kSlope) = turned(x.segment<2>(kSlope));
+  return out;
+}
+
+/// Transforms the covariance P of the error state after a correction of the nominal trajectory, with the matrix T of
+/// rolling.md (R36).
+inline void remove_heading_covariance(const Vector& turned, Covariance& P) {
+  P += (turned * P.row(kAttitude + 2)).eval();
+  P += (P.col(kAttitude + 2) * turned.transpose()).eval();
+}
+
+inline void remove_heading_error(const Vector& turned, Vector& x) {
+  x += x[kAttitude + 2] * turned;
+}
 
 }  // namespace tumble::rolling

@@ -6,7 +6,7 @@
 #include <memory>
 #include <utility>
 
-#include "last_pass.hpp"
+#include "rolling_window.hpp"
 #include "tumble/attitude/detail/strapdown.hpp"
 #include "tumble/common/types.hpp"
 

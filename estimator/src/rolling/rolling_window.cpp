@@ -3,9 +3,8 @@
 
 #include <algorithm>
 
-#include "../common/symmetric.hpp"
-#include "lost_heading.hpp"
-#include "node_rows.hpp"
+#include "../common/dense.hpp"
+#include "rolling_node.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble::rolling {
@@ -45,6 +44,51 @@ void transform_adjoint(const Vector& turned, Adjoint& adjoint) {
   adjoint.adjoint_vector[kHeading] += turned.dot(adjoint.adjoint_vector);
   adjoint.adjoint_matrix.row(kHeading) += (turned.transpose() * adjoint.adjoint_matrix).eval();
   adjoint.adjoint_matrix.col(kHeading) += (adjoint.adjoint_matrix * turned).eval();
+}
+
+/// Returns the smoothed error at a filter step (node), relative to the nominal trajectory before the update of the
+/// filter step.
+Reported error_before_update(const FilterNodeRecord& node) {
+  const Reported error = node.smoothed + node.correction;
+  return node.heading_lost ? Reported(error - node.smoothed[kAttitude + 2] * reported_errors(node.heading_correction))
+                           : error;
+}
+
+/// Smooths the states of consecutive filter steps (nodes) by the modified Bryson-Frazier smoother. On entry, `adjoint`
+/// contains the information from all measurements after the last node. On return, `adjoint` also contains the
+/// information from the measurements at `nodes`.
+/// See rolling.md (R38), (R39).
+void backward_pass(Adjoint& adjoint, std::span<FilterNodeRecord> nodes) {
+  auto& [adjoint_vector, adjoint_matrix] = adjoint;
+  for (std::size_t n = nodes.size(); n-- > 0;) {
+    FilterNodeRecord& node = nodes[n];
+    node.smoothed = -node.covariance_rows * adjoint_vector;
+    node.smoothed_covariance = reported_covariance(node.covariance_rows) -
+                               node.covariance_rows * adjoint_matrix * node.covariance_rows.transpose();
+    if (node.heading_lost) transform_adjoint(node.heading_correction, adjoint);
+    for (std::size_t k = static_cast<std::size_t>(node.measurement_count); k-- > 0;) {
+      const Row& H = node.measurement_rows[k];
+      const Vector& K = node.gain[k];
+      const Vector through = adjoint_matrix * K;
+      adjoint_vector -= H.transpose() * (K.dot(adjoint_vector) + node.innovation[k] / node.variance[k]);
+      const Row seen = H * (K.dot(through) + 1.0 / node.variance[k]);
+      adjoint_matrix += H.transpose().lazyProduct(seen) - H.transpose().lazyProduct(through.transpose()) -
+                        through.lazyProduct(H);  // lazyProduct() avoids a temporary matrix of 13 KiB per measurement
+    }
+    if (node.resets_floor_slope) {
+      adjoint_vector.segment<2>(kSlope).setZero();
+      adjoint_matrix.middleRows<2>(kSlope).setZero();
+      adjoint_matrix.middleCols<2>(kSlope).setZero();
+    }
+    if (node.tilt_reset) {
+      adjoint_vector.head<6>().setZero();
+      adjoint_matrix.topRows<6>().setZero();
+      adjoint_matrix.leftCols<6>().setZero();
+    }
+    adjoint_vector += (node.moving_jacobian.transpose() * adjoint_vector.head<9>()).eval();
+    adjoint_matrix += (node.moving_jacobian.transpose() * adjoint_matrix.topRows<9>()).eval();
+    adjoint_matrix += (adjoint_matrix.leftCols<9>() * node.moving_jacobian).eval();
+  }
 }
 
 }  // namespace
@@ -144,43 +188,116 @@ void complete_filter_node(const RollingParams& params, const RollingNodeIntegral
   record.nominal = filter.nominal;
 }
 
-Reported error_before_update(const FilterNodeRecord& node) {
-  const Reported error = node.smoothed + node.correction;
-  return node.heading_lost ? Reported(error - node.smoothed[kAttitude + 2] * reported_errors(node.heading_correction))
-                           : error;
+FinalSmoothingPass::FinalSmoothingPass(const RollingParams& params, std::span<const ImuSample> samples,
+                                       std::span<const ModePathNode> path, std::size_t segment)
+    : params_(params), samples_(samples), mode_path_(path), length_(segment) {
+  segment_ends_.resize(std::max<std::size_t>(1, (path.size() + length_ - 1) / length_));
+  node_records_.reserve(std::min(path.size(), length_));
+  horizontal_variance_m2_.reserve(path.size());
 }
 
-/// See rolling.md (R38), (R39).
-void backward_pass(Adjoint& adjoint, std::span<FilterNodeRecord> nodes) {
-  auto& [adjoint_vector, adjoint_matrix] = adjoint;
-  for (std::size_t n = nodes.size(); n-- > 0;) {
-    FilterNodeRecord& node = nodes[n];
-    node.smoothed = -node.covariance_rows * adjoint_vector;
-    node.smoothed_covariance = reported_covariance(node.covariance_rows) -
-                               node.covariance_rows * adjoint_matrix * node.covariance_rows.transpose();
-    if (node.heading_lost) transform_adjoint(node.heading_correction, adjoint);
-    for (std::size_t k = static_cast<std::size_t>(node.measurement_count); k-- > 0;) {
-      const Row& H = node.measurement_rows[k];
-      const Vector& K = node.gain[k];
-      const Vector through = adjoint_matrix * K;
-      adjoint_vector -= H.transpose() * (K.dot(adjoint_vector) + node.innovation[k] / node.variance[k]);
-      const Row seen = H * (K.dot(through) + 1.0 / node.variance[k]);
-      adjoint_matrix += H.transpose().lazyProduct(seen) - H.transpose().lazyProduct(through.transpose()) -
-                        through.lazyProduct(H);  // lazyProduct() avoids a temporary matrix of 13 KiB per measurement
+void FinalSmoothingPass::run_to_cut(const SmoothingCheckpoint& start, std::size_t cut) {
+  cut_node_ = cut;
+  end_checkpoint_ = start;
+  std::size_t nodes = 0;
+  for (std::size_t segment = 0; segment < segment_ends_.size(); ++segment) {
+    segment_ends_[segment].start = end_checkpoint_;
+    filter_forward(segment, end_checkpoint_);
+    nodes += node_records_.size();
+  }
+  horizontal_variance_m2_.resize(nodes);
+  for (std::size_t segment = segment_ends_.size(); segment-- > 0;) {
+    if (loaded_ != segment) recompute_segment_filter(segment);
+    segment_ends_[segment].end = adjoint_;
+    backward_pass(adjoint_, node_records_);
+    smoothed_start_error_ =
+        -output_covariance_rows(segment_ends_[segment].start.filter.covariance) * adjoint_.adjoint_vector;
+    for (std::size_t k = 0; k < node_records_.size(); ++k) {
+      const auto& P = node_records_[k].smoothed_covariance;
+      horizontal_variance_m2_[first_node_of(segment) + k] = P(kPosition, kPosition) + P(kPosition + 1, kPosition + 1);
     }
-    if (node.resets_floor_slope) {
-      adjoint_vector.segment<2>(kSlope).setZero();
-      adjoint_matrix.middleRows<2>(kSlope).setZero();
-      adjoint_matrix.middleCols<2>(kSlope).setZero();
+  }
+}
+
+/// On entry, `at` is the filter state at the start of the segment. On return, `at` is the filter state at the start of
+/// the next segment.
+void FinalSmoothingPass::filter_forward(std::size_t segment, SmoothingCheckpoint& at) {
+  const std::size_t first = first_node_of(segment), end = std::min(first + length_, mode_path_.size());
+  loaded_ = segment;
+  node_records_.clear();
+  points_.clear();
+  auto& [filter, cursor] = at;
+  if (segment == 0 && cursor.next == 1) store_sample_point(cursor.time_ns, filter.nominal, cursor.last_rate_rad_s, 0);
+  RollingNodeIntegrals sums;
+  RollingReadings readings(params_, samples_, cursor);
+  RollingReading reading;
+  while (readings.next(reading)) {
+    const Eigen::Vector3d& rate = reading.sample.angular_velocity_rad_s;
+    if (sums.node_interval_s >= params_.expert.kNode_s - 0.5 * reading.length_s && first + node_records_.size() < end) {
+      const ModePathNode& decided = mode_path_[first + node_records_.size()];
+      FilterNodeRecord& record = node_records_.emplace_back();
+      complete_filter_node(params_, sums, 0.5 * (cursor.last_rate_rad_s + rate), decided, filter, record);
+      record.time_ns = cursor.time_ns;
+      sums = {};
+      if (first + node_records_.size() == cut_node_) cut_checkpoint_ = at;
+      if (first + node_records_.size() == end && end < mode_path_.size()) return;
     }
-    if (node.tilt_reset) {
-      adjoint_vector.head<6>().setZero();
-      adjoint_matrix.topRows<6>().setZero();
-      adjoint_matrix.leftCols<6>().setZero();
+    const std::size_t node = first + node_records_.size();
+    if (reading.in_gap) {
+      integrate_gap(params_, reading.sample, reading.length_s, reading.uncertainty, filter.nominal, sums);
+    } else {
+      integrate(params_, reading.sample, reading.length_s, filter.nominal, sums);
     }
-    adjoint_vector += (node.moving_jacobian.transpose() * adjoint_vector.head<9>()).eval();
-    adjoint_matrix += (node.moving_jacobian.transpose() * adjoint_matrix.topRows<9>()).eval();
-    adjoint_matrix += (adjoint_matrix.leftCols<9>() * node.moving_jacobian).eval();
+    if (reading.ends_at_sample) store_sample_point(reading.end_ns, filter.nominal, rate, node);
+    cursor = readings.cursor();
+  }
+}
+
+void FinalSmoothingPass::recompute_segment_filter(std::size_t segment) {
+  recomputation_checkpoint_ = segment_ends_[segment].start;
+  filter_forward(segment, recomputation_checkpoint_);
+}
+
+void FinalSmoothingPass::store_sample_point(TimeNs time_ns, const RollingNominalState& nominal,
+                                            const Eigen::Vector3d& rate_I_rad_s, std::size_t node) {
+  points_.push_back({time_ns, nominal.q_WI, nominal.v_WI_m_s, nominal.p_WI_m, rate_I_rad_s, node});
+}
+
+void FinalSmoothingPass::load(std::size_t segment) {
+  if (loaded_ == segment) return;
+  const SegmentEnds& kept = segment_ends_[segment];
+  recompute_segment_filter(segment);
+  adjoint_ = kept.end;
+  backward_pass(adjoint_, node_records_);
+  smoothed_start_error_ = -output_covariance_rows(kept.start.filter.covariance) * adjoint_.adjoint_vector;
+}
+
+void FinalSmoothingPass::report_smoothed(std::size_t until, const std::function<void(const Smoothed&)>& take) {
+  for (std::size_t segment = 0; segment < segment_ends_.size() && first_node_of(segment) < until; ++segment) {
+    load(segment);
+    report_smoothed_segment(segment, until, take);
+  }
+}
+
+void FinalSmoothingPass::report_smoothed_segment(std::size_t segment, std::size_t until,
+                                                 const std::function<void(const Smoothed&)>& take) const {
+  const std::size_t first = first_node_of(segment);
+  const SmoothingCheckpoint& start = segment_ends_[segment].start;
+  for (const SampleMotion& point : points_) {
+    if (point.node >= until) return;
+    const std::size_t next = point.node - first;
+    const bool inside = next < node_records_.size(), at_start = next == 0;
+    const Reported from = at_start ? smoothed_start_error_ : node_records_[next - 1].smoothed;
+    Reported error = from;
+    if (inside) {
+      const TimeNs from_ns = at_start ? start.reading.time_ns : node_records_[next - 1].time_ns;
+      const double length_s = seconds(node_records_[next].time_ns - from_ns);
+      const double share = length_s > 0.0 ? seconds(point.time_ns - from_ns) / length_s : 1.0;
+      error += share * (error_before_update(node_records_[next]) - from);
+    }
+    const std::size_t of = node_records_.empty() ? 0 : std::min(next, node_records_.size() - 1);
+    const FilterNodeRecord* node = node_records_.empty() ? nullptr : &node_records_[of];
+    take({point, at_start ? start.filter.nominal : node_records_[next - 1].nominal, error, node, first + of});
   }
 }
 

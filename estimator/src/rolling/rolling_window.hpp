@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -91,19 +92,82 @@ void complete_filter_node(const RollingParams& params, const RollingNodeIntegral
                           const Eigen::Vector3d& rate_I_rad_s, const ModePathNode& path, ModePathFilter& filter,
                           FilterNodeRecord& record);
 
-/// Returns the smoothed error at a filter step (node), relative to the nominal trajectory before the update of the
-/// filter step.
-Reported error_before_update(const FilterNodeRecord& node);
-
 /// Adjoint contains the information that later measurements provide about the error state at a filter step (node).
 struct Adjoint {
   Vector adjoint_vector = Vector::Zero();
   Covariance adjoint_matrix = Covariance::Zero();
 };
 
-/// Smooths the states of consecutive filter steps (nodes) by the modified Bryson-Frazier smoother. On entry, `adjoint`
-/// contains the information from all measurements after the last node. On return, `adjoint` also contains the
-/// information from the measurements at `nodes`.
-void backward_pass(Adjoint& adjoint, std::span<FilterNodeRecord> nodes);
+/// FinalSmoothingPass runs a Kalman filter with known contact modes forward, and a smoother backward.
+///
+/// The backward smoother needs more than 10 KiB per filter step (node), so FinalSmoothingPass processes the nodes in
+/// segments. For each segment, FinalSmoothingPass stores only the filter state at the start, and the adjoint variables
+/// of the smoother at the end. The backward pass recomputes all other data of a segment, with bit-identical results. If
+/// the window has several segments, the filter runs three times: forward, for the backward pass, and for the reported
+/// estimates. A FinalSmoothingPass is too large for the stack (four filters of 13 KiB).
+class FinalSmoothingPass {
+ public:
+  static constexpr std::size_t kNodesPerSegment =
+      128;  ///< number of filter steps (nodes) per segment; a segment needs 1.6 MiB
+
+  struct Smoothed {
+    const SampleMotion& point;
+    const RollingNominalState& nominal;
+    Reported smoothed_error;
+    /// record of the filter step whose covariance applies to the sample; null if the window contains no complete filter
+    /// step
+    const FilterNodeRecord* node;
+    std::size_t index;
+  };
+
+  /// All arguments must outlive the FinalSmoothingPass. `segment` is the number of filter steps (nodes) per segment.
+  FinalSmoothingPass(const RollingParams& params, std::span<const ImuSample> samples,
+                     std::span<const ModePathNode> path, std::size_t segment = kNodesPerSegment);
+
+  /// Filters and smooths all filter steps (nodes). After the call, cut_checkpoint() returns the filter state after the
+  /// first `cut` nodes.
+  void run_to_cut(const SmoothingCheckpoint& start, std::size_t cut);
+
+  std::size_t nodes() const { return horizontal_variance_m2_.size(); }
+  /// smoothed variance of the IMU's horizontal position, per filter step (node)
+  std::span<const double> horizontal_variance_m2() const { return horizontal_variance_m2_; }
+  const SmoothingCheckpoint& cut_checkpoint() const { return cut_checkpoint_; }
+  const ModePathFilter& end_filter() const { return end_checkpoint_.filter; }
+
+  /// Calls `take` in time order with the smoothed estimate of each sample before the filter step (node) `until`.
+  void report_smoothed(std::size_t until, const std::function<void(const Smoothed&)>& take);
+
+ private:
+  struct SegmentEnds {
+    SmoothingCheckpoint start;
+    Adjoint end;
+  };
+
+  std::size_t first_node_of(std::size_t segment) const { return segment * length_; }
+  void filter_forward(std::size_t segment, SmoothingCheckpoint& at);
+  void recompute_segment_filter(std::size_t segment);
+  void load(std::size_t segment);
+  void store_sample_point(TimeNs time_ns, const RollingNominalState& nominal, const Eigen::Vector3d& rate_I_rad_s,
+                          std::size_t node);
+  void report_smoothed_segment(std::size_t segment, std::size_t until,
+                               const std::function<void(const Smoothed&)>& take) const;
+
+  const RollingParams& params_;
+  std::span<const ImuSample> samples_;
+  std::span<const ModePathNode> mode_path_;
+  std::size_t length_;
+  std::vector<SegmentEnds> segment_ends_;
+  std::vector<double> horizontal_variance_m2_;
+  std::size_t cut_node_ = 0;
+  SmoothingCheckpoint cut_checkpoint_, end_checkpoint_;
+  SmoothingCheckpoint recomputation_checkpoint_;
+  Adjoint adjoint_;
+  // index of the segment whose filter records are in `node_records_`; each segment consists of `length_` successive
+  // filter steps (nodes)
+  std::size_t loaded_ = 0;
+  std::vector<FilterNodeRecord> node_records_;
+  std::vector<SampleMotion> points_;
+  Reported smoothed_start_error_ = Reported::Zero();
+};
 
 }  // namespace tumble::rolling

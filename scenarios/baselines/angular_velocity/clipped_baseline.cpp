@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tumble/angular_velocity/detail/recording_check.hpp"
+#include "tumble/common/detail/sample_check.hpp"
 
 namespace tumble::baselines {
 

@@ -8,7 +8,7 @@
 #include "scenarios/baselines/attitude/madgwick_step.hpp"
 #include "scenarios/baselines/attitude/tilt_correction.hpp"
 #include "tumble/attitude/detail/strapdown.hpp"
-#include "tumble/attitude/detail/timing.hpp"
+#include "tumble/common/detail/sample_check.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble::baselines {

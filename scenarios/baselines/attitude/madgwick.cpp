@@ -6,7 +6,7 @@
 #include "scenarios/baselines/attitude/force_min.hpp"
 #include "scenarios/baselines/attitude/madgwick_step.hpp"
 #include "tumble/attitude/detail/strapdown.hpp"
-#include "tumble/attitude/detail/timing.hpp"
+#include "tumble/common/detail/sample_check.hpp"
 
 namespace tumble::baselines {
 

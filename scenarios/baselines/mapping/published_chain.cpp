@@ -7,8 +7,8 @@
 #include <limits>
 #include <unordered_map>
 
-#include "tumble/mapping/detail/map_drawing.hpp"
 #include "tumble/mapping/detail/spatial_hash.hpp"
+#include "tumble/mapping/detail/voxel_map.hpp"
 
 namespace tumble::baselines {
 

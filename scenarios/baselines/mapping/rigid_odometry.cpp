@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tumble/mapping/detail/sweep_check.hpp"
+#include "tumble/mapping/detail/deskew.hpp"
 
 namespace tumble::baselines {
 

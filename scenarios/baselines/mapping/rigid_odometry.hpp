@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "tumble/common/status.hpp"
-#include "tumble/mapping/detail/map_drawing.hpp"
 #include "tumble/mapping/detail/registration.hpp"
 #include "tumble/mapping/detail/sweep_trajectory.hpp"
 #include "tumble/mapping/detail/voxel_map.hpp"

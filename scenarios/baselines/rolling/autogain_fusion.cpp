@@ -6,7 +6,7 @@
 
 #include "scenarios/baselines/attitude/force_min.hpp"
 #include "scenarios/baselines/rolling/attitude_check.hpp"
-#include "tumble/attitude/detail/timing.hpp"
+#include "tumble/common/detail/sample_check.hpp"
 #include "tumble/common/types.hpp"
 
 namespace tumble::baselines {

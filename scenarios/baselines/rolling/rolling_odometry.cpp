@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "scenarios/baselines/rolling/attitude_check.hpp"
-#include "tumble/attitude/detail/timing.hpp"
+#include "tumble/common/detail/sample_check.hpp"
 
 namespace tumble::baselines {
 

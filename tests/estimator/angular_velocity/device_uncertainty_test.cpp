@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests how a stream treats uncertain device errors: the mixture against closed forms, and an AngularRateStream of a
 // device whose errors are not corrected.
-#include "tumble/angular_velocity/detail/device_uncertainty.hpp"
+#include "tumble/angular_velocity/detail/sensor_errors.hpp"
 
 #include "estimator/angular_velocity/tumble_recording.hpp"
 #include "tests/testing.hpp"

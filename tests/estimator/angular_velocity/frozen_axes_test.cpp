@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/detail/frozen_axes.hpp"
+#include "tumble/angular_velocity/detail/repeat_detector.hpp"
 
 #include "tests/testing.hpp"
 #include "tumble/common/status.hpp"

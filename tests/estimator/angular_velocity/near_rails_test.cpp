@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests readings that are unsaturated, but whose windows may have been partly saturated.
-#include "estimator/src/angular_velocity/near_saturation_limits.hpp"
+#include "estimator/src/angular_velocity/possible_saturation.hpp"
 
 #include "tests/testing.hpp"
 

@@ -10,7 +10,6 @@
 #include "tumble/angular_velocity/detail/auxiliary_imu.hpp"
 #include "tumble/angular_velocity/detail/clipping_finder.hpp"
 #include "tumble/angular_velocity/detail/rate_smoother.hpp"
-#include "tumble/angular_velocity/detail/streaming_clipping_finder.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
 
 namespace tumble {

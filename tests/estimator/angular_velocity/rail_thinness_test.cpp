@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "estimator/src/angular_velocity/sample_hold.hpp"
 #include "oracles/gaussian.hpp"
 #include "tests/testing.hpp"
+#include "tumble/angular_velocity/detail/repeat_detector.hpp"
 #include "tumble/angular_velocity/detail/saturation_plane_finder.hpp"
 
 namespace tumble {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/detail/rate_factors.hpp"
+#include "tumble/angular_velocity/detail/rate_observation.hpp"
 
 #include "oracles/gaussian.hpp"
 #include "oracles/torque_free_rotation.hpp"

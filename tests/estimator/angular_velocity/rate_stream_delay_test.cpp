@@ -4,9 +4,9 @@
 #include "estimator/angular_velocity/streamed_rates.hpp"
 #include "estimator/angular_velocity/tumble_recording.hpp"
 #include "tests/testing.hpp"
-#include "tumble/angular_velocity/detail/device_uncertainty.hpp"
 #include "tumble/angular_velocity/detail/impact_sums.hpp"
 #include "tumble/angular_velocity/detail/rate_smoother.hpp"
+#include "tumble/angular_velocity/detail/sensor_errors.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
 
 namespace tumble {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/angular_velocity/detail/sensor_errors.hpp"
 
-#include "estimator/src/angular_velocity/sample_hold.hpp"
-#include "estimator/src/angular_velocity/triad_delay.hpp"
 #include "oracles/gaussian.hpp"
 #include "tests/testing.hpp"
+#include "tumble/angular_velocity/detail/impact_sums.hpp"
 #include "tumble/angular_velocity/detail/rate_model.hpp"
 #include "tumble/angular_velocity/detail/rate_smoother.hpp"
+#include "tumble/angular_velocity/detail/repeat_detector.hpp"
 #include "tumble/common/types.hpp"
 #include "tumble_recording.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "estimator/src/angular_velocity/wnoj_smoother.hpp"
+#include "tumble/angular_velocity/detail/saave.hpp"
 
 #include "oracles/gaussian.hpp"
 #include "tests/testing.hpp"

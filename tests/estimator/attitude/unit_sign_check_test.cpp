@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/attitude/detail/multi_imu_sign_check.hpp"
+#include "tumble/attitude/detail/imu_merge_state.hpp"
 
 #include "tests/testing.hpp"
 

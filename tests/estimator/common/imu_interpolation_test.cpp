@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/common/detail/imu_interpolation.hpp"
+#include "tumble/common/detail/imu_average.hpp"
 
 #include "tests/testing.hpp"
 

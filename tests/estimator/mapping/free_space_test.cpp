@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests the free space that a sweep observed, and the map without the removed points.
-#include "estimator/src/mapping/sight_grid.hpp"
+#include "estimator/src/mapping/local_map.hpp"
 #include "tests/estimator/mapping/room_rig.hpp"
 #include "tests/testing.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests a gap of the IMU data: the interpolated rate and its uncertainty; docs/maths/mapping.md (R44), (R43).
-#include "estimator/src/mapping/gap_bridge.hpp"
+#include "estimator/src/mapping/inertial_track.hpp"
 
 #include "oracles/gaussian.hpp"
 #include "tests/estimator/mapping/room_tumble.hpp"

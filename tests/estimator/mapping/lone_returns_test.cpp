@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "estimator/src/mapping/lone_returns.hpp"
+#include "estimator/src/mapping/sweep_points.hpp"
 
 #include "tests/estimator/mapping/room_tumble.hpp"
 #include "tests/testing.hpp"

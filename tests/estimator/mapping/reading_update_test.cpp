@@ -5,7 +5,7 @@
 #include "estimator/src/mapping/unknowns.hpp"
 #include "tests/testing.hpp"
 #include "tumble/common/types.hpp"
-#include "tumble/mapping/detail/odometer_reading.hpp"
+#include "tumble/mapping/detail/deskew.hpp"
 
 namespace tumble::mapping {
 namespace {

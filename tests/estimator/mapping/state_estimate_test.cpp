@@ -2,7 +2,7 @@
 // Compares state estimates with closed forms, and with the nonlinear relations that they linearise.
 #include "estimator/src/mapping/state_estimate.hpp"
 
-#include "estimator/src/common/symmetric.hpp"
+#include "estimator/src/common/dense.hpp"
 #include "estimator/src/mapping/unknowns.hpp"
 #include "tests/testing.hpp"
 #include "tumble/common/types.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/mapping/detail/lidar_scale.hpp"
+#include "tumble/mapping/detail/localisation.hpp"
 
 #include "oracles/gaussian.hpp"
 #include "tests/testing.hpp"

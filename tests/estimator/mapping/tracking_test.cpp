@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests the tracking states: all transitions as a table, and what determines the verdict.
-#include "estimator/src/mapping/tracking.hpp"
 
 #include "estimator/src/mapping/relocalizer.hpp"
 #include "tests/testing.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Compares the difference between map and world with closed forms: docs/maths/mapping.md, "Reported covariance".
-#include "estimator/src/mapping/world_covariance.hpp"
+#include "estimator/src/mapping/state_estimate.hpp"
 
 #include "estimator/src/mapping/unknowns.hpp"
 #include "tests/testing.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "estimator/src/rolling/lost_heading.hpp"
 #include "estimator/rolling/lagged_params.hpp"
 #include "estimator/rolling/rolling_truth.hpp"
+#include "estimator/src/rolling/rolling_node.hpp"
 #include "tests/testing.hpp"
 #include "tumble/rolling/detail/rolling_smoother.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "estimator/rolling/rolling_truth.hpp"
-#include "estimator/src/rolling/last_pass.hpp"
+#include "estimator/src/rolling/rolling_window.hpp"
 #include "tests/allocation_counter.hpp"
 #include "tests/testing.hpp"
 #include "tumble/rolling/detail/rolling_smoother.hpp"

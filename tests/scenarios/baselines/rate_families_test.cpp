@@ -2,7 +2,6 @@
 // The test runs the interpolation of clipped readings on a swing in closed form, for which it was made.
 #include "scenarios/baselines/angular_velocity/clipped_baseline.hpp"
 #include "tests/testing.hpp"
-#include "tumble/angular_velocity/detail/partial_saturation.hpp"
 #include "tumble/angular_velocity/detail/rate_observation.hpp"
 
 namespace tumble::baselines {

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <variant>
@@ -15,6 +16,11 @@
 #include "tumble/common/types.hpp"
 
 namespace tumble {
+
+/// Function of the caller that runs body(0) to body(count - 1) once each, in any order and on any threads, and returns
+/// when all calls are done. Without a ParallelFor, the calling thread does all work. Results are bit-identical for any
+/// number of threads.
+using ParallelFor = std::function<void(std::size_t count, const std::function<void(std::size_t)>& body)>;
 
 /// Lidar return before deskewing: the position is in the axes that the lidar had when the laser fired.
 struct LidarPoint {

@@ -217,7 +217,7 @@ class TumblingOdometry {
   /// Without a finding, health() allocates no memory.
   SensorHealth health() const;
   /// Returns the ratio of displacements measured by the lidar to displacements measured by the IMU, with its standard
-  /// deviation (mapping/detail/lidar_scale.hpp).
+  /// deviation (mapping/detail/localisation.hpp).
   const LidarScale& lidar_scale() const;
   /// Returns the newest Sweep::position_frame, which transforms the pose of newest() to the frame of the position
   /// readings. With kWholeRecording, position_frame() returns an empty value.
@@ -252,7 +252,7 @@ class TumblingOdometry {
   /// Returns the mapper (mapping/lidar_inertial_odometry.hpp), which provides the map and the calibration of the lidar.
   const LidarInertialOdometry& mapper() const;
   /// Returns the angular velocities at all samples, the health findings, and the results of the mapping for a whole
-  /// recording (detail/recording_estimate.hpp). Returns null before finish(), or if `lag_s` is not kWholeRecording.
+  /// recording (detail/mapping_passes.hpp). Returns null before finish(), or if `lag_s` is not kWholeRecording.
   const WholeRecordingEstimate* whole_recording_result() const;
 
   /// Saves calibration, saturation limits, map and newest pose as bytes with a checksum, for load() after a reboot. The

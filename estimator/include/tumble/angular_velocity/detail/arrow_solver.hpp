@@ -43,5 +43,5 @@ Eigen::Matrix3d rate_covariance(const Conditional& conditional, const BorderMatr
 
 }  // namespace arrow
 
-extern template struct BlockArrowSystem<arrow::kBlockSize, arrow::kBorderSize>;  // arrow_solver.cpp
+extern template struct BlockArrowSystem<arrow::kBlockSize, arrow::kBorderSize>;  // rate_descent.cpp
 }  // namespace tumble

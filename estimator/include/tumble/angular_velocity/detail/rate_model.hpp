@@ -5,7 +5,6 @@
 #include <cstdint>
 
 #include "tumble/angular_velocity/detail/arrow_solver.hpp"
-#include "tumble/angular_velocity/detail/rate_factors.hpp"
 #include "tumble/angular_velocity/detail/rate_model_params.hpp"
 #include "tumble/angular_velocity/detail/rate_observation.hpp"
 #include "tumble/angular_velocity/detail/sensor_errors.hpp"

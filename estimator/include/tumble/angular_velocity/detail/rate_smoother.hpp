@@ -126,4 +126,17 @@ class AngularRateSmoother {
   RestDetector rest_detector_;
 };
 
+struct AuxiliaryRecording {
+  AuxiliaryImu imu;  ///< the sensing directions are ignored and estimated by align()
+  SaturationLimitDetector::Params stated_saturation_limits;
+  std::vector<ImuSample> samples;
+};
+
+/// Interpolates the readings of additional IMUs at the time stamps of the primary IMU. Appends each additional IMU,
+/// with estimated sensing directions, to `model.auxiliary_imus`, and the interpolated readings to `out`. Recordings
+/// beyond the first kAuxiliaryImusMax are ignored. Returns `ok`, or the first error of align() for a single IMU. Cost:
+/// O(N), plus ClippingFinder::find().
+Status align(std::span<const AuxiliaryRecording> recordings, std::span<const ImuSample> primary, double gap_max_s,
+             AngularRateModelParams& model, std::vector<std::vector<AuxiliaryReading>>& out);
+
 }  // namespace tumble

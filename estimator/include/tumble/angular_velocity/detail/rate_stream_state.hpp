@@ -8,17 +8,15 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/arrow_solver.hpp"
-#include "tumble/angular_velocity/detail/device_uncertainty.hpp"
+#include "tumble/angular_velocity/detail/clipping_finder.hpp"
 #include "tumble/angular_velocity/detail/flight_sign_check.hpp"
-#include "tumble/angular_velocity/detail/frozen_axes.hpp"
 #include "tumble/angular_velocity/detail/impact_sums.hpp"
-#include "tumble/angular_velocity/detail/min_saturation_levels.hpp"
 #include "tumble/angular_velocity/detail/rate_observation.hpp"
 #include "tumble/angular_velocity/detail/repeat_detector.hpp"
 #include "tumble/angular_velocity/detail/rest_detector.hpp"
 #include "tumble/angular_velocity/detail/saturation_limit_detector.hpp"
+#include "tumble/angular_velocity/detail/saturation_plane.hpp"
 #include "tumble/angular_velocity/detail/sensor_errors.hpp"
-#include "tumble/angular_velocity/detail/streaming_clipping_finder.hpp"
 #include "tumble/angular_velocity/types.hpp"
 #include "tumble/common/types.hpp"
 

@@ -3,12 +3,32 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <span>
 
 #include "tumble/common/types.hpp"
 
 namespace tumble {
+
+enum class Triad : std::uint8_t { gyro, accelerometer };
+
+/// unit: rad/s for the gyro, m/s^2 for the accelerometer
+inline const Eigen::Vector3d& triad_reading_of(const ImuSample& sample, Triad triad) {
+  return triad == Triad::gyro ? sample.angular_velocity_rad_s : sample.specific_force_m_s2;
+}
+
+/// Lowest accepted saturation limit, as a fraction of the stated range: rails.md (R67). The heuristic margin covers
+/// sensors that saturate below the range in their data sheet.
+inline constexpr double kStatedRailMin = 0.85;
+
+/// Readings within this margin below a saturation limit may be saturated, as a fraction of the limit: rails.md (R54),
+/// (R75), rate_stream.md (R93). The margin covers scale errors, tilted saturation planes, and motion between two
+/// readings.
+inline constexpr double kNearRailRatio = 0.02;
+
+/// maximum difference of readings that count as equal, as a fraction of the saturation limit
+inline constexpr double kEqualReadingsRatio = 2e-5;
 
 /// While one sensing element of a gyro is saturated, the readings (x, y, z) are on one of two planes: row . reading =
 /// offset -+ limit. The planes are tilted relative to the output axes if the sensor clips first, and then compensates
@@ -61,5 +81,18 @@ struct SensingDirections {
 /// Returns the sensing directions that the saturation planes determine. An element without saturation plane gets its
 /// output axis as direction, with the standard deviation `unknown_sigma`.
 SensingDirections sensing_directions(const SaturationPlanes& planes, double unknown_sigma);
+
+/// Lower bounds of the gyro's saturation limits, per sensing element and sign: rails.md (R75).
+class MinSaturationLevels {
+ public:
+  void add(const Eigen::Vector3d& rate_rad_s);
+  /// Returns true if the reading of the sensing element `axis` is certainly below the saturation limit.
+  bool is_below_min_saturation_level(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) const;
+  bool operator==(const MinSaturationLevels&) const = default;
+
+ private:
+  std::array<Eigen::Vector3d, 2> min_levels_rad_s_{Eigen::Vector3d::Zero(),
+                                                   Eigen::Vector3d::Zero()};  // negative side, positive side
+};
 
 }  // namespace tumble

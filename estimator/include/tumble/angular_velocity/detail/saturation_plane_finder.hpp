@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/saturation_plane.hpp"
-#include "tumble/angular_velocity/detail/triad.hpp"
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/types.hpp"
 

@@ -5,10 +5,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tumble/attitude/detail/tilt.hpp"
-#include "tumble/common/detail/squared.hpp"
+#include "tumble/common/detail/scalar_update.hpp"
 
 namespace tumble {
+
+/// Returns the smallest rotation that turns the unit vector `up_W` to the z axis; the rotation keeps the heading. If
+/// `up_W` is opposite to z, the result is a half turn about x.
+inline Eigen::Quaterniond levelling(const Eigen::Vector3d& up_W) {
+  const double w = std::sqrt(std::max(0.0, 0.5 * (1.0 + up_W.z())));
+  if (w < 1e-6) return {0.0, 1.0, 0.0, 0.0};
+  return Eigen::Quaterniond(w, 0.5 * up_W.y() / w, -0.5 * up_W.x() / w, 0.0).normalized();
+}
 
 /// Estimates the vertical from the mean specific force of a moving body after the attitude was lost: attitude.md (A19),
 /// (A20). The method needs no initial attitude, because it uses no linearisation. The caller adds the variance of the

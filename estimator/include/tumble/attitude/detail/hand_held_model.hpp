@@ -133,5 +133,5 @@ Eigen::Vector3d rotation_between_nodes(const Node& from, const Node& to, double 
 
 }  // namespace hand_held
 
-extern template struct BlockArrowSystem<hand_held::kBlockSize, hand_held::kBorderSize>;  // hand_held_arrow.cpp
+extern template struct BlockArrowSystem<hand_held::kBlockSize, hand_held::kBorderSize>;  // hand_held_problem.cpp
 }  // namespace tumble

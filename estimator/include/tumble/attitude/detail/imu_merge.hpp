@@ -8,11 +8,7 @@
 #include <span>
 #include <string>
 
-#include "tumble/attitude/detail/force_errors.hpp"
-#include "tumble/attitude/detail/imu_merge_setup.hpp"
 #include "tumble/attitude/detail/imu_merge_state.hpp"
-#include "tumble/attitude/detail/multi_imu_sign_check.hpp"
-#include "tumble/attitude/detail/rate_recovery.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/common/types.hpp"
 

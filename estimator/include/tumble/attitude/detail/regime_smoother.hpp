@@ -1,18 +1,41 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
+#include "tumble/angular_velocity/detail/clipping_finder.hpp"
 #include "tumble/angular_velocity/detail/rate_smoother.hpp"
-#include "tumble/attitude/detail/clipped_readings.hpp"
+#include "tumble/angular_velocity/types.hpp"
 #include "tumble/attitude/detail/hand_held_smoother.hpp"
 #include "tumble/attitude/detail/regime_params.hpp"
-#include "tumble/attitude/detail/regimes.hpp"
 #include "tumble/attitude/detail/spin_tracker.hpp"
+#include "tumble/common/types.hpp"
 
 namespace tumble {
+
+struct ClippedReadings {
+  Eigen::Matrix3d sensing_directions = Eigen::Matrix3d::Identity();  ///< of the gyro, one per row
+  std::vector<ClipSigns> clip_signs;
+  std::vector<std::uint8_t> possibly_clipped_axes;  ///< bit j: gyro element j may be partly saturated
+
+  SensingAxisClipSigns clipped_element_signs() const { return {sensing_directions, clip_signs}; }
+
+  /// Marks gyro readings that may be saturated at an unknown limit as lower bounds of the rate. Bit j of `axes[k]`
+  /// marks gyro axis j in sample k.
+  void mark_suspected_saturation(std::span<const ImuSample> samples, std::span<const std::uint8_t> axes);
+
+  /// Changes the source of a rate from `measured` to `lower_bound_only` if the gyro may be saturated during a part of
+  /// the averaging window. `rates` contains one rate per sample.
+  void mark_partly_saturated(std::span<AngularRateState> rates) const;
+};
+
+/// Cost: O(N).
+ClippedReadings clipped_readings_of(std::span<const ImuSample> samples,
+                                    const ClippingFinder::ClippingSearchResult& found);
 
 /// Estimates the angular velocity of a body in flight, in contact or hand-held, over a whole recording.
 /// AngularRateSmoother estimates the rates for flight and contact. HandHeldSmoother estimates the rates for saturated
@@ -72,5 +95,36 @@ class MotionRegimeSmoother {
   HandHeldSmoother hand_held_;
   SpinTracker spin_;
 };
+
+/// Estimates the rates of a recording with MotionRegimeSmoother, with optional additional IMUs. Returns `ok`, or an
+/// error of align() or MotionRegimeSmoother::estimate().
+Status estimate_rates(std::span<const ImuSample> samples, std::span<const AuxiliaryRecording> auxiliary_imus,
+                      const MotionRegimeSmoother::Params& params, std::vector<AngularRateState>& rates,
+                      MotionRegimeSmoother::Report& report);
+
+/// Recording in which estimated rates replace gyro readings, for methods that need gyro readings as input.
+struct RecoveredRates {
+  std::vector<ImuSample> samples;
+  std::vector<Eigen::Matrix3d>
+      covariances_rad2_s2;                 ///< one covariance per sample, in sensor axes; zero for unmodified readings
+  std::vector<AngularRateSource> sources;  ///< one per sample
+  bool estimated = false;                  ///< true if a reading clips, and MotionRegimeSmoother succeeded
+  std::size_t replaced_reading_count = 0;  ///< number of clipped or possibly clipped readings that were replaced
+  MotionRegimeSmoother::Report report;
+  SaturationLevels saturation_levels;
+};
+
+enum class ReadingsToReplace : std::uint8_t {
+  clipped,
+  /// readings with a clipped or possibly clipped axis; all readings if the gyro updates more slowly than the log
+  unreliable_readings,
+};
+
+/// Replaces clipped gyro readings by estimated rates plus the gyro bias, so that replaced and original readings have
+/// equal bias. All three axes of a reading are replaced, because the gyro's misalignment compensation also corrupts the
+/// unclipped axes. If no reading clips or the estimation fails, all readings remain. With `unreliable_readings`, the
+/// readings of a gyro that updates more slowly than the log are still interpolated. Cost: O(N).
+RecoveredRates recover_rates(std::span<const ImuSample> samples, std::span<const AuxiliaryRecording> auxiliary_imus,
+                             const MotionRegimeSmoother::Params& params, ReadingsToReplace replaced);
 
 }  // namespace tumble

@@ -8,7 +8,6 @@
 #include "tumble/angular_velocity/rate_stream.hpp"
 #include "tumble/attitude/detail/hand_held_stream.hpp"
 #include "tumble/attitude/detail/regime_params.hpp"
-#include "tumble/attitude/detail/regimes.hpp"
 #include "tumble/attitude/detail/spin_tracker.hpp"
 
 namespace tumble {

@@ -6,6 +6,10 @@
 
 namespace tumble {
 
+inline double squared(double x) {
+  return x * x;
+}
+
 // Measurement updates of a Kalman filter (Kalman, Journal of Basic Engineering 82, 1960). All functions return the
 // correction of the state vector with N components, and update its covariance P. The cost is O(N^2) per measured
 // number, without allocation for fixed N.

@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "tumble/common/status.hpp"
+#include "tumble/common/types.hpp"
 #include "tumble/mapping/detail/spatial_hash.hpp"
 #include "tumble/mapping/detail/sweep_trajectory.hpp"
 #include "tumble/mapping/types.hpp"
@@ -68,5 +70,27 @@ class SweepSampler {
  private:
   SpatialHash occupied_voxels_{1 << 14};
 };
+
+}  // namespace tumble
+
+namespace tumble::mapping {
+
+/// Returns `out_of_range` if a point was fired after the end of the sweep, which takes `span_ns`.
+Status check_time_offsets(TimeNs span_ns, std::span<const LidarPoint> points);
+
+/// Returns `empty` (no points), `non_finite` (no finite point), `insufficient_data` (no point in range) or `degenerate`
+/// (all points have one time stamp, although the sweep has a duration).
+Status check_point_selection(TimeNs span_ns, std::span<const LidarPoint> points, const PointCounts& counts);
+
+}  // namespace tumble::mapping
+
+namespace tumble {
+
+/// Returns `non_finite` if a number is not finite. Returns `out_of_range` if a standard deviation is not above 0, a
+/// covariance is not positive definite, or a rotation matrix is not orthonormal. Returns `time_order` if a motion ends
+/// before or at its start.
+Status check_odometer_reading(const OdometerReading& reading);
+TimeNs reading_start_ns(const OdometerReading& reading);
+TimeNs reading_end_ns(const OdometerReading& reading);
 
 }  // namespace tumble

@@ -5,7 +5,6 @@
 #include <cstddef>
 
 #include "tumble/common/parameters.hpp"
-#include "tumble/mapping/detail/executor.hpp"
 #include "tumble/mapping/types.hpp"
 
 namespace tumble {
