@@ -36,15 +36,6 @@ Status TumblingOdometry::add_velocity(const VelocityReading& velocity) {
 Status TumblingOdometry::add_relative_pose(const RelativePoseReading& motion) {
   return impl_->add_reading(motion);
 }
-Status TumblingOdometry::add_frame_alignment_position(const PositionReading& position) {
-  return impl_->add_frame_alignment_position(position);
-}
-std::optional<TumblingOdometry::Sweep> TumblingOdometry::take() {
-  return impl_->take();
-}
-Status TumblingOdometry::finish(const SweepProgress& on_sweep) {
-  return impl_->finish(on_sweep);
-}
 void TumblingOdometry::reset() {
   impl_->reset();
 }
@@ -56,9 +47,6 @@ Status TumblingOdometry::newest(PoseState& pose, Eigen::Matrix3d* velocity_covar
 }
 SensorHealth TumblingOdometry::health() const {
   return impl_->health();
-}
-const LidarScale& TumblingOdometry::lidar_scale() const {
-  return impl_->lidar_scale();
 }
 const std::optional<PositionFrame>& TumblingOdometry::position_frame() const {
   return impl_->positions_.position_frame();
@@ -96,9 +84,6 @@ std::size_t TumblingOdometry::dropped_untaken_sweeps() const {
 std::size_t TumblingOdometry::sweeps_before_first_imu() const {
   return impl_->sweeps_before_first_imu_;
 }
-std::optional<double> TumblingOdometry::estimated_jitter_s() const {
-  return impl_->estimated_jitter_s();
-}
 const LidarInertialOdometry& TumblingOdometry::mapper() const {
   return impl_->mapper();
 }
@@ -122,17 +107,8 @@ RollingOdometry::~RollingOdometry() = default;
 Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
   return impl_->add_imus(samples);
 }
-Status RollingOdometry::add_imu(std::size_t imu_index, const ImuSample& sample) {
-  return impl_->add_imu(imu_index, sample);
-}
 std::optional<RollingOdometry::Pose> RollingOdometry::newest() const {
   return impl_->newest();
-}
-std::optional<RollingOdometry::Pose> RollingOdometry::take() {
-  return impl_->take();
-}
-Status RollingOdometry::finish() {
-  return impl_->finish();
 }
 void RollingOdometry::reset() {
   impl_->reset();
@@ -146,23 +122,14 @@ SensorHealth RollingOdometry::health() const {
 const MergedImuRecording* RollingOdometry::whole_recording_result() const {
   return impl_->whole_recording_result_.get();
 }
-RollingOdometry::SphereCalibration RollingOdometry::sphere_calibration() const {
-  return impl_->sphere_calibration();
-}
 bool RollingOdometry::started_in_motion() const {
   return impl_->state_->live_filter.started_in_motion;
 }
 const ImuMergeState& RollingOdometry::imu_merge_state() const {
   return *impl_->imu_merge_state_;
 }
-std::size_t RollingOdometry::rejected_readings() const {
-  return impl_->rejected_readings();
-}
 std::size_t RollingOdometry::restart_count() const {
   return impl_->restart_count_;
-}
-std::optional<double> RollingOdometry::estimated_jitter_s() const {
-  return impl_->estimated_jitter_s();
 }
 std::vector<std::byte> RollingOdometry::save() const {
   return impl_->save();

@@ -103,6 +103,10 @@ Status RollingOdometry::Impl::add_imus(std::span<const ImuSample> samples) {
   return {};
 }
 
+Status RollingOdometry::add_imu(std::size_t unit, const ImuSample& sample) {
+  return impl_->add_imu(unit, sample);
+}
+
 Status RollingOdometry::Impl::add_imu(std::size_t unit, const ImuSample& sample) {
   if (finished_) return {ErrorCode::out_of_range, "samples after finish()", 1.0, 0.0};
   const std::size_t units = params_.imus.size();
@@ -250,9 +254,9 @@ void RollingOdometry::Impl::start_clipping_states() {
   for (std::size_t k = 0; k < clipping_finders_.size(); ++k) clipping_states_[k] = {clipping_finders_[k].start(), {}};
 }
 
-std::size_t RollingOdometry::Impl::rejected_readings() const {
+std::size_t RollingOdometry::rejected_readings() const {
   std::size_t out = 0;
-  for (const OutlierFilter::State& unit : outlier_filter_state_) out += unit.rejected;
+  for (const OutlierFilter::State& unit : impl_->outlier_filter_state_) out += unit.rejected;
   return out;
 }
 
@@ -272,8 +276,10 @@ Status RollingOdometry::Impl::exclude_frozen(const Frozen& states, std::span<Imu
   return health.worst_status();
 }
 
-std::optional<double> RollingOdometry::Impl::estimated_jitter_s() const {
-  return sample_clock_.corrects_stamps(sample_clock_state_) ? SampleClock::jitter_s(sample_clock_state_) : std::nullopt;
+std::optional<double> RollingOdometry::estimated_jitter_s() const {
+  return impl_->sample_clock_.corrects_stamps(impl_->sample_clock_state_)
+             ? SampleClock::jitter_s(impl_->sample_clock_state_)
+             : std::nullopt;
 }
 
 std::optional<RollingOdometry::Pose> RollingOdometry::Impl::newest() const {
@@ -281,27 +287,29 @@ std::optional<RollingOdometry::Pose> RollingOdometry::Impl::newest() const {
   return as_pose(transform_to_world(RollingFilter::estimate(state_->live_filter)));
 }
 
-std::optional<RollingOdometry::Pose> RollingOdometry::Impl::take() {
-  if (returned_result_count_ == finished_results_.size()) return std::nullopt;
-  const Pose out = as_pose(finished_results_[returned_result_count_++]);
-  if (returned_result_count_ == finished_results_.size()) {
-    finished_results_.clear();
-    returned_result_count_ = 0;
+std::optional<RollingOdometry::Pose> RollingOdometry::take() {
+  if (impl_->returned_result_count_ == impl_->finished_results_.size()) return std::nullopt;
+  const Pose out = as_pose(impl_->finished_results_[impl_->returned_result_count_++]);
+  if (impl_->returned_result_count_ == impl_->finished_results_.size()) {
+    impl_->finished_results_.clear();
+    impl_->returned_result_count_ = 0;
   }
   return out;
 }
 
-RollingOdometry::SphereCalibration RollingOdometry::Impl::sphere_calibration() const {
-  const bool newest = is_live_ || (!finished_ && !state_->committed_state.started);
-  const RollingNominalState& constants = newest ? state_->live_filter.nominal : state_->constants;
-  return {-constants.lever_arm_error_m, params_.radius_m + constants.radius_error_m, state_->radius_sigma_m};
+RollingOdometry::SphereCalibration RollingOdometry::sphere_calibration() const {
+  const bool newest = impl_->is_live_ || (!impl_->finished_ && !impl_->state_->committed_state.started);
+  const RollingNominalState& constants = newest ? impl_->state_->live_filter.nominal : impl_->state_->constants;
+  return {-constants.lever_arm_error_m, impl_->params_.radius_m + constants.radius_error_m,
+          impl_->state_->radius_sigma_m};
 }
 
-Status RollingOdometry::Impl::finish() {
-  if (finished_) return {};
-  const Status status = uses_whole_recording() ? finish_whole_recording() : add_time_aligned_readings(true);
-  end_continuous_run();
-  finished_ = true;
+Status RollingOdometry::finish() {
+  if (impl_->finished_) return {};
+  const Status status =
+      impl_->uses_whole_recording() ? impl_->finish_whole_recording() : impl_->add_time_aligned_readings(true);
+  impl_->end_continuous_run();
+  impl_->finished_ = true;
   return status;
 }
 

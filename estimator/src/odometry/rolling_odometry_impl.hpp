@@ -43,16 +43,10 @@ struct RollingOdometry::Impl {
   Impl(const Params& params, const ImuMerge::Setup& merged);
 
   Status add_imus(std::span<const ImuSample> samples);
-  Status add_imu(std::size_t unit, const ImuSample& sample);
   std::optional<Pose> newest() const;
-  std::optional<Pose> take();
-  Status finish();
   void reset();
   void reset(const Eigen::Isometry3d& T_WG);
   SensorHealth health() const;
-  SphereCalibration sphere_calibration() const;
-  std::size_t rejected_readings() const;
-  std::optional<double> estimated_jitter_s() const;
   std::vector<std::byte> save() const;
   Status load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose);
 
@@ -65,6 +59,7 @@ struct RollingOdometry::Impl {
   bool is_delayed_after(std::span<const ImuSample> next, std::size_t unit);
   Status add_inliers(std::span<const ImuSample> samples);
   Status process_ordered_sample(const ImuSample& merged);
+  Status add_imu(std::size_t unit, const ImuSample& sample);
   Status add_inlier(std::size_t unit, const ImuSample& sample);
   Status add_time_aligned_readings(bool ended);
   void forget_waiting_readings();

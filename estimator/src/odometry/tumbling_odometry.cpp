@@ -139,18 +139,19 @@ Status TumblingOdometry::Impl::add_reading(const OdometerReading& reading) {
   return readings_.add(reading, odometry_pass_.oldest_needed_ns(*last_registered_ns_), latest_ns, most);
 }
 
-Status TumblingOdometry::Impl::add_frame_alignment_position(const PositionReading& position) {
-  if (!newest_ns_) return {ErrorCode::empty, "imu samples", 0.0, 1.0};
+Status TumblingOdometry::add_frame_alignment_position(const PositionReading& position) {
+  if (!impl_->newest_ns_) return {ErrorCode::empty, "imu samples", 0.0, 1.0};
   const std::size_t most =
-      uses_whole_recording() ? std::numeric_limits<std::size_t>::max() : PositionAlignment::kReadingsMax;
-  const TimeNs latest_ns = *newest_ns_ + static_cast<TimeNs>(1e9 * kAhead_s);
-  return positions_.add(position, odometry_pass_.oldest_needed_ns(*last_registered_ns_), latest_ns, most);
+      impl_->uses_whole_recording() ? std::numeric_limits<std::size_t>::max() : PositionAlignment::kReadingsMax;
+  const TimeNs latest_ns = *impl_->newest_ns_ + static_cast<TimeNs>(1e9 * kAhead_s);
+  return impl_->positions_.add(position, impl_->odometry_pass_.oldest_needed_ns(*impl_->last_registered_ns_), latest_ns,
+                               most);
 }
 
-std::optional<TumblingOdometry::Sweep> TumblingOdometry::Impl::take() {
-  if (finished_results_.empty()) return std::nullopt;
-  std::optional<Sweep> out(std::move(finished_results_.front()));
-  finished_results_.pop_front();
+std::optional<TumblingOdometry::Sweep> TumblingOdometry::take() {
+  if (impl_->finished_results_.empty()) return std::nullopt;
+  std::optional<Sweep> out(std::move(impl_->finished_results_.front()));
+  impl_->finished_results_.pop_front();
   return out;
 }
 
@@ -158,8 +159,10 @@ Status TumblingOdometry::Impl::newest(PoseState& pose, Eigen::Matrix3d* velocity
   return odometry_pass_.newest(pose, velocity_covariance_I_m2_s2);
 }
 
-std::optional<double> TumblingOdometry::Impl::estimated_jitter_s() const {
-  return sample_clock_.corrects_stamps(sample_clock_state_) ? SampleClock::jitter_s(sample_clock_state_) : std::nullopt;
+std::optional<double> TumblingOdometry::estimated_jitter_s() const {
+  return impl_->sample_clock_.corrects_stamps(impl_->sample_clock_state_)
+             ? SampleClock::jitter_s(impl_->sample_clock_state_)
+             : std::nullopt;
 }
 
 SensorHealth TumblingOdometry::Impl::health() const {
@@ -179,13 +182,13 @@ SensorHealth TumblingOdometry::Impl::health() const {
   return out;
 }
 
-Status TumblingOdometry::Impl::finish(const SweepProgress& on_sweep) {
-  if (uses_whole_recording()) return finish_whole_recording(on_sweep);
-  OutlierFilter::finish(outlier_filter_state_);
-  if (!newest_rate()) return {};  // no rate since the last call
-  flush_all();
-  first_seconds_reprocessing_.complete_second_pass(odometry_pass_);
-  start_rate_estimation();
+Status TumblingOdometry::finish(const SweepProgress& on_sweep) {
+  if (impl_->uses_whole_recording()) return impl_->finish_whole_recording(on_sweep);
+  OutlierFilter::finish(impl_->outlier_filter_state_);
+  if (!impl_->newest_rate()) return {};  // no rate since the last call
+  impl_->flush_all();
+  impl_->first_seconds_reprocessing_.complete_second_pass(impl_->odometry_pass_);
+  impl_->start_rate_estimation();
   return {};
 }
 

@@ -34,20 +34,15 @@ struct TumblingOdometry::Impl {
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
   Status add_sweep(std::size_t lidar, TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
   Status add_reading(const OdometerReading& reading);
-  Status add_frame_alignment_position(const PositionReading& position);
-  std::optional<Sweep> take();
-  Status finish(const SweepProgress& on_sweep);
   void reset();
   void reset(const Eigen::Isometry3d& T_WI);
   Status newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2 = nullptr) const;
   SensorHealth health() const;
-  const LidarScale& lidar_scale() const;
   std::optional<AngularRateState> newest_rate() const {
     return odometry_pass_.rates().rate().newest(odometry_pass_.rate_stream_state().rate);
   }
   BodyImuCalibration body_imu_calibration() const;
   const SaturationLevels& saturation_levels() const;
-  std::optional<double> estimated_jitter_s() const;
   const LidarInertialOdometry& mapper() const;
   std::vector<std::byte> save() const;
   Status load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose);

@@ -223,8 +223,8 @@ const LidarInertialOdometry& TumblingOdometry::Impl::mapper() const {
   return whole_recording_result_ ? whole_recording_result_->mapped_recording.mapper : odometry_pass_.mapper();
 }
 
-const LidarScale& TumblingOdometry::Impl::lidar_scale() const {
-  return whole_recording_result_ ? whole_recording_result_->scale : odometry_pass_.lidar_scale();
+const LidarScale& TumblingOdometry::lidar_scale() const {
+  return impl_->whole_recording_result_ ? impl_->whole_recording_result_->scale : impl_->odometry_pass_.lidar_scale();
 }
 
 BodyImuCalibration TumblingOdometry::Impl::body_imu_calibration() const {
