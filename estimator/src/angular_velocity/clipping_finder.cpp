@@ -268,8 +268,8 @@ ClippingFinder::ClippingSearchResult ClippingFinder::find(std::span<const ImuSam
 }
 
 StreamingClippingFinder::StreamingClippingFinder(const Params& params, std::size_t readings_max)
-    : axis_limit_detector_(params.clipping.axis_limit_params),
-      plane_finders_(make_plane_finders(params.clipping)),
+    : axis_limit_detector_(params.axis_limit_params),
+      plane_finders_(make_plane_finders(params)),
       readings_max_(readings_max) {
   require_valid_fields(params);
 }

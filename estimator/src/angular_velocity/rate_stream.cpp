@@ -62,8 +62,7 @@ AngularRateModelParams model_params_with_corrections(const AngularRateStreamPara
 
 AngularRateStream::Impl::Impl(const Params& given)
     : params(given),
-      clipping_finder(
-          {.clipping = {params.saturation_detector, params.expert.gyro_planes, params.expert.accel_saturation_planes}}),
+      clipping_finder({params.saturation_detector, params.expert.gyro_planes, params.expert.accel_saturation_planes}),
       rest_detector(params.expert.rest_detector),
       frozen_axes(stated_ranges(params.saturation_detector)),
       flight_axis_sign_check({.lever_arm_m = params.model.nominal.lever_arm_m,

@@ -193,7 +193,7 @@ std::vector<StreamingClippingFinder> clipping_finders_of(const RollingOdometry::
     if (!known.empty())
       start_from_saturation_levels(known[k], clipping.axis_limit_params, clipping.gyro_planes,
                                    clipping.accel_saturation_planes);
-    out.emplace_back(StreamingClippingFinder::Params{clipping}, kClippingReadings);
+    out.emplace_back(clipping, kClippingReadings);
   }
   return out;
 }

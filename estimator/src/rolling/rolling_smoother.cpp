@@ -17,11 +17,6 @@ namespace {
 // maximum number of preallocated samples; if the lag of the smoother is longer, the memory grows during the run
 constexpr std::size_t kPreallocatedMax = 1'000'000;
 
-bool equal(const ImuSample& a, const ImuSample& b) {
-  return a.time_ns == b.time_ns && a.angular_velocity_rad_s == b.angular_velocity_rad_s &&
-         a.specific_force_m_s2 == b.specific_force_m_s2;
-}
-
 /// Returns a factor for the variances of the final smoothing pass. The final smoothing pass assumes reduced noise, so
 /// the factor increases the variances to the reported variances.
 double stated_distance_sigma(const RollingSmoother::Params& params) {
@@ -134,12 +129,6 @@ RollingEstimate estimate_at(const RollingSmoother::Params& params, const rolling
 }
 
 }  // namespace
-
-bool RollingSmoother::State::operator==(const State& other) const {
-  return live_filter == other.live_filter && committed_state == other.committed_state &&
-         node_modes == other.node_modes && constants == other.constants && radius_sigma_m == other.radius_sigma_m &&
-         std::equal(samples.begin(), samples.end(), other.samples.begin(), other.samples.end(), equal);
-}
 
 RollingSmoother::RollingSmoother(const Params& p) : params_(p), filter_(p.filter) {
   require_valid_fields(p);

@@ -38,6 +38,7 @@ struct ImuSample {
   Eigen::Vector3d specific_force_m_s2 =
       Eigen::Vector3d::Zero();         ///< measured f_I: acceleration minus gravity; +9.8 upwards at rest
   std::uint8_t device_clip_flags = 0;  ///< ClipFlag bits; 0 if the device reports no clipping
+  bool operator==(const ImuSample&) const = default;
 };
 
 inline bool is_finite(const ImuSample& sample) {

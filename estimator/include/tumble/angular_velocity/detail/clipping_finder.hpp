@@ -96,14 +96,7 @@ class StreamingClippingFinder {
  public:
   static constexpr std::size_t kReadingsMax = 1024;
 
-  struct Params {
-    ClippingFinder::Params clipping;
-
-    template <class Self, class Visitor>
-    static void fields(Self& p, Visitor& visit) {
-      visit.group("", p.clipping);
-    }
-  };
+  using Params = ClippingFinder::Params;
   /// unit of the readings: rad/s for the gyro, m/s^2 for the accelerometer
   struct DistinctReadingMemory {
     std::vector<Eigen::Vector3d> readings;  ///< in time order

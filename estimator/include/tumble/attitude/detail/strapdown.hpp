@@ -27,9 +27,7 @@ class Strapdown {
     Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
     TimeNs last_time_ns = 0;
     bool started = false;
-    bool operator==(const State& other) const {
-      return q_WI.coeffs() == other.q_WI.coeffs() && last_time_ns == other.last_time_ns && started == other.started;
-    }
+    bool operator==(const State&) const = default;
   };
 
   explicit Strapdown(const Params& params);

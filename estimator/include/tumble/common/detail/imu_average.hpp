@@ -38,13 +38,7 @@ struct ImuAverage {
   /// Returns true if the length is closer to `window_s` now than after another reading of length `dt_s`.
   bool full(double window_s, double dt_s) const { return length_s >= window_s - 0.5 * dt_s; }
 
-  bool operator==(const ImuAverage& other) const {
-    return mean.time_ns == other.mean.time_ns && mean.angular_velocity_rad_s == other.mean.angular_velocity_rad_s &&
-           mean.specific_force_m_s2 == other.mean.specific_force_m_s2 &&
-           mean.device_clip_flags == other.mean.device_clip_flags && length_s == other.length_s &&
-           rate_peak_rad_s == other.rate_peak_rad_s && force_peak_m_s2 == other.force_peak_m_s2 &&
-           readings == other.readings;
-  }
+  bool operator==(const ImuAverage&) const = default;
 };
 
 struct ImuSamplePair {

@@ -103,7 +103,7 @@ class RollingSmoother {
     std::vector<NodeModes> node_modes;
     RollingNominalState constants;  ///< estimated constants at the newest smoothed time step
     double radius_sigma_m = 0.0;    ///< standard deviation of the radius at the newest smoothed time step
-    bool operator==(const State& other) const;
+    bool operator==(const State&) const = default;
   };
 
   explicit RollingSmoother(const Params& params);
