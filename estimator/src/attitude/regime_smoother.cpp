@@ -91,11 +91,7 @@ ClippedReadings clipped_readings_of(std::span<const ImuSample> samples,
       possible_partial_saturation(samples, found.saturation_levels.gyro_clips_after_compensation
                                                ? SaturationPlanes{}
                                                : found.saturation_levels.saturation_planes_in_use());
-  for (int j = 0; j < 3; ++j) {
-    const std::optional<SaturationPlane>& plane =
-        found.saturation_levels.gyro_planes.sensing_axis[static_cast<std::size_t>(j)];
-    if (plane) out.sensing_directions.row(j) = plane->row.transpose();
-  }
+  out.sensing_directions = sensing_directions(found.saturation_levels.gyro_planes, 0.0).sensing_directions;
   return out;
 }
 

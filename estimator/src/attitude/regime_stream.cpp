@@ -131,14 +131,8 @@ SensingAxisClipSigns MotionRegimeStream::update_clip_signs(State& state) const {
   state.clip_signs.clear();
   for (const AngularRateStream::Knot& knot : state.rate.window)
     state.clip_signs.push_back(clip_signs_of(knot.observation));
-  SensingAxisClipSigns out;
-  out.clip_signs = state.clip_signs;
-  for (int j = 0; j < 3; ++j) {
-    const std::optional<SaturationPlane>& plane =
-        state.rate.clipping_state.known_limits.gyro_planes.sensing_axis[static_cast<std::size_t>(j)];
-    if (plane) out.sensing_directions.row(j) = plane->row.transpose();
-  }
-  return out;
+  const SaturationPlanes& planes = state.rate.clipping_state.known_limits.gyro_planes;
+  return {sensing_directions(planes, 0.0).sensing_directions, state.clip_signs};
 }
 
 RegimeProbabilities MotionRegimeStream::next(const RegimeProbabilities& before, double dt_s,
