@@ -3,6 +3,7 @@
 
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/settings.hpp"
 #include "scenarios/methods/sweep_log.hpp"
 #include "tumble/mapping/detail/voxel_map.hpp"
 
