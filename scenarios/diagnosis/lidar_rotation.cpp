@@ -163,13 +163,14 @@ std::string unit_text(const std::string& where, const RotationAgreement& found, 
                         {"--gyro-unit", fits});
 }
 
-std::string delay_text(const RotationAgreement& found) {
+std::string delay_text(const RotationAgreement& found, double imu_minus_lidar_clock_s) {
   if (std::abs(found.delay_s) < kDelaySaid_s) return "";
   return fmt::format(
       "caution: the lidar measures rotations {}{} than the gyro; check that both sensors use one clock and that sweep "
       "stamps are start times. If the offset is constant, an option corrects it (set '--imu-minus-lidar-clock {}'). "
       "After correction of the time offset: ",
-      rounded(std::abs(found.delay_s)), found.delay_s > 0.0 ? " s later" : " s earlier", rounded(-found.delay_s));
+      rounded(std::abs(found.delay_s)), found.delay_s > 0.0 ? " s later" : " s earlier",
+      rounded(imu_minus_lidar_clock_s - found.delay_s));
 }
 
 /// Throws RepairableInput if lidar and gyro disagree with the header stamps of the messages, but agree with the record
@@ -267,9 +268,10 @@ std::optional<RotationAgreement> rotation_agreement(const sim::ImuRecord& imu, c
   return out;
 }
 
-std::string agreement_text(const std::string& where, const RotationAgreement& found, GyroUnit unit) {
+std::string agreement_text(const std::string& where, const RotationAgreement& found, GyroUnit unit,
+                           double imu_minus_lidar_clock_s) {
   if (found.unit != 1.0) return unit_text(where, found, unit);
-  return delay_text(found) + axes_text(found);
+  return delay_text(found, imu_minus_lidar_clock_s) + axes_text(found);
 }
 
 namespace {
@@ -339,7 +341,7 @@ LidarRotationCheck check_lidar_rotation(const std::string& where, const Imported
       agreement->delay_s += 0.5 * seconds(lidar.sweep_period_ns);
     if (&imu == &sensors.imus.front()) require_common_clock(where, sensors, agreement, recording.record_shift_s);
     if (!agreement) continue;
-    std::string text = agreement_text(where + ": '" + imu.name + "'", *agreement, unit);
+    std::string text = agreement_text(where + ": '" + imu.name + "'", *agreement, unit, recording.imu_minus_lidar_clock_s);
     if (&imu == &sensors.imus.front()) {
       out.primary = agreement;
       primary_agrees = !text.starts_with("caution");

@@ -47,9 +47,11 @@ std::optional<RotationAgreement> rotation_agreement(const sim::ImuRecord& imu, c
                                                     std::span<const SeenRotation> seen);
 
 /// Returns a note if the rotations of lidar and gyro agree. If the rotations do not agree, returns a warning with a
-/// unit, delay, axes or mounting that makes the rotations agree. Throws RepairableInput if another value of the option
-/// --gyro-unit makes the rotations agree.
-std::string agreement_text(const std::string& where, const RotationAgreement& agreement, GyroUnit unit);
+/// unit, delay, axes or mounting that makes the rotations agree. `imu_minus_lidar_clock_s` is the clock offset that the
+/// sweep times already contain. Throws RepairableInput if another value of the option --gyro-unit makes the rotations
+/// agree.
+std::string agreement_text(const std::string& where, const RotationAgreement& agreement, GyroUnit unit,
+                           double imu_minus_lidar_clock_s);
 
 /// Returns the command-line option --T-body-lidar with position [m] and quaternion x y z w. A non-empty text `position`
 /// replaces the position of `T_BL`, for example "X Y Z" if the position is unknown.

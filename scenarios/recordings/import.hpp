@@ -24,6 +24,7 @@ struct Imported {
   /// If record stamps of a bag replaced the header stamps, shift of the lidar's clock relative to the clock of the
   /// primary IMU [s]. The shift is empty if the user chose header or record stamps.
   std::optional<double> record_shift_s;
+  double imu_minus_lidar_clock_s = 0.0;                 ///< clock offset that was added to the sweep times
   std::optional<Eigen::Isometry3d> T_base_imu;  ///< pose of the primary IMU in the base frame that the user names
 };
 
@@ -111,5 +112,8 @@ void attach_reference(Imported& recording, const ReferenceSource& source);
 /// Adds IMUs that use the same clock as `recording`. Time 0 of the result is time 0 of the recording or of the IMUs,
 /// whichever is earlier.
 void attach_imus(Imported& recording, Imported imu);
+
+/// Adds a clock offset to the times of all sweeps. The shift `record_shift_s` decreases by the offset.
+void correct_lidar_clock(double imu_minus_lidar_clock_s, Imported& recording);
 
 }  // namespace tumble::scenarios

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "scenarios/errors.hpp"
@@ -79,6 +80,14 @@ void add_lidar(Imported& recording, BuiltSweeps built) {
   recording.sensors.lidars.push_back(std::move(built.lidar));
   recording.cloud_fields.push_back(std::move(built.fields));
   if (built.points) recording.points.push_back(std::move(*built.points));
+}
+
+void correct_lidar_clock(double imu_minus_lidar_clock_s, Imported& recording) {
+  for (sim::LidarRecord& lidar : recording.sensors.lidars) {
+    for (std::int64_t& start_ns : lidar.sweep_start_ns) start_ns += std::llround(1e9 * imu_minus_lidar_clock_s);
+  }
+  recording.imu_minus_lidar_clock_s += imu_minus_lidar_clock_s;
+  if (recording.record_shift_s) *recording.record_shift_s -= imu_minus_lidar_clock_s;
 }
 
 void attach_imus(Imported& recording, Imported imu) {

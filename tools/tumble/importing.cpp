@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <fstream>
 #include <map>
@@ -56,13 +55,6 @@ void say_what_is_assumed(const ImportOptions& options, const std::string& format
   }
 }
 
-void move_sweeps(const ImportOptions& options, sim::Sensors& sensors) {
-  const std::int64_t offset_ns = std::llround(1e9 * options.imu_minus_lidar_clock_s);
-  for (sim::LidarRecord& lidar : sensors.lidars) {
-    for (std::int64_t& start_ns : lidar.sweep_start_ns) start_ns += offset_ns;
-  }
-}
-
 bool set_option(const scenarios::ImportOption& option, ImportOptions& options) {
   const std::pair<const char*, std::string*> known[] = {
       {"--accel-unit", &options.accel_unit}, {"--gyro-unit", &options.gyro_unit}, {"--stamps", &options.stamps}};
@@ -81,7 +73,8 @@ void require_own_options(ImportOptions options) {
   require_fitting(options, "recording");
 }
 
-void apply_mounting(const Session& session, const ImportOptions& options, sim::Sensors& sensors) {
+void apply_mounting(const Session& session, const ImportOptions& options, Imported& recording) {
+  sim::Sensors& sensors = recording.sensors;
   if (!sensors.imus.empty()) {
     const sim::ImuRecord stated = imu_sheet(session, options);
     if (!options.device.empty()) complete(stated, sensors.imus.front());
@@ -89,7 +82,7 @@ void apply_mounting(const Session& session, const ImportOptions& options, sim::S
   }
   if (!sensors.lidars.empty() && !options.T_body_lidar.empty())
     sensors.lidars.front().T_BL = sweep_source(session, options, "").reading.device.T_BL;
-  move_sweeps(options, sensors);
+  scenarios::correct_lidar_clock(options.imu_minus_lidar_clock_s, recording);
 }
 
 void open_own(const Session& session, OpenRecording& out) {
@@ -100,7 +93,7 @@ void open_own(const Session& session, OpenRecording& out) {
   out.content.sensors = scenarios::read_sensors(path);
   if (out.content.info.has_truth) out.truth = scenarios::read_truth(path);
   out.digest = scenarios::digest(out.content.sensors, nullptr);
-  apply_mounting(session, out.options, out.content.sensors);
+  apply_mounting(session, out.options, out.content);
   out.rotation = scenarios::check_lidar_rotation(path, out.content, scenarios::GyroUnit::rad_s);
   out.content.notes = out.rotation.notes;
   for (std::string& note : scenarios::imu_notes(out.content)) out.content.notes.push_back(std::move(note));
@@ -129,7 +122,7 @@ Imported import_recording(const Session& session, const ImportOptions& options, 
     throw BadInput(options.path.string() + ": this file is already a recording; use the file directly, without import");
   }
   Imported imported = import_format(session, options, format);
-  move_sweeps(options, imported.sensors);
+  scenarios::correct_lidar_clock(options.imu_minus_lidar_clock_s, imported);
   if (!options.imu.empty()) {
     scenarios::attach_imus(imported, imu_table(session, options, options.imu));
   }

@@ -95,7 +95,7 @@ std::string text_of(const std::function<void(sim::ImuRecord&, sim::LidarRecord&)
   sim::LidarRecord lidar;
   change(imu, lidar);
   const auto found = rotation_agreement(imu, lidar, exact_rotations(60));
-  return found ? agreement_text("bag: 'imu'", *found, unit) : "nothing told";
+  return found ? agreement_text("bag: 'imu'", *found, unit, 0.0) : "nothing told";
 }
 
 std::string with_gyro(const Matrix3d& matrix, GyroUnit unit = GyroUnit::rad_s) {
@@ -217,6 +217,28 @@ TEST(LidarRotation, AnUnknownPositionIsNotRecommendedAsZeros) {
   recording.sensors.lidars.front().T_BL.translation().x() = 0.1;
   EXPECT_THAT(check_lidar_rotation("bag", recording, GyroUnit::rad_s).notes,
               ElementsAre(HasSubstr("(set '--T-body-lidar 0.1 0 0 0.707")));
+}
+
+TEST(LidarRotation, TheRecommendedClockOffsetIncludesTheGivenOffset) {
+  Imported recording;
+  recording.sensors.imus.push_back(gyro(4.0));
+  recording.sensors.lidars.push_back(lidar_in_room(36));
+  for (std::int64_t& time : recording.sensors.imus[0].time_ns) time -= 300'000'000;
+  correct_lidar_clock(-0.1, recording);
+  EXPECT_THAT(check_lidar_rotation("bag", recording, GyroUnit::rad_s).notes,
+              ElementsAre(::testing::ContainsRegex("0\\.(19|2|21) s later.*set '--imu-minus-lidar-clock -0\\.(29|3|31)'")));
+}
+
+// without rotation, only the record stamps show the offset between the clocks
+TEST(LidarRotation, ACorrectedClockNeedsNoRecordStamps) {
+  Imported recording;
+  recording.sensors.imus.push_back(gyro(4.0));
+  recording.sensors.lidars.push_back(lidar_in_room(36));
+  recording.record_shift_s = -2.0;
+  for (Vector3d& rate : recording.sensors.imus[0].gyro_rad_s) rate.setZero();
+  EXPECT_THROW(check_lidar_rotation("bag", recording, GyroUnit::rad_s), RepairableInput);
+  correct_lidar_clock(-2.0, recording);
+  EXPECT_NO_THROW(check_lidar_rotation("bag", recording, GyroUnit::rad_s));
 }
 
 // the record stamps of a bag come from one clock, so they show which header stamps come from another clock
