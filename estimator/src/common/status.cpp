@@ -130,9 +130,9 @@ double HealthFinding::severity() const {
 /// Estimates are correct again after a temporary failure of attitude, vertical or localisation. After a tracking
 /// failure, all later poses are wrong.
 bool HealthFinding::invalidates_estimate() const {
-  // While gravity rotates in the IMU frame, a suspected gyro scale error is later confirmed or corrected.
+  // A suspected error of the gyro's scale or of the lidar's calibration is later confirmed or corrected.
   const bool recovers = kind == Kind::attitude_unknown || kind == Kind::vertical_unknown ||
-                        kind == Kind::not_localised || kind == Kind::gyro_scale;
+                        kind == Kind::not_localised || kind == Kind::gyro_scale || kind == Kind::lidar_calibration;
   return fault_description(kind).makes_estimate_unusable && !(ended && recovers);
 }
 

@@ -67,12 +67,15 @@ TEST(Findings, OfEveryKindAreReadBackFromTheirFile) {
 }
 
 TEST(SensorHealthOfALiveRun, AFindingThatEndsNoLongerInvalidatesTheEstimateUnlessPosesWereLost) {
-  HealthFinding lost = finding(About::tracking_lost), vertical = finding(About::vertical_unknown);
-  EXPECT_TRUE(lost.invalidates_estimate());
-  EXPECT_TRUE(vertical.invalidates_estimate());
-  lost.ended = vertical.ended = true;
+  HealthFinding lost = finding(About::tracking_lost), vertical = finding(About::vertical_unknown),
+                mounting = finding(About::lidar_calibration);
+  for (HealthFinding* each : {&lost, &vertical, &mounting}) {
+    EXPECT_TRUE(each->invalidates_estimate());
+    each->ended = true;
+  }
   EXPECT_TRUE(lost.invalidates_estimate());
   EXPECT_FALSE(vertical.invalidates_estimate());
+  EXPECT_FALSE(mounting.invalidates_estimate()) << "the estimated mounting agrees with the stated mounting again";
 }
 
 TEST(Findings, AnEndedFindingIsReportedAsEarlier) {
