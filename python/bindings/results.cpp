@@ -17,6 +17,7 @@
 #include "tumble/common/status.hpp"
 #include "tumble/mapping/types.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
+#include "tumble_ros/map_file.hpp"
 
 namespace tumble::python {
 
@@ -237,11 +238,13 @@ void bind_map(nb::module_& m) {
           "load",
           [](nb::handle state) {
             M out;
-            require(load_map(state_of(state), out.rows));
+            require(ros::read_map(state_of(state), out.rows));
             return out;
           },
           nb::arg("state"), nb::sig("def load(state: bytes) -> MapPoints"),
-          "Returns the map that save() stored. Raises TumbleError if the bytes are damaged or of another kind.")
+          "Returns the map that save() stored, or the map in the contents of a PLY or PCD file (ASCII, or binary "
+          "without "
+          "compression). Raises TumbleError if the bytes are damaged or of another kind.")
       .def_static(
           "from_positions",
           [](const ArrayLike& position) {

@@ -36,11 +36,10 @@ std::span<const TextParameter> text_parameters() {
       {"imu_sheet", "", 0, "data sheet of the IMU, which gives the defaults of imu_*"},
       {"lidar_sheet", "", 0, "data sheet of the lidar, which gives the defaults of range_*"},
       {"time_field", "", 0, "field of PointCloud2 with the times of the points; empty: by the usual names"},
-      {"map_file", "map.tumblemap", 0,
-       "file that the service save_map writes: .ply, or .tumblemap for another run in this map", false},
+      {"map_file", "map.tumblemap", 0, "map that the service save_map writes (.tumblemap or .ply)", false},
       {"prior_map_file", "", 0,
-       "map of an earlier run (.tumblemap), in which the node localises itself at the start and after the service "
-       "load_map; empty: none",
+       "map of an earlier run (.tumblemap), or a PLY or PCD file, in which the node localises itself at the start and "
+       "after the service load_map; empty: none",
        false},
       {"calibration_file", "calibration.yaml", 0, "file that the service save_calibration writes", false},
       {"own_body", "", 6,

@@ -16,8 +16,7 @@ namespace {
 
 constexpr std::array<std::string_view, 8> kTimeNames = {"t",          "time",        "timestamp",   "timestamps",
                                                         "time_stamp", "offset_time", "time_offset", "offset"};
-constexpr std::array<std::uint8_t, 9> kBytes = {0, 1, 1, 2, 2, 4, 4, 4, 8};  // of the datatypes of PointField
-constexpr std::uint32_t kLivoxStep = 20;                                     // a point has 19 bytes, aligned to 4 bytes
+constexpr std::uint32_t kLivoxStep = 20;  // a point has 19 bytes, aligned to 4 bytes
 
 template <class Number>
 Number read(const std::uint8_t* at) {
@@ -47,7 +46,7 @@ Status check_layout(const PointCloudView& cloud) {
             static_cast<double>(cloud.data.size()) / cloud.height};
   }
   for (const PointField& field : cloud.fields) {
-    if (is_number(field) && std::uint64_t{field.offset} + kBytes[field.datatype] > cloud.point_step)
+    if (is_number(field) && std::uint64_t{field.offset} + kDatatypeBytes[field.datatype] > cloud.point_step)
       return {ErrorCode::out_of_range, "field offset", double(field.offset), double(cloud.point_step)};
   }
   return {};

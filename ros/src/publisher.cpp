@@ -80,19 +80,4 @@ void deskew(const std::vector<PoseState>& trajectory, const Eigen::Isometry3d& T
   }
 }
 
-std::string ply_of(const std::vector<MapPoint>& map) {
-  std::string out = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(map.size()) + "\n";
-  for (const char* name : {"x", "y", "z", "nx", "ny", "nz", "sigma_m"})
-    out += std::string("property float ") + name + "\n";
-  out += "end_header\n";
-  for (const MapPoint& point : map) {
-    std::array<float, 7> row;
-    Eigen::Map<Eigen::Vector3f>(row.data()) = point.position_W_m;
-    Eigen::Map<Eigen::Vector3f>(row.data() + 3) = point.normal_W;
-    row[6] = point.sigma_m;
-    out.append(reinterpret_cast<const char*>(row.data()), sizeof(row));
-  }
-  return out;
-}
-
 }  // namespace tumble::ros

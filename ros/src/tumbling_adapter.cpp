@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "adapter_values.hpp"
+#include "tumble_ros/map_file.hpp"
 
 namespace tumble::ros {
 
@@ -134,7 +135,7 @@ Status TumblingAdapter::reset(const std::optional<StartPose>& start) {
 }
 
 Status TumblingAdapter::load_map(std::span<const std::byte> bytes) {
-  if (Status status = tumble::load_map(bytes, prior_map_); !status.ok()) return status;
+  if (Status status = read_map(bytes, prior_map_); !status.ok()) return status;
   return reset();
 }
 

@@ -341,7 +341,8 @@ LidarRotationCheck check_lidar_rotation(const std::string& where, const Imported
       agreement->delay_s += 0.5 * seconds(lidar.sweep_period_ns);
     if (&imu == &sensors.imus.front()) require_common_clock(where, sensors, agreement, recording.record_shift_s);
     if (!agreement) continue;
-    std::string text = agreement_text(where + ": '" + imu.name + "'", *agreement, unit, recording.imu_minus_lidar_clock_s);
+    std::string text =
+        agreement_text(where + ": '" + imu.name + "'", *agreement, unit, recording.imu_minus_lidar_clock_s);
     if (&imu == &sensors.imus.front()) {
       out.primary = agreement;
       primary_agrees = !text.starts_with("caution");

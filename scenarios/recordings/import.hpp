@@ -24,7 +24,7 @@ struct Imported {
   /// If record stamps of a bag replaced the header stamps, shift of the lidar's clock relative to the clock of the
   /// primary IMU [s]. The shift is empty if the user chose header or record stamps.
   std::optional<double> record_shift_s;
-  double imu_minus_lidar_clock_s = 0.0;                 ///< clock offset that was added to the sweep times
+  double imu_minus_lidar_clock_s = 0.0;         ///< clock offset that was added to the sweep times
   std::optional<Eigen::Isometry3d> T_base_imu;  ///< pose of the primary IMU in the base frame that the user names
 };
 

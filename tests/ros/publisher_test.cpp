@@ -134,18 +134,6 @@ TEST(Deskew, PointsOfASpinningBodyAreThoseOfAStandingOne) {
   EXPECT_GT(worst_raw_m, 1.0) << "negative control: the body turns by 1.5 rad in the sweep";
 }
 
-TEST(Ply, HasOneRowPerPoint) {
-  std::vector<MapPoint> map(3);
-  map[1].position_W_m = {1.0f, 2.0f, 3.0f};
-  const std::string text = ros::ply_of(map);
-  const std::size_t header = text.find("end_header\n") + 11;
-  EXPECT_NE(text.find("element vertex 3\n"), std::string::npos);
-  ASSERT_EQ(text.size(), header + 3 * 28);
-  float y = 0.0f;
-  std::memcpy(&y, text.data() + header + 28 + 4, 4);
-  EXPECT_EQ(y, 2.0f);
-}
-
 }  // namespace
 
 }  // namespace tumble

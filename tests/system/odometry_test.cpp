@@ -245,7 +245,7 @@ TEST(Odometry, AllPosesAreInTheFrameOfThePriorMap) {
   const std::string recording = short_stroll().string(), map = (folder / "moved.tumblemap").string();
   run_successfully({"odometry", recording, "-o", first.string()});
   const Isometry3d T_MW = Eigen::Translation3d(7.0, -12.0, 3.0) * Eigen::AngleAxisd(2.0, Eigen::Vector3d::UnitZ());
-  std::vector<MapPoint> points = scenarios::read_prior_map(first / "map.tumblemap");
+  std::vector<MapPoint> points = scenarios::read_map(first / "map.tumblemap");
   for (MapPoint& point : points) {
     point.position_W_m = T_MW.cast<float>() * point.position_W_m;
     point.normal_W = T_MW.linear().cast<float>() * point.normal_W;

@@ -21,7 +21,7 @@ namespace {
 std::shared_ptr<const PriorMap> read_map_of(const PriorMapOptions& options) {
   constexpr std::size_t kPose = 4, kWithSigmas = 6;
   auto map = std::make_shared<PriorMap>();
-  map->points = scenarios::read_prior_map(options.map);
+  map->points = scenarios::read_map(options.map);
   map->extend = !options.frozen;
   const std::vector<double>& pose = options.pose;
   if (!pose.empty() && pose.size() != kPose && pose.size() != kWithSigmas)

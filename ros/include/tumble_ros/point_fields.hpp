@@ -16,6 +16,9 @@
 /// bags use these functions, so nodes and import accept the same formats.
 namespace tumble::ros {
 
+/// Size of a number of each datatype of PointField [bytes].
+inline constexpr std::array<std::uint8_t, 9> kDatatypeBytes = {0, 1, 1, 2, 2, 4, 4, 4, 8};
+
 /// PointField describes one field of a point, like sensor_msgs/PointField.
 struct PointField {
   std::string name;

@@ -84,7 +84,4 @@ Odometry base_odometry(const PoseState& imu, const Eigen::Matrix3d& velocity_cov
 void deskew(const std::vector<PoseState>& trajectory, const Eigen::Isometry3d& T_IL, TimeNs start_ns,
             const std::vector<LidarPoint>& points, std::vector<DeskewedPoint>& deskewed);
 
-/// Returns the contents of a binary PLY file with positions, normals and standard deviations of the points.
-std::string ply_of(const std::vector<MapPoint>& map);
-
 }  // namespace tumble::ros

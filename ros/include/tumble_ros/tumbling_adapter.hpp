@@ -63,8 +63,8 @@ class TumblingAdapter {
   /// Starts a new run. `start` gives position and heading of the base. Without `start`, the run starts at the origin,
   /// or anywhere in the prior map. Returns `ok`, or an error of TumblingOdometry::set_prior_map().
   Status reset(const std::optional<StartPose>& start = std::nullopt);
-  /// Starts a new run that localises the robot in a map saved by tumble::save_map(). Returns `ok`, or an error of
-  /// tumble::load_map() or reset(). After an error of tumble::load_map(), the run continues.
+  /// Starts a new run that localises the robot in a map. `bytes` are the contents of a map file: map_file.hpp. Returns
+  /// `ok`, or an error of read_map() or reset(). After an error of read_map(), the run continues.
   Status load_map(std::span<const std::byte> bytes);
 
   /// Returns the estimated mounting and lever arm as a ROS 2 parameter file, from which the next run can start.

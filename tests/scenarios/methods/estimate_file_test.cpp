@@ -154,7 +154,7 @@ TEST_F(EstimateFile, ATruncatedMapIsRecognised) {
   write_estimate(folder_, "icp", Kind::slam, estimate);
   EXPECT_EQ(complaint(folder_), "");
   fs::resize_file(folder_ / "map.ply", fs::file_size(folder_ / "map.ply") - 5);
-  EXPECT_NE(complaint(folder_).find("map.ply: the map file is truncated"), std::string::npos);
+  EXPECT_THAT(complaint(folder_), HasSubstr("map.ply: the map cannot be read"));
 }
 
 Estimate three_poses() {

@@ -225,8 +225,9 @@ TEST(LidarRotation, TheRecommendedClockOffsetIncludesTheGivenOffset) {
   recording.sensors.lidars.push_back(lidar_in_room(36));
   for (std::int64_t& time : recording.sensors.imus[0].time_ns) time -= 300'000'000;
   correct_lidar_clock(-0.1, recording);
-  EXPECT_THAT(check_lidar_rotation("bag", recording, GyroUnit::rad_s).notes,
-              ElementsAre(::testing::ContainsRegex("0\\.(19|2|21) s later.*set '--imu-minus-lidar-clock -0\\.(29|3|31)'")));
+  EXPECT_THAT(
+      check_lidar_rotation("bag", recording, GyroUnit::rad_s).notes,
+      ElementsAre(::testing::ContainsRegex("0\\.(19|2|21) s later.*set '--imu-minus-lidar-clock -0\\.(29|3|31)'")));
 }
 
 // without rotation, only the record stamps show the offset between the clocks
