@@ -20,6 +20,7 @@ namespace {
 constexpr double kFirstSweepDelayMax_s = 0.5;  // maximum delay between first IMU sample and first sweep
 // time step of dead reckoning, and time interval for which the process noise is specified
 constexpr TimeNs kStep_ns = 100'000'000;
+constexpr double kLongRest_s = 1.0;  // duration of a rest that determines the tilt, if it contradicts the attitude
 
 }  // namespace
 
@@ -39,7 +40,9 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
     return status;
   const int previous_resting_sweeps = resting_sweeps;
   resting_sweeps = is_stationary(inertial_track, trajectory, end_ns) ? resting_sweeps + 1 : 0;
-  const MotionWindow motion{inertial_track.samples(), end_ns, resting_sweeps};
+  const MotionWindow motion{
+      inertial_track.samples(), end_ns, resting_sweeps,
+      resting_sweeps == 0 ? inertial_track.resting_force(end_ns, kLongRest_s) : std::optional<Eigen::Vector3d>()};
   const std::unique_ptr<Prediction> prediction(new Prediction(
       mapping::predict(params, sweep_boundary, motion, trajectory, odometer_reading)));  // too large for the stack
 

@@ -31,6 +31,8 @@ constexpr double kKnotSigmaRatio = 0.05;
 constexpr double kStartSigma_m_s = 0.01;
 // minimum number of consecutive sweeps at rest before the predicted velocity is set to zero
 constexpr int kRestingSweepsMin = 3;
+// standard deviation of the tilt from the specific force at rest, for an accelerometer bias of 0.3 m/s^2
+constexpr double kRestTilt_rad = 0.03;
 
 namespace u = unknowns;
 using Params = LidarInertialOdometry::Params;
@@ -113,6 +115,16 @@ void Prediction::zero_velocity_update(double sigma_m_s) {
   u::variances(noise, u::velocity).setConstant(sigma_m_s * sigma_m_s);
 }
 
+void Prediction::level_update(const Eigen::Vector3d& force_I_m_s2, double sigma_rad) {
+  MotionState& state = prior.mean.state;
+  const Eigen::Vector3d up = -prior.mean.calibration.gravity_W_m_s2;
+  state.q_WI = (Eigen::Quaterniond::FromTwoVectors(state.q_WI * force_I_m_s2, up) * state.q_WI).normalized();
+  u::row_range(boundary_jacobian, u::tilt).setZero();
+  u::row_range(noise, u::tilt).setZero();
+  u::columns(noise, u::tilt).setZero();
+  u::variances(noise, u::tilt).setConstant(sigma_rad * sigma_rad);
+}
+
 Prediction predict(const Params& params, const SweepBoundary& boundary, const MotionWindow& window,
                    const SweepTrajectory& trajectory, const std::optional<OdometerReading>& reading) {
   Prediction next;
@@ -125,6 +137,10 @@ Prediction predict(const Params& params, const SweepBoundary& boundary, const Mo
   const bool creeps = boundary.state_estimate.mean.state.v_WI_m_s.norm() < Standstill::kCreepMax_m_s;
   if (window.resting_sweeps >= kRestingSweepsMin && !boundary.all_directions_constrained && creeps)
     next.zero_velocity_update(Standstill::kSigma_m_s);
+  if (window.contradicting_rest_force_I_m_s2 && !boundary.all_directions_constrained) {
+    next.zero_velocity_update(Standstill::kCreepMax_m_s);
+    next.level_update(*window.contradicting_rest_force_I_m_s2, kRestTilt_rad);
+  }
   const std::uint8_t axes = params.expert.saturated_imu.estimate_deficit ? trajectory.clipped_axes() : 0;
   MotionNoise within = inertial_noise(params, trajectory, window.samples, axes);
   const Eigen::Matrix3d clipped_force_m2_s2 = velocity_variance_from_clipping(trajectory, window.samples);

@@ -29,6 +29,8 @@ struct MotionWindow {
   std::span<const MotionSample> samples;  ///< samples since the boundary, including samples after the sweep
   TimeNs end_ns = 0;
   int resting_sweeps = 0;  ///< consecutive sweeps at rest, including the current sweep
+  /// mean specific force of a rest that the IMU detected, but that contradicts the estimated attitude
+  std::optional<Eigen::Vector3d> contradicting_rest_force_I_m_s2 = std::nullopt;
 };
 
 struct Prediction {
@@ -44,6 +46,9 @@ struct Prediction {
   /// Sets the velocity to zero and removes the correlations of the velocity: mapping.md (R33). Must be called before
   /// compose_with_boundary().
   void zero_velocity_update(double sigma_m_s);
+  /// Replaces the tilt by the tilt that the specific force at rest shows, and removes the correlations of the tilt.
+  /// Must be called before compose_with_boundary().
+  void level_update(const Eigen::Vector3d& force_I_m_s2, double sigma_rad);
 };
 
 /// `trajectory` is the inertially predicted motion since the end of the last sweep. `reading` is the odometer reading

@@ -2,6 +2,7 @@
 // Tests the tracking states: all transitions as a table, and what determines the verdict.
 
 #include "estimator/src/mapping/relocalizer.hpp"
+#include "tests/estimator/mapping/room_tumble.hpp"
 #include "tests/testing.hpp"
 
 namespace tumble::mapping {
@@ -144,6 +145,39 @@ TEST(Tracking, ARelocalisationIsUnconfirmedWhereInertiaOrSurfacesContradictIt) {
             alignment_found);  // the effect of a velocity error lasts for some sweeps
   EXPECT_EQ(placement(Relocalised{}, 89, true), relocalisation_unconfirmed);
   EXPECT_EQ(placement(Tracking{}, 50, false), alignment_found);
+}
+
+/// Returns the tilt error [rad] of a pose at rest.
+double tilt_error_rad(const PoseState& pose, const Eigen::Quaterniond& q_true) {
+  const Eigen::Vector3d up = pose.orientation_W * q_true.conjugate() * Eigen::Vector3d::UnitZ();
+  return std::acos(std::min(up.z(), 1.0));
+}
+
+// rates that are 20 % too small tilt the pose by 0.2 rad, and no surface corrects the tilt
+TEST(LidarInertialOdometry, ALongRestLevelsAPoseWithoutSurfaces) {
+  const LidarInertialOdometry::Params params = test::rig_params();
+  LidarInertialOdometry odometry(params);
+  const test::Motion still{.rest_s = 100.0};
+  Eigen::Quaterniond q_true = Eigen::Quaterniond::Identity();
+  std::vector<LidarInertialOdometry::SweepResult> reports(50);
+  for (int k = 0; k < 50; ++k) {
+    for (int j = 1; j <= 10; ++j) {
+      const double rate_rad_s = k >= 5 && k < 15 ? 1.0 : 0.0;
+      q_true = q_true * so3::exp({0.01 * rate_rad_s, 0.0, 0.0});
+      ImuSample sample;
+      sample.time_ns = k * test::kSweep_ns + j * 10'000'000;
+      sample.angular_velocity_rad_s = {0.8 * rate_rad_s, 0.0, 0.0};
+      sample.specific_force_m_s2 = q_true.conjugate() * Eigen::Vector3d(0.0, 0.0, test::kRoomGravity_m_s2);
+      ASSERT_TRUE(odometry.add_imu(sample, test::believe(sample)).ok());
+    }
+    const bool sees = k < 5;
+    const auto points = sees ? test::make_sweep(test::Room::box(), still, params.T_IL, k) : std::vector<LidarPoint>();
+    EXPECT_EQ(odometry.add_sweep(k * test::kSweep_ns, (k + 1) * test::kSweep_ns, points, reports[k]).ok(), sees);
+  }
+  EXPECT_NEAR(tilt_error_rad(reports[20].pose, q_true), 0.2, 0.01) << "control: a short rest does not change the tilt";
+  EXPECT_LT(tilt_error_rad(reports[49].pose, q_true), 1e-3);
+  EXPECT_LT((reports[49].pose.position_W_m - reports[30].pose.position_W_m).norm(), 0.01);
+  EXPECT_GT(reports[30].pose.covariance(3, 3), 0.02 * 0.02);
 }
 
 }  // namespace
