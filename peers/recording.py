@@ -38,6 +38,9 @@ class Recording:
     period_ns: int
     gyro_noise_rad_s_sqrt_hz: float
     accel_noise_m_s2_sqrt_hz: float
+    gyro_range_rad_s: float
+    accel_range_m_s2: float
+    lever_arm_I_m: np.ndarray  # (3,) from the centre of mass to the IMU
     gravity_m_s2: float
     T_IL: np.ndarray           # 4 x 4
     sweeps: list[Sweep]
@@ -67,11 +70,13 @@ def read(path: str) -> Recording:
     """Reads a recording (scenarios/recordings/FORMAT.md) without its truth."""
     with h5py.File(path) as file:
         imu = file["sensors/imus/0"]
-        T_IL, sweeps = np.eye(4), []
+        T_BI, T_IL, sweeps = imu["T_BI"][:], np.eye(4), []
         if "sensors/lidars/0" in file:
             lidar = file["sensors/lidars/0"]
-            T_IL = np.linalg.inv(imu["T_BI"][:]) @ lidar["T_BL"][:]
+            T_IL = np.linalg.inv(T_BI) @ lidar["T_BL"][:]
             sweeps = read_sweeps(lidar)
         return Recording(imu["time_ns"][:], imu["gyro_I_rad_s"][:], imu["accel_I_m_s2"][:], int(imu.attrs["period_ns"]),
                          float(imu.attrs["gyro_noise_rad_s_sqrt_hz"]), float(imu.attrs["accel_noise_m_s2_sqrt_hz"]),
+                         float(imu.attrs["stated_gyro_range_rad_s"]), float(imu.attrs["stated_accel_range_m_s2"]),
+                         T_BI[:3, :3].T @ T_BI[:3, 3],
                          float(file["sensors"].attrs["gravity_m_s2"]), T_IL, sweeps)

@@ -2,8 +2,8 @@
 """Tests that the errors of three external estimators on one draw of `stroll` are within a bound: stroll.py ROOT PROGRAM
 WORK.
 
-Negative control: with two exchanged point axes, the error exceeds the bound. Exits with 77 if the packages cannot be
-installed."""
+Negative control: with two exchanged point axes, the error exceeds the bound. `adapt.py --time` measures each sweep.
+Exits with 77 if the packages cannot be installed."""
 import json
 import os
 import pathlib
@@ -83,6 +83,11 @@ def main() -> int:
     error_m = end_error_m(program, recording, mirrored(root, work), work / "out")
     print(f"kiss_icp with two axes exchanged: {error_m:.3f} m, more than {BOUND_M}")
     failed += error_m <= BOUND_M
+    timed = subprocess.run([root / "peers/run", root / "peers/adapt.py", "--time", "kiss_icp", recording, work / "poses.tum"],
+                           capture_output=True, text=True, check=True)
+    found = json.loads(next(line for line in timed.stdout.splitlines() if line.startswith('{"ms"')))
+    print(f"kiss_icp: times of {len(found['ms'])} sweeps for {found['poses']} poses, {found['mib']:.1f} MiB")
+    failed += not (len(found["ms"]) == found["poses"] > 100 and min(found["ms"]) > 0.0 and found["mib"] > 0.0)
     recording.unlink()
     return 1 if failed else 0
 
