@@ -57,6 +57,19 @@ TEST(LidarInertialOdometry, FollowsATumbleThroughARoom) {
   EXPECT_GT(static_cast<double>(inwards) / static_cast<double>(with_normal), 0.98);
 }
 
+TEST(LidarInertialOdometry, ThreeTimesTheVoxelRegistersAQuarterOfThePoints) {
+  std::array<double, 2> points{};
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    Odometry::Params params = rig_params();
+    params.sweep_voxel_m *= k == 0 ? 1.0 : 3.0;
+    Odometry odometry(params);
+    const auto reports = run(odometry, 0, 16);
+    for (const auto& report : reports) points[k] += static_cast<double>(report.points_after_downsampling);
+    EXPECT_LT(error_of(reports.back().pose).m, 0.1);
+  }
+  EXPECT_NEAR(points[1] / points[0], 0.25, 0.1);
+}
+
 TEST(LidarInertialOdometry, IsLostWithAClippedRate) {
   Odometry odometry(rig_params());
   const auto reports = run(odometry, 0, 26, 8.0);
