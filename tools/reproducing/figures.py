@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Checks and writes the tables of README.md and docs/figures.md: runs sweeps and compares each cell with docs/figures.yaml.
+"""Checks and writes the tables of README.md, docs/figures.md and peers/README.md: runs sweeps and compares each cell with docs/figures.yaml.
 
 docs/figures.yaml names the sweeps (scenarios, seeds, methods, or a command), the tables (page, titles, groups of rows with their columns, tolerance) and, below
 the line `values:`, the value of each cell. A row SCENARIO@VALUE shows the runs of a scenario with this value of the sweep's varied parameter. A cell
