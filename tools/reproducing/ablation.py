@@ -133,7 +133,7 @@ def page(described, rows):
         elif own:
             size = lambda row: (abs(row["failed_off"] - row["failed_on"]), max(abs(row[s]) for s in QUANTILES), coverage_change(row))
             table.add(mechanism["does"], str(lines_of(mechanism) or "–"), *cells(max(changed or own, key=size)), f"{len(changed)}/{len(own)}")
-    equal = "\nSwitching off one of these mechanisms changes no error:\n\n" + "\n".join(without_effect) + "\n" if without_effect else ""
+    equal = "\nThese mechanisms change no error in these scenarios:\n\n" + "\n".join(without_effect) + "\n" if without_effect else ""
     return described["text"].strip() + "\n\n" + table.text() + equal + "\nCommand: `tools/reproduce ablation`.\n"
 
 
