@@ -6,7 +6,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -31,8 +30,9 @@ constexpr std::array<std::array<std::string_view, 2>, 8> kPlyTypes = {{{"char", 
                                                                        {"float", "float32"},
                                                                        {"double", "float64"}}};
 
+/// `part` names the count of valid parts, which is 0 and must be 1.
 Status unsupported(const char* part) {
-  return {ErrorCode::out_of_range, part, std::numeric_limits<double>::quiet_NaN(), 0.0};
+  return {ErrorCode::out_of_range, part, 0.0, 1.0};
 }
 
 class Words {
@@ -87,23 +87,23 @@ Status parse_ply(std::string_view file, CloudHeader& out) {
     const std::string_view key = words.next();
     if (key == "end_header") {
       out.bytes = file.size() - rest.size();
-      return has_vertices ? Status{} : unsupported("'element vertex' of the PLY file");
+      return has_vertices ? Status{} : unsupported("number of vertex elements in the PLY header");
     }
     if (key == "format") {
       const std::string_view format = words.next();
       out.ascii = format == "ascii";
       if (!out.ascii && format != "binary_little_endian")
-        return unsupported("format of the PLY file (must be ascii or binary_little_endian)");
+        return unsupported("number of known formats in the PLY header (ascii or binary_little_endian)");
     } else if (key == "element") {
       in_vertices = !has_vertices && words.next() == "vertex" && words.read(out.points);
-      if (!in_vertices && !has_vertices) return unsupported("first element of the PLY file (must be vertex)");
+      if (!in_vertices && !has_vertices) return unsupported("number of vertex elements at the start of the PLY file");
       has_vertices = true;
     } else if (key == "property" && in_vertices) {
       const std::string_view type = words.next();
       const auto known = std::find_if(kPlyTypes.begin(), kPlyTypes.end(),
                                       [&](const auto& names) { return names[0] == type || names[1] == type; });
       if (known == kPlyTypes.end() || out.fields.size() == kFieldsMax)
-        return unsupported("property of the PLY file's vertices (must be a number)");
+        return unsupported("number of known types of a vertex property in the PLY header");
       out.add(words.next(), static_cast<std::uint8_t>(known - kPlyTypes.begin() + 1), 1);
     }
   }
@@ -126,11 +126,13 @@ Status parse_pcd(std::string_view file, CloudHeader& out) {
     if (key == "SIZE") sizes = values;
     if (key == "TYPE") types = values;
     if (key == "COUNT") counts = values;
-    if (key == "POINTS" && !words.read(out.points)) return unsupported("POINTS of the PCD file");
+    if (key == "POINTS" && !words.read(out.points))
+      return unsupported("number of valid entries POINTS in the PCD header");
     if (key != "DATA") continue;
     const std::string_view data = words.next();
     out.ascii = data == "ascii";
-    if (!out.ascii && data != "binary") return unsupported("DATA of the PCD file (must be ascii or binary)");
+    if (!out.ascii && data != "binary")
+      return unsupported("number of known encodings DATA in the PCD header (ascii or binary)");
     out.bytes = file.size() - rest.size();
     Words name(names), size(sizes), type(types), count(counts);
     for (std::string_view each = name.next(); !each.empty(); each = name.next()) {
@@ -139,7 +141,7 @@ Status parse_pcd(std::string_view file, CloudHeader& out) {
       const std::string_view letter = type.next();
       const std::uint8_t datatype = letter.size() == 1 ? pcd_datatype(letter[0], bytes) : 0;
       if (!read || datatype == 0 || numbers == 0 || numbers > kFieldsMax || out.fields.size() == kFieldsMax)
-        return unsupported("SIZE, TYPE or COUNT of a field of the PCD file");
+        return unsupported("number of known types (SIZE, TYPE, COUNT) of a field in the PCD header");
       out.add(each, datatype, numbers);
     }
     return {};
@@ -223,7 +225,7 @@ Status read_map(std::span<const std::byte> file, std::vector<MapPoint>& points) 
   CloudHeader header;
   if (const Status status = is_ply ? parse_ply(text, header) : parse_pcd(text, header); !status.ok()) return status;
   const MapFields fields(header.fields);
-  if (!fields.position[0]) return unsupported("fields x, y and z of the map file");
+  if (!fields.position[0]) return {ErrorCode::insufficient_data, "fields x, y and z of the map file", 0.0, 3.0};
   std::vector<MapPoint> read;
   const std::string_view data = text.substr(header.bytes);
   const Status status = header.ascii ? read_text(data, header, fields, read) : read_binary(data, header, fields, read);

@@ -98,12 +98,12 @@ TEST(MapFile, TheErrorNamesTheWrongPartOfTheHeader) {
     return read(file, points).message();
   };
   const std::string ply = "ply\nformat ascii 1.0\n", end = "end_header\n0 0 0\n";
-  EXPECT_THAT(error("ply\nformat binary_big_endian 1.0\n" + end), HasSubstr("format of the PLY file"));
-  EXPECT_THAT(error(ply + "element face 1\n" + end), HasSubstr("first element"));
-  EXPECT_THAT(error(ply + "element vertex -1\n" + end), HasSubstr("first element"));
-  EXPECT_THAT(error(ply + "element vertex 1\nproperty list uchar int x\n" + end), HasSubstr("property"));
+  EXPECT_THAT(error("ply\nformat binary_big_endian 1.0\n" + end), HasSubstr("known formats in the PLY header"));
+  EXPECT_THAT(error(ply + "element face 1\n" + end), HasSubstr("at the start of the PLY file"));
+  EXPECT_THAT(error(ply + "element vertex -1\n" + end), HasSubstr("at the start of the PLY file"));
+  EXPECT_THAT(error(ply + "element vertex 1\nproperty list uchar int x\n" + end), HasSubstr("vertex property"));
   EXPECT_THAT(error(ply + "element vertex 1\nproperty float x\n" + end), HasSubstr("fields x, y and z"));
-  EXPECT_THAT(error(ply + end), HasSubstr("element vertex"));
+  EXPECT_THAT(error(ply + end), HasSubstr("vertex elements in the PLY header"));
   EXPECT_THAT(error(pcd("x y z", "4 4 4", "F F F", 1, "binary_compressed\n")), HasSubstr("DATA"));
   EXPECT_THAT(error(pcd("x y z", "4 4", "F F F", 1, "ascii\n")), HasSubstr("SIZE"));
   EXPECT_THAT(error(pcd("x y z", "3 4 4", "F F F", 1, "ascii\n")), HasSubstr("SIZE"));
