@@ -231,20 +231,14 @@ Status optimise_corrected_readings(const CorrectionIterations& rounds, const Sen
                                    fit, health);
 }
 
+/// Computes the normal equations again at the final estimates. The normal equations of the last Gauss-Newton step belong
+/// to earlier estimates, and would be inconsistent with residuals at the final estimates.
 Status collect_error_evidence(const CorrectionIterations& rounds, const SensorErrors& errors, AngularRateFit& fit,
                               const AngularRateReport& health) {
-  const RateSolution& solution = fit.solution;
+  RateSolution& solution = fit.solution;
+  if (!solution.iteration.factorise(fit.model, solution.estimates, solution.rig))
+    return {ErrorCode::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
   fit.error_derivatives = solution.iteration.error_derivatives(fit.model, solution.estimates, solution.rig);
-  if (rounds.estimated) {
-    // The normal equations are computed again at the final estimates, because a gradient before convergence is no
-    // evidence of sensor errors.
-    GaussNewtonRateStep again = solution.iteration;
-    if (!again.factorise(fit.model, solution.estimates, solution.rig)) {
-      return {ErrorCode::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
-    }
-    fit.error_derivatives.sensor_error_evidence =
-        again.error_derivatives(fit.model, solution.estimates, solution.rig).sensor_error_evidence;
-  }
   fit.error_derivatives.sensor_error_evidence.linearisation_point = errors;
   add_impact_delay(rounds.impact_delay, fit.error_derivatives.sensor_error_evidence);
   return {};
