@@ -4,9 +4,11 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "tumble/angular_velocity/detail/saturation_plane.hpp"
@@ -223,6 +225,22 @@ constexpr double kGridStep = 0.01;  // step of the search grid over cross-axis s
 constexpr int kRefinements = 10;
 constexpr double kSlabDeviations = 4.0, kSlabRatioMin = 2e-4, kSlabRatioMax = 0.006;
 
+/// Contains the three highest values. The third-highest value is the top of the readings on a plane, because up to two
+/// readings may be beyond the plane: the low-pass filter of a gyro may overshoot where a saturation begins.
+class HighestValues {
+ public:
+  void add(double value) {
+    for (double& kept : descending_) {
+      if (value > kept) std::swap(value, kept);
+    }
+  }
+  double top() const { return descending_.back(); }
+
+ private:
+  std::array<double, 3> descending_ = {-kNone, -kNone, -kNone};
+  static constexpr double kNone = std::numeric_limits<double>::max();
+};
+
 // Stores in `out` the readings that can be on a saturation plane whose cross-axis sensitivities are at most `steepest`.
 double candidates(const DistinctReadings& readings, int axis, int sign, double steepest, double slab,
                   std::vector<std::size_t>& out) {
@@ -316,14 +334,14 @@ Vector2d search_cross_axis_slopes(const DistinctReadings& readings, const Extrem
     for (int b = -steps; b <= steps; ++b) {
       const Vector2d slopes = prior.cross_axis_slopes + kGridStep * Vector2d(a, b);
       if (slopes.lpNorm<Eigen::Infinity>() > slope_max + kGridStep) continue;
-      double top = -std::numeric_limits<double>::max();
+      HighestValues highest_values;
       for (std::size_t i = 0; i < near.size(); ++i) {
         const Vector3d& y = readings.rates[near[i]];
         values[i] = extreme.side * (y[axis] + slopes.dot(other_axes_readings(y, axis)));
-        top = std::max(top, values[i]);
+        highest_values.add(values[i]);
       }
-      const auto count =
-          std::count_if(values.begin(), values.end(), [&](double v) { return v >= top - extreme.slab_thickness; });
+      const double from = highest_values.top() - extreme.slab_thickness;
+      const auto count = std::count_if(values.begin(), values.end(), [&](double v) { return v >= from; });
       const Vector2d off = slopes - prior.cross_axis_slopes;
       const double score = static_cast<double>(count) - 0.5 * off.dot(prior.information * off);
       if (!(score > highest)) continue;
@@ -347,10 +365,10 @@ SaturationPlaneSide fit_saturation_plane(const DistinctReadings& readings, const
   facet.row[axis] = 1.0;
   facet.row[(axis + 1) % 3] = slopes[0];
   facet.row[(axis + 2) % 3] = slopes[1];
-  double top = -std::numeric_limits<double>::max();
+  HighestValues highest_values;
   for (const std::size_t k : workspace.near_plane_indices)
-    top = std::max(top, facet.side * facet.row.dot(readings.rates[k]));
-  collect_plane_inliers(readings, top - extreme.slab_thickness, side, workspace);
+    highest_values.add(facet.side * facet.row.dot(readings.rates[k]));
+  collect_plane_inliers(readings, highest_values.top() - extreme.slab_thickness, side, workspace);
   double floor = readings.min_reading_change[axis];
   facet.plane_tolerance_rad_s = extreme.slab_thickness;
   for (int i = 0; i < kRefinements && !workspace.inliers.empty(); ++i) {
