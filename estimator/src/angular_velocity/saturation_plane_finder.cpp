@@ -89,7 +89,7 @@ SaturationPlane merged_plane(const SaturationPlaneFinder::Params& params, const 
   double squares = 0.0, weights = 0.0;
   for (const SaturationPlaneSide* side : {minus, plus}) {
     if (side == nullptr) continue;
-    const double weight = 1.0 / (side->plane.noise_sigma_rad_s * side->plane.noise_sigma_rad_s);
+    const double variance = side->plane.noise_sigma_rad_s * side->plane.noise_sigma_rad_s;
     const PlaneInlierGate& gate = side->gate;
     for (const Vector3d& y : readings.rates) {
       if (!(side->side * gate.row.dot(y) >= gate.from)) continue;
@@ -98,6 +98,8 @@ SaturationPlane merged_plane(const SaturationPlaneFinder::Params& params, const 
       // (R59).
       Eigen::Vector4d A;
       A << -other_axes_readings(y, axis), side->side, 1.0;
+      const double off = side->side * side->plane.row.dot(y) - side->plane.plane_distance;
+      const double weight = 1.0 / (variance + off * off);  // Cauchy weight, as in (R58)
       H += weight * A * A.transpose();
       g += weight * A * y[axis];
     }
