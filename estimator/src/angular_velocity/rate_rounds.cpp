@@ -89,10 +89,11 @@ Status optimise_or_fix_rig_prior(const AngularRateSmoother::Params& params, cons
     return {ErrorCode::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
   }
   health.calibration_at_prior = health.calibration_mahalanobis > params.calibration_mahalanobis_max;
-  if (health.calibration_at_prior && struck) {
+  if (health.calibration_at_prior) {
+    const double limit = params.calibration_mahalanobis_max;
     health.calibration_mahalanobis = mahalanobis_of(known, fit.model, period_s, observations, fit.solution);
     health.calibration_at_prior =
-        health.calibration_mahalanobis > std::max(params.calibration_mahalanobis_max, kDeviceMahalanobisMax);
+        health.calibration_mahalanobis > (struck ? std::max(limit, kDeviceMahalanobisMax) : limit);
   }
   health.calibration = {fit.solution.rig, fit.solution.rig_covariance};
   if (!health.calibration_at_prior) return {};

@@ -4,11 +4,10 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "tumble/angular_velocity/detail/saturation_plane.hpp"
@@ -35,6 +34,7 @@ constexpr double kThinLogLikelihoodMin = 8.0;
 constexpr std::size_t kThinLostFreedom = 4;
 constexpr double kAtRailSigmas = 4.0, kAtRailRatioMax = 0.006;
 constexpr double kBeyondPenalty = 5.0, kOutlierFraction = 0.02;
+constexpr std::size_t kOvershootReadings = 2;
 
 // See rails.md (R56).
 double window_noise(std::span<const Vector3d> window, int axis) {
@@ -225,21 +225,14 @@ constexpr double kGridStep = 0.01;  // step of the search grid over cross-axis s
 constexpr int kRefinements = 10;
 constexpr double kSlabDeviations = 4.0, kSlabRatioMin = 2e-4, kSlabRatioMax = 0.006;
 
-/// Contains the three highest values. The third-highest value is the top of the readings on a plane, because up to two
-/// readings may be beyond the plane: the low-pass filter of a gyro may overshoot where a saturation begins.
-class HighestValues {
- public:
-  void add(double value) {
-    for (double& kept : descending_) {
-      if (value > kept) std::swap(value, kept);
-    }
-  }
-  double top() const { return descending_.back(); }
-
- private:
-  std::array<double, 3> descending_ = {-kNone, -kNone, -kNone};
-  static constexpr double kNone = std::numeric_limits<double>::max();
-};
+/// Returns the top of the readings on a plane, and changes the order of `values`. Some readings may be beyond the plane,
+/// because the low-pass filter of a gyro overshoots where a saturation begins.
+double top_without_overshoot(std::vector<double>& values) {
+  const auto beyond = kOvershootReadings + static_cast<std::size_t>(kOutlierFraction * double(values.size()));
+  const auto at = static_cast<std::ptrdiff_t>(std::min(beyond, values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + at, values.end(), std::greater<>());
+  return values[static_cast<std::size_t>(at)];
+}
 
 // Stores in `out` the readings that can be on a saturation plane whose cross-axis sensitivities are at most `steepest`.
 double candidates(const DistinctReadings& readings, int axis, int sign, double steepest, double slab,
@@ -334,13 +327,11 @@ Vector2d search_cross_axis_slopes(const DistinctReadings& readings, const Extrem
     for (int b = -steps; b <= steps; ++b) {
       const Vector2d slopes = prior.cross_axis_slopes + kGridStep * Vector2d(a, b);
       if (slopes.lpNorm<Eigen::Infinity>() > slope_max + kGridStep) continue;
-      HighestValues highest_values;
       for (std::size_t i = 0; i < near.size(); ++i) {
         const Vector3d& y = readings.rates[near[i]];
         values[i] = extreme.side * (y[axis] + slopes.dot(other_axes_readings(y, axis)));
-        highest_values.add(values[i]);
       }
-      const double from = highest_values.top() - extreme.slab_thickness;
+      const double from = top_without_overshoot(values) - extreme.slab_thickness;
       const auto count = std::count_if(values.begin(), values.end(), [&](double v) { return v >= from; });
       const Vector2d off = slopes - prior.cross_axis_slopes;
       const double score = static_cast<double>(count) - 0.5 * off.dot(prior.information * off);
@@ -365,10 +356,11 @@ SaturationPlaneSide fit_saturation_plane(const DistinctReadings& readings, const
   facet.row[axis] = 1.0;
   facet.row[(axis + 1) % 3] = slopes[0];
   facet.row[(axis + 2) % 3] = slopes[1];
-  HighestValues highest_values;
+  std::vector<double>& values = workspace.values;
+  values.clear();
   for (const std::size_t k : workspace.near_plane_indices)
-    highest_values.add(facet.side * facet.row.dot(readings.rates[k]));
-  collect_plane_inliers(readings, highest_values.top() - extreme.slab_thickness, side, workspace);
+    values.push_back(facet.side * facet.row.dot(readings.rates[k]));
+  collect_plane_inliers(readings, top_without_overshoot(values) - extreme.slab_thickness, side, workspace);
   double floor = readings.min_reading_change[axis];
   facet.plane_tolerance_rad_s = extreme.slab_thickness;
   for (int i = 0; i < kRefinements && !workspace.inliers.empty(); ++i) {
