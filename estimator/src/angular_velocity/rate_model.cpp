@@ -89,6 +89,12 @@ double mahalanobis(const BodyImuConstants::Vector& moved, const BodyImuConstants
   return std::sqrt(part.dot(spread.llt().solve(part)) / kCount);
 }
 
+double mahalanobis(const BodyImuConstants::Vector& moved, const BodyImuConstants::Matrix& covariance) {
+  const double lever = mahalanobis<0, 3>(moved, covariance), gyro = mahalanobis<3, 3>(moved, covariance),
+               accel = mahalanobis<6, 3>(moved, covariance), inertia = mahalanobis<9, 5>(moved, covariance);
+  return std::max({lever, gyro, accel, inertia});
+}
+
 // Returns A^T * information, where A is the derivative of the residual with respect to the sample's unknowns.
 Eigen::Matrix<double, 6, 3> add_to_knot(const AngularRateFactor& f, const Eigen::Matrix3d& information,
                                         double time_scale_s, arrow::Block& block) {
@@ -341,11 +347,13 @@ void AngularRateModel::add_rig_prior(const BodyImuConstants& rig, arrow::Corner&
 }
 
 double AngularRateModel::calibration_mahalanobis(const BodyImuConstants& rig) const {
-  const BodyImuConstants::Vector moved = rig.vector() - prior_constants_.vector();
-  const double lever = mahalanobis<0, 3>(moved, prior_covariance_), gyro = mahalanobis<3, 3>(moved, prior_covariance_),
-               accel = mahalanobis<6, 3>(moved, prior_covariance_),
-               inertia = mahalanobis<9, 5>(moved, prior_covariance_);
-  return std::max({lever, gyro, accel, inertia});
+  return mahalanobis(rig.vector() - prior_constants_.vector(), prior_covariance_);
+}
+
+double AngularRateModel::calibration_mahalanobis(const BodyImuConstants& rig, const arrow::BorderErrors& moved,
+                                                 const SensorErrors::Matrix& error_covariance) const {
+  return mahalanobis(rig.vector() - prior_constants_.vector(),
+                     prior_covariance_ + moved * error_covariance * moved.transpose());
 }
 
 // See rate_smoother.md (R1).

@@ -68,17 +68,13 @@ AngularRateModelParams fixed_calibration(const AngularRateModelParams& params, c
 }
 
 // See rate_smoother.md (R32).
-double mahalanobis_of(const AngularRateModelParams& known, const AngularRateModel& model, double period_s,
+double mahalanobis_of(const SensorErrorPriors& sizes, const AngularRateModel& model,
                       std::span<const AngularRateObservation> observations, const RateSolution& solution) {
   GaussNewtonRateStep again(observations);
   if (!again.factorise(model, solution.estimates, solution.rig)) return model.calibration_mahalanobis(solution.rig);
-  const arrow::BorderErrors moved =
-      again.error_derivatives(model, solution.estimates, solution.rig).calibration_error_jacobian;
-  AngularRateModelParams wider = known;
-  wider.calibration = BodyImuCalibration{model.prior_constants(), model.prior_covariance()};
-  wider.calibration->covariance +=
-      moved * fit_sensor_errors({}, known.expert.error_priors).fitted_errors.covariance * moved.transpose();
-  return AngularRateModel(wider, period_s).calibration_mahalanobis(solution.rig);
+  return model.calibration_mahalanobis(
+      solution.rig, again.error_derivatives(model, solution.estimates, solution.rig).calibration_error_jacobian,
+      fit_sensor_errors({}, sizes).fitted_errors.covariance);
 }
 
 Status optimise_or_fix_rig_prior(const AngularRateSmoother::Params& params, const AngularRateModelParams& known,
@@ -91,7 +87,7 @@ Status optimise_or_fix_rig_prior(const AngularRateSmoother::Params& params, cons
   health.calibration_at_prior = health.calibration_mahalanobis > params.calibration_mahalanobis_max;
   if (health.calibration_at_prior) {
     const double limit = params.calibration_mahalanobis_max;
-    health.calibration_mahalanobis = mahalanobis_of(known, fit.model, period_s, observations, fit.solution);
+    health.calibration_mahalanobis = mahalanobis_of(known.expert.error_priors, fit.model, observations, fit.solution);
     health.calibration_at_prior =
         health.calibration_mahalanobis > (struck ? std::max(limit, kDeviceMahalanobisMax) : limit);
   }

@@ -66,6 +66,11 @@ class AngularRateModel {
   /// Returns the largest distance of lever arm, gyro bias, accelerometer bias and inertia from their priors, in prior
   /// standard deviations.
   double calibration_mahalanobis(const BodyImuConstants& rig) const;
+  /// Returns the same distance, but the standard deviations include the effect of the sensor errors on the estimated
+  /// constants. `moved` is the derivative of the constants with respect to the sensor errors, whose covariance is
+  /// `error_covariance`.
+  double calibration_mahalanobis(const BodyImuConstants& rig, const arrow::BorderErrors& moved,
+                                 const SensorErrors::Matrix& error_covariance) const;
 
   BodyImuConstants prior_constants() const { return prior_constants_; }
   const BodyImuConstants::Matrix& prior_covariance() const { return prior_covariance_; }
