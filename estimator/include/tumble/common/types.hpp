@@ -70,8 +70,8 @@ struct PoseState {
   Eigen::Vector3d position_W_m = Eigen::Vector3d::Zero();
   Eigen::Quaterniond orientation_W = Eigen::Quaterniond::Identity();
   Eigen::Vector3d velocity_W_m_s = Eigen::Vector3d::Zero();
-  /// Covariance of the position error [m], then the attitude error phi [rad], both in world axes. The attitude error is
-  /// defined by q_true = Exp(phi) * q_WA. A zero matrix means that the covariance is not estimated.
+  /// Covariance of position error [m] and attitude error phi [rad], in this order, both in world axes. The attitude
+  /// error is defined by q_true = Exp(phi) * q_WA. A zero matrix means that the covariance is not estimated.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 
   /// Returns pose, velocity and covariance of a frame B that is rigidly attached to A, for example `base_link`.

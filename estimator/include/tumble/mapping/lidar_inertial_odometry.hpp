@@ -22,8 +22,8 @@ namespace tumble {
 ///
 /// The z axis of the world frame points upwards, along the specific force at rest. The first sweep with at least
 /// `matches_min` usable points starts the map. The pose of the IMU at the first IMU sample defines origin and yaw of
-/// the world frame. The IMU pose at the map's start defines origin and yaw instead, if the map starts more than 0.5 s
-/// after the first IMU sample, or if earlier sweeps had too few points.
+/// the world frame. In two cases, the IMU pose at the start of the map defines origin and yaw instead: the map starts
+/// more than 0.5 s after the first IMU sample, or earlier sweeps had too few points.
 ///
 /// Pass IMU samples in time order. Before each sweep, pass the IMU samples up to the end of the sweep.
 /// LidarInertialOdometry starts no threads, uses no files and prints nothing.
@@ -63,9 +63,9 @@ class LidarInertialOdometry {
   };
   /// Returns a correction of the initial tilt for a second run over the same data, computed from the estimated
   /// direction of gravity in the map. The result is empty after a start at rest, before the map starts, and after
-  /// localisation in a prior map. If the computed tilt has more than half of the initial tilt's standard deviation,
-  /// start_tilt_correction() returns the argument of set_start_tilt_correction(), or an empty value if
-  /// set_start_tilt_correction() was not called.
+  /// localisation in a prior map. A new correction must at least halve the standard deviation of the initial tilt.
+  /// Otherwise, start_tilt_correction() returns the last argument of set_start_tilt_correction(), or an empty value
+  /// without such a call.
   std::optional<StartTiltCorrection> start_tilt_correction() const;
   /// Call set_start_tilt_correction() before the first sweep.
   void set_start_tilt_correction(const StartTiltCorrection& tilt);
@@ -136,8 +136,8 @@ class LidarInertialOdometry {
   Status pose_at(TimeNs time_ns, PoseState& pose) const;
 
   /// Returns the current IMU poses of the sweeps that later sweeps still refine (at most `window_sweeps` - 1 sweeps),
-  /// oldest first. At the end of a run, the poses of all SweepResult::final_poses_of_earlier_sweep and then of
-  /// window_trajectories() are the whole trajectory.
+  /// oldest first. To get the whole trajectory at the end of a run, append these poses to the poses of all
+  /// SweepResult::final_poses_of_earlier_sweep.
   std::vector<std::vector<PoseState>> window_trajectories() const;
 
   std::size_t map_memory_bytes() const;

@@ -116,7 +116,7 @@ struct RelativePoseReading {
   TimeNs from_ns = 0;
   TimeNs to_ns = 0;
   Eigen::Isometry3d imu_T_from_to = Eigen::Isometry3d::Identity();
-  /// Covariance of the position error [m], then the attitude error phi [rad], both in IMU axes at `from_ns`. The
+  /// Covariance of position error [m] and attitude error phi [rad], in this order, both in IMU axes at `from_ns`. The
   /// attitude error is defined by R_true = Exp(phi) R. Set a large variance for components that the odometer does not
   /// measure.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
@@ -140,8 +140,8 @@ struct PositionReading {
 struct PositionFrame {
   Eigen::Isometry3d T_PW = Eigen::Isometry3d::Identity();  ///< the rotation is about the vertical
   Eigen::Vector3d covariance_reference_point_W_m = Eigen::Vector3d::Zero();
-  /// Covariance of the transform's error in axes of the frame P: translation of `covariance_reference_point_W_m` [m],
-  /// then rotation about the vertical through this point [rad].
+  /// Covariance of the transform's error in axes of the frame P. The error vector contains the translation of
+  /// `covariance_reference_point_W_m` [m], followed by the rotation about the vertical through this point [rad].
   Eigen::Matrix4d xyz_yaw_covariance_P = Eigen::Matrix4d::Zero();
 
   /// Converts a pose from the odometry frame W to the frame P. In the converted pose, the covariance of position and

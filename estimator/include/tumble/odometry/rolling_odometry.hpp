@@ -172,7 +172,7 @@ class RollingOdometry {
   /// Returns true if the sphere was already moving at the first samples.
   bool started_in_motion() const;
 
-  /// Returns the state of the fusion of several IMUs (attitude/detail/imu_merge.hpp). The state contains which IMUs
+  /// Returns the state of the fusion of several IMUs (attitude/detail/imu_merge.hpp). The state lists the IMUs that
   /// repeat one reading (frozen), contradict the other IMUs, or have a time offset.
   const ImuMergeState& imu_merge_state() const;
 

@@ -68,7 +68,7 @@ struct FurtherLidar {
 /// members of ImuDataSheet and LidarDataSheet.
 namespace sheets {
 
-/// Data sheet with the name of the sensor. The call operator returns the data sheet.
+/// A data sheet and the name of its sensor. The call operator returns the data sheet.
 template <class DataSheet>
 struct Named {
   const char* name;

@@ -24,14 +24,14 @@ struct PartialSaturation {
 };
 
 /// Estimates the saturation deficit of a partly saturated gyro reading from an unsaturated neighbouring reading, for
-/// constant angular acceleration: rails.md (R70). `neighbour_rad_s` is the smaller one of the two neighbouring
-/// readings, with a sign for which the saturation limit is positive.
+/// constant angular acceleration: rails.md (R70). `neighbour_rad_s` is the smaller of the two neighbouring readings,
+/// with a sign for which the saturation limit is positive.
 PartialSaturation partial_saturation(double reading_rad_s, double neighbour_rad_s, double rail_rad_s,
                                      double noise_rad_s);
 
-/// Returns the smaller one of the readings of the samples `before` and `after`, which may be null: rails.md (R70).
-/// `read` converts an angular velocity to the reading of a sensing element. A reading flagged as saturated is used only
-/// if most of its averaging window was unsaturated. Returns the saturation limit if there is no usable neighbour.
+/// Returns the smaller of the readings of the samples `before` and `after`, which may be null: rails.md (R70). `read`
+/// converts an angular velocity to the reading of a sensing element. A reading flagged as saturated is used only if
+/// most of its averaging window was unsaturated. Returns the saturation limit if there is no usable neighbour.
 template <class Read>
 double unsaturated_neighbour_reading(double reading_rad_s, double rail_rad_s, int axis, const ImuSample* before,
                                      const ImuSample* after, const Read& read) {

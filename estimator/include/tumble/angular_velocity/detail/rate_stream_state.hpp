@@ -37,7 +37,7 @@ struct AngularRateStreamKnot {
   Clipping clipping_at_axis_limits;  ///< clipping from clip flags and equal readings, without saturation planes
   AngularRateEstimate estimate;
   Eigen::Matrix3d covariance_rad2_s2 = Eigen::Matrix3d::Zero();
-  /// The smaller one of the last two increases of the reading's magnitude per sample, for each gyro axis.
+  /// The smaller of the last two increases of the reading's magnitude per sample, for each gyro axis.
   Eigen::Vector3d plateau_growth_rad_s = Eigen::Vector3d::Zero();
   int knot_age_samples = 0;
   bool repeats_reading = false;
