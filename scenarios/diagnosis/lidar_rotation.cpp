@@ -22,15 +22,16 @@ constexpr std::size_t kLeastPairs = 12;
 /// Largest accepted difference between the rotations that lidar and gyro measure, relative to the median rotation. In
 /// correct recordings, both rotations differ by about 0.1 of the median rotation.
 constexpr double kAgrees = 0.3;
-/// Other IMU axes than the stated axes must reduce the rotation error by the factor kConclusive. A delay between lidar
-/// and gyro must reduce the rotation error by the factor kDelayConclusive.
+/// An alternative to the stated IMU axes counts as better only if its rotation error is below kConclusive times the
+/// rotation error of the stated axes. A delay between lidar and gyro counts only if the rotation error with the delay
+/// is below kDelayConclusive times the rotation error without delay.
 constexpr double kConclusive = 0.5, kDelayConclusive = 0.6;
 constexpr double kDegreesOfRadian = 57.29577951308232;
 constexpr double kDelayMost_s = 0.5, kDelayStep_s = 0.01, kDelaySaid_s = 0.03;
 constexpr std::int64_t kGap_ns = 100'000'000;
 constexpr double kInverted = 0.2;
-/// Record stamps of a bag (times of recording) vary by some 10 ms, so they replace only header stamps with errors above
-/// 0.1 s.
+/// Record stamps of a bag (times of recording) vary by some 10 ms. Record stamps therefore replace only header stamps
+/// with errors above 0.1 s.
 constexpr double kRecordsBetter_s = 0.1;
 
 class Integral {
@@ -199,8 +200,9 @@ std::string mirrored_text(const RotationAgreement& found) {
   const SignedAxes& axes = found.axes;
   const auto wrong = std::ranges::find(axes.sign, -1);
   const bool one_sign = axes.axis == std::array{0, 1, 2} && std::ranges::count(axes.sign, -1) == 1;
-  const std::string which = one_sign ? fmt::format("the sign of the {} axis is wrong", "xyz"[wrong - axes.sign.begin()])
-                                     : fmt::format("the correct axes are {} of the readings", axes.text());
+  const std::string which = one_sign
+                                ? fmt::format("the sign of the {} axis is wrong", "xyz"[wrong - axes.sign.begin()])
+                                : fmt::format("the true axes (x, y, z) are the axes {} of the readings", axes.text());
   return fmt::format(
       "caution: the axes of the IMU are mirrored (left-handed): {}. The rotations of lidar and gyro differ{} by {}, "
       "and with the correct axes by {}. No rotation and no option repairs mirrored axes; correct the IMU's driver",

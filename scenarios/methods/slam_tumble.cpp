@@ -299,8 +299,8 @@ Method slam_tumble() {
 Method slam_tumble_lag() {
   return make_method({.name = "tumble_lag",
                       .kind = Kind::slam,
-                      .doc = "Runs TumblingOdometry (public API) in one causal pass. The result of the next sweep "
-                             "contains the final pose of a sweep.",
+                      .doc = "Runs TumblingOdometry (public API) in one causal pass. The final pose of a sweep is in "
+                             "the result of the next sweep.",
                       .ours = true,
                       .settings = {&lag_settings()},
                       .robots = {"rig"}},

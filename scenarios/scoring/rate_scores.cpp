@@ -169,7 +169,7 @@ std::vector<Metric> rate_metrics() {
        clipped_max},
       {{"rate_error_beyond_range_share", Unit::share,
         "median, over samples with at least one clipped gyro axis, of the rate error (norm) divided by the amount by "
-        "which the rate exceeds the gyro's range (norm of unclipped minus delivered reading); the clipped gyro has 1",
+        "which the rate exceeds the gyro's range (norm of unclipped minus delivered reading); for raw readings, 1",
         Sense::lower},
        Kind::rate,
        beyond_range_share},

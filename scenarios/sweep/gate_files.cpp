@@ -52,7 +52,7 @@ std::vector<std::uint64_t> read_seeds(const GateLine& line) {
   for (std::size_t i = kKeyCells; i < line.cells.size(); ++i) {
     std::uint64_t seed = 0;
     if (!read_number(line.cells[i], seed))
-      line.fail(fmt::format("the header cell '{}' is not a seed, which is a whole number", line.cells[i]));
+      line.fail(fmt::format("the header cell is '{}'; it must be a seed (a whole number)", line.cells[i]));
     if (!seeds.empty() && seed <= seeds.back())
       line.fail(fmt::format("seeds must increase from column to column; the header contains {}", line.cells[i]));
     seeds.push_back(seed);

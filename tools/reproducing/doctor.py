@@ -148,7 +148,7 @@ def exchange_axes(recording: Recording, rng: np.random.Generator, names: tuple[s
     order = ([0, 2, 1], [2, 1, 0], [1, 0, 2])[int(rng.integers(3))]
     recording.change(recording.imu, *names, by=lambda rows: rows[:, order])
     axes = ", ".join("xyz"[k] for k in order)
-    return Expected("mirrored", f"the correct axes are \\({axes}\\).*correct the IMU's driver")
+    return Expected("mirrored", f"the true axes \\(x, y, z\\) are the axes \\({axes}\\) of.*correct the IMU's driver")
 
 
 def exchanged_axes(recording: Recording, rng: np.random.Generator) -> Expected:

@@ -251,7 +251,7 @@ BenchPage page_of(const scenarios::Results& results, const scenarios::Suite& sui
       page.stored.push_back(std::move(each));
     else
       page.left_out.push_back(
-          fmt::format("{}: another build simulated run {} of these results, and the recording differs from the "
+          fmt::format("{}: run {} of these results was simulated by another build, whose recording differs from the "
                       "recording of this build",
                       each.method, draw));
   }

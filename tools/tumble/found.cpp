@@ -189,7 +189,7 @@ class Found {
         : agreement->unit == 1.0
             ? fmt::format("the rotations between sweeps that gyro and lidar measure agree within {} %",
                           rounded(100.0 * agreement->unit_error))
-            : "probably wrong, because the lidar measures the rotation of the gyro times " + rounded(agreement->unit);
+            : "probably wrong: the ratio of lidar rotation to gyro rotation is " + rounded(agreement->unit);
     add("unit of the gyro", fmt::format("{}: {}", options.gyro_unit.empty() ? "rad/s" : options.gyro_unit, evidence),
         agreement                                              ? kMeasured
         : options.gyro_unit.empty() || repaired("--gyro-unit") ? kAssumed

@@ -83,7 +83,7 @@ void declare_odometry_options(VerbOptions& verb, OdometryOptions& options) {
           "the base frame: X Y Z in m, then the quaternion QX QY QZ QW. The frame of the map is unchanged")
       .words(7);
   verb.add("--base-frame", options.input.base_frame,
-           "as --T-base-imu, with the pose of the IMU in this frame of a bag's /tf_static, for example base_link");
+           "replaces --T-base-imu by the name of a frame in a bag's /tf_static, for example base_link");
   verb.add("--set", options.parameters,
            "sets a parameter of the method: METHOD.PARAMETER=NUMBER; repeat the option for more parameters ('tumble "
            "list "
