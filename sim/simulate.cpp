@@ -51,8 +51,8 @@ Eigen::Isometry3d given_pose(const engine::World& world, const SensorSpec& senso
 
 Recording simulate(const BuiltSituation& built, int threads) {
   const Situation& situation = built.situation();
-  // The simulation changes the floor's friction in the world model when the robot moves, so it needs a copy of the
-  // world.
+  // The simulation changes the floor's friction in the world model when the robot moves, so the simulation needs a copy
+  // of the world.
   engine::World world = engine::copy_of(built.world());
   const auto motion = find_motion_type(situation.motion.type).make(situation.motion.values, world);
   std::vector<Eigen::Isometry3d> mountings;

@@ -27,8 +27,8 @@ sim::BodyState thrown(double rate_rad_s) {
   sim::BodyState state;
   state.p_WB_m = {0.0, 0.0, 100.0};
   state.v_WB_m_s = {0.5, -0.3, 20.0};
-  // The moment of inertia about the rig's z axis is the intermediate one, so small rates about x and y make the rig
-  // tumble within five seconds.
+  // The rig's z axis has the intermediate moment of inertia, so small rates about x and y make the rig tumble within
+  // five seconds.
   state.w_WB_B_rad_s = Eigen::Vector3d(0.3, 0.2, 18.0) * (rate_rad_s / 18.0);
   return state;
 }

@@ -16,7 +16,7 @@ inline constexpr const char *kBase = "base", *kBasePose = "T_base_imu";
 /// Returns the poses for the file trajectory.tum. Poses of the base frame have no velocity of the base.
 std::vector<PoseState> written_poses(const Estimate& estimate);
 
-/// Returns x y z [m] and the quaternion qx qy qz qw.
+/// Returns the numbers of a pose: x y z [m] and the quaternion qx qy qz qw.
 std::array<double, 7> numbers_of(const Eigen::Isometry3d& pose);
 /// Reads a pose that numbers_of() wrote. Throws BadInput if the member is not a pose.
 Eigen::Isometry3d pose_of(const JsonMembers& reader, const char* key);

@@ -70,8 +70,9 @@ void require_done(const CommandEnd& end);
 std::string reported_version(Command command, const std::string& place);
 
 /// Describes the sensors as JSON text, which contains gravity, the sphere's radius, and the properties of each IMU and
-/// lidar. An IMU has sample rate, ranges, noise densities and mounting T_BI. A lidar has period and mounting T_BL. The
-/// mounting of a sensor is the calibrated pose (not the true pose), as "translation_m" [x, y, z] and "quaternion_xyzw".
+/// lidar. The properties of an IMU are sample rate, ranges, noise densities and mounting T_BI. The properties of a
+/// lidar are sweep period and mounting T_BL. The mounting of a sensor is the calibrated pose (not the true pose), as
+/// "translation_m" [x, y, z] and "quaternion_xyzw".
 std::string sensors_text(const sim::Sensors& sensors);
 
 }  // namespace tumble::scenarios

@@ -31,8 +31,8 @@ namespace tumble::scenarios::bridge {
 inline constexpr double kGapMaxS = 1.0, kAnyGapS = std::numeric_limits<double>::infinity();
 
 /// Maximum ratio of a reading to the stated range of a device. The saturation limit of a real device may exceed its
-/// stated range (MTi-30: by a factor of 1.4). A tilted saturation limit depends on all three outputs of the gyro, so a
-/// single output may exceed the stated range even more.
+/// stated range (MTi-30: by a factor of 1.4). If the saturation limit of one output also depends on the other two
+/// outputs (tilted limit), this output may exceed the stated range by a larger factor.
 inline constexpr double kStatedRangesMax = OutlierFilter::kMaxReadingToRangeRatio;
 
 inline constexpr double kWildShareMax = 0.01;

@@ -179,7 +179,7 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   std::vector<std::vector<AuxiliaryReading>> auxiliary_imus;
   estimate.status = align(recordings, samples, bridge::kGapMaxS, params.rate.model, auxiliary_imus);
   if (!estimate.status.ok()) return estimate;
-  // The hand-held smoother cannot use auxiliary IMUs, so it is switched off if auxiliary IMUs exist.
+  // If auxiliary IMUs exist, the hand-held smoother is switched off, because the smoother cannot use auxiliary IMUs.
   if (!auxiliary_imus.empty() && !parameters.has("hand_held_probability_min")) params.hand_held_probability_min = 1.0;
   MotionRegimeStream joined(params);
   const AngularRateStream& stream = joined.rate();

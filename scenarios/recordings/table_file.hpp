@@ -32,8 +32,8 @@ class TableWriter {
   bool row_empty_ = true;
 };
 
-/// Table contains the cells of a text file. Empty lines and lines that start with '#' are skipped. If `separator` is a
-/// blank, tabs, commas and semicolons also separate cells.
+/// Table contains the cells of a text file. Empty lines and lines that start with '#' are skipped. With a blank as
+/// `separator`, cells may also be separated by tabs, commas or semicolons.
 struct Table {
   struct Row {
     int line;

@@ -90,8 +90,8 @@ void hold_worst_draw(const MetricInfo& info, const std::vector<GatePair>& pairs,
                              rounded(now.now), now.seed, rounded(before.before));
 }
 
-/// For a two-sided metric, the p-value is twice the smaller one of the two one-sided p-values, so that each metric
-/// counts as one statistical test.
+/// For a two-sided metric, the p-value is twice the smaller of the two one-sided p-values, so that each metric counts
+/// as one statistical test.
 void hold_middle(const std::vector<GatePair>& pairs, const MetricInfo& info, const GatePolicy& policy,
                  std::size_t tests, GateResult& result) {
   result.draws = pairs.size();

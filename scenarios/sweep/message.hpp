@@ -8,7 +8,7 @@
 
 namespace tumble::scenarios {
 
-/// Message is what a worker process reports to the main process. Exactly one member of a Message is set.
+/// Message is one report of a worker process to the main process. Exactly one member of a Message is set.
 struct Message {
   std::optional<Outcome> outcome;
   std::optional<RejectedDraw> rejected;

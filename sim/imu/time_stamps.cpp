@@ -21,8 +21,9 @@ TimeStamps::TimeStamps(const Values& values, const std::string& place, std::int6
   const double share = values.at("dropout_share");
   if (share <= 0.0) return;
   loss_ends_ = 1.0 / values.at("dropout_mean_samples");
-  // As many sequences of lost samples start as end, which gives the equation loss_starts_ (1 - share) = loss_ends_
-  // share. loss_starts_ and loss_ends_ are the probabilities that a sequence starts or ends at a sample.
+  // A sequence of lost samples starts with the probability loss_starts_ per received sample, and ends with the
+  // probability loss_ends_ per lost sample. Equally many sequences start and end, so loss_starts_ (1 - share) =
+  // loss_ends_ share.
   loss_starts_ = loss_ends_ * share / (1.0 - share);
   losing_ = stream_.uniform() < share;
 }

@@ -76,7 +76,7 @@ void add_force(const ImuSample& sample, const ClipSigns& signs, double t, NodeRe
 Status start_nodes(const HandHeldSmoother::Params& params, const Eigen::Matrix3d& rows, const NodeData& collected,
                    std::vector<Node>& nodes);
 
-/// `jerk` is a factor on the root spectral density of the angular jerk that `params` contains.
+/// The root spectral density of the angular jerk is `jerk` times the value in `params`.
 Motion::Params motion_params(const HandHeldSmoother::Params& params, double jerk = 1.0);
 ReadingNoise reading_noise(const HandHeldSmoother::Params& params, double period_s);
 double add_node(const NodeReadings& readings, const Eigen::Matrix3d& rows, const ReadingNoise& noise,

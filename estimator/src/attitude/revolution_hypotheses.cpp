@@ -201,7 +201,8 @@ std::vector<ProblemSegment> with_neighbouring_nodes(const HandHeldProblem& probl
   return out;
 }
 
-/// `fallen` marks segments whose number of revolutions was changed in an earlier round.
+/// `fallen` marks segments that needed another number of revolutions in an earlier round. A marked segment always gets
+/// its most probable number of revolutions.
 std::vector<TestedRevolutionSegment> test_revolution_segments(const HandHeldProblem& problem,
                                                               std::span<const Segment> segments,
                                                               std::span<const ProblemSegment> parts,

@@ -13,8 +13,8 @@
 
 namespace tumble::precompiled {
 
-/// `known` is always true. The compiler instantiates the given Eigen expressions and their evaluators to compute
-/// `known`.
+/// `known` is always true. To compute `known`, the compiler must instantiate the given Eigen expressions and their
+/// evaluators.
 template <class... Expressions>
 constexpr bool known = (... && (sizeof(std::remove_cvref_t<Expressions>) > 0 &&
                                 sizeof(Eigen::internal::evaluator<std::remove_cvref_t<Expressions>>) > 0));

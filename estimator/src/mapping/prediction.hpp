@@ -46,8 +46,8 @@ struct Prediction {
   /// Sets the velocity to zero and removes the correlations of the velocity: mapping.md (R33). Must be called before
   /// compose_with_boundary().
   void zero_velocity_update(double sigma_m_s);
-  /// Replaces the tilt by the tilt that the specific force at rest shows, and removes the correlations of the tilt.
-  /// Must be called before compose_with_boundary().
+  /// Replaces the tilt by the tilt from the specific force at rest, and removes the correlations of the tilt. Must be
+  /// called before compose_with_boundary().
   void level_update(const Eigen::Vector3d& force_I_m_s2, double sigma_rad);
 };
 

@@ -29,8 +29,8 @@ using Kind = HealthFinding::Kind;
 
 constexpr double kUnitSilent_s = 0.5;  // time without readings after which an IMU counts as silent
 
-/// If the accelerometers of all IMUs contradict gravity at rest, the finding concerns the merged IMU. If only some IMUs
-/// contradict gravity, these IMUs get the finding `imu_disagrees`.
+/// Adds a health finding about the merged IMU if the accelerometers of all IMUs contradict gravity at rest. If only
+/// some IMUs contradict gravity, adds the finding `imu_disagrees` for each of these IMUs.
 void add_forces_at_rest(const MergedImuChecks& checks, std::size_t count, SensorHealth& health) {
   const auto verdict = [&](std::size_t unit) {
     return checks.rest_gravity.gravity_magnitude_verdict(checks.rest_gravity_state[unit]);

@@ -14,7 +14,7 @@ namespace tumble::baselines {
 namespace {
 
 /// A rolling sphere moves along an axis only if the sphere rotates about another axis. Therefore, coupling() returns
-/// for each velocity axis the larger one of the rotation factors of the two other axes (Zevering et al. 2021, eq 8).
+/// for each velocity axis the larger rotation factor of the two other axes (Zevering et al. 2021, eq 8).
 Eigen::Vector3d coupling(const Eigen::Vector3d& factor) {
   return {std::max(factor.y(), factor.z()), std::max(factor.x(), factor.z()), std::max(factor.x(), factor.y())};
 }

@@ -19,7 +19,8 @@ struct CsvLine {
 class CsvText {
  public:
   /// Opens a table and determines its separator from the first line that is not a comment. The separator is the most
-  /// frequent one of comma, semicolon and tab, or a blank if the line contains none of these characters.
+  /// frequent of three characters: comma, semicolon and tab. If the line contains none of these characters, the
+  /// separator is a blank.
   explicit CsvText(const std::filesystem::path& path);
   CsvText(const std::filesystem::path& path, char separator);
   /// Reads the next line. Throws BadInput if the last line has no line end, because the line may be truncated; the next

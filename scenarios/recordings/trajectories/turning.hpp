@@ -78,9 +78,9 @@ std::string delay_remedy(double delay_s);
 /// evenly over the recording. Fewer than 6 pairs of attitudes give no result.
 ///
 /// @param frames Frames to which the attitudes may belong; the first frame is the user's choice.
-/// @param delay_max_s  Largest delay in either direction, searched in steps of 20 ms, then of 2 ms. With fewer than 20
-/// pairs of attitudes, or for `delay_max_s` = 0, no delay is searched. The search for a delay of up to 5 s takes half a
-/// second.
+/// @param delay_max_s Largest delay in either direction, searched in steps of 20 ms, then of 2 ms. The delay is assumed
+///        0 if `delay_max_s` is 0, or if there are fewer than 20 pairs of attitudes. The search for a delay of up to
+///        5 s takes half a second.
 TurningCheck check_turning(std::span<const TimedAttitude> attitudes, const std::vector<CandidateFrame>& frames,
                            const sim::ImuRecord& imu, double delay_max_s);
 
