@@ -154,6 +154,28 @@ TEST(SaturationPlanes, ReadingsThatRepeatOrAreCoarseDoNotHideASaturationLimit) {
   EXPECT_FALSE(find(free).any_plane_found());
 }
 
+// The low-pass filter of a gyro overshoots where a saturation begins, so each saturation has one reading beyond the
+// plane. Each device has 4 to 10 such readings.
+TEST(SaturationPlanes, AnOvershootWhereASaturationBeginsHidesNoPlane) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const Eigen::Matrix3d rows = drawn_rows(seed, 0.03);
+    std::vector<Vector3d> rates = clipped_along(waved(12.0, 6.0, 0.002, seed), rows, Vector3d::Zero(), 7.3);
+    int overshoots = 0;
+    for (std::size_t k = rates.size(); k-- > 1;) {
+      const double now = rows.row(0).dot(rates[k]), before = rows.row(0).dot(rates[k - 1]);
+      if (std::abs(now) < 7.29 || std::abs(before) > 7.2) continue;
+      rates[k][0] += std::copysign(0.3, now);
+      ++overshoots;
+    }
+    ASSERT_GE(overshoots, 4) << seed;
+    const auto plane = find(rates).sensing_axis[0];
+    ASSERT_TRUE(plane.has_value()) << seed;
+    EXPECT_TRUE(plane->was_reached(-1) && plane->was_reached(1)) << seed;
+    EXPECT_NEAR((plane->row - rows.row(0).transpose()).norm(), 0.0, 3e-3) << seed;
+    EXPECT_NEAR(plane->saturation_limit_rad_s, 7.3, 5e-3) << seed;
+  }
+}
+
 // A stated range speaks against a level far below it, but many segments outweigh it, because the range may have been
 // set differently.
 TEST(SaturationPlanes, AStatedRangeCountsAsMuchAsItIsWorth) {

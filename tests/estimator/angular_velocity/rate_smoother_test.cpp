@@ -155,6 +155,41 @@ TEST(AngularRateSmoother, ScaleAndMisalignmentAreInTheCovariance) {
   EXPECT_LT(rough.normalised, 0.4);
 }
 
+// At 40 rad/s, an accelerometer error of 0.3 % looks like a bias of many prior standard deviations, although the lever
+// arm is right. The calibration must therefore not be fixed at its prior.
+TEST(AngularRateSmoother, AScaleErrorAtLargeForcesIsNoContradictionToTheLeverArm) {
+  TumbleOptions options;
+  options.speed_low_rad_s = 36.0;
+  options.speed_high_rad_s = 44.0;
+  options.accel_rail_m_s2 = 400.0;
+  options.roll = false;
+  options.accel_error = 3e-3 * Eigen::Matrix3d::Identity();
+  AngularRateSmoother::Params params = with_wrong_lever_arm<AngularRateSmoother::Params>(0.01, 3);
+  params.model.expert.error_priors.accel = 3e-3;
+  const Outcome run = estimate(options, params);
+  EXPECT_FALSE(run.report.calibration_at_prior);
+  EXPECT_LT((run.report.calibration.constants.lever_arm_m - options.lever_arm_m).norm(), 1e-3);
+  EXPECT_LT(clipped_errors(run.recording, rates_of(run.states), kAtRail).median, 0.2);
+}
+
+// The effect of the sensor errors on the rates is computed at the final estimates. Before the optimisation has
+// converged, the normal equations of its last step would give wrong derivatives.
+TEST(AngularRateSmoother, SensorErrorsStayInTheCovarianceBeforeConvergence) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    TumbleOptions options;
+    options.seed = options.mounting_seed = seed;
+    AngularRateSmoother::Params params = with_wrong_lever_arm<AngularRateSmoother::Params>(0.01, seed);
+    params.expert.optimisation.iterations_max = 6;
+    const Outcome run = estimate(options, params);
+    double largest = 0.0;
+    for (std::size_t k = 0; k < run.states.size(); ++k) {
+      if (run.recording.phase[k] == Phase::flight)
+        largest = std::max(largest, run.states[k].covariance_rad2_s2.diagonal().maxCoeff());
+    }
+    EXPECT_LT(std::sqrt(largest), 3.0) << seed;
+  }
+}
+
 TEST(AngularRateSmoother, ARunWithoutClippingReturnsTheGyro) {
   TumbleOptions options;
   options.gyro_rail_rad_s = 1000.0;
