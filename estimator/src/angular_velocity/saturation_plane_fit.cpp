@@ -34,7 +34,6 @@ constexpr double kThinLogLikelihoodMin = 8.0;
 constexpr std::size_t kThinLostFreedom = 4;
 constexpr double kAtRailSigmas = 4.0, kAtRailRatioMax = 0.006;
 constexpr double kBeyondPenalty = 5.0, kOutlierFraction = 0.02;
-constexpr std::size_t kOvershootReadings = 2;
 
 // See rails.md (R56).
 double window_noise(std::span<const Vector3d> window, int axis) {
@@ -228,8 +227,7 @@ constexpr double kSlabDeviations = 4.0, kSlabRatioMin = 2e-4, kSlabRatioMax = 0.
 /// Returns the top of the readings on a plane, and changes the order of `values`. Some readings may be beyond the plane,
 /// because the low-pass filter of a gyro overshoots where a saturation begins.
 double top_without_overshoot(std::vector<double>& values) {
-  const auto beyond = kOvershootReadings + static_cast<std::size_t>(kOutlierFraction * double(values.size()));
-  const auto at = static_cast<std::ptrdiff_t>(std::min(beyond, values.size() - 1));
+  const auto at = static_cast<std::ptrdiff_t>(kOutlierFraction * double(values.size()));
   std::nth_element(values.begin(), values.begin() + at, values.end(), std::greater<>());
   return values[static_cast<std::size_t>(at)];
 }

@@ -8,7 +8,7 @@
 namespace tumble {
 
 struct RateOptimisationParams {
-  int iterations_max = 15;
+  int iterations_max = 25;
   double tolerance_rad_s = 2e-3;
   static constexpr double kStepMax_rad_s = 10.0;
   static constexpr double kInitialThresholdFactor =
