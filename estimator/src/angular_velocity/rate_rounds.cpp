@@ -228,8 +228,8 @@ Status optimise_corrected_readings(const CorrectionIterations& rounds, const Sen
                                    fit, health);
 }
 
-/// Computes the normal equations again at the final estimates. The normal equations of the last Gauss-Newton step belong
-/// to earlier estimates, and would be inconsistent with residuals at the final estimates.
+/// Computes the normal equations again at the final estimates. The normal equations of the last Gauss-Newton step
+/// belong to earlier estimates, and would be inconsistent with residuals at the final estimates.
 Status collect_error_evidence(const CorrectionIterations& rounds, const SensorErrors& errors, AngularRateFit& fit,
                               const AngularRateReport& health) {
   RateSolution& solution = fit.solution;

@@ -224,8 +224,8 @@ constexpr double kGridStep = 0.01;  // step of the search grid over cross-axis s
 constexpr int kRefinements = 10;
 constexpr double kSlabDeviations = 4.0, kSlabRatioMin = 2e-4, kSlabRatioMax = 0.006;
 
-/// Returns the top of the readings on a plane, and changes the order of `values`. Some readings may be beyond the plane,
-/// because the low-pass filter of a gyro overshoots where a saturation begins.
+/// Returns the top of the readings on a plane, and changes the order of `values`. Some readings may be beyond the
+/// plane, because the low-pass filter of a gyro overshoots where a saturation begins.
 double top_without_overshoot(std::vector<double>& values) {
   const auto at = static_cast<std::ptrdiff_t>(kOutlierFraction * double(values.size()));
   std::nth_element(values.begin(), values.begin() + at, values.end(), std::greater<>());
