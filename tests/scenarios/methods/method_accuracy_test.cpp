@@ -253,7 +253,8 @@ TEST(MethodAccuracy, AnAttitudeIsNotRotatedBySuspectReadings) {
   const auto doubted = std::count_if(rates.begin(), rates.end(), [](const AngularRateState& rate) {
     return rate.clipped_axes == 0 && rate.source != AngularRateSource::measured;
   });
-  ASSERT_GT(doubted, 10);  // measured 18
+  // measured: 18 readings
+  ASSERT_GT(doubted, 10);
   EXPECT_LT(scores_of("attitude/tumble", draw.recording).at("inclination_rmse_rad"), 0.05);  // 0.027
 }
 
