@@ -51,8 +51,8 @@ double recorded_error_m(const ThrownBody& body, const PoseState& pose) {
 }
 
 // The body spins about a constant axis, so the specific force determines only the product of lever arm and squared
-// rate. The lever arm is therefore stated to 5 mm. With 10 mm, the rate error is up to 2.0 rad/s, and the health
-// reports it.
+// rate. The standard deviation of the lever arm is therefore 5 mm. With 10 mm, the rate error is up to 2.0 rad/s, and
+// the health falsely reports a wrong gyro.
 TEST(TumblingRecording, EstimatesAThrowBeyondTheRail) {
   const ThrownBody body;
   TumblingOdometry::Params params = whole_params(body);

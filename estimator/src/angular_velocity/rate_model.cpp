@@ -350,10 +350,10 @@ double AngularRateModel::calibration_mahalanobis(const BodyImuConstants& rig) co
   return mahalanobis(rig.vector() - prior_constants_.vector(), prior_covariance_);
 }
 
-double AngularRateModel::calibration_mahalanobis(const BodyImuConstants& rig, const arrow::BorderErrors& moved,
+double AngularRateModel::calibration_mahalanobis(const BodyImuConstants& rig, const arrow::BorderErrors& error_jacobian,
                                                  const SensorErrors::Matrix& error_covariance) const {
   return mahalanobis(rig.vector() - prior_constants_.vector(),
-                     prior_covariance_ + moved * error_covariance * moved.transpose());
+                     prior_covariance_ + error_jacobian * error_covariance * error_jacobian.transpose());
 }
 
 // See rate_smoother.md (R1).

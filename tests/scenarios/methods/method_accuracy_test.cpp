@@ -254,7 +254,7 @@ TEST(MethodAccuracy, AnAttitudeIsNotRotatedBySuspectReadings) {
     return rate.clipped_axes == 0 && rate.source != AngularRateSource::measured;
   });
   // measured: 18 readings
-  ASSERT_GT(doubted, 10);
+  ASSERT_GT(doubted, 15);
   EXPECT_LT(scores_of("attitude/tumble", draw.recording).at("inclination_rmse_rad"), 0.05);  // 0.027
 }
 

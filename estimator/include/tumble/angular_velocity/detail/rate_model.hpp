@@ -67,9 +67,9 @@ class AngularRateModel {
   /// standard deviations.
   double calibration_mahalanobis(const BodyImuConstants& rig) const;
   /// Returns the same distance, but the standard deviations include the effect of the sensor errors on the estimated
-  /// constants. `moved` is the derivative of the constants with respect to the sensor errors, whose covariance is
-  /// `error_covariance`.
-  double calibration_mahalanobis(const BodyImuConstants& rig, const arrow::BorderErrors& moved,
+  /// constants. `error_jacobian` is the derivative of the constants with respect to the sensor errors.
+  /// `error_covariance` is the covariance of the sensor errors.
+  double calibration_mahalanobis(const BodyImuConstants& rig, const arrow::BorderErrors& error_jacobian,
                                  const SensorErrors::Matrix& error_covariance) const;
 
   BodyImuConstants prior_constants() const { return prior_constants_; }
